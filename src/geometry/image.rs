@@ -1,0 +1,102 @@
+//! Row-major images of any pixel type.
+
+use crate::error::{Error, ErrorCode, Result};
+
+/// A row-major image: pixel (u, v) is `data[v * width + u]`; u runs right, v runs down.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Image<T> {
+    width: usize,
+    height: usize,
+    data: Vec<T>,
+}
+
+/// Depth in metres along the optical axis; 0 is "no reading" (see [`DepthMap::from_metres`]).
+pub type DepthMap = Image<f32>;
+
+/// The object's pixels: non-zero is the object.
+pub type Mask = Image<u8>;
+
+impl<T: Copy> Image<T> {
+    /// An image from its pixels. `argument` names it in errors.
+    pub fn new(argument: &str, width: usize, height: usize, data: Vec<T>) -> Result<Self> {
+        check_size(argument, width, height, data.len())?;
+        Ok(Self { width, height, data })
+    }
+
+    /// An image of one value everywhere. The sizes must be those of an image already checked.
+    pub fn filled(width: usize, height: usize, value: T) -> Self {
+        Self { width, height, data: vec![value; width * height] }
+    }
+
+    /// Pixels in a row.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// All pixels, row by row.
+    pub fn data(&self) -> &[T] {
+        &self.data
+    }
+
+    /// All pixels, row by row, to write.
+    pub fn data_mut(&mut self) -> &mut [T] {
+        &mut self.data
+    }
+
+    /// The pixel at column `u`, row `v`, or `None` outside the image.
+    pub fn get(&self, u: usize, v: usize) -> Option<T> {
+        if u < self.width && v < self.height { self.data.get(v * self.width + u).copied() } else { None }
+    }
+
+    /// Nearest-neighbour resampling: the new pixel takes the old pixel that its centre falls into.
+    pub fn resize_nearest(&self, width: usize, height: usize) -> Self {
+        let source = |i: usize, to: usize, from: usize| ((2 * i + 1) * from / (2 * to)).min(from - 1);
+        let mut data = Vec::with_capacity(width * height);
+        for v in 0..height {
+            let row = source(v, height, self.height) * self.width;
+            data.extend((0..width).map(|u| self.data[row + source(u, width, self.width)]));
+        }
+        Self { width, height, data }
+    }
+}
+
+impl DepthMap {
+    /// Depth from metres; NaN, infinities and values ≤ 0 become 0, "no reading".
+    pub fn from_metres(width: usize, height: usize, mut data: Vec<f32>) -> Result<Self> {
+        check_size("depth", width, height, data.len())?;
+        for z in &mut data {
+            if !(z.is_finite() && *z > 0.0) {
+                *z = 0.0;
+            }
+        }
+        Ok(Self { width, height, data })
+    }
+}
+
+/// Sizes and length belong together; says which does not.
+pub fn check_size(argument: &str, width: usize, height: usize, length: usize) -> Result<()> {
+    if width == 0 || height == 0 {
+        return Err(Error::new(
+            ErrorCode::EmptyImage,
+            argument,
+            format!("{width} × {height} pixels"),
+            "at least 1 × 1",
+            "Pass the image's width and height in pixels.",
+        ));
+    }
+    if width.checked_mul(height) != Some(length) {
+        return Err(Error::new(
+            ErrorCode::WrongLength,
+            argument,
+            format!("{length} values"),
+            format!("width × height = {width} × {height} = {}", width.saturating_mul(height)),
+            "Pass one value per pixel, row by row, and the sizes of this very array.",
+        ));
+    }
+    Ok(())
+}

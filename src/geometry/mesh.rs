@@ -1,0 +1,113 @@
+//! Triangle meshes, checked once where they enter.
+
+use glam::Vec3;
+
+use crate::error::{Error, ErrorCode, Result};
+
+/// A triangle mesh whose coordinates are finite and whose indices exist.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mesh {
+    positions: Vec<Vec3>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Mesh {
+    /// A mesh from vertices and triangles.
+    ///
+    /// # Errors
+    /// [`ErrorCode::EmptyMesh`], [`ErrorCode::NonFinite`], [`ErrorCode::IndexOutOfRange`].
+    pub fn new(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Self> {
+        if triangles.is_empty() {
+            return Err(Error::new(
+                ErrorCode::EmptyMesh,
+                "mesh",
+                format!("{} vertices and no triangle", positions.len()),
+                "a triangle mesh",
+                "A point cloud can't be rendered: mesh it first, or use register() for two clouds.",
+            ));
+        }
+        if let Some(i) = positions.iter().position(|p| !p.is_finite()) {
+            return Err(Error::new(
+                ErrorCode::NonFinite,
+                "mesh.positions",
+                format!("{:?} at vertex {i}", positions[i].to_array()),
+                "finite numbers",
+                "Remove or repair the vertex before passing the mesh.",
+            ));
+        }
+        let count = positions.len();
+        for (t, triangle) in triangles.iter().enumerate() {
+            if let Some(&index) = triangle.iter().find(|&&i| i as usize >= count) {
+                return Err(Error::new(
+                    ErrorCode::IndexOutOfRange,
+                    "mesh.indices",
+                    format!("index {index} in triangle {t}"),
+                    format!("indices below the number of vertices, {count}"),
+                    "Indices count vertices (x, y, z), not numbers, and start at 0.",
+                ));
+            }
+        }
+        Ok(Self { positions, triangles })
+    }
+
+    /// A mesh from flat arrays as they come from JavaScript: xyz per vertex and three indices per triangle.
+    /// Without indices, every three vertices are a triangle.
+    ///
+    /// # Errors
+    /// [`ErrorCode::WrongLength`] and those of [`Mesh::new`].
+    pub fn from_flat(positions: &[f32], indices: Option<&[u32]>) -> Result<Self> {
+        let multiple = if indices.is_some() { 3 } else { 9 };
+        if !positions.len().is_multiple_of(multiple) {
+            return Err(Error::new(
+                ErrorCode::WrongLength,
+                "mesh.positions",
+                format!("{} numbers", positions.len()),
+                if multiple == 3 { "a multiple of 3 (x, y, z)" } else { "a multiple of 9 (three vertices a triangle)" },
+                "Pass x, y, z per vertex, and indices unless every three vertices are a triangle.",
+            ));
+        }
+        if let Some(indices) = indices
+            && !indices.len().is_multiple_of(3)
+        {
+            return Err(Error::new(
+                ErrorCode::WrongLength,
+                "mesh.indices",
+                format!("{} indices", indices.len()),
+                "a multiple of 3",
+                "Pass a triangle list; strips and fans need to be unrolled.",
+            ));
+        }
+        let positions: Vec<Vec3> = positions.chunks_exact(3).map(Vec3::from_slice).collect();
+        let triangles = match indices {
+            Some(indices) => indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
+            None => (0..positions.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect(),
+        };
+        Self::new(positions, triangles)
+    }
+
+    /// The vertices.
+    pub fn positions(&self) -> &[Vec3] {
+        &self.positions
+    }
+
+    /// Three vertex indices a triangle.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// The corners of a triangle of this mesh.
+    pub fn corners(&self, triangle: [u32; 3]) -> [Vec3; 3] {
+        triangle.map(|i| self.positions[i as usize])
+    }
+
+    /// Six times the enclosed volume, signed: negative where the triangles face inward. Zero says nothing.
+    /// Taken about the first vertex, so that a mesh far from the origin keeps its digits.
+    pub fn signed_volume6(&self) -> f64 {
+        let Some(&origin) = self.positions.first() else { return 0.0 };
+        let volume = |t: &[u32; 3]| {
+            let [a, b, c] = self.corners(*t).map(|p| p - origin);
+            f64::from(a.dot(b.cross(c)))
+        };
+        self.triangles.iter().map(volume).sum()
+    }
+}

@@ -1,0 +1,10 @@
+//! Shapes and spaces, without any notion of alignment. Depends on nothing above it.
+
+pub mod cloud;
+pub mod image;
+pub mod kd_tree;
+pub mod mesh;
+pub mod pinhole;
+pub mod random;
+pub mod similarity;
+pub mod voxel_grid;

@@ -1,0 +1,98 @@
+//! The pinhole camera in OpenCV's convention.
+
+use glam::Vec3;
+
+use crate::error::{Error, ErrorCode, Result};
+
+/// A pinhole camera: x right, y down, z forward; pixel centres at integer indices,
+/// so that u = fx·x/z + cx is the centre of column u for whole u.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pinhole {
+    /// Focal length along u, in pixels.
+    pub fx: f64,
+    /// Focal length along v, in pixels.
+    pub fy: f64,
+    /// Principal point, column, in pixels.
+    pub cx: f64,
+    /// Principal point, row, in pixels.
+    pub cy: f64,
+}
+
+impl Pinhole {
+    /// A camera from its four numbers, in pixels.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidCamera`] for focal lengths that are not finite and positive, or a principal point
+    /// that is not finite.
+    pub fn new(fx: f64, fy: f64, cx: f64, cy: f64) -> Result<Self> {
+        let bad = |name: &str, value: f64, expected: &str| {
+            Error::new(
+                ErrorCode::InvalidCamera,
+                format!("camera.{name}"),
+                format!("{value}"),
+                expected,
+                "Intrinsics are in pixels of the depth image: scale them together with the image.",
+            )
+        };
+        for (name, value) in [("fx", fx), ("fy", fy)] {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(bad(name, value, "a finite number above 0"));
+            }
+        }
+        for (name, value) in [("cx", cx), ("cy", cy)] {
+            if !value.is_finite() {
+                return Err(bad(name, value, "a finite number"));
+            }
+        }
+        Ok(Self { fx, fy, cx, cy })
+    }
+
+    /// A camera from a 3×3 matrix K in row-major order. Skew is refused: no depth camera reports one.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidCamera`] where K is not [fx 0 cx; 0 fy cy; 0 0 1] up to a common factor.
+    pub fn from_matrix(k: &[f64; 9]) -> Result<Self> {
+        let w = k[8];
+        let zeros = [k[1], k[3], k[6], k[7]];
+        let tolerance = 1e-6 * k[0].abs();
+        if !w.is_finite() || w == 0.0 || zeros.iter().any(|x| !(x.abs() <= tolerance)) {
+            return Err(Error::new(
+                ErrorCode::InvalidCamera,
+                "camera.K",
+                format!("{k:?}"),
+                "[fx, 0, cx, 0, fy, cy, 0, 0, 1]",
+                "Pass K row by row; a column-major K has cx and cy in its last row: transpose it.",
+            ));
+        }
+        Self::new(k[0] / w, k[4] / w, k[2] / w, k[5] / w)
+    }
+
+    /// A camera from its vertical field of view in degrees: square pixels, principal point in the middle.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidCamera`] for an angle outside (0, 180).
+    pub fn from_vertical_fov(fov_y_deg: f64, width: usize, height: usize) -> Result<Self> {
+        if !(fov_y_deg > 0.0 && fov_y_deg < 180.0) {
+            return Err(Error::new(
+                ErrorCode::InvalidCamera,
+                "camera.fovYDeg",
+                format!("{fov_y_deg}"),
+                "an angle above 0 and below 180 degrees",
+                "Pass the vertical field of view in degrees, as three.js' PerspectiveCamera.fov.",
+            ));
+        }
+        let f = 0.5 * height as f64 / libm::tan(0.5 * fov_y_deg.to_radians());
+        Self::new(f, f, 0.5 * (width as f64 - 1.0), 0.5 * (height as f64 - 1.0))
+    }
+
+    /// The point at depth `z` behind pixel (u, v): D(u,v)·K⁻¹[u,v,1]ᵀ (paper §3.1).
+    pub fn back_project(&self, u: f64, v: f64, z: f64) -> Vec3 {
+        Vec3::new(((u - self.cx) * z / self.fx) as f32, ((v - self.cy) * z / self.fy) as f32, z as f32)
+    }
+
+    /// The pixel (u, v) a point in front of the camera falls on.
+    pub fn project(&self, point: Vec3) -> [f64; 2] {
+        let [x, y, z] = point.to_array().map(f64::from);
+        [self.fx * x / z + self.cx, self.fy * y / z + self.cy]
+    }
+}

@@ -1,0 +1,207 @@
+//! Similarity transforms: Sim(3) in f64, and their f32 form for hot loops.
+
+use glam::{Mat3, Vec3};
+use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
+
+use crate::error::{Error, ErrorCode, Result};
+
+/// y = s·R·x + t. Name values by their frames: `camera_from_mesh`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Similarity {
+    /// s > 0.
+    pub scale: f64,
+    /// R ∈ SO(3).
+    pub rotation: Rotation3<f64>,
+    /// t, in the target frame's unit.
+    pub translation: Vector3<f64>,
+}
+
+impl Similarity {
+    /// x ↦ x.
+    pub fn identity() -> Self {
+        Self { scale: 1.0, rotation: Rotation3::identity(), translation: Vector3::zeros() }
+    }
+
+    /// A similarity from its parts; the rotation is projected to the nearest one when it is off by rounding.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidTransform`] for a scale that is not finite and positive, numbers that are not
+    /// finite, or a matrix further than 1e-3 from a rotation (a reflection, a shear).
+    pub fn from_parts(scale: f64, rotation: Matrix3<f64>, translation: Vector3<f64>) -> Result<Self> {
+        let bad = |found: String, expected: &str| {
+            Error::new(
+                ErrorCode::InvalidTransform,
+                "transform",
+                found,
+                expected,
+                "Pass { scale, rotation, translation } or a column-major 4×4 matrix of a similarity.",
+            )
+        };
+        if !(scale.is_finite() && scale > 0.0) {
+            return Err(bad(format!("scale {scale}"), "a finite scale above 0"));
+        }
+        if !translation.iter().chain(rotation.iter()).all(|x| x.is_finite()) {
+            return Err(bad("a number that is not finite".into(), "finite numbers"));
+        }
+        let off = (rotation.transpose() * rotation - Matrix3::identity()).abs().max();
+        let determinant = rotation.determinant();
+        if off > 1e-3 || determinant < 0.0 {
+            let found = format!("a matrix with |RᵀR − 1| up to {off:.1e} and determinant {determinant:.3}");
+            return Err(bad(found, "a rotation: orthonormal with determinant +1"));
+        }
+        // A few decimals in a JSON file are enough to leave SO(3); one polar step brings them back.
+        Ok(Self { scale, rotation: nearest_rotation(rotation), translation })
+    }
+
+    /// A similarity from a column-major 4×4 matrix (three.js `Matrix4.elements`, glTF `node.matrix`).
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidTransform`] as [`Similarity::from_parts`].
+    pub fn from_column_major(m: &[f64; 16]) -> Result<Self> {
+        let linear = Matrix3::new(m[0], m[4], m[8], m[1], m[5], m[9], m[2], m[6], m[10]);
+        let volume = linear.determinant();
+        let last_row_off = m[3].abs().max(m[7].abs()).max(m[11].abs()).max((m[15] - 1.0).abs());
+        if !(last_row_off <= 1e-9) {
+            return Err(Error::new(
+                ErrorCode::InvalidTransform,
+                "transform.matrix",
+                format!("last row [{}, {}, {}, {}]", m[3], m[7], m[11], m[15]),
+                "last row [0, 0, 0, 1]",
+                "The 16 numbers are column by column: elements 12 to 14 are the translation. Transpose a row-major matrix.",
+            ));
+        }
+        let scale = libm::cbrt(volume.abs());
+        // Divided by zero where there is no scale; from_parts refuses that by its first check.
+        Self::from_parts(scale, linear / scale, Vector3::new(m[12], m[13], m[14]))
+    }
+
+    /// The column-major 4×4 matrix.
+    pub fn to_column_major(&self) -> [f64; 16] {
+        let m = self.rotation.matrix() * self.scale;
+        let t = self.translation;
+        [
+            m[(0, 0)], m[(1, 0)], m[(2, 0)], 0.0, //
+            m[(0, 1)], m[(1, 1)], m[(2, 1)], 0.0, //
+            m[(0, 2)], m[(1, 2)], m[(2, 2)], 0.0, //
+            t.x, t.y, t.z, 1.0,
+        ]
+    }
+
+    /// The rotation as a unit quaternion x, y, z, w with w ≥ 0.
+    pub fn quaternion_xyzw(&self) -> [f64; 4] {
+        let q = UnitQuaternion::from_rotation_matrix(&self.rotation);
+        let sign = if q.w < 0.0 { -1.0 } else { 1.0 };
+        [q.i * sign, q.j * sign, q.k * sign, q.w * sign]
+    }
+
+    /// A rotation from a quaternion x, y, z, w of any length above 0.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidTransform`] for a zero quaternion or one that is not finite.
+    pub fn rotation_from_xyzw(q: &[f64; 4]) -> Result<Matrix3<f64>> {
+        let q = Quaternion::new(q[3], q[0], q[1], q[2]);
+        if !(q.norm().is_finite() && q.norm() > 1e-12) {
+            return Err(Error::new(
+                ErrorCode::InvalidTransform,
+                "transform.rotation",
+                format!("[{}, {}, {}, {}]", q.i, q.j, q.k, q.w),
+                "a quaternion x, y, z, w other than 0",
+                "The identity is [0, 0, 0, 1].",
+            ));
+        }
+        Ok(*UnitQuaternion::from_quaternion(q).to_rotation_matrix().matrix())
+    }
+
+    /// s·R·x + t.
+    pub fn apply(&self, x: Vector3<f64>) -> Vector3<f64> {
+        self.rotation * x * self.scale + self.translation
+    }
+
+    /// `self` after `inner`: x ↦ self(inner(x)).
+    pub fn compose(&self, inner: &Self) -> Self {
+        Self {
+            scale: self.scale * inner.scale,
+            rotation: self.rotation * inner.rotation,
+            translation: self.apply(inner.translation),
+        }
+    }
+
+    /// The transform that undoes this one.
+    pub fn inverse(&self) -> Self {
+        let rotation = self.rotation.inverse();
+        let scale = 1.0 / self.scale;
+        Self { scale, rotation, translation: -(rotation * self.translation) * scale }
+    }
+
+    /// The angle of the rotation between two transforms, in radians: exact near 0 where an arc cosine is not.
+    pub fn rotation_angle_to(&self, other: &Self) -> f64 {
+        let relative = self.rotation.matrix().transpose() * other.rotation.matrix();
+        let sine = Vector3::new(
+            relative[(2, 1)] - relative[(1, 2)],
+            relative[(0, 2)] - relative[(2, 0)],
+            relative[(1, 0)] - relative[(0, 1)],
+        )
+        .norm();
+        libm::atan2(sine, relative.trace() - 1.0)
+    }
+
+    /// The f32 form.
+    pub fn to_f32(&self) -> SimilarityF32 {
+        let linear = self.rotation.matrix() * self.scale;
+        SimilarityF32 { linear: mat3(&linear), rotation: mat3(self.rotation.matrix()), translation: vec3(&self.translation) }
+    }
+}
+
+/// A similarity for hot loops.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SimilarityF32 {
+    /// s·R.
+    pub linear: Mat3,
+    /// R, for normals.
+    pub rotation: Mat3,
+    /// t.
+    pub translation: Vec3,
+}
+
+impl SimilarityF32 {
+    /// s·R·x + t.
+    #[inline]
+    pub fn apply(&self, x: Vec3) -> Vec3 {
+        self.linear * x + self.translation
+    }
+
+    /// R·n.
+    #[inline]
+    pub fn rotate(&self, n: Vec3) -> Vec3 {
+        self.rotation * n
+    }
+}
+
+/// The rotation nearest to a matrix that is almost one: two Newton steps of the polar decomposition.
+pub fn nearest_rotation(mut m: Matrix3<f64>) -> Rotation3<f64> {
+    for _ in 0..3 {
+        if let Some(inverse) = m.try_inverse() {
+            m = (m + inverse.transpose()) * 0.5;
+        }
+    }
+    Rotation3::from_matrix_unchecked(m)
+}
+
+/// f64 → f32.
+pub fn vec3(v: &Vector3<f64>) -> Vec3 {
+    Vec3::new(v.x as f32, v.y as f32, v.z as f32)
+}
+
+/// f32 → f64.
+pub fn vector3(v: Vec3) -> Vector3<f64> {
+    Vector3::new(f64::from(v.x), f64::from(v.y), f64::from(v.z))
+}
+
+/// f64 → f32.
+fn mat3(m: &Matrix3<f64>) -> Mat3 {
+    Mat3::from_cols_array(&[
+        m[(0, 0)] as f32, m[(1, 0)] as f32, m[(2, 0)] as f32, //
+        m[(0, 1)] as f32, m[(1, 1)] as f32, m[(2, 1)] as f32, //
+        m[(0, 2)] as f32, m[(1, 2)] as f32, m[(2, 2)] as f32,
+    ])
+}

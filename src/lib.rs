@@ -1,0 +1,10 @@
+//! Puts a generated 3D mesh where it really is, at its real size, from one masked depth map:
+//! the similarity x_cam = s·R·p + t, after "Robust 3D Alignment of Generative Reconstructions via Partial
+//! Monocular Observations".
+//!
+//! The crate is layered; a module imports only from those below it in this list:
+//! [`bindings`], [`formats`], [`align`], [`metrics`], [`stages`], [`geometry`], [`error`].
+
+pub mod error;
+pub mod geometry;
+pub mod stages;

@@ -1,0 +1,188 @@
+//! Observe (paper §3.1): depth, mask and camera in, the object's partial cloud out.
+
+use glam::Vec3;
+
+use crate::error::{Error, ErrorCode, Result};
+use crate::geometry::cloud::Cloud;
+use crate::geometry::image::{DepthMap, Image, Mask};
+use crate::geometry::pinhole::Pinhole;
+use crate::geometry::random::Random;
+
+/// The random stream of the subsampling in [`Observation::cloud`].
+const STREAM: u64 = 1;
+
+/// Fewest readings inside the mask from which a shape can be told.
+pub const MIN_POINTS: usize = 32;
+
+/// What the camera saw: depth in metres, the object's mask, the intrinsics. All of one size.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Observation {
+    depth: DepthMap,
+    mask: Mask,
+    camera: Pinhole,
+}
+
+impl Observation {
+    /// An observation, checked.
+    ///
+    /// # Errors
+    /// [`ErrorCode::SizeMismatch`], [`ErrorCode::EmptyMask`], [`ErrorCode::NoDepthInMask`],
+    /// [`ErrorCode::TooFewPoints`], [`ErrorCode::FlatDepth`].
+    pub fn new(depth: DepthMap, mask: Mask, camera: Pinhole) -> Result<Self> {
+        if (depth.width(), depth.height()) != (mask.width(), mask.height()) {
+            return Err(Error::new(
+                ErrorCode::SizeMismatch,
+                "mask",
+                format!("{} × {} pixels beside a depth map of {} × {}", mask.width(), mask.height(), depth.width(), depth.height()),
+                "depth and mask of one size",
+                "Resize the mask to the depth map, or set resizeMask: \"nearest\".",
+            ));
+        }
+        let observation = Self { depth, mask, camera };
+        observation.check_readings()?;
+        Ok(observation)
+    }
+
+    /// The depth map, metres; 0 is no reading.
+    pub fn depth(&self) -> &DepthMap {
+        &self.depth
+    }
+
+    /// The mask; non-zero is the object.
+    pub fn mask(&self) -> &Mask {
+        &self.mask
+    }
+
+    /// The intrinsics.
+    pub fn camera(&self) -> Pinhole {
+        self.camera
+    }
+
+    /// P_obs: x = D(u,v)·K⁻¹[u,v,1]ᵀ for every reading in the mask, row by row; where there are more than
+    /// `max_points`, one drawn at random from each of `max_points` equal runs of them (seeded).
+    pub fn cloud(&self, max_points: usize, seed: u64) -> Cloud {
+        self.back_projected(max_points, seed, true)
+    }
+
+    /// The rest of the readings, outside the mask: the scene around the object, subsampled likewise.
+    pub fn scene_cloud(&self, max_points: usize, seed: u64) -> Cloud {
+        self.back_projected(max_points, seed, false)
+    }
+
+    fn back_projected(&self, max_points: usize, seed: u64, inside: bool) -> Cloud {
+        let readings: Vec<usize> = self.readings(inside).map(|(i, _)| i).collect();
+        let width = self.depth.width();
+        let back_project = |i: usize| -> Vec3 {
+            self.camera.back_project((i % width) as f64, (i / width) as f64, f64::from(self.depth.data()[i]))
+        };
+        let n = readings.len();
+        if n <= max_points {
+            return Cloud::from_points(readings.into_iter().map(back_project).collect());
+        }
+        let mut random = Random::new(seed, STREAM);
+        let drawn = (0..max_points).map(|k| {
+            let (low, high) = (k * n / max_points, (k + 1) * n / max_points);
+            back_project(readings[low + random.below(high - low)])
+        });
+        Cloud::from_points(drawn.collect())
+    }
+
+    /// Index and depth of each reading inside (or outside) the mask.
+    fn readings(&self, inside: bool) -> impl Iterator<Item = (usize, f32)> {
+        let pixels = self.depth.data().iter().zip(self.mask.data()).enumerate();
+        pixels.filter(move |&(_, (&z, &m))| z > 0.0 && (m != 0) == inside).map(|(i, (&z, _))| (i, z))
+    }
+
+    fn check_readings(&self) -> Result<()> {
+        let mask_pixels = self.mask.data().iter().filter(|&&m| m != 0).count();
+        if mask_pixels == 0 {
+            return Err(Error::new(
+                ErrorCode::EmptyMask,
+                "mask",
+                "no non-zero pixel",
+                "the object's pixels to be non-zero",
+                "Check the mask's instance or class value, and that it was not inverted or lost in resizing.",
+            ));
+        }
+        let count = self.readings(true).count();
+        if count == 0 {
+            return Err(Error::new(
+                ErrorCode::NoDepthInMask,
+                "depth",
+                format!("no reading in the {mask_pixels} pixels of the mask"),
+                "finite depths above 0 inside the mask",
+                "Check that depth and mask belong to the same view; glass and black objects may return nothing.",
+            ));
+        }
+        if count < MIN_POINTS {
+            return Err(Error::new(
+                ErrorCode::TooFewPoints,
+                "depth",
+                format!("{count} readings in the {mask_pixels} pixels of the mask"),
+                format!("at least {MIN_POINTS}"),
+                "Use a larger image of the object, or a depth source with fewer holes.",
+            ));
+        }
+        let mut depths = self.readings(true).map(|(_, z)| z);
+        let first = depths.next().unwrap_or_default();
+        if depths.all(|z| z == first) {
+            return Err(Error::new(
+                ErrorCode::FlatDepth,
+                "depth",
+                format!("{first} in all {count} readings of the mask"),
+                "depths that vary over the object",
+                "A constant is a placeholder, not a measurement: pass the depth map itself.",
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// Depth and camera from a point map (H×W×3, camera frame, metres; a point with a coordinate that is not
+/// finite or z ≤ 0 is no reading), as MoGe gives it.
+///
+/// The intrinsics are the least-squares fit of u = fx·x/z + cx and v = fy·y/z + cy over the readings.
+///
+/// # Errors
+/// [`ErrorCode::WrongLength`], [`ErrorCode::EmptyImage`], and [`ErrorCode::InvalidCamera`] where the points
+/// are not those of a pinhole camera looking along z.
+pub fn from_point_map(width: usize, height: usize, points: &[f32]) -> Result<(DepthMap, Pinhole)> {
+    if !points.len().is_multiple_of(3) {
+        return Err(Error::new(
+            ErrorCode::WrongLength,
+            "pointMap",
+            format!("{} numbers", points.len()),
+            "width × height × 3",
+            "Pass x, y, z per pixel, pixel by pixel.",
+        ));
+    }
+    crate::geometry::image::check_size("pointMap", width, height, points.len() / 3)?;
+    let reading = |p: &[f32]| p.iter().all(|c| c.is_finite()) && p[2] > 0.0;
+    let depth = points.chunks_exact(3).map(|p| if reading(p) { p[2] } else { 0.0 }).collect();
+    let rays = || points.chunks_exact(3).enumerate().filter(|(_, p)| reading(p));
+    let fit = |axis: usize, pixel: &dyn Fn(usize) -> f64| {
+        let [mut n, mut sx, mut sy, mut sxx, mut sxy] = [0.0; 5];
+        for (i, p) in rays() {
+            let (x, y) = (f64::from(p[axis]) / f64::from(p[2]), pixel(i));
+            n += 1.0;
+            sx += x;
+            sy += y;
+            sxx += x * x;
+            sxy += x * y;
+        }
+        let f = (n * sxy - sx * sy) / (n * sxx - sx * sx);
+        (f, (sy - f * sx) / n)
+    };
+    let (fx, cx) = fit(0, &|i| (i % width) as f64);
+    let (fy, cy) = fit(1, &|i| (i / width) as f64);
+    let camera = Pinhole::new(fx, fy, cx, cy).map_err(|_| {
+        Error::new(
+            ErrorCode::InvalidCamera,
+            "pointMap",
+            format!("points whose best pinhole camera has fx {fx:.3}, fy {fy:.3}"),
+            "points in the OpenCV camera frame: x right, y down, z forward",
+            "Convert the point map from its own frame (OpenGL: negate y and z; PyTorch3D: negate x and y).",
+        )
+    })?;
+    Ok((Image::new("pointMap", width, height, depth)?, camera))
+}
