@@ -118,13 +118,7 @@ impl Error {
         expected: impl Into<String>,
         remedy: impl Into<String>,
     ) -> Self {
-        Self {
-            code,
-            argument: argument.into(),
-            found: found.into(),
-            expected: expected.into(),
-            remedy: remedy.into(),
-        }
+        Self { code, argument: argument.into(), found: found.into(), expected: expected.into(), remedy: remedy.into() }
     }
 
     /// The same error about another argument: what a geometry check calls `positions`, the caller may know
@@ -137,11 +131,7 @@ impl Error {
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "{}: found {}, expected {}. {}",
-            self.argument, self.found, self.expected, self.remedy
-        )
+        write!(f, "{}: found {}, expected {}. {}", self.argument, self.found, self.expected, self.remedy)
     }
 }
 

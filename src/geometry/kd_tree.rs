@@ -95,7 +95,15 @@ impl KdTree {
     }
 
     /// Visits the subtree over `points[low..high]`; `offset` is the query's distance to its box, by axis.
-    fn descend(&self, node: usize, low: usize, high: usize, query: Vec3, offset: [f32; 3], collector: &mut impl Collector) {
+    fn descend(
+        &self,
+        node: usize,
+        low: usize,
+        high: usize,
+        query: Vec3,
+        offset: [f32; 3],
+        collector: &mut impl Collector,
+    ) {
         if high - low <= LEAF_SIZE {
             for &(point, index) in &self.points[low..high] {
                 collector.offer(Neighbor { index, distance_squared: point.distance_squared(query) });
@@ -131,7 +139,13 @@ fn build(points: &mut [(Vec3, u32)], splits: &mut Vec<Split>) {
         max = max.max(*point);
     }
     let extent = max - min;
-    let axis = if extent.x >= extent.y && extent.x >= extent.z { 0 } else if extent.y >= extent.z { 1 } else { 2 };
+    let axis = if extent.x >= extent.y && extent.x >= extent.z {
+        0
+    } else if extent.y >= extent.z {
+        1
+    } else {
+        2
+    };
     let middle = points.len() / 2;
     points.select_nth_unstable_by(middle, |a, b| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1)));
     let (left, right) = points.split_at_mut(middle);

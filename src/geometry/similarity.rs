@@ -80,10 +80,22 @@ impl Similarity {
         let m = self.rotation.matrix() * self.scale;
         let t = self.translation;
         [
-            m[(0, 0)], m[(1, 0)], m[(2, 0)], 0.0, //
-            m[(0, 1)], m[(1, 1)], m[(2, 1)], 0.0, //
-            m[(0, 2)], m[(1, 2)], m[(2, 2)], 0.0, //
-            t.x, t.y, t.z, 1.0,
+            m[(0, 0)],
+            m[(1, 0)],
+            m[(2, 0)],
+            0.0, //
+            m[(0, 1)],
+            m[(1, 1)],
+            m[(2, 1)],
+            0.0, //
+            m[(0, 2)],
+            m[(1, 2)],
+            m[(2, 2)],
+            0.0, //
+            t.x,
+            t.y,
+            t.z,
+            1.0,
         ]
     }
 
@@ -148,7 +160,11 @@ impl Similarity {
     /// The f32 form.
     pub fn to_f32(&self) -> SimilarityF32 {
         let linear = self.rotation.matrix() * self.scale;
-        SimilarityF32 { linear: mat3(&linear), rotation: mat3(self.rotation.matrix()), translation: vec3(&self.translation) }
+        SimilarityF32 {
+            linear: mat3(&linear),
+            rotation: mat3(self.rotation.matrix()),
+            translation: vec3(&self.translation),
+        }
     }
 }
 
@@ -200,8 +216,14 @@ pub fn vector3(v: Vec3) -> Vector3<f64> {
 /// f64 → f32.
 fn mat3(m: &Matrix3<f64>) -> Mat3 {
     Mat3::from_cols_array(&[
-        m[(0, 0)] as f32, m[(1, 0)] as f32, m[(2, 0)] as f32, //
-        m[(0, 1)] as f32, m[(1, 1)] as f32, m[(2, 1)] as f32, //
-        m[(0, 2)] as f32, m[(1, 2)] as f32, m[(2, 2)] as f32,
+        m[(0, 0)] as f32,
+        m[(1, 0)] as f32,
+        m[(2, 0)] as f32, //
+        m[(0, 1)] as f32,
+        m[(1, 1)] as f32,
+        m[(2, 1)] as f32, //
+        m[(0, 2)] as f32,
+        m[(1, 2)] as f32,
+        m[(2, 2)] as f32,
     ])
 }

@@ -33,7 +33,13 @@ impl Observation {
             return Err(Error::new(
                 ErrorCode::SizeMismatch,
                 "mask",
-                format!("{} × {} pixels beside a depth map of {} × {}", mask.width(), mask.height(), depth.width(), depth.height()),
+                format!(
+                    "{} × {} pixels beside a depth map of {} × {}",
+                    mask.width(),
+                    mask.height(),
+                    depth.width(),
+                    depth.height()
+                ),
                 "depth and mask of one size",
                 "Resize the mask to the depth map, or set resizeMask: \"nearest\".",
             ));
