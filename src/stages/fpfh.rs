@@ -1,0 +1,111 @@
+//! Fast Point Feature Histograms, 33 bins (Rusu, Blodow, Beetz 2009; paper §3.2): what the surface around a
+//! point looks like, whatever its pose.
+
+use glam::Vec3;
+
+use crate::geometry::cloud::Cloud;
+use crate::geometry::kd_tree::{KdTree, Neighbor};
+
+/// Bins for each of the three angles.
+const BINS: usize = 11;
+
+/// Length of a descriptor.
+pub const DIMENSION: usize = 3 * BINS;
+
+/// A descriptor; each third sums to 1 (or is all 0 for a point without neighbours).
+pub type Descriptor = [f32; DIMENSION];
+
+/// Neighbours that a histogram counts at most; the nearest count. Bounds the time on uneven clouds.
+const MAX_NEIGHBORS: usize = 128;
+
+/// A descriptor per point of a cloud with normals, from the neighbours within `radius`.
+pub fn fpfh(cloud: &Cloud, tree: &KdTree, radius: f32) -> Vec<Descriptor> {
+    let mut found = Vec::new();
+    let neighborhoods: Vec<Vec<Neighbor>> = cloud
+        .points
+        .iter()
+        .enumerate()
+        .map(|(i, &point)| {
+            tree.within(point, radius, &mut found);
+            found.retain(|n| n.index as usize != i && n.distance_squared > 0.0);
+            if found.len() > MAX_NEIGHBORS {
+                found.select_nth_unstable_by(MAX_NEIGHBORS, |a, b| {
+                    a.distance_squared.total_cmp(&b.distance_squared).then(a.index.cmp(&b.index))
+                });
+                found.truncate(MAX_NEIGHBORS);
+            }
+            // Sums in f32 depend on their order; make it that of the points.
+            found.sort_unstable_by_key(|n| n.index);
+            found.clone()
+        })
+        .collect();
+
+    let simplified: Vec<Descriptor> =
+        neighborhoods.iter().enumerate().map(|(i, near)| simplified_histogram(cloud, i, near)).collect();
+
+    let combined = neighborhoods.iter().enumerate().map(|(i, near)| {
+        let mut sum = [0.0; DIMENSION];
+        for neighbor in near {
+            let weight = 1.0 / neighbor.distance_squared.sqrt();
+            for (bin, value) in sum.iter_mut().zip(&simplified[neighbor.index as usize]) {
+                *bin += weight * value;
+            }
+        }
+        // SPFH(p) and the neighbours' weighted mean count alike, whatever the unit of distance.
+        normalize(&mut sum);
+        for (bin, own) in sum.iter_mut().zip(&simplified[i]) {
+            *bin += own;
+        }
+        normalize(&mut sum);
+        sum
+    });
+    combined.collect()
+}
+
+/// SPFH: the histogram of the three angles between a point and its neighbours.
+fn simplified_histogram(cloud: &Cloud, i: usize, near: &[Neighbor]) -> Descriptor {
+    let mut histogram = [0.0; DIMENSION];
+    for neighbor in near {
+        let j = neighbor.index as usize;
+        let features = pair_features(cloud.points[i], cloud.normals[i], cloud.points[j], cloud.normals[j]);
+        if let Some(features) = features {
+            for (third, feature) in features.into_iter().enumerate() {
+                let bin = (feature * BINS as f32) as usize;
+                histogram[third * BINS + bin.min(BINS - 1)] += 1.0;
+            }
+        }
+    }
+    normalize(&mut histogram);
+    histogram
+}
+
+/// α, φ, θ of the Darboux frame between two oriented points, each mapped to [0, 1].
+/// `None` where a normal is unknown or runs along the connecting line.
+fn pair_features(p: Vec3, p_normal: Vec3, q: Vec3, q_normal: Vec3) -> Option<[f32; 3]> {
+    let line = (q - p).try_normalize()?;
+    // The frame stands on the point whose normal is nearer to the line, so that the pair's order is no matter.
+    let (u, other, line) = if p_normal.dot(line).abs() >= q_normal.dot(line).abs() {
+        (p_normal, q_normal, line)
+    } else {
+        (q_normal, p_normal, -line)
+    };
+    if u == Vec3::ZERO || other == Vec3::ZERO {
+        return None;
+    }
+    let v = line.cross(u).try_normalize()?;
+    let w = u.cross(v);
+    let alpha = v.dot(other);
+    let phi = u.dot(line);
+    let theta = libm::atan2f(w.dot(other), u.dot(other));
+    Some([0.5 * (alpha + 1.0), 0.5 * (phi + 1.0), 0.5 * (theta / core::f32::consts::PI + 1.0)])
+}
+
+/// Each third of the histogram to sum 1.
+fn normalize(histogram: &mut Descriptor) {
+    for third in histogram.chunks_exact_mut(BINS) {
+        let sum: f32 = third.iter().sum();
+        if sum > 0.0 {
+            third.iter_mut().for_each(|bin| *bin /= sum);
+        }
+    }
+}

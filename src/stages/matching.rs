@@ -1,0 +1,61 @@
+//! Mutual nearest descriptors (paper §3.2): a pair counts when each is the other's best.
+
+use super::fpfh::{DIMENSION, Descriptor};
+
+/// A correspondence: indices of a source point and a target point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Match {
+    /// Index into the source cloud.
+    pub source: u32,
+    /// Index into the target cloud.
+    pub target: u32,
+}
+
+/// All pairs of descriptors that are each other's nearest (Euclidean; ties to the smaller index), in the order
+/// of the source. Descriptors that are all 0 (points without neighbours) match nothing.
+///
+/// Exhaustive, |source| × |target| distances: in 33 dimensions trees visit most of their leaves anyway.
+pub fn mutual_matches(source: &[Descriptor], target: &[Descriptor]) -> Vec<Match> {
+    let forward = nearest_of_each(source, target);
+    let backward = nearest_of_each(target, source);
+    let mutual = forward.iter().zip(0..).filter_map(|(&t, s)| {
+        let t = t?;
+        (backward.get(t as usize).copied().flatten() == Some(s)).then_some(Match { source: s, target: t })
+    });
+    mutual.collect()
+}
+
+/// Index of the nearest of `among` for each descriptor.
+fn nearest_of_each(descriptors: &[Descriptor], among: &[Descriptor]) -> Vec<Option<u32>> {
+    let nearest = |descriptor: &Descriptor| {
+        if is_empty(descriptor) {
+            return None;
+        }
+        let mut best = (f32::INFINITY, None);
+        for (candidate, index) in among.iter().zip(0..) {
+            if let Some(distance) = distance_below(descriptor, candidate, best.0)
+                && !is_empty(candidate)
+            {
+                best = (distance, Some(index));
+            }
+        }
+        best.1
+    };
+    descriptors.iter().map(nearest).collect()
+}
+
+/// The squared distance where it is below `bound`; most candidates are out after the first third.
+fn distance_below(a: &Descriptor, b: &Descriptor, bound: f32) -> Option<f32> {
+    let mut sum = 0.0;
+    for (a, b) in a.chunks_exact(DIMENSION / 3).zip(b.chunks_exact(DIMENSION / 3)) {
+        sum += a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f32>();
+        if sum >= bound {
+            return None;
+        }
+    }
+    Some(sum)
+}
+
+fn is_empty(descriptor: &Descriptor) -> bool {
+    descriptor.iter().all(|&bin| bin == 0.0)
+}

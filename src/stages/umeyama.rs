@@ -1,0 +1,110 @@
+//! The similarity that best maps points onto their counterparts, in closed form (paper §3.2; Umeyama 1991).
+//!
+//! With centroids p̄, q̄ and Σ = Σ w (q − q̄)(p − p̄)ᵀ = U D Vᵀ:
+//! R* = U S Vᵀ, s* = tr(D S) / Σ w ‖p − p̄‖² (= tr(RᵀΣ) / …), t* = q̄ − s* R* p̄,
+//! where S = diag(1, 1, det(U) det(V)) keeps R* a rotation when a reflection would fit better.
+
+use nalgebra::{Matrix3, Rotation3, Vector3};
+
+use crate::error::{Error, ErrorCode, Result};
+use crate::geometry::similarity::Similarity;
+
+/// How far a cloud may be from spanning a plane: below this ratio of its second to its first singular value
+/// the points are one line to within rounding, and the turn about that line is free.
+const COLLINEAR: f64 = 1e-6;
+
+/// Whether the closed form solves for the scale.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ScaleMode {
+    /// s* from the data.
+    Free,
+    /// s fixed at this value; R* does not depend on it.
+    Fixed(f64),
+}
+
+/// A point, its counterpart and its weight ≥ 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pair {
+    /// p, in the source frame.
+    pub source: Vector3<f64>,
+    /// q, in the target frame.
+    pub target: Vector3<f64>,
+    /// w ≥ 0.
+    pub weight: f64,
+}
+
+/// The similarity that minimises Σ w ‖q − (s R p + t)‖².
+///
+/// # Errors
+/// [`ErrorCode::TooFewPoints`] for fewer than three pairs of positive weight;
+/// [`ErrorCode::DegeneratePoints`] where either side is coincident, collinear, or not finite.
+pub fn umeyama(pairs: impl Iterator<Item = Pair> + Clone, scale_mode: ScaleMode) -> Result<Similarity> {
+    let weighted = || pairs.clone().filter(|pair| pair.weight > 0.0);
+    let count = weighted().count();
+    if count < 3 {
+        return Err(Error::new(
+            ErrorCode::TooFewPoints,
+            "correspondences",
+            format!("{count} pairs"),
+            "at least 3",
+            "Three pairs that are not on one line determine a similarity.",
+        ));
+    }
+    let total: f64 = weighted().map(|pair| pair.weight).sum();
+    let mean = |side: fn(&Pair) -> Vector3<f64>| {
+        weighted().map(|pair| side(&pair) * pair.weight).sum::<Vector3<f64>>() / total
+    };
+    let (p_mean, q_mean) = (mean(|pair| pair.source), mean(|pair| pair.target));
+
+    let mut sigma = Matrix3::zeros();
+    let (mut p_spread, mut q_spread) = (Matrix3::zeros(), Matrix3::zeros());
+    for pair in weighted() {
+        let (p, q) = (pair.source - p_mean, pair.target - q_mean);
+        sigma += q * p.transpose() * pair.weight;
+        p_spread += p * p.transpose() * pair.weight;
+        q_spread += q * q.transpose() * pair.weight;
+    }
+    check_spread("source", &p_spread)?;
+    check_spread("target", &q_spread)?;
+
+    let svd = sigma.svd(true, true);
+    let (Some(u), Some(v_t)) = (svd.u, svd.v_t) else { return Err(degenerate("correspondences")) };
+    let d = svd.singular_values;
+    // nalgebra sorts the singular values, the smallest last: the axis whose sign costs least to change.
+    if !(d[1] > COLLINEAR * d[0]) {
+        return Err(degenerate("correspondences"));
+    }
+    let sign = if u.determinant() * v_t.determinant() < 0.0 { -1.0 } else { 1.0 };
+    let rotation = u * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, sign)) * v_t;
+    let scale = match scale_mode {
+        ScaleMode::Free => (d[0] + d[1] + sign * d[2]) / p_spread.trace(),
+        ScaleMode::Fixed(scale) => scale,
+    };
+    if !(scale.is_finite() && scale > 0.0) {
+        return Err(degenerate("correspondences"));
+    }
+    let rotation = Rotation3::from_matrix_unchecked(rotation);
+    Ok(Similarity { scale, rotation, translation: q_mean - rotation * p_mean * scale })
+}
+
+/// Refuses points that do not span a plane.
+fn check_spread(argument: &str, spread: &Matrix3<f64>) -> Result<()> {
+    if !spread.iter().all(|x| x.is_finite()) {
+        return Err(degenerate(argument));
+    }
+    // The middle eigenvalue against the largest, by the invariants: a product of the two largest that
+    // vanishes beside the square of their sum. No decomposition is needed to say no.
+    let trace = spread.trace();
+    let minors = 0.5 * (trace * trace - (spread * spread).trace());
+    if trace > 0.0 && minors > COLLINEAR * COLLINEAR * trace * trace { Ok(()) } else { Err(degenerate(argument)) }
+}
+
+fn degenerate(argument: &str) -> Error {
+    Error::new(
+        ErrorCode::DegeneratePoints,
+        argument,
+        "points that coincide or lie on one line",
+        "points that span a plane at least",
+        "The turn about a line is free: add pairs away from it.",
+    )
+}
