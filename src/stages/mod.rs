@@ -1,7 +1,10 @@
 //! The steps of the method, one noun a file. Depends on geometry only.
 
 pub mod extents;
+pub mod filter;
 pub mod fpfh;
+pub mod icp;
 pub mod matching;
 pub mod observe;
+pub mod ransac;
 pub mod umeyama;

@@ -1,0 +1,326 @@
+//! Options of the entry points: flat, each with a default that follows the data, each with its range checked.
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, ErrorCode, Result};
+
+/// Which method runs.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "kebab-case")]
+pub enum Preset {
+    /// The paper's method: FPFH, guarded Sim(3) RANSAC, hallucination filtering, scale-locked ICP.
+    #[default]
+    Paper,
+}
+
+/// What RANSAC does with a hypothesis whose scale leaves the guard.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "kebab-case")]
+pub enum GuardMode {
+    /// Drops it.
+    #[default]
+    Reject,
+    /// Projects its scale to the nearer bound and counts it.
+    Clamp,
+}
+
+/// What ICP minimises.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "kebab-case")]
+pub enum Icp {
+    /// Distance to the tangent plane at the nearest observed point.
+    #[default]
+    PointToPlane,
+    /// Distance to the nearest observed point.
+    PointToPoint,
+    /// No refinement: the RANSAC pose as it is.
+    None,
+}
+
+/// Options of `align`. All have defaults; most callers need none.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "camelCase", default)]
+pub struct AlignOptions {
+    /// The method. Default `"paper"`.
+    pub preset: Preset,
+    /// Seed of all random draws, 0 to 2³² − 1. The same input and seed give the same bits. Default 0.
+    pub seed: u32,
+    /// Depth readings inside the mask that are used at most, 32 to 1 000 000; of more, an even random share is
+    /// drawn. Default 20 000.
+    pub max_observed_points: u32,
+    /// Points sampled from the mesh surface, 100 to 1 000 000. Default 20 000.
+    pub surface_samples: u32,
+    /// Voxels along the observation's box diagonal, 5 to 200: the voxel size is the diagonal divided by this
+    /// (paper: 20, 30, 50). Default 30.
+    pub voxel_divisions: f64,
+    /// Radius of the FPFH descriptors, in voxels, 1 to 20. Default 5.
+    pub fpfh_radius_voxels: f64,
+    /// Bounds [λmin, λmax] of the scale relative to the initial scale, 0 < λmin ≤ 1 ≤ λmax; `null` lets the
+    /// scale go anywhere (the ablation). Default [0.5, 1.5].
+    pub guard: Option<[f64; 2]>,
+    /// What happens to hypotheses outside the guard. Default `"reject"`.
+    pub guard_mode: GuardMode,
+    /// Minimal sets that RANSAC draws at most, 1 to 10 000 000. Default 100 000.
+    pub ransac_iterations: u32,
+    /// RANSAC stops early at this probability of having missed nothing better, 0 to below 1. Default 0.999.
+    pub ransac_confidence: f64,
+    /// A match within this distance of its counterpart is an inlier, in voxels, 0.1 to 20. Default 1.5.
+    pub inlier_distance_voxels: f64,
+    /// How alike the three edges of a minimal set must be stretched: least over most stretched, 0 to 1.
+    /// Default 0.9.
+    pub edge_similarity: f64,
+    /// Whether mesh regions that the observation does not support are left out. Default `true`.
+    pub hallucination_filter: bool,
+    /// Support: largest distance to an observed point, in voxels, 0.1 to 50; ICP tightens it to a third as the
+    /// pose improves. Default 3.
+    pub support_distance_voxels: f64,
+    /// Support: largest angle between the two normals, in degrees, 0 to 180. Default 60.
+    pub support_angle_deg: f64,
+    /// The refinement. Default `"point-to-plane"`.
+    pub icp: Icp,
+    /// ICP leaves the scale as RANSAC found it (paper §3.3). `false` is the ablation. Default `true`.
+    pub lock_scale: bool,
+    /// ICP iterations at most, 1 to 1 000. Default 60.
+    pub icp_iterations: u32,
+}
+
+impl Default for AlignOptions {
+    fn default() -> Self {
+        Self {
+            preset: Preset::Paper,
+            seed: 0,
+            max_observed_points: 20_000,
+            surface_samples: 20_000,
+            voxel_divisions: 30.0,
+            fpfh_radius_voxels: 5.0,
+            guard: Some([0.5, 1.5]),
+            guard_mode: GuardMode::Reject,
+            ransac_iterations: 100_000,
+            ransac_confidence: 0.999,
+            inlier_distance_voxels: 1.5,
+            edge_similarity: 0.9,
+            hallucination_filter: true,
+            support_distance_voxels: 3.0,
+            support_angle_deg: 60.0,
+            icp: Icp::PointToPlane,
+            lock_scale: true,
+            icp_iterations: 60,
+        }
+    }
+}
+
+impl AlignOptions {
+    /// Checks every range.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidOption`].
+    pub fn validate(&self) -> Result<()> {
+        check_count("maxObservedPoints", self.max_observed_points, 32, 1_000_000)?;
+        check_count("surfaceSamples", self.surface_samples, 100, 1_000_000)?;
+        check_range("voxelDivisions", self.voxel_divisions, 5.0, 200.0)?;
+        check_range("fpfhRadiusVoxels", self.fpfh_radius_voxels, 1.0, 20.0)?;
+        if let Some(guard) = self.guard {
+            check_guard(guard)?;
+        }
+        check_count("ransacIterations", self.ransac_iterations, 1, 10_000_000)?;
+        check_confidence(self.ransac_confidence)?;
+        check_range("inlierDistanceVoxels", self.inlier_distance_voxels, 0.1, 20.0)?;
+        check_range("edgeSimilarity", self.edge_similarity, 0.0, 1.0)?;
+        check_range("supportDistanceVoxels", self.support_distance_voxels, 0.1, 50.0)?;
+        check_range("supportAngleDeg", self.support_angle_deg, 0.0, 180.0)?;
+        check_count("icpIterations", self.icp_iterations, 1, 1_000)
+    }
+}
+
+/// What `register` and `estimateSim3` may do with the scale, in target units per source unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ScaleOption {
+    /// Solved for, within the guard around the ratio of the clouds' boxes.
+    Free,
+    /// Known.
+    Fixed(f64),
+    /// Solved for, within these bounds.
+    Between([f64; 2]),
+}
+
+impl ScaleOption {
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidOption`].
+    pub fn validate(&self) -> Result<()> {
+        let positive = |x: f64| x.is_finite() && x > 0.0;
+        let found = match *self {
+            Self::Free => return Ok(()),
+            Self::Fixed(scale) if positive(scale) => return Ok(()),
+            Self::Between([min, max]) if positive(min) && positive(max) && min <= max => return Ok(()),
+            Self::Fixed(scale) => format!("{scale}"),
+            Self::Between([min, max]) => format!("[{min}, {max}]"),
+        };
+        Err(Error::new(
+            ErrorCode::InvalidOption,
+            "options.scale",
+            found,
+            "\"free\", \"fixed\" (1), a number above 0, or [min, max] with 0 < min ≤ max",
+            "The scale is in target units per source unit.",
+        ))
+    }
+}
+
+/// Options of `register`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "camelCase", default)]
+pub struct RegisterOptions {
+    /// Seed of all random draws, 0 to 2³² − 1. Default 0.
+    pub seed: u32,
+    /// Points of each cloud that are used at most, 32 to 1 000 000. Default 20 000.
+    pub max_points: u32,
+    /// Voxel size in target units, above 0; `null` derives it from `voxelDivisions`. Default `null`.
+    pub voxel_size: Option<f64>,
+    /// Voxels along the target's box diagonal, 5 to 200. Default 30.
+    pub voxel_divisions: f64,
+    /// Radius of the FPFH descriptors, in voxels, 1 to 20. Default 5.
+    pub fpfh_radius_voxels: f64,
+    /// Minimal sets that RANSAC draws at most, 1 to 10 000 000. Default 100 000.
+    pub ransac_iterations: u32,
+    /// RANSAC stops early at this probability of having missed nothing better, 0 to below 1. Default 0.999.
+    pub ransac_confidence: f64,
+    /// A match within this distance of its counterpart is an inlier, in voxels, 0.1 to 20. Default 1.5.
+    pub inlier_distance_voxels: f64,
+    /// How alike the three edges of a minimal set must be stretched: least over most stretched, 0 to 1.
+    /// Default 0.9.
+    pub edge_similarity: f64,
+    /// The refinement. Default `"point-to-plane"`.
+    pub icp: Icp,
+    /// ICP iterations at most, 1 to 1 000. Default 60.
+    pub icp_iterations: u32,
+}
+
+impl Default for RegisterOptions {
+    fn default() -> Self {
+        let align = AlignOptions::default();
+        Self {
+            seed: align.seed,
+            max_points: align.max_observed_points,
+            voxel_size: None,
+            voxel_divisions: align.voxel_divisions,
+            fpfh_radius_voxels: align.fpfh_radius_voxels,
+            ransac_iterations: align.ransac_iterations,
+            ransac_confidence: align.ransac_confidence,
+            inlier_distance_voxels: align.inlier_distance_voxels,
+            edge_similarity: align.edge_similarity,
+            icp: align.icp,
+            icp_iterations: align.icp_iterations,
+        }
+    }
+}
+
+impl RegisterOptions {
+    /// Checks every range.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidOption`].
+    pub fn validate(&self) -> Result<()> {
+        check_count("maxPoints", self.max_points, 32, 1_000_000)?;
+        if let Some(voxel_size) = self.voxel_size {
+            check_positive("voxelSize", voxel_size)?;
+        }
+        check_range("voxelDivisions", self.voxel_divisions, 5.0, 200.0)?;
+        check_range("fpfhRadiusVoxels", self.fpfh_radius_voxels, 1.0, 20.0)?;
+        check_count("ransacIterations", self.ransac_iterations, 1, 10_000_000)?;
+        check_confidence(self.ransac_confidence)?;
+        check_range("inlierDistanceVoxels", self.inlier_distance_voxels, 0.1, 20.0)?;
+        check_range("edgeSimilarity", self.edge_similarity, 0.0, 1.0)?;
+        check_count("icpIterations", self.icp_iterations, 1, 1_000)
+    }
+}
+
+/// Options of `estimateSim3`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "camelCase", default)]
+pub struct EstimateOptions {
+    /// Seed of all random draws, 0 to 2³² − 1. Default 0.
+    pub seed: u32,
+    /// A correspondence whose source lands within this of its target is an inlier, in target units, above 0;
+    /// `null` takes a twentieth of the target's box diagonal. Default `null`.
+    pub inlier_distance: Option<f64>,
+    /// Minimal sets that RANSAC draws at most, 1 to 10 000 000. Default 100 000.
+    pub ransac_iterations: u32,
+    /// RANSAC stops early at this probability of having missed nothing better, 0 to below 1. Default 0.999.
+    pub ransac_confidence: f64,
+    /// How alike the three edges of a minimal set must be stretched: least over most stretched, 0 to 1.
+    /// Default 0.9.
+    pub edge_similarity: f64,
+}
+
+impl Default for EstimateOptions {
+    fn default() -> Self {
+        let align = AlignOptions::default();
+        Self {
+            seed: align.seed,
+            inlier_distance: None,
+            ransac_iterations: align.ransac_iterations,
+            ransac_confidence: align.ransac_confidence,
+            edge_similarity: align.edge_similarity,
+        }
+    }
+}
+
+impl EstimateOptions {
+    /// Checks every range.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidOption`].
+    pub fn validate(&self) -> Result<()> {
+        if let Some(inlier_distance) = self.inlier_distance {
+            check_positive("inlierDistance", inlier_distance)?;
+        }
+        check_count("ransacIterations", self.ransac_iterations, 1, 10_000_000)?;
+        check_confidence(self.ransac_confidence)?;
+        check_range("edgeSimilarity", self.edge_similarity, 0.0, 1.0)
+    }
+}
+
+fn invalid(name: &str, found: String, expected: String) -> Error {
+    let remedy = "Leave the option out to take its default.";
+    Error::new(ErrorCode::InvalidOption, format!("options.{name}"), found, expected, remedy)
+}
+
+fn check_range(name: &str, value: f64, min: f64, max: f64) -> Result<()> {
+    // Written so that NaN fails.
+    if value >= min && value <= max {
+        return Ok(());
+    }
+    Err(invalid(name, format!("{value}"), format!("a number from {min} to {max}")))
+}
+
+fn check_count(name: &str, value: u32, min: u32, max: u32) -> Result<()> {
+    check_range(name, f64::from(value), f64::from(min), f64::from(max))
+}
+
+fn check_positive(name: &str, value: f64) -> Result<()> {
+    if value.is_finite() && value > 0.0 {
+        return Ok(());
+    }
+    Err(invalid(name, format!("{value}"), "a finite number above 0, or null".into()))
+}
+
+fn check_confidence(value: f64) -> Result<()> {
+    if (0.0..1.0).contains(&value) {
+        return Ok(());
+    }
+    Err(invalid("ransacConfidence", format!("{value}"), "a number from 0 to below 1".into()))
+}
+
+fn check_guard([min, max]: [f64; 2]) -> Result<()> {
+    if min > 0.0 && min <= 1.0 && max >= 1.0 && max.is_finite() {
+        return Ok(());
+    }
+    Err(invalid("guard", format!("[{min}, {max}]"), "[min, max] with 0 < min ≤ 1 ≤ max, or null".into()))
+}

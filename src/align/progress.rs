@@ -1,0 +1,134 @@
+//! Named stages, their times, and whoever wants to follow them.
+
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+
+/// A stage of the pipeline.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "camelCase")]
+pub enum Stage {
+    /// Back-projection of the masked depth (§3.1).
+    Observe,
+    /// Sampling of the mesh surface.
+    Sample,
+    /// Normals of the observed cloud, and both clouds on their voxel grid.
+    Normals,
+    /// FPFH descriptors.
+    Features,
+    /// Mutual nearest descriptors.
+    Matching,
+    /// Guarded Sim(3) RANSAC (§3.2).
+    Ransac,
+    /// Hallucination filtering of the consensus.
+    Filter,
+    /// Scale-locked ICP (§3.3).
+    Icp,
+    /// The eight metrics.
+    Metrics,
+}
+
+impl Stage {
+    /// The stage's name in JavaScript.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Observe => "observe",
+            Self::Sample => "sample",
+            Self::Normals => "normals",
+            Self::Features => "features",
+            Self::Matching => "matching",
+            Self::Ransac => "ransac",
+            Self::Filter => "filter",
+            Self::Icp => "icp",
+            Self::Metrics => "metrics",
+        }
+    }
+}
+
+/// What the pipeline asks of its surroundings: a clock, and an ear for progress. Results never depend on either.
+pub trait Host {
+    /// Milliseconds since any fixed moment.
+    fn now_ms(&mut self) -> f64;
+
+    /// A stage begins; `fraction` of the whole, from 0 to 1 and never falling, is done.
+    fn progress(&mut self, stage: Stage, fraction: f64);
+}
+
+/// A host without clock or ears: all times are 0.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Silent;
+
+impl Host for Silent {
+    fn now_ms(&mut self) -> f64 {
+        0.0
+    }
+
+    fn progress(&mut self, _stage: Stage, _fraction: f64) {}
+}
+
+/// Milliseconds by stage, in the order in which the stages ran. Serialises as an object with a `total`.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Timings(Vec<(Stage, f64)>);
+
+impl Timings {
+    /// The stages and their times.
+    pub fn stages(&self) -> &[(Stage, f64)] {
+        &self.0
+    }
+
+    /// The sum over all stages.
+    pub fn total_ms(&self) -> f64 {
+        self.0.iter().map(|(_, ms)| ms).sum()
+    }
+}
+
+impl Serialize for Timings {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len() + 1))?;
+        for (stage, ms) in &self.0 {
+            map.serialize_entry(stage.as_str(), ms)?;
+        }
+        map.serialize_entry("total", &self.total_ms())?;
+        map.end()
+    }
+}
+
+/// Times the stages of one run and reports them to the host.
+pub struct Stopwatch<'a> {
+    host: &'a mut dyn Host,
+    plan: &'static [(Stage, f64)],
+    timings: Timings,
+    begun_ms: f64,
+}
+
+impl<'a> Stopwatch<'a> {
+    /// A stopwatch for the stages in `plan`, each with the share of the whole that is done when it begins.
+    pub fn new(host: &'a mut dyn Host, plan: &'static [(Stage, f64)]) -> Self {
+        Self { host, plan, timings: Timings::default(), begun_ms: 0.0 }
+    }
+
+    /// The next stage begins; the one before it, if any, has ended.
+    pub fn enter(&mut self, stage: Stage) {
+        self.end_stage();
+        let fraction = self.plan.iter().find(|(s, _)| *s == stage).map_or(0.0, |(_, fraction)| *fraction);
+        self.host.progress(stage, fraction);
+        self.timings.0.push((stage, 0.0));
+    }
+
+    /// The last stage has ended.
+    pub fn finish(mut self) -> Timings {
+        self.end_stage();
+        if let Some((stage, _)) = self.timings.0.last() {
+            self.host.progress(*stage, 1.0);
+        }
+        self.timings
+    }
+
+    fn end_stage(&mut self) {
+        let now_ms = self.host.now_ms();
+        if let Some((_, ms)) = self.timings.0.last_mut() {
+            *ms = now_ms - self.begun_ms;
+        }
+        self.begun_ms = now_ms;
+    }
+}

@@ -1,0 +1,57 @@
+//! Hallucination filtering (paper §3.1): a generator invents the side that the camera did not see. Only
+//! source points that the observation supports under the present pose, in position and in normal, take part.
+
+use glam::Vec3;
+
+use crate::geometry::cloud::Cloud;
+use crate::geometry::kd_tree::KdTree;
+use crate::geometry::similarity::Similarity;
+
+/// What counts as support.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SupportSettings {
+    /// A source point needs a target point within this distance (target frame); infinite asks for none.
+    pub max_distance: f32,
+    /// Smallest cosine between the two normals; −1 asks for none. Unknown normals (zero) are not held against a point.
+    pub min_cosine: f32,
+}
+
+impl SupportSettings {
+    /// No filter: every source point is held to be supported by its nearest target point.
+    pub const EVERYTHING: Self = Self { max_distance: f32::INFINITY, min_cosine: -1.0 };
+}
+
+/// A supported source point and the target point that supports it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Support {
+    /// Index into the source cloud.
+    pub source: u32,
+    /// Index into the target cloud, the nearest to the transformed source point.
+    pub target: u32,
+    /// Where the source point lands, in the target frame.
+    pub landed: Vec3,
+}
+
+/// The source points that the target supports under the given pose, in the order of the source.
+pub fn supported(
+    source: &Cloud,
+    target: &Cloud,
+    target_tree: &KdTree,
+    target_from_source: &Similarity,
+    settings: &SupportSettings,
+) -> Vec<Support> {
+    let transform = target_from_source.to_f32();
+    let support = |(i, &point): (usize, &Vec3)| {
+        let landed = transform.apply(point);
+        let nearest = target_tree.nearest_within(landed, settings.max_distance)?;
+        if let (Some(&n), Some(&m)) = (source.normals.get(i), target.normals.get(nearest.index as usize))
+            && n != Vec3::ZERO
+            && m != Vec3::ZERO
+            && transform.rotate(n).dot(m) < settings.min_cosine
+        {
+            return None;
+        }
+        Some(Support { source: i as u32, target: nearest.index, landed })
+    };
+    source.points.iter().enumerate().filter_map(support).collect()
+}

@@ -1,0 +1,230 @@
+//! Scale-locked ICP (paper §3.3): refines R and t, and s only where the caller unlocks it.
+//!
+//! Each iteration pairs every supported source point with its nearest target point and takes one weighted
+//! Gauss-Newton step (point-to-plane) or one closed form (point-to-point). Tukey's biweight on the residuals,
+//! with its width from their median, gives the points that do not belong no say. The support distance shrinks
+//! from generous to tight as the pose improves, so the hallucination filter is re-evaluated at every step.
+
+use nalgebra::{Cholesky, SMatrix, SVector, UnitQuaternion, Vector3};
+
+use super::filter::{Support, SupportSettings, supported};
+use super::umeyama::{Pair, ScaleMode, umeyama};
+use crate::geometry::cloud::Cloud;
+use crate::geometry::kd_tree::KdTree;
+use crate::geometry::similarity::{Similarity, nearest_rotation, vector3};
+
+/// What an iteration minimises.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum IcpMetric {
+    /// Distance to the target's tangent plane (Chen & Medioni). Needs target normals.
+    PointToPlane,
+    /// Distance to the target point (Besl & McKay).
+    PointToPoint,
+}
+
+/// Settings of [`refine`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct IcpSettings {
+    /// What is minimised.
+    pub metric: IcpMetric,
+    /// ŝ stays as it came in (the paper's lock).
+    pub lock_scale: bool,
+    /// The scale never leaves this interval when it is not locked.
+    pub scale_bounds: Option<[f64; 2]>,
+    /// Most iterations.
+    pub max_iterations: usize,
+    /// Support at the first iteration.
+    pub support: SupportSettings,
+    /// The support distance shrinks towards this one, by a quarter an iteration.
+    pub final_distance: f32,
+    /// Converged when no point of a unit box moves further than this in an iteration.
+    pub tolerance: f64,
+}
+
+/// The refined pose and how it came about.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Refined {
+    /// The transform.
+    pub target_from_source: Similarity,
+    /// Iterations taken.
+    pub iterations: usize,
+    /// Whether the last iteration moved less than the tolerance.
+    pub converged: bool,
+    /// Source points that took part in the last iteration.
+    pub supported: usize,
+    /// Weighted root mean square residual of the last iteration, in the target frame's unit.
+    pub rms: f64,
+}
+
+/// Tukey's constant: 95 % efficient on Gaussian residuals.
+const TUKEY: f64 = 4.685;
+
+/// From the median of absolute residuals to their standard deviation.
+const MAD_TO_SIGMA: f64 = 1.4826;
+
+/// Factor of the support distance from one iteration to the next.
+const SHRINK: f32 = 0.75;
+
+/// Refines a pose. With too little support for a step (fewer than six points) the pose stays as it is and
+/// `converged` is false.
+pub fn refine(
+    source: &Cloud,
+    target: &Cloud,
+    target_tree: &KdTree,
+    initial: &Similarity,
+    settings: &IcpSettings,
+) -> Refined {
+    let mut refined = Refined { target_from_source: *initial, iterations: 0, converged: false, supported: 0, rms: 0.0 };
+    let mut support_settings = settings.support;
+    while refined.iterations < settings.max_iterations {
+        let support = supported(source, target, target_tree, &refined.target_from_source, &support_settings);
+        refined.supported = support.len();
+        let residuals = Residuals::of(&support, target, settings.metric);
+        let Some(next) = step(source, &residuals, &refined.target_from_source, settings) else { break };
+        refined.rms = residuals.rms();
+        refined.iterations += 1;
+        let moved = movement(&refined.target_from_source, &next);
+        refined.target_from_source = next;
+        let tight =
+            support_settings.max_distance <= settings.final_distance || !support_settings.max_distance.is_finite();
+        if moved < settings.tolerance && tight {
+            refined.converged = true;
+            break;
+        }
+        if !tight {
+            support_settings.max_distance = (support_settings.max_distance * SHRINK).max(settings.final_distance);
+        }
+    }
+    refined
+}
+
+/// One residual of an iteration.
+struct Residual {
+    source: usize,
+    landed: Vector3<f64>,
+    target: Vector3<f64>,
+    /// The target's normal; zero for point-to-point.
+    normal: Vector3<f64>,
+    /// Signed distance to the plane, or distance to the point.
+    value: f64,
+    weight: f64,
+}
+
+struct Residuals(Vec<Residual>);
+
+impl Residuals {
+    fn of(support: &[Support], target: &Cloud, metric: IcpMetric) -> Self {
+        let residual = |s: &Support| {
+            let index = s.target as usize;
+            let (landed, point) = (vector3(s.landed), vector3(*target.points.get(index)?));
+            let normal = match metric {
+                IcpMetric::PointToPoint => Vector3::zeros(),
+                IcpMetric::PointToPlane => vector3(*target.normals.get(index).filter(|n| **n != glam::Vec3::ZERO)?),
+            };
+            let value = match metric {
+                IcpMetric::PointToPoint => (landed - point).norm(),
+                IcpMetric::PointToPlane => normal.dot(&(landed - point)),
+            };
+            Some(Residual { source: s.source as usize, landed, target: point, normal, value, weight: 1.0 })
+        };
+        let mut residuals: Vec<Residual> = support.iter().filter_map(residual).collect();
+        weigh(&mut residuals);
+        Self(residuals)
+    }
+
+    fn rms(&self) -> f64 {
+        let weight: f64 = self.0.iter().map(|r| r.weight).sum();
+        let squares: f64 = self.0.iter().map(|r| r.weight * r.value * r.value).sum();
+        if weight > 0.0 { (squares / weight).sqrt() } else { 0.0 }
+    }
+}
+
+/// Tukey's biweight, as wide as the median residual says.
+fn weigh(residuals: &mut [Residual]) {
+    if residuals.is_empty() {
+        return;
+    }
+    let mut magnitudes: Vec<f64> = residuals.iter().map(|r| r.value.abs()).collect();
+    let middle = magnitudes.len() / 2;
+    let (_, median, _) = magnitudes.select_nth_unstable_by(middle, f64::total_cmp);
+    // On exact data the median is 0; the floor, an f32's rounding in a unit box, keeps the exact pairs in.
+    let width = (TUKEY * MAD_TO_SIGMA * *median).max(1e-6);
+    for residual in residuals {
+        let ratio = residual.value / width;
+        residual.weight = if ratio.abs() < 1.0 { (1.0 - ratio * ratio) * (1.0 - ratio * ratio) } else { 0.0 };
+    }
+}
+
+fn step(source: &Cloud, residuals: &Residuals, pose: &Similarity, settings: &IcpSettings) -> Option<Similarity> {
+    if residuals.0.iter().filter(|r| r.weight > 0.0).count() < 6 {
+        return None;
+    }
+    let next = match settings.metric {
+        IcpMetric::PointToPoint => closed_form(source, residuals, pose, settings.lock_scale)?,
+        IcpMetric::PointToPlane if settings.lock_scale => gauss_newton::<6>(residuals, pose)?,
+        IcpMetric::PointToPlane => gauss_newton::<7>(residuals, pose)?,
+    };
+    match settings.scale_bounds {
+        Some([min, max]) if !(min..=max).contains(&next.scale) => {
+            // The turn and the scale stay about the middle of the points that matter, not about the origin.
+            let scale = next.scale.clamp(min, max);
+            let center = weighted_center(residuals);
+            let local = next.inverse().apply(center);
+            Some(Similarity { scale, translation: center - next.rotation * local * scale, ..next })
+        }
+        _ => Some(next),
+    }
+}
+
+fn closed_form(source: &Cloud, residuals: &Residuals, pose: &Similarity, lock_scale: bool) -> Option<Similarity> {
+    let pairs = residuals.0.iter().filter_map(|r| {
+        let point = vector3(*source.points.get(r.source)?);
+        Some(Pair { source: point, target: r.target, weight: r.weight })
+    });
+    let scale_mode = if lock_scale { ScaleMode::Fixed(pose.scale) } else { ScaleMode::Free };
+    umeyama(pairs, scale_mode).ok()
+}
+
+fn weighted_center(residuals: &Residuals) -> Vector3<f64> {
+    let weight: f64 = residuals.0.iter().map(|r| r.weight).sum();
+    residuals.0.iter().map(|r| r.landed * r.weight).sum::<Vector3<f64>>() / weight
+}
+
+/// One point-to-plane step in (ω, τ) or (ω, τ, σ): x ↦ c + e^σ exp(ω)(x − c) + τ about the centre c of the
+/// weighted points, which keeps turn and shift apart.
+fn gauss_newton<const N: usize>(residuals: &Residuals, pose: &Similarity) -> Option<Similarity> {
+    let center = weighted_center(residuals);
+    let mut hessian = SMatrix::<f64, N, N>::zeros();
+    let mut gradient = SVector::<f64, N>::zeros();
+    for r in residuals.0.iter().filter(|r| r.weight > 0.0) {
+        let arm = r.landed - center;
+        let turn = arm.cross(&r.normal);
+        let mut jacobian = SVector::<f64, N>::zeros();
+        jacobian.fixed_rows_mut::<3>(0).copy_from(&turn);
+        jacobian.fixed_rows_mut::<3>(3).copy_from(&r.normal);
+        if N == 7 {
+            jacobian[N - 1] = arm.dot(&r.normal);
+        }
+        hessian += jacobian * jacobian.transpose() * r.weight;
+        gradient += jacobian * (r.weight * r.value);
+    }
+    // Directions that the data leave free (a plane slides on itself) stay where they are.
+    let damping = 1e-9 * hessian.trace();
+    let damped = hessian + SMatrix::<f64, N, N>::identity() * damping;
+    let delta = -Cholesky::new(damped)?.solve(&gradient);
+    let turn = UnitQuaternion::from_scaled_axis(Vector3::new(delta[0], delta[1], delta[2]));
+    let shift = Vector3::new(delta[3], delta[4], delta[5]);
+    let growth = if N == 7 { libm::exp(delta[N - 1].clamp(-0.5, 0.5)) } else { 1.0 };
+    let turn = turn.to_rotation_matrix();
+    // Products of many small turns drift off SO(3) by rounding; the projection keeps R a rotation.
+    let rotation = nearest_rotation((turn * pose.rotation).into_inner());
+    let translation = center + turn * (pose.translation - center) * growth + shift;
+    let finite = translation.iter().chain(rotation.matrix().iter()).all(|x| x.is_finite());
+    finite.then_some(Similarity { scale: pose.scale * growth, rotation, translation })
+}
+
+/// The furthest that a corner of the unit box moves from one pose to the next.
+fn movement(from: &Similarity, to: &Similarity) -> f64 {
+    let corner = |i: usize| Vector3::new(0.5 - (i & 1) as f64, 0.5 - (i >> 1 & 1) as f64, 0.5 - (i >> 2 & 1) as f64);
+    (0..8).map(|i| (from.apply(corner(i)) - to.apply(corner(i))).norm()).fold(0.0, f64::max)
+}

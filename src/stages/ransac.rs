@@ -1,0 +1,236 @@
+//! Guarded Sim(3) RANSAC over correspondences (paper §3.2).
+//!
+//! A scale that may go anywhere finds its most inliers by shrinking the mesh into a patch of the observation.
+//! So each hypothesis' scale is held against the initial one, inside the loop: outside [λmin, λmax]·s_init it
+//! is rejected (or, in clamp mode, projected back and counted).
+
+use super::matching::Match;
+use super::umeyama::{Pair, ScaleMode, umeyama};
+use crate::error::{Error, ErrorCode, Result};
+use crate::geometry::random::Random;
+use crate::geometry::similarity::{Similarity, vector3};
+
+const STREAM: u64 = 3;
+
+/// Closed-form refits on the inliers of a new best hypothesis.
+const LOCAL_REFITS: usize = 4;
+
+/// What is done with a scale outside the guard.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum GuardMode {
+    /// The hypothesis is dropped.
+    Reject,
+    /// The scale is projected to the nearer bound, and the translation recomputed.
+    Clamp,
+}
+
+/// The interval a scale must stay in, in the frames of the clouds that the matches index.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Guard {
+    /// Smallest scale.
+    pub min: f64,
+    /// Largest scale.
+    pub max: f64,
+    /// What is done outside.
+    pub mode: GuardMode,
+}
+
+/// Settings of [`ransac`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RansacSettings {
+    /// A match is an inlier when its source point lands within this of its target point.
+    pub inlier_distance: f64,
+    /// Smallest ratio of the least to the most stretched edge of a minimal set, in [0, 1].
+    pub edge_similarity: f64,
+    /// Most minimal sets drawn.
+    pub max_iterations: usize,
+    /// Stops early once a better hypothesis is this unlikely to have been missed, in [0, 1).
+    pub confidence: f64,
+    /// Free, or fixed.
+    pub scale_mode: ScaleMode,
+    /// `None` leaves the scale alone (the ablation).
+    pub guard: Option<Guard>,
+    /// Seed of the draws.
+    pub seed: u64,
+}
+
+/// How often what happened.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct RansacCounts {
+    /// Minimal sets drawn.
+    pub iterations: usize,
+    /// Minimal sets dropped by the edge-length check.
+    pub inconsistent: usize,
+    /// Hypotheses dropped because their scale left the guard.
+    pub rejected: usize,
+    /// Hypotheses whose scale was projected back into the guard.
+    pub clamped: usize,
+}
+
+/// The best hypothesis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Consensus {
+    /// The transform.
+    pub target_from_source: Similarity,
+    /// Indices of the matches that agree with it.
+    pub inliers: Vec<usize>,
+    /// Whether its scale stands at a bound of the guard because it was projected there.
+    pub clamped: bool,
+    /// The counts.
+    pub counts: RansacCounts,
+}
+
+/// The similarity that the most matches agree with (M-estimator scoring: near inliers count more).
+///
+/// # Errors
+/// [`ErrorCode::NoConsensus`] for fewer than three matches, or where no minimal set gave a hypothesis inside
+/// the guard that three matches agree with.
+pub fn ransac(
+    source: &[glam::Vec3],
+    target: &[glam::Vec3],
+    matches: &[Match],
+    settings: &RansacSettings,
+) -> Result<Consensus> {
+    let pairs: Vec<Pair> = matches
+        .iter()
+        .filter_map(|m| {
+            let (source, target) = (source.get(m.source as usize)?, target.get(m.target as usize)?);
+            Some(Pair { source: vector3(*source), target: vector3(*target), weight: 1.0 })
+        })
+        .collect();
+    let mut counts = RansacCounts::default();
+    let mut best: Option<Hypothesis> = None;
+    if pairs.len() >= 3 {
+        let mut random = Random::new(settings.seed, STREAM);
+        let mut needed = settings.max_iterations;
+        while counts.iterations < needed {
+            counts.iterations += 1;
+            let minimal_set = draw_three(&mut random, &pairs);
+            if !edges_agree(&minimal_set, settings.edge_similarity) {
+                counts.inconsistent += 1;
+                continue;
+            }
+            let Some(hypothesis) = fit(minimal_set.iter(), settings, &mut counts) else { continue };
+            let score = score(&hypothesis.transform, &pairs, settings.inlier_distance);
+            if best.as_ref().is_none_or(|b| score > b.score) {
+                let improved = refit(Hypothesis { score, ..hypothesis }, &pairs, settings, &mut counts);
+                let share =
+                    inliers(&improved.transform, &pairs, settings.inlier_distance).len() as f64 / pairs.len() as f64;
+                needed = needed.min(iterations_needed(share, settings.confidence));
+                best = Some(improved);
+            }
+        }
+    }
+    let consensus = best.map(|b| (inliers(&b.transform, &pairs, settings.inlier_distance), b));
+    match consensus {
+        Some((inliers, b)) if inliers.len() >= 3 => {
+            Ok(Consensus { target_from_source: b.transform, inliers, clamped: b.clamped, counts })
+        }
+        _ => Err(no_consensus(pairs.len(), &counts)),
+    }
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Hypothesis {
+    transform: Similarity,
+    clamped: bool,
+    score: f64,
+}
+
+fn draw_three(random: &mut Random, pairs: &[Pair]) -> [Pair; 3] {
+    let n = pairs.len();
+    let a = random.below(n);
+    // Drawn from the n − 1 (n − 2) others: always three different ones, always three draws.
+    let b = (a + 1 + random.below(n - 1)) % n;
+    let (low, high) = (a.min(b), a.max(b));
+    let mut c = random.below(n - 2);
+    c += usize::from(c >= low);
+    c += usize::from(c >= high);
+    [pairs[a], pairs[b], pairs[c]]
+}
+
+/// Whether the three edges are stretched alike, as any similarity stretches them.
+fn edges_agree(set: &[Pair; 3], edge_similarity: f64) -> bool {
+    let stretch = |i: usize, j: usize| (set[i].target - set[j].target).norm() / (set[i].source - set[j].source).norm();
+    let ratios = [stretch(0, 1), stretch(1, 2), stretch(2, 0)];
+    let (min, max) = ratios.iter().fold((f64::INFINITY, 0.0_f64), |(min, max), &r| (min.min(r), max.max(r)));
+    // Not-a-number (two equal points) agrees with nothing.
+    min >= edge_similarity * max && max.is_finite() && min > 0.0
+}
+
+/// The closed form on some pairs, held against the guard.
+fn fit<'a>(
+    pairs: impl Iterator<Item = &'a Pair> + Clone,
+    settings: &RansacSettings,
+    counts: &mut RansacCounts,
+) -> Option<Hypothesis> {
+    let transform = umeyama(pairs.clone().copied(), settings.scale_mode).ok()?;
+    let Some(guard) = settings.guard else { return Some(Hypothesis { transform, clamped: false, score: 0.0 }) };
+    let scale = transform.scale.clamp(guard.min, guard.max);
+    if scale == transform.scale {
+        return Some(Hypothesis { transform, clamped: false, score: 0.0 });
+    }
+    match guard.mode {
+        GuardMode::Reject => {
+            counts.rejected += 1;
+            None
+        }
+        GuardMode::Clamp => {
+            counts.clamped += 1;
+            let transform = umeyama(pairs.copied(), ScaleMode::Fixed(scale)).ok()?;
+            Some(Hypothesis { transform, clamped: true, score: 0.0 })
+        }
+    }
+}
+
+/// Refits on the inliers for as long as the score rises.
+fn refit(mut best: Hypothesis, pairs: &[Pair], settings: &RansacSettings, counts: &mut RansacCounts) -> Hypothesis {
+    for _ in 0..LOCAL_REFITS {
+        let inliers = inliers(&best.transform, pairs, settings.inlier_distance);
+        let Some(refitted) = fit(inliers.iter().map(|&i| &pairs[i]), settings, counts) else { break };
+        let score = score(&refitted.transform, pairs, settings.inlier_distance);
+        if score <= best.score {
+            break;
+        }
+        best = Hypothesis { score, ..refitted };
+    }
+    best
+}
+
+fn residual_squared(transform: &Similarity, pair: &Pair) -> f64 {
+    (transform.apply(pair.source) - pair.target).norm_squared()
+}
+
+/// Σ max(0, 1 − r²/d²).
+fn score(transform: &Similarity, pairs: &[Pair], distance: f64) -> f64 {
+    let limit = distance * distance;
+    pairs.iter().map(|pair| (1.0 - residual_squared(transform, pair) / limit).max(0.0)).sum()
+}
+
+fn inliers(transform: &Similarity, pairs: &[Pair], distance: f64) -> Vec<usize> {
+    let near = |pair: &Pair| residual_squared(transform, pair) <= distance * distance;
+    pairs.iter().enumerate().filter(|(_, pair)| near(pair)).map(|(i, _)| i).collect()
+}
+
+/// Draws after which a set of three inliers has come up with the given confidence.
+fn iterations_needed(inlier_share: f64, confidence: f64) -> usize {
+    let hit = inlier_share * inlier_share * inlier_share;
+    if hit >= 1.0 {
+        return 1;
+    }
+    // Saturates for shares near 0; the caller's limit stands.
+    libm::ceil(libm::log(1.0 - confidence) / libm::log1p(-hit)) as usize
+}
+
+fn no_consensus(matches: usize, counts: &RansacCounts) -> Error {
+    Error::new(
+        ErrorCode::NoConsensus,
+        "mesh",
+        format!(
+            "{matches} matches between mesh and observation; of {} minimal sets {} had inconsistent edges and {} a scale outside the guard",
+            counts.iterations, counts.inconsistent, counts.rejected
+        ),
+        "at least three matches that agree on one transform inside the guard",
+        "Check that mesh and mask show the same object; widen options.guard, or raise options.voxelDivisions for small details.",
+    )
+}
