@@ -5,6 +5,8 @@
 //! The crate is layered; a module imports only from those below it in this list:
 //! [`bindings`], [`formats`], [`align`], [`metrics`], [`stages`], [`geometry`], [`error`].
 
+pub mod align;
 pub mod error;
 pub mod geometry;
+pub mod metrics;
 pub mod stages;

@@ -84,7 +84,7 @@ pub struct Counts {
     pub matches: usize,
     /// Correspondences that agree with the consensus.
     pub inliers: usize,
-    /// Source points (voxel grid) that the target supports under the final pose.
+    /// Source points that the target supported in the last iteration of the refinement.
     pub supported: usize,
     /// Minimal sets that RANSAC drew.
     pub iterations: usize,
@@ -159,4 +159,9 @@ pub struct Registration {
     /// Milliseconds by stage, and their total.
     #[cfg_attr(feature = "types", ts(type = "Partial<Record<Stage, number>> & { total: number }"))]
     pub timings_ms: Timings,
+}
+
+/// The paper's definition of a collapsed scale.
+pub fn is_collapsed(scale_ratio: f64) -> bool {
+    scale_ratio < 0.3
 }

@@ -57,6 +57,11 @@ impl Extents {
         self.diagonal
     }
 
+    /// The same middle with another diagonal: where the scale between two clouds is known, their boxes need not say it.
+    pub fn with_diagonal(self, diagonal: f64) -> Self {
+        Self { diagonal, ..self }
+    }
+
     /// The transform from the cloud's own frame to the one with the box centred and its diagonal 1.
     pub fn unit_from_own(&self) -> Similarity {
         let scale = 1.0 / self.diagonal;

@@ -1,0 +1,74 @@
+//! What the caller should know about an input that is valid but suspicious, or a result that is.
+
+use super::report::{Warning, WarningCode, is_collapsed};
+use crate::stages::observe::Observation;
+
+/// Metres beyond which no depth of a single object is plausible, but millimetres are.
+const IMPLAUSIBLE_DEPTH_M: f32 = 100.0;
+
+/// Warnings about depth and mask.
+pub fn about_observation(observation: &Observation) -> Vec<Warning> {
+    let (width, height) = (observation.mask().width(), observation.mask().height());
+    let mut mask_pixels = 0_usize;
+    let mut depths = Vec::new();
+    let mut touches_border = false;
+    for (i, (&m, &z)) in observation.mask().data().iter().zip(observation.depth().data()).enumerate() {
+        if m == 0 {
+            continue;
+        }
+        let (u, v) = (i % width, i / width);
+        mask_pixels += 1;
+        touches_border |= u == 0 || v == 0 || u + 1 == width || v + 1 == height;
+        if z > 0.0 {
+            depths.push(z);
+        }
+    }
+    let mut warnings = Vec::new();
+    let readings = depths.len();
+    if readings > 0 {
+        let (_, &mut median, _) = depths.select_nth_unstable_by(readings / 2, f32::total_cmp);
+        if median > IMPLAUSIBLE_DEPTH_M {
+            warnings.push(Warning {
+                code: WarningCode::DepthLooksLikeMillimetres,
+                message: format!(
+                    "The object's median depth is {median} m. If the depth is in millimetres, multiply it by 0.001, or pass the integers with depthScale 0.001."
+                ),
+            });
+        }
+    }
+    if touches_border {
+        warnings.push(Warning {
+            code: WarningCode::MaskTouchesBorder,
+            message: "The mask touches the image border: what lies beyond is unknown, and the box of the visible part underestimates the size.".into(),
+        });
+    }
+    if 2 * readings < mask_pixels {
+        warnings.push(Warning {
+            code: WarningCode::SparseDepth,
+            message: format!("Only {readings} of the mask's {mask_pixels} pixels have a depth reading: the pose rests on these."),
+        });
+    }
+    warnings
+}
+
+/// Warnings about the scale found.
+pub fn about_scale(scale_ratio: f64, clamped: bool) -> Option<Warning> {
+    if is_collapsed(scale_ratio) {
+        let message = format!("The scale is {scale_ratio:.3} of the initial one: it collapsed. Set options.guard.");
+        return Some(Warning { code: WarningCode::ScaleCollapsed, message });
+    }
+    clamped.then(|| Warning {
+        code: WarningCode::ScaleClamped,
+        message: format!("The scale was held at {scale_ratio:.3} of the initial one by options.guard; the matches ask for another."),
+    })
+}
+
+/// A warning about a refinement that did not come to rest.
+pub fn about_convergence(converged: bool, iterations: usize) -> Option<Warning> {
+    (!converged).then(|| Warning {
+        code: WarningCode::NotConverged,
+        message: format!(
+            "The refinement was still moving, or out of support, after {iterations} iterations: look at the metrics before trusting the pose."
+        ),
+    })
+}
