@@ -7,4 +7,5 @@ pub mod mesh;
 pub mod pinhole;
 pub mod random;
 pub mod similarity;
+pub mod symmetric_eigen;
 pub mod voxel_grid;

@@ -5,6 +5,8 @@ pub mod filter;
 pub mod fpfh;
 pub mod icp;
 pub mod matching;
+pub mod normals;
 pub mod observe;
 pub mod ransac;
+pub mod sample;
 pub mod umeyama;

@@ -1,0 +1,59 @@
+//! Meshes that the tests share.
+
+use glam::Vec3;
+use sim3align::geometry::mesh::Mesh;
+
+/// A box with outward faces, centred on the origin.
+pub fn cuboid(extent: Vec3) -> Mesh {
+    let positions = (0..8).map(|i| {
+        let sign = |bit: u32| if i >> bit & 1 == 1 { 0.5 } else { -0.5 };
+        Vec3::new(sign(0), sign(1), sign(2)) * extent
+    });
+    let quads: [[u32; 4]; 6] = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    Mesh::new(positions.collect(), triangles).unwrap()
+}
+
+/// A sphere of `rings` × `2·rings` faces with its poles on the z axis; outward faces.
+pub fn sphere(radius: f32, rings: u32) -> Mesh {
+    ellipsoid(Vec3::splat(radius), rings)
+}
+
+/// A sphere stretched to three semi-axes; outward faces.
+pub fn ellipsoid(semi_axes: Vec3, rings: u32) -> Mesh {
+    let around = 2 * rings;
+    let mut positions = vec![Vec3::Z * semi_axes];
+    for i in 1..rings {
+        let theta = core::f64::consts::PI * f64::from(i) / f64::from(rings);
+        for j in 0..around {
+            let phi = 2.0 * core::f64::consts::PI * f64::from(j) / f64::from(around);
+            let (s, z) = (libm::sin(theta), libm::cos(theta));
+            let direction = Vec3::new((s * libm::cos(phi)) as f32, (s * libm::sin(phi)) as f32, z as f32);
+            positions.push(direction * semi_axes);
+        }
+    }
+    positions.push(-Vec3::Z * semi_axes);
+    let last = positions.len() as u32 - 1;
+    let at = |ring: u32, j: u32| 1 + (ring - 1) * around + j % around;
+    let mut triangles = Vec::new();
+    for j in 0..around {
+        triangles.push([0, at(1, j), at(1, j + 1)]);
+        triangles.push([last, at(rings - 1, j + 1), at(rings - 1, j)]);
+        for ring in 1..rings - 1 {
+            let [a, b, c, d] = [at(ring, j), at(ring + 1, j), at(ring + 1, j + 1), at(ring, j + 1)];
+            triangles.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    Mesh::new(positions, triangles).unwrap()
+}
+
+/// The mesh with every face turned over.
+pub fn inverted(mesh: &Mesh) -> Mesh {
+    let triangles = mesh.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
+    Mesh::new(mesh.positions().to_vec(), triangles).unwrap()
+}
+
+/// The mesh with its vertices passed through `f`.
+pub fn mapped(mesh: &Mesh, f: impl Fn(Vec3) -> Vec3) -> Mesh {
+    Mesh::new(mesh.positions().iter().map(|&p| f(p)).collect(), mesh.triangles().to_vec()).unwrap()
+}
