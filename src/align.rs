@@ -14,7 +14,7 @@ use crate::geometry::kd_tree::KdTree;
 use crate::geometry::mesh::Mesh;
 use crate::metrics;
 use crate::stages::extents::{Extents, initial_scale, target_from_source};
-use crate::stages::normals::{Orientation, estimate_normals};
+use crate::stages::normals::{Neighborhood, Orientation, estimate_normals};
 use crate::stages::observe::Observation;
 use crate::stages::sample::{check_shape, sample_surface};
 
@@ -59,7 +59,7 @@ pub fn align(observation: &Observation, mesh: &Mesh, options: &AlignOptions, hos
     let extents_obs = Extents::of("depth", &observed.points)?;
     let extents_rec = Extents::of("mesh", &reconstructed.points)?;
     let tree = KdTree::new(&observed.points);
-    observed.normals = estimate_normals(&observed.points, &tree, NORMAL_NEIGHBORS, Orientation::TowardsCamera);
+    observed.normals = estimate_normals(&observed.points, &tree, Neighborhood::nearest(NORMAL_NEIGHBORS), Orientation::TowardsCamera);
     let target = extents_obs.normalized(&observed);
     let source = extents_rec.normalized(&reconstructed);
 

@@ -13,7 +13,7 @@ use crate::geometry::random::Random;
 use crate::geometry::similarity::{Similarity, vector3};
 use crate::stages::extents::{Extents, initial_scale, target_from_source};
 use crate::stages::matching::Match;
-use crate::stages::normals::{Orientation, estimate_normals};
+use crate::stages::normals::{Neighborhood, Orientation, estimate_normals};
 use crate::stages::observe::MIN_POINTS;
 use crate::stages::ransac::{Guard, GuardMode, RansacSettings, ransac};
 use crate::stages::umeyama::ScaleMode;
@@ -203,7 +203,7 @@ fn with_normals(mut cloud: Cloud) -> Cloud {
     };
     let center = glam::Vec3::new(median(0), median(1), median(2));
     let tree = KdTree::new(&cloud.points);
-    cloud.normals = estimate_normals(&cloud.points, &tree, NORMAL_NEIGHBORS, Orientation::AwayFrom(center));
+    cloud.normals = estimate_normals(&cloud.points, &tree, Neighborhood::nearest(NORMAL_NEIGHBORS), Orientation::AwayFrom(center));
     cloud
 }
 
