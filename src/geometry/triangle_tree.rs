@@ -49,7 +49,7 @@ impl TriangleTree {
     /// The point of the surface nearest to `query`. `None` only for a query that is not finite, or so far away
     /// that its squared distance leaves f32.
     pub fn nearest(&self, query: Vec3) -> Option<SurfacePoint> {
-        let mut best = SurfacePoint { triangle: u32::MAX, point: query, distance_squared: f32::INFINITY };
+        let mut best = SurfacePoint { triangle: u32::MAX, point: query, distance_squared: f32::MAX };
         self.descend(0, 0, self.triangles.len(), query, &mut best);
         (best.triangle != u32::MAX).then_some(best)
     }
