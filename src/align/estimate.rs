@@ -7,6 +7,7 @@ use crate::error::Result;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::similarity::Similarity;
+use crate::geometry::similarity::vector3;
 use crate::geometry::voxel_grid::voxel_downsample;
 use crate::stages::filter::{SupportSettings, supported};
 use crate::stages::fpfh::fpfh;
@@ -14,7 +15,6 @@ use crate::stages::icp::{IcpMetric, IcpSettings, Refined, refine};
 use crate::stages::matching::{Match, mutual_matches};
 use crate::stages::ransac::{self, Consensus, Guard, RansacSettings, ransac};
 use crate::stages::umeyama::{Pair, ScaleMode, umeyama};
-use crate::geometry::similarity::vector3;
 
 /// Neighbours from which a normal is estimated.
 pub(super) const NORMAL_NEIGHBORS: usize = 30;
@@ -226,10 +226,8 @@ fn refine_coarse_to_fine(source: &Side<'_>, target: &Side<'_>, initial: &Similar
         tolerance: TOLERANCE,
     };
     let on_grid = refine(&source.voxels, &target.voxels, &target.tree, initial, &coarse);
-    let fine = IcpSettings {
-        support: SupportSettings { max_distance: coarse.final_distance, ..settings.support },
-        ..coarse
-    };
+    let fine =
+        IcpSettings { support: SupportSettings { max_distance: coarse.final_distance, ..settings.support }, ..coarse };
     let step = source.full.len().div_ceil(FINE_POINTS).max(1);
     let points = source.full.select((0..source.full.len()).step_by(step));
     let tree = KdTree::new(&target.full.points);

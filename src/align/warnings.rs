@@ -45,7 +45,9 @@ pub fn about_observation(observation: &Observation) -> Vec<Warning> {
     if 2 * readings < mask_pixels {
         warnings.push(Warning {
             code: WarningCode::SparseDepth,
-            message: format!("Only {readings} of the mask's {mask_pixels} pixels have a depth reading: the pose rests on these."),
+            message: format!(
+                "Only {readings} of the mask's {mask_pixels} pixels have a depth reading: the pose rests on these."
+            ),
         });
     }
     warnings
@@ -59,7 +61,9 @@ pub fn about_scale(scale_ratio: f64, clamped: bool) -> Option<Warning> {
     }
     clamped.then(|| Warning {
         code: WarningCode::ScaleClamped,
-        message: format!("The scale was held at {scale_ratio:.3} of the initial one by options.guard; the matches ask for another."),
+        message: format!(
+            "The scale was held at {scale_ratio:.3} of the initial one by options.guard; the matches ask for another."
+        ),
     })
 }
 

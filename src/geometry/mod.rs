@@ -1,11 +1,15 @@
 //! Shapes and spaces, without any notion of alignment. Depends on nothing above it.
 
+pub mod clip;
 pub mod cloud;
+pub mod distance_transform;
 pub mod image;
 pub mod kd_tree;
 pub mod mesh;
 pub mod pinhole;
 pub mod random;
+pub mod rasteriser;
 pub mod similarity;
 pub mod symmetric_eigen;
+pub mod triangle_tree;
 pub mod voxel_grid;

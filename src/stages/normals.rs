@@ -24,6 +24,12 @@ impl Neighborhood {
     }
 }
 
+impl From<usize> for Neighborhood {
+    fn from(max_neighbors: usize) -> Self {
+        Self::nearest(max_neighbors)
+    }
+}
+
 /// Which of its two directions a normal takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Orientation {
@@ -35,13 +41,15 @@ pub enum Orientation {
 
 /// Unit normals of `points` by principal component analysis of their neighbours (Hoppe et al. 1992, §3.2): the
 /// eigenvector of the smallest eigenvalue of the covariance. The zero vector where there are fewer than three
-/// neighbours or all lie on one line. `tree` is the tree over these very points.
+/// neighbours or all lie on one line. `tree` is the tree over these very points; a plain number is that many
+/// nearest neighbours.
 pub fn estimate_normals(
     points: &[Vec3],
     tree: &KdTree,
-    neighborhood: Neighborhood,
+    neighborhood: impl Into<Neighborhood>,
     orientation: Orientation,
 ) -> Vec<Vec3> {
+    let neighborhood = neighborhood.into();
     let mut found = Vec::new();
     let reach_squared = neighborhood.radius * neighborhood.radius;
     (points.iter())

@@ -1,7 +1,16 @@
 //! All Rust tests in one binary: natively under `cargo test`, in Node under wasm-bindgen-test.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+pub mod distance_transform;
+pub mod metrics;
 pub mod normals;
+pub mod pose_error;
+pub mod rasteriser;
+pub mod rasteriser_oracle;
+pub mod rasteriser_seams;
 pub mod sample;
 pub mod shapes;
+pub mod silhouette;
+pub mod surface;
 pub mod symmetric_eigen;
+pub mod triangle_tree;

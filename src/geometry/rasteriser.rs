@@ -1,0 +1,304 @@
+//! Depth and triangle images of a posed mesh: a small software rasteriser.
+//!
+//! The same image on every machine: vertices are snapped to 1/256 pixel and coverage is decided in integers,
+//! by the top-left rule, so that two triangles that share an edge cover every pixel along it exactly once.
+//! Depth does not take part in the snapping: 1/z is evaluated on the triangle's own plane.
+//! Both faces are drawn, because generated meshes do not orient theirs reliably.
+
+use glam::{DMat3, DVec3};
+
+use super::clip::{ClipVolume, GUARD_BAND_PX};
+use super::mesh::Mesh;
+use super::pinhole::Pinhole;
+use super::similarity::Similarity;
+
+/// The triangle of a pixel where nothing was drawn.
+pub const NO_TRIANGLE: u32 = u32::MAX;
+
+/// Nearest depth drawn, as a share of the depth of the mesh's farthest vertex. What lies nearer, or behind the
+/// camera, is cut off: for an object 1 m away that is 0.1 mm before the lens.
+pub const NEAR: f64 = 1e-4;
+
+/// Sub-pixel steps per pixel, 2⁸.
+const SUBPIXEL: i64 = 256;
+
+/// Camera coordinates beyond which products would leave f64; no metre is that long.
+const MAX_COORDINATE: f64 = 1e60;
+
+/// A rasteriser with its buffers, to be reused: after the first render of a size, a render allocates nothing.
+///
+/// ```
+/// # use sim3align::geometry::{mesh::Mesh, pinhole::Pinhole, rasteriser::Rasteriser, similarity::Similarity};
+/// # fn main() -> sim3align::error::Result<()> {
+/// let mesh = Mesh::from_flat(&[0.0, 0.0, 2.0, 3.0, 0.0, 2.0, 0.0, 3.0, 2.0], None)?;
+/// let mut rasteriser = Rasteriser::new();
+/// rasteriser.render(&mesh, &Similarity::identity(), &Pinhole::new(2.0, 2.0, 0.0, 0.0)?, 3, 2);
+/// assert_eq!(rasteriser.depth(), [2.0, 2.0, 2.0, 2.0, 2.0, 0.0]);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone, Default)]
+pub struct Rasteriser {
+    width: usize,
+    height: usize,
+    vertices: Vec<Vertex>,
+    /// 1/z while drawing, z afterwards.
+    depth: Vec<f32>,
+    triangles: Vec<u32>,
+}
+
+/// A vertex in camera space and, where it can be projected as it is, on the sub-pixel grid.
+#[derive(Debug, Clone, Copy)]
+struct Vertex {
+    camera: DVec3,
+    fixed: [i32; 2],
+    placement: Placement,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Placement {
+    /// Beyond the near plane and within the guard band.
+    Inside,
+    /// Triangles that have it need clipping.
+    Outside,
+    /// Not a finite number; triangles that have it are passed over.
+    Nowhere,
+}
+
+/// 1/z as a linear function of the pixel, kept within what the triangle's corners have.
+#[derive(Debug, Clone, Copy)]
+struct InverseDepth {
+    origin: f64,
+    du: f64,
+    dv: f64,
+    low: f64,
+    high: f64,
+}
+
+impl Rasteriser {
+    /// A rasteriser without buffers yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Draws `mesh`, posed by `camera_from_mesh`, as `camera` sees it on `width` × `height` pixels: depth and
+    /// triangle of the nearest surface at each pixel's centre. Of surfaces equally near (to the last bit of
+    /// 1/z in f32) the triangle that comes first in the mesh is taken.
+    ///
+    /// The sizes must be those of an image that fits the memory; neither may exceed 2²⁰.
+    pub fn render(
+        &mut self,
+        mesh: &Mesh,
+        camera_from_mesh: &Similarity,
+        camera: &Pinhole,
+        width: usize,
+        height: usize,
+    ) {
+        self.draw::<true>(mesh, camera_from_mesh, camera, width, height);
+    }
+
+    /// As [`Rasteriser::render`], without the triangle image.
+    pub fn render_depth(
+        &mut self,
+        mesh: &Mesh,
+        camera_from_mesh: &Similarity,
+        camera: &Pinhole,
+        width: usize,
+        height: usize,
+    ) {
+        self.draw::<false>(mesh, camera_from_mesh, camera, width, height);
+    }
+
+    /// z-depth per pixel, row by row, in the unit of the camera frame (metres); 0 where nothing was drawn.
+    pub fn depth(&self) -> &[f32] {
+        &self.depth
+    }
+
+    /// Triangle index per pixel, row by row; [`NO_TRIANGLE`] where nothing was drawn.
+    /// Empty after [`Rasteriser::render_depth`].
+    pub fn triangles(&self) -> &[u32] {
+        &self.triangles
+    }
+
+    /// Pixels in a row of the last render.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Rows of the last render.
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    fn draw<const TRIANGLES: bool>(
+        &mut self,
+        mesh: &Mesh,
+        camera_from_mesh: &Similarity,
+        camera: &Pinhole,
+        width: usize,
+        height: usize,
+    ) {
+        (self.width, self.height) = (width, height);
+        self.depth.clear();
+        self.depth.resize(width * height, 0.0);
+        self.triangles.clear();
+        self.triangles.resize(if TRIANGLES { width * height } else { 0 }, NO_TRIANGLE);
+
+        let near = self.transform(mesh, camera_from_mesh);
+        self.project(camera, near);
+        let volume = ClipVolume::new(camera, near);
+        for (id, triangle) in (0..).zip(mesh.triangles()) {
+            let corners = triangle.map(|i| self.vertices[i as usize]);
+            let points = corners.map(|v| v.camera);
+            if corners.iter().all(|v| v.placement == Placement::Inside) {
+                let plane = || InverseDepth::of(points, &points, camera);
+                self.fill::<TRIANGLES>(id, corners.map(|v| v.fixed), plane);
+            } else if corners.iter().all(|v| v.placement != Placement::Nowhere) {
+                let (polygon, count) = volume.clip(points);
+                let polygon = &polygon[..count];
+                let plane = || InverseDepth::of(points, polygon, camera);
+                for i in 2..count {
+                    let fan = [polygon[0], polygon[i - 1], polygon[i]];
+                    self.fill::<TRIANGLES>(id, fan.map(|p| fixed(project(p, camera))), plane);
+                }
+            }
+        }
+        for z in self.depth.iter_mut().filter(|w| **w > 0.0) {
+            *z = 1.0 / *z;
+        }
+    }
+
+    /// Moves the vertices into the camera frame and returns the near plane's depth.
+    fn transform(&mut self, mesh: &Mesh, camera_from_mesh: &Similarity) -> f64 {
+        let linear = camera_from_mesh.rotation.matrix() * camera_from_mesh.scale;
+        let linear = DMat3::from_cols_slice(linear.as_slice());
+        let translation = DVec3::from_slice(camera_from_mesh.translation.as_slice());
+        let mut farthest = 0.0f64;
+        self.vertices.clear();
+        self.vertices.extend(mesh.positions().iter().map(|p| {
+            let camera = linear * p.as_dvec3() + translation;
+            let finite = camera.abs().max_element() <= MAX_COORDINATE && !camera.is_nan();
+            if finite {
+                farthest = farthest.max(camera.z);
+            }
+            let placement = if finite { Placement::Outside } else { Placement::Nowhere };
+            Vertex { camera, fixed: [0; 2], placement }
+        }));
+        // 1/z has to fit f32.
+        (NEAR * farthest).max(1e-30)
+    }
+
+    fn project(&mut self, camera: &Pinhole, near: f64) {
+        for vertex in self.vertices.iter_mut().filter(|v| v.placement == Placement::Outside && v.camera.z >= near) {
+            let [u, v] = project(vertex.camera, camera);
+            if u.abs() <= GUARD_BAND_PX && v.abs() <= GUARD_BAND_PX {
+                vertex.fixed = fixed([u, v]);
+                vertex.placement = Placement::Inside;
+            }
+        }
+    }
+
+    /// Fills one triangle on the sub-pixel grid.
+    fn fill<const TRIANGLES: bool>(&mut self, id: u32, corners: [[i32; 2]; 3], plane: impl Fn() -> InverseDepth) {
+        let [a, mut b, mut c] = corners.map(|p| p.map(i64::from));
+        // Whole pixels whose centres the box of the triangle holds.
+        let range = |i: usize, size: usize| {
+            let (low, high) = (a[i].min(b[i]).min(c[i]), a[i].max(b[i]).max(c[i]));
+            let first = (low + SUBPIXEL - 1).div_euclid(SUBPIXEL).max(0);
+            (first, high.div_euclid(SUBPIXEL).min(size as i64 - 1))
+        };
+        let ((u0, u1), (v0, v1)) = (range(0, self.width), range(1, self.height));
+        if u0 > u1 || v0 > v1 {
+            return;
+        }
+        let area = Edge::new(a, b).at(c);
+        if area == 0 {
+            return;
+        }
+        if area < 0 {
+            core::mem::swap(&mut b, &mut c);
+        }
+        let edges = [Edge::new(a, b), Edge::new(b, c), Edge::new(c, a)];
+        let corner = [u0 * SUBPIXEL, v0 * SUBPIXEL];
+        let mut row = edges.map(|e| e.at(corner) - e.exclusive());
+        let plane = plane();
+        for v in v0..=v1 {
+            let start = v as usize * self.width;
+            let w_row = plane.origin + plane.dv * v as f64;
+            let mut e = row;
+            for u in u0..=u1 {
+                // All three are ≥ 0 where no sign bit is set.
+                if (e[0] | e[1] | e[2]) >= 0 {
+                    let i = start + u as usize;
+                    // In this order NaN, from a plane seen edge-on, becomes the lower bound.
+                    let w = (w_row + plane.du * u as f64).max(plane.low).min(plane.high) as f32;
+                    if w > self.depth[i] {
+                        self.depth[i] = w;
+                        if TRIANGLES {
+                            self.triangles[i] = id;
+                        }
+                    }
+                }
+                for k in 0..3 {
+                    e[k] -= edges[k].dy * SUBPIXEL;
+                }
+            }
+            for k in 0..3 {
+                row[k] += edges[k].dx * SUBPIXEL;
+            }
+        }
+    }
+}
+
+/// A directed edge; the inside of a triangle of positive area is where [`Edge::at`] is positive.
+#[derive(Debug, Clone, Copy)]
+struct Edge {
+    from: [i64; 2],
+    dx: i64,
+    dy: i64,
+}
+
+impl Edge {
+    fn new(from: [i64; 2], to: [i64; 2]) -> Self {
+        Self { from, dx: to[0] - from[0], dy: to[1] - from[1] }
+    }
+
+    /// Twice the signed area of the triangle with `point`. No overflow: the guard band bounds both factors.
+    fn at(&self, point: [i64; 2]) -> i64 {
+        self.dx * (point[1] - self.from[1]) - self.dy * (point[0] - self.from[0])
+    }
+
+    /// The top-left rule: a pixel centre on a left edge (which runs up) or a top edge (which runs right) is
+    /// inside; on any other edge 1 is taken off, which puts it outside.
+    fn exclusive(&self) -> i64 {
+        i64::from(!(self.dy < 0 || (self.dy == 0 && self.dx > 0)))
+    }
+}
+
+impl InverseDepth {
+    /// On the plane through `triangle`: n·p = n·a for p = z·((u − cx)/fx, (v − cy)/fy, 1), so 1/z is linear in
+    /// (u, v). `drawn` is the part of the triangle that is drawn; snapping moves its outline by up to 1/512
+    /// pixel, and within those slivers the plane must not be followed beyond the corners' depths.
+    fn of(triangle: [DVec3; 3], drawn: &[DVec3], camera: &Pinhole) -> Self {
+        let [a, b, c] = triangle;
+        let normal = (b - a).cross(c - a);
+        let m = normal / normal.dot(a);
+        let (du, dv) = (m.x / camera.fx, m.y / camera.fy);
+        let (near, far) = drawn.iter().fold((f64::INFINITY, 0.0f64), |(n, f), p| (n.min(p.z), f.max(p.z)));
+        Self { origin: m.z - du * camera.cx - dv * camera.cy, du, dv, low: 1.0 / far, high: 1.0 / near }
+    }
+}
+
+fn project(p: DVec3, camera: &Pinhole) -> [f64; 2] {
+    [camera.fx * p.x / p.z + camera.cx, camera.fy * p.y / p.z + camera.cy]
+}
+
+/// Pixels to sub-pixel steps, rounded to nearest, within the guard band.
+fn fixed(pixel: [f64; 2]) -> [i32; 2] {
+    // Shifted to be positive, so that the truncation of the cast is a floor.
+    const SHIFT: f64 = (1u64 << 30) as f64;
+    pixel.map(|x| {
+        let x = x.clamp(-GUARD_BAND_PX, GUARD_BAND_PX);
+        ((x * SUBPIXEL as f64 + (SHIFT + 0.5)) as i64 - (1 << 30)) as i32
+    })
+}

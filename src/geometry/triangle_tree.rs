@@ -1,0 +1,153 @@
+//! Nearest point on a triangle mesh: a bounding-volume hierarchy over its triangles.
+
+use glam::{DVec3, Vec3};
+
+use super::cloud::Bounds;
+use super::mesh::Mesh;
+
+const LEAF_SIZE: usize = 4;
+
+/// A point on the surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfacePoint {
+    /// Index of the triangle it lies on.
+    pub triangle: u32,
+    /// Where it is.
+    pub point: Vec3,
+    /// Squared distance to the query.
+    pub distance_squared: f32,
+}
+
+/// A median tree of boxes over the triangles of a mesh. Needles and points among them are surface like any other.
+///
+/// Distances to triangles are computed in f64, and of equally near ones (to the last bit of f32) the smaller
+/// index is the answer, so that it does not depend on the tree's shape.
+#[derive(Debug, Clone)]
+pub struct TriangleTree {
+    /// Corners in leaf order, with the triangles' own indices.
+    triangles: Vec<([Vec3; 3], u32)>,
+    /// Depth-first: an inner node is followed by its left child.
+    nodes: Vec<Node>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    bounds: Bounds,
+    /// The right child; 0 in a leaf.
+    right: u32,
+}
+
+impl TriangleTree {
+    /// The tree over a mesh's triangles.
+    pub fn new(mesh: &Mesh) -> Self {
+        let mut triangles: Vec<_> = mesh.triangles().iter().map(|&t| mesh.corners(t)).zip(0..).collect();
+        let mut nodes = Vec::with_capacity(triangles.len());
+        build(&mut triangles, &mut nodes);
+        Self { triangles, nodes }
+    }
+
+    /// The point of the surface nearest to `query`. `None` only for a query that is not finite, or so far away
+    /// that its squared distance leaves f32.
+    pub fn nearest(&self, query: Vec3) -> Option<SurfacePoint> {
+        let mut best = SurfacePoint { triangle: u32::MAX, point: query, distance_squared: f32::MAX };
+        self.descend(0, 0, self.triangles.len(), query, &mut best);
+        (best.triangle != u32::MAX).then_some(best)
+    }
+
+    fn descend(&self, node: usize, low: usize, high: usize, query: Vec3, best: &mut SurfacePoint) {
+        let right = self.nodes[node].right as usize;
+        if right == 0 {
+            for (corners, triangle) in &self.triangles[low..high] {
+                let offset = nearest_offset(corners.map(|p| p.as_dvec3() - query.as_dvec3()));
+                let distance_squared = offset.length_squared() as f32;
+                if (distance_squared, *triangle) < (best.distance_squared, best.triangle) {
+                    let point = (query.as_dvec3() + offset).as_vec3();
+                    *best = SurfacePoint { triangle: *triangle, point, distance_squared };
+                }
+            }
+            return;
+        }
+        let middle = low + (high - low) / 2;
+        let mut children = [(node + 1, low, middle), (right, middle, high)]
+            .map(|child| (distance_squared_to_box(&self.nodes[child.0].bounds, query), child));
+        if children[1].0 < children[0].0 {
+            children.swap(0, 1);
+        }
+        for (distance_squared, (node, low, high)) in children {
+            // The distance to a box is off by a few units in the last place; a tie must not be lost to that.
+            if distance_squared * (1.0 - 1e-6) <= best.distance_squared {
+                self.descend(node, low, high, query, best);
+            }
+        }
+    }
+}
+
+/// Sorts the triangles into leaf order. Halving bounds the depth by the logarithm of their number.
+fn build(triangles: &mut [([Vec3; 3], u32)], nodes: &mut Vec<Node>) {
+    let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    for p in triangles.iter().flat_map(|(corners, _)| corners) {
+        (min, max) = (min.min(*p), max.max(*p));
+    }
+    let node = nodes.len();
+    nodes.push(Node { bounds: Bounds { min, max }, right: 0 });
+    if triangles.len() <= LEAF_SIZE {
+        return;
+    }
+    // A third of each corner, lest the sum leave f32.
+    let center = |corners: &[Vec3; 3], axis: usize| corners.iter().map(|p| p[axis] / 3.0).sum::<f32>();
+    let spread = |axis: usize| {
+        let centers = triangles.iter().map(|(corners, _)| center(corners, axis));
+        let (low, high) = centers.fold((f32::INFINITY, f32::NEG_INFINITY), |(l, h), c| (l.min(c), h.max(c)));
+        high - low
+    };
+    let spreads = [spread(0), spread(1), spread(2)];
+    let axis = (1..3).fold(0, |best, axis| if spreads[axis] > spreads[best] { axis } else { best });
+    let middle = triangles.len() / 2;
+    triangles
+        .select_nth_unstable_by(middle, |a, b| center(&a.0, axis).total_cmp(&center(&b.0, axis)).then(a.1.cmp(&b.1)));
+    let (left, right) = triangles.split_at_mut(middle);
+    build(left, nodes);
+    nodes[node].right = nodes.len() as u32;
+    build(right, nodes);
+}
+
+fn distance_squared_to_box(bounds: &Bounds, query: Vec3) -> f32 {
+    (bounds.min - query).max(query - bounds.max).max(Vec3::ZERO).length_squared()
+}
+
+/// The point of a triangle nearest to the origin.
+fn nearest_offset([a, b, c]: [DVec3; 3]) -> DVec3 {
+    let (ab, ac) = (b - a, c - a);
+    let normal = ab.cross(ac);
+    let area_squared = normal.length_squared();
+    let longest_squared = ab.length_squared().max(ac.length_squared()).max((c - b).length_squared());
+    // The origin's projection, by the signed areas it spans with the edges.
+    let weights = [normal.dot(b.cross(c)), normal.dot(c.cross(a)), normal.dot(a.cross(b))];
+    let inside = area_squared > 0.0 && weights.iter().all(|w| *w >= 0.0);
+    let sum: f64 = weights.iter().sum();
+    let mut best = None;
+    if inside && sum > 0.0 {
+        let point = (a * weights[0] + b * weights[1] + c * weights[2]) / sum;
+        // A needle's normal is rounding; then the point is on the triangle still, but maybe not the nearest.
+        if area_squared > 1e-16 * longest_squared * longest_squared {
+            return point;
+        }
+        best = Some(point);
+    }
+    let edges = [(a, b), (b, c), (c, a)].map(|(p, q)| nearest_on_segment(p, q));
+    (edges.into_iter().chain(best)).fold(a, |best, p| if p.length_squared() < best.length_squared() { p } else { best })
+}
+
+/// The point of a segment nearest to the origin.
+fn nearest_on_segment(p: DVec3, q: DVec3) -> DVec3 {
+    let along = q - p;
+    let length_squared = along.length_squared();
+    let t = -p.dot(along);
+    if t <= 0.0 || length_squared == 0.0 {
+        p
+    } else if t >= length_squared {
+        q
+    } else {
+        p + along * (t / length_squared)
+    }
+}

@@ -1,0 +1,115 @@
+//! How well a transform fits the observation: the paper's columns, and errors against a known truth.
+
+pub mod pose_error;
+pub mod silhouette;
+pub mod surface;
+pub mod symmetry;
+
+use serde::Serialize;
+
+use crate::error::Result;
+use crate::geometry::image::{DepthMap, Mask};
+use crate::geometry::mesh::Mesh;
+use crate::geometry::rasteriser::Rasteriser;
+use crate::geometry::similarity::Similarity;
+use crate::stages::observe::Observation;
+use crate::stages::sample::sample_surface;
+use surface::{Mean, surface_agreement};
+
+/// How much of the data [`evaluate`] looks at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct EvaluateOptions {
+    /// Most observed points used; more are subsampled.
+    pub max_points: usize,
+    /// Points drawn on the mesh's surface.
+    pub surface_samples: usize,
+    /// Seed of both draws.
+    pub seed: u64,
+}
+
+impl Default for EvaluateOptions {
+    fn default() -> Self {
+        Self { max_points: 20_000, surface_samples: 20_000, seed: 0 }
+    }
+}
+
+/// Agreement of a posed mesh with the observation. `null` is "nothing to measure", never a good number.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+pub struct Metrics {
+    /// DAVIS boundary F-measure of mask and rendered silhouette at 0.008 × the image diagonal, 0 to 1, higher is
+    /// better; 0 where nothing is rendered.
+    pub boundary_f: Option<f64>,
+    /// Distance of the centroids of mask and rendered silhouette, pixels; `null` where nothing is rendered.
+    pub center_drift_px: Option<f64>,
+    /// Intersection over union of mask and rendered silhouette, 0 to 1, higher is better; 0 where nothing is
+    /// rendered or nothing overlaps.
+    pub iou: Option<f64>,
+    /// Mean of the two directional mean distances between observed points and surface, millimetres. The surface's
+    /// unseen side counts, so that it is above 0 at the true pose too.
+    pub chamfer_mm: Option<f64>,
+    /// Mean distance from the observed points to the surface, millimetres.
+    pub uni_chamfer_mm: Option<f64>,
+    /// Share of the observed points within 5 % of their box diagonal of the surface, 0 to 1.
+    pub fitness: Option<f64>,
+    /// Mean |n·n′| of an observed point's normal and that of the nearest triangle, 0 to 1; random directions
+    /// give 0.5. `null` where no point has a normal.
+    pub normal_consistency: Option<f64>,
+    /// Mean |rendered − observed| depth over the mask's pixels that have both, millimetres; `null` where none has.
+    pub depth_mae_mm: Option<f64>,
+}
+
+/// Scores a transform on the observation, at the resolution of its depth map.
+///
+/// # Errors
+/// [`crate::error::ErrorCode::InvalidTransform`] for a transform that is no similarity,
+/// [`crate::error::ErrorCode::DegenerateMesh`] for a mesh without area.
+pub fn evaluate(
+    observation: &Observation,
+    mesh: &Mesh,
+    camera_from_mesh: &Similarity,
+    options: &EvaluateOptions,
+) -> Result<Metrics> {
+    check_transform(camera_from_mesh)?;
+    let samples = sample_surface(mesh, options.surface_samples, options.seed)?;
+    let points = observation.cloud(options.max_points, options.seed).points;
+    let agreement = surface_agreement(&points, mesh, &samples, camera_from_mesh);
+
+    let (depth, mask) = (observation.depth(), observation.mask());
+    let (width, height) = (depth.width(), depth.height());
+    let mut rasteriser = Rasteriser::new();
+    rasteriser.render_depth(mesh, camera_from_mesh, &observation.camera(), width, height);
+    let mut silhouette = Mask::filled(width, height, 0);
+    for (pixel, z) in silhouette.data_mut().iter_mut().zip(rasteriser.depth()) {
+        *pixel = u8::from(*z > 0.0);
+    }
+    let millimetres = |metres: Option<f64>| metres.map(|m| 1000.0 * m).filter(|m| m.is_finite());
+    let chamfer = agreement.points_to_surface.zip(agreement.surface_to_points).map(|(to, from)| 0.5 * (to + from));
+    Ok(Metrics {
+        boundary_f: Some(silhouette::boundary_f(mask, &silhouette)),
+        center_drift_px: silhouette::center_drift_px(mask, &silhouette),
+        iou: Some(silhouette::iou(mask, &silhouette)),
+        chamfer_mm: millimetres(chamfer),
+        uni_chamfer_mm: millimetres(agreement.points_to_surface),
+        fitness: agreement.fitness,
+        normal_consistency: agreement.normal_consistency,
+        depth_mae_mm: millimetres(depth_mae(depth, mask, rasteriser.depth())),
+    })
+}
+
+/// Mean |rendered − observed| over the pixels of the mask that have both; 0 is "none" in either.
+fn depth_mae(observed: &DepthMap, mask: &Mask, rendered: &[f32]) -> Option<f64> {
+    let mut mean = Mean::default();
+    for ((&observed, &inside), &rendered) in observed.data().iter().zip(mask.data()).zip(rendered) {
+        if inside != 0 && observed > 0.0 && rendered > 0.0 {
+            mean.add((f64::from(rendered) - f64::from(observed)).abs());
+        }
+    }
+    mean.value()
+}
+
+/// Fields of a [`Similarity`] are public; what arithmetic made of them has to be one still.
+fn check_transform(transform: &Similarity) -> Result<()> {
+    Similarity::from_parts(transform.scale, *transform.rotation.matrix(), transform.translation).map(|_| ())
+}

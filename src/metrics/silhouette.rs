@@ -1,0 +1,80 @@
+//! Two masks of one size compared: overlap, outline, centre.
+
+use crate::geometry::distance_transform::squared_distances;
+use crate::geometry::image::Mask;
+
+/// How far apart two outlines may run and still match, as a share of the image diagonal (DAVIS).
+pub const BOUNDARY_TOLERANCE: f64 = 0.008;
+
+/// Intersection over union, 0 to 1; 0 where both are empty.
+pub fn iou(a: &Mask, b: &Mask) -> f64 {
+    let (mut both, mut either) = (0u64, 0u64);
+    for (a, b) in a.data().iter().zip(b.data()) {
+        both += u64::from(*a != 0 && *b != 0);
+        either += u64::from(*a != 0 || *b != 0);
+    }
+    if either == 0 { 0.0 } else { both as f64 / either as f64 }
+}
+
+/// Distance of the two masks' centroids in pixels; `None` where either is empty.
+pub fn center_drift_px(a: &Mask, b: &Mask) -> Option<f64> {
+    let ([ua, va], [ub, vb]) = (centroid(a)?, centroid(b)?);
+    Some(((ua - ub) * (ua - ub) + (va - vb) * (va - vb)).sqrt())
+}
+
+/// Boundary F-measure of DAVIS (Perazzi et al. 2016, §4.1, as the 2017 evaluation code computes it), 0 to 1.
+///
+/// Outlines are one pixel wide (see [`boundary`]). Precision is the share of b's outline within
+/// ⌈0.008 · image diagonal⌉ pixels of a's, recall the share of a's within as much of b's, and F = 2PR/(P + R).
+/// An empty mask against anything is 0. Two masks without an outline, which both fill the image, are 1,
+/// one without and one with are 0.
+pub fn boundary_f(a: &Mask, b: &Mask) -> f64 {
+    let empty = |mask: &Mask| mask.data().iter().all(|&m| m == 0);
+    if empty(a) || empty(b) {
+        return 0.0;
+    }
+    let (width, height) = (a.width(), a.height());
+    let diagonal = ((width * width + height * height) as f64).sqrt();
+    let radius = (BOUNDARY_TOLERANCE * diagonal).ceil() as u32;
+    let outlines = [boundary(a), boundary(b)];
+    let [counts_a, counts_b] = outlines.each_ref().map(|o| o.iter().filter(|set| **set).count());
+    if counts_a == 0 || counts_b == 0 {
+        return if counts_a == counts_b { 1.0 } else { 0.0 };
+    }
+    let matched = |outline: &[bool], other: &[bool]| {
+        let distances = squared_distances(other, width, height);
+        let near = |&(set, squared): &(&bool, &u32)| *set && *squared <= radius.saturating_mul(radius);
+        outline.iter().zip(&distances).filter(near).count()
+    };
+    let precision = matched(&outlines[1], &outlines[0]) as f64 / counts_b as f64;
+    let recall = matched(&outlines[0], &outlines[1]) as f64 / counts_a as f64;
+    if precision + recall == 0.0 { 0.0 } else { 2.0 * precision * recall / (precision + recall) }
+}
+
+/// The outline of a mask, one pixel wide: pixels that differ from their right, lower or lower right neighbour.
+/// The image's border is no outline: an object that it cuts off has none there.
+pub fn boundary(mask: &Mask) -> Vec<bool> {
+    let (width, height, data) = (mask.width(), mask.height(), mask.data());
+    let mut outline = Vec::with_capacity(data.len());
+    for v in 0..height {
+        for u in 0..width {
+            let set = |du: usize, dv: usize| data[(v + dv) * width + u + du] != 0;
+            let (right, below) = (u + 1 < width, v + 1 < height);
+            let differs = |du, dv| set(du, dv) != set(0, 0);
+            outline.push((right && differs(1, 0)) || (below && differs(0, 1)) || (right && below && differs(1, 1)));
+        }
+    }
+    outline
+}
+
+fn centroid(mask: &Mask) -> Option<[f64; 2]> {
+    let (mut count, mut u_sum, mut v_sum) = (0u64, 0u64, 0u64);
+    for (v, row) in mask.data().chunks_exact(mask.width()).enumerate() {
+        for (u, _) in row.iter().enumerate().filter(|(_, m)| **m != 0) {
+            count += 1;
+            u_sum += u as u64;
+            v_sum += v as u64;
+        }
+    }
+    (count > 0).then(|| [u_sum as f64 / count as f64, v_sum as f64 / count as f64])
+}

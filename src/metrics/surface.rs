@@ -1,0 +1,101 @@
+//! Observed points against the posed surface, and the surface against the points.
+
+use glam::Vec3;
+
+use crate::geometry::cloud::{Bounds, Cloud};
+use crate::geometry::kd_tree::KdTree;
+use crate::geometry::mesh::Mesh;
+use crate::geometry::similarity::{Similarity, vec3, vector3};
+use crate::geometry::triangle_tree::TriangleTree;
+use crate::stages::normals::{Neighborhood, Orientation, estimate_normals};
+
+/// Neighbours from which an observed point's normal is estimated.
+pub const NORMAL_NEIGHBORS: usize = 30;
+
+/// How near a point must be to the surface to fit, as a share of the points' box diagonal.
+pub const FITNESS_TOLERANCE: f64 = 0.05;
+
+/// What the surface metrics are made of; each `None` where there is nothing to measure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfaceAgreement {
+    /// Mean distance of the observed points to the surface, in the observation's unit.
+    pub points_to_surface: Option<f64>,
+    /// Mean distance of surface samples to the observed points, in the observation's unit.
+    pub surface_to_points: Option<f64>,
+    /// Share of the observed points within [`FITNESS_TOLERANCE`] of the surface.
+    pub fitness: Option<f64>,
+    /// Mean |n·n′| of the observed points' normals and those of the triangles nearest to them.
+    pub normal_consistency: Option<f64>,
+}
+
+/// Compares the observed `points` (camera frame) with the surface of `mesh` posed by `camera_from_mesh`;
+/// `samples` are points on that surface (mesh frame).
+///
+/// Distances from the points are exact point-to-triangle distances. Normals of the points come from their
+/// [`NORMAL_NEIGHBORS`] nearest; points and triangles without a normal are left out.
+pub fn surface_agreement(
+    points: &[Vec3],
+    mesh: &Mesh,
+    samples: &Cloud,
+    camera_from_mesh: &Similarity,
+) -> SurfaceAgreement {
+    let kd_tree = KdTree::new(points);
+    let triangle_tree = TriangleTree::new(mesh);
+    let normals =
+        estimate_normals(points, &kd_tree, Neighborhood::nearest(NORMAL_NEIGHBORS), Orientation::TowardsCamera);
+    let tolerance = Bounds::of(points).map_or(0.0, |b| FITNESS_TOLERANCE * f64::from(b.diagonal()));
+
+    let mesh_from_camera = camera_from_mesh.inverse();
+    let (mut distance, mut fitting, mut consistency) = (Mean::default(), Mean::default(), Mean::default());
+    for (point, normal) in points.iter().zip(&normals) {
+        // The query is made in the mesh's frame, where the tree is; distances there are 1/s of those here.
+        let Some(nearest) = triangle_tree.nearest(vec3(&mesh_from_camera.apply(vector3(*point)))) else { continue };
+        let d = f64::from(nearest.distance_squared).sqrt() * camera_from_mesh.scale;
+        distance.add(d);
+        fitting.add(if d <= tolerance { 1.0 } else { 0.0 });
+        let facet = camera_from_mesh.rotation * vector3(facet_normal(mesh, nearest.triangle));
+        let cosine = facet.dot(&vector3(*normal)).abs();
+        if facet.norm_squared() > 0.0 && *normal != Vec3::ZERO {
+            consistency.add(cosine.min(1.0));
+        }
+    }
+    let mut back = Mean::default();
+    for sample in &samples.points {
+        if let Some(nearest) = kd_tree.nearest(vec3(&camera_from_mesh.apply(vector3(*sample)))) {
+            back.add(f64::from(nearest.distance_squared).sqrt());
+        }
+    }
+    SurfaceAgreement {
+        points_to_surface: distance.value(),
+        surface_to_points: back.value(),
+        fitness: fitting.value(),
+        normal_consistency: consistency.value(),
+    }
+}
+
+/// A triangle's unit normal, zero for one without area.
+fn facet_normal(mesh: &Mesh, triangle: u32) -> Vec3 {
+    let Some(&corners) = mesh.triangles().get(triangle as usize) else { return Vec3::ZERO };
+    let [a, b, c] = mesh.corners(corners).map(|p| p.as_dvec3());
+    (b - a).cross(c - a).normalize_or_zero().as_vec3()
+}
+
+/// A mean that knows when it is one of nothing.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Mean {
+    sum: f64,
+    count: u64,
+}
+
+impl Mean {
+    pub(super) fn add(&mut self, value: f64) {
+        self.sum += value;
+        self.count += 1;
+    }
+
+    /// `None` without values, or where they left f64.
+    pub(super) fn value(&self) -> Option<f64> {
+        let mean = self.sum / self.count as f64;
+        mean.is_finite().then_some(mean)
+    }
+}

@@ -1,0 +1,33 @@
+//! The distance transform against a search of every pixel.
+
+use sim3align::geometry::distance_transform::{NO_PIXEL, squared_distances};
+use sim3align::geometry::random::Random;
+use wasm_bindgen_test::wasm_bindgen_test;
+
+fn by_search(set: &[bool], width: usize) -> Vec<u32> {
+    let at = |i: usize| ((i % width) as i64, (i / width) as i64);
+    let distance = |i: usize, j: usize| {
+        let ((a, b), (c, d)) = (at(i), at(j));
+        ((a - c) * (a - c) + (b - d) * (b - d)) as u32
+    };
+    (0..set.len())
+        .map(|i| (0..set.len()).filter(|&j| set[j]).map(|j| distance(i, j)).min().unwrap_or(NO_PIXEL))
+        .collect()
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn equals_an_exhaustive_search() {
+    for seed in 0..300 {
+        let mut random = Random::new(seed, 910);
+        let (width, height) = (1 + random.below(24), 1 + random.below(24));
+        let density = [0.003, 0.02, 0.2, 0.9][seed as usize % 4];
+        let set: Vec<bool> = (0..width * height).map(|_| random.uniform() < density).collect();
+        assert_eq!(squared_distances(&set, width, height), by_search(&set, width), "seed {seed}, {width} × {height}");
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn an_image_without_a_pixel_has_no_distance() {
+    assert_eq!(squared_distances(&[false; 6], 3, 2), [NO_PIXEL; 6]);
+    assert!(squared_distances(&[], 0, 0).is_empty());
+}

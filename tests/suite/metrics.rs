@@ -1,0 +1,140 @@
+//! All metrics of a pose, on observations rendered from known ones.
+
+use glam::Vec3;
+use nalgebra::{Rotation3, Vector3};
+use sim3align::error::ErrorCode;
+use sim3align::geometry::image::{DepthMap, Mask};
+use sim3align::geometry::mesh::Mesh;
+use sim3align::geometry::pinhole::Pinhole;
+use sim3align::geometry::rasteriser::Rasteriser;
+use sim3align::geometry::similarity::Similarity;
+use sim3align::metrics::{EvaluateOptions, Metrics, evaluate};
+use sim3align::stages::observe::Observation;
+use wasm_bindgen_test::wasm_bindgen_test;
+
+use crate::shapes::{cuboid, ellipsoid, mapped, sphere};
+
+const WIDTH: usize = 160;
+const HEIGHT: usize = 120;
+
+fn pose() -> Similarity {
+    Similarity {
+        scale: 0.15,
+        rotation: Rotation3::new(Vector3::new(0.4, -0.7, 0.2)),
+        translation: Vector3::new(0.02, -0.01, 0.8),
+    }
+}
+
+/// What a camera sees of the posed mesh, its depths moved by `offset` metres.
+fn observe(mesh: &Mesh, offset: f32) -> Observation {
+    let camera = Pinhole::new(200.0, 210.0, 80.0, 58.0).unwrap();
+    let mut rasteriser = Rasteriser::new();
+    rasteriser.render(mesh, &pose(), &camera, WIDTH, HEIGHT);
+    let mask = rasteriser.depth().iter().map(|z| u8::from(*z > 0.0)).collect();
+    let depth = rasteriser.depth().iter().map(|z| if *z > 0.0 { z + offset } else { 2.0 }).collect();
+    let depth = DepthMap::from_metres(WIDTH, HEIGHT, depth).unwrap();
+    Observation::new(depth, Mask::new("mask", WIDTH, HEIGHT, mask).unwrap(), camera).unwrap()
+}
+
+fn score(observation: &Observation, mesh: &Mesh, pose: &Similarity) -> Metrics {
+    evaluate(observation, mesh, pose, &EvaluateOptions::default()).unwrap()
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn the_true_pose_is_perfect() {
+    let egg = mapped(&ellipsoid(Vec3::new(0.5, 0.8, 1.0), 48), |p| p + Vec3::new(3.0, -2.0, 1.0) * 0.1);
+    for (name, mesh, consistency) in [("egg", egg, 0.995), ("box", cuboid(Vec3::new(1.0, 0.7, 0.5)), 0.96)] {
+        let m = score(&observe(&mesh, 0.0), &mesh, &pose());
+        assert_eq!((m.iou, m.boundary_f, m.center_drift_px), (Some(1.0), Some(1.0), Some(0.0)), "{name}");
+        assert_eq!((m.depth_mae_mm, m.fitness), (Some(0.0), Some(1.0)), "{name}");
+        assert!(m.uni_chamfer_mm.unwrap() < 1e-3, "{name}: {m:?}");
+        assert!(m.normal_consistency.unwrap() > consistency, "{name}: {m:?}");
+        // The far side is not seen: the two-sided distance cannot vanish.
+        assert!(m.chamfer_mm.unwrap() > 5.0, "{name}: {m:?}");
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn depth_that_is_off_by_five_millimetres() {
+    let mesh = sphere(0.5, 64);
+    let m = score(&observe(&mesh, 0.005), &mesh, &pose());
+    assert!((m.depth_mae_mm.unwrap() - 5.0).abs() < 1e-3, "{m:?}");
+    assert_eq!(m.iou, Some(1.0));
+    // Along the ray; the distance to a sphere is shorter where it is slanted, but not on average by half.
+    assert!((2.5..5.0).contains(&m.uni_chamfer_mm.unwrap()), "{m:?}");
+    // 5 % of the box diagonal of half a sphere of radius 75 mm are 11 mm.
+    assert_eq!(m.fitness, Some(1.0));
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_pose_out_of_sight_gives_null_or_zero() {
+    let mesh = sphere(0.5, 16);
+    let observation = observe(&mesh, 0.0);
+    let at = |x: f64, z: f64| Similarity { translation: Vector3::new(x, 0.0, z), ..pose() };
+    let behind = score(&observation, &mesh, &at(0.0, -0.8));
+    assert_eq!((behind.iou, behind.boundary_f), (Some(0.0), Some(0.0)));
+    assert_eq!((behind.center_drift_px, behind.depth_mae_mm, behind.fitness), (None, None, Some(0.0)));
+    assert!(behind.uni_chamfer_mm.unwrap() > 1000.0);
+    let json = serde_json::to_value(behind).unwrap();
+    assert!(json["centerDriftPx"].is_null() && json["depthMaeMm"].is_null(), "{json}");
+
+    let beside = score(&observation, &mesh, &at(0.25, 0.8));
+    assert_eq!((beside.iou, beside.boundary_f, beside.depth_mae_mm), (Some(0.0), Some(0.0), None));
+    assert!(beside.center_drift_px.unwrap() > 40.0);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn only_readings_inside_the_mask_count() {
+    let mesh = sphere(0.5, 32);
+    let full = observe(&mesh, 0.0);
+    // A hole in the depth and a wrong reading outside the mask change nothing in the error.
+    let mut depth = full.depth().clone();
+    let middle = (HEIGHT / 2) * WIDTH + WIDTH / 2;
+    depth.data_mut()[middle] = 0.0;
+    depth.data_mut()[0] = 0.1;
+    let holed = Observation::new(depth, full.mask().clone(), full.camera()).unwrap();
+    assert_eq!(score(&holed, &mesh, &pose()).depth_mae_mm, Some(0.0));
+    // A mask with half of the object: what is rendered beyond it has no say.
+    let mut mask = full.mask().clone();
+    mask.data_mut().iter_mut().enumerate().for_each(|(i, m)| *m *= u8::from(i % WIDTH < WIDTH / 2));
+    let half = score(&Observation::new(full.depth().clone(), mask, full.camera()).unwrap(), &mesh, &pose());
+    assert_eq!((half.depth_mae_mm, half.fitness), (Some(0.0), Some(1.0)));
+    assert!((0.3..0.6).contains(&half.iou.unwrap()), "{half:?}");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn json_has_the_documented_names() {
+    let mesh = sphere(0.5, 16);
+    let json = serde_json::to_value(score(&observe(&mesh, 0.0), &mesh, &pose())).unwrap();
+    let mut names: Vec<&str> = json.as_object().unwrap().keys().map(String::as_str).collect();
+    names.sort_unstable();
+    let expected = "boundaryF centerDriftPx chamferMm depthMaeMm fitness iou normalConsistency uniChamferMm";
+    assert_eq!(names.join(" "), expected);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn the_same_seed_gives_the_same_bits() {
+    let mesh = ellipsoid(Vec3::new(0.5, 0.3, 0.4), 24);
+    let observation = observe(&mesh, 0.003);
+    let options = |seed| EvaluateOptions { max_points: 500, surface_samples: 400, seed };
+    let run = |seed| evaluate(&observation, &mesh, &pose(), &options(seed)).unwrap();
+    assert_eq!(run(1), run(1));
+    assert_ne!(run(1).chamfer_mm, run(2).chamfer_mm);
+    assert_eq!(run(1).iou, run(2).iou);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn what_cannot_be_scored_is_refused() {
+    let mesh = sphere(0.5, 16);
+    let observation = observe(&mesh, 0.0);
+    let flat = mapped(&mesh, |_| Vec3::ONE);
+    let code = |mesh: &Mesh, pose: &Similarity| {
+        evaluate(&observation, mesh, pose, &EvaluateOptions::default()).unwrap_err().code
+    };
+    assert_eq!(code(&flat, &pose()), ErrorCode::DegenerateMesh);
+    for scale in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert_eq!(code(&mesh, &Similarity { scale, ..pose() }), ErrorCode::InvalidTransform, "scale {scale}");
+    }
+    let nowhere = Similarity { translation: Vector3::new(0.0, f64::NAN, 1.0), ..pose() };
+    assert_eq!(code(&mesh, &nowhere), ErrorCode::InvalidTransform);
+}

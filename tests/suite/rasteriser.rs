@@ -1,0 +1,153 @@
+//! The rasteriser on cases computed by hand.
+
+use glam::Vec3;
+use nalgebra::Vector3;
+use sim3align::geometry::mesh::Mesh;
+use sim3align::geometry::pinhole::Pinhole;
+use sim3align::geometry::rasteriser::{NO_TRIANGLE, Rasteriser};
+use sim3align::geometry::similarity::Similarity;
+use wasm_bindgen_test::wasm_bindgen_test;
+
+use crate::shapes::{cuboid, sphere};
+
+/// With this camera, (u, v, 1) falls on pixel (u, v).
+fn plain() -> Pinhole {
+    Pinhole::new(1.0, 1.0, 0.0, 0.0).unwrap()
+}
+
+fn triangles(corners: &[[f32; 3]]) -> Mesh {
+    Mesh::from_flat(corners.as_flattened(), None).unwrap()
+}
+
+/// The pixels drawn, as rows of `#` and `.`.
+fn picture(mesh: &Mesh, width: usize, height: usize) -> String {
+    let mut rasteriser = Rasteriser::new();
+    rasteriser.render_depth(mesh, &Similarity::identity(), &plain(), width, height);
+    let row = |row: &[f32]| row.iter().map(|z| if *z > 0.0 { '#' } else { '.' }).collect::<String>();
+    rasteriser.depth().chunks(width).map(row).collect::<Vec<_>>().join(" ")
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn edges_follow_the_top_left_rule() {
+    let (a, b, c, d) = ([1.0, 1.0, 1.0], [3.0, 1.0, 1.0], [3.0, 3.0, 1.0], [1.0, 3.0, 1.0]);
+    // A square on pixel centres: its left and top edges are in, its right and bottom ones out.
+    for square in [[a, b, c, a, c, d], [a, c, b, a, d, c], [b, c, d, b, d, a], [d, a, b, c, b, d]] {
+        assert_eq!(picture(&triangles(&square), 5, 5), "..... .##.. .##.. ..... .....");
+    }
+    // Its halves share the diagonal, and each pixel on it is in exactly one of them.
+    assert_eq!(picture(&triangles(&[a, b, c]), 4, 4), ".... .##. ..#. ....");
+    assert_eq!(picture(&triangles(&[a, c, d]), 4, 4), ".... .... .#.. ....");
+    assert_eq!(picture(&triangles(&[a, b, d]), 4, 4), ".... .##. .#.. ....");
+    assert_eq!(picture(&triangles(&[b, c, d]), 4, 4), ".... .... ..#. ....");
+    // Shifted by a quarter pixel, the centres lie within.
+    let shifted = [a, b, c, a, c, d].map(|[u, v, z]| [u - 0.25, v + 0.25, z]);
+    assert_eq!(picture(&triangles(&shifted), 5, 5), "..... ..... .##.. .##.. .....");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn small_and_flat_triangles_draw_nothing_between_centres() {
+    let between = [[1.2, 1.2, 1.0], [1.8, 1.2, 1.0], [1.5, 1.8, 1.0]];
+    let line = [[0.0, 0.0, 1.0], [2.0, 2.0, 1.0], [4.0, 4.0, 1.0]];
+    let point = [[1.0, 1.0, 1.0]; 3];
+    for nothing in [between, line, point] {
+        assert_eq!(picture(&triangles(&nothing), 3, 3), "... ... ...", "{nothing:?}");
+    }
+    let around = [[0.9, 0.9, 1.0], [1.2, 0.9, 1.0], [0.9, 1.2, 1.0]];
+    assert_eq!(picture(&triangles(&around), 3, 3), "... .#. ...");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn depth_is_perspective_correct() {
+    // From (0, 0) at depth 1 to (8, 0) at depth 4: half way in the picture is at 1/z = (1 + 1/4)/2, not at 2.5.
+    let mesh = triangles(&[[0.0, -8.0, 1.0], [0.0, 8.0, 1.0], [32.0, 0.0, 4.0]]);
+    let mut rasteriser = Rasteriser::new();
+    rasteriser.render(&mesh, &Similarity::identity(), &plain(), 9, 1);
+    for (u, z) in rasteriser.depth().iter().enumerate().take(8) {
+        let expected = 1.0 / (1.0 + (0.25 - 1.0) * u as f32 / 8.0);
+        assert!((z - expected).abs() < 1e-6, "pixel {u}: {z}, expected {expected}");
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn the_nearest_is_drawn_and_of_equals_the_first() {
+    let at = |z: f32| [[-9.0 * z, -9.0 * z, z], [99.0 * z, -9.0 * z, z], [-9.0 * z, 99.0 * z, z]];
+    let cases: [(&[f32], u32, f32); 4] =
+        [(&[2.0, 1.0, 3.0], 1, 1.0), (&[1.0, 1.0, 2.0], 0, 1.0), (&[3.0, 2.0, 2.0], 1, 2.0), (&[-1.0, 2.0], 1, 2.0)];
+    for (depths, triangle, depth) in cases {
+        let mesh = triangles(&depths.iter().flat_map(|&z| at(z)).collect::<Vec<_>>());
+        let mut rasteriser = Rasteriser::new();
+        rasteriser.render(&mesh, &Similarity::identity(), &plain(), 4, 3);
+        assert_eq!(rasteriser.triangles(), [triangle; 12], "{depths:?}");
+        assert_eq!(rasteriser.depth(), [depth; 12], "{depths:?}");
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn what_is_behind_the_camera_is_not_drawn() {
+    let mut rasteriser = Rasteriser::new();
+    let camera = Pinhole::new(50.0, 50.0, 9.5, 9.5).unwrap();
+    for z in [-3.0, -0.5001] {
+        let pose = Similarity { translation: Vector3::new(0.0, 0.0, z), ..Similarity::identity() };
+        rasteriser.render(&cuboid(Vec3::ONE), &pose, &camera, 20, 20);
+        assert_eq!(rasteriser.depth(), [0.0; 400]);
+        assert_eq!(rasteriser.triangles(), [NO_TRIANGLE; 400]);
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn from_inside_a_box_there_is_wall_everywhere() {
+    // A wide view, so that walls, floor and ceiling cross the near plane beside the camera.
+    let camera = Pinhole::new(5.0, 5.0, 15.5, 11.5).unwrap();
+    let mut rasteriser = Rasteriser::new();
+    rasteriser.render(&cuboid(Vec3::new(2.0, 2.0, 4.0)), &Similarity::identity(), &camera, 32, 24);
+    for (i, z) in rasteriser.depth().iter().enumerate() {
+        let (x, y) = (((i % 32) as f32 - 15.5) / 5.0, ((i / 32) as f32 - 11.5) / 5.0);
+        let expected = 2.0f32.min(1.0 / x.abs()).min(1.0 / y.abs());
+        assert!((z - expected).abs() < 1e-5, "pixel {i}: {z}, expected {expected}");
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn what_is_nearer_than_the_near_plane_is_cut() {
+    // The floor four units below, out to depth 1000: the near plane is at 0.1, where v = 4/0.1 = 40.
+    let floor = [[-1e4, 4.0, -50.0], [1e4, 4.0, -50.0], [1e4, 4.0, 1e3], [-1e4, 4.0, 1e3]];
+    let mesh = triangles(&[floor[0], floor[1], floor[2], floor[0], floor[2], floor[3]]);
+    let rows: Vec<_> = (0..43).map(|v| if (1..40).contains(&v) { "##" } else { ".." }).collect();
+    assert_eq!(picture(&mesh, 2, 43), rows.join(" "));
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn buffers_are_reused_without_a_trace() {
+    let (ball, pose) =
+        (sphere(1.0, 12), Similarity { translation: Vector3::new(0.1, 0.2, 4.0), ..Similarity::identity() });
+    let camera = Pinhole::new(30.0, 31.0, 14.0, 12.0).unwrap();
+    let mut fresh = Rasteriser::new();
+    fresh.render(&ball, &pose, &camera, 30, 20);
+    assert!(fresh.depth().contains(&0.0) && fresh.depth().iter().any(|z| *z > 0.0));
+    let mut used = Rasteriser::new();
+    used.render(&cuboid(Vec3::splat(9.0)), &pose, &camera, 50, 60);
+    used.render(&ball, &pose, &camera, 30, 20);
+    assert_eq!((used.depth(), used.triangles()), (fresh.depth(), fresh.triangles()));
+    used.render_depth(&ball, &pose, &camera, 30, 20);
+    assert_eq!(used.depth(), fresh.depth());
+    assert!(used.triangles().is_empty());
+    assert_eq!((used.width(), used.height()), (30, 20));
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn extreme_numbers_draw_nothing_wrong() {
+    let mut rasteriser = Rasteriser::new();
+    let mesh = cuboid(Vec3::ONE);
+    let wild = [1e-300, 1e-40, 1e40, 1e300];
+    for scale in wild {
+        for t in wild {
+            for c in [-1e300, 0.0, 1e300] {
+                let camera = Pinhole { fx: 50.0, fy: 1e300, cx: c, cy: 3.0 };
+                let pose = Similarity { scale, translation: Vector3::new(0.0, t, t), ..Similarity::identity() };
+                rasteriser.render(&mesh, &pose, &camera, 8, 8);
+                let fine = |z: &f32| *z >= 0.0 && !z.is_nan();
+                assert!(rasteriser.depth().iter().all(fine), "scale {scale}, translation {t}, cx {c}");
+            }
+        }
+    }
+}

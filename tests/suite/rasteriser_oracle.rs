@@ -1,0 +1,132 @@
+//! The rasteriser against casting a ray per pixel at every triangle, in f64.
+
+use glam::{DVec3, Vec3};
+use sim3align::geometry::mesh::Mesh;
+use sim3align::geometry::pinhole::Pinhole;
+use sim3align::geometry::random::Random;
+use sim3align::geometry::rasteriser::{NEAR, NO_TRIANGLE, Rasteriser};
+use sim3align::geometry::similarity::Similarity;
+use wasm_bindgen_test::wasm_bindgen_test;
+
+/// Snapping moves a vertex by at most √2/512 pixel; nearer than this to an outline nothing is claimed.
+const EDGE_PX: f64 = 0.004;
+
+const WIDTH: usize = 40;
+const HEIGHT: usize = 30;
+
+/// What one ray meets.
+struct Ray {
+    /// Depth and triangle of each hit.
+    hits: Vec<(f64, u32)>,
+    /// Whether it passes an outline too near to tell.
+    unclear: bool,
+}
+
+fn cast(triangles: &[[DVec3; 3]], camera: &Pinhole, near: f64, u: usize, v: usize) -> Ray {
+    let direction = DVec3::new((u as f64 - camera.cx) / camera.fx, (v as f64 - camera.cy) / camera.fy, 1.0);
+    // Distance, in pixels, to the line on which a function m·direction of the pixel is zero.
+    let pixels = |m: DVec3| m.dot(direction).abs() / (m.x / camera.fx).hypot(m.y / camera.fy);
+    let mut ray = Ray { hits: Vec::new(), unclear: false };
+    for (id, &[a, b, c]) in (0..).zip(triangles) {
+        let sides = [a.cross(b), b.cross(c), c.cross(a)];
+        let volume = a.dot(b.cross(c));
+        if volume == 0.0 {
+            continue;
+        }
+        // Inside the triangle's cone, forward or mirrored, or so near to one of its sides that it could be.
+        let weights = sides.map(|m| m.dot(direction) / volume);
+        let clear = sides.map(|m| pixels(m) > EDGE_PX);
+        if (0..3).any(|i| clear[i] && weights[i] < 0.0) {
+            continue;
+        }
+        // direction = Σ wᵢ·vᵢ up to order; the ray meets the plane at 1 / Σ wᵢ.
+        let inverse_depth: f64 = weights.iter().sum();
+        let plane = (sides[0] + sides[1] + sides[2]) / volume;
+        let cut_px = pixels(plane - DVec3::Z / near);
+        if cut_px > EDGE_PX && inverse_depth > 1.0 / near || inverse_depth <= 0.0 {
+            continue;
+        }
+        ray.unclear |= clear.contains(&false) || cut_px <= EDGE_PX;
+        ray.hits.push((1.0 / inverse_depth, id));
+    }
+    ray.hits.sort_by(|a, b| a.partial_cmp(b).unwrap());
+    ray
+}
+
+/// Triangles of all sizes, before, beside and behind the camera and across its plane.
+fn scene(random: &mut Random) -> Mesh {
+    let count = 5 + random.below(40);
+    let mut number = |low: f64, high: f64| low + (high - low) * random.uniform();
+    let mut positions = Vec::new();
+    for i in 0..count {
+        let (size, z) = match i % 5 {
+            0 => (0.05, number(0.5, 4.0)),
+            1 => (0.7, number(0.5, 4.0)),
+            2 => (3.0, number(-2.0, 3.0)),
+            3 => (if i < 10 { 5e6 } else { 1.0 }, number(-1.0, 6.0)),
+            _ => (0.3, number(-1.0, 1.0)),
+        };
+        let center = [number(-1.0, 1.0), number(-1.0, 1.0), z];
+        for corner in 0..3 {
+            // Every seventh is a needle: its last corner almost on the middle of the other two.
+            if i % 7 == 6 && corner == 2 {
+                let n = positions.len();
+                let middle: Vec3 = (positions[n - 1] + positions[n - 2]) * 0.5;
+                positions.push(middle + Vec3::splat(number(-0.01, 0.01) as f32));
+            } else {
+                positions.push(Vec3::from_array(center.map(|x| (x + number(-size, size)) as f32)));
+            }
+        }
+    }
+    Mesh::new(positions, (0..count as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect()).unwrap()
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn equals_ray_casting() {
+    let (mut compared, mut covered) = (0, 0);
+    let mut rasteriser = Rasteriser::new();
+    for seed in 0..150 {
+        let mut random = Random::new(seed, 912);
+        let mesh = scene(&mut random);
+        let mut number = |low: f64, high: f64| low + (high - low) * random.uniform();
+        let camera =
+            Pinhole::new(number(5.0, 60.0), number(5.0, 60.0), number(-10.0, 50.0), number(0.0, 30.0)).unwrap();
+        let axis = nalgebra::Vector3::new(number(-3.0, 3.0), number(-3.0, 3.0), number(-3.0, 3.0));
+        let pose = Similarity {
+            scale: number(0.5, 2.0),
+            rotation: nalgebra::Rotation3::new(axis),
+            translation: nalgebra::Vector3::new(number(-0.5, 0.5), number(-0.5, 0.5), number(-1.0, 4.0)),
+        };
+        rasteriser.render(&mesh, &pose, &camera, WIDTH, HEIGHT);
+
+        let posed = |p: &Vec3| {
+            let p = pose.apply(nalgebra::Vector3::new(p.x.into(), p.y.into(), p.z.into()));
+            DVec3::new(p.x, p.y, p.z)
+        };
+        let points: Vec<DVec3> = mesh.positions().iter().map(posed).collect();
+        let near = NEAR * points.iter().map(|p| p.z).fold(1e-20, f64::max);
+        let triangles: Vec<_> = mesh.triangles().iter().map(|t| t.map(|i| points[i as usize])).collect();
+        for i in 0..WIDTH * HEIGHT {
+            let (u, v) = (i % WIDTH, i / WIDTH);
+            let (z, id) = (f64::from(rasteriser.depth()[i]), rasteriser.triangles()[i]);
+            assert_eq!(z > 0.0, id != NO_TRIANGLE);
+            let ray = cast(&triangles, &camera, near, u, v);
+            if ray.unclear {
+                continue;
+            }
+            compared += 1;
+            let context = format!("seed {seed}, pixel ({u}, {v}): depth {z}, triangle {id}, hits {:?}", ray.hits);
+            let Some(&(expected, first)) = ray.hits.first() else {
+                assert_eq!(id, NO_TRIANGLE, "{context}");
+                continue;
+            };
+            covered += 1;
+            assert!((z / expected - 1.0).abs() < 1e-5, "{context}");
+            let as_near = ray.hits.iter().take_while(|(z, _)| *z < expected * (1.0 + 1e-6));
+            assert!(id == first || as_near.clone().any(|&(_, t)| t == id), "{context}");
+        }
+    }
+    // Most pixels are clear, and both kinds occur.
+    let all = 150 * WIDTH * HEIGHT;
+    assert!(compared > all * 99 / 100 && covered > all / 5 && covered < compared / 2, "{compared} {covered} of {all}");
+}
