@@ -6,5 +6,7 @@
 //! [`bindings`], [`formats`], [`align`], [`metrics`], [`stages`], [`geometry`], [`error`].
 
 pub mod error;
+#[cfg(feature = "formats")]
+pub mod formats;
 pub mod geometry;
 pub mod stages;
