@@ -5,6 +5,7 @@
 //! The crate is layered; a module imports only from those below it in this list:
 //! [`bindings`], [`formats`], [`align`], [`metrics`], [`stages`], [`geometry`], [`error`].
 
+pub mod bindings;
 pub mod error;
 #[cfg(feature = "formats")]
 pub mod formats;

@@ -55,10 +55,11 @@ impl MeshFormat {
         if stl::has_binary_length(bytes) || text.starts_with(b"solid") {
             return Some(Self::Stl);
         }
-        let first_word = |line| text::words(line).next().filter(|word| !word.starts_with(b"#"));
-        let first = text::lines(text).find_map(first_word)?;
-        let keywords: [&[u8]; 11] = [b"v", b"vn", b"vt", b"vp", b"f", b"o", b"g", b"s", b"l", b"mtllib", b"usemtl"];
-        keywords.contains(&first).then_some(Self::Obj)
+        let words = text::lines(text).filter_map(|line| text::words(line).next());
+        let mut statements = words.filter(|word| !word.starts_with(b"#"));
+        let before_vertices: [&[u8]; 9] = [b"vn", b"vt", b"vp", b"o", b"g", b"s", b"mtllib", b"usemtl", b"cstype"];
+        let first_other = statements.find(|word| !before_vertices.contains(word));
+        (first_other == Some(b"v".as_slice())).then_some(Self::Obj)
     }
 }
 
