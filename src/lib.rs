@@ -3,10 +3,13 @@
 //! Monocular Observations".
 //!
 //! The crate is layered; a module imports only from those below it in this list:
-//! [`bindings`], [`formats`], [`align`], [`metrics`], [`stages`], [`geometry`], [`error`].
+//! `bindings`, `formats`, [`align`], [`metrics`], [`stages`], [`geometry`], [`error`].
 
 pub mod align;
+pub mod bindings;
 pub mod error;
+#[cfg(feature = "formats")]
+pub mod formats;
 pub mod geometry;
 pub mod metrics;
 pub mod stages;

@@ -1,0 +1,29 @@
+//! JSON values as the readers need them.
+
+use serde_json::Value;
+
+use crate::error::Result;
+use crate::formats::guard::{MAX_JSON_BYTES, corrupt, too_large};
+
+/// Parses a JSON file.
+pub(crate) fn parse(argument: &str, bytes: &[u8]) -> Result<Value> {
+    if bytes.len() > MAX_JSON_BYTES {
+        let found = format!("{} bytes of JSON", bytes.len());
+        return Err(too_large(argument, found, format!("at most {MAX_JSON_BYTES}")));
+    }
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    serde_json::from_slice(text).map_err(|error| corrupt(argument, format!("text that is no JSON: {error}"), "JSON"))
+}
+
+/// `N` numbers: an array of them, or of rows of them.
+pub(crate) fn numbers<const N: usize>(value: &Value) -> Option<[f64; N]> {
+    let mut numbers = [0.0; N];
+    let mut slots = numbers.iter_mut();
+    for item in value.as_array()? {
+        match item.as_array() {
+            Some(row) => row.iter().try_for_each(|x| Some(*slots.next()? = x.as_f64()?))?,
+            None => *slots.next()? = item.as_f64()?,
+        }
+    }
+    slots.next().is_none().then_some(numbers)
+}

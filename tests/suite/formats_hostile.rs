@@ -1,0 +1,169 @@
+//! Files cut at every length and files with random bytes changed: an answer or a typed error, never a panic.
+
+use sim3align::error::ErrorCode;
+use sim3align::formats::camera::read_camera;
+use sim3align::formats::depth::{DepthReadOptions, read_depth};
+use sim3align::formats::mask::read_mask;
+use sim3align::formats::mesh::{MeshFormat, MeshReadOptions, read_mesh};
+use sim3align::formats::truth::read_truth;
+use sim3align::geometry::random::Random;
+use wasm_bindgen_test::wasm_bindgen_test;
+
+use crate::formats_fixtures::{MESHES, fixture};
+
+/// Reads bytes as something; the error's code where that fails.
+type Reader = fn(&[u8]) -> Result<(), ErrorCode>;
+
+fn mesh(bytes: &[u8]) -> Result<(), ErrorCode> {
+    read_mesh(bytes, &MeshReadOptions::default()).map(drop).map_err(|error| error.code)
+}
+
+fn depth(bytes: &[u8]) -> Result<(), ErrorCode> {
+    read_depth(bytes, &DepthReadOptions::default()).map(drop).map_err(|error| error.code)
+}
+
+fn mask(bytes: &[u8]) -> Result<(), ErrorCode> {
+    read_mask(bytes).map(drop).map_err(|error| error.code)
+}
+
+fn camera(bytes: &[u8]) -> Result<(), ErrorCode> {
+    read_camera(bytes, Some((640, 480)), None).map(drop).map_err(|error| error.code)
+}
+
+fn truth(bytes: &[u8]) -> Result<(), ErrorCode> {
+    read_truth(bytes).map(drop).map_err(|error| error.code)
+}
+
+const CAMERA: &[u8] = br#"{"0":{"cam_K":[600,0,319.5,0,610,239.5,0,0,1],"depth_scale":0.1}}"#;
+const TRUTH: &[u8] = br#"{"available":true,"scale":2,"rotation":[[0,-1,0],[1,0,0],[0,0,1]],"translation":[1,2,3]}"#;
+
+/// Every kind of file but the text formats OBJ, PLY and STL: whatever is cut off is missed.
+const MUST_BE_WHOLE: [(&str, &[u8], Reader); 29] = [
+    ("GLB", fixture!("mesh.glb"), mesh),
+    ("GLB scene", fixture!("scene.glb"), mesh),
+    ("glTF", fixture!("mesh-data-uri.gltf"), mesh),
+    ("PLY little-endian", fixture!("mesh-little.ply"), mesh),
+    ("PLY big-endian", fixture!("mesh-big.ply"), mesh),
+    ("STL", fixture!("mesh.stl"), mesh),
+    ("STL, solid", fixture!("mesh-solid-header.stl"), mesh),
+    ("depth f4", fixture!("depth-f4.npy"), depth),
+    ("depth f8", fixture!("depth-f8-fortran.npy"), depth),
+    ("depth >f4", fixture!("depth-f4-big.npy"), depth),
+    ("depth f2", fixture!("depth-f2.npy"), depth),
+    ("depth u2", fixture!("depth-u2-hw1.npy"), depth),
+    ("depth >u2", fixture!("depth-u2-big-1hw.npy"), depth),
+    ("depth PNG", fixture!("depth-16.png"), depth),
+    ("mask 1 bit", fixture!("mask-1bit.png"), mask),
+    ("mask grey", fixture!("mask-grey.png"), mask),
+    ("mask grey 16", fixture!("mask-grey-16.png"), mask),
+    ("mask RGB", fixture!("mask-blue.png"), mask),
+    ("mask RGBA", fixture!("mask-cut-out.png"), mask),
+    ("mask grey and alpha", fixture!("mask-grey-alpha.png"), mask),
+    ("mask palette", fixture!("mask-palette.png"), mask),
+    ("mask bool", fixture!("mask-bool.npy"), mask),
+    ("mask i8", fixture!("mask-i8-fortran.npy"), mask),
+    ("mask f4", fixture!("mask-f4.npy"), mask),
+    ("RLE", fixture!("rle-small.json"), mask),
+    ("RLE plain", fixture!("rle-small-plain.json"), mask),
+    ("RLE large", fixture!("rle-blob.json"), mask),
+    ("camera", CAMERA, camera),
+    ("truth", TRUTH, truth),
+];
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_file_cut_short_at_any_length_is_refused() {
+    for (name, bytes, read) in MUST_BE_WHOLE {
+        assert_eq!(read(bytes), Ok(()), "{name}");
+        for length in 0..bytes.len() {
+            let result = read(&bytes[..length]);
+            let expected = [ErrorCode::CorruptFile, ErrorCode::UnsupportedFormat];
+            assert!(result.is_err_and(|code| expected.contains(&code)), "{name} cut to {length}: {result:?}");
+        }
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_text_mesh_cut_short_is_refused_where_the_cut_can_be_seen() {
+    for (i, (format, bytes)) in MESHES.into_iter().enumerate() {
+        let options = MeshReadOptions { format: Some(MeshFormat::from_name(format).unwrap()), resources: None };
+        for length in 0..bytes.len() {
+            let result = read_mesh(&bytes[..length], &options);
+            // An OBJ has no end, and a number cut in its last digits is a number. Only the last one of an ASCII PLY
+            // ("… 41") can be cut unseen; an ASCII STL ends after "endsolid".
+            let unseen = match format {
+                "obj" => true,
+                "ply" | "stl" => length + 3 >= bytes.len(),
+                _ => false,
+            };
+            assert!(unseen || result.is_err(), "fixture {i}, {format}, cut to {length}");
+        }
+    }
+}
+
+/// Prints which run it was when the code under test panics.
+struct NamedInPanics {
+    fixture: usize,
+    seed: u64,
+}
+
+impl Drop for NamedInPanics {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            eprintln!("panicked at fixture {}, seed {}", self.fixture, self.seed);
+        }
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn random_damage_never_panics() {
+    const TEXTS: [(&str, &[u8], Reader); 3] = [
+        ("OBJ", fixture!("mesh.obj"), mesh),
+        ("PLY text", fixture!("mesh-ascii.ply"), mesh),
+        ("STL text", fixture!("mesh-ascii.stl"), mesh),
+    ];
+    for (k, (_, bytes, read)) in MUST_BE_WHOLE.into_iter().chain(TEXTS).enumerate() {
+        let mut refused = 0;
+        for seed in 0..300_u64 {
+            let _named = NamedInPanics { fixture: k, seed };
+            let mut random = Random::new(1000 * k as u64 + seed, 941);
+            let mut damaged = bytes.to_vec();
+            // Half of the damage goes to the head, where the sizes are.
+            let reach = if seed % 2 == 0 { damaged.len() } else { damaged.len().min(160) };
+            for _ in 0..1 + random.below(6) {
+                let place = random.below(reach);
+                damaged[place] = match random.below(4) {
+                    0 => 0,
+                    1 => 0xff,
+                    2 => b"0123456789-.eE{}[]\", \n"[random.below(22)],
+                    _ => random.below(256) as u8,
+                };
+            }
+            match random.below(8) {
+                0 => damaged.truncate(random.below(damaged.len())),
+                1 => damaged.extend_from_within(..random.below(bytes.len())),
+                _ => {}
+            }
+            refused += usize::from(read(&damaged).is_err());
+        }
+        assert!(refused > 0, "fixture {k}: no damage was noticed");
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn random_damage_to_a_known_format_never_panics() {
+    for (k, (format, bytes)) in MESHES.into_iter().enumerate() {
+        let options = MeshReadOptions { format: Some(MeshFormat::from_name(format).unwrap()), resources: None };
+        for seed in 0..300_u64 {
+            let _named = NamedInPanics { fixture: k, seed };
+            let mut random = Random::new(1000 * k as u64 + seed, 942);
+            let mut damaged = bytes.to_vec();
+            for _ in 0..1 + random.below(4) {
+                let place = random.below(damaged.len());
+                damaged[place] = damaged[place].wrapping_add(1 + random.below(255) as u8);
+            }
+            if let Ok(mesh) = read_mesh(&damaged, &options) {
+                assert!(!mesh.triangles().is_empty(), "fixture {k}, seed {seed}");
+            }
+        }
+    }
+}
