@@ -2,18 +2,6 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 pub mod distance_transform;
-pub mod metrics;
-pub mod normals;
-pub mod pose_error;
-pub mod rasteriser;
-pub mod rasteriser_oracle;
-pub mod rasteriser_seams;
-pub mod sample;
-pub mod shapes;
-pub mod silhouette;
-pub mod surface;
-pub mod symmetric_eigen;
-pub mod triangle_tree;
 #[cfg(feature = "formats")]
 pub mod formats_bindings;
 #[cfg(feature = "formats")]
@@ -30,3 +18,15 @@ pub mod formats_images;
 pub mod formats_json;
 #[cfg(feature = "formats")]
 pub mod formats_mesh;
+pub mod metrics;
+pub mod normals;
+pub mod pose_error;
+pub mod rasteriser;
+pub mod rasteriser_oracle;
+pub mod rasteriser_seams;
+pub mod sample;
+pub mod shapes;
+pub mod silhouette;
+pub mod surface;
+pub mod symmetric_eigen;
+pub mod triangle_tree;

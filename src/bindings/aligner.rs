@@ -1,0 +1,110 @@
+//! The aligner's exports: each reads its arguments, calls the core, and hands back a plain object.
+
+use js_sys::Function;
+use serde::Serialize;
+use serde_wasm_bindgen::Serializer;
+use wasm_bindgen::prelude::*;
+
+use super::error::to_js;
+use super::host::JsHost;
+use super::{input, object, options, transform};
+use crate::align::evaluate::EvaluateOptions;
+use crate::align::options::{AlignOptions, EstimateOptions, RegisterOptions};
+use crate::align::{self, register};
+use crate::error::{Error, ErrorCode, Result};
+
+/// Aligns a mesh to an observation; see `Aligner.align` in the TypeScript package.
+#[wasm_bindgen(skip_typescript)]
+pub fn align(
+    input: &JsValue,
+    options: &JsValue,
+    on_progress: Option<Function>,
+) -> core::result::Result<JsValue, JsValue> {
+    let run = || {
+        let options: AlignOptions = options::options(options, &[])?;
+        let (observation, mesh) = (input::observation(input)?, input::mesh(input)?);
+        align::align(&observation, &mesh, &options, &mut JsHost::new(on_progress))
+    };
+    answer(run())
+}
+
+/// Scores a transform; see `Aligner.evaluate` in the TypeScript package.
+#[wasm_bindgen(skip_typescript)]
+pub fn evaluate(input: &JsValue, transform: &JsValue, options: &JsValue) -> core::result::Result<JsValue, JsValue> {
+    let run = || {
+        let truth = options::truth(options)?;
+        let options: EvaluateOptions = options::options(options, &["truth", "symmetry"])?;
+        let camera_from_mesh = transform::similarity(transform, "transform")?;
+        let (observation, mesh) = (input::observation(input)?, input::mesh(input)?);
+        align::evaluate::evaluate(&observation, &mesh, &camera_from_mesh, truth.as_ref(), &options)
+    };
+    answer(run())
+}
+
+/// Aligns two point clouds; see `Aligner.register` in the TypeScript package.
+#[wasm_bindgen(skip_typescript)]
+pub fn register(source: &JsValue, target: &JsValue, options: &JsValue) -> core::result::Result<JsValue, JsValue> {
+    let run = || {
+        let scale = options::scale(options)?;
+        let options: RegisterOptions = options::options(options, &["scale"])?;
+        let (source, target) = (object::to_f64s(source, "source")?, object::to_f64s(target, "target")?);
+        register::register(&source, &target, scale, &options, &mut JsHost::new(None))
+    };
+    answer(run())
+}
+
+/// Estimates a similarity from correspondences; see `Aligner.estimateSim3` in the TypeScript package.
+#[wasm_bindgen(js_name = estimateSim3, skip_typescript)]
+pub fn estimate_sim3(
+    source: &JsValue,
+    target: &JsValue,
+    correspondences: &JsValue,
+    options: &JsValue,
+) -> core::result::Result<JsValue, JsValue> {
+    let run = || {
+        let scale = options::scale(options)?;
+        let options: EstimateOptions = options::options(options, &["scale"])?;
+        let (source, target) = (object::to_f64s(source, "source")?, object::to_f64s(target, "target")?);
+        let correspondences = object::to_u32s(correspondences, "correspondences")?;
+        register::estimate_sim3(&source, &target, &correspondences, scale, &options, &mut JsHost::new(None))
+    };
+    answer(run())
+}
+
+/// The default options of every entry point.
+#[wasm_bindgen(skip_typescript)]
+pub fn defaults() -> core::result::Result<JsValue, JsValue> {
+    #[derive(Serialize)]
+    #[serde(rename_all = "camelCase")]
+    struct Defaults {
+        align: AlignOptions,
+        evaluate: EvaluateOptions,
+        register: RegisterOptions,
+        estimate_sim3: EstimateOptions,
+    }
+    answer(Ok(Defaults {
+        align: AlignOptions::default(),
+        evaluate: EvaluateOptions::default(),
+        register: RegisterOptions::default(),
+        estimate_sim3: EstimateOptions::default(),
+    }))
+}
+
+/// The crate's version.
+#[wasm_bindgen(skip_typescript)]
+pub fn version() -> String {
+    env!("CARGO_PKG_VERSION").into()
+}
+
+/// A plain object: maps as objects, `None` as null.
+fn answer<T: Serialize>(result: Result<T>) -> core::result::Result<JsValue, JsValue> {
+    let serializer = Serializer::json_compatible();
+    result
+        .and_then(|value| {
+            value.serialize(&serializer).map_err(|e| {
+                let remedy = "This is a fault of the package: please report it.";
+                Error::new(ErrorCode::Internal, "result", e.to_string(), "a serialisable result", remedy)
+            })
+        })
+        .map_err(|e| to_js(&e))
+}

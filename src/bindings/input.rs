@@ -1,0 +1,113 @@
+//! Observation and mesh from JavaScript objects.
+
+use js_sys::Uint16Array;
+use wasm_bindgen::{JsCast, JsValue};
+
+use super::object::{get, number, required_number, size, to_f32s, to_number, to_numbers, to_u8s, to_u32s, wrong_type};
+use crate::error::{Error, ErrorCode, Result};
+use crate::geometry::image::{DepthMap, Image, Mask, check_size};
+use crate::geometry::mesh::Mesh;
+use crate::geometry::pinhole::Pinhole;
+use crate::stages::observe::{Observation, from_point_map};
+
+/// Metres per unit of whole-number depth where the caller does not say: millimetres.
+const DEFAULT_DEPTH_SCALE: f64 = 0.001;
+
+/// `{ depth | pointMap, depthScale?, width, height, camera, mask, maskWidth?, maskHeight?, resizeMask? }`.
+pub fn observation(input: &JsValue) -> Result<Observation> {
+    if !input.is_object() {
+        let remedy = "Pass { depth, width, height, mask, camera, mesh }.";
+        return Err(wrong_type("input", input, "an object", remedy));
+    }
+    let missing = |name| wrong_type(name, &JsValue::UNDEFINED, "a whole number of pixels", "Pass the image's size.");
+    let width = size(input, "width")?.ok_or_else(|| missing("width"))?;
+    let height = size(input, "height")?.ok_or_else(|| missing("height"))?;
+    let (depth, camera) = match get(input, "pointMap") {
+        Some(points) => {
+            let (depth, fitted) = from_point_map(width, height, &to_f32s(&points, "pointMap")?)?;
+            // Intrinsics that the caller knows are better than fitted ones.
+            (depth, get(input, "camera").map_or(Ok(fitted), |c| camera(&c, width, height))?)
+        }
+        None => {
+            let given = get(input, "camera").unwrap_or(JsValue::UNDEFINED);
+            (depth(input, width, height)?, camera(&given, width, height)?)
+        }
+    };
+    Observation::new(depth, mask(input, width, height)?, camera)
+}
+
+/// `{ mesh: { positions, indices? } }`.
+pub fn mesh(input: &JsValue) -> Result<Mesh> {
+    let mesh = get(input, "mesh").unwrap_or(JsValue::UNDEFINED);
+    if !mesh.is_object() {
+        let remedy = "Pass typed arrays, or a file's bytes to the package's align().";
+        return Err(wrong_type("mesh", &mesh, "{ positions, indices }", remedy));
+    }
+    let positions = to_f32s(&get(&mesh, "positions").unwrap_or(JsValue::UNDEFINED), "mesh.positions")?;
+    let indices = get(&mesh, "indices").map(|indices| to_u32s(&indices, "mesh.indices")).transpose()?;
+    Mesh::from_flat(&positions, indices.as_deref())
+}
+
+fn depth(input: &JsValue, width: usize, height: usize) -> Result<DepthMap> {
+    let values = get(input, "depth").unwrap_or(JsValue::UNDEFINED);
+    let scale = number(input, "input", "depthScale")?;
+    if let Some(scale) = scale
+        && !(scale.is_finite() && scale > 0.0)
+    {
+        return Err(Error::new(
+            ErrorCode::InvalidArgument,
+            "depthScale",
+            format!("{scale}"),
+            "a finite number above 0",
+            "Pass metres per unit of depth: 0.001 for millimetres.",
+        ));
+    }
+    if let Some(units) = values.dyn_ref::<Uint16Array>() {
+        check_size("depth", width, height, units.length() as usize)?;
+        let scale = scale.unwrap_or(DEFAULT_DEPTH_SCALE);
+        let metres = units.to_vec().into_iter().map(|unit| (f64::from(unit) * scale) as f32).collect();
+        return DepthMap::from_metres(width, height, metres);
+    }
+    let mut metres = to_f32s(&values, "depth")
+        .map_err(|e| Error { expected: "a Float32Array (metres) or a Uint16Array (with depthScale)".into(), ..e })?;
+    if let Some(scale) = scale {
+        metres.iter_mut().for_each(|z| *z = (f64::from(*z) * scale) as f32);
+    }
+    DepthMap::from_metres(width, height, metres)
+}
+
+fn mask(input: &JsValue, width: usize, height: usize) -> Result<Mask> {
+    let pixels = to_u8s(&get(input, "mask").unwrap_or(JsValue::UNDEFINED), "mask")?;
+    let mask_width = size(input, "maskWidth")?.unwrap_or(width);
+    let mask_height = size(input, "maskHeight")?.unwrap_or(height);
+    let mask = Image::new("mask", mask_width, mask_height, pixels)?;
+    let Some(resize) = get(input, "resizeMask") else { return Ok(mask) };
+    if resize.as_string().as_deref() != Some("nearest") {
+        return Err(wrong_type(
+            "resizeMask",
+            &resize,
+            "\"nearest\"",
+            "Leave it out for masks of the depth map's size.",
+        ));
+    }
+    if width == 0 || height == 0 || (mask_width, mask_height) == (width, height) {
+        return Ok(mask);
+    }
+    Ok(mask.resize_nearest(width, height))
+}
+
+/// `{ fx, fy, cx, cy }`, `{ K }` or `{ fovYDeg }`.
+fn camera(value: &JsValue, width: usize, height: usize) -> Result<Pinhole> {
+    if let Some(k) = get(value, "K") {
+        return Pinhole::from_matrix(&to_numbers(&k, "camera.K")?);
+    }
+    if let Some(fov) = get(value, "fovYDeg") {
+        return Pinhole::from_vertical_fov(to_number(&fov, "camera.fovYDeg")?, width, height);
+    }
+    if !value.is_object() {
+        let remedy = "Intrinsics are in pixels of the depth image.";
+        return Err(wrong_type("camera", value, "{ fx, fy, cx, cy }, { K } or { fovYDeg }", remedy));
+    }
+    let of = |key| required_number(value, "camera", key);
+    Pinhole::new(of("fx")?, of("fy")?, of("cx")?, of("cy")?)
+}

@@ -1,0 +1,147 @@
+//! Reads properties of JavaScript objects, with errors that name them.
+
+use js_sys::{
+    Array, Float32Array, Float64Array, Object, Reflect, Uint8Array, Uint8ClampedArray, Uint16Array, Uint32Array,
+};
+use wasm_bindgen::{JsCast, JsValue};
+
+use crate::error::{Error, ErrorCode, Result};
+
+/// The property `key`, or `None` where it is missing, `undefined` or `null`.
+pub fn get(object: &JsValue, key: &str) -> Option<JsValue> {
+    // Reflect.get throws on primitives; they have no properties of ours.
+    Reflect::get(object, &key.into()).ok().filter(|value| !value.is_undefined() && !value.is_null())
+}
+
+/// The property `key` as a number.
+pub fn number(object: &JsValue, argument: &str, key: &str) -> Result<Option<f64>> {
+    get(object, key).map(|value| to_number(&value, &format!("{argument}.{key}"))).transpose()
+}
+
+/// The property `key` as a number that has to be there.
+pub fn required_number(object: &JsValue, argument: &str, key: &str) -> Result<f64> {
+    number(object, argument, key)?
+        .ok_or_else(|| wrong_type(&format!("{argument}.{key}"), &JsValue::UNDEFINED, "a number", "Pass it."))
+}
+
+/// The property `key` as a size in pixels.
+pub fn size(object: &JsValue, key: &str) -> Result<Option<usize>> {
+    let Some(value) = get(object, key) else { return Ok(None) };
+    let number = to_number(&value, key)?;
+    // Anything that is a whole number and fits 2³¹; the product of two sizes is checked against array lengths.
+    if number >= 0.0 && number <= 2_147_483_647.0 && number.fract() == 0.0 {
+        return Ok(Some(number as usize));
+    }
+    Err(wrong_type(key, &value, "a whole number of pixels", "Pass the image's size in pixels."))
+}
+
+/// A JavaScript number.
+pub fn to_number(value: &JsValue, argument: &str) -> Result<f64> {
+    value.as_f64().ok_or_else(|| wrong_type(argument, value, "a number", "Pass a number."))
+}
+
+/// An array (typed or not) of exactly N numbers.
+pub fn to_numbers<const N: usize>(value: &JsValue, argument: &str) -> Result<[f64; N]> {
+    let wrong = || wrong_type(argument, value, &format!("{N} numbers"), "Pass an array of numbers.");
+    let array = flat_array(value).ok_or_else(wrong)?;
+    if array.length() as usize != N {
+        let found = format!("{} numbers", array.length());
+        return Err(Error::new(ErrorCode::WrongLength, argument, found, format!("{N} numbers"), "Check its shape."));
+    }
+    let mut numbers = [0.0; N];
+    for (slot, item) in numbers.iter_mut().zip(array.iter()) {
+        *slot = item.as_f64().ok_or_else(wrong)?;
+    }
+    Ok(numbers)
+}
+
+/// An array or typed array as an `Array`; nested rows are put one after the other.
+fn flat_array(value: &JsValue) -> Option<Array> {
+    if Array::is_array(value) {
+        let array = Array::from(value);
+        let nested = array.iter().any(|item| Array::is_array(&item) || is_typed_array(&item));
+        return Some(if nested { array.flat(1) } else { array });
+    }
+    is_typed_array(value).then(|| Array::from(value))
+}
+
+fn is_typed_array(value: &JsValue) -> bool {
+    value.is_instance_of::<Float32Array>() || value.is_instance_of::<Float64Array>()
+}
+
+/// A copy of a `Float32Array`.
+pub fn to_f32s(value: &JsValue, argument: &str) -> Result<Vec<f32>> {
+    match value.dyn_ref::<Float32Array>() {
+        Some(array) => Ok(array.to_vec()),
+        None => Err(not_typed_array(argument, value, "a Float32Array")),
+    }
+}
+
+/// A copy of a `Float32Array` or `Float64Array` in f64.
+pub fn to_f64s(value: &JsValue, argument: &str) -> Result<Vec<f64>> {
+    if let Some(array) = value.dyn_ref::<Float64Array>() {
+        return Ok(array.to_vec());
+    }
+    match value.dyn_ref::<Float32Array>() {
+        Some(array) => Ok(array.to_vec().into_iter().map(f64::from).collect()),
+        None => Err(not_typed_array(argument, value, "a Float32Array or Float64Array")),
+    }
+}
+
+/// A copy of a `Uint32Array` or `Uint16Array`.
+pub fn to_u32s(value: &JsValue, argument: &str) -> Result<Vec<u32>> {
+    if let Some(array) = value.dyn_ref::<Uint32Array>() {
+        return Ok(array.to_vec());
+    }
+    match value.dyn_ref::<Uint16Array>() {
+        Some(array) => Ok(array.to_vec().into_iter().map(u32::from).collect()),
+        None => Err(not_typed_array(argument, value, "a Uint32Array or Uint16Array")),
+    }
+}
+
+/// A copy of a `Uint8Array` or `Uint8ClampedArray`.
+pub fn to_u8s(value: &JsValue, argument: &str) -> Result<Vec<u8>> {
+    if let Some(array) = value.dyn_ref::<Uint8Array>() {
+        return Ok(array.to_vec());
+    }
+    match value.dyn_ref::<Uint8ClampedArray>() {
+        Some(array) => Ok(array.to_vec()),
+        None => Err(not_typed_array(argument, value, "a Uint8Array")),
+    }
+}
+
+/// A value of the wrong type.
+pub fn wrong_type(argument: &str, value: &JsValue, expected: &str, remedy: &str) -> Error {
+    Error::new(ErrorCode::InvalidArgument, argument, describe(value), expected, remedy)
+}
+
+fn not_typed_array(argument: &str, value: &JsValue, expected: &str) -> Error {
+    wrong_type(argument, value, expected, "Convert it first: `new Float32Array(values)` and its kin copy any array.")
+}
+
+/// What a value is, in the words of the one who passed it.
+fn describe(value: &JsValue) -> String {
+    if value.is_undefined() {
+        return "nothing".into();
+    }
+    if value.is_null() {
+        return "null".into();
+    }
+    if let Some(text) = value.as_string() {
+        let start: String = text.chars().take(40).collect();
+        return format!("the string \"{start}\"");
+    }
+    if let Some(number) = value.as_f64() {
+        return format!("the number {number}");
+    }
+    if Array::is_array(value) {
+        return format!("an Array of {}", Array::from(value).length());
+    }
+    if value.is_function() {
+        return "a function".into();
+    }
+    match value.dyn_ref::<Object>() {
+        Some(object) => format!("a value of type {}", String::from(object.constructor().name())),
+        None => String::from(value.js_typeof().as_string().unwrap_or_default()),
+    }
+}

@@ -1,0 +1,49 @@
+//! Similarity transforms from JavaScript.
+
+use js_sys::{Array, Float32Array, Float64Array};
+use nalgebra::{Matrix3, Vector3};
+use wasm_bindgen::{JsCast, JsValue};
+
+use super::object::{get, required_number, to_numbers, wrong_type};
+use crate::error::Result;
+use crate::geometry::similarity::Similarity;
+
+/// `{ scale, rotation, translation }` with a quaternion x, y, z, w or nine numbers row by row;
+/// `{ matrix }`, or 16 numbers as they are: column-major.
+pub fn similarity(value: &JsValue, argument: &str) -> Result<Similarity> {
+    let named = |key: &str| format!("{argument}.{key}");
+    let is_array =
+        Array::is_array(value) || value.is_instance_of::<Float64Array>() || value.is_instance_of::<Float32Array>();
+    let parsed = if is_array {
+        Similarity::from_column_major(&to_numbers(value, argument)?)
+    } else if let Some(rotation) = get(value, "rotation").or_else(|| get(value, "rotationMatrix")) {
+        let translation = get(value, "translation").unwrap_or(JsValue::UNDEFINED);
+        Similarity::from_parts(
+            required_number(value, argument, "scale")?,
+            rotation_matrix(&rotation, &named("rotation"))?,
+            Vector3::from(to_numbers::<3>(&translation, &named("translation"))?),
+        )
+    } else if let Some(matrix) = get(value, "matrix") {
+        Similarity::from_column_major(&to_numbers(&matrix, &named("matrix"))?)
+    } else {
+        let remedy = "Pass what align() returned, or 16 numbers column by column.";
+        return Err(wrong_type(argument, value, "{ scale, rotation, translation } or { matrix }", remedy));
+    };
+    // The core speaks of "transform"; the caller may know it as "options.truth".
+    parsed.map_err(|e| {
+        let renamed = e.argument.replacen("transform", argument, 1);
+        e.about(renamed)
+    })
+}
+
+fn rotation_matrix(value: &JsValue, argument: &str) -> Result<Matrix3<f64>> {
+    match to_numbers::<4>(value, argument) {
+        Ok(quaternion) => Similarity::rotation_from_xyzw(&quaternion),
+        Err(_) => {
+            let expected = "a quaternion [x, y, z, w] or a 3 × 3 matrix row by row";
+            let rows = to_numbers::<9>(value, argument);
+            rows.map(|rows| Matrix3::from_row_slice(&rows))
+                .map_err(|e| crate::error::Error { expected: expected.into(), ..e })
+        }
+    }
+}
