@@ -30,3 +30,5 @@ pub mod silhouette;
 pub mod surface;
 pub mod symmetric_eigen;
 pub mod triangle_tree;
+#[cfg(all(feature = "formats", not(target_arch = "wasm32")))]
+pub mod real_cases;
