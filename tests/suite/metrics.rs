@@ -138,3 +138,27 @@ fn what_cannot_be_scored_is_refused() {
     let nowhere = Similarity { translation: Vector3::new(0.0, f64::NAN, 1.0), ..pose() };
     assert_eq!(code(&mesh, &nowhere), ErrorCode::InvalidTransform);
 }
+
+/// Fowler, Noll and Vo's hash.
+fn hash(words: impl Iterator<Item = u64>) -> u64 {
+    words.fold(0xcbf2_9ce4_8422_2325, |h, word| (h ^ word).wrapping_mul(0x0100_0000_01b3))
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn every_platform_gives_these_bits() {
+    let mesh = ellipsoid(Vec3::new(0.5, 0.3, 0.4), 24);
+    let mut rasteriser = Rasteriser::new();
+    rasteriser.render(&mesh, &pose(), &Pinhole::new(200.0, 210.0, 80.0, 58.0).unwrap(), WIDTH, HEIGHT);
+    let pixels = rasteriser.depth().iter().zip(rasteriser.triangles());
+    let image = hash(pixels.map(|(z, t)| u64::from(z.to_bits()) << 32 | u64::from(*t)));
+
+    let m = score(&observe(&mesh, 0.003), &mesh, &Similarity { scale: 0.152, ..pose() });
+    let fields = [m.boundary_f, m.center_drift_px, m.iou, m.chamfer_mm, m.uni_chamfer_mm, m.fitness];
+    let fields = fields.into_iter().chain([m.normal_consistency, m.depth_mae_mm]);
+    let metrics = hash(fields.map(|f| f.unwrap().to_bits()));
+    assert_eq!(
+        (image, metrics),
+        (9_813_633_021_577_151_545, 3_124_411_306_330_285_539),
+        "an intended change of the method changes these: {m:?}"
+    );
+}

@@ -117,6 +117,29 @@ fn what_is_nearer_than_the_near_plane_is_cut() {
 }
 
 #[wasm_bindgen_test(unsupported = test)]
+fn edges_from_beyond_the_guard_band_stay_straight() {
+    // Half planes: a triangle with one edge through the image and corners 2²² pixels away, twice as far as the
+    // guard band reaches. All coordinates are exact in f32.
+    let (through, reach) = ([10.5f32, 7.5], (1 << 22) as f32);
+    let steps = [-1.0f32, -0.5, 0.0, 0.5, 1.0];
+    let directions = steps.iter().flat_map(|&a| steps.map(|b| [a, b])).filter(|d| d[0].abs().max(d[1].abs()) == 1.0);
+    let mut rasteriser = Rasteriser::new();
+    for [a, b] in directions {
+        let at = |du: f32, dv: f32| [through[0] + reach * du, through[1] + reach * dv, 1.0];
+        let mesh = triangles(&[at(-a, -b), at(a, b), at(-b, a)]);
+        rasteriser.render_depth(&mesh, &Similarity::identity(), &plain(), 20, 16);
+        for (i, z) in rasteriser.depth().iter().enumerate() {
+            let side = a * ((i / 20) as f32 - through[1]) - b * ((i % 20) as f32 - through[0]);
+            let drawn = *z > 0.0;
+            assert!(
+                side.abs() < 0.01 || drawn == (side > 0.0),
+                "edge along ({a}, {b}), pixel {i}: side {side}, {drawn}"
+            );
+        }
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
 fn buffers_are_reused_without_a_trace() {
     let (ball, pose) =
         (sphere(1.0, 12), Similarity { translation: Vector3::new(0.1, 0.2, 4.0), ..Similarity::identity() });
