@@ -19,10 +19,14 @@ pub(crate) fn parse(argument: &str, bytes: &[u8]) -> Result<Value> {
 pub(crate) fn numbers<const N: usize>(value: &Value) -> Option<[f64; N]> {
     let mut numbers = [0.0; N];
     let mut slots = numbers.iter_mut();
+    let mut store = |x: &Value| -> Option<()> {
+        *slots.next()? = x.as_f64()?;
+        Some(())
+    };
     for item in value.as_array()? {
         match item.as_array() {
-            Some(row) => row.iter().try_for_each(|x| Some(*slots.next()? = x.as_f64()?))?,
-            None => *slots.next()? = item.as_f64()?,
+            Some(row) => row.iter().try_for_each(&mut store)?,
+            None => store(item)?,
         }
     }
     slots.next().is_none().then_some(numbers)

@@ -147,7 +147,9 @@ fn size_fits(kind: Kind, size: usize) -> bool {
 fn shape(text: &str) -> Option<Vec<usize>> {
     let (inside, _) = text.strip_prefix('(')?.split_once(')')?;
     let sizes = inside.split(',').map(|size| size.trim().trim_end_matches('L')).filter(|size| !size.is_empty());
-    sizes.take(8).map(|size| size.parse().ok()).collect()
+    // Saturated: too large is too large, whatever the platform's word.
+    let size = |size: &str| size.parse::<u64>().ok().map(|size| usize::try_from(size).unwrap_or(usize::MAX));
+    sizes.take(8).map(size).collect()
 }
 
 /// IEEE 754 binary16.

@@ -76,7 +76,8 @@ fn read_faces(element: &Element, body: &mut Body<'_>, push: &mut dyn FnMut(&[u32
         corners.clear();
         for &value in values {
             let separates = is_strip && value == -1.0;
-            if !separates && !(value >= 0.0 && value < f64::from(u32::MAX) && value == value.trunc()) {
+            let is_index = value >= 0.0 && value < f64::from(u32::MAX) && value == value.trunc();
+            if !separates && !is_index {
                 return Err(Error::new(
                     ErrorCode::IndexOutOfRange,
                     "mesh",

@@ -129,7 +129,8 @@ impl Rle {
         let value = value.get("segmentation").unwrap_or(&value);
         let wrong = || corrupt("mask", "JSON without a run-length encoding", "{\"size\": [h, w], \"counts\": …}");
         let size = value.get("size").and_then(Value::as_array).ok_or_else(wrong)?;
-        let side = |i: usize| size.get(i).and_then(Value::as_u64).and_then(|n| usize::try_from(n).ok());
+        // Saturated: too large is too large, whatever the platform's word.
+        let side = |i: usize| size.get(i).and_then(Value::as_u64).map(|n| usize::try_from(n).unwrap_or(usize::MAX));
         let (Some(height), Some(width), 2) = (side(0), side(1), size.len()) else { return Err(wrong()) };
         match value.get("counts") {
             Some(Value::String(text)) => Self::from_compressed(width, height, text),

@@ -3,7 +3,7 @@
 
 use js_sys::{Array, Function, JSON, Object, Reflect, Uint8Array};
 use sim3align::bindings::formats::*;
-use wasm_bindgen::JsValue;
+use wasm_bindgen::{JsCast, JsValue};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::formats_fixtures::fixture;
@@ -33,7 +33,8 @@ fn error_of(result: Result<JsValue, JsValue>) -> (String, String) {
     assert_eq!(string("name"), "Sim3AlignError");
     assert!(string("message").contains(&string("found")) && string("message").contains(&string("remedy")));
     assert!(string("message").contains(&string("expected")));
-    let own: Vec<String> = Object::keys(&error.into()).iter().filter_map(|name| name.as_string()).collect();
+    let own: Vec<String> =
+        Object::keys(error.unchecked_ref::<Object>()).iter().filter_map(|name| name.as_string()).collect();
     assert!(["code", "argument", "found", "expected", "remedy"].iter().all(|name| own.iter().any(|own| own == name)));
     (string("code"), string("argument"))
 }
