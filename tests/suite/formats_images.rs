@@ -131,8 +131,8 @@ fn coco_run_lengths_are_those_of_pycocotools() {
     let blob = read_mask(fixture!("rle-blob.json")).unwrap();
     assert_eq!((blob.width(), blob.height()), (320, 240));
     assert_eq!(blob.data().iter().filter(|&&pixel| pixel == 1).count(), 24117);
-    let columns = (0..320).filter(|&u| (0..240).any(|v| blob.get(u, v) == Some(1)));
-    assert_eq!((columns.clone().next(), columns.last()), (Some(61), Some(319)));
+    let mut columns = (0..320).filter(|&u| (0..240).any(|v| blob.get(u, v) == Some(1)));
+    assert_eq!((columns.next(), columns.next_back()), (Some(61), Some(319)));
     let nested = format!("{{\"segmentation\":{}}}", String::from_utf8_lossy(fixture!("rle-small.json")));
     assert_eq!(read_mask(nested.as_bytes()).unwrap().data(), expected_mask());
 }

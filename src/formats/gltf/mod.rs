@@ -1,7 +1,7 @@
 //! glTF 2.0: the default scene as one mesh, in the scene's frame.
 //!
 //! The `gltf` crate's types parse the JSON; all that follows an index or an offset is read by our own checked
-//! code, because a hostile file must end in an error. Only the parts named in [`Document`] are parsed, so that
+//! code, because a hostile file must end in an error. Only the parts that say where the triangles are get parsed, so that
 //! an odd material or texture can't keep a mesh from being read.
 
 mod accessor;
