@@ -1,32 +1,40 @@
 //! From two clouds with normals to a similarity: what `align` and `register` have in common.
 
+use glam::Vec3;
+
 use super::options::{AlignOptions, GuardMode, Icp, RegisterOptions};
 use super::progress::{Stage, Stopwatch};
 use super::report::Counts;
 use crate::error::Result;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
-use crate::geometry::similarity::Similarity;
-use crate::geometry::similarity::vector3;
+use crate::geometry::similarity::{Similarity, vector3};
 use crate::geometry::voxel_grid::voxel_downsample;
 use crate::stages::filter::{SupportSettings, supported};
 use crate::stages::fpfh::fpfh;
 use crate::stages::icp::{IcpMetric, IcpSettings, Refined, refine};
-use crate::stages::matching::{Match, mutual_matches};
+use crate::stages::matching::{Match, mutual_matches, one_way_matches};
+use crate::stages::normals::{Neighborhood, Orientation, estimate_normals};
 use crate::stages::ransac::{self, Consensus, Guard, RansacSettings, ransac};
 use crate::stages::umeyama::{Pair, ScaleMode, umeyama};
 
 /// Neighbours from which a normal is estimated.
 pub(super) const NORMAL_NEIGHBORS: usize = 30;
 
+/// Neighbours on the voxel grid from which a normal is estimated: about two voxels around.
+const GRID_NORMAL_NEIGHBORS: usize = 16;
+
 /// Points that descriptors are computed for at most; denser clouds get a coarser grid. Matching is quadratic.
 const MAX_FEATURES: usize = 8_000;
+
+/// Fewer mutual matches than this hold too few right ones among them: RANSAC then sifts the one-way matches.
+const MIN_MUTUAL_MATCHES: usize = 50;
 
 /// Source points of the last refinement at most.
 const FINE_POINTS: usize = 5_000;
 
 /// ICP has come to rest when nothing in the unit box moves further than this.
-const TOLERANCE: f64 = 1e-7;
+const TOLERANCE: f64 = 1e-5;
 
 /// Everything the estimation can be told, in the normalised frames (box diagonals 1, s_init = 1).
 #[derive(Debug, Clone, Copy)]
@@ -136,7 +144,24 @@ impl<'a> Side<'a> {
             voxels = voxel_downsample(full, size);
         }
         let tree = KdTree::new(&voxels.points);
+        smooth_normals(&mut voxels, &tree);
         Self { full, voxels, tree }
+    }
+}
+
+/// Normals for the descriptors, from the grid's own points: both clouds then have them at one scale, whatever
+/// their density and noise. The mean normals of the cells say which side is outside.
+fn smooth_normals(voxels: &mut Cloud, tree: &KdTree) {
+    let normals = estimate_normals(
+        &voxels.points,
+        tree,
+        Neighborhood::nearest(GRID_NORMAL_NEIGHBORS),
+        Orientation::TowardsCamera,
+    );
+    for (own, smooth) in voxels.normals.iter_mut().zip(normals) {
+        if smooth != Vec3::ZERO {
+            *own = if own.dot(smooth) < 0.0 { -smooth } else { smooth };
+        }
     }
 }
 
@@ -155,7 +180,10 @@ pub(super) fn estimate(
     let target_features = fpfh(&target.voxels, &target.tree, radius);
 
     stages.enter(Stage::Matching);
-    let matches = mutual_matches(&source_features, &target_features);
+    let mut matches = mutual_matches(&source_features, &target_features);
+    if matches.len() < MIN_MUTUAL_MATCHES {
+        matches = one_way_matches(&source_features, &target_features);
+    }
 
     stages.enter(Stage::Ransac);
     let consensus = ransac(&source.voxels.points, &target.voxels.points, &matches, &settings.ransac)?;

@@ -25,6 +25,13 @@ pub fn mutual_matches(source: &[Descriptor], target: &[Descriptor]) -> Vec<Match
     mutual.collect()
 }
 
+/// The best source point for every target point: many more pairs than the mutual ones, most of them wrong. For
+/// targets so partial or so noisy that hardly any pair is mutual. In the order of the target.
+pub fn one_way_matches(source: &[Descriptor], target: &[Descriptor]) -> Vec<Match> {
+    let nearest = nearest_of_each(target, source);
+    nearest.into_iter().zip(0..).filter_map(|(s, t)| Some(Match { source: s?, target: t })).collect()
+}
+
 /// Index of the nearest of `among` for each descriptor.
 fn nearest_of_each(descriptors: &[Descriptor], among: &[Descriptor]) -> Vec<Option<u32>> {
     let nearest = |descriptor: &Descriptor| {

@@ -24,11 +24,11 @@ pub mod pose_error;
 pub mod rasteriser;
 pub mod rasteriser_oracle;
 pub mod rasteriser_seams;
+#[cfg(all(feature = "formats", not(target_arch = "wasm32")))]
+pub mod real_cases;
 pub mod sample;
 pub mod shapes;
 pub mod silhouette;
 pub mod surface;
 pub mod symmetric_eigen;
 pub mod triangle_tree;
-#[cfg(all(feature = "formats", not(target_arch = "wasm32")))]
-pub mod real_cases;

@@ -33,7 +33,14 @@ fn the_paper_preset_runs_on_every_case_and_its_scale_stays_inside_the_guard() {
         });
         let options = EvaluateOptions::default();
         let scored = evaluate(&case.observation, &case.mesh, &camera_from_mesh, truth.as_ref(), &options).unwrap();
-        println!("{}: {:?}\n  {:?}\n  {:?}", case.name, scored.metrics, scored.errors, result.counts);
+        println!(
+            "{}: scale ratio {:.3}, IoU {:.3}, errors {:?}, {:?}",
+            case.name,
+            result.scale_ratio,
+            scored.metrics.iou.unwrap(),
+            scored.errors.map(|e| (e.scale_error, e.rotation_error_deg, e.translation_error_relative)),
+            result.counts
+        );
     }
 }
 
