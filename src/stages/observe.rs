@@ -86,11 +86,7 @@ impl Observation {
             return Cloud::from_points(readings.into_iter().map(back_project).collect());
         }
         let mut random = Random::new(seed, STREAM);
-        let drawn = (0..max_points).map(|k| {
-            let (low, high) = (k * n / max_points, (k + 1) * n / max_points);
-            back_project(readings[low + random.below(high - low)])
-        });
-        Cloud::from_points(drawn.collect())
+        Cloud::from_points(random.one_of_each_run(n, max_points).map(|k| back_project(readings[k])).collect())
     }
 
     /// Index and depth of each reading inside (or outside) the mask.
