@@ -18,6 +18,9 @@ pub type Descriptor = [f32; DIMENSION];
 /// Neighbours that a histogram counts at most; the nearest count. Bounds the time on uneven clouds.
 const MAX_NEIGHBORS: usize = 128;
 
+/// Sine of the angle between a normal and a connecting line below which they are parallel to within rounding.
+const PARALLEL: f32 = 1e-5;
+
 /// A descriptor per point of a cloud with normals, from the neighbours within `radius`. `tree` is the tree over
 /// these very points.
 pub fn fpfh(cloud: &Cloud, tree: &KdTree, radius: f32) -> Vec<Descriptor> {
@@ -94,7 +97,12 @@ fn pair_features((p, p_normal): (Vec3, Vec3), (q, q_normal): (Vec3, Vec3)) -> Op
     if u == Vec3::ZERO || other == Vec3::ZERO {
         return None;
     }
-    let v = line.cross(u).try_normalize()?;
+    let v = line.cross(u);
+    // A cross product of rounding errors points anywhere.
+    if v.length_squared() < PARALLEL * PARALLEL {
+        return None;
+    }
+    let v = v.normalize();
     let w = u.cross(v);
     let alpha = v.dot(other);
     let phi = u.dot(line);
