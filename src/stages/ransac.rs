@@ -91,13 +91,15 @@ pub fn ransac(
     matches: &[Match],
     settings: &RansacSettings,
 ) -> Result<Consensus> {
-    let pairs: Vec<Pair> = matches
+    // Matches of points that do not exist are passed over; the others keep their numbers.
+    let (numbers, pairs): (Vec<usize>, Vec<Pair>) = matches
         .iter()
-        .filter_map(|m| {
+        .enumerate()
+        .filter_map(|(i, m)| {
             let (source, target) = (source.get(m.source as usize)?, target.get(m.target as usize)?);
-            Some(Pair { source: vector3(*source), target: vector3(*target), weight: 1.0 })
+            Some((i, Pair { source: vector3(*source), target: vector3(*target), weight: 1.0 }))
         })
-        .collect();
+        .unzip();
     let mut counts = RansacCounts::default();
     let mut best: Option<Hypothesis> = None;
     if pairs.len() >= 3 {
@@ -124,6 +126,7 @@ pub fn ransac(
     let consensus = best.map(|b| (inliers(&b.transform, &pairs, settings.inlier_distance), b));
     match consensus {
         Some((inliers, b)) if inliers.len() >= 3 => {
+            let inliers = inliers.into_iter().map(|i| numbers[i]).collect();
             Ok(Consensus { target_from_source: b.transform, inliers, clamped: b.clamped, counts })
         }
         _ => Err(no_consensus(pairs.len(), &counts)),
