@@ -157,8 +157,8 @@ fn edges_agree(set: &[Pair; 3], edge_similarity: f64) -> bool {
     let stretch = |i: usize, j: usize| (set[i].target - set[j].target).norm() / (set[i].source - set[j].source).norm();
     let ratios = [stretch(0, 1), stretch(1, 2), stretch(2, 0)];
     let (min, max) = ratios.iter().fold((f64::INFINITY, 0.0_f64), |(min, max), &r| (min.min(r), max.max(r)));
-    // Not-a-number (two equal points) agrees with nothing.
-    min >= edge_similarity * max && max.is_finite() && min > 0.0
+    // An edge between equal points is stretched by 0, ∞ or not-a-number, and agrees with nothing.
+    ratios.iter().all(|r| r.is_finite()) && min >= edge_similarity * max && min > 0.0
 }
 
 /// The closed form on some pairs, held against the guard.
