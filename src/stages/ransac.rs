@@ -169,7 +169,8 @@ fn fit<'a>(
 ) -> Option<Hypothesis> {
     let transform = umeyama(pairs.clone().copied(), settings.scale_mode).ok()?;
     let Some(guard) = settings.guard else { return Some(Hypothesis { transform, clamped: false, score: 0.0 }) };
-    let scale = transform.scale.clamp(guard.min, guard.max);
+    // Unlike clamp, no panic where a caller swapped the bounds.
+    let scale = transform.scale.min(guard.max).max(guard.min);
     if scale == transform.scale {
         return Some(Hypothesis { transform, clamped: false, score: 0.0 });
     }
