@@ -61,9 +61,9 @@ pub struct RansacCounts {
     pub iterations: usize,
     /// Minimal sets dropped by the edge-length check.
     pub inconsistent: usize,
-    /// Hypotheses dropped because their scale left the guard.
+    /// Minimal sets dropped because the scale of their hypothesis left the guard.
     pub rejected: usize,
-    /// Hypotheses whose scale was projected back into the guard.
+    /// Minimal sets whose hypothesis had its scale projected back into the guard.
     pub clamped: usize,
 }
 
@@ -115,7 +115,7 @@ pub fn ransac(
             let Some(hypothesis) = fit(minimal_set.iter(), settings, &mut counts) else { continue };
             let score = score(&hypothesis.transform, &pairs, settings.inlier_distance);
             if best.as_ref().is_none_or(|b| score > b.score) {
-                let improved = refit(Hypothesis { score, ..hypothesis }, &pairs, settings, &mut counts);
+                let improved = refit(Hypothesis { score, ..hypothesis }, &pairs, settings);
                 let share =
                     inliers(&improved.transform, &pairs, settings.inlier_distance).len() as f64 / pairs.len() as f64;
                 needed = needed.min(iterations_needed(share, settings.confidence));
@@ -188,10 +188,12 @@ fn fit<'a>(
 }
 
 /// Refits on the inliers for as long as the score rises.
-fn refit(mut best: Hypothesis, pairs: &[Pair], settings: &RansacSettings, counts: &mut RansacCounts) -> Hypothesis {
+fn refit(mut best: Hypothesis, pairs: &[Pair], settings: &RansacSettings) -> Hypothesis {
+    // The counts are of minimal sets; what the guard says to a refit is not among them.
+    let mut uncounted = RansacCounts::default();
     for _ in 0..LOCAL_REFITS {
         let inliers = inliers(&best.transform, pairs, settings.inlier_distance);
-        let Some(refitted) = fit(inliers.iter().map(|&i| &pairs[i]), settings, counts) else { break };
+        let Some(refitted) = fit(inliers.iter().map(|&i| &pairs[i]), settings, &mut uncounted) else { break };
         let score = score(&refitted.transform, pairs, settings.inlier_distance);
         if score <= best.score {
             break;
