@@ -61,8 +61,7 @@ impl Similarity {
     pub fn from_column_major(m: &[f64; 16]) -> Result<Self> {
         let linear = Matrix3::new(m[0], m[4], m[8], m[1], m[5], m[9], m[2], m[6], m[10]);
         let volume = linear.determinant();
-        let last_row_off = m[3].abs().max(m[7].abs()).max(m[11].abs()).max((m[15] - 1.0).abs());
-        if !(last_row_off <= 1e-9) {
+        if ![m[3], m[7], m[11], m[15] - 1.0].iter().all(|x| x.abs() <= 1e-9) {
             return Err(Error::new(
                 ErrorCode::InvalidTransform,
                 "transform.matrix",

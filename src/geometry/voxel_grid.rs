@@ -13,7 +13,7 @@ const MAX_CELLS: i64 = (1 << 21) - 1;
 /// where `voxel_size` is not above 0.
 pub fn voxel_downsample(cloud: &Cloud, voxel_size: f32) -> Cloud {
     let Some(bounds) = Bounds::of(&cloud.points) else { return Cloud::default() };
-    if !(voxel_size > 0.0) {
+    if voxel_size.is_nan() || voxel_size <= 0.0 {
         return cloud.clone();
     }
     let cell = |p: Vec3| ((p - bounds.min) / voxel_size).as_i64vec3().clamp(I64Vec3::ZERO, I64Vec3::splat(MAX_CELLS));
