@@ -59,7 +59,8 @@ pub fn align(observation: &Observation, mesh: &Mesh, options: &AlignOptions, hos
     let extents_obs = Extents::of("depth", &observed.points)?;
     let extents_rec = Extents::of("mesh", &reconstructed.points)?;
     let tree = KdTree::new(&observed.points);
-    observed.normals = estimate_normals(&observed.points, &tree, Neighborhood::nearest(NORMAL_NEIGHBORS), Orientation::TowardsCamera);
+    observed.normals =
+        estimate_normals(&observed.points, &tree, Neighborhood::nearest(NORMAL_NEIGHBORS), Orientation::TowardsCamera);
     let target = extents_obs.normalized(&observed);
     let source = extents_rec.normalized(&reconstructed);
 

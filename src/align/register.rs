@@ -203,7 +203,8 @@ fn with_normals(mut cloud: Cloud) -> Cloud {
     };
     let center = glam::Vec3::new(median(0), median(1), median(2));
     let tree = KdTree::new(&cloud.points);
-    cloud.normals = estimate_normals(&cloud.points, &tree, Neighborhood::nearest(NORMAL_NEIGHBORS), Orientation::AwayFrom(center));
+    cloud.normals =
+        estimate_normals(&cloud.points, &tree, Neighborhood::nearest(NORMAL_NEIGHBORS), Orientation::AwayFrom(center));
     cloud
 }
 

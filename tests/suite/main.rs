@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 pub mod distance_transform;
+pub mod kd_tree;
 pub mod metrics;
 pub mod normals;
 pub mod pose_error;
@@ -11,6 +12,9 @@ pub mod rasteriser_seams;
 pub mod sample;
 pub mod shapes;
 pub mod silhouette;
+pub mod similarity;
+pub mod support;
 pub mod surface;
 pub mod symmetric_eigen;
 pub mod triangle_tree;
+pub mod voxel_grid;
