@@ -223,9 +223,7 @@ fn subsample(xyz: &[f64], max_points: usize, random: &mut Random) -> Vec<f64> {
         return xyz.to_vec();
     }
     let mut drawn = Vec::with_capacity(3 * max_points);
-    for k in 0..max_points {
-        let (low, high) = (k * n / max_points, (k + 1) * n / max_points);
-        let i = low + random.below(high - low);
+    for i in random.one_of_each_run(n, max_points) {
         drawn.extend_from_slice(&xyz[3 * i..3 * i + 3]);
     }
     drawn

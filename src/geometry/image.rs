@@ -53,9 +53,11 @@ impl<T: Copy> Image<T> {
         if u < self.width && v < self.height { self.data.get(v * self.width + u).copied() } else { None }
     }
 
-    /// Nearest-neighbour resampling: the new pixel takes the old pixel that its centre falls into.
+    /// Nearest-neighbour resampling: the new pixel takes the old pixel that its centre falls into. The new sizes
+    /// must be those of an image already checked.
     pub fn resize_nearest(&self, width: usize, height: usize) -> Self {
-        let source = |i: usize, to: usize, from: usize| ((2 * i + 1) * from / (2 * to)).min(from - 1);
+        // In u64: where usize has 32 bits, the product of two row lengths may not fit.
+        let source = |i: usize, to: usize, from: usize| ((2 * i as u64 + 1) * from as u64 / (2 * to as u64)) as usize;
         let mut data = Vec::with_capacity(width * height);
         for v in 0..height {
             let row = source(v, height, self.height) * self.width;

@@ -68,7 +68,7 @@ impl KdTree {
         self.nearest_within(query, f32::INFINITY)
     }
 
-    /// The point nearest to `query` among those closer than `radius`.
+    /// The point nearest to `query` among those within `radius`, the boundary included.
     pub fn nearest_within(&self, query: Vec3, radius: f32) -> Option<Neighbor> {
         let mut nearest = Nearest { best: Neighbor { index: u32::MAX, distance_squared: radius * radius } };
         self.visit(query, &mut nearest);

@@ -105,8 +105,8 @@ impl Mesh {
     pub fn signed_volume6(&self) -> f64 {
         let Some(&origin) = self.positions.first() else { return 0.0 };
         let volume = |t: &[u32; 3]| {
-            let [a, b, c] = self.corners(*t).map(|p| p - origin);
-            f64::from(a.dot(b.cross(c)))
+            let [a, b, c] = self.corners(*t).map(|p| p.as_dvec3() - origin.as_dvec3());
+            a.dot(b.cross(c))
         };
         self.triangles.iter().map(volume).sum()
     }

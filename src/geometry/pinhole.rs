@@ -55,7 +55,7 @@ impl Pinhole {
         let w = k[8];
         let zeros = [k[1], k[3], k[6], k[7]];
         let tolerance = 1e-6 * k[0].abs();
-        if !w.is_finite() || w == 0.0 || zeros.iter().any(|x| !(x.abs() <= tolerance)) {
+        if !w.is_finite() || w == 0.0 || !zeros.iter().all(|x| x.abs() <= tolerance) {
             return Err(Error::new(
                 ErrorCode::InvalidCamera,
                 "camera.K",

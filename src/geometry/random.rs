@@ -20,6 +20,14 @@ impl Random {
         ((u64::from(self.0.next_u32()) * bound as u64) >> 32) as usize
     }
 
+    /// One index, drawn at random, from each of `count` equal runs of 0..`n`, in ascending order;
+    /// `count` is at most `n`.
+    pub fn one_of_each_run(&mut self, n: usize, count: usize) -> impl Iterator<Item = usize> {
+        // In u64: where usize has 32 bits, 20 000 of a VGA image's pixels are already too many to multiply.
+        let start = move |k: usize| (k as u64 * n as u64 / count as u64) as usize;
+        (0..count).map(move |k| start(k) + self.below(start(k + 1) - start(k)))
+    }
+
     /// A number in [0, 1).
     pub fn uniform(&mut self) -> f64 {
         f64::from(self.0.next_u32()) / 4_294_967_296.0

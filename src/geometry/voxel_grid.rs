@@ -9,10 +9,11 @@ const MAX_CELLS: i64 = (1 << 21) - 1;
 
 /// The mean point (and the normalised mean normal) of every occupied cell of edge `voxel_size`, cell by cell
 /// in ascending x, then y, then z. Cells are counted from the cloud's own smallest corner, so that the result
-/// moves with the cloud. Sorted rather than hashed: the order never depends on the platform.
+/// moves with the cloud. Sorted rather than hashed: the order never depends on the platform. The cloud as it is
+/// where `voxel_size` is not above 0.
 pub fn voxel_downsample(cloud: &Cloud, voxel_size: f32) -> Cloud {
     let Some(bounds) = Bounds::of(&cloud.points) else { return Cloud::default() };
-    if voxel_size <= 0.0 {
+    if voxel_size.is_nan() || voxel_size <= 0.0 {
         return cloud.clone();
     }
     let cell = |p: Vec3| ((p - bounds.min) / voxel_size).as_i64vec3().clamp(I64Vec3::ZERO, I64Vec3::splat(MAX_CELLS));
@@ -31,7 +32,7 @@ pub fn voxel_downsample(cloud: &Cloud, voxel_size: f32) -> Cloud {
         let sum: Vec3 = members().map(|i| cloud.points[i] - first).sum();
         out.points.push(first + sum / run.len() as f32);
         if !cloud.normals.is_empty() {
-            out.normals.push(members().map(|i| cloud.normals[i]).sum::<Vec3>().normalize_or_zero());
+            out.normals.push(members().filter_map(|i| cloud.normals.get(i)).sum::<Vec3>().normalize_or_zero());
         }
     }
     out

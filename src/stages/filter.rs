@@ -45,6 +45,7 @@ pub fn supported(
         let landed = transform.apply(point);
         let nearest = target_tree.nearest_within(landed, settings.max_distance)?;
         if let (Some(&n), Some(&m)) = (source.normals.get(i), target.normals.get(nearest.index as usize))
+            && settings.min_cosine > -1.0
             && n != Vec3::ZERO
             && m != Vec3::ZERO
             && transform.rotate(n).dot(m) < settings.min_cosine

@@ -18,7 +18,11 @@ pub type Descriptor = [f32; DIMENSION];
 /// Neighbours that a histogram counts at most; the nearest count. Bounds the time on uneven clouds.
 const MAX_NEIGHBORS: usize = 128;
 
-/// A descriptor per point of a cloud with normals, from the neighbours within `radius`.
+/// Sine of the angle between a normal and a connecting line below which they are parallel to within rounding.
+const PARALLEL: f32 = 1e-5;
+
+/// A descriptor per point of a cloud with normals, from the neighbours within `radius`. `tree` is the tree over
+/// these very points.
 pub fn fpfh(cloud: &Cloud, tree: &KdTree, radius: f32) -> Vec<Descriptor> {
     let mut found = Vec::new();
     let neighborhoods: Vec<Vec<Neighbor>> = cloud
@@ -47,7 +51,7 @@ pub fn fpfh(cloud: &Cloud, tree: &KdTree, radius: f32) -> Vec<Descriptor> {
         let mut sum = [0.0; DIMENSION];
         for neighbor in near {
             let weight = 1.0 / neighbor.distance_squared.sqrt();
-            for (bin, value) in sum.iter_mut().zip(&simplified[neighbor.index as usize]) {
+            for (bin, value) in sum.iter_mut().zip(simplified.get(neighbor.index as usize).into_iter().flatten()) {
                 *bin += weight * value;
             }
         }
@@ -66,9 +70,10 @@ pub fn fpfh(cloud: &Cloud, tree: &KdTree, radius: f32) -> Vec<Descriptor> {
 fn simplified_histogram(cloud: &Cloud, i: usize, near: &[Neighbor]) -> Descriptor {
     let mut histogram = [0.0; DIMENSION];
     for neighbor in near {
-        let j = neighbor.index as usize;
-        let features = pair_features(cloud.points[i], cloud.normals[i], cloud.points[j], cloud.normals[j]);
-        if let Some(features) = features {
+        let oriented = |i: usize| Some((*cloud.points.get(i)?, *cloud.normals.get(i)?));
+        if let (Some(p), Some(q)) = (oriented(i), oriented(neighbor.index as usize))
+            && let Some(features) = pair_features(p, q)
+        {
             for (third, feature) in features.into_iter().enumerate() {
                 let bin = (feature * BINS as f32) as usize;
                 histogram[third * BINS + bin.min(BINS - 1)] += 1.0;
@@ -81,7 +86,7 @@ fn simplified_histogram(cloud: &Cloud, i: usize, near: &[Neighbor]) -> Descripto
 
 /// α, φ, θ of the Darboux frame between two oriented points, each mapped to [0, 1].
 /// `None` where a normal is unknown or runs along the connecting line.
-fn pair_features(p: Vec3, p_normal: Vec3, q: Vec3, q_normal: Vec3) -> Option<[f32; 3]> {
+fn pair_features((p, p_normal): (Vec3, Vec3), (q, q_normal): (Vec3, Vec3)) -> Option<[f32; 3]> {
     let line = (q - p).try_normalize()?;
     // The frame stands on the point whose normal is nearer to the line, so that the pair's order is no matter.
     let (u, other, line) = if p_normal.dot(line).abs() >= q_normal.dot(line).abs() {
@@ -92,7 +97,12 @@ fn pair_features(p: Vec3, p_normal: Vec3, q: Vec3, q_normal: Vec3) -> Option<[f3
     if u == Vec3::ZERO || other == Vec3::ZERO {
         return None;
     }
-    let v = line.cross(u).try_normalize()?;
+    let v = line.cross(u);
+    // A cross product of rounding errors points anywhere.
+    if v.length_squared() < PARALLEL * PARALLEL {
+        return None;
+    }
+    let v = v.normalize();
     let w = u.cross(v);
     let alpha = v.dot(other);
     let phi = u.dot(line);

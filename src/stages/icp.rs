@@ -165,9 +165,9 @@ fn step(source: &Cloud, residuals: &Residuals, pose: &Similarity, settings: &Icp
         IcpMetric::PointToPlane => gauss_newton::<7>(residuals, pose)?,
     };
     match settings.scale_bounds {
-        Some([min, max]) if !(min..=max).contains(&next.scale) => {
+        Some([min, max]) if !settings.lock_scale && !(min..=max).contains(&next.scale) => {
             // The turn and the scale stay about the middle of the points that matter, not about the origin.
-            let scale = next.scale.clamp(min, max);
+            let scale = next.scale.min(max).max(min);
             let center = weighted_center(residuals);
             let local = next.inverse().apply(center);
             Some(Similarity { scale, translation: center - next.rotation * local * scale, ..next })

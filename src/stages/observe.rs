@@ -86,11 +86,7 @@ impl Observation {
             return Cloud::from_points(readings.into_iter().map(back_project).collect());
         }
         let mut random = Random::new(seed, STREAM);
-        let drawn = (0..max_points).map(|k| {
-            let (low, high) = (k * n / max_points, (k + 1) * n / max_points);
-            back_project(readings[low + random.below(high - low)])
-        });
-        Cloud::from_points(drawn.collect())
+        Cloud::from_points(random.one_of_each_run(n, max_points).map(|k| back_project(readings[k])).collect())
     }
 
     /// Index and depth of each reading inside (or outside) the mask.
@@ -150,8 +146,8 @@ impl Observation {
 /// The intrinsics are the least-squares fit of u = fx·x/z + cx and v = fy·y/z + cy over the readings.
 ///
 /// # Errors
-/// [`ErrorCode::WrongLength`], [`ErrorCode::EmptyImage`], and [`ErrorCode::InvalidCamera`] where the points
-/// are not those of a pinhole camera looking along z.
+/// [`ErrorCode::WrongLength`], [`ErrorCode::EmptyImage`], [`ErrorCode::NoDepthInMask`] where no point is a
+/// reading, and [`ErrorCode::InvalidCamera`] where the points are not those of a pinhole camera looking along z.
 pub fn from_point_map(width: usize, height: usize, points: &[f32]) -> Result<(DepthMap, Pinhole)> {
     if !points.len().is_multiple_of(3) {
         return Err(Error::new(
@@ -166,6 +162,15 @@ pub fn from_point_map(width: usize, height: usize, points: &[f32]) -> Result<(De
     let reading = |p: &[f32]| p.iter().all(|c| c.is_finite()) && p[2] > 0.0;
     let depth = points.chunks_exact(3).map(|p| if reading(p) { p[2] } else { 0.0 }).collect();
     let rays = || points.chunks_exact(3).enumerate().filter(|(_, p)| reading(p));
+    if rays().next().is_none() {
+        return Err(Error::new(
+            ErrorCode::NoDepthInMask,
+            "pointMap",
+            format!("no reading in {width} × {height} points"),
+            "finite points with z above 0",
+            "Pass points in the OpenCV camera frame (z forward); a map in OpenGL's has z below 0.",
+        ));
+    }
     let fit = |axis: usize, pixel: &dyn Fn(usize) -> f64| {
         let [mut n, mut sx, mut sy, mut sxx, mut sxy] = [0.0; 5];
         for (i, p) in rays() {

@@ -61,9 +61,9 @@ pub struct RansacCounts {
     pub iterations: usize,
     /// Minimal sets dropped by the edge-length check.
     pub inconsistent: usize,
-    /// Hypotheses dropped because their scale left the guard.
+    /// Minimal sets dropped because the scale of their hypothesis left the guard.
     pub rejected: usize,
-    /// Hypotheses whose scale was projected back into the guard.
+    /// Minimal sets whose hypothesis had its scale projected back into the guard.
     pub clamped: usize,
 }
 
@@ -91,13 +91,15 @@ pub fn ransac(
     matches: &[Match],
     settings: &RansacSettings,
 ) -> Result<Consensus> {
-    let pairs: Vec<Pair> = matches
+    // Matches of points that do not exist are passed over; the others keep their numbers.
+    let (numbers, pairs): (Vec<usize>, Vec<Pair>) = matches
         .iter()
-        .filter_map(|m| {
+        .enumerate()
+        .filter_map(|(i, m)| {
             let (source, target) = (source.get(m.source as usize)?, target.get(m.target as usize)?);
-            Some(Pair { source: vector3(*source), target: vector3(*target), weight: 1.0 })
+            Some((i, Pair { source: vector3(*source), target: vector3(*target), weight: 1.0 }))
         })
-        .collect();
+        .unzip();
     let mut counts = RansacCounts::default();
     let mut best: Option<Hypothesis> = None;
     if pairs.len() >= 3 {
@@ -113,7 +115,7 @@ pub fn ransac(
             let Some(hypothesis) = fit(minimal_set.iter(), settings, &mut counts) else { continue };
             let score = score(&hypothesis.transform, &pairs, settings.inlier_distance);
             if best.as_ref().is_none_or(|b| score > b.score) {
-                let improved = refit(Hypothesis { score, ..hypothesis }, &pairs, settings, &mut counts);
+                let improved = refit(Hypothesis { score, ..hypothesis }, &pairs, settings);
                 let share =
                     inliers(&improved.transform, &pairs, settings.inlier_distance).len() as f64 / pairs.len() as f64;
                 needed = needed.min(iterations_needed(share, settings.confidence));
@@ -124,6 +126,7 @@ pub fn ransac(
     let consensus = best.map(|b| (inliers(&b.transform, &pairs, settings.inlier_distance), b));
     match consensus {
         Some((inliers, b)) if inliers.len() >= 3 => {
+            let inliers = inliers.into_iter().map(|i| numbers[i]).collect();
             Ok(Consensus { target_from_source: b.transform, inliers, clamped: b.clamped, counts })
         }
         _ => Err(no_consensus(pairs.len(), &counts)),
@@ -154,8 +157,8 @@ fn edges_agree(set: &[Pair; 3], edge_similarity: f64) -> bool {
     let stretch = |i: usize, j: usize| (set[i].target - set[j].target).norm() / (set[i].source - set[j].source).norm();
     let ratios = [stretch(0, 1), stretch(1, 2), stretch(2, 0)];
     let (min, max) = ratios.iter().fold((f64::INFINITY, 0.0_f64), |(min, max), &r| (min.min(r), max.max(r)));
-    // Not-a-number (two equal points) agrees with nothing.
-    min >= edge_similarity * max && max.is_finite() && min > 0.0
+    // An edge between equal points is stretched by 0, ∞ or not-a-number, and agrees with nothing.
+    ratios.iter().all(|r| r.is_finite()) && min >= edge_similarity * max && min > 0.0
 }
 
 /// The closed form on some pairs, held against the guard.
@@ -166,7 +169,8 @@ fn fit<'a>(
 ) -> Option<Hypothesis> {
     let transform = umeyama(pairs.clone().copied(), settings.scale_mode).ok()?;
     let Some(guard) = settings.guard else { return Some(Hypothesis { transform, clamped: false, score: 0.0 }) };
-    let scale = transform.scale.clamp(guard.min, guard.max);
+    // Unlike clamp, no panic where a caller swapped the bounds.
+    let scale = transform.scale.min(guard.max).max(guard.min);
     if scale == transform.scale {
         return Some(Hypothesis { transform, clamped: false, score: 0.0 });
     }
@@ -184,10 +188,12 @@ fn fit<'a>(
 }
 
 /// Refits on the inliers for as long as the score rises.
-fn refit(mut best: Hypothesis, pairs: &[Pair], settings: &RansacSettings, counts: &mut RansacCounts) -> Hypothesis {
+fn refit(mut best: Hypothesis, pairs: &[Pair], settings: &RansacSettings) -> Hypothesis {
+    // The counts are of minimal sets; what the guard says to a refit is not among them.
+    let mut uncounted = RansacCounts::default();
     for _ in 0..LOCAL_REFITS {
         let inliers = inliers(&best.transform, pairs, settings.inlier_distance);
-        let Some(refitted) = fit(inliers.iter().map(|&i| &pairs[i]), settings, counts) else { break };
+        let Some(refitted) = fit(inliers.iter().map(|&i| &pairs[i]), settings, &mut uncounted) else { break };
         let score = score(&refitted.transform, pairs, settings.inlier_distance);
         if score <= best.score {
             break;

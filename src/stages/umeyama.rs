@@ -71,7 +71,7 @@ pub fn umeyama(pairs: impl Iterator<Item = Pair> + Clone, scale_mode: ScaleMode)
     let (Some(u), Some(v_t)) = (svd.u, svd.v_t) else { return Err(degenerate("correspondences")) };
     let d = svd.singular_values;
     // nalgebra sorts the singular values, the smallest last: the axis whose sign costs least to change.
-    if !(d[1] > COLLINEAR * d[0]) {
+    if d[1].is_nan() || d[1] <= COLLINEAR * d[0] {
         return Err(degenerate("correspondences"));
     }
     let sign = if u.determinant() * v_t.determinant() < 0.0 { -1.0 } else { 1.0 };

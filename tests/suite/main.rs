@@ -18,6 +18,7 @@ pub mod formats_images;
 pub mod formats_json;
 #[cfg(feature = "formats")]
 pub mod formats_mesh;
+pub mod kd_tree;
 pub mod metrics;
 pub mod normals;
 pub mod pose_error;
@@ -29,6 +30,9 @@ pub mod real_cases;
 pub mod sample;
 pub mod shapes;
 pub mod silhouette;
+pub mod similarity;
+pub mod support;
 pub mod surface;
 pub mod symmetric_eigen;
 pub mod triangle_tree;
+pub mod voxel_grid;

@@ -1,0 +1,220 @@
+//! The kd-tree against brute force (to the bit, ties included) and against kiddo (by distance).
+
+use core::num::NonZero;
+
+use glam::Vec3;
+use kiddo::{ImmutableKdTree, SquaredEuclidean};
+use sim3align::geometry::kd_tree::{KdTree, Neighbor};
+use wasm_bindgen_test::wasm_bindgen_test;
+
+use crate::support::{Draw, assert_no_dead_axis};
+
+/// Distributions that trees stumble over. The first six hold 300 points.
+fn distributions(draw: &mut Draw) -> Vec<(&'static str, Vec<Vec3>)> {
+    let n = 300;
+    let mut normals = || {
+        let d = draw.direction();
+        Vec3::new(d.x as f32, d.y as f32, d.z as f32)
+    };
+    let sphere = (0..n).map(|_| normals()).collect();
+    let uniform = draw.points(n, 1.0);
+    let far = uniform.iter().map(|&p| p + Vec3::new(1e6, -1e6, 1e6)).collect();
+    let clusters = (0..n).map(|i| uniform[i] * 1e-3 + if i % 2 == 0 { Vec3::splat(5.0) } else { Vec3::ZERO }).collect();
+    let mut grid = |edge: usize| (0..n).map(|_| Vec3::from_array([0; 3].map(|_| draw.below(edge) as f32))).collect();
+    let (grid, coarse_grid): (Vec<Vec3>, Vec<Vec3>) = (grid(6), grid(2));
+    let mut all = vec![
+        ("sphere", sphere),
+        ("uniform", uniform.clone()),
+        ("far", far),
+        ("clusters", clusters),
+        ("grid", grid),
+        ("coarse grid", coarse_grid),
+        ("equal", vec![Vec3::new(0.5, -0.25, 3.0); 40]),
+        ("line", (0..n).map(|i| Vec3::new(0.0, i as f32 * 0.01, 0.0)).collect()),
+        ("diagonal", uniform.iter().map(|p| Vec3::ONE * p.x).collect()),
+        ("mixed magnitudes", (0..n).map(|i| uniform[i] * libm::expf((i % 40) as f32 - 20.0)).collect()),
+    ];
+    for (name, count) in [("0", 0), ("1", 1), ("5", 5), ("8", 8), ("9", 9), ("10", 10), ("17", 17)] {
+        all.push((name, uniform[..count].to_vec()));
+    }
+    all
+}
+
+const QUERIES: [&str; 4] = ["near", "on points", "far away", "between points"];
+
+fn queries(kind: usize, points: &[Vec3], draw: &mut Draw) -> Vec<Vec3> {
+    let Some(&first) = points.first() else { return draw.points(4, 1.0 + kind as f64) };
+    let spread = points.iter().map(|p| p.distance(first)).fold(1e-3, f32::max);
+    let mut pick = || points[draw.below(points.len())];
+    let (mut picked, others): (Vec<Vec3>, Vec<Vec3>) =
+        ((0..12).map(|_| pick()).collect(), (0..12).map(|_| pick()).collect());
+    match kind {
+        0 => picked.iter_mut().for_each(|p| *p += draw.points(1, 0.1)[0] * spread),
+        1 => {}
+        2 => picked.iter_mut().for_each(|p| *p += (draw.points(1, 1.0)[0] + Vec3::X * 3.0) * spread * 100.0),
+        // Halfway: on a grid as far from one as from the other.
+        _ => picked.iter_mut().zip(others).for_each(|(p, q)| *p = (*p + q) * 0.5),
+    }
+    picked
+}
+
+/// All points, nearest first, ties to the smaller index.
+fn sorted_by_distance(points: &[Vec3], query: Vec3) -> Vec<Neighbor> {
+    let mut all: Vec<Neighbor> = points
+        .iter()
+        .zip(0..)
+        .map(|(p, index)| Neighbor { index, distance_squared: p.distance_squared(query) })
+        .collect();
+    all.sort_by(|a, b| a.distance_squared.total_cmp(&b.distance_squared).then(a.index.cmp(&b.index)));
+    all
+}
+
+/// The answers of one operation for one query: from the tree, and by brute force. `reach` is a radius worth asking for.
+fn answer(operation: usize, tree: &KdTree, all: &[Neighbor], query: Vec3, reach: f32) -> [Vec<Neighbor>; 2] {
+    let mut found = Vec::new();
+    // Where a radius is certain to reach the nearest, nearest_within is nearest.
+    let radius = [0.0, 0.3, 0.8, 0.0, 0.3, 1.0, 3.0, 0.0, 0.0, 0.0, 0.0, 0.0][operation] * reach;
+    let inside = |n: &&Neighbor| n.distance_squared <= radius * radius;
+    match operation {
+        0..=2 => {
+            found.extend(tree.nearest_within(query, radius));
+            [found, all.iter().find(inside).copied().into_iter().collect()]
+        }
+        7..=10 => {
+            let count = [2, 5, 9, all.len() + 3][operation - 7];
+            tree.k_nearest(query, count, &mut found);
+            [found, all[..count.min(all.len())].to_vec()]
+        }
+        3..=6 => {
+            tree.within(query, radius, &mut found);
+            found.sort_by(|a, b| a.distance_squared.total_cmp(&b.distance_squared).then(a.index.cmp(&b.index)));
+            [found, all.iter().filter(inside).copied().collect()]
+        }
+        _ => [tree.nearest(query).into_iter().collect(), all.first().copied().into_iter().collect()],
+    }
+}
+
+const OPERATIONS: usize = 12;
+
+#[wasm_bindgen_test(unsupported = test)]
+fn answers_are_those_of_brute_force() {
+    for seed in 0..3 {
+        let mut draw = Draw::new(seed);
+        let mut cells = Vec::new();
+        for (d, (name, points)) in distributions(&mut draw).into_iter().enumerate() {
+            let tree = KdTree::new(&points);
+            assert_eq!((tree.len(), tree.is_empty()), (points.len(), points.is_empty()));
+            for (kind, queried) in QUERIES.iter().enumerate() {
+                let queries = queries(kind, &points, &mut draw);
+                for operation in 0..OPERATIONS {
+                    let mut fingerprint = Vec::new();
+                    for &query in &queries {
+                        let all = sorted_by_distance(&points, query);
+                        // The fifth nearest's distance, so that ties and bounds fall on the radius itself.
+                        let reach = all.get(4).map_or(1.0, |n| n.distance_squared.sqrt());
+                        let [found, expected] = answer(operation, &tree, &all, query, reach);
+                        assert_eq!(found, expected, "seed {seed}, {name}, {queried}, operation {operation}, {query}");
+                        fingerprint.push(found);
+                    }
+                    cells.push(([d, kind, operation], fingerprint));
+                }
+            }
+        }
+        assert_no_dead_axis(["distribution", "query", "operation"], &cells);
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn distances_are_those_of_kiddo() {
+    for seed in 10..13 {
+        let mut draw = Draw::new(seed);
+        for (name, points) in distributions(&mut draw) {
+            if points.is_empty() {
+                continue;
+            }
+            let arrays: Vec<[f32; 3]> = points.iter().map(|p| p.to_array()).collect();
+            let kiddo: ImmutableKdTree<f32, 3> = ImmutableKdTree::new_from_slice(&arrays).unwrap();
+            let tree = KdTree::new(&points);
+            for (kind, queried) in QUERIES.iter().enumerate() {
+                for query in queries(kind, &points, &mut draw) {
+                    let context = format!("seed {seed}, {name}, {queried}, {query}");
+                    let close = |a: f32, b: f32| (a - b).abs() <= 1e-5 * a.abs().max(b.abs());
+                    let q = query.to_array();
+                    let one = kiddo.query(&q).nearest_one::<SquaredEuclidean<f32>>().execute();
+                    let ours = tree.nearest(query).unwrap();
+                    assert!(close(ours.distance_squared, one.distance), "{context}: {ours:?}, {}", one.distance);
+
+                    let mut found = Vec::new();
+                    tree.k_nearest(query, 10, &mut found);
+                    let several =
+                        kiddo.query(&q).nearest_n::<SquaredEuclidean<f32>>(NonZero::new(10).unwrap()).execute();
+                    assert_eq!(found.len(), several.len(), "{context}");
+                    for (a, b) in found.iter().zip(&several) {
+                        assert!(close(a.distance_squared, b.distance), "{context}: {found:?}");
+                    }
+
+                    // A radius between the tenth and the next, where rounding decides nothing.
+                    let all = sorted_by_distance(&points, query);
+                    let gap = all.windows(2).skip(9).find(|w| w[1].distance_squared > 1.001 * w[0].distance_squared);
+                    if let Some(w) = gap {
+                        let radius = (0.5 * (w[0].distance_squared + w[1].distance_squared)).sqrt();
+                        tree.within(query, radius, &mut found);
+                        let inside = kiddo.query(&q).within::<SquaredEuclidean<f32>>(radius * radius).execute();
+                        let mut ours: Vec<u64> = found.iter().map(|n| u64::from(n.index)).collect();
+                        let mut theirs: Vec<u64> = inside.iter().map(|n| n.item as u64).collect();
+                        ours.sort_unstable();
+                        theirs.sort_unstable();
+                        assert_eq!(ours, theirs, "{context}, radius {radius}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn ties_go_to_the_smaller_index_whatever_the_order() {
+    // Eight corners of a cube, all as far from the middle, in 30 orders and four copies.
+    let corners: Vec<Vec3> =
+        (0..32u32).map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2 & 1) as f32)).collect();
+    for seed in 0..30 {
+        let order = Draw::new(seed).permutation(corners.len());
+        let points: Vec<Vec3> = order.iter().map(|&i| corners[i]).collect();
+        let tree = KdTree::new(&points);
+        let middle = Vec3::splat(0.5);
+        assert_eq!(tree.nearest(middle).unwrap().index, 0, "seed {seed}");
+        let mut found = Vec::new();
+        tree.k_nearest(middle, 11, &mut found);
+        assert!(found.iter().map(|n| n.index).eq(0..11), "seed {seed}: {found:?}");
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn the_radius_includes_its_boundary() {
+    let tree = KdTree::new(&[Vec3::ZERO, Vec3::X * 2.0]);
+    let mut found = Vec::new();
+    tree.within(Vec3::X, 1.0, &mut found);
+    assert_eq!(found.len(), 2);
+    assert_eq!(tree.nearest_within(Vec3::X, 1.0).unwrap().index, 0);
+    assert_eq!(tree.nearest_within(Vec3::X, 0.999), None);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn queries_that_are_no_point_find_nothing() {
+    let points = Draw::new(1).points(100, 1.0);
+    let tree = KdTree::new(&points);
+    let mut found = vec![Neighbor { index: 7, distance_squared: 0.0 }];
+    let nowhere = Vec3::new(0.0, f32::NAN, 0.0);
+    assert_eq!(tree.nearest(nowhere), None);
+    tree.within(nowhere, 10.0, &mut found);
+    assert_eq!(found, []);
+    tree.within(Vec3::ZERO, f32::NAN, &mut found);
+    assert_eq!(found, []);
+    tree.k_nearest(Vec3::ZERO, 0, &mut found);
+    assert_eq!(found, []);
+    // Whatever an infinite or overflowing query is told, it is told without a panic, and the next one is right.
+    tree.k_nearest(Vec3::INFINITY, 3, &mut found);
+    tree.k_nearest(nowhere, 3, &mut found);
+    assert!(tree.nearest(Vec3::splat(f32::MAX)).is_some());
+    assert_eq!(tree.nearest(points[42]).unwrap().index, 42);
+}

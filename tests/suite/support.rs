@@ -1,0 +1,200 @@
+//! What the tests of geometry and stages share: seeded draws, random similarities, surfaces with known normals,
+//! and the check that no axis of a test matrix is dead.
+
+use glam::Vec3;
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3, Vector4};
+use sim3align::geometry::cloud::{Bounds, Cloud};
+use sim3align::geometry::random::Random;
+use sim3align::geometry::similarity::{Similarity, vec3, vector3};
+
+/// Seeded draws of what tests need.
+pub struct Draw(Random);
+
+impl Draw {
+    pub fn new(seed: u64) -> Self {
+        Self(Random::new(seed, 1000))
+    }
+
+    pub fn below(&mut self, bound: usize) -> usize {
+        self.0.below(bound)
+    }
+
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.0.uniform()
+    }
+
+    /// Standard normal (Box and Muller).
+    pub fn normal(&mut self) -> f64 {
+        let (u, v) = (1.0 - self.0.uniform(), self.0.uniform());
+        (-2.0 * libm::log(u)).sqrt() * libm::cos(core::f64::consts::TAU * v)
+    }
+
+    /// In [−half, half]³.
+    pub fn cube(&mut self, half: f64) -> Vector3<f64> {
+        Vector3::from_fn(|_, _| self.between(-half, half))
+    }
+
+    pub fn points(&mut self, count: usize, half: f64) -> Vec<Vec3> {
+        (0..count).map(|_| vec3(&self.cube(half))).collect()
+    }
+
+    /// On the unit sphere.
+    pub fn direction(&mut self) -> Vector3<f64> {
+        Vector3::from_fn(|_, _| self.normal()).normalize()
+    }
+
+    /// Uniform over SO(3).
+    pub fn rotation(&mut self) -> Rotation3<f64> {
+        let q = Vector4::from_fn(|_, _| self.normal());
+        UnitQuaternion::from_quaternion(q.into()).to_rotation_matrix()
+    }
+
+    /// By `angle` radians about a random axis.
+    pub fn rotation_by(&mut self, angle: f64) -> Rotation3<f64> {
+        Rotation3::new(self.direction() * angle)
+    }
+
+    /// A scale between the two bounds (uniform in its logarithm), any rotation, a translation in [−offset, offset]³.
+    pub fn similarity(&mut self, scales: [f64; 2], offset: f64) -> Similarity {
+        let scale = libm::exp(self.between(libm::log(scales[0]), libm::log(scales[1])));
+        Similarity { scale, rotation: self.rotation(), translation: self.cube(offset) }
+    }
+
+    /// The points moved by a normal deviate of `sigma` along each axis.
+    pub fn noisy(&mut self, points: &[Vec3], sigma: f64) -> Vec<Vec3> {
+        let mut offset = || vec3(&(Vector3::from_fn(|_, _| self.normal()) * sigma));
+        points.iter().map(|&p| p + offset()).collect()
+    }
+
+    /// 0..n in random order (Fisher and Yates).
+    pub fn permutation(&mut self, n: usize) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..n).collect();
+        (1..n).rev().for_each(|i| order.swap(i, self.below(i + 1)));
+        order
+    }
+}
+
+/// A lopsided potato without symmetry: the points d·r(d), r a polynomial in the direction d.
+pub fn blob(draw: &mut Draw, count: usize) -> Cloud {
+    surface(count, || {
+        let d = draw.direction();
+        let radius = 1.0 + 0.5 * d.x * d.x - 0.3 * d.z * d.z + 0.25 * d.x * d.y + 0.2 * d.z * d.z * d.z + 0.15 * d.x;
+        let gradient = Vector3::new(d.x + 0.25 * d.y + 0.15, 0.25 * d.x, 0.6 * d.z * (d.z - 1.0));
+        // ∇(|p| − r(p/|p|)) = d − (1 − d dᵀ) ∇r / |p|.
+        let tangent = gradient - d * d.dot(&gradient);
+        (d * radius, d - tangent / radius)
+    })
+}
+
+/// A torus about z with radii 1 and 0.35.
+pub fn torus(draw: &mut Draw, count: usize) -> Cloud {
+    surface(count, || on_torus(draw, core::f64::consts::TAU))
+}
+
+/// A mug: an open cylinder, its bottom, and half a torus as handle.
+pub fn mug(draw: &mut Draw, count: usize) -> Cloud {
+    surface(count, || match draw.below(10) {
+        0..=5 => {
+            let n = circle(draw.between(0.0, core::f64::consts::TAU));
+            (n * 0.8 + Vector3::z() * draw.between(-1.0, 1.0), n)
+        }
+        6..=7 => {
+            let r = 0.8 * draw.between(0.0, 1.0).sqrt();
+            (circle(draw.between(0.0, core::f64::consts::TAU)) * r - Vector3::z(), -Vector3::z())
+        }
+        _ => {
+            // The half torus bends around y, its ends in the cylinder's wall.
+            let (p, n) = on_torus(draw, core::f64::consts::PI);
+            let stand = |v: Vector3<f64>| Vector3::new(v.y, v.z, v.x) * 0.5;
+            (stand(p) + Vector3::x() * 0.8, stand(n))
+        }
+    })
+}
+
+/// A box with the given edges, sampled by area.
+pub fn box_surface(draw: &mut Draw, edges: [f64; 3], count: usize) -> Cloud {
+    let areas = [0, 1, 2].map(|i| edges[(i + 1) % 3] * edges[(i + 2) % 3]);
+    let total: f64 = areas.iter().sum();
+    surface(count, || {
+        let at = draw.between(0.0, total);
+        let axis = if at < areas[0] { 0 } else { 1 + usize::from(at >= areas[0] + areas[1]) };
+        let sign = if draw.below(2) == 0 { -1.0 } else { 1.0 };
+        let mut p = Vector3::from_fn(|i, _| draw.between(-0.5, 0.5) * edges[i]);
+        p[axis] = 0.5 * sign * edges[axis];
+        (p, Vector3::ith(axis, sign))
+    })
+}
+
+/// The unit sphere.
+pub fn sphere_surface(draw: &mut Draw, count: usize) -> Cloud {
+    surface(count, || {
+        let d = draw.direction();
+        (d, d)
+    })
+}
+
+/// The cloud with its box centred and of diagonal 1, the frame in which the stages work.
+pub fn unit_box(cloud: &Cloud) -> Cloud {
+    let bounds = Bounds::of(&cloud.points).unwrap();
+    let points = cloud.points.iter().map(|&p| (p - bounds.center()) / bounds.diagonal()).collect();
+    Cloud { points, normals: cloud.normals.clone() }
+}
+
+/// The cloud under a similarity, computed in f64.
+pub fn transformed(cloud: &Cloud, by: &Similarity) -> Cloud {
+    Cloud {
+        points: cloud.points.iter().map(|&p| vec3(&by.apply(vector3(p)))).collect(),
+        normals: cloud.normals.iter().map(|&n| vec3(&(by.rotation * vector3(n)))).collect(),
+    }
+}
+
+/// Furthest that a corner of the unit box lands from where `truth` takes it.
+pub fn pose_error(found: &Similarity, truth: &Similarity) -> f64 {
+    let corner = |i: usize| Vector3::from_fn(|axis, _| if i >> axis & 1 == 1 { 0.5 } else { -0.5 });
+    (0..8).map(|i| (found.apply(corner(i)) - truth.apply(corner(i))).norm()).fold(0.0, f64::max)
+}
+
+/// How far a matrix is from a proper rotation.
+pub fn rotation_defect(r: &Matrix3<f64>) -> f64 {
+    (r.transpose() * r - Matrix3::identity()).amax().max((r.determinant() - 1.0).abs())
+}
+
+/// Checks of a full test matrix that every two values of every axis give different results somewhere: an axis
+/// whose values all give the same tests nothing. `cells` hold the values' positions and the result.
+pub fn assert_no_dead_axis<const N: usize, T: PartialEq>(names: [&str; N], cells: &[([usize; N], T)]) {
+    for (axis, name) in names.into_iter().enumerate() {
+        let values = 1 + cells.iter().map(|(at, _)| at[axis]).max().unwrap();
+        assert!(values > 1, "{name} has a single value");
+        for a in 0..values {
+            for b in 0..a {
+                let differs = cells.iter().filter(|(at, _)| at[axis] == a).any(|(at, result)| {
+                    let mut other = *at;
+                    other[axis] = b;
+                    cells.iter().any(|(at, r)| *at == other && r != result)
+                });
+                assert!(differs, "{name}: values {a} and {b} give the same results everywhere");
+            }
+        }
+    }
+}
+
+fn surface(count: usize, mut draw: impl FnMut() -> (Vector3<f64>, Vector3<f64>)) -> Cloud {
+    let mut cloud = Cloud::default();
+    for (p, n) in (0..count).map(|_| draw()) {
+        cloud.points.push(vec3(&p));
+        cloud.normals.push(vec3(&n.normalize()));
+    }
+    cloud
+}
+
+fn circle(angle: f64) -> Vector3<f64> {
+    Vector3::new(libm::cos(angle), libm::sin(angle), 0.0)
+}
+
+fn on_torus(draw: &mut Draw, turn: f64) -> (Vector3<f64>, Vector3<f64>) {
+    // From −turn/2 to turn/2, so that half a torus lies at positive x.
+    let out = circle(draw.between(-0.5 * turn, 0.5 * turn));
+    let angle = draw.between(0.0, core::f64::consts::TAU);
+    let n = out * libm::cos(angle) + Vector3::z() * libm::sin(angle);
+    (out + n * 0.35, n)
+}
