@@ -3,6 +3,7 @@
 
 pub mod estimate;
 pub mod evaluate;
+pub mod field;
 pub mod options;
 pub mod progress;
 pub mod register;
@@ -19,6 +20,7 @@ use crate::stages::observe::Observation;
 use crate::stages::sample::{check_shape, sample_surface};
 
 use estimate::{NORMAL_NEIGHBORS, Settings, estimate};
+use field::Options;
 use options::AlignOptions;
 use progress::{Host, Stage, Stopwatch};
 use report::Alignment;

@@ -12,4 +12,5 @@ pub mod error;
 pub mod formats;
 pub mod geometry;
 pub mod metrics;
+pub mod number;
 pub mod stages;

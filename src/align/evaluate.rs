@@ -1,7 +1,8 @@
 //! Scores any transform, wherever it came from.
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
+use super::field::{Field, Options};
 use super::options::AlignOptions;
 use super::report::{Warning, is_collapsed};
 use super::warnings;
@@ -16,9 +17,9 @@ use crate::stages::observe::Observation;
 use crate::stages::sample::sample_surface;
 
 /// Options of `evaluate`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
-#[serde(rename_all = "camelCase", default)]
+#[serde(rename_all = "camelCase")]
 pub struct EvaluateOptions {
     /// Seed of all random draws, 0 to 2³² − 1. Default 0.
     pub seed: u32,
@@ -36,6 +37,16 @@ impl Default for EvaluateOptions {
             max_observed_points: align.max_observed_points,
             surface_samples: align.surface_samples,
         }
+    }
+}
+
+impl Options for EvaluateOptions {
+    fn fields(&mut self) -> Vec<(&'static str, Field<'_>)> {
+        vec![
+            ("seed", Field::count(&mut self.seed, 0, u32::MAX)),
+            ("maxObservedPoints", Field::count(&mut self.max_observed_points, 32, 1_000_000)),
+            ("surfaceSamples", Field::count(&mut self.surface_samples, 100, 1_000_000)),
+        ]
     }
 }
 
@@ -79,12 +90,7 @@ pub fn evaluate(
     truth: Option<&Truth>,
     options: &EvaluateOptions,
 ) -> Result<Evaluation> {
-    AlignOptions {
-        max_observed_points: options.max_observed_points,
-        surface_samples: options.surface_samples,
-        ..AlignOptions::default()
-    }
-    .validate()?;
+    options.validate()?;
     let (seed, samples) = (u64::from(options.seed), options.surface_samples as usize);
     let max_points = options.max_observed_points as usize;
     let metric_options = metrics::EvaluateOptions { max_points, surface_samples: samples, seed };

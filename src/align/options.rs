@@ -1,11 +1,16 @@
 //! Options of the entry points: flat, each with a default that follows the data, each with its range checked.
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
+use super::field::{Field, Options, choice};
 use crate::error::{Error, ErrorCode, Result};
+use crate::number::{number, numbers};
+
+/// The largest confidence: a certainty of 1 would never stop early.
+const MAX_CONFIDENCE: f64 = 0.999_999;
 
 /// Which method runs.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "kebab-case")]
 pub enum Preset {
@@ -14,8 +19,12 @@ pub enum Preset {
     Paper,
 }
 
+choice!(Preset { Paper: "paper" });
+choice!(GuardMode { Reject: "reject", Clamp: "clamp" });
+choice!(Icp { PointToPlane: "point-to-plane", PointToPoint: "point-to-point", None: "none" });
+
 /// What RANSAC does with a hypothesis whose scale leaves the guard.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "kebab-case")]
 pub enum GuardMode {
@@ -27,7 +36,7 @@ pub enum GuardMode {
 }
 
 /// What ICP minimises.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "kebab-case")]
 pub enum Icp {
@@ -41,9 +50,9 @@ pub enum Icp {
 }
 
 /// Options of `align`. All have defaults; most callers need none.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
-#[serde(rename_all = "camelCase", default)]
+#[serde(rename_all = "camelCase")]
 pub struct AlignOptions {
     /// The method. Default `"paper"`.
     pub preset: Preset,
@@ -66,7 +75,8 @@ pub struct AlignOptions {
     pub guard_mode: GuardMode,
     /// Minimal sets that RANSAC draws at most, 1 to 10 000 000. Default 100 000.
     pub ransac_iterations: u32,
-    /// RANSAC stops early at this probability of having missed nothing better, 0 to below 1. Default 0.999.
+    /// RANSAC stops early at this probability of having missed nothing better, 0 to 0.999999.
+    /// Default 0.999.
     pub ransac_confidence: f64,
     /// A match within this distance of its counterpart is an inlier, in voxels, 0.1 to 20. Default 1.5.
     pub inlier_distance_voxels: f64,
@@ -113,26 +123,28 @@ impl Default for AlignOptions {
     }
 }
 
-impl AlignOptions {
-    /// Checks every range.
-    ///
-    /// # Errors
-    /// [`ErrorCode::InvalidOption`].
-    pub fn validate(&self) -> Result<()> {
-        check_count("maxObservedPoints", self.max_observed_points, 32, 1_000_000)?;
-        check_count("surfaceSamples", self.surface_samples, 100, 1_000_000)?;
-        check_range("voxelDivisions", self.voxel_divisions, 5.0, 200.0)?;
-        check_range("fpfhRadiusVoxels", self.fpfh_radius_voxels, 1.0, 20.0)?;
-        if let Some(guard) = self.guard {
-            check_guard(guard)?;
-        }
-        check_count("ransacIterations", self.ransac_iterations, 1, 10_000_000)?;
-        check_confidence(self.ransac_confidence)?;
-        check_range("inlierDistanceVoxels", self.inlier_distance_voxels, 0.1, 20.0)?;
-        check_range("edgeSimilarity", self.edge_similarity, 0.0, 1.0)?;
-        check_range("supportDistanceVoxels", self.support_distance_voxels, 0.1, 50.0)?;
-        check_range("supportAngleDeg", self.support_angle_deg, 0.0, 180.0)?;
-        check_count("icpIterations", self.icp_iterations, 1, 1_000)
+impl Options for AlignOptions {
+    fn fields(&mut self) -> Vec<(&'static str, Field<'_>)> {
+        vec![
+            ("preset", Field::Choice(&mut self.preset)),
+            ("seed", Field::count(&mut self.seed, 0, u32::MAX)),
+            ("maxObservedPoints", Field::count(&mut self.max_observed_points, 32, 1_000_000)),
+            ("surfaceSamples", Field::count(&mut self.surface_samples, 100, 1_000_000)),
+            ("voxelDivisions", Field::number(&mut self.voxel_divisions, 5.0, 200.0)),
+            ("fpfhRadiusVoxels", Field::number(&mut self.fpfh_radius_voxels, 1.0, 20.0)),
+            ("guard", Field::Guard(&mut self.guard)),
+            ("guardMode", Field::Choice(&mut self.guard_mode)),
+            ("ransacIterations", Field::count(&mut self.ransac_iterations, 1, 10_000_000)),
+            ("ransacConfidence", Field::number(&mut self.ransac_confidence, 0.0, MAX_CONFIDENCE)),
+            ("inlierDistanceVoxels", Field::number(&mut self.inlier_distance_voxels, 0.1, 20.0)),
+            ("edgeSimilarity", Field::number(&mut self.edge_similarity, 0.0, 1.0)),
+            ("hallucinationFilter", Field::Flag(&mut self.hallucination_filter)),
+            ("supportDistanceVoxels", Field::number(&mut self.support_distance_voxels, 0.1, 50.0)),
+            ("supportAngleDeg", Field::number(&mut self.support_angle_deg, 0.0, 180.0)),
+            ("icp", Field::Choice(&mut self.icp)),
+            ("lockScale", Field::Flag(&mut self.lock_scale)),
+            ("icpIterations", Field::count(&mut self.icp_iterations, 1, 1_000)),
+        ]
     }
 }
 
@@ -158,8 +170,8 @@ impl ScaleOption {
             Self::Free => return Ok(()),
             Self::Fixed(scale) if positive(scale) => return Ok(()),
             Self::Between([min, max]) if positive(min) && positive(max) && min <= max => return Ok(()),
-            Self::Fixed(scale) => format!("{scale}"),
-            Self::Between([min, max]) => format!("[{min}, {max}]"),
+            Self::Fixed(scale) => number(scale),
+            Self::Between([min, max]) => numbers(&[min, max]),
         };
         Err(Error::new(
             ErrorCode::InvalidOption,
@@ -172,9 +184,9 @@ impl ScaleOption {
 }
 
 /// Options of `register`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
-#[serde(rename_all = "camelCase", default)]
+#[serde(rename_all = "camelCase")]
 pub struct RegisterOptions {
     /// Seed of all random draws, 0 to 2³² − 1. Default 0.
     pub seed: u32,
@@ -188,7 +200,8 @@ pub struct RegisterOptions {
     pub fpfh_radius_voxels: f64,
     /// Minimal sets that RANSAC draws at most, 1 to 10 000 000. Default 100 000.
     pub ransac_iterations: u32,
-    /// RANSAC stops early at this probability of having missed nothing better, 0 to below 1. Default 0.999.
+    /// RANSAC stops early at this probability of having missed nothing better, 0 to 0.999999.
+    /// Default 0.999.
     pub ransac_confidence: f64,
     /// A match within this distance of its counterpart is an inlier, in voxels, 0.1 to 20. Default 1.5.
     pub inlier_distance_voxels: f64,
@@ -220,30 +233,28 @@ impl Default for RegisterOptions {
     }
 }
 
-impl RegisterOptions {
-    /// Checks every range.
-    ///
-    /// # Errors
-    /// [`ErrorCode::InvalidOption`].
-    pub fn validate(&self) -> Result<()> {
-        check_count("maxPoints", self.max_points, 32, 1_000_000)?;
-        if let Some(voxel_size) = self.voxel_size {
-            check_positive("voxelSize", voxel_size)?;
-        }
-        check_range("voxelDivisions", self.voxel_divisions, 5.0, 200.0)?;
-        check_range("fpfhRadiusVoxels", self.fpfh_radius_voxels, 1.0, 20.0)?;
-        check_count("ransacIterations", self.ransac_iterations, 1, 10_000_000)?;
-        check_confidence(self.ransac_confidence)?;
-        check_range("inlierDistanceVoxels", self.inlier_distance_voxels, 0.1, 20.0)?;
-        check_range("edgeSimilarity", self.edge_similarity, 0.0, 1.0)?;
-        check_count("icpIterations", self.icp_iterations, 1, 1_000)
+impl Options for RegisterOptions {
+    fn fields(&mut self) -> Vec<(&'static str, Field<'_>)> {
+        vec![
+            ("seed", Field::count(&mut self.seed, 0, u32::MAX)),
+            ("maxPoints", Field::count(&mut self.max_points, 32, 1_000_000)),
+            ("voxelSize", Field::Positive(&mut self.voxel_size)),
+            ("voxelDivisions", Field::number(&mut self.voxel_divisions, 5.0, 200.0)),
+            ("fpfhRadiusVoxels", Field::number(&mut self.fpfh_radius_voxels, 1.0, 20.0)),
+            ("ransacIterations", Field::count(&mut self.ransac_iterations, 1, 10_000_000)),
+            ("ransacConfidence", Field::number(&mut self.ransac_confidence, 0.0, MAX_CONFIDENCE)),
+            ("inlierDistanceVoxels", Field::number(&mut self.inlier_distance_voxels, 0.1, 20.0)),
+            ("edgeSimilarity", Field::number(&mut self.edge_similarity, 0.0, 1.0)),
+            ("icp", Field::Choice(&mut self.icp)),
+            ("icpIterations", Field::count(&mut self.icp_iterations, 1, 1_000)),
+        ]
     }
 }
 
 /// Options of `estimateSim3`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
-#[serde(rename_all = "camelCase", default)]
+#[serde(rename_all = "camelCase")]
 pub struct EstimateOptions {
     /// Seed of all random draws, 0 to 2³² − 1. Default 0.
     pub seed: u32,
@@ -252,7 +263,8 @@ pub struct EstimateOptions {
     pub inlier_distance: Option<f64>,
     /// Minimal sets that RANSAC draws at most, 1 to 10 000 000. Default 100 000.
     pub ransac_iterations: u32,
-    /// RANSAC stops early at this probability of having missed nothing better, 0 to below 1. Default 0.999.
+    /// RANSAC stops early at this probability of having missed nothing better, 0 to 0.999999.
+    /// Default 0.999.
     pub ransac_confidence: f64,
     /// How alike the three edges of a minimal set must be stretched: least over most stretched, 0 to 1.
     /// Default 0.9.
@@ -272,55 +284,14 @@ impl Default for EstimateOptions {
     }
 }
 
-impl EstimateOptions {
-    /// Checks every range.
-    ///
-    /// # Errors
-    /// [`ErrorCode::InvalidOption`].
-    pub fn validate(&self) -> Result<()> {
-        if let Some(inlier_distance) = self.inlier_distance {
-            check_positive("inlierDistance", inlier_distance)?;
-        }
-        check_count("ransacIterations", self.ransac_iterations, 1, 10_000_000)?;
-        check_confidence(self.ransac_confidence)?;
-        check_range("edgeSimilarity", self.edge_similarity, 0.0, 1.0)
+impl Options for EstimateOptions {
+    fn fields(&mut self) -> Vec<(&'static str, Field<'_>)> {
+        vec![
+            ("seed", Field::count(&mut self.seed, 0, u32::MAX)),
+            ("inlierDistance", Field::Positive(&mut self.inlier_distance)),
+            ("ransacIterations", Field::count(&mut self.ransac_iterations, 1, 10_000_000)),
+            ("ransacConfidence", Field::number(&mut self.ransac_confidence, 0.0, MAX_CONFIDENCE)),
+            ("edgeSimilarity", Field::number(&mut self.edge_similarity, 0.0, 1.0)),
+        ]
     }
-}
-
-fn invalid(name: &str, found: String, expected: String) -> Error {
-    let remedy = "Leave the option out to take its default.";
-    Error::new(ErrorCode::InvalidOption, format!("options.{name}"), found, expected, remedy)
-}
-
-fn check_range(name: &str, value: f64, min: f64, max: f64) -> Result<()> {
-    // Written so that NaN fails.
-    if value >= min && value <= max {
-        return Ok(());
-    }
-    Err(invalid(name, format!("{value}"), format!("a number from {min} to {max}")))
-}
-
-fn check_count(name: &str, value: u32, min: u32, max: u32) -> Result<()> {
-    check_range(name, f64::from(value), f64::from(min), f64::from(max))
-}
-
-fn check_positive(name: &str, value: f64) -> Result<()> {
-    if value.is_finite() && value > 0.0 {
-        return Ok(());
-    }
-    Err(invalid(name, format!("{value}"), "a finite number above 0, or null".into()))
-}
-
-fn check_confidence(value: f64) -> Result<()> {
-    if (0.0..1.0).contains(&value) {
-        return Ok(());
-    }
-    Err(invalid("ransacConfidence", format!("{value}"), "a number from 0 to below 1".into()))
-}
-
-fn check_guard([min, max]: [f64; 2]) -> Result<()> {
-    if min > 0.0 && min <= 1.0 && max >= 1.0 && max.is_finite() {
-        return Ok(());
-    }
-    Err(invalid("guard", format!("[{min}, {max}]"), "[min, max] with 0 < min ≤ 1 ≤ max, or null".into()))
 }

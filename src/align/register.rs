@@ -3,14 +3,17 @@
 use nalgebra::Vector3;
 
 use super::estimate::{NORMAL_NEIGHBORS, Settings, estimate};
+use super::field::Options;
 use super::options::{EstimateOptions, RegisterOptions, ScaleOption};
 use super::progress::{Host, Stage, Stopwatch};
 use super::report::{Counts, Registration};
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
+use crate::geometry::order;
 use crate::geometry::random::Random;
 use crate::geometry::similarity::{Similarity, vector3};
+use crate::number::number;
 use crate::stages::extents::{Extents, initial_scale, target_from_source};
 use crate::stages::matching::Match;
 use crate::stages::normals::{Neighborhood, Orientation, estimate_normals};
@@ -164,7 +167,7 @@ impl Frames {
                 guard: None,
             },
             ScaleOption::Between([min, max]) => {
-                let initial = ratio.clamp(min, max);
+                let initial = ratio.max(min).min(max);
                 Self {
                     source: source.with_diagonal(target.diagonal() / initial),
                     target,
@@ -196,11 +199,7 @@ impl Frames {
 /// Normals that point away from the middle of the cloud: the median, which clutter moves least. Without a
 /// viewpoint that is the orientation that both clouds can agree on.
 fn with_normals(mut cloud: Cloud) -> Cloud {
-    let median = |axis: usize| {
-        let mut values: Vec<f32> = cloud.points.iter().map(|p| p[axis]).collect();
-        let middle = values.len() / 2;
-        *values.select_nth_unstable_by(middle, f32::total_cmp).1
-    };
+    let median = |axis: usize| order::median(cloud.points.iter().map(|p| p[axis])).unwrap_or_default();
     let center = glam::Vec3::new(median(0), median(1), median(2));
     let tree = KdTree::new(&cloud.points);
     cloud.normals =
@@ -243,7 +242,7 @@ fn check_cloud(argument: &str, xyz: &[f64], min_points: usize) -> Result<()> {
         return Err(Error::new(
             ErrorCode::NonFinite,
             argument,
-            format!("{} in point {}", xyz[i], i / 3),
+            format!("{} in point {}", number(xyz[i]), i / 3),
             "finite numbers",
             "Leave points without a reading out of the cloud.",
         ));

@@ -1,6 +1,8 @@
 //! What the caller should know about an input that is valid but suspicious, or a result that is.
 
 use super::report::{Warning, WarningCode, is_collapsed};
+use crate::geometry::order::median;
+use crate::number::number;
 use crate::stages::observe::Observation;
 
 /// Metres beyond which no depth of a single object is plausible, but millimetres are.
@@ -26,12 +28,13 @@ pub fn about_observation(observation: &Observation) -> Vec<Warning> {
     let mut warnings = Vec::new();
     let readings = depths.len();
     if readings > 0 {
-        let (_, &mut median, _) = depths.select_nth_unstable_by(readings / 2, f32::total_cmp);
+        let median = median(depths.into_iter()).unwrap_or_default();
         if median > IMPLAUSIBLE_DEPTH_M {
             warnings.push(Warning {
                 code: WarningCode::DepthLooksLikeMillimetres,
                 message: format!(
-                    "The object's median depth is {median} m. If the depth is in millimetres, multiply it by 0.001, or pass the integers with depthScale 0.001."
+                    "The object's median depth is {} m. If the depth is in millimetres, multiply it by 0.001, or pass the integers with depthScale 0.001.",
+                    number(f64::from(median))
                 ),
             });
         }
@@ -56,13 +59,15 @@ pub fn about_observation(observation: &Observation) -> Vec<Warning> {
 /// Warnings about the scale found.
 pub fn about_scale(scale_ratio: f64, clamped: bool) -> Option<Warning> {
     if is_collapsed(scale_ratio) {
-        let message = format!("The scale is {scale_ratio:.3} of the initial one: it collapsed. Set options.guard.");
+        let message =
+            format!("The scale is {} of the initial one: it collapsed. Set options.guard.", number(scale_ratio));
         return Some(Warning { code: WarningCode::ScaleCollapsed, message });
     }
     clamped.then(|| Warning {
         code: WarningCode::ScaleClamped,
         message: format!(
-            "The scale was held at {scale_ratio:.3} of the initial one by options.guard; the matches ask for another."
+            "The scale was held at {} of the initial one by options.guard; the matches ask for another.",
+            number(scale_ratio)
         ),
     })
 }

@@ -8,12 +8,14 @@ use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::image::{DepthMap, Image, Mask, check_size};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::pinhole::Pinhole;
+use crate::number::number as number_text;
 use crate::stages::observe::{Observation, from_point_map};
 
 /// Metres per unit of whole-number depth where the caller does not say: millimetres.
 const DEFAULT_DEPTH_SCALE: f64 = 0.001;
 
 /// `{ depth | pointMap, depthScale?, width, height, camera, mask, maskWidth?, maskHeight?, resizeMask? }`.
+#[inline(never)]
 pub fn observation(input: &JsValue) -> Result<Observation> {
     if !input.is_object() {
         let remedy = "Pass { depth, width, height, mask, camera, mesh }.";
@@ -37,6 +39,7 @@ pub fn observation(input: &JsValue) -> Result<Observation> {
 }
 
 /// `{ mesh: { positions, indices? } }`.
+#[inline(never)]
 pub fn mesh(input: &JsValue) -> Result<Mesh> {
     let mesh = get(input, "mesh").unwrap_or(JsValue::UNDEFINED);
     if !mesh.is_object() {
@@ -57,7 +60,7 @@ fn depth(input: &JsValue, width: usize, height: usize) -> Result<DepthMap> {
         return Err(Error::new(
             ErrorCode::InvalidArgument,
             "depthScale",
-            format!("{scale}"),
+            number_text(scale),
             "a finite number above 0",
             "Pass metres per unit of depth: 0.001 for millimetres.",
         ));

@@ -6,6 +6,7 @@ use js_sys::{
 use wasm_bindgen::{JsCast, JsValue};
 
 use crate::error::{Error, ErrorCode, Result};
+use crate::number::number as number_text;
 
 /// The property `key`, or `None` where it is missing, `undefined` or `null`.
 pub fn get(object: &JsValue, key: &str) -> Option<JsValue> {
@@ -120,7 +121,7 @@ fn not_typed_array(argument: &str, value: &JsValue, expected: &str) -> Error {
 }
 
 /// What a value is, in the words of the one who passed it.
-fn describe(value: &JsValue) -> String {
+pub fn describe(value: &JsValue) -> String {
     if value.is_undefined() {
         return "nothing".into();
     }
@@ -132,7 +133,7 @@ fn describe(value: &JsValue) -> String {
         return format!("the string \"{start}\"");
     }
     if let Some(number) = value.as_f64() {
-        return format!("the number {number}");
+        return format!("the number {}", number_text(number));
     }
     if Array::is_array(value) {
         return format!("an Array of {}", Array::from(value).length());

@@ -1,66 +1,90 @@
 //! Options from JavaScript objects: types and names are checked here, ranges where the options live.
 
 use js_sys::{Array, Object, Reflect};
-use serde::de::{DeserializeOwned, Deserializer, Visitor};
-use serde::forward_to_deserialize_any;
 use wasm_bindgen::{JsCast, JsValue};
 
-use super::object::{get, number, to_number, to_numbers, wrong_type};
+use super::object::{describe, get, number, to_number, to_numbers, wrong_type};
 use super::transform::similarity;
 use crate::align::evaluate::Truth;
+use crate::align::field::{Field, Options};
 use crate::align::options::ScaleOption;
 use crate::error::{Error, ErrorCode, Result};
 use crate::metrics::symmetry::{Symmetry, SymmetryAxis};
+use crate::number::{number as number_text, numbers};
 
 /// An options struct from an object; `also` names the keys that are read apart from the struct.
-pub fn options<T: DeserializeOwned + Default>(value: &JsValue, also: &[&str]) -> Result<T> {
-    if value.is_undefined() || value.is_null() {
-        return Ok(T::default());
+pub fn options<T: Options>(value: &JsValue, also: &[&str]) -> Result<T> {
+    let mut options = T::default();
+    if !value.is_undefined() && !value.is_null() {
+        set_fields(value, also, &mut options.fields())?;
     }
-    if !value.is_object() || Array::is_array(value) {
-        return Err(wrong_type("options", value, "an object", "Leave it out to take all defaults."));
+    Ok(options)
+}
+
+fn set_fields(object: &JsValue, also: &[&str], fields: &mut [(&'static str, Field<'_>)]) -> Result<()> {
+    if !object.is_object() || Array::is_array(object) {
+        return Err(wrong_type("options", object, "an object", "Leave it out to take all defaults."));
     }
-    let known = field_names::<T>();
-    // A key that is there but undefined (`{ seed: maybe }`) means the default, as everywhere in JavaScript.
-    let given = Object::new();
-    for key in Object::keys(value.unchecked_ref::<Object>()).iter() {
+    for key in Object::keys(object.unchecked_ref::<Object>()).iter() {
         let name = key.as_string().unwrap_or_default();
-        let field = Reflect::get(value, &key).unwrap_or(JsValue::UNDEFINED);
-        if field.is_undefined() || also.contains(&name.as_str()) {
+        let value = Reflect::get(object, &key).unwrap_or(JsValue::UNDEFINED);
+        // A key that is there but undefined (`{ seed: maybe }`) means the default, as everywhere in JavaScript.
+        if value.is_undefined() || also.contains(&name.as_str()) {
             continue;
         }
-        if !known.contains(&name.as_str()) {
-            return Err(unknown_option(&name, known.iter().chain(also)));
+        match fields.iter_mut().find(|(field, _)| *field == name) {
+            Some((_, field)) => {
+                if !set(field, &value) {
+                    return Err(field.error(&name, describe(&value)));
+                }
+                field.check(&name)?;
+            }
+            None => {
+                let known: Vec<&str> = fields.iter().map(|(field, _)| *field).chain(also.iter().copied()).collect();
+                return Err(unknown_option(&name, &known));
+            }
         }
-        check_type::<T>(&name, &field)?;
-        let _ = Reflect::set(&given, &key, &field);
     }
-    serde_wasm_bindgen::from_value(given.into())
-        .map_err(|e| not_of_type("options", &JsValue::UNDEFINED, &e.to_string()))
+    Ok(())
 }
 
-/// Deserialises one field alone, so that an error can name it.
-fn check_type<T: DeserializeOwned>(name: &str, field: &JsValue) -> Result<()> {
-    let alone = Object::new();
-    let _ = Reflect::set(&alone, &name.into(), field);
-    let parsed: core::result::Result<T, _> = serde_wasm_bindgen::from_value(alone.into());
-    parsed.map(|_| ()).map_err(|e| not_of_type(&format!("options.{name}"), field, &e.to_string()))
+/// Sets a field from a value of its type; `false` for any other. Ranges are the field's own affair.
+fn set(field: &mut Field<'_>, value: &JsValue) -> bool {
+    match field {
+        Field::Count { value: count, .. } => match value.as_f64() {
+            Some(x) if x.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&x) => **count = x as u32,
+            _ => return false,
+        },
+        Field::Number { value: number, .. } => match value.as_f64() {
+            Some(x) => **number = x,
+            None => return false,
+        },
+        Field::Positive(number) => match value.as_f64() {
+            Some(x) => **number = Some(x),
+            None if value.is_null() => **number = None,
+            None => return false,
+        },
+        Field::Flag(flag) => match value.as_bool() {
+            Some(x) => **flag = x,
+            None => return false,
+        },
+        Field::Guard(guard) => match to_numbers(value, "guard") {
+            Ok(bounds) => **guard = Some(bounds),
+            Err(_) if value.is_null() => **guard = None,
+            Err(_) => return false,
+        },
+        Field::Choice(choice) => return value.as_string().is_some_and(|name| choice.set(&name)),
+    }
+    true
 }
 
-fn not_of_type(argument: &str, found: &JsValue, reason: &str) -> Error {
-    let remedy = "Leave the option out to take its default.";
-    let error = wrong_type(argument, found, &format!("another value ({reason})"), remedy);
-    Error { code: ErrorCode::InvalidOption, ..error }
-}
-
-fn unknown_option<'a>(name: &str, known: impl Iterator<Item = &'a &'a str>) -> Error {
-    let names: Vec<&str> = known.copied().collect();
-    let nearest = names.iter().min_by_key(|known| edit_distance(name, known)).copied().unwrap_or_default();
+fn unknown_option(name: &str, known: &[&str]) -> Error {
+    let nearest = known.iter().min_by_key(|known| edit_distance(name, known)).copied().unwrap_or_default();
     Error::new(
         ErrorCode::UnknownOption,
         format!("options.{name}"),
         "an option that does not exist",
-        format!("one of {}", names.join(", ")),
+        format!("one of {}", known.join(", ")),
         format!("Did you mean `{nearest}`?"),
     )
 }
@@ -140,45 +164,12 @@ fn symmetry_axis(axis: [f64; 3], fold: Option<f64>) -> Result<SymmetryAxis> {
     };
     let axis = nalgebra::Vector3::from(axis);
     if !(axis.norm().is_finite() && axis.norm() > 0.0) {
-        return Err(invalid("options.symmetry.axis", format!("{axis:?}"), "a direction other than 0"));
+        return Err(invalid("options.symmetry.axis", numbers(axis.as_slice()), "a direction other than 0"));
     }
     let fold = match fold {
         None => None,
         Some(fold) if (2.0..=360.0).contains(&fold) && fold.fract() == 0.0 => Some(fold as u32),
-        Some(fold) => return Err(invalid("options.symmetry.fold", format!("{fold}"), "a whole number from 2 to 360")),
+        Some(fold) => return Err(invalid("options.symmetry.fold", number_text(fold), "a whole number from 2 to 360")),
     };
     Ok(SymmetryAxis { axis, fold })
-}
-
-/// The names of a struct's fields as serde spells them.
-fn field_names<T: DeserializeOwned>() -> &'static [&'static str] {
-    let mut names: &'static [&'static str] = &[];
-    // Ends in an error by design: it only listens to what the struct asks for.
-    let _ = T::deserialize(FieldNames(&mut names));
-    names
-}
-
-struct FieldNames<'a>(&'a mut &'static [&'static str]);
-
-impl<'de> Deserializer<'de> for FieldNames<'_> {
-    type Error = serde::de::value::Error;
-
-    fn deserialize_any<V: Visitor<'de>>(self, _visitor: V) -> core::result::Result<V::Value, Self::Error> {
-        Err(serde::de::Error::custom("not a struct"))
-    }
-
-    fn deserialize_struct<V: Visitor<'de>>(
-        self,
-        _name: &'static str,
-        fields: &'static [&'static str],
-        visitor: V,
-    ) -> core::result::Result<V::Value, Self::Error> {
-        *self.0 = fields;
-        self.deserialize_any(visitor)
-    }
-
-    forward_to_deserialize_any! {
-        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf option unit
-        unit_struct newtype_struct seq tuple tuple_struct map enum identifier ignored_any
-    }
 }

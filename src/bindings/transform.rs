@@ -31,8 +31,9 @@ pub fn similarity(value: &JsValue, argument: &str) -> Result<Similarity> {
     };
     // The core speaks of "transform"; the caller may know it as "options.truth".
     parsed.map_err(|e| {
-        let renamed = e.argument.replacen("transform", argument, 1);
-        e.about(renamed)
+        let renamed = e.argument.strip_prefix("transform").map(|rest| format!("{argument}{rest}"));
+        let argument = renamed.unwrap_or_else(|| e.argument.clone());
+        e.about(argument)
     })
 }
 

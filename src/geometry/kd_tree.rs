@@ -6,6 +6,8 @@
 
 use glam::Vec3;
 
+use super::order::halve;
+
 const LEAF_SIZE: usize = 8;
 
 /// A point found, by its index in the slice the tree was built from.
@@ -47,10 +49,10 @@ struct Split {
 impl KdTree {
     /// A tree over the points.
     pub fn new(points: &[Vec3]) -> Self {
-        let mut points: Vec<_> = points.iter().copied().zip(0..).collect();
+        let mut order: Vec<u32> = (0..points.len() as u32).collect();
         let mut splits = Vec::with_capacity(points.len() / (LEAF_SIZE / 2));
-        build(&mut points, &mut splits);
-        Self { points, splits }
+        build(points, &mut order, &mut splits);
+        Self { points: order.into_iter().map(|i| (points[i as usize], i)).collect(), splits }
     }
 
     /// How many points the tree holds.
@@ -128,15 +130,15 @@ impl KdTree {
     }
 }
 
-/// Sorts `points` into leaf order and records the splits in depth-first order.
-fn build(points: &mut [(Vec3, u32)], splits: &mut Vec<Split>) {
-    if points.len() <= LEAF_SIZE {
+/// Sorts the indices of `points` into leaf order and records the splits in depth-first order.
+fn build(points: &[Vec3], order: &mut [u32], splits: &mut Vec<Split>) {
+    if order.len() <= LEAF_SIZE {
         return;
     }
-    let (mut min, mut max) = (points[0].0, points[0].0);
-    for (point, _) in points.iter() {
-        min = min.min(*point);
-        max = max.max(*point);
+    let point = |i: u32| points[i as usize];
+    let (mut min, mut max) = (point(order[0]), point(order[0]));
+    for &i in order.iter() {
+        (min, max) = (min.min(point(i)), max.max(point(i)));
     }
     let extent = max - min;
     let axis = if extent.x >= extent.y && extent.x >= extent.z {
@@ -146,15 +148,15 @@ fn build(points: &mut [(Vec3, u32)], splits: &mut Vec<Split>) {
     } else {
         2
     };
-    let middle = points.len() / 2;
-    points.select_nth_unstable_by(middle, |a, b| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1)));
-    let (left, right) = points.split_at_mut(middle);
+    halve(order, |i| point(i)[axis]);
+    let (left, right) = order.split_at_mut(order.len() / 2);
     let node = splits.len();
-    let low = left.iter().map(|p| p.0[axis]).fold(f32::NEG_INFINITY, f32::max);
-    splits.push(Split { axis: axis as u8, low, high: right[0].0[axis], right: 0 });
-    build(left, splits);
+    let low = left.iter().map(|&i| point(i)[axis]).fold(f32::NEG_INFINITY, f32::max);
+    let high = right.iter().map(|&i| point(i)[axis]).fold(f32::INFINITY, f32::min);
+    splits.push(Split { axis: axis as u8, low, high, right: 0 });
+    build(points, left, splits);
     splits[node].right = splits.len() as u32;
-    build(right, splits);
+    build(points, right, splits);
 }
 
 /// What a search keeps of the points it is offered, and how far it still looks.

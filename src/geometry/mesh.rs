@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use crate::error::{Error, ErrorCode, Result};
+use crate::number::numbers;
 
 /// A triangle mesh whose coordinates are finite and whose indices exist.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,7 +31,7 @@ impl Mesh {
             return Err(Error::new(
                 ErrorCode::NonFinite,
                 "mesh.positions",
-                format!("{:?} at vertex {i}", positions[i].to_array()),
+                format!("{} at vertex {i}", numbers(&positions[i].to_array().map(f64::from))),
                 "finite numbers",
                 "Remove or repair the vertex before passing the mesh.",
             ));

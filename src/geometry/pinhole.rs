@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use crate::error::{Error, ErrorCode, Result};
+use crate::number::{number, numbers};
 
 /// A pinhole camera: x right, y down, z forward; pixel centres at integer indices,
 /// so that u = fx·x/z + cx is the centre of column u for whole u.
@@ -29,7 +30,7 @@ impl Pinhole {
             Error::new(
                 ErrorCode::InvalidCamera,
                 format!("camera.{name}"),
-                format!("{value}"),
+                number(value),
                 expected,
                 "Intrinsics are in pixels of the depth image: scale them together with the image.",
             )
@@ -59,7 +60,7 @@ impl Pinhole {
             return Err(Error::new(
                 ErrorCode::InvalidCamera,
                 "camera.K",
-                format!("{k:?}"),
+                numbers(k),
                 "[fx, 0, cx, 0, fy, cy, 0, 0, 1]",
                 "Pass K row by row; a column-major K has cx and cy in its last row: transpose it.",
             ));
@@ -76,7 +77,7 @@ impl Pinhole {
             return Err(Error::new(
                 ErrorCode::InvalidCamera,
                 "camera.fovYDeg",
-                format!("{fov_y_deg}"),
+                number(fov_y_deg),
                 "an angle above 0 and below 180 degrees",
                 "Pass the vertical field of view in degrees, as three.js' PerspectiveCamera.fov.",
             ));

@@ -4,6 +4,7 @@ use glam::{Mat3, Vec3};
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
 use crate::error::{Error, ErrorCode, Result};
+use crate::number::{number, numbers};
 
 /// y = s·R·x + t. Name values by their frames: `camera_from_mesh`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +39,7 @@ impl Similarity {
             )
         };
         if !(scale.is_finite() && scale > 0.0) {
-            return Err(bad(format!("scale {scale}"), "a finite scale above 0"));
+            return Err(bad(format!("scale {}", number(scale)), "a finite scale above 0"));
         }
         if !translation.iter().chain(rotation.iter()).all(|x| x.is_finite()) {
             return Err(bad("a number that is not finite".into(), "finite numbers"));
@@ -47,7 +48,8 @@ impl Similarity {
         let determinant = rotation.determinant();
         // Written so that NaN, from numbers whose squares overflow, fails.
         if !(off.iter().all(|x| x.abs() <= 1e-3) && determinant > 0.0) {
-            let found = format!("a matrix with |RᵀR − 1| up to {:.1e} and determinant {determinant:.3}", off.amax());
+            let found =
+                format!("a matrix with |RᵀR − 1| up to {} and determinant {}", number(off.amax()), number(determinant));
             return Err(bad(found, "a rotation: orthonormal with determinant +1"));
         }
         // A few decimals in a JSON file are enough to leave SO(3); the polar decomposition brings them back.
@@ -65,7 +67,7 @@ impl Similarity {
             return Err(Error::new(
                 ErrorCode::InvalidTransform,
                 "transform.matrix",
-                format!("last row [{}, {}, {}, {}]", m[3], m[7], m[11], m[15]),
+                format!("last row {}", numbers(&[m[3], m[7], m[11], m[15]])),
                 "last row [0, 0, 0, 1]",
                 "The 16 numbers are column by column: elements 12 to 14 are the translation. Transpose a row-major matrix.",
             ));
@@ -116,7 +118,7 @@ impl Similarity {
             return Err(Error::new(
                 ErrorCode::InvalidTransform,
                 "transform.rotation",
-                format!("[{}, {}, {}, {}]", q.i, q.j, q.k, q.w),
+                numbers(&[q.i, q.j, q.k, q.w]),
                 "a quaternion x, y, z, w other than 0",
                 "The identity is [0, 0, 0, 1].",
             ));

@@ -32,7 +32,12 @@ impl SymmetricEigen {
             }
         }
         let mut order = [0, 1, 2];
-        order.sort_by(|&i, &j| a[i][i].total_cmp(&a[j][j]));
+        for (i, j) in [(0, 1), (1, 2), (0, 1)] {
+            let (low, high) = (order[i], order[j]);
+            if a[low][low] > a[high][high] {
+                order.swap(i, j);
+            }
+        }
         Self { values: order.map(|i| a[i][i]), vectors: order.map(|i| vectors[i]) }
     }
 }

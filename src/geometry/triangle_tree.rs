@@ -4,6 +4,7 @@ use glam::{DVec3, Vec3};
 
 use super::cloud::Bounds;
 use super::mesh::Mesh;
+use super::order::halve;
 
 const LEAF_SIZE: usize = 4;
 
@@ -40,10 +41,11 @@ struct Node {
 impl TriangleTree {
     /// The tree over a mesh's triangles.
     pub fn new(mesh: &Mesh) -> Self {
-        let mut triangles: Vec<_> = mesh.triangles().iter().map(|&t| mesh.corners(t)).zip(0..).collect();
+        let triangles: Vec<[Vec3; 3]> = mesh.triangles().iter().map(|&t| mesh.corners(t)).collect();
+        let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
         let mut nodes = Vec::with_capacity(triangles.len());
-        build(&mut triangles, &mut nodes);
-        Self { triangles, nodes }
+        build(&triangles, &mut order, &mut nodes);
+        Self { triangles: order.into_iter().map(|i| (triangles[i as usize], i)).collect(), nodes }
     }
 
     /// The point of the surface nearest to `query`. `None` only for a query that is not finite, or so far away
@@ -82,33 +84,32 @@ impl TriangleTree {
     }
 }
 
-/// Sorts the triangles into leaf order. Halving bounds the depth by the logarithm of their number.
-fn build(triangles: &mut [([Vec3; 3], u32)], nodes: &mut Vec<Node>) {
+/// Sorts the triangles' indices into leaf order. Halving bounds the depth by the logarithm of their number.
+fn build(triangles: &[[Vec3; 3]], order: &mut [u32], nodes: &mut Vec<Node>) {
+    let corners = |i: u32| &triangles[i as usize];
     let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-    for p in triangles.iter().flat_map(|(corners, _)| corners) {
+    for p in order.iter().flat_map(|&i| corners(i)) {
         (min, max) = (min.min(*p), max.max(*p));
     }
     let node = nodes.len();
     nodes.push(Node { bounds: Bounds { min, max }, right: 0 });
-    if triangles.len() <= LEAF_SIZE {
+    if order.len() <= LEAF_SIZE {
         return;
     }
     // A third of each corner, lest the sum leave f32.
-    let center = |corners: &[Vec3; 3], axis: usize| corners.iter().map(|p| p[axis] / 3.0).sum::<f32>();
+    let center = |i: u32, axis: usize| corners(i).iter().map(|p| p[axis] / 3.0).sum::<f32>();
     let spread = |axis: usize| {
-        let centers = triangles.iter().map(|(corners, _)| center(corners, axis));
+        let centers = order.iter().map(|&i| center(i, axis));
         let (low, high) = centers.fold((f32::INFINITY, f32::NEG_INFINITY), |(l, h), c| (l.min(c), h.max(c)));
         high - low
     };
     let spreads = [spread(0), spread(1), spread(2)];
     let axis = (1..3).fold(0, |best, axis| if spreads[axis] > spreads[best] { axis } else { best });
-    let middle = triangles.len() / 2;
-    triangles
-        .select_nth_unstable_by(middle, |a, b| center(&a.0, axis).total_cmp(&center(&b.0, axis)).then(a.1.cmp(&b.1)));
-    let (left, right) = triangles.split_at_mut(middle);
-    build(left, nodes);
+    halve(order, |i| center(i, axis));
+    let (left, right) = order.split_at_mut(order.len() / 2);
+    build(triangles, left, nodes);
     nodes[node].right = nodes.len() as u32;
-    build(right, nodes);
+    build(triangles, right, nodes);
 }
 
 fn distance_squared_to_box(bounds: &Bounds, query: Vec3) -> f32 {

@@ -1,11 +1,12 @@
 //! Voxel downsampling: one point, the mean, per occupied cell.
 
-use glam::{I64Vec3, Vec3};
+use glam::Vec3;
 
 use super::cloud::{Bounds, Cloud};
+use super::order::{index_of, sort};
 
 /// Cells along an axis; what lies beyond shares the last one. 2²¹ cells of 1 mm are two kilometres.
-const MAX_CELLS: i64 = (1 << 21) - 1;
+const MAX_CELLS: u32 = (1 << 21) - 1;
 
 /// The mean point (and the normalised mean normal) of every occupied cell of edge `voxel_size`, cell by cell
 /// in ascending x, then y, then z. Cells are counted from the cloud's own smallest corner, so that the result
@@ -16,19 +17,14 @@ pub fn voxel_downsample(cloud: &Cloud, voxel_size: f32) -> Cloud {
     if voxel_size.is_nan() || voxel_size <= 0.0 {
         return cloud.clone();
     }
-    let cell = |p: Vec3| ((p - bounds.min) / voxel_size).as_i64vec3().clamp(I64Vec3::ZERO, I64Vec3::splat(MAX_CELLS));
-    let key = |p: Vec3| {
-        let c = cell(p);
-        (c.x << 42) | (c.y << 21) | c.z
-    };
-    let mut keyed: Vec<(i64, u32)> = cloud.points.iter().map(|&p| key(p)).zip(0..).collect();
-    keyed.sort_unstable();
+    let cells: Vec<[u32; 3]> = cloud.points.iter().map(|&p| cell(p, bounds.min, voxel_size)).collect();
+    let order = in_cell_order(&cells);
 
     let mut out = Cloud::default();
-    for run in keyed.chunk_by(|a, b| a.0 == b.0) {
-        let members = || run.iter().map(|&(_, i)| i as usize);
+    for run in order.chunk_by(|&i, &j| cells[i as usize] == cells[j as usize]) {
+        let members = || run.iter().map(|&i| i as usize);
         // Sums are taken about the first member: a mean of large coordinates keeps its digits.
-        let first = cloud.points[run[0].1 as usize];
+        let first = cloud.points[run[0] as usize];
         let sum: Vec3 = members().map(|i| cloud.points[i] - first).sum();
         out.points.push(first + sum / run.len() as f32);
         if !cloud.normals.is_empty() {
@@ -36,4 +32,23 @@ pub fn voxel_downsample(cloud: &Cloud, voxel_size: f32) -> Cloud {
         }
     }
     out
+}
+
+fn cell(p: Vec3, min: Vec3, voxel_size: f32) -> [u32; 3] {
+    // A cast from float saturates: what is beyond the last cell is in it.
+    ((p - min) / voxel_size).to_array().map(|x| (x as u32).min(MAX_CELLS))
+}
+
+/// The indices of the cells by ascending x, y, z, then index: one sort an axis, the least significant first,
+/// each stable because the rank of the one before breaks its ties.
+fn in_cell_order(cells: &[[u32; 3]]) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..cells.len() as u32).collect();
+    let mut keys = Vec::with_capacity(cells.len());
+    for axis in [2, 1, 0] {
+        keys.clear();
+        keys.extend(order.iter().zip(0..).map(|(&i, rank)| u64::from(cells[i as usize][axis]) << 32 | rank));
+        sort(&mut keys);
+        order = keys.iter().map(|&key| order[index_of(key) as usize]).collect();
+    }
+    order
 }

@@ -5,8 +5,10 @@ use nalgebra::{Unit, UnitQuaternion, Vector3};
 
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::mesh::Mesh;
+use crate::geometry::order::quantile;
 use crate::geometry::similarity::{vec3, vector3};
 use crate::geometry::triangle_tree::TriangleTree;
+use crate::number::numbers;
 use crate::stages::sample::{SurfaceMoments, sample_surface};
 
 /// Mean distance between a surface and its turned self, as a share of the diagonal of the box around the mesh,
@@ -116,7 +118,8 @@ impl SymmetryGroup {
         let mut generators = Vec::new();
         for declared in axes {
             let axis = Unit::try_new(declared.axis, 1e-12).filter(|a| a.iter().all(|x| x.is_finite()));
-            let axis = axis.ok_or_else(|| invalid(format!("axis {:?}", declared.axis.as_slice()), "a direction"))?;
+            let axis =
+                axis.ok_or_else(|| invalid(format!("axis {}", numbers(declared.axis.as_slice())), "a direction"))?;
             match declared.fold {
                 Some(0) => return Err(invalid("fold 0".into(), "a fold of at least 1, or none for any turn")),
                 Some(fold) => {
@@ -198,9 +201,8 @@ fn detect(mesh: &Mesh, revolution: bool) -> Result<Vec<SymmetryAxis>> {
             let turned = turn * (vector3(*p) - center) + center;
             tree.nearest(vec3(&turned)).map_or(f64::INFINITY, |s| f64::from(s.distance_squared).sqrt())
         };
-        let mut distances: Vec<f64> = samples.iter().map(distance).collect();
-        distances.sort_by(f64::total_cmp);
-        let tail = distances[distances.len() * 95 / 100];
+        let distances: Vec<f64> = samples.iter().map(distance).collect();
+        let tail = quantile(distances.iter().map(|&d| d as f32), 0.95).map_or(f64::INFINITY, f64::from);
         let mean = distances.iter().sum::<f64>() / distances.len() as f64;
         mean <= AUTO_MEAN * diagonal && tail <= AUTO_TAIL * diagonal
     };

@@ -8,6 +8,7 @@ use nalgebra::{Rotation3, Vector3};
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::cloud::{Bounds, Cloud};
 use crate::geometry::similarity::{Similarity, vec3, vector3};
+use crate::number::number;
 
 /// The box of a cloud: its middle and the length of its diagonal, in the cloud's own unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,7 +45,7 @@ impl Extents {
             return Err(Error::new(
                 ErrorCode::DegeneratePoints,
                 argument,
-                format!("a box diagonal of {diagonal}"),
+                format!("a box diagonal of {}", number(diagonal)),
                 "points that span a finite box",
                 "Check that the points are not all the same and not beyond what an f32 holds.",
             ));

@@ -5,6 +5,7 @@ use glam::Vec3;
 
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::{KdTree, Neighbor};
+use crate::geometry::order::{index_of, pack, select_smallest, sort, value_of};
 
 /// Bins for each of the three angles.
 const BINS: usize = 11;
@@ -32,15 +33,14 @@ pub fn fpfh(cloud: &Cloud, tree: &KdTree, radius: f32) -> Vec<Descriptor> {
         .map(|(i, &point)| {
             tree.within(point, radius, &mut found);
             found.retain(|n| n.index as usize != i && n.distance_squared > 0.0);
-            if found.len() > MAX_NEIGHBORS {
-                found.select_nth_unstable_by(MAX_NEIGHBORS, |a, b| {
-                    a.distance_squared.total_cmp(&b.distance_squared).then(a.index.cmp(&b.index))
-                });
-                found.truncate(MAX_NEIGHBORS);
-            }
-            // Sums in f32 depend on their order; make it that of the points.
-            found.sort_unstable_by_key(|n| n.index);
-            found.clone()
+            let mut keys: Vec<u64> = found.iter().map(|n| pack(n.distance_squared, n.index)).collect();
+            select_smallest(&mut keys, MAX_NEIGHBORS);
+            keys.truncate(MAX_NEIGHBORS);
+            // Sums in f32 depend on their order; make it that of the points, by the keys' other half first.
+            keys.iter_mut().for_each(|key| *key = key.rotate_left(32));
+            sort(&mut keys);
+            let neighbor = |key: u64| Neighbor { index: index_of(key), distance_squared: value_of(key) };
+            keys.into_iter().map(|key| neighbor(key.rotate_left(32))).collect()
         })
         .collect();
 

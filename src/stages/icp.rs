@@ -11,6 +11,7 @@ use super::filter::{Support, SupportSettings, supported};
 use super::umeyama::{Pair, ScaleMode, umeyama};
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
+use crate::geometry::order::median;
 use crate::geometry::similarity::{Similarity, nearest_rotation, vector3};
 
 /// What an iteration minimises.
@@ -141,14 +142,9 @@ impl Residuals {
 
 /// Tukey's biweight, as wide as the median residual says.
 fn weigh(residuals: &mut [Residual]) {
-    if residuals.is_empty() {
-        return;
-    }
-    let mut magnitudes: Vec<f64> = residuals.iter().map(|r| r.value.abs()).collect();
-    let middle = magnitudes.len() / 2;
-    let (_, median, _) = magnitudes.select_nth_unstable_by(middle, f64::total_cmp);
+    let median = median(residuals.iter().map(|r| r.value.abs() as f32)).unwrap_or_default();
     // On exact data the median is 0; the floor, an f32's rounding in a unit box, keeps the exact pairs in.
-    let width = (TUKEY * MAD_TO_SIGMA * *median).max(1e-6);
+    let width = (TUKEY * MAD_TO_SIGMA * f64::from(median)).max(1e-6);
     for residual in residuals {
         let ratio = residual.value / width;
         residual.weight = if ratio.abs() < 1.0 { (1.0 - ratio * ratio) * (1.0 - ratio * ratio) } else { 0.0 };
@@ -161,8 +157,7 @@ fn step(source: &Cloud, residuals: &Residuals, pose: &Similarity, settings: &Icp
     }
     let next = match settings.metric {
         IcpMetric::PointToPoint => closed_form(source, residuals, pose, settings.lock_scale)?,
-        IcpMetric::PointToPlane if settings.lock_scale => gauss_newton::<6>(residuals, pose)?,
-        IcpMetric::PointToPlane => gauss_newton::<7>(residuals, pose)?,
+        IcpMetric::PointToPlane => gauss_newton(residuals, pose, settings.lock_scale)?,
     };
     match settings.scale_bounds {
         Some([min, max]) if !settings.lock_scale && !(min..=max).contains(&next.scale) => {
@@ -190,31 +185,29 @@ fn weighted_center(residuals: &Residuals) -> Vector3<f64> {
     residuals.0.iter().map(|r| r.landed * r.weight).sum::<Vector3<f64>>() / weight
 }
 
-/// One point-to-plane step in (ω, τ) or (ω, τ, σ): x ↦ c + e^σ exp(ω)(x − c) + τ about the centre c of the
-/// weighted points, which keeps turn and shift apart.
-fn gauss_newton<const N: usize>(residuals: &Residuals, pose: &Similarity) -> Option<Similarity> {
+/// One point-to-plane step in (ω, τ, σ): x ↦ c + e^σ exp(ω)(x − c) + τ about the centre c of the weighted
+/// points, which keeps turn and shift apart. A locked scale has no say in any residual, and does not move.
+fn gauss_newton(residuals: &Residuals, pose: &Similarity, lock_scale: bool) -> Option<Similarity> {
     let center = weighted_center(residuals);
-    let mut hessian = SMatrix::<f64, N, N>::zeros();
-    let mut gradient = SVector::<f64, N>::zeros();
+    let mut hessian = SMatrix::<f64, 7, 7>::zeros();
+    let mut gradient = SVector::<f64, 7>::zeros();
     for r in residuals.0.iter().filter(|r| r.weight > 0.0) {
         let arm = r.landed - center;
         let turn = arm.cross(&r.normal);
-        let mut jacobian = SVector::<f64, N>::zeros();
+        let mut jacobian = SVector::<f64, 7>::zeros();
         jacobian.fixed_rows_mut::<3>(0).copy_from(&turn);
         jacobian.fixed_rows_mut::<3>(3).copy_from(&r.normal);
-        if N == 7 {
-            jacobian[N - 1] = arm.dot(&r.normal);
-        }
+        jacobian[6] = if lock_scale { 0.0 } else { arm.dot(&r.normal) };
         hessian += jacobian * jacobian.transpose() * r.weight;
         gradient += jacobian * (r.weight * r.value);
     }
     // Directions that the data leave free (a plane slides on itself) stay where they are.
     let damping = 1e-9 * hessian.trace();
-    let damped = hessian + SMatrix::<f64, N, N>::identity() * damping;
+    let damped = hessian + SMatrix::<f64, 7, 7>::identity() * damping;
     let delta = -Cholesky::new(damped)?.solve(&gradient);
     let turn = UnitQuaternion::from_scaled_axis(Vector3::new(delta[0], delta[1], delta[2]));
     let shift = Vector3::new(delta[3], delta[4], delta[5]);
-    let growth = if N == 7 { libm::exp(delta[N - 1].clamp(-0.5, 0.5)) } else { 1.0 };
+    let growth = if lock_scale { 1.0 } else { libm::exp(delta[6].clamp(-0.5, 0.5)) };
     let turn = turn.to_rotation_matrix();
     // Products of many small turns drift off SO(3) by rounding; the projection keeps R a rotation.
     let rotation = nearest_rotation((turn * pose.rotation).into_inner());

@@ -7,6 +7,7 @@ use crate::geometry::cloud::Cloud;
 use crate::geometry::image::{DepthMap, Image, Mask};
 use crate::geometry::pinhole::Pinhole;
 use crate::geometry::random::Random;
+use crate::number::number;
 
 /// The random stream of the subsampling in [`Observation::cloud`].
 const STREAM: u64 = 1;
@@ -131,7 +132,7 @@ impl Observation {
             return Err(Error::new(
                 ErrorCode::FlatDepth,
                 "depth",
-                format!("{first} in all {count} readings of the mask"),
+                format!("{} m in all {count} readings of the mask", number(f64::from(first))),
                 "depths that vary over the object",
                 "A constant is a placeholder, not a measurement: pass the depth map itself.",
             ));
@@ -190,7 +191,7 @@ pub fn from_point_map(width: usize, height: usize, points: &[f32]) -> Result<(De
         Error::new(
             ErrorCode::InvalidCamera,
             "pointMap",
-            format!("points whose best pinhole camera has fx {fx:.3}, fy {fy:.3}"),
+            format!("points whose best pinhole camera has fx {}, fy {}", number(fx), number(fy)),
             "points in the OpenCV camera frame: x right, y down, z forward",
             "Convert the point map from its own frame (OpenGL: negate y and z; PyTorch3D: negate x and y).",
         )

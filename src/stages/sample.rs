@@ -7,6 +7,7 @@ use crate::geometry::cloud::Cloud;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::random::Random;
 use crate::geometry::symmetric_eigen::SymmetricEigen;
+use crate::number::number;
 
 /// The random stream of [`sample_surface`].
 const STREAM: u64 = 2;
@@ -69,13 +70,13 @@ pub fn check_shape(mesh: &Mesh) -> Result<()> {
     };
     if middle < MIN_THICKNESS {
         return degenerate(
-            format!("a needle: {middle:.1e} of its diagonal thick in two directions"),
+            format!("a needle: {} of its diagonal thick in two directions", number(middle)),
             "Check that the vertices are x, y, z triples and that no axis was scaled to zero.",
         );
     }
     if thin < MIN_THICKNESS {
         return degenerate(
-            format!("a plane: {thin:.1e} of its diagonal thick"),
+            format!("a plane: {} of its diagonal thick", number(thin)),
             "Pass the whole object's mesh, not a flat patch; a sheet needs a thickness of its own.",
         );
     }
@@ -150,7 +151,7 @@ fn check_area(total: f64) -> Result<()> {
     Err(Error::new(
         ErrorCode::DegenerateMesh,
         "mesh",
-        format!("triangles with a total area of {total}"),
+        format!("triangles with a total area of {}", number(total)),
         "a surface with area",
         "Check that the vertices are x, y, z triples and that the indices do not all name one vertex.",
     ))

@@ -38,8 +38,12 @@ pub struct Pair {
 /// # Errors
 /// [`ErrorCode::TooFewPoints`] for fewer than three pairs of positive weight;
 /// [`ErrorCode::DegeneratePoints`] where either side is coincident, collinear, or not finite.
-pub fn umeyama(pairs: impl Iterator<Item = Pair> + Clone, scale_mode: ScaleMode) -> Result<Similarity> {
-    let weighted = || pairs.clone().filter(|pair| pair.weight > 0.0);
+pub fn umeyama(pairs: impl Iterator<Item = Pair>, scale_mode: ScaleMode) -> Result<Similarity> {
+    closed_form(&pairs.collect::<Vec<_>>(), scale_mode)
+}
+
+fn closed_form(pairs: &[Pair], scale_mode: ScaleMode) -> Result<Similarity> {
+    let weighted = || pairs.iter().filter(|pair| pair.weight > 0.0);
     let count = weighted().count();
     if count < 3 {
         return Err(Error::new(
@@ -51,9 +55,8 @@ pub fn umeyama(pairs: impl Iterator<Item = Pair> + Clone, scale_mode: ScaleMode)
         ));
     }
     let total: f64 = weighted().map(|pair| pair.weight).sum();
-    let mean = |side: fn(&Pair) -> Vector3<f64>| {
-        weighted().map(|pair| side(&pair) * pair.weight).sum::<Vector3<f64>>() / total
-    };
+    let mean =
+        |side: fn(&Pair) -> Vector3<f64>| weighted().map(|pair| side(pair) * pair.weight).sum::<Vector3<f64>>() / total;
     let (p_mean, q_mean) = (mean(|pair| pair.source), mean(|pair| pair.target));
 
     let mut sigma = Matrix3::zeros();

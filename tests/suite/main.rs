@@ -21,6 +21,8 @@ pub mod formats_mesh;
 pub mod kd_tree;
 pub mod metrics;
 pub mod normals;
+pub mod number;
+pub mod order;
 pub mod pose_error;
 pub mod rasteriser;
 pub mod rasteriser_oracle;

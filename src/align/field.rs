@@ -1,0 +1,126 @@
+//! Options as a table of named fields: what bindings set, what validation checks, and what an unknown name is
+//! held against, all from one place.
+
+use crate::error::{Error, ErrorCode, Result};
+use crate::number::{number, numbers};
+
+/// An option by its type and range.
+pub enum Field<'a> {
+    /// A whole number.
+    Count {
+        /// The option.
+        value: &'a mut u32,
+        /// Smallest value.
+        min: u32,
+        /// Largest value.
+        max: u32,
+    },
+    /// A number.
+    Number {
+        /// The option.
+        value: &'a mut f64,
+        /// Smallest value.
+        min: f64,
+        /// Largest value.
+        max: f64,
+    },
+    /// A finite number above 0, or nothing.
+    Positive(&'a mut Option<f64>),
+    /// Yes or no.
+    Flag(&'a mut bool),
+    /// [min, max] around 1, or nothing.
+    Guard(&'a mut Option<[f64; 2]>),
+    /// One of several names.
+    Choice(&'a mut dyn Choice),
+}
+
+/// An option that is one of several names.
+pub trait Choice {
+    /// All names.
+    fn names(&self) -> &'static [&'static str];
+
+    /// Sets the option by its name; `false` where there is none of that name.
+    fn set(&mut self, name: &str) -> bool;
+}
+
+/// Implements [`Choice`] for a plain enum.
+macro_rules! choice {
+    ($type:ident { $($variant:ident: $name:literal),+ }) => {
+        impl $crate::align::field::Choice for $type {
+            fn names(&self) -> &'static [&'static str] {
+                &[$($name),+]
+            }
+
+            fn set(&mut self, name: &str) -> bool {
+                match name {
+                    $($name => *self = Self::$variant,)+
+                    _ => return false,
+                }
+                true
+            }
+        }
+    };
+}
+pub(crate) use choice;
+
+/// A struct of options.
+pub trait Options: Default + Clone {
+    /// Every option, by its name in JavaScript.
+    fn fields(&mut self) -> Vec<(&'static str, Field<'_>)>;
+
+    /// Checks every range.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidOption`].
+    fn validate(&self) -> Result<()> {
+        let mut copy = self.clone();
+        copy.fields().iter().try_for_each(|(name, field)| field.check(name))
+    }
+}
+
+impl<'a> Field<'a> {
+    /// A whole number from `min` to `max`.
+    pub fn count(value: &'a mut u32, min: u32, max: u32) -> Self {
+        Self::Count { value, min, max }
+    }
+
+    /// A number from `min` to `max`.
+    pub fn number(value: &'a mut f64, min: f64, max: f64) -> Self {
+        Self::Number { value, min, max }
+    }
+
+    /// What the option may be, in words.
+    pub fn expected(&self) -> String {
+        match self {
+            Self::Count { min, max, .. } => format!("a whole number from {min} to {max}"),
+            Self::Number { min, max, .. } => format!("a number from {} to {}", number(*min), number(*max)),
+            Self::Positive(_) => "a finite number above 0, or null".into(),
+            Self::Flag(_) => "true or false".into(),
+            Self::Guard(_) => "[min, max] with 0 < min ≤ 1 ≤ max, or null".into(),
+            Self::Choice(choice) => format!("one of \"{}\"", choice.names().join("\", \"")),
+        }
+    }
+
+    /// Whether the option's value is in its range; `name` is for the error.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidOption`].
+    pub fn check(&self, name: &str) -> Result<()> {
+        let (fits, found) = match self {
+            Self::Count { value, min, max } => ((*min..=*max).contains(value), number(f64::from(**value))),
+            Self::Number { value, min, max } => ((*min..=*max).contains(value), number(**value)),
+            Self::Positive(Some(value)) => (value.is_finite() && *value > 0.0, number(*value)),
+            Self::Guard(Some([min, max])) => {
+                (*min > 0.0 && *min <= 1.0 && *max >= 1.0 && max.is_finite(), numbers(&[*min, *max]))
+            }
+            Self::Positive(None) | Self::Guard(None) | Self::Flag(_) | Self::Choice(_) => return Ok(()),
+        };
+        if fits { Ok(()) } else { Err(self.error(name, found)) }
+    }
+
+    /// The error of a value that does not fit.
+    pub fn error(&self, name: &str, found: String) -> Error {
+        let remedy = "Leave the option out to take its default.";
+        Error::new(ErrorCode::InvalidOption, format!("options.{name}"), found, self.expected(), remedy)
+    }
+}

@@ -1,0 +1,60 @@
+//! Order statistics of f32 values, all by way of one integer sort.
+//!
+//! A value and an index are packed into a u64 that sorts by the value (in `f32::total_cmp`'s order), ties by
+//! the index. Every sort and selection of the crate then shares one instance of the standard library's
+//! routines: each further element type would cost several kilobytes of WebAssembly.
+
+/// `value` and `index` as one sortable key.
+pub fn pack(value: f32, index: u32) -> u64 {
+    let bits = value.to_bits();
+    // Negative floats sort backwards and below the positive ones.
+    let ordered = if bits >> 31 == 1 { !bits } else { bits | 1 << 31 };
+    u64::from(ordered) << 32 | u64::from(index)
+}
+
+/// The index in a key.
+pub fn index_of(key: u64) -> u32 {
+    key as u32
+}
+
+/// The value in a key.
+pub fn value_of(key: u64) -> f32 {
+    let ordered = (key >> 32) as u32;
+    f32::from_bits(if ordered >> 31 == 1 { ordered & !(1 << 31) } else { !ordered })
+}
+
+/// Sorts keys.
+#[inline(never)]
+pub fn sort(keys: &mut [u64]) {
+    keys.sort_unstable();
+}
+
+/// Puts the `n` smallest keys in front. Does nothing where there are not more than `n`.
+#[inline(never)]
+pub fn select_smallest(keys: &mut [u64], n: usize) {
+    if n < keys.len() {
+        keys.select_nth_unstable(n);
+    }
+}
+
+/// Puts the smaller half of the indices in front (⌊n/2⌋ of them), by the value of each, ties by the index.
+pub fn halve(indices: &mut [u32], value: impl Fn(u32) -> f32) {
+    let mut keys: Vec<u64> = indices.iter().map(|&index| pack(value(index), index)).collect();
+    select_smallest(&mut keys, indices.len() / 2);
+    for (index, key) in indices.iter_mut().zip(keys) {
+        *index = index_of(key);
+    }
+}
+
+/// The value at `quantile` (0 to 1) of the sorted values: the one at index ⌊quantile · n⌋. `None` for no values.
+pub fn quantile(values: impl Iterator<Item = f32>, quantile: f64) -> Option<f32> {
+    let mut keys: Vec<u64> = values.map(|value| pack(value, 0)).collect();
+    let at = ((quantile * keys.len() as f64) as usize).min(keys.len().checked_sub(1)?);
+    select_smallest(&mut keys, at);
+    keys.get(at).copied().map(value_of)
+}
+
+/// The median: the upper one of two middle values.
+pub fn median(values: impl Iterator<Item = f32>) -> Option<f32> {
+    quantile(values, 0.5)
+}
