@@ -19,7 +19,7 @@ use crate::stages::normals::{Neighborhood, Orientation, estimate_normals};
 use crate::stages::observe::Observation;
 use crate::stages::sample::{check_shape, sample_surface};
 
-use estimate::{NORMAL_NEIGHBORS, Settings, estimate};
+use estimate::{NORMAL_NEIGHBORS, Problem, Settings};
 use field::Options;
 use options::AlignOptions;
 use progress::{Host, Stage, Stopwatch};
@@ -67,7 +67,8 @@ pub fn align(observation: &Observation, mesh: &Mesh, options: &AlignOptions, hos
     let source = extents_rec.normalized(&reconstructed);
 
     // §3.2 and §3.3: descriptors, guarded RANSAC, hallucination filter, scale-locked ICP.
-    let estimated = estimate(&source, &target, &Settings::of(options), &mut stages)?;
+    let settings = Settings::of(options);
+    let estimated = Problem::new(&source, &target, &settings, &mut stages).solve(&settings, &mut stages)?;
     let camera_from_mesh = target_from_source(&extents_obs, &estimated.target_from_source, &extents_rec);
 
     stages.enter(Stage::Metrics);

@@ -165,55 +165,64 @@ fn smooth_normals(voxels: &mut Cloud, tree: &KdTree) {
     }
 }
 
-/// The similarity that takes `source` to `target`; both with normals, centred, and of box diagonal 1.
-pub(super) fn estimate(
-    source: &Cloud,
-    target: &Cloud,
-    settings: &Settings,
-    stages: &mut Stopwatch<'_>,
-) -> Result<Estimate> {
-    let (source, target) = (Side::new(source, settings.voxel_size), Side::new(target, settings.voxel_size));
+/// Two clouds with their correspondences: everything before the first draw.
+pub(super) struct Problem<'a> {
+    source: Side<'a>,
+    target: Side<'a>,
+    matches: Vec<Match>,
+}
 
-    stages.enter(Stage::Features);
-    let radius = settings.fpfh_radius_voxels * settings.voxel_size;
-    let source_features = fpfh(&source.voxels, &source.tree, radius);
-    let target_features = fpfh(&target.voxels, &target.tree, radius);
+impl<'a> Problem<'a> {
+    /// Descriptors and matches of both clouds; both with normals, centred, and of box diagonal 1.
+    pub(super) fn new(source: &'a Cloud, target: &'a Cloud, settings: &Settings, stages: &mut Stopwatch<'_>) -> Self {
+        let (source, target) = (Side::new(source, settings.voxel_size), Side::new(target, settings.voxel_size));
 
-    stages.enter(Stage::Matching);
-    let mut matches = mutual_matches(&source_features, &target_features);
-    if matches.len() < MIN_MUTUAL_MATCHES {
-        matches = one_way_matches(&source_features, &target_features);
+        stages.enter(Stage::Features);
+        let radius = settings.fpfh_radius_voxels * settings.voxel_size;
+        let source_features = fpfh(&source.voxels, &source.tree, radius);
+        let target_features = fpfh(&target.voxels, &target.tree, radius);
+
+        stages.enter(Stage::Matching);
+        let mut matches = mutual_matches(&source_features, &target_features);
+        if matches.len() < MIN_MUTUAL_MATCHES {
+            matches = one_way_matches(&source_features, &target_features);
+        }
+        Self { source, target, matches }
     }
 
-    stages.enter(Stage::Ransac);
-    let consensus = ransac(&source.voxels.points, &target.voxels.points, &matches, &settings.ransac)?;
+    /// The similarity that takes the source to the target.
+    pub(super) fn solve(&self, settings: &Settings, stages: &mut Stopwatch<'_>) -> Result<Estimate> {
+        let Self { source, target, matches } = self;
+        stages.enter(Stage::Ransac);
+        let consensus = ransac(&source.voxels.points, &target.voxels.points, matches, &settings.ransac)?;
 
-    stages.enter(Stage::Filter);
-    let filtered = refit_on_supported(&source, &target, &matches, &consensus, settings);
+        stages.enter(Stage::Filter);
+        let filtered = refit_on_supported(source, target, matches, &consensus, settings);
 
-    stages.enter(Stage::Icp);
-    let refined = refine_coarse_to_fine(&source, &target, &filtered, settings);
+        stages.enter(Stage::Icp);
+        let refined = refine_coarse_to_fine(source, target, &filtered, settings);
 
-    Ok(Estimate {
-        target_from_source: refined.target_from_source,
-        clamped: consensus.clamped,
-        converged: refined.converged,
-        rms: refined.rms,
-        counts: Counts {
-            source_points: source.full.len(),
-            target_points: target.full.len(),
-            source_voxels: source.voxels.len(),
-            target_voxels: target.voxels.len(),
-            matches: matches.len(),
-            inliers: consensus.inliers.len(),
-            supported: refined.supported,
-            iterations: consensus.counts.iterations,
-            inconsistent: consensus.counts.inconsistent,
-            rejected: consensus.counts.rejected,
-            clamped: consensus.counts.clamped,
-            icp_iterations: refined.iterations,
-        },
-    })
+        Ok(Estimate {
+            target_from_source: refined.target_from_source,
+            clamped: consensus.clamped,
+            converged: refined.converged,
+            rms: refined.rms,
+            counts: Counts {
+                source_points: source.full.len(),
+                target_points: target.full.len(),
+                source_voxels: source.voxels.len(),
+                target_voxels: target.voxels.len(),
+                matches: matches.len(),
+                inliers: consensus.inliers.len(),
+                supported: refined.supported,
+                iterations: consensus.counts.iterations,
+                inconsistent: consensus.counts.inconsistent,
+                rejected: consensus.counts.rejected,
+                clamped: consensus.counts.clamped,
+                icp_iterations: refined.iterations,
+            },
+        })
+    }
 }
 
 /// The closed form once more, on those inliers whose source point the observation supports. Keeps the

@@ -66,7 +66,7 @@ impl Host for Silent {
     fn progress(&mut self, _stage: Stage, _fraction: f64) {}
 }
 
-/// Milliseconds by stage, in the order in which the stages ran. Serialises as an object with a `total`.
+/// Milliseconds by stage, in the order in which the stages first ran. Serialises as an object with a `total`.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Timings(Vec<(Stage, f64)>);
 
@@ -98,21 +98,24 @@ pub struct Stopwatch<'a> {
     host: &'a mut dyn Host,
     plan: &'static [(Stage, f64)],
     timings: Timings,
+    running: Option<Stage>,
+    fraction: f64,
     begun_ms: f64,
 }
 
 impl<'a> Stopwatch<'a> {
     /// A stopwatch for the stages in `plan`, each with the share of the whole that is done when it begins.
     pub fn new(host: &'a mut dyn Host, plan: &'static [(Stage, f64)]) -> Self {
-        Self { host, plan, timings: Timings::default(), begun_ms: 0.0 }
+        Self { host, plan, timings: Timings::default(), running: None, fraction: 0.0, begun_ms: 0.0 }
     }
 
-    /// The next stage begins; the one before it, if any, has ended.
+    /// The next stage begins; the one before it, if any, has ended. A stage that runs again adds to its time.
     pub fn enter(&mut self, stage: Stage) {
         self.end_stage();
-        let fraction = self.plan.iter().find(|(s, _)| *s == stage).map_or(0.0, |(_, fraction)| *fraction);
-        self.host.progress(stage, fraction);
-        self.timings.0.push((stage, 0.0));
+        let planned = self.plan.iter().find(|(s, _)| *s == stage).map_or(0.0, |(_, fraction)| *fraction);
+        self.fraction = self.fraction.max(planned);
+        self.host.progress(stage, self.fraction);
+        self.running = Some(stage);
     }
 
     /// The last stage has ended.
@@ -126,8 +129,12 @@ impl<'a> Stopwatch<'a> {
 
     fn end_stage(&mut self) {
         let now_ms = self.host.now_ms();
-        if let Some((_, ms)) = self.timings.0.last_mut() {
-            *ms = now_ms - self.begun_ms;
+        if let Some(stage) = self.running.take() {
+            let ms = now_ms - self.begun_ms;
+            match self.timings.0.iter_mut().find(|(s, _)| *s == stage) {
+                Some((_, sum)) => *sum += ms,
+                None => self.timings.0.push((stage, ms)),
+            }
         }
         self.begun_ms = now_ms;
     }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::estimate::{NORMAL_NEIGHBORS, Settings, estimate};
+use super::estimate::{Estimate, NORMAL_NEIGHBORS, Problem, Settings};
 use super::field::Options;
 use super::options::{EstimateOptions, RegisterOptions, ScaleOption};
 use super::progress::{Host, Stage, Stopwatch};
@@ -14,6 +14,7 @@ use crate::geometry::order;
 use crate::geometry::random::Random;
 use crate::geometry::similarity::{Similarity, vector3};
 use crate::number::number;
+use crate::stages::density::dense_points;
 use crate::stages::extents::{Extents, initial_scale, target_from_source};
 use crate::stages::matching::Match;
 use crate::stages::normals::{Neighborhood, Orientation, estimate_normals};
@@ -26,6 +27,18 @@ const STREAM: u64 = 5;
 
 /// How far a free scale may be from the ratio of the boxes. Wide: clutter widens a box at will.
 const FREE_GUARD: [f64; 2] = [0.2, 5.0];
+
+/// Without its sparse points a cloud of less than this share counts as cluttered. Uniform samples keep 99 %.
+const CLUTTERED: f64 = 0.97;
+
+/// Seeds tried for one pair of clouds at most.
+const RESTARTS: usize = 6;
+
+/// From one seed to the next: odd, so that no two restarts of neighbouring seeds share their draws.
+const SEED_STEP: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// Agreement at which no further seed is tried: nine points in ten all but coincide.
+const BEYOND_DOUBT: f64 = 0.9;
 
 /// When each stage begins, as a share of the whole.
 const PLAN: &[(Stage, f64)] = &[
@@ -60,23 +73,143 @@ pub fn register(
     let mut random = Random::new(u64::from(options.seed), STREAM);
     let source_xyz = subsample(source_xyz, options.max_points as usize, &mut random);
     let target_xyz = subsample(target_xyz, options.max_points as usize, &mut random);
-    let frames = Frames::of(&source_xyz, &target_xyz, scale)?;
+    let whole = Frames::of(&source_xyz, &target_xyz, scale)?;
 
-    stages.enter(Stage::Normals);
-    let source = with_normals(frames.source.normalized_flat(&source_xyz));
-    let target = with_normals(frames.target.normalized_flat(&target_xyz));
+    // Clutter widens the boxes and drowns the descriptors; but where the density varies by nature (lidar),
+    // dropping the sparse points drops the scene. So both are tried, and the points themselves decide.
+    let mut judge = Judge::new(&source_xyz, &target_xyz, whole, options);
+    if let Some((source_xyz, target_xyz)) = dense(&source_xyz, &target_xyz, &judge.frames) {
+        judge.attempt(&source_xyz, &target_xyz, scale, options, &mut stages)?;
+    }
+    judge.attempt(&source_xyz, &target_xyz, scale, options, &mut stages)?;
+    judge.verdict(options, stages)
+}
 
-    let voxel_size = options.voxel_size.map_or(1.0 / options.voxel_divisions, |size| size / frames.target.diagonal());
-    let settings = Settings::of_register(options, voxel_size, frames.scale_mode, frames.guard);
-    let estimated = estimate(&source, &target, &settings, &mut stages)?;
-    let unit = estimated.target_from_source;
-    let fitness = fitness(&source, &target, &unit, settings.ransac.inlier_distance);
-    Ok(Registration {
-        residual: estimated.rms * frames.target.diagonal(),
-        converged: estimated.converged,
-        fitness,
-        ..frames.registration(&unit, options.seed, estimated.counts, stages)
-    })
+/// Tries clouds and seeds, and keeps the transform under which the whole clouds agree best.
+struct Judge {
+    frames: Frames,
+    source: Cloud,
+    target: KdTree,
+    inlier_distance: f32,
+    best: Option<(Agreement, Attempt)>,
+    failure: Option<Error>,
+}
+
+impl Judge {
+    fn new(source_xyz: &[f64], target_xyz: &[f64], frames: Frames, options: &RegisterOptions) -> Self {
+        Self {
+            source: frames.source.normalized_flat(source_xyz),
+            target: KdTree::new(&frames.target.normalized_flat(target_xyz).points),
+            inlier_distance: (options.inlier_distance_voxels * unit_voxel_size(options, &frames)) as f32,
+            frames,
+            best: None,
+            failure: None,
+        }
+    }
+
+    /// Solves for these clouds with one seed after the other until the agreement is beyond doubt.
+    fn attempt(
+        &mut self,
+        source_xyz: &[f64],
+        target_xyz: &[f64],
+        scale: ScaleOption,
+        options: &RegisterOptions,
+        stages: &mut Stopwatch<'_>,
+    ) -> Result<()> {
+        let frames = Frames::of(source_xyz, target_xyz, scale)?;
+        stages.enter(Stage::Normals);
+        let source = with_normals(frames.source.normalized_flat(source_xyz));
+        let target = with_normals(frames.target.normalized_flat(target_xyz));
+        let mut settings =
+            Settings::of_register(options, unit_voxel_size(options, &frames), frames.scale_mode, frames.guard);
+        let problem = Problem::new(&source, &target, &settings, stages);
+        for _ in 0..RESTARTS {
+            if self.best.as_ref().is_some_and(|(agreement, _)| agreement.score >= BEYOND_DOUBT) {
+                break;
+            }
+            match problem.solve(&settings, stages) {
+                Ok(estimate) => self.consider(Attempt {
+                    target_from_source: target_from_source(
+                        &frames.target,
+                        &estimate.target_from_source,
+                        &frames.source,
+                    ),
+                    residual: estimate.rms * frames.target.diagonal(),
+                    estimate,
+                }),
+                Err(error) => self.failure = Some(error),
+            }
+            settings.ransac.seed = settings.ransac.seed.wrapping_add(SEED_STEP);
+        }
+        Ok(())
+    }
+
+    fn consider(&mut self, attempt: Attempt) {
+        let unit = self.frames.unit(&attempt.target_from_source);
+        let agreement = Agreement::of(&self.source, &self.target, &unit, self.inlier_distance);
+        if self.best.as_ref().is_none_or(|(best, _)| agreement.score > best.score) {
+            self.best = Some((agreement, attempt));
+        }
+    }
+
+    fn verdict(self, options: &RegisterOptions, stages: Stopwatch<'_>) -> Result<Registration> {
+        let Some((agreement, attempt)) = self.best else {
+            return Err(self.failure.unwrap_or_else(no_attempt));
+        };
+        Ok(Registration {
+            residual: attempt.residual,
+            converged: attempt.estimate.converged,
+            fitness: agreement.fitness,
+            ..self.frames.registration(&attempt.target_from_source, options.seed, attempt.estimate.counts, stages)
+        })
+    }
+}
+
+/// A transform between the clouds' own frames, and how it came about.
+struct Attempt {
+    target_from_source: Similarity,
+    estimate: Estimate,
+    /// In target units.
+    residual: f64,
+}
+
+/// The voxel size where the target's diagonal is 1.
+fn unit_voxel_size(options: &RegisterOptions, frames: &Frames) -> f64 {
+    options.voxel_size.map_or(1.0 / options.voxel_divisions, |size| size / frames.target.diagonal())
+}
+
+/// Both clouds without their sparse points; `None` where that is next to nothing, or almost everything.
+fn dense(source_xyz: &[f64], target_xyz: &[f64], frames: &Frames) -> Option<(Vec<f64>, Vec<f64>)> {
+    let source = dense_points(&frames.source.normalized_flat(source_xyz).points);
+    let target = dense_points(&frames.target.normalized_flat(target_xyz).points);
+    let kept = |dense: &[usize], xyz: &[f64]| dense.len() as f64 / (xyz.len() / 3) as f64;
+    let least = kept(&source, source_xyz).min(kept(&target, target_xyz));
+    let enough = source.len().min(target.len()) >= MIN_POINTS;
+    let pick = |dense: &[usize], xyz: &[f64]| dense.iter().flat_map(|i| &xyz[3 * i..3 * i + 3]).copied().collect();
+    (enough && least < CLUTTERED).then(|| (pick(&source, source_xyz), pick(&target, target_xyz)))
+}
+
+/// How well the source's points agree with the target's.
+struct Agreement {
+    /// Share of the source points that land within the inlier distance of a target point.
+    fitness: f64,
+    /// Mean of 1 − (r/d)² over the source points, 0 beyond d: exact agreement counts more than a near miss.
+    score: f64,
+}
+
+impl Agreement {
+    fn of(source: &Cloud, target: &KdTree, unit: &Similarity, distance: f32) -> Self {
+        let transform = unit.to_f32();
+        let (mut near, mut sum) = (0_usize, 0.0);
+        for &point in &source.points {
+            if let Some(neighbor) = target.nearest_within(transform.apply(point), distance) {
+                near += 1;
+                sum += 1.0 - f64::from(neighbor.distance_squared) / f64::from(distance * distance);
+            }
+        }
+        let count = source.len() as f64;
+        Self { fitness: near as f64 / count, score: sum / count }
+    }
 }
 
 /// The similarity that most correspondences agree with; `correspondences` are pairs of indices, source then
@@ -141,7 +274,7 @@ pub fn estimate_sim3(
     Ok(Registration {
         residual: (squares / count).sqrt() * frames.target.diagonal(),
         fitness: count / matches.len() as f64,
-        ..frames.registration(&unit, options.seed, counts, stages)
+        ..frames.registration(&target_from_source(&frames.target, &unit, &frames.source), options.seed, counts, stages)
     })
 }
 
@@ -178,12 +311,17 @@ impl Frames {
         })
     }
 
-    /// The report of a transform between the frames; the residual is the caller's to add.
-    fn registration(&self, unit: &Similarity, seed: u32, counts: Counts, stages: Stopwatch<'_>) -> Registration {
-        let transform = target_from_source(&self.target, unit, &self.source);
+    /// A transform between the clouds' own frames, taken to the normalised ones.
+    fn unit(&self, target_from_source: &Similarity) -> Similarity {
+        let own_from_unit = self.source.unit_from_own().inverse();
+        self.target.unit_from_own().compose(target_from_source).compose(&own_from_unit)
+    }
+
+    /// The report of a transform between the clouds' own frames; residual and fitness are the caller's to add.
+    fn registration(&self, transform: &Similarity, seed: u32, counts: Counts, stages: Stopwatch<'_>) -> Registration {
         let initial_scale = initial_scale(&self.target, &self.source);
         Registration {
-            target_from_source: (&transform).into(),
+            target_from_source: transform.into(),
             seed,
             initial_scale,
             scale_ratio: transform.scale / initial_scale,
@@ -207,14 +345,6 @@ fn with_normals(mut cloud: Cloud) -> Cloud {
     cloud
 }
 
-/// Share of the source points that land within `distance` of a target point.
-fn fitness(source: &Cloud, target: &Cloud, unit: &Similarity, distance: f64) -> f64 {
-    let tree = KdTree::new(&target.points);
-    let transform = unit.to_f32();
-    let near = source.points.iter().filter(|&&p| tree.nearest_within(transform.apply(p), distance as f32).is_some());
-    near.count() as f64 / source.len() as f64
-}
-
 /// At most `max_points` points, one drawn from each of as many equal runs.
 fn subsample(xyz: &[f64], max_points: usize, random: &mut Random) -> Vec<f64> {
     let n = xyz.len() / 3;
@@ -226,6 +356,10 @@ fn subsample(xyz: &[f64], max_points: usize, random: &mut Random) -> Vec<f64> {
         drawn.extend_from_slice(&xyz[3 * i..3 * i + 3]);
     }
     drawn
+}
+
+fn no_attempt() -> Error {
+    Error::new(ErrorCode::Internal, "source", "no attempt", "at least one", "Please report this with the two clouds.")
 }
 
 fn check_cloud(argument: &str, xyz: &[f64], min_points: usize) -> Result<()> {

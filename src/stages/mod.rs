@@ -1,5 +1,6 @@
 //! The steps of the method, one noun a file. Depends on geometry only.
 
+pub mod density;
 pub mod extents;
 pub mod filter;
 pub mod fpfh;

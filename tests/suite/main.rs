@@ -29,6 +29,7 @@ pub mod rasteriser_oracle;
 pub mod rasteriser_seams;
 #[cfg(all(feature = "formats", not(target_arch = "wasm32")))]
 pub mod real_cases;
+pub mod register;
 pub mod sample;
 pub mod shapes;
 pub mod silhouette;

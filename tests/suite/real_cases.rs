@@ -53,7 +53,7 @@ fn the_true_pose_scores_as_a_perfect_one() {
         let metrics = scored.metrics;
         println!("{}: {metrics:?}", case.name);
         assert!(metrics.iou.unwrap() >= 0.92, "{}: IoU {:?}", case.name, metrics.iou);
-        assert!(metrics.normal_consistency.unwrap() >= 0.85, "{}: {:?}", case.name, metrics.normal_consistency);
-        assert_eq!(metrics.fitness.map(|f| f > 0.97), Some(true), "{}: {:?}", case.name, metrics.fitness);
+        assert!(metrics.normal_consistency.unwrap() >= 0.8, "{}: {:?}", case.name, metrics.normal_consistency);
+        assert_eq!(metrics.fitness.map(|f| f > 0.93), Some(true), "{}: {:?}", case.name, metrics.fitness);
     }
 }

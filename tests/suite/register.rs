@@ -1,0 +1,69 @@
+//! General registration recovers known transforms.
+
+use nalgebra::Vector3;
+use sim3align::align::options::{EstimateOptions, RegisterOptions, ScaleOption};
+use sim3align::align::progress::Silent;
+use sim3align::align::register::{estimate_sim3, register};
+use sim3align::error::ErrorCode;
+use sim3align::geometry::cloud::Cloud;
+use sim3align::geometry::similarity::{Similarity, vector3};
+use wasm_bindgen_test::wasm_bindgen_test;
+
+use crate::support::{Draw, blob, mug};
+
+/// The transformed points with `share` of clutter (of the whole) spread over their box, half as large again,
+/// all in random order.
+fn cluttered(draw: &mut Draw, points: &[Vector3<f64>], share: f64) -> Vec<Vector3<f64>> {
+    let (min, max) = points.iter().fold((points[0], points[0]), |(a, b), p| (a.inf(p), b.sup(p)));
+    let (center, half) = ((min + max) * 0.5, (max - min) * 0.75);
+    let clutter = (points.len() as f64 * share / (1.0 - share)) as usize;
+    let mut all = points.to_vec();
+    for _ in 0..clutter {
+        all.push(center + half.component_mul(&draw.cube(1.0)));
+    }
+    draw.permutation(all.len()).into_iter().map(|i| all[i]).collect()
+}
+
+fn flat(points: &[Vector3<f64>]) -> Vec<f64> {
+    points.iter().flat_map(|p| [p.x, p.y, p.z]).collect()
+}
+
+/// Scale and angle relative, and where the points land relative to their extent.
+fn assert_recovers(found: &[f64; 16], truth: &Similarity, points: &[Vector3<f64>], tolerance: f64, what: &str) {
+    let found = Similarity::from_column_major(found).unwrap();
+    let scale = (found.scale / truth.scale - 1.0).abs();
+    let angle = found.rotation_angle_to(truth);
+    let off = points.iter().map(|&p| (found.apply(p) - truth.apply(p)).norm()).fold(0.0, f64::max) / truth.scale;
+    assert!(
+        scale <= tolerance && angle <= tolerance && off <= tolerance,
+        "{what}: scale off by {scale:.1e}, rotation by {angle:.1e} rad, points by {off:.1e} of the source unit"
+    );
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn recovers_any_similarity_of_a_full_surface_exactly() {
+    let settings =
+        [(0.01, 0.0), (1.0, 0.0), (100.0, 0.0), (0.01, 0.5), (0.3, 0.25), (1.0, 0.5), (7.0, 0.5), (100.0, 0.5)];
+    for (shape, surface) in [("blob", blob as fn(&mut Draw, usize) -> Cloud), ("mug", mug)] {
+        for (case, (scale, clutter)) in settings.into_iter().enumerate() {
+            let seed = 100 + case as u64;
+            let draw = &mut Draw::new(seed);
+            let source: Vec<_> = surface(draw, 3000).points.into_iter().map(vector3).collect();
+            let truth = draw.similarity([scale, scale], 1e4);
+            let moved: Vec<_> = source.iter().map(|&p| truth.apply(p)).collect();
+            let target = cluttered(draw, &moved, clutter);
+            let what = format!("{shape}, seed {seed}, scale {scale}, clutter {clutter}");
+            let options = RegisterOptions::default();
+            let result = register(&flat(&source), &flat(&target), ScaleOption::Free, &options, &mut Silent);
+            println!(
+                "{what} {:?}",
+                result.as_ref().map(|r| (r.target_from_source.scale, r.converged, r.fitness, r.counts))
+            );
+            let result = result.unwrap_or_else(|e| panic!("{what}: {e}"));
+            {
+                assert_recovers(&result.target_from_source.matrix, &truth, &source, 1e-4, &what);
+                assert!(result.converged && result.fitness > 0.99, "{what}: fitness {}", result.fitness);
+            }
+        }
+    }
+}
