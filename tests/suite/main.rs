@@ -1,7 +1,10 @@
 //! All Rust tests in one binary: natively under `cargo test`, in Node under wasm-bindgen-test.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+pub mod determinism;
 pub mod distance_transform;
+pub mod extents;
+pub mod filter;
 #[cfg(feature = "formats")]
 pub mod formats_bindings;
 #[cfg(feature = "formats")]
@@ -18,12 +21,20 @@ pub mod formats_images;
 pub mod formats_json;
 #[cfg(feature = "formats")]
 pub mod formats_mesh;
+pub mod fpfh;
+pub mod icp;
+pub mod image;
 pub mod kd_tree;
+pub mod matching;
+pub mod mesh;
 pub mod metrics;
 pub mod normals;
 pub mod number;
+pub mod observe;
 pub mod order;
+pub mod pinhole;
 pub mod pose_error;
+pub mod ransac;
 pub mod rasteriser;
 pub mod rasteriser_oracle;
 pub mod rasteriser_seams;
@@ -38,4 +49,5 @@ pub mod support;
 pub mod surface;
 pub mod symmetric_eigen;
 pub mod triangle_tree;
+pub mod umeyama;
 pub mod voxel_grid;

@@ -115,6 +115,9 @@ fn what_is_no_similarity_is_refused() {
     refused("uneven scale", 1.0, r * Matrix3::from_diagonal(&Vector3::new(2.0, 1.0, 0.5)), t);
     refused("scale inside the rotation", 1.0, r * 2.0, t);
     refused("nothing", 1.0, Matrix3::zeros(), t);
+    // |RᵀR − 1| of 1e-3 is where rounding ends.
+    refused("slightly scaled", 1.0, r * 1.0006, t);
+    assert!(Similarity::from_parts(1.0, r * 1.0004, t).is_ok());
     for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         refused("rotation not finite", 1.0, r * x, t);
         refused("translation not finite", 1.0, r, Vector3::new(0.0, x, 0.0));

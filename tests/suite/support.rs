@@ -11,14 +11,17 @@ use sim3align::geometry::similarity::{Similarity, vec3, vector3};
 pub struct Draw(Random);
 
 impl Draw {
+    /// The draws of a test under `seed`.
     pub fn new(seed: u64) -> Self {
         Self(Random::new(seed, 1000))
     }
 
+    /// A whole number in 0..`bound`.
     pub fn below(&mut self, bound: usize) -> usize {
         self.0.below(bound)
     }
 
+    /// In [low, high).
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.0.uniform()
     }
@@ -34,6 +37,7 @@ impl Draw {
         Vector3::from_fn(|_, _| self.between(-half, half))
     }
 
+    /// Points in [−half, half]³.
     pub fn points(&mut self, count: usize, half: f64) -> Vec<Vec3> {
         (0..count).map(|_| vec3(&self.cube(half))).collect()
     }
