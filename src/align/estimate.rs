@@ -117,7 +117,7 @@ fn icp_metric(icp: Icp) -> Option<IcpMetric> {
 }
 
 /// The estimated transform between the normalised frames.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct Estimate {
     pub target_from_source: Similarity,
     pub clamped: bool,
@@ -125,6 +125,8 @@ pub(super) struct Estimate {
     /// Of the last refinement, in the target's normalised frame.
     pub rms: f64,
     pub counts: Counts,
+    /// Which matches agreed, before the refinement.
+    pub inliers: Vec<usize>,
 }
 
 /// A cloud at both of its resolutions.
@@ -221,7 +223,14 @@ impl<'a> Problem<'a> {
                 clamped: consensus.counts.clamped,
                 icp_iterations: refined.iterations,
             },
+            inliers: consensus.inliers,
         })
+    }
+
+    /// Leaves matches out of what is solved for next.
+    pub(super) fn discard(&mut self, matches: &[usize]) {
+        let mut index = 0..;
+        self.matches.retain(|_| index.next().is_none_or(|i| matches.binary_search(&i).is_err()));
     }
 }
 

@@ -31,13 +31,10 @@ const FREE_GUARD: [f64; 2] = [0.2, 5.0];
 /// Without its sparse points a cloud of less than this share counts as cluttered. Uniform samples keep 99 %.
 const CLUTTERED: f64 = 0.97;
 
-/// Seeds tried for one pair of clouds at most.
-const RESTARTS: usize = 6;
+/// Poses tried for one pair of clouds at most.
+const POSES: usize = 6;
 
-/// From one seed to the next: odd, so that no two restarts of neighbouring seeds share their draws.
-const SEED_STEP: u64 = 0x9e37_79b9_7f4a_7c15;
-
-/// Agreement at which no further seed is tried: nine points in ten all but coincide.
+/// Agreement at which no further pose is tried: nine points in ten all but coincide.
 const BEYOND_DOUBT: f64 = 0.9;
 
 /// When each stage begins, as a share of the whole.
@@ -85,7 +82,7 @@ pub fn register(
     judge.verdict(options, stages)
 }
 
-/// Tries clouds and seeds, and keeps the transform under which the whole clouds agree best.
+/// Tries clouds and poses, and keeps the transform under which the whole clouds agree best.
 struct Judge {
     frames: Frames,
     source: Cloud,
@@ -107,7 +104,7 @@ impl Judge {
         }
     }
 
-    /// Solves for these clouds with one seed after the other until the agreement is beyond doubt.
+    /// Solves for these clouds pose after pose until the agreement is beyond doubt.
     fn attempt(
         &mut self,
         source_xyz: &[f64],
@@ -120,26 +117,29 @@ impl Judge {
         stages.enter(Stage::Normals);
         let source = with_normals(frames.source.normalized_flat(source_xyz));
         let target = with_normals(frames.target.normalized_flat(target_xyz));
-        let mut settings =
+        let settings =
             Settings::of_register(options, unit_voxel_size(options, &frames), frames.scale_mode, frames.guard);
-        let problem = Problem::new(&source, &target, &settings, stages);
-        for _ in 0..RESTARTS {
+        let mut problem = Problem::new(&source, &target, &settings, stages);
+        for _ in 0..POSES {
             if self.best.as_ref().is_some_and(|(agreement, _)| agreement.score >= BEYOND_DOUBT) {
                 break;
             }
             match problem.solve(&settings, stages) {
-                Ok(estimate) => self.consider(Attempt {
-                    target_from_source: target_from_source(
-                        &frames.target,
-                        &estimate.target_from_source,
-                        &frames.source,
-                    ),
-                    residual: estimate.rms * frames.target.diagonal(),
-                    estimate,
-                }),
-                Err(error) => self.failure = Some(error),
+                Ok(estimate) => {
+                    // What agreed with this pose would again; another has to be found among the rest.
+                    problem.discard(&estimate.inliers);
+                    let unit = estimate.target_from_source;
+                    self.consider(Attempt {
+                        target_from_source: target_from_source(&frames.target, &unit, &frames.source),
+                        residual: estimate.rms * frames.target.diagonal(),
+                        estimate,
+                    });
+                }
+                Err(error) => {
+                    self.failure.get_or_insert(error);
+                    break;
+                }
             }
-            settings.ransac.seed = settings.ransac.seed.wrapping_add(SEED_STEP);
         }
         Ok(())
     }
@@ -193,7 +193,8 @@ fn dense(source_xyz: &[f64], target_xyz: &[f64], frames: &Frames) -> Option<(Vec
 struct Agreement {
     /// Share of the source points that land within the inlier distance of a target point.
     fitness: f64,
-    /// Mean of 1 − (r/d)² over the source points, 0 beyond d: exact agreement counts more than a near miss.
+    /// Mean of 1 − (r/d)² over the source points, 0 beyond d, a third of the inlier distance: in clutter every
+    /// point has something near; only under the right pose it has something very near.
     score: f64,
 }
 
@@ -204,7 +205,8 @@ impl Agreement {
         for &point in &source.points {
             if let Some(neighbor) = target.nearest_within(transform.apply(point), distance) {
                 near += 1;
-                sum += 1.0 - f64::from(neighbor.distance_squared) / f64::from(distance * distance);
+                let close = distance / 3.0;
+                sum += (1.0 - f64::from(neighbor.distance_squared) / f64::from(close * close)).max(0.0);
             }
         }
         let count = source.len() as f64;

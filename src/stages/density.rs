@@ -14,7 +14,7 @@ const SURFACE_QUANTILE: f64 = 0.25;
 
 /// How many times sparser than that a point may be. On a surface sampled at random the distance to the eighth
 /// neighbour varies by a quarter; through a volume of like count it is about three times larger.
-const SPARSER: f32 = 2.0;
+const SPARSER: f32 = 1.5;
 
 /// Indices of the points that are about as dense as the densest quarter, in order.
 pub fn dense_points(points: &[Vec3]) -> Vec<usize> {
