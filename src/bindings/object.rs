@@ -30,7 +30,7 @@ pub fn size(object: &JsValue, key: &str) -> Result<Option<usize>> {
     let Some(value) = get(object, key) else { return Ok(None) };
     let number = to_number(&value, key)?;
     // Anything that is a whole number and fits 2³¹; the product of two sizes is checked against array lengths.
-    if number >= 0.0 && number <= 2_147_483_647.0 && number.fract() == 0.0 {
+    if (0.0..=2_147_483_647.0).contains(&number) && number.fract() == 0.0 {
         return Ok(Some(number as usize));
     }
     Err(wrong_type(key, &value, "a whole number of pixels", "Pass the image's size in pixels."))
@@ -143,6 +143,6 @@ pub fn describe(value: &JsValue) -> String {
     }
     match value.dyn_ref::<Object>() {
         Some(object) => format!("a value of type {}", String::from(object.constructor().name())),
-        None => String::from(value.js_typeof().as_string().unwrap_or_default()),
+        None => value.js_typeof().as_string().unwrap_or_default(),
     }
 }

@@ -1,0 +1,80 @@
+/** The publishable package, written whole to pkg/. */
+
+import { createHash } from "node:crypto";
+import { chmodSync, copyFileSync, cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { at, glueDir, packageDir, skinDir } from "./paths.mjs";
+import { attempt, nodeProgram, run } from "./run.mjs";
+import { wasmBindgenVersion } from "./setup.mjs";
+import { step } from "./step.mjs";
+import { binaryenVersion, buildWasm, sizes, wasmFile, wasmModules } from "./wasm.mjs";
+
+/** Builds everything; the set-up has to have been done. */
+export async function buildPackage() {
+  const version = packageVersion();
+  await buildWasm();
+  await step("package", async (say) => {
+    rmSync(packageDir, { recursive: true, force: true });
+    const [node, tsc] = nodeProgram("typescript", "tsc");
+    await run(node, [tsc, "--project", skinDir], { remedy: "correct what the compiler names, in pkg-config/src" });
+    copyFiles();
+    await writeBuildInfo(version);
+    say(`pkg/ holds sim3align ${version}`);
+  });
+}
+
+/**
+ * The version, which package.json and Cargo.toml have to agree on.
+ * @returns {string}
+ */
+export function packageVersion() {
+  const { version } = JSON.parse(readFileSync(join(skinDir, "package.json"), "utf8"));
+  const crate = /^\[package\][^[]*?^version = "([^"]+)"/ms.exec(readFileSync(at("Cargo.toml"), "utf8"))?.[1];
+  if (version !== crate) {
+    throw new Error(
+      `pkg-config/package.json has version ${version}, Cargo.toml has ${crate}. Remedy: write the same in both.`,
+    );
+  }
+  return version;
+}
+
+function copyFiles() {
+  copyFileSync(join(skinDir, "package.json"), join(packageDir, "package.json"));
+  for (const name of ["README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE"]) {
+    if (!existsSync(at(name))) throw new Error(`${name} is missing. Remedy: restore it; the package carries it.`);
+    copyFileSync(at(name), join(packageDir, name));
+  }
+  mkdirSync(join(packageDir, "wasm"), { recursive: true });
+  cpSync(glueDir, join(packageDir, "wasm"), { recursive: true });
+  const { bin } = JSON.parse(readFileSync(join(skinDir, "package.json"), "utf8"));
+  for (const program of Object.values(bin)) chmodSync(join(packageDir, String(program)), 0o755);
+}
+
+/**
+ * Says what the package was made from and with. It holds no date: the same sources give the same bytes.
+ * @param {string} version
+ */
+async function writeBuildInfo(version) {
+  const commit = await attempt("git", ["rev-parse", "HEAD"]);
+  const changes = await attempt("git", ["status", "--porcelain"]);
+  const typescript = JSON.parse(readFileSync(at("node_modules", "typescript", "package.json"), "utf8")).version;
+  const modules = wasmModules.map((module) => {
+    const file = wasmFile(module);
+    const sha256 = createHash("sha256").update(readFileSync(file)).digest("hex");
+    const { raw, gzip } = sizes(file);
+    return [module.name, { bytes: raw, gzippedBytes: gzip, sha256 }];
+  });
+  const info = {
+    version,
+    commit: commit.reason ? null : commit.output.trim(),
+    uncommittedChanges: commit.reason ? null : changes.output.trim() !== "",
+    toolchain: {
+      rustc: (await run("rustc", ["--version"])).trim(),
+      wasmBindgen: wasmBindgenVersion(),
+      binaryen: binaryenVersion(),
+      typescript,
+    },
+    modules: Object.fromEntries(modules),
+  };
+  writeFileSync(join(packageDir, "build-info.json"), `${JSON.stringify(info, null, 2)}\n`);
+}

@@ -1,0 +1,22 @@
+/** Where things are, as absolute paths. */
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+
+export const repository = join(dirname(fileURLToPath(import.meta.url)), "..", "..");
+
+/**
+ * A path inside the repository.
+ * @param {...string} parts
+ */
+export const at = (...parts) => join(repository, ...parts);
+
+/** What `npm run build` writes: the publishable package. */
+export const packageDir = at("pkg");
+/** The package's sources: TypeScript, and its package.json. */
+export const skinDir = at("pkg-config");
+/** The generated glue, beside the TypeScript that imports it. */
+export const glueDir = at("pkg-config", "src", "wasm");
+/** Programs that the set-up installs. */
+export const toolsDir = at("target", "tools");
+/** The package, installed as its users install it, with the tests that use it. */
+export const installDir = at("target", "install-test");

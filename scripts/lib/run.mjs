@@ -1,0 +1,109 @@
+/** Runs other programs. */
+import { spawn } from "node:child_process";
+import { readFileSync } from "node:fs";
+import { homedir } from "node:os";
+import { delimiter, join } from "node:path";
+import { at, repository } from "./paths.mjs";
+
+/** A command that failed: what it was, what it said, and what to do about it. */
+export class CommandError extends Error {
+  /**
+   * @param {string} commandLine
+   * @param {string} reason
+   * @param {string} output
+   * @param {string} remedy
+   */
+  constructor(commandLine, reason, output, remedy) {
+    super(`${commandLine}: ${reason}`);
+    this.name = "CommandError";
+    this.commandLine = commandLine;
+    this.output = output;
+    this.remedy = remedy;
+  }
+}
+
+/**
+ * What every program gets: cargo on the path, and the repository's own target folder.
+ * @returns {NodeJS.ProcessEnv}
+ */
+function environment() {
+  const cargoBin = join(process.env.CARGO_HOME ?? join(homedir(), ".cargo"), "bin");
+  const path = [process.env.PATH, cargoBin].filter(Boolean).join(delimiter);
+  return { ...process.env, PATH: path, CARGO_TARGET_DIR: at("target"), CARGO_TERM_PROGRESS_WHEN: "never" };
+}
+
+/**
+ * @typedef {object} RunOptions
+ * @property {string} [remedy] what to do when the command fails
+ * @property {string} [cwd] the working directory; the repository by default
+ * @property {NodeJS.ProcessEnv} [env] added to the environment
+ * @property {boolean} [echo] pass the output on to the console as it comes, besides returning it
+ * @property {boolean} [attach] let the command have the console, and return nothing
+ */
+
+/**
+ * Runs a command to its end, whatever that end is.
+ * @param {string} command
+ * @param {readonly string[]} args
+ * @param {RunOptions} [options]
+ * @returns {Promise<{ output: string, stdout: string, reason: string }>} the output is standard output and error
+ * together; the reason is empty after a success
+ */
+export function attempt(command, args, options = {}) {
+  return new Promise((resolve) => {
+    const child = spawn(command, args, {
+      cwd: options.cwd ?? repository,
+      env: { ...environment(), ...options.env },
+      stdio: options.attach ? "inherit" : ["ignore", "pipe", "pipe"],
+      // npm and npx are batch files there, which only the shell starts.
+      shell: process.platform === "win32" && /^np[mx]$/.test(command),
+    });
+    /** @type {Buffer[]} */
+    const chunks = [];
+    /** @type {Buffer[]} */
+    const stdoutChunks = [];
+    child.stdout?.on("data", (chunk) => {
+      chunks.push(chunk);
+      stdoutChunks.push(chunk);
+      if (options.echo) process.stdout.write(chunk);
+    });
+    child.stderr?.on("data", (chunk) => {
+      chunks.push(chunk);
+      if (options.echo) process.stderr.write(chunk);
+    });
+    const end = (/** @type {string} */ reason) => {
+      const [output = "", stdout = ""] = [chunks, stdoutChunks].map((part) => Buffer.concat(part).toString("utf8"));
+      resolve({ output, stdout, reason });
+    };
+    child.on("error", (error) => end(error.message));
+    child.on("close", (code, signal) => {
+      end(code === 0 ? "" : signal ? `ended by ${signal}` : `exit status ${code}`);
+    });
+  });
+}
+
+/**
+ * Runs a command and returns its standard output.
+ * @param {string} command
+ * @param {readonly string[]} args
+ * @param {RunOptions} [options]
+ * @throws {CommandError} when it does not start or does not succeed
+ */
+export async function run(command, args, options = {}) {
+  const { output, stdout, reason } = await attempt(command, args, options);
+  if (reason) throw new CommandError([command, ...args].join(" "), reason, output, options.remedy ?? "");
+  return stdout;
+}
+
+/**
+ * The command line of a program in node_modules.
+ * @param {string} name the npm package
+ * @param {string} [program] its program, where that is named otherwise
+ * @returns {[command: string, script: string]}
+ */
+export function nodeProgram(name, program = name) {
+  const folder = at("node_modules", name);
+  const { bin } = JSON.parse(readFileSync(join(folder, "package.json"), "utf8"));
+  const script = join(folder, typeof bin === "string" ? bin : bin[program]);
+  return [process.execPath, script];
+}

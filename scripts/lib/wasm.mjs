@@ -1,0 +1,103 @@
+/** The two WebAssembly modules, built from the one crate. */
+import { cpSync, readFileSync, rmSync } from "node:fs";
+import { join } from "node:path";
+import { gzipSync } from "node:zlib";
+import { at, glueDir } from "./paths.mjs";
+import { nodeProgram, run } from "./run.mjs";
+import { wasmBindgenProgram, wasmBindgenVersion, wasmTarget } from "./setup.mjs";
+import { digest, Stamp } from "./stamp.mjs";
+import { step } from "./step.mjs";
+
+/**
+ * @typedef {object} WasmModule
+ * @property {string} name of the generated files
+ * @property {readonly string[]} features cargo's arguments that select the features
+ * @property {number} budget bytes, gzipped
+ */
+
+/** @type {readonly WasmModule[]} */
+export const wasmModules = [
+  { name: "core", features: [], budget: 120_000 },
+  { name: "formats", features: ["--no-default-features", "--features", "formats"], budget: 240_000 },
+];
+
+const optimise = ["-O3", "--strip-debug", "--strip-producers"];
+
+/**
+ * The module's file.
+ * @param {WasmModule} module
+ * @param {string} [folder]
+ */
+export const wasmFile = ({ name }, folder = glueDir) => join(folder, `${name}_bg.wasm`);
+
+/**
+ * Size as it is and gzipped, in bytes.
+ * @param {string} file
+ */
+export function sizes(file) {
+  const bytes = readFileSync(file);
+  return { raw: bytes.length, gzip: gzipSync(bytes, { level: 9 }).length };
+}
+
+/**
+ * Bytes for people: kB is 1000 bytes.
+ * @param {number} bytes
+ */
+export const kilobytes = (bytes) => `${(bytes / 1000).toFixed(1)} kB`;
+
+/**
+ * Builds the modules whose inputs have changed, and puts them with their glue beside the TypeScript.
+ * @returns {Promise<void>}
+ */
+export async function buildWasm() {
+  const rustc = (await run("rustc", ["--version", "--verbose"])).trim();
+  for (const module of wasmModules) {
+    await step(`${module.name} module`, (say) => buildModule(module, rustc, say));
+  }
+}
+
+/**
+ * @param {WasmModule} module
+ * @param {string} rustc
+ * @param {(note: string) => void} say
+ */
+async function buildModule(module, rustc, say) {
+  const outputs = [`${module.name}.js`, `${module.name}.d.ts`, `${module.name}_bg.wasm`, `${module.name}_bg.wasm.d.ts`];
+  const sources = ["src", "Cargo.toml", "Cargo.lock", ".cargo", "scripts/lib/wasm.mjs"].map((path) => at(path));
+  const facts = [rustc, wasmBindgenVersion(), binaryenVersion(), process.env.RUSTFLAGS ?? ""];
+  const stamp = new Stamp(
+    at("target", "wasm", `${module.name}.stamp`),
+    digest(sources, facts),
+    outputs.map((name) => join(glueDir, name)),
+  );
+  const size = () => {
+    const { raw, gzip } = sizes(wasmFile(module));
+    return `${kilobytes(raw)}, ${kilobytes(gzip)} gzipped`;
+  };
+  if (stamp.isCurrent) return say(`${size()}, up to date`);
+  stamp.clear();
+
+  // Both modules are the same file to cargo, which would take one for the other: it compares times, not features.
+  const compiled = at("target", wasmTarget, "release", "sim3align.wasm");
+  rmSync(compiled, { force: true });
+  rmSync(at("target", wasmTarget, "release", "deps", "sim3align.wasm"), { force: true });
+  await run("cargo", ["build", "--release", "--lib", "--target", wasmTarget, ...module.features]);
+
+  const folder = at("target", "wasm", module.name);
+  rmSync(folder, { recursive: true, force: true });
+  await run(wasmBindgenProgram("wasm-bindgen"), [
+    ...[compiled, "--target", "web", "--out-name", module.name, "--out-dir", folder],
+  ]);
+  const bare = wasmFile(module, folder);
+  const [node, wasmOpt] = nodeProgram("binaryen", "wasm-opt");
+  await run(node, [wasmOpt, bare, ...optimise, "-o", bare]);
+
+  cpSync(folder, glueDir, { recursive: true });
+  stamp.write();
+  say(size());
+}
+
+/** @returns {string} */
+export function binaryenVersion() {
+  return JSON.parse(readFileSync(at("node_modules", "binaryen", "package.json"), "utf8")).version;
+}

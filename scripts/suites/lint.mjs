@@ -1,0 +1,31 @@
+/** Formatters and linters, with warnings denied. */
+import { nodeProgram, run } from "../lib/run.mjs";
+import { wasmTarget } from "../lib/setup.mjs";
+import { wasmModules } from "../lib/wasm.mjs";
+import { runChecks } from "./checks.mjs";
+
+export function lint() {
+  const clippy = (/** @type {readonly string[]} */ args) => () =>
+    run("cargo", ["clippy", "--quiet", ...args, "--", "-D", "warnings"], { remedy: "correct what clippy names" });
+  const [node, biome] = nodeProgram("@biomejs/biome", "biome");
+  return runChecks([
+    ["rustfmt", () => run("cargo", ["fmt", "--all", "--check"], { remedy: "npm run format" })],
+    ["clippy, native", clippy(["--all-targets", "--all-features"])],
+    ...wasmModules.map(
+      ({ name, features }) =>
+        /** @type {const} */ ([`clippy, ${name} module`, clippy(["--lib", "--target", wasmTarget, ...features])]),
+    ),
+    ["biome", () => run(node, [biome, "ci", "--error-on-warnings"], { remedy: "npm run format, then what is left" })],
+  ]);
+}
+
+/** Type checks of what the build does not compile; they need the built package's declarations. */
+export function types() {
+  const [node, tsc] = nodeProgram("typescript", "tsc");
+  return runChecks(
+    ["pkg-config", "tests", "www", "scripts"].map((folder) => [
+      `types of ${folder}/`,
+      () => run(node, [tsc, "--noEmit", "--project", folder]),
+    ]),
+  );
+}

@@ -1,0 +1,90 @@
+/** The package as its users get it: linted, installed from its tarball, and used. */
+import { cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { chromium, chromiumRemedy } from "../lib/chromium.mjs";
+import { nodeCounts, noTests, withStatus } from "../lib/counts.mjs";
+import { at, installDir, packageDir, repository } from "../lib/paths.mjs";
+import { attempt, nodeProgram, run } from "../lib/run.mjs";
+import { makeSample, sampleDir } from "../lib/sample.mjs";
+import { digest, filesBelow, Stamp } from "../lib/stamp.mjs";
+import { step } from "../lib/step.mjs";
+import { runChecks } from "./checks.mjs";
+
+export function lintPackage() {
+  const [node, publint] = nodeProgram("publint");
+  return runChecks([
+    ["publint", () => run(node, [publint, packageDir, "--strict"])],
+    ["every file that package.json names is there", checkNamedFiles],
+  ]);
+}
+
+function checkNamedFiles() {
+  const { bin, exports } = JSON.parse(readFileSync(join(packageDir, "package.json"), "utf8"));
+  /** @type {(entry: unknown) => string[]} */
+  const targets = (entry) =>
+    entry && typeof entry === "object" ? Object.values(entry).flatMap(targets) : [String(entry)];
+  const named = [...targets(bin), ...targets(exports)].filter((path) => !path.includes("*"));
+  const missing = named.filter((path) => !existsSync(join(packageDir, path)));
+  if (missing.length > 0) throw new Error(`pkg/ lacks ${missing.join(", ")}, which its package.json names.`);
+}
+
+/** Packs pkg/ and installs the tarball into a folder of its own, then compiles the tests there. */
+async function install() {
+  await step("install the packed package", async (say) => {
+    const stamp = new Stamp(join(installDir, "installed-from"), digest([packageDir]), []);
+    if (stamp.isCurrent) return say("up to date");
+    rmSync(installDir, { recursive: true, force: true });
+    mkdirSync(installDir, { recursive: true });
+    const packed = JSON.parse(await run("npm", ["pack", packageDir, "--json", "--pack-destination", installDir]));
+    const tarball = `./${packed[0].filename}`;
+    const project = { private: true, type: "module", dependencies: { sim3align: `file:${tarball}` } };
+    writeFileSync(join(installDir, "package.json"), JSON.stringify(project, null, 2));
+    await run("npm", ["install", "--prefer-offline", "--no-audit", "--no-fund"], {
+      cwd: installDir,
+      remedy: "check that the npm registry can be reached: the package's own dependencies come from there",
+    });
+    stamp.write();
+  });
+  await step("compile the tests", async () => {
+    rmSync(join(installDir, "tests"), { recursive: true, force: true });
+    for (const folder of ["js", "browser", "support"].filter((name) => existsSync(at("tests", name)))) {
+      cpSync(at("tests", folder), join(installDir, "tests", folder), { recursive: true });
+    }
+    const tsconfig = { extends: at("tests", "tsconfig.installed.json"), include: ["tests"] };
+    writeFileSync(join(installDir, "tsconfig.json"), JSON.stringify(tsconfig, null, 2));
+    const [node, tsc] = nodeProgram("typescript", "tsc");
+    await run(node, [tsc, "--project", installDir]);
+  });
+}
+
+/**
+ * Runs one folder of compiled tests with the installed package.
+ * @param {string} folder
+ * @param {NodeJS.ProcessEnv} [env]
+ */
+async function nodeTest(folder, env = {}) {
+  await makeSample();
+  await install();
+  const files = filesBelow([join(installDir, "tests", folder)]).filter((file) => file.endsWith(".test.js"));
+  if (files.length === 0) return noTests();
+  const { output, reason } = await attempt(
+    process.execPath,
+    ["--enable-source-maps", "--test", "--test-reporter=spec", ...files],
+    {
+      cwd: installDir,
+      echo: true,
+      env: { SIM3ALIGN_REPOSITORY: repository, SIM3ALIGN_SAMPLE: sampleDir, ...env },
+    },
+  );
+  return withStatus(nodeCounts(output), reason === "");
+}
+
+export const javaScript = () => nodeTest("js");
+
+export async function browser() {
+  const path = await chromium();
+  if (path) return nodeTest("browser", { CHROMIUM_PATH: path });
+  console.log(`No Chromium. Remedy: ${chromiumRemedy}.`);
+  // On a developer's machine that is a gap; in continuous integration it would hide every failure of the page.
+  return { ...noTests(), ...(process.env.CI ? { failed: 1 } : { skipped: 1 }) };
+}

@@ -1,0 +1,61 @@
+/** A browser that shows pages served from the repository. */
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+import { type Browser, chromium, type Page } from "playwright-core";
+import { repository } from "./environment.js";
+
+const flags = [
+  "--no-sandbox",
+  "--enable-unsafe-webgpu",
+  "--disable-background-networking",
+  "--disable-component-update",
+  "--disable-quic",
+  "--disable-sync",
+  "--no-first-run",
+];
+
+interface Server {
+  url: string;
+  close(): Promise<void>;
+}
+
+/** A browser and a server of the repository's folder. */
+export class PageTest {
+  private constructor(
+    private readonly browser: Browser,
+    private readonly server: Server,
+  ) {}
+
+  /** Starts both. */
+  static async start(): Promise<PageTest> {
+    const executablePath = process.env.CHROMIUM_PATH;
+    if (executablePath === undefined) throw new Error('CHROMIUM_PATH is not set: run the tests by "npm test".');
+    const module = pathToFileURL(join(repository, "scripts", "lib", "static-server.mjs")).href;
+    const { serve } = (await import(module)) as { serve(folder: string): Promise<Server> };
+    const server = await serve(repository);
+    const browser = await chromium.launch({ executablePath, headless: true, args: flags });
+    return new PageTest(browser, server);
+  }
+
+  /**
+   * Opens a page of the repository.
+   * @param path its path in the repository, such as `www/index.html`
+   * @returns the page, and what it has logged as errors (a list that goes on growing)
+   */
+  async open(path: string): Promise<{ page: Page; errors: string[] }> {
+    const page = await this.browser.newPage();
+    const errors: string[] = [];
+    page.on("pageerror", (error) => errors.push(error.message));
+    page.on("console", (message) => {
+      if (message.type() === "error") errors.push(message.text());
+    });
+    await page.goto(new URL(path, this.server.url).href);
+    return { page, errors };
+  }
+
+  /** Stops both. */
+  async stop(): Promise<void> {
+    await this.browser.close();
+    await this.server.close();
+  }
+}
