@@ -114,9 +114,9 @@ export class Aligner {
     return this.#call((core) => core.defaults());
   }
 
-  /** What the core was built from. */
+  /** Which build the core is. */
   async buildInfo(): Promise<{ version: string }> {
-    return this.#call((core) => core.buildInfo());
+    return this.#call((core) => ({ version: core.version() }));
   }
 
   /** Ends the aligner: later calls reject with `DISPOSED`. The modules stay loaded for others. */

@@ -18,7 +18,7 @@ export interface Case {
 /** A known pose, and whether the object has symmetries to be found. */
 export interface Truth {
   matrix: number[];
-  symmetry: "none" | "auto";
+  symmetry: "none" | "auto" | "auto-revolution";
 }
 
 /** The files that hold each part of a case, in order of preference. */
@@ -83,8 +83,13 @@ export async function readTruth(path: string): Promise<Truth | null> {
   const module = await formatsModule.load();
   const truth = module.call((readers) => readers.readTruth(bytes));
   if (truth === null) return null;
-  const isSymmetric = /^\s*(discrete|continuous)/i.test(truth.symmetry);
-  return { matrix: Array.from(truth.matrix), symmetry: isSymmetric ? "auto" : "none" };
+  return { matrix: Array.from(truth.matrix), symmetry: symmetryOf(truth.symmetry.trim().toLowerCase()) };
+}
+
+/** What a data set's words say about symmetry. */
+function symmetryOf(words: string): Truth["symmetry"] {
+  if (words.startsWith("continuous")) return "auto-revolution";
+  return words.startsWith("discrete") ? "auto" : "none";
 }
 
 /** A file's bytes. */

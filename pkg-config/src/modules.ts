@@ -28,7 +28,7 @@ export interface Core extends Glue {
   register(source: Cloud, target: Cloud, options: object): Results.Registration;
   estimateSim3(source: Cloud, target: Cloud, correspondences: Uint32Array, options: object): Results.Registration;
   defaults(): Defaults;
-  buildInfo(): { version: string };
+  version(): string;
 }
 
 /** The file readers' functions. */
@@ -128,7 +128,7 @@ async function readable(source: WasmSource): Promise<WasmSource> {
 export const coreModule = new WasmModule<Core>(
   "core",
   new URL("./wasm/core_bg.wasm", import.meta.url),
-  async () => core,
+  async () => core as unknown as Core,
 );
 
 /** The file readers. */

@@ -30,9 +30,10 @@ export interface EvaluateOptions extends Partial<Core.EvaluateOptions> {
   truth?: Sim3Like | undefined;
   /**
    * The turns under which the object looks the same: the rotation error is the smallest over them. `"auto"` finds the
-   * half turns about the principal axes that the mesh itself shows. Default `"none"`.
+   * half turns about the principal axes that the mesh itself shows, `"auto-revolution"` those axes about which it can be
+   * turned by any angle, too. Default `"none"`.
    */
-  symmetry?: "none" | "auto" | readonly SymmetryAxis[] | undefined;
+  symmetry?: "none" | "auto" | "auto-revolution" | readonly SymmetryAxis[] | undefined;
 }
 
 /**
@@ -53,10 +54,10 @@ export interface EstimateOptions extends Partial<Core.EstimateOptions> {
   scale?: ScaleOption | undefined;
 }
 
-/** The values that options take where they are left out. */
+/** The values that options take where they are left out; a `scale` left out is `"free"`. */
 export interface Defaults {
   align: Core.AlignOptions;
   evaluate: Core.EvaluateOptions;
-  register: Core.RegisterOptions & { scale: ScaleOption };
-  estimateSim3: Core.EstimateOptions & { scale: ScaleOption };
+  register: Core.RegisterOptions;
+  estimateSim3: Core.EstimateOptions;
 }

@@ -25,9 +25,10 @@ export type Sim3Like =
 /** The core's form of a similarity; it checks the numbers. */
 export function coreSim3(transform: unknown): unknown {
   if (!isRecord(transform)) return plainNumbers(transform);
-  const { matrix, scale, rotation, translation } = transform;
-  if (matrix !== undefined) return { matrix: plainNumbers(matrix) };
-  return { scale, rotation: plainNumbers(rotation), translation: plainNumbers(translation) };
+  const { matrix, scale, rotation, rotationMatrix, translation } = transform;
+  // A result has all forms: of these, rows lose nothing.
+  if (scale === undefined && matrix !== undefined) return { matrix: plainNumbers(matrix) };
+  return { scale, rotation: plainNumbers(rotationMatrix ?? rotation), translation: plainNumbers(translation) };
 }
 
 /** A result with its matrix as a typed array. */

@@ -112,13 +112,22 @@ const badTransforms: [name: string, transform: unknown, argument: string, messag
   ["a negative scale", { ...truth, scale: -1 }, "transform", /scale/],
   ["a NaN", { ...truth, translation: [0, Number.NaN, 0] }, "transform", /finite|NaN/],
   ["a reflection", { ...truth, rotation: [1, 0, 0, 0, 1, 0, 0, 0, -1] }, "transform", /reflection|rotation/],
-  ["a row-major matrix", [0.1, 0, 0, 1, 0, 0.1, 0, 2, 0, 0, 0.1, 3, 0, 0, 0, 1], "transform.matrix", /column by column/],
+  [
+    "a row-major matrix",
+    [0.1, 0, 0, 1, 0, 0.1, 0, 2, 0, 0, 0.1, 3, 0, 0, 0, 1],
+    "transform.matrix",
+    /column by column/,
+  ],
 ];
 
 for (const [name, transform, argument, message] of badTransforms) {
   test(`${name} is no transform`, async () => {
     const call = () => aligner.evaluate(input, transform as Sim3Like);
-    await rejectsWith(call, { code: transform === undefined ? "INVALID_ARGUMENT" : "INVALID_TRANSFORM", argument, message });
+    await rejectsWith(call, {
+      code: transform === undefined ? "INVALID_ARGUMENT" : "INVALID_TRANSFORM",
+      argument,
+      message,
+    });
     assert.ok((await aligner.evaluate(input, truth)).metrics.iou);
   });
 }

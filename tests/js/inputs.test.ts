@@ -27,13 +27,13 @@ function same(name: string, make: () => Partial<AlignInput>): void {
   });
 }
 
-const arrayBuffer = (bytes: Uint8Array) => bytes.slice().buffer as ArrayBuffer;
+const arrayBuffer = (bytes: Uint8Array) => Uint8Array.from(bytes).buffer;
 const tenths = Uint16Array.from(depth, (z) => Math.round(10_000 * z));
 
 same("depth: with its size", () => ({}));
 same("depth: bytes of a .npy file", () => ({ depth: npy(depth, height, width) }));
 same("depth: an ArrayBuffer with a .npy file", () => ({ depth: arrayBuffer(npy(depth, height, width)) }));
-same("depth: a Blob with a .npy file", () => ({ depth: new Blob([npy(depth, height, width)]) }));
+same("depth: a Blob with a .npy file", () => ({ depth: new Blob([arrayBuffer(npy(depth, height, width))]) }));
 same("depth: a file and its size", () => ({ depth: npy(depth, height, width), width, height }));
 same("depth: floats in millimetres", () => ({
   depth: { data: depth.map((z) => z * 1024), width, height },
@@ -74,8 +74,14 @@ same("mask: other values than 1", () => ({ mask: mask.map((m) => 200 * m) }));
 same("mask: a clamped array", () => ({ mask: Uint8ClampedArray.from(mask) }));
 same("mask: with its size", () => ({ mask: { data: mask, width, height } }));
 same("mask: an ArrayBuffer of pixels", () => ({ mask: arrayBuffer(mask) }));
-same("mask: bytes of a PNG", () => ({ mask: png(mask.map((m) => 255 * m), width, height) }));
-same("mask: a Blob with a PNG", () => ({ mask: new Blob([png(mask, width, height)]) }));
+same("mask: bytes of a PNG", () => ({
+  mask: png(
+    mask.map((m) => 255 * m),
+    width,
+    height,
+  ),
+}));
+same("mask: a Blob with a PNG", () => ({ mask: new Blob([arrayBuffer(png(mask, width, height))]) }));
 same("mask: bytes of a .npy file", () => ({ mask: npy(mask, height, width) }));
 same("mask: COCO RLE", () => ({ mask: cocoRle(mask, width, height) }));
 same("mask: bytes of JSON with COCO RLE", () => ({ mask: Buffer.from(JSON.stringify(cocoRle(mask, width, height))) }));
@@ -117,7 +123,7 @@ test("camera: lens distortion is warned of", async () => {
 
 same("mesh: 16-bit indices", () => ({ mesh: { ...mesh, indices: Uint16Array.from(mesh.indices) } }));
 same("mesh: bytes of a GLB", () => ({ mesh: glb(mesh) }));
-same("mesh: a Blob with a GLB", () => ({ mesh: new Blob([glb(mesh)]) }));
+same("mesh: a Blob with a GLB", () => ({ mesh: new Blob([arrayBuffer(glb(mesh))]) }));
 same("mesh: bytes of an OBJ, named", () => ({ mesh: { bytes: obj(mesh), format: "obj" } }));
 same("mesh: bytes of an OBJ, recognised", () => ({ mesh: obj(mesh) }));
 same("mesh: a .gltf and its buffer", () => ({
@@ -150,12 +156,10 @@ test("a point map takes the place of depth and camera", async () => {
   });
   assertClose(await aligner.evaluate({ pointMap: { data, width, height }, mask, mesh }, truth), 0.02);
   assertClose(await aligner.evaluate({ pointMap: data, width, height, mask, mesh }, truth), 0.02);
-  const both = { pointMap: data, width, height, mask, mesh, camera } as unknown as AlignInput;
-  await rejectsWith(() => aligner.evaluate(both, truth), {
-    code: "INVALID_ARGUMENT",
-    argument: "camera",
-    message: /not both/,
-  });
+  assertClose(await aligner.evaluate({ pointMap: data, width, height, mask, mesh, camera }, truth), 0.02);
+  const both = { pointMap: data, depth, width, height, mask, mesh } as unknown as AlignInput;
+  const expected = { code: "INVALID_ARGUMENT", argument: "depth", message: /not both/ } as const;
+  await rejectsWith(() => aligner.evaluate(both, truth), expected);
 });
 
 test("align takes files as well", async () => {

@@ -7,8 +7,8 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { pathToFileURL } from "node:url";
 import { createAligner } from "sim3align";
-import { rejectsWith } from "../support/errors.js";
 import { installDir } from "../support/environment.js";
+import { rejectsWith } from "../support/errors.js";
 import { input, truth } from "../support/scene.js";
 
 const require = createRequire(import.meta.url);
@@ -36,7 +36,8 @@ function inFreshProcess(script: string): string {
 }
 
 test("importing the package does nothing by itself", () => {
-  const count = "let count = 0; const { instantiate } = WebAssembly; WebAssembly.instantiate = (...a) => { count++; return instantiate(...a); };";
+  const count =
+    "let count = 0; const { instantiate } = WebAssembly; WebAssembly.instantiate = (...a) => { count++; return instantiate(...a); };";
   const output = inFreshProcess(`${count} await Promise.resolve(); console.log(count);`);
   assert.equal(output.trim(), "0");
 });
@@ -70,7 +71,10 @@ const sources = {
 for (const [name, source] of Object.entries(sources)) {
   test(`the core can come from ${name}`, () => {
     // Node pools small reads in one ArrayBuffer, but not files of this size.
-    assert.equal(inFreshProcess(`await check(await createAligner({ wasm: ${source} })); console.log("done");`), "done\n");
+    assert.equal(
+      inFreshProcess(`await check(await createAligner({ wasm: ${source} })); console.log("done");`),
+      "done\n",
+    );
   });
 }
 
@@ -111,7 +115,9 @@ test("a trap in WebAssembly costs one call: the next one gets a new instance", a
   const trap = async () =>
     loaded.call(() => {
       // (module (func (export "f") unreachable)): what a panic in Rust ends in.
-      const code = [0, 97, 115, 109, 1, 0, 0, 0, 1, 4, 1, 96, 0, 0, 3, 2, 1, 0, 7, 5, 1, 1, 102, 0, 0, 10, 5, 1, 3, 0, 0, 11];
+      const code = [
+        0, 97, 115, 109, 1, 0, 0, 0, 1, 4, 1, 96, 0, 0, 3, 2, 1, 0, 7, 5, 1, 1, 102, 0, 0, 10, 5, 1, 3, 0, 0, 11,
+      ];
       const { exports } = new WebAssembly.Instance(new WebAssembly.Module(Uint8Array.from(code)));
       (exports.f as () => void)();
     });

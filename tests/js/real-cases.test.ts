@@ -18,7 +18,9 @@ function run(...args: string[]): Record<string, Record<string, unknown> & { metr
   const folder = mkdtempSync(join(tmpdir(), "sim3align-real-"));
   try {
     const json = join(folder, "out.json");
-    const { status, stdout, stderr } = spawnSync(process.execPath, [commandLine, ...args, "--json", json], { encoding: "utf8" });
+    const { status, stdout, stderr } = spawnSync(process.execPath, [commandLine, ...args, "--json", json], {
+      encoding: "utf8",
+    });
     assert.equal(status, 0, stdout + stderr);
     console.log(stdout);
     return JSON.parse(readFileSync(json, "utf8"));
@@ -40,8 +42,12 @@ test("every case aligns, and no scale leaves the guard", { skip }, () => {
 
 for (const folder of cases === undefined ? [] : folders) {
   const { available } = JSON.parse(readFileSync(join(folder, "gt.json"), "utf8")) as { available: boolean };
-  test(`the truth of ${folder.split("/").pop()} scores well`, { skip: available ? false : "its pose is not known" }, () => {
-    const [{ metrics, errors }] = Object.values(run("evaluate", folder)) as [{ metrics: { iou: number; normalConsistency: number }; errors: { rotationErrorDeg: number } }];
+  test(`the truth of ${folder.split("/").pop()} scores well`, {
+    skip: available ? false : "its pose is not known",
+  }, () => {
+    const [{ metrics, errors }] = Object.values(run("evaluate", folder)) as [
+      { metrics: { iou: number; normalConsistency: number }; errors: { rotationErrorDeg: number } },
+    ];
     assert.ok(metrics.iou >= 0.92, `iou ${metrics.iou}`);
     assert.ok(metrics.normalConsistency > 0.75, `normalConsistency ${metrics.normalConsistency}`);
     assert.ok(errors.rotationErrorDeg < 1e-3);

@@ -1,5 +1,12 @@
 /** What the compiler accepts and refuses. It is compiled with the tests, and never run. */
-import { type Aligner, type Alignment, type AlignInput, createAligner, type ErrorCode, Sim3AlignError } from "sim3align";
+import {
+  type Aligner,
+  type AlignInput,
+  type Alignment,
+  createAligner,
+  type ErrorCode,
+  Sim3AlignError,
+} from "sim3align";
 
 declare const floats: Float32Array;
 declare const bytes: Uint8Array;
@@ -20,7 +27,10 @@ export async function accepted(aligner: Aligner): Promise<void> {
   await aligner.align({ depth: blob, mask: blob, camera: "{}", mesh: blob }, { preset: "paper", guard: null });
   await aligner.align({ pointMap: floats, width: 2, height: 2, mask: bytes, mesh });
   await aligner.align({ depth: bytes, mask: { size: [2, 2], counts: "04" }, camera: { K: [[1]] }, mesh: { bytes } });
-  await aligner.align({ depth: bytes, mask: bytes, camera, mesh }, { onProgress: ({ fraction }) => fraction.toFixed() });
+  await aligner.align(
+    { depth: bytes, mask: bytes, camera, mesh },
+    { onProgress: ({ fraction }) => fraction.toFixed() },
+  );
   await aligner.evaluate({} as AlignInput, alignment, { truth: alignment, symmetry: [{ axis: [0, 0, 1] }] });
   await aligner.evaluate({} as AlignInput, { matrix });
   await aligner.register(floats, new Float64Array(9), { scale: [1, 2] });
@@ -36,8 +46,8 @@ export async function refused(aligner: Aligner, error: unknown): Promise<void> {
   await aligner.align({ depth: [1, 2], width: 2, height: 1, mask: bytes, camera, mesh });
   // @ts-expect-error depth needs a camera
   await aligner.align({ depth: floats, width: 2, height: 2, mask: bytes, mesh });
-  // @ts-expect-error a point map has its camera in it
-  await aligner.align({ pointMap: floats, width: 2, height: 2, mask: bytes, mesh, camera });
+  // @ts-expect-error a point map has the depth in it
+  await aligner.align({ pointMap: floats, depth: floats, width: 2, height: 2, mask: bytes, mesh });
   // @ts-expect-error misspelt
   await aligner.align({ depht: floats, width: 2, height: 2, mask: bytes, camera, mesh });
   // @ts-expect-error no such preset

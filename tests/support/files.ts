@@ -1,6 +1,7 @@
 /** Encoders of the files that the tests pass, written independently of the package's readers. */
-import { crc32 } from "./crc32.js";
+
 import { deflateSync } from "node:zlib";
+import { crc32 } from "./crc32.js";
 import type { Mesh } from "./scene.js";
 
 /** A `.npy` file, version 1.0. */
@@ -65,7 +66,14 @@ export function gltfJson({ positions, indices }: Mesh, node: object = {}, buffer
     nodes: [{ mesh: 0, ...node }],
     meshes: [{ primitives: [{ attributes: { POSITION: 0 }, indices: 1 }] }],
     accessors: [
-      { bufferView: 0, componentType: 5126, count: positions.length / 3, type: "VEC3", min: [-9, -9, -9], max: [9, 9, 9] },
+      {
+        bufferView: 0,
+        componentType: 5126,
+        count: positions.length / 3,
+        type: "VEC3",
+        min: [-9, -9, -9],
+        max: [9, 9, 9],
+      },
       { bufferView: 1, componentType: 5125, count: indices.length, type: "SCALAR" },
     ],
     bufferViews: [

@@ -44,7 +44,7 @@ export async function resolveInput(
   checkProperties(input);
   const { resizeMask, pointMap } = input;
   const { warnings, ...image } =
-    pointMap === undefined ? await depthAndCamera(input, formats) : pointMapOnly(input, pointMap);
+    pointMap === undefined ? await depthAndCamera(input, formats) : await pointMapAndCamera(input, pointMap, formats);
   const mask = await readMask(input.mask, Number(image.width) * Number(image.height), formats);
   const core = {
     ...image,
@@ -75,18 +75,21 @@ async function depthAndCamera(input: Record<string, unknown>, formats: () => Pro
   };
 }
 
-function pointMapOnly(input: Record<string, unknown>, pointMap: unknown) {
-  const other = ["depth", "camera", "depthScale", "imageId"].find((name) => input[name] !== undefined);
+async function pointMapAndCamera(
+  input: Record<string, unknown>,
+  pointMap: unknown,
+  formats: () => Promise<LoadedModule<Formats>>,
+) {
+  const other = ["depth", "depthScale"].find((name) => input[name] !== undefined);
   if (other !== undefined) {
-    throw invalidArgument(
-      other,
-      input[other],
-      "a point map, or depth with camera, but not both",
-      `Leave ${other} out: the point map has it all.`,
-    );
+    const remedy = `Leave ${other} out: the point map has the depth, in metres.`;
+    throw invalidArgument(other, input[other], "a point map or depth, but not both", remedy);
   }
   const { data, width, height } = readPointMap(pointMap, input as { width?: number; height?: number });
-  return { pointMap: data, depthScale: undefined, width, height, warnings: [] as string[] };
+  const image = { pointMap: data, depthScale: undefined, width, height };
+  if (input.camera === undefined) return { ...image, camera: undefined, warnings: [] };
+  const camera = await readCamera(input.camera, input.imageId, formats);
+  return { ...image, ...camera.resolve(width, height) };
 }
 
 /** A misspelt property would go unnoticed, and its default be used. */

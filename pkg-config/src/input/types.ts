@@ -137,14 +137,15 @@ export interface DepthAlignInput extends CommonInput {
 /** An object seen in a point map. */
 export interface PointMapAlignInput extends CommonInput {
   /**
-   * x, y, z per pixel (height × width × 3), metres, in the OpenCV camera frame: x right, y down, z forward. The
-   * camera follows from it.
+   * x, y, z per pixel (height × width × 3), metres, in the OpenCV camera frame: x right, y down, z forward.
    */
   pointMap: Float32Array | PixelArray<Float32Array>;
+  /** The camera. By default it follows from the point map. */
+  camera?: CameraInput | undefined;
+  /** Which entry of a BOP `scene_camera.json`. */
+  imageId?: string | number | undefined;
   depth?: undefined;
   depthScale?: undefined;
-  camera?: undefined;
-  imageId?: undefined;
 }
 
 /** What `align` and `evaluate` look at: depth with camera, or a point map; the mask; the mesh. */
