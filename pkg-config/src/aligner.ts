@@ -23,7 +23,7 @@ export interface AlignerOptions {
  * @throws {@link Sim3AlignError} `NOT_INITIALISED` where the module can't be loaded; the next call tries again
  */
 export async function createAligner(options: AlignerOptions = {}): Promise<Aligner> {
-  return new Aligner(await coreModule.load(options.wasm), options.formatsWasm);
+  return Aligner.create(options);
 }
 
 /**
@@ -35,10 +35,14 @@ export class Aligner {
   readonly #formatsWasm: WasmSource | undefined;
   #isDisposed = false;
 
-  /** @internal Use `createAligner`. */
-  constructor(core: LoadedModule<Core>, formatsWasm: WasmSource | undefined) {
+  private constructor(core: LoadedModule<Core>, formatsWasm: WasmSource | undefined) {
     this.#core = core;
     this.#formatsWasm = formatsWasm;
+  }
+
+  /** @internal */
+  static async create({ wasm, formatsWasm }: AlignerOptions): Promise<Aligner> {
+    return new Aligner(await coreModule.load(wasm), formatsWasm);
   }
 
   /**
@@ -50,7 +54,7 @@ export class Aligner {
     const { onProgress, ...coreOptions } = checkedOptions(options);
     const { core: coreInput, warnings } = await this.#resolve(input);
     const listener = new ProgressListener(onProgress);
-    const result = this.#core.call((core) => core.align(coreInput, coreOptions, listener.callback));
+    const result = this.#core.call((core) => core.align(coreInput, coreOptions, listener.callback), withoutInput);
     listener.rethrow();
     return withWarnings(withTypedMatrix(result), warnings);
   }
@@ -65,7 +69,7 @@ export class Aligner {
     const coreOptions = truth === undefined ? rest : { ...rest, truth: coreSim3(truth) };
     const { core: coreInput, warnings } = await this.#resolve(input);
     return withWarnings(
-      this.#core.call((core) => core.evaluate(coreInput, coreSim3(transform), coreOptions)),
+      this.#core.call((core) => core.evaluate(coreInput, coreSim3(transform), coreOptions), withoutInput),
       warnings,
     );
   }
@@ -175,6 +179,9 @@ class ProgressListener {
     if (this.#failure !== undefined) throw this.#failure.error;
   }
 }
+
+/** Properties of the input are named without it. */
+const withoutInput = (argument: string) => argument.replace(/^input\./, "");
 
 /** Options without those that are left undefined; the core checks names and values. */
 function checkedOptions<T extends object>(options: T) {

@@ -68,7 +68,7 @@ pub fn register(
 
     let voxel_size = options.voxel_size.map_or(1.0 / options.voxel_divisions, |size| size / frames.target.diagonal());
     let settings = Settings::of_register(options, voxel_size, frames.scale_mode, frames.guard);
-    let estimated = estimate(&source, &target, &settings, &mut stages)?;
+    let estimated = estimate(&source, &target, &settings, &mut stages).map_err(|e| about_clouds(e, "source"))?;
     let unit = estimated.target_from_source;
     let fitness = fitness(&source, &target, &unit, settings.ransac.inlier_distance);
     Ok(Registration {
@@ -116,7 +116,8 @@ pub fn estimate_sim3(
         },
         seed: u64::from(options.seed),
     };
-    let consensus = ransac(&source.points, &target.points, &matches, &settings)?;
+    let consensus = ransac(&source.points, &target.points, &matches, &settings)
+        .map_err(|e| about_clouds(e, "correspondences"))?;
     let unit = consensus.target_from_source;
     let squares: f64 = consensus
         .inliers
@@ -270,6 +271,19 @@ fn check_cloud(argument: &str, xyz: &[f64], min_points: usize) -> Result<()> {
     Ok(())
 }
 
+/// RANSAC speaks of a mesh and its observation; here they are two clouds.
+fn about_clouds(error: Error, argument: &str) -> Error {
+    if error.code != ErrorCode::NoConsensus {
+        return error;
+    }
+    Error {
+        expected: "at least three matches of source and target that agree on one similarity".into(),
+        remedy: "Check that the clouds overlap; widen options.scale, or the distance up to which a match is an inlier."
+            .into(),
+        ..error.about(argument)
+    }
+}
+
 fn check_correspondences(correspondences: &[u32], sources: usize, targets: usize) -> Result<Vec<Match>> {
     if !correspondences.len().is_multiple_of(2) {
         return Err(Error::new(
@@ -278,6 +292,15 @@ fn check_correspondences(correspondences: &[u32], sources: usize, targets: usize
             format!("{} indices", correspondences.len()),
             "an even number: source, target, source, target, …",
             "Flatten the pairs row by row.",
+        ));
+    }
+    if correspondences.len() < 6 {
+        return Err(Error::new(
+            ErrorCode::TooFewPoints,
+            "correspondences",
+            format!("{} pairs", correspondences.len() / 2),
+            "at least 3",
+            "Three pairs that are not on one line determine a similarity.",
         ));
     }
     let matches = correspondences.chunks_exact(2).map(|pair| Match { source: pair[0], target: pair[1] });

@@ -233,10 +233,10 @@ fn no_consensus(matches: usize, counts: &RansacCounts) -> Error {
         ErrorCode::NoConsensus,
         "mesh",
         format!(
-            "{matches} matches between mesh and observation; of {} minimal sets {} had inconsistent edges and {} a scale outside the guard",
+            "{matches} matches; of {} minimal sets {} had inconsistent edges and {} a scale out of bounds",
             counts.iterations, counts.inconsistent, counts.rejected
         ),
-        "at least three matches that agree on one transform inside the guard",
+        "at least three matches of mesh and observation that agree on one transform inside the guard",
         "Check that mesh and mask show the same object; widen options.guard, or raise options.voxelDivisions for small details.",
     )
 }

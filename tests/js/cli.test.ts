@@ -141,11 +141,19 @@ test("bad cases are reported, the good ones aligned, and the exit status tells",
   assert.match(many.outside.error.message, /in the folder of the \.gltf/);
   assert.equal("errors" in many["blob-other-formats"], false, "no truth, no errors");
   const lines = stdout.split("\n");
-  assert.match(lines[0] ?? "", /^case .*IoU.*time s.*Δrot °$/);
+  assert.match(lines[0] ?? "", /^case .*IoU.*time s.*Δrot °/);
   names.forEach((name, i) => {
     assert.ok(lines[i + 1]?.startsWith(name), `row ${i} is ${name}`);
   });
   assert.match(stdout, /empty-mask: EMPTY_MASK: mask: found no non-zero pixel/);
+});
+
+test("files among the folders are passed over, but not files alone", () => {
+  const { status, stderr } = run("align", "blob", "out.json", "--json", "among.json");
+  assert.equal(status, 0, stderr);
+  assert.match(stderr, /no folder: out\.json/);
+  assert.deepEqual(Object.keys(results("among.json")), ["blob"]);
+  assert.equal(run("align", "out.json").status, 2);
 });
 
 test("two readings of one case agree", () => {

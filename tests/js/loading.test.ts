@@ -46,7 +46,11 @@ test("the core loads once, however many ask at once; the file readers only when 
   const output = inFreshProcess(`
     const instantiated = [];
     const { instantiate } = WebAssembly;
-    WebAssembly.instantiate = (source, ...rest) => { instantiated.push(source.byteLength); return instantiate(source, ...rest); };
+    WebAssembly.instantiate = (source, ...rest) => {
+      // Node's own modules are small.
+      if (source.byteLength > 50_000) instantiated.push(source.byteLength);
+      return instantiate(source, ...rest);
+    };
     const aligners = await Promise.all([createAligner(), createAligner(), createAligner()]);
     await Promise.all(aligners.map(check));
     assert.equal(instantiated.length, 1);

@@ -140,9 +140,9 @@ export function render(mesh: Mesh, pose: Pose, camera: Pinhole, width: number, h
 
 /** Where the blob of {@link view} is: 0.09 m per unit, 0.7 m away. */
 export const truth: Pose = {
-  scale: 0.12,
+  scale: 0.09,
   rotation: normalized([0.3, -0.5, 0.2, 0.8]),
-  translation: [0.02, -0.03, 0.7],
+  translation: [0.02, -0.01, 0.7],
 };
 
 function normalized(q: Pose["rotation"]): Pose["rotation"] {

@@ -1,4 +1,5 @@
 /** `sim3align align`: aligns cases, and says how well. */
+import { statSync } from "node:fs";
 import { basename, resolve } from "node:path";
 import { Command, Option } from "commander";
 import { type Case, type CasePaths, type CaseSettings, readCaseFiles, readCaseFolder } from "../case-folder.js";
@@ -31,7 +32,7 @@ interface AlignFlags extends CaseFlags {
   voxelDivisions?: number;
   surfaceSamples?: number;
   maxObservedPoints?: number;
-  guard?: [number, number] | null;
+  guard?: [number, number] | "none";
   guardMode?: NonNullable<AlignOptions["guardMode"]>;
   ransacIterations?: number;
   icp?: NonNullable<AlignOptions["icp"]>;
@@ -136,8 +137,16 @@ function jobsOf(folders: readonly string[], flags: AlignFlags): Job[] {
   return [{ name, read: () => readCaseFiles(name, { depth, mask, mesh, camera: cameraFlag }, settings) }];
 }
 
-/** Cases are known by their folders' names, or by their paths where names repeat. */
-function folderJobs(folders: readonly string[], settings: CaseSettings): Job[] {
+/**
+ * Cases are known by their folders' names, or by their paths where names repeat. Files among folders, which `cases/*`
+ * may well name, are passed over.
+ */
+function folderJobs(paths: readonly string[], settings: CaseSettings): Job[] {
+  const folders = paths.filter((path) => !statSync(path, { throwIfNoEntry: false })?.isFile());
+  if (folders.length === 0) throw new UsageError(`No case folder among ${paths.join(", ")}.`);
+  if (folders.length < paths.length) {
+    console.error(`passed over, no folder: ${paths.filter((path) => !folders.includes(path)).join(", ")}`);
+  }
   const names = folders.map((folder) => basename(resolve(folder)));
   return folders.map((folder, i) => {
     const name = names[i] ?? folder;
@@ -174,22 +183,12 @@ function isAboutOptions(error: unknown): error is Sim3AlignError {
 }
 
 function alignOptions(flags: AlignFlags): AlignOptions {
-  const { preset, seed, voxelDivisions, surfaceSamples, maxObservedPoints, guard, guardMode, ransacIterations, icp } =
-    flags;
-  const named = {
-    preset,
-    seed,
-    voxelDivisions,
-    surfaceSamples,
-    maxObservedPoints,
-    guard,
-    guardMode,
-    ransacIterations,
-    icp,
-  };
+  const { preset, seed, voxelDivisions, surfaceSamples, maxObservedPoints, guardMode, ransacIterations, icp } = flags;
+  const named = { preset, seed, voxelDivisions, surfaceSamples, maxObservedPoints, guardMode, ransacIterations, icp };
   return {
     ...flags.options,
     ...withoutUndefined(named),
+    ...(flags.guard === undefined ? {} : { guard: flags.guard === "none" ? null : flags.guard }),
     ...(flags.lockScale ? {} : { lockScale: false }),
     ...(flags.hallucinationFilter ? {} : { hallucinationFilter: false }),
   };

@@ -15,9 +15,9 @@ function numbers(text: string, count: number): number[] | null {
   return values.length === count && !values.some(Number.isNaN) ? values : null;
 }
 
-/** MIN,MAX, or none. */
-export function guard(text: string): [number, number] | null {
-  if (text === "none") return null;
+/** MIN,MAX, or none (Commander takes a null for no value). */
+export function guard(text: string): [number, number] | "none" {
+  if (text === "none") return text;
   const values = numbers(text, 2);
   if (values === null) throw new InvalidArgumentError('Give MIN,MAX such as 0.5,1.5, or "none".');
   return values as [number, number];

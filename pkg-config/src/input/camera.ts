@@ -60,7 +60,8 @@ function intrinsics(camera: Record<string, unknown>): CoreCamera {
 }
 
 function checkSize(camera: Record<string, unknown>, width: number | undefined, height: number | undefined): void {
-  if (width === undefined || height === undefined) return;
+  // A size that is none is for the core to refuse.
+  if (!Number.isInteger(width) || !Number.isInteger(height)) return;
   const { width: cameraWidth = width, height: cameraHeight = height } = camera;
   if (cameraWidth === width && cameraHeight === height) return;
   throw new Sim3AlignError({

@@ -1,7 +1,7 @@
 /** Meshes: arrays as they are, or a mesh file. */
 import { invalidArgument } from "../error.js";
 import type { Formats, LoadedModule } from "../modules.js";
-import { isRecord, isTypedArray, withoutOptions, withoutUndefined, wrongKind } from "../values.js";
+import { isRecord, isTypedArray, withoutUndefined, wrongKind } from "../values.js";
 import { fileBytes } from "./bytes.js";
 import type { MeshFile } from "./types.js";
 
@@ -22,8 +22,11 @@ export async function readMesh(mesh: unknown, formats: () => Promise<LoadedModul
   if (bytes === null) throw invalidArgument("mesh", mesh, kinds, "Pass the mesh that is to be aligned.");
   const { format, resources } = file as Omit<MeshFile, "bytes">;
   const options = withoutUndefined({ format, resources });
-  return (await formats()).call((readers) => readers.readMesh(bytes, options), withoutOptions);
+  return (await formats()).call((readers) => readers.readMesh(bytes, options), named);
 }
+
+/** What the reader calls options are properties of the mesh here. */
+const named = (argument: string) => argument.replace(/^options\./, "mesh.");
 
 function arrays({ positions, indices }: Record<string, unknown>): CoreMesh {
   if (!isTypedArray<Float32Array>(positions, "Float32Array")) {
