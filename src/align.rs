@@ -1,9 +1,12 @@
 //! The pipeline ("Robust 3D Alignment of Generative Reconstructions via Partial Monocular Observations"):
 //! depth, mask and mesh in, the similarity x_cam = s·R·p + t and its metrics out.
 
-pub mod estimate;
+mod estimate;
+pub mod estimate_sim3;
 pub mod evaluate;
 pub mod field;
+mod frames;
+mod judge;
 pub mod options;
 pub mod progress;
 pub mod register;

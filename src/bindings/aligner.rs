@@ -10,7 +10,7 @@ use super::host::JsHost;
 use super::{input, object, options, transform};
 use crate::align::evaluate::EvaluateOptions;
 use crate::align::options::{AlignOptions, EstimateOptions, RegisterOptions};
-use crate::align::{self, register};
+use crate::align::{self, estimate_sim3, register};
 use crate::error::{Error, ErrorCode, Result};
 
 /// Aligns a mesh to an observation; see `Aligner.align` in the TypeScript package.
@@ -66,7 +66,7 @@ pub fn estimate_sim3(
         let options: EstimateOptions = options::options(options, &["scale"])?;
         let (source, target) = (object::to_f64s(source, "source")?, object::to_f64s(target, "target")?);
         let correspondences = object::to_u32s(correspondences, "correspondences")?;
-        register::estimate_sim3(&source, &target, &correspondences, scale, &options, &mut JsHost::new(None))
+        estimate_sim3::estimate_sim3(&source, &target, &correspondences, scale, &options, &mut JsHost::new(None))
     };
     answer(run())
 }

@@ -37,6 +37,8 @@ export interface MeshArrays {
 export interface ReadDepthOptions {
   /** Metres per unit, above 0. By default, whole numbers are millimetres (0.001) and floats are metres. */
   depthScale?: number;
+  /** Metres per unit of whole numbers only, where there is no `depthScale`: what a camera file says. */
+  integerDepthScale?: number;
 }
 
 export interface DepthImage {
@@ -132,9 +134,9 @@ pub fn read_depth(
     #[wasm_bindgen(unchecked_optional_param_type = "ReadDepthOptions")] options: &JsValue,
 ) -> core::result::Result<JsValue, JsValue> {
     let read = || {
-        let options = Options::new(options, &["depthScale"])?;
-        let depth_scale = options.number("depthScale")?;
-        depth_from_bytes(&to_bytes("depth", bytes)?, &DepthReadOptions { depth_scale, integer_depth_scale: None })
+        let options = Options::new(options, &["depthScale", "integerDepthScale"])?;
+        let (depth_scale, integer_depth_scale) = (options.number("depthScale")?, options.number("integerDepthScale")?);
+        depth_from_bytes(&to_bytes("depth", bytes)?, &DepthReadOptions { depth_scale, integer_depth_scale })
     };
     let depth = read().map_err(|error| to_js(&error))?;
     Ok(image(&depth, Float32Array::from(depth.data()).into()))

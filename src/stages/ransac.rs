@@ -231,12 +231,12 @@ fn iterations_needed(inlier_share: f64, confidence: f64) -> usize {
 fn no_consensus(matches: usize, counts: &RansacCounts) -> Error {
     Error::new(
         ErrorCode::NoConsensus,
-        "correspondences",
+        "mesh",
         format!(
-            "{matches} matches; of {} minimal sets {} had inconsistent edges and {} a scale outside the guard",
+            "{matches} matches; of {} minimal sets {} had inconsistent edges and {} a scale out of bounds",
             counts.iterations, counts.inconsistent, counts.rejected
         ),
-        "at least three matches that agree on one transform inside the guard",
-        "Check that both sides show the same object, and that the bounds on the scale are right.",
+        "at least three matches of mesh and observation that agree on one transform inside the guard",
+        "Check that mesh and mask show the same object; widen options.guard, or raise options.voxelDivisions for small details.",
     )
 }

@@ -1,0 +1,46 @@
+/** Flags about how a case is read, which all commands share. */
+import { type Command, Option } from "commander";
+import type { CaseSettings } from "../case-folder.js";
+import { withoutUndefined } from "../values.js";
+import { number } from "./parse.js";
+
+/** The flags' values. */
+export interface CaseFlags {
+  depthScale?: number;
+  imageId?: string;
+  resizeMask?: "nearest";
+}
+
+/** Adds the flags to a command. */
+export function addCaseOptions(command: Command): Command {
+  return command
+    .option("--depth-scale <metres>", "metres per unit of depth, such as 0.001 for millimetres", number)
+    .option("--image-id <id>", "which entry of a BOP scene_camera.json")
+    .addOption(new Option("--resize-mask <how>", "bring a mask of another size to the depth's").choices(["nearest"]));
+}
+
+/** The flags as settings of a case. */
+export const caseSettings = ({ depthScale, imageId, resizeMask }: CaseFlags): CaseSettings =>
+  withoutUndefined({ depthScale, imageId, resizeMask });
+
+/** What a case folder holds, for --help. */
+export const caseFolderHelp = `
+A case folder holds
+  depth.npy or depth.png         z-depth; floats are metres, whole numbers (16-bit PNG) millimetres unless
+                                 --depth-scale or the camera file says otherwise; 0 and NaN are "no reading"
+  mask.png, .npy or .json        non-zero is the object; JSON is COCO RLE {"size": [h, w], "counts": …}
+  mesh.glb, .gltf, .obj, .ply or .stl
+                                 the object in its own frame, in any unit
+  camera.json                    {"fx", "fy", "cx", "cy"}, {"K"}, {"fovYDeg"}, or ROS CameraInfo; or BOP's
+                                 scene_camera.json
+  gt.json (optional)             {"scale", "rotation": 3×3 row by row, "translation": m, "symmetry"}: the truth`;
+
+/** Frames and units, for --help. */
+export const conventionsHelp = `
+Frames and units
+  x_cam = s·R·p_mesh + t. The camera looks along +z, x is right, y is down (OpenCV); metres. Pixel centres are at
+  whole numbers. "matrix" is column by column (three.js, glTF), "rotation" row by row, "quaternion" x, y, z, w.`;
+
+/** The meaning of the exit status, for --help. */
+export const statusHelp = `
+Exit status: 0 all cases done, 1 some case failed (the others are done), 2 the command line is wrong.`;

@@ -1,0 +1,87 @@
+/** `sim3align evaluate`: scores a transform on a case. */
+import { Command } from "commander";
+import { readCaseFolder } from "../case-folder.js";
+import { createAligner, type Evaluation, Sim3AlignError } from "../index.js";
+import {
+  addCaseOptions,
+  type CaseFlags,
+  caseFolderHelp,
+  caseSettings,
+  conventionsHelp,
+  statusHelp,
+} from "./case-options.js";
+import { evaluationJson, type Failure, failure, failureText } from "./outcome.js";
+import { Output } from "./output.js";
+import { number } from "./parse.js";
+import { evaluationDetails } from "./report.js";
+import { readTransform } from "./transform-file.js";
+
+interface EvaluateFlags extends CaseFlags {
+  transform: string;
+  seed?: number;
+  json?: string;
+}
+
+const help = `${caseFolderHelp}
+${conventionsHelp}
+
+A transform file is JSON with
+  - { "scale", "rotation", "translation" }, the rotation as 3×3 numbers row by row or as a quaternion x, y, z, w; or
+  - { "matrix" }, 16 numbers column by column; or
+  - what "sim3align align --json" wrote: the case's entry is used.
+
+Examples
+  sim3align evaluate cases/mug --transform results.json
+  sim3align evaluate cases/mug --transform gt --json scores.json
+${statusHelp}`;
+
+/** The command. */
+export function evaluateCommand(): Command {
+  const command = new Command("evaluate")
+    .summary("score a transform on a case")
+    .description("Scores a transform with all metrics, and against gt.json where the case has one.")
+    .argument("<case>", "case folder")
+    .option("--transform <file|gt>", 'a transform file, or "gt" for the case\'s own truth', "gt")
+    .option("--json <file>", 'write the scores as JSON; "-" is stdout')
+    .option("--seed <n>", "seed of all random draws", number);
+  return addCaseOptions(command).addHelpText("after", help).action(run);
+}
+
+async function run(folder: string, flags: EvaluateFlags): Promise<void> {
+  const output = new Output(flags.json);
+  const [name, result] = await evaluateCase(folder, flags);
+  await output.json(evaluationJson(name, result));
+  if ("error" in result) {
+    output.lines([output.style.red("failed ") + failureText(result)]);
+    process.exitCode = 1;
+  } else {
+    output.lines(evaluationDetails(name, result, output.style));
+  }
+}
+
+async function evaluateCase(folder: string, flags: EvaluateFlags): Promise<[name: string, Evaluation | Failure]> {
+  let name = folder;
+  let files: Readonly<Record<string, string>> = {};
+  try {
+    const { input, truth, ...known } = await readCaseFolder(folder, caseSettings(flags));
+    ({ name, files } = known);
+    if (flags.transform === "gt" && truth === null) throw noTruth(folder);
+    const matrix = flags.transform === "gt" ? truth?.matrix : await readTransform(flags.transform, name);
+    const aligner = await createAligner();
+    const seed = flags.seed === undefined ? {} : { seed: flags.seed };
+    const against = truth === null ? {} : { truth: { matrix: truth.matrix }, symmetry: truth.symmetry };
+    return [name, await aligner.evaluate(input, { matrix: matrix ?? [] }, { ...seed, ...against })];
+  } catch (error) {
+    return [name, failure(name, error, files)];
+  }
+}
+
+function noTruth(folder: string): Sim3AlignError {
+  return new Sim3AlignError({
+    code: "FILE_NOT_FOUND",
+    argument: "transform",
+    found: `no known pose in ${folder}`,
+    expected: "gt.json with a pose",
+    remedy: "Pass --transform FILE.",
+  });
+}

@@ -1,0 +1,46 @@
+/** Values of flags. What is no value of its kind is a usage error. */
+import { InvalidArgumentError } from "commander";
+import type { CameraInput } from "../index.js";
+
+/** A number. */
+export function number(text: string): number {
+  const value = Number(text);
+  if (text.trim() === "" || Number.isNaN(value)) throw new InvalidArgumentError("Not a number.");
+  return value;
+}
+
+/** Numbers with commas between them. */
+function numbers(text: string, count: number): number[] | null {
+  const values = text.split(",").map((part) => (part.trim() === "" ? Number.NaN : Number(part)));
+  return values.length === count && !values.some(Number.isNaN) ? values : null;
+}
+
+/** MIN,MAX, or none (Commander takes a null for no value). */
+export function guard(text: string): [number, number] | "none" {
+  if (text === "none") return text;
+  const values = numbers(text, 2);
+  if (values === null) throw new InvalidArgumentError('Give MIN,MAX such as 0.5,1.5, or "none".');
+  return values as [number, number];
+}
+
+/** An object in JSON. */
+export function jsonObject(text: string): Record<string, unknown> {
+  try {
+    const value: unknown = JSON.parse(text);
+    if (typeof value === "object" && value !== null && !Array.isArray(value)) return value as Record<string, unknown>;
+  } catch (error) {
+    throw new InvalidArgumentError(`Not JSON: ${(error as Error).message}.`);
+  }
+  throw new InvalidArgumentError('Give an object, such as {"ransacIterations": 200000}.');
+}
+
+/** fx,fy,cx,cy; fov:DEGREES; or else a file. */
+export function camera(text: string): string | { value: CameraInput } {
+  const intrinsics = numbers(text, 4);
+  if (intrinsics !== null) {
+    const [fx = 0, fy = 0, cx = 0, cy = 0] = intrinsics;
+    return { value: { fx, fy, cx, cy } };
+  }
+  if (!text.startsWith("fov:")) return text;
+  return { value: { fovYDeg: number(text.slice("fov:".length)) } };
+}

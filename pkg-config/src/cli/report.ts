@@ -1,0 +1,161 @@
+/** The tables that people read. */
+import type { Evaluation, Metrics, PoseErrors, Warning } from "../index.js";
+import { fixed, significant } from "./number.js";
+import { failureText, type Outcome, type Success } from "./outcome.js";
+import type { Style } from "./style.js";
+import { type Column, pairs, table } from "./table.js";
+
+const number = (heading: string): Column => ({ heading, isNumber: true });
+
+const columns: readonly Column[] = [
+  { heading: "case" },
+  ...["scale", "s/s_init", "IoU", "bound. F", "drift px", "Chamfer mm", "fitness", "MAE mm", "time s"].map(number),
+];
+
+const errorColumns: readonly Column[] = ["Δscale %", "Δrot °", "Δtrans mm", "Δtrans %"].map(number);
+
+/** One row per case; the errors against the truth where a case has one. */
+export function summary(outcomes: readonly Outcome[], style: Style): string[] {
+  const hasTruth = outcomes.some((outcome) => "errors" in outcome && outcome.errors !== null);
+  const all = hasTruth ? [...columns, ...errorColumns] : columns;
+  const rows = outcomes.map((outcome) => {
+    if ("error" in outcome) return [outcome.name, style.red(outcome.error.code)];
+    return [...row(outcome), ...(hasTruth ? errorCells(outcome.errors) : [])];
+  });
+  const [heading = "", ...lines] = table(all, rows);
+  return [style.bold(heading), ...lines];
+}
+
+function row({ name, alignment }: Success): string[] {
+  const { scale, scaleRatio, metrics, timingsMs } = alignment;
+  return [
+    name,
+    significant(scale, 4),
+    fixed(scaleRatio, 3),
+    fixed(metrics.iou, 3),
+    fixed(metrics.boundaryF, 3),
+    fixed(metrics.centerDriftPx, 1),
+    fixed(metrics.chamferMm, 2),
+    fixed(metrics.fitness, 3),
+    fixed(metrics.depthMaeMm, 2),
+    fixed(timingsMs.total / 1000, 2),
+  ];
+}
+
+function errorCells(errors: PoseErrors | null): string[] {
+  if (errors === null) return errorColumns.map(() => "–");
+  return [
+    fixed(100 * errors.scaleError, 1),
+    fixed(errors.rotationErrorDeg, 1),
+    fixed(1000 * errors.translationErrorM, 1),
+    fixed(100 * errors.translationErrorRelative, 1),
+  ];
+}
+
+/** Everything about one aligned case. */
+export function details({ name, alignment, errors }: Success, style: Style): string[] {
+  const { scale, rotation, rotationMatrix, translation, metrics, counts, timingsMs } = alignment;
+  const matrixRow = (i: 0 | 1 | 2) =>
+    [...rotationMatrix[i].map((r) => r * scale), translation[i]].map((x) => fixed(x, 6).padStart(11)).join("");
+  return [
+    style.bold(`${name}: camera from mesh, x_cam = s·R·p + t`),
+    ...pairs([
+      ["scale s", `${significant(scale, 6)} m per mesh unit`],
+      ["scale ratio", `${fixed(alignment.scaleRatio, 4)} of the initial ${significant(alignment.initialScale, 6)}`],
+      ["translation t", `${translation.map((x) => fixed(x, 6)).join("  ")} m`],
+      ["rotation R", `${rotation.map((x) => fixed(x, 6)).join("  ")} (quaternion x y z w)`],
+      ["matrix (s·R | t)", matrixRow(0)],
+      ["", matrixRow(1)],
+      ["", matrixRow(2)],
+      [
+        "refinement",
+        `${alignment.converged ? "came to rest" : "did not come to rest"}, residual ${significant(1000 * alignment.residualM, 3)} mm`,
+      ],
+    ]),
+    "",
+    ...metricsSection(metrics, style),
+    ...errorsSection(errors, style),
+    "",
+    style.bold("Stages"),
+    ...pairs(Object.entries(timingsMs).map(([stage, ms]) => [stage, `${fixed(ms, 1).padStart(8)} ms`])),
+    "",
+    style.bold("Counts"),
+    ...pairs([
+      ["points", `${counts.sourcePoints} on the mesh, ${counts.targetPoints} observed`],
+      ["voxels", `${counts.sourceVoxels} and ${counts.targetVoxels}`],
+      ["matches", `${counts.matches}, of which ${counts.inliers} agree`],
+      ["hypotheses", `${counts.iterations} drawn, ${counts.inconsistent} inconsistent`],
+      ["scale guard", `${counts.rejected} rejected, ${counts.clamped} clamped`],
+      ["refinement", `${counts.icpIterations} iterations, ${counts.supported} points supported`],
+    ]),
+    ...warningsSection(alignment.warnings, style),
+  ];
+}
+
+/** Everything about one evaluated case. */
+export function evaluationDetails(name: string, evaluation: Evaluation, style: Style): string[] {
+  const { metrics, errors, scaleRatio, initialScale, collapsed, warnings } = evaluation;
+  return [
+    style.bold(`${name}: evaluation`),
+    ...pairs([
+      [
+        "scale ratio",
+        `${fixed(scaleRatio, 4)} of the initial ${significant(initialScale, 6)}${collapsed ? ", collapsed" : ""}`,
+      ],
+    ]),
+    "",
+    ...metricsSection(metrics, style),
+    ...errorsSection(errors, style),
+    ...warningsSection(warnings, style),
+  ];
+}
+
+function metricsSection(metrics: Metrics, style: Style): string[] {
+  return [
+    style.bold("Metrics"),
+    ...pairs([
+      ["silhouette IoU", fixed(metrics.iou, 4)],
+      ["boundary F", fixed(metrics.boundaryF, 4)],
+      ["centre drift", `${fixed(metrics.centerDriftPx, 2)} px`],
+      ["Chamfer", `${fixed(metrics.chamferMm, 3)} mm (both directions)`],
+      ["uni-Chamfer", `${fixed(metrics.uniChamferMm, 3)} mm (observed to surface)`],
+      ["fitness", fixed(metrics.fitness, 4)],
+      ["normal consistency", fixed(metrics.normalConsistency, 4)],
+      ["depth MAE", `${fixed(metrics.depthMaeMm, 3)} mm`],
+    ]),
+  ];
+}
+
+function errorsSection(errors: PoseErrors | null, style: Style): string[] {
+  if (errors === null) return [];
+  const { scaleError, rotationErrorDeg, translationErrorM, translationErrorRelative, addSMm } = errors;
+  return [
+    "",
+    style.bold("Error against the truth"),
+    ...pairs([
+      ["scale", `${fixed(100 * scaleError, 2)} %`],
+      ["rotation", `${fixed(rotationErrorDeg, 2)}°`],
+      [
+        "translation",
+        `${fixed(1000 * translationErrorM, 2)} mm, ${fixed(100 * translationErrorRelative, 2)} % of the diameter`,
+      ],
+      ["ADD-S", `${fixed(addSMm, 2)} mm`],
+    ]),
+  ];
+}
+
+function warningsSection(warnings: readonly Warning[], style: Style): string[] {
+  if (warnings.length === 0) return [];
+  return ["", style.bold("Warnings"), ...warnings.map((warning) => `  ${warningText(warning, style)}`)];
+}
+
+const warningText = ({ code, message }: Warning, style: Style) => `${style.yellow(code)}: ${message}`;
+
+/** The warnings and failures of several cases. */
+export function notes(outcomes: readonly Outcome[], style: Style): string[] {
+  return outcomes.flatMap((outcome) =>
+    "error" in outcome
+      ? [style.red("failed ") + failureText(outcome)]
+      : outcome.alignment.warnings.map((warning) => `${outcome.name}: ${warningText(warning, style)}`),
+  );
+}

@@ -1,0 +1,61 @@
+/** Transforms from JSON files. */
+import { read } from "../case-folder.js";
+import { Sim3AlignError } from "../error.js";
+import { formatsModule } from "../modules.js";
+import { isRecord } from "../values.js";
+
+/**
+ * A transform file's 16 numbers, column by column.
+ * @param name the case's: which entry of `align --json`'s output is meant
+ */
+export async function readTransform(path: string, name: string): Promise<number[]> {
+  const text = new TextDecoder().decode(await read("transform", path));
+  const entry = entryOf(parse(text, path), name);
+  const module = await formatsModule.load();
+  const transform = module.call(
+    (readers) => readers.readTruth(entry),
+    (argument) => argument.replace(/^truth/, "transform"),
+  );
+  if (transform === null) throw invalid("a file that says that no pose is known", "a transform");
+  return Array.from(transform.matrix);
+}
+
+function parse(text: string, path: string): unknown {
+  try {
+    return JSON.parse(text);
+  } catch (cause) {
+    throw new Sim3AlignError(
+      {
+        code: "CORRUPT_FILE",
+        argument: "transform",
+        found: `${path}: ${(cause as Error).message}`,
+        expected: "JSON",
+        remedy: 'See "sim3align evaluate --help" for the layout of a transform file.',
+      },
+      { cause },
+    );
+  }
+}
+
+function entryOf(json: unknown, name: string): object {
+  if (Array.isArray(json)) return { matrix: json };
+  if (!isRecord(json)) throw invalid(JSON.stringify(json), "an object");
+  if ("matrix" in json || "scale" in json || "available" in json) return json;
+  const entry = json[name];
+  if (isRecord(entry) && !("error" in entry)) return entry;
+  if (isRecord(entry)) throw invalid(`the failure of ${name}`, "a case that was aligned");
+  throw invalid(
+    `an object with ${Object.keys(json).slice(0, 12).join(", ") || "nothing"}`,
+    `a transform, or ${name}'s`,
+  );
+}
+
+function invalid(found: string, expected: string): Sim3AlignError {
+  return new Sim3AlignError({
+    code: "INVALID_TRANSFORM",
+    argument: "transform",
+    found,
+    expected,
+    remedy: 'See "sim3align evaluate --help" for the layout of a transform file.',
+  });
+}

@@ -1,0 +1,41 @@
+/**
+ * Puts a generated 3D mesh where it really is, at its real size, from one masked depth map.
+ *
+ * Camera frame: OpenCV (x right, y down, z forward), metres. Transforms: x_cam = s·R·p_mesh + t; matrices are
+ * column-major, quaternions x, y, z, w.
+ * @packageDocumentation
+ */
+export { Aligner, type AlignerOptions, createAligner } from "./aligner.js";
+export { type ErrorCode, type ErrorParts, Sim3AlignError } from "./error.js";
+export type { Counts, GuardMode, Icp, Metrics, PoseErrors, Preset, Stage } from "./generated/types.js";
+export type {
+  AlignInput,
+  CameraInput,
+  CocoRle,
+  DepthAlignInput,
+  DepthInput,
+  EncodedBytes,
+  FieldOfViewCamera,
+  MaskInput,
+  MatrixCamera,
+  MeshArrays,
+  MeshFile,
+  MeshFormat,
+  MeshInput,
+  PinholeCamera,
+  PixelArray,
+  PointMapAlignInput,
+} from "./input/types.js";
+export type { WasmSource } from "./modules.js";
+export type {
+  AlignOptions,
+  Defaults,
+  EstimateOptions,
+  EvaluateOptions,
+  Progress,
+  RegisterOptions,
+  ScaleOption,
+  SymmetryAxis,
+} from "./options.js";
+export type { Alignment, Evaluation, Registration, Warning, WarningCode } from "./results.js";
+export type { Sim3, Sim3Like } from "./sim3.js";

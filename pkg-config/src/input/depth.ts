@@ -1,0 +1,90 @@
+/** Depth maps and point maps, brought to arrays with their size. */
+import { Sim3AlignError } from "../error.js";
+import type { Formats, LoadedModule } from "../modules.js";
+import { isRecord, isTypedArray, withoutOptions, withoutUndefined, wrongKind } from "../values.js";
+import { fileBytes } from "./bytes.js";
+
+/** The core's form of a depth map or a point map: one of the two. */
+export interface SizedArray<T> {
+  data: T;
+  width: number | undefined;
+  height: number | undefined;
+}
+
+type DepthArray = Float32Array | Uint16Array;
+
+const depthKinds =
+  "a Float32Array (metres), a Uint16Array (with depthScale), { data, width, height } of these, or the bytes of a 16-bit PNG or a .npy file";
+
+/** The image size that the input states. */
+export interface StatedSize {
+  width?: number | undefined;
+  height?: number | undefined;
+}
+
+/**
+ * A depth map's values: metres where it came from a file or as floats, units of `depthScale` else.
+ * @param scale the caller's depthScale, or for whole numbers only the camera file's
+ */
+export async function readDepth(
+  depth: unknown,
+  size: StatedSize,
+  scale: { depthScale: number | undefined; integerDepthScale: number | undefined },
+  formats: () => Promise<LoadedModule<Formats>>,
+): Promise<SizedArray<DepthArray>> {
+  if (isDepthArray(depth)) return { data: depth, ...required(size) };
+  if (isRecord(depth) && "data" in depth) return sized("depth", depth, depthKinds, isDepthArray, size);
+  const bytes = await fileBytes(depth);
+  if (bytes === null) throw wrongKind("depth", depth, depthKinds, "Float32Array");
+  if (bytes === depth && bytes.length === (size.width ?? 0) * (size.height ?? 0) && bytes.length > 0) {
+    throw new Sim3AlignError({
+      code: "EIGHT_BIT_DEPTH",
+      argument: "depth",
+      found: `a Uint8Array of ${size.width} × ${size.height} values`,
+      expected: depthKinds,
+      remedy: "256 steps are a picture of the depth, not metres: pass the depth map itself.",
+    });
+  }
+  const module = await formats();
+  const file = module.call((readers) => readers.readDepth(bytes, withoutUndefined(scale)), withoutOptions);
+  checkStatedSize("depth", file, size);
+  return file;
+}
+
+/** A point map's values, metres. */
+export function readPointMap(pointMap: unknown, size: StatedSize): SizedArray<Float32Array> {
+  const kinds = "a Float32Array of height × width × 3 values (metres), or { data, width, height } with one";
+  if (isFloats(pointMap)) return { data: pointMap, ...required(size) };
+  if (isRecord(pointMap) && "data" in pointMap) return sized("pointMap", pointMap, kinds, isFloats, size);
+  throw wrongKind("pointMap", pointMap, kinds, "Float32Array");
+}
+
+const isFloats = (value: unknown): value is Float32Array => isTypedArray(value, "Float32Array");
+const isDepthArray = (value: unknown): value is DepthArray => isTypedArray(value, "Float32Array", "Uint16Array");
+
+const required = ({ width, height }: StatedSize) => ({ width, height });
+
+function sized<T>(
+  argument: string,
+  image: Record<string, unknown>,
+  kinds: string,
+  isData: (value: unknown) => value is T,
+  stated: StatedSize,
+): SizedArray<T> {
+  const { data, width, height } = image as { data: unknown; width: number; height: number };
+  if (!isData(data)) throw wrongKind(`${argument}.data`, data, kinds, "Float32Array");
+  checkStatedSize(argument, { width, height }, stated);
+  return { data, width, height };
+}
+
+function checkStatedSize(argument: string, actual: { width: number; height: number }, stated: StatedSize): void {
+  const { width = actual.width, height = actual.height } = stated;
+  if (width === actual.width && height === actual.height) return;
+  throw new Sim3AlignError({
+    code: "SIZE_MISMATCH",
+    argument,
+    found: `${actual.width} × ${actual.height} pixels`,
+    expected: `the ${width} × ${height} that the input's width and height say`,
+    remedy: `Leave width and height out: ${argument} brings its own.`,
+  });
+}

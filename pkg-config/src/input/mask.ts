@@ -1,0 +1,53 @@
+/** Masks, brought to bytes with their size. */
+import { invalidArgument } from "../error.js";
+import type { Formats, LoadedModule } from "../modules.js";
+import { isRecord, isTypedArray, wrongKind } from "../values.js";
+import { beginsLikeImage, beginsLikeJson, fileBytes } from "./bytes.js";
+import type { SizedArray } from "./depth.js";
+
+type MaskArray = Uint8Array | Uint8ClampedArray;
+
+const kinds =
+  "a Uint8Array (non-zero is the object), { data, width, height } with one, COCO RLE { size, counts }, or the bytes of a PNG or a .npy file";
+
+/**
+ * A mask's pixels.
+ * @param pixels how many the depth map has
+ */
+export async function readMask(
+  mask: unknown,
+  pixels: number,
+  formats: () => Promise<LoadedModule<Formats>>,
+): Promise<SizedArray<MaskArray>> {
+  if (isRecord(mask)) {
+    if ("counts" in mask) {
+      const { size, counts } = mask as { size: [number, number]; counts: string | number[] };
+      const module = await formats();
+      return module.call(
+        (readers) => readers.decodeCocoRle({ size, counts }),
+        (argument) => argument.replace(/^rle/, "mask"),
+      );
+    }
+    if ("data" in mask) {
+      const { data, width, height } = mask as { data: unknown; width: number; height: number };
+      if (!isMaskArray(data)) throw wrongKind("mask.data", data, "a Uint8Array", "Uint8Array");
+      if (typeof width === "number" && typeof height === "number") return { data, width, height };
+      throw invalidArgument(
+        "mask",
+        mask,
+        "data, width and height",
+        "Say how many pixels the mask has in each direction.",
+      );
+    }
+  }
+  if (isTypedArray<Uint8ClampedArray>(mask, "Uint8ClampedArray")) return bare(mask);
+  const bytes = await fileBytes(mask);
+  if (bytes === null) throw wrongKind("mask", mask, kinds, "Uint8Array");
+  const isFile = beginsLikeImage(bytes) || (bytes.length !== pixels && (beginsLikeJson(bytes) || mask !== bytes));
+  if (!isFile) return bare(bytes);
+  return (await formats()).call((readers) => readers.readMask(bytes));
+}
+
+const bare = (data: MaskArray): SizedArray<MaskArray> => ({ data, width: undefined, height: undefined });
+
+const isMaskArray = (value: unknown): value is MaskArray => isTypedArray(value, "Uint8Array", "Uint8ClampedArray");

@@ -1,0 +1,39 @@
+/** Meshes: arrays as they are, or a mesh file. */
+import { invalidArgument } from "../error.js";
+import type { Formats, LoadedModule } from "../modules.js";
+import { isRecord, isTypedArray, withoutUndefined, wrongKind } from "../values.js";
+import { fileBytes } from "./bytes.js";
+import type { MeshFile } from "./types.js";
+
+/** The core's form of a mesh. */
+export interface CoreMesh {
+  positions: Float32Array;
+  indices?: Uint32Array | Uint16Array;
+}
+
+const kinds =
+  "{ positions, indices? }, or the bytes of a GLB, glTF, OBJ, PLY or STL file (also as { bytes, format?, resources? })";
+
+/** A mesh's arrays. */
+export async function readMesh(mesh: unknown, formats: () => Promise<LoadedModule<Formats>>): Promise<CoreMesh> {
+  if (isRecord(mesh) && "positions" in mesh) return arrays(mesh);
+  const file: { [K in keyof MeshFile]?: unknown } = isRecord(mesh) ? mesh : { bytes: mesh };
+  const bytes = await fileBytes(file.bytes);
+  if (bytes === null) throw invalidArgument("mesh", mesh, kinds, "Pass the mesh that is to be aligned.");
+  const { format, resources } = file as Omit<MeshFile, "bytes">;
+  const options = withoutUndefined({ format, resources });
+  return (await formats()).call((readers) => readers.readMesh(bytes, options), named);
+}
+
+/** What the reader calls options are properties of the mesh here. */
+const named = (argument: string) => argument.replace(/^options\./, "mesh.");
+
+function arrays({ positions, indices }: Record<string, unknown>): CoreMesh {
+  if (!isTypedArray<Float32Array>(positions, "Float32Array")) {
+    throw wrongKind("mesh.positions", positions, "a Float32Array, x, y, z per vertex", "Float32Array");
+  }
+  if (indices === undefined || indices === null) return { positions };
+  if (isTypedArray<Uint32Array | Uint16Array>(indices, "Uint32Array", "Uint16Array")) return { positions, indices };
+  const expected = "a Uint32Array or a Uint16Array, three indices per triangle";
+  throw wrongKind("mesh.indices", indices, expected, "Uint32Array");
+}

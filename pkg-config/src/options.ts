@@ -1,0 +1,63 @@
+/** What the calls can be told to do otherwise. Units, ranges and defaults are in each field's documentation. */
+import type * as Core from "./generated/types.js";
+import type { Sim3Like } from "./sim3.js";
+
+/** How far a call has come. */
+export interface Progress {
+  /** The stage that begins now. */
+  stage: Core.Stage;
+  /** Share of the whole that is done, 0 to 1; it never falls. */
+  fraction: number;
+}
+
+/** Options of `Aligner.align`: most callers need none. */
+export interface AlignOptions extends Partial<Core.AlignOptions> {
+  /** Called as each stage begins. An exception that it throws rejects the call. */
+  onProgress?: ((progress: Progress) => void) | undefined;
+}
+
+/** An axis about which the object looks the same after a turn; all axes pass through its surface's centroid. */
+export interface SymmetryAxis {
+  /** Direction in the mesh's frame, of any length above 0. */
+  axis: readonly [number, number, number];
+  /** How many times the object looks the same in a full turn; without it, at any angle (a surface of revolution). */
+  fold?: number | undefined;
+}
+
+/** Options of `Aligner.evaluate`. */
+export interface EvaluateOptions extends Partial<Core.EvaluateOptions> {
+  /** The transform that is known to be right, for `errors`. */
+  truth?: Sim3Like | undefined;
+  /**
+   * The turns under which the object looks the same: the rotation error is the smallest over them. `"auto"` finds the
+   * half turns about the principal axes that the mesh itself shows, `"auto-revolution"` those axes about which it can be
+   * turned by any angle, too. Default `"none"`.
+   */
+  symmetry?: "none" | "auto" | "auto-revolution" | readonly SymmetryAxis[] | undefined;
+}
+
+/**
+ * What may happen to the scale, in target units per source unit: `"free"` is solved for, `"fixed"` is 1, a number is
+ * known, [min, max] is solved for within bounds.
+ */
+export type ScaleOption = "free" | "fixed" | number | readonly [min: number, max: number];
+
+/** Options of `Aligner.register`. */
+export interface RegisterOptions extends Partial<Core.RegisterOptions> {
+  /** What may happen to the scale. Default `"free"`. */
+  scale?: ScaleOption | undefined;
+}
+
+/** Options of `Aligner.estimateSim3`. */
+export interface EstimateOptions extends Partial<Core.EstimateOptions> {
+  /** What may happen to the scale. Default `"free"`. */
+  scale?: ScaleOption | undefined;
+}
+
+/** The values that options take where they are left out; a `scale` left out is `"free"`. */
+export interface Defaults {
+  align: Core.AlignOptions;
+  evaluate: Core.EvaluateOptions;
+  register: Core.RegisterOptions;
+  estimateSim3: Core.EstimateOptions;
+}

@@ -1,0 +1,42 @@
+/** What the calls return: plain objects; `null` stands for what could not be measured. */
+import type * as Core from "./generated/types.js";
+import type { Sim3 } from "./sim3.js";
+
+/** The kinds of warning. */
+export type WarningCode =
+  | Core.WarningCode
+  /** The camera file says more than a pinhole camera can: lens distortion. */
+  | "CAMERA_NOT_PINHOLE";
+
+/** Something about the input that the caller should know; the result stands. */
+export interface Warning extends Omit<Core.Warning, "code"> {
+  /** A stable name. */
+  code: WarningCode;
+}
+
+/**
+ * What `align` found: the transform from the mesh's frame to the camera's, x_cam = s·R·p_mesh + t (OpenCV camera: x
+ * right, y down, z forward; metres).
+ */
+export interface Alignment extends Sim3, Omit<Core.Alignment, keyof Core.Sim3 | "warnings"> {
+  /** What the caller should know about the input. */
+  warnings: Warning[];
+}
+
+/** What `evaluate` found. */
+export interface Evaluation extends Omit<Core.Evaluation, "warnings"> {
+  /** What the caller should know about the input. */
+  warnings: Warning[];
+}
+
+/** What `register` and `estimateSim3` found: target from source, y = s·R·x + t. */
+export interface Registration extends Sim3, Omit<Core.Registration, keyof Core.Sim3> {}
+
+/** A result with the input's own warnings before those of the core. */
+export function withWarnings<T extends { warnings: Core.Warning[] }>(
+  result: T,
+  messages: string[],
+): T & { warnings: Warning[] } {
+  const warnings = messages.map((message): Warning => ({ code: "CAMERA_NOT_PINHOLE", message }));
+  return { ...result, warnings: [...warnings, ...result.warnings] };
+}

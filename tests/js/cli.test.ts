@@ -1,0 +1,286 @@
+/** The command line, run as its users run it. */
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, test } from "node:test";
+import { createAligner } from "sim3align";
+import { commandLine } from "../support/environment.js";
+import { cocoRle, glb, gltfBuffer, gltfJson, npy, obj, png } from "../support/files.js";
+import { columnMajor, mesh, rotationRows, truth, view } from "../support/scene.js";
+
+const { width, height, depth, mask, camera } = view;
+const folder = mkdtempSync(join(tmpdir(), "sim3align-cli-"));
+after(() => rmSync(folder, { recursive: true, force: true }));
+
+/** Runs the command line in the folder of the cases. */
+function run(...args: string[]): { status: number | null; stdout: string; stderr: string } {
+  const { status, stdout, stderr } = spawnSync(process.execPath, [commandLine, ...args], {
+    cwd: folder,
+    encoding: "utf8",
+  });
+  return { status, stdout, stderr };
+}
+
+function writeCase(name: string, files: Record<string, Uint8Array | object>): string {
+  mkdirSync(join(folder, name), { recursive: true });
+  for (const [file, content] of Object.entries(files)) {
+    const text = content instanceof Uint8Array ? content : JSON.stringify(content);
+    writeFileSync(join(folder, name, file), text);
+  }
+  return name;
+}
+
+const pixels = png(
+  mask.map((m) => 255 * m),
+  width,
+  height,
+);
+const gt = {
+  available: true,
+  scale: truth.scale,
+  rotation: rotationRows(truth.rotation),
+  translation: truth.translation,
+  symmetry: "none",
+};
+const files = {
+  "depth.npy": npy(depth, height, width),
+  "mask.png": pixels,
+  "mesh.glb": glb(mesh),
+  "camera.json": camera,
+};
+const millimetres = Uint16Array.from(depth, (z) => Math.round(1000 * z));
+
+writeCase("blob", { ...files, "gt.json": gt, "meta.json": { source: "generated" } });
+writeCase("blob-other-formats", {
+  "depth.png": png(millimetres, width, height),
+  "mask.json": cocoRle(mask, width, height),
+  "mesh.gltf": gltfJson(mesh, {}, { uri: "blob%20mesh.bin" }),
+  "blob mesh.bin": gltfBuffer(mesh),
+  "scene_camera.json": { "3": { cam_K: [camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1], depth_scale: 1 } },
+  "gt.json": { available: false, symmetry: "unknown" },
+});
+writeCase("no-mask", { "depth.npy": files["depth.npy"], "mesh.glb": files["mesh.glb"], "camera.json": camera });
+writeCase("empty-mask", { ...files, "mask.png": png(new Uint8Array(mask.length), width, height) });
+writeCase("outside", { ...files, "mesh.gltf": gltfJson(mesh, {}, { uri: "../blob/mesh.glb" }) });
+rmSync(join(folder, "outside", "mesh.glb"));
+
+/** The results that --json wrote. */
+const results = (path: string) => JSON.parse(readFileSync(join(folder, path), "utf8"));
+
+test("--help explains the layout, frames, units and exit status", () => {
+  const top = run("--help");
+  assert.equal(top.status, 0);
+  assert.match(top.stdout, /^Usage: sim3align/);
+  assert.match(top.stdout, /align.*evaluate.*Examples/s);
+  const { status, stdout } = run("align", "--help");
+  assert.equal(status, 0);
+  for (const word of ["depth.npy", "camera.json", "metres", "OpenCV", "Exit status", "--guard", "Examples"]) {
+    assert.ok(stdout.includes(word), word);
+  }
+  assert.match(run("evaluate", "--help").stdout, /transform file/);
+});
+
+test("a single case is shown in detail", () => {
+  const { status, stdout, stderr } = run("align", "blob", "--preset", "paper", "--seed", "1");
+  assert.equal(stderr, "", "no progress line without a terminal");
+  assert.equal(status, 0);
+  for (const word of [
+    "scale s",
+    "m per mesh unit",
+    "silhouette IoU",
+    "ransac",
+    "hypotheses",
+    "Error against the truth",
+  ]) {
+    assert.ok(stdout.includes(word), word);
+  }
+  assert.ok(!stdout.includes("\u001b["), "no colour without a terminal");
+});
+
+test("--json has everything, as the documentation says", async () => {
+  assert.equal(run("align", "blob", "--json", "out.json", "--seed", "5").status, 0);
+  const { blob } = results("out.json");
+  const aligner = await createAligner();
+  const input = { depth: files["depth.npy"], mask: pixels, mesh: files["mesh.glb"], camera };
+  const alignment = await aligner.align(input, { seed: 5 });
+  const { errors } = await aligner.evaluate(input, alignment, { truth });
+  const { timingsMs, ...rest } = blob;
+  assert.ok(timingsMs.total > 0);
+  const { rotation, rotationMatrix, matrix, timingsMs: _, ...same } = alignment;
+  const expected = { ...same, rotation: rotationMatrix, matrix: Array.from(matrix), quaternion: rotation, errors };
+  // The truth's rotation comes as rows there, as a quaternion here.
+  const { errors: foundErrors, ...found } = rest;
+  const { errors: expectedErrors, ...others } = expected;
+  assert.deepEqual(found, others);
+  assert.deepEqual(Object.keys(foundErrors), Object.keys(expectedErrors ?? {}));
+  assert.ok(Math.abs(foundErrors.scaleError - (expectedErrors?.scaleError ?? 9)) < 1e-6);
+});
+
+test("the same seed writes the same file, times apart", () => {
+  const once = () => {
+    run("align", "blob", "--json", "again.json");
+    const { timingsMs: _, ...result } = results("again.json").blob;
+    return result;
+  };
+  assert.deepEqual(once(), once());
+});
+
+test("bad cases are reported, the good ones aligned, and the exit status tells", () => {
+  const names = ["no-mask", "blob", "empty-mask", "nowhere", "outside", "blob-other-formats"];
+  const { status, stdout } = run("align", ...names, "--json", "many.json");
+  assert.equal(status, 1);
+  const many = results("many.json");
+  assert.deepEqual(Object.keys(many), names);
+  const codes = names.map((name) => many[name].error?.code);
+  assert.deepEqual(codes, ["FILE_NOT_FOUND", undefined, "EMPTY_MASK", "FILE_NOT_FOUND", "CORRUPT_FILE", undefined]);
+  assert.match(many["no-mask"].error.message, /mask: .*no-mask.*mask\.png or mask\.npy or mask\.json/);
+  assert.deepEqual(Object.keys(many["no-mask"].error), ["code", "argument", "found", "expected", "remedy", "message"]);
+  assert.equal(many["empty-mask"].error.file, join("empty-mask", "mask.png"));
+  assert.match(many.outside.error.message, /in the folder of the \.gltf/);
+  assert.equal("errors" in many["blob-other-formats"], false, "no truth, no errors");
+  const lines = stdout.split("\n");
+  assert.match(lines[0] ?? "", /^case .*IoU.*time s.*Δrot °/);
+  names.forEach((name, i) => {
+    assert.ok(lines[i + 1]?.startsWith(name), `row ${i} is ${name}`);
+  });
+  assert.match(stdout, /empty-mask: EMPTY_MASK: mask: found no non-zero pixel/);
+});
+
+test("files among the folders are passed over, but not files alone", () => {
+  const { status, stderr } = run("align", "blob", "out.json", "--json", "among.json");
+  assert.equal(status, 0, stderr);
+  assert.match(stderr, /no folder: out\.json/);
+  assert.deepEqual(Object.keys(results("among.json")), ["blob"]);
+  assert.equal(run("align", "out.json").status, 2);
+});
+
+test("two readings of one case agree", () => {
+  run("align", "blob", "blob-other-formats", "--json", "two.json");
+  const { blob, "blob-other-formats": other } = results("two.json");
+  assert.ok(Math.abs(blob.initialScale / other.initialScale - 1) < 0.01);
+});
+
+test("cases of the same name are told apart by their paths", () => {
+  writeCase(join("a", "blob"), files);
+  assert.equal(run("align", "blob", "a/blob", "--json", "names.json").status, 0);
+  assert.deepEqual(Object.keys(results("names.json")), ["blob", "a/blob"]);
+});
+
+test("--json - leaves stdout to the JSON", () => {
+  const { status, stdout, stderr } = run("align", "blob", "--json", "-");
+  assert.equal(status, 0);
+  assert.ok(JSON.parse(stdout).blob.scale > 0);
+  assert.match(stderr, /silhouette IoU/);
+});
+
+test("a case can be named file by file", () => {
+  const parts = ["--depth", "blob/depth.npy", "--mask", "blob/mask.png", "--mesh", "blob/mesh.glb"];
+  const intrinsics = [camera.fx, camera.fy, camera.cx, camera.cy].join(",");
+  for (const value of [intrinsics, "blob/camera.json"]) {
+    const { status, stderr } = run("align", ...parts, "--camera", value, "--json", "parts.json", "--seed", "5");
+    assert.equal(status, 0, stderr);
+    assert.equal(results("parts.json").mesh.scale, results("out.json").blob.scale);
+  }
+  assert.equal(run("align", ...parts, "--camera", "fov:22.6").status, 0);
+  writeFileSync(join(folder, "mesh.obj"), obj(mesh));
+  const units = ["--depth", "blob-other-formats/depth.png", "--depth-scale", "0.001"];
+  assert.equal(run("align", ...units, ...parts.slice(2, 4), "--mesh", "mesh.obj", "--camera", intrinsics).status, 0);
+});
+
+test("flags reach the core", () => {
+  const flags = ["--guard", "0.9,1.1", "--guard-mode", "clamp", "--icp", "none", "--voxel-divisions", "20"];
+  const more = [
+    "--no-lock-scale",
+    "--no-hallucination-filter",
+    "--ransac-iterations",
+    "500",
+    "--options",
+    '{"seed":4}',
+  ];
+  assert.equal(run("align", "blob", ...flags, ...more, "--json", "flags.json").status, 0);
+  const { blob } = results("flags.json");
+  assert.equal(blob.seed, 4);
+  assert.equal(blob.counts.icpIterations, 0);
+  assert.ok(blob.counts.iterations <= 500);
+  assert.ok(blob.scaleRatio >= 0.9 - 1e-9 && blob.scaleRatio <= 1.1 + 1e-9);
+  assert.equal(
+    run("align", "blob", "--options", '{"seed":4}', "--seed", "6", "--guard", "none", "--json", "f.json").status,
+    0,
+  );
+  assert.equal(results("f.json").blob.seed, 6, "flags have precedence");
+  assert.equal(results("f.json").blob.counts.rejected, 0);
+});
+
+const usage: [name: string, args: string[], message: RegExp][] = [
+  ["no case", ["align"], /at least one case folder/],
+  ["an unknown command", ["aling", "blob"], /unknown command/],
+  ["an unknown flag", ["align", "blob", "--sead", "1"], /unknown option '--sead'.*--seed/s],
+  ["an unknown preset", ["align", "blob", "--preset", "fast"], /Allowed choices are paper/],
+  ["a seed that is no number", ["align", "blob", "--seed", "one"], /Not a number/],
+  ["a guard of one number", ["align", "blob", "--guard", "0.5"], /MIN,MAX/],
+  ["options that are no JSON", ["align", "blob", "--options", "{seed:1}"], /Not JSON/],
+  ["options that are no object", ["align", "blob", "--options", "[1]"], /Give an object/],
+  [
+    "an option out of range",
+    ["align", "blob", "--voxel-divisions", "1"],
+    /options\.voxelDivisions: found 1.*from 5 to 200/,
+  ],
+  ["an option that does not exist", ["align", "blob", "--options", '{"sead": 1}'], /options\.sead/],
+  ["half of the files", ["align", "--depth", "blob/depth.npy"], /belong together/],
+  ["a folder and files", ["align", "blob", "--depth", "blob/depth.npy"], /but not both/],
+  ["evaluate without a case", ["evaluate"], /missing required argument/],
+];
+
+for (const [name, args, message] of usage) {
+  test(`${name} is a usage error`, () => {
+    const { status, stdout, stderr } = run(...args);
+    assert.equal(status, 2, stderr);
+    assert.equal(stdout, "");
+    assert.match(stderr, message);
+  });
+}
+
+test("evaluate scores the truth, a file, and what align wrote", () => {
+  const { status, stdout } = run("evaluate", "blob", "--json", "truth.json");
+  assert.equal(status, 0);
+  assert.match(stdout, /silhouette IoU.*Error against the truth.*rotation +0\.00°/s);
+  const { blob } = results("truth.json");
+  assert.ok(blob.metrics.iou > 0.99);
+  assert.ok(blob.errors.scaleError < 1e-6);
+  writeFileSync(join(folder, "matrix.json"), JSON.stringify({ matrix: columnMajor(truth) }));
+  writeFileSync(join(folder, "bare.json"), JSON.stringify(columnMajor(truth)));
+  for (const file of ["matrix.json", "bare.json", join("blob", "gt.json")]) {
+    assert.equal(run("evaluate", "blob", "--transform", file, "--json", "file.json").status, 0, file);
+    assert.ok(Math.abs(results("file.json").blob.metrics.iou - blob.metrics.iou) < 1e-6, file);
+  }
+  run("align", "blob", "empty-mask", "--json", "aligned.json");
+  assert.equal(run("evaluate", "blob", "--transform", "aligned.json", "--json", "scores.json").status, 0);
+  assert.deepEqual(results("scores.json").blob.metrics, results("aligned.json").blob.metrics);
+});
+
+test("evaluate reports what it can't do", () => {
+  const failing: [args: string[], code: string, message: RegExp][] = [
+    [["nowhere"], "FILE_NOT_FOUND", /nowhere/],
+    [["blob-other-formats"], "FILE_NOT_FOUND", /no known pose/],
+    [["blob", "--transform", "missing.json"], "FILE_NOT_FOUND", /missing\.json/],
+    [["blob", "--transform", "blob/mask.png"], "CORRUPT_FILE", /JSON/],
+    [["empty-mask", "--transform", "aligned.json"], "INVALID_TRANSFORM", /the failure of empty-mask/],
+    [["blob-other-formats", "--transform", "aligned.json"], "INVALID_TRANSFORM", /blob, empty-mask/],
+  ];
+  for (const [args, code, message] of failing) {
+    const { status, stdout } = run("evaluate", ...args, "--json", "failed.json");
+    assert.equal(status, 1, stdout);
+    const { error } = Object.values(results("failed.json"))[0] as { error: { code: string; message: string } };
+    assert.equal(error.code, code, error.message);
+    assert.match(error.message, message);
+    assert.match(stdout, message);
+  }
+});
+
+test("a result that can't be written is an error", () => {
+  const { status, stderr } = run("align", "blob", "--json", join("nowhere", "out.json"));
+  assert.equal(status, 1);
+  assert.match(stderr, /error: .*nowhere/);
+});

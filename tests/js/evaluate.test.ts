@@ -1,0 +1,133 @@
+/** `evaluate` on poses whose score is known. */
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { createAligner, type EvaluateOptions, type Sim3Like } from "sim3align";
+import { rejectsWith } from "../support/errors.js";
+import { columnMajor, input, rotationRows, truth } from "../support/scene.js";
+
+const aligner = await createAligner();
+const turned = (degrees: number): Sim3Like => {
+  const half = (degrees * Math.PI) / 360;
+  const [x, y, z, w] = truth.rotation;
+  // About the mesh's z: q · (0, 0, sin, cos).
+  const [s, c] = [Math.sin(half), Math.cos(half)];
+  return { ...truth, rotation: [x * c + y * s, y * c - x * s, z * c + w * s, w * c - z * s] };
+};
+
+test("the truth scores as a perfect pose", async () => {
+  const { metrics, errors, scaleRatio, collapsed, warnings } = await aligner.evaluate(input, truth, { truth });
+  assert.ok((metrics.iou ?? 0) > 0.99, `iou ${metrics.iou}`);
+  assert.ok((metrics.boundaryF ?? 0) > 0.99, `boundaryF ${metrics.boundaryF}`);
+  assert.ok((metrics.centerDriftPx ?? 9) < 0.1, `centerDriftPx ${metrics.centerDriftPx}`);
+  assert.ok((metrics.uniChamferMm ?? 9) < 0.1, `uniChamferMm ${metrics.uniChamferMm}`);
+  assert.equal(metrics.fitness, 1);
+  assert.ok((metrics.normalConsistency ?? 0) > 0.97, `normalConsistency ${metrics.normalConsistency}`);
+  assert.ok((metrics.depthMaeMm ?? 9) < 0.01, `depthMaeMm ${metrics.depthMaeMm}`);
+  assert.ok((metrics.chamferMm ?? 0) > 1, "the unseen side counts");
+  assert.ok(errors !== null);
+  assert.ok(errors.scaleError < 1e-9 && errors.rotationErrorDeg < 1e-3 && errors.translationErrorM < 1e-9);
+  assert.ok(errors.addSMm < 1e-3, `addSMm ${errors.addSMm}`);
+  assert.ok(scaleRatio > 0.5 && scaleRatio < 1.5);
+  assert.equal(collapsed, false);
+  assert.deepEqual(warnings, []);
+});
+
+test("a wrong pose has the errors that were put into it", async () => {
+  const off = {
+    ...truth,
+    scale: 1.1 * truth.scale,
+    rotation: (turned(20) as typeof truth).rotation,
+  };
+  const { metrics, errors } = await aligner.evaluate(input, off, { truth });
+  assert.ok(errors !== null);
+  assert.ok(Math.abs(errors.scaleError - 0.1) < 1e-9, `${errors.scaleError}`);
+  assert.ok(Math.abs(errors.rotationErrorDeg - 20) < 1e-6, `${errors.rotationErrorDeg}`);
+  const perfect = await aligner.evaluate(input, truth);
+  assert.ok((metrics.iou ?? 1) < (perfect.metrics.iou ?? 0));
+  assert.ok((metrics.depthMaeMm ?? 0) > (perfect.metrics.depthMaeMm ?? 0));
+});
+
+test("all forms of a transform are the same transform", async () => {
+  const reference = await aligner.evaluate(input, truth, { truth });
+  const rows = rotationRows(truth.rotation);
+  const matrix = columnMajor(truth);
+  const forms: Sim3Like[] = [
+    matrix,
+    Float64Array.from(matrix),
+    { matrix },
+    { matrix: Float64Array.from(matrix) },
+    { ...truth, rotation: rows },
+    { ...truth, rotation: rows.flat() },
+    { ...truth, rotation: Float64Array.from(truth.rotation), translation: Float64Array.from(truth.translation) },
+  ];
+  for (const form of forms) {
+    const { metrics, errors } = await aligner.evaluate(input, form, { truth: form });
+    for (const [name, value] of Object.entries(reference.metrics)) {
+      const found = metrics[name as keyof typeof metrics] ?? Number.NaN;
+      assert.ok(Math.abs(found - (value ?? Number.NaN)) < 1e-6, `${name}: ${found}, not ${value}`);
+    }
+    assert.ok(errors !== null && errors.rotationErrorDeg < 1e-3);
+  }
+});
+
+test("an alignment is a transform, and scores as align said", async () => {
+  const alignment = await aligner.align(input);
+  assert.deepEqual((await aligner.evaluate(input, alignment)).metrics, alignment.metrics);
+});
+
+test("declared symmetries are no errors", async () => {
+  const half = turned(180);
+  const rotationError = async (options: EvaluateOptions) => {
+    const { errors } = await aligner.evaluate(input, half, { truth, ...options });
+    return errors?.rotationErrorDeg ?? Number.NaN;
+  };
+  assert.ok(Math.abs((await rotationError({})) - 180) < 1e-3);
+  assert.ok(Math.abs((await rotationError({ symmetry: "none" })) - 180) < 1e-3);
+  assert.ok(Math.abs((await rotationError({ symmetry: "auto" })) - 180) < 1e-3, "the blob has none of its own");
+  assert.ok((await rotationError({ symmetry: [{ axis: [0, 0, 1], fold: 2 }] })) < 1e-3);
+  assert.ok((await rotationError({ symmetry: [{ axis: [0, 0, 3] }] })) < 1e-3);
+  assert.ok((await rotationError({ symmetry: [{ axis: [0, 0, 1], fold: undefined }] })) < 1e-3);
+  assert.ok((await rotationError({ symmetry: [{ axis: [0, 0, 1], fold: 3 }] })) > 50);
+});
+
+test("where nothing overlaps, there is null and no flattering number", async () => {
+  const behind = { ...truth, translation: [0, 0, -2] };
+  const { metrics, errors } = await aligner.evaluate(input, behind);
+  assert.equal(metrics.iou, 0);
+  assert.equal(metrics.centerDriftPx, null);
+  assert.equal(metrics.depthMaeMm, null);
+  assert.equal(metrics.fitness, 0);
+  assert.equal(errors, null, "no truth, no errors");
+});
+
+test("a collapsed scale is called so", async () => {
+  const { collapsed, scaleRatio } = await aligner.evaluate(input, { ...truth, scale: 0.01 });
+  assert.ok(scaleRatio < 0.3);
+  assert.equal(collapsed, true);
+});
+
+const badTransforms: [name: string, transform: unknown, argument: string, message: RegExp][] = [
+  ["nothing", undefined, "transform", /transform/],
+  ["a scale of zero", { ...truth, scale: 0 }, "transform", /scale/],
+  ["a negative scale", { ...truth, scale: -1 }, "transform", /scale/],
+  ["a NaN", { ...truth, translation: [0, Number.NaN, 0] }, "transform", /finite|NaN/],
+  ["a reflection", { ...truth, rotation: [1, 0, 0, 0, 1, 0, 0, 0, -1] }, "transform", /reflection|rotation/],
+  [
+    "a row-major matrix",
+    [0.1, 0, 0, 1, 0, 0.1, 0, 2, 0, 0, 0.1, 3, 0, 0, 0, 1],
+    "transform.matrix",
+    /column by column/,
+  ],
+];
+
+for (const [name, transform, argument, message] of badTransforms) {
+  test(`${name} is no transform`, async () => {
+    const call = () => aligner.evaluate(input, transform as Sim3Like);
+    await rejectsWith(call, {
+      code: transform === undefined ? "INVALID_ARGUMENT" : "INVALID_TRANSFORM",
+      argument,
+      message,
+    });
+    assert.ok((await aligner.evaluate(input, truth)).metrics.iou);
+  });
+}

@@ -1,0 +1,135 @@
+/** Loading of the WebAssembly modules, each in a fresh process. */
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join } from "node:path";
+import { test } from "node:test";
+import { pathToFileURL } from "node:url";
+import { createAligner } from "sim3align";
+import { installDir } from "../support/environment.js";
+import { rejectsWith } from "../support/errors.js";
+import { input, truth } from "../support/scene.js";
+
+const require = createRequire(import.meta.url);
+const coreWasm = require.resolve("sim3align/wasm/core_bg.wasm");
+
+/** Runs a module with the package installed, and returns what it prints. */
+function inFreshProcess(script: string): string {
+  const prelude = `
+    import assert from "node:assert/strict";
+    import { readFileSync } from "node:fs";
+    import { createAligner, Sim3AlignError } from "sim3align";
+    const path = ${JSON.stringify(coreWasm)};
+    const cloud = Float64Array.of(0,0,0, 1,0,0, 0,1,0, 0,0,1);
+    const pairs = Uint32Array.of(0,0, 1,1, 2,2, 3,3);
+    const check = async (aligner) => {
+      const { scale } = await aligner.estimateSim3(cloud, cloud.map((x) => 2 * x), pairs);
+      assert.ok(Math.abs(scale - 2) < 1e-9);
+    };
+  `;
+  return execFileSync(process.execPath, ["--input-type=module", "--eval", prelude + script], {
+    cwd: installDir,
+    encoding: "utf8",
+    stdio: ["ignore", "pipe", "pipe"],
+  });
+}
+
+test("importing the package does nothing by itself", () => {
+  const count =
+    "let count = 0; const { instantiate } = WebAssembly; WebAssembly.instantiate = (...a) => { count++; return instantiate(...a); };";
+  const output = inFreshProcess(`${count} await Promise.resolve(); console.log(count);`);
+  assert.equal(output.trim(), "0");
+});
+
+test("the core loads once, however many ask at once; the file readers only when a file is passed", () => {
+  const output = inFreshProcess(`
+    const instantiated = [];
+    const { instantiate } = WebAssembly;
+    WebAssembly.instantiate = (source, ...rest) => {
+      // Node's own modules are small.
+      if (source.byteLength > 50_000) instantiated.push(source.byteLength);
+      return instantiate(source, ...rest);
+    };
+    const aligners = await Promise.all([createAligner(), createAligner(), createAligner()]);
+    await Promise.all(aligners.map(check));
+    assert.equal(instantiated.length, 1);
+    const bad = { depth: new Uint8Array(3), mask: new Uint8Array(3), camera: { fovYDeg: 50 }, mesh: new Uint8Array(3) };
+    for (const aligner of aligners) await aligner.align(bad).catch((error) => assert.equal(error.code, "UNSUPPORTED_FORMAT"));
+    assert.equal(instantiated.length, 2);
+    console.log("done");
+  `);
+  assert.equal(output.trim(), "done");
+});
+
+const sources = {
+  "a file URL": `new URL("file://" + path)`,
+  "a file URL as text": `new URL("file://" + path).href`,
+  bytes: "readFileSync(path)",
+  "an ArrayBuffer": "readFileSync(path).buffer.slice(0)",
+  "a module": "new WebAssembly.Module(readFileSync(path))",
+  "a response": `new Response(readFileSync(path), { headers: { "content-type": "application/wasm" } })`,
+  "a data URL": `"data:application/wasm;base64," + readFileSync(path).toString("base64")`,
+};
+
+for (const [name, source] of Object.entries(sources)) {
+  test(`the core can come from ${name}`, () => {
+    // Node pools small reads in one ArrayBuffer, but not files of this size.
+    assert.equal(
+      inFreshProcess(`await check(await createAligner({ wasm: ${source} })); console.log("done");`),
+      "done\n",
+    );
+  });
+}
+
+test("a failed load says what to do, and the next one tries again", () => {
+  const output = inFreshProcess(`
+    const missing = new URL("file:///nowhere/core_bg.wasm");
+    const failures = await Promise.allSettled([createAligner({ wasm: missing }), createAligner({ wasm: missing })]);
+    for (const { reason } of failures) {
+      assert.ok(reason instanceof Sim3AlignError);
+      assert.equal(reason.code, "NOT_INITIALISED");
+      assert.equal(reason.argument, "wasm");
+      assert.match(reason.message, /ENOENT.*core_bg\\.wasm/);
+    }
+    for (const wasm of [new Uint8Array(8), "http://127.0.0.1:9/core_bg.wasm"]) {
+      await assert.rejects(createAligner({ wasm }), { code: "NOT_INITIALISED" });
+    }
+    const aligner = await createAligner();
+    await check(aligner);
+    const bad = await createAligner({ formatsWasm: missing });
+    const files = { depth: new Uint8Array(3), mask: new Uint8Array(3), camera: { fovYDeg: 50 }, mesh: new Uint8Array(3) };
+    await assert.rejects(bad.align(files), { code: "NOT_INITIALISED", argument: "formatsWasm" });
+    await assert.rejects(aligner.align(files), { code: "UNSUPPORTED_FORMAT" });
+    console.log("done");
+  `);
+  assert.equal(output.trim(), "done");
+});
+
+test("loading prints nothing", () => {
+  assert.equal(inFreshProcess("await check(await createAligner());"), "");
+});
+
+test("a trap in WebAssembly costs one call: the next one gets a new instance", async () => {
+  const aligner = await createAligner();
+  const before = (await aligner.evaluate(input, truth)).metrics;
+  const path = join(installDir, "node_modules", "sim3align", "modules.js");
+  const { coreModule } = await import(pathToFileURL(path).href);
+  const loaded = await coreModule.load();
+  const trap = async () =>
+    loaded.call(() => {
+      // (module (func (export "f") unreachable)): what a panic in Rust ends in.
+      const code = [
+        0, 97, 115, 109, 1, 0, 0, 0, 1, 4, 1, 96, 0, 0, 3, 2, 1, 0, 7, 5, 1, 1, 102, 0, 0, 10, 5, 1, 3, 0, 0, 11,
+      ];
+      const { exports } = new WebAssembly.Instance(new WebAssembly.Module(Uint8Array.from(code)));
+      (exports.f as () => void)();
+    });
+  await rejectsWith(trap, { code: "INTERNAL", argument: "sim3align", message: /RuntimeError: unreachable.*report/ });
+  assert.deepEqual((await aligner.evaluate(input, truth)).metrics, before);
+});
+
+test("the build says its version", async () => {
+  const { version } = JSON.parse(readFileSync(require.resolve("sim3align/package.json"), "utf8"));
+  assert.deepEqual(await (await createAligner()).buildInfo(), { version });
+});

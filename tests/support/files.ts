@@ -1,0 +1,126 @@
+/** Encoders of the files that the tests pass, written independently of the package's readers. */
+
+import { deflateSync } from "node:zlib";
+import { crc32 } from "./crc32.js";
+import type { Mesh } from "./scene.js";
+
+/** A `.npy` file, version 1.0. */
+export function npy(data: Float32Array | Uint16Array | Uint8Array, height: number, width: number): Uint8Array {
+  const descr = data instanceof Float32Array ? "<f4" : data instanceof Uint16Array ? "<u2" : "|u1";
+  const dict = `{'descr': '${descr}', 'fortran_order': False, 'shape': (${height}, ${width}), }`;
+  const header = `${dict.padEnd(64 * Math.ceil((dict.length + 11) / 64) - 11)}\n`;
+  const length = Buffer.alloc(2);
+  length.writeUInt16LE(header.length);
+  const values = Buffer.from(data.buffer, data.byteOffset, data.byteLength);
+  return Buffer.concat([Buffer.from("\x93NUMPY\x01\x00", "latin1"), length, Buffer.from(header, "latin1"), values]);
+}
+
+/** A grey PNG, of 8 bits from a `Uint8Array`, of 16 from a `Uint16Array`. */
+export function png(data: Uint8Array | Uint16Array, width: number, height: number): Uint8Array {
+  const bytes = data.BYTES_PER_ELEMENT;
+  const rows = Buffer.alloc(height * (1 + width * bytes));
+  data.forEach((value, i) => {
+    const offset = Math.floor(i / width) * (1 + width * bytes) + 1 + (i % width) * bytes;
+    if (bytes === 1) rows.writeUInt8(value, offset);
+    else rows.writeUInt16BE(value, offset);
+  });
+  const header = Buffer.alloc(13);
+  header.writeUInt32BE(width, 0);
+  header.writeUInt32BE(height, 4);
+  header.writeUInt8(8 * bytes, 8);
+  const chunk = (type: string, content: Uint8Array) => {
+    const typed = Buffer.concat([Buffer.from(type, "latin1"), content]);
+    const frame = Buffer.alloc(8);
+    frame.writeUInt32BE(content.length, 0);
+    frame.writeUInt32BE(crc32(typed), 4);
+    return Buffer.concat([frame.subarray(0, 4), typed, frame.subarray(4)]);
+  };
+  const signature = Buffer.from("\x89PNG\r\n\x1a\n", "latin1");
+  const none = new Uint8Array();
+  return Buffer.concat([signature, chunk("IHDR", header), chunk("IDAT", deflateSync(rows)), chunk("IEND", none)]);
+}
+
+/** A Wavefront OBJ file. */
+export function obj({ positions, indices }: Mesh): Uint8Array {
+  const lines: string[] = [];
+  for (let i = 0; i < positions.length; i += 3) lines.push(`v ${positions.slice(i, i + 3).join(" ")}`);
+  for (let i = 0; i < indices.length; i += 3) {
+    lines.push(`f ${Array.from(indices.slice(i, i + 3), (index) => index + 1).join(" ")}`);
+  }
+  return Buffer.from(`${lines.join("\n")}\n`);
+}
+
+const padded = (bytes: Uint8Array, filler: string) => {
+  const rest = (4 - (bytes.length % 4)) % 4;
+  return Buffer.concat([bytes, Buffer.from(filler.repeat(rest), "latin1")]);
+};
+
+const bytesOf = (array: Float32Array | Uint32Array) => new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
+
+/** What a `.gltf` says about a mesh whose arrays are one after the other in one buffer. */
+export function gltfJson({ positions, indices }: Mesh, node: object = {}, buffer: object = {}) {
+  return {
+    asset: { version: "2.0" },
+    scene: 0,
+    scenes: [{ nodes: [0] }],
+    nodes: [{ mesh: 0, ...node }],
+    meshes: [{ primitives: [{ attributes: { POSITION: 0 }, indices: 1 }] }],
+    accessors: [
+      {
+        bufferView: 0,
+        componentType: 5126,
+        count: positions.length / 3,
+        type: "VEC3",
+        min: [-9, -9, -9],
+        max: [9, 9, 9],
+      },
+      { bufferView: 1, componentType: 5125, count: indices.length, type: "SCALAR" },
+    ],
+    bufferViews: [
+      { buffer: 0, byteOffset: 0, byteLength: positions.byteLength },
+      { buffer: 0, byteOffset: positions.byteLength, byteLength: indices.byteLength },
+    ],
+    buffers: [{ byteLength: positions.byteLength + indices.byteLength, ...buffer }],
+  };
+}
+
+/** The buffer of {@link gltfJson}. */
+export const gltfBuffer = ({ positions, indices }: Mesh) => Buffer.concat([bytesOf(positions), bytesOf(indices)]);
+
+/** A GLB file of any JSON and buffer. */
+export function glbOf(json: object, buffer: Uint8Array): Uint8Array {
+  const chunk = (type: number, content: Uint8Array) => {
+    const header = Buffer.alloc(8);
+    header.writeUInt32LE(content.length, 0);
+    header.writeUInt32LE(type, 4);
+    return Buffer.concat([header, content]);
+  };
+  const text = chunk(0x4e4f534a, padded(Buffer.from(JSON.stringify(json)), " "));
+  const binary = chunk(0x004e4942, padded(buffer, "\0"));
+  const header = Buffer.alloc(12);
+  header.write("glTF", "latin1");
+  header.writeUInt32LE(2, 4);
+  header.writeUInt32LE(12 + text.length + binary.length, 8);
+  return Buffer.concat([header, text, binary]);
+}
+
+/** A GLB file of a mesh under one node. */
+export const glb = (mesh: Mesh, node: object = {}) => glbOf(gltfJson(mesh, node), gltfBuffer(mesh));
+
+/** COCO's uncompressed run lengths: down the columns, beginning with background. */
+export function cocoRle(mask: Uint8Array, width: number, height: number): { size: [number, number]; counts: number[] } {
+  const counts: number[] = [];
+  let value = 0;
+  let run = 0;
+  for (let i = 0; i < mask.length; i++) {
+    const pixel = (mask[(i % height) * width + Math.floor(i / height)] ?? 0) === 0 ? 0 : 1;
+    if (pixel !== value) {
+      counts.push(run);
+      run = 0;
+      value = pixel;
+    }
+    run += 1;
+  }
+  counts.push(run);
+  return { size: [height, width], counts };
+}
