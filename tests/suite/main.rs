@@ -51,5 +51,7 @@ pub mod support;
 pub mod surface;
 pub mod symmetric_eigen;
 pub mod triangle_tree;
+#[cfg(all(feature = "types", not(target_arch = "wasm32")))]
+pub mod typescript;
 pub mod umeyama;
 pub mod voxel_grid;

@@ -56,15 +56,83 @@ fn recovers_any_similarity_of_a_full_surface_exactly() {
             let what = format!("{shape}, seed {seed}, scale {scale}, clutter {clutter}");
             let options = RegisterOptions::default();
             let result = register(&flat(&source), &flat(&target), ScaleOption::Free, &options, &mut Silent);
-            println!(
-                "{what} {:?}",
-                result.as_ref().map(|r| (r.target_from_source.scale, r.converged, r.fitness, r.counts))
-            );
             let result = result.unwrap_or_else(|e| panic!("{what}: {e}"));
             {
                 assert_recovers(&result.target_from_source.matrix, &truth, &source, 1e-4, &what);
                 assert!(result.converged && result.fitness > 0.99, "{what}: fitness {}", result.fitness);
             }
         }
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_known_scale_is_kept_and_bounds_are_respected() {
+    let draw = &mut Draw::new(7);
+    let source: Vec<_> = blob(draw, 2000).points.into_iter().map(vector3).collect();
+    let truth = draw.similarity([1.0, 1.0], 10.0);
+    let target: Vec<_> = source.iter().map(|&p| truth.apply(p)).collect();
+    let solve = |scale| {
+        register(&flat(&source), &flat(&target), scale, &RegisterOptions::default(), &mut Silent)
+            .map(|r| r.target_from_source)
+    };
+    let fixed = solve(ScaleOption::Fixed(1.0)).unwrap();
+    assert_eq!(fixed.scale, 1.0);
+    assert_recovers(&fixed.matrix, &truth, &source, 1e-4, "scale fixed at 1");
+    let between = solve(ScaleOption::Between([0.9, 1.1])).unwrap();
+    assert_recovers(&between.matrix, &truth, &source, 1e-4, "scale between 0.9 and 1.1");
+    if let Ok(outside) = solve(ScaleOption::Between([1.5, 2.0])) {
+        assert!((1.5..=2.0).contains(&outside.scale), "scale {} outside its bounds", outside.scale);
+    }
+    for bad in [ScaleOption::Fixed(0.0), ScaleOption::Fixed(f64::NAN), ScaleOption::Between([2.0, 1.0])] {
+        assert_eq!(solve(bad).unwrap_err().code, ErrorCode::InvalidOption);
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn correspondences_with_many_wrong_ones_give_the_transform() {
+    let draw = &mut Draw::new(8);
+    let source: Vec<_> = (0..400).map(|_| draw.cube(1.0)).collect();
+    let truth = draw.similarity([0.2, 5.0], 1e4);
+    let target: Vec<_> = source.iter().map(|&p| truth.apply(p)).collect();
+    // Three in four are wrong.
+    let pairs: Vec<u32> = (0..400).flat_map(|i| [i, if i % 4 == 0 { i } else { draw.below(400) as u32 }]).collect();
+    let options = EstimateOptions::default();
+    let result =
+        estimate_sim3(&flat(&source), &flat(&target), &pairs, ScaleOption::Free, &options, &mut Silent).unwrap();
+    assert_recovers(&result.target_from_source.matrix, &truth, &source, 1e-3, "three wrong in four, seed 8");
+    assert!((0.25..0.35).contains(&result.fitness), "fitness {}", result.fitness);
+
+    let refused = [
+        (vec![0, 1, 2], ErrorCode::WrongLength),
+        (vec![0, 0, 1, 1], ErrorCode::TooFewPoints),
+        (vec![0, 0, 1, 1, 2, 400], ErrorCode::IndexOutOfRange),
+        (vec![0, 0, 0, 0, 0, 0], ErrorCode::NoConsensus),
+    ];
+    for (pairs, code) in refused {
+        let result = estimate_sim3(&flat(&source), &flat(&target), &pairs, ScaleOption::Free, &options, &mut Silent);
+        assert_eq!(result.unwrap_err().code, code, "{pairs:?}");
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn clouds_that_can_not_be_registered_are_refused_by_name() {
+    let good: Vec<f64> = (0..300).map(|i| f64::from(i * 7919 % 101)).collect();
+    let with = |i: usize, x: f64| {
+        let mut cloud = good.clone();
+        cloud[i] = x;
+        cloud
+    };
+    let bad = [
+        (good[..100].to_vec(), ErrorCode::WrongLength),
+        (good[..30].to_vec(), ErrorCode::TooFewPoints),
+        (with(5, f64::NAN), ErrorCode::NonFinite),
+        (vec![1.0; 300], ErrorCode::DegeneratePoints),
+    ];
+    for (cloud, code) in bad {
+        let options = RegisterOptions::default();
+        let error = register(&good, &cloud, ScaleOption::Free, &options, &mut Silent).unwrap_err();
+        assert_eq!((error.code, error.argument.as_str()), (code, "target"), "{error}");
+        let error = register(&cloud, &good, ScaleOption::Free, &options, &mut Silent).unwrap_err();
+        assert_eq!((error.code, error.argument.as_str()), (code, "source"), "{error}");
     }
 }
