@@ -11,7 +11,7 @@ use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::similarity::vector3;
 use crate::stages::extents::target_from_source;
 use crate::stages::matching::Match;
-use crate::stages::ransac::{Guard, GuardMode, RansacSettings, ransac};
+use crate::stages::ransac::{Guard, GuardMode, RansacSettings, ransac, reweighted};
 
 /// The similarity that most correspondences agree with; `correspondences` are pairs of indices, source then
 /// target, made by any matcher.
@@ -52,7 +52,7 @@ pub fn estimate_sim3(
     };
     let consensus =
         ransac(&source.points, &target.points, &matches, &settings).map_err(|e| about_clouds(e, "correspondences"))?;
-    let unit = consensus.target_from_source;
+    let unit = reweighted(&source.points, &target.points, &matches, &consensus, &settings);
     let squares: f64 = consensus
         .inliers
         .iter()

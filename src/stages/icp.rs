@@ -8,10 +8,10 @@
 use nalgebra::{Cholesky, SMatrix, SVector, UnitQuaternion, Vector3};
 
 use super::filter::{Support, SupportSettings, supported};
+use super::tukey::biweights;
 use super::umeyama::{Pair, ScaleMode, umeyama};
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
-use crate::geometry::order::median;
 use crate::geometry::similarity::{Similarity, nearest_rotation, vector3};
 
 /// What an iteration minimises.
@@ -57,11 +57,8 @@ pub struct Refined {
     pub rms: f64,
 }
 
-/// Tukey's constant: 95 % efficient on Gaussian residuals.
-const TUKEY: f64 = 4.685;
-
-/// From the median of absolute residuals to their standard deviation.
-const MAD_TO_SIGMA: f64 = 1.4826;
+/// What f32 leaves uncertain in a unit box.
+const ROUNDING: f64 = 1e-6;
 
 /// Factor of the support distance from one iteration to the next.
 const SHRINK: f32 = 0.75;
@@ -129,7 +126,10 @@ impl Residuals {
             Some(Residual { source: s.source as usize, landed, target: point, normal, value, weight: 1.0 })
         };
         let mut residuals: Vec<Residual> = support.iter().filter_map(residual).collect();
-        weigh(&mut residuals);
+        let weights: Vec<f64> = biweights(residuals.iter().map(|r| r.value), ROUNDING).collect();
+        for (residual, weight) in residuals.iter_mut().zip(weights) {
+            residual.weight = weight;
+        }
         Self(residuals)
     }
 
@@ -137,17 +137,6 @@ impl Residuals {
         let weight: f64 = self.0.iter().map(|r| r.weight).sum();
         let squares: f64 = self.0.iter().map(|r| r.weight * r.value * r.value).sum();
         if weight > 0.0 { (squares / weight).sqrt() } else { 0.0 }
-    }
-}
-
-/// Tukey's biweight, as wide as the median residual says.
-fn weigh(residuals: &mut [Residual]) {
-    let median = median(residuals.iter().map(|r| r.value.abs() as f32)).unwrap_or_default();
-    // On exact data the median is 0; the floor, an f32's rounding in a unit box, keeps the exact pairs in.
-    let width = (TUKEY * MAD_TO_SIGMA * f64::from(median)).max(1e-6);
-    for residual in residuals {
-        let ratio = residual.value / width;
-        residual.weight = if ratio.abs() < 1.0 { (1.0 - ratio * ratio) * (1.0 - ratio * ratio) } else { 0.0 };
     }
 }
 

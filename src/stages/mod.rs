@@ -10,4 +10,5 @@ pub mod normals;
 pub mod observe;
 pub mod ransac;
 pub mod sample;
+pub mod tukey;
 pub mod umeyama;

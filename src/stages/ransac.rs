@@ -5,12 +5,19 @@
 //! is rejected (or, in clamp mode, projected back and counted).
 
 use super::matching::Match;
+use super::tukey::biweights;
 use super::umeyama::{Pair, ScaleMode, umeyama};
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::random::Random;
 use crate::geometry::similarity::{Similarity, vector3};
 
 const STREAM: u64 = 3;
+
+/// Rounds of [`reweighted`]; the weights settle within a few.
+const REWEIGHTINGS: usize = 12;
+
+/// What f32 leaves uncertain in a unit box.
+const ROUNDING: f64 = 1e-6;
 
 /// Closed-form refits on the inliers of a new best hypothesis.
 const LOCAL_REFITS: usize = 4;
@@ -131,6 +138,39 @@ pub fn ransac(
         }
         _ => Err(no_consensus(pairs.len(), &counts)),
     }
+}
+
+/// The consensus, refitted on its inliers with weights that leave out those that only happen to be near
+/// (iteratively reweighted least squares). Keeps what it was given where too few are left for a closed form, or
+/// where the scale would leave the guard.
+pub fn reweighted(
+    source: &[glam::Vec3],
+    target: &[glam::Vec3],
+    matches: &[Match],
+    consensus: &Consensus,
+    settings: &RansacSettings,
+) -> Similarity {
+    let inliers = consensus.inliers.iter().filter_map(|&i| {
+        let m = matches.get(i)?;
+        let (source, target) = (source.get(m.source as usize)?, target.get(m.target as usize)?);
+        Some(Pair { source: vector3(*source), target: vector3(*target), weight: 1.0 })
+    });
+    let inliers: Vec<Pair> = inliers.collect();
+    let mut best = consensus.target_from_source;
+    if consensus.clamped {
+        return best;
+    }
+    for _ in 0..REWEIGHTINGS {
+        let residuals = inliers.iter().map(|pair| residual_squared(&best, pair).sqrt());
+        let weighted =
+            inliers.iter().zip(biweights(residuals, ROUNDING)).map(|(&pair, weight)| Pair { weight, ..pair });
+        let Ok(next) = umeyama(weighted, settings.scale_mode) else { break };
+        if settings.guard.is_some_and(|guard| next.scale < guard.min || next.scale > guard.max) {
+            break;
+        }
+        best = next;
+    }
+    best
 }
 
 #[derive(Debug, Clone, Copy)]
