@@ -90,7 +90,7 @@ try {
   element("warnings").replaceChildren(
     ...warnings.map((warning) => {
       const item = document.createElement("li");
-      item.textContent = String(warning);
+      item.textContent = warning.message;
       return item;
     }),
   );

@@ -87,6 +87,8 @@ async function buildModule(module, rustc, say) {
   rmSync(folder, { recursive: true, force: true });
   await run(wasmBindgenProgram("wasm-bindgen"), [
     ...[compiled, "--target", "web", "--out-name", module.name, "--out-dir", folder],
+    // After a trap the skin gives the module a new instance.
+    "--experimental-reset-state-function",
   ]);
   const bare = wasmFile(module, folder);
   const [node, wasmOpt] = nodeProgram("binaryen", "wasm-opt");
