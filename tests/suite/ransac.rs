@@ -128,7 +128,7 @@ fn a_scale_outside_the_guard_is_rejected_or_projected() {
         let error = scene.run(&wide).unwrap_err();
         assert_eq!(error.code, ErrorCode::NoConsensus);
         assert!(error.found.contains("50 matches") && error.found.contains("500 minimal sets"), "{error}");
-        assert!(error.found.contains("500 a scale outside the guard"), "{error}");
+        assert!(error.found.contains("500 a scale out of bounds"), "{error}");
 
         let guard = Some(Guard { min: 0.5, max: 1.5, mode: GuardMode::Clamp });
         let found = scene.run(&RansacSettings { guard, ..wide }).unwrap();
