@@ -34,7 +34,7 @@ const MIN_MUTUAL_MATCHES: usize = 50;
 const FINE_POINTS: usize = 5_000;
 
 /// ICP has come to rest when nothing in the unit box moves further than this.
-const TOLERANCE: f64 = 1e-5;
+const TOLERANCE: f64 = 1e-4;
 
 /// Everything the estimation can be told, in the normalised frames (box diagonals 1, s_init = 1).
 #[derive(Debug, Clone, Copy)]

@@ -3,6 +3,7 @@
 // As WebAssembly, the tests' own helpers count as public.
 #![allow(missing_docs)]
 
+pub mod align;
 pub mod determinism;
 pub mod distance_transform;
 pub mod extents;
