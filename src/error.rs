@@ -1,6 +1,7 @@
 //! The one error type: a stable code, the argument, what was found, what was expected, the remedy.
 
 use core::fmt;
+use std::borrow::Cow;
 
 use serde::Serialize;
 
@@ -94,36 +95,39 @@ impl ErrorCode {
     }
 }
 
+/// Text that is most often known beforehand.
+pub type Text = Cow<'static, str>;
+
 /// An error that tells its reader what to do.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Error {
     /// The stable code.
     pub code: ErrorCode,
     /// The argument or option at fault, spelled as in JavaScript: `depth`, `mesh.indices`, `options.guard`.
-    pub argument: String,
+    pub argument: Text,
     /// What was found.
-    pub found: String,
+    pub found: Text,
     /// What was expected.
-    pub expected: String,
+    pub expected: Text,
     /// What to do about it.
-    pub remedy: String,
+    pub remedy: Text,
 }
 
 impl Error {
     /// An error with all its parts.
     pub fn new(
         code: ErrorCode,
-        argument: impl Into<String>,
-        found: impl Into<String>,
-        expected: impl Into<String>,
-        remedy: impl Into<String>,
+        argument: impl Into<Text>,
+        found: impl Into<Text>,
+        expected: impl Into<Text>,
+        remedy: impl Into<Text>,
     ) -> Self {
         Self { code, argument: argument.into(), found: found.into(), expected: expected.into(), remedy: remedy.into() }
     }
 
     /// The same error about another argument: what a geometry check calls `positions`, the caller may know
     /// as `mesh.positions`.
-    pub fn about(mut self, argument: impl Into<String>) -> Self {
+    pub fn about(mut self, argument: impl Into<Text>) -> Self {
         self.argument = argument.into();
         self
     }

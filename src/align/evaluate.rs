@@ -17,9 +17,8 @@ use crate::stages::observe::Observation;
 use crate::stages::sample::sample_surface;
 
 /// Options of `evaluate`.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "types", derive(ts_rs::TS))]
-#[serde(rename_all = "camelCase")]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename_all = "camelCase"))]
 pub struct EvaluateOptions {
     /// Seed of all random draws, 0 to 2³² − 1. Default 0.
     pub seed: u32,

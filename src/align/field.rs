@@ -39,6 +39,9 @@ pub trait Choice {
     /// All names.
     fn names(&self) -> &'static [&'static str];
 
+    /// The present one.
+    fn name(&self) -> &'static str;
+
     /// Sets the option by its name; `false` where there is none of that name.
     fn set(&mut self, name: &str) -> bool;
 }
@@ -49,6 +52,12 @@ macro_rules! choice {
         impl $crate::align::field::Choice for $type {
             fn names(&self) -> &'static [&'static str] {
                 &[$($name),+]
+            }
+
+            fn name(&self) -> &'static str {
+                match self {
+                    $(Self::$variant => $name,)+
+                }
             }
 
             fn set(&mut self, name: &str) -> bool {

@@ -160,7 +160,7 @@ pub(super) fn about_clouds(error: Error, argument: &str) -> Error {
         expected: "at least three matches of source and target that agree on one similarity".into(),
         remedy: "Check that the clouds overlap; widen options.scale, or the distance up to which a match is an inlier."
             .into(),
-        ..error.about(argument)
+        ..error.about(argument.to_owned())
     }
 }
 

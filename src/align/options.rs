@@ -24,9 +24,8 @@ choice!(GuardMode { Reject: "reject", Clamp: "clamp" });
 choice!(Icp { PointToPlane: "point-to-plane", PointToPoint: "point-to-point", None: "none" });
 
 /// What RANSAC does with a hypothesis whose scale leaves the guard.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "types", derive(ts_rs::TS))]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename_all = "kebab-case"))]
 pub enum GuardMode {
     /// Drops it.
     #[default]
@@ -36,9 +35,8 @@ pub enum GuardMode {
 }
 
 /// What ICP minimises.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "types", derive(ts_rs::TS))]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename_all = "kebab-case"))]
 pub enum Icp {
     /// Distance to the tangent plane at the nearest observed point.
     #[default]
@@ -50,9 +48,8 @@ pub enum Icp {
 }
 
 /// Options of `align`. All have defaults; most callers need none.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "types", derive(ts_rs::TS))]
-#[serde(rename_all = "camelCase")]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename_all = "camelCase"))]
 pub struct AlignOptions {
     /// The method. Default `"paper"`.
     pub preset: Preset,
@@ -184,9 +181,8 @@ impl ScaleOption {
 }
 
 /// Options of `register`.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "types", derive(ts_rs::TS))]
-#[serde(rename_all = "camelCase")]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename_all = "camelCase"))]
 pub struct RegisterOptions {
     /// Seed of all random draws, 0 to 2³² − 1. Default 0.
     pub seed: u32,
@@ -252,9 +248,8 @@ impl Options for RegisterOptions {
 }
 
 /// Options of `estimateSim3`.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[cfg_attr(feature = "types", derive(ts_rs::TS))]
-#[serde(rename_all = "camelCase")]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename_all = "camelCase"))]
 pub struct EstimateOptions {
     /// Seed of all random draws, 0 to 2³² − 1. Default 0.
     pub seed: u32,

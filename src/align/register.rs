@@ -94,7 +94,7 @@ pub(super) fn check_cloud(argument: &str, xyz: &[f64], min_points: usize) -> Res
     if !xyz.len().is_multiple_of(3) {
         return Err(Error::new(
             ErrorCode::WrongLength,
-            argument,
+            argument.to_owned(),
             format!("{} numbers", xyz.len()),
             "a multiple of 3",
             "Pass x, y, z per point, one point after the other.",
@@ -103,7 +103,7 @@ pub(super) fn check_cloud(argument: &str, xyz: &[f64], min_points: usize) -> Res
     if let Some(i) = xyz.iter().position(|x| !x.is_finite()) {
         return Err(Error::new(
             ErrorCode::NonFinite,
-            argument,
+            argument.to_owned(),
             format!("{} in point {}", number(xyz[i]), i / 3),
             "finite numbers",
             "Leave points without a reading out of the cloud.",
@@ -113,7 +113,7 @@ pub(super) fn check_cloud(argument: &str, xyz: &[f64], min_points: usize) -> Res
     if count < min_points {
         return Err(Error::new(
             ErrorCode::TooFewPoints,
-            argument,
+            argument.to_owned(),
             format!("{count} points"),
             format!("at least {min_points}"),
             "A shape can't be told from so few points.",
@@ -123,7 +123,7 @@ pub(super) fn check_cloud(argument: &str, xyz: &[f64], min_points: usize) -> Res
     if xyz.chunks_exact(3).all(|p| Vector3::from_column_slice(p) == first) {
         return Err(Error::new(
             ErrorCode::DegeneratePoints,
-            argument,
+            argument.to_owned(),
             "the same point again and again",
             "points that span a plane at least",
             "Check how the cloud was made.",

@@ -73,21 +73,13 @@ pub fn estimate_sim3(
 
 /// The default options of every entry point.
 #[wasm_bindgen(skip_typescript)]
-pub fn defaults() -> core::result::Result<JsValue, JsValue> {
-    #[derive(Serialize)]
-    #[serde(rename_all = "camelCase")]
-    struct Defaults {
-        align: AlignOptions,
-        evaluate: EvaluateOptions,
-        register: RegisterOptions,
-        estimate_sim3: EstimateOptions,
-    }
-    answer(Ok(Defaults {
-        align: AlignOptions::default(),
-        evaluate: EvaluateOptions::default(),
-        register: RegisterOptions::default(),
-        estimate_sim3: EstimateOptions::default(),
-    }))
+pub fn defaults() -> JsValue {
+    options::object_of([
+        ("align", options::defaults::<AlignOptions>()),
+        ("evaluate", options::defaults::<EvaluateOptions>()),
+        ("register", options::defaults::<RegisterOptions>()),
+        ("estimateSim3", options::defaults::<EstimateOptions>()),
+    ])
 }
 
 /// The crate's version.

@@ -251,7 +251,7 @@ fn numbers(values: impl IntoIterator<Item = f64>) -> JsValue {
 
 fn invalid(argument: &str, found: &JsValue, expected: &str, remedy: &str) -> Error {
     let kind = if found.is_null() { "null".into() } else { found.js_typeof().as_string().unwrap_or_default() };
-    Error::new(ErrorCode::InvalidArgument, argument, kind, expected, remedy)
+    Error::new(ErrorCode::InvalidArgument, argument.to_owned(), kind, expected.to_owned(), remedy.to_owned())
 }
 
 /// The bytes of a byte array (of this realm or another: a worker's, a test runner's) or an `ArrayBuffer`.
@@ -294,7 +294,13 @@ fn whole(argument: &str, value: &JsValue) -> Result<usize> {
         }
         Some(number) => {
             let remedy = "Pass the size in pixels.";
-            Err(Error::new(ErrorCode::InvalidArgument, argument, format!("{number}"), "a whole number", remedy))
+            Err(Error::new(
+                ErrorCode::InvalidArgument,
+                argument.to_owned(),
+                format!("{number}"),
+                "a whole number",
+                remedy,
+            ))
         }
         None => Err(invalid(argument, value, "a whole number", "Pass the size in pixels.")),
     }

@@ -47,7 +47,13 @@ pub fn to_numbers<const N: usize>(value: &JsValue, argument: &str) -> Result<[f6
     let array = flat_array(value).ok_or_else(wrong)?;
     if array.length() as usize != N {
         let found = format!("{} numbers", array.length());
-        return Err(Error::new(ErrorCode::WrongLength, argument, found, format!("{N} numbers"), "Check its shape."));
+        return Err(Error::new(
+            ErrorCode::WrongLength,
+            argument.to_owned(),
+            found,
+            format!("{N} numbers"),
+            "Check its shape.",
+        ));
     }
     let mut numbers = [0.0; N];
     for (slot, item) in numbers.iter_mut().zip(array.iter()) {
@@ -113,7 +119,7 @@ pub fn to_u8s(value: &JsValue, argument: &str) -> Result<Vec<u8>> {
 
 /// A value of the wrong type.
 pub fn wrong_type(argument: &str, value: &JsValue, expected: &str, remedy: &str) -> Error {
-    Error::new(ErrorCode::InvalidArgument, argument, describe(value), expected, remedy)
+    Error::new(ErrorCode::InvalidArgument, argument.to_owned(), describe(value), expected.to_owned(), remedy.to_owned())
 }
 
 fn not_typed_array(argument: &str, value: &JsValue, expected: &str) -> Error {

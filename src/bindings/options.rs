@@ -48,6 +48,34 @@ fn set_fields(object: &JsValue, also: &[&str], fields: &mut [(&'static str, Fiel
     Ok(())
 }
 
+/// All options of a struct with their defaults.
+pub fn defaults<T: Options>() -> JsValue {
+    let mut options = T::default();
+    object_of(options.fields().iter().map(|(name, field)| (*name, value_of(field))))
+}
+
+/// A plain object.
+pub fn object_of<'a>(properties: impl IntoIterator<Item = (&'a str, JsValue)>) -> JsValue {
+    let object = Object::new();
+    for (name, value) in properties {
+        // A fresh object is extensible: setting a property on it can't fail.
+        let _ = Reflect::set(&object, &name.into(), &value);
+    }
+    object.into()
+}
+
+fn value_of(field: &Field<'_>) -> JsValue {
+    match field {
+        Field::Count { value, .. } => f64::from(**value).into(),
+        Field::Number { value, .. } => (**value).into(),
+        Field::Positive(value) => value.map_or(JsValue::NULL, Into::into),
+        Field::Flag(value) => (**value).into(),
+        Field::Guard(None) => JsValue::NULL,
+        Field::Guard(Some([min, max])) => Array::of2(&(*min).into(), &(*max).into()).into(),
+        Field::Choice(choice) => choice.name().into(),
+    }
+}
+
 /// Sets a field from a value of its type; `false` for any other. Ranges are the field's own affair.
 fn set(field: &mut Field<'_>, value: &JsValue) -> bool {
     match field {
@@ -160,7 +188,13 @@ fn symmetry(options: &JsValue) -> Result<Symmetry> {
 
 fn symmetry_axis(axis: [f64; 3], fold: Option<f64>) -> Result<SymmetryAxis> {
     let invalid = |argument: &str, found: String, expected: &str| {
-        Error::new(ErrorCode::InvalidOption, argument, found, expected, "The axis is a direction in the mesh's frame.")
+        Error::new(
+            ErrorCode::InvalidOption,
+            argument.to_owned(),
+            found,
+            expected.to_owned(),
+            "The axis is a direction in the mesh's frame.",
+        )
     };
     let axis = nalgebra::Vector3::from(axis);
     if !(axis.norm().is_finite() && axis.norm() > 0.0) {

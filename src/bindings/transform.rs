@@ -32,7 +32,7 @@ pub fn similarity(value: &JsValue, argument: &str) -> Result<Similarity> {
     // The core speaks of "transform"; the caller may know it as "options.truth".
     parsed.map_err(|e| {
         let renamed = e.argument.strip_prefix("transform").map(|rest| format!("{argument}{rest}"));
-        let argument = renamed.unwrap_or_else(|| e.argument.clone());
+        let argument = renamed.map_or_else(|| e.argument.clone(), Into::into);
         e.about(argument)
     })
 }

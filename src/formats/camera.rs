@@ -69,7 +69,7 @@ fn plain(camera: Pinhole) -> CameraFile {
     CameraFile { camera, width: None, height: None, depth_scale_m: None, warnings: Vec::new() }
 }
 
-fn unknown(found: impl Into<String>) -> Error {
+fn unknown(found: impl Into<crate::error::Text>) -> Error {
     corrupt(
         "camera",
         found,

@@ -18,10 +18,14 @@ pub const MAX_BUFFER_BYTES: usize = 1 << 30;
 pub const MAX_JSON_BYTES: usize = 1 << 24;
 
 /// A file that ends early or contradicts itself.
-pub(crate) fn corrupt(argument: &str, found: impl Into<String>, expected: impl Into<String>) -> Error {
+pub(crate) fn corrupt(
+    argument: &str,
+    found: impl Into<crate::error::Text>,
+    expected: impl Into<crate::error::Text>,
+) -> Error {
     Error::new(
         ErrorCode::CorruptFile,
-        argument,
+        argument.to_owned(),
         found,
         expected,
         "The file may be cut short: download or export it again.",
@@ -29,10 +33,14 @@ pub(crate) fn corrupt(argument: &str, found: impl Into<String>, expected: impl I
 }
 
 /// A file that asks for more than this package opens.
-pub(crate) fn too_large(argument: &str, found: impl Into<String>, expected: impl Into<String>) -> Error {
+pub(crate) fn too_large(
+    argument: &str,
+    found: impl Into<crate::error::Text>,
+    expected: impl Into<crate::error::Text>,
+) -> Error {
     Error::new(
         ErrorCode::FileTooLarge,
-        argument,
+        argument.to_owned(),
         found,
         expected,
         "Simplify or downscale it first; a small file that says so is broken or hostile.",
@@ -42,11 +50,11 @@ pub(crate) fn too_large(argument: &str, found: impl Into<String>, expected: impl
 /// A file of a kind that is not read.
 pub(crate) fn unsupported(
     argument: &str,
-    found: impl Into<String>,
-    expected: impl Into<String>,
-    remedy: impl Into<String>,
+    found: impl Into<crate::error::Text>,
+    expected: impl Into<crate::error::Text>,
+    remedy: impl Into<crate::error::Text>,
 ) -> Error {
-    Error::new(ErrorCode::UnsupportedFormat, argument, found, expected, remedy)
+    Error::new(ErrorCode::UnsupportedFormat, argument.to_owned(), found, expected, remedy)
 }
 
 /// The number of pixels, or why there can't be so many.
@@ -54,7 +62,7 @@ pub(crate) fn pixel_count(argument: &str, width: usize, height: usize) -> Result
     if width == 0 || height == 0 {
         return Err(Error::new(
             ErrorCode::EmptyImage,
-            argument,
+            argument.to_owned(),
             format!("{width} × {height} pixels"),
             "at least 1 × 1",
             "The file holds no image: export it again.",

@@ -47,7 +47,7 @@ fn invalid(name: &str, expected: &str) -> Error {
         ErrorCode::InvalidTransform,
         format!("truth.{name}"),
         "nothing, or something else",
-        expected,
+        expected.to_owned(),
         "Write { scale, rotation, translation } or { matrix }; x_cam = scale · R · p_mesh + translation.",
     )
 }

@@ -85,7 +85,7 @@ pub fn check_size(argument: &str, width: usize, height: usize, length: usize) ->
     if width == 0 || height == 0 {
         return Err(Error::new(
             ErrorCode::EmptyImage,
-            argument,
+            argument.to_owned(),
             format!("{width} × {height} pixels"),
             "at least 1 × 1",
             "Pass the image's width and height in pixels.",
@@ -94,7 +94,7 @@ pub fn check_size(argument: &str, width: usize, height: usize, length: usize) ->
     if width.checked_mul(height) != Some(length) {
         return Err(Error::new(
             ErrorCode::WrongLength,
-            argument,
+            argument.to_owned(),
             format!("{length} values"),
             format!("width × height = {width} × {height} = {}", width.saturating_mul(height)),
             "Pass one value per pixel, row by row, and the sizes of this very array.",

@@ -31,7 +31,7 @@ impl Pinhole {
                 ErrorCode::InvalidCamera,
                 format!("camera.{name}"),
                 number(value),
-                expected,
+                expected.to_owned(),
                 "Intrinsics are in pixels of the depth image: scale them together with the image.",
             )
         };

@@ -34,7 +34,7 @@ impl Similarity {
                 ErrorCode::InvalidTransform,
                 "transform",
                 found,
-                expected,
+                expected.to_owned(),
                 "Pass { scale, rotation, translation } or a column-major 4×4 matrix of a similarity.",
             )
         };

@@ -182,7 +182,7 @@ fn invalid(found: String, expected: &str) -> Error {
         ErrorCode::InvalidOption,
         "symmetry",
         found,
-        expected,
+        expected.to_owned(),
         "Give each axis of symmetry once, in the mesh's frame, with its fold.",
     )
 }

@@ -44,7 +44,7 @@ impl Extents {
         if !(diagonal.is_finite() && diagonal > 0.0) {
             return Err(Error::new(
                 ErrorCode::DegeneratePoints,
-                argument,
+                argument.to_owned(),
                 format!("a box diagonal of {}", number(diagonal)),
                 "points that span a finite box",
                 "Check that the points are not all the same and not beyond what an f32 holds.",
@@ -95,5 +95,5 @@ pub fn target_from_source(target: &Extents, unit: &Similarity, source: &Extents)
 }
 
 fn no_points(argument: &str) -> Error {
-    Error::new(ErrorCode::TooFewPoints, argument, "no points", "points", "Check how the cloud was made.")
+    Error::new(ErrorCode::TooFewPoints, argument.to_owned(), "no points", "points", "Check how the cloud was made.")
 }

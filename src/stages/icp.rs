@@ -126,8 +126,8 @@ impl Residuals {
             Some(Residual { source: s.source as usize, landed, target: point, normal, value, weight: 1.0 })
         };
         let mut residuals: Vec<Residual> = support.iter().filter_map(residual).collect();
-        let weights: Vec<f64> = biweights(residuals.iter().map(|r| r.value), ROUNDING).collect();
-        for (residual, weight) in residuals.iter_mut().zip(weights) {
+        let values: Vec<f64> = residuals.iter().map(|r| r.value).collect();
+        for (residual, weight) in residuals.iter_mut().zip(biweights(&values, ROUNDING)) {
             residual.weight = weight;
         }
         Self(residuals)

@@ -155,16 +155,17 @@ pub fn reweighted(
         let (source, target) = (source.get(m.source as usize)?, target.get(m.target as usize)?);
         Some(Pair { source: vector3(*source), target: vector3(*target), weight: 1.0 })
     });
-    let inliers: Vec<Pair> = inliers.collect();
+    let mut inliers: Vec<Pair> = inliers.collect();
     let mut best = consensus.target_from_source;
     if consensus.clamped {
         return best;
     }
     for _ in 0..REWEIGHTINGS {
-        let residuals = inliers.iter().map(|pair| residual_squared(&best, pair).sqrt());
-        let weighted =
-            inliers.iter().zip(biweights(residuals, ROUNDING)).map(|(&pair, weight)| Pair { weight, ..pair });
-        let Ok(next) = umeyama(weighted, settings.scale_mode) else { break };
+        let residuals: Vec<f64> = inliers.iter().map(|pair| residual_squared(&best, pair).sqrt()).collect();
+        for (pair, weight) in inliers.iter_mut().zip(biweights(&residuals, ROUNDING)) {
+            pair.weight = weight;
+        }
+        let Ok(next) = umeyama(inliers.iter().copied(), settings.scale_mode) else { break };
         if settings.guard.is_some_and(|guard| next.scale < guard.min || next.scale > guard.max) {
             break;
         }

@@ -66,7 +66,7 @@ pub fn check_shape(mesh: &Mesh) -> Result<()> {
     let diagonal = diagonal(mesh);
     let [thin, middle, _] = eigen.values.map(|v| v.max(0.0).sqrt() / diagonal);
     let degenerate = |found: String, remedy: &str| {
-        Err(Error::new(ErrorCode::DegenerateMesh, "mesh", found, "a surface around a volume", remedy))
+        Err(Error::new(ErrorCode::DegenerateMesh, "mesh", found, "a surface around a volume", remedy.to_owned()))
     };
     if middle < MIN_THICKNESS {
         return degenerate(

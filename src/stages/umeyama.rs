@@ -105,7 +105,7 @@ fn check_spread(argument: &str, spread: &Matrix3<f64>) -> Result<()> {
 fn degenerate(argument: &str) -> Error {
     Error::new(
         ErrorCode::DegeneratePoints,
-        argument,
+        argument.to_owned(),
         "points that coincide or lie on one line",
         "points that span a plane at least",
         "The turn about a line is free: add pairs away from it.",
