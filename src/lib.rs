@@ -3,7 +3,7 @@
 //! Monocular Observations".
 //!
 //! The crate is layered; a module imports only from those below it in this list:
-//! `bindings`, `formats`, [`align`], [`metrics`], [`stages`], [`geometry`], [`error`].
+//! `bindings` and `samples`, `formats`, [`align`], [`metrics`], [`stages`], [`geometry`], [`error`].
 
 pub mod align;
 pub mod bindings;
@@ -13,4 +13,6 @@ pub mod formats;
 pub mod geometry;
 pub mod metrics;
 pub mod number;
+#[cfg(feature = "samples")]
+pub mod samples;
 pub mod stages;

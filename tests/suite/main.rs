@@ -45,6 +45,8 @@ pub mod rasteriser_seams;
 pub mod real_cases;
 pub mod register;
 pub mod sample;
+#[cfg(all(feature = "samples", not(target_arch = "wasm32")))]
+pub mod samples;
 pub mod shapes;
 pub mod silhouette;
 pub mod similarity;

@@ -1,0 +1,26 @@
+//! Generated cases with a known truth: an object, what a generator makes of it, and what a depth model sees of it.
+//!
+//! One random stream per part, so that a part that draws more numbers leaves the others as they are.
+
+pub mod case;
+pub mod depth;
+pub mod distortion;
+pub mod shape;
+
+use crate::geometry::random::Random;
+
+/// Dimensions of the object.
+const SHAPE_STREAM: u64 = 0x7368_6170;
+/// Where the camera stands.
+const VIEW_STREAM: u64 = 0x7669_6577;
+/// Faults of the depth map.
+const DEPTH_STREAM: u64 = 0x6465_7074;
+/// What the generator invents.
+const DISTORTION_STREAM: u64 = 0x6469_7374;
+/// The frame that the generator delivers in.
+const FRAME_STREAM: u64 = 0x6672_616d;
+
+/// A number in [`low`, `high`).
+fn between(random: &mut Random, low: f64, high: f64) -> f64 {
+    low + (high - low) * random.uniform()
+}
