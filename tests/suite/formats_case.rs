@@ -72,7 +72,7 @@ fn a_case_is_read_from_its_folder() {
 fn a_case_names_the_file_at_fault() {
     let folder = Folder::new("broken");
     let failure = || read_case(&folder.0).unwrap_err();
-    assert_eq!((failure().code, failure().expected.as_str()), (ErrorCode::InvalidArgument, "depth.npy or depth.png"));
+    assert_eq!((failure().code, &*failure().expected), (ErrorCode::InvalidArgument, "depth.npy or depth.png"));
     folder.write("depth.npy", write::depth_npy(&slope()));
     folder.write("camera.json", CAMERA);
     folder.write("mask.json", r#"{"size":[12,16],"counts":[192]}"#);

@@ -78,7 +78,7 @@ fn external_buffers_come_from_the_caller() {
     let mesh = read_mesh(gltf, &MeshReadOptions { format: None, resources: Some(&files) }).unwrap();
     assert_eq!(corners(&mesh), corners(&read(fixture!("mesh.glb")).unwrap()));
     let error = read(gltf).unwrap_err();
-    assert_eq!((error.code, error.argument.as_str()), (ErrorCode::InvalidArgument, "options.resources"));
+    assert_eq!((error.code, &*error.argument), (ErrorCode::InvalidArgument, "options.resources"));
     assert!(error.found.contains("gltf_buffer_"), "{error}");
     let short = |uri: &str| files(uri).map(|bytes| bytes[..20].to_vec());
     let error = read_mesh(gltf, &MeshReadOptions { format: None, resources: Some(&short) }).unwrap_err();

@@ -52,7 +52,7 @@ fn a_field_of_view_needs_the_size_of_the_image() {
     }
     assert_eq!(camera(r#"{"fovYDeg":60,"width":640,"height":480}"#).camera.cy, 239.5);
     let error = refused(r#"{"fovYDeg":60}"#);
-    assert_eq!((error.code, error.argument.as_str()), (ErrorCode::InvalidArgument, "options.width"));
+    assert_eq!((error.code, &*error.argument), (ErrorCode::InvalidArgument, "options.width"));
     assert_eq!(refused(r#"{"fovYDeg":180,"width":4,"height":3}"#).code, ErrorCode::InvalidCamera);
 }
 
@@ -78,7 +78,7 @@ fn of_several_images_one_has_to_be_chosen() {
     }
     for id in [None, Some("4"), Some("")] {
         let error = read(id).unwrap_err();
-        assert_eq!((error.code, error.argument.as_str()), (ErrorCode::InvalidArgument, "options.imageId"));
+        assert_eq!((error.code, &*error.argument), (ErrorCode::InvalidArgument, "options.imageId"));
         assert_eq!(error.expected, "one of 3, 20, 100");
     }
     let zero = format!(r#"{{"0":{},"1":{}}}"#, entry(5), entry(6));

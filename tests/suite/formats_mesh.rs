@@ -43,7 +43,7 @@ fn a_format_given_wins_over_the_content_and_unknown_content_is_refused() {
     assert_eq!(code(b""), ErrorCode::UnsupportedFormat);
     assert_eq!(code(b"hello, world\n"), ErrorCode::UnsupportedFormat);
     let error = read(fixture!("mask-grey.png")).unwrap_err();
-    assert_eq!((error.code, error.found.as_str()), (ErrorCode::UnsupportedFormat, "a PNG image"));
+    assert_eq!((error.code, &*error.found), (ErrorCode::UnsupportedFormat, "a PNG image"));
     assert_eq!(MeshFormat::from_name(".GLB"), Ok(MeshFormat::Gltf));
     assert_eq!(MeshFormat::from_name("fbx").unwrap_err().code, ErrorCode::InvalidOption);
 }
@@ -75,7 +75,7 @@ fn obj_names_what_is_wrong_and_where() {
     assert_eq!(with("l 1 2\n").code, ErrorCode::EmptyMesh);
     assert_eq!(with("v nan 0 0\nf 1 2 4\n").code, ErrorCode::NonFinite);
     let error = with("f 1 2 3\nv 0 zero 0\n");
-    assert_eq!((error.code, error.found.as_str()), (ErrorCode::CorruptFile, "\"zero\" in line 5"));
+    assert_eq!((error.code, &*error.found), (ErrorCode::CorruptFile, "\"zero\" in line 5"));
 }
 
 #[wasm_bindgen_test(unsupported = test)]
@@ -112,7 +112,7 @@ fn ply_reads_strips_and_refuses_counts_that_the_file_cannot_hold() {
 fn ply_without_coordinates_or_faces_says_so() {
     let vertex = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n0 0\n";
     let error = read(vertex.as_bytes()).unwrap_err();
-    assert_eq!((error.code, error.found.as_str()), (ErrorCode::CorruptFile, "vertices without z"));
+    assert_eq!((error.code, &*error.found), (ErrorCode::CorruptFile, "vertices without z"));
     let cloud = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n\
         end_header\n0 0 0\n";
     assert_eq!(code(cloud.as_bytes()), ErrorCode::EmptyMesh);

@@ -24,9 +24,9 @@ fn sizes_and_lengths_belong_together() {
         (usize::MAX, usize::MAX, 1, ErrorCode::WrongLength),
     ] {
         let error = Mask::new("mask", width, height, vec![0; length]).unwrap_err();
-        assert_eq!((error.code, error.argument.as_str()), (code, "mask"), "{width} × {height}");
+        assert_eq!((error.code, &*error.argument), (code, "mask"), "{width} × {height}");
         let error = DepthMap::from_metres(width, height, vec![0.0; length]).unwrap_err();
-        assert_eq!((error.code, error.argument.as_str()), (code, "depth"), "{width} × {height}");
+        assert_eq!((error.code, &*error.argument), (code, "depth"), "{width} × {height}");
     }
     let error = Mask::new("mask", 4, 3, vec![0; 11]).unwrap_err().to_string();
     assert!(error.contains("11 values") && error.contains("4 × 3 = 12"), "{error}");

@@ -10,7 +10,7 @@ use crate::shapes::{cuboid, ellipsoid, inverted, mapped};
 #[track_caller]
 fn refused(mesh: Result<Mesh>, code: ErrorCode, argument: &str, found: &str) {
     let error = mesh.unwrap_err();
-    assert_eq!((error.code, error.argument.as_str()), (code, argument));
+    assert_eq!((error.code, &*error.argument), (code, argument));
     assert!(error.found.contains(found), "{error}");
 }
 

@@ -163,7 +163,7 @@ fn axes_that_make_no_group_are_refused() {
     ];
     for symmetry in wrong {
         let error = pose_errors(&brick(), &truth(), &truth(), &symmetry).unwrap_err();
-        assert_eq!((error.code, error.argument.as_str()), (ErrorCode::InvalidOption, "symmetry"), "{symmetry:?}");
+        assert_eq!((error.code, &*error.argument), (ErrorCode::InvalidOption, "symmetry"), "{symmetry:?}");
     }
 }
 

@@ -131,8 +131,8 @@ fn clouds_that_can_not_be_registered_are_refused_by_name() {
     for (cloud, code) in bad {
         let options = RegisterOptions::default();
         let error = register(&good, &cloud, ScaleOption::Free, &options, &mut Silent).unwrap_err();
-        assert_eq!((error.code, error.argument.as_str()), (code, "target"), "{error}");
+        assert_eq!((error.code, &*error.argument), (code, "target"), "{error}");
         let error = register(&cloud, &good, ScaleOption::Free, &options, &mut Silent).unwrap_err();
-        assert_eq!((error.code, error.argument.as_str()), (code, "source"), "{error}");
+        assert_eq!((error.code, &*error.argument), (code, "source"), "{error}");
     }
 }

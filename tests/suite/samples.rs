@@ -161,6 +161,6 @@ fn a_written_case_reads_back_and_the_paper_preset_aligns_it() {
 #[test]
 fn an_unknown_kind_is_refused_by_name() {
     let error = Kind::from_name("teapot").unwrap_err();
-    assert_eq!((error.code, error.expected.as_str()), (ErrorCode::InvalidOption, "mug"));
+    assert_eq!((error.code, &*error.expected), (ErrorCode::InvalidOption, "mug"));
     assert!(error.found.contains("teapot"));
 }

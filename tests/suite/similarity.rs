@@ -103,7 +103,7 @@ fn what_is_no_similarity_is_refused() {
     let (r, t) = (*good.rotation.matrix(), good.translation);
     let refused = |what: &str, scale: f64, rotation: Matrix3<f64>, translation: Vector3<f64>| {
         let error = Similarity::from_parts(scale, rotation, translation).expect_err(what);
-        assert_eq!((error.code, error.argument.as_str()), (ErrorCode::InvalidTransform, "transform"), "{what}");
+        assert_eq!((error.code, &*error.argument), (ErrorCode::InvalidTransform, "transform"), "{what}");
     };
     assert!(Similarity::from_parts(1.0, r, t).is_ok());
     for scale in [0.0, -1.0, f64::NAN, f64::INFINITY] {
