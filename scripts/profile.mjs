@@ -38,7 +38,7 @@ function medians(results) {
  * @returns {Promise<Result[]>}
  */
 async function native(folder, runs) {
-  const binary = ["run", "--quiet", "--profile", "native", "--features", "formats", "--bin", "sim3align-native", "--"];
+  const binary = ["run", "--quiet", "--profile", "native", "--features", "native", "--bin", "sim3align-native", "--"];
   const output = await run("cargo", [...binary, String(runs), folder]);
   return JSON.parse(output.slice(output.indexOf("{")))[folder];
 }
