@@ -86,7 +86,7 @@ impl Pinhole {
         Self::new(f, f, 0.5 * (width as f64 - 1.0), 0.5 * (height as f64 - 1.0))
     }
 
-    /// The point at depth `z` behind pixel (u, v): D(u,v)·K⁻¹[u,v,1]ᵀ (paper §3.1).
+    /// The point at depth `z` behind pixel (u, v): D(u,v)·K⁻¹\[u,v,1\]ᵀ (paper §3.1).
     pub fn back_project(&self, u: f64, v: f64, z: f64) -> Vec3 {
         Vec3::new(((u - self.cx) * z / self.fx) as f32, ((v - self.cy) * z / self.fy) as f32, z as f32)
     }

@@ -65,7 +65,7 @@ impl Observation {
         self.camera
     }
 
-    /// P_obs: x = D(u,v)·K⁻¹[u,v,1]ᵀ for every reading in the mask, row by row; where there are more than
+    /// P_obs: x = D(u,v)·K⁻¹\[u,v,1\]ᵀ for every reading in the mask, row by row; where there are more than
     /// `max_points`, one drawn at random from each of `max_points` equal runs of them (seeded).
     pub fn cloud(&self, max_points: usize, seed: u64) -> Cloud {
         self.back_projected(max_points, seed, true)
