@@ -82,29 +82,30 @@ impl Settings {
         }
     }
 
+    /// Those of `register`: no camera says which side of a normal is outside, so support asks for distance only.
     pub(super) fn of_register(
         options: &RegisterOptions,
         voxel_size: f64,
         scale_mode: ScaleMode,
         guard: Option<[f64; 2]>,
     ) -> Self {
-        Self {
-            voxel_size: voxel_size as f32,
-            fpfh_radius_voxels: options.fpfh_radius_voxels as f32,
-            ransac: RansacSettings {
-                inlier_distance: options.inlier_distance_voxels * voxel_size,
-                edge_similarity: options.edge_similarity,
-                max_iterations: options.ransac_iterations as usize,
-                confidence: options.ransac_confidence,
-                scale_mode,
-                guard: guard.map(|[min, max]| Guard { min, max, mode: ransac::GuardMode::Reject }),
-                seed: u64::from(options.seed),
-            },
-            support: SupportSettings { max_distance: 3.0 * voxel_size as f32, min_cosine: -1.0 },
-            icp: icp_metric(options.icp),
+        let mut settings = Self::of(&AlignOptions {
+            seed: options.seed,
+            voxel_divisions: 1.0 / voxel_size,
+            fpfh_radius_voxels: options.fpfh_radius_voxels,
+            guard,
+            ransac_iterations: options.ransac_iterations,
+            ransac_confidence: options.ransac_confidence,
+            inlier_distance_voxels: options.inlier_distance_voxels,
+            edge_similarity: options.edge_similarity,
+            support_angle_deg: 180.0,
+            icp: options.icp,
             lock_scale: matches!(scale_mode, ScaleMode::Fixed(_)),
-            icp_iterations: options.icp_iterations as usize,
-        }
+            icp_iterations: options.icp_iterations,
+            ..AlignOptions::default()
+        });
+        settings.ransac.scale_mode = scale_mode;
+        settings
     }
 }
 

@@ -4,6 +4,7 @@
 #![allow(missing_docs)]
 
 pub mod align;
+pub mod density;
 pub mod determinism;
 pub mod distance_transform;
 pub mod extents;
@@ -54,6 +55,7 @@ pub mod support;
 pub mod surface;
 pub mod symmetric_eigen;
 pub mod triangle_tree;
+pub mod tukey;
 #[cfg(all(feature = "types", not(target_arch = "wasm32")))]
 pub mod typescript;
 pub mod umeyama;
