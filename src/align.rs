@@ -14,15 +14,14 @@ pub mod report;
 pub mod warnings;
 
 use crate::error::Result;
-use crate::geometry::kd_tree::KdTree;
 use crate::geometry::mesh::Mesh;
 use crate::metrics;
+use crate::metrics::evidence::Evidence;
 use crate::stages::extents::{Extents, initial_scale, target_from_source};
-use crate::stages::normals::{Neighborhood, Orientation, estimate_normals};
 use crate::stages::observe::Observation;
 use crate::stages::sample::{check_shape, sample_surface};
 
-use estimate::{NORMAL_NEIGHBORS, Problem, Settings};
+use estimate::{Problem, Settings};
 use field::Options;
 use options::AlignOptions;
 use progress::{Host, Stage, Stopwatch};
@@ -55,19 +54,17 @@ pub fn align(observation: &Observation, mesh: &Mesh, options: &AlignOptions, hos
 
     // §3.1: the partial cloud P_obs from depth and mask, the complete cloud P_rec from the mesh.
     stages.enter(Stage::Observe);
-    let mut observed = observation.cloud(options.max_observed_points as usize, seed);
+    let observed = observation.cloud(options.max_observed_points as usize, seed);
     stages.enter(Stage::Sample);
     let reconstructed = sample_surface(mesh, options.surface_samples as usize, seed)?;
 
     // §3.1: s_init from the boxes. From here both clouds are centred, with a box diagonal of 1.
     stages.enter(Stage::Normals);
-    let extents_obs = Extents::of("depth", &observed.points)?;
-    let extents_rec = Extents::of("mesh", &reconstructed.points)?;
-    let tree = KdTree::new(&observed.points);
-    observed.normals =
-        estimate_normals(&observed.points, &tree, Neighborhood::nearest(NORMAL_NEIGHBORS), Orientation::TowardsCamera);
-    let target = extents_obs.normalized(&observed);
-    let source = extents_rec.normalized(&reconstructed);
+    let evidence = Evidence::new(observed, reconstructed);
+    let extents_obs = Extents::of("depth", &evidence.observed.points)?;
+    let extents_rec = Extents::of("mesh", &evidence.reconstructed.points)?;
+    let target = extents_obs.normalized(&evidence.observed);
+    let source = extents_rec.normalized(&evidence.reconstructed);
 
     // §3.2 and §3.3: descriptors, guarded RANSAC, hallucination filter, scale-locked ICP.
     let settings = Settings::of(options);
@@ -75,12 +72,7 @@ pub fn align(observation: &Observation, mesh: &Mesh, options: &AlignOptions, hos
     let camera_from_mesh = target_from_source(&extents_obs, &estimated.target_from_source, &extents_rec);
 
     stages.enter(Stage::Metrics);
-    let evaluate_options = metrics::EvaluateOptions {
-        max_points: options.max_observed_points as usize,
-        surface_samples: options.surface_samples as usize,
-        seed,
-    };
-    let metrics = metrics::evaluate(observation, mesh, &camera_from_mesh, &evaluate_options)?;
+    let metrics = metrics::score(observation, mesh, &camera_from_mesh, &evidence)?;
     let timings_ms = stages.finish();
 
     let initial_scale = initial_scale(&extents_obs, &extents_rec);

@@ -18,9 +18,6 @@ use crate::stages::normals::{Neighborhood, Orientation, estimate_normals};
 use crate::stages::ransac::{self, Consensus, Guard, RansacSettings, ransac};
 use crate::stages::umeyama::{Pair, ScaleMode, umeyama};
 
-/// Neighbours from which a normal is estimated.
-pub(super) const NORMAL_NEIGHBORS: usize = 30;
-
 /// Neighbours on the voxel grid from which a normal is estimated: about two voxels around.
 const GRID_NORMAL_NEIGHBORS: usize = 16;
 

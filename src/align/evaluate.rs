@@ -9,12 +9,12 @@ use super::warnings;
 use crate::error::Result;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::Similarity;
+use crate::metrics::evidence::Evidence;
 use crate::metrics::pose_error::{PoseErrors, pose_errors};
 use crate::metrics::symmetry::Symmetry;
 use crate::metrics::{self, Metrics};
 use crate::stages::extents::{Extents, initial_scale};
 use crate::stages::observe::Observation;
-use crate::stages::sample::sample_surface;
 
 /// Options of `evaluate`.
 #[derive(Debug, Clone, PartialEq)]
@@ -90,13 +90,18 @@ pub fn evaluate(
     options: &EvaluateOptions,
 ) -> Result<Evaluation> {
     options.validate()?;
-    let (seed, samples) = (u64::from(options.seed), options.surface_samples as usize);
-    let max_points = options.max_observed_points as usize;
-    let metric_options = metrics::EvaluateOptions { max_points, surface_samples: samples, seed };
-    let metrics = metrics::evaluate(observation, mesh, camera_from_mesh, &metric_options)?;
-
-    let observed = Extents::of("depth", &observation.cloud(max_points, seed).points)?;
-    let reconstructed = Extents::of("mesh", &sample_surface(mesh, samples, seed)?.points)?;
+    let evidence = Evidence::of(
+        observation,
+        mesh,
+        &metrics::EvaluateOptions {
+            max_points: options.max_observed_points as usize,
+            surface_samples: options.surface_samples as usize,
+            seed: u64::from(options.seed),
+        },
+    )?;
+    let metrics = metrics::score(observation, mesh, camera_from_mesh, &evidence)?;
+    let observed = Extents::of("depth", &evidence.observed.points)?;
+    let reconstructed = Extents::of("mesh", &evidence.reconstructed.points)?;
     let initial_scale = initial_scale(&observed, &reconstructed);
     let scale_ratio = camera_from_mesh.scale / initial_scale;
     Ok(Evaluation {

@@ -1,6 +1,6 @@
 //! Which of several transforms between two clouds is right: the one under which the whole clouds agree best.
 
-use super::estimate::{Estimate, NORMAL_NEIGHBORS, Problem, Settings};
+use super::estimate::{Estimate, Problem, Settings};
 use super::frames::Frames;
 use super::options::{RegisterOptions, ScaleOption};
 use super::progress::{Stage, Stopwatch};
@@ -10,6 +10,7 @@ use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::order;
 use crate::geometry::similarity::Similarity;
+use crate::metrics::evidence::NORMAL_NEIGHBORS;
 use crate::stages::extents::target_from_source;
 use crate::stages::normals::{Neighborhood, Orientation, estimate_normals};
 

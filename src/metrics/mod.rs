@@ -1,5 +1,6 @@
 //! How well a transform fits the observation: the paper's columns, and errors against a known truth.
 
+pub mod evidence;
 pub mod pose_error;
 pub mod silhouette;
 pub mod surface;
@@ -13,7 +14,7 @@ use crate::geometry::mesh::Mesh;
 use crate::geometry::rasteriser::Rasteriser;
 use crate::geometry::similarity::Similarity;
 use crate::stages::observe::Observation;
-use crate::stages::sample::sample_surface;
+use evidence::Evidence;
 use surface::{Mean, surface_agreement};
 
 /// How much of the data [`evaluate`] looks at.
@@ -71,10 +72,21 @@ pub fn evaluate(
     camera_from_mesh: &Similarity,
     options: &EvaluateOptions,
 ) -> Result<Metrics> {
+    score(observation, mesh, camera_from_mesh, &Evidence::of(observation, mesh, options)?)
+}
+
+/// [`evaluate`], for one of several poses: the evidence is that of this observation and mesh.
+///
+/// # Errors
+/// [`crate::error::ErrorCode::InvalidTransform`] for a transform that is no similarity.
+pub fn score(
+    observation: &Observation,
+    mesh: &Mesh,
+    camera_from_mesh: &Similarity,
+    evidence: &Evidence,
+) -> Result<Metrics> {
     check_transform(camera_from_mesh)?;
-    let samples = sample_surface(mesh, options.surface_samples, options.seed)?;
-    let points = observation.cloud(options.max_points, options.seed).points;
-    let agreement = surface_agreement(&points, mesh, &samples, camera_from_mesh);
+    let agreement = surface_agreement(evidence, mesh, camera_from_mesh);
 
     let (depth, mask) = (observation.depth(), observation.mask());
     let (width, height) = (depth.width(), depth.height());

@@ -2,15 +2,12 @@
 
 use glam::Vec3;
 
-use crate::geometry::cloud::{Bounds, Cloud};
-use crate::geometry::kd_tree::KdTree;
+use crate::geometry::cloud::Bounds;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::{Similarity, vec3, vector3};
 use crate::geometry::triangle_tree::TriangleTree;
-use crate::stages::normals::{Neighborhood, Orientation, estimate_normals};
 
-/// Neighbours from which an observed point's normal is estimated.
-pub const NORMAL_NEIGHBORS: usize = 30;
+use super::evidence::Evidence;
 
 /// How near a point must be to the surface to fit, as a share of the points' box diagonal.
 pub const FITNESS_TOLERANCE: f64 = 0.05;
@@ -28,26 +25,18 @@ pub struct SurfaceAgreement {
     pub normal_consistency: Option<f64>,
 }
 
-/// Compares the observed `points` (camera frame) with the surface of `mesh` posed by `camera_from_mesh`;
-/// `samples` are points on that surface (mesh frame).
+/// Compares the observed points with the surface of `mesh` posed by `camera_from_mesh`.
 ///
-/// Distances from the points are exact point-to-triangle distances. Normals of the points come from their
-/// [`NORMAL_NEIGHBORS`] nearest; points and triangles without a normal are left out.
-pub fn surface_agreement(
-    points: &[Vec3],
-    mesh: &Mesh,
-    samples: &Cloud,
-    camera_from_mesh: &Similarity,
-) -> SurfaceAgreement {
-    let kd_tree = KdTree::new(points);
+/// Distances from the points are exact point-to-triangle distances. Points and triangles without a normal are left
+/// out of the consistency.
+pub fn surface_agreement(evidence: &Evidence, mesh: &Mesh, camera_from_mesh: &Similarity) -> SurfaceAgreement {
     let triangle_tree = TriangleTree::new(mesh);
-    let normals =
-        estimate_normals(points, &kd_tree, Neighborhood::nearest(NORMAL_NEIGHBORS), Orientation::TowardsCamera);
+    let (points, normals) = (&evidence.observed.points, &evidence.observed.normals);
     let tolerance = Bounds::of(points).map_or(0.0, |b| FITNESS_TOLERANCE * f64::from(b.diagonal()));
 
     let mesh_from_camera = camera_from_mesh.inverse();
     let (mut distance, mut fitting, mut consistency) = (Mean::default(), Mean::default(), Mean::default());
-    for (point, normal) in points.iter().zip(&normals) {
+    for (point, normal) in points.iter().zip(normals) {
         // The query is made in the mesh's frame, where the tree is; distances there are 1/s of those here.
         let Some(nearest) = triangle_tree.nearest(vec3(&mesh_from_camera.apply(vector3(*point)))) else { continue };
         let d = f64::from(nearest.distance_squared).sqrt() * camera_from_mesh.scale;
@@ -60,8 +49,8 @@ pub fn surface_agreement(
         }
     }
     let mut back = Mean::default();
-    for sample in &samples.points {
-        if let Some(nearest) = kd_tree.nearest(vec3(&camera_from_mesh.apply(vector3(*sample)))) {
+    for sample in &evidence.reconstructed.points {
+        if let Some(nearest) = evidence.tree.nearest(vec3(&camera_from_mesh.apply(vector3(*sample)))) {
             back.add(f64::from(nearest.distance_squared).sqrt());
         }
     }

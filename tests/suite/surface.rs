@@ -5,7 +5,8 @@ use nalgebra::{Rotation3, Vector3};
 use sim3align::geometry::cloud::Cloud;
 use sim3align::geometry::mesh::Mesh;
 use sim3align::geometry::similarity::{Similarity, vec3, vector3};
-use sim3align::metrics::surface::surface_agreement;
+use sim3align::metrics::evidence::Evidence;
+use sim3align::metrics::surface::{SurfaceAgreement, surface_agreement};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 /// The square of edge 2 about the origin, in z = 0.
@@ -24,6 +25,11 @@ fn close(found: Option<f64>, expected: f64) -> bool {
     found.is_some_and(|f| (f - expected).abs() < 1e-5 * (1.0 + expected))
 }
 
+fn agreement_of(points: &[Vec3], mesh: &Mesh, samples: &Cloud, camera_from_mesh: &Similarity) -> SurfaceAgreement {
+    let evidence = Evidence::new(Cloud::from_points(points.to_vec()), samples.clone());
+    surface_agreement(&evidence, mesh, camera_from_mesh)
+}
+
 #[wasm_bindgen_test(unsupported = test)]
 fn parallel_planes_are_as_far_apart_as_they_are() {
     let pose = Similarity {
@@ -34,7 +40,7 @@ fn parallel_planes_are_as_far_apart_as_they_are() {
     let posed = |points: Vec<Vec3>| -> Vec<Vec3> { points.iter().map(|p| vec3(&pose.apply(vector3(*p)))).collect() };
     let samples = Cloud::from_points(grid(0.0));
     for height in [0.0, 0.05, 0.3] {
-        let agreement = surface_agreement(&posed(grid(height)), &square(), &samples, &pose);
+        let agreement = agreement_of(&posed(grid(height)), &square(), &samples, &pose);
         let expected = 0.2 * f64::from(height);
         assert!(close(agreement.points_to_surface, expected), "{height}: {agreement:?}");
         assert!(close(agreement.surface_to_points, expected), "{height}: {agreement:?}");
@@ -48,7 +54,7 @@ fn parallel_planes_are_as_far_apart_as_they_are() {
 fn half_the_points_off_the_surface() {
     // 441 points on the surface and as many 0.5 above it, which is beyond 5 % of the diagonal (2.87).
     let points = [grid(0.0), grid(0.5)].concat();
-    let agreement = surface_agreement(&points, &square(), &Cloud::from_points(grid(0.0)), &Similarity::identity());
+    let agreement = agreement_of(&points, &square(), &Cloud::from_points(grid(0.0)), &Similarity::identity());
     assert!(close(agreement.points_to_surface, 0.25), "{agreement:?}");
     assert!(close(agreement.surface_to_points, 0.0), "{agreement:?}");
     assert_eq!(agreement.fitness, Some(0.5));
@@ -58,7 +64,7 @@ fn half_the_points_off_the_surface() {
 fn normals_across_the_surface_do_not_agree() {
     // Points on the plane x = 0, perpendicular to the square and near it.
     let points: Vec<Vec3> = grid(0.0).iter().map(|p| Vec3::new(0.0, p.x, p.y)).collect();
-    let agreement = surface_agreement(&points, &square(), &Cloud::default(), &Similarity::identity());
+    let agreement = agreement_of(&points, &square(), &Cloud::default(), &Similarity::identity());
     assert!(close(agreement.normal_consistency, 0.0), "{agreement:?}");
     assert_eq!(agreement.surface_to_points, None);
 }
@@ -66,12 +72,12 @@ fn normals_across_the_surface_do_not_agree() {
 #[wasm_bindgen_test(unsupported = test)]
 fn nothing_to_measure_is_none() {
     let samples = Cloud::from_points(grid(0.0));
-    let none = surface_agreement(&[], &square(), &samples, &Similarity::identity());
+    let none = agreement_of(&[], &square(), &samples, &Similarity::identity());
     assert_eq!(none.points_to_surface, None);
     assert_eq!(none.surface_to_points, None);
     assert_eq!(none.fitness, None);
     assert_eq!(none.normal_consistency, None);
     let line: Vec<Vec3> = (0..40).map(|i| Vec3::X * i as f32 * 0.01).collect();
-    let agreement = surface_agreement(&line, &square(), &samples, &Similarity::identity());
+    let agreement = agreement_of(&line, &square(), &samples, &Similarity::identity());
     assert_eq!((agreement.normal_consistency, agreement.fitness), (None, Some(1.0)));
 }
