@@ -1,8 +1,9 @@
 /** The two WebAssembly modules, built from the one crate. */
-import { cpSync, readFileSync, rmSync } from "node:fs";
+import { cpSync, existsSync, readdirSync, readFileSync, rmSync } from "node:fs";
+import { homedir } from "node:os";
 import { join } from "node:path";
 import { gzipSync } from "node:zlib";
-import { at, glueDir } from "./paths.mjs";
+import { at, glueDir, repository } from "./paths.mjs";
 import { nodeProgram, run } from "./run.mjs";
 import { wasmBindgenProgram, wasmBindgenVersion, wasmTarget } from "./setup.mjs";
 import { digest, Stamp } from "./stamp.mjs";
@@ -81,7 +82,9 @@ async function buildModule(module, rustc, say) {
   const compiled = at("target", wasmTarget, "release", "sim3align.wasm");
   rmSync(compiled, { force: true });
   rmSync(at("target", wasmTarget, "release", "deps", "sim3align.wasm"), { force: true });
-  await run("cargo", ["build", "--release", "--lib", "--target", wasmTarget, ...module.features]);
+  await run("cargo", ["build", "--release", "--lib", "--target", wasmTarget, ...module.features], {
+    env: { CARGO_ENCODED_RUSTFLAGS: await rustFlags() },
+  });
 
   const folder = at("target", "wasm", module.name);
   rmSync(folder, { recursive: true, force: true });
@@ -97,6 +100,20 @@ async function buildModule(module, rustc, say) {
   cpSync(folder, glueDir, { recursive: true });
   stamp.write();
   say(size());
+}
+
+/**
+ * Flags that keep the builder's own paths out of the published module: the compiler puts the places of possible
+ * panics into it.
+ */
+async function rustFlags() {
+  // Unpacks the sources; their folder's name is cargo's to choose.
+  await run("cargo", ["fetch", "--locked", "--target", wasmTarget]);
+  const sources = join(process.env.CARGO_HOME ?? join(homedir(), ".cargo"), "registry", "src");
+  const folders = existsSync(sources) ? readdirSync(sources) : [];
+  const remapped = [...folders.map((folder) => `${join(sources, folder)}=crates`), `${repository}=.`];
+  const given = process.env.RUSTFLAGS?.split(" ").filter(Boolean) ?? [];
+  return [...given, ...remapped.map((mapping) => `--remap-path-prefix=${mapping}`)].join("\x1f");
 }
 
 /** @returns {string} */

@@ -1,7 +1,8 @@
 /** Size budgets of the WebAssembly modules, as they are in the built package. */
 import { readFileSync } from "node:fs";
-import { join } from "node:path";
-import { packageDir } from "../lib/paths.mjs";
+import { homedir } from "node:os";
+import { join, sep } from "node:path";
+import { packageDir, repository } from "../lib/paths.mjs";
 import { kilobytes, sizes, wasmFile, wasmModules } from "../lib/wasm.mjs";
 import { runChecks } from "./checks.mjs";
 
@@ -32,6 +33,7 @@ export function checkSizes() {
         ]),
     ),
     ["core module holds nothing of the formats", checkSeparation],
+    ["modules hold no path of the machine that built them", checkPaths],
   ]);
 }
 
@@ -41,4 +43,13 @@ function checkSeparation() {
   if (core.length === 0 || formats.length === 0)
     throw new Error("A module exports nothing: are its bindings compiled?");
   if (shared.length > 0) throw new Error(`Both modules export ${shared.join(", ")}. Remedy: export each from one.`);
+}
+
+function checkPaths() {
+  for (const module of wasmModules) {
+    const bytes = readFileSync(wasmFile(module, packaged));
+    for (const path of [homedir(), repository]) {
+      if (bytes.includes(`${path}${sep}`)) throw new Error(`${module.name} holds ${path}. Remedy: see rustFlags().`);
+    }
+  }
 }
