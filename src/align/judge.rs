@@ -51,6 +51,9 @@ impl Judge {
         options: &RegisterOptions,
         stages: &mut Stopwatch<'_>,
     ) -> Result<()> {
+        if self.is_beyond_doubt() {
+            return Ok(());
+        }
         let frames = Frames::of(source_xyz, target_xyz, scale)?;
         stages.enter(Stage::Normals);
         let source = with_normals(frames.source.normalized_flat(source_xyz));
@@ -59,7 +62,7 @@ impl Judge {
             Settings::of_register(options, unit_voxel_size(options, &frames), frames.scale_mode, frames.guard);
         let mut problem = Problem::new(&source, &target, &settings, stages);
         for _ in 0..POSES {
-            if self.best.as_ref().is_some_and(|(agreement, _)| agreement.score >= BEYOND_DOUBT) {
+            if self.is_beyond_doubt() {
                 break;
             }
             match problem.solve(&settings, stages) {
@@ -80,6 +83,10 @@ impl Judge {
             }
         }
         Ok(())
+    }
+
+    fn is_beyond_doubt(&self) -> bool {
+        self.best.as_ref().is_some_and(|(agreement, _)| agreement.score >= BEYOND_DOUBT)
     }
 
     fn consider(&mut self, attempt: Attempt) {
