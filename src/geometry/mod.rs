@@ -2,6 +2,7 @@
 
 pub mod clip;
 pub mod cloud;
+pub mod decimate;
 pub mod distance_transform;
 pub mod image;
 pub mod kd_tree;
@@ -10,6 +11,7 @@ pub mod order;
 pub mod pinhole;
 pub mod random;
 pub mod rasteriser;
+pub mod rotations;
 pub mod similarity;
 pub mod symmetric_eigen;
 pub mod triangle_tree;

@@ -10,5 +10,6 @@ pub mod normals;
 pub mod observe;
 pub mod ransac;
 pub mod sample;
+pub mod search;
 pub mod tukey;
 pub mod umeyama;

@@ -1,0 +1,86 @@
+//! Anchors: where the mesh may stick out of the mask, because something nearer, or the image border, cuts it off.
+
+use super::grid::CropGrid;
+use crate::geometry::order::median;
+
+/// Share of the mask's surroundings that has to be cut off before larger sizes are tried.
+const MIN_CUT: f64 = 0.05;
+/// Share of the cut that a side has to have for the mesh to stick out there.
+const MIN_SIDE: f64 = 0.2;
+/// Nearer the middle than this share of half the box, a cut is on no side.
+const SIDE: f64 = 0.45;
+/// The sizes tried where the mask is cut.
+const ZOOMS: [f64; 2] = [1.25, 1.6];
+
+/// A size relative to that of the mask's box, and the directions, −1 to 1, towards which the mesh sticks out of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Anchor {
+    /// Relative size.
+    pub zoom: f64,
+    /// Direction, along columns and rows.
+    pub towards: [f64; 2],
+}
+
+/// The hypotheses for a grid: the box as it is, somewhat larger, and, where it is cut, larger towards the cut.
+pub fn anchors(grid: &CropGrid, occlusion: bool) -> Vec<Anchor> {
+    let plain = |zoom| Anchor { zoom, towards: [0.0; 2] };
+    let mut anchors = vec![plain(1.0), plain(1.12)];
+    if !occlusion {
+        return anchors;
+    }
+    let sides = cut_sides(grid);
+    if sides.is_empty() {
+        return anchors;
+    }
+    for zoom in ZOOMS {
+        anchors.push(plain(zoom));
+        anchors.extend(sides.iter().map(|&towards| Anchor { zoom, towards }));
+        let (across, along): (Vec<[f64; 2]>, Vec<_>) = sides.iter().partition(|s| s[0] != 0.0);
+        for a in &across {
+            anchors.extend(along.iter().map(|b| Anchor { zoom, towards: [a[0], b[1]] }));
+        }
+    }
+    anchors
+}
+
+/// The sides of the mask's box on which it is cut; none where too little of it is.
+fn cut_sides(grid: &CropGrid) -> Vec<[f64; 2]> {
+    let depths = grid.depth.iter().copied().filter(|z| *z > 0.0);
+    let Some(depth) = median(depths).map(f64::from) else { return Vec::new() };
+    let [[left, right], [top, bottom]] = grid.bounds;
+    let tolerance = (0.01 * depth + 0.04 * (right - left) * depth / grid.focal) as f32;
+    let (mut ring, mut cut) = (0, 0);
+    let mut counts = [0; 4];
+    for v in 0..grid.height {
+        for u in 0..grid.width {
+            let i = v * grid.width + u;
+            if grid.mask[i] || grid.outline[i] > 2.0 {
+                continue;
+            }
+            ring += 1;
+            let object = deepest_around(grid, u, v);
+            if !(grid.scene[i] > 0.0 && object > 0.0 && grid.scene[i] < object - tolerance) {
+                continue;
+            }
+            cut += 1;
+            let x = (u as f64 - 0.5 * (left + right)) / (0.5 * (right - left) + 1.0);
+            let y = (v as f64 - 0.5 * (top + bottom)) / (0.5 * (bottom - top) + 1.0);
+            for (count, at) in counts.iter_mut().zip([x, -x, y, -y]) {
+                *count += usize::from(at > SIDE);
+            }
+        }
+    }
+    if (cut as f64) < MIN_CUT * f64::from(ring.max(1)) {
+        return Vec::new();
+    }
+    let directions = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
+    let large = |count: usize| count as f64 > MIN_SIDE * cut as f64;
+    directions.into_iter().zip(counts).filter(|(_, count)| large(*count)).map(|(direction, _)| direction).collect()
+}
+
+/// The object's largest depth within two cells; 0 where it has none there.
+fn deepest_around(grid: &CropGrid, u: usize, v: usize) -> f32 {
+    let rows = v.saturating_sub(2)..=(v + 2).min(grid.height - 1);
+    let columns = u.saturating_sub(2)..=(u + 2).min(grid.width - 1);
+    rows.flat_map(|y| columns.clone().map(move |x| grid.depth[y * grid.width + x])).fold(0.0, f32::max)
+}

@@ -1,0 +1,126 @@
+//! Coarse: every rotation of the grid, with size, place and distance in closed form.
+
+use glam::{DMat3, DQuat, DVec2, DVec3, Vec3};
+
+use super::anchors::Anchor;
+use super::grid::CropGrid;
+use super::pose::CropPose;
+use super::render::{Canvas, Model};
+use super::score::{Score, Scoring};
+use crate::geometry::order::median;
+
+/// Directions along which the mesh's outermost vertices are kept, for boxes.
+const DIRECTIONS: usize = 128;
+/// Rounds of the fit of a perspective box, which converges by an order of magnitude each.
+const BOX_ROUNDS: usize = 3;
+
+/// A pose and its score.
+#[derive(Debug, Clone, Copy)]
+pub struct Candidate {
+    /// The pose.
+    pub pose: CropPose,
+    /// Its score on the grid where it was found.
+    pub score: Score,
+}
+
+/// The search over rotations on one grid.
+pub struct Coarse<'a> {
+    /// The mesh.
+    pub model: &'a Model,
+    /// The evidence.
+    pub grid: &'a CropGrid,
+    /// The objective.
+    pub scoring: Scoring,
+    /// Sizes and places tried per rotation.
+    pub anchors: &'a [Anchor],
+    /// The object's median depth, metres.
+    pub median_m: f64,
+}
+
+impl Coarse<'_> {
+    /// The best of the anchors for a rotation.
+    pub fn best(&self, canvas: &mut Canvas, outermost: &[Vec3], rotation: DQuat) -> Option<Candidate> {
+        let fitted = self.fit_box(outermost, rotation);
+        let mut best: Option<Candidate> = None;
+        for anchor in self.anchors {
+            let [[left, right], [top, bottom]] = self.grid.bounds;
+            let room = DVec2::new(right - left, bottom - top) * (0.5 * (anchor.zoom - 1.0) / self.grid.focal);
+            let pose = CropPose {
+                size: fitted.size + libm::log(anchor.zoom),
+                place: fitted.place + room * DVec2::from(anchor.towards),
+                ..fitted
+            };
+            let candidate = self.at_its_distance(canvas, pose);
+            if best.is_none_or(|b| candidate.score.total > b.score.total) {
+                best = Some(candidate);
+            }
+        }
+        best
+    }
+
+    /// Draws a pose once, and moves it to the distance that the depths ask for: the silhouette stays.
+    pub fn at_its_distance(&self, canvas: &mut Canvas, pose: CropPose) -> Candidate {
+        canvas.draw(self.model, &pose, self.grid);
+        let ratios = canvas.inverse_depth.iter().zip(&self.grid.depth).map(|(w, z)| w * z).filter(|r| *r > 0.0);
+        let stretch = median(ratios).unwrap_or(1.0);
+        let score = self.scoring.score(canvas, self.model, self.grid, stretch);
+        Candidate { pose: CropPose { distance: pose.distance + libm::log(f64::from(stretch)), ..pose }, score }
+    }
+
+    /// Size and place at which the perspective box of the rotated mesh is the mask's: equal middles, equal
+    /// geometric means of their sides.
+    fn fit_box(&self, outermost: &[Vec3], rotation: DQuat) -> CropPose {
+        let turn = DMat3::from_quat(rotation).as_mat3();
+        let turned: Vec<Vec3> = outermost.iter().map(|p| turn * *p).collect();
+        let [[left, right], [top, bottom]] = self.grid.bounds;
+        let to_ray = |u: f64, v: f64| (DVec2::new(u, v) - DVec2::from(self.grid.center)) / self.grid.focal;
+        let (low, high) = (to_ray(left, top), to_ray(right, bottom));
+        let (wanted_middle, wanted) = (0.5 * (low + high), high - low);
+        let (mut size, mut place) = (wanted.max_element(), wanted_middle);
+        for _ in 0..BOX_ROUNDS {
+            let (scale, offset) = (size as f32, place.as_vec2());
+            let (mut low, mut high) = (glam::Vec2::INFINITY, glam::Vec2::NEG_INFINITY);
+            for p in &turned {
+                let depth = (1.0 + scale * p.z).max(0.2);
+                let at = (p.truncate() * scale + offset) / depth;
+                (low, high) = (low.min(at), high.max(at));
+            }
+            let (low, high) = (low.as_dvec2(), high.as_dvec2());
+            let ratio = wanted / (high - low).max(DVec2::splat(1e-9));
+            size *= (ratio.x * ratio.y).sqrt();
+            place += wanted_middle - 0.5 * (low + high);
+        }
+        CropPose { rotation, size: libm::log(size), place, distance: libm::log(self.median_m) }
+    }
+}
+
+/// The vertices that are outermost along evenly spread directions: all that a box can touch, or nearly.
+pub fn outermost(model: &Model) -> Vec<Vec3> {
+    let mut kept: Vec<u32> = (0..DIRECTIONS)
+        .filter_map(|k| {
+            let direction = direction(k).as_vec3();
+            let along = |p: &Vec3| p.dot(direction);
+            let mut best: Option<(u32, f32)> = None;
+            for (i, p) in (0..).zip(&model.positions) {
+                let x = along(p);
+                if best.is_none_or(|(_, most)| x > most) {
+                    best = Some((i, x));
+                }
+            }
+            best.map(|(i, _)| i)
+        })
+        .collect();
+    let mut seen = vec![false; model.positions.len()];
+    kept.retain(|&i| !core::mem::replace(&mut seen[i as usize], true));
+    kept.iter().map(|&i| model.positions[i as usize]).collect()
+}
+
+/// The `k`-th of [`DIRECTIONS`] points of a Fibonacci spiral on the sphere.
+fn direction(k: usize) -> DVec3 {
+    /// Radians between one point and the next: the golden angle.
+    const GOLDEN: f64 = 2.399_963_229_728_653;
+    let z = 1.0 - (2.0 * k as f64 + 1.0) / DIRECTIONS as f64;
+    let (sin, cos) = libm::sincos(GOLDEN * k as f64);
+    let r = (1.0 - z * z).sqrt();
+    DVec3::new(r * cos, r * sin, z)
+}

@@ -1,0 +1,227 @@
+//! The crop grid: the cleaned observation on cells that are square in ray space, at any resolution.
+
+use glam::Vec3;
+
+use super::clean::CleanObservation;
+use crate::geometry::distance_transform::squared_distances;
+
+/// Room around the mask's box, as a share of its longer side, for silhouettes that are too large.
+const MARGIN: f64 = 0.35;
+/// Samples along a cell's side at most.
+const MAX_SAMPLES: usize = 4;
+/// Share of a cell's samples that must have the object's depth for the cell to have it.
+const MIN_READINGS: f32 = 0.34;
+/// Readings in a cell's window, of nine, from which a normal is fitted.
+const MIN_NORMAL_CELLS: u32 = 5;
+/// Depth of a cell outside the image: nearer than anything, so that nothing there is contradicted.
+const OUTSIDE_M: f32 = 1e-6;
+
+/// Evidence on `width` × `height` cells, row by row.
+#[derive(Debug, Clone)]
+pub struct CropGrid {
+    /// Cells in a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Focal length, cells.
+    pub focal: f64,
+    /// Principal point, cells; cell centres are at whole numbers.
+    pub center: [f64; 2],
+    /// Size of a cell in pixels, and the image position of the grid's corner.
+    pub cell: [f64; 2],
+    pub corner: [f64; 2],
+    /// Whether a cell is the object's.
+    pub mask: Vec<bool>,
+    /// How many are.
+    pub mask_cells: usize,
+    /// The object's depth, metres; 0 where unknown.
+    pub depth: Vec<f32>,
+    /// Its normal, towards the camera; zero where unknown.
+    pub normals: Vec<Vec3>,
+    /// Any depth, metres; 0 where there is no reading, next to nothing outside the image.
+    pub scene: Vec<f32>,
+    /// Signed distance to the mask's own outermost cells, cells: 0 on them, negative inside.
+    pub outline: Vec<f32>,
+    /// The mask's box: [[left, right], [top, bottom]], outer edges, cells.
+    pub bounds: [[f64; 2]; 2],
+}
+
+impl CropGrid {
+    /// The observation at about `cells` cells of mask.
+    pub fn new(observation: &CleanObservation, cells: usize) -> Self {
+        let camera = observation.camera;
+        let pitch = (observation.pixels as f64 / cells as f64).sqrt().max(1.0);
+        let cell = [pitch, pitch * camera.fy / camera.fx];
+        let sides = observation.bounds.map(|[low, high]| high - low);
+        let margin = MARGIN * sides[0].max(sides[1]) + 3.0;
+        let corner = observation.bounds.map(|[low, _]| low - margin);
+        let count = |axis: usize| ((sides[axis] + 2.0 * margin) / cell[axis]).ceil() as usize + 1;
+        let (width, height) = (count(0), count(1));
+        let to_cell = |x: f64, axis: usize| (x - corner[axis] + 0.5) / cell[axis] - 0.5;
+        let mut grid = Self {
+            width,
+            height,
+            focal: camera.fx / pitch,
+            center: [to_cell(camera.cx, 0), to_cell(camera.cy, 1)],
+            cell,
+            corner,
+            mask: Vec::with_capacity(width * height),
+            mask_cells: 0,
+            depth: Vec::with_capacity(width * height),
+            normals: Vec::new(),
+            scene: Vec::with_capacity(width * height),
+            outline: Vec::new(),
+            bounds: [[0.0; 2]; 2],
+        };
+        grid.sample(observation);
+        grid.mask_cells = grid.mask.iter().filter(|m| **m).count();
+        grid.fit_normals();
+        grid.measure_outline();
+        grid
+    }
+
+    /// The object's longer side, cells.
+    pub fn longer_side(&self) -> f64 {
+        self.bounds.iter().map(|[low, high]| high - low).fold(0.0, f64::max)
+    }
+
+    /// The direction of the ray through a cell, with z = 1.
+    pub fn ray(&self, u: f32, v: f32) -> Vec3 {
+        let focal = self.focal as f32;
+        Vec3::new((u - self.center[0] as f32) / focal, (v - self.center[1] as f32) / focal, 1.0)
+    }
+
+    fn sample(&mut self, observation: &CleanObservation) {
+        let samples = (self.cell[0].round() as usize).clamp(1, MAX_SAMPLES);
+        let offset = |k: usize, axis: usize| ((k as f64 + 0.5) / samples as f64 - 0.5) * self.cell[axis];
+        let at = |i: usize, k: usize, axis: usize| {
+            let x = self.corner[axis] - 0.5 + (i as f64 + 0.5) * self.cell[axis] + offset(k, axis);
+            // Shifted, so that the cast is a floor on either side of 0.
+            (x + 0.5 + 1_048_576.0) as i64 - 1_048_576
+        };
+        let columns: Vec<i64> = (0..self.width * samples).map(|i| at(i / samples, i % samples, 0)).collect();
+        let rows: Vec<i64> = (0..self.height * samples).map(|i| at(i / samples, i % samples, 1)).collect();
+        let total = (samples * samples) as f32;
+        for rows in rows.chunks_exact(samples) {
+            for columns in columns.chunks_exact(samples) {
+                let mut sum = Sum::default();
+                for &v in rows {
+                    for &u in columns {
+                        sum.add(observation, u, v);
+                    }
+                }
+                let inside = sum.mask >= 0.5 * total;
+                let known = inside && sum.readings >= MIN_READINGS * total;
+                self.mask.push(inside);
+                self.depth.push(if known { sum.depth / sum.readings } else { 0.0 });
+                let scene = if sum.scene_readings > 0.0 { sum.scene / sum.scene_readings } else { 0.0 };
+                self.scene.push(if 2.0 * sum.outside > total { OUTSIDE_M } else { scene });
+            }
+        }
+    }
+
+    /// Normals from planes fitted to 1/z, which is linear over the image of a plane.
+    fn fit_normals(&mut self) {
+        self.normals = vec![Vec3::ZERO; self.depth.len()];
+        for v in 1..self.height.saturating_sub(1) {
+            for u in 1..self.width.saturating_sub(1) {
+                let i = v * self.width + u;
+                if self.depth[i] > 0.0 {
+                    self.normals[i] = self.normal(u, v).unwrap_or(Vec3::ZERO);
+                }
+            }
+        }
+    }
+
+    fn normal(&self, u: usize, v: usize) -> Option<Vec3> {
+        let [mut n, mut su, mut sv, mut sw, mut suu, mut suv, mut svv, mut suw, mut svw] = [0.0f32; 9];
+        let mut count = 0;
+        for dv in 0..3 {
+            for du in 0..3 {
+                let z = self.depth[(v + dv - 1) * self.width + u + du - 1];
+                if z > 0.0 {
+                    let (x, y, w) = (du as f32 - 1.0, dv as f32 - 1.0, 1.0 / z);
+                    count += 1;
+                    n += 1.0;
+                    su += x;
+                    sv += y;
+                    sw += w;
+                    suu += x * x;
+                    suv += x * y;
+                    svv += y * y;
+                    suw += x * w;
+                    svw += y * w;
+                }
+            }
+        }
+        if count < MIN_NORMAL_CELLS {
+            return None;
+        }
+        let (mu, mv, mw) = (su / n, sv / n, sw / n);
+        let (a, b, c) = (suu - n * mu * mu, suv - n * mu * mv, svv - n * mv * mv);
+        let (d, e) = (suw - n * mu * mw, svw - n * mv * mw);
+        let determinant = a * c - b * b;
+        if determinant < 0.5 {
+            return None;
+        }
+        let (du, dv) = ((c * d - b * e) / determinant, (a * e - b * d) / determinant);
+        // n·p = 1 on the plane, so 1/z = n·ray.
+        let focal = self.focal as f32;
+        let ray = self.ray(u as f32, v as f32);
+        let w = mw - du * mu - dv * mv;
+        let (x, y) = (du * focal, dv * focal);
+        let normal = Vec3::new(x, y, w - x * ray.x - y * ray.y);
+        Some(-normal.normalize_or_zero())
+    }
+
+    fn measure_outline(&mut self) {
+        let outside: Vec<bool> = self.mask.iter().map(|m| !m).collect();
+        let to_mask = squared_distances(&self.mask, self.width, self.height);
+        let to_outside = squared_distances(&outside, self.width, self.height);
+        let distance = |i: usize| {
+            if self.mask[i] { 1.0 - (to_outside[i] as f32).sqrt() } else { (to_mask[i] as f32).sqrt() }
+        };
+        self.outline = (0..self.mask.len()).map(distance).collect();
+        let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+        for (i, _) in self.mask.iter().enumerate().filter(|(_, m)| **m) {
+            for (bound, at) in bounds.iter_mut().zip([i % self.width, i / self.width]) {
+                *bound = [bound[0].min(at as f64 - 0.5), bound[1].max(at as f64 + 0.5)];
+            }
+        }
+        self.bounds = bounds;
+    }
+}
+
+/// Samples of one cell.
+#[derive(Default)]
+struct Sum {
+    mask: f32,
+    depth: f32,
+    readings: f32,
+    scene: f32,
+    scene_readings: f32,
+    outside: f32,
+}
+
+impl Sum {
+    fn add(&mut self, observation: &CleanObservation, u: i64, v: i64) {
+        if u < 0 || v < 0 || u >= observation.image[0] as i64 || v >= observation.image[1] as i64 {
+            self.outside += 1.0;
+            return;
+        }
+        let (u, v) = (u - observation.origin[0] as i64, v - observation.origin[1] as i64);
+        if u < 0 || v < 0 || u >= observation.width as i64 || v >= observation.height as i64 {
+            return;
+        }
+        let i = v as usize * observation.width + u as usize;
+        self.mask += f32::from(u8::from(observation.mask[i]));
+        if observation.depth[i] > 0.0 {
+            self.depth += observation.depth[i];
+            self.readings += 1.0;
+        }
+        if observation.scene[i] > 0.0 {
+            self.scene += observation.scene[i];
+            self.scene_readings += 1.0;
+        }
+    }
+}

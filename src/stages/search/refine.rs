@@ -1,0 +1,204 @@
+//! Refine: Levenberg-Marquardt over all seven parameters, on a quadratic that touches the score's own terms.
+//!
+//! Every term of the score is a sum of robust losses ρ(e) of a residual e; at the present residuals each is bounded
+//! from above by a quadratic with curvature ρ′(e)/e (iteratively reweighted least squares), so that a Gauss-Newton
+//! step on these quadratics climbs the score itself. Steps are taken or refused by the score.
+
+use glam::Vec3;
+
+use super::grid::CropGrid;
+use super::pose::{CropPose, Step};
+use super::render::{Canvas, Model};
+use super::score::{Score, Scoring, is_outline};
+use crate::geometry::normal_equations::NormalEquations;
+
+/// What a refinement works on.
+pub struct Refiner<'a> {
+    /// The mesh.
+    pub model: &'a Model,
+    /// The evidence.
+    pub grid: &'a CropGrid,
+    /// The objective.
+    pub scoring: Scoring,
+    /// The size of the object does not change: distance and size in the image move together.
+    pub lock_scale: bool,
+}
+
+/// Damping at first, and its factors after a step that was taken and after one that was refused.
+const DAMPING: [f64; 3] = [1e-3, 0.25, 6.0];
+/// Most that a step may turn, in radians, and stretch.
+const MAX_TURN: f64 = 0.35;
+const MAX_STRETCH: f64 = 0.25;
+/// Residuals nearer than this count as this, in units of their scale: a loss like |e| has no curvature at 0.
+const MIN_DEPTH_ERROR: f32 = 0.1;
+const MIN_OUTLINE_CELLS: f32 = 0.5;
+
+impl Refiner<'_> {
+    /// The score of a pose.
+    pub fn score(&self, canvas: &mut Canvas, pose: &CropPose) -> Score {
+        canvas.draw(self.model, pose, self.grid);
+        self.scoring.score(canvas, self.model, self.grid, 1.0)
+    }
+
+    /// Climbs from `pose` for at most `iterations` renders.
+    pub fn refine(&self, canvas: &mut Canvas, pose: CropPose, iterations: usize) -> (CropPose, Score) {
+        let mut best = (pose, self.score(canvas, &pose));
+        let mut equations = self.equations(canvas, &best.1);
+        let mut damping = DAMPING[0];
+        for _ in 0..iterations {
+            let Some(step) = self.step(&equations, &best.0, damping) else { break };
+            let next = best.0.moved(&step);
+            if !next.is_finite() {
+                break;
+            }
+            let score = self.score(canvas, &next);
+            if score.total > best.1.total {
+                let gain = score.total - best.1.total;
+                best = (next, score);
+                if gain < 1e-5 {
+                    break;
+                }
+                equations = self.equations(canvas, &score);
+                damping *= DAMPING[1];
+            } else {
+                damping = (damping * DAMPING[2]).max(1e-3);
+                if damping > 10.0 {
+                    break;
+                }
+            }
+        }
+        best
+    }
+
+    /// The damped step from `pose`, held to a length that the quadratic can be believed for.
+    fn step(&self, equations: &NormalEquations, pose: &CropPose, damping: f64) -> Option<Step> {
+        let mut step = equations.solve(damping)?;
+        if self.lock_scale {
+            // log s = size + distance.
+            step[6] = -step[3] / libm::exp(pose.size);
+        }
+        let turn = (step[0] * step[0] + step[1] * step[1] + step[2] * step[2]).sqrt();
+        let stretch = step[3..6].iter().fold(0.0f64, |m, x| m.max(x.abs()));
+        let shorten = (MAX_TURN / turn).min(MAX_STRETCH / stretch).min(1.0);
+        step.iter_mut().for_each(|x| *x *= shorten);
+        step.iter().all(|x| x.is_finite()).then_some(step)
+    }
+
+    /// The quadratic at what was drawn last.
+    pub fn equations(&self, canvas: &Canvas, score: &Score) -> NormalEquations {
+        let mut equations = NormalEquations::new();
+        let mut turns = Turns::default();
+        let (grid, weights) = (self.grid, &self.scoring.weights);
+        let per_cell = |weight: f32, cells: u32| weight * score.coverage / cells.max(1) as f32;
+        let [depth_cells, normal_cells, outline_cells] = score.counts;
+        let depth_weight = per_cell(weights.depth, depth_cells);
+        let normal_weight = per_cell(weights.normals, normal_cells);
+        let outline_weight = per_cell(weights.outline, outline_cells);
+        let overlap_weight = weights.overlap / score.union.max(1.0);
+        let per_depth = 1.0 / self.scoring.depth_m;
+        let half = self.scoring.outline_cells;
+        let wants_outline = outline_weight > 0.0 || overlap_weight > 0.0;
+        for v in 0..grid.height {
+            for u in 0..grid.width {
+                let i = v * grid.width + u;
+                let w = canvas.inverse_depth[i];
+                if w <= 0.0 {
+                    continue;
+                }
+                let z = 1.0 / w;
+                let point = grid.ray(u as f32, v as f32) * z;
+                let observed = grid.depth[i];
+                if observed > 0.0 {
+                    let mut normal = canvas.rotation * self.model.normals[canvas.triangle[i] as usize];
+                    if normal.dot(point) > 0.0 {
+                        normal = -normal;
+                    }
+                    let error = (z - observed) * per_depth;
+                    let size = error.abs().max(MIN_DEPTH_ERROR);
+                    let curvature = 1.0 / (size * (1.0 + error.abs()) * (1.0 + error.abs()));
+                    // Along the mesh's normal: distance to the tangent plane, as the point moves.
+                    let gradient = normal * per_depth;
+                    let residual = normal.dot(point) * w * error;
+                    self.add(&mut equations, canvas, point, gradient, residual, depth_weight * curvature);
+                    let seen = grid.normals[i];
+                    if seen.z != 0.0 {
+                        turns.add(normal, seen);
+                    }
+                }
+                if wants_outline && is_outline(canvas, grid.width, grid.height, u, v) {
+                    let scene = grid.scene[i];
+                    if !grid.mask[i] && scene > 0.0 && scene < z - self.scoring.occluder_m {
+                        continue;
+                    }
+                    let d = grid.outline[i];
+                    let slope_u = 0.5 * (grid.outline[i + 1] - grid.outline[i - 1]);
+                    let slope_v = 0.5 * (grid.outline[i + grid.width] - grid.outline[i - grid.width]);
+                    let q = d / half;
+                    let curvature = 2.0 / (half * half * (1.0 + q * q) * (1.0 + q * q));
+                    let weight = outline_weight * curvature + overlap_weight / d.abs().max(MIN_OUTLINE_CELLS);
+                    // ∂(u, v)/∂point of the pinhole.
+                    let scale = grid.focal as f32 * w;
+                    let along = -(slope_u * point.x + slope_v * point.y) * w;
+                    let gradient = Vec3::new(slope_u, slope_v, along) * scale;
+                    self.add(&mut equations, canvas, point, gradient, d, weight);
+                }
+            }
+        }
+        turns.add_to(&mut equations, normal_weight);
+        equations
+    }
+
+    /// A residual that changes by `gradient`·δx as the surface point moves by δx.
+    #[inline]
+    fn add(
+        &self,
+        equations: &mut NormalEquations,
+        canvas: &Canvas,
+        point: Vec3,
+        gradient: Vec3,
+        residual: f32,
+        weight: f32,
+    ) {
+        let arm = point - canvas.translation;
+        let turn = arm.cross(gradient);
+        let (size, distance) = (arm.dot(gradient), point.dot(gradient));
+        let (size, distance) = if self.lock_scale {
+            (size - distance, 0.0)
+        } else {
+            (size, distance * canvas.scale / canvas.translation.z)
+        };
+        let place = gradient * canvas.scale;
+        let jacobian = [turn.x, turn.y, turn.z, size, place.x, place.y, distance].map(f64::from);
+        equations.add(&jacobian, f64::from(residual), f64::from(weight));
+    }
+}
+
+/// Σ ½|n − n′|² over pairs of normals, as a quadratic in the turn of n alone.
+#[derive(Default)]
+struct Turns {
+    outer: [[f32; 3]; 3],
+    gradient: Vec3,
+    count: f32,
+}
+
+impl Turns {
+    #[inline]
+    fn add(&mut self, normal: Vec3, seen: Vec3) {
+        for (row, x) in self.outer.iter_mut().zip(normal.to_array()) {
+            for (entry, y) in row.iter_mut().zip(normal.to_array()) {
+                *entry += x * y;
+            }
+        }
+        self.gradient += seen.cross(normal);
+        self.count += 1.0;
+    }
+
+    /// With JᵀJ = 1 − n nᵀ, and Jᵀr = n′ × n.
+    fn add_to(&self, equations: &mut NormalEquations, weight: f32) {
+        let mut block = self.outer.map(|row| row.map(|x| f64::from(-x * weight)));
+        for (i, row) in block.iter_mut().enumerate() {
+            row[i] += f64::from(self.count * weight);
+        }
+        equations.add_block(&block, (self.gradient * weight).to_array().map(f64::from));
+    }
+}
