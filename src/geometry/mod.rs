@@ -7,6 +7,7 @@ pub mod distance_transform;
 pub mod image;
 pub mod kd_tree;
 pub mod mesh;
+pub mod normal_equations;
 pub mod order;
 pub mod pinhole;
 pub mod random;

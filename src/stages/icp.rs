@@ -5,13 +5,14 @@
 //! with its width from their median, gives the points that do not belong no say. The support distance shrinks
 //! from generous to tight as the pose improves, so the hallucination filter is re-evaluated at every step.
 
-use nalgebra::{Cholesky, SMatrix, SVector, UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3};
 
 use super::filter::{Support, SupportSettings, supported};
 use super::tukey::biweights;
 use super::umeyama::{Pair, ScaleMode, umeyama};
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
+use crate::geometry::normal_equations::NormalEquations;
 use crate::geometry::similarity::{Similarity, nearest_rotation, vector3};
 
 /// What an iteration minimises.
@@ -178,22 +179,16 @@ fn weighted_center(residuals: &Residuals) -> Vector3<f64> {
 /// points, which keeps turn and shift apart. A locked scale has no say in any residual, and does not move.
 fn gauss_newton(residuals: &Residuals, pose: &Similarity, lock_scale: bool) -> Option<Similarity> {
     let center = weighted_center(residuals);
-    let mut hessian = SMatrix::<f64, 7, 7>::zeros();
-    let mut gradient = SVector::<f64, 7>::zeros();
+    let mut equations = NormalEquations::new();
     for r in residuals.0.iter().filter(|r| r.weight > 0.0) {
         let arm = r.landed - center;
-        let turn = arm.cross(&r.normal);
-        let mut jacobian = SVector::<f64, 7>::zeros();
-        jacobian.fixed_rows_mut::<3>(0).copy_from(&turn);
-        jacobian.fixed_rows_mut::<3>(3).copy_from(&r.normal);
-        jacobian[6] = if lock_scale { 0.0 } else { arm.dot(&r.normal) };
-        hessian += jacobian * jacobian.transpose() * r.weight;
-        gradient += jacobian * (r.weight * r.value);
+        let (turn, normal) = (arm.cross(&r.normal), r.normal);
+        let growth = if lock_scale { 0.0 } else { arm.dot(&normal) };
+        let jacobian = [turn.x, turn.y, turn.z, normal.x, normal.y, normal.z, growth];
+        equations.add(&jacobian, r.value, r.weight);
     }
     // Directions that the data leave free (a plane slides on itself) stay where they are.
-    let damping = 1e-9 * hessian.trace();
-    let damped = hessian + SMatrix::<f64, 7, 7>::identity() * damping;
-    let delta = -Cholesky::new(damped)?.solve(&gradient);
+    let delta = equations.solve(1e-9)?;
     let turn = UnitQuaternion::from_scaled_axis(Vector3::new(delta[0], delta[1], delta[2]));
     let shift = Vector3::new(delta[3], delta[4], delta[5]);
     let growth = if lock_scale { 1.0 } else { libm::exp(delta[6].clamp(-0.5, 0.5)) };

@@ -32,6 +32,7 @@ pub mod kd_tree;
 pub mod matching;
 pub mod mesh;
 pub mod metrics;
+pub mod normal_equations;
 pub mod normals;
 pub mod number;
 pub mod observe;
