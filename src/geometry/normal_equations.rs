@@ -50,6 +50,16 @@ impl NormalEquations {
         }
     }
 
+    /// Adds a quadratic ½xᵀBx + gᵀx in the first three parameters, of which B's upper triangle is read.
+    pub fn add_block(&mut self, block: &[[f64; 3]; 3], gradient: [f64; 3]) {
+        for i in 0..3 {
+            for j in i..3 {
+                self.matrix[i][j] += block[i][j];
+            }
+            self.gradient[i] += gradient[i];
+        }
+    }
+
     /// Adds all that `other` holds, as if its residuals had been added here.
     pub fn merge(&mut self, other: &Self) {
         let (mine, theirs) = (self.matrix.as_flattened_mut(), other.matrix.as_flattened());
