@@ -74,7 +74,7 @@ impl Settings {
                 SupportSettings::EVERYTHING
             },
             icp: icp_metric(options.icp),
-            lock_scale: options.lock_scale,
+            lock_scale: options.lock_scale.unwrap_or(true),
             icp_iterations: options.icp_iterations as usize,
         }
     }
@@ -97,7 +97,7 @@ impl Settings {
             edge_similarity: options.edge_similarity,
             support_angle_deg: 180.0,
             icp: options.icp,
-            lock_scale: matches!(scale_mode, ScaleMode::Fixed(_)),
+            lock_scale: Some(matches!(scale_mode, ScaleMode::Fixed(_))),
             icp_iterations: options.icp_iterations,
             ..AlignOptions::default()
         });
@@ -220,6 +220,7 @@ impl<'a> Problem<'a> {
                 rejected: consensus.counts.rejected,
                 clamped: consensus.counts.clamped,
                 icp_iterations: refined.iterations,
+                renders: 0,
             },
             inliers: consensus.inliers,
         })

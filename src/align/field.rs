@@ -2,6 +2,8 @@
 //! held against, all from one place.
 
 use crate::error::{Error, ErrorCode, Result};
+use crate::geometry::similarity::Similarity;
+use crate::metrics::symmetry::Symmetry;
 use crate::number::{number, numbers};
 
 /// An option by its type and range.
@@ -28,6 +30,16 @@ pub enum Field<'a> {
     Positive(&'a mut Option<f64>),
     /// Yes or no.
     Flag(&'a mut bool),
+    /// Yes, no, or whatever suits the method.
+    Switch(&'a mut Option<bool>),
+    /// [min, max] above 0, a number for both, or nothing.
+    Bounds(&'a mut Option<[f64; 2]>),
+    /// A direction of any length above 0, or nothing.
+    Direction(&'a mut Option<[f64; 3]>),
+    /// The turns under which an object looks the same.
+    Symmetry(&'a mut Symmetry),
+    /// A transform, or nothing.
+    Transform(&'a mut Option<Similarity>),
     /// [min, max] around 1, or nothing.
     Guard(&'a mut Option<[f64; 2]>),
     /// One of several names.
@@ -105,6 +117,13 @@ impl<'a> Field<'a> {
             Self::Number { min, max, .. } => format!("a number from {} to {}", number(*min), number(*max)),
             Self::Positive(_) => "a finite number above 0, or null".into(),
             Self::Flag(_) => "true or false".into(),
+            Self::Switch(_) => "true, false or null".into(),
+            Self::Bounds(_) => "[min, max] with 0 < min ≤ max, a number above 0, or null".into(),
+            Self::Direction(_) => "three finite numbers, not all 0, or null".into(),
+            Self::Symmetry(_) => {
+                "\"none\", \"auto\", \"auto-revolution\" or [{ axis: [x, y, z], fold? }]".into()
+            }
+            Self::Transform(_) => "a transform, or null".into(),
             Self::Guard(_) => "[min, max] with 0 < min ≤ 1 ≤ max, or null".into(),
             Self::Choice(choice) => format!("one of \"{}\"", choice.names().join("\", \"")),
         }
@@ -122,7 +141,15 @@ impl<'a> Field<'a> {
             Self::Guard(Some([min, max])) => {
                 (*min > 0.0 && *min <= 1.0 && *max >= 1.0 && max.is_finite(), numbers(&[*min, *max]))
             }
-            Self::Positive(None) | Self::Guard(None) | Self::Flag(_) | Self::Choice(_) => return Ok(()),
+            Self::Bounds(Some([min, max])) => {
+                (*min > 0.0 && *min <= *max && max.is_finite(), numbers(&[*min, *max]))
+            }
+            Self::Direction(Some(direction)) => {
+                let squared: f64 = direction.iter().map(|x| x * x).sum();
+                (squared.is_finite() && squared > 0.0, numbers(direction.as_slice()))
+            }
+            // Checked where they are made: symmetries and transforms come with errors of their own.
+            _ => return Ok(()),
         };
         if fits { Ok(()) } else { Err(self.error(name, found)) }
     }

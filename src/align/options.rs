@@ -4,6 +4,8 @@ use serde::Serialize;
 
 use super::field::{Field, Options, choice};
 use crate::error::{Error, ErrorCode, Result};
+use crate::geometry::similarity::Similarity;
+use crate::metrics::symmetry::Symmetry;
 use crate::number::{number, numbers};
 
 /// The largest confidence: a certainty of 1 would never stop early.
@@ -14,12 +16,17 @@ const MAX_CONFIDENCE: f64 = 0.999_999;
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "kebab-case")]
 pub enum Preset {
-    /// The paper's method: FPFH, guarded Sim(3) RANSAC, hallucination filtering, scale-locked ICP.
+    /// Search by rendering: the pose whose picture explains mask, free space and depth best.
     #[default]
+    Precise,
+    /// The paper's method: FPFH, guarded Sim(3) RANSAC, hallucination filtering, scale-locked ICP.
     Paper,
 }
 
-choice!(Preset { Paper: "paper" });
+choice!(Preset { Precise: "precise", Paper: "paper" });
+choice!(Quality { Fast: "fast", Balanced: "balanced", Best: "best" });
+choice!(SearchScope { Global: "global", Local: "local" });
+choice!(ExtentAxis { Longest: "longest", X: "x", Y: "y", Z: "z" });
 choice!(GuardMode { Reject: "reject", Clamp: "clamp" });
 choice!(Icp { PointToPlane: "point-to-plane", PointToPoint: "point-to-point", None: "none" });
 
@@ -47,12 +54,78 @@ pub enum Icp {
     None,
 }
 
+/// How much work `precise` puts in.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename_all = "kebab-case"))]
+pub enum Quality {
+    /// Fewer rotations, fewer candidates: about a third of the time.
+    Fast,
+    /// What most callers want.
+    #[default]
+    Balanced,
+    /// More of everything: about four times the time.
+    Best,
+}
+
+/// Where `precise` searches.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename_all = "kebab-case"))]
+pub enum SearchScope {
+    /// All rotations; an initial pose is one candidate more.
+    #[default]
+    Global,
+    /// The neighbourhood of the initial pose.
+    Local,
+}
+
+/// Which side of the mesh's box a known length is that of.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename_all = "kebab-case"))]
+pub enum ExtentAxis {
+    /// The longest one.
+    #[default]
+    Longest,
+    /// That along the mesh's x axis.
+    X,
+    /// That along the mesh's y axis.
+    Y,
+    /// That along the mesh's z axis.
+    Z,
+}
+
 /// Options of `align`. All have defaults; most callers need none.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename_all = "camelCase"))]
 pub struct AlignOptions {
-    /// The method. Default `"paper"`.
+    /// The method. Default `"precise"`.
     pub preset: Preset,
+    /// `precise`: how much work. Default `"balanced"`.
+    pub quality: Quality,
+    /// `precise`: bounds [min, max] of the scale, metres per mesh unit; a number fixes it, `null` leaves it free.
+    /// Default `null`.
+    pub scale: Option<[f64; 2]>,
+    /// `precise`: the length of the object along `knownExtentAxis`, metres, which fixes the scale ("this mug is
+    /// 9.5 cm tall": 0.095); `null` where it is not known. Default `null`.
+    pub known_extent_m: Option<f64>,
+    /// `precise`: the side of the mesh's box that `knownExtentM` is the length of. Default `"longest"`.
+    pub known_extent_axis: ExtentAxis,
+    /// `precise`: the direction that is up in the camera's frame (against gravity), of any length; together with
+    /// `meshUp` it favours poses in which the object stands upright. Default `null`.
+    pub camera_up: Option<[f64; 3]>,
+    /// `precise`: the direction that is up in the mesh's frame. Default `null`.
+    pub mesh_up: Option<[f64; 3]>,
+    /// `precise`: the turns under which the object looks the same, by which alternatives are told from repetitions.
+    /// Default `"auto"`.
+    #[cfg_attr(feature = "types", ts(type = "\"none\" | \"auto\" | \"auto-revolution\" | readonly SymmetryAxis[]"))]
+    pub symmetry: Symmetry,
+    /// `precise`: a pose to start from, such as the generator's own or an annotator's. Default `null`.
+    #[cfg_attr(feature = "types", ts(type = "Transform | null"))]
+    pub initial: Option<Similarity>,
+    /// `precise`: everywhere, or around `initial` only. Default `"global"`.
+    pub search: SearchScope,
+    /// `precise`: a bound on the work of the search, in milliseconds of a machine of 2020; it is counted, not
+    /// timed, so that the result does not depend on the machine. `null` leaves it to `quality`. Default `null`.
+    pub budget_ms: Option<f64>,
     /// Seed of all random draws, 0 to 2³² − 1. The same input and seed give the same bits. Default 0.
     pub seed: u32,
     /// Depth readings inside the mask that are used at most, 32 to 1 000 000; of more, an even random share is
@@ -89,8 +162,10 @@ pub struct AlignOptions {
     pub support_angle_deg: f64,
     /// The refinement. Default `"point-to-plane"`.
     pub icp: Icp,
-    /// ICP leaves the scale as RANSAC found it (paper §3.3). `false` is the ablation. Default `true`.
-    pub lock_scale: bool,
+    /// `paper`: ICP leaves the scale as RANSAC found it (§3.3; `false` is the ablation). `precise`: the scale stays
+    /// that of `initial`, or, without it, as the grid of rotations found it. `null` is `true` for `paper` and `false`
+    /// for `precise`. Default `null`.
+    pub lock_scale: Option<bool>,
     /// ICP iterations at most, 1 to 1 000. Default 60.
     pub icp_iterations: u32,
 }
@@ -98,7 +173,17 @@ pub struct AlignOptions {
 impl Default for AlignOptions {
     fn default() -> Self {
         Self {
-            preset: Preset::Paper,
+            preset: Preset::Precise,
+            quality: Quality::Balanced,
+            scale: None,
+            known_extent_m: None,
+            known_extent_axis: ExtentAxis::Longest,
+            camera_up: None,
+            mesh_up: None,
+            symmetry: Symmetry::Auto,
+            initial: None,
+            search: SearchScope::Global,
+            budget_ms: None,
             seed: 0,
             max_observed_points: 20_000,
             surface_samples: 20_000,
@@ -114,7 +199,7 @@ impl Default for AlignOptions {
             support_distance_voxels: 3.0,
             support_angle_deg: 60.0,
             icp: Icp::PointToPlane,
-            lock_scale: true,
+            lock_scale: None,
             icp_iterations: 60,
         }
     }
@@ -124,6 +209,16 @@ impl Options for AlignOptions {
     fn fields(&mut self) -> Vec<(&'static str, Field<'_>)> {
         vec![
             ("preset", Field::Choice(&mut self.preset)),
+            ("quality", Field::Choice(&mut self.quality)),
+            ("scale", Field::Bounds(&mut self.scale)),
+            ("knownExtentM", Field::Positive(&mut self.known_extent_m)),
+            ("knownExtentAxis", Field::Choice(&mut self.known_extent_axis)),
+            ("cameraUp", Field::Direction(&mut self.camera_up)),
+            ("meshUp", Field::Direction(&mut self.mesh_up)),
+            ("symmetry", Field::Symmetry(&mut self.symmetry)),
+            ("initial", Field::Transform(&mut self.initial)),
+            ("search", Field::Choice(&mut self.search)),
+            ("budgetMs", Field::Positive(&mut self.budget_ms)),
             ("seed", Field::count(&mut self.seed, 0, u32::MAX)),
             ("maxObservedPoints", Field::count(&mut self.max_observed_points, 32, 1_000_000)),
             ("surfaceSamples", Field::count(&mut self.surface_samples, 100, 1_000_000)),
@@ -139,7 +234,7 @@ impl Options for AlignOptions {
             ("supportDistanceVoxels", Field::number(&mut self.support_distance_voxels, 0.1, 50.0)),
             ("supportAngleDeg", Field::number(&mut self.support_angle_deg, 0.0, 180.0)),
             ("icp", Field::Choice(&mut self.icp)),
-            ("lockScale", Field::Flag(&mut self.lock_scale)),
+            ("lockScale", Field::Switch(&mut self.lock_scale)),
             ("icpIterations", Field::count(&mut self.icp_iterations, 1, 1_000)),
         ]
     }

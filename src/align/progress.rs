@@ -24,6 +24,12 @@ pub enum Stage {
     Filter,
     /// Scale-locked ICP (§3.3).
     Icp,
+    /// Cleaning of mask and depth, and coarser meshes (`precise`).
+    Prepare,
+    /// The grid of rotations (`precise`).
+    Search,
+    /// Refinement over all seven parameters, and the choice (`precise`).
+    Refine,
     /// The eight metrics.
     Metrics,
 }
@@ -40,6 +46,9 @@ impl Stage {
             Self::Ransac => "ransac",
             Self::Filter => "filter",
             Self::Icp => "icp",
+            Self::Prepare => "prepare",
+            Self::Search => "search",
+            Self::Refine => "refine",
             Self::Metrics => "metrics",
         }
     }

@@ -96,6 +96,39 @@ pub struct Counts {
     pub clamped: usize,
     /// ICP iterations.
     pub icp_iterations: usize,
+    /// Images that `precise` drew.
+    pub renders: usize,
+}
+
+/// Another pose that explains the observation.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "camelCase")]
+pub struct Alternative {
+    /// The transform from the mesh's frame to the camera's.
+    #[serde(flatten)]
+    pub camera_from_mesh: Sim3,
+    /// Its score, on the scale of the alignment's own.
+    pub score: f64,
+    /// Its rotation against the alignment's, degrees.
+    pub turn_deg: f64,
+}
+
+/// How far the pose could move, to one standard deviation, before the observation would contradict it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "camelCase")]
+pub struct Uncertainty {
+    /// Of the scale, relative.
+    pub scale: f64,
+    /// Of the rotation about the axis that is determined worst, degrees.
+    pub rotation_deg: f64,
+    /// That axis, camera frame.
+    pub rotation_axis: [f64; 3],
+    /// Of the position of the mesh's middle across the line of sight, metres.
+    pub lateral_m: f64,
+    /// Of its distance, metres.
+    pub distance_m: f64,
 }
 
 /// What `align` found: camera from mesh, x_cam = s·R·p + t.
@@ -122,6 +155,17 @@ pub struct Alignment {
     pub converged: bool,
     /// Root mean square residual of the refinement, in metres.
     pub residual_m: f64,
+    /// `precise`: how likely the pose is right (scale within 5 %, rotation within 10° up to symmetry, translation
+    /// within 5 % of the diameter), 0 to 1, calibrated on generated cases; `null` for `paper`.
+    pub confidence: Option<f64>,
+    /// `precise`: what the search maximised, 0 to about 2; comparable between poses of one input only. `null` for
+    /// `paper`.
+    pub score: Option<f64>,
+    /// `precise`: other poses that explain the observation nearly as well, best first: flips, symmetries that the
+    /// mesh does not share.
+    pub alternatives: Vec<Alternative>,
+    /// `precise`: how well each part of the pose is determined; `null` for `paper`.
+    pub uncertainty: Option<Uncertainty>,
     /// The eight metrics of the pose.
     pub metrics: Metrics,
     /// The counts.

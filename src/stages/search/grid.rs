@@ -27,8 +27,9 @@ pub struct CropGrid {
     pub focal: f64,
     /// Principal point, cells; cell centres are at whole numbers.
     pub center: [f64; 2],
-    /// Size of a cell in pixels, and the image position of the grid's corner.
+    /// Size of a cell, pixels.
     pub cell: [f64; 2],
+    /// Image position of the grid's corner, pixels.
     pub corner: [f64; 2],
     /// Whether a cell is the object's.
     pub mask: Vec<bool>,

@@ -1,7 +1,7 @@
-//! The search's own rasteriser: f32, unclipped, for thousands of small images a second.
+//! The search's own rasteriser: for thousands of small images a second.
 //!
-//! Where the metrics' [`Rasteriser`](crate::geometry::rasteriser::Rasteriser) decides every pixel exactly, this one
-//! may miss a cell between two triangles by rounding; it takes a tenth of the time.
+//! Where the metrics' [`Rasteriser`](crate::geometry::rasteriser::Rasteriser) clips and works in f64, this one works in
+//! f32, and leaves out what comes close to the camera. Coverage is decided in integers in both.
 
 use glam::{Mat3, Vec3};
 
@@ -11,10 +11,11 @@ use crate::geometry::mesh::Mesh;
 
 /// Depth before which a vertex is not drawn, as a share of the middle of the mesh's.
 const NEAR: f32 = 0.05;
-/// Triangles below this area, in cells, are edge-on.
-const EDGE_ON: f32 = 1e-7;
-/// How far outside a triangle, in barycentric units, a cell's centre is still in it.
-const SLACK: f32 = 1e-5;
+/// Steps per cell to which vertices are snapped, 2⁶.
+const STEPS: i32 = 64;
+const SHIFT: u32 = 6;
+/// Vertices further out than this, in steps, are moved here.
+const FARTHEST: f32 = 1_000_000.0;
 
 /// A mesh prepared for drawing.
 #[derive(Debug, Clone)]
@@ -57,7 +58,23 @@ pub struct Canvas {
     pub scale: f32,
     /// Share of the vertices outside the grid, 0 to 1.
     pub lost: f32,
-    vertices: Vec<Vec3>,
+    vertices: Vec<Vertex>,
+}
+
+/// A vertex on the grid, in steps, and its 1/z; 0 where it can't be drawn.
+#[derive(Debug, Clone, Copy)]
+struct Vertex {
+    u: i32,
+    v: i32,
+    w: f32,
+}
+
+/// A vertex as the products of coverage need it.
+#[derive(Clone, Copy)]
+struct Corner {
+    u: i64,
+    v: i64,
+    w: f32,
 }
 
 impl Canvas {
@@ -75,7 +92,7 @@ impl Canvas {
         }
     }
 
-    /// Cell coordinates and 1/z; an infinite 1/z where the vertex can't be drawn.
+    /// Moves the vertices into the camera frame and onto the grid.
     fn project(&mut self, model: &Model, grid: &CropGrid) {
         let linear = self.rotation * self.scale;
         let near = NEAR * self.translation.z;
@@ -90,49 +107,65 @@ impl Canvas {
             let (u, v) = (focal * p.x * w + cx, focal * p.y * w + cy);
             let inside = u > -0.5 && u < right && v > -0.5 && v < bottom;
             lost += u32::from(!inside || p.z < near);
-            Vec3::new(u, v, if p.z < near { f32::INFINITY } else { w })
+            // The comparison is written so that NaN fails.
+            let w = if p.z >= near { w } else { 0.0 };
+            Vertex { u: snap(u), v: snap(v), w }
         }));
         self.lost = lost as f32 / model.positions.len().max(1) as f32;
     }
 
     #[inline]
-    fn fill(&mut self, id: u32, [a, b, c]: [Vec3; 3], width: usize, height: usize) {
-        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-        // Also false where a number is not finite.
-        let visible = high.x >= 0.0 && high.y >= 0.0 && low.x < width as f32 && low.y < height as f32;
-        if !(visible && high.z < f32::INFINITY) {
+    fn fill(&mut self, id: u32, [a, b, c]: [Vertex; 3], width: usize, height: usize) {
+        // The first and last cell whose centre the triangle's box holds.
+        let first = |low: i32| (low.max(0) + STEPS - 1) >> SHIFT;
+        let last = |high: i32, size: usize| (high >> SHIFT).min(size as i32 - 1);
+        let (u0, u1) = (first(a.u.min(b.u).min(c.u)), last(a.u.max(b.u).max(c.u), width));
+        let (v0, v1) = (first(a.v.min(b.v).min(c.v)), last(a.v.max(b.v).max(c.v), height));
+        if u0 > u1 || v0 > v1 || a.w * b.w * c.w == 0.0 {
             return;
         }
-        // Casts saturate, so that ceil and floor need no bounds of their own.
-        let first = |x: f32| x as usize + usize::from(x > 0.0 && x.fract() != 0.0);
-        let (u0, u1) = (first(low.x), (high.x as usize).min(width - 1));
-        let (v0, v1) = (first(low.y), (high.y as usize).min(height - 1));
-        if u0 > u1 || v0 > v1 {
+        let [a, mut b, mut c] = [a, b, c].map(|p| Corner { u: p.u.into(), v: p.v.into(), w: p.w });
+        let mut area = (b.u - a.u) * (c.v - a.v) - (c.u - a.u) * (b.v - a.v);
+        if area == 0 {
             return;
         }
-        let area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
-        if area.abs() < EDGE_ON {
-            return;
+        if area < 0 {
+            area = -area;
+            core::mem::swap(&mut b, &mut c);
         }
-        let inverse = 1.0 / area;
-        // Barycentric coordinates of b and c: linear over the image.
-        let (b_du, b_dv) = ((c.y - a.y) * inverse, (a.x - c.x) * inverse);
-        let (c_du, c_dv) = ((a.y - b.y) * inverse, (b.x - a.x) * inverse);
-        let (wb, wc) = (b.z - a.z, c.z - a.z);
+        // Twice the areas that a cell's centre spans with two edges; the third is what is left of the whole.
+        let (b_du, b_dv) = (c.v - a.v, a.u - c.u);
+        let (c_du, c_dv) = (a.v - b.v, b.u - a.u);
+        let steps = i64::from(STEPS);
+        let (du, dv) = (i64::from(u0) * steps - a.u, i64::from(v0) * steps - a.v);
+        let (mut b_row, mut c_row) = (b_du * du + b_dv * dv, c_du * du + c_dv * dv);
+        let inverse = 1.0 / area as f32;
+        let (wb, wc) = ((b.w - a.w) * inverse, (c.w - a.w) * inverse);
         for v in v0..=v1 {
-            let dv = v as f32 - a.y;
-            let row = v * width;
-            for u in u0..=u1 {
-                let du = u as f32 - a.x;
-                let (lb, lc) = (b_du * du + b_dv * dv, c_du * du + c_dv * dv);
-                if lb >= -SLACK && lc >= -SLACK && lb + lc <= 1.0 + SLACK {
-                    let w = a.z + lb * wb + lc * wc;
-                    if w > self.inverse_depth[row + u] {
-                        self.inverse_depth[row + u] = w;
-                        self.triangle[row + u] = id;
+            let row = v as usize * width;
+            let (mut eb, mut ec) = (b_row, c_row);
+            for i in row + u0 as usize..=row + u1 as usize {
+                if (eb | ec | (area - eb - ec)) >= 0 {
+                    let w = a.w + eb as f32 * wb + ec as f32 * wc;
+                    if w > self.inverse_depth[i] {
+                        self.inverse_depth[i] = w;
+                        self.triangle[i] = id;
                     }
                 }
+                eb += b_du * steps;
+                ec += c_du * steps;
             }
+            b_row += b_dv * steps;
+            c_row += c_dv * steps;
         }
     }
+}
+
+/// Cells to steps, rounded to nearest; a number that is none becomes 0.
+#[inline]
+fn snap(cells: f32) -> i32 {
+    // Shifted to be positive, so that the truncation of the cast is a floor.
+    const OFFSET: i32 = 1 << 20;
+    let steps = (cells * STEPS as f32).max(-FARTHEST).min(FARTHEST);
+    (steps + (OFFSET as f32 + 0.5)) as i32 - OFFSET
 }
