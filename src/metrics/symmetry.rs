@@ -78,8 +78,8 @@ impl Symmetry {
         match self {
             Self::None => SymmetryGroup::generated(&[]),
             Self::Declared(axes) => SymmetryGroup::generated(axes),
-            Self::Auto => SymmetryGroup::generated(&detect(mesh, false)?),
-            Self::AutoRevolution => SymmetryGroup::generated(&detect(mesh, true)?),
+            Self::Auto => SymmetryGroup::generated(&principal_symmetry(mesh, false)?),
+            Self::AutoRevolution => SymmetryGroup::generated(&principal_symmetry(mesh, true)?),
         }
     }
 }
@@ -187,8 +187,12 @@ fn invalid(found: String, expected: &str) -> Error {
     )
 }
 
-/// The principal axes about which the mesh turns into itself.
-fn detect(mesh: &Mesh, revolution: bool) -> Result<Vec<SymmetryAxis>> {
+/// The principal axes of the surface about which the mesh turns into itself: by half a turn or, where `revolution`
+/// allows it, by any.
+///
+/// # Errors
+/// [`ErrorCode::DegenerateMesh`] for a mesh without area.
+pub fn principal_symmetry(mesh: &Mesh, revolution: bool) -> Result<Vec<SymmetryAxis>> {
     let samples = sample_surface(mesh, AUTO_SAMPLES, 0)?.points;
     let moments = SurfaceMoments::of(mesh);
     let tree = TriangleTree::new(mesh);

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::depth::View;
 use super::distortion::{canonicalise, hallucinate};
@@ -61,28 +61,10 @@ impl SampleCase {
     /// # Errors
     /// [`ErrorCode::Internal`] where an encoder fails.
     pub fn files(&self) -> Result<[(&'static str, Vec<u8>); 5]> {
-        let (camera, depth) = (self.observation.camera(), self.observation.depth());
-        let camera = json!({
-            "fx": camera.fx, "fy": camera.fy, "cx": camera.cx, "cy": camera.cy,
-            "width": depth.width(), "height": depth.height(),
-        });
-        let Similarity { scale, rotation, translation } = self.camera_from_mesh;
-        let row = |i: usize| [rotation[(i, 0)], rotation[(i, 1)], rotation[(i, 2)]];
-        let truth = json!({
-            "available": true,
-            "scale": scale,
-            "rotation": [row(0), row(1), row(2)],
-            "translation": [translation.x, translation.y, translation.z],
-            "symmetry": self.kind.symmetry(),
-            "note": format!("generated: {}, seed {}; the side that was not seen is invented", self.kind.as_str(), self.seed),
-        });
-        Ok([
-            ("depth.npy", write::depth_npy(depth)),
-            ("mask.png", write::mask_png(self.observation.mask())?),
-            ("camera.json", format!("{camera:#}\n").into_bytes()),
-            ("mesh.glb", write::glb(&self.mesh)),
-            ("gt.json", format!("{truth:#}\n").into_bytes()),
-        ])
+        let note =
+            format!("generated: {}, seed {}; the side that was not seen is invented", self.kind.as_str(), self.seed);
+        let truth = json!({ "symmetry": self.kind.symmetry(), "note": note });
+        case_files(&self.observation, &self.mesh, &self.camera_from_mesh, truth)
     }
 
     /// Writes the case folder, and creates it where it does not exist.
@@ -91,21 +73,52 @@ impl SampleCase {
     /// [`ErrorCode::InvalidArgument`] where the folder or a file can't be written, and those of
     /// [`SampleCase::files`].
     pub fn write(&self, folder: &Path) -> Result<()> {
-        let failed = |path: &Path, error: std::io::Error| {
-            Error::new(
-                ErrorCode::InvalidArgument,
-                path.display().to_string(),
-                format!("a file system that says: {error}"),
-                "a folder to write to",
-                "Name a folder that exists or can be created, on a disk that is not full.",
-            )
-        };
-        let files = self.files()?;
-        fs::create_dir_all(folder).map_err(|error| failed(folder, error))?;
-        for (name, bytes) in files {
-            let path = folder.join(name);
-            fs::write(&path, bytes).map_err(|error| failed(&path, error))?;
-        }
-        Ok(())
+        write_files(folder, &self.files()?)
     }
+}
+
+/// The files of a case folder; `truth` is what `gt.json` says besides the pose.
+pub(super) fn case_files(
+    observation: &Observation,
+    mesh: &Mesh,
+    camera_from_mesh: &Similarity,
+    mut truth: Value,
+) -> Result<[(&'static str, Vec<u8>); 5]> {
+    let (camera, depth) = (observation.camera(), observation.depth());
+    let camera = json!({
+        "fx": camera.fx, "fy": camera.fy, "cx": camera.cx, "cy": camera.cy,
+        "width": depth.width(), "height": depth.height(),
+    });
+    let Similarity { scale, rotation, translation } = camera_from_mesh;
+    let row = |i: usize| [rotation[(i, 0)], rotation[(i, 1)], rotation[(i, 2)]];
+    truth["available"] = json!(true);
+    truth["scale"] = json!(scale);
+    truth["rotation"] = json!([row(0), row(1), row(2)]);
+    truth["translation"] = json!([translation.x, translation.y, translation.z]);
+    Ok([
+        ("depth.npy", write::depth_npy(depth)),
+        ("mask.png", write::mask_png(observation.mask())?),
+        ("camera.json", format!("{camera:#}\n").into_bytes()),
+        ("mesh.glb", write::glb(mesh)),
+        ("gt.json", format!("{truth:#}\n").into_bytes()),
+    ])
+}
+
+/// Writes files to a folder, and creates it where it does not exist.
+pub(super) fn write_files(folder: &Path, files: &[(&'static str, Vec<u8>)]) -> Result<()> {
+    let failed = |path: &Path, error: std::io::Error| {
+        Error::new(
+            ErrorCode::InvalidArgument,
+            path.display().to_string(),
+            format!("a file system that says: {error}"),
+            "a folder to write to",
+            "Name a folder that exists or can be created, on a disk that is not full.",
+        )
+    };
+    fs::create_dir_all(folder).map_err(|error| failed(folder, error))?;
+    for (name, bytes) in files {
+        let path = folder.join(name);
+        fs::write(&path, bytes).map_err(|error| failed(&path, error))?;
+    }
+    Ok(())
 }

@@ -90,7 +90,7 @@ pub fn canonicalise(mesh: &Mesh, seed: u64) -> Result<(Mesh, Similarity)> {
 }
 
 /// Evenly distributed over SO(3): Shoemake, "Uniform random rotations", Graphics Gems III.
-fn random_rotation(random: &mut Random) -> UnitQuaternion<f64> {
+pub(super) fn random_rotation(random: &mut Random) -> UnitQuaternion<f64> {
     let u = random.uniform();
     let (a, b) = (libm::sincos(TAU * random.uniform()), libm::sincos(TAU * random.uniform()));
     let (near, far) = ((1.0 - u).sqrt(), u.sqrt());
@@ -103,7 +103,7 @@ fn bounds(mesh: &Mesh) -> (DVec3, DVec3) {
 }
 
 /// The vertices that share an edge with each, in ascending order.
-fn neighbors(mesh: &Mesh) -> Vec<Vec<u32>> {
+pub(super) fn neighbors(mesh: &Mesh) -> Vec<Vec<u32>> {
     let mut neighbors = vec![Vec::new(); mesh.positions().len()];
     for &[a, b, c] in mesh.triangles() {
         for (from, to) in [(a, b), (b, c), (c, a)] {
@@ -119,7 +119,7 @@ fn neighbors(mesh: &Mesh) -> Vec<Vec<u32>> {
 }
 
 /// Unit normals of the vertices, weighted by area; 0 where a vertex has no area about it.
-fn normals(mesh: &Mesh) -> Vec<DVec3> {
+pub(super) fn normals(mesh: &Mesh) -> Vec<DVec3> {
     let mut normals = vec![DVec3::ZERO; mesh.positions().len()];
     for &triangle in mesh.triangles() {
         let [a, b, c] = mesh.corners(triangle).map(|p| p.as_dvec3());
@@ -131,7 +131,7 @@ fn normals(mesh: &Mesh) -> Vec<DVec3> {
 
 /// Length of the shortest path along edges from each vertex to a seen one (Dijkstra); infinite where there is none.
 /// Over the surface, because the back of a thin wall is far from its front.
-fn paths(mesh: &Mesh, neighbors: &[Vec<u32>], seen: &[bool]) -> Vec<f64> {
+pub(super) fn paths(mesh: &Mesh, neighbors: &[Vec<u32>], seen: &[bool]) -> Vec<f64> {
     let mut paths: Vec<f64> = seen.iter().map(|&seen| if seen { 0.0 } else { f64::INFINITY }).collect();
     // Lengths are not negative: their bits order as they do.
     let mut queue: BinaryHeap<_> = (0..).zip(seen).filter(|(_, seen)| **seen).map(|(i, _)| Reverse((0, i))).collect();

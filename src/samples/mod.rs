@@ -2,9 +2,11 @@
 //!
 //! One random stream per part, so that a part that draws more numbers leaves the others as they are.
 
+pub mod benchmark;
 pub mod case;
 pub mod depth;
 pub mod distortion;
+pub mod evaluation;
 pub mod shape;
 
 use crate::geometry::random::Random;

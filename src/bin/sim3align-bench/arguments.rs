@@ -1,0 +1,168 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use lexopt::prelude::*;
+use sim3align::align::field::{Field, Options};
+use sim3align::align::options::AlignOptions;
+use sim3align::samples::evaluation::case::CASES;
+use sim3align::samples::evaluation::tier::{Class, Tier};
+
+pub const USAGE: &str = "\
+Usage: sim3align-bench [--generated N] [--cases DIR...] [options]
+
+Aligns cases with a known truth and prints Markdown tables: success, errors, metrics, failures.
+
+Cases
+  --generated N      cases 0 to N − 1 of the generated set; 240 where no --cases is given either
+  --set-seed S       seed of the generated set, default 0
+  --meshes DIR       show the GLB files of a folder in a third of the generated cases
+  --cases DIR...     case folders, or folders of case folders
+  --tier T,…         only these: easy, medium, hard
+  --class C,…        only these: plain, occluded, border-cut, tiny, thin, missing-part, extra-part, ragged-mask,
+                     warped, sparse-sensor, ambiguous
+  --only I,…         only these indices of the generated set (--generated is not needed)
+
+Method
+  --preset P         same as --option preset=P
+  --seed N           same as --option seed=N
+  --option K=V       an option of align() by its JavaScript name; null, and min,max for guard; may be repeated
+  --row 'NAME: K=V K=V…'
+                     one more row of the tables, with these options on top of the others; may be repeated
+
+Running
+  --threads N        default: all
+  --json FILE        everything about every case, for other tables
+  --write DIR        write the generated cases as case folders, and align nothing
+  --failures N       failures listed at most a row, default 40
+  --help             this text";
+
+/// A set of options that all cases are run with.
+pub struct Row {
+    /// Its name in the tables.
+    pub name: String,
+    /// The options.
+    pub options: AlignOptions,
+}
+
+/// What is asked for.
+pub struct Arguments {
+    pub generated: usize,
+    pub set_seed: u64,
+    pub meshes: Option<PathBuf>,
+    pub cases: Vec<PathBuf>,
+    pub tiers: Vec<Tier>,
+    pub classes: Vec<Class>,
+    pub only: Option<Vec<usize>>,
+    pub rows: Vec<Row>,
+    pub threads: usize,
+    pub json: Option<PathBuf>,
+    pub write: Option<PathBuf>,
+    pub failures: usize,
+}
+
+impl Arguments {
+    /// `None` where help is asked for.
+    pub fn parse(mut parser: lexopt::Parser) -> Result<Option<Self>, lexopt::Error> {
+        let mut generated = None;
+        let (mut options, mut rows) = (Vec::new(), Vec::new());
+        let mut arguments = Self {
+            generated: 0,
+            set_seed: 0,
+            meshes: None,
+            cases: Vec::new(),
+            tiers: Tier::ALL.to_vec(),
+            classes: Class::ALL.to_vec(),
+            only: None,
+            rows: Vec::new(),
+            threads: std::thread::available_parallelism().map_or(1, usize::from),
+            json: None,
+            write: None,
+            failures: 40,
+        };
+        while let Some(argument) = parser.next()? {
+            match argument {
+                Long("generated") => generated = Some(parser.value()?.parse()?),
+                Long("set-seed") => arguments.set_seed = parser.value()?.parse()?,
+                Long("meshes") => arguments.meshes = Some(parser.value()?.into()),
+                Long("cases") => arguments.cases.extend(parser.values()?.map(PathBuf::from)),
+                Long("tier") => arguments.tiers = list(&parser.value()?.string()?, Tier::from_name)?,
+                Long("class") => arguments.classes = list(&parser.value()?.string()?, Class::from_name)?,
+                Long("only") => arguments.only = Some(list(&parser.value()?.string()?, str::parse::<usize>)?),
+                Long("preset") => options.push(format!("preset={}", parser.value()?.string()?)),
+                Long("seed") => options.push(format!("seed={}", parser.value()?.string()?)),
+                Long("option") => options.push(parser.value()?.string()?),
+                Long("row") => rows.push(parser.value()?.string()?),
+                Long("threads") => arguments.threads = parser.value()?.parse::<usize>()?.max(1),
+                Long("json") => arguments.json = Some(parser.value()?.into()),
+                Long("write") => arguments.write = Some(parser.value()?.into()),
+                Long("failures") => arguments.failures = parser.value()?.parse()?,
+                Long("help") | Short('h') => return Ok(None),
+                _ => return Err(argument.unexpected()),
+            }
+        }
+        let mut base = AlignOptions::default();
+        options.iter().try_for_each(|assignment| assign(&mut base, assignment))?;
+        for text in rows {
+            let (name, assignments) = text.split_once(':').ok_or("--row without a colon after its name")?;
+            let mut options = base.clone();
+            assignments.split_whitespace().try_for_each(|assignment| assign(&mut options, assignment))?;
+            arguments.rows.push(Row { name: name.trim().into(), options });
+        }
+        if arguments.rows.is_empty() {
+            arguments.rows.push(Row { name: name_of(base.preset), options: base });
+        }
+        let anything_else = !arguments.cases.is_empty() || arguments.only.is_some();
+        arguments.generated = generated.unwrap_or(if anything_else { 0 } else { CASES });
+        Ok(Some(arguments))
+    }
+}
+
+fn name_of(preset: impl serde::Serialize) -> String {
+    serde_json::to_value(preset).ok().and_then(|name| Some(name.as_str()?.to_owned())).unwrap_or_default()
+}
+
+fn list<T, E: std::fmt::Display>(text: &str, parse: impl Fn(&str) -> Result<T, E>) -> Result<Vec<T>, String> {
+    text.split(',').map(|part| parse(part.trim()).map_err(|error| format!("{part:?}: {error}"))).collect()
+}
+
+/// Sets an option from `name=value`.
+fn assign(options: &mut AlignOptions, assignment: &str) -> Result<(), String> {
+    let (name, value) = assignment.split_once('=').ok_or_else(|| format!("{assignment:?} is no NAME=VALUE"))?;
+    let mut fields = options.fields();
+    let known = || AlignOptions::default().fields().iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
+    let (_, field) = fields
+        .iter_mut()
+        .find(|(field, _)| *field == name)
+        .ok_or_else(|| format!("no option {name}; there are {}", known()))?;
+    if !set(field, value) {
+        return Err(format!("{name}: found {value:?}, expected {}", field.expected()));
+    }
+    field.check(name).map_err(|error| error.to_string())
+}
+
+/// Sets a field from text; `false` where that does not fit its type.
+fn set(field: &mut Field<'_>, text: &str) -> bool {
+    fn store<T: std::str::FromStr>(slot: &mut T, text: &str) -> bool {
+        text.parse().map(|value| *slot = value).is_ok()
+    }
+    match field {
+        Field::Count { value, .. } => store(*value, text),
+        Field::Number { value, .. } => store(*value, text),
+        Field::Flag(flag) => store(*flag, text),
+        Field::Choice(choice) => choice.set(text),
+        Field::Positive(number) if text == "null" => {
+            **number = None;
+            true
+        }
+        Field::Positive(number) => text.parse().map(|value| **number = Some(value)).is_ok(),
+        Field::Guard(guard) if text == "null" => {
+            **guard = None;
+            true
+        }
+        Field::Guard(guard) => {
+            let bounds = list(text, str::parse::<f64>).ok().and_then(|bounds| <[f64; 2]>::try_from(bounds).ok());
+            bounds.map(|bounds| **guard = Some(bounds)).is_some()
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! Markdown tables.
+
+use std::fmt::Write;
+
+use sim3align::metrics::Metrics;
+use sim3align::metrics::pose_error::PoseErrors;
+use sim3align::samples::benchmark::{LOOSE, Record, STRICT};
+
+/// What the columns of metrics hold, in their order.
+const METRICS: &[(&str, usize, fn(&Metrics) -> Option<f64>)] = &[
+    ("IoU", 3, |m| m.iou),
+    ("boundary F", 3, |m| m.boundary_f),
+    ("drift px", 1, |m| m.center_drift_px),
+    ("Chamfer mm", 1, |m| m.chamfer_mm),
+    ("uniChamfer mm", 1, |m| m.uni_chamfer_mm),
+    ("fitness", 3, |m| m.fitness),
+    ("normals", 3, |m| m.normal_consistency),
+    ("depth MAE mm", 1, |m| m.depth_mae_mm),
+];
+
+/// All tables of all rows, a row being a set of options and what came of every case with it.
+pub fn report(rows: &[(String, Vec<&Record>)], failures: usize) -> String {
+    let mut out = String::new();
+    let Some((_, first)) = rows.first() else { return out };
+    let mut groups: Vec<(String, Box<dyn Fn(&Record) -> bool>)> = vec![("all".into(), Box::new(|_| true))];
+    for tier in distinct(first, |record| record.tier.clone()) {
+        let name = tier.clone();
+        groups.push((name, Box::new(move |record| record.tier == tier)));
+    }
+    for group in distinct(first, |record| format!("{}, {}", record.tier, record.class)) {
+        let name = group.clone();
+        groups.push((name, Box::new(move |record| format!("{}, {}", record.tier, record.class) == group)));
+    }
+    header(&mut out, "cases", &["row", "n", "strict", "loose", "scale %", "rotation °", "translation %"]);
+    for (group, belongs) in &groups {
+        for (name, records) in rows {
+            let records: Vec<&Record> = records.iter().copied().filter(|record| belongs(record)).collect();
+            line(&mut out, group, name, &records);
+        }
+        let records: Vec<&Record> = first.iter().copied().filter(|record| belongs(record)).collect();
+        truth_line(&mut out, group, &records);
+    }
+    for (name, records) in rows {
+        list_failures(&mut out, name, records, failures);
+    }
+    out
+}
+
+fn distinct(records: &[&Record], key: impl Fn(&Record) -> String) -> Vec<String> {
+    let mut keys: Vec<String> = Vec::new();
+    for key in records.iter().map(|record| key(record)) {
+        if !keys.contains(&key) {
+            keys.push(key);
+        }
+    }
+    keys
+}
+
+fn header(out: &mut String, first: &str, columns: &[&str]) {
+    let names = columns.iter().copied().chain(METRICS.iter().map(|metric| metric.0)).chain(["s"]);
+    let names: Vec<&str> = core::iter::once(first).chain(names).collect();
+    let _ = writeln!(out, "| {} |", names.join(" | "));
+    let rules: Vec<&str> = names.iter().map(|_| "---").collect();
+    let _ = writeln!(out, "|{}|", rules.join("|"));
+}
+
+fn line(out: &mut String, group: &str, name: &str, records: &[&Record]) {
+    let share = |tolerance| {
+        let known: Vec<bool> = records.iter().filter_map(|record| record.success(tolerance)).collect();
+        let hits = known.iter().filter(|hit| **hit).count();
+        if known.is_empty() { "–".into() } else { format!("{:.1} %", 100.0 * hits as f64 / known.len() as f64) }
+    };
+    let error = |digits, of: fn(&PoseErrors) -> f64| {
+        text(median(records.iter().filter_map(|record| record.errors.as_ref().map(of)).collect()), digits)
+    };
+    let _ = write!(
+        out,
+        "| {group} | {name} | {} | {} | {} | {} | {} | {}",
+        records.len(),
+        share(&STRICT),
+        share(&LOOSE),
+        error(2, |e| 100.0 * e.scale_error),
+        error(1, |e| e.rotation_error_deg),
+        error(2, |e| 100.0 * e.translation_error_relative),
+    );
+    metrics(out, records, |record| record.alignment.as_ref().map(|alignment| alignment.metrics));
+    let _ = writeln!(out, " | {} |", text(median(records.iter().map(|record| record.seconds).collect()), 2));
+}
+
+fn truth_line(out: &mut String, group: &str, records: &[&Record]) {
+    let known = records.iter().filter(|record| record.truth_metrics.is_some()).count();
+    let _ = write!(out, "| {group} | *truth* | {known} | | | | |");
+    metrics(out, records, |record| record.truth_metrics);
+    let _ = writeln!(out, " | |");
+}
+
+/// Means over the cases that have the metric.
+fn metrics(out: &mut String, records: &[&Record], of: impl Fn(&Record) -> Option<Metrics>) {
+    for (_, digits, metric) in METRICS {
+        let values: Vec<f64> = records.iter().filter_map(|record| metric(&of(record)?)).collect();
+        let mean = (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64);
+        let _ = write!(out, " | {}", text(mean, *digits));
+    }
+}
+
+fn list_failures(out: &mut String, name: &str, records: &[&Record], most: usize) {
+    let failed: Vec<&&Record> = records.iter().filter(|record| record.success(&STRICT) == Some(false)).collect();
+    let _ = writeln!(out, "\n{name}: {} of {} beyond the strict tolerance", failed.len(), records.len());
+    if failed.is_empty() || most == 0 {
+        return;
+    }
+    let _ = writeln!(
+        out,
+        "\n| case | loose | scale | rotation ° | translation % | IoU (truth) | depth mm (truth) | tags |"
+    );
+    let _ = writeln!(out, "|---|---|---|---|---|---|---|---|");
+    for record in failed.iter().take(most) {
+        let found = record.alignment.as_ref().map(|alignment| alignment.metrics);
+        let both = |digits, of: fn(&Metrics) -> Option<f64>| {
+            let [found, truth] = [found, record.truth_metrics].map(|m| text(m.as_ref().and_then(of), digits));
+            format!("{found} ({truth})")
+        };
+        let errors = match (&record.errors, &record.error) {
+            (Some(e), _) => format!(
+                "{} | {:+.1} % | {:.1} | {:.1}",
+                if LOOSE.holds(e) { "yes" } else { "no" },
+                100.0 * signed_scale_error(record),
+                e.rotation_error_deg,
+                100.0 * e.translation_error_relative
+            ),
+            (None, Some(error)) => format!("no | {} | |", error.split(':').next().unwrap_or_default()),
+            (None, None) => "no | | |".into(),
+        };
+        let _ = writeln!(
+            out,
+            "| {} | {errors} | {} | {} | {} |",
+            record.name,
+            both(2, |m| m.iou),
+            both(1, |m| m.depth_mae_mm),
+            record.tags.join(", ")
+        );
+    }
+    if failed.len() > most {
+        let _ = writeln!(out, "\n… and {} more", failed.len() - most);
+    }
+}
+
+/// s / s_true − 1.
+fn signed_scale_error(record: &Record) -> f64 {
+    let ratio = record.alignment.as_ref().map(|alignment| alignment.scale_ratio);
+    ratio.zip(record.truth_scale_ratio).map_or(f64::NAN, |(found, truth)| found / truth - 1.0)
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let n = values.len();
+    let at = |i: usize| values.get(i).copied();
+    if n % 2 == 1 { at(n / 2) } else { Some(0.5 * (at((n / 2).checked_sub(1)?)? + at(n / 2)?)) }
+}
+
+fn text(value: Option<f64>, digits: usize) -> String {
+    value.map_or("–".into(), |value| format!("{value:.digits$}"))
+}

@@ -1,0 +1,233 @@
+//! Runs methods over cases and keeps all that tables are made of.
+
+use std::path::Path;
+use std::time::Instant;
+
+use serde::Serialize;
+use serde_json::Value;
+
+use super::evaluation::case::EvaluationCase;
+use crate::align::align;
+use crate::align::evaluate::{EvaluateOptions, Truth, evaluate};
+use crate::align::options::AlignOptions;
+use crate::align::progress::{Host, Stage};
+use crate::align::report::Alignment;
+use crate::error::{Error, ErrorCode, Result};
+use crate::formats::case::read_case;
+use crate::geometry::mesh::Mesh;
+use crate::geometry::similarity::Similarity;
+use crate::metrics::Metrics;
+use crate::metrics::pose_error::{PoseErrors, pose_errors};
+use crate::metrics::symmetry::{Symmetry, SymmetryAxis};
+use crate::stages::observe::Observation;
+
+/// A case, wherever it came from.
+#[derive(Debug, Clone)]
+pub struct BenchCase {
+    /// Its name.
+    pub name: String,
+    /// `"easy"`, `"medium"`, `"hard"`; of a folder, what its `meta.json` says, else `"given"`.
+    pub tier: String,
+    /// Of a folder, what its `meta.json` says, else `"given"`.
+    pub class: String,
+    /// What it shows.
+    pub family: String,
+    /// Names of its faults.
+    pub tags: Vec<String>,
+    /// Measures of its faults, by name.
+    pub parameters: Value,
+    /// Depth, mask and camera.
+    pub observation: Observation,
+    /// The mesh.
+    pub mesh: Mesh,
+    /// The true pose, where it is known.
+    pub truth: Option<Truth>,
+}
+
+/// What came of a case.
+#[derive(Debug, Clone, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Record {
+    /// See [`BenchCase`].
+    pub name: String,
+    /// See [`BenchCase`].
+    pub tier: String,
+    /// See [`BenchCase`].
+    pub class: String,
+    /// See [`BenchCase`].
+    pub family: String,
+    /// See [`BenchCase`].
+    pub tags: Vec<String>,
+    /// See [`BenchCase`].
+    pub parameters: Value,
+    /// All that `align` returned.
+    pub alignment: Option<Alignment>,
+    /// Or its error.
+    pub error: Option<String>,
+    /// The errors against the truth, where both are there.
+    pub errors: Option<PoseErrors>,
+    /// The true pose's own metrics.
+    pub truth_metrics: Option<Metrics>,
+    /// The true scale by the initial one, s / s_init.
+    pub truth_scale_ratio: Option<f64>,
+    /// What `align` took.
+    pub seconds: f64,
+}
+
+/// How near is near enough.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tolerance {
+    /// |s / s_true − 1|.
+    pub scale: f64,
+    /// Degrees.
+    pub rotation_deg: f64,
+    /// Share of the diameter.
+    pub translation: f64,
+}
+
+/// Scale within 5 %, rotation within 10°, translation within 5 % of the diameter.
+pub const STRICT: Tolerance = Tolerance { scale: 0.05, rotation_deg: 10.0, translation: 0.05 };
+/// Twice as far.
+pub const LOOSE: Tolerance = Tolerance { scale: 0.1, rotation_deg: 20.0, translation: 0.1 };
+
+impl Tolerance {
+    /// Whether a pose is near enough.
+    pub fn holds(&self, errors: &PoseErrors) -> bool {
+        errors.scale_error <= self.scale
+            && errors.rotation_error_deg <= self.rotation_deg
+            && errors.translation_error_relative <= self.translation
+    }
+}
+
+impl Record {
+    /// Whether the pose is within a tolerance; `None` where the truth is not known. An error is a failure.
+    pub fn success(&self, tolerance: &Tolerance) -> Option<bool> {
+        self.truth_metrics.map(|_| self.errors.is_some_and(|errors| tolerance.holds(&errors)))
+    }
+}
+
+impl From<EvaluationCase> for BenchCase {
+    fn from(case: EvaluationCase) -> Self {
+        let parameters: serde_json::Map<_, _> =
+            case.parameters.iter().map(|(name, value)| ((*name).to_owned(), Value::from(*value))).collect();
+        Self {
+            name: case.name(),
+            tier: case.tier.as_str().into(),
+            class: case.class.as_str().into(),
+            family: case.family,
+            tags: case.tags.iter().map(|tag| (*tag).to_owned()).collect(),
+            parameters: parameters.into(),
+            observation: case.observation,
+            mesh: case.mesh,
+            truth: Some(Truth { camera_from_mesh: case.camera_from_mesh, symmetry: case.symmetry }),
+        }
+    }
+}
+
+impl BenchCase {
+    /// A case folder, with what a generated one says of itself in `meta.json` and `gt.json`.
+    ///
+    /// # Errors
+    /// Those of [`read_case`], and [`ErrorCode::CorruptFile`] for `symmetryAxes` that are none.
+    pub fn read(folder: &Path) -> Result<Self> {
+        let case = read_case(folder)?;
+        let json =
+            |name: &str| -> Option<Value> { serde_json::from_slice(&std::fs::read(folder.join(name)).ok()?).ok() };
+        let meta = json("meta.json").unwrap_or_default();
+        let text = |name: &str| meta.get(name).and_then(Value::as_str).unwrap_or("given").to_owned();
+        let tags = meta.get("tags").and_then(Value::as_array).into_iter().flatten();
+        let axes = json("gt.json").and_then(|truth| truth.get("symmetryAxes").cloned());
+        let truth = case.truth.map(|(camera_from_mesh, words)| {
+            let symmetry = match &axes {
+                None => Symmetry::from_description(&words),
+                Some(axes) => symmetry_of(axes).ok_or_else(|| {
+                    let found = "something else";
+                    let expected = "an array of { axis: [x, y, z], fold: number or null }";
+                    let argument = folder.join("gt.json").display().to_string();
+                    Error::new(ErrorCode::CorruptFile, argument, found, expected, "Write symmetryAxes so.")
+                })?,
+            };
+            Ok(Truth { camera_from_mesh, symmetry })
+        });
+        Ok(Self {
+            name: case.name,
+            tier: text("tier"),
+            class: text("class"),
+            family: text("family"),
+            tags: tags.filter_map(|tag| Some(tag.as_str()?.to_owned())).collect(),
+            parameters: meta.get("parameters").cloned().unwrap_or_default(),
+            observation: case.observation,
+            mesh: case.mesh,
+            truth: truth.transpose()?,
+        })
+    }
+}
+
+fn symmetry_of(axes: &Value) -> Option<Symmetry> {
+    let axes: Option<Vec<SymmetryAxis>> = axes
+        .as_array()?
+        .iter()
+        .map(|declared| {
+            let numbers = declared.get("axis")?.as_array()?;
+            let axis: Option<Vec<f64>> = numbers.iter().map(Value::as_f64).collect();
+            let [x, y, z] = axis?.try_into().ok()?;
+            let fold = declared.get("fold").and_then(Value::as_u64).and_then(|fold| u32::try_from(fold).ok());
+            Some(SymmetryAxis { axis: nalgebra::Vector3::new(x, y, z), fold })
+        })
+        .collect();
+    let axes = axes?;
+    Some(if axes.is_empty() { Symmetry::None } else { Symmetry::Declared(axes) })
+}
+
+/// A host with a clock.
+struct Clock(Instant);
+
+impl Host for Clock {
+    fn now_ms(&mut self) -> f64 {
+        1000.0 * self.0.elapsed().as_secs_f64()
+    }
+
+    fn progress(&mut self, _stage: Stage, _fraction: f64) {}
+}
+
+/// Aligns a case and scores what came of it, and the truth beside it.
+pub fn run_case(case: &BenchCase, options: &AlignOptions) -> Record {
+    run_method(case, |observation, mesh, host| align(observation, mesh, options, host))
+}
+
+/// [`run_case`] with any method.
+pub fn run_method(
+    case: &BenchCase,
+    method: impl FnOnce(&Observation, &Mesh, &mut dyn Host) -> Result<Alignment>,
+) -> Record {
+    let begun = Instant::now();
+    let outcome = method(&case.observation, &case.mesh, &mut Clock(begun));
+    let seconds = begun.elapsed().as_secs_f64();
+    let (alignment, error) = match outcome {
+        Ok(alignment) => (Some(alignment), None),
+        Err(error) => (None, Some(format!("{}: {error}", error.code.as_str()))),
+    };
+    let evaluated = case.truth.as_ref().map(|truth| {
+        let scored =
+            evaluate(&case.observation, &case.mesh, &truth.camera_from_mesh, None, &EvaluateOptions::default());
+        let pose = alignment.as_ref().and_then(|a| Similarity::from_column_major(&a.camera_from_mesh.matrix).ok());
+        let errors =
+            pose.and_then(|pose| pose_errors(&case.mesh, &pose, &truth.camera_from_mesh, &truth.symmetry).ok());
+        (scored.ok(), errors)
+    });
+    let (scored, errors) = evaluated.unwrap_or_default();
+    Record {
+        name: case.name.clone(),
+        tier: case.tier.clone(),
+        class: case.class.clone(),
+        family: case.family.clone(),
+        tags: case.tags.clone(),
+        parameters: case.parameters.clone(),
+        alignment,
+        error,
+        errors,
+        truth_metrics: scored.as_ref().map(|scored| scored.metrics),
+        truth_scale_ratio: scored.map(|scored| scored.scale_ratio),
+        seconds,
+    }
+}

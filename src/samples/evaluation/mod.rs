@@ -1,0 +1,47 @@
+//! An evaluation set: cases of many objects, as hard as SAM's masks, depth models and generated meshes make them.
+//!
+//! Case i follows from the set's seed and i alone. i % 3 is its tier, and (i / 3) runs through the tier's classes, so
+//! that any run of cases holds all of them evenly. A draw that shows too little is drawn again, from numbers of its own.
+
+pub mod case;
+mod cluster;
+mod draft;
+mod figures;
+mod generator;
+mod kitchen;
+mod mask;
+mod readings;
+mod scans;
+mod scene;
+mod solid;
+pub mod tier;
+mod tools;
+
+use crate::geometry::random::Random;
+
+/// Which object, and its dimensions.
+const OBJECT_STREAM: u64 = 1;
+/// Camera and scene.
+const SCENE_STREAM: u64 = 2;
+/// Faults of the generated mesh.
+const GENERATOR_STREAM: u64 = 3;
+/// Faults of the depth map.
+const READINGS_STREAM: u64 = 4;
+/// Faults of the mask.
+const MASK_STREAM: u64 = 5;
+
+/// Standard normal (Box and Muller).
+fn normal(random: &mut Random) -> f64 {
+    let (u, v) = (1.0 - random.uniform(), random.uniform());
+    (-2.0 * libm::log(u)).sqrt() * libm::cos(core::f64::consts::TAU * v)
+}
+
+/// `true` with this probability.
+fn chance(random: &mut Random, probability: f64) -> bool {
+    random.uniform() < probability
+}
+
+/// −1 or 1.
+fn sign(random: &mut Random) -> f64 {
+    if chance(random, 0.5) { -1.0 } else { 1.0 }
+}
