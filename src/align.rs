@@ -8,6 +8,8 @@ pub mod field;
 mod frames;
 mod judge;
 pub mod options;
+mod paper;
+mod precise;
 pub mod progress;
 pub mod register;
 pub mod report;
@@ -15,32 +17,19 @@ pub mod warnings;
 
 use crate::error::Result;
 use crate::geometry::mesh::Mesh;
+use crate::geometry::similarity::Similarity;
 use crate::metrics;
 use crate::metrics::evidence::Evidence;
-use crate::stages::extents::{Extents, initial_scale, target_from_source};
+use crate::stages::extents::{Extents, initial_scale};
 use crate::stages::observe::Observation;
 use crate::stages::sample::{check_shape, sample_surface};
 
-use estimate::{Problem, Settings};
 use field::Options;
-use options::AlignOptions;
+use options::{AlignOptions, Preset};
 use progress::{Host, Stage, Stopwatch};
-use report::Alignment;
+use report::{Alignment, Alternative, Counts, Uncertainty};
 
-/// When each stage of [`align`] begins, as a share of the whole; from profiles of real cases.
-const PLAN: &[(Stage, f64)] = &[
-    (Stage::Observe, 0.0),
-    (Stage::Sample, 0.02),
-    (Stage::Normals, 0.05),
-    (Stage::Features, 0.2),
-    (Stage::Matching, 0.25),
-    (Stage::Ransac, 0.35),
-    (Stage::Filter, 0.5),
-    (Stage::Icp, 0.5),
-    (Stage::Metrics, 0.7),
-];
-
-/// Aligns a mesh to an observation: preset `paper`, §3.1 to §3.3.
+/// Aligns a mesh to an observation, by the preset's method.
 ///
 /// # Errors
 /// [`ErrorCode::InvalidOption`](crate::error::ErrorCode::InvalidOption),
@@ -50,38 +39,34 @@ pub fn align(observation: &Observation, mesh: &Mesh, options: &AlignOptions, hos
     options.validate()?;
     check_shape(mesh)?;
     let seed = u64::from(options.seed);
-    let mut stages = Stopwatch::new(host, PLAN);
+    let mut stages = Stopwatch::new(host, if options.preset == Preset::Paper { paper::PLAN } else { precise::PLAN });
 
-    // §3.1: the partial cloud P_obs from depth and mask, the complete cloud P_rec from the mesh.
+    // §3.1: the partial cloud P_obs from depth and mask, the complete cloud P_rec from the mesh, s_init from the boxes.
     stages.enter(Stage::Observe);
     let observed = observation.cloud(options.max_observed_points as usize, seed);
     stages.enter(Stage::Sample);
     let reconstructed = sample_surface(mesh, options.surface_samples as usize, seed)?;
-
-    // §3.1: s_init from the boxes. From here both clouds are centred, with a box diagonal of 1.
+    let extents_obs = Extents::of("depth", &observed.points)?;
+    let extents_rec = Extents::of("mesh", &reconstructed.points)?;
     stages.enter(Stage::Normals);
     let evidence = Evidence::new(observed, reconstructed);
-    let extents_obs = Extents::of("depth", &evidence.observed.points)?;
-    let extents_rec = Extents::of("mesh", &evidence.reconstructed.points)?;
-    let target = extents_obs.normalized(&evidence.observed);
-    let source = extents_rec.normalized(&evidence.reconstructed);
 
-    // §3.2 and §3.3: descriptors, guarded RANSAC, hallucination filter, scale-locked ICP.
-    let settings = Settings::of(options);
-    let estimated = Problem::new(&source, &target, &settings, &mut stages).solve(&settings, &mut stages)?;
-    let camera_from_mesh = target_from_source(&extents_obs, &estimated.target_from_source, &extents_rec);
+    let estimated = match options.preset {
+        Preset::Paper => paper::estimate(&evidence, [&extents_obs, &extents_rec], options, &mut stages)?,
+        Preset::Precise => precise::estimate(observation, mesh, options, &mut stages)?,
+    };
 
     stages.enter(Stage::Metrics);
-    let metrics = metrics::score(observation, mesh, &camera_from_mesh, &evidence)?;
+    let metrics = metrics::score(observation, mesh, &estimated.camera_from_mesh, &evidence)?;
     let timings_ms = stages.finish();
 
     let initial_scale = initial_scale(&extents_obs, &extents_rec);
-    let scale_ratio = camera_from_mesh.scale / initial_scale;
+    let scale_ratio = estimated.camera_from_mesh.scale / initial_scale;
     let mut warnings = warnings::about_observation(observation);
     warnings.extend(warnings::about_scale(scale_ratio, estimated.clamped));
     warnings.extend(warnings::about_convergence(estimated.converged, estimated.counts.icp_iterations));
     Ok(Alignment {
-        camera_from_mesh: (&camera_from_mesh).into(),
+        camera_from_mesh: (&estimated.camera_from_mesh).into(),
         preset: options.preset,
         seed: options.seed,
         initial_scale,
@@ -89,10 +74,31 @@ pub fn align(observation: &Observation, mesh: &Mesh, options: &AlignOptions, hos
         collapsed: report::is_collapsed(scale_ratio),
         clamped: estimated.clamped,
         converged: estimated.converged,
-        residual_m: estimated.rms * extents_obs.diagonal(),
+        residual_m: estimated.residual_m,
+        confidence: estimated.confidence,
+        score: estimated.score,
+        alternatives: estimated.alternatives,
+        uncertainty: estimated.uncertainty,
         metrics,
-        counts: estimated.counts,
+        counts: Counts {
+            source_points: evidence.reconstructed.len(),
+            target_points: evidence.observed.len(),
+            ..estimated.counts
+        },
         timings_ms,
         warnings,
     })
+}
+
+/// What a preset's method found.
+struct Estimated {
+    camera_from_mesh: Similarity,
+    clamped: bool,
+    converged: bool,
+    residual_m: f64,
+    confidence: Option<f64>,
+    score: Option<f64>,
+    alternatives: Vec<Alternative>,
+    uncertainty: Option<Uncertainty>,
+    counts: Counts,
 }

@@ -34,7 +34,7 @@ fn set_fields(object: &JsValue, also: &[&str], fields: &mut [(&'static str, Fiel
         }
         match fields.iter_mut().find(|(field, _)| *field == name) {
             Some((_, field)) => {
-                if !set(field, &value) {
+                if !set(field, &value)? {
                     return Err(field.error(&name, describe(&value)));
                 }
                 field.check(&name)?;
@@ -70,40 +70,77 @@ fn value_of(field: &Field<'_>) -> JsValue {
         Field::Number { value, .. } => (**value).into(),
         Field::Positive(value) => value.map_or(JsValue::NULL, Into::into),
         Field::Flag(value) => (**value).into(),
+        Field::Switch(value) => value.map_or(JsValue::NULL, Into::into),
+        Field::Bounds(None) | Field::Direction(None) | Field::Transform(_) => JsValue::NULL,
+        Field::Bounds(Some(bounds)) => numbers_of(bounds.as_slice()),
+        Field::Direction(Some(direction)) => numbers_of(direction.as_slice()),
+        Field::Symmetry(_) => "auto".into(),
         Field::Guard(None) => JsValue::NULL,
-        Field::Guard(Some([min, max])) => Array::of2(&(*min).into(), &(*max).into()).into(),
+        Field::Guard(Some(bounds)) => numbers_of(bounds.as_slice()),
         Field::Choice(choice) => choice.name().into(),
     }
 }
 
+fn numbers_of(numbers: &[f64]) -> JsValue {
+    numbers.iter().map(|x| JsValue::from(*x)).collect::<Array>().into()
+}
+
 /// Sets a field from a value of its type; `false` for any other. Ranges are the field's own affair.
-fn set(field: &mut Field<'_>, value: &JsValue) -> bool {
+fn set(field: &mut Field<'_>, value: &JsValue) -> Result<bool> {
     match field {
         Field::Count { value: count, .. } => match value.as_f64() {
             Some(x) if x.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&x) => **count = x as u32,
-            _ => return false,
+            _ => return Ok(false),
         },
         Field::Number { value: number, .. } => match value.as_f64() {
             Some(x) => **number = x,
-            None => return false,
+            None => return Ok(false),
         },
         Field::Positive(number) => match value.as_f64() {
             Some(x) => **number = Some(x),
             None if value.is_null() => **number = None,
-            None => return false,
+            None => return Ok(false),
         },
         Field::Flag(flag) => match value.as_bool() {
             Some(x) => **flag = x,
-            None => return false,
+            None => return Ok(false),
         },
+        Field::Switch(flag) => match value.as_bool() {
+            Some(x) => **flag = Some(x),
+            None if value.is_null() => **flag = None,
+            None => return Ok(false),
+        },
+        Field::Bounds(bounds) => match bounds_of(value) {
+            Some(x) => **bounds = Some(x),
+            None if value.is_null() => **bounds = None,
+            None => return Ok(false),
+        },
+        Field::Direction(direction) => match to_numbers(value, "direction") {
+            Ok(x) => **direction = Some(x),
+            Err(_) if value.is_null() => **direction = None,
+            Err(_) => return Ok(false),
+        },
+        Field::Symmetry(known) => **known = symmetry(value)?,
+        Field::Transform(transform) => {
+            **transform = if value.is_null() { None } else { Some(similarity(value, "options.initial")?) }
+        }
         Field::Guard(guard) => match to_numbers(value, "guard") {
             Ok(bounds) => **guard = Some(bounds),
             Err(_) if value.is_null() => **guard = None,
-            Err(_) => return false,
+            Err(_) => return Ok(false),
         },
-        Field::Choice(choice) => return value.as_string().is_some_and(|name| choice.set(&name)),
+        Field::Choice(choice) => return Ok(value.as_string().is_some_and(|name| choice.set(&name))),
     }
-    true
+    Ok(true)
+}
+
+/// A number for both bounds, `[min, max]` or `{ min, max }`.
+fn bounds_of(value: &JsValue) -> Option<[f64; 2]> {
+    if let Some(x) = value.as_f64() {
+        return Some([x, x]);
+    }
+    let bound = |key| get(value, key).and_then(|x| x.as_f64());
+    bound("min").zip(bound("max")).map(|(min, max)| [min, max]).or_else(|| to_numbers(value, "bounds").ok())
 }
 
 fn unknown_option(name: &str, known: &[&str]) -> Error {
@@ -154,29 +191,28 @@ pub fn scale(options: &JsValue) -> Result<ScaleOption> {
 pub fn truth(options: &JsValue) -> Result<Option<Truth>> {
     let Some(value) = get(options, "truth") else { return Ok(None) };
     let camera_from_mesh = similarity(&value, "options.truth")?;
-    Ok(Some(Truth { camera_from_mesh, symmetry: symmetry(options)? }))
+    Ok(Some(Truth { camera_from_mesh, symmetry: get(options, "symmetry").map_or(Ok(Symmetry::None), |s| symmetry(&s))? }))
 }
 
 /// `"none"`, `"auto"`, `"auto-revolution"`, or `[{ axis, fold? }]`.
-fn symmetry(options: &JsValue) -> Result<Symmetry> {
-    let Some(value) = get(options, "symmetry") else { return Ok(Symmetry::None) };
+fn symmetry(value: &JsValue) -> Result<Symmetry> {
     match value.as_string().as_deref() {
         Some("none") => return Ok(Symmetry::None),
         Some("auto") => return Ok(Symmetry::Auto),
         Some("auto-revolution") => return Ok(Symmetry::AutoRevolution),
         _ => {}
     }
-    if !Array::is_array(&value) {
+    if !Array::is_array(value) {
         let remedy = "A missing fold declares a continuous symmetry about the axis.";
         let error = wrong_type(
             "options.symmetry",
-            &value,
+            value,
             "\"none\", \"auto\", \"auto-revolution\" or [{ axis: [x, y, z], fold? }]",
             remedy,
         );
         return Err(Error { code: ErrorCode::InvalidOption, ..error });
     }
-    let array = Array::from(&value);
+    let array = Array::from(value);
     let axes = array.iter().map(|declared| {
         let axis = get(&declared, "axis").unwrap_or(JsValue::UNDEFINED);
         let axis = to_numbers(&axis, "options.symmetry.axis")?;

@@ -25,7 +25,7 @@ use grid::CropGrid;
 use pose::{CropPose, MeshFrame};
 use refine::Refiner;
 use render::{Canvas, Model};
-use score::{Scoring, Weights};
+use score::{Score, Scoring, Weights};
 
 /// Work and objective of a search.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,68 +72,108 @@ impl Default for SearchSettings {
 /// Rotations nearer than this are one candidate, on the coarse grid and on the middle one; radians.
 const DISTINCT: [f64; 2] = [0.21, 0.105];
 
-/// What the search found, best first.
-#[derive(Debug, Clone)]
-pub struct Found {
+/// A search: the observation and the mesh, prepared.
+pub struct Search {
     /// The frame that the poses are from.
     pub frame: MeshFrame,
-    /// The finalists, on the fine grid.
-    pub candidates: Vec<Candidate>,
     /// The cleaned observation.
     pub observation: CleanObservation,
-    /// Images drawn.
+    /// Images drawn so far.
     pub renders: usize,
+    settings: SearchSettings,
+    /// Coarse, middle and fine.
+    models: [Model; 3],
+    canvas: Canvas,
 }
 
-/// Searches all rotations.
-pub fn search(observation: &Observation, mesh: &Mesh, settings: &SearchSettings) -> Option<Found> {
-    let frame = MeshFrame::of(mesh);
-    let clean = CleanObservation::new(observation);
-    let fine = decimate(mesh, settings.triangles[2]);
-    let fine = frame.normalized(&fine)?;
-    let middle = decimate(&fine, settings.triangles[1]);
-    let coarse = decimate(&middle, settings.triangles[0]);
-    let models = [coarse, middle, fine].map(|mesh| Model::new(&mesh));
-    let mut canvas = Canvas::default();
-
-    let grid = CropGrid::new(&clean, settings.cells[0]);
-    let anchors = if settings.anchors {
-        anchors::anchors(&grid, settings.occlusion)
-    } else {
-        vec![anchors::Anchor { zoom: 1.0, towards: [0.0; 2] }]
-    };
-    let stage = Coarse {
-        model: &models[0],
-        grid: &grid,
-        scoring: settings.scoring(&clean, 0),
-        anchors: &anchors,
-        median_m: clean.median_m,
-    };
-    let outermost = coarse::outermost(&models[2]);
-    let candidates: Vec<Candidate> = (0..settings.rotations)
-        .filter_map(|i| stage.best(&mut canvas, &outermost, super_fibonacci(i, settings.rotations)))
-        .collect();
-    let mut candidates = distinct(candidates, settings.keep[0], DISTINCT[0]);
-
-    for level in 1..3 {
-        let grid = CropGrid::new(&clean, settings.cells[level]);
-        let refiner = Refiner {
-            model: &models[level],
-            grid: &grid,
-            scoring: settings.scoring(&clean, level),
-            lock_scale: settings.lock_scale,
-        };
-        for candidate in &mut candidates {
-            let (pose, score) = refiner.refine(&mut canvas, candidate.pose, settings.iterations[level - 1]);
-            *candidate = Candidate { pose, score };
-        }
-        let keep = if level == 1 { settings.keep[1] } else { usize::MAX };
-        candidates = distinct(candidates, keep, DISTINCT[1]);
+impl Search {
+    /// Cleans the observation and decimates the mesh. `None` where decimation leaves no triangle.
+    pub fn new(observation: &Observation, mesh: &Mesh, settings: SearchSettings) -> Option<Self> {
+        let frame = MeshFrame::of(mesh);
+        let fine = frame.normalized(&decimate(mesh, settings.triangles[2]))?;
+        let middle = decimate(&fine, settings.triangles[1]);
+        let coarse = decimate(&middle, settings.triangles[0]);
+        Some(Self {
+            frame,
+            observation: CleanObservation::new(observation),
+            renders: 0,
+            settings,
+            models: [coarse, middle, fine].map(|mesh| Model::new(&mesh)),
+            canvas: Canvas::default(),
+        })
     }
-    Some(Found { frame, candidates, observation: clean, renders: 0 })
+
+    /// The best distinct rotations of the grid.
+    pub fn coarse(&mut self) -> Vec<Candidate> {
+        let settings = &self.settings;
+        let grid = CropGrid::new(&self.observation, settings.cells[0]);
+        let anchors = if settings.anchors {
+            anchors::anchors(&grid, settings.occlusion)
+        } else {
+            vec![anchors::Anchor { zoom: 1.0, towards: [0.0; 2] }]
+        };
+        let stage = Coarse {
+            model: &self.models[0],
+            grid: &grid,
+            scoring: settings.scoring(&self.observation, 0),
+            anchors: &anchors,
+            median_m: self.observation.median_m,
+        };
+        let outermost = coarse::outermost(&self.models[2]);
+        let candidates: Vec<Candidate> = (0..settings.rotations)
+            .filter_map(|i| stage.best(&mut self.canvas, &outermost, super_fibonacci(i, settings.rotations)))
+            .collect();
+        self.renders += candidates.len() * anchors.len();
+        distinct(candidates, settings.keep[0], DISTINCT[0])
+    }
+
+    /// The candidates refined on the middle grid, and the best of them on the fine one; best first.
+    pub fn refine(&mut self, mut candidates: Vec<Candidate>) -> Vec<Candidate> {
+        for level in 1..3 {
+            let settings = &self.settings;
+            let grid = CropGrid::new(&self.observation, settings.cells[level]);
+            let refiner = Refiner {
+                model: &self.models[level],
+                grid: &grid,
+                scoring: settings.scoring(&self.observation, level),
+                lock_scale: settings.lock_scale,
+            };
+            for candidate in &mut candidates {
+                let (pose, score) = refiner.refine(&mut self.canvas, candidate.pose, settings.iterations[level - 1]);
+                *candidate = Candidate { pose, score };
+            }
+            let keep = if level == 1 { settings.keep[1] } else { usize::MAX };
+            candidates = distinct(candidates, keep, DISTINCT[1]);
+        }
+        candidates
+    }
+
+    /// The score of any pose on the finest grid.
+    pub fn score(&mut self, pose: &CropPose) -> Score {
+        let grid = CropGrid::new(&self.observation, self.settings.cells[2]);
+        let scoring = self.settings.scoring(&self.observation, 2);
+        Refiner { model: &self.models[2], grid: &grid, scoring, lock_scale: false }.score(&mut self.canvas, pose)
+    }
 }
 
 impl SearchSettings {
+    /// Less of everything.
+    pub fn fast() -> Self {
+        Self {
+            rotations: 600,
+            keep: [12, 3],
+            cells: [250, 700, 2500],
+            triangles: [300, 1200, 4000],
+            iterations: [10, 10],
+            ..Self::default()
+        }
+    }
+
+    /// More of everything.
+    pub fn best() -> Self {
+        Self { rotations: 4000, keep: [64, 10], iterations: [20, 20], ..Self::default() }
+    }
+
     fn scoring(&self, clean: &CleanObservation, level: usize) -> Scoring {
         let mut weights = self.weights;
         // Outlines mean little on cells that are as wide as the errors of the rotation grid.
@@ -167,12 +207,3 @@ fn distinct(candidates: Vec<Candidate>, count: usize, angle: f64) -> Vec<Candida
     kept
 }
 
-/// The score of any pose on the finest grid, as the search would see it.
-pub fn score_of(observation: &Observation, mesh: &Mesh, pose: &CropPose, settings: &SearchSettings) -> Option<score::Score> {
-    let frame = MeshFrame::of(mesh);
-    let clean = CleanObservation::new(observation);
-    let model = Model::new(&frame.normalized(&decimate(mesh, settings.triangles[2]))?);
-    let grid = CropGrid::new(&clean, settings.cells[2]);
-    let refiner = Refiner { model: &model, grid: &grid, scoring: settings.scoring(&clean, 2), lock_scale: false };
-    Some(refiner.score(&mut Canvas::default(), pose))
-}

@@ -1,0 +1,48 @@
+//! Preset `paper`: the paper's method, faithfully (§3.1 to §3.3).
+
+use super::Estimated;
+use super::estimate::{Problem, Settings};
+use super::options::AlignOptions;
+use super::progress::{Stage, Stopwatch};
+use crate::error::Result;
+use crate::metrics::evidence::Evidence;
+use crate::stages::extents::{Extents, target_from_source};
+
+/// When each stage begins, as a share of the whole; from profiles of real cases.
+pub(super) const PLAN: &[(Stage, f64)] = &[
+    (Stage::Observe, 0.0),
+    (Stage::Sample, 0.02),
+    (Stage::Normals, 0.05),
+    (Stage::Features, 0.2),
+    (Stage::Matching, 0.25),
+    (Stage::Ransac, 0.35),
+    (Stage::Filter, 0.5),
+    (Stage::Icp, 0.5),
+    (Stage::Metrics, 0.7),
+];
+
+/// Descriptors, guarded RANSAC, hallucination filter, scale-locked ICP.
+pub(super) fn estimate(
+    evidence: &Evidence,
+    extents: [&Extents; 2],
+    options: &AlignOptions,
+    stages: &mut Stopwatch<'_>,
+) -> Result<Estimated> {
+    let [observed, reconstructed] = extents;
+    // §3.1: from here both clouds are centred, with a box diagonal of 1.
+    let target = observed.normalized(&evidence.observed);
+    let source = reconstructed.normalized(&evidence.reconstructed);
+    let settings = Settings::of(options);
+    let estimated = Problem::new(&source, &target, &settings, stages).solve(&settings, stages)?;
+    Ok(Estimated {
+        camera_from_mesh: target_from_source(observed, &estimated.target_from_source, reconstructed),
+        clamped: estimated.clamped,
+        converged: estimated.converged,
+        residual_m: estimated.rms * observed.diagonal(),
+        confidence: None,
+        score: None,
+        alternatives: Vec::new(),
+        uncertainty: None,
+        counts: estimated.counts,
+    })
+}
