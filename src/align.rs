@@ -9,7 +9,7 @@ mod frames;
 mod judge;
 pub mod options;
 mod paper;
-mod precise;
+pub mod precise;
 pub mod progress;
 pub mod register;
 pub mod report;
@@ -23,6 +23,7 @@ use crate::metrics::evidence::Evidence;
 use crate::stages::extents::{Extents, initial_scale};
 use crate::stages::observe::Observation;
 use crate::stages::sample::{check_shape, sample_surface};
+use crate::stages::search::SearchSettings;
 
 use field::Options;
 use options::{AlignOptions, Preset};
@@ -36,6 +37,20 @@ use report::{Alignment, Alternative, Counts, Uncertainty};
 /// [`ErrorCode::DegenerateMesh`](crate::error::ErrorCode::DegenerateMesh),
 /// [`ErrorCode::NoConsensus`](crate::error::ErrorCode::NoConsensus): never an identity in place of an answer.
 pub fn align(observation: &Observation, mesh: &Mesh, options: &AlignOptions, host: &mut dyn Host) -> Result<Alignment> {
+    align_with(observation, mesh, options, &precise::search_settings(options), host)
+}
+
+/// [`align`], with the search's own settings in place of those that follow from the options: for ablations.
+///
+/// # Errors
+/// As [`align`].
+pub fn align_with(
+    observation: &Observation,
+    mesh: &Mesh,
+    options: &AlignOptions,
+    search: &SearchSettings,
+    host: &mut dyn Host,
+) -> Result<Alignment> {
     options.validate()?;
     check_shape(mesh)?;
     let seed = u64::from(options.seed);
@@ -53,7 +68,7 @@ pub fn align(observation: &Observation, mesh: &Mesh, options: &AlignOptions, hos
 
     let estimated = match options.preset {
         Preset::Paper => paper::estimate(&evidence, [&extents_obs, &extents_rec], options, &mut stages)?,
-        Preset::Precise => precise::estimate(observation, mesh, options, &mut stages)?,
+        Preset::Precise => precise::estimate(observation, mesh, search, &mut stages)?,
     };
 
     stages.enter(Stage::Metrics);

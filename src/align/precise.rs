@@ -25,12 +25,11 @@ pub(super) const PLAN: &[(Stage, f64)] = &[
 pub(super) fn estimate(
     observation: &Observation,
     mesh: &Mesh,
-    options: &AlignOptions,
+    settings: &SearchSettings,
     stages: &mut Stopwatch<'_>,
 ) -> Result<Estimated> {
-    let settings = settings(options);
     stages.enter(Stage::Prepare);
-    let mut search = Search::new(observation, mesh, settings).ok_or_else(no_candidate)?;
+    let mut search = Search::new(observation, mesh, *settings).ok_or_else(no_candidate)?;
     stages.enter(Stage::Search);
     let candidates = search.coarse();
     stages.enter(Stage::Refine);
@@ -57,7 +56,8 @@ pub(super) fn estimate(
     })
 }
 
-fn settings(options: &AlignOptions) -> SearchSettings {
+/// The search that the options ask for.
+pub fn search_settings(options: &AlignOptions) -> SearchSettings {
     match options.quality {
         Quality::Fast => SearchSettings::fast(),
         Quality::Balanced => SearchSettings::default(),

@@ -7,9 +7,10 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::evaluation::case::EvaluationCase;
-use crate::align::align;
+use crate::align::align_with;
 use crate::align::evaluate::{EvaluateOptions, Truth, evaluate};
 use crate::align::options::AlignOptions;
+use crate::align::precise::search_settings;
 use crate::align::progress::{Host, Stage};
 use crate::align::report::Alignment;
 use crate::error::{Error, ErrorCode, Result};
@@ -20,6 +21,8 @@ use crate::metrics::Metrics;
 use crate::metrics::pose_error::{PoseErrors, pose_errors};
 use crate::metrics::symmetry::{Symmetry, SymmetryAxis};
 use crate::stages::observe::Observation;
+use crate::stages::search::pose::CropPose;
+use crate::stages::search::{Search, SearchSettings};
 
 /// A case, wherever it came from.
 #[derive(Debug, Clone)]
@@ -68,6 +71,8 @@ pub struct Record {
     pub errors: Option<PoseErrors>,
     /// The true pose's own metrics.
     pub truth_metrics: Option<Metrics>,
+    /// What the search's own objective says of the truth.
+    pub truth_score: Option<f64>,
     /// The true scale by the initial one, s / s_init.
     pub truth_scale_ratio: Option<f64>,
     /// What `align` took.
@@ -191,8 +196,51 @@ impl Host for Clock {
 }
 
 /// Aligns a case and scores what came of it, and the truth beside it.
-pub fn run_case(case: &BenchCase, options: &AlignOptions) -> Record {
-    run_method(case, |observation, mesh, host| align(observation, mesh, options, host))
+///
+/// `overrides` change single settings of the search (see [`override_setting`]).
+pub fn run_case(case: &BenchCase, options: &AlignOptions, overrides: &[(String, f64)]) -> Record {
+    let mut settings = search_settings(options);
+    for (name, value) in overrides {
+        override_setting(&mut settings, name, *value);
+    }
+    let mut record = run_method(case, |observation, mesh, host| align_with(observation, mesh, options, &settings, host));
+    record.truth_score = case.truth.as_ref().and_then(|truth| {
+        let mut search = Search::new(&case.observation, &case.mesh, settings)?;
+        let pose = CropPose::of_similarity(&truth.camera_from_mesh, &search.frame)?;
+        Some(f64::from(search.score(&pose).total))
+    });
+    record
+}
+
+/// Sets one of the search's settings by its name; `false` where there is none of that name. Flags are 0 or 1.
+pub fn override_setting(settings: &mut SearchSettings, name: &str, value: f64) -> bool {
+    let count = value as usize;
+    match name {
+        "rotations" => settings.rotations = count,
+        "keep0" => settings.keep[0] = count,
+        "keep1" => settings.keep[1] = count,
+        "cells0" => settings.cells[0] = count,
+        "cells1" => settings.cells[1] = count,
+        "cells2" => settings.cells[2] = count,
+        "triangles0" => settings.triangles[0] = count,
+        "triangles1" => settings.triangles[1] = count,
+        "triangles2" => settings.triangles[2] = count,
+        "iterations0" => settings.iterations[0] = count,
+        "iterations1" => settings.iterations[1] = count,
+        "depthError0" => settings.depth_error[0] = value,
+        "depthError1" => settings.depth_error[1] = value,
+        "depthError2" => settings.depth_error[2] = value,
+        "overlap" => settings.weights.overlap = value as f32,
+        "depth" => settings.weights.depth = value as f32,
+        "normals" => settings.weights.normals = value as f32,
+        "outline" => settings.weights.outline = value as f32,
+        "occluded" => settings.weights.occluded = value as f32,
+        "occlusion" => settings.occlusion = value != 0.0,
+        "anchors" => settings.anchors = value != 0.0,
+        "lockScale" => settings.lock_scale = value != 0.0,
+        _ => return false,
+    }
+    true
 }
 
 /// [`run_case`] with any method.
@@ -227,6 +275,7 @@ pub fn run_method(
         error,
         errors,
         truth_metrics: scored.as_ref().map(|scored| scored.metrics),
+        truth_score: None,
         truth_scale_ratio: scored.map(|scored| scored.scale_ratio),
         seconds,
     }

@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use lexopt::prelude::*;
 use sim3align::align::field::{Field, Options};
 use sim3align::align::options::AlignOptions;
+use sim3align::samples::benchmark::override_setting;
+use sim3align::stages::search::SearchSettings;
 use sim3align::samples::evaluation::case::CASES;
 use sim3align::samples::evaluation::tier::{Class, Tier};
 
@@ -43,6 +45,7 @@ pub struct Row {
     pub name: String,
     /// The options.
     pub options: AlignOptions,
+    pub search: Vec<(String, f64)>,
 }
 
 /// What is asked for.
@@ -102,15 +105,21 @@ impl Arguments {
             }
         }
         let mut base = AlignOptions::default();
-        options.iter().try_for_each(|assignment| assign(&mut base, assignment))?;
+        let mut base_search = Vec::new();
+        for assignment in options {
+            assign(&mut base, &mut base_search, &assignment)?;
+        }
         for text in rows {
             let (name, assignments) = text.split_once(':').ok_or("--row without a colon after its name")?;
             let mut options = base.clone();
-            assignments.split_whitespace().try_for_each(|assignment| assign(&mut options, assignment))?;
-            arguments.rows.push(Row { name: name.trim().into(), options });
+            let mut search = base_search.clone();
+            for assignment in assignments.split_whitespace() {
+                assign(&mut options, &mut search, assignment)?;
+            }
+            arguments.rows.push(Row { name: name.trim().into(), options, search });
         }
         if arguments.rows.is_empty() {
-            arguments.rows.push(Row { name: name_of(base.preset), options: base });
+            arguments.rows.push(Row { name: name_of(base.preset), options: base, search: base_search });
         }
         let anything_else = !arguments.cases.is_empty() || arguments.only.is_some();
         arguments.generated = generated.unwrap_or(if anything_else { 0 } else { CASES });
@@ -126,9 +135,17 @@ fn list<T, E: std::fmt::Display>(text: &str, parse: impl Fn(&str) -> Result<T, E
     text.split(',').map(|part| parse(part.trim()).map_err(|error| format!("{part:?}: {error}"))).collect()
 }
 
-/// Sets an option from `name=value`.
-fn assign(options: &mut AlignOptions, assignment: &str) -> Result<(), String> {
+/// Sets an option from `name=value`, or one of the search's settings from `search.name=number`.
+fn assign(options: &mut AlignOptions, search: &mut Vec<(String, f64)>, assignment: &str) -> Result<(), String> {
     let (name, value) = assignment.split_once('=').ok_or_else(|| format!("{assignment:?} is no NAME=VALUE"))?;
+    if let Some(setting) = name.strip_prefix("search.") {
+        let value = value.parse().map_err(|_| format!("{name}: found {value:?}, expected a number"))?;
+        if !override_setting(&mut SearchSettings::default(), setting, value) {
+            return Err(format!("the search has no setting {setting}"));
+        }
+        search.push((setting.to_owned(), value));
+        return Ok(());
+    }
     let mut fields = options.fields();
     let known = || AlignOptions::default().fields().iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
     let (_, field) = fields
@@ -156,6 +173,23 @@ fn set(field: &mut Field<'_>, text: &str) -> bool {
             true
         }
         Field::Positive(number) => text.parse().map(|value| **number = Some(value)).is_ok(),
+        Field::Switch(flag) => {
+            **flag = None;
+            text == "null" || text.parse().map(|value| **flag = Some(value)).is_ok()
+        }
+        Field::Bounds(bounds) => match list(text, str::parse::<f64>).as_deref() {
+            Ok([fixed]) => {
+                **bounds = Some([*fixed, *fixed]);
+                true
+            }
+            Ok([min, max]) => {
+                **bounds = Some([*min, *max]);
+                true
+            }
+            _ => false,
+        },
+        // Differ from case to case.
+        Field::Direction(_) | Field::Symmetry(_) | Field::Transform(_) => false,
         Field::Guard(guard) if text == "null" => {
             **guard = None;
             true

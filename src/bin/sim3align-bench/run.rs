@@ -41,7 +41,7 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
     let begun = std::time::Instant::now();
     let records = in_order(arguments.threads, &sources, |source| {
         let case = load(source, &set)?;
-        Ok(arguments.rows.iter().map(|row| run_case(&case, &row.options)).collect())
+        Ok(arguments.rows.iter().map(|row| run_case(&case, &row.options, &row.search)).collect())
     });
     let records: Vec<Vec<Record>> = records.into_iter().collect::<Result<_, String>>()?;
     eprintln!("{} cases in {:.1} s", records.len(), begun.elapsed().as_secs_f64());
