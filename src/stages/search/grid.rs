@@ -3,7 +3,6 @@
 use glam::Vec3;
 
 use super::clean::CleanObservation;
-use crate::geometry::distance_transform::squared_distances;
 
 /// Room around the mask's box, as a share of its longer side, for silhouettes that are too large.
 const MARGIN: f64 = 0.35;
@@ -13,6 +12,8 @@ const MAX_SAMPLES: usize = 4;
 const MIN_READINGS: f32 = 0.34;
 /// Readings in a cell's window, of nine, from which a normal is fitted.
 const MIN_NORMAL_CELLS: u32 = 5;
+/// Outline distance of a cell that the crop does not reach, cells.
+const FAR: f32 = 100.0;
 /// Depth of a cell outside the image: nearer than anything, so that nothing there is contradicted.
 const OUTSIDE_M: f32 = 1e-6;
 
@@ -41,7 +42,7 @@ pub struct CropGrid {
     pub normals: Vec<Vec3>,
     /// Any depth, metres; 0 where there is no reading, next to nothing outside the image.
     pub scene: Vec<f32>,
-    /// Signed distance to the mask's own outermost cells, cells: 0 on them, negative inside.
+    /// Signed distance to the mask's own outermost cells, cells: 0 on them on average, negative inside.
     pub outline: Vec<f32>,
     /// The mask's box: [[left, right], [top, bottom]], outer edges, cells.
     pub bounds: [[f64; 2]; 2],
@@ -71,13 +72,13 @@ impl CropGrid {
             depth: Vec::with_capacity(width * height),
             normals: Vec::new(),
             scene: Vec::with_capacity(width * height),
-            outline: Vec::new(),
+            outline: Vec::with_capacity(width * height),
             bounds: [[0.0; 2]; 2],
         };
         grid.sample(observation);
         grid.mask_cells = grid.mask.iter().filter(|m| **m).count();
         grid.fit_normals();
-        grid.measure_outline();
+        grid.measure_bounds();
         grid
     }
 
@@ -111,7 +112,10 @@ impl CropGrid {
                         sum.add(observation, u, v);
                     }
                 }
-                let inside = sum.mask >= 0.5 * total;
+                // Beyond the crop the distance is not known, but far.
+                let outline = if sum.pixels > 0.0 { sum.outline / sum.pixels } else { f32::INFINITY };
+                let inside = outline < 0.0 && 2.0 * sum.pixels >= total;
+                self.outline.push((outline / self.cell[0] as f32 + 0.5).min(FAR));
                 let known = inside && sum.readings >= MIN_READINGS * total;
                 self.mask.push(inside);
                 self.depth.push(if known { sum.depth / sum.readings } else { 0.0 });
@@ -175,14 +179,7 @@ impl CropGrid {
         Some(-normal.normalize_or_zero())
     }
 
-    fn measure_outline(&mut self) {
-        let outside: Vec<bool> = self.mask.iter().map(|m| !m).collect();
-        let to_mask = squared_distances(&self.mask, self.width, self.height);
-        let to_outside = squared_distances(&outside, self.width, self.height);
-        let distance = |i: usize| {
-            if self.mask[i] { 1.0 - (to_outside[i] as f32).sqrt() } else { (to_mask[i] as f32).sqrt() }
-        };
-        self.outline = (0..self.mask.len()).map(distance).collect();
+    fn measure_bounds(&mut self) {
         let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
         for (i, _) in self.mask.iter().enumerate().filter(|(_, m)| **m) {
             for (bound, at) in bounds.iter_mut().zip([i % self.width, i / self.width]) {
@@ -196,7 +193,8 @@ impl CropGrid {
 /// Samples of one cell.
 #[derive(Default)]
 struct Sum {
-    mask: f32,
+    outline: f32,
+    pixels: f32,
     depth: f32,
     readings: f32,
     scene: f32,
@@ -215,7 +213,8 @@ impl Sum {
             return;
         }
         let i = v as usize * observation.width + u as usize;
-        self.mask += f32::from(u8::from(observation.mask[i]));
+        self.outline += observation.outline[i];
+        self.pixels += 1.0;
         if observation.depth[i] > 0.0 {
             self.depth += observation.depth[i];
             self.readings += 1.0;
