@@ -12,8 +12,6 @@ const MAX_SAMPLES: usize = 4;
 const MIN_READINGS: f32 = 0.34;
 /// Readings in a cell's window, of nine, from which a normal is fitted.
 const MIN_NORMAL_CELLS: u32 = 5;
-/// Outline distance of a cell that the crop does not reach, cells.
-const FAR: f32 = 100.0;
 /// Depth of a cell outside the image: nearer than anything, so that nothing there is contradicted.
 const OUTSIDE_M: f32 = 1e-6;
 
@@ -112,10 +110,9 @@ impl CropGrid {
                         sum.add(observation, u, v);
                     }
                 }
-                // Beyond the crop the distance is not known, but far.
-                let outline = if sum.pixels > 0.0 { sum.outline / sum.pixels } else { f32::INFINITY };
-                let inside = outline < 0.0 && 2.0 * sum.pixels >= total;
-                self.outline.push((outline / self.cell[0] as f32 + 0.5).min(FAR));
+                let outline = sum.outline / total;
+                let inside = outline < 0.0 && 2.0 * sum.outside <= total;
+                self.outline.push(outline / self.cell[0] as f32 + 0.5);
                 let known = inside && sum.readings >= MIN_READINGS * total;
                 self.mask.push(inside);
                 self.depth.push(if known { sum.depth / sum.readings } else { 0.0 });
@@ -194,7 +191,6 @@ impl CropGrid {
 #[derive(Default)]
 struct Sum {
     outline: f32,
-    pixels: f32,
     depth: f32,
     readings: f32,
     scene: f32,
@@ -204,17 +200,18 @@ struct Sum {
 
 impl Sum {
     fn add(&mut self, observation: &CleanObservation, u: i64, v: i64) {
-        if u < 0 || v < 0 || u >= observation.image[0] as i64 || v >= observation.image[1] as i64 {
-            self.outside += 1.0;
-            return;
-        }
+        let inside_image = (0..observation.image[0] as i64).contains(&u) && (0..observation.image[1] as i64).contains(&v);
+        self.outside += f32::from(u8::from(!inside_image));
+        // Beyond the crop, the distance to the outline is that of the crop's nearest pixel and the way there.
         let (u, v) = (u - observation.origin[0] as i64, v - observation.origin[1] as i64);
-        if u < 0 || v < 0 || u >= observation.width as i64 || v >= observation.height as i64 {
+        let near_u = u.max(0).min(observation.width as i64 - 1);
+        let near_v = v.max(0).min(observation.height as i64 - 1);
+        let (du, dv) = ((u - near_u) as f32, (v - near_v) as f32);
+        let i = near_v as usize * observation.width + near_u as usize;
+        self.outline += observation.outline[i] + (du * du + dv * dv).sqrt();
+        if du != 0.0 || dv != 0.0 {
             return;
         }
-        let i = v as usize * observation.width + u as usize;
-        self.outline += observation.outline[i];
-        self.pixels += 1.0;
         if observation.depth[i] > 0.0 {
             self.depth += observation.depth[i];
             self.readings += 1.0;
