@@ -27,6 +27,8 @@ use crate::stages::sample::SurfaceMoments;
 pub const CASES: usize = 240;
 /// Fewest pixels in a mask.
 pub const MIN_MASK_PX: usize = 350;
+/// Nothing farther away is shown.
+const FARTHEST_M: f32 = 12.0;
 /// Draws of one case before giving up.
 const DRAWS: u64 = 400;
 
@@ -116,6 +118,9 @@ impl EvaluationSet {
         }
         let random = &mut Random::new(seed, READINGS_STREAM);
         let readings = Readings::draw(&scene, object.diagonal(), (tier, class), random)?;
+        if readings.missing > tier.pick(0.1, 0.25, 0.4) {
+            return Ok(None);
+        }
         let random = &mut Random::new(seed, GENERATOR_STREAM);
         let generated = generate(&object, &placed, &symmetry, &scene, (tier, class), random)?;
         let (mesh, object_from_mesh) = canonicalise(&generated.mesh, seed)?;
@@ -213,6 +218,10 @@ fn shows_enough(scene: &Scene, placed: &Mesh, object: &Object, tier: Tier, class
         _ => scene.cut < 1e-9,
     };
     if pixels < MIN_MASK_PX || visible < tier.least_visible() || !shows_class || !is_telling(scene, placed, tier) {
+        return None;
+    }
+    let far = scene.object_depth.iter().any(|z| *z > FARTHEST_M);
+    if far {
         return None;
     }
     let mut tags = Vec::new();
