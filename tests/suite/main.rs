@@ -7,6 +7,8 @@ pub mod align;
 pub mod density;
 pub mod determinism;
 pub mod distance_transform;
+#[cfg(all(feature = "samples", not(target_arch = "wasm32")))]
+pub mod evaluation;
 pub mod extents;
 pub mod filter;
 #[cfg(feature = "formats")]
