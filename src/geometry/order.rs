@@ -27,15 +27,13 @@ pub fn value_of(key: u64) -> f32 {
 #[inline(never)]
 pub fn sort(keys: &mut [u64]) {
     let mut sorted = vec![0; keys.len()];
-    for shift in (0..64).step_by(8) {
+    let first = keys.first().copied().unwrap_or_default();
+    let varying = keys.iter().fold(0, |bits, key| bits | (key ^ first));
+    for shift in (0..64).step_by(8).filter(|shift| varying >> shift & 0xff != 0) {
         let digit = |key: u64| (key >> shift) as usize & 0xff;
         let mut starts = [0_usize; 256];
         for &key in keys.iter() {
             starts[digit(key)] += 1;
-        }
-        if starts.contains(&keys.len()) {
-            // All keys share this byte.
-            continue;
         }
         let mut start = 0;
         for slot in &mut starts {
