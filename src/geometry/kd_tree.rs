@@ -1,6 +1,6 @@
 //! A kd-tree over 3D points: nearest, k nearest, within a radius.
 //!
-//! A plain median tree with leaves of eight points, points stored in leaf order. It answers as fast as the
+//! A plain median tree of boxes with leaves of sixteen points, points stored in leaf order. It answers as fast as the
 //! large crates do on surface points and costs a thirtieth of their bytes in WebAssembly. Ties in distance
 //! go to the smaller index, so that an answer never depends on the tree's shape.
 
@@ -9,7 +9,7 @@ use glam::Vec3;
 use super::cloud::Bounds;
 use super::order::{halve, pack, select_smallest};
 
-const LEAF_SIZE: usize = 8;
+const LEAF_SIZE: usize = 16;
 
 /// Points that [`KdTree::neighborhoods`] searches the tree for together.
 const GROUP_SIZE: usize = 12;
