@@ -181,7 +181,7 @@ pub fn scale(options: &JsValue) -> Result<ScaleOption> {
         _ => {
             let remedy = "Leave it out to solve for the scale.";
             let error = wrong_type("options.scale", &value, "\"free\", \"fixed\", a number or [min, max]", remedy);
-            return Err(Error { code: ErrorCode::InvalidOption, ..error });
+            return Err(error.coded(ErrorCode::InvalidOption));
         }
     };
     Ok(scale)
@@ -210,7 +210,7 @@ fn symmetry(value: &JsValue) -> Result<Symmetry> {
             "\"none\", \"auto\", \"auto-revolution\" or [{ axis: [x, y, z], fold? }]",
             remedy,
         );
-        return Err(Error { code: ErrorCode::InvalidOption, ..error });
+        return Err(error.coded(ErrorCode::InvalidOption));
     }
     let array = Array::from(value);
     let axes = array.iter().map(|declared| {

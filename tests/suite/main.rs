@@ -4,6 +4,7 @@
 #![allow(missing_docs)]
 
 pub mod align;
+pub mod angle;
 pub mod density;
 pub mod determinism;
 pub mod distance_transform;
@@ -54,6 +55,7 @@ pub mod samples;
 pub mod shapes;
 pub mod silhouette;
 pub mod similarity;
+pub mod singular_values;
 pub mod support;
 pub mod surface;
 pub mod symmetric_eigen;
