@@ -234,6 +234,7 @@ pub fn override_setting(settings: &mut SearchSettings, name: &str, value: f64) -
         "depth" => settings.weights.depth = value as f32,
         "normals" => settings.weights.normals = value as f32,
         "outline" => settings.weights.outline = value as f32,
+        "balance" => settings.weights.balance = value as f32,
         "occluded" => settings.weights.occluded = value as f32,
         "occlusion" => settings.occlusion = value != 0.0,
         "anchors" => settings.anchors = value != 0.0,

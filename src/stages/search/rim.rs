@@ -10,8 +10,10 @@ use crate::geometry::order::median;
 /// Steps of a ray across the rim, pixels, inwards (negative) to outwards.
 const STEP: f64 = 0.5;
 /// Where along a ray the object's own depth is read, and where that behind it.
-const INSIDE: [f64; 2] = [-9.0, -4.0];
+const INSIDE: [f64; 2] = [-9.0, -3.0];
 const OUTSIDE: [f64; 2] = [4.0, 9.0];
+/// How far inside the outline a depth is surely the object's, pixels.
+const DEEP: f32 = 2.0;
 /// A gap without reading, pixels, beyond which the outline could be anywhere.
 const MAX_GAP: f64 = 2.0;
 /// Rays that have to show an outline: as many, and as large a share of the rim.
@@ -72,24 +74,33 @@ struct Ray<'a> {
 impl Ray<'_> {
     /// The reading at `t` pixels outwards of the start; `None` where there is none.
     fn depth(&self, t: f64) -> Option<f64> {
-        let at = [0, 1].map(|axis| self.start[axis] + t * self.direction[axis] + 0.5);
-        let (width, height) = (self.observation.width, self.observation.height);
-        if at[0] < 0.0 || at[1] < 0.0 || at[0] >= width as f64 || at[1] >= height as f64 {
-            return None;
-        }
-        let z = self.observation.scene[at[1] as usize * width + at[0] as usize];
+        let z = self.observation.scene[self.pixel(t)?];
         (z > 0.0).then_some(f64::from(z))
     }
 
-    fn median(&self, [from, to]: [f64; 2]) -> Option<f64> {
+    fn pixel(&self, t: f64) -> Option<usize> {
+        let at = [0, 1].map(|axis| self.start[axis] + t * self.direction[axis] + 0.5);
+        let (width, height) = (self.observation.width, self.observation.height);
+        let inside = at[0] >= 0.0 && at[1] >= 0.0 && at[0] < width as f64 && at[1] < height as f64;
+        inside.then(|| at[1] as usize * width + at[0] as usize)
+    }
+
+    /// The median reading of a stretch of the ray, of pixels at least `inside` from the mask's outline.
+    fn median(&self, [from, to]: [f64; 2], inside: f32) -> Option<f64> {
         let steps = (to - from) as usize;
-        let depths = (0..=steps).filter_map(|k| self.depth(from + k as f64));
+        let stretch = (0..=steps).map(|k| from + k as f64);
+        // A thin object's ray leaves it on the other side.
+        let depths = stretch.filter(|t| self.outline(*t) <= -inside).filter_map(|t| self.depth(t));
         median(depths.map(|z| z as f32)).map(f64::from)
+    }
+
+    fn outline(&self, t: f64) -> f32 {
+        self.pixel(t).map_or(f32::INFINITY, |i| self.observation.outline[i])
     }
 
     /// Where the depth leaves the object for what is at least `jump_m` behind it.
     fn crossing(&self, jump_m: f64) -> Option<f64> {
-        let (inside, outside) = (self.median(INSIDE)?, self.median(OUTSIDE)?);
+        let (inside, outside) = (self.median(INSIDE, DEEP)?, self.median(OUTSIDE, f32::NEG_INFINITY)?);
         if outside - inside < jump_m {
             return None;
         }

@@ -16,11 +16,14 @@ pub struct Weights {
     pub outline: f32,
     /// A cell of silhouette behind an occluder, in the union: 0 is no cost, 1 that of free space.
     pub occluded: f32,
+    /// What depth, normals and outline are multiplied by: 0 is the coverage, which free space does not lower, 1 the
+    /// overlap.
+    pub balance: f32,
 }
 
 impl Default for Weights {
     fn default() -> Self {
-        Self { overlap: 0.5, depth: 0.6, normals: 0.25, outline: 0.8, occluded: 0.15 }
+        Self { overlap: 0.5, depth: 0.6, normals: 0.25, outline: 0.8, occluded: 0.15, balance: 0.0 }
     }
 }
 
@@ -122,8 +125,9 @@ impl Scoring {
         let (normals, outline) = (mean(normal_sum, normal_cells), mean(outline_sum, outline_cells));
         let overlap = both / union.max(1.0);
         let w = &self.weights;
+        let support = coverage + w.balance * (overlap - coverage);
         Score {
-            total: w.overlap * overlap + coverage * (w.depth * depth + w.normals * normals + w.outline * outline),
+            total: w.overlap * overlap + support * (w.depth * depth + w.normals * normals + w.outline * outline),
             overlap,
             coverage,
             depth,
