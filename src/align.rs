@@ -1,6 +1,8 @@
 //! The pipeline ("Robust 3D Alignment of Generative Reconstructions via Partial Monocular Observations"):
 //! depth, mask and mesh in, the similarity x_cam = s·R·p + t and its metrics out.
 
+mod alternatives;
+mod confidence;
 mod estimate;
 pub mod estimate_sim3;
 pub mod evaluate;
@@ -28,7 +30,7 @@ use crate::stages::search::SearchSettings;
 use field::Options;
 use options::{AlignOptions, Preset};
 use progress::{Host, Stage, Stopwatch};
-use report::{Alignment, Alternative, Counts, Uncertainty};
+use report::{Alignment, Alternative, Counts, ScoreTerms, Uncertainty};
 
 /// Aligns a mesh to an observation, by the preset's method.
 ///
@@ -68,7 +70,7 @@ pub fn align_with(
 
     let estimated = match options.preset {
         Preset::Paper => paper::estimate(&evidence, [&extents_obs, &extents_rec], options, &mut stages)?,
-        Preset::Precise => precise::estimate(observation, mesh, search, &mut stages)?,
+        Preset::Precise => precise::estimate(observation, mesh, options, search, &mut stages)?,
     };
 
     stages.enter(Stage::Metrics);
@@ -92,6 +94,7 @@ pub fn align_with(
         residual_m: estimated.residual_m,
         confidence: estimated.confidence,
         score: estimated.score,
+        terms: estimated.terms,
         alternatives: estimated.alternatives,
         uncertainty: estimated.uncertainty,
         metrics,
@@ -113,6 +116,7 @@ struct Estimated {
     residual_m: f64,
     confidence: Option<f64>,
     score: Option<f64>,
+    terms: Option<ScoreTerms>,
     alternatives: Vec<Alternative>,
     uncertainty: Option<Uncertainty>,
     counts: Counts,

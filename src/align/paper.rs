@@ -41,6 +41,7 @@ pub(super) fn estimate(
         residual_m: estimated.rms * observed.diagonal(),
         confidence: None,
         score: None,
+        terms: None,
         alternatives: Vec::new(),
         uncertainty: None,
         counts: estimated.counts,

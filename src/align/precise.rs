@@ -1,13 +1,17 @@
 //! Preset `precise`: search by rendering.
 
 use super::Estimated;
-use super::options::{AlignOptions, Quality};
+use super::alternatives::alternatives;
+use super::confidence::confidence;
+use super::options::{AlignOptions, ExtentAxis, Quality, SearchScope};
 use super::progress::{Stage, Stopwatch};
-use super::report::{Alternative, Counts};
+use super::report::{Counts, Uncertainty};
 use crate::error::{Error, ErrorCode, Result};
+use crate::geometry::cloud::Bounds;
 use crate::geometry::mesh::Mesh;
-use crate::geometry::rotations::angle_between;
 use crate::stages::observe::Observation;
+use crate::stages::search::pose::{CropPose, MeshFrame};
+use crate::stages::search::prior::Prior;
 use crate::stages::search::{Search, SearchSettings};
 
 /// When each stage begins, as a share of the whole; from profiles of real cases.
@@ -25,43 +29,75 @@ pub(super) const PLAN: &[(Stage, f64)] = &[
 pub(super) fn estimate(
     observation: &Observation,
     mesh: &Mesh,
+    options: &AlignOptions,
     settings: &SearchSettings,
     stages: &mut Stopwatch<'_>,
 ) -> Result<Estimated> {
     stages.enter(Stage::Prepare);
     let mut search = Search::new(observation, mesh, *settings).ok_or_else(no_candidate)?;
+    search.assume(prior(options, mesh, &search.frame));
+    let initial = options.initial.and_then(|pose| CropPose::of_similarity(&pose, &search.frame));
+
     stages.enter(Stage::Search);
-    let candidates = search.coarse();
+    let mut candidates = initial.map_or_else(Vec::new, |pose| search.around(pose));
+    if options.search == SearchScope::Global {
+        candidates.extend(search.coarse());
+    }
+
     stages.enter(Stage::Refine);
     let found = search.refine(candidates);
-    let (best, others) = found.split_first().ok_or_else(no_candidate)?;
-    let alternatives = others
-        .iter()
-        .map(|other| Alternative {
-            camera_from_mesh: (&other.pose.similarity(&search.frame)).into(),
-            score: f64::from(other.score.total),
-            turn_deg: angle_between(best.pose.rotation, other.pose.rotation).to_degrees(),
-        })
-        .collect();
+    let best = found.first().ok_or_else(no_candidate)?;
+    let alternatives = alternatives(&found, &search, mesh, &options.symmetry)?;
+    let (conditioning, residual_m) = search.conditioning(&best.pose);
     Ok(Estimated {
         camera_from_mesh: best.pose.similarity(&search.frame),
-        clamped: false,
-        converged: true,
-        residual_m: 0.0,
-        confidence: None,
+        clamped: prior(options, mesh, &search.frame).holds(&best.pose),
+        converged: best.converged,
+        residual_m,
+        confidence: Some(confidence(best, &alternatives, &search)),
         score: Some(f64::from(best.score.total)),
+        terms: Some((&best.score).into()),
         alternatives,
-        uncertainty: None,
+        uncertainty: conditioning.map(|c| Uncertainty {
+            scale: c.scale,
+            rotation_deg: c.rotation.0.to_degrees(),
+            rotation_axis: c.rotation.1.to_array(),
+            lateral_m: c.lateral_m,
+            distance_m: c.distance_m,
+        }),
         counts: Counts { renders: search.renders, ..Counts::default() },
     })
 }
 
 /// The search that the options ask for.
 pub fn search_settings(options: &AlignOptions) -> SearchSettings {
-    match options.quality {
+    let settings = match options.quality {
         Quality::Fast => SearchSettings::fast(),
         Quality::Balanced => SearchSettings::default(),
         Quality::Best => SearchSettings::best(),
+    };
+    let fixed = options.scale.is_some_and(|[min, max]| min == max) || options.known_extent_m.is_some();
+    let settings = SearchSettings { lock_scale: fixed || options.lock_scale == Some(true), ..settings };
+    options.budget_ms.map_or(settings, |budget_ms| settings.within(budget_ms))
+}
+
+/// What the options say of size and attitude.
+fn prior(options: &AlignOptions, mesh: &Mesh, frame: &MeshFrame) -> Prior {
+    let extent = Bounds::of(mesh.positions()).map_or(glam::Vec3::ONE, |b| b.extent());
+    let side = f64::from(match options.known_extent_axis {
+        ExtentAxis::Longest => extent.max_element(),
+        ExtentAxis::X => extent.x,
+        ExtentAxis::Y => extent.y,
+        ExtentAxis::Z => extent.z,
+    });
+    let known = options.known_extent_m.map(|length| [length / side; 2]);
+    // A scale that is locked from the beginning is that of the initial pose.
+    let locked = options.initial.filter(|_| options.lock_scale == Some(true)).map(|pose| [pose.scale; 2]);
+    let bounds = options.scale.or(known).or(locked);
+    let direction = |v: [f64; 3]| glam::DVec3::from(v).normalize_or_zero();
+    Prior {
+        scale: bounds.map(|b| b.map(|s| s * frame.diagonal)),
+        up: options.camera_up.zip(options.mesh_up).map(|(camera, mesh)| [direction(camera), direction(mesh)]),
     }
 }
 

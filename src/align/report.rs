@@ -6,6 +6,7 @@ use super::options::Preset;
 use super::progress::Timings;
 use crate::geometry::similarity::Similarity;
 use crate::metrics::Metrics;
+use crate::stages::search::score::Score;
 
 /// A similarity y = s·R·x + t in every form that callers ask for.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -100,6 +101,38 @@ pub struct Counts {
     pub renders: usize,
 }
 
+/// What the search's score is made of: agreements from 0 to 1, on the search's own grid of the cleaned observation.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "camelCase")]
+pub struct ScoreTerms {
+    /// Of mask and silhouette; what an occluder or the image border hides hardly counts.
+    pub overlap: f64,
+    /// Share of the mask that the mesh covers.
+    pub coverage: f64,
+    /// Of depths, where both have one.
+    pub depth: f64,
+    /// Of normals, where both have one.
+    pub normals: f64,
+    /// Of outlines.
+    pub outline: f64,
+    /// Share of the silhouette that is hidden.
+    pub hidden: f64,
+}
+
+impl From<&Score> for ScoreTerms {
+    fn from(score: &Score) -> Self {
+        Self {
+            overlap: score.overlap.into(),
+            coverage: score.coverage.into(),
+            depth: score.depth.into(),
+            normals: score.normals.into(),
+            outline: score.outline.into(),
+            hidden: score.hidden.into(),
+        }
+    }
+}
+
 /// Another pose that explains the observation.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
@@ -161,6 +194,8 @@ pub struct Alignment {
     /// `precise`: what the search maximised, 0 to about 2; comparable between poses of one input only. `null` for
     /// `paper`.
     pub score: Option<f64>,
+    /// `precise`: what the score is made of; `null` for `paper`.
+    pub terms: Option<ScoreTerms>,
     /// `precise`: other poses that explain the observation nearly as well, best first: flips, symmetries that the
     /// mesh does not share.
     pub alternatives: Vec<Alternative>,

@@ -72,10 +72,25 @@ impl NormalEquations {
     /// Directions that the residuals leave free do not move under a small damping (1e-9); a large one (1e-3 and up)
     /// shortens the step towards the gradient's direction, as Levenberg's method does. `None` where the matrix is
     /// not positive definite all the same: without residuals, or with some that are not finite.
-    #[inline(never)]
     pub fn solve(&self, damping: f64) -> Option<[f64; PARAMETERS]> {
+        Some(self.factored(damping)?.solve(self.gradient.map(|g| -g)))
+    }
+
+    /// (JᵀWJ + λ·1)⁻¹ with λ = `damping` × the trace; where [`NormalEquations::solve`] has no step, none.
+    pub fn inverse(&self, damping: f64) -> Option<[[f64; PARAMETERS]; PARAMETERS]> {
+        let factor = self.factored(damping)?;
+        let mut columns = [[0.0; PARAMETERS]; PARAMETERS];
+        for (i, column) in columns.iter_mut().enumerate() {
+            let mut unit = [0.0; PARAMETERS];
+            unit[i] = 1.0;
+            *column = factor.solve(unit);
+        }
+        Some(columns)
+    }
+
+    #[inline(never)]
+    fn factored(&self, damping: f64) -> Option<Factor> {
         let trace: f64 = (0..PARAMETERS).map(|i| self.matrix[i][i]).sum();
-        // Cholesky's factor L, column by column: `l[j][i]` is its row i, column j.
         let mut l = self.matrix;
         for j in 0..PARAMETERS {
             l[j][j] += damping * trace;
@@ -94,8 +109,17 @@ impl NormalEquations {
                 *entry /= pivot;
             }
         }
-        // L y = −g, then Lᵀ x = y.
-        let mut x = self.gradient.map(|g| -g);
+        Some(Factor(l))
+    }
+}
+
+/// Cholesky's factor L, column by column: `[j][i]` is its row i, column j.
+struct Factor([[f64; PARAMETERS]; PARAMETERS]);
+
+impl Factor {
+    /// x with L Lᵀ x = `x`: L y = `x`, then Lᵀ x = y.
+    fn solve(&self, mut x: [f64; PARAMETERS]) -> [f64; PARAMETERS] {
+        let l = &self.0;
         for j in 0..PARAMETERS {
             x[j] /= l[j][j];
             for i in j + 1..PARAMETERS {
@@ -106,6 +130,6 @@ impl NormalEquations {
             let known: f64 = (j + 1..PARAMETERS).map(|i| l[j][i] * x[i]).sum();
             x[j] = (x[j] - known) / l[j][j];
         }
-        Some(x)
+        x
     }
 }

@@ -21,6 +21,11 @@ pub struct Anchor {
     pub towards: [f64; 2],
 }
 
+impl Anchor {
+    /// The mask's box as it is.
+    pub const AS_IT_IS: Self = Self { zoom: 1.0, towards: [0.0; 2] };
+}
+
 /// The hypotheses for a grid: the box as it is, somewhat larger, and, where it is cut, larger towards the cut.
 pub fn anchors(grid: &CropGrid, occlusion: bool) -> Vec<Anchor> {
     let plain = |zoom| Anchor { zoom, towards: [0.0; 2] };

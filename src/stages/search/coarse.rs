@@ -5,6 +5,7 @@ use glam::{DMat3, DQuat, DVec2, DVec3, Vec3};
 use super::anchors::Anchor;
 use super::grid::CropGrid;
 use super::pose::CropPose;
+use super::prior::Prior;
 use super::render::{Canvas, Model};
 use super::score::{Score, Scoring};
 use crate::geometry::angle::sin_cos;
@@ -36,6 +37,8 @@ pub struct Coarse<'a> {
     pub anchors: &'a [Anchor],
     /// The object's median depth, metres.
     pub median_m: f64,
+    /// What is known beforehand.
+    pub prior: Prior,
 }
 
 impl Coarse<'_> {
@@ -52,6 +55,7 @@ impl Coarse<'_> {
                 ..fitted
             };
             let candidate = self.at_its_distance(canvas, pose);
+            let candidate = self.held(canvas, candidate);
             if best.is_none_or(|b| candidate.score.total > b.score.total) {
                 best = Some(candidate);
             }
@@ -66,6 +70,18 @@ impl Coarse<'_> {
         let stretch = median(ratios).unwrap_or(1.0);
         let score = self.scoring.score(canvas, self.model, self.grid, stretch);
         Candidate { pose: CropPose { distance: pose.distance + libm::log(f64::from(stretch)), ..pose }, score }
+    }
+
+    /// The candidate with what is known beforehand taken into account.
+    fn held(&self, canvas: &mut Canvas, candidate: Candidate) -> Candidate {
+        let pose = self.prior.held(candidate.pose);
+        let mut score = candidate.score;
+        if (pose.size - candidate.pose.size).abs() > 1e-3 {
+            canvas.draw(self.model, &pose, self.grid);
+            score = self.scoring.score(canvas, self.model, self.grid, 1.0);
+        }
+        score.total += self.prior.score(&pose);
+        Candidate { pose, score }
     }
 
     /// Size and place at which the perspective box of the rotated mesh is the mask's: equal middles, equal

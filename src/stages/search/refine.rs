@@ -8,6 +8,7 @@ use glam::Vec3;
 
 use super::grid::CropGrid;
 use super::pose::{CropPose, Step};
+use super::prior::Prior;
 use super::render::{Canvas, Model};
 use super::score::{Score, Scoring, is_outline};
 use crate::geometry::normal_equations::NormalEquations;
@@ -22,10 +23,29 @@ pub struct Refiner<'a> {
     pub scoring: Scoring,
     /// The size of the object does not change: distance and size in the image move together.
     pub lock_scale: bool,
+    /// What is known beforehand.
+    pub prior: Prior,
+}
+
+/// Where a refinement ended.
+#[derive(Debug, Clone, Copy)]
+pub struct Refined {
+    /// The pose.
+    pub pose: CropPose,
+    /// Its score.
+    pub score: Score,
+    /// Images drawn.
+    pub renders: usize,
+    /// Whether no step was left that would have raised the score.
+    pub converged: bool,
 }
 
 /// Damping at first, and its factors after a step that was taken and after one that was refused.
 const DAMPING: [f64; 3] = [1e-3, 0.25, 6.0];
+/// Damping at which the steps that are left are too short to matter.
+const MAX_DAMPING: f64 = 10.0;
+/// A smaller gain is no progress.
+const MIN_GAIN: f32 = 1e-5;
 /// Most that a step may turn, in radians, and stretch.
 const MAX_TURN: f64 = 0.35;
 const MAX_STRETCH: f64 = 0.25;
@@ -37,32 +57,39 @@ impl Refiner<'_> {
     /// The score of a pose.
     pub fn score(&self, canvas: &mut Canvas, pose: &CropPose) -> Score {
         canvas.draw(self.model, pose, self.grid);
-        self.scoring.score(canvas, self.model, self.grid, 1.0)
+        let mut score = self.scoring.score(canvas, self.model, self.grid, 1.0);
+        score.total += self.prior.score(pose);
+        score
     }
 
-    /// Climbs from `pose` for at most `iterations` renders.
-    pub fn refine(&self, canvas: &mut Canvas, pose: CropPose, iterations: usize) -> (CropPose, Score) {
-        let mut best = (pose, self.score(canvas, &pose));
-        let mut equations = self.equations(canvas, &best.1);
+    /// Climbs from `pose` for at most `iterations` steps.
+    pub fn refine(&self, canvas: &mut Canvas, pose: CropPose, iterations: usize) -> Refined {
+        let pose = self.prior.held(pose);
+        let score = self.score(canvas, &pose);
+        let mut best = Refined { pose, score, renders: 1, converged: false };
+        let mut equations = self.equations(canvas, &best.score);
         let mut damping = DAMPING[0];
         for _ in 0..iterations {
-            let Some(step) = self.step(&equations, &best.0, damping) else { break };
-            let next = best.0.moved(&step);
+            let Some(step) = self.step(&equations, &best.pose, damping) else { break };
+            let next = self.prior.held(best.pose.moved(&step));
             if !next.is_finite() {
                 break;
             }
             let score = self.score(canvas, &next);
-            if score.total > best.1.total {
-                let gain = score.total - best.1.total;
-                best = (next, score);
-                if gain < 1e-5 {
+            best.renders += 1;
+            if score.total > best.score.total {
+                let gain = score.total - best.score.total;
+                (best.pose, best.score) = (next, score);
+                if gain < MIN_GAIN {
+                    best.converged = true;
                     break;
                 }
                 equations = self.equations(canvas, &score);
                 damping *= DAMPING[1];
             } else {
-                damping = (damping * DAMPING[2]).max(1e-3);
-                if damping > 10.0 {
+                damping = (damping * DAMPING[2]).max(DAMPING[0]);
+                if damping > MAX_DAMPING {
+                    best.converged = true;
                     break;
                 }
             }
@@ -146,6 +173,19 @@ impl Refiner<'_> {
         }
         turns.add_to(&mut equations, normal_weight);
         equations
+    }
+
+    /// Root mean square of the depth residuals at what was drawn last, without those beyond three of their scales.
+    pub fn depth_rms(&self, canvas: &Canvas) -> f64 {
+        let (mut sum, mut count) = (0.0f64, 0u32);
+        for (w, observed) in canvas.inverse_depth.iter().zip(&self.grid.depth) {
+            let error = 1.0 / w - observed;
+            if *w > 0.0 && *observed > 0.0 && error.abs() < 3.0 * self.scoring.depth_m {
+                sum += f64::from(error * error);
+                count += 1;
+            }
+        }
+        (sum / f64::from(count.max(1))).sqrt()
     }
 
     /// A residual that changes by `gradient`·δx as the surface point moves by δx.
