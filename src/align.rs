@@ -1,6 +1,7 @@
 //! The pipeline ("Robust 3D Alignment of Generative Reconstructions via Partial Monocular Observations"):
 //! depth, mask and mesh in, the similarity x_cam = s·R·p + t and its metrics out.
 
+mod combination;
 mod estimate;
 pub mod estimate_sim3;
 pub mod evaluate;

@@ -112,7 +112,7 @@ fn every_ablation_runs_and_does_what_it_says() {
     let unguarded = solve(&AlignOptions { guard: None, ..AlignOptions::default() });
     assert_eq!((unguarded.counts.rejected, unguarded.counts.clamped), (0, 0));
 
-    let unlocked = solve(&AlignOptions { lock_scale: false, ..AlignOptions::default() });
+    let unlocked = solve(&AlignOptions { lock_scale: Some(false), ..AlignOptions::default() });
     assert_ne!(unlocked.camera_from_mesh.scale, default.camera_from_mesh.scale, "ICP left an unlocked scale alone");
 
     let unrefined = solve(&AlignOptions { icp: Icp::None, ..AlignOptions::default() });
