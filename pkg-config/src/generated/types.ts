@@ -102,12 +102,12 @@ budgetMs: number | null,
 seed: number, 
 /**
  * Depth readings inside the mask that are used at most, 32 to 1 000 000; of more, an even random share is
- * drawn. `precise` uses them for the metrics alone. Default 20 000.
+ * drawn. `precise` uses them for metrics and initial scale alone. Default 20 000.
  */
 maxObservedPoints: number, 
 /**
- * Points sampled from the mesh surface, 100 to 1 000 000. `precise` uses them for the metrics alone. Default
- * 20 000.
+ * Points sampled from the mesh surface, 100 to 1 000 000. `precise` uses them for metrics and initial scale alone.
+ * Default 20 000.
  */
 surfaceSamples: number, 
 /**
