@@ -263,7 +263,7 @@ test("the flags of precise are taken", () => {
   const accepted = [
     ["--scale", "0.05,0.2", "--budget-ms", "100"],
     ["--known-extent", "0.2", "--known-extent-axis", "longest", "--symmetry", "none"],
-    ["--camera-up", "0,-1,0", "--mesh-up", "0,1,0", "--symmetry", '[{"axis": [0, 0, 1], "fold": 2}]'],
+    ["--camera-up", "-1,0,0", "--mesh-up", "0,1,0", "--symmetry", '[{"axis": [0, 0, 1], "fold": 2}]'],
     ["--initial", "blob/gt.json", "--search", "local", "--lock-scale"],
     ["--initial", "precise.json", "--search", "local"],
   ];

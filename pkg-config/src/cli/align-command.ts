@@ -114,7 +114,7 @@ function preciseOptions(command: Command): void {
     .option("--camera-up <x,y,z>", "the direction that is up in the camera's frame; with --mesh-up", direction)
     .option("--mesh-up <x,y,z>", "the direction that is up in the mesh's frame", direction)
     .option("--budget-ms <ms>", "a bound on the work, counted as milliseconds of a machine of 2020", number)
-    .option("--lock-scale", "leave the scale as --initial, or the search before the refinement, has it");
+    .option("--lock-scale", "keep the scale of --initial, or else of the grid of rotations");
 }
 
 function paperOptions(command: Command): void {
