@@ -1,6 +1,7 @@
 //! The one error type: a stable code, the argument, what was found, what was expected, the remedy.
 
 use core::fmt;
+use core::ops::Deref;
 use std::borrow::Cow;
 
 use serde::Serialize;
@@ -98,9 +99,17 @@ impl ErrorCode {
 /// Text that is most often known beforehand.
 pub type Text = Cow<'static, str>;
 
-/// An error that tells its reader what to do.
+/// An error that tells its reader what to do. Its [`ErrorParts`] are its fields.
+///
+/// A pointer: a result is then hardly larger than its value, and handing an error on costs one move instead of
+/// fifteen, at some two hundred places.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Error {
+#[serde(transparent)]
+pub struct Error(Box<ErrorParts>);
+
+/// What an [`Error`] says.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ErrorParts {
     /// The stable code.
     pub code: ErrorCode,
     /// The argument or option at fault, spelled as in JavaScript: `depth`, `mesh.indices`, `options.guard`.
@@ -113,8 +122,18 @@ pub struct Error {
     pub remedy: Text,
 }
 
+impl Deref for Error {
+    type Target = ErrorParts;
+
+    fn deref(&self) -> &ErrorParts {
+        &self.0
+    }
+}
+
 impl Error {
     /// An error with all its parts.
+    #[cold]
+    #[inline(never)]
     pub fn new(
         code: ErrorCode,
         argument: impl Into<Text>,
@@ -122,13 +141,26 @@ impl Error {
         expected: impl Into<Text>,
         remedy: impl Into<Text>,
     ) -> Self {
-        Self { code, argument: argument.into(), found: found.into(), expected: expected.into(), remedy: remedy.into() }
+        let (argument, found, expected, remedy) = (argument.into(), found.into(), expected.into(), remedy.into());
+        Self(Box::new(ErrorParts { code, argument, found, expected, remedy }))
     }
 
     /// The same error about another argument: what a geometry check calls `positions`, the caller may know
     /// as `mesh.positions`.
     pub fn about(mut self, argument: impl Into<Text>) -> Self {
-        self.argument = argument.into();
+        self.0.argument = argument.into();
+        self
+    }
+
+    /// The same error with other words for what was expected.
+    pub fn expecting(mut self, expected: impl Into<Text>) -> Self {
+        self.0.expected = expected.into();
+        self
+    }
+
+    /// The same error under another code.
+    pub fn coded(mut self, code: ErrorCode) -> Self {
+        self.0.code = code;
         self
     }
 }

@@ -29,10 +29,10 @@ pub fn number(x: f64) -> String {
         digits /= 10;
         exponent += 1;
     }
-    let text = format!("{digits}");
+    let mut text = format!("{digits}");
     if !(-5..15).contains(&exponent) {
-        let (first, rest) = text.split_at(1);
-        return trimmed(format!("{sign}{first}.{rest}")) + &format!("e{exponent}");
+        text.insert(1, '.');
+        return format!("{sign}{}e{exponent}", trimmed(text));
     }
     if exponent < 0 {
         let zeros = "0".repeat((-exponent - 1) as usize);
@@ -42,8 +42,8 @@ pub fn number(x: f64) -> String {
     if point >= text.len() {
         return format!("{sign}{text}{}", "0".repeat(point - text.len()));
     }
-    let (whole, fraction) = text.split_at(point);
-    trimmed(format!("{sign}{whole}.{fraction}"))
+    text.insert(point, '.');
+    trimmed(format!("{sign}{text}"))
 }
 
 /// Numbers in brackets: `[0.5, 1.5]`.
@@ -52,7 +52,13 @@ pub fn numbers(values: &[f64]) -> String {
     format!("[{}]", parts.join(", "))
 }
 
-/// Without zeros at the end, nor the point before them.
-fn trimmed(text: String) -> String {
-    text.trim_end_matches('0').trim_end_matches('.').into()
+/// Without zeros at the end, nor the point before them. No slices of text: their panics print characters.
+fn trimmed(mut text: String) -> String {
+    while text.ends_with('0') {
+        text.pop();
+    }
+    if text.ends_with('.') {
+        text.pop();
+    }
+    text
 }

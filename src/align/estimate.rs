@@ -6,6 +6,7 @@ use super::options::{AlignOptions, GuardMode, Icp, RegisterOptions};
 use super::progress::{Stage, Stopwatch};
 use super::report::Counts;
 use crate::error::Result;
+use crate::geometry::angle::sin_cos;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::similarity::{Similarity, vector3};
@@ -68,7 +69,7 @@ impl Settings {
             support: if options.hallucination_filter {
                 SupportSettings {
                     max_distance: (options.support_distance_voxels * voxel_size) as f32,
-                    min_cosine: libm::cos(options.support_angle_deg.to_radians()) as f32,
+                    min_cosine: sin_cos(options.support_angle_deg.to_radians()).1 as f32,
                 }
             } else {
                 SupportSettings::EVERYTHING

@@ -164,12 +164,13 @@ pub(super) fn about_clouds(error: Error, argument: &str) -> Error {
     if error.code != ErrorCode::NoConsensus {
         return error;
     }
-    Error {
-        expected: "at least three matches of source and target that agree on one similarity".into(),
-        remedy: "Check that the clouds overlap; widen options.scale, or the distance up to which a match is an inlier."
-            .into(),
-        ..error.about(argument.to_owned())
-    }
+    Error::new(
+        error.code,
+        argument.to_owned(),
+        error.found.clone(),
+        "at least three matches of source and target that agree on one similarity",
+        "Check that the clouds overlap; widen options.scale, or the distance up to which a match is an inlier.",
+    )
 }
 
 fn no_attempt() -> Error {

@@ -339,10 +339,10 @@ impl<'a> Options<'a> {
         let Some(value) = self.get(name) else { return Ok(None) };
         match value.as_f64() {
             Some(number) => Ok(Some(number)),
-            None => Err(Error {
-                code: ErrorCode::InvalidOption,
-                ..invalid(&format!("options.{name}"), &value, "a number", "Pass a number, or leave it out.")
-            }),
+            None => {
+                let remedy = "Pass a number, or leave it out.";
+                Err(invalid(&format!("options.{name}"), &value, "a number", remedy).coded(ErrorCode::InvalidOption))
+            }
         }
     }
 }

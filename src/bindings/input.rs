@@ -72,7 +72,7 @@ fn depth(input: &JsValue, width: usize, height: usize) -> Result<DepthMap> {
         return DepthMap::from_metres(width, height, metres);
     }
     let mut metres = to_f32s(&values, "depth")
-        .map_err(|e| Error { expected: "a Float32Array (metres) or a Uint16Array (with depthScale)".into(), ..e })?;
+        .map_err(|e| e.expecting("a Float32Array (metres) or a Uint16Array (with depthScale)"))?;
     if let Some(scale) = scale {
         metres.iter_mut().for_each(|z| *z = (f64::from(*z) * scale) as f32);
     }

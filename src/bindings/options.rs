@@ -165,7 +165,7 @@ pub fn scale(options: &JsValue) -> Result<ScaleOption> {
         _ => {
             let remedy = "Leave it out to solve for the scale.";
             let error = wrong_type("options.scale", &value, "\"free\", \"fixed\", a number or [min, max]", remedy);
-            return Err(Error { code: ErrorCode::InvalidOption, ..error });
+            return Err(error.coded(ErrorCode::InvalidOption));
         }
     };
     Ok(scale)
@@ -192,10 +192,7 @@ fn symmetry(value: &JsValue) -> Result<Symmetry> {
     }
     if !Array::is_array(value) {
         let remedy = "A missing fold declares a continuous symmetry about the axis.";
-        return Err(Error {
-            code: ErrorCode::InvalidOption,
-            ..wrong_type("options.symmetry", value, SYMMETRY, remedy)
-        });
+        return Err(wrong_type("options.symmetry", value, SYMMETRY, remedy).coded(ErrorCode::InvalidOption));
     }
     let array = Array::from(value);
     let axes = array.iter().map(|declared| {

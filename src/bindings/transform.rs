@@ -46,8 +46,7 @@ fn rotation_matrix(value: &JsValue, argument: &str) -> Result<Matrix3<f64>> {
         Err(_) => {
             let expected = "a quaternion [x, y, z, w] or a 3 × 3 matrix row by row";
             let rows = to_numbers::<9>(value, argument);
-            rows.map(|rows| Matrix3::from_row_slice(&rows))
-                .map_err(|e| crate::error::Error { expected: expected.into(), ..e })
+            rows.map(|rows| Matrix3::from_row_slice(&rows)).map_err(|e| e.expecting(expected))
         }
     }
 }

@@ -56,6 +56,36 @@ impl Bounds {
         Some(rest.iter().fold(Self { min: first, max: first }, |b, &p| Self { min: b.min.min(p), max: b.max.max(p) }))
     }
 
+    /// The box around nothing; the smallest box around it and another is the other.
+    pub const NOTHING: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
+
+    /// The smallest box around both.
+    pub fn union(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// The squared distance of a point to the box, 0 inside. Never more than that of the point to any point of the
+    /// box as `Vec3::distance_squared` rounds it: both round the same way in every step.
+    // Inlined whatever the compiler thinks it costs: searches do little else. `f32::max` is a call in WebAssembly.
+    #[inline(always)]
+    pub fn distance_squared(&self, point: Vec3) -> f32 {
+        let gap = |min: f32, max: f32, x: f32| {
+            let (below, above) = (min - x, x - max);
+            let gap = if below > above { below } else { above };
+            if gap > 0.0 { gap } else { 0.0 }
+        };
+        let x = gap(self.min.x, self.max.x, point.x);
+        let y = gap(self.min.y, self.max.y, point.y);
+        let z = gap(self.min.z, self.max.z, point.z);
+        x * x + y * y + z * z
+    }
+
+    /// The smallest box around a triangle.
+    #[inline(always)]
+    pub fn of_triangle([a, b, c]: &[Vec3; 3]) -> Self {
+        Self { min: a.min(*b).min(*c), max: a.max(*b).max(*c) }
+    }
+
     /// The middle of the box.
     pub fn center(&self) -> Vec3 {
         (self.min + self.max) * 0.5

@@ -1,14 +1,21 @@
 //! A kd-tree over 3D points: nearest, k nearest, within a radius.
 //!
-//! A plain median tree with leaves of eight points, points stored in leaf order. It answers as fast as the
+//! A plain median tree of boxes with leaves of sixteen points, points stored in leaf order. It answers as fast as the
 //! large crates do on surface points and costs a thirtieth of their bytes in WebAssembly. Ties in distance
 //! go to the smaller index, so that an answer never depends on the tree's shape.
 
 use glam::Vec3;
 
-use super::order::halve;
+use super::cloud::Bounds;
+use super::order::{halve, pack, select_smallest};
 
-const LEAF_SIZE: usize = 8;
+const LEAF_SIZE: usize = 16;
+
+/// Points that [`KdTree::neighborhoods`] searches the tree for together.
+const GROUP_SIZE: usize = 12;
+
+/// How far a sum of f32 distances may be off, and more.
+const ROUNDING: f32 = 1e-5;
 
 /// A point found, by its index in the slice the tree was built from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,18 +38,15 @@ impl Neighbor {
 pub struct KdTree {
     /// Points in leaf order, with their original indices.
     points: Vec<(Vec3, u32)>,
-    /// Splits of the implicit tree in depth-first order: a node over `n` points is followed by its left
-    /// subtree; leaves have no entry.
-    splits: Vec<Split>,
+    /// Depth-first: an inner node over `n` points is followed by its left child, over ⌊n/2⌋ of them.
+    nodes: Vec<Node>,
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Split {
-    axis: u8,
-    /// Where the left half ends and the right half begins along `axis`.
-    low: f32,
-    high: f32,
-    /// Index of the right child's split.
+struct Node {
+    /// The box around the node's points: tighter than its cell where points are of a surface.
+    bounds: Bounds,
+    /// The right child; 0 in a leaf.
     right: u32,
 }
 
@@ -50,9 +54,9 @@ impl KdTree {
     /// A tree over the points.
     pub fn new(points: &[Vec3]) -> Self {
         let mut order: Vec<u32> = (0..points.len() as u32).collect();
-        let mut splits = Vec::with_capacity(points.len() / (LEAF_SIZE / 2));
-        build(points, &mut order, &mut splits);
-        Self { points: order.into_iter().map(|i| (points[i as usize], i)).collect(), splits }
+        let mut nodes = Vec::with_capacity(points.len() / (LEAF_SIZE / 4));
+        build(points, &mut order, &mut nodes);
+        Self { points: order.into_iter().map(|i| (points[i as usize], i)).collect(), nodes }
     }
 
     /// How many points the tree holds.
@@ -92,55 +96,92 @@ impl KdTree {
         self.visit(query, &mut Within { radius_squared: radius * radius, found: out });
     }
 
-    fn visit(&self, query: Vec3, collector: &mut impl Collector) {
-        self.descend(0, 0, self.points.len(), query, [0.0; 3], collector);
+    /// The `k` nearest within `radius` of every point of the tree, itself included: `visit` gets its index and its
+    /// neighbours, as the keys that [`pack`] makes of squared distance and index, in no particular (but reproducible)
+    /// order. `points` are those that the tree was built from.
+    ///
+    /// Several times faster than as many [`KdTree::k_nearest`]: points that are near each other share one search.
+    pub fn neighborhoods(&self, points: &[Vec3], k: usize, radius: f32, mut visit: impl FnMut(u32, &[u64])) {
+        let (mut found, mut near, mut keys) = (Vec::new(), Vec::new(), Vec::new());
+        let mut groups = vec![self.points.as_slice()];
+        while let Some(group) = groups.pop() {
+            if group.len() > GROUP_SIZE {
+                // As the tree halves them.
+                let (left, right) = group.split_at(group.len() / 2);
+                groups.extend([right, left]);
+                continue;
+            }
+            let members = || group.iter().map(|(point, _)| *point);
+            let Some(center) = Bounds::of(&members().collect::<Vec<_>>()).map(|b| b.center()) else { continue };
+            let spread = members().map(|q| q.distance(center)).fold(0.0, f32::max);
+            // The centre has k neighbours within its reach, so q has them within that and the way to the centre; and
+            // what is that near to q is another such way further from the centre at most.
+            self.k_nearest(center, k, &mut found);
+            let reach = found.last().filter(|_| found.len() == k).map_or(f32::INFINITY, |n| n.distance_squared.sqrt());
+            self.within(center, (reach + 2.0 * spread) * (1.0 + ROUNDING), &mut found);
+            near.clear();
+            near.extend(found.iter().filter_map(|n| Some((*points.get(n.index as usize)?, n.index))));
+            for &(query, index) in group {
+                let enough = ((reach + query.distance(center)) * (1.0 + ROUNDING)).min(radius);
+                let limit = enough * enough;
+                // Every key is written, and overwritten where it was not wanted: half of them are, at random, which
+                // would mislead a branch.
+                keys.resize(near.len(), 0);
+                let mut count = 0;
+                for &(point, index) in &near {
+                    let distance_squared = point.distance_squared(query);
+                    keys[count] = pack(distance_squared, index);
+                    count += usize::from(distance_squared <= limit);
+                }
+                keys.truncate(count);
+                select_smallest(&mut keys, k);
+                keys.truncate(k);
+                visit(index, &keys);
+            }
+        }
     }
 
-    /// Visits the subtree over `points[low..high]`; `offset` is the query's distance to its box, by axis.
-    fn descend(
-        &self,
-        node: usize,
-        low: usize,
-        high: usize,
-        query: Vec3,
-        offset: [f32; 3],
-        collector: &mut impl Collector,
-    ) {
-        if high - low <= LEAF_SIZE {
+    fn visit(&self, query: Vec3, collector: &mut impl Collector) {
+        self.descend(0, 0, self.points.len(), query, collector);
+    }
+
+    /// Visits the subtree over `points[low..high]`.
+    fn descend(&self, node: usize, low: usize, high: usize, query: Vec3, collector: &mut impl Collector) {
+        let right = self.nodes[node].right as usize;
+        if right == 0 {
             for &(point, index) in &self.points[low..high] {
                 collector.offer(Neighbor { index, distance_squared: point.distance_squared(query) });
             }
             return;
         }
-        let split = self.splits[node];
-        let axis = split.axis as usize;
         let middle = low + (high - low) / 2;
-        let q = query[axis];
-        let (left, right) = ((node + 1, low, middle), (split.right as usize, middle, high));
-        let left_first = q - split.low < split.high - q;
-        let (near, far) = if left_first { (left, right) } else { (right, left) };
-        let gap = if left_first { split.high - q } else { q - split.low };
-        self.descend(near.0, near.1, near.2, query, offset, collector);
-        let mut offset = offset;
-        offset[axis] = offset[axis].max(gap);
-        let [x, y, z] = offset;
-        if x * x + y * y + z * z <= collector.reach_squared() {
-            self.descend(far.0, far.1, far.2, query, offset, collector);
+        let (left, right) = ((node + 1, low, middle), (right, middle, high));
+        let to_left = self.nodes[left.0].bounds.distance_squared(query);
+        let to_right = self.nodes[right.0].bounds.distance_squared(query);
+        let ((near, to_near), (far, to_far)) = if to_left <= to_right {
+            ((left, to_left), (right, to_right))
+        } else {
+            ((right, to_right), (left, to_left))
+        };
+        if to_near <= collector.reach_squared() {
+            self.descend(near.0, near.1, near.2, query, collector);
+        }
+        if to_far <= collector.reach_squared() {
+            self.descend(far.0, far.1, far.2, query, collector);
         }
     }
 }
 
-/// Sorts the indices of `points` into leaf order and records the splits in depth-first order.
-fn build(points: &[Vec3], order: &mut [u32], splits: &mut Vec<Split>) {
+/// Sorts the indices of `points` into leaf order and records the nodes in depth-first order.
+fn build(points: &[Vec3], order: &mut [u32], nodes: &mut Vec<Node>) {
+    let point = |i: u32| points[i as usize];
+    let bounds = order.iter().map(|&i| Bounds { min: point(i), max: point(i) }).fold(Bounds::NOTHING, Bounds::union);
+    let node = nodes.len();
+    nodes.push(Node { bounds, right: 0 });
     if order.len() <= LEAF_SIZE {
         return;
     }
-    let point = |i: u32| points[i as usize];
-    let (mut min, mut max) = (point(order[0]), point(order[0]));
-    for &i in order.iter() {
-        (min, max) = (min.min(point(i)), max.max(point(i)));
-    }
-    let extent = max - min;
+    let extent = bounds.extent();
     let axis = if extent.x >= extent.y && extent.x >= extent.z {
         0
     } else if extent.y >= extent.z {
@@ -150,13 +191,9 @@ fn build(points: &[Vec3], order: &mut [u32], splits: &mut Vec<Split>) {
     };
     halve(order, |i| point(i)[axis]);
     let (left, right) = order.split_at_mut(order.len() / 2);
-    let node = splits.len();
-    let low = left.iter().map(|&i| point(i)[axis]).fold(f32::NEG_INFINITY, f32::max);
-    let high = right.iter().map(|&i| point(i)[axis]).fold(f32::INFINITY, f32::min);
-    splits.push(Split { axis: axis as u8, low, high, right: 0 });
-    build(points, left, splits);
-    splits[node].right = splits.len() as u32;
-    build(points, right, splits);
+    build(points, left, nodes);
+    nodes[node].right = nodes.len() as u32;
+    build(points, right, nodes);
 }
 
 /// What a search keeps of the points it is offered, and how far it still looks.

@@ -1,5 +1,6 @@
 //! Shapes and spaces, without any notion of alignment. Depends on nothing above it.
 
+pub mod angle;
 pub mod clip;
 pub mod cloud;
 pub mod decimate;
@@ -14,6 +15,7 @@ pub mod random;
 pub mod rasteriser;
 pub mod rotations;
 pub mod similarity;
+pub mod singular_values;
 pub mod symmetric_eigen;
 pub mod triangle_tree;
 pub mod voxel_grid;

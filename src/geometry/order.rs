@@ -23,18 +23,83 @@ pub fn value_of(key: u64) -> f32 {
     f32::from_bits(if ordered >> 31 == 1 { ordered & !(1 << 31) } else { !ordered })
 }
 
-/// Sorts keys.
+/// Sorts keys: a byte at a time, the lowest first (radix sort), so that no input is slow.
 #[inline(never)]
 pub fn sort(keys: &mut [u64]) {
-    keys.sort_unstable();
+    let mut sorted = vec![0; keys.len()];
+    let first = keys.first().copied().unwrap_or_default();
+    let varying = keys.iter().fold(0, |bits, key| bits | (key ^ first));
+    for shift in (0..64).step_by(8).filter(|shift| varying >> shift & 0xff != 0) {
+        let digit = |key: u64| (key >> shift) as usize & 0xff;
+        let mut starts = [0_usize; 256];
+        for &key in keys.iter() {
+            starts[digit(key)] += 1;
+        }
+        let mut start = 0;
+        for slot in &mut starts {
+            (*slot, start) = (start, start + *slot);
+        }
+        for &key in keys.iter() {
+            let slot = &mut starts[digit(key)];
+            sorted[*slot] = key;
+            *slot += 1;
+        }
+        keys.copy_from_slice(&sorted);
+    }
 }
 
-/// Puts the `n` smallest keys in front. Does nothing where there are not more than `n`.
+/// Keys that are sorted by insertion rather than divided further.
+const FEW: usize = 16;
+
+/// Puts the `n` smallest keys in front, and the one that follows them behind them. Does nothing where there are not
+/// more than `n`.
 #[inline(never)]
 pub fn select_smallest(keys: &mut [u64], n: usize) {
-    if n < keys.len() {
-        keys.select_nth_unstable(n);
+    let (mut low, mut high) = (0, keys.len());
+    if n >= high {
+        return;
     }
+    // Quickselect; an input made to defeat the medians of three is sorted.
+    for _ in 0..64 {
+        let part = &mut keys[low..high];
+        if part.len() <= FEW {
+            for i in 1..part.len() {
+                let mut j = i;
+                while j > 0 && part[j] < part[j - 1] {
+                    part.swap(j, j - 1);
+                    j -= 1;
+                }
+            }
+            return;
+        }
+        let (a, b, c) = (part[0], part[part.len() / 2], part[part.len() - 1]);
+        let pivot = a.min(b).max(c).min(a.max(b));
+        let mut below = divide(part, |key| key < pivot);
+        if below == 0 {
+            // The pivot is the smallest: with all its equals it is where it belongs.
+            below = divide(part, |key| key == pivot);
+            if n < low + below {
+                return;
+            }
+        }
+        if n < low + below {
+            high = low + below;
+        } else {
+            low += below;
+        }
+    }
+    sort(&mut keys[low..high]);
+}
+
+/// Puts the keys that are `first` in front, and counts them.
+fn divide(keys: &mut [u64], first: impl Fn(u64) -> bool) -> usize {
+    let mut count = 0;
+    for i in 0..keys.len() {
+        let is_first = first(keys[i]);
+        keys.swap(i, count);
+        count += usize::from(is_first);
+    }
+    count
 }
 
 /// Puts the smaller half of the indices in front (⌊n/2⌋ of them), by the value of each, ties by the index.

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::angle::sin_cos;
 use crate::error::{Error, ErrorCode, Result};
 use crate::number::{number, numbers};
 
@@ -82,7 +83,8 @@ impl Pinhole {
                 "Pass the vertical field of view in degrees, as three.js' PerspectiveCamera.fov.",
             ));
         }
-        let f = 0.5 * height as f64 / libm::tan(0.5 * fov_y_deg.to_radians());
+        let (sin, cos) = sin_cos(0.5 * fov_y_deg.to_radians());
+        let f = 0.5 * height as f64 * cos / sin;
         Self::new(f, f, 0.5 * (width as f64 - 1.0), 0.5 * (height as f64 - 1.0))
     }
 

@@ -4,6 +4,8 @@ use core::f64::consts::{SQRT_2, TAU};
 
 use glam::DQuat;
 
+use super::angle::sin_cos;
+
 /// ψ of the super-Fibonacci spiral: the root of ψ⁴ = ψ + 4.
 const PSI: f64 = 1.533_751_168_755_204_3;
 
@@ -12,8 +14,8 @@ const PSI: f64 = 1.533_751_168_755_204_3;
 pub fn super_fibonacci(i: usize, n: usize) -> DQuat {
     let s = i as f64 + 0.5;
     let t = s / n as f64;
-    let (sin_a, cos_a) = libm::sincos(TAU * s / SQRT_2);
-    let (sin_b, cos_b) = libm::sincos(TAU * s / PSI);
+    let (sin_a, cos_a) = sin_cos(TAU * s / SQRT_2);
+    let (sin_b, cos_b) = sin_cos(TAU * s / PSI);
     let (r, q) = (t.sqrt(), (1.0 - t).sqrt());
     DQuat::from_xyzw(r * sin_a, r * cos_a, q * sin_b, q * cos_b)
 }
@@ -29,7 +31,7 @@ pub fn angle_between(a: DQuat, b: DQuat) -> f64 {
 /// The rotation by |`vector`| radians about `vector`.
 pub fn exp(vector: glam::DVec3) -> DQuat {
     let angle = vector.length();
-    let (sin, cos) = libm::sincos(0.5 * angle);
+    let (sin, cos) = sin_cos(0.5 * angle);
     // sin(θ/2)/θ → 1/2
     let share = if angle > 1e-9 { sin / angle } else { 0.5 };
     DQuat::from_xyzw(vector.x * share, vector.y * share, vector.z * share, cos).normalize()

@@ -72,7 +72,7 @@ impl Similarity {
                 "The 16 numbers are column by column: elements 12 to 14 are the translation. Transpose a row-major matrix.",
             ));
         }
-        let scale = libm::cbrt(volume.abs());
+        let scale = cube_root(volume.abs());
         // Divided by zero where there is no scale; from_parts refuses that by its first check.
         Self::from_parts(scale, linear / scale, Vector3::new(m[12], m[13], m[14]))
     }
@@ -193,6 +193,13 @@ impl SimilarityF32 {
     pub fn rotate(&self, n: Vec3) -> Vec3 {
         self.rotation * n
     }
+}
+
+/// ∛x for x ≥ 0, by Newton's iteration from a logarithm: libm's own has tables, and is used nowhere else.
+fn cube_root(x: f64) -> f64 {
+    let root = libm::exp(libm::log(x) / 3.0);
+    // Not of 0 nor of what is not finite.
+    if root.is_normal() { root - (root - x / (root * root)) / 3.0 } else { root }
 }
 
 /// The rotation nearest to a matrix that is almost one, by Newton's iteration for the polar decomposition: its error

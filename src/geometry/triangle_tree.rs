@@ -42,78 +42,97 @@ impl TriangleTree {
     /// The tree over a mesh's triangles.
     pub fn new(mesh: &Mesh) -> Self {
         let triangles: Vec<[Vec3; 3]> = mesh.triangles().iter().map(|&t| mesh.corners(t)).collect();
+        // A third of each corner, lest the sum leave f32.
+        let centers: Vec<Vec3> = triangles.iter().map(|[a, b, c]| a / 3.0 + b / 3.0 + c / 3.0).collect();
         let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
         let mut nodes = Vec::with_capacity(triangles.len());
-        build(&triangles, &mut order, &mut nodes);
+        build(&triangles, &centers, &mut order, &mut nodes);
         Self { triangles: order.into_iter().map(|i| (triangles[i as usize], i)).collect(), nodes }
     }
 
     /// The point of the surface nearest to `query`. `None` only for a query that is not finite, or so far away
     /// that its squared distance leaves f32.
     pub fn nearest(&self, query: Vec3) -> Option<SurfacePoint> {
-        let mut best = SurfacePoint { triangle: u32::MAX, point: query, distance_squared: f32::MAX };
-        self.descend(0, 0, self.triangles.len(), query, &mut best);
-        (best.triangle != u32::MAX).then_some(best)
+        self.nearest_from(query, &mut Hint::default())
     }
 
-    fn descend(&self, node: usize, low: usize, high: usize, query: Vec3, best: &mut SurfacePoint) {
+    /// [`TriangleTree::nearest`], faster for queries that follow each other closely: `hint` is what the last one left.
+    pub fn nearest_from(&self, query: Vec3, hint: &mut Hint) -> Option<SurfacePoint> {
+        let none = SurfacePoint { triangle: u32::MAX, point: query, distance_squared: f32::MAX };
+        let mut best = (none, *hint);
+        self.offer(hint.0, query, &mut best);
+        self.descend(0, 0, self.triangles.len(), query, &mut best);
+        *hint = best.1;
+        (best.0.triangle != u32::MAX).then_some(best.0)
+    }
+
+    /// Keeps a triangle that is nearer than the best so far.
+    fn offer(&self, slot: usize, query: Vec3, (best, hint): &mut (SurfacePoint, Hint)) {
+        let Some((corners, triangle)) = self.triangles.get(slot) else { return };
+        let offset = nearest_offset(corners.map(|p| p.as_dvec3() - query.as_dvec3()));
+        let distance_squared = offset.length_squared() as f32;
+        if (distance_squared, *triangle) < (best.distance_squared, best.triangle) {
+            let point = (query.as_dvec3() + offset).as_vec3();
+            *best = SurfacePoint { triangle: *triangle, point, distance_squared };
+            *hint = Hint(slot);
+        }
+    }
+
+    fn descend(&self, node: usize, low: usize, high: usize, query: Vec3, best: &mut (SurfacePoint, Hint)) {
         let right = self.nodes[node].right as usize;
         if right == 0 {
-            for (corners, triangle) in &self.triangles[low..high] {
-                let offset = nearest_offset(corners.map(|p| p.as_dvec3() - query.as_dvec3()));
-                let distance_squared = offset.length_squared() as f32;
-                if (distance_squared, *triangle) < (best.distance_squared, best.triangle) {
-                    let point = (query.as_dvec3() + offset).as_vec3();
-                    *best = SurfacePoint { triangle: *triangle, point, distance_squared };
+            for slot in low..high {
+                let bounds = Bounds::of_triangle(&self.triangles[slot].0);
+                if may_hold(bounds.distance_squared(query), &best.0) {
+                    self.offer(slot, query, best);
                 }
             }
             return;
         }
         let middle = low + (high - low) / 2;
         let mut children = [(node + 1, low, middle), (right, middle, high)]
-            .map(|child| (distance_squared_to_box(&self.nodes[child.0].bounds, query), child));
+            .map(|child| (self.nodes[child.0].bounds.distance_squared(query), child));
         if children[1].0 < children[0].0 {
             children.swap(0, 1);
         }
         for (distance_squared, (node, low, high)) in children {
-            // The distance to a box is off by a few units in the last place; a tie must not be lost to that.
-            if distance_squared * (1.0 - 1e-6) <= best.distance_squared {
+            if may_hold(distance_squared, &best.0) {
                 self.descend(node, low, high, query, best);
             }
         }
     }
 }
 
-/// Sorts the triangles' indices into leaf order. Halving bounds the depth by the logarithm of their number.
-fn build(triangles: &[[Vec3; 3]], order: &mut [u32], nodes: &mut Vec<Node>) {
-    let corners = |i: u32| &triangles[i as usize];
-    let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-    for p in order.iter().flat_map(|&i| corners(i)) {
-        (min, max) = (min.min(*p), max.max(*p));
-    }
-    let node = nodes.len();
-    nodes.push(Node { bounds: Bounds { min, max }, right: 0 });
-    if order.len() <= LEAF_SIZE {
-        return;
-    }
-    // A third of each corner, lest the sum leave f32.
-    let center = |i: u32, axis: usize| corners(i).iter().map(|p| p[axis] / 3.0).sum::<f32>();
-    let spread = |axis: usize| {
-        let centers = order.iter().map(|&i| center(i, axis));
-        let (low, high) = centers.fold((f32::INFINITY, f32::NEG_INFINITY), |(l, h), c| (l.min(c), h.max(c)));
-        high - low
-    };
-    let spreads = [spread(0), spread(1), spread(2)];
-    let axis = (1..3).fold(0, |best, axis| if spreads[axis] > spreads[best] { axis } else { best });
-    halve(order, |i| center(i, axis));
-    let (left, right) = order.split_at_mut(order.len() / 2);
-    build(triangles, left, nodes);
-    nodes[node].right = nodes.len() as u32;
-    build(triangles, right, nodes);
+/// Where the last search ended; the next one looks there first.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Hint(usize);
+
+/// Whether a box at this distance may hold a better answer. The distance is off by a few units in the last place; a
+/// tie must not be lost to that.
+fn may_hold(distance_squared: f32, best: &SurfacePoint) -> bool {
+    distance_squared * (1.0 - 1e-6) <= best.distance_squared
 }
 
-fn distance_squared_to_box(bounds: &Bounds, query: Vec3) -> f32 {
-    (bounds.min - query).max(query - bounds.max).max(Vec3::ZERO).length_squared()
+/// Sorts the triangles' indices into leaf order. Halving bounds the depth by the logarithm of their number.
+fn build(triangles: &[[Vec3; 3]], centers: &[Vec3], order: &mut [u32], nodes: &mut Vec<Node>) -> Bounds {
+    let node = nodes.len();
+    nodes.push(Node { bounds: Bounds::NOTHING, right: 0 });
+    let bounds = if order.len() <= LEAF_SIZE {
+        order.iter().map(|&i| Bounds::of_triangle(&triangles[i as usize])).fold(Bounds::NOTHING, Bounds::union)
+    } else {
+        let center = |i: u32| centers[i as usize];
+        let spread = (order.iter().map(|&i| Bounds { min: center(i), max: center(i) }))
+            .fold(Bounds::NOTHING, Bounds::union)
+            .extent();
+        let axis = (1..3).fold(0, |best, axis| if spread[axis] > spread[best] { axis } else { best });
+        halve(order, |i| center(i)[axis]);
+        let (left, right) = order.split_at_mut(order.len() / 2);
+        let left = build(triangles, centers, left, nodes);
+        nodes[node].right = nodes.len() as u32;
+        left.union(build(triangles, centers, right, nodes))
+    };
+    nodes[node].bounds = bounds;
+    bounds
 }
 
 /// The point of a triangle nearest to the origin.

@@ -9,7 +9,7 @@ use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::cloud::Bounds;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::{Similarity, vec3, vector3};
-use crate::geometry::triangle_tree::TriangleTree;
+use crate::geometry::triangle_tree::{Hint, TriangleTree};
 use crate::stages::sample::{SurfaceMoments, sample_surface};
 
 /// Surface points over which ADD-S is averaged.
@@ -59,9 +59,10 @@ pub fn pose_errors(mesh: &Mesh, estimate: &Similarity, truth: &Similarity, symme
     let tree = TriangleTree::new(mesh);
     let mesh_from_camera = estimate.inverse();
     let mut distance = Mean::default();
+    let mut hint = Hint::default();
     for sample in &samples {
         let query = mesh_from_camera.apply(truth.apply(vector3(*sample)));
-        let nearest = tree.nearest(vec3(&query));
+        let nearest = tree.nearest_from(vec3(&query), &mut hint);
         distance.add(nearest.map_or(f64::INFINITY, |s| f64::from(s.distance_squared).sqrt() * estimate.scale));
     }
     let add_s = distance.value().ok_or_else(|| {

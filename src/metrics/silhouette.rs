@@ -41,6 +41,8 @@ pub fn boundary_f(a: &Mask, b: &Mask) -> f64 {
     if counts_a == 0 || counts_b == 0 {
         return if counts_a == counts_b { 1.0 } else { 0.0 };
     }
+    // Outside the box around both outlines there is nothing to match.
+    let (outlines, width, height) = cropped(&outlines, width);
     let matched = |outline: &[bool], other: &[bool]| {
         let distances = squared_distances(other, width, height);
         let near = |&(set, squared): &(&bool, &u32)| *set && *squared <= radius.saturating_mul(radius);
@@ -65,6 +67,18 @@ pub fn boundary(mask: &Mask) -> Vec<bool> {
         }
     }
     outline
+}
+
+/// Two images of one size without the rows and columns that both have empty, and their new size.
+fn cropped(images: &[Vec<bool>; 2], width: usize) -> ([Vec<bool>; 2], usize, usize) {
+    let [mut left, mut right, mut top, mut bottom] = [usize::MAX, 0, usize::MAX, 0];
+    for (i, _) in images.iter().flat_map(|image| image.iter().enumerate()).filter(|(_, set)| **set) {
+        let (u, v) = (i % width, i / width);
+        (left, right, top, bottom) = (left.min(u), right.max(u + 1), top.min(v), bottom.max(v + 1));
+    }
+    let rows =
+        |image: &Vec<bool>| (top..bottom).flat_map(|v| &image[v * width + left..v * width + right]).copied().collect();
+    (images.each_ref().map(rows), right - left, bottom - top)
 }
 
 fn centroid(mask: &Mask) -> Option<[f64; 2]> {

@@ -5,7 +5,7 @@ use glam::Vec3;
 use crate::geometry::cloud::Bounds;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::{Similarity, vec3, vector3};
-use crate::geometry::triangle_tree::TriangleTree;
+use crate::geometry::triangle_tree::{Hint, TriangleTree};
 
 use super::evidence::Evidence;
 
@@ -36,9 +36,12 @@ pub fn surface_agreement(evidence: &Evidence, mesh: &Mesh, camera_from_mesh: &Si
 
     let mesh_from_camera = camera_from_mesh.inverse();
     let (mut distance, mut fitting, mut consistency) = (Mean::default(), Mean::default(), Mean::default());
+    // Neighbours in either cloud are near each other mostly: each search starts where the last one ended.
+    let mut hint = Hint::default();
     for (point, normal) in points.iter().zip(normals) {
         // The query is made in the mesh's frame, where the tree is; distances there are 1/s of those here.
-        let Some(nearest) = triangle_tree.nearest(vec3(&mesh_from_camera.apply(vector3(*point)))) else { continue };
+        let query = vec3(&mesh_from_camera.apply(vector3(*point)));
+        let Some(nearest) = triangle_tree.nearest_from(query, &mut hint) else { continue };
         let d = f64::from(nearest.distance_squared).sqrt() * camera_from_mesh.scale;
         distance.add(d);
         fitting.add(if d <= tolerance { 1.0 } else { 0.0 });
@@ -49,8 +52,13 @@ pub fn surface_agreement(evidence: &Evidence, mesh: &Mesh, camera_from_mesh: &Si
         }
     }
     let mut back = Mean::default();
+    let mut last = 0;
     for sample in &evidence.reconstructed.points {
-        if let Some(nearest) = evidence.tree.nearest(vec3(&camera_from_mesh.apply(vector3(*sample)))) {
+        let query = vec3(&camera_from_mesh.apply(vector3(*sample)));
+        let reach = points.get(last as usize).map_or(f32::INFINITY, |p| p.distance(query) * (1.0 + 1e-6));
+        let nearest = evidence.tree.nearest_within(query, reach).or_else(|| evidence.tree.nearest(query));
+        if let Some(nearest) = nearest {
+            last = nearest.index;
             back.add(f64::from(nearest.distance_squared).sqrt());
         }
     }

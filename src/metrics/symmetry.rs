@@ -4,6 +4,7 @@ use glam::DVec3;
 use nalgebra::{Unit, UnitQuaternion, Vector3};
 
 use crate::error::{Error, ErrorCode, Result};
+use crate::geometry::angle::sin_cos;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::order::quantile;
 use crate::geometry::similarity::{vec3, vector3};
@@ -123,7 +124,7 @@ impl SymmetryGroup {
             match declared.fold {
                 Some(0) => return Err(invalid("fold 0".into(), "a fold of at least 1, or none for any turn")),
                 Some(fold) => {
-                    let (sin, cos) = libm::sincos(core::f64::consts::PI / f64::from(fold));
+                    let (sin, cos) = sin_cos(core::f64::consts::PI / f64::from(fold));
                     let turn = nalgebra::Quaternion::from_parts(cos, axis.into_inner() * sin);
                     generators.push(UnitQuaternion::new_normalize(turn));
                 }
@@ -199,7 +200,7 @@ pub fn principal_symmetry(mesh: &Mesh, revolution: bool) -> Result<Vec<SymmetryA
     let center = vector_of(moments.centroid);
     let diagonal = mesh_diagonal(mesh);
     let maps_onto_itself = |axis: &Unit<Vector3<f64>>, share: f64| {
-        let (sin, cos) = libm::sincos(core::f64::consts::PI * share);
+        let (sin, cos) = sin_cos(core::f64::consts::PI * share);
         let turn = UnitQuaternion::new_normalize(nalgebra::Quaternion::from_parts(cos, axis.into_inner() * sin));
         let distance = |p: &glam::Vec3| {
             let turned = turn * (vector3(*p) - center) + center;

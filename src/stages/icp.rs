@@ -5,11 +5,12 @@
 //! with its width from their median, gives the points that do not belong no say. The support distance shrinks
 //! from generous to tight as the pose improves, so the hallucination filter is re-evaluated at every step.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::Vector3;
 
 use super::filter::{Support, SupportSettings, supported};
 use super::tukey::biweights;
 use super::umeyama::{Pair, ScaleMode, umeyama};
+use crate::geometry::angle;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::normal_equations::NormalEquations;
@@ -189,7 +190,7 @@ fn gauss_newton(residuals: &Residuals, pose: &Similarity, lock_scale: bool) -> O
     }
     // Directions that the data leave free (a plane slides on itself) stay where they are.
     let delta = equations.solve(1e-9)?;
-    let turn = UnitQuaternion::from_scaled_axis(Vector3::new(delta[0], delta[1], delta[2]));
+    let turn = angle::turn(Vector3::new(delta[0], delta[1], delta[2]));
     let shift = Vector3::new(delta[3], delta[4], delta[5]);
     let growth = if lock_scale { 1.0 } else { libm::exp(delta[6].clamp(-0.5, 0.5)) };
     let turn = turn.to_rotation_matrix();

@@ -2,7 +2,8 @@
 
 use glam::{DMat3, DVec3, Vec3};
 
-use crate::geometry::kd_tree::{KdTree, Neighbor};
+use crate::geometry::kd_tree::KdTree;
+use crate::geometry::order::index_of;
 use crate::geometry::symmetric_eigen::SymmetricEigen;
 
 /// Variance across a neighbourhood, as a share of that along it, below which it is a line.
@@ -50,26 +51,23 @@ pub fn estimate_normals(
     orientation: Orientation,
 ) -> Vec<Vec3> {
     let neighborhood = neighborhood.into();
-    let mut found = Vec::new();
-    let reach_squared = neighborhood.radius * neighborhood.radius;
-    (points.iter())
-        .map(|&point| {
-            tree.k_nearest(point, neighborhood.max_neighbors, &mut found);
-            let count = found.partition_point(|n| n.distance_squared <= reach_squared);
-            let normal = thinnest_direction(point, &found[..count], points);
-            let outward = match orientation {
-                Orientation::TowardsCamera => -point,
-                Orientation::AwayFrom(center) => point - center,
-            };
-            if normal.dot(outward) < 0.0 { -normal } else { normal }
-        })
-        .collect()
+    let mut normals = vec![Vec3::ZERO; points.len()];
+    tree.neighborhoods(points, neighborhood.max_neighbors, neighborhood.radius, |index, neighbors| {
+        let Some((&point, slot)) = points.get(index as usize).zip(normals.get_mut(index as usize)) else { return };
+        let normal = thinnest_direction(point, neighbors, points);
+        let outward = match orientation {
+            Orientation::TowardsCamera => -point,
+            Orientation::AwayFrom(center) => point - center,
+        };
+        *slot = if normal.dot(outward) < 0.0 { -normal } else { normal };
+    });
+    normals
 }
 
 /// Unit, or zero where the neighbours do not span a plane. Sums are taken about `point`, to keep digits.
-fn thinnest_direction(point: Vec3, neighbors: &[Neighbor], points: &[Vec3]) -> Vec3 {
+fn thinnest_direction(point: Vec3, neighbors: &[u64], points: &[Vec3]) -> Vec3 {
     let (mut sum, mut squares, mut count) = (DVec3::ZERO, DMat3::ZERO, 0.0);
-    for p in neighbors.iter().filter_map(|n| points.get(n.index as usize)) {
+    for p in neighbors.iter().filter_map(|&key| points.get(index_of(key) as usize)) {
         let d = (p - point).as_dvec3();
         sum += d;
         squares += DMat3::from_cols(d * d.x, d * d.y, d * d.z);

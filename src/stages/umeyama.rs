@@ -8,6 +8,7 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::similarity::Similarity;
+use crate::geometry::singular_values::SingularValues;
 
 /// How far a cloud may be from spanning a plane: below this ratio of its second to its first singular value
 /// the points are one line to within rounding, and the turn about that line is free.
@@ -70,17 +71,14 @@ fn closed_form(pairs: &[Pair], scale_mode: ScaleMode) -> Result<Similarity> {
     check_spread("source", &p_spread)?;
     check_spread("target", &q_spread)?;
 
-    let svd = sigma.svd(true, true);
-    let (Some(u), Some(v_t)) = (svd.u, svd.v_t) else { return Err(degenerate("correspondences")) };
-    let d = svd.singular_values;
-    // nalgebra sorts the singular values, the smallest last: the axis whose sign costs least to change.
+    let SingularValues { u, values: d, v } = SingularValues::of(&sigma);
     if d[1].is_nan() || d[1] <= COLLINEAR * d[0] {
         return Err(degenerate("correspondences"));
     }
-    let sign = if u.determinant() * v_t.determinant() < 0.0 { -1.0 } else { 1.0 };
-    let rotation = u * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, sign)) * v_t;
+    // U and V are rotations: S is in the sign of the last singular value.
+    let rotation = u * v.transpose();
     let scale = match scale_mode {
-        ScaleMode::Free => (d[0] + d[1] + sign * d[2]) / p_spread.trace(),
+        ScaleMode::Free => (d[0] + d[1] + d[2]) / p_spread.trace(),
         ScaleMode::Fixed(scale) => scale,
     };
     if !(scale.is_finite() && scale > 0.0) {

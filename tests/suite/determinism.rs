@@ -79,8 +79,8 @@ const EXPECTED: [u64; 7] = [
     0x95395282e03782fb,
     0xcb0d839712407b2d,
     0x2dc1b9769cb198f3,
-    0x5b2355e4ec726ce3,
-    0x2eaaf26f7c9eba49,
-    0xff58469b5ece10e8,
-    0xdaf1ff7d3a7cab0b,
+    0x59034c8495362a6f,
+    0x293299c7c7494201,
+    0xbdfc8e1a6d4b2d6e,
+    0x136fcc760fe3c106,
 ];

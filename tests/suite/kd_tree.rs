@@ -5,6 +5,7 @@ use core::num::NonZero;
 use glam::Vec3;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use sim3align::geometry::kd_tree::{KdTree, Neighbor};
+use sim3align::geometry::order::{index_of, value_of};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::support::{Draw, assert_no_dead_axis};
@@ -217,4 +218,31 @@ fn queries_that_are_no_point_find_nothing() {
     tree.k_nearest(nowhere, 3, &mut found);
     assert!(tree.nearest(Vec3::splat(f32::MAX)).is_some());
     assert_eq!(tree.nearest(points[42]).unwrap().index, 42);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn shared_searches_find_what_single_ones_find() {
+    for seed in 0..2 {
+        for (name, points) in distributions(&mut Draw::new(seed)) {
+            let tree = KdTree::new(&points);
+            let near = points.first().zip(points.last()).map_or(0.0, |(a, b)| 0.3 * a.distance(*b));
+            for k in [0, 1, 2, 7, 30, 299, 300, 1000] {
+                for radius in [f32::INFINITY, near, 0.0] {
+                    let mut visited = vec![false; points.len()];
+                    let mut expected = Vec::new();
+                    tree.neighborhoods(&points, k, radius, |index, keys| {
+                        let context = format!("seed {seed}, {name}, {k} within {radius} of point {index}");
+                        assert!(!core::mem::replace(&mut visited[index as usize], true), "{context}: twice");
+                        tree.k_nearest(points[index as usize], k, &mut expected);
+                        expected.retain(|n| n.distance_squared <= radius * radius);
+                        let mut keys = keys.to_vec();
+                        keys.sort_unstable();
+                        let found = keys.iter().map(|&key| (index_of(key), value_of(key)));
+                        assert!(found.eq(expected.iter().map(|n| (n.index, n.distance_squared))), "{context}");
+                    });
+                    assert!(visited.iter().all(|v| *v), "seed {seed}, {name}");
+                }
+            }
+        }
+    }
 }

@@ -4,9 +4,12 @@
 #![allow(missing_docs)]
 
 pub mod align;
+pub mod angle;
 pub mod density;
 pub mod determinism;
 pub mod distance_transform;
+#[cfg(all(feature = "samples", not(target_arch = "wasm32")))]
+pub mod evaluation;
 pub mod extents;
 pub mod filter;
 #[cfg(feature = "formats")]
@@ -52,6 +55,7 @@ pub mod samples;
 pub mod shapes;
 pub mod silhouette;
 pub mod similarity;
+pub mod singular_values;
 pub mod support;
 pub mod surface;
 pub mod symmetric_eigen;

@@ -1,7 +1,9 @@
 //! Packed keys sort as `f32::total_cmp` sorts, and give back what went in.
 
-use sim3align::geometry::order::{index_of, median, pack, quantile, value_of};
+use sim3align::geometry::order::{index_of, median, pack, quantile, select_smallest, sort, value_of};
 use wasm_bindgen_test::wasm_bindgen_test;
+
+use crate::support::Draw;
 
 const VALUES: [f32; 11] =
     [f32::NEG_INFINITY, -1e30, -2.5, -1e-40, -0.0, 0.0, 1e-40, 1.0, 1.000_000_1, 3e38, f32::INFINITY];
@@ -26,4 +28,41 @@ fn quantiles_by_hand() {
     assert_eq!(quantile(values(), 1.0), Some(5.0));
     assert_eq!(median([2.0, 1.0].into_iter()), Some(2.0));
     assert_eq!(median(core::iter::empty()), None);
+}
+
+/// Keys in orders that are hard on one algorithm or another.
+fn hard_keys(draw: &mut Draw, n: usize) -> Vec<Vec<u64>> {
+    let random: Vec<u64> = (0..n).map(|i| pack(draw.between(-1.0, 1.0) as f32, i as u32)).collect();
+    let ascending: Vec<u64> = (0..n as u64).collect();
+    let descending = ascending.iter().rev().copied().collect();
+    let organ_pipe = ascending.iter().map(|&i| i.min(n as u64 - i)).collect();
+    let few = (0..n).map(|_| draw.below(3) as u64).collect();
+    let wide = (0..n).map(|i| (draw.below(1 << 30) as u64) << 34 | i as u64 & 7).collect();
+    vec![random, ascending, descending, organ_pipe, few, wide, vec![7; n], vec![u64::MAX; n]]
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn keys_are_sorted_and_selected_as_the_standard_library_does() {
+    for seed in 0..10 {
+        let mut draw = Draw::new(seed);
+        for n in [0, 1, 2, 3, 15, 16, 17, 18, 100, 1000, 5000] {
+            for (kind, keys) in hard_keys(&mut draw, n).into_iter().enumerate() {
+                let mut expected = keys.clone();
+                expected.sort_unstable();
+                let mut found = keys.clone();
+                sort(&mut found);
+                assert_eq!(found, expected, "seed {seed}, {n} keys of kind {kind}");
+                for at in [0, n / 3, n / 2, n.saturating_sub(1), n, n + 1] {
+                    let mut found = keys.clone();
+                    select_smallest(&mut found, at);
+                    let context = format!("seed {seed}, {at} of {n} keys of kind {kind}");
+                    assert_eq!(found.get(at), expected.get(at), "{context}");
+                    let (front, back) = found.split_at_mut(at.min(n));
+                    front.sort_unstable();
+                    back.sort_unstable();
+                    assert_eq!([front, back].concat(), expected, "{context}");
+                }
+            }
+        }
+    }
 }

@@ -84,7 +84,7 @@ fn cameras_that_are_none_are_refused_by_name() {
                 Err(error) => {
                     assert!(i < 2 || !x.is_finite(), "{name} = {x}");
                     assert_eq!(
-                        (error.code, error.argument.into_owned()),
+                        (error.code, error.argument.clone().into_owned()),
                         (ErrorCode::InvalidCamera, format!("camera.{name}"))
                     );
                 }

@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 use sim3align::geometry::mesh::Mesh;
 use sim3align::geometry::random::Random;
-use sim3align::geometry::triangle_tree::TriangleTree;
+use sim3align::geometry::triangle_tree::{Hint, TriangleTree};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::shapes::cuboid;
@@ -92,4 +92,21 @@ fn a_query_without_a_distance_has_no_answer() {
     let tree = TriangleTree::new(&cuboid(Vec3::ONE));
     assert_eq!(tree.nearest(Vec3::NAN), None);
     assert_eq!(tree.nearest(Vec3::splat(1e30)), None);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn hints_change_nothing() {
+    for seed in 0..20 {
+        let mut random = Random::new(seed, 78);
+        let tree = TriangleTree::new(&triangles(&mut random, 200));
+        let mut hint = Hint::default();
+        for i in 0..300 {
+            let size = [0.5, 2.0, 50.0][i % 3];
+            let query = Vec3::from_array([0; 3].map(|_| (random.uniform() as f32 * 2.0 - 1.0) * size));
+            assert_eq!(tree.nearest_from(query, &mut hint), tree.nearest(query), "seed {seed}, query {i} {query}");
+        }
+        // A hint of another, larger tree is no worse than none.
+        let small = TriangleTree::new(&triangles(&mut random, 6));
+        assert_eq!(small.nearest_from(Vec3::ONE, &mut hint), small.nearest(Vec3::ONE), "seed {seed}");
+    }
 }

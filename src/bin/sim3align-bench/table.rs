@@ -6,58 +6,62 @@ use sim3align::metrics::Metrics;
 use sim3align::metrics::pose_error::PoseErrors;
 use sim3align::samples::benchmark::{LOOSE, Record, STRICT};
 
-/// What the columns of metrics hold, in their order.
-const METRICS: &[(&str, usize, fn(&Metrics) -> Option<f64>)] = &[
-    ("IoU", 3, |m| m.iou),
-    ("boundary F", 3, |m| m.boundary_f),
-    ("drift px", 1, |m| m.center_drift_px),
-    ("Chamfer mm", 1, |m| m.chamfer_mm),
-    ("uniChamfer mm", 1, |m| m.uni_chamfer_mm),
-    ("fitness", 3, |m| m.fitness),
-    ("normals", 3, |m| m.normal_consistency),
-    ("depth MAE mm", 1, |m| m.depth_mae_mm),
+/// A column of a metric.
+struct Column {
+    name: &'static str,
+    digits: usize,
+    value: fn(&Metrics) -> Option<f64>,
+}
+
+const METRICS: &[Column] = &[
+    Column { name: "IoU", digits: 3, value: |m| m.iou },
+    Column { name: "boundary F", digits: 3, value: |m| m.boundary_f },
+    Column { name: "drift px", digits: 1, value: |m| m.center_drift_px },
+    Column { name: "Chamfer mm", digits: 1, value: |m| m.chamfer_mm },
+    Column { name: "uniChamfer mm", digits: 1, value: |m| m.uni_chamfer_mm },
+    Column { name: "fitness", digits: 3, value: |m| m.fitness },
+    Column { name: "normals", digits: 3, value: |m| m.normal_consistency },
+    Column { name: "depth MAE mm", digits: 1, value: |m| m.depth_mae_mm },
 ];
 
 /// All tables of all rows, a row being a set of options and what came of every case with it.
 pub fn report(rows: &[(String, Vec<&Record>)], failures: usize) -> String {
     let mut out = String::new();
     let Some((_, first)) = rows.first() else { return out };
-    let mut groups: Vec<(String, Box<dyn Fn(&Record) -> bool>)> = vec![("all".into(), Box::new(|_| true))];
-    for tier in distinct(first, |record| record.tier.clone()) {
-        let name = tier.clone();
-        groups.push((name, Box::new(move |record| record.tier == tier)));
-    }
-    for group in distinct(first, |record| format!("{}, {}", record.tier, record.class)) {
-        let name = group.clone();
-        groups.push((name, Box::new(move |record| format!("{}, {}", record.tier, record.class) == group)));
-    }
+    let mut groups: Vec<(String, Vec<usize>)> = vec![("all".into(), (0..first.len()).collect())];
+    groups.extend(grouped(first, |record| record.tier.clone()));
+    groups.extend(grouped(first, |record| format!("{}, {}", record.tier, record.class)));
     header(&mut out, "cases", &["row", "n", "strict", "loose", "scale %", "rotation °", "translation %"]);
-    for (group, belongs) in &groups {
+    for (group, members) in &groups {
         for (name, records) in rows {
-            let records: Vec<&Record> = records.iter().copied().filter(|record| belongs(record)).collect();
-            line(&mut out, group, name, &records);
+            line(&mut out, group, name, &members.iter().map(|&i| records[i]).collect::<Vec<_>>());
         }
-        let records: Vec<&Record> = first.iter().copied().filter(|record| belongs(record)).collect();
-        truth_line(&mut out, group, &records);
+        truth_line(&mut out, group, &members.iter().map(|&i| first[i]).collect::<Vec<_>>());
     }
+    let _ = writeln!(
+        out,
+        "\nStrict: scale within 5 %, rotation within 10° up to symmetry, translation (of the middle of the mesh's box) within 5 % of its diagonal; loose: 10 %, 20°, 10 %. Errors and seconds are medians, metrics means over the answered cases; *truth* is the true pose's own row."
+    );
     for (name, records) in rows {
         list_failures(&mut out, name, records, failures);
     }
     out
 }
 
-fn distinct(records: &[&Record], key: impl Fn(&Record) -> String) -> Vec<String> {
-    let mut keys: Vec<String> = Vec::new();
-    for key in records.iter().map(|record| key(record)) {
-        if !keys.contains(&key) {
-            keys.push(key);
+/// The records' indices by what `key` makes of them, in the order in which the keys first come up.
+fn grouped(records: &[&Record], key: impl Fn(&Record) -> String) -> Vec<(String, Vec<usize>)> {
+    let mut groups: Vec<(String, Vec<usize>)> = Vec::new();
+    for (i, key) in records.iter().map(|record| key(record)).enumerate() {
+        match groups.iter_mut().find(|(name, _)| *name == key) {
+            Some((_, members)) => members.push(i),
+            None => groups.push((key, vec![i])),
         }
     }
-    keys
+    groups
 }
 
 fn header(out: &mut String, first: &str, columns: &[&str]) {
-    let names = columns.iter().copied().chain(METRICS.iter().map(|metric| metric.0)).chain(["s"]);
+    let names = columns.iter().copied().chain(METRICS.iter().map(|column| column.name)).chain(["s"]);
     let names: Vec<&str> = core::iter::once(first).chain(names).collect();
     let _ = writeln!(out, "| {} |", names.join(" | "));
     let rules: Vec<&str> = names.iter().map(|_| "---").collect();
@@ -70,12 +74,16 @@ fn line(out: &mut String, group: &str, name: &str, records: &[&Record]) {
         let hits = known.iter().filter(|hit| **hit).count();
         if known.is_empty() { "–".into() } else { format!("{:.1} %", 100.0 * hits as f64 / known.len() as f64) }
     };
+    // No answer is as wrong as can be.
+    let known = || records.iter().filter(|record| record.truth_metrics.is_some());
     let error = |digits, of: fn(&PoseErrors) -> f64| {
-        text(median(records.iter().filter_map(|record| record.errors.as_ref().map(of)).collect()), digits)
+        text(median(known().map(|record| record.errors.as_ref().map_or(f64::INFINITY, of)).collect()), digits)
     };
+    let unanswered = records.iter().filter(|record| record.alignment.is_none()).count();
+    let count = if unanswered == 0 { String::new() } else { format!(" ({unanswered} unanswered)") };
     let _ = write!(
         out,
-        "| {group} | {name} | {} | {} | {} | {} | {} | {}",
+        "| {group} | {name} | {}{count} | {} | {} | {} | {} | {}",
         records.len(),
         share(&STRICT),
         share(&LOOSE),
@@ -96,8 +104,8 @@ fn truth_line(out: &mut String, group: &str, records: &[&Record]) {
 
 /// Means over the cases that have the metric.
 fn metrics(out: &mut String, records: &[&Record], of: impl Fn(&Record) -> Option<Metrics>) {
-    for (_, digits, metric) in METRICS {
-        let values: Vec<f64> = records.iter().filter_map(|record| metric(&of(record)?)).collect();
+    for Column { digits, value, .. } in METRICS {
+        let values: Vec<f64> = records.iter().filter_map(|record| value(&of(record)?)).collect();
         let mean = (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64);
         let _ = write!(out, " | {}", text(mean, *digits));
     }

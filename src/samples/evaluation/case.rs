@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use glam::DVec3;
 use serde_json::{Value, json};
 
 use super::draft::{Axis, Object};
@@ -20,11 +21,14 @@ use crate::metrics::symmetry::{Symmetry, SymmetryAxis};
 use crate::samples::case::{case_files, write_files};
 use crate::samples::distortion::canonicalise;
 use crate::stages::observe::Observation;
+use crate::stages::sample::SurfaceMoments;
 
 /// How many cases a set has unless another number is asked for.
 pub const CASES: usize = 240;
 /// Fewest pixels in a mask.
 pub const MIN_MASK_PX: usize = 350;
+/// Nothing farther away is shown.
+const FARTHEST_M: f32 = 12.0;
 /// Draws of one case before giving up.
 const DRAWS: u64 = 400;
 
@@ -105,7 +109,7 @@ impl EvaluationSet {
         let random = &mut Random::new(seed, SCENE_STREAM);
         let (placed, symmetry) = put_down(&object, tier, random)?;
         let scene = Scene::draw(&placed, tier, class, random)?;
-        let Some(mut tags) = shows_enough(&scene, &object, tier, class) else { return Ok(None) };
+        let Some(mut tags) = shows_enough(&scene, &placed, &object, tier, class) else { return Ok(None) };
 
         let segmented = Segmented::draw(&scene, (tier, class), &mut Random::new(seed, MASK_STREAM))?;
         let mask_px = segmented.mask.data().iter().filter(|m| **m != 0).count();
@@ -114,6 +118,9 @@ impl EvaluationSet {
         }
         let random = &mut Random::new(seed, READINGS_STREAM);
         let readings = Readings::draw(&scene, object.diagonal(), (tier, class), random)?;
+        if readings.missing > tier.pick(0.1, 0.25, 0.4) {
+            return Ok(None);
+        }
         let random = &mut Random::new(seed, GENERATOR_STREAM);
         let generated = generate(&object, &placed, &symmetry, &scene, (tier, class), random)?;
         let (mesh, object_from_mesh) = canonicalise(&generated.mesh, seed)?;
@@ -202,7 +209,7 @@ impl EvaluationCase {
 }
 
 /// Whether a scene shows enough of its object, and what its class is about; if so, what there is to remark.
-fn shows_enough(scene: &Scene, object: &Object, tier: Tier, class: Class) -> Option<Vec<&'static str>> {
+fn shows_enough(scene: &Scene, placed: &Mesh, object: &Object, tier: Tier, class: Class) -> Option<Vec<&'static str>> {
     let pixels = scene.visible_px();
     let visible = pixels as f64 / scene.silhouette_px.max(1) as f64;
     let shows_class = match class {
@@ -210,7 +217,11 @@ fn shows_enough(scene: &Scene, object: &Object, tier: Tier, class: Class) -> Opt
         Class::BorderCut => (0.04..=0.25).contains(&scene.cut),
         _ => scene.cut < 1e-9,
     };
-    if pixels < MIN_MASK_PX || visible < tier.least_visible() || !shows_class {
+    if pixels < MIN_MASK_PX || visible < tier.least_visible() || !shows_class || !is_telling(scene, placed, tier) {
+        return None;
+    }
+    let far = scene.object_depth.iter().any(|z| *z > FARTHEST_M);
+    if far {
         return None;
     }
     let mut tags = Vec::new();
@@ -231,6 +242,19 @@ fn shows_enough(scene: &Scene, object: &Object, tier: Tier, class: Class) -> Opt
         tags.push("cut");
     }
     Some(tags)
+}
+
+/// Whether what is flat is not seen on edge, nor what is long from its end: nobody takes such a photo to be measured.
+fn is_telling(scene: &Scene, placed: &Mesh, tier: Tier) -> bool {
+    let moments = SurfaceMoments::of(placed);
+    let axes = moments.principal_axes();
+    let [thin, middle, long] = axes.values.map(|variance| variance.max(0.0).sqrt());
+    let eye = DVec3::from_array(scene.camera_from_world.inverse().translation.into());
+    let view = (eye - moments.centroid).normalize_or_zero();
+    let across = tier.pick(0.5, 0.4, 0.3);
+    let on_edge = thin < 0.35 * middle && axes.vectors[0].dot(view).abs() < across;
+    let from_its_end = middle < 0.5 * long && axes.vectors[2].cross(view).length() < across;
+    !on_edge && !from_its_end
 }
 
 /// The symmetry in the frame of the mesh.

@@ -1,9 +1,9 @@
 //! Masks as a segmentation model gives them.
 
+use super::chance;
 use super::readings::disc;
 use super::scene::Scene;
 use super::tier::{Class, Tier};
-use super::{chance, sign};
 use crate::error::Result;
 use crate::geometry::distance_transform::squared_distances;
 use crate::geometry::image::{Image, Mask};
@@ -26,19 +26,22 @@ impl Segmented {
     pub fn draw(scene: &Scene, (tier, class): (Tier, Class), random: &mut Random) -> Result<Self> {
         let resolution = scene.width as f64 / 640.0;
         let ragged = class == Class::RaggedMask;
+        // Few pixels are segmented at a higher resolution: models look at a crop.
+        let resolution = if class == Class::Tiny { 0.5 } else { resolution };
+        let most = tier.pick(1.0, if ragged { 2.0 } else { 1.6 }, if ragged { 3.0 } else { 2.3 }) * resolution;
         let offset = match tier {
             Tier::Easy => between(random, -1.0, 1.0),
-            Tier::Medium => sign(random) * between(random, if ragged { 1.0 } else { 0.3 }, 2.0) * resolution,
-            Tier::Hard => sign(random) * between(random, if ragged { 1.5 } else { 0.3 }, 3.0) * resolution,
+            // More often too large than too small, as the models' masks are.
+            _ => between(random, 0.2, 1.0) * most * if chance(random, 0.6) { 1.0 } else { -1.0 },
         };
         let roughness = resolution * if ragged { tier.pick(0.0, 1.2, 2.2) } else { tier.pick(0.0, 0.5, 1.1) };
         let signed = signed_distances(scene);
         let depths = || signed.iter().filter(|d| **d < 0.0).map(|d| -f64::from(*d));
         // Half as wide as the object is on average: no model is off by as much as the thing itself.
         let half_width = 2.0 * depths().sum::<f64>() / depths().count().max(1) as f64;
-        let offset_px = offset.clamp(-0.25 * half_width, 0.6 * half_width);
+        let offset_px = offset.clamp(-0.25 * half_width, 0.45 * half_width);
         let roughness = roughness.min(0.35 * half_width);
-        let noise = Noise::new(scene, (5.0 * resolution).max(3.0), random);
+        let noise = Noise::new(scene, (5.0 * resolution).max(2.5), random);
         let (width, height) = (scene.width, scene.height);
         let mut data: Vec<u8> = (0..width * height)
             .map(|i| {

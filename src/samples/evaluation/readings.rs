@@ -64,9 +64,10 @@ fn estimated(scene: &Scene, diagonal: f64, tier: Tier, random: &mut Random) -> V
     let tables: Vec<_> = waves
         .iter()
         .map(|[du, dv, phase]| {
-            let along = |n: usize, k: f64, phase: f64| (0..n).map(|i| libm::sincos(k * i as f64 + phase)).collect();
-            let (u, v): (Vec<(f64, f64)>, Vec<(f64, f64)>) = (along(width, *du, *phase), along(height, *dv, 0.0));
-            (u, v)
+            let along = |n: usize, k: f64, phase: f64| -> Vec<(f64, f64)> {
+                (0..n).map(|i| libm::sincos(k * i as f64 + phase)).collect()
+            };
+            (along(width, *du, *phase), along(height, *dv, 0.0))
         })
         .collect();
     let wave = |u: usize, v: usize| {

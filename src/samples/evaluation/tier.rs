@@ -36,7 +36,7 @@ pub enum Class {
     Warped,
     /// Depth from a sensor, with many readings missing.
     SparseSensor,
-    /// An object that looks almost the same turned half round: phone, wrench, toy car.
+    /// An object that looks almost the same turned half round: phone, toy car, banana.
     Ambiguous,
 }
 

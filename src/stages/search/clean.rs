@@ -3,6 +3,7 @@
 //! Masks come with pin-holes and stray islands, depth maps with flying pixels along every jump and with background
 //! that the mask holds by mistake. What is doubtful is left out of the evidence rather than judged.
 
+use super::rim::rim_offset;
 use crate::geometry::distance_transform::squared_distances;
 use crate::geometry::order::{self, quantile};
 use crate::geometry::pinhole::Pinhole;
@@ -18,6 +19,9 @@ const COMPONENT: f64 = 0.2;
 const ISLAND: f64 = 0.04;
 /// How far a small component may be, as a share of the mask's longer side.
 const ISLAND_REACH: f64 = 0.25;
+/// How far behind the object something has to be for the depth map to show the outline: a share of the object's
+/// width, which leaves out the slope of a round limb, and one of its depth.
+const RIM_JUMP: [f64; 2] = [0.15, 0.01];
 /// Depths looked at to find the densest window.
 const WINDOW_SAMPLES: usize = 4096;
 
@@ -34,8 +38,10 @@ pub struct CleanObservation {
     pub height: usize,
     /// Size of the whole image.
     pub image: [usize; 2],
-    /// The object's pixels.
-    pub mask: Vec<bool>,
+    /// Signed distance to the object's outline, pixels, negative inside.
+    pub outline: Vec<f32>,
+    /// By how much the mask's own outline was moved outwards, pixels (see [`rim_offset`]).
+    pub rim_offset: f64,
     /// Depth that is the object's own, metres; 0 elsewhere.
     pub depth: Vec<f32>,
     /// Every reading, metres; 0 where there is none.
@@ -56,7 +62,25 @@ impl CleanObservation {
         let mut crop = Crop::new(observation);
         crop.close_pin_holes();
         crop.drop_islands();
-        crop.into_clean(observation)
+        let mut clean = crop.into_clean(observation);
+        let extent_m = (0..2).map(|axis| clean.bounds[axis][1] - clean.bounds[axis][0]).fold(0.0, f64::max)
+            / clean.camera.fx
+            * clean.median_m;
+        let offset = rim_offset(&clean, RIM_JUMP[0] * extent_m + RIM_JUMP[1] * clean.median_m);
+        clean.move_rim(offset);
+        clean
+    }
+
+    /// Moves the outline outwards.
+    fn move_rim(&mut self, offset: f64) {
+        self.rim_offset = offset;
+        self.outline.iter_mut().for_each(|d| *d -= offset as f32);
+        let inside = |d: &&f32| **d < 0.0;
+        self.pixels = self.outline.iter().filter(inside).count().max(1);
+        for bounds in &mut self.bounds {
+            bounds[0] -= offset;
+            bounds[1] += offset;
+        }
     }
 }
 
@@ -174,7 +198,8 @@ impl Crop {
             height: self.height,
             image: size,
             bounds: [0, 1].map(|axis| bounds[axis].map(|x| (x + self.origin[axis]) as f64)),
-            mask: self.mask,
+            outline: signed_distance(&self.mask, self.width, self.height),
+            rim_offset: 0.0,
             depth,
             scene: self.scene,
             pixels,
@@ -257,6 +282,17 @@ impl Crop {
         };
         (0..3).map(|axis| side(axis) * side(axis)).sum::<f64>().sqrt()
     }
+}
+
+/// Distance of each pixel's centre to the mask's outline, pixels, negative inside.
+fn signed_distance(mask: &[bool], width: usize, height: usize) -> Vec<f32> {
+    let outside: Vec<bool> = mask.iter().map(|set| !set).collect();
+    let to_mask = squared_distances(mask, width, height);
+    let to_outside = squared_distances(&outside, width, height);
+    let distance = |(set, (to_mask, to_outside)): (&bool, (&u32, &u32))| {
+        if *set { 0.5 - (*to_outside as f32).sqrt() } else { (*to_mask as f32).sqrt() - 0.5 }
+    };
+    mask.iter().zip(to_mask.iter().zip(&to_outside)).map(distance).collect()
 }
 
 /// First and last column, first and last row of the set pixels.

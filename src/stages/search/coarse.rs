@@ -7,6 +7,7 @@ use super::grid::CropGrid;
 use super::pose::CropPose;
 use super::render::{Canvas, Model};
 use super::score::{Score, Scoring};
+use crate::geometry::angle::sin_cos;
 use crate::geometry::order::median;
 
 /// Directions along which the mesh's outermost vertices are kept, for boxes.
@@ -120,7 +121,7 @@ fn direction(k: usize) -> DVec3 {
     /// Radians between one point and the next: the golden angle.
     const GOLDEN: f64 = 2.399_963_229_728_653;
     let z = 1.0 - (2.0 * k as f64 + 1.0) / DIRECTIONS as f64;
-    let (sin, cos) = libm::sincos(GOLDEN * k as f64);
+    let (sin, cos) = sin_cos(GOLDEN * k as f64);
     let r = (1.0 - z * z).sqrt();
     DVec3::new(r * cos, r * sin, z)
 }

@@ -3,7 +3,6 @@
 use glam::Vec3;
 
 use super::clean::CleanObservation;
-use crate::geometry::distance_transform::squared_distances;
 
 /// Room around the mask's box, as a share of its longer side, for silhouettes that are too large.
 const MARGIN: f64 = 0.35;
@@ -41,7 +40,7 @@ pub struct CropGrid {
     pub normals: Vec<Vec3>,
     /// Any depth, metres; 0 where there is no reading, next to nothing outside the image.
     pub scene: Vec<f32>,
-    /// Signed distance to the mask's own outermost cells, cells: 0 on them, negative inside.
+    /// Signed distance to the mask's own outermost cells, cells: 0 on them on average, negative inside.
     pub outline: Vec<f32>,
     /// The mask's box: [[left, right], [top, bottom]], outer edges, cells.
     pub bounds: [[f64; 2]; 2],
@@ -71,13 +70,13 @@ impl CropGrid {
             depth: Vec::with_capacity(width * height),
             normals: Vec::new(),
             scene: Vec::with_capacity(width * height),
-            outline: Vec::new(),
+            outline: Vec::with_capacity(width * height),
             bounds: [[0.0; 2]; 2],
         };
         grid.sample(observation);
         grid.mask_cells = grid.mask.iter().filter(|m| **m).count();
         grid.fit_normals();
-        grid.measure_outline();
+        grid.measure_bounds();
         grid
     }
 
@@ -111,7 +110,9 @@ impl CropGrid {
                         sum.add(observation, u, v);
                     }
                 }
-                let inside = sum.mask >= 0.5 * total;
+                let outline = sum.outline / total;
+                let inside = outline < 0.0 && 2.0 * sum.outside <= total;
+                self.outline.push(outline / self.cell[0] as f32 + 0.5);
                 let known = inside && sum.readings >= MIN_READINGS * total;
                 self.mask.push(inside);
                 self.depth.push(if known { sum.depth / sum.readings } else { 0.0 });
@@ -175,14 +176,7 @@ impl CropGrid {
         Some(-normal.normalize_or_zero())
     }
 
-    fn measure_outline(&mut self) {
-        let outside: Vec<bool> = self.mask.iter().map(|m| !m).collect();
-        let to_mask = squared_distances(&self.mask, self.width, self.height);
-        let to_outside = squared_distances(&outside, self.width, self.height);
-        let distance = |i: usize| {
-            if self.mask[i] { 1.0 - (to_outside[i] as f32).sqrt() } else { (to_mask[i] as f32).sqrt() }
-        };
-        self.outline = (0..self.mask.len()).map(distance).collect();
+    fn measure_bounds(&mut self) {
         let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
         for (i, _) in self.mask.iter().enumerate().filter(|(_, m)| **m) {
             for (bound, at) in bounds.iter_mut().zip([i % self.width, i / self.width]) {
@@ -196,7 +190,7 @@ impl CropGrid {
 /// Samples of one cell.
 #[derive(Default)]
 struct Sum {
-    mask: f32,
+    outline: f32,
     depth: f32,
     readings: f32,
     scene: f32,
@@ -206,16 +200,18 @@ struct Sum {
 
 impl Sum {
     fn add(&mut self, observation: &CleanObservation, u: i64, v: i64) {
-        if u < 0 || v < 0 || u >= observation.image[0] as i64 || v >= observation.image[1] as i64 {
-            self.outside += 1.0;
-            return;
-        }
+        let inside_image = (0..observation.image[0] as i64).contains(&u) && (0..observation.image[1] as i64).contains(&v);
+        self.outside += f32::from(u8::from(!inside_image));
+        // Beyond the crop, the distance to the outline is that of the crop's nearest pixel and the way there.
         let (u, v) = (u - observation.origin[0] as i64, v - observation.origin[1] as i64);
-        if u < 0 || v < 0 || u >= observation.width as i64 || v >= observation.height as i64 {
+        let near_u = u.max(0).min(observation.width as i64 - 1);
+        let near_v = v.max(0).min(observation.height as i64 - 1);
+        let (du, dv) = ((u - near_u) as f32, (v - near_v) as f32);
+        let i = near_v as usize * observation.width + near_u as usize;
+        self.outline += observation.outline[i] + (du * du + dv * dv).sqrt();
+        if du != 0.0 || dv != 0.0 {
             return;
         }
-        let i = v as usize * observation.width + u as usize;
-        self.mask += f32::from(u8::from(observation.mask[i]));
         if observation.depth[i] > 0.0 {
             self.depth += observation.depth[i];
             self.readings += 1.0;

@@ -11,6 +11,7 @@ pub mod grid;
 pub mod pose;
 pub mod refine;
 pub mod render;
+pub mod rim;
 pub mod score;
 
 use crate::geometry::decimate::decimate;

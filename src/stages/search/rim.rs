@@ -1,0 +1,112 @@
+//! Rim: how far the mask's outline is from where the depth map has the object end.
+//!
+//! Masks are commonly a pixel or two too large or too small all around, which is read as so much scale. Where the
+//! object stands before something farther, the depth map shows its outline too: the offset between the two, measured
+//! along many rays across the rim, corrects the whole mask.
+
+use super::clean::CleanObservation;
+use crate::geometry::order::median;
+
+/// Steps of a ray across the rim, pixels, inwards (negative) to outwards.
+const STEP: f64 = 0.5;
+/// Where along a ray the object's own depth is read, and where that behind it.
+const INSIDE: [f64; 2] = [-9.0, -4.0];
+const OUTSIDE: [f64; 2] = [4.0, 9.0];
+/// A gap without reading, pixels, beyond which the outline could be anywhere.
+const MAX_GAP: f64 = 2.0;
+/// Rays that have to show an outline: as many, and as large a share of the rim.
+const MIN_RAYS: usize = 24;
+const MIN_SHARE: f64 = 0.12;
+/// The largest offset believed, pixels.
+const MAX_OFFSET: f64 = 6.0;
+/// The median absolute deviation of the rays, pixels, beyond which they do not agree on any.
+const MAX_SPREAD: f64 = 0.8;
+
+/// The offset of the depth map's outline from the mask's, pixels: positive where the mask is too small; 0 where the
+/// depth map does not tell.
+pub fn rim_offset(observation: &CleanObservation, jump_m: f64) -> f64 {
+    let (width, height, signed) = (observation.width, observation.height, &observation.outline);
+    let (mut rim, mut offsets) = (0usize, Vec::new());
+    for v in 2..height.saturating_sub(2) {
+        for u in 2..width.saturating_sub(2) {
+            let i = v * width + u;
+            // The mask's outermost pixels.
+            if signed[i] >= 0.0 || signed[i] < -0.5 {
+                continue;
+            }
+            rim += 1;
+            let slope = [
+                f64::from(signed[i + 2] - signed[i - 2]),
+                f64::from(signed[i + 2 * width] - signed[i - 2 * width]),
+            ];
+            let length = (slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
+            if length < 1.0 {
+                continue;
+            }
+            let ray = Ray {
+                observation,
+                start: [u as f64, v as f64],
+                direction: [slope[0] / length, slope[1] / length],
+            };
+            offsets.extend(ray.crossing(jump_m).map(|t| (t - 0.5) as f32));
+        }
+    }
+    if offsets.len() < MIN_RAYS || (offsets.len() as f64) < MIN_SHARE * rim as f64 {
+        return 0.0;
+    }
+    let middle = median(offsets.iter().copied()).unwrap_or(0.0);
+    let spread = median(offsets.iter().map(|t| (t - middle).abs())).unwrap_or(0.0);
+    // The mean of what is near the median: rays step by half a pixel.
+    let near = || offsets.iter().filter(|t| (**t - middle).abs() <= 1.0);
+    let offset = near().map(|t| f64::from(*t)).sum::<f64>() / near().count().max(1) as f64;
+    if f64::from(spread) <= MAX_SPREAD && offset.abs() <= MAX_OFFSET { offset } else { 0.0 }
+}
+
+/// A line across the rim.
+struct Ray<'a> {
+    observation: &'a CleanObservation,
+    start: [f64; 2],
+    direction: [f64; 2],
+}
+
+impl Ray<'_> {
+    /// The reading at `t` pixels outwards of the start; `None` where there is none.
+    fn depth(&self, t: f64) -> Option<f64> {
+        let at = [0, 1].map(|axis| self.start[axis] + t * self.direction[axis] + 0.5);
+        let (width, height) = (self.observation.width, self.observation.height);
+        if at[0] < 0.0 || at[1] < 0.0 || at[0] >= width as f64 || at[1] >= height as f64 {
+            return None;
+        }
+        let z = self.observation.scene[at[1] as usize * width + at[0] as usize];
+        (z > 0.0).then_some(f64::from(z))
+    }
+
+    fn median(&self, [from, to]: [f64; 2]) -> Option<f64> {
+        let steps = (to - from) as usize;
+        let depths = (0..=steps).filter_map(|k| self.depth(from + k as f64));
+        median(depths.map(|z| z as f32)).map(f64::from)
+    }
+
+    /// Where the depth leaves the object for what is at least `jump_m` behind it.
+    fn crossing(&self, jump_m: f64) -> Option<f64> {
+        let (inside, outside) = (self.median(INSIDE)?, self.median(OUTSIDE)?);
+        if outside - inside < jump_m {
+            return None;
+        }
+        let middle = 0.5 * (inside + outside);
+        let steps = ((OUTSIDE[1] - INSIDE[0]) / STEP) as usize;
+        let mut last_near = None;
+        for k in 0..=steps {
+            let t = INSIDE[0] + k as f64 * STEP;
+            match self.depth(t) {
+                Some(z) if z < middle => last_near = Some(t),
+                Some(_) => {
+                    let near = last_near?;
+                    return (t - near <= MAX_GAP).then_some(0.5 * (t + near));
+                }
+                None => {}
+            }
+        }
+        None
+    }
+}
