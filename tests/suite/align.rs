@@ -208,14 +208,14 @@ fn options_that_contradict_each_other_are_refused() {
     let pose = Some(truth());
     let good = [
         base(),
-        AlignOptions { search: SearchScope::Local, initial: pose.clone(), ..base() },
+        AlignOptions { search: SearchScope::Local, initial: pose, ..base() },
         AlignOptions { camera_up: Some([0.0, -2.0, 0.1]), mesh_up: up, ..base() },
         AlignOptions { scale: Some([0.2, 0.2]), lock_scale: Some(true), ..base() },
-        AlignOptions { known_extent_m: Some(0.1), initial: pose.clone(), ..base() },
-        AlignOptions { scale: Some([0.1, 0.2]), initial: pose.clone(), ..base() },
+        AlignOptions { known_extent_m: Some(0.1), initial: pose, ..base() },
+        AlignOptions { scale: Some([0.1, 0.2]), initial: pose, ..base() },
         // What went through 32-bit floats is not outside.
-        AlignOptions { scale: Some([0.17 * (1.0 + 1e-7); 2]), initial: pose.clone(), ..base() },
-        AlignOptions { scale: Some([0.17 * (1.0 - 1e-7); 2]), initial: pose.clone(), ..base() },
+        AlignOptions { scale: Some([0.17 * (1.0 + 1e-7); 2]), initial: pose, ..base() },
+        AlignOptions { scale: Some([0.17 * (1.0 - 1e-7); 2]), initial: pose, ..base() },
     ];
     for options in good {
         assert_eq!(options.validate(), Ok(()), "{options:?}");
@@ -229,9 +229,9 @@ fn options_that_contradict_each_other_are_refused() {
             "options.knownExtentM",
             "0.095 m beside a scale of [0.5, 2]",
         ),
-        (AlignOptions { scale: Some([0.2, 0.3]), initial: pose.clone(), ..base() }, "options.initial", "[0.2, 0.3]"),
-        (AlignOptions { scale: Some([0.1, 0.16]), initial: pose.clone(), ..base() }, "options.initial", "0.17"),
-        (AlignOptions { scale: Some([0.2; 2]), initial: pose.clone(), ..base() }, "options.initial", "`scale`: 0.2."),
+        (AlignOptions { scale: Some([0.2, 0.3]), initial: pose, ..base() }, "options.initial", "[0.2, 0.3]"),
+        (AlignOptions { scale: Some([0.1, 0.16]), initial: pose, ..base() }, "options.initial", "0.17"),
+        (AlignOptions { scale: Some([0.2; 2]), initial: pose, ..base() }, "options.initial", "`scale`: 0.2."),
     ];
     let mesh = body();
     let observation = observe(&mesh, 1.0);
