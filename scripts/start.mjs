@@ -12,5 +12,5 @@ await script(async () => {
   await buildPackage();
   await makeSample();
   console.log();
-  await run(process.execPath, [join(packageDir, "cli.js"), "align", sampleDir, "--preset", "paper"], { attach: true });
+  await run(process.execPath, [join(packageDir, "cli.js"), "align", sampleDir], { attach: true });
 });

@@ -2,6 +2,7 @@
 //! depth, mask and mesh in, the similarity x_cam = s·R·p + t and its metrics out.
 
 mod alternatives;
+mod combination;
 mod confidence;
 mod estimate;
 pub mod estimate_sim3;

@@ -75,15 +75,15 @@ try {
     fetchSample("camera.json").then((response) => response.json()),
   ]);
   say("Aligning …", "working");
-  const { scale, rotation, translation, scaleRatio, metrics, timingsMs, warnings } = await aligner.align(
-    { depth, mask, mesh, camera },
-    { preset: "paper" },
-  );
+  const alignment = await aligner.align({ depth, mask, mesh, camera });
+  const { scale, rotation, translation, scaleRatio, metrics, timingsMs, warnings } = alignment;
   show("transform", {
     scale,
     "rotation (quaternion x, y, z, w)": rotation,
     "translation (m)": translation,
     "scale ratio": scaleRatio,
+    confidence: alignment.confidence,
+    alternatives: alignment.alternatives.length,
   });
   show("metrics", metrics ?? {});
   show("timings", timingsMs);

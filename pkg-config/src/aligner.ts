@@ -5,7 +5,7 @@ import { resolveInput } from "./input/resolve.js";
 import type { AlignInput } from "./input/types.js";
 import { type Core, coreModule, formatsModule, type LoadedModule, type WasmSource } from "./modules.js";
 import type { AlignOptions, Defaults, EstimateOptions, EvaluateOptions, Progress, RegisterOptions } from "./options.js";
-import { type Alignment, type Evaluation, type Registration, withWarnings } from "./results.js";
+import { type Alignment, alignmentOf, type Evaluation, type Registration, withWarnings } from "./results.js";
 import { coreSim3, type Sim3Like, withTypedMatrix } from "./sim3.js";
 import { isRecord, isTypedArray, withoutUndefined, wrongKind } from "./values.js";
 
@@ -47,16 +47,20 @@ export class Aligner {
 
   /**
    * Puts a mesh where a depth map shows it, at its real size: x_cam = s·R·p_mesh + t, OpenCV camera frame (x right, y
-   * down, z forward), metres. The same input and seed give the same bits.
-   * @throws {@link Sim3AlignError} for bad input, and `NO_CONSENSUS` where nothing that the data support was found
+   * down, z forward), metres. The same input, options and seed give the same bits.
+   *
+   * The result says how sure it is (`confidence`), which other poses explain the same picture (`alternatives`), and
+   * which parts of the pose the view leaves open (`uncertainty`).
+   * @throws {@link Sim3AlignError} for bad input, `INVALID_OPTION` for options that contradict each other, and `NO_CONSENSUS` where nothing that the data support was found
    */
   async align(input: AlignInput, options: AlignOptions = {}): Promise<Alignment> {
-    const { onProgress, ...coreOptions } = checkedOptions(options);
+    const { onProgress, initial, ...rest } = checkedOptions(options);
+    const coreOptions = initial === undefined ? rest : { ...rest, initial: coreSim3(initial) };
     const { core: coreInput, warnings } = await this.#resolve(input);
     const listener = new ProgressListener(onProgress);
     const result = this.#core.call((core) => core.align(coreInput, coreOptions, listener.callback), withoutInput);
     listener.rethrow();
-    return withWarnings(withTypedMatrix(result), warnings);
+    return withWarnings(alignmentOf(result), warnings);
   }
 
   /**

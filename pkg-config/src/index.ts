@@ -7,7 +7,19 @@
  */
 export { Aligner, type AlignerOptions, createAligner } from "./aligner.js";
 export { type ErrorCode, type ErrorParts, Sim3AlignError } from "./error.js";
-export type { Counts, GuardMode, Icp, Metrics, PoseErrors, Preset, Stage } from "./generated/types.js";
+export type {
+  Counts,
+  ExtentAxis,
+  GuardMode,
+  Icp,
+  Metrics,
+  PoseErrors,
+  Preset,
+  Quality,
+  SearchScope,
+  Stage,
+  Uncertainty,
+} from "./generated/types.js";
 export type {
   AlignInput,
   CameraInput,
@@ -30,12 +42,15 @@ export type { WasmSource } from "./modules.js";
 export type {
   AlignOptions,
   Defaults,
+  Direction,
   EstimateOptions,
   EvaluateOptions,
   Progress,
   RegisterOptions,
+  ScaleBounds,
   ScaleOption,
   SymmetryAxis,
+  SymmetryOption,
 } from "./options.js";
-export type { Alignment, Evaluation, Registration, Warning, WarningCode } from "./results.js";
+export type { Alignment, Alternative, Evaluation, Registration, Warning, WarningCode } from "./results.js";
 export type { Sim3, Sim3Like } from "./sim3.js";

@@ -10,7 +10,27 @@ export interface Progress {
   fraction: number;
 }
 
-/** Options of `Aligner.align`: most callers need none. */
+/** A direction, of any length above 0. */
+export type Direction = readonly [x: number, y: number, z: number];
+
+/** A scale that is known, or bounds of it, in metres per mesh unit, above 0. */
+export type ScaleBounds = number | readonly [min: number, max: number] | { readonly min: number; readonly max: number };
+
+/**
+ * Options of `Aligner.align`: most callers need none.
+ * @example The mug is 9.5 cm tall, and the mesh's y axis is up:
+ * ```ts
+ * await aligner.align(input, { knownExtentM: 0.095, knownExtentAxis: "y" });
+ * ```
+ * @example The mesh is in metres already:
+ * ```ts
+ * await aligner.align(input, { scale: 1 });
+ * ```
+ * @example An annotator has moved the object roughly into place:
+ * ```ts
+ * await aligner.align(input, { initial: { scale, rotation, translation }, search: "local" });
+ * ```
+ */
 export interface AlignOptions extends Partial<Core.AlignOptions> {
   /** Called as each stage begins. An exception that it throws rejects the call. */
   onProgress?: ((progress: Progress) => void) | undefined;
@@ -18,11 +38,14 @@ export interface AlignOptions extends Partial<Core.AlignOptions> {
 
 /** An axis about which the object looks the same after a turn; all axes pass through its surface's centroid. */
 export interface SymmetryAxis {
-  /** Direction in the mesh's frame, of any length above 0. */
-  axis: readonly [number, number, number];
+  /** In the mesh's frame. */
+  axis: Direction;
   /** How many times the object looks the same in a full turn; without it, at any angle (a surface of revolution). */
   fold?: number | undefined;
 }
+
+/** The turns under which an object looks the same: found in the mesh, or declared. */
+export type SymmetryOption = "none" | "auto" | "auto-revolution" | readonly SymmetryAxis[];
 
 /** Options of `Aligner.evaluate`. */
 export interface EvaluateOptions extends Partial<Core.EvaluateOptions> {
@@ -33,7 +56,7 @@ export interface EvaluateOptions extends Partial<Core.EvaluateOptions> {
    * half turns about the principal axes that the mesh itself shows, `"auto-revolution"` those axes about which it can be
    * turned by any angle, too. Default `"none"`.
    */
-  symmetry?: "none" | "auto" | "auto-revolution" | readonly SymmetryAxis[] | undefined;
+  symmetry?: SymmetryOption | undefined;
 }
 
 /**

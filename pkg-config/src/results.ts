@@ -1,6 +1,6 @@
 /** What the calls return: plain objects; `null` stands for what could not be measured. */
 import type * as Core from "./generated/types.js";
-import type { Sim3 } from "./sim3.js";
+import { type Sim3, withTypedMatrix } from "./sim3.js";
 
 /** The kinds of warning. */
 export type WarningCode =
@@ -14,11 +14,19 @@ export interface Warning extends Omit<Core.Warning, "code"> {
   code: WarningCode;
 }
 
+/** Another pose that explains the observation: a transform like the alignment's own. */
+export interface Alternative extends Sim3, Omit<Core.Alternative, keyof Core.Sim3> {}
+
 /**
  * What `align` found: the transform from the mesh's frame to the camera's, x_cam = s·R·p_mesh + t (OpenCV camera: x
  * right, y down, z forward; metres).
  */
-export interface Alignment extends Sim3, Omit<Core.Alignment, keyof Core.Sim3 | "warnings"> {
+export interface Alignment extends Sim3, Omit<Core.Alignment, keyof Core.Sim3 | "alternatives" | "warnings"> {
+  /**
+   * `precise`: other poses that explain the observation nearly as well, best first: flips, and symmetries that the
+   * object has and the mesh has not. Empty where none comes near, and for `paper`.
+   */
+  alternatives: Alternative[];
   /** What the caller should know about the input. */
   warnings: Warning[];
 }
@@ -31,6 +39,11 @@ export interface Evaluation extends Omit<Core.Evaluation, "warnings"> {
 
 /** What `register` and `estimateSim3` found: target from source, y = s·R·x + t. */
 export interface Registration extends Sim3, Omit<Core.Registration, keyof Core.Sim3> {}
+
+/** The core's alignment with its matrices as typed arrays. */
+export function alignmentOf(result: Core.Alignment): Omit<Alignment, "warnings"> & { warnings: Core.Warning[] } {
+  return { ...withTypedMatrix(result), alternatives: result.alternatives.map(withTypedMatrix) };
+}
 
 /** A result with the input's own warnings before those of the core. */
 export function withWarnings<T extends { warnings: Core.Warning[] }>(

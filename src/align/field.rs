@@ -6,6 +6,9 @@ use crate::geometry::similarity::Similarity;
 use crate::metrics::symmetry::Symmetry;
 use crate::number::{number, numbers};
 
+/// The forms of a symmetry, in words.
+pub const SYMMETRY: &str = "\"none\", \"auto\", \"auto-revolution\" or [{ axis: [x, y, z], fold? }]";
+
 /// An option by its type and range.
 pub enum Field<'a> {
     /// A whole number.
@@ -89,13 +92,22 @@ pub trait Options: Default + Clone {
     /// Every option, by its name in JavaScript.
     fn fields(&mut self) -> Vec<(&'static str, Field<'_>)>;
 
-    /// Checks every range.
+    /// Checks what options say together, once each is in its range.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidOption`].
+    fn check_combination(&self) -> Result<()> {
+        Ok(())
+    }
+
+    /// Checks every range, and what the options say together.
     ///
     /// # Errors
     /// [`ErrorCode::InvalidOption`].
     fn validate(&self) -> Result<()> {
         let mut copy = self.clone();
-        copy.fields().iter().try_for_each(|(name, field)| field.check(name))
+        copy.fields().iter().try_for_each(|(name, field)| field.check(name))?;
+        self.check_combination()
     }
 }
 
@@ -118,11 +130,9 @@ impl<'a> Field<'a> {
             Self::Positive(_) => "a finite number above 0, or null".into(),
             Self::Flag(_) => "true or false".into(),
             Self::Switch(_) => "true, false or null".into(),
-            Self::Bounds(_) => "[min, max] with 0 < min ≤ max, a number above 0, or null".into(),
+            Self::Bounds(_) => "a number above 0, [min, max] or { min, max } with 0 < min ≤ max, or null".into(),
             Self::Direction(_) => "three finite numbers, not all 0, or null".into(),
-            Self::Symmetry(_) => {
-                "\"none\", \"auto\", \"auto-revolution\" or [{ axis: [x, y, z], fold? }]".into()
-            }
+            Self::Symmetry(_) => SYMMETRY.into(),
             Self::Transform(_) => "a transform, or null".into(),
             Self::Guard(_) => "[min, max] with 0 < min ≤ 1 ≤ max, or null".into(),
             Self::Choice(choice) => format!("one of \"{}\"", choice.names().join("\", \"")),
@@ -141,9 +151,7 @@ impl<'a> Field<'a> {
             Self::Guard(Some([min, max])) => {
                 (*min > 0.0 && *min <= 1.0 && *max >= 1.0 && max.is_finite(), numbers(&[*min, *max]))
             }
-            Self::Bounds(Some([min, max])) => {
-                (*min > 0.0 && *min <= *max && max.is_finite(), numbers(&[*min, *max]))
-            }
+            Self::Bounds(Some([min, max])) => (*min > 0.0 && *min <= *max && max.is_finite(), numbers(&[*min, *max])),
             Self::Direction(Some(direction)) => {
                 let squared: f64 = direction.iter().map(|x| x * x).sum();
                 (squared.is_finite() && squared > 0.0, numbers(direction.as_slice()))

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::combination;
 use super::field::{Field, Options, choice};
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::similarity::Similarity;
@@ -94,6 +95,8 @@ pub enum ExtentAxis {
 }
 
 /// Options of `align`. All have defaults; most callers need none.
+///
+/// An option whose documentation begins with the name of a preset has no effect under the other one.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename_all = "camelCase"))]
 pub struct AlignOptions {
@@ -101,72 +104,84 @@ pub struct AlignOptions {
     pub preset: Preset,
     /// `precise`: how much work. Default `"balanced"`.
     pub quality: Quality,
-    /// `precise`: bounds [min, max] of the scale, metres per mesh unit; a number fixes it, `null` leaves it free.
-    /// Default `null`.
+    /// `precise`: what is known of the scale, in metres per mesh unit, above 0: a number fixes it (1 for a mesh that
+    /// is in metres), `[min, max]` or `{ min, max }` bounds it, `null` leaves it free. Not together with
+    /// `knownExtentM`. Default `null`.
+    #[cfg_attr(feature = "types", ts(type = "ScaleBounds | null"))]
     pub scale: Option<[f64; 2]>,
-    /// `precise`: the length of the object along `knownExtentAxis`, metres, which fixes the scale ("this mug is
-    /// 9.5 cm tall": 0.095); `null` where it is not known. Default `null`.
+    /// `precise`: the length of the object along `knownExtentAxis`, in metres, above 0, which fixes the scale: for
+    /// "this mug is 9.5 cm tall" and a mesh whose y axis is up, `{ knownExtentM: 0.095, knownExtentAxis: "y" }`. `null`
+    /// where it is not known. Default `null`.
     pub known_extent_m: Option<f64>,
     /// `precise`: the side of the mesh's box that `knownExtentM` is the length of. Default `"longest"`.
     pub known_extent_axis: ExtentAxis,
-    /// `precise`: the direction that is up in the camera's frame (against gravity), of any length; together with
-    /// `meshUp` it favours poses in which the object stands upright. Default `null`.
+    /// `precise`: the direction that is up, against gravity, in the camera's frame (OpenCV: y is down), of any length
+    /// above 0: `[0, -1, 0]` for a level camera. Together with `meshUp`, it favours poses in which the object stands
+    /// upright. Default `null`.
+    #[cfg_attr(feature = "types", ts(type = "Direction | null"))]
     pub camera_up: Option<[f64; 3]>,
-    /// `precise`: the direction that is up in the mesh's frame. Default `null`.
+    /// `precise`: the direction that is up in the mesh's frame, of any length above 0: `[0, 1, 0]` for glTF. It belongs
+    /// to `cameraUp`. Default `null`.
+    #[cfg_attr(feature = "types", ts(type = "Direction | null"))]
     pub mesh_up: Option<[f64; 3]>,
-    /// `precise`: the turns under which the object looks the same, by which alternatives are told from repetitions.
-    /// Default `"auto"`.
-    #[cfg_attr(feature = "types", ts(type = "\"none\" | \"auto\" | \"auto-revolution\" | readonly SymmetryAxis[]"))]
+    /// `precise`: the turns under which the object looks the same, so that no pose is listed among the alternatives
+    /// that only repeats another one. `"auto"` finds the half turns about the principal axes that the mesh itself shows,
+    /// `"auto-revolution"` those axes about which it can be turned by any angle, too; `[{ axis: [0, 1, 0], fold: 4 }]`
+    /// declares a quarter turn about the mesh's y axis, without `fold` any turn about it. Default `"auto"`.
+    #[cfg_attr(feature = "types", ts(type = "SymmetryOption"))]
     pub symmetry: Symmetry,
-    /// `precise`: a pose to start from, such as the generator's own or an annotator's. Default `null`.
-    #[cfg_attr(feature = "types", ts(type = "Transform | null"))]
+    /// `precise`: a pose to start from, camera from mesh, in metres, such as the generator's own or an annotator's:
+    /// whatever `evaluate` takes as a transform, or `null`. Its scale has to be within `scale`. Default `null`.
+    #[cfg_attr(feature = "types", ts(type = "Sim3Like | null"))]
     pub initial: Option<Similarity>,
-    /// `precise`: everywhere, or around `initial` only. Default `"global"`.
+    /// `precise`: where to search: everywhere, or around `initial` only, which it then needs. Default `"global"`.
     pub search: SearchScope,
-    /// `precise`: a bound on the work of the search, in milliseconds of a machine of 2020; it is counted, not
-    /// timed, so that the result does not depend on the machine. `null` leaves it to `quality`. Default `null`.
+    /// `precise`: a bound on the work of the search, above 0, in milliseconds of a machine of 2020; the work is
+    /// counted, not timed, so that the result does not depend on the machine. `null` leaves it to `quality`. Default
+    /// `null`.
     pub budget_ms: Option<f64>,
     /// Seed of all random draws, 0 to 2³² − 1. The same input and seed give the same bits. Default 0.
     pub seed: u32,
     /// Depth readings inside the mask that are used at most, 32 to 1 000 000; of more, an even random share is
-    /// drawn. Default 20 000.
+    /// drawn. `precise` uses them for metrics and initial scale alone. Default 20 000.
     pub max_observed_points: u32,
-    /// Points sampled from the mesh surface, 100 to 1 000 000. Default 20 000.
+    /// Points sampled from the mesh surface, 100 to 1 000 000. `precise` uses them for metrics and initial scale alone.
+    /// Default 20 000.
     pub surface_samples: u32,
-    /// Voxels along the observation's box diagonal, 5 to 200: the voxel size is the diagonal divided by this
+    /// `paper`: voxels along the observation's box diagonal, 5 to 200: the voxel size is the diagonal divided by this
     /// (paper: 20, 30, 50). Default 30.
     pub voxel_divisions: f64,
-    /// Radius of the FPFH descriptors, in voxels, 1 to 20. Default 5.
+    /// `paper`: radius of the FPFH descriptors, in voxels, 1 to 20. Default 5.
     pub fpfh_radius_voxels: f64,
-    /// Bounds [λmin, λmax] of the scale relative to the initial scale, 0 < λmin ≤ 1 ≤ λmax; `null` lets the
+    /// `paper`: bounds [λmin, λmax] of the scale relative to the initial scale, 0 < λmin ≤ 1 ≤ λmax; `null` lets the
     /// scale go anywhere (the ablation). Default [0.5, 1.5].
     pub guard: Option<[f64; 2]>,
-    /// What happens to hypotheses outside the guard. Default `"reject"`.
+    /// `paper`: what happens to hypotheses outside the guard. Default `"reject"`.
     pub guard_mode: GuardMode,
-    /// Minimal sets that RANSAC draws at most, 1 to 10 000 000. Default 100 000.
+    /// `paper`: minimal sets that RANSAC draws at most, 1 to 10 000 000. Default 100 000.
     pub ransac_iterations: u32,
-    /// RANSAC stops early at this probability of having missed nothing better, 0 to 0.999999.
+    /// `paper`: RANSAC stops early at this probability of having missed nothing better, 0 to 0.999999.
     /// Default 0.999.
     pub ransac_confidence: f64,
-    /// A match within this distance of its counterpart is an inlier, in voxels, 0.1 to 20. Default 1.5.
+    /// `paper`: a match within this distance of its counterpart is an inlier, in voxels, 0.1 to 20. Default 1.5.
     pub inlier_distance_voxels: f64,
-    /// How alike the three edges of a minimal set must be stretched: least over most stretched, 0 to 1.
+    /// `paper`: how alike the three edges of a minimal set must be stretched: least over most stretched, 0 to 1.
     /// Default 0.9.
     pub edge_similarity: f64,
-    /// Whether mesh regions that the observation does not support are left out. Default `true`.
+    /// `paper`: whether mesh regions that the observation does not support are left out. Default `true`.
     pub hallucination_filter: bool,
-    /// Support: largest distance to an observed point, in voxels, 0.1 to 50; ICP tightens it to a third as the
-    /// pose improves. Default 3.
+    /// `paper`: support: largest distance to an observed point, in voxels, 0.1 to 50; ICP tightens it to a third as
+    /// the pose improves. Default 3.
     pub support_distance_voxels: f64,
-    /// Support: largest angle between the two normals, in degrees, 0 to 180. Default 60.
+    /// `paper`: support: largest angle between the two normals, in degrees, 0 to 180. Default 60.
     pub support_angle_deg: f64,
-    /// The refinement. Default `"point-to-plane"`.
+    /// `paper`: the refinement. Default `"point-to-plane"`.
     pub icp: Icp,
-    /// `paper`: ICP leaves the scale as RANSAC found it (§3.3; `false` is the ablation). `precise`: the scale stays
-    /// that of `initial`, or, without it, as the grid of rotations found it. `null` is `true` for `paper` and `false`
-    /// for `precise`. Default `null`.
+    /// Whether the refinement leaves the scale alone. Under `paper` it stays as RANSAC found it (§3.3; `false` is the
+    /// ablation); under `precise` it stays that of `initial` or, without it, as the grid of rotations found it. `null`
+    /// is `true` for `paper` and `false` for `precise`. Default `null`.
     pub lock_scale: Option<bool>,
-    /// ICP iterations at most, 1 to 1 000. Default 60.
+    /// `paper`: ICP iterations at most, 1 to 1 000. Default 60.
     pub icp_iterations: u32,
 }
 
@@ -237,6 +252,10 @@ impl Options for AlignOptions {
             ("lockScale", Field::Switch(&mut self.lock_scale)),
             ("icpIterations", Field::count(&mut self.icp_iterations, 1, 1_000)),
         ]
+    }
+
+    fn check_combination(&self) -> Result<()> {
+        combination::check(self)
     }
 }
 

@@ -68,7 +68,8 @@ pub enum WarningCode {
     NotConverged,
 }
 
-/// How much went in and how much of it counted.
+/// How much went in and how much of it counted. `precise` counts the points of both and the renders, every other method
+/// all but the renders; the rest is 0.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "camelCase")]
@@ -97,7 +98,7 @@ pub struct Counts {
     pub clamped: usize,
     /// ICP iterations.
     pub icp_iterations: usize,
-    /// Images that `precise` drew.
+    /// Images that the search drew.
     pub renders: usize,
 }
 
@@ -133,7 +134,7 @@ impl From<&Score> for ScoreTerms {
     }
 }
 
-/// Another pose that explains the observation.
+/// Another pose that explains the observation, as a transform like the alignment's own.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "camelCase")]
@@ -141,26 +142,27 @@ pub struct Alternative {
     /// The transform from the mesh's frame to the camera's.
     #[serde(flatten)]
     pub camera_from_mesh: Sim3,
-    /// Its score, on the scale of the alignment's own.
+    /// Its score, to be compared with the alignment's own.
     pub score: f64,
-    /// Its rotation against the alignment's, degrees.
+    /// The angle between its rotation and the alignment's, in degrees, 0 to 180.
     pub turn_deg: f64,
 }
 
-/// How far the pose could move, to one standard deviation, before the observation would contradict it.
+/// How far the pose could move, to one standard deviation, before the observation would contradict it: what a single
+/// view of a symmetric or flat object leaves free is large.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "camelCase")]
 pub struct Uncertainty {
-    /// Of the scale, relative.
+    /// Of the scale, as a share of it: 0.01 is one per cent.
     pub scale: f64,
-    /// Of the rotation about the axis that is determined worst, degrees.
+    /// Of the rotation about the axis that is determined worst, in degrees.
     pub rotation_deg: f64,
-    /// That axis, camera frame.
+    /// That axis: a direction of length 1 in the camera's frame.
     pub rotation_axis: [f64; 3],
-    /// Of the position of the mesh's middle across the line of sight, metres.
+    /// Of the position of the mesh's middle across the line of sight, in metres.
     pub lateral_m: f64,
-    /// Of its distance, metres.
+    /// Of its distance from the camera, in metres.
     pub distance_m: f64,
 }
 
@@ -191,13 +193,13 @@ pub struct Alignment {
     /// `precise`: how likely the pose is right (scale within 5 %, rotation within 10° up to symmetry, translation
     /// within 5 % of the diameter), 0 to 1, calibrated on generated cases; `null` for `paper`.
     pub confidence: Option<f64>,
-    /// `precise`: what the search maximised, 0 to about 2; comparable between poses of one input only. `null` for
-    /// `paper`.
+    /// `precise`: what the search maximised, 0 to about 2, which says how two poses of one input compare and nothing
+    /// about different inputs. `null` for `paper`.
     pub score: Option<f64>,
     /// `precise`: what the score is made of; `null` for `paper`.
     pub terms: Option<ScoreTerms>,
-    /// `precise`: other poses that explain the observation nearly as well, best first: flips, symmetries that the
-    /// mesh does not share.
+    /// `precise`: other poses that explain the observation nearly as well, best first: flips, and symmetries that the
+    /// object has and the mesh has not. Empty where none comes near, and for `paper`.
     pub alternatives: Vec<Alternative>,
     /// `precise`: how well each part of the pose is determined; `null` for `paper`.
     pub uncertainty: Option<Uncertainty>,

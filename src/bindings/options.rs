@@ -6,7 +6,7 @@ use wasm_bindgen::{JsCast, JsValue};
 use super::object::{describe, get, number, to_number, to_numbers, wrong_type};
 use super::transform::similarity;
 use crate::align::evaluate::Truth;
-use crate::align::field::{Field, Options};
+use crate::align::field::{Field, Options, SYMMETRY};
 use crate::align::options::ScaleOption;
 use crate::error::{Error, ErrorCode, Result};
 use crate::metrics::symmetry::{Symmetry, SymmetryAxis};
@@ -71,67 +71,51 @@ fn value_of(field: &Field<'_>) -> JsValue {
         Field::Positive(value) => value.map_or(JsValue::NULL, Into::into),
         Field::Flag(value) => (**value).into(),
         Field::Switch(value) => value.map_or(JsValue::NULL, Into::into),
-        Field::Bounds(None) | Field::Direction(None) | Field::Transform(_) => JsValue::NULL,
-        Field::Bounds(Some(bounds)) => numbers_of(bounds.as_slice()),
-        Field::Direction(Some(direction)) => numbers_of(direction.as_slice()),
-        Field::Symmetry(_) => "auto".into(),
-        Field::Guard(None) => JsValue::NULL,
-        Field::Guard(Some(bounds)) => numbers_of(bounds.as_slice()),
+        Field::Bounds(bounds) | Field::Guard(bounds) => bounds.map_or(JsValue::NULL, numbers_of),
+        Field::Direction(direction) => direction.map_or(JsValue::NULL, numbers_of),
+        Field::Symmetry(symmetry) => SYMMETRY_NAMES
+            .iter()
+            .find(|(_, named)| named == *symmetry)
+            .map_or(JsValue::NULL, |(name, _)| (*name).into()),
+        // No struct of options comes with a pose.
+        Field::Transform(_) => JsValue::NULL,
         Field::Choice(choice) => choice.name().into(),
     }
 }
 
-fn numbers_of(numbers: &[f64]) -> JsValue {
-    numbers.iter().map(|x| JsValue::from(*x)).collect::<Array>().into()
+fn numbers_of<const N: usize>(numbers: [f64; N]) -> JsValue {
+    numbers.into_iter().map(JsValue::from).collect::<Array>().into()
 }
 
 /// Sets a field from a value of its type; `false` for any other. Ranges are the field's own affair.
 fn set(field: &mut Field<'_>, value: &JsValue) -> Result<bool> {
-    match field {
-        Field::Count { value: count, .. } => match value.as_f64() {
-            Some(x) if x.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&x) => **count = x as u32,
-            _ => return Ok(false),
-        },
-        Field::Number { value: number, .. } => match value.as_f64() {
-            Some(x) => **number = x,
-            None => return Ok(false),
-        },
-        Field::Positive(number) => match value.as_f64() {
-            Some(x) => **number = Some(x),
-            None if value.is_null() => **number = None,
-            None => return Ok(false),
-        },
-        Field::Flag(flag) => match value.as_bool() {
-            Some(x) => **flag = x,
-            None => return Ok(false),
-        },
-        Field::Switch(flag) => match value.as_bool() {
-            Some(x) => **flag = Some(x),
-            None if value.is_null() => **flag = None,
-            None => return Ok(false),
-        },
-        Field::Bounds(bounds) => match bounds_of(value) {
-            Some(x) => **bounds = Some(x),
-            None if value.is_null() => **bounds = None,
-            None => return Ok(false),
-        },
-        Field::Direction(direction) => match to_numbers(value, "direction") {
-            Ok(x) => **direction = Some(x),
-            Err(_) if value.is_null() => **direction = None,
-            Err(_) => return Ok(false),
-        },
-        Field::Symmetry(known) => **known = symmetry(value)?,
-        Field::Transform(transform) => {
-            **transform = if value.is_null() { None } else { Some(similarity(value, "options.initial")?) }
+    Ok(match field {
+        Field::Count { value: count, .. } => {
+            let whole = |x: &f64| x.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(x);
+            put(*count, value.as_f64().filter(whole).map(|x| x as u32))
         }
-        Field::Guard(guard) => match to_numbers(value, "guard") {
-            Ok(bounds) => **guard = Some(bounds),
-            Err(_) if value.is_null() => **guard = None,
-            Err(_) => return Ok(false),
-        },
-        Field::Choice(choice) => return Ok(value.as_string().is_some_and(|name| choice.set(&name))),
-    }
-    Ok(true)
+        Field::Number { value: number, .. } => put(*number, value.as_f64()),
+        Field::Positive(number) => put(*number, or_null(value, value.as_f64())),
+        Field::Flag(flag) => put(*flag, value.as_bool()),
+        Field::Switch(flag) => put(*flag, or_null(value, value.as_bool())),
+        Field::Bounds(bounds) => put(*bounds, or_null(value, bounds_of(value))),
+        Field::Direction(direction) => put(*direction, or_null(value, to_numbers(value, "").ok())),
+        Field::Guard(guard) => put(*guard, or_null(value, to_numbers(value, "").ok())),
+        Field::Symmetry(known) => put(*known, Some(symmetry(value)?)),
+        Field::Transform(pose) if value.is_null() => put(*pose, Some(None)),
+        Field::Transform(pose) => put(*pose, Some(Some(similarity(value, "options.initial")?))),
+        Field::Choice(choice) => value.as_string().is_some_and(|name| choice.set(&name)),
+    })
+}
+
+/// Sets an option to what was read, if anything was.
+fn put<T>(option: &mut T, read: Option<T>) -> bool {
+    read.map(|value| *option = value).is_some()
+}
+
+/// What was read of an option that may be `null`.
+fn or_null<T>(value: &JsValue, read: Option<T>) -> Option<Option<T>> {
+    if value.is_null() { Some(None) } else { read.map(Some) }
 }
 
 /// A number for both bounds, `[min, max]` or `{ min, max }`.
@@ -140,7 +124,7 @@ fn bounds_of(value: &JsValue) -> Option<[f64; 2]> {
         return Some([x, x]);
     }
     let bound = |key| get(value, key).and_then(|x| x.as_f64());
-    bound("min").zip(bound("max")).map(|(min, max)| [min, max]).or_else(|| to_numbers(value, "bounds").ok())
+    bound("min").zip(bound("max")).map(<[f64; 2]>::from).or_else(|| to_numbers(value, "").ok())
 }
 
 fn unknown_option(name: &str, known: &[&str]) -> Error {
@@ -191,26 +175,24 @@ pub fn scale(options: &JsValue) -> Result<ScaleOption> {
 pub fn truth(options: &JsValue) -> Result<Option<Truth>> {
     let Some(value) = get(options, "truth") else { return Ok(None) };
     let camera_from_mesh = similarity(&value, "options.truth")?;
-    Ok(Some(Truth { camera_from_mesh, symmetry: get(options, "symmetry").map_or(Ok(Symmetry::None), |s| symmetry(&s))? }))
+    Ok(Some(Truth {
+        camera_from_mesh,
+        symmetry: get(options, "symmetry").map_or(Ok(Symmetry::None), |s| symmetry(&s))?,
+    }))
 }
+
+/// The symmetries that a word says.
+const SYMMETRY_NAMES: [(&str, Symmetry); 3] =
+    [("none", Symmetry::None), ("auto", Symmetry::Auto), ("auto-revolution", Symmetry::AutoRevolution)];
 
 /// `"none"`, `"auto"`, `"auto-revolution"`, or `[{ axis, fold? }]`.
 fn symmetry(value: &JsValue) -> Result<Symmetry> {
-    match value.as_string().as_deref() {
-        Some("none") => return Ok(Symmetry::None),
-        Some("auto") => return Ok(Symmetry::Auto),
-        Some("auto-revolution") => return Ok(Symmetry::AutoRevolution),
-        _ => {}
+    if let Some((_, named)) = SYMMETRY_NAMES.into_iter().find(|(name, _)| *value == **name) {
+        return Ok(named);
     }
     if !Array::is_array(value) {
         let remedy = "A missing fold declares a continuous symmetry about the axis.";
-        let error = wrong_type(
-            "options.symmetry",
-            value,
-            "\"none\", \"auto\", \"auto-revolution\" or [{ axis: [x, y, z], fold? }]",
-            remedy,
-        );
-        return Err(error.coded(ErrorCode::InvalidOption));
+        return Err(wrong_type("options.symmetry", value, SYMMETRY, remedy).coded(ErrorCode::InvalidOption));
     }
     let array = Array::from(value);
     let axes = array.iter().map(|declared| {

@@ -11,10 +11,19 @@ use crate::geometry::similarity::Similarity;
 /// `{ scale, rotation, translation }` with a quaternion x, y, z, w or nine numbers row by row;
 /// `{ matrix }`, or 16 numbers as they are: column-major.
 pub fn similarity(value: &JsValue, argument: &str) -> Result<Similarity> {
+    // The core speaks of "transform"; the caller may know it as "options.truth".
+    parse(value, argument).map_err(|e| {
+        let renamed = e.argument.strip_prefix("transform").map(|rest| format!("{argument}{rest}"));
+        let argument = renamed.map_or_else(|| e.argument.clone(), Into::into);
+        e.about(argument)
+    })
+}
+
+fn parse(value: &JsValue, argument: &str) -> Result<Similarity> {
     let named = |key: &str| format!("{argument}.{key}");
     let is_array =
         Array::is_array(value) || value.is_instance_of::<Float64Array>() || value.is_instance_of::<Float32Array>();
-    let parsed = if is_array {
+    if is_array {
         Similarity::from_column_major(&to_numbers(value, argument)?)
     } else if let Some(rotation) = get(value, "rotation").or_else(|| get(value, "rotationMatrix")) {
         let translation = get(value, "translation").unwrap_or(JsValue::UNDEFINED);
@@ -27,14 +36,8 @@ pub fn similarity(value: &JsValue, argument: &str) -> Result<Similarity> {
         Similarity::from_column_major(&to_numbers(&matrix, &named("matrix"))?)
     } else {
         let remedy = "Pass what align() returned, or 16 numbers column by column.";
-        return Err(wrong_type(argument, value, "{ scale, rotation, translation } or { matrix }", remedy));
-    };
-    // The core speaks of "transform"; the caller may know it as "options.truth".
-    parsed.map_err(|e| {
-        let renamed = e.argument.strip_prefix("transform").map(|rest| format!("{argument}{rest}"));
-        let argument = renamed.map_or_else(|| e.argument.clone(), Into::into);
-        e.about(argument)
-    })
+        Err(wrong_type(argument, value, "{ scale, rotation, translation } or { matrix }", remedy))
+    }
 }
 
 fn rotation_matrix(value: &JsValue, argument: &str) -> Result<Matrix3<f64>> {

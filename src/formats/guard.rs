@@ -1,6 +1,7 @@
 //! What the readers refuse, and in which words.
 
 use crate::error::{Error, ErrorCode, Result};
+use crate::geometry::image::check_not_empty;
 
 /// Most pixels of an image: 8192 × 8192.
 pub const MAX_PIXELS: usize = 1 << 26;
@@ -59,15 +60,7 @@ pub(crate) fn unsupported(
 
 /// The number of pixels, or why there can't be so many.
 pub(crate) fn pixel_count(argument: &str, width: usize, height: usize) -> Result<usize> {
-    if width == 0 || height == 0 {
-        return Err(Error::new(
-            ErrorCode::EmptyImage,
-            argument.to_owned(),
-            format!("{width} × {height} pixels"),
-            "at least 1 × 1",
-            "The file holds no image: export it again.",
-        ));
-    }
+    check_not_empty(argument, width, height)?;
     match width.checked_mul(height) {
         Some(count) if count <= MAX_PIXELS => Ok(count),
         _ => Err(too_large(

@@ -80,17 +80,23 @@ impl DepthMap {
     }
 }
 
+/// An image has pixels.
+pub fn check_not_empty(argument: &str, width: usize, height: usize) -> Result<()> {
+    if width > 0 && height > 0 {
+        return Ok(());
+    }
+    Err(Error::new(
+        ErrorCode::EmptyImage,
+        argument.to_owned(),
+        format!("{width} × {height} pixels"),
+        "at least 1 × 1",
+        "Check the image's width and height, and that its file was exported whole.",
+    ))
+}
+
 /// Sizes and length belong together; says which does not.
 pub fn check_size(argument: &str, width: usize, height: usize, length: usize) -> Result<()> {
-    if width == 0 || height == 0 {
-        return Err(Error::new(
-            ErrorCode::EmptyImage,
-            argument.to_owned(),
-            format!("{width} × {height} pixels"),
-            "at least 1 × 1",
-            "Pass the image's width and height in pixels.",
-        ));
-    }
+    check_not_empty(argument, width, height)?;
     if width.checked_mul(height) != Some(length) {
         return Err(Error::new(
             ErrorCode::WrongLength,

@@ -27,6 +27,10 @@ test("the page aligns the sample and shows transform, metrics and times", async 
   const translation = numbers(transform.get("translation (m)"));
   assert.ok(translation.length === 3 && translation.every(Number.isFinite), `translation: ${translation}`);
 
+  const confidence = transform.get("confidence") ?? "";
+  assert.ok(confidence === "–" || (Number(confidence) >= 0 && Number(confidence) <= 1), `confidence: ${confidence}`);
+  assert.match(transform.get("alternatives") ?? "", /^\d+$/);
+
   const metrics = new Map((await rows("metrics")) as [string, string][]);
   const iou = Number(metrics.get("iou"));
   assert.ok(iou > 0 && iou <= 1, `iou: ${iou}`);

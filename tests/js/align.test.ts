@@ -1,39 +1,71 @@
-/** `align` as its callers see it: what it returns, determinism, progress, options, the life of an aligner. */
+/** `align` as its callers see it: what it returns, determinism, progress, the life of an aligner. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { type Alignment, createAligner, type Progress } from "sim3align";
+import { type Alignment, createAligner, type Progress, type Sim3 } from "sim3align";
 import { rejectsWith } from "../support/errors.js";
-import { input } from "../support/scene.js";
+import { brick, input, rotationRows } from "../support/scene.js";
 
 const aligner = await createAligner();
 const { timingsMs: _, ...reference } = await aligner.align(input, { seed: 3 });
+const paper = { preset: "paper" } as const;
 const withoutTimes = ({ timingsMs: _, ...result }: Alignment) => result;
 
-test("the transform comes in every promised form, all saying the same", async () => {
-  const { scale, rotation, rotationMatrix, translation, matrix } = await aligner.align(input);
+function assertForms({ scale, rotation, rotationMatrix, translation, matrix }: Sim3): void {
   assert.ok(scale > 0);
   assert.equal(rotation.length, 4);
   assert.ok(Math.abs(Math.hypot(...rotation) - 1) < 1e-12);
   assert.ok(rotation[3] >= 0);
   assert.ok(matrix instanceof Float64Array && matrix.length === 16);
-  const [x, y, z, w] = rotation;
-  const turned = [1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)];
-  for (const k of [0, 1, 2] as const) {
-    assert.ok(Math.abs((turned[k] ?? 0) - rotationMatrix[k][0]) < 1e-9, "the first column of R is where R takes x");
-    assert.ok(Math.abs((matrix[k] ?? 0) - scale * rotationMatrix[k][0]) < 1e-9, "columns come first");
-    assert.equal(matrix[12 + k], translation[k]);
+  const rows = rotationRows(rotation);
+  for (const i of [0, 1, 2] as const) {
+    for (const j of [0, 1, 2] as const) {
+      assert.ok(Math.abs(rows[i][j] - rotationMatrix[i][j]) < 1e-9, "matrix and quaternion are one rotation");
+      assert.ok(Math.abs((matrix[4 * j + i] ?? 0) - scale * rotationMatrix[i][j]) < 1e-9, "columns come first");
+    }
+    assert.equal(matrix[12 + i], translation[i]);
   }
   assert.deepEqual([matrix[3], matrix[7], matrix[11], matrix[15]], [0, 0, 0, 1]);
+}
+
+test("the transform comes in every promised form, all saying the same", async () => {
+  assertForms(reference);
+  assertForms(await aligner.align(input, { preset: "paper" }));
+});
+
+test("the alternatives are transforms too, in the same forms", async () => {
+  // A brick looks the same after half a turn, which no symmetry is declared to be.
+  const { alternatives, score, matrix } = await aligner.align(brick, { symmetry: "none" });
+  assert.ok(alternatives.length > 0);
+  for (const alternative of alternatives) {
+    assertForms(alternative);
+    assert.ok(alternative.score <= (score ?? 0), `${alternative.score} above ${score}`);
+    assert.ok(alternative.turnDeg >= 0 && alternative.turnDeg <= 180, `${alternative.turnDeg}`);
+    assert.notDeepEqual(alternative.matrix, matrix);
+  }
+  const scores = alternatives.map((alternative) => alternative.score);
+  assert.deepEqual(
+    scores,
+    [...scores].sort((a, b) => b - a),
+    "best first",
+  );
 });
 
 test("the report is complete", () => {
-  const { metrics, counts } = reference;
-  assert.equal(reference.preset, "paper");
+  const { metrics, counts, confidence, uncertainty } = reference;
+  assert.equal(reference.preset, "precise");
   assert.equal(reference.seed, 3);
   assert.ok(reference.initialScale > 0);
   assert.ok(Math.abs(reference.scale / reference.initialScale - reference.scaleRatio) < 1e-9);
-  assert.ok(reference.scaleRatio >= 0.5 && reference.scaleRatio <= 1.5, "the guard holds");
   assert.equal(reference.collapsed, false);
+  assert.ok(confidence === null || (confidence >= 0 && confidence <= 1), `confidence ${confidence}`);
+  assert.ok((reference.score ?? 0) > 0);
+  assert.ok(Array.isArray(reference.alternatives));
+  if (uncertainty !== null) {
+    const { rotationAxis, ...deviations } = uncertainty;
+    assert.deepEqual(Object.keys(deviations).sort(), ["distanceM", "lateralM", "rotationDeg", "scale"]);
+    for (const [name, value] of Object.entries(deviations)) assert.ok(value >= 0, `${name}: ${value}`);
+    assert.ok(Math.abs(Math.hypot(...rotationAxis) - 1) < 1e-6, `${rotationAxis}`);
+  }
   assert.equal(typeof reference.clamped, "boolean");
   assert.equal(typeof reference.converged, "boolean");
   assert.ok(reference.residualM >= 0);
@@ -46,13 +78,26 @@ test("the report is complete", () => {
     assert.ok((metrics[name] ?? 0) <= 1, name);
   }
   for (const [name, count] of Object.entries(counts)) assert.ok(Number.isInteger(count) && count >= 0, name);
+  assert.ok(counts.renders > 0);
+});
+
+test("the paper's method is there by its name", async () => {
+  const { preset, scaleRatio, confidence, score, alternatives, uncertainty, counts, timingsMs } = await aligner.align(
+    input,
+    { preset: "paper" },
+  );
+  assert.equal(preset, "paper");
+  assert.ok(scaleRatio >= 0.5 && scaleRatio <= 1.5, "the guard holds");
+  assert.deepEqual([confidence, score, alternatives, uncertainty], [null, null, [], null]);
   assert.ok(counts.inliers <= counts.matches && counts.matches > 0);
+  assert.equal(counts.renders, 0);
+  const names = ["observe", "sample", "normals", "features", "matching", "ransac", "filter", "icp", "metrics", "total"];
+  assert.deepEqual(Object.keys(timingsMs), names);
 });
 
 test("the stages are timed, and the total is their sum", async () => {
   const { total, ...stages } = (await aligner.align(input)).timingsMs;
-  const names = ["observe", "sample", "normals", "features", "matching", "ransac", "filter", "icp", "metrics"];
-  assert.deepEqual(Object.keys(stages), names);
+  for (const name of ["observe", "prepare", "search", "refine", "metrics"]) assert.ok(name in stages, name);
   const sum = Object.values(stages).reduce((a, b) => a + b, 0);
   assert.ok(total > 0 && Math.abs(total - sum) < 1e-6 * total + 1e-9, `${total} against ${sum}`);
 });
@@ -79,21 +124,21 @@ test("the arguments are left as they were", async () => {
 });
 
 test("the guard rejects or clamps, and counts what it did", async () => {
-  const narrow = { guard: [0.999, 1.001] as [number, number], ransacIterations: 5000 };
+  const narrow = { ...paper, guard: [0.999, 1.001] as [number, number], ransacIterations: 5000 };
   const clamping = await aligner.align(input, { ...narrow, guardMode: "clamp" });
   assert.ok(clamping.counts.clamped > 0);
   assert.equal(clamping.counts.rejected, 0);
   assert.ok(clamping.scaleRatio >= 0.999 - 1e-9 && clamping.scaleRatio <= 1.001 + 1e-9, `${clamping.scaleRatio}`);
-  const unguarded = await aligner.align(input, { guard: null });
+  const unguarded = await aligner.align(input, { ...paper, guard: null });
   assert.equal(unguarded.counts.rejected + unguarded.counts.clamped, 0);
 });
 
 test("the ablations run", async () => {
   for (const options of [{ lockScale: false }, { hallucinationFilter: false }, { icp: "point-to-point" }] as const) {
-    const { metrics } = await aligner.align(input, options);
+    const { metrics } = await aligner.align(input, { ...paper, ...options });
     assert.ok(metrics.iou !== null, JSON.stringify(options));
   }
-  const unrefined = await aligner.align(input, { icp: "none" });
+  const unrefined = await aligner.align(input, { ...paper, icp: "none" });
   assert.equal(unrefined.counts.icpIterations, 0);
 });
 
@@ -104,7 +149,8 @@ test("progress names the stages in order, and never falls", async () => {
   assert.equal(seen[0]?.fraction, 0);
   assert.equal(seen.at(-1)?.fraction, 1);
   const stages = [...new Set(seen.map(({ stage }) => stage))];
-  assert.deepEqual(stages.slice(0, 3), ["observe", "sample", "normals"]);
+  assert.deepEqual(stages.slice(0, 2), ["observe", "sample"]);
+  assert.ok(stages.indexOf("search") > 0 && stages.indexOf("search") < stages.indexOf("refine"), `${stages}`);
   seen.reduce((before, { fraction }) => {
     assert.ok(fraction >= before, `${fraction} after ${before}`);
     return fraction;
@@ -131,13 +177,15 @@ test("options left undefined take their defaults", async () => {
 test("the defaults are those of the documentation, and passing them changes nothing", async () => {
   const { align } = await aligner.defaults();
   assert.deepEqual(align.guard, [0.5, 1.5]);
-  assert.equal(align.preset, "paper");
+  assert.equal(align.preset, "precise");
+  assert.equal(align.symmetry, "auto");
+  assert.deepEqual([align.scale, align.knownExtentM, align.initial, align.lockScale], [null, null, null, null]);
   assert.equal(align.voxelDivisions, 30);
   assert.deepEqual(withoutTimes(await aligner.align(input, { ...align, seed: 3 })), reference);
 });
 
 test("the result survives JSON", () => {
-  const { matrix, ...plain } = reference;
+  const { matrix, alternatives: _, ...plain } = reference;
   assert.deepEqual(JSON.parse(JSON.stringify(plain)), plain);
   assert.equal(Array.from(matrix).length, 16);
 });

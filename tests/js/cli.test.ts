@@ -5,7 +5,7 @@ import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "nod
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, test } from "node:test";
-import { createAligner } from "sim3align";
+import { createAligner, type Sim3 } from "sim3align";
 import { commandLine } from "../support/environment.js";
 import { cocoRle, glb, gltfBuffer, gltfJson, npy, obj, png } from "../support/files.js";
 import { columnMajor, mesh, rotationRows, truth, view } from "../support/scene.js";
@@ -76,7 +76,16 @@ test("--help explains the layout, frames, units and exit status", () => {
   assert.match(top.stdout, /align.*evaluate.*Examples/s);
   const { status, stdout } = run("align", "--help");
   assert.equal(status, 0);
-  for (const word of ["depth.npy", "camera.json", "metres", "OpenCV", "Exit status", "--guard", "Examples"]) {
+  for (const word of [
+    "depth.npy",
+    "camera.json",
+    "metres",
+    "OpenCV",
+    "Exit status",
+    "--guard",
+    "--initial",
+    "Examples",
+  ]) {
     assert.ok(stdout.includes(word), word);
   }
   assert.match(run("evaluate", "--help").stdout, /transform file/);
@@ -96,7 +105,17 @@ test("a single case is shown in detail", () => {
   ]) {
     assert.ok(stdout.includes(word), word);
   }
+  assert.ok(!stdout.includes("confidence"), "the paper's method has none");
   assert.ok(!stdout.includes("\u001b["), "no colour without a terminal");
+});
+
+test("the default shows how sure it is, and what else the pose may be", () => {
+  const { status, stdout, stderr } = run("align", "blob");
+  assert.equal(status, 0, stderr);
+  assert.match(stdout, /confidence +(\d\.\d\d|–), score \d\.\d{3}\n/);
+  assert.match(stdout, /alternatives +(none|\d+, turned by \d+° \(score \d\.\d{3}\))/);
+  assert.match(stdout, /renders +\d+/);
+  assert.ok(!stdout.includes("hypotheses"), "the paper's method has these");
 });
 
 test("--json has everything, as the documentation says", async () => {
@@ -108,8 +127,11 @@ test("--json has everything, as the documentation says", async () => {
   const { errors } = await aligner.evaluate(input, alignment, { truth });
   const { timingsMs, ...rest } = blob;
   assert.ok(timingsMs.total > 0);
-  const { rotation, rotationMatrix, matrix, timingsMs: _, ...same } = alignment;
-  const expected = { ...same, rotation: rotationMatrix, matrix: Array.from(matrix), quaternion: rotation, errors };
+  const { timingsMs: _, ...same } = alignment;
+  const written = <T extends Sim3>({ rotation, rotationMatrix, matrix, ...others }: T) => {
+    return { ...others, rotation: rotationMatrix, matrix: Array.from(matrix), quaternion: rotation };
+  };
+  const expected = { ...written(same), alternatives: same.alternatives.map(written), errors };
   // The truth's rotation comes as rows there, as a quaternion here.
   const { errors: foundErrors, ...found } = rest;
   const { errors: expectedErrors, ...others } = expected;
@@ -141,7 +163,7 @@ test("bad cases are reported, the good ones aligned, and the exit status tells",
   assert.match(many.outside.error.message, /in the folder of the \.gltf/);
   assert.equal("errors" in many["blob-other-formats"], false, "no truth, no errors");
   const lines = stdout.split("\n");
-  assert.match(lines[0] ?? "", /^case .*IoU.*time s.*Δrot °/);
+  assert.match(lines[0] ?? "", /^case +conf\. +alt\. .*IoU.*time s.*Δrot °/);
   names.forEach((name, i) => {
     assert.ok(lines[i + 1]?.startsWith(name), `row ${i} is ${name}`);
   });
@@ -190,7 +212,18 @@ test("a case can be named file by file", () => {
 });
 
 test("flags reach the core", () => {
-  const flags = ["--guard", "0.9,1.1", "--guard-mode", "clamp", "--icp", "none", "--voxel-divisions", "20"];
+  const flags = [
+    "--preset",
+    "paper",
+    "--guard",
+    "0.9,1.1",
+    "--guard-mode",
+    "clamp",
+    "--icp",
+    "none",
+    "--voxel-divisions",
+    "20",
+  ];
   const more = [
     "--no-lock-scale",
     "--no-hallucination-filter",
@@ -206,18 +239,66 @@ test("flags reach the core", () => {
   assert.ok(blob.counts.iterations <= 500);
   assert.ok(blob.scaleRatio >= 0.9 - 1e-9 && blob.scaleRatio <= 1.1 + 1e-9);
   assert.equal(
-    run("align", "blob", "--options", '{"seed":4}', "--seed", "6", "--guard", "none", "--json", "f.json").status,
+    run(
+      "align",
+      "blob",
+      ...flags.slice(0, 2),
+      "--options",
+      '{"seed":4}',
+      "--seed",
+      "6",
+      "--guard",
+      "none",
+      "--json",
+      "f.json",
+    ).status,
     0,
   );
   assert.equal(results("f.json").blob.seed, 6, "flags have precedence");
   assert.equal(results("f.json").blob.counts.rejected, 0);
 });
 
+test("the flags of precise are taken", () => {
+  const quick = ["--quality", "fast", "--json", "precise.json"];
+  const accepted = [
+    ["--scale", "0.05,0.2", "--budget-ms", "100"],
+    ["--known-extent", "0.2", "--known-extent-axis", "longest", "--symmetry", "none"],
+    ["--camera-up", "-1,0,0", "--mesh-up", "0,1,0", "--symmetry", '[{"axis": [0, 0, 1], "fold": 2}]'],
+    ["--initial", "blob/gt.json", "--search", "local", "--lock-scale"],
+    ["--initial", "precise.json", "--search", "local"],
+  ];
+  for (const flags of accepted) {
+    const { status, stderr } = run("align", "blob", ...quick, ...flags);
+    assert.equal(status, 0, stderr);
+    assert.equal(results("precise.json").blob.preset, "precise");
+  }
+});
+
+test("an initial pose that can't be used fails the case, not the others", () => {
+  const initial = (file: string, ...flags: string[]) => {
+    const { status } = run("align", "blob", "--quality", "fast", "--initial", file, ...flags, "--json", "initial.json");
+    return [status, results("initial.json").blob.error?.code, results("initial.json").blob.error?.argument];
+  };
+  assert.deepEqual(initial("missing.json"), [1, "FILE_NOT_FOUND", "initial"]);
+  assert.deepEqual(initial("blob/camera.json"), [1, "INVALID_TRANSFORM", "initial"]);
+  assert.deepEqual(initial("blob/gt.json", "--scale", "1"), [1, "INVALID_OPTION", "options.initial"]);
+});
+
 const usage: [name: string, args: string[], message: RegExp][] = [
   ["no case", ["align"], /at least one case folder/],
   ["an unknown command", ["aling", "blob"], /unknown command/],
   ["an unknown flag", ["align", "blob", "--sead", "1"], /unknown option '--sead'.*--seed/s],
-  ["an unknown preset", ["align", "blob", "--preset", "fast"], /Allowed choices are paper/],
+  ["an unknown preset", ["align", "blob", "--preset", "fast"], /Allowed choices are precise, paper/],
+  ["an unknown quality", ["align", "blob", "--quality", "ultra"], /Allowed choices are fast, balanced, best/],
+  ["a scale that is no number", ["align", "blob", "--scale", "big"], /MIN,MAX/],
+  ["bounds that are one too many", ["align", "blob", "--scale", "1,2,3"], /MIN,MAX/],
+  ["a scale of zero", ["align", "blob", "--scale", "0"], /options\.scale.*above 0/],
+  ["a direction of two numbers", ["align", "blob", "--camera-up", "0,1"], /X,Y,Z/],
+  ["up in one frame", ["align", "blob", "--camera-up", "0,-1,0"], /options\.meshUp/],
+  ["a known extent and a scale", ["align", "blob", "--known-extent", "0.1", "--scale", "1"], /options\.knownExtentM/],
+  ["a local search from nowhere", ["align", "blob", "--search", "local"], /options\.search.*initial/],
+  ["an unknown symmetry", ["align", "blob", "--symmetry", "round"], /options\.symmetry/],
+  ["a symmetry that is no JSON", ["align", "blob", "--symmetry", "[{axis}]"], /Not JSON/],
   ["a seed that is no number", ["align", "blob", "--seed", "one"], /Not a number/],
   ["a guard of one number", ["align", "blob", "--guard", "0.5"], /MIN,MAX/],
   ["options that are no JSON", ["align", "blob", "--options", "{seed:1}"], /Not JSON/],

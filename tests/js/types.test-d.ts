@@ -25,6 +25,17 @@ export async function accepted(aligner: Aligner): Promise<void> {
   void [matrix, x, y, z, w, iou, total, icp];
 
   await aligner.align({ depth: blob, mask: blob, camera: "{}", mesh: blob }, { preset: "paper", guard: null });
+  const confidence: number | null = alignment.confidence;
+  const others: Float64Array[] = alignment.alternatives.map((alternative) => alternative.matrix);
+  const doubtM: number | undefined = alignment.uncertainty?.distanceM;
+  void [confidence, others, doubtM];
+  const [seen] = alignment.alternatives;
+  await aligner.align({} as AlignInput, { scale: 1, initial: alignment, search: "local" });
+  await aligner.align({} as AlignInput, { scale: [0.1, 1], initial: seen ?? null, symmetry: "auto-revolution" });
+  await aligner.align({} as AlignInput, { scale: { min: 0.1, max: 1 }, initial: { matrix }, quality: "best" });
+  await aligner.align({} as AlignInput, { knownExtentM: 0.095, knownExtentAxis: "y", lockScale: null });
+  await aligner.align({} as AlignInput, { cameraUp: [0, -1, 0], meshUp: [0, 1, 0], symmetry: [{ axis: [0, 1, 0] }] });
+  await aligner.align({} as AlignInput, (await aligner.defaults()).align);
   await aligner.align({ pointMap: floats, width: 2, height: 2, mask: bytes, mesh });
   await aligner.align({ depth: bytes, mask: { size: [2, 2], counts: "04" }, camera: { K: [[1]] }, mesh: { bytes } });
   await aligner.align(
@@ -52,6 +63,16 @@ export async function refused(aligner: Aligner, error: unknown): Promise<void> {
   await aligner.align({ depht: floats, width: 2, height: 2, mask: bytes, camera, mesh });
   // @ts-expect-error no such preset
   await aligner.align({} as AlignInput, { preset: "best" });
+  // @ts-expect-error no such quality
+  await aligner.align({} as AlignInput, { quality: "ultra" });
+  // @ts-expect-error align leaves a free scale out
+  await aligner.align({} as AlignInput, { scale: "free" });
+  // @ts-expect-error a direction has three numbers
+  await aligner.align({} as AlignInput, { cameraUp: [0, 1] });
+  // @ts-expect-error no transform
+  await aligner.align({} as AlignInput, { initial: { scale: 1 } });
+  // @ts-expect-error an object, not a tuple
+  await aligner.align({} as AlignInput, { symmetry: [[0, 1, 0]] });
   // @ts-expect-error no such option
   await aligner.align({} as AlignInput, { voxelDivision: 30 });
   // @ts-expect-error a guard has two bounds

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use sim3align::align::align;
 use sim3align::align::evaluate::{EvaluateOptions, Truth, evaluate};
 use sim3align::align::field::Options;
-use sim3align::align::options::{AlignOptions, GuardMode, Icp};
+use sim3align::align::options::{AlignOptions, GuardMode, Icp, Preset, SearchScope};
 use sim3align::align::progress::{Host, Silent, Stage};
 use sim3align::align::report::{Alignment, WarningCode};
 use sim3align::error::ErrorCode;
@@ -64,11 +64,16 @@ fn pose(result: &Alignment) -> Similarity {
     Similarity { scale: found.scale, rotation, translation: found.translation.into() }
 }
 
+/// The paper's method, which these tests are about; what the entry point itself does is tested with the default.
+fn paper() -> AlignOptions {
+    AlignOptions { preset: Preset::Paper, ..AlignOptions::default() }
+}
+
 #[wasm_bindgen_test(unsupported = test)]
 fn finds_a_clean_object_near_its_pose_and_reports_how() {
     let mesh = body();
     let observation = observe(&mesh, 1.0);
-    let result = align(&observation, &mesh, &AlignOptions::default(), &mut Silent).unwrap();
+    let result = align(&observation, &mesh, &paper(), &mut Silent).unwrap();
     let truth = Truth { camera_from_mesh: truth(), symmetry: Symmetry::None };
     let options = EvaluateOptions::default();
     let scored = evaluate(&observation, &mesh, &pose(&result), Some(&truth), &options).unwrap();
@@ -92,9 +97,9 @@ fn the_same_seed_gives_the_same_bits_everywhere() {
         // FNV-1a over the words.
         matrix.chain(metrics).fold(0xcbf2_9ce4_8422_2325_u64, |hash, word| (hash ^ word).wrapping_mul(0x0100_0000_01b3))
     };
-    let first = bits(&solve(&AlignOptions::default()));
-    assert_eq!(first, bits(&solve(&AlignOptions::default())));
-    let other_seed = AlignOptions { seed: 1, ..AlignOptions::default() };
+    let first = bits(&solve(&paper()));
+    assert_eq!(first, bits(&solve(&paper())));
+    let other_seed = AlignOptions { seed: 1, ..paper() };
     assert_ne!(first, bits(&solve(&other_seed)), "the seed has no effect");
     // One number for native code and for WebAssembly: after a change of the method, take the new one from
     // the message once both agree on it.
@@ -105,29 +110,29 @@ const EXPECTED: u64 = 0x58be_3d12_8052_539a;
 
 #[wasm_bindgen_test(unsupported = test)]
 fn every_ablation_runs_and_does_what_it_says() {
-    let default = solve(&AlignOptions::default());
-    let narrow = AlignOptions { guard: Some([1.0, 1.0]), guard_mode: GuardMode::Clamp, ..AlignOptions::default() };
+    let default = solve(&paper());
+    let narrow = AlignOptions { guard: Some([1.0, 1.0]), guard_mode: GuardMode::Clamp, ..paper() };
     let clamped = solve(&narrow);
     assert!((clamped.scale_ratio - 1.0).abs() < 1e-9 && clamped.clamped, "{}", clamped.scale_ratio);
     assert!(clamped.counts.clamped > 0 && clamped.counts.rejected == 0, "{:?}", clamped.counts);
     assert!(clamped.warnings.iter().any(|w| w.code == WarningCode::ScaleClamped), "{:?}", clamped.warnings);
 
-    let unguarded = solve(&AlignOptions { guard: None, ..AlignOptions::default() });
+    let unguarded = solve(&AlignOptions { guard: None, ..paper() });
     assert_eq!((unguarded.counts.rejected, unguarded.counts.clamped), (0, 0));
 
-    let unlocked = solve(&AlignOptions { lock_scale: false, ..AlignOptions::default() });
+    let unlocked = solve(&AlignOptions { lock_scale: Some(false), ..paper() });
     assert_ne!(unlocked.camera_from_mesh.scale, default.camera_from_mesh.scale, "ICP left an unlocked scale alone");
 
-    let unrefined = solve(&AlignOptions { icp: Icp::None, ..AlignOptions::default() });
+    let unrefined = solve(&AlignOptions { icp: Icp::None, ..paper() });
     assert_eq!(unrefined.counts.icp_iterations, 0);
     // Scale lock: ICP changes everything but the scale.
     assert!((unrefined.camera_from_mesh.scale / default.camera_from_mesh.scale - 1.0).abs() < 1e-12);
     assert_ne!(unrefined.camera_from_mesh.translation, default.camera_from_mesh.translation);
 
-    let to_points = solve(&AlignOptions { icp: Icp::PointToPoint, ..AlignOptions::default() });
+    let to_points = solve(&AlignOptions { icp: Icp::PointToPoint, ..paper() });
     assert_ne!(to_points.camera_from_mesh.translation, default.camera_from_mesh.translation);
 
-    let unfiltered = solve(&AlignOptions { hallucination_filter: false, ..AlignOptions::default() });
+    let unfiltered = solve(&AlignOptions { hallucination_filter: false, ..paper() });
     assert!(unfiltered.counts.supported > default.counts.supported, "{:?}", unfiltered.counts);
 }
 
@@ -152,7 +157,7 @@ impl Host for Listener {
 fn progress_never_falls_and_every_stage_is_timed() {
     let mesh = body();
     let mut listener = Listener::default();
-    let result = align(&observe(&mesh, 1.0), &mesh, &AlignOptions::default(), &mut listener).unwrap();
+    let result = align(&observe(&mesh, 1.0), &mesh, &paper(), &mut listener).unwrap();
     assert!(listener.calls.windows(2).all(|w| w[0].1 <= w[1].1), "{:?}", listener.calls);
     assert_eq!(listener.calls.last().unwrap().1, 1.0);
     let timed = result.timings_ms.stages();
@@ -178,6 +183,12 @@ fn options_out_of_range_and_flat_meshes_are_refused() {
         AlignOptions { guard: Some([1.5, 2.0]), ..AlignOptions::default() },
         AlignOptions { max_observed_points: 3, ..AlignOptions::default() },
         AlignOptions { ransac_confidence: 1.0, ..AlignOptions::default() },
+        AlignOptions { scale: Some([2.0, 1.0]), ..AlignOptions::default() },
+        AlignOptions { scale: Some([0.0, 1.0]), ..AlignOptions::default() },
+        AlignOptions { scale: Some([1.0, f64::INFINITY]), ..AlignOptions::default() },
+        AlignOptions { known_extent_m: Some(-0.1), ..AlignOptions::default() },
+        AlignOptions { camera_up: Some([0.0; 3]), mesh_up: Some([0.0, 1.0, 0.0]), ..AlignOptions::default() },
+        AlignOptions { budget_ms: Some(f64::NAN), ..AlignOptions::default() },
     ];
     for options in bad {
         let error = align(&observation, &mesh, &options, &mut Silent).unwrap_err();
@@ -187,4 +198,74 @@ fn options_out_of_range_and_flat_meshes_are_refused() {
     let error =
         align(&observation, &cuboid(Vec3::new(1.0, 1.0, 0.0)), &AlignOptions::default(), &mut Silent).unwrap_err();
     assert_eq!(error.code, ErrorCode::DegenerateMesh);
+}
+
+/// Good options, and what is wrong with those that are not: the option at fault, and words of its error.
+#[wasm_bindgen_test(unsupported = test)]
+fn options_that_contradict_each_other_are_refused() {
+    let base = AlignOptions::default;
+    let up = Some([0.0, 1.0, 0.0]);
+    let pose = Some(truth());
+    let good = [
+        base(),
+        AlignOptions { search: SearchScope::Local, initial: pose, ..base() },
+        AlignOptions { camera_up: Some([0.0, -2.0, 0.1]), mesh_up: up, ..base() },
+        AlignOptions { scale: Some([0.2, 0.2]), lock_scale: Some(true), ..base() },
+        AlignOptions { known_extent_m: Some(0.1), initial: pose, ..base() },
+        AlignOptions { scale: Some([0.1, 0.2]), initial: pose, ..base() },
+        // What went through 32-bit floats is not outside.
+        AlignOptions { scale: Some([0.17 * (1.0 + 1e-7); 2]), initial: pose, ..base() },
+        AlignOptions { scale: Some([0.17 * (1.0 - 1e-7); 2]), initial: pose, ..base() },
+    ];
+    for options in good {
+        assert_eq!(options.validate(), Ok(()), "{options:?}");
+    }
+    let bad = [
+        (AlignOptions { search: SearchScope::Local, ..base() }, "options.search", "without an initial pose"),
+        (AlignOptions { camera_up: up, ..base() }, "options.meshUp", "`cameraUp` alone"),
+        (AlignOptions { mesh_up: up, ..base() }, "options.cameraUp", "`meshUp` alone"),
+        (
+            AlignOptions { scale: Some([0.5, 2.0]), known_extent_m: Some(0.095), ..base() },
+            "options.knownExtentM",
+            "0.095 m beside a scale of [0.5, 2]",
+        ),
+        (AlignOptions { scale: Some([0.2, 0.3]), initial: pose, ..base() }, "options.initial", "[0.2, 0.3]"),
+        (AlignOptions { scale: Some([0.1, 0.16]), initial: pose, ..base() }, "options.initial", "0.17"),
+        (AlignOptions { scale: Some([0.2; 2]), initial: pose, ..base() }, "options.initial", "`scale`: 0.2."),
+    ];
+    let mesh = body();
+    let observation = observe(&mesh, 1.0);
+    for (options, argument, words) in bad {
+        let error = align(&observation, &mesh, &options, &mut Silent).unwrap_err();
+        assert_eq!((error.code, &*error.argument), (ErrorCode::InvalidOption, argument), "{error}");
+        assert!(error.to_string().contains(words), "{error}");
+        // The paper's method has no use for these options, but what is wrong stays wrong.
+        let paper = AlignOptions { preset: Preset::Paper, ..options };
+        assert_eq!(paper.validate(), Err(error));
+    }
+}
+
+/// Not pinned to bits: what a caller of the default may rely on.
+#[wasm_bindgen_test(unsupported = test)]
+fn the_default_searches_by_rendering() {
+    let mesh = body();
+    let observation = observe(&mesh, 1.0);
+    let mut listener = Listener::default();
+    let result = align(&observation, &mesh, &AlignOptions::default(), &mut listener).unwrap();
+    assert_eq!(result.preset, Preset::Precise);
+    assert!(result.score.is_some() && result.counts.renders > 0, "{:?}", result.counts);
+    assert!(listener.calls.windows(2).all(|w| w[0].1 <= w[1].1), "{:?}", listener.calls);
+    assert_eq!(listener.calls.last().unwrap().1, 1.0);
+    for name in ["prepare", "search", "refine"] {
+        assert!(result.timings_ms.stages().iter().any(|(stage, _)| stage.as_str() == name), "no {name}");
+    }
+    let truth = Truth { camera_from_mesh: truth(), symmetry: Symmetry::None };
+    let options = EvaluateOptions::default();
+    let errors = evaluate(&observation, &mesh, &pose(&result), Some(&truth), &options).unwrap().errors.unwrap();
+    assert!(errors.scale_error < 0.05 && errors.rotation_error_deg < 10.0, "{errors:?}");
+    for other in &result.alternatives {
+        let pose = Similarity::from_column_major(&other.camera_from_mesh.matrix).unwrap();
+        assert!((pose.scale / other.camera_from_mesh.scale - 1.0).abs() < 1e-9);
+        assert!(other.score <= result.score.unwrap() && (0.0..=180.0).contains(&other.turn_deg), "{other:?}");
+    }
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use sim3align::align::align;
 use sim3align::align::evaluate::{EvaluateOptions, Truth, evaluate};
-use sim3align::align::options::AlignOptions;
+use sim3align::align::options::{AlignOptions, Preset};
 use sim3align::align::progress::Silent;
 use sim3align::formats::case::{Case, read_case};
 use sim3align::geometry::similarity::Similarity;
@@ -23,8 +23,9 @@ fn cases() -> Vec<Case> {
 
 #[test]
 fn the_paper_preset_runs_on_every_case_and_its_scale_stays_inside_the_guard() {
+    let paper = AlignOptions { preset: Preset::Paper, ..AlignOptions::default() };
     for case in cases() {
-        let result = align(&case.observation, &case.mesh, &AlignOptions::default(), &mut Silent).unwrap();
+        let result = align(&case.observation, &case.mesh, &paper, &mut Silent).unwrap();
         assert!((0.5..=1.5).contains(&result.scale_ratio), "{}: scale ratio {}", case.name, result.scale_ratio);
         let camera_from_mesh = Similarity::from_column_major(&result.camera_from_mesh.matrix).unwrap();
         let truth = case.truth.map(|(camera_from_mesh, symmetry)| Truth {

@@ -3,7 +3,7 @@
 use std::fs;
 
 use sim3align::align::align;
-use sim3align::align::options::AlignOptions;
+use sim3align::align::options::{AlignOptions, Preset};
 use sim3align::align::progress::Silent;
 use sim3align::error::ErrorCode;
 use sim3align::formats::case::read_case;
@@ -154,7 +154,8 @@ fn a_written_case_reads_back_and_the_paper_preset_aligns_it() {
     assert!((camera_from_mesh.scale - sample.camera_from_mesh.scale).abs() < 1e-12);
     assert_eq!(symmetry, "none");
 
-    let result = align(&case.observation, &case.mesh, &AlignOptions::default(), &mut Silent).unwrap();
+    let paper = AlignOptions { preset: Preset::Paper, ..AlignOptions::default() };
+    let result = align(&case.observation, &case.mesh, &paper, &mut Silent).unwrap();
     assert!((0.5..=1.5).contains(&result.scale_ratio), "scale ratio {}", result.scale_ratio);
 }
 

@@ -5,9 +5,11 @@
 use std::path::Path;
 
 use sim3align::align::evaluate::{EvaluateOptions, Evaluation};
-use sim3align::align::options::{AlignOptions, EstimateOptions, GuardMode, Icp, Preset, RegisterOptions};
+use sim3align::align::options::{
+    AlignOptions, EstimateOptions, ExtentAxis, GuardMode, Icp, Preset, Quality, RegisterOptions, SearchScope,
+};
 use sim3align::align::progress::Stage;
-use sim3align::align::report::{Alignment, Counts, Registration, Sim3, Warning, WarningCode};
+use sim3align::align::report::{Alignment, Alternative, Counts, Registration, Sim3, Uncertainty, Warning, WarningCode};
 use sim3align::error::ErrorCode;
 use sim3align::metrics::Metrics;
 use sim3align::metrics::pose_error::PoseErrors;
@@ -22,6 +24,9 @@ fn declarations_are_those_of_the_rust_structs() {
     let config = Config::default();
     let declarations = [
         declaration::<Preset>(&config),
+        declaration::<Quality>(&config),
+        declaration::<SearchScope>(&config),
+        declaration::<ExtentAxis>(&config),
         declaration::<GuardMode>(&config),
         declaration::<Icp>(&config),
         declaration::<AlignOptions>(&config),
@@ -36,11 +41,15 @@ fn declarations_are_those_of_the_rust_structs() {
         declaration::<Metrics>(&config),
         declaration::<PoseErrors>(&config),
         declaration::<Counts>(&config),
+        declaration::<Alternative>(&config),
+        declaration::<Uncertainty>(&config),
         declaration::<Alignment>(&config),
         declaration::<Evaluation>(&config),
         declaration::<Registration>(&config),
     ];
-    let header = "// Generated from the Rust structs by tests/suite/typescript.rs; do not edit.\n\n";
+    let header = "// Generated from the Rust structs by tests/suite/typescript.rs; do not edit.\n\n\
+        import type { Direction, ScaleBounds, SymmetryOption } from \"../options.js\";\n\
+        import type { Sim3Like } from \"../sim3.js\";\n\n";
     let generated = header.to_owned() + &declarations.join("\n");
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("pkg-config/src/generated/types.ts");
     if std::env::var_os("UPDATE").is_some() {

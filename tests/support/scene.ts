@@ -153,15 +153,26 @@ function normalized(q: Pose["rotation"]): Pose["rotation"] {
 /** The blob. */
 export const mesh = blob();
 
+const pinhole: Pinhole = { fx: 300, fy: 301, cx: 79.5, cy: 60 };
+
 /** The blob at the truth, as a camera of 160 × 120 pixels sees it. */
-export const view = render(mesh, truth, { fx: 300, fy: 301, cx: 79.5, cy: 60 }, 160, 120);
+export const view = render(mesh, truth, pinhole, 160, 120);
+
+/** A mesh at the truth, seen by the same camera, as an input of bare typed arrays. */
+function scene(object: Mesh) {
+  return { ...render(object, truth, pinhole, 160, 120), mesh: object };
+}
 
 /** The scene as an input of bare typed arrays. */
-export const input = {
-  depth: view.depth,
-  width: view.width,
-  height: view.height,
-  mask: view.mask,
-  camera: view.camera,
-  mesh,
-};
+export const input = scene(mesh);
+
+/** A brick at the truth: half a turn about any of its axes leaves it as it is. */
+export const brick = scene(cuboid(1, 0.7, 0.4));
+
+/** A cuboid around the origin. */
+function cuboid(x: number, y: number, z: number): Mesh {
+  const corners = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((i) => [i & 1 ? x : -x, i & 2 ? y : -y, i & 4 ? z : -z]);
+  const sides = ["0132", "4576", "0451", "2376", "0264", "1375"].map((side) => Array.from(side, Number));
+  const indices = sides.flatMap(([a = 0, b = 0, c = 0, d = 0]) => [a, b, c, a, c, d]);
+  return { positions: Float32Array.from(corners), indices: Uint32Array.from(indices) };
+}

@@ -15,9 +15,10 @@ import {
 } from "./case-options.js";
 import { failure, type Outcome, outcomesJson, type Success } from "./outcome.js";
 import { Output } from "./output.js";
-import { camera, guard, jsonObject, number } from "./parse.js";
+import { camera, direction, guard, jsonObject, number, scale, symmetry } from "./parse.js";
 import { ProgressLine } from "./progress-line.js";
 import { details, notes, summary } from "./report.js";
+import { readTransform, transformFileHelp } from "./transform-file.js";
 import { UsageError } from "./usage-error.js";
 
 interface AlignFlags extends CaseFlags {
@@ -29,6 +30,17 @@ interface AlignFlags extends CaseFlags {
   options?: Record<string, unknown>;
   preset?: NonNullable<AlignOptions["preset"]>;
   seed?: number;
+  quality?: NonNullable<AlignOptions["quality"]>;
+  scale?: number | [number, number];
+  knownExtent?: number;
+  knownExtentAxis?: NonNullable<AlignOptions["knownExtentAxis"]>;
+  initial?: string;
+  search?: NonNullable<AlignOptions["search"]>;
+  symmetry?: NonNullable<AlignOptions["symmetry"]>;
+  cameraUp?: [number, number, number];
+  meshUp?: [number, number, number];
+  budgetMs?: number;
+  lockScale?: boolean;
   voxelDivisions?: number;
   surfaceSamples?: number;
   maxObservedPoints?: number;
@@ -36,23 +48,29 @@ interface AlignFlags extends CaseFlags {
   guardMode?: NonNullable<AlignOptions["guardMode"]>;
   ransacIterations?: number;
   icp?: NonNullable<AlignOptions["icp"]>;
-  lockScale: boolean;
   hallucinationFilter: boolean;
 }
 
 const help = `${caseFolderHelp}
 ${conventionsHelp}
+${transformFileHelp}
 
 Output
-  A table with a row per case: scale, its ratio to the initial one, silhouette IoU, boundary F, centre drift, Chamfer
-  distance, fitness, depth error and time; with gt.json, the errors against it too. A single case is shown in detail.
-  --json writes { "<case>": { scale, rotation, translation, matrix, quaternion, metrics, timingsMs, counts, … } }; a
-  case that failed has { error: { code, argument, found, expected, remedy, message } }.
+  A table with a row per case: confidence, the number of alternatives, scale, its ratio to the initial one, silhouette
+  IoU, boundary F, centre drift, Chamfer distance, fitness, depth error and time; with gt.json, the errors against it
+  too. A single case is shown in detail. The confidence is how likely the pose is right, 0 to 1; an alternative is
+  another pose that explains the picture nearly as well.
+  --json writes { "<case>": { scale, rotation, translation, matrix, quaternion, confidence, alternatives, uncertainty,
+  metrics, timingsMs, counts, … } }; a case that failed has { error: { code, argument, found, expected, remedy,
+  message } }.
 
 Examples
   sim3align align cases/mug
   sim3align align cases/* --json results.json
-  sim3align align cases/mug --seed 7 --guard 0.8,1.2 --guard-mode clamp
+  sim3align align cases/mug --known-extent 0.095 --known-extent-axis y
+  sim3align align cases/mug --initial annotated.json --search local
+  sim3align align cases/mug --camera-up 0,-1,0 --mesh-up 0,1,0 --quality best
+  sim3align align cases/mug --preset paper --seed 7 --guard 0.8,1.2 --guard-mode clamp
   sim3align align cases/mug --options '{"fpfhRadiusVoxels": 4}' --json - | jq .mug.scale
   sim3align align --depth d.png --mask m.png --mesh mug.glb --camera 600,600,320,240 --depth-scale 0.001
   sim3align align --depth d.npy --mask m.png --mesh mug.obj --camera fov:55
@@ -73,21 +91,41 @@ export function alignCommand(): Command {
       camera,
     )
     .option("--json <file>", 'write the results as JSON; "-" is stdout')
-    .addOption(new Option("--preset <name>", "the method").choices(["paper"]))
+    .addOption(new Option("--preset <name>", 'the method; "precise" by default').choices(["precise", "paper"]))
     .option("--seed <n>", "seed of all random draws: the same seed gives the same bits", number);
-  return addCaseOptions(command)
-    .option("--voxel-divisions <n>", "voxels along the observation's box diagonal", number)
+  addCaseOptions(command)
     .option("--surface-samples <n>", "points sampled on the mesh", number)
     .option("--max-observed-points <n>", "depth readings that are used at most", number)
+    .option("--options <json>", "any options of align() as JSON; flags have precedence", jsonObject);
+  preciseOptions(command.optionsGroup('Options of "precise":'));
+  paperOptions(command.optionsGroup('Options of "paper":'));
+  return command.addHelpText("after", help).action(run);
+}
+
+function preciseOptions(command: Command): void {
+  command
+    .addOption(new Option("--quality <how>", "how much work").choices(["fast", "balanced", "best"]))
+    .option("--scale <a|min,max>", "the scale, or bounds of it, in metres per mesh unit", scale)
+    .option("--known-extent <metres>", "the object's length along a side of the mesh's box", number)
+    .addOption(new Option("--known-extent-axis <side>", "which side").choices(["longest", "x", "y", "z"]))
+    .option("--initial <file>", "a transform file: a pose to start from")
+    .addOption(new Option("--search <where>", "everywhere, or around --initial only").choices(["global", "local"]))
+    .option("--symmetry <kind|json>", '"none", "auto", "auto-revolution" or [{"axis": [x, y, z], "fold": n}]', symmetry)
+    .option("--camera-up <x,y,z>", "the direction that is up in the camera's frame; with --mesh-up", direction)
+    .option("--mesh-up <x,y,z>", "the direction that is up in the mesh's frame", direction)
+    .option("--budget-ms <ms>", "a bound on the work, counted as milliseconds of a machine of 2020", number)
+    .option("--lock-scale", "keep the scale of --initial, or else of the grid of rotations");
+}
+
+function paperOptions(command: Command): void {
+  command
+    .option("--voxel-divisions <n>", "voxels along the observation's box diagonal", number)
     .option("--guard <min,max|none>", "bounds of the scale relative to the initial one", guard)
     .addOption(new Option("--guard-mode <mode>", "what happens beyond the guard").choices(["reject", "clamp"]))
     .option("--ransac-iterations <n>", "minimal sets drawn at most", number)
     .addOption(new Option("--icp <kind>", "the refinement").choices(["point-to-plane", "point-to-point", "none"]))
     .option("--no-lock-scale", "let the refinement change the scale")
-    .option("--no-hallucination-filter", "use mesh regions that the observation does not support, too")
-    .option("--options <json>", "any options of align() as JSON; flags have precedence", jsonObject)
-    .addHelpText("after", help)
-    .action(run);
+    .option("--no-hallucination-filter", "use mesh regions that the observation does not support, too");
 }
 
 async function run(folders: string[], flags: AlignFlags): Promise<void> {
@@ -98,7 +136,7 @@ async function run(folders: string[], flags: AlignFlags): Promise<void> {
   const outcomes: Outcome[] = [];
   for (const job of jobs) {
     progress.begin(job.name);
-    outcomes.push(await alignCase(aligner, job, alignOptions(flags), progress));
+    outcomes.push(await alignCase(aligner, job, flags, progress));
   }
   progress.clear();
   await output.json(outcomesJson(outcomes));
@@ -158,13 +196,15 @@ function folderJobs(paths: readonly string[], settings: CaseSettings): Job[] {
 async function alignCase(
   aligner: Aligner,
   { name, read }: Job,
-  options: AlignOptions,
+  flags: AlignFlags,
   progress: ProgressLine,
 ): Promise<Outcome> {
   let files: Case["files"] = {};
   try {
     const { input, truth, ...read_ } = await read();
     files = read_.files;
+    const options = alignOptions(flags);
+    if (flags.initial !== undefined) options.initial = await readTransform("initial", flags.initial, name);
     const alignment = await aligner.align(input, { ...options, onProgress: (state) => progress.update(state) });
     const success: Success = { name, alignment, errors: null };
     if (truth === null) return success;
@@ -177,19 +217,23 @@ async function alignCase(
   }
 }
 
-/** Whether every other case would fail in the same way. */
+/** Whether every other case would fail in the same way; the initial pose may be another for each. */
 function isAboutOptions(error: unknown): error is Sim3AlignError {
-  return error instanceof Sim3AlignError && error.argument.startsWith("options");
+  if (!(error instanceof Sim3AlignError)) return false;
+  return error.argument.startsWith("options") && !error.argument.startsWith("options.initial");
 }
 
 function alignOptions(flags: AlignFlags): AlignOptions {
-  const { preset, seed, voxelDivisions, surfaceSamples, maxObservedPoints, guardMode, ransacIterations, icp } = flags;
-  const named = { preset, seed, voxelDivisions, surfaceSamples, maxObservedPoints, guardMode, ransacIterations, icp };
+  const { preset, seed, surfaceSamples, maxObservedPoints, lockScale } = flags;
+  const { quality, scale, knownExtentAxis, search, symmetry, cameraUp, meshUp, budgetMs } = flags;
+  const { voxelDivisions, guardMode, ransacIterations, icp } = flags;
   return {
     ...flags.options,
-    ...withoutUndefined(named),
+    ...withoutUndefined({ preset, seed, surfaceSamples, maxObservedPoints, lockScale }),
+    ...withoutUndefined({ quality, scale, knownExtentM: flags.knownExtent, knownExtentAxis }),
+    ...withoutUndefined({ search, symmetry, cameraUp, meshUp, budgetMs }),
+    ...withoutUndefined({ voxelDivisions, guardMode, ransacIterations, icp }),
     ...(flags.guard === undefined ? {} : { guard: flags.guard === "none" ? null : flags.guard }),
-    ...(flags.lockScale ? {} : { lockScale: false }),
     ...(flags.hallucinationFilter ? {} : { hallucinationFilter: false }),
   };
 }

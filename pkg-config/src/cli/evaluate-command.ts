@@ -14,7 +14,7 @@ import { evaluationJson, type Failure, failure, failureText } from "./outcome.js
 import { Output } from "./output.js";
 import { number } from "./parse.js";
 import { evaluationDetails } from "./report.js";
-import { readTransform } from "./transform-file.js";
+import { readTransform, transformFileHelp } from "./transform-file.js";
 
 interface EvaluateFlags extends CaseFlags {
   transform: string;
@@ -24,11 +24,7 @@ interface EvaluateFlags extends CaseFlags {
 
 const help = `${caseFolderHelp}
 ${conventionsHelp}
-
-A transform file is JSON with
-  - { "scale", "rotation", "translation" }, the rotation as 3×3 numbers row by row or as a quaternion x, y, z, w; or
-  - { "matrix" }, 16 numbers column by column; or
-  - what "sim3align align --json" wrote: the case's entry is used.
+${transformFileHelp}
 
 Examples
   sim3align evaluate cases/mug --transform results.json
@@ -66,7 +62,7 @@ async function evaluateCase(folder: string, flags: EvaluateFlags): Promise<[name
     const { input, truth, ...known } = await readCaseFolder(folder, caseSettings(flags));
     ({ name, files } = known);
     if (flags.transform === "gt" && truth === null) throw noTruth(folder);
-    const matrix = flags.transform === "gt" ? truth?.matrix : await readTransform(flags.transform, name);
+    const matrix = flags.transform === "gt" ? truth?.matrix : await readTransform("transform", flags.transform, name);
     const aligner = await createAligner();
     const seed = flags.seed === undefined ? {} : { seed: flags.seed };
     const against = truth === null ? {} : { truth: { matrix: truth.matrix }, symmetry: truth.symmetry };

@@ -1,6 +1,6 @@
 /** What became of a case, for the table and for JSON. */
 import { describe, Sim3AlignError } from "../error.js";
-import type { Alignment, Evaluation, PoseErrors } from "../index.js";
+import type { Alignment, Evaluation, PoseErrors, Sim3 } from "../index.js";
 
 /** A case that was aligned. */
 export interface Success {
@@ -46,16 +46,16 @@ export function failureText({ name, error, file }: Failure): string {
   return `${name}: ${error.code}: ${error.message}${file === undefined ? "" : `\n  in ${file}`}`;
 }
 
+/** A transform and what belongs to it, in JSON. */
+function transformJson<T extends Sim3>({ scale, rotation, rotationMatrix, translation, matrix, ...rest }: T) {
+  return { scale, rotation: rotationMatrix, translation, matrix: Array.from(matrix), quaternion: rotation, ...rest };
+}
+
 /** The aligned case in JSON. */
 function alignmentJson({ alignment, errors }: Success) {
-  const { scale, rotation, rotationMatrix, translation, matrix, ...rest } = alignment;
   return {
-    scale,
-    rotation: rotationMatrix,
-    translation,
-    matrix: Array.from(matrix),
-    quaternion: rotation,
-    ...rest,
+    ...transformJson(alignment),
+    alternatives: alignment.alternatives.map(transformJson),
     ...(errors === null ? {} : { errors }),
   };
 }

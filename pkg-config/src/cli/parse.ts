@@ -1,6 +1,6 @@
 /** Values of flags. What is no value of its kind is a usage error. */
 import { InvalidArgumentError } from "commander";
-import type { CameraInput } from "../index.js";
+import type { AlignOptions, CameraInput } from "../index.js";
 
 /** A number. */
 export function number(text: string): number {
@@ -21,6 +21,30 @@ export function guard(text: string): [number, number] | "none" {
   const values = numbers(text, 2);
   if (values === null) throw new InvalidArgumentError('Give MIN,MAX such as 0.5,1.5, or "none".');
   return values as [number, number];
+}
+
+/** A, or MIN,MAX. */
+export function scale(text: string): number | [number, number] {
+  const [value, max] = numbers(text, 1) ?? numbers(text, 2) ?? [];
+  if (value === undefined) throw new InvalidArgumentError("Give a number such as 0.001, or MIN,MAX.");
+  return max === undefined ? value : [value, max];
+}
+
+/** X,Y,Z. */
+export function direction(text: string): [number, number, number] {
+  const values = numbers(text, 3);
+  if (values === null) throw new InvalidArgumentError("Give X,Y,Z such as 0,-1,0.");
+  return values as [number, number, number];
+}
+
+/** A word that the core knows, or an array of axes in JSON. */
+export function symmetry(text: string): NonNullable<AlignOptions["symmetry"]> {
+  if (!text.trimStart().startsWith("[")) return text as "auto";
+  try {
+    return JSON.parse(text);
+  } catch (error) {
+    throw new InvalidArgumentError(`Not JSON: ${(error as Error).message}.`);
+  }
 }
 
 /** An object in JSON. */

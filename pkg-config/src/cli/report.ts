@@ -1,5 +1,5 @@
 /** The tables that people read. */
-import type { Evaluation, Metrics, PoseErrors, Warning } from "../index.js";
+import type { Alignment, Evaluation, Metrics, PoseErrors, Warning } from "../index.js";
 import { fixed, significant } from "./number.js";
 import { failureText, type Outcome, type Success } from "./outcome.js";
 import type { Style } from "./style.js";
@@ -9,7 +9,19 @@ const number = (heading: string): Column => ({ heading, isNumber: true });
 
 const columns: readonly Column[] = [
   { heading: "case" },
-  ...["scale", "s/s_init", "IoU", "bound. F", "drift px", "Chamfer mm", "fitness", "MAE mm", "time s"].map(number),
+  ...[
+    "conf.",
+    "alt.",
+    "scale",
+    "s/s_init",
+    "IoU",
+    "bound. F",
+    "drift px",
+    "Chamfer mm",
+    "fitness",
+    "MAE mm",
+    "time s",
+  ].map(number),
 ];
 
 const errorColumns: readonly Column[] = ["Δscale %", "Δrot °", "Δtrans mm", "Δtrans %"].map(number);
@@ -27,9 +39,11 @@ export function summary(outcomes: readonly Outcome[], style: Style): string[] {
 }
 
 function row({ name, alignment }: Success): string[] {
-  const { scale, scaleRatio, metrics, timingsMs } = alignment;
+  const { preset, confidence, alternatives, scale, scaleRatio, metrics, timingsMs } = alignment;
   return [
     name,
+    fixed(confidence, 2),
+    preset === "paper" ? "–" : String(alternatives.length),
     significant(scale, 4),
     fixed(scaleRatio, 3),
     fixed(metrics.iou, 3),
@@ -54,7 +68,7 @@ function errorCells(errors: PoseErrors | null): string[] {
 
 /** Everything about one aligned case. */
 export function details({ name, alignment, errors }: Success, style: Style): string[] {
-  const { scale, rotation, rotationMatrix, translation, metrics, counts, timingsMs } = alignment;
+  const { preset, scale, rotation, rotationMatrix, translation, metrics, timingsMs } = alignment;
   const matrixRow = (i: 0 | 1 | 2) =>
     [...rotationMatrix[i].map((r) => r * scale), translation[i]].map((x) => fixed(x, 6).padStart(11)).join("");
   return [
@@ -67,10 +81,7 @@ export function details({ name, alignment, errors }: Success, style: Style): str
       ["matrix (s·R | t)", matrixRow(0)],
       ["", matrixRow(1)],
       ["", matrixRow(2)],
-      [
-        "refinement",
-        `${alignment.converged ? "came to rest" : "did not come to rest"}, residual ${significant(1000 * alignment.residualM, 3)} mm`,
-      ],
+      ...(preset === "paper" ? [refinement(alignment)] : certainty(alignment)),
     ]),
     "",
     ...metricsSection(metrics, style),
@@ -80,15 +91,47 @@ export function details({ name, alignment, errors }: Success, style: Style): str
     ...pairs(Object.entries(timingsMs).map(([stage, ms]) => [stage, `${fixed(ms, 1).padStart(8)} ms`])),
     "",
     style.bold("Counts"),
-    ...pairs([
-      ["points", `${counts.sourcePoints} on the mesh, ${counts.targetPoints} observed`],
-      ["voxels", `${counts.sourceVoxels} and ${counts.targetVoxels}`],
-      ["matches", `${counts.matches}, of which ${counts.inliers} agree`],
-      ["hypotheses", `${counts.iterations} drawn, ${counts.inconsistent} inconsistent`],
-      ["scale guard", `${counts.rejected} rejected, ${counts.clamped} clamped`],
-      ["refinement", `${counts.icpIterations} iterations, ${counts.supported} points supported`],
-    ]),
+    ...pairs(countRows(alignment)),
     ...warningsSection(alignment.warnings, style),
+  ];
+}
+
+type Row = readonly [name: string, value: string];
+
+function refinement({ converged, residualM }: Alignment): Row {
+  return [
+    "refinement",
+    `${converged ? "came to rest" : "did not come to rest"}, residual ${significant(1000 * residualM, 3)} mm`,
+  ];
+}
+
+/** How sure the pose is, and what else it may be. */
+function certainty({ confidence, score, alternatives, uncertainty }: Alignment): Row[] {
+  const others = alternatives.map((other) => `${fixed(other.turnDeg, 0)}° (score ${fixed(other.score, 3)})`);
+  const rows: Row[] = [
+    ["confidence", `${fixed(confidence, 2)}, score ${fixed(score, 3)}`],
+    ["alternatives", others.length === 0 ? "none" : `${others.length}, turned by ${others.join(", ")}`],
+  ];
+  if (uncertainty === null) return rows;
+  const { scale, rotationDeg, rotationAxis, lateralM, distanceM } = uncertainty;
+  const axis = rotationAxis.map((x) => fixed(x, 2)).join(" ");
+  const shift = `${fixed(1000 * lateralM, 1)} mm across, ${fixed(1000 * distanceM, 1)} mm along the view`;
+  return [
+    ...rows,
+    ["uncertainty", `scale ${fixed(100 * scale, 1)} %, rotation ${fixed(rotationDeg, 1)}° about ${axis}, ${shift}`],
+  ];
+}
+
+function countRows({ preset, counts }: Alignment): Row[] {
+  const points: Row = ["points", `${counts.sourcePoints} on the mesh, ${counts.targetPoints} observed`];
+  if (preset !== "paper") return [points, ["renders", String(counts.renders)]];
+  return [
+    points,
+    ["voxels", `${counts.sourceVoxels} and ${counts.targetVoxels}`],
+    ["matches", `${counts.matches}, of which ${counts.inliers} agree`],
+    ["hypotheses", `${counts.iterations} drawn, ${counts.inconsistent} inconsistent`],
+    ["scale guard", `${counts.rejected} rejected, ${counts.clamped} clamped`],
+    ["refinement", `${counts.icpIterations} iterations, ${counts.supported} points supported`],
   ];
 }
 

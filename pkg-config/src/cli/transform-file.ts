@@ -4,30 +4,39 @@ import { Sim3AlignError } from "../error.js";
 import { formatsModule } from "../modules.js";
 import { isRecord } from "../values.js";
 
+/** How a transform file is laid out, for --help. */
+export const transformFileHelp = `
+A transform file is JSON with
+  - { "scale", "rotation", "translation" }, the rotation as 3×3 numbers row by row or as a quaternion x, y, z, w; or
+  - { "matrix" }, 16 numbers column by column; or
+  - what "sim3align align --json" wrote: the case's entry is used.`;
+
 /**
  * A transform file's 16 numbers, column by column.
+ * @param argument what errors call it
  * @param name the case's: which entry of `align --json`'s output is meant
  */
-export async function readTransform(path: string, name: string): Promise<number[]> {
-  const text = new TextDecoder().decode(await read("transform", path));
-  const entry = entryOf(parse(text, path), name);
+export async function readTransform(argument: "transform" | "initial", path: string, name: string): Promise<number[]> {
+  const text = new TextDecoder().decode(await read(argument, path));
+  const invalid = (found: string, expected: string) => invalidTransform(argument, found, expected);
+  const entry = entryOf(parse(text, argument, path), name, invalid);
   const module = await formatsModule.load();
   const transform = module.call(
     (readers) => readers.readTruth(entry),
-    (argument) => argument.replace(/^truth/, "transform"),
+    (found) => found.replace(/^truth/, argument),
   );
   if (transform === null) throw invalid("a file that says that no pose is known", "a transform");
   return Array.from(transform.matrix);
 }
 
-function parse(text: string, path: string): unknown {
+function parse(text: string, argument: string, path: string): unknown {
   try {
     return JSON.parse(text);
   } catch (cause) {
     throw new Sim3AlignError(
       {
         code: "CORRUPT_FILE",
-        argument: "transform",
+        argument,
         found: `${path}: ${(cause as Error).message}`,
         expected: "JSON",
         remedy: 'See "sim3align evaluate --help" for the layout of a transform file.',
@@ -37,7 +46,7 @@ function parse(text: string, path: string): unknown {
   }
 }
 
-function entryOf(json: unknown, name: string): object {
+function entryOf(json: unknown, name: string, invalid: (found: string, expected: string) => Error): object {
   if (Array.isArray(json)) return { matrix: json };
   if (!isRecord(json)) throw invalid(JSON.stringify(json), "an object");
   if ("matrix" in json || "scale" in json || "available" in json) return json;
@@ -50,10 +59,10 @@ function entryOf(json: unknown, name: string): object {
   );
 }
 
-function invalid(found: string, expected: string): Sim3AlignError {
+function invalidTransform(argument: string, found: string, expected: string): Sim3AlignError {
   return new Sim3AlignError({
     code: "INVALID_TRANSFORM",
-    argument: "transform",
+    argument,
     found,
     expected,
     remedy: 'See "sim3align evaluate --help" for the layout of a transform file.',

@@ -1,9 +1,27 @@
 // Generated from the Rust structs by tests/suite/typescript.rs; do not edit.
 
+import type { Direction, ScaleBounds, SymmetryOption } from "../options.js";
+import type { Sim3Like } from "../sim3.js";
+
 /**
  * Which method runs.
  */
-export type Preset = "paper";
+export type Preset = "precise" | "paper";
+
+/**
+ * How much work `precise` puts in.
+ */
+export type Quality = "fast" | "balanced" | "best";
+
+/**
+ * Where `precise` searches.
+ */
+export type SearchScope = "global" | "local";
+
+/**
+ * Which side of the mesh's box a known length is that of.
+ */
+export type ExtentAxis = "longest" | "x" | "y" | "z";
 
 /**
  * What RANSAC does with a hypothesis whose scale leaves the guard.
@@ -17,84 +35,142 @@ export type Icp = "point-to-plane" | "point-to-point" | "none";
 
 /**
  * Options of `align`. All have defaults; most callers need none.
+ *
+ * An option whose documentation begins with the name of a preset has no effect under the other one.
  */
 export type AlignOptions = { 
 /**
- * The method. Default `"paper"`.
+ * The method. Default `"precise"`.
  */
 preset: Preset, 
+/**
+ * `precise`: how much work. Default `"balanced"`.
+ */
+quality: Quality, 
+/**
+ * `precise`: what is known of the scale, in metres per mesh unit, above 0: a number fixes it (1 for a mesh that
+ * is in metres), `[min, max]` or `{ min, max }` bounds it, `null` leaves it free. Not together with
+ * `knownExtentM`. Default `null`.
+ */
+scale: ScaleBounds | null, 
+/**
+ * `precise`: the length of the object along `knownExtentAxis`, in metres, above 0, which fixes the scale: for
+ * "this mug is 9.5 cm tall" and a mesh whose y axis is up, `{ knownExtentM: 0.095, knownExtentAxis: "y" }`. `null`
+ * where it is not known. Default `null`.
+ */
+knownExtentM: number | null, 
+/**
+ * `precise`: the side of the mesh's box that `knownExtentM` is the length of. Default `"longest"`.
+ */
+knownExtentAxis: ExtentAxis, 
+/**
+ * `precise`: the direction that is up, against gravity, in the camera's frame (OpenCV: y is down), of any length
+ * above 0: `[0, -1, 0]` for a level camera. Together with `meshUp`, it favours poses in which the object stands
+ * upright. Default `null`.
+ */
+cameraUp: Direction | null, 
+/**
+ * `precise`: the direction that is up in the mesh's frame, of any length above 0: `[0, 1, 0]` for glTF. It belongs
+ * to `cameraUp`. Default `null`.
+ */
+meshUp: Direction | null, 
+/**
+ * `precise`: the turns under which the object looks the same, so that no pose is listed among the alternatives
+ * that only repeats another one. `"auto"` finds the half turns about the principal axes that the mesh itself shows,
+ * `"auto-revolution"` those axes about which it can be turned by any angle, too; `[{ axis: [0, 1, 0], fold: 4 }]`
+ * declares a quarter turn about the mesh's y axis, without `fold` any turn about it. Default `"auto"`.
+ */
+symmetry: SymmetryOption, 
+/**
+ * `precise`: a pose to start from, camera from mesh, in metres, such as the generator's own or an annotator's:
+ * whatever `evaluate` takes as a transform, or `null`. Its scale has to be within `scale`. Default `null`.
+ */
+initial: Sim3Like | null, 
+/**
+ * `precise`: where to search: everywhere, or around `initial` only, which it then needs. Default `"global"`.
+ */
+search: SearchScope, 
+/**
+ * `precise`: a bound on the work of the search, above 0, in milliseconds of a machine of 2020; the work is
+ * counted, not timed, so that the result does not depend on the machine. `null` leaves it to `quality`. Default
+ * `null`.
+ */
+budgetMs: number | null, 
 /**
  * Seed of all random draws, 0 to 2³² − 1. The same input and seed give the same bits. Default 0.
  */
 seed: number, 
 /**
  * Depth readings inside the mask that are used at most, 32 to 1 000 000; of more, an even random share is
- * drawn. Default 20 000.
+ * drawn. `precise` uses them for metrics and initial scale alone. Default 20 000.
  */
 maxObservedPoints: number, 
 /**
- * Points sampled from the mesh surface, 100 to 1 000 000. Default 20 000.
+ * Points sampled from the mesh surface, 100 to 1 000 000. `precise` uses them for metrics and initial scale alone.
+ * Default 20 000.
  */
 surfaceSamples: number, 
 /**
- * Voxels along the observation's box diagonal, 5 to 200: the voxel size is the diagonal divided by this
+ * `paper`: voxels along the observation's box diagonal, 5 to 200: the voxel size is the diagonal divided by this
  * (paper: 20, 30, 50). Default 30.
  */
 voxelDivisions: number, 
 /**
- * Radius of the FPFH descriptors, in voxels, 1 to 20. Default 5.
+ * `paper`: radius of the FPFH descriptors, in voxels, 1 to 20. Default 5.
  */
 fpfhRadiusVoxels: number, 
 /**
- * Bounds [λmin, λmax] of the scale relative to the initial scale, 0 < λmin ≤ 1 ≤ λmax; `null` lets the
+ * `paper`: bounds [λmin, λmax] of the scale relative to the initial scale, 0 < λmin ≤ 1 ≤ λmax; `null` lets the
  * scale go anywhere (the ablation). Default [0.5, 1.5].
  */
 guard: [number, number] | null, 
 /**
- * What happens to hypotheses outside the guard. Default `"reject"`.
+ * `paper`: what happens to hypotheses outside the guard. Default `"reject"`.
  */
 guardMode: GuardMode, 
 /**
- * Minimal sets that RANSAC draws at most, 1 to 10 000 000. Default 100 000.
+ * `paper`: minimal sets that RANSAC draws at most, 1 to 10 000 000. Default 100 000.
  */
 ransacIterations: number, 
 /**
- * RANSAC stops early at this probability of having missed nothing better, 0 to 0.999999.
+ * `paper`: RANSAC stops early at this probability of having missed nothing better, 0 to 0.999999.
  * Default 0.999.
  */
 ransacConfidence: number, 
 /**
- * A match within this distance of its counterpart is an inlier, in voxels, 0.1 to 20. Default 1.5.
+ * `paper`: a match within this distance of its counterpart is an inlier, in voxels, 0.1 to 20. Default 1.5.
  */
 inlierDistanceVoxels: number, 
 /**
- * How alike the three edges of a minimal set must be stretched: least over most stretched, 0 to 1.
+ * `paper`: how alike the three edges of a minimal set must be stretched: least over most stretched, 0 to 1.
  * Default 0.9.
  */
 edgeSimilarity: number, 
 /**
- * Whether mesh regions that the observation does not support are left out. Default `true`.
+ * `paper`: whether mesh regions that the observation does not support are left out. Default `true`.
  */
 hallucinationFilter: boolean, 
 /**
- * Support: largest distance to an observed point, in voxels, 0.1 to 50; ICP tightens it to a third as the
- * pose improves. Default 3.
+ * `paper`: support: largest distance to an observed point, in voxels, 0.1 to 50; ICP tightens it to a third as
+ * the pose improves. Default 3.
  */
 supportDistanceVoxels: number, 
 /**
- * Support: largest angle between the two normals, in degrees, 0 to 180. Default 60.
+ * `paper`: support: largest angle between the two normals, in degrees, 0 to 180. Default 60.
  */
 supportAngleDeg: number, 
 /**
- * The refinement. Default `"point-to-plane"`.
+ * `paper`: the refinement. Default `"point-to-plane"`.
  */
 icp: Icp, 
 /**
- * ICP leaves the scale as RANSAC found it (paper §3.3). `false` is the ablation. Default `true`.
+ * Whether the refinement leaves the scale alone. Under `paper` it stays as RANSAC found it (§3.3; `false` is the
+ * ablation); under `precise` it stays that of `initial` or, without it, as the grid of rotations found it. `null`
+ * is `true` for `paper` and `false` for `precise`. Default `null`.
  */
-lockScale: boolean, 
+lockScale: boolean | null, 
 /**
- * ICP iterations at most, 1 to 1 000. Default 60.
+ * `paper`: ICP iterations at most, 1 to 1 000. Default 60.
  */
 icpIterations: number, };
 
@@ -197,7 +273,7 @@ surfaceSamples: number, };
 /**
  * A stage of the pipeline.
  */
-export type Stage = "observe" | "sample" | "normals" | "features" | "matching" | "ransac" | "filter" | "icp" | "metrics";
+export type Stage = "observe" | "sample" | "normals" | "features" | "matching" | "ransac" | "filter" | "icp" | "prepare" | "search" | "refine" | "metrics";
 
 /**
  * What went wrong, as a name that stays the same from release to release.
@@ -318,7 +394,8 @@ translationErrorRelative: number,
 addSMm: number, };
 
 /**
- * How much went in and how much of it counted.
+ * How much went in and how much of it counted. `precise` counts the points of both and the renders, every other method
+ * all but the renders; the rest is 0.
  */
 export type Counts = { 
 /**
@@ -368,7 +445,70 @@ clamped: number,
 /**
  * ICP iterations.
  */
-icpIterations: number, };
+icpIterations: number, 
+/**
+ * Images that the search drew.
+ */
+renders: number, };
+
+/**
+ * Another pose that explains the observation, as a transform like the alignment's own.
+ */
+export type Alternative = { 
+/**
+ * Its score, to be compared with the alignment's own.
+ */
+score: number, 
+/**
+ * The angle between its rotation and the alignment's, in degrees, 0 to 180.
+ */
+turnDeg: number, 
+/**
+ * s, target units per source unit; for `align`, metres per mesh unit.
+ */
+scale: number, 
+/**
+ * R as a unit quaternion [x, y, z, w], w ≥ 0 (three.js, glTF).
+ */
+rotation: [number, number, number, number], 
+/**
+ * R as three rows of three.
+ */
+rotationMatrix: [[number, number, number], [number, number, number], [number, number, number]], 
+/**
+ * t, in target units; for `align`, metres.
+ */
+translation: [number, number, number], 
+/**
+ * The 4×4 matrix, 16 numbers **column by column** (three.js `Matrix4.elements`, glTF `node.matrix`, WebGPU).
+ */
+matrix: [number, number, number, number, number, number, number, number, number, number, number, number, number, number, number, number], };
+
+/**
+ * How far the pose could move, to one standard deviation, before the observation would contradict it: what a single
+ * view of a symmetric or flat object leaves free is large.
+ */
+export type Uncertainty = { 
+/**
+ * Of the scale, as a share of it: 0.01 is one per cent.
+ */
+scale: number, 
+/**
+ * Of the rotation about the axis that is determined worst, in degrees.
+ */
+rotationDeg: number, 
+/**
+ * That axis: a direction of length 1 in the camera's frame.
+ */
+rotationAxis: [number, number, number], 
+/**
+ * Of the position of the mesh's middle across the line of sight, in metres.
+ */
+lateralM: number, 
+/**
+ * Of its distance from the camera, in metres.
+ */
+distanceM: number, };
 
 /**
  * What `align` found: camera from mesh, x_cam = s·R·p + t.
@@ -406,6 +546,25 @@ converged: boolean,
  * Root mean square residual of the refinement, in metres.
  */
 residualM: number, 
+/**
+ * `precise`: how likely the pose is right (scale within 5 %, rotation within 10° up to symmetry, translation
+ * within 5 % of the diameter), 0 to 1, calibrated on generated cases; `null` for `paper`.
+ */
+confidence: number | null, 
+/**
+ * `precise`: what the search maximised, 0 to about 2, which says how two poses of one input compare and nothing
+ * about different inputs. `null` for `paper`.
+ */
+score: number | null, 
+/**
+ * `precise`: other poses that explain the observation nearly as well, best first: flips, and symmetries that the
+ * object has and the mesh has not. Empty where none comes near, and for `paper`.
+ */
+alternatives: Array<Alternative>, 
+/**
+ * `precise`: how well each part of the pose is determined; `null` for `paper`.
+ */
+uncertainty: Uncertainty | null, 
 /**
  * The eight metrics of the pose.
  */
