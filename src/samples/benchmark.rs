@@ -217,31 +217,30 @@ pub fn override_setting(settings: &mut SearchSettings, name: &str, value: f64) -
     let count = value as usize;
     match name {
         "rotations" => settings.rotations = count,
-        "keep0" => settings.keep[0] = count,
-        "keep1" => settings.keep[1] = count,
-        "cells0" => settings.cells[0] = count,
-        "cells1" => settings.cells[1] = count,
-        "cells2" => settings.cells[2] = count,
-        "triangles0" => settings.triangles[0] = count,
-        "triangles1" => settings.triangles[1] = count,
-        "triangles2" => settings.triangles[2] = count,
-        "iterations0" => settings.iterations[0] = count,
-        "iterations1" => settings.iterations[1] = count,
-        "depthError0" => settings.depth_error[0] = value,
-        "depthError1" => settings.depth_error[1] = value,
-        "depthError2" => settings.depth_error[2] = value,
+        name if indexed(name, "keep", &mut settings.keep, count) => {}
+        name if indexed(name, "cells", &mut settings.cells, count) => {}
+        name if indexed(name, "triangles", &mut settings.triangles, count) => {}
+        name if indexed(name, "iterations", &mut settings.iterations, count) => {}
+        name if indexed(name, "depthError", &mut settings.depth_error, value) => {}
         "overlap" => settings.weights.overlap = value as f32,
         "depth" => settings.weights.depth = value as f32,
         "normals" => settings.weights.normals = value as f32,
         "outline" => settings.weights.outline = value as f32,
         "balance" => settings.weights.balance = value as f32,
         "occluded" => settings.weights.occluded = value as f32,
+        "beyond" => settings.weights.beyond = value as f32,
         "occlusion" => settings.occlusion = value != 0.0,
         "anchors" => settings.anchors = value != 0.0,
         "lockScale" => settings.lock_scale = value != 0.0,
         _ => return false,
     }
     true
+}
+
+/// Sets the element of `values` that `name` is the `stem` and index of.
+fn indexed<T>(name: &str, stem: &str, values: &mut [T], value: T) -> bool {
+    let index = name.strip_prefix(stem).and_then(|index| index.parse::<usize>().ok());
+    index.and_then(|index| values.get_mut(index)).map(|slot| *slot = value).is_some()
 }
 
 /// [`run_case`] with any method.

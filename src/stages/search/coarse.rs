@@ -33,8 +33,6 @@ pub struct Coarse<'a> {
     pub grid: &'a CropGrid,
     /// The objective.
     pub scoring: Scoring,
-    /// Sizes and places tried per rotation.
-    pub anchors: &'a [Anchor],
     /// The object's median depth, metres.
     pub median_m: f64,
     /// What is known beforehand.
@@ -42,25 +40,26 @@ pub struct Coarse<'a> {
 }
 
 impl Coarse<'_> {
-    /// The best of the anchors for a rotation.
-    pub fn best(&self, canvas: &mut Canvas, outermost: &[Vec3], rotation: DQuat) -> Option<Candidate> {
+    /// Every anchor for a rotation.
+    pub fn try_anchors(
+        &self,
+        canvas: &mut Canvas,
+        outermost: &[Vec3],
+        rotation: DQuat,
+        anchors: &[Anchor],
+        candidates: &mut Vec<Candidate>,
+    ) {
         let fitted = self.fit_box(outermost, rotation);
-        let mut best: Option<Candidate> = None;
-        for anchor in self.anchors {
-            let [[left, right], [top, bottom]] = self.grid.bounds;
+        let [[left, right], [top, bottom]] = self.grid.bounds;
+        for anchor in anchors {
             let room = DVec2::new(right - left, bottom - top) * (0.5 * (anchor.zoom - 1.0) / self.grid.focal);
             let pose = CropPose {
                 size: fitted.size + libm::log(anchor.zoom),
                 place: fitted.place + room * DVec2::from(anchor.towards),
                 ..fitted
             };
-            let candidate = self.at_its_distance(canvas, pose);
-            let candidate = self.held(canvas, candidate);
-            if best.is_none_or(|b| candidate.score.total > b.score.total) {
-                best = Some(candidate);
-            }
+            candidates.push(self.at_its_distance(canvas, pose));
         }
-        best
     }
 
     /// Draws a pose once, and moves it to the distance that the depths ask for: the silhouette stays.
@@ -69,7 +68,8 @@ impl Coarse<'_> {
         let ratios = canvas.inverse_depth.iter().zip(&self.grid.depth).map(|(w, z)| w * z).filter(|r| *r > 0.0);
         let stretch = median(ratios).unwrap_or(1.0);
         let score = self.scoring.score(canvas, self.model, self.grid, stretch);
-        Candidate { pose: CropPose { distance: pose.distance + libm::log(f64::from(stretch)), ..pose }, score }
+        let pose = CropPose { distance: pose.distance + libm::log(f64::from(stretch)), ..pose };
+        self.held(canvas, Candidate { pose, score })
     }
 
     /// The candidate with what is known beforehand taken into account.

@@ -35,21 +35,31 @@ use refine::{Refined, Refiner};
 use render::{Canvas, Model};
 use score::{Score, Scoring, Weights};
 
+/// The grids, coarse to fine: the sieve, on which every rotation is drawn; the coarse grid; the middle and the fine one,
+/// on which candidates are refined; and the finest, for the last digits of the best.
+const LEVELS: usize = 5;
+const SIEVE: usize = 0;
+const COARSE: usize = 1;
+const MIDDLE: usize = 2;
+const FINE: usize = 3;
+const FINEST: usize = 4;
+
 /// Work and objective of a search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchSettings {
     /// Rotations of the grid.
     pub rotations: usize,
-    /// Distinct candidates refined on the middle grid, and on the fine one.
-    pub keep: [usize; 2],
-    /// Mask cells of the three grids.
-    pub cells: [usize; 3],
-    /// Triangles of the mesh on the three grids.
-    pub triangles: [usize; 3],
-    /// Steps of the two refinements.
-    pub iterations: [usize; 2],
-    /// Depth error that halves a cell's credit on the three grids, as a share of the observed diagonal.
-    pub depth_error: [f64; 3],
+    /// Poses that the sieve lets through; distinct candidates that are refined on the middle grid, that go on there,
+    /// that are refined on the fine grid, and on the finest.
+    pub keep: [usize; 5],
+    /// Mask cells of the grids.
+    pub cells: [usize; LEVELS],
+    /// Triangles of the mesh on the grids.
+    pub triangles: [usize; LEVELS],
+    /// Steps of the four refinements.
+    pub iterations: [usize; 4],
+    /// Depth error that halves a cell's credit on the grids, as a share of the observed diagonal.
+    pub depth_error: [f64; LEVELS],
     /// The objective.
     pub weights: Weights,
     /// Whether occluders hide the mesh, and cut-off masks let it stick out.
@@ -64,11 +74,11 @@ impl Default for SearchSettings {
     fn default() -> Self {
         Self {
             rotations: 1500,
-            keep: [32, 6],
-            cells: [500, 900, 3000],
-            triangles: [700, 1500, 5000],
-            iterations: [12, 12],
-            depth_error: [0.12, 0.06, 0.03],
+            keep: [500, 64, 20, 6, 1],
+            cells: [150, 500, 900, 3000, 7000],
+            triangles: [200, 700, 1500, 5000, 10_000],
+            iterations: [4, 8, 12, 6],
+            depth_error: [0.12, 0.12, 0.06, 0.03, 0.03],
             weights: Weights::default(),
             occlusion: true,
             anchors: true,
@@ -91,7 +101,7 @@ const NEIGHBORS: usize = 7;
 pub struct Search {
     /// The frame that the poses are from.
     pub frame: MeshFrame,
-    /// The mesh in that frame, as the finest grid sees it.
+    /// The mesh in that frame, as the fine grid sees it.
     pub mesh: Mesh,
     /// The cleaned observation.
     pub observation: CleanObservation,
@@ -99,8 +109,8 @@ pub struct Search {
     pub renders: usize,
     settings: SearchSettings,
     prior: Prior,
-    /// Coarse, middle and fine.
-    models: [Model; 3],
+    /// The mesh on each grid.
+    models: [Model; LEVELS],
     canvas: Canvas,
 }
 
@@ -119,16 +129,18 @@ impl Search {
     /// Cleans the observation and decimates the mesh. `None` where decimation leaves no triangle.
     pub fn new(observation: &Observation, mesh: &Mesh, settings: SearchSettings) -> Option<Self> {
         let frame = MeshFrame::of(mesh);
-        let fine = frame.normalized(&decimate(mesh, settings.triangles[2]))?;
-        let middle = decimate(&fine, settings.triangles[1]);
-        let coarse = decimate(&middle, settings.triangles[0]);
+        let finest = frame.normalized(&decimate(mesh, settings.triangles[FINEST]))?;
+        let fine = decimate(&finest, settings.triangles[FINE]);
+        let middle = decimate(&fine, settings.triangles[MIDDLE]);
+        let coarse = decimate(&middle, settings.triangles[COARSE]);
+        let sieve = decimate(&coarse, settings.triangles[SIEVE]);
         Some(Self {
             frame,
             observation: CleanObservation::new(observation),
             renders: 0,
             settings,
             prior: Prior::default(),
-            models: [&coarse, &middle, &fine].map(Model::new),
+            models: [&sieve, &coarse, &middle, &fine, &finest].map(Model::new),
             mesh: fine,
             canvas: Canvas::default(),
         })
@@ -141,26 +153,33 @@ impl Search {
 
     /// The best distinct rotations of the grid.
     pub fn coarse(&mut self) -> Vec<Candidate> {
-        let grid = CropGrid::new(&self.observation, self.settings.cells[0]);
-        let anchors = if self.settings.anchors {
-            anchors::anchors(&grid, self.settings.occlusion)
-        } else {
-            vec![Anchor::AS_IT_IS]
-        };
-        let outermost = coarse::outermost(&self.models[2]);
-        let stage = self.stage(&grid, &anchors);
-        let count = self.settings.rotations;
+        let settings = &self.settings;
+        let [sieve, coarse] = [SIEVE, COARSE].map(|level| CropGrid::new(&self.observation, settings.cells[level]));
+        let anchors =
+            if settings.anchors { anchors::anchors(&coarse, settings.occlusion) } else { vec![Anchor::AS_IT_IS] };
+        let outermost = coarse::outermost(&self.models[FINE]);
+        let count = settings.rotations;
         let mut canvas = Canvas::default();
+
+        let stage = self.stage(SIEVE, &sieve);
+        let mut candidates = Vec::with_capacity(count * anchors.len());
+        for i in 0..count {
+            stage.try_anchors(&mut canvas, &outermost, super_fibonacci(i, count), &anchors, &mut candidates);
+        }
+        let mut renders = candidates.len();
+        let stage = self.stage(COARSE, &coarse);
+        let promising = best_of(&candidates, settings.keep[0]);
         let candidates: Vec<Candidate> =
-            (0..count).filter_map(|i| stage.best(&mut canvas, &outermost, super_fibonacci(i, count))).collect();
-        self.renders += candidates.len() * anchors.len();
-        distinct(candidates, self.settings.keep[0], DISTINCT[0])
+            promising.into_iter().map(|c| stage.at_its_distance(&mut canvas, c.pose)).collect();
+        renders += candidates.len();
+        self.renders += renders;
+        distinct(candidates, self.settings.keep[1], DISTINCT[0])
     }
 
     /// A pose and its neighbourhood: turned about every axis, at its own distance and at that of the depths.
     pub fn around(&mut self, pose: CropPose) -> Vec<Candidate> {
-        let grid = CropGrid::new(&self.observation, self.settings.cells[0]);
-        let stage = self.stage(&grid, &[]);
+        let grid = CropGrid::new(&self.observation, self.settings.cells[COARSE]);
+        let stage = self.stage(COARSE, &grid);
         let mut canvas = Canvas::default();
         let mut near: Vec<Candidate> = Vec::new();
         for angle in [0.0, NEIGHBORHOOD[0], NEIGHBORHOOD[1]] {
@@ -176,12 +195,11 @@ impl Search {
         kept
     }
 
-    fn stage<'a>(&'a self, grid: &'a CropGrid, anchors: &'a [Anchor]) -> Coarse<'a> {
+    fn stage<'a>(&'a self, level: usize, grid: &'a CropGrid) -> Coarse<'a> {
         Coarse {
-            model: &self.models[0],
+            model: &self.models[level],
             grid,
-            scoring: self.settings.scoring(&self.observation, 0),
-            anchors,
+            scoring: self.settings.scoring(&self.observation, level),
             median_m: self.observation.median_m,
             prior: self.prior,
         }
@@ -190,15 +208,33 @@ impl Search {
     /// The candidates refined on the middle grid, and the best of them on the fine one; best first.
     pub fn refine(&mut self, candidates: Vec<Candidate>) -> Vec<Found> {
         let poses = candidates.into_iter().map(|c| c.pose).collect();
-        let middle = self.refine_on(1, poses, self.settings.keep[1]);
-        self.refine_on(2, middle.into_iter().map(|f| f.pose).collect(), usize::MAX)
+        let (keep, iterations) = (self.settings.keep, self.settings.iterations);
+        let grid = CropGrid::new(&self.observation, self.settings.cells[MIDDLE]);
+        let begun = self.refine_on(&grid, MIDDLE, poses, iterations[0], keep[2]);
+        let middle = self.refine_on(&grid, MIDDLE, poses_of(&begun), iterations[1], keep[3]);
+        let grid = CropGrid::new(&self.observation, self.settings.cells[FINE]);
+        let mut found = self.refine_on(&grid, FINE, poses_of(&middle), iterations[2], usize::MAX);
+        // The scores stay those of the fine grid: scores of different grids do not compare.
+        let grid = CropGrid::new(&self.observation, self.settings.cells[FINEST]);
+        for best in found.iter_mut().take(keep[4]) {
+            let polished = self.refine_on(&grid, FINEST, vec![best.pose], iterations[3], 1);
+            if let Some(polished) = polished.first() {
+                best.pose = polished.pose;
+            }
+        }
+        found
     }
 
-    fn refine_on(&mut self, level: usize, poses: Vec<CropPose>, keep: usize) -> Vec<Found> {
-        let grid = CropGrid::new(&self.observation, self.settings.cells[level]);
+    fn refine_on(
+        &mut self,
+        grid: &CropGrid,
+        level: usize,
+        poses: Vec<CropPose>,
+        iterations: usize,
+        keep: usize,
+    ) -> Vec<Found> {
         let mut canvas = core::mem::take(&mut self.canvas);
-        let refiner = self.refiner(&grid, level);
-        let iterations = self.settings.iterations[level - 1];
+        let refiner = self.refiner(grid, level);
         let refined: Vec<Refined> = poses.into_iter().map(|pose| refiner.refine(&mut canvas, pose, iterations)).collect();
         self.renders += refined.iter().map(|r| r.renders).sum::<usize>();
         self.canvas = canvas;
@@ -218,14 +254,14 @@ impl Search {
 
     /// The score of any pose on the finest grid.
     pub fn score(&self, pose: &CropPose) -> Score {
-        let grid = CropGrid::new(&self.observation, self.settings.cells[2]);
-        self.refiner(&grid, 2).score(&mut Canvas::default(), pose)
+        let grid = CropGrid::new(&self.observation, self.settings.cells[FINE]);
+        self.refiner(&grid, FINE).score(&mut Canvas::default(), pose)
     }
 
     /// How firmly the observation holds a pose, and the root mean square of its depth residuals, metres.
     pub fn conditioning(&self, pose: &CropPose) -> (Option<Conditioning>, f64) {
-        let grid = CropGrid::new(&self.observation, self.settings.cells[2]);
-        let mut refiner = self.refiner(&grid, 2);
+        let grid = CropGrid::new(&self.observation, self.settings.cells[FINE]);
+        let mut refiner = self.refiner(&grid, FINE);
         refiner.lock_scale = false;
         let mut canvas = Canvas::default();
         let score = refiner.score(&mut canvas, pose);
@@ -238,31 +274,37 @@ impl SearchSettings {
     /// Less of everything.
     pub fn fast() -> Self {
         Self {
-            rotations: 600,
-            keep: [12, 3],
-            cells: [250, 700, 2500],
-            triangles: [300, 1200, 4000],
-            iterations: [10, 10],
+            rotations: 800,
+            keep: [160, 24, 8, 3, 1],
+            cells: [150, 400, 800, 2500, 4000],
+            triangles: [200, 500, 1200, 4000, 6000],
+            iterations: [4, 6, 10, 4],
             ..Self::default()
         }
     }
 
     /// More of everything.
     pub fn best() -> Self {
-        Self { rotations: 4000, keep: [64, 10], iterations: [20, 20], ..Self::default() }
+        Self { rotations: 4000, keep: [1600, 160, 40, 10, 2], iterations: [5, 15, 20, 12], ..Self::default() }
     }
 
     /// The search held to a bound of work, counted in milliseconds of a machine of 2020: the rotations and the
     /// candidates shrink, or grow, in proportion.
     pub fn within(self, budget_ms: f64) -> Self {
         let cost = COST_MS[0] * self.rotations as f64
-            + COST_MS[1] * (self.keep[0] * self.iterations[0]) as f64
-            + COST_MS[2] * (self.keep[1] * self.iterations[1]) as f64;
+            + COST_MS[1] * (self.keep[1] * self.iterations[0] + self.keep[2] * self.iterations[1]) as f64
+            + COST_MS[2] * (self.keep[3] * self.iterations[2]) as f64;
         let share = (budget_ms / cost).max(0.02).min(20.0);
         let scaled = |count: usize, least: usize| ((count as f64 * share) as usize).max(least);
         Self {
             rotations: scaled(self.rotations, 60),
-            keep: [scaled(self.keep[0], 3), scaled(self.keep[1], 2)],
+            keep: [
+                scaled(self.keep[0], 30),
+                scaled(self.keep[1], 6),
+                scaled(self.keep[2], 3),
+                scaled(self.keep[3], 2),
+                self.keep[4],
+            ],
             ..self
         }
     }
@@ -270,7 +312,7 @@ impl SearchSettings {
     fn scoring(&self, clean: &CleanObservation, level: usize) -> Scoring {
         let mut weights = self.weights;
         // Outlines mean little on cells that are as wide as the errors of the rotation grid.
-        weights.outline *= [0.0, 0.5, 1.0][level];
+        weights.outline *= [0.0, 0.0, 0.5, 1.0, 1.0][level];
         let occluder_m = 0.02 * clean.diagonal_m + 0.005 * clean.median_m;
         Scoring {
             weights,
@@ -279,6 +321,10 @@ impl SearchSettings {
             outline_cells: 2.0,
         }
     }
+}
+
+fn poses_of(found: &[Found]) -> Vec<CropPose> {
+    found.iter().map(|f| f.pose).collect()
 }
 
 /// A pose with a score.
@@ -307,13 +353,19 @@ impl Scored for Found {
     }
 }
 
+/// The best `count` candidates, best first.
+fn best_of<T: Scored>(candidates: &[T], count: usize) -> Vec<T> {
+    let mut keys: Vec<u64> = (0..).zip(candidates).map(|(i, c)| order::pack(-c.total(), i)).collect();
+    order::select_smallest(&mut keys, count);
+    keys.truncate(count);
+    order::sort(&mut keys);
+    keys.into_iter().map(|key| candidates[order::index_of(key) as usize]).collect()
+}
+
 /// The best `count` candidates of which no two rotations are nearer than `angle`, best first.
 fn distinct<T: Scored>(candidates: Vec<T>, count: usize, angle: f64) -> Vec<T> {
-    let mut keys: Vec<u64> = (0..).zip(&candidates).map(|(i, c)| order::pack(-c.total(), i)).collect();
-    order::sort(&mut keys);
     let mut kept: Vec<T> = Vec::new();
-    for key in keys {
-        let candidate = candidates[order::index_of(key) as usize];
+    for candidate in best_of(&candidates, candidates.len()) {
         if kept.len() >= count {
             break;
         }
@@ -324,4 +376,3 @@ fn distinct<T: Scored>(candidates: Vec<T>, count: usize, angle: f64) -> Vec<T> {
     }
     kept
 }
-

@@ -1,6 +1,6 @@
 //! Score: how well a drawn pose explains mask, free space and depth.
 
-use super::grid::CropGrid;
+use super::grid::{CropGrid, OUTSIDE_M};
 use super::render::{Canvas, Model};
 
 /// What counts how much.
@@ -16,6 +16,8 @@ pub struct Weights {
     pub outline: f32,
     /// A cell of silhouette behind an occluder, in the union: 0 is no cost, 1 that of free space.
     pub occluded: f32,
+    /// A cell of silhouette outside the image, in the union.
+    pub beyond: f32,
     /// What depth, normals and outline are multiplied by: 0 is the coverage, which free space does not lower, 1 the
     /// overlap.
     pub balance: f32,
@@ -23,7 +25,7 @@ pub struct Weights {
 
 impl Default for Weights {
     fn default() -> Self {
-        Self { overlap: 0.5, depth: 0.6, normals: 0.25, outline: 0.8, occluded: 0.15, balance: 0.0 }
+        Self { overlap: 0.2, depth: 0.6, normals: 0.25, outline: 0.8, occluded: 0.15, beyond: 0.15, balance: 1.0 }
     }
 }
 
@@ -66,7 +68,7 @@ pub struct Score {
 impl Scoring {
     /// Scores what was drawn last. `stretch` multiplies the drawn depths: the silhouette does not depend on it.
     pub fn score(&self, canvas: &Canvas, model: &Model, grid: &CropGrid, stretch: f32) -> Score {
-        let (mut both, mut extra, mut hidden) = (0u32, 0u32, 0u32);
+        let (mut both, mut extra, mut hidden, mut beyond) = (0u32, 0u32, 0u32, 0u32);
         let (mut depth_cells, mut depth_error) = (0u32, 0.0f32);
         let (mut normal_cells, mut normal_sum) = (0u32, 0.0f32);
         let (mut outline_cells, mut outline_sum) = (0u32, 0.0f32);
@@ -101,7 +103,11 @@ impl Scoring {
                 } else {
                     let scene = grid.scene[i];
                     if scene > 0.0 && scene < z - self.occluder_m {
-                        hidden += 1;
+                        if scene <= OUTSIDE_M {
+                            beyond += 1;
+                        } else {
+                            hidden += 1;
+                        }
                         visible = false;
                     } else {
                         extra += 1;
@@ -115,10 +121,11 @@ impl Scoring {
             }
         }
         let mask_cells = grid.mask_cells as f32;
-        let (both, extra, hidden) = (both as f32, extra as f32, hidden as f32);
+        let [both, extra, hidden, beyond] = [both, extra, hidden, beyond].map(|cells| cells as f32);
+        let drawn = both + extra + hidden + beyond;
         // Silhouette that leaves the grid has to cost, or the scale runs away.
-        let lost = canvas.lost / (1.05 - canvas.lost) * (both + extra + hidden);
-        let union = mask_cells + extra + self.weights.occluded * hidden + lost;
+        let lost = canvas.lost / (1.05 - canvas.lost) * drawn;
+        let union = mask_cells + extra + self.weights.occluded * hidden + self.weights.beyond * beyond + lost;
         let coverage = both / mask_cells.max(1.0);
         let mean = |sum: f32, cells: u32| if cells > 0 { sum / cells as f32 } else { 0.0 };
         let depth = if depth_cells > 0 { 1.0 - mean(depth_error, depth_cells) } else { 0.0 };
@@ -133,7 +140,7 @@ impl Scoring {
             depth,
             normals,
             outline,
-            hidden: hidden / (both + extra + hidden).max(1.0),
+            hidden: (hidden + beyond) / drawn.max(1.0),
             union,
             counts: [depth_cells, normal_cells, outline_cells],
         }
