@@ -13,7 +13,7 @@ const MIN_READINGS: f32 = 0.34;
 /// Readings in a cell's window, of nine, from which a normal is fitted.
 const MIN_NORMAL_CELLS: u32 = 5;
 /// Depth of a cell outside the image: nearer than anything, so that nothing there is contradicted.
-pub const OUTSIDE_M: f32 = 1e-6;
+const OUTSIDE_M: f32 = 1e-6;
 
 /// Evidence on `width` × `height` cells, row by row.
 #[derive(Debug, Clone)]

@@ -116,12 +116,13 @@ impl Refiner<'_> {
         let mut equations = NormalEquations::new();
         let mut turns = Turns::default();
         let (grid, weights) = (self.grid, &self.scoring.weights);
-        let per_cell = |weight: f32, cells: u32| weight * score.coverage / cells.max(1) as f32;
+        let per_cell = |weight: f32, cells: u32| weight * score.overlap / cells.max(1) as f32;
         let [depth_cells, normal_cells, outline_cells] = score.counts;
         let depth_weight = per_cell(weights.depth, depth_cells);
         let normal_weight = per_cell(weights.normals, normal_cells);
         let outline_weight = per_cell(weights.outline, outline_cells);
-        let overlap_weight = weights.overlap / score.union.max(1.0);
+        // The score is a product: a cell of overlap is worth all that it is multiplied by.
+        let overlap_weight = weights.agreement(score) / score.union.max(1.0);
         let per_depth = 1.0 / self.scoring.depth_m;
         let half = self.scoring.outline_cells;
         let wants_outline = outline_weight > 0.0 || overlap_weight > 0.0;

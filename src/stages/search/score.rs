@@ -1,6 +1,6 @@
 //! Score: how well a drawn pose explains mask, free space and depth.
 
-use super::grid::{CropGrid, OUTSIDE_M};
+use super::grid::CropGrid;
 use super::render::{Canvas, Model};
 
 /// What counts how much.
@@ -16,16 +16,18 @@ pub struct Weights {
     pub outline: f32,
     /// A cell of silhouette behind an occluder, in the union: 0 is no cost, 1 that of free space.
     pub occluded: f32,
-    /// A cell of silhouette outside the image, in the union.
-    pub beyond: f32,
-    /// What depth, normals and outline are multiplied by: 0 is the coverage, which free space does not lower, 1 the
-    /// overlap.
-    pub balance: f32,
 }
 
 impl Default for Weights {
     fn default() -> Self {
-        Self { overlap: 0.2, depth: 0.6, normals: 0.25, outline: 0.8, occluded: 0.15, beyond: 0.15, balance: 1.0 }
+        Self { overlap: 0.2, depth: 1.0, normals: 0.25, outline: 0.6, occluded: 0.15 }
+    }
+}
+
+impl Weights {
+    /// What a score's overlap is multiplied by.
+    pub fn agreement(&self, score: &Score) -> f32 {
+        self.overlap + self.depth * score.depth + self.normals * score.normals + self.outline * score.outline
     }
 }
 
@@ -68,7 +70,7 @@ pub struct Score {
 impl Scoring {
     /// Scores what was drawn last. `stretch` multiplies the drawn depths: the silhouette does not depend on it.
     pub fn score(&self, canvas: &Canvas, model: &Model, grid: &CropGrid, stretch: f32) -> Score {
-        let (mut both, mut extra, mut hidden, mut beyond) = (0u32, 0u32, 0u32, 0u32);
+        let (mut both, mut extra, mut hidden) = (0u32, 0u32, 0u32);
         let (mut depth_cells, mut depth_error) = (0u32, 0.0f32);
         let (mut normal_cells, mut normal_sum) = (0u32, 0.0f32);
         let (mut outline_cells, mut outline_sum) = (0u32, 0.0f32);
@@ -103,11 +105,7 @@ impl Scoring {
                 } else {
                     let scene = grid.scene[i];
                     if scene > 0.0 && scene < z - self.occluder_m {
-                        if scene <= OUTSIDE_M {
-                            beyond += 1;
-                        } else {
-                            hidden += 1;
-                        }
+                        hidden += 1;
                         visible = false;
                     } else {
                         extra += 1;
@@ -121,29 +119,30 @@ impl Scoring {
             }
         }
         let mask_cells = grid.mask_cells as f32;
-        let [both, extra, hidden, beyond] = [both, extra, hidden, beyond].map(|cells| cells as f32);
-        let drawn = both + extra + hidden + beyond;
+        let [both, extra, hidden] = [both, extra, hidden].map(|cells| cells as f32);
+        let drawn = both + extra + hidden;
         // Silhouette that leaves the grid has to cost, or the scale runs away.
         let lost = canvas.lost / (1.05 - canvas.lost) * drawn;
-        let union = mask_cells + extra + self.weights.occluded * hidden + self.weights.beyond * beyond + lost;
+        let union = mask_cells + extra + self.weights.occluded * hidden + lost;
         let coverage = both / mask_cells.max(1.0);
         let mean = |sum: f32, cells: u32| if cells > 0 { sum / cells as f32 } else { 0.0 };
         let depth = if depth_cells > 0 { 1.0 - mean(depth_error, depth_cells) } else { 0.0 };
         let (normals, outline) = (mean(normal_sum, normal_cells), mean(outline_sum, outline_cells));
         let overlap = both / union.max(1.0);
-        let w = &self.weights;
-        let support = coverage + w.balance * (overlap - coverage);
-        Score {
-            total: w.overlap * overlap + support * (w.depth * depth + w.normals * normals + w.outline * outline),
+        let score = Score {
+            total: 0.0,
             overlap,
             coverage,
             depth,
             normals,
             outline,
-            hidden: (hidden + beyond) / drawn.max(1.0),
+            hidden: hidden / drawn.max(1.0),
             union,
             counts: [depth_cells, normal_cells, outline_cells],
-        }
+        };
+        // Agreement counts by the share of the union that it speaks for: multiplied by the coverage alone, which free
+        // space does not lower, it would favour a mesh that is too large.
+        Score { total: overlap * self.weights.agreement(&score), ..score }
     }
 }
 
