@@ -52,6 +52,8 @@ const MAX_STRETCH: f64 = 0.25;
 /// Residuals nearer than this count as this, in units of their scale: a loss like |e| has no curvature at 0.
 const MIN_DEPTH_ERROR: f32 = 0.1;
 const MIN_OUTLINE_CELLS: f32 = 0.5;
+/// One over the square of the distance, cells, beyond which the nearest outline hardly is the right one.
+const FAR_OUTLINE: f32 = 1.0 / 9.0;
 
 impl Refiner<'_> {
     /// The score of a pose.
@@ -163,7 +165,7 @@ impl Refiner<'_> {
                     let slope_v = 0.5 * (grid.outline[i + grid.width] - grid.outline[i - grid.width]);
                     let q = d / half;
                     let curvature = 2.0 / (half * half * (1.0 + q * q) * (1.0 + q * q));
-                    let weight = outline_weight * curvature + overlap_weight / d.abs().max(MIN_OUTLINE_CELLS);
+                    let weight = outline_weight * curvature + overlap_weight / (d.abs().max(MIN_OUTLINE_CELLS) * (1.0 + d * d * FAR_OUTLINE));
                     // ∂(u, v)/∂point of the pinhole.
                     let scale = grid.focal as f32 * w;
                     let along = -(slope_u * point.x + slope_v * point.y) * w;
