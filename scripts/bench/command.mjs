@@ -29,3 +29,17 @@ export function count(text) {
   // By this code commander knows that the argument is to blame, and names it.
   throw Object.assign(new Error("Expected a whole number from 1."), { code: "commander.invalidArgument" });
 }
+
+/**
+ * The options of commands that run `sim3align-bench` over the generated set, or read what it kept.
+ * @param {Command} program
+ * @param {string} json where everything is kept by default
+ */
+export const setOptions = (program, json) =>
+  program
+    .option("--cases <n>", "generated cases", count, 240)
+    .option("--set-seed <s>", "seed of the generated set", Number, 0)
+    .option("--meshes <dir>", "show the GLB files of a folder in a third of the cases")
+    .option("--threads <n>", "all by default", count)
+    .option("--json <file>", "keep everything about every case here", json)
+    .option("--from <file>", "run nothing, and read what an earlier run has kept");
