@@ -204,7 +204,7 @@ await command("bench:cost", (program) =>
     .argument("<case...>", "case folders, or folders of case folders")
     .option("--rounds <n>", "rounds that count", count, 5)
     .option("--threads <n>", "threads of Open3D's; on a busy machine 1 may be faster", count, availableParallelism())
-    .option("--python <program>", "the Python that Open3D is installed for: 3.8 to 3.12", "python3")
+    .option("--python <program>", "the Python, 3.11 or 3.12, that Open3D is installed for", "python3")
     .option("--json <file>", "write everything that was measured")
     .action(cost),
 );
