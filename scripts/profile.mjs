@@ -1,11 +1,13 @@
 /**
- * `npm run profile -- [--runs N] [CASE…]`: the time of each stage natively and in WebAssembly (Node), in one run, and
- * whether both give the same bits. Without a case, the sample.
+ * `npm run profile -- [--runs N] [--quality fast,balanced,best] [CASE…]`: the time of each stage natively and in
+ * WebAssembly (Node), in one run, and whether both give the same bits. Without a case, the sample; in all qualities,
+ * where none is named.
  */
 import { readdirSync } from "node:fs";
 import { basename, join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { parseArgs } from "node:util";
+import { median } from "./bench/statistics.mjs";
 import { buildPackage } from "./lib/package.mjs";
 import { packageDir } from "./lib/paths.mjs";
 import { run } from "./lib/run.mjs";
@@ -13,13 +15,9 @@ import { makeSample, sampleDir } from "./lib/sample.mjs";
 import { setUp } from "./lib/setup.mjs";
 import { script } from "./lib/step.mjs";
 
-/** @typedef {{ matrix: ArrayLike<number>, timingsMs: Record<string, number> }} Result */
+const qualities = ["fast", "balanced", "best"];
 
-/** @param {readonly number[]} values */
-function median(values) {
-  const sorted = [...values].sort((a, b) => a - b);
-  return sorted[Math.floor(sorted.length / 2)] ?? Number.NaN;
-}
+/** @typedef {{ matrix: ArrayLike<number>, timingsMs: Record<string, number> }} Result */
 
 /**
  * Median milliseconds by stage.
@@ -34,50 +32,68 @@ function medians(results) {
 
 /**
  * @param {string} folder
+ * @param {string} quality
  * @param {number} runs
  * @returns {Promise<Result[]>}
  */
-async function native(folder, runs) {
+async function native(folder, quality, runs) {
   const binary = ["run", "--quiet", "--profile", "native", "--features", "native", "--bin", "sim3align-native", "--"];
-  const output = await run("cargo", [...binary, String(runs), folder]);
+  const output = await run("cargo", [...binary, "--quality", quality, String(runs), folder]);
   return JSON.parse(output.slice(output.indexOf("{")))[folder];
 }
 
 /**
  * @param {string} folder
+ * @param {string} quality
  * @param {number} runs
  * @returns {Promise<Result[]>}
  */
-async function webAssembly(folder, runs) {
+async function webAssembly(folder, quality, runs) {
   /** @param {string} file */
   const load = (file) => import(pathToFileURL(join(packageDir, file)).href);
   const [{ createAligner }, { readCaseFolder }] = await Promise.all([load("index.js"), load("case-folder.js")]);
   const aligner = await createAligner();
   const { input } = await readCaseFolder(folder);
   const results = [];
-  for (let i = 0; i < runs; i++) results.push(await aligner.align(input));
+  for (let i = 0; i < runs; i++) results.push(await aligner.align(input, { quality }));
   return results;
 }
 
+/**
+ * Prints the table of one case and quality.
+ * @param {string} folder
+ * @param {string} quality
+ * @param {number} runs
+ */
+async function profile(folder, quality, runs) {
+  const [there, here] = [await native(folder, quality, runs), await webAssembly(folder, quality, runs)];
+  const [nativeMs, wasmMs] = [medians(there), medians(here)];
+  console.log(`\n${basename(folder)}, quality ${quality}, median of ${runs} runs`);
+  console.log(`${"stage".padEnd(10)}${"native ms".padStart(12)}${"wasm ms".padStart(12)}${"ratio".padStart(8)}`);
+  for (const [stage, ms] of wasmMs) {
+    const other = nativeMs.get(stage) ?? Number.NaN;
+    const cells = [other.toFixed(1).padStart(12), ms.toFixed(1).padStart(12), (ms / other).toFixed(2).padStart(8)];
+    console.log(stage.padEnd(10) + cells.join(""));
+  }
+  const [a, b] = [Array.from(there[0]?.matrix ?? []), Array.from(here[0]?.matrix ?? [])];
+  const off = Math.max(...a.map((x, i) => Math.abs(x - (b[i] ?? Number.NaN))));
+  console.log(off === 0 ? "The matrices are the same to the bit." : `The matrices differ by up to ${off}.`);
+}
+
 await script(async () => {
-  const { values, positionals } = parseArgs({ options: { runs: { type: "string" } }, allowPositionals: true });
+  const { values, positionals } = parseArgs({
+    options: { runs: { type: "string" }, quality: { type: "string" } },
+    allowPositionals: true,
+  });
   const runs = Number(values.runs ?? 7);
+  const chosen = values.quality?.split(",") ?? qualities;
+  const unknown = chosen.filter((quality) => !qualities.includes(quality));
+  if (unknown.length > 0) throw new Error(`--quality: found ${unknown.join()}, expected ${qualities.join(", ")}.`);
   await setUp();
   await buildPackage();
   if (positionals.length === 0) await makeSample();
   const folders = positionals.length > 0 ? positionals.map((folder) => resolve(folder)) : [sampleDir];
   for (const folder of folders.filter((candidate) => readdirSync(candidate).includes("camera.json"))) {
-    const [there, here] = [await native(folder, runs), await webAssembly(folder, runs)];
-    const [nativeMs, wasmMs] = [medians(there), medians(here)];
-    console.log(`\n${basename(folder)}, median of ${runs} runs`);
-    console.log(`${"stage".padEnd(10)}${"native ms".padStart(12)}${"wasm ms".padStart(12)}${"ratio".padStart(8)}`);
-    for (const [stage, ms] of wasmMs) {
-      const other = nativeMs.get(stage) ?? Number.NaN;
-      const cells = [other.toFixed(1).padStart(12), ms.toFixed(1).padStart(12), (ms / other).toFixed(2).padStart(8)];
-      console.log(stage.padEnd(10) + cells.join(""));
-    }
-    const [a, b] = [Array.from(there[0]?.matrix ?? []), Array.from(here[0]?.matrix ?? [])];
-    const off = Math.max(...a.map((x, i) => Math.abs(x - (b[i] ?? Number.NaN))));
-    console.log(off === 0 ? "The matrices are the same to the bit." : `The matrices differ by up to ${off}.`);
+    for (const quality of chosen) await profile(folder, quality, runs);
   }
 });

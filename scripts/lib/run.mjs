@@ -37,7 +37,8 @@ function environment() {
  * @property {string} [remedy] what to do when the command fails
  * @property {string} [cwd] the working directory; the repository by default
  * @property {NodeJS.ProcessEnv} [env] added to the environment
- * @property {boolean} [echo] pass the output on to the console as it comes, besides returning it
+ * @property {boolean | "errors"} [echo] pass the output, or standard error alone, on to the console as it comes, besides
+ * returning it
  * @property {boolean} [attach] let the command have the console, and return nothing
  */
 
@@ -65,7 +66,7 @@ export function attempt(command, args, options = {}) {
     child.stdout?.on("data", (chunk) => {
       chunks.push(chunk);
       stdoutChunks.push(chunk);
-      if (options.echo) process.stdout.write(chunk);
+      if (options.echo === true) process.stdout.write(chunk);
     });
     child.stderr?.on("data", (chunk) => {
       chunks.push(chunk);

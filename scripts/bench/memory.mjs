@@ -1,0 +1,137 @@
+/**
+ * `npm run bench:memory [-- --meshes DIR]`: the WebAssembly memory that one alignment of a large input takes, which has
+ * a limit, and whether many alignments take more than few.
+ */
+import { readdirSync, readFileSync } from "node:fs";
+import { join } from "node:path";
+import { step } from "../lib/step.mjs";
+import { command, count } from "./command.mjs";
+import { builtPackage, packageModule } from "./package.mjs";
+import { bumpyRing, pictureOf } from "./scene.mjs";
+import { fixed, markdownTable } from "./table.mjs";
+
+/** @typedef {import("./case.mjs").TypedCase} TypedCase */
+
+/** What the core's memory may grow to, in bytes: 128 MB. */
+const limit = 128_000_000;
+/** What it is measured with. */
+const large = { triangles: 227_000, width: 1920, height: 1080 };
+/** The mixed sizes: triangles, width, height. All have come up within the first alignments that the last are held against. */
+const mixed = [
+  ...[
+    [500, 160, 120],
+    [60_000, 640, 480],
+    [4000, 320, 240],
+    [20_000, 848, 480],
+    [1000, 640, 480],
+    [120_000, 320, 240],
+  ],
+  ...[
+    [8000, 1280, 720],
+    [2000, 160, 120],
+    [30_000, 512, 512],
+    [300, 1024, 768],
+  ],
+];
+const early = 50;
+
+const megabytes = (/** @type {number} */ bytes) => fixed(bytes / 1e6, 1);
+
+/**
+ * The mesh of the folder's GLB files that is nearest in size to what is asked for, and its name.
+ * @param {string} folder
+ * @returns {Promise<{ name: string, mesh: TypedCase["mesh"], off?: number }>}
+ */
+async function meshFrom(folder) {
+  const [{ readMesh }, { formatsModule }] = await Promise.all(["input/mesh.js", "modules.js"].map(packageModule));
+  let best = null;
+  for (const name of readdirSync(folder).filter((file) => file.endsWith(".glb"))) {
+    const bytes = new Uint8Array(readFileSync(join(folder, name)));
+    const mesh = await readMesh(bytes, () => formatsModule.load());
+    const off = Math.abs(Math.log(mesh.indices.length / 3 / large.triangles));
+    if (best === null || off < best.off) best = { name, mesh, off };
+  }
+  if (best === null) throw new Error(`${folder} holds no GLB file. Remedy: name another, or leave --meshes out.`);
+  return best;
+}
+
+/** The core, and its memory, in a new instance. */
+async function freshCore() {
+  const [{ createAligner }, glue] = await Promise.all(["index.js", "wasm/core.js"].map(packageModule));
+  const aligner = await createAligner();
+  glue.__wbg_reset_state();
+  /** @type {WebAssembly.Memory} */
+  const memory = (await glue.default()).memory;
+  return { aligner, memory };
+}
+
+/**
+ * One line a call: what the memory has grown to after one alignment in a new instance.
+ * @param {string | undefined} meshes
+ */
+async function measurePeaks(meshes) {
+  const { name, mesh } = meshes
+    ? await meshFrom(meshes)
+    : { name: "a generated mesh", mesh: bumpyRing(large.triangles) };
+  const input = pictureOf(mesh, large.width, large.height, 2);
+  const pixels = input.mask.filter(Boolean).length;
+  console.log(
+    `\n${name}: ${mesh.indices.length / 3} triangles, ${mesh.positions.length / 3} vertices; depth ${large.width}×${large.height}, ${pixels} pixels in the mask. MB = 10⁶ bytes.\n`,
+  );
+  const given = [input.depth, input.mask, mesh.positions, mesh.indices].reduce(
+    (sum, array) => sum + array.byteLength,
+    0,
+  );
+  const peaks = [];
+  for (const options of [{ quality: "fast" }, { quality: "balanced" }, { quality: "best" }, { preset: "paper" }]) {
+    const { aligner, memory } = await freshCore();
+    const before = memory.buffer.byteLength;
+    await aligner.align(input, options);
+    peaks.push({ name: Object.values(options).join(), before, peak: memory.buffer.byteLength });
+  }
+  const rows = peaks.map(({ name, before, peak }) => [
+    ...[name, megabytes(before), megabytes(given), megabytes(peak), megabytes(limit)],
+    peak <= limit ? "yes" : "NO",
+  ]);
+  console.log(markdownTable(["one alignment", "empty, MB", "input, MB", "peak, MB", "limit, MB", "within"], rows));
+  return peaks.every(({ peak }) => peak <= limit);
+}
+
+/**
+ * What the memory has grown to after few alignments of mixed sizes, and after many.
+ * @param {number} alignments
+ */
+async function measureGrowth(alignments) {
+  const inputs = mixed.map(([triangles = 0, width = 0, height = 0]) => pictureOf(bumpyRing(triangles), width, height));
+  const { aligner, memory } = await freshCore();
+  const after = new Map();
+  await step(`${alignments} alignments on one instance`, async () => {
+    for (let i = 1; i <= alignments; i++) {
+      const input = inputs[(i * 7) % inputs.length];
+      await aligner.align(input, { quality: "fast", seed: i });
+      if (i === Math.min(early, alignments) || i === alignments) after.set(i, memory.buffer.byteLength);
+    }
+  });
+  const rows = [...after].map(([i, bytes]) => [`after ${i}`, megabytes(bytes)]);
+  console.log(`\n${markdownTable([`${mixed.length} sizes, fast`, "memory, MB"], rows)}`);
+  const [few = 0, many = few] = after.values();
+  console.log(many === few ? "\nFlat." : `\nIt grew by ${megabytes(many - few)} MB.`);
+  return many === few;
+}
+
+await command("bench:memory", (program) =>
+  program
+    .description("Measures the WebAssembly memory of a large alignment, and of many. Fails where either is too much.")
+    .option(
+      "--meshes <dir>",
+      "take the GLB file of a folder that has nearest to 227 000 triangles, not a generated mesh",
+    )
+    .option("--alignments <n>", "how many on one instance", count, 500)
+    .action(async ({ meshes, alignments }) => {
+      await builtPackage();
+      const isWithin = await measurePeaks(meshes);
+      console.log();
+      const isFlat = await measureGrowth(alignments);
+      if (!isWithin || !isFlat) process.exitCode = 1;
+    }),
+);
