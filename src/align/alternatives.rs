@@ -13,7 +13,7 @@ use crate::stages::search::{Found, Search};
 
 /// How far below the best a score is still within what noise does to it: on generated cases, the truth's is that far
 /// below where a flip won.
-const NOISE: f32 = 0.15;
+pub(super) const NOISE: f32 = 0.15;
 /// Smallest turn that makes another pose, radians.
 const MIN_TURN: f64 = 0.26;
 /// Vertices that are compared to tell whether two poses place the mesh alike.

@@ -54,7 +54,7 @@ pub(super) fn estimate(
         clamped: prior(options, mesh, &search.frame).holds(&best.pose),
         converged: best.converged,
         residual_m,
-        confidence: Some(confidence(best, &alternatives, &search)),
+        confidence: Some(confidence(best, &alternatives, conditioning.as_ref())),
         score: Some(f64::from(best.score.total)),
         terms: Some((&best.score).into()),
         alternatives,

@@ -52,11 +52,13 @@ impl NormalEquations {
 
     /// Adds a quadratic ½xᵀBx + gᵀx in the first three parameters, of which B's upper triangle is read.
     pub fn add_block(&mut self, block: &[[f64; 3]; 3], gradient: [f64; 3]) {
-        for i in 0..3 {
-            for j in i..3 {
-                self.matrix[i][j] += block[i][j];
+        for (i, (row, added)) in self.matrix.iter_mut().zip(block).enumerate() {
+            for (entry, added) in row[i..].iter_mut().zip(&added[i..]) {
+                *entry += added;
             }
-            self.gradient[i] += gradient[i];
+        }
+        for (entry, added) in self.gradient.iter_mut().zip(gradient) {
+            *entry += added;
         }
     }
 

@@ -42,6 +42,7 @@ pub mod observe;
 pub mod order;
 pub mod pinhole;
 pub mod pose_error;
+pub mod precise;
 pub mod ransac;
 pub mod rasteriser;
 pub mod rasteriser_oracle;
@@ -52,6 +53,7 @@ pub mod register;
 pub mod sample;
 #[cfg(all(feature = "samples", not(target_arch = "wasm32")))]
 pub mod samples;
+pub mod search;
 pub mod shapes;
 pub mod silhouette;
 pub mod similarity;

@@ -11,17 +11,16 @@ pub mod conditioning;
 pub mod grid;
 pub mod pose;
 pub mod prior;
+pub mod ranking;
 pub mod refine;
 pub mod render;
 pub mod rim;
 pub mod score;
-
-use glam::DQuat;
+pub mod settings;
 
 use crate::geometry::decimate::decimate;
 use crate::geometry::mesh::Mesh;
-use crate::geometry::order;
-use crate::geometry::rotations::{angle_between, super_fibonacci};
+use crate::geometry::rotations::super_fibonacci;
 use crate::stages::observe::Observation;
 
 use anchors::Anchor;
@@ -31,68 +30,17 @@ use conditioning::Conditioning;
 use grid::CropGrid;
 use pose::{CropPose, MeshFrame};
 use prior::Prior;
+use ranking::{best_of, distinct};
 use refine::{Refined, Refiner};
 use render::{Canvas, Model};
-use score::{Score, Scoring, Weights};
+use score::Score;
+use settings::{COARSE, FINE, FINEST, LEVELS, MIDDLE, SIEVE};
 
-/// The grids, coarse to fine: the sieve, on which every rotation is drawn; the coarse grid; the middle and the fine one,
-/// on which candidates are refined; and the finest, for the last digits of the best.
-const LEVELS: usize = 5;
-const SIEVE: usize = 0;
-const COARSE: usize = 1;
-const MIDDLE: usize = 2;
-const FINE: usize = 3;
-const FINEST: usize = 4;
-
-/// Work and objective of a search.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SearchSettings {
-    /// Rotations of the grid.
-    pub rotations: usize,
-    /// Poses that the sieve lets through; distinct candidates that are refined on the middle grid, that go on there,
-    /// that are refined on the fine grid, and on the finest.
-    pub keep: [usize; 5],
-    /// Mask cells of the grids.
-    pub cells: [usize; LEVELS],
-    /// Triangles of the mesh on the grids.
-    pub triangles: [usize; LEVELS],
-    /// Steps of the four refinements.
-    pub iterations: [usize; 4],
-    /// Depth error that halves a cell's credit on the grids, as a share of the observed diagonal.
-    pub depth_error: [f64; LEVELS],
-    /// The objective.
-    pub weights: Weights,
-    /// Whether occluders hide the mesh, and cut-off masks let it stick out.
-    pub occlusion: bool,
-    /// Whether sizes other than the box's are tried.
-    pub anchors: bool,
-    /// Whether the scale stays as the grid found it.
-    pub lock_scale: bool,
-}
-
-impl Default for SearchSettings {
-    fn default() -> Self {
-        Self {
-            rotations: 1500,
-            keep: [500, 64, 20, 6, 1],
-            cells: [150, 500, 900, 3000, 7000],
-            triangles: [200, 700, 1500, 5000, 10_000],
-            iterations: [4, 8, 12, 6],
-            depth_error: [0.12, 0.12, 0.06, 0.03, 0.03],
-            weights: Weights::default(),
-            occlusion: true,
-            anchors: true,
-            lock_scale: false,
-        }
-    }
-}
+pub use settings::SearchSettings;
 
 /// Rotations nearer than this are one candidate, on the coarse grid and on the middle one; radians.
 const DISTINCT: [f64; 2] = [0.21, 0.105];
 
-/// What a rotation of the grid, a step on the middle grid and one on the fine grid cost: milliseconds, as WebAssembly,
-/// on a machine of 2020.
-const COST_MS: [f64; 3] = [0.06, 0.12, 0.4];
 /// Turns tried around a given pose, radians, and how many of them are refined.
 const NEIGHBORHOOD: [f64; 2] = [0.17, 0.4];
 const NEIGHBORS: usize = 7;
@@ -235,7 +183,8 @@ impl Search {
     ) -> Vec<Found> {
         let mut canvas = core::mem::take(&mut self.canvas);
         let refiner = self.refiner(grid, level);
-        let refined: Vec<Refined> = poses.into_iter().map(|pose| refiner.refine(&mut canvas, pose, iterations)).collect();
+        let refined: Vec<Refined> =
+            poses.into_iter().map(|pose| refiner.refine(&mut canvas, pose, iterations)).collect();
         self.renders += refined.iter().map(|r| r.renders).sum::<usize>();
         self.canvas = canvas;
         let found = refined.iter().map(|r| Found { pose: r.pose, score: r.score, converged: r.converged });
@@ -270,109 +219,6 @@ impl Search {
     }
 }
 
-impl SearchSettings {
-    /// Less of everything.
-    pub fn fast() -> Self {
-        Self {
-            rotations: 800,
-            keep: [160, 24, 8, 3, 1],
-            cells: [150, 400, 800, 2500, 4000],
-            triangles: [200, 500, 1200, 4000, 6000],
-            iterations: [4, 6, 10, 4],
-            ..Self::default()
-        }
-    }
-
-    /// More of everything.
-    pub fn best() -> Self {
-        Self { rotations: 4000, keep: [1600, 160, 40, 10, 2], iterations: [5, 15, 20, 12], ..Self::default() }
-    }
-
-    /// The search held to a bound of work, counted in milliseconds of a machine of 2020: the rotations and the
-    /// candidates shrink, or grow, in proportion.
-    pub fn within(self, budget_ms: f64) -> Self {
-        let cost = COST_MS[0] * self.rotations as f64
-            + COST_MS[1] * (self.keep[1] * self.iterations[0] + self.keep[2] * self.iterations[1]) as f64
-            + COST_MS[2] * (self.keep[3] * self.iterations[2]) as f64;
-        let share = (budget_ms / cost).max(0.02).min(20.0);
-        let scaled = |count: usize, least: usize| ((count as f64 * share) as usize).max(least);
-        Self {
-            rotations: scaled(self.rotations, 60),
-            keep: [
-                scaled(self.keep[0], 30),
-                scaled(self.keep[1], 6),
-                scaled(self.keep[2], 3),
-                scaled(self.keep[3], 2),
-                self.keep[4],
-            ],
-            ..self
-        }
-    }
-
-    fn scoring(&self, clean: &CleanObservation, level: usize) -> Scoring {
-        let mut weights = self.weights;
-        // Outlines mean little on cells that are as wide as the errors of the rotation grid.
-        weights.outline *= [0.0, 0.0, 0.5, 1.0, 1.0][level];
-        let occluder_m = 0.02 * clean.diagonal_m + 0.005 * clean.median_m;
-        Scoring {
-            weights,
-            depth_m: (self.depth_error[level] * clean.diagonal_m) as f32,
-            occluder_m: if self.occlusion { occluder_m as f32 } else { f32::INFINITY },
-            outline_cells: 2.0,
-        }
-    }
-}
-
 fn poses_of(found: &[Found]) -> Vec<CropPose> {
     found.iter().map(|f| f.pose).collect()
-}
-
-/// A pose with a score.
-trait Scored: Copy {
-    fn rotation(&self) -> DQuat;
-    fn total(&self) -> f32;
-}
-
-impl Scored for Candidate {
-    fn rotation(&self) -> DQuat {
-        self.pose.rotation
-    }
-
-    fn total(&self) -> f32 {
-        self.score.total
-    }
-}
-
-impl Scored for Found {
-    fn rotation(&self) -> DQuat {
-        self.pose.rotation
-    }
-
-    fn total(&self) -> f32 {
-        self.score.total
-    }
-}
-
-/// The best `count` candidates, best first.
-fn best_of<T: Scored>(candidates: &[T], count: usize) -> Vec<T> {
-    let mut keys: Vec<u64> = (0..).zip(candidates).map(|(i, c)| order::pack(-c.total(), i)).collect();
-    order::select_smallest(&mut keys, count);
-    keys.truncate(count);
-    order::sort(&mut keys);
-    keys.into_iter().map(|key| candidates[order::index_of(key) as usize]).collect()
-}
-
-/// The best `count` candidates of which no two rotations are nearer than `angle`, best first.
-fn distinct<T: Scored>(candidates: Vec<T>, count: usize, angle: f64) -> Vec<T> {
-    let mut kept: Vec<T> = Vec::new();
-    for candidate in best_of(&candidates, candidates.len()) {
-        if kept.len() >= count {
-            break;
-        }
-        let turn = |k: &T| angle_between(k.rotation(), candidate.rotation());
-        if kept.iter().all(|k| turn(k) > angle) {
-            kept.push(candidate);
-        }
-    }
-    kept
 }

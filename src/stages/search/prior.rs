@@ -24,6 +24,10 @@ impl Prior {
         let Some(bounds) = self.scale else { return pose };
         let [low, high] = bounds.map(libm::log);
         let scale = pose.size + pose.distance;
+        // As it is within them: the sum would not come back to the bit.
+        if scale >= low && scale <= high {
+            return pose;
+        }
         CropPose { size: scale.max(low).min(high) - pose.distance, ..pose }
     }
 

@@ -165,7 +165,8 @@ impl Refiner<'_> {
                     let slope_v = 0.5 * (grid.outline[i + grid.width] - grid.outline[i - grid.width]);
                     let q = d / half;
                     let curvature = 2.0 / (half * half * (1.0 + q * q) * (1.0 + q * q));
-                    let weight = outline_weight * curvature + overlap_weight / (d.abs().max(MIN_OUTLINE_CELLS) * (1.0 + d * d * FAR_OUTLINE));
+                    let weight = outline_weight * curvature
+                        + overlap_weight / (d.abs().max(MIN_OUTLINE_CELLS) * (1.0 + d * d * FAR_OUTLINE));
                     // ∂(u, v)/∂point of the pinhole.
                     let scale = grid.focal as f32 * w;
                     let along = -(slope_u * point.x + slope_v * point.y) * w;

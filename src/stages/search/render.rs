@@ -166,6 +166,6 @@ impl Canvas {
 fn snap(cells: f32) -> i32 {
     // Shifted to be positive, so that the truncation of the cast is a floor.
     const OFFSET: i32 = 1 << 20;
-    let steps = (cells * STEPS as f32).max(-FARTHEST).min(FARTHEST);
+    let steps = (cells * STEPS as f32).clamp(-FARTHEST, FARTHEST);
     (steps + (OFFSET as f32 + 0.5)) as i32 - OFFSET
 }
