@@ -29,7 +29,7 @@ use crate::stages::sample::{check_shape, sample_surface};
 use crate::stages::search::SearchSettings;
 
 use field::Options;
-use options::{AlignOptions, Preset};
+use options::{AlignOptions, Preset, Quality, SearchScope};
 use progress::{Host, Stage, Stopwatch};
 use report::{Alignment, Alternative, Counts, ScoreTerms, Uncertainty};
 
@@ -71,7 +71,14 @@ pub fn align_with(
 
     let estimated = match options.preset {
         Preset::Paper => paper::estimate(&evidence, [&extents_obs, &extents_rec], options, &mut stages)?,
-        Preset::Precise => precise::estimate(observation, mesh, options, search, &mut stages)?,
+        Preset::Precise => {
+            // Descriptors are weak evidence, but of another kind: where time is no matter, their pose is a candidate too.
+            let hypothesis = (options.quality == Quality::Best && options.search == SearchScope::Global)
+                .then(|| paper::estimate(&evidence, [&extents_obs, &extents_rec], options, &mut stages).ok())
+                .flatten()
+                .map(|found| found.camera_from_mesh);
+            precise::estimate(observation, mesh, hypothesis, options, search, &mut stages)?
+        }
     };
 
     stages.enter(Stage::Metrics);

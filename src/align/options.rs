@@ -64,7 +64,7 @@ pub enum Quality {
     /// What most callers want.
     #[default]
     Balanced,
-    /// More of everything: about four times the time.
+    /// More of everything, and the paper's own pose among the candidates: about four times the time.
     Best,
 }
 

@@ -9,6 +9,7 @@ use super::report::{Counts, Uncertainty};
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::cloud::Bounds;
 use crate::geometry::mesh::Mesh;
+use crate::geometry::similarity::Similarity;
 use crate::stages::observe::Observation;
 use crate::stages::search::pose::{CropPose, MeshFrame};
 use crate::stages::search::prior::Prior;
@@ -25,10 +26,11 @@ pub(super) const PLAN: &[(Stage, f64)] = &[
     (Stage::Metrics, 0.85),
 ];
 
-/// Grid of rotations, refinement, choice.
+/// Grid of rotations, refinement, choice. A `hypothesis` found otherwise joins the candidates of the grid.
 pub(super) fn estimate(
     observation: &Observation,
     mesh: &Mesh,
+    hypothesis: Option<Similarity>,
     options: &AlignOptions,
     settings: &SearchSettings,
     stages: &mut Stopwatch<'_>,
@@ -36,12 +38,14 @@ pub(super) fn estimate(
     stages.enter(Stage::Prepare);
     let mut search = Search::new(observation, mesh, *settings).ok_or_else(no_candidate)?;
     search.assume(prior(options, mesh, &search.frame));
-    let initial = options.initial.and_then(|pose| CropPose::of_similarity(&pose, &search.frame));
+    let initial = options.initial.map(|pose| seen_from(&pose, &search.frame)).transpose()?;
 
     stages.enter(Stage::Search);
     let mut candidates = initial.map_or_else(Vec::new, |pose| search.around(pose));
     if options.search == SearchScope::Global {
         candidates.extend(search.coarse());
+        let hypothesis = hypothesis.and_then(|pose| CropPose::of_similarity(&pose, &search.frame));
+        candidates.extend(hypothesis.into_iter().flat_map(|pose| search.around(pose)));
     }
 
     stages.enter(Stage::Refine);
@@ -99,6 +103,19 @@ fn prior(options: &AlignOptions, mesh: &Mesh, frame: &MeshFrame) -> Prior {
         scale: bounds.map(|b| b.map(|s| s * frame.diagonal)),
         up: options.camera_up.zip(options.mesh_up).map(|(camera, mesh)| [direction(camera), direction(mesh)]),
     }
+}
+
+/// The caller's pose.
+fn seen_from(pose: &Similarity, frame: &MeshFrame) -> Result<CropPose> {
+    CropPose::of_similarity(pose, frame).ok_or_else(|| {
+        Error::new(
+            ErrorCode::InvalidOption,
+            "options.initial",
+            "a pose that puts the middle of the mesh behind the camera",
+            "a pose in front of it: z forward",
+            "Convert the pose from its own camera frame (OpenGL: negate y and z; PyTorch3D: negate x and y).",
+        )
+    })
 }
 
 fn no_candidate() -> Error {

@@ -7,6 +7,7 @@ use sim3align::align::options::{AlignOptions, ExtentAxis, Quality, SearchScope};
 use sim3align::align::precise::search_settings;
 use sim3align::align::progress::Silent;
 use sim3align::align::report::Alignment;
+use sim3align::error::ErrorCode;
 use sim3align::geometry::cloud::Bounds;
 use sim3align::geometry::image::{DepthMap, Mask};
 use sim3align::geometry::mesh::Mesh;
@@ -180,6 +181,21 @@ fn a_local_search_far_from_the_truth_stays_there() {
     // Searched everywhere, the same pose does no harm.
     let result = solve(&AlignOptions { initial: Some(far), ..quick() });
     assert!(turn_deg(&similarity(&result), &truth()) < 1.5);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn an_initial_pose_behind_the_camera_is_refused() {
+    let behind = Similarity { translation: -truth().translation, ..truth() };
+    let options = AlignOptions { initial: Some(behind), ..quick() };
+    let error = align(&observe(&body(), &truth()), &body(), &options, &mut Silent).unwrap_err();
+    assert_eq!((error.code, error.argument.as_ref()), (ErrorCode::InvalidOption, "options.initial"));
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn the_best_quality_draws_more_and_is_as_near() {
+    let best = solve(&AlignOptions { quality: Quality::Best, ..quick() });
+    assert!(best.counts.renders > 2 * solve(&quick()).counts.renders);
+    assert!(turn_deg(&similarity(&best), &truth()) < 1.0);
 }
 
 /// A brick's turns about its own axes look alike: which way up is told by the prior alone.
