@@ -203,7 +203,8 @@ pub fn run_case(case: &BenchCase, options: &AlignOptions, overrides: &[(String, 
     for (name, value) in overrides {
         override_setting(&mut settings, name, *value);
     }
-    let mut record = run_method(case, |observation, mesh, host| align_with(observation, mesh, options, &settings, host));
+    let mut record =
+        run_method(case, |observation, mesh, host| align_with(observation, mesh, options, &settings, host));
     record.truth_score = case.truth.as_ref().and_then(|truth| {
         let mut search = Search::new(&case.observation, &case.mesh, settings)?;
         let pose = CropPose::of_similarity(&truth.camera_from_mesh, &search.frame)?;

@@ -6,9 +6,9 @@ use lexopt::prelude::*;
 use sim3align::align::field::{Field, Options};
 use sim3align::align::options::AlignOptions;
 use sim3align::samples::benchmark::override_setting;
-use sim3align::stages::search::SearchSettings;
 use sim3align::samples::evaluation::case::CASES;
 use sim3align::samples::evaluation::tier::{Class, Tier};
+use sim3align::stages::search::SearchSettings;
 
 pub const USAGE: &str = "\
 Usage: sim3align-bench [--generated N] [--cases DIR...] [options]

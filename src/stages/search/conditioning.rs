@@ -31,7 +31,8 @@ impl Conditioning {
         let covariance = equations.inverse(DAMPING)?.map(|row| row.map(|x| 2.0 * DROP * x));
         let (scale, translation) = pose.scale_translation();
         let size = libm::exp(pose.size);
-        let turns = DMat3::from_cols_array_2d(&[0, 1, 2].map(|i| [covariance[i][0], covariance[i][1], covariance[i][2]]));
+        let turns =
+            DMat3::from_cols_array_2d(&[0, 1, 2].map(|i| [covariance[i][0], covariance[i][1], covariance[i][2]]));
         let eigen = SymmetricEigen::of(turns);
         // log s = size + distance; distance is counted in units of the size.
         let log_scale = covariance[3][3] + 2.0 * size * covariance[3][6] + size * size * covariance[6][6];

@@ -200,7 +200,8 @@ struct Sum {
 
 impl Sum {
     fn add(&mut self, observation: &CleanObservation, u: i64, v: i64) {
-        let inside_image = (0..observation.image[0] as i64).contains(&u) && (0..observation.image[1] as i64).contains(&v);
+        let inside_image =
+            (0..observation.image[0] as i64).contains(&u) && (0..observation.image[1] as i64).contains(&v);
         self.outside += f32::from(u8::from(!inside_image));
         // Beyond the crop, the distance to the outline is that of the crop's nearest pixel and the way there.
         let (u, v) = (u - observation.origin[0] as i64, v - observation.origin[1] as i64);

@@ -199,7 +199,8 @@ impl Search {
         let mut canvas = core::mem::take(&mut self.canvas);
         let refiner = self.refiner(&grid, level);
         let iterations = self.settings.iterations[level - 1];
-        let refined: Vec<Refined> = poses.into_iter().map(|pose| refiner.refine(&mut canvas, pose, iterations)).collect();
+        let refined: Vec<Refined> =
+            poses.into_iter().map(|pose| refiner.refine(&mut canvas, pose, iterations)).collect();
         self.renders += refined.iter().map(|r| r.renders).sum::<usize>();
         self.canvas = canvas;
         let found = refined.iter().map(|r| Found { pose: r.pose, score: r.score, converged: r.converged });
@@ -260,11 +261,7 @@ impl SearchSettings {
             + COST_MS[2] * (self.keep[1] * self.iterations[1]) as f64;
         let share = (budget_ms / cost).max(0.02).min(20.0);
         let scaled = |count: usize, least: usize| ((count as f64 * share) as usize).max(least);
-        Self {
-            rotations: scaled(self.rotations, 60),
-            keep: [scaled(self.keep[0], 3), scaled(self.keep[1], 2)],
-            ..self
-        }
+        Self { rotations: scaled(self.rotations, 60), keep: [scaled(self.keep[0], 3), scaled(self.keep[1], 2)], ..self }
     }
 
     fn scoring(&self, clean: &CleanObservation, level: usize) -> Scoring {
@@ -324,4 +321,3 @@ fn distinct<T: Scored>(candidates: Vec<T>, count: usize, angle: f64) -> Vec<T> {
     }
     kept
 }
-

@@ -37,19 +37,14 @@ pub fn rim_offset(observation: &CleanObservation, jump_m: f64) -> f64 {
                 continue;
             }
             rim += 1;
-            let slope = [
-                f64::from(signed[i + 2] - signed[i - 2]),
-                f64::from(signed[i + 2 * width] - signed[i - 2 * width]),
-            ];
+            let slope =
+                [f64::from(signed[i + 2] - signed[i - 2]), f64::from(signed[i + 2 * width] - signed[i - 2 * width])];
             let length = (slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
             if length < 1.0 {
                 continue;
             }
-            let ray = Ray {
-                observation,
-                start: [u as f64, v as f64],
-                direction: [slope[0] / length, slope[1] / length],
-            };
+            let ray =
+                Ray { observation, start: [u as f64, v as f64], direction: [slope[0] / length, slope[1] / length] };
             offsets.extend(ray.crossing(jump_m).map(|t| (t - 0.5) as f32));
         }
     }
