@@ -149,15 +149,18 @@ fn fill(inverse_depth: &mut [f32], drawn: &mut [u32], [width, height]: [usize; 2
     let cells = (u1 - u0) as usize + 1;
     for v in v0..=v1 {
         let start = v as usize * width + u0 as usize;
-        let (mut eb, mut ec) = (b_row, c_row);
+        let (mut eb, mut ec, mut entered) = (b_row, c_row, false);
         let row = inverse_depth[start..start + cells].iter_mut().zip(&mut drawn[start..start + cells]);
         for (cell, drawn) in row {
             if (eb | ec | (area - eb - ec)) >= 0 {
+                entered = true;
                 let w = a.w + eb as f32 * wb + ec as f32 * wc;
                 if w > *cell {
                     *cell = w;
                     *drawn = id;
                 }
+            } else if entered {
+                break;
             }
             eb += b_du;
             ec += c_du;
