@@ -22,13 +22,24 @@ export const wasmModules = [
   { name: "formats", features: ["--no-default-features", "--features", "formats"], budget: 240_000 },
 ];
 
-const optimise = ["-O3", "--converge", "--strip-debug", "--strip-producers"];
+const optimise = [
+  ...["-O3", "--converge", "--strip-debug", "--strip-producers"],
+  // Inlining was the compiler's affair, which knows what is hot; more of it makes the modules 2 kB gzipped larger.
+  ...["--one-caller-inline-max-function-size=0", "--flexible-inline-max-function-size=0"],
+];
 
 /**
- * How much a function may cost to be copied to its callers; the compiler's own limit, 225, makes the modules a
- * twentieth larger and not measurably faster.
+ * What LLVM copies for speed's sake. Its own limits suit processors that run what it writes; here another compiler
+ * follows, and copies cost download: together these make the core 10 kB gzipped smaller, and no case slower.
  */
-const inlineThreshold = "-Cllvm-args=-inline-threshold=50";
+const llvm = [
+  // How much a function may cost to be copied to its callers, and a loop's body to be written out.
+  ...["-inline-threshold=50", "-unroll-threshold=40", "-unroll-runtime=false", "-unroll-allow-peeling=false"],
+  // Loops and branches are not copied for every case of a condition.
+  ...["-enable-nontrivial-unswitch=false", "-jump-threading-threshold=1"],
+  // No pointer of its own for every access in a loop: base and index are one instruction in WebAssembly.
+  "-disable-lsr",
+].map((option) => `-Cllvm-args=${option}`);
 
 /**
  * The module's file.
@@ -109,7 +120,7 @@ async function buildModule(module, rustc, say) {
 }
 
 /**
- * The inlining limit, and flags that keep the builder's own paths out of the published module: the compiler puts the
+ * LLVM's limits, and flags that keep the builder's own paths out of the published module: the compiler puts the
  * places of possible panics into it.
  */
 async function rustFlags() {
@@ -119,7 +130,7 @@ async function rustFlags() {
   const folders = existsSync(sources) ? readdirSync(sources) : [];
   const remapped = [...folders.map((folder) => `${join(sources, folder)}=crates`), `${repository}=.`];
   const given = process.env.RUSTFLAGS?.split(" ").filter(Boolean) ?? [];
-  return [...given, inlineThreshold, ...remapped.map((mapping) => `--remap-path-prefix=${mapping}`)].join("\x1f");
+  return [...given, ...llvm, ...remapped.map((mapping) => `--remap-path-prefix=${mapping}`)].join("\x1f");
 }
 
 /** @returns {string} */

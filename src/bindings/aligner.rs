@@ -7,6 +7,7 @@ use wasm_bindgen::prelude::*;
 
 use super::error::to_js;
 use super::host::JsHost;
+use super::value::Value;
 use super::{input, object, options, transform};
 use crate::align::evaluate::EvaluateOptions;
 use crate::align::options::{AlignOptions, EstimateOptions, RegisterOptions};
@@ -88,8 +89,13 @@ pub fn version() -> String {
     env!("CARGO_PKG_VERSION").into()
 }
 
-/// A plain object: maps as objects, `None` as null.
+/// What JavaScript gets: the result as a plain object, or the error to be thrown.
 fn answer<T: Serialize>(result: Result<T>) -> core::result::Result<JsValue, JsValue> {
+    to_object(result.map(|value| Value::of(&value)))
+}
+
+#[inline(never)]
+fn to_object(result: Result<Value>) -> core::result::Result<JsValue, JsValue> {
     let serializer = Serializer::json_compatible();
     result
         .and_then(|value| {

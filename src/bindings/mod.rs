@@ -15,6 +15,8 @@ mod object;
 mod options;
 #[cfg(feature = "aligner")]
 mod transform;
+#[cfg(feature = "aligner")]
+pub mod value;
 
 /// Two-level segregated fit, constant time to get and to give back: a fifth of the standard allocator's bytes.
 #[cfg(target_arch = "wasm32")]

@@ -43,23 +43,23 @@ pub fn to_number(value: &JsValue, argument: &str) -> Result<f64> {
 
 /// An array (typed or not) of exactly N numbers.
 pub fn to_numbers<const N: usize>(value: &JsValue, argument: &str) -> Result<[f64; N]> {
-    let wrong = || wrong_type(argument, value, &format!("{N} numbers"), "Pass an array of numbers.");
-    let array = flat_array(value).ok_or_else(wrong)?;
-    if array.length() as usize != N {
-        let found = format!("{} numbers", array.length());
-        return Err(Error::new(
-            ErrorCode::WrongLength,
-            argument.to_owned(),
-            found,
-            format!("{N} numbers"),
-            "Check its shape.",
-        ));
-    }
     let mut numbers = [0.0; N];
-    for (slot, item) in numbers.iter_mut().zip(array.iter()) {
-        *slot = item.as_f64().ok_or_else(wrong)?;
-    }
+    read_numbers(value, argument, &mut numbers)?;
     Ok(numbers)
+}
+
+/// One function for every length.
+fn read_numbers(value: &JsValue, argument: &str, numbers: &mut [f64]) -> Result<()> {
+    let expected = || format!("{} numbers", numbers.len());
+    let wrong = || wrong_type(argument, value, &expected(), "Pass an array of numbers.");
+    let array = flat_array(value).ok_or_else(wrong)?;
+    if array.length() as usize != numbers.len() {
+        let found = format!("{} numbers", array.length());
+        return Err(Error::new(ErrorCode::WrongLength, argument.to_owned(), found, expected(), "Check its shape."));
+    }
+    let read: Option<Vec<f64>> = array.iter().map(|item| item.as_f64()).collect();
+    numbers.copy_from_slice(&read.ok_or_else(wrong)?);
+    Ok(())
 }
 
 /// An array or typed array as an `Array`; nested rows are put one after the other.

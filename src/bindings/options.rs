@@ -128,7 +128,14 @@ fn bounds_of(value: &JsValue) -> Option<[f64; 2]> {
 }
 
 fn unknown_option(name: &str, known: &[&str]) -> Error {
-    let nearest = known.iter().min_by_key(|known| edit_distance(name, known)).copied().unwrap_or_default();
+    let mut nearest = (usize::MAX, "");
+    for known in known {
+        let distance = edit_distance(name, known);
+        if distance < nearest.0 {
+            nearest = (distance, known);
+        }
+    }
+    let (_, nearest) = nearest;
     Error::new(
         ErrorCode::UnknownOption,
         format!("options.{name}"),
@@ -138,11 +145,11 @@ fn unknown_option(name: &str, known: &[&str]) -> Error {
     )
 }
 
-/// Levenshtein's distance.
+/// Levenshtein's distance, in bytes: the names are ASCII.
 fn edit_distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
+    let b = b.as_bytes();
     let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.chars().enumerate() {
+    for (i, x) in a.bytes().enumerate() {
         let mut diagonal = row[0];
         row[0] = i + 1;
         for (j, &y) in b.iter().enumerate() {

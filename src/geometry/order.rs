@@ -113,9 +113,15 @@ pub fn halve(indices: &mut [u32], value: impl Fn(u32) -> f32) {
 
 /// The value at `quantile` (0 to 1) of the sorted values: the one at index ⌊quantile · n⌋. `None` for no values.
 pub fn quantile(values: impl Iterator<Item = f32>, quantile: f64) -> Option<f32> {
-    let mut keys: Vec<u64> = values.map(|value| pack(value, 0)).collect();
+    let mut keys: Vec<u64> = Vec::with_capacity(values.size_hint().1.unwrap_or(0));
+    keys.extend(values.map(|value| pack(value, 0)));
+    at_quantile(&mut keys, quantile)
+}
+
+#[inline(never)]
+fn at_quantile(keys: &mut [u64], quantile: f64) -> Option<f32> {
     let at = ((quantile * keys.len() as f64) as usize).min(keys.len().checked_sub(1)?);
-    select_smallest(&mut keys, at);
+    select_smallest(keys, at);
     keys.get(at).copied().map(value_of)
 }
 

@@ -87,8 +87,10 @@ impl Canvas {
         self.inverse_depth.resize(grid.mask.len(), 0.0);
         self.triangle.resize(grid.mask.len(), 0);
         self.project(model, grid);
+        let (inverse_depth, drawn) = (self.inverse_depth.as_mut_slice(), self.triangle.as_mut_slice());
         for (id, triangle) in (0..).zip(&model.triangles) {
-            self.fill(id, triangle.map(|i| self.vertices[i as usize]), grid.width, grid.height);
+            let corners = triangle.map(|i| self.vertices[i as usize]);
+            fill(inverse_depth, drawn, [grid.width, grid.height], id, corners);
         }
     }
 
@@ -113,51 +115,58 @@ impl Canvas {
         }));
         self.lost = lost as f32 / model.positions.len().max(1) as f32;
     }
+}
 
-    #[inline]
-    fn fill(&mut self, id: u32, [a, b, c]: [Vertex; 3], width: usize, height: usize) {
-        // The first and last cell whose centre the triangle's box holds.
-        let first = |low: i32| (low.max(0) + STEPS - 1) >> SHIFT;
-        let last = |high: i32, size: usize| (high >> SHIFT).min(size as i32 - 1);
-        let (u0, u1) = (first(a.u.min(b.u).min(c.u)), last(a.u.max(b.u).max(c.u), width));
-        let (v0, v1) = (first(a.v.min(b.v).min(c.v)), last(a.v.max(b.v).max(c.v), height));
-        if u0 > u1 || v0 > v1 || a.w * b.w * c.w == 0.0 {
-            return;
-        }
-        let [a, mut b, mut c] = [a, b, c].map(|p| Corner { u: p.u.into(), v: p.v.into(), w: p.w });
-        let mut area = (b.u - a.u) * (c.v - a.v) - (c.u - a.u) * (b.v - a.v);
-        if area == 0 {
-            return;
-        }
-        if area < 0 {
-            area = -area;
-            core::mem::swap(&mut b, &mut c);
-        }
-        // Twice the areas that a cell's centre spans with two edges; the third is what is left of the whole.
-        let (b_du, b_dv) = (c.v - a.v, a.u - c.u);
-        let (c_du, c_dv) = (a.v - b.v, b.u - a.u);
-        let steps = i64::from(STEPS);
-        let (du, dv) = (i64::from(u0) * steps - a.u, i64::from(v0) * steps - a.v);
-        let (mut b_row, mut c_row) = (b_du * du + b_dv * dv, c_du * du + c_dv * dv);
-        let inverse = 1.0 / area as f32;
-        let (wb, wc) = ((b.w - a.w) * inverse, (c.w - a.w) * inverse);
-        for v in v0..=v1 {
-            let row = v as usize * width;
-            let (mut eb, mut ec) = (b_row, c_row);
-            for i in row + u0 as usize..=row + u1 as usize {
-                if (eb | ec | (area - eb - ec)) >= 0 {
-                    let w = a.w + eb as f32 * wb + ec as f32 * wc;
-                    if w > self.inverse_depth[i] {
-                        self.inverse_depth[i] = w;
-                        self.triangle[i] = id;
-                    }
+/// Draws a triangle. Slices rather than the canvas: their addresses stay in registers.
+#[inline]
+fn fill(inverse_depth: &mut [f32], drawn: &mut [u32], [width, height]: [usize; 2], id: u32, [a, b, c]: [Vertex; 3]) {
+    // The first and last cell whose centre the triangle's box holds.
+    let first = |low: i32| (low.max(0) + STEPS - 1) >> SHIFT;
+    let last = |high: i32, size: usize| (high >> SHIFT).min(size as i32 - 1);
+    let (u0, u1) = (first(a.u.min(b.u).min(c.u)), last(a.u.max(b.u).max(c.u), width));
+    let (v0, v1) = (first(a.v.min(b.v).min(c.v)), last(a.v.max(b.v).max(c.v), height));
+    if u0 > u1 || v0 > v1 || a.w * b.w * c.w == 0.0 {
+        return;
+    }
+    let [a, mut b, mut c] = [a, b, c].map(|p| Corner { u: p.u.into(), v: p.v.into(), w: p.w });
+    let mut area = (b.u - a.u) * (c.v - a.v) - (c.u - a.u) * (b.v - a.v);
+    if area == 0 {
+        return;
+    }
+    if area < 0 {
+        area = -area;
+        core::mem::swap(&mut b, &mut c);
+    }
+    // Twice the areas that a cell's centre spans with two edges; the third is what is left of the whole.
+    let (b_du, b_dv) = (c.v - a.v, a.u - c.u);
+    let (c_du, c_dv) = (a.v - b.v, b.u - a.u);
+    let steps = i64::from(STEPS);
+    let (du, dv) = (i64::from(u0) * steps - a.u, i64::from(v0) * steps - a.v);
+    let (mut b_row, mut c_row) = (b_du * du + b_dv * dv, c_du * du + c_dv * dv);
+    let (b_du, b_dv, c_du, c_dv) = (b_du * steps, b_dv * steps, c_du * steps, c_dv * steps);
+    let inverse = 1.0 / area as f32;
+    let (wb, wc) = ((b.w - a.w) * inverse, (c.w - a.w) * inverse);
+    let cells = (u1 - u0) as usize + 1;
+    for v in v0..=v1 {
+        let start = v as usize * width + u0 as usize;
+        let (mut eb, mut ec, mut entered) = (b_row, c_row, false);
+        let row = inverse_depth[start..start + cells].iter_mut().zip(&mut drawn[start..start + cells]);
+        for (cell, drawn) in row {
+            if (eb | ec | (area - eb - ec)) >= 0 {
+                entered = true;
+                let w = a.w + eb as f32 * wb + ec as f32 * wc;
+                if w > *cell {
+                    *cell = w;
+                    *drawn = id;
                 }
-                eb += b_du * steps;
-                ec += c_du * steps;
+            } else if entered {
+                break;
             }
-            b_row += b_dv * steps;
-            c_row += c_dv * steps;
+            eb += b_du;
+            ec += c_du;
         }
+        b_row += b_dv;
+        c_row += c_dv;
     }
 }
 

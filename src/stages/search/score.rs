@@ -80,18 +80,20 @@ impl Scoring {
         let to_mesh = canvas.rotation.transpose();
         let wants_outline = self.weights.outline > 0.0;
         for v in 0..grid.height {
-            let row = v * width;
-            for u in 0..width {
-                let i = row + u;
-                let w = canvas.inverse_depth[i];
+            // Row by row: a row's length is checked once, not each of its cells.
+            let row = v * width..(v + 1) * width;
+            let (drawn, mask) = (&canvas.inverse_depth[row.clone()], &grid.mask[row.clone()]);
+            let (depth, scene) = (&grid.depth[row.clone()], &grid.scene[row]);
+            for (u, (((w, mask), observed), scene)) in (0..).zip(drawn.iter().zip(mask).zip(depth).zip(scene)) {
+                let (w, mask, observed, scene) = (*w, *mask, *observed, *scene);
                 if w <= 0.0 {
                     continue;
                 }
+                let i = v * width + u;
                 let z = stretch / w;
                 let mut visible = true;
-                if grid.mask[i] {
+                if mask {
                     both += 1;
-                    let observed = grid.depth[i];
                     if observed > 0.0 {
                         let error = (z - observed).abs() * per_depth;
                         depth_error += error / (1.0 + error);
@@ -102,14 +104,11 @@ impl Scoring {
                             normal_cells += 1;
                         }
                     }
+                } else if scene > 0.0 && scene < z - self.occluder_m {
+                    hidden += 1;
+                    visible = false;
                 } else {
-                    let scene = grid.scene[i];
-                    if scene > 0.0 && scene < z - self.occluder_m {
-                        hidden += 1;
-                        visible = false;
-                    } else {
-                        extra += 1;
-                    }
+                    extra += 1;
                 }
                 if wants_outline && visible && is_outline(canvas, width, grid.height, u, v) {
                     let d = grid.outline[i];
