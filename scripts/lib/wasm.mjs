@@ -26,6 +26,8 @@ const optimise = [
   ...["-O3", "--converge", "--strip-debug", "--strip-producers"],
   // Inlining was the compiler's affair, which knows what is hot; more of it makes the modules 2 kB gzipped larger.
   ...["--one-caller-inline-max-function-size=0", "--flexible-inline-max-function-size=0"],
+  // The first KiB is the far end of the stack.
+  "--low-memory-unused",
 ];
 
 /**
@@ -37,6 +39,8 @@ const llvm = [
   ...["-inline-threshold=50", "-unroll-threshold=40", "-unroll-runtime=false", "-unroll-allow-peeling=false"],
   // Loops and branches are not copied for every case of a condition.
   ...["-enable-nontrivial-unswitch=false", "-jump-threading-threshold=1"],
+  // Nor what is known on one way to a place, to all the others.
+  ...["-enable-pre=false", "-enable-load-pre=false"],
   // No pointer of its own for every access in a loop: base and index are one instruction in WebAssembly.
   "-disable-lsr",
 ].map((option) => `-Cllvm-args=${option}`);

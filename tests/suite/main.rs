@@ -66,4 +66,5 @@ pub mod tukey;
 #[cfg(all(feature = "types", not(target_arch = "wasm32")))]
 pub mod typescript;
 pub mod umeyama;
+pub mod values;
 pub mod voxel_grid;
