@@ -16,6 +16,7 @@ export type {
   PoseErrors,
   Preset,
   Quality,
+  ScoreTerms,
   SearchScope,
   Stage,
   Uncertainty,

@@ -9,7 +9,9 @@ use sim3align::align::options::{
     AlignOptions, EstimateOptions, ExtentAxis, GuardMode, Icp, Preset, Quality, RegisterOptions, SearchScope,
 };
 use sim3align::align::progress::Stage;
-use sim3align::align::report::{Alignment, Alternative, Counts, Registration, Sim3, Uncertainty, Warning, WarningCode};
+use sim3align::align::report::{
+    Alignment, Alternative, Counts, Registration, ScoreTerms, Sim3, Uncertainty, Warning, WarningCode,
+};
 use sim3align::error::ErrorCode;
 use sim3align::metrics::Metrics;
 use sim3align::metrics::pose_error::PoseErrors;
@@ -41,6 +43,7 @@ fn declarations_are_those_of_the_rust_structs() {
         declaration::<Metrics>(&config),
         declaration::<PoseErrors>(&config),
         declaration::<Counts>(&config),
+        declaration::<ScoreTerms>(&config),
         declaration::<Alternative>(&config),
         declaration::<Uncertainty>(&config),
         declaration::<Alignment>(&config),

@@ -452,6 +452,35 @@ icpIterations: number,
 renders: number, };
 
 /**
+ * What the search's score is made of: agreements from 0 to 1, on the search's own grid of the cleaned observation.
+ */
+export type ScoreTerms = { 
+/**
+ * Of mask and silhouette; what an occluder or the image border hides hardly counts.
+ */
+overlap: number, 
+/**
+ * Share of the mask that the mesh covers.
+ */
+coverage: number, 
+/**
+ * Of depths, where both have one.
+ */
+depth: number, 
+/**
+ * Of normals, where both have one.
+ */
+normals: number, 
+/**
+ * Of outlines.
+ */
+outline: number, 
+/**
+ * Share of the silhouette that is hidden.
+ */
+hidden: number, };
+
+/**
  * Another pose that explains the observation, as a transform like the alignment's own.
  */
 export type Alternative = { 
@@ -556,6 +585,10 @@ confidence: number | null,
  * about different inputs. `null` for `paper`.
  */
 score: number | null, 
+/**
+ * `precise`: what the score is made of; `null` for `paper`.
+ */
+terms: ScoreTerms | null, 
 /**
  * `precise`: other poses that explain the observation nearly as well, best first: flips, and symmetries that the
  * object has and the mesh has not. Empty where none comes near, and for `paper`.
