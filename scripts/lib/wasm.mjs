@@ -30,8 +30,9 @@ const optimise = [
 
 /**
  * What LLVM copies for speed's sake. Its own limits suit processors that run what it writes; here another compiler
- * follows, and copies cost download: together these make the core 10 kB gzipped smaller, `precise` no slower, and `paper` by
- * a fifteenth.
+ * follows, and copies cost download: together these make the core 10 kB gzipped smaller, `precise` no slower, and
+ * `paper` by a
+ * fifteenth.
  */
 const llvm = [
   // How much a function may cost to be copied to its callers, and a loop's body to be written out.

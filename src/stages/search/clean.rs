@@ -177,7 +177,8 @@ impl Crop {
         let pixels = self.count();
         let bounds = bounds_of(&self.mask, self.width);
         let extent_px = longer_side(&self.mask, self.width);
-        let inner = self.inner_readings();
+        let outline = signed_distance(&self.mask, self.width, self.height);
+        let inner = self.inner_readings(&outline);
         let (median, spread) = self.densest_window(&inner, extent_px);
         let extent_m = extent_px / self.camera.fx * median;
         let reach = (1.2 * extent_m).max(5.0 * spread);
@@ -198,7 +199,7 @@ impl Crop {
             height: self.height,
             image: size,
             bounds: [0, 1].map(|axis| bounds[axis].map(|x| (x + self.origin[axis]) as f64)),
-            outline: signed_distance(&self.mask, self.width, self.height),
+            outline,
             rim_offset: 0.0,
             depth,
             scene: self.scene,
@@ -209,14 +210,12 @@ impl Crop {
     }
 
     /// Readings in the mask, away from its rim as far as that leaves enough of them.
-    fn inner_readings(&self) -> Vec<bool> {
-        let outside: Vec<bool> = self.mask.iter().map(|set| !set).collect();
-        let to_rim = squared_distances(&outside, self.width, self.height);
+    fn inner_readings(&self, outline: &[f32]) -> Vec<bool> {
         let pixels = self.count();
         // Two pixels, and more where the image is larger than what depth networks see.
         let two = (0.011 * (pixels as f64).sqrt()).clamp(2.0, 4.0);
         for (rim, share) in [(two, 0.3), (1.0, 0.2), (0.0, 0.0)] {
-            let inside = |(i, set): (usize, &bool)| *set && f64::from(to_rim[i]) > rim * rim;
+            let inside = |(i, set): (usize, &bool)| *set && 0.5 - f64::from(outline[i]) > rim;
             let inner: Vec<bool> = self.mask.iter().enumerate().map(inside).collect();
             let readings = inner.iter().zip(&self.scene).filter(|(inner, z)| **inner && **z > 0.0).count();
             let enough = inner.iter().filter(|inner| **inner).count() as f64 >= share * pixels as f64;

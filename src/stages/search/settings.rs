@@ -20,6 +20,7 @@ pub const FINEST: usize = 4;
 /// What a rotation of the grid, a step on the middle grid and one on the fine grid cost: milliseconds, as WebAssembly,
 /// on a machine of 2020.
 const COST_MS: [f64; 3] = [0.06, 0.12, 0.4];
+
 /// Work and objective of a search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchSettings {
@@ -67,11 +68,11 @@ impl SearchSettings {
     /// Less of everything.
     pub fn fast() -> Self {
         Self {
-            rotations: 800,
-            keep: [160, 24, 8, 3, 1],
-            cells: [150, 400, 800, 2500, 4000],
-            triangles: [200, 500, 1200, 4000, 6000],
-            iterations: [4, 6, 10, 4],
+            rotations: 600,
+            keep: [120, 20, 6, 3, 1],
+            cells: [120, 400, 700, 2000, 4000],
+            triangles: [150, 500, 1000, 3000, 5000],
+            iterations: [4, 5, 8, 4],
             ..Self::default()
         }
     }
