@@ -1,5 +1,6 @@
 //! What the caller should know about an input that is valid but suspicious, or a result that is.
 
+use super::options::Preset;
 use super::report::{Warning, WarningCode, is_collapsed};
 use crate::geometry::order::median;
 use crate::number::number;
@@ -72,12 +73,17 @@ pub fn about_scale(scale_ratio: f64, clamped: bool) -> Option<Warning> {
     })
 }
 
-/// A warning about a refinement that did not come to rest.
-pub fn about_convergence(converged: bool, iterations: usize) -> Option<Warning> {
+/// A warning about a refinement that did not come to rest; `iterations` of ICP, none of which are `precise`'s.
+pub fn about_convergence(converged: bool, iterations: usize, preset: Preset) -> Option<Warning> {
     (!converged).then(|| Warning {
         code: WarningCode::NotConverged,
-        message: format!(
-            "The refinement was still moving, or out of support, after {iterations} iterations: look at the metrics before trusting the pose."
-        ),
+        message: match preset {
+            Preset::Precise => {
+                "The refinement was still climbing when its steps were used up: options.quality \"best\" has more.".into()
+            }
+            Preset::Paper => format!(
+                "The refinement was still moving, or out of support, after {iterations} iterations: look at the metrics before trusting the pose."
+            ),
+        },
     })
 }

@@ -88,6 +88,7 @@ fn finds_the_pose_and_the_size() {
     assert!(result.metrics.iou.unwrap() > 0.97);
     assert!(result.residual_m > 0.0 && result.residual_m < 2e-3, "{}", result.residual_m);
     assert!(result.counts.renders > 500);
+    assert!(result.converged && result.warnings.is_empty(), "{:?}", result.warnings);
     let terms = result.terms.unwrap();
     assert!(terms.overlap > 0.95 && terms.depth > 0.8 && terms.outline > 0.9, "{terms:?}");
     let uncertainty = result.uncertainty.unwrap();

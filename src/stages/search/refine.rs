@@ -36,7 +36,7 @@ pub struct Refined {
     pub score: Score,
     /// Images drawn.
     pub renders: usize,
-    /// Whether no step was left that would have raised the score.
+    /// Whether the last step hardly raised the score, or none was left that would have.
     pub converged: bool,
 }
 
@@ -44,8 +44,9 @@ pub struct Refined {
 const DAMPING: [f64; 3] = [1e-3, 0.25, 6.0];
 /// Damping at which the steps that are left are too short to matter.
 const MAX_DAMPING: f64 = 10.0;
-/// A smaller gain is no progress.
+/// A smaller gain is no progress; a last one smaller than the other is rest, as far as the result goes.
 const MIN_GAIN: f32 = 1e-5;
+const SMALL_GAIN: f32 = 2e-3;
 /// Most that a step may turn, in radians, and stretch.
 const MAX_TURN: f64 = 0.35;
 const MAX_STRETCH: f64 = 0.25;
@@ -82,8 +83,8 @@ impl Refiner<'_> {
             if score.total > best.score.total {
                 let gain = score.total - best.score.total;
                 (best.pose, best.score) = (next, score);
+                best.converged = gain < SMALL_GAIN;
                 if gain < MIN_GAIN {
-                    best.converged = true;
                     break;
                 }
                 equations = self.equations(canvas, &score);
