@@ -88,7 +88,7 @@ pub fn align_with(
     let initial_scale = initial_scale(&extents_obs, &extents_rec);
     let scale_ratio = estimated.camera_from_mesh.scale / initial_scale;
     let mut warnings = warnings::about_observation(observation);
-    warnings.extend(warnings::about_scale(scale_ratio, estimated.clamped));
+    warnings.extend(warnings::about_scale(scale_ratio, estimated.clamped, options.preset));
     warnings.extend(warnings::about_convergence(estimated.converged, estimated.counts.icp_iterations, options.preset));
     Ok(Alignment {
         camera_from_mesh: (&estimated.camera_from_mesh).into(),

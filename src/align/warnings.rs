@@ -57,19 +57,25 @@ pub fn about_observation(observation: &Observation) -> Vec<Warning> {
     warnings
 }
 
-/// Warnings about the scale found.
-pub fn about_scale(scale_ratio: f64, clamped: bool) -> Option<Warning> {
-    if is_collapsed(scale_ratio) {
+/// Warnings about the scale found. The initial scale is that of every reading in the mask, background by mistake
+/// included: a scale far below it is a collapse for the paper's method, which starts there, not for `precise`.
+pub fn about_scale(scale_ratio: f64, clamped: bool, preset: Preset) -> Option<Warning> {
+    let precise = preset == Preset::Precise;
+    if is_collapsed(scale_ratio) && !precise {
         let message =
             format!("The scale is {} of the initial one: it collapsed. Set options.guard.", number(scale_ratio));
         return Some(Warning { code: WarningCode::ScaleCollapsed, message });
     }
     clamped.then(|| Warning {
         code: WarningCode::ScaleClamped,
-        message: format!(
-            "The scale was held at {} of the initial one by options.guard; the matches ask for another.",
-            number(scale_ratio)
-        ),
+        message: if precise {
+            "The scale stands at a bound of options.scale; the picture asks for one beyond it.".into()
+        } else {
+            format!(
+                "The scale was held at {} of the initial one by options.guard; the matches ask for another.",
+                number(scale_ratio)
+            )
+        },
     })
 }
 

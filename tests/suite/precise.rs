@@ -140,6 +140,7 @@ fn a_fixed_scale_stays_and_bounds_hold() {
     let bounded = solve(&AlignOptions { scale: Some([0.175, 0.3]), ..quick() });
     assert!(bounded.camera_from_mesh.scale >= 0.175 - 1e-9, "{}", bounded.camera_from_mesh.scale);
     assert!(bounded.clamped, "the truth is below");
+    assert!(bounded.warnings.iter().any(|w| w.message.contains("options.scale")), "{:?}", bounded.warnings);
     let wide = solve(&AlignOptions { scale: Some([0.01, 3.0]), ..quick() });
     assert!(!wide.clamped);
     assert_eq!(wide.camera_from_mesh, solve(&quick()).camera_from_mesh, "bounds that hold nothing change nothing");
