@@ -37,7 +37,8 @@ pub(super) fn estimate(
 ) -> Result<Estimated> {
     stages.enter(Stage::Prepare);
     let mut search = Search::new(observation, mesh, *settings).ok_or_else(no_candidate)?;
-    search.assume(prior(options, mesh, &search.frame));
+    let prior = prior(options, mesh, &search.frame);
+    search.assume(prior);
     let initial = options.initial.map(|pose| seen_from(&pose, &search.frame)).transpose()?;
 
     stages.enter(Stage::Search);
@@ -55,7 +56,7 @@ pub(super) fn estimate(
     let (conditioning, residual_m) = search.conditioning(&best.pose);
     Ok(Estimated {
         camera_from_mesh: best.pose.similarity(&search.frame),
-        clamped: prior(options, mesh, &search.frame).holds(&best.pose),
+        clamped: prior.holds(&best.pose),
         converged: best.converged,
         residual_m,
         confidence: Some(confidence(best, &alternatives, conditioning.as_ref())),

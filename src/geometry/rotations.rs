@@ -2,9 +2,9 @@
 
 use core::f64::consts::{SQRT_2, TAU};
 
-use glam::DQuat;
+use glam::{DQuat, DVec3};
 
-use super::angle::sin_cos;
+use super::angle::{sin_cos, turn};
 
 /// ψ of the super-Fibonacci spiral: the root of ψ⁴ = ψ + 4.
 const PSI: f64 = 1.533_751_168_755_204_3;
@@ -29,10 +29,6 @@ pub fn angle_between(a: DQuat, b: DQuat) -> f64 {
 }
 
 /// The rotation by |`vector`| radians about `vector`.
-pub fn exp(vector: glam::DVec3) -> DQuat {
-    let angle = vector.length();
-    let (sin, cos) = sin_cos(0.5 * angle);
-    // sin(θ/2)/θ → 1/2
-    let share = if angle > 1e-9 { sin / angle } else { 0.5 };
-    DQuat::from_xyzw(vector.x * share, vector.y * share, vector.z * share, cos).normalize()
+pub fn exp(vector: DVec3) -> DQuat {
+    DQuat::from_array(turn(vector.to_array().into()).coords.into()).normalize()
 }

@@ -98,14 +98,8 @@ impl Crop {
     fn new(observation: &Observation) -> Self {
         let (mask, depth) = (observation.mask(), observation.depth());
         let size = [mask.width(), mask.height()];
-        let mut bounds = [[usize::MAX, 0]; 2];
-        for (i, _) in mask.data().iter().enumerate().filter(|(_, m)| **m != 0) {
-            for (bound, at) in bounds.iter_mut().zip([i % size[0], i / size[0]]) {
-                *bound = [bound[0].min(at), bound[1].max(at)];
-            }
-        }
-        let longer = bounds.iter().map(|[low, high]| high - low).max().unwrap_or(0);
-        let margin = (MARGIN * longer as f64) as usize + 4;
+        let bounds = bounds_of(mask.data().iter().map(|m| *m != 0), size[0]);
+        let margin = (MARGIN * longer_side(&bounds)) as usize + 4;
         let origin = bounds.map(|[low, _]| low.saturating_sub(margin));
         let end = [0, 1].map(|axis| (bounds[axis][1] + margin + 1).min(size[axis]));
         let (width, height) = (end[0] - origin[0], end[1] - origin[1]);
@@ -124,24 +118,21 @@ impl Crop {
         self.mask.iter().filter(|set| **set).count()
     }
 
-    /// Fills small holes: those of the mask alone, not those that a depth behind the object shows to be real.
+    /// Fills small holes.
     fn close_pin_holes(&mut self) {
         let limit = (PIN_HOLE * self.count() as f64) as usize;
         let outside: Vec<bool> = self.mask.iter().map(|set| !set).collect();
-        let components = Components::of(&outside, self.width, self.height);
-        for component in &components.list {
+        for component in components(&outside, self.width, self.height) {
             if component.pixels.len() <= limit.max(4) && !component.touches_border {
-                for &i in &component.pixels {
-                    self.mask[i as usize] = true;
-                }
+                component.pixels.iter().for_each(|&i| self.mask[i as usize] = true);
             }
         }
     }
 
     /// Keeps the components that can be parts of one object.
     fn drop_islands(&mut self) {
-        let components = Components::of(&self.mask, self.width, self.height);
-        if components.list.len() < 2 {
+        let components = components(&self.mask, self.width, self.height);
+        if components.len() < 2 {
             return;
         }
         let median_depth = |c: &Component| {
@@ -149,34 +140,35 @@ impl Crop {
             quantile(depths, 0.5).map(f64::from)
         };
         let area = |c: &Component| c.pixels.len() as f64;
-        let Some(largest) = components.list.iter().max_by_key(|c| c.pixels.len()) else { return };
-        let main: Vec<bool> = {
-            let mut main = vec![false; self.mask.len()];
-            let parts = components.list.iter().filter(|c| area(c) >= COMPONENT * area(largest));
-            parts.flat_map(|c| &c.pixels).for_each(|&i| main[i as usize] = true);
-            main
-        };
-        let extent_px = longer_side(&main, self.width);
+        let Some(largest) = components.iter().max_by_key(|c| c.pixels.len()) else { return };
+        let is_large = |c: &Component| area(c) >= COMPONENT * area(largest);
+        let main = self.mask_of(components.iter().filter(|c| is_large(c)));
+        let extent_px = longer_side(&bounds_of(main.iter().copied(), self.width));
         let largest_m = median_depth(largest);
         let extent_m = largest_m.map_or(f64::INFINITY, |z| extent_px * z / self.camera.fx);
         let reach = ISLAND_REACH * extent_px + 4.0;
         let distances = squared_distances(&main, self.width, self.height);
-        let kept = components.list.iter().filter(|c| {
-            let large = area(c) >= COMPONENT * area(largest);
+        let kept = components.iter().filter(|c| {
+            let large = is_large(c);
             let near = || c.pixels.iter().any(|&i| f64::from(distances[i as usize]) <= reach * reach);
             let apart_m = median_depth(c).zip(largest_m).map_or(0.0, |(a, b)| (a - b).abs());
             let at_depth = apart_m <= if large { 2.5 } else { 1.0 } * extent_m;
             at_depth && (large || (area(c) >= ISLAND * area(largest) && near()))
         });
+        self.mask = self.mask_of(kept);
+    }
+
+    /// The mask that holds these components alone.
+    fn mask_of<'a>(&self, components: impl Iterator<Item = &'a Component>) -> Vec<bool> {
         let mut mask = vec![false; self.mask.len()];
-        kept.flat_map(|c| &c.pixels).for_each(|&i| mask[i as usize] = true);
-        self.mask = mask;
+        components.flat_map(|c| &c.pixels).for_each(|&i| mask[i as usize] = true);
+        mask
     }
 
     fn into_clean(self, observation: &Observation) -> CleanObservation {
         let pixels = self.count();
-        let bounds = bounds_of(&self.mask, self.width);
-        let extent_px = longer_side(&self.mask, self.width);
+        let bounds = bounds_of(self.mask.iter().copied(), self.width);
+        let extent_px = longer_side(&bounds);
         let outline = signed_distance(&self.mask, self.width, self.height);
         let inner = self.inner_readings(&outline);
         let (median, spread) = self.densest_window(&inner, extent_px);
@@ -295,9 +287,9 @@ fn signed_distance(mask: &[bool], width: usize, height: usize) -> Vec<f32> {
 }
 
 /// First and last column, first and last row of the set pixels.
-fn bounds_of(mask: &[bool], width: usize) -> [[usize; 2]; 2] {
+fn bounds_of(mask: impl Iterator<Item = bool>, width: usize) -> [[usize; 2]; 2] {
     let mut bounds = [[usize::MAX, 0]; 2];
-    for (i, _) in mask.iter().enumerate().filter(|(_, set)| **set) {
+    for (i, _) in mask.enumerate().filter(|(_, set)| *set) {
         for (bound, at) in bounds.iter_mut().zip([i % width, i / width]) {
             *bound = [bound[0].min(at), bound[1].max(at)];
         }
@@ -305,8 +297,8 @@ fn bounds_of(mask: &[bool], width: usize) -> [[usize; 2]; 2] {
     bounds.map(|[low, high]| [low.min(high), high])
 }
 
-fn longer_side(mask: &[bool], width: usize) -> f64 {
-    bounds_of(mask, width).iter().map(|[low, high]| high - low).max().unwrap_or(0) as f64
+fn longer_side(bounds: &[[usize; 2]; 2]) -> f64 {
+    bounds.iter().map(|[low, high]| high - low).max().unwrap_or(0) as f64
 }
 
 /// A connected set of pixels (four neighbours).
@@ -315,46 +307,41 @@ struct Component {
     touches_border: bool,
 }
 
-struct Components {
-    list: Vec<Component>,
-}
-
-impl Components {
-    fn of(set: &[bool], width: usize, height: usize) -> Self {
-        let mut seen = vec![false; set.len()];
-        let mut list = Vec::new();
-        for start in 0..set.len() {
-            if !set[start] || seen[start] {
-                continue;
-            }
-            seen[start] = true;
-            let mut component = Component { pixels: vec![start as u32], touches_border: false };
-            let mut next = 0;
-            while let Some(&i) = component.pixels.get(next) {
-                next += 1;
-                let (u, v) = (i as usize % width, i as usize / width);
-                component.touches_border |= u == 0 || v == 0 || u + 1 == width || v + 1 == height;
-                let mut visit = |j: usize| {
-                    if set[j] && !seen[j] {
-                        seen[j] = true;
-                        component.pixels.push(j as u32);
-                    }
-                };
-                if u > 0 {
-                    visit(i as usize - 1);
-                }
-                if u + 1 < width {
-                    visit(i as usize + 1);
-                }
-                if v > 0 {
-                    visit(i as usize - width);
-                }
-                if v + 1 < height {
-                    visit(i as usize + width);
-                }
-            }
-            list.push(component);
+/// The connected sets of an image's set pixels.
+fn components(set: &[bool], width: usize, height: usize) -> Vec<Component> {
+    let mut seen = vec![false; set.len()];
+    let mut list = Vec::new();
+    for start in 0..set.len() {
+        if !set[start] || seen[start] {
+            continue;
         }
-        Self { list }
+        seen[start] = true;
+        let mut component = Component { pixels: vec![start as u32], touches_border: false };
+        let mut next = 0;
+        while let Some(&i) = component.pixels.get(next) {
+            next += 1;
+            let (u, v) = (i as usize % width, i as usize / width);
+            component.touches_border |= u == 0 || v == 0 || u + 1 == width || v + 1 == height;
+            let mut visit = |j: usize| {
+                if set[j] && !seen[j] {
+                    seen[j] = true;
+                    component.pixels.push(j as u32);
+                }
+            };
+            if u > 0 {
+                visit(i as usize - 1);
+            }
+            if u + 1 < width {
+                visit(i as usize + 1);
+            }
+            if v > 0 {
+                visit(i as usize - width);
+            }
+            if v + 1 < height {
+                visit(i as usize + width);
+            }
+        }
+        list.push(component);
     }
+    list
 }

@@ -3,11 +3,10 @@
 use glam::{DMat3, DQuat, DVec2, DVec3, Vec3};
 
 use super::anchors::Anchor;
-use super::grid::CropGrid;
+use super::objective::Objective;
 use super::pose::CropPose;
-use super::prior::Prior;
 use super::render::{Canvas, Model};
-use super::score::{Score, Scoring};
+use super::score::Score;
 use crate::geometry::angle::sin_cos;
 use crate::geometry::order::median;
 
@@ -27,16 +26,10 @@ pub struct Candidate {
 
 /// The search over rotations on one grid.
 pub struct Coarse<'a> {
-    /// The mesh.
-    pub model: &'a Model,
-    /// The evidence.
-    pub grid: &'a CropGrid,
-    /// The objective.
-    pub scoring: Scoring,
+    /// What candidates are compared by.
+    pub objective: Objective<'a>,
     /// The object's median depth, metres.
     pub median_m: f64,
-    /// What is known beforehand.
-    pub prior: Prior,
 }
 
 impl Coarse<'_> {
@@ -50,9 +43,9 @@ impl Coarse<'_> {
         candidates: &mut Vec<Candidate>,
     ) {
         let fitted = self.fit_box(outermost, rotation);
-        let [[left, right], [top, bottom]] = self.grid.bounds;
+        let [[left, right], [top, bottom]] = self.objective.grid.bounds;
         for anchor in anchors {
-            let room = DVec2::new(right - left, bottom - top) * (0.5 * (anchor.zoom - 1.0) / self.grid.focal);
+            let room = DVec2::new(right - left, bottom - top) * (0.5 * (anchor.zoom - 1.0) / self.objective.grid.focal);
             let pose = CropPose {
                 size: fitted.size + libm::log(anchor.zoom),
                 place: fitted.place + room * DVec2::from(anchor.towards),
@@ -64,23 +57,17 @@ impl Coarse<'_> {
 
     /// Draws a pose once, and moves it to the distance that the depths ask for: the silhouette stays.
     pub fn at_its_distance(&self, canvas: &mut Canvas, pose: CropPose) -> Candidate {
-        canvas.draw(self.model, &pose, self.grid);
-        let ratios = canvas.inverse_depth.iter().zip(&self.grid.depth).map(|(w, z)| w * z).filter(|r| *r > 0.0);
+        let Objective { model, grid, scoring, prior } = &self.objective;
+        canvas.draw(model, &pose, grid);
+        let ratios = canvas.inverse_depth.iter().zip(&grid.depth).map(|(w, z)| w * z).filter(|r| *r > 0.0);
         let stretch = median(ratios).unwrap_or(1.0);
-        let score = self.scoring.score(canvas, self.model, self.grid, stretch);
-        let pose = CropPose { distance: pose.distance + libm::log(f64::from(stretch)), ..pose };
-        self.held(canvas, Candidate { pose, score })
-    }
-
-    /// The candidate with what is known beforehand taken into account.
-    fn held(&self, canvas: &mut Canvas, candidate: Candidate) -> Candidate {
-        let pose = self.prior.held(candidate.pose);
-        let mut score = candidate.score;
-        if (pose.size - candidate.pose.size).abs() > 1e-3 {
-            canvas.draw(self.model, &pose, self.grid);
-            score = self.scoring.score(canvas, self.model, self.grid, 1.0);
+        let distant = CropPose { distance: pose.distance + libm::log(f64::from(stretch)), ..pose };
+        let pose = prior.held(distant);
+        if (pose.size - distant.size).abs() > 1e-3 {
+            return Candidate { pose, score: self.objective.score(canvas, &pose) };
         }
-        score.total += self.prior.score(&pose);
+        let mut score = scoring.score(canvas, model, grid, stretch);
+        score.total += prior.score(&pose);
         Candidate { pose, score }
     }
 
@@ -89,8 +76,9 @@ impl Coarse<'_> {
     fn fit_box(&self, outermost: &[Vec3], rotation: DQuat) -> CropPose {
         let turn = DMat3::from_quat(rotation).as_mat3();
         let turned: Vec<Vec3> = outermost.iter().map(|p| turn * *p).collect();
-        let [[left, right], [top, bottom]] = self.grid.bounds;
-        let to_ray = |u: f64, v: f64| (DVec2::new(u, v) - DVec2::from(self.grid.center)) / self.grid.focal;
+        let [[left, right], [top, bottom]] = self.objective.grid.bounds;
+        let to_ray =
+            |u: f64, v: f64| (DVec2::new(u, v) - DVec2::from(self.objective.grid.center)) / self.objective.grid.focal;
         let (low, high) = (to_ray(left, top), to_ray(right, bottom));
         let (wanted_middle, wanted) = (0.5 * (low + high), high - low);
         let (mut size, mut place) = (wanted.max_element(), wanted_middle);

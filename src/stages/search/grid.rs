@@ -80,11 +80,6 @@ impl CropGrid {
         grid
     }
 
-    /// The object's longer side, cells.
-    pub fn longer_side(&self) -> f64 {
-        self.bounds.iter().map(|[low, high]| high - low).fold(0.0, f64::max)
-    }
-
     /// The direction of the ray through a cell, with z = 1.
     pub fn ray(&self, u: f32, v: f32) -> Vec3 {
         let focal = self.focal as f32;

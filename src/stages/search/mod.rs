@@ -9,6 +9,7 @@ pub mod clean;
 pub mod coarse;
 pub mod conditioning;
 pub mod grid;
+pub mod objective;
 pub mod pose;
 pub mod prior;
 pub mod ranking;
@@ -28,10 +29,11 @@ use clean::CleanObservation;
 use coarse::{Candidate, Coarse};
 use conditioning::Conditioning;
 use grid::CropGrid;
+use objective::Objective;
 use pose::{CropPose, MeshFrame};
 use prior::Prior;
 use ranking::{best_of, distinct};
-use refine::{Refined, Refiner};
+use refine::Refiner;
 use render::{Canvas, Model};
 use score::Score;
 use settings::{COARSE, FINE, FINEST, LEVELS, MIDDLE, SIEVE};
@@ -59,7 +61,8 @@ pub struct Search {
     prior: Prior,
     /// The mesh on each grid.
     models: [Model; LEVELS],
-    canvas: Canvas,
+    /// The fine grid, on which poses are compared in the end.
+    fine: CropGrid,
 }
 
 /// A refined candidate.
@@ -67,7 +70,7 @@ pub struct Search {
 pub struct Found {
     /// The pose.
     pub pose: CropPose,
-    /// Its score on the finest grid.
+    /// Its score on the fine grid.
     pub score: Score,
     /// Whether its refinement came to rest.
     pub converged: bool,
@@ -82,15 +85,16 @@ impl Search {
         let middle = decimate(&fine, settings.triangles[MIDDLE]);
         let coarse = decimate(&middle, settings.triangles[COARSE]);
         let sieve = decimate(&coarse, settings.triangles[SIEVE]);
+        let observation = CleanObservation::new(observation);
         Some(Self {
             frame,
-            observation: CleanObservation::new(observation),
+            fine: CropGrid::new(&observation, settings.cells[FINE]),
+            observation,
             renders: 0,
             settings,
             prior: Prior::default(),
             models: [&sieve, &coarse, &middle, &fine, &finest].map(Model::new),
             mesh: fine,
-            canvas: Canvas::default(),
         })
     }
 
@@ -144,76 +148,53 @@ impl Search {
     }
 
     fn stage<'a>(&'a self, level: usize, grid: &'a CropGrid) -> Coarse<'a> {
-        Coarse {
-            model: &self.models[level],
-            grid,
-            scoring: self.settings.scoring(&self.observation, level),
-            median_m: self.observation.median_m,
-            prior: self.prior,
-        }
+        Coarse { objective: self.objective(level, grid), median_m: self.observation.median_m }
+    }
+
+    fn objective<'a>(&'a self, level: usize, grid: &'a CropGrid) -> Objective<'a> {
+        let scoring = self.settings.scoring(&self.observation, level);
+        Objective { model: &self.models[level], grid, scoring, prior: self.prior }
     }
 
     /// The candidates refined on the middle grid, and the best of them on the fine one; best first.
     pub fn refine(&mut self, candidates: Vec<Candidate>) -> Vec<Found> {
         let poses = candidates.into_iter().map(|c| c.pose).collect();
         let (keep, iterations) = (self.settings.keep, self.settings.iterations);
-        let grid = CropGrid::new(&self.observation, self.settings.cells[MIDDLE]);
-        let begun = self.refine_on(&grid, MIDDLE, poses, iterations[0], keep[2]);
-        let middle = self.refine_on(&grid, MIDDLE, poses_of(&begun), iterations[1], keep[3]);
-        let grid = CropGrid::new(&self.observation, self.settings.cells[FINE]);
-        let mut found = self.refine_on(&grid, FINE, poses_of(&middle), iterations[2], usize::MAX);
+        let [middle, finest] = [MIDDLE, FINEST].map(|l| CropGrid::new(&self.observation, self.settings.cells[l]));
+        let (mut canvas, mut renders) = (Canvas::default(), 0);
+        let mut refine_on = |level, grid, poses: Vec<CropPose>, iterations, keep| {
+            let refiner = Refiner { objective: self.objective(level, grid), lock_scale: self.settings.lock_scale };
+            let mut found = Vec::with_capacity(poses.len());
+            for pose in poses {
+                let refined = refiner.refine(&mut canvas, pose, iterations);
+                renders += refined.renders;
+                found.push(Found { pose: refined.pose, score: refined.score, converged: refined.converged });
+            }
+            distinct(found, keep, DISTINCT[1])
+        };
+        let begun = refine_on(MIDDLE, &middle, poses, iterations[0], keep[2]);
+        let advanced = refine_on(MIDDLE, &middle, poses_of(&begun), iterations[1], keep[3]);
+        let mut found = refine_on(FINE, &self.fine, poses_of(&advanced), iterations[2], usize::MAX);
         // The scores stay those of the fine grid: scores of different grids do not compare.
-        let grid = CropGrid::new(&self.observation, self.settings.cells[FINEST]);
         for best in found.iter_mut().take(keep[4]) {
-            let polished = self.refine_on(&grid, FINEST, vec![best.pose], iterations[3], 1);
-            if let Some(polished) = polished.first() {
+            for polished in refine_on(FINEST, &finest, vec![best.pose], iterations[3], 1) {
                 best.pose = polished.pose;
             }
         }
+        self.renders += renders;
         found
     }
 
-    fn refine_on(
-        &mut self,
-        grid: &CropGrid,
-        level: usize,
-        poses: Vec<CropPose>,
-        iterations: usize,
-        keep: usize,
-    ) -> Vec<Found> {
-        let mut canvas = core::mem::take(&mut self.canvas);
-        let refiner = self.refiner(grid, level);
-        let refined: Vec<Refined> =
-            poses.into_iter().map(|pose| refiner.refine(&mut canvas, pose, iterations)).collect();
-        self.renders += refined.iter().map(|r| r.renders).sum::<usize>();
-        self.canvas = canvas;
-        let found = refined.iter().map(|r| Found { pose: r.pose, score: r.score, converged: r.converged });
-        distinct(found.collect(), keep, DISTINCT[1])
-    }
-
-    fn refiner<'a>(&'a self, grid: &'a CropGrid, level: usize) -> Refiner<'a> {
-        Refiner {
-            model: &self.models[level],
-            grid,
-            scoring: self.settings.scoring(&self.observation, level),
-            lock_scale: self.settings.lock_scale,
-            prior: self.prior,
-        }
-    }
-
-    /// The score of any pose on the finest grid.
+    /// The score of any pose on the fine grid.
     pub fn score(&self, pose: &CropPose) -> Score {
-        let grid = CropGrid::new(&self.observation, self.settings.cells[FINE]);
-        self.refiner(&grid, FINE).score(&mut Canvas::default(), pose)
+        self.objective(FINE, &self.fine).score(&mut Canvas::default(), pose)
     }
 
     /// How firmly the observation holds a pose, and the root mean square of its depth residuals, metres.
     pub fn conditioning(&self, pose: &CropPose) -> (Option<Conditioning>, f64) {
-        let grid = CropGrid::new(&self.observation, self.settings.cells[FINE]);
-        let mut refiner = self.refiner(&grid, FINE);
-        refiner.lock_scale = false;
+        let refiner = Refiner { objective: self.objective(FINE, &self.fine), lock_scale: false };
         let mut canvas = Canvas::default();
-        let score = refiner.score(&mut canvas, pose);
+        let score = refiner.objective.score(&mut canvas, pose);
         let equations = refiner.equations(&canvas, &score);
         (Conditioning::of(&equations, pose), refiner.depth_rms(&canvas))
     }

@@ -6,25 +6,18 @@
 
 use glam::Vec3;
 
-use super::grid::CropGrid;
+use super::objective::Objective;
 use super::pose::{CropPose, Step};
-use super::prior::Prior;
-use super::render::{Canvas, Model};
-use super::score::{Score, Scoring, is_outline};
+use super::render::Canvas;
+use super::score::{Score, is_outline};
 use crate::geometry::normal_equations::NormalEquations;
 
 /// What a refinement works on.
 pub struct Refiner<'a> {
-    /// The mesh.
-    pub model: &'a Model,
-    /// The evidence.
-    pub grid: &'a CropGrid,
-    /// The objective.
-    pub scoring: Scoring,
+    /// What is climbed.
+    pub objective: Objective<'a>,
     /// The size of the object does not change: distance and size in the image move together.
     pub lock_scale: bool,
-    /// What is known beforehand.
-    pub prior: Prior,
 }
 
 /// Where a refinement ended.
@@ -57,28 +50,20 @@ const MIN_OUTLINE_CELLS: f32 = 0.5;
 const FAR_OUTLINE: f32 = 1.0 / 9.0;
 
 impl Refiner<'_> {
-    /// The score of a pose.
-    pub fn score(&self, canvas: &mut Canvas, pose: &CropPose) -> Score {
-        canvas.draw(self.model, pose, self.grid);
-        let mut score = self.scoring.score(canvas, self.model, self.grid, 1.0);
-        score.total += self.prior.score(pose);
-        score
-    }
-
     /// Climbs from `pose` for at most `iterations` steps.
     pub fn refine(&self, canvas: &mut Canvas, pose: CropPose, iterations: usize) -> Refined {
-        let pose = self.prior.held(pose);
-        let score = self.score(canvas, &pose);
+        let pose = self.objective.prior.held(pose);
+        let score = self.objective.score(canvas, &pose);
         let mut best = Refined { pose, score, renders: 1, converged: false };
         let mut equations = self.equations(canvas, &best.score);
         let mut damping = DAMPING[0];
         for _ in 0..iterations {
             let Some(step) = self.step(&equations, &best.pose, damping) else { break };
-            let next = self.prior.held(best.pose.moved(&step));
+            let next = self.objective.prior.held(best.pose.moved(&step));
             if !next.is_finite() {
                 break;
             }
-            let score = self.score(canvas, &next);
+            let score = self.objective.score(canvas, &next);
             best.renders += 1;
             if score.total > best.score.total {
                 let gain = score.total - best.score.total;
@@ -118,7 +103,7 @@ impl Refiner<'_> {
     pub fn equations(&self, canvas: &Canvas, score: &Score) -> NormalEquations {
         let mut equations = NormalEquations::new();
         let mut turns = Turns::default();
-        let (grid, weights) = (self.grid, &self.scoring.weights);
+        let (grid, weights) = (self.objective.grid, &self.objective.scoring.weights);
         let per_cell = |weight: f32, cells: u32| weight * score.overlap / cells.max(1) as f32;
         let [depth_cells, normal_cells, outline_cells] = score.counts;
         let depth_weight = per_cell(weights.depth, depth_cells);
@@ -126,8 +111,8 @@ impl Refiner<'_> {
         let outline_weight = per_cell(weights.outline, outline_cells);
         // The score is a product: a cell of overlap is worth all that it is multiplied by.
         let overlap_weight = weights.agreement(score) / score.union.max(1.0);
-        let per_depth = 1.0 / self.scoring.depth_m;
-        let half = self.scoring.outline_cells;
+        let per_depth = 1.0 / self.objective.scoring.depth_m;
+        let half = self.objective.scoring.outline_cells;
         let wants_outline = outline_weight > 0.0 || overlap_weight > 0.0;
         for v in 0..grid.height {
             for u in 0..grid.width {
@@ -140,7 +125,7 @@ impl Refiner<'_> {
                 let point = grid.ray(u as f32, v as f32) * z;
                 let observed = grid.depth[i];
                 if observed > 0.0 {
-                    let mut normal = canvas.rotation * self.model.normals[canvas.triangle[i] as usize];
+                    let mut normal = canvas.rotation * self.objective.model.normals[canvas.triangle[i] as usize];
                     if normal.dot(point) > 0.0 {
                         normal = -normal;
                     }
@@ -157,8 +142,7 @@ impl Refiner<'_> {
                     }
                 }
                 if wants_outline && is_outline(canvas, grid.width, grid.height, u, v) {
-                    let scene = grid.scene[i];
-                    if !grid.mask[i] && scene > 0.0 && scene < z - self.scoring.occluder_m {
+                    if !grid.mask[i] && self.objective.scoring.hides(grid.scene[i], z) {
                         continue;
                     }
                     let d = grid.outline[i];
@@ -183,9 +167,9 @@ impl Refiner<'_> {
     /// Root mean square of the depth residuals at what was drawn last, without those beyond three of their scales.
     pub fn depth_rms(&self, canvas: &Canvas) -> f64 {
         let (mut sum, mut count) = (0.0f64, 0u32);
-        for (w, observed) in canvas.inverse_depth.iter().zip(&self.grid.depth) {
+        for (w, observed) in canvas.inverse_depth.iter().zip(&self.objective.grid.depth) {
             let error = 1.0 / w - observed;
-            if *w > 0.0 && *observed > 0.0 && error.abs() < 3.0 * self.scoring.depth_m {
+            if *w > 0.0 && *observed > 0.0 && error.abs() < 3.0 * self.objective.scoring.depth_m {
                 sum += f64::from(error * error);
                 count += 1;
             }

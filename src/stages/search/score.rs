@@ -68,6 +68,12 @@ pub struct Score {
 }
 
 impl Scoring {
+    /// Whether a reading of the scene, metres, hides a mesh at `z`; none hides nothing.
+    #[inline]
+    pub fn hides(&self, scene: f32, z: f32) -> bool {
+        scene > 0.0 && scene < z - self.occluder_m
+    }
+
     /// Scores what was drawn last. `stretch` multiplies the drawn depths: the silhouette does not depend on it.
     pub fn score(&self, canvas: &Canvas, model: &Model, grid: &CropGrid, stretch: f32) -> Score {
         let (mut both, mut extra, mut hidden) = (0u32, 0u32, 0u32);
@@ -104,7 +110,7 @@ impl Scoring {
                             normal_cells += 1;
                         }
                     }
-                } else if scene > 0.0 && scene < z - self.occluder_m {
+                } else if self.hides(scene, z) {
                     hidden += 1;
                     visible = false;
                 } else {

@@ -1,0 +1,30 @@
+//! Objective: what a pose is worth, on one grid.
+
+use super::grid::CropGrid;
+use super::pose::CropPose;
+use super::prior::Prior;
+use super::render::{Canvas, Model};
+use super::score::{Score, Scoring};
+
+/// What the candidates of one grid are compared by.
+#[derive(Clone, Copy)]
+pub struct Objective<'a> {
+    /// The mesh.
+    pub model: &'a Model,
+    /// The evidence.
+    pub grid: &'a CropGrid,
+    /// What counts how much.
+    pub scoring: Scoring,
+    /// What is known beforehand.
+    pub prior: Prior,
+}
+
+impl Objective<'_> {
+    /// Draws a pose and scores it.
+    pub fn score(&self, canvas: &mut Canvas, pose: &CropPose) -> Score {
+        canvas.draw(self.model, pose, self.grid);
+        let mut score = self.scoring.score(canvas, self.model, self.grid, 1.0);
+        score.total += self.prior.score(pose);
+        score
+    }
+}
