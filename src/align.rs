@@ -54,10 +54,37 @@ pub fn align_with(
     search: &SearchSettings,
     host: &mut dyn Host,
 ) -> Result<Alignment> {
+    let plan = if options.preset == Preset::Paper { paper::PLAN } else { precise::PLAN };
+    align_by(observation, mesh, options, plan, host, |evidence, extents, stages| match options.preset {
+        Preset::Paper => paper::estimate(evidence, extents, options, stages),
+        Preset::Precise => {
+            // Descriptors are weak evidence, but of another kind: where time is no matter, their pose is a candidate too.
+            let hypothesis = (options.quality == Quality::Best && options.search == SearchScope::Global)
+                .then(|| paper::estimate(evidence, extents, options, stages).ok())
+                .flatten()
+                .map(|found| found.camera_from_mesh);
+            precise::estimate(observation, mesh, hypothesis, options, search, stages)
+        }
+    })
+}
+
+/// What any method has in common: preprocessing before it, metrics and warnings after it. `plan` says when each stage
+/// begins, as a share of the whole.
+///
+/// # Errors
+/// As [`align`], and those of the method.
+pub fn align_by(
+    observation: &Observation,
+    mesh: &Mesh,
+    options: &AlignOptions,
+    plan: &'static [(Stage, f64)],
+    host: &mut dyn Host,
+    method: impl FnOnce(&Evidence, [&Extents; 2], &mut Stopwatch<'_>) -> Result<Estimated>,
+) -> Result<Alignment> {
     options.validate()?;
     check_shape(mesh)?;
     let seed = u64::from(options.seed);
-    let mut stages = Stopwatch::new(host, if options.preset == Preset::Paper { paper::PLAN } else { precise::PLAN });
+    let mut stages = Stopwatch::new(host, plan);
 
     // §3.1: the partial cloud P_obs from depth and mask, the complete cloud P_rec from the mesh, s_init from the boxes.
     stages.enter(Stage::Observe);
@@ -69,17 +96,7 @@ pub fn align_with(
     stages.enter(Stage::Normals);
     let evidence = Evidence::new(observed, reconstructed);
 
-    let estimated = match options.preset {
-        Preset::Paper => paper::estimate(&evidence, [&extents_obs, &extents_rec], options, &mut stages)?,
-        Preset::Precise => {
-            // Descriptors are weak evidence, but of another kind: where time is no matter, their pose is a candidate too.
-            let hypothesis = (options.quality == Quality::Best && options.search == SearchScope::Global)
-                .then(|| paper::estimate(&evidence, [&extents_obs, &extents_rec], options, &mut stages).ok())
-                .flatten()
-                .map(|found| found.camera_from_mesh);
-            precise::estimate(observation, mesh, hypothesis, options, search, &mut stages)?
-        }
-    };
+    let estimated = method(&evidence, [&extents_obs, &extents_rec], &mut stages)?;
 
     stages.enter(Stage::Metrics);
     let metrics = metrics::score(observation, mesh, &estimated.camera_from_mesh, &evidence)?;
@@ -116,16 +133,45 @@ pub fn align_with(
     })
 }
 
-/// What a preset's method found.
-struct Estimated {
-    camera_from_mesh: Similarity,
-    clamped: bool,
-    converged: bool,
-    residual_m: f64,
-    confidence: Option<f64>,
-    score: Option<f64>,
-    terms: Option<ScoreTerms>,
-    alternatives: Vec<Alternative>,
-    uncertainty: Option<Uncertainty>,
-    counts: Counts,
+/// What a method found.
+#[derive(Debug, Clone)]
+pub struct Estimated {
+    /// The pose.
+    pub camera_from_mesh: Similarity,
+    /// Whether the scale stands at a bound because it was projected there.
+    pub clamped: bool,
+    /// Whether the refinement came to rest.
+    pub converged: bool,
+    /// Root mean square residual of the refinement, in metres.
+    pub residual_m: f64,
+    /// See [`Alignment::confidence`].
+    pub confidence: Option<f64>,
+    /// See [`Alignment::score`].
+    pub score: Option<f64>,
+    /// See [`Alignment::terms`].
+    pub terms: Option<ScoreTerms>,
+    /// See [`Alignment::alternatives`].
+    pub alternatives: Vec<Alternative>,
+    /// See [`Alignment::uncertainty`].
+    pub uncertainty: Option<Uncertainty>,
+    /// How often what happened.
+    pub counts: Counts,
+}
+
+impl Estimated {
+    /// A pose of which nothing else is known.
+    pub fn of_pose(camera_from_mesh: Similarity) -> Self {
+        Self {
+            camera_from_mesh,
+            clamped: false,
+            converged: true,
+            residual_m: 0.0,
+            confidence: None,
+            score: None,
+            terms: None,
+            alternatives: Vec::new(),
+            uncertainty: None,
+            counts: Counts::default(),
+        }
+    }
 }

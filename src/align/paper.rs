@@ -35,15 +35,10 @@ pub(super) fn estimate(
     let settings = Settings::of(options);
     let estimated = Problem::new(&source, &target, &settings, stages).solve(&settings, stages)?;
     Ok(Estimated {
-        camera_from_mesh: target_from_source(observed, &estimated.target_from_source, reconstructed),
         clamped: estimated.clamped,
         converged: estimated.converged,
         residual_m: estimated.rms * observed.diagonal(),
-        confidence: None,
-        score: None,
-        terms: None,
-        alternatives: Vec::new(),
-        uncertainty: None,
         counts: estimated.counts,
+        ..Estimated::of_pose(target_from_source(observed, &estimated.target_from_source, reconstructed))
     })
 }
