@@ -49,11 +49,7 @@ fn parse(mut parser: lexopt::Parser) -> Result<Option<Command>, lexopt::Error> {
             Long("seed") if !is_scenes => seed = parser.value()?.parse()?,
             Long("scenes") if is_scenes => scenes = parser.value()?.parse()?,
             Long("set-seed") if is_scenes => set_seed = parser.value()?.parse()?,
-            Long("prior") if is_scenes => {
-                let name = parser.value()?.string()?;
-                priors =
-                    if name == "both" { Prior::ALL.to_vec() } else { vec![Prior::from_name(&name).map_err(said)?] };
-            }
+            Long("prior") if is_scenes => priors = Prior::several(&parser.value()?.string()?).map_err(said)?,
             Long("threads") if is_scenes => threads = parser.value()?.parse()?,
             _ => return Err(argument.unexpected()),
         }

@@ -5,19 +5,23 @@ use std::path::PathBuf;
 use lexopt::prelude::*;
 use sim3align::align::field::{Field, Options};
 use sim3align::align::options::AlignOptions;
+use sim3align::error::Error;
 use sim3align::samples::benchmark::override_setting;
 use sim3align::samples::evaluation::case::CASES;
 use sim3align::samples::evaluation::tier::{Class, Tier};
+use sim3align::samples::scenes::Prior;
 use sim3align::stages::search::SearchSettings;
 
 pub const USAGE: &str = "\
-Usage: sim3align-bench [--generated N] [--cases DIR...] [options]
+Usage: sim3align-bench [--generated N] [--scenes N] [--cases DIR...] [options]
 
 Aligns cases with a known truth and prints Markdown tables: success, errors, metrics, failures.
 
 Cases
-  --generated N      cases 0 to N − 1 of the generated set; 240 where no --cases is given either
-  --set-seed S       seed of the generated set, default 0
+  --generated N      cases 0 to N − 1 of the generated set; 240 where no --cases or --scenes is given either
+  --scenes N         all pairs of a set of N cluttered scenes; 100 scenes are 338 pairs
+  --prior P          what made the meshes of the scenes: detailed (default), smooth or both
+  --set-seed S       seed of the generated set and of the scenes, default 0
   --meshes DIR       show the GLB files of a folder in a third of the generated cases
   --cases DIR...     case folders, or folders of case folders
   --tier T,…         only these: easy, medium, hard
@@ -35,7 +39,7 @@ Method
 Running
   --threads N        default: all
   --json FILE        everything about every case, for other tables
-  --write DIR        write the generated cases as case folders, and align nothing
+  --write DIR        write the cases of the generated set as case folders, and align nothing
   --failures N       failures listed at most a row, default 40
   --help             this text";
 
@@ -51,6 +55,8 @@ pub struct Row {
 /// What is asked for.
 pub struct Arguments {
     pub generated: usize,
+    pub scenes: usize,
+    pub priors: Vec<Prior>,
     pub set_seed: u64,
     pub meshes: Option<PathBuf>,
     pub cases: Vec<PathBuf>,
@@ -68,9 +74,12 @@ impl Arguments {
     /// `None` where help is asked for.
     pub fn parse(mut parser: lexopt::Parser) -> Result<Option<Self>, lexopt::Error> {
         let mut generated = None;
+        let said = |error: Error| error.to_string();
         let (mut options, mut rows) = (Vec::new(), Vec::new());
         let mut arguments = Self {
             generated: 0,
+            scenes: 0,
+            priors: vec![Prior::Detailed],
             set_seed: 0,
             meshes: None,
             cases: Vec::new(),
@@ -86,6 +95,8 @@ impl Arguments {
         while let Some(argument) = parser.next()? {
             match argument {
                 Long("generated") => generated = Some(parser.value()?.parse()?),
+                Long("scenes") => arguments.scenes = parser.value()?.parse()?,
+                Long("prior") => arguments.priors = Prior::several(&parser.value()?.string()?).map_err(said)?,
                 Long("set-seed") => arguments.set_seed = parser.value()?.parse()?,
                 Long("meshes") => arguments.meshes = Some(parser.value()?.into()),
                 Long("cases") => arguments.cases.extend(parser.values()?.map(PathBuf::from)),
@@ -121,7 +132,7 @@ impl Arguments {
         if arguments.rows.is_empty() {
             arguments.rows.push(Row { name: name_of(base.preset), options: base, search: base_search });
         }
-        let anything_else = !arguments.cases.is_empty() || arguments.only.is_some();
+        let anything_else = !arguments.cases.is_empty() || arguments.only.is_some() || arguments.scenes > 0;
         arguments.generated = generated.unwrap_or(if anything_else { 0 } else { CASES });
         Ok(Some(arguments))
     }

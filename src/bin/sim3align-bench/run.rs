@@ -9,13 +9,16 @@ use serde_json::json;
 use sim3align::samples::benchmark::{BenchCase, Record, run_case};
 use sim3align::samples::evaluation::case::EvaluationSet;
 use sim3align::samples::evaluation::tier::{Class, Tier};
+use sim3align::samples::scenes::{Prior, SceneSet};
 
 use crate::arguments::Arguments;
+use crate::scenes::Scenes;
 use crate::table;
 
 /// Where a case comes from.
-enum Source {
+pub enum Source {
     Generated(usize),
+    Scene { scene: usize, pair: usize, prior: Prior },
     Folder(PathBuf),
 }
 
@@ -24,7 +27,8 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
         Some(folder) => EvaluationSet::with_meshes(arguments.set_seed, folder).map_err(|error| error.to_string())?,
         None => EvaluationSet::new(arguments.set_seed),
     };
-    let sources = sources(arguments)?;
+    let scenes = Scenes::new(SceneSet::new(arguments.set_seed, arguments.scenes));
+    let sources = sources(arguments, &scenes)?;
     if sources.is_empty() {
         return Err("no case left to run".into());
     }
@@ -34,13 +38,13 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
                 let case = set.case(*index).map_err(|error| error.to_string())?;
                 case.write(&folder.join(case.name())).map_err(|error| error.to_string())
             }
-            Source::Folder(_) => Ok(()),
+            Source::Scene { .. } | Source::Folder(_) => Ok(()),
         });
         return written.into_iter().collect();
     }
     let begun = std::time::Instant::now();
     let records = in_order(arguments.threads, &sources, |source| {
-        let case = load(source, &set)?;
+        let case = load(source, &set, &scenes)?;
         Ok(arguments.rows.iter().map(|row| run_case(&case, &row.options, &row.search)).collect())
     });
     let records: Vec<Vec<Record>> = records.into_iter().collect::<Result<_, String>>()?;
@@ -57,15 +61,16 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
     Ok(())
 }
 
-fn load(source: &Source, set: &EvaluationSet) -> Result<BenchCase, String> {
+fn load(source: &Source, set: &EvaluationSet, scenes: &Scenes) -> Result<BenchCase, String> {
     let case = match source {
         Source::Generated(index) => set.case(*index).map(BenchCase::from),
+        Source::Scene { scene, pair, prior } => scenes.case(*scene, *pair, *prior),
         Source::Folder(folder) => BenchCase::read(folder),
     };
     case.map_err(|error| error.to_string())
 }
 
-fn sources(arguments: &Arguments) -> Result<Vec<Source>, String> {
+fn sources(arguments: &Arguments, scenes: &Scenes) -> Result<Vec<Source>, String> {
     let fits =
         |&index: &usize| arguments.tiers.contains(&Tier::of(index)) && arguments.classes.contains(&Class::of(index));
     let generated: Vec<usize> = match &arguments.only {
@@ -73,6 +78,7 @@ fn sources(arguments: &Arguments) -> Result<Vec<Source>, String> {
         None => (0..arguments.generated).filter(fits).collect(),
     };
     let mut sources: Vec<Source> = generated.into_iter().map(Source::Generated).collect();
+    sources.extend(scenes.sources(&arguments.priors));
     for folder in &arguments.cases {
         sources.extend(case_folders(folder)?.into_iter().map(Source::Folder));
     }

@@ -64,6 +64,14 @@ impl Prior {
         })
     }
 
+    /// The prior of a name, or all of them for `"both"`.
+    ///
+    /// # Errors
+    /// Those of [`Prior::from_name`].
+    pub fn several(name: &str) -> Result<Vec<Self>> {
+        if name == "both" { Ok(Self::ALL.to_vec()) } else { Ok(vec![Self::from_name(name)?]) }
+    }
+
     /// What it makes of an object that a scene shows, in the world's frame.
     pub(super) fn generate(self, placed: &Placed, scene: &Scene, seed: u64) -> Result<Generated> {
         match self {
