@@ -95,8 +95,7 @@ fn estimated(
         sum * amplitude / (1.5f64.sqrt() * z_mean)
     };
     let pixels = || (0..height).flat_map(|v| (0..width).map(move |u| (u, v)));
-    let over =
-        |shown: &[bool]| mean(pixels().zip(shown).filter(|(_, shown)| **shown).map(|((u, v), _)| wave(u, v)));
+    let over = |shown: &[bool]| mean(pixels().zip(shown).filter(|(_, shown)| **shown).map(|((u, v), _)| wave(u, v)));
     let offset = over(&scene.visible);
     let drifts = things.iter().map(|shown| over(shown) - offset).collect();
     for ((u, v), z) in pixels().zip(&mut depth) {

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use serde_json::json;
 
-use super::prior::Prior;
 use super::DEPTH_SCALE;
+use super::prior::Prior;
 use crate::align::evaluate::Truth;
 use crate::error::Result;
 use crate::geometry::mesh::Mesh;

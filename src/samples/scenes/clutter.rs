@@ -17,7 +17,8 @@ pub fn thing(random: &mut Random) -> Result<Mesh> {
     match random.below(6) {
         0 | 1 => books(&mut solid, random),
         2 => {
-            let half = DVec3::new(between(random, 0.04, 0.13), between(random, 0.03, 0.09), between(random, 0.015, 0.08));
+            let half =
+                DVec3::new(between(random, 0.04, 0.13), between(random, 0.03, 0.09), between(random, 0.015, 0.08));
             solid.at(heading * lifted(half.z)).cuboid(half, 0.003);
         }
         3 => {
@@ -52,7 +53,8 @@ fn books(solid: &mut Solid, random: &mut Random) {
     let first = TAU * random.uniform();
     for _ in 0..1 + random.below(3) {
         let turn = DAffine3::from_rotation_z(first + between(random, -0.25, 0.25));
-        let half = DVec3::new(between(random, 0.085, 0.125), between(random, 0.06, 0.09), between(random, 0.005, 0.018));
+        let half =
+            DVec3::new(between(random, 0.085, 0.125), between(random, 0.06, 0.09), between(random, 0.005, 0.018));
         solid.at(turn * lifted(height + half.z)).cuboid(half, 0.002);
         height += 2.0 * half.z;
     }
