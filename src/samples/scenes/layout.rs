@@ -93,7 +93,7 @@ impl Floor {
         let is_free = |at: DVec2| self.0.iter().all(|(other, place)| other.gap(&footprint, at - *place) >= gap);
         let steps = (FARTHEST_M / STEP_M) as usize;
         let places = (0..=steps).map(|i| from + direction * (STEP_M * i as f64));
-        let place = places.clone().find(|at| is_free(*at)).or(places.last()).unwrap_or(from);
+        let place = places.clone().find(|at| is_free(*at)).or_else(|| places.clone().next_back()).unwrap_or(from);
         self.0.push((footprint, place));
         place
     }

@@ -49,7 +49,7 @@ impl View {
         // The share of the picture's height that the objects would take, were they a ball.
         let fill = between(random, 0.6, 1.15) * if too_near { 1.4 } else { 1.0 };
         let distance = 2.0 * layout.reach * camera.fy / (fill * HEIGHT as f64);
-        let distance = distance.max(DISTANCE_M[0]).min(DISTANCE_M[1]);
+        let distance = distance.clamp(DISTANCE_M[0], DISTANCE_M[1]);
         let (rise, level) = libm::sincos(between(random, 9.0, 42.0).to_radians());
         let (sine, cosine) = libm::sincos(layout.front + between(random, -0.5, 0.5));
         let towards = Vector3::new(cosine * level, sine * level, rise);
