@@ -202,10 +202,13 @@ impl<'a> Problem<'a> {
 
         stages.enter(Stage::Icp);
         let refined = refine_coarse_to_fine(source, target, &filtered, settings);
+        // A refinement that may move the scale can end at the guard as well as RANSAC can.
+        let guard = settings.ransac.guard.filter(|_| !settings.lock_scale);
+        let stopped = guard.is_some_and(|g| g.is_bound(refined.target_from_source.scale));
 
         Ok(Estimate {
             target_from_source: refined.target_from_source,
-            clamped: consensus.clamped,
+            clamped: consensus.clamped || stopped,
             converged: refined.converged,
             rms: refined.rms,
             counts: Counts {

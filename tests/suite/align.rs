@@ -122,6 +122,10 @@ fn every_ablation_runs_and_does_what_it_says() {
 
     let unlocked = solve(&AlignOptions { lock_scale: Some(false), ..paper() });
     assert_ne!(unlocked.camera_from_mesh.scale, default.camera_from_mesh.scale, "ICP left an unlocked scale alone");
+    // The refinement is stopped at the guard too, and says so.
+    let tight = AlignOptions { lock_scale: Some(false), guard: Some([0.999, 1.001]), ..paper() };
+    let stopped = solve(&tight);
+    assert!(stopped.clamped && stopped.counts.clamped == 0, "{} {:?}", stopped.scale_ratio, stopped.counts);
 
     let unrefined = solve(&AlignOptions { icp: Icp::None, ..paper() });
     assert_eq!(unrefined.counts.icp_iterations, 0);

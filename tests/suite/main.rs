@@ -49,6 +49,8 @@ pub mod rasteriser_oracle;
 pub mod rasteriser_seams;
 #[cfg(all(feature = "formats", not(target_arch = "wasm32")))]
 pub mod real_cases;
+#[cfg(all(feature = "samples", not(target_arch = "wasm32")))]
+pub mod records;
 pub mod register;
 pub mod sample;
 #[cfg(all(feature = "samples", not(target_arch = "wasm32")))]

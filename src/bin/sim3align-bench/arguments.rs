@@ -8,6 +8,7 @@ use sim3align::align::options::AlignOptions;
 use sim3align::samples::benchmark::override_setting;
 use sim3align::samples::evaluation::case::CASES;
 use sim3align::samples::evaluation::tier::{Class, Tier};
+use sim3align::samples::records::RecordKey;
 use sim3align::stages::search::SearchSettings;
 
 pub const USAGE: &str = "\
@@ -35,6 +36,8 @@ Method
 Running
   --threads N        default: all
   --json FILE        everything about every case, for other tables
+  --records FILE     the same, added one JSON line at a time; what the file has already is not run again. Instead of
+                     tables, prints what is done
   --write DIR        write the generated cases as case folders, and align nothing
   --failures N       failures listed at most a row, default 40
   --help             this text";
@@ -46,6 +49,15 @@ pub struct Row {
     /// The options.
     pub options: AlignOptions,
     pub search: Vec<(String, f64)>,
+    /// All assignments, as they were written.
+    pub assignments: String,
+}
+
+impl Row {
+    /// What a record of this row is kept under.
+    pub fn key(&self, case: String) -> RecordKey {
+        RecordKey { row: self.name.clone(), options: self.assignments.clone(), case }
+    }
 }
 
 /// What is asked for.
@@ -60,6 +72,7 @@ pub struct Arguments {
     pub rows: Vec<Row>,
     pub threads: usize,
     pub json: Option<PathBuf>,
+    pub records: Option<PathBuf>,
     pub write: Option<PathBuf>,
     pub failures: usize,
 }
@@ -80,6 +93,7 @@ impl Arguments {
             rows: Vec::new(),
             threads: std::thread::available_parallelism().map_or(1, usize::from),
             json: None,
+            records: None,
             write: None,
             failures: 40,
         };
@@ -98,6 +112,7 @@ impl Arguments {
                 Long("row") => rows.push(parser.value()?.string()?),
                 Long("threads") => arguments.threads = parser.value()?.parse::<usize>()?.max(1),
                 Long("json") => arguments.json = Some(parser.value()?.into()),
+                Long("records") => arguments.records = Some(parser.value()?.into()),
                 Long("write") => arguments.write = Some(parser.value()?.into()),
                 Long("failures") => arguments.failures = parser.value()?.parse()?,
                 Long("help") | Short('h') => return Ok(None),
@@ -106,9 +121,10 @@ impl Arguments {
         }
         let mut base = AlignOptions::default();
         let mut base_search = Vec::new();
-        for assignment in options {
-            assign(&mut base, &mut base_search, &assignment)?;
+        for assignment in &options {
+            assign(&mut base, &mut base_search, assignment)?;
         }
+        let base_assignments = options;
         for text in rows {
             let (name, assignments) = text.split_once(':').ok_or("--row without a colon after its name")?;
             let mut options = base.clone();
@@ -116,10 +132,13 @@ impl Arguments {
             for assignment in assignments.split_whitespace() {
                 assign(&mut options, &mut search, assignment)?;
             }
-            arguments.rows.push(Row { name: name.trim().into(), options, search });
+            let written = base_assignments.iter().map(String::as_str).chain(assignments.split_whitespace());
+            let written = written.collect::<Vec<_>>().join(" ");
+            arguments.rows.push(Row { name: name.trim().into(), options, search, assignments: written });
         }
         if arguments.rows.is_empty() {
-            arguments.rows.push(Row { name: name_of(base.preset), options: base, search: base_search });
+            let assignments = base_assignments.join(" ");
+            arguments.rows.push(Row { name: name_of(base.preset), options: base, search: base_search, assignments });
         }
         let anything_else = !arguments.cases.is_empty() || arguments.only.is_some();
         arguments.generated = generated.unwrap_or(if anything_else { 0 } else { CASES });

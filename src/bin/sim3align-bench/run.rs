@@ -9,14 +9,25 @@ use serde_json::json;
 use sim3align::samples::benchmark::{BenchCase, Record, run_case};
 use sim3align::samples::evaluation::case::EvaluationSet;
 use sim3align::samples::evaluation::tier::{Class, Tier};
+use sim3align::samples::records::{RecordFile, RecordKey};
 
-use crate::arguments::Arguments;
+use crate::arguments::{Arguments, Row};
 use crate::table;
 
 /// Where a case comes from.
 enum Source {
     Generated(usize),
     Folder(PathBuf),
+}
+
+impl Source {
+    /// What tells the case from the others of a run.
+    fn id(&self) -> String {
+        match self {
+            Self::Generated(index) => format!("generated-{index:04}"),
+            Self::Folder(folder) => folder.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+        }
+    }
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), String> {
@@ -38,6 +49,9 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
         });
         return written.into_iter().collect();
     }
+    if let Some(path) = &arguments.records {
+        return go_on(arguments, &sources, &set, path);
+    }
     let begun = std::time::Instant::now();
     let records = in_order(arguments.threads, &sources, |source| {
         let case = load(source, &set)?;
@@ -55,6 +69,33 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
         fs::write(path, format!("{all}\n")).map_err(|error| format!("{}: {error}", path.display()))?;
     }
     Ok(())
+}
+
+/// Adds to a file of records what is not there yet. What is done is told on standard output as JSON, a line each.
+fn go_on(arguments: &Arguments, sources: &[Source], set: &EvaluationSet, path: &Path) -> Result<(), String> {
+    let file = RecordFile::open(path).map_err(|error| error.to_string())?;
+    let missing = |source: &Source| -> Vec<(&Row, RecordKey)> {
+        let keyed = arguments.rows.iter().map(|row| (row, row.key(source.id())));
+        keyed.filter(|(_, key)| !file.has(key)).collect()
+    };
+    let total = sources.len() * arguments.rows.len();
+    let left: usize = sources.iter().map(|source| missing(source).len()).sum();
+    println!("{}", json!({ "total": total, "done": total - left }));
+    in_order(arguments.threads, sources, |source| {
+        let missing = missing(source);
+        if missing.is_empty() {
+            return Ok(());
+        }
+        let case = load(source, set)?;
+        for (row, key) in missing {
+            let record = run_case(&case, &row.options, &row.search);
+            file.add(&key, &record).map_err(|error| error.to_string())?;
+            println!("{}", json!({ "row": key.row, "case": key.case, "seconds": record.seconds }));
+        }
+        Ok(())
+    })
+    .into_iter()
+    .collect()
 }
 
 fn load(source: &Source, set: &EvaluationSet) -> Result<BenchCase, String> {
