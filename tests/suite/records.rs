@@ -56,7 +56,9 @@ fn a_line_is_the_record_as_it_is() {
     let record = record();
     RecordFile::open(&path).unwrap().add(&key("a", "1"), &record).unwrap();
     let line: serde_json::Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
-    assert_eq!(line["record"], serde_json::to_value(&record).unwrap());
+    // Both read from text, where the last bit of a number may be lost.
+    let written = serde_json::to_string(&record).unwrap();
+    assert_eq!(line["record"], serde_json::from_str::<serde_json::Value>(&written).unwrap());
     assert_eq!((&line["row"], &line["case"]), (&"a".into(), &"1".into()));
     fs::remove_file(&path).unwrap();
 }
