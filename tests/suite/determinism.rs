@@ -61,6 +61,7 @@ fn stages_give_the_same_bits_everywhere() {
         .map(|(metric, lock_scale)| {
             let settings = IcpSettings {
                 metric,
+                robust: true,
                 lock_scale,
                 scale_bounds: None,
                 max_iterations: 30,

@@ -6,11 +6,12 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use serde_json::json;
-use sim3align::samples::benchmark::{BenchCase, Record, run_case};
+use sim3align::align::baseline::align_baseline;
+use sim3align::samples::benchmark::{BenchCase, Record, run_case, run_method};
 use sim3align::samples::evaluation::case::EvaluationSet;
 use sim3align::samples::evaluation::tier::{Class, Tier};
 
-use crate::arguments::Arguments;
+use crate::arguments::{Arguments, Row};
 use crate::table;
 
 /// Where a case comes from.
@@ -41,7 +42,7 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
     let begun = std::time::Instant::now();
     let records = in_order(arguments.threads, &sources, |source| {
         let case = load(source, &set)?;
-        Ok(arguments.rows.iter().map(|row| run_case(&case, &row.options, &row.search)).collect())
+        Ok(arguments.rows.iter().map(|row| run_row(&case, row)).collect())
     });
     let records: Vec<Vec<Record>> = records.into_iter().collect::<Result<_, String>>()?;
     eprintln!("{} cases in {:.1} s", records.len(), begun.elapsed().as_secs_f64());
@@ -55,6 +56,15 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
         fs::write(path, format!("{all}\n")).map_err(|error| format!("{}: {error}", path.display()))?;
     }
     Ok(())
+}
+
+fn run_row(case: &BenchCase, row: &Row) -> Record {
+    match row.baseline {
+        None => run_case(case, &row.options, &row.search),
+        Some(baseline) => {
+            run_method(case, |observation, mesh, host| align_baseline(observation, mesh, baseline, &row.options, host))
+        }
+    }
 }
 
 fn load(source: &Source, set: &EvaluationSet) -> Result<BenchCase, String> {
