@@ -6,8 +6,13 @@
 //!
 //! Options and their defaults are Open3D's, also where it departs from the paper: the clouds are divided by the larger
 //! of both radii, and μ, which is a squared distance, falls until it is below `max_correspondence_distance`, which is
-//! none. On purpose otherwise: the source is moved and not the target, small turns are turns and not Euler's angles,
-//! and too few matches are an error where Open3D returns the identity; neither of the first two moves the optimum.
+//! none. On purpose otherwise:
+//! - μ begins at the radius in the frame it is used in, as published: 1 in the normalised one. Open3D 0.20 begins there at
+//!   the radius in the clouds' own unit, so that its answer depends on whether they are in metres or in millimetres
+//!   ([`FgrSettings::initial_mu`] repeats that).
+//! - Too few matches are an error where Open3D returns the identity.
+//! - The source is moved and not the target, and small turns are turns and not Euler's angles: this does not move the
+//!   optimum.
 
 use glam::Vec3;
 use nalgebra::{Rotation3, Vector3};
@@ -42,6 +47,8 @@ pub struct FgrSettings {
     pub division_factor: f64,
     /// Leaves the clouds in their own unit: `max_correspondence_distance` is then in it too.
     pub use_absolute_scale: bool,
+    /// μ at the beginning, in the normalised frame; `None` is 1, or the larger radius where the scale is absolute.
+    pub initial_mu: Option<f64>,
     /// Whether μ falls at all.
     pub decrease_mu: bool,
     /// μ no longer falls once it is below this, a share of the larger cloud's radius.
@@ -61,6 +68,7 @@ impl Default for FgrSettings {
         Self {
             division_factor: 1.4,
             use_absolute_scale: false,
+            initial_mu: None,
             decrease_mu: true,
             max_correspondence_distance: 0.025,
             iterations: 64,
@@ -103,7 +111,8 @@ pub fn solve(source: &[Vec3], target: &[Vec3], matches: &[Match], settings: &Fgr
     if !(radius > 0.0 && radius.is_finite()) {
         return Err(no_consensus(matched.len(), 0, "points that span a surface"));
     }
-    let (unit, mut mu) = if settings.use_absolute_scale { (1.0, radius) } else { (radius, 1.0) };
+    let (unit, mu) = if settings.use_absolute_scale { (1.0, radius) } else { (radius, 1.0) };
+    let mut mu = settings.initial_mu.unwrap_or(mu);
     let pairs: Vec<[Vector3<f64>; 2]> = used
         .iter()
         .map(|&i| [(matched.source[i] - source_center) / unit, (matched.target[i] - target_center) / unit])

@@ -71,8 +71,10 @@ pub fn vote(values: &[f64], ranges: &[f64]) -> Option<Vote> {
         let index = index_of(end) as usize;
         let (i, sign) = if index < n { (index, 1.0) } else { (index - n, -1.0) };
         sums.add(sign, values[i] - origin, ranges[i]);
-        // Only a beginning can be better than what was before it.
-        if sign > 0.0 && sums.gain() > best.0 {
+        if sums.count == 0.0 {
+            // What came and went leaves roundings.
+            sums = Sums::default();
+        } else if sums.gain() > best.0 {
             best = (sums.gain(), passed);
         }
     }
