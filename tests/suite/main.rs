@@ -5,6 +5,12 @@
 
 pub mod align;
 pub mod angle;
+#[cfg(feature = "baselines")]
+pub mod baselines;
+#[cfg(feature = "baselines")]
+pub mod baselines_agreement;
+#[cfg(feature = "baselines")]
+pub mod baselines_solvers;
 pub mod density;
 pub mod determinism;
 pub mod distance_transform;

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use lexopt::prelude::*;
 use sim3align::align::field::{Field, Options};
 use sim3align::align::options::AlignOptions;
+use sim3align::baselines::Baseline;
 use sim3align::samples::benchmark::override_setting;
 use sim3align::samples::evaluation::case::CASES;
 use sim3align::samples::evaluation::tier::{Class, Tier};
@@ -31,7 +32,9 @@ Method
   --seed N           same as --option seed=N
   --option K=V       an option of align() by its JavaScript name; null, and min,max for guard; may be repeated
   --row 'NAME: K=V K=V…'
-                     one more row of the tables, with these options on top of the others; may be repeated
+                     one more row of the tables, with these options on top of the others; may be repeated;
+                     method=M is another method: fgr, gicp, icp-point-to-plane, icp-point-to-point, ransac, teaser,
+                     quatro
 
 Running
   --threads N        default: all
@@ -43,20 +46,23 @@ Running
   --help             this text";
 
 /// A set of options that all cases are run with.
+#[derive(Clone, Default)]
 pub struct Row {
     /// Its name in the tables.
     pub name: String,
     /// The options.
     pub options: AlignOptions,
     pub search: Vec<(String, f64)>,
+    /// Another method than `align`'s.
+    pub baseline: Option<Baseline>,
     /// All assignments, as they were written.
-    pub assignments: String,
+    pub assignments: Vec<String>,
 }
 
 impl Row {
     /// What a record of this row is kept under.
     pub fn key(&self, case: String) -> RecordKey {
-        RecordKey { row: self.name.clone(), options: self.assignments.clone(), case }
+        RecordKey { row: self.name.clone(), options: self.assignments.join(" "), case }
     }
 }
 
@@ -119,26 +125,21 @@ impl Arguments {
                 _ => return Err(argument.unexpected()),
             }
         }
-        let mut base = AlignOptions::default();
-        let mut base_search = Vec::new();
+        let mut base = Row::default();
         for assignment in &options {
-            assign(&mut base, &mut base_search, assignment)?;
+            assign(&mut base, assignment)?;
         }
-        let base_assignments = options;
         for text in rows {
             let (name, assignments) = text.split_once(':').ok_or("--row without a colon after its name")?;
-            let mut options = base.clone();
-            let mut search = base_search.clone();
+            let mut row = Row { name: name.trim().into(), ..base.clone() };
             for assignment in assignments.split_whitespace() {
-                assign(&mut options, &mut search, assignment)?;
+                assign(&mut row, assignment)?;
             }
-            let written = base_assignments.iter().map(String::as_str).chain(assignments.split_whitespace());
-            let written = written.collect::<Vec<_>>().join(" ");
-            arguments.rows.push(Row { name: name.trim().into(), options, search, assignments: written });
+            arguments.rows.push(row);
         }
         if arguments.rows.is_empty() {
-            let assignments = base_assignments.join(" ");
-            arguments.rows.push(Row { name: name_of(base.preset), options: base, search: base_search, assignments });
+            let name = base.baseline.map_or_else(|| name_of(base.options.preset), |method| method.as_str().into());
+            arguments.rows.push(Row { name, ..base });
         }
         let anything_else = !arguments.cases.is_empty() || arguments.only.is_some();
         arguments.generated = generated.unwrap_or(if anything_else { 0 } else { CASES });
@@ -154,9 +155,17 @@ fn list<T, E: std::fmt::Display>(text: &str, parse: impl Fn(&str) -> Result<T, E
     text.split(',').map(|part| parse(part.trim()).map_err(|error| format!("{part:?}: {error}"))).collect()
 }
 
-/// Sets an option from `name=value`, or one of the search's settings from `search.name=number`.
-fn assign(options: &mut AlignOptions, search: &mut Vec<(String, f64)>, assignment: &str) -> Result<(), String> {
+/// Sets an option from `name=value`, one of the search's settings from `search.name=number`, or the method.
+fn assign(row: &mut Row, assignment: &str) -> Result<(), String> {
+    let Row { options, search, baseline, assignments, .. } = row;
+    assignments.push(assignment.to_owned());
     let (name, value) = assignment.split_once('=').ok_or_else(|| format!("{assignment:?} is no NAME=VALUE"))?;
+    if name == "method" {
+        let names = || Baseline::ALL.map(Baseline::as_str).join(", ");
+        *baseline =
+            Some(Baseline::from_name(value).ok_or_else(|| format!("no method {value}; there are {}", names()))?);
+        return Ok(());
+    }
     if let Some(setting) = name.strip_prefix("search.") {
         let value = value.parse().map_err(|_| format!("{name}: found {value:?}, expected a number"))?;
         if !override_setting(&mut SearchSettings::default(), setting, value) {

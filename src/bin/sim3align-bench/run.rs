@@ -6,7 +6,8 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use serde_json::json;
-use sim3align::samples::benchmark::{BenchCase, Record, run_case};
+use sim3align::align::baseline::align_baseline;
+use sim3align::samples::benchmark::{BenchCase, Record, run_case, run_method};
 use sim3align::samples::evaluation::case::EvaluationSet;
 use sim3align::samples::evaluation::tier::{Class, Tier};
 use sim3align::samples::records::{RecordFile, RecordKey};
@@ -55,7 +56,7 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
     let begun = std::time::Instant::now();
     let records = in_order(arguments.threads, &sources, |source| {
         let case = load(source, &set)?;
-        Ok(arguments.rows.iter().map(|row| run_case(&case, &row.options, &row.search)).collect())
+        Ok(arguments.rows.iter().map(|row| run_row(&case, row)).collect())
     });
     let records: Vec<Vec<Record>> = records.into_iter().collect::<Result<_, String>>()?;
     eprintln!("{} cases in {:.1} s", records.len(), begun.elapsed().as_secs_f64());
@@ -88,7 +89,7 @@ fn go_on(arguments: &Arguments, sources: &[Source], set: &EvaluationSet, path: &
         }
         let case = load(source, set)?;
         for (row, key) in missing {
-            let record = run_case(&case, &row.options, &row.search);
+            let record = run_row(&case, row);
             file.add(&key, &record).map_err(|error| error.to_string())?;
             println!("{}", json!({ "row": key.row, "case": key.case, "seconds": record.seconds }));
         }
@@ -96,6 +97,15 @@ fn go_on(arguments: &Arguments, sources: &[Source], set: &EvaluationSet, path: &
     })
     .into_iter()
     .collect()
+}
+
+fn run_row(case: &BenchCase, row: &Row) -> Record {
+    match row.baseline {
+        None => run_case(case, &row.options, &row.search),
+        Some(baseline) => {
+            run_method(case, |observation, mesh, host| align_baseline(observation, mesh, baseline, &row.options, host))
+        }
+    }
 }
 
 fn load(source: &Source, set: &EvaluationSet) -> Result<BenchCase, String> {
