@@ -6,6 +6,7 @@ use std::time::Instant;
 use serde::Serialize;
 use serde_json::Value;
 
+use super::case::parameters_json;
 use super::evaluation::case::EvaluationCase;
 use crate::align::align_with;
 use crate::align::evaluate::{EvaluateOptions, Truth, evaluate};
@@ -113,15 +114,14 @@ impl Record {
 
 impl From<EvaluationCase> for BenchCase {
     fn from(case: EvaluationCase) -> Self {
-        let parameters: serde_json::Map<_, _> =
-            case.parameters.iter().map(|(name, value)| ((*name).to_owned(), Value::from(*value))).collect();
+        let parameters = parameters_json(&case.parameters);
         Self {
             name: case.name(),
             tier: case.tier.as_str().into(),
             class: case.class.as_str().into(),
             family: case.family,
             tags: case.tags.iter().map(|tag| (*tag).to_owned()).collect(),
-            parameters: parameters.into(),
+            parameters,
             observation: case.observation,
             mesh: case.mesh,
             truth: Some(Truth { camera_from_mesh: case.camera_from_mesh, symmetry: case.symmetry }),

@@ -6,20 +6,24 @@ use lexopt::prelude::*;
 use sim3align::align::field::{Field, Options};
 use sim3align::align::options::AlignOptions;
 use sim3align::baselines::Baseline;
+use sim3align::error::Error;
 use sim3align::samples::benchmark::override_setting;
 use sim3align::samples::evaluation::case::CASES;
 use sim3align::samples::evaluation::tier::{Class, Tier};
 use sim3align::samples::records::RecordKey;
+use sim3align::samples::scenes::Prior;
 use sim3align::stages::search::SearchSettings;
 
 pub const USAGE: &str = "\
-Usage: sim3align-bench [--generated N] [--cases DIR...] [options]
+Usage: sim3align-bench [--generated N] [--scenes N] [--cases DIR...] [options]
 
 Aligns cases with a known truth and prints Markdown tables: success, errors, metrics, failures.
 
 Cases
-  --generated N      cases 0 to N − 1 of the generated set; 240 where no --cases is given either
-  --set-seed S       seed of the generated set, default 0
+  --generated N      cases 0 to N − 1 of the generated set; 240 where no --cases or --scenes is given either
+  --scenes N         all pairs of a set of N cluttered scenes; 100 scenes are 338 pairs
+  --prior P          what made the meshes of the scenes: detailed (default), smooth or both
+  --set-seed S       seed of the generated set and of the scenes, default 0
   --meshes DIR       show the GLB files of a folder in a third of the generated cases
   --cases DIR...     case folders, or folders of case folders
   --tier T,…         only these: easy, medium, hard
@@ -41,7 +45,7 @@ Running
   --json FILE        everything about every case, for other tables
   --records FILE     the same, added one JSON line at a time; what the file has already is not run again. Instead of
                      tables, prints what is done
-  --write DIR        write the generated cases as case folders, and align nothing
+  --write DIR        write the cases of the generated set as case folders, and align nothing
   --failures N       failures listed at most a row, default 40
   --help             this text";
 
@@ -69,6 +73,8 @@ impl Row {
 /// What is asked for.
 pub struct Arguments {
     pub generated: usize,
+    pub scenes: usize,
+    pub priors: Vec<Prior>,
     pub set_seed: u64,
     pub meshes: Option<PathBuf>,
     pub cases: Vec<PathBuf>,
@@ -87,9 +93,12 @@ impl Arguments {
     /// `None` where help is asked for.
     pub fn parse(mut parser: lexopt::Parser) -> Result<Option<Self>, lexopt::Error> {
         let mut generated = None;
+        let said = |error: Error| error.to_string();
         let (mut options, mut rows) = (Vec::new(), Vec::new());
         let mut arguments = Self {
             generated: 0,
+            scenes: 0,
+            priors: vec![Prior::Detailed],
             set_seed: 0,
             meshes: None,
             cases: Vec::new(),
@@ -106,6 +115,8 @@ impl Arguments {
         while let Some(argument) = parser.next()? {
             match argument {
                 Long("generated") => generated = Some(parser.value()?.parse()?),
+                Long("scenes") => arguments.scenes = parser.value()?.parse()?,
+                Long("prior") => arguments.priors = Prior::several(&parser.value()?.string()?).map_err(said)?,
                 Long("set-seed") => arguments.set_seed = parser.value()?.parse()?,
                 Long("meshes") => arguments.meshes = Some(parser.value()?.into()),
                 Long("cases") => arguments.cases.extend(parser.values()?.map(PathBuf::from)),
@@ -141,7 +152,7 @@ impl Arguments {
             let name = base.baseline.map_or_else(|| name_of(base.options.preset), |method| method.as_str().into());
             arguments.rows.push(Row { name, ..base });
         }
-        let anything_else = !arguments.cases.is_empty() || arguments.only.is_some();
+        let anything_else = !arguments.cases.is_empty() || arguments.only.is_some() || arguments.scenes > 0;
         arguments.generated = generated.unwrap_or(if anything_else { 0 } else { CASES });
         Ok(Some(arguments))
     }
