@@ -1,6 +1,6 @@
 //! The command line.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use lexopt::prelude::*;
 use sim3align::align::field::{Field, Options};
@@ -31,6 +31,8 @@ Method
   --option K=V       an option of align() by its JavaScript name; null, and min,max for guard; may be repeated
   --row 'NAME: K=V K=V…'
                      one more row of the tables, with these options on top of the others; may be repeated
+  --import NAME=DIR  one more row: another program's answers, DIR/CASE.json (docs/importing-results.md); may be
+                     repeated; without --row these are the only rows
 
 Running
   --threads N        default: all
@@ -46,6 +48,8 @@ pub struct Row {
     /// The options.
     pub options: AlignOptions,
     pub search: Vec<(String, f64)>,
+    /// The folder of another program's answers, which are scored instead.
+    pub import: Option<PathBuf>,
 }
 
 /// What is asked for.
@@ -68,7 +72,7 @@ impl Arguments {
     /// `None` where help is asked for.
     pub fn parse(mut parser: lexopt::Parser) -> Result<Option<Self>, lexopt::Error> {
         let mut generated = None;
-        let (mut options, mut rows) = (Vec::new(), Vec::new());
+        let (mut options, mut rows, mut imports) = (Vec::new(), Vec::new(), Vec::new());
         let mut arguments = Self {
             generated: 0,
             set_seed: 0,
@@ -96,6 +100,7 @@ impl Arguments {
                 Long("seed") => options.push(format!("seed={}", parser.value()?.string()?)),
                 Long("option") => options.push(parser.value()?.string()?),
                 Long("row") => rows.push(parser.value()?.string()?),
+                Long("import") => imports.push(parser.value()?.string()?),
                 Long("threads") => arguments.threads = parser.value()?.parse::<usize>()?.max(1),
                 Long("json") => arguments.json = Some(parser.value()?.into()),
                 Long("write") => arguments.write = Some(parser.value()?.into()),
@@ -116,10 +121,18 @@ impl Arguments {
             for assignment in assignments.split_whitespace() {
                 assign(&mut options, &mut search, assignment)?;
             }
-            arguments.rows.push(Row { name: name.trim().into(), options, search });
+            arguments.rows.push(Row { name: name.trim().into(), options, search, import: None });
+        }
+        for text in imports {
+            let (name, folder) = text.split_once('=').ok_or("--import without NAME= before its folder")?;
+            if !Path::new(folder).is_dir() {
+                return Err(format!("--import {text}: found no folder {folder}").into());
+            }
+            let (options, search, import) = (AlignOptions::default(), Vec::new(), Some(folder.into()));
+            arguments.rows.push(Row { name: name.trim().into(), options, search, import });
         }
         if arguments.rows.is_empty() {
-            arguments.rows.push(Row { name: name_of(base.preset), options: base, search: base_search });
+            arguments.rows.push(Row { name: name_of(base.preset), options: base, search: base_search, import: None });
         }
         let anything_else = !arguments.cases.is_empty() || arguments.only.is_some();
         arguments.generated = generated.unwrap_or(if anything_else { 0 } else { CASES });

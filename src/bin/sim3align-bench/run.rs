@@ -9,8 +9,9 @@ use serde_json::json;
 use sim3align::samples::benchmark::{BenchCase, Record, run_case};
 use sim3align::samples::evaluation::case::EvaluationSet;
 use sim3align::samples::evaluation::tier::{Class, Tier};
+use sim3align::samples::imported::imported;
 
-use crate::arguments::Arguments;
+use crate::arguments::{Arguments, Row};
 use crate::table;
 
 /// Where a case comes from.
@@ -41,7 +42,7 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
     let begun = std::time::Instant::now();
     let records = in_order(arguments.threads, &sources, |source| {
         let case = load(source, &set)?;
-        Ok(arguments.rows.iter().map(|row| run_case(&case, &row.options, &row.search)).collect())
+        Ok(arguments.rows.iter().map(|row| record(row, &case)).collect())
     });
     let records: Vec<Vec<Record>> = records.into_iter().collect::<Result<_, String>>()?;
     eprintln!("{} cases in {:.1} s", records.len(), begun.elapsed().as_secs_f64());
@@ -55,6 +56,13 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
         fs::write(path, format!("{all}\n")).map_err(|error| format!("{}: {error}", path.display()))?;
     }
     Ok(())
+}
+
+fn record(row: &Row, case: &BenchCase) -> Record {
+    match &row.import {
+        Some(folder) => imported(case, folder),
+        None => run_case(case, &row.options, &row.search),
+    }
 }
 
 fn load(source: &Source, set: &EvaluationSet) -> Result<BenchCase, String> {
