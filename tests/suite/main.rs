@@ -37,6 +37,8 @@ pub mod formats_mesh;
 pub mod fpfh;
 pub mod icp;
 pub mod image;
+#[cfg(all(feature = "bench", not(target_arch = "wasm32")))]
+pub mod imported;
 pub mod kd_tree;
 pub mod matching;
 pub mod mesh;

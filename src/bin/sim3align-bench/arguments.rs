@@ -1,6 +1,6 @@
 //! The command line.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use lexopt::prelude::*;
 use sim3align::align::field::{Field, Options};
@@ -39,6 +39,8 @@ Method
                      one more row of the tables, with these options on top of the others; may be repeated;
                      method=M is another method: fgr, gicp, icp-point-to-plane, icp-point-to-point, ransac, teaser,
                      quatro
+  --import NAME=DIR  one more row: another program's answers, DIR/CASE.json (docs/importing-results.md); may be
+                     repeated; without --row these are the only rows
 
 Running
   --threads N        default: all
@@ -57,10 +59,21 @@ pub struct Row {
     /// The options.
     pub options: AlignOptions,
     pub search: Vec<(String, f64)>,
-    /// Another method than `align`'s.
-    pub baseline: Option<Baseline>,
+    pub method: Method,
     /// All assignments, as they were written.
     pub assignments: Vec<String>,
+}
+
+/// What gives a row's poses.
+#[derive(Clone, Default)]
+pub enum Method {
+    /// `align`.
+    #[default]
+    Align,
+    /// Another method of the crate's.
+    Baseline(Baseline),
+    /// Another program, which has left its answers in this folder.
+    Import(PathBuf),
 }
 
 impl Row {
@@ -94,7 +107,7 @@ impl Arguments {
     pub fn parse(mut parser: lexopt::Parser) -> Result<Option<Self>, lexopt::Error> {
         let mut generated = None;
         let said = |error: Error| error.to_string();
-        let (mut options, mut rows) = (Vec::new(), Vec::new());
+        let (mut options, mut rows, mut imports) = (Vec::new(), Vec::new(), Vec::new());
         let mut arguments = Self {
             generated: 0,
             scenes: 0,
@@ -127,6 +140,7 @@ impl Arguments {
                 Long("seed") => options.push(format!("seed={}", parser.value()?.string()?)),
                 Long("option") => options.push(parser.value()?.string()?),
                 Long("row") => rows.push(parser.value()?.string()?),
+                Long("import") => imports.push(parser.value()?.string()?),
                 Long("threads") => arguments.threads = parser.value()?.parse::<usize>()?.max(1),
                 Long("json") => arguments.json = Some(parser.value()?.into()),
                 Long("records") => arguments.records = Some(parser.value()?.into()),
@@ -148,8 +162,18 @@ impl Arguments {
             }
             arguments.rows.push(row);
         }
+        for text in imports {
+            let (name, folder) = text.split_once('=').ok_or("--import without NAME= before its folder")?;
+            if !Path::new(folder).is_dir() {
+                return Err(format!("--import {text}: found no folder {folder}").into());
+            }
+            arguments.rows.push(Row { name: name.into(), method: Method::Import(folder.into()), ..Row::default() });
+        }
         if arguments.rows.is_empty() {
-            let name = base.baseline.map_or_else(|| name_of(base.options.preset), |method| method.as_str().into());
+            let name = match &base.method {
+                Method::Baseline(baseline) => baseline.as_str().into(),
+                _ => name_of(base.options.preset),
+            };
             arguments.rows.push(Row { name, ..base });
         }
         let anything_else = !arguments.cases.is_empty() || arguments.only.is_some() || arguments.scenes > 0;
@@ -168,13 +192,13 @@ fn list<T, E: std::fmt::Display>(text: &str, parse: impl Fn(&str) -> Result<T, E
 
 /// Sets an option from `name=value`, one of the search's settings from `search.name=number`, or the method.
 fn assign(row: &mut Row, assignment: &str) -> Result<(), String> {
-    let Row { options, search, baseline, assignments, .. } = row;
+    let Row { options, search, method, assignments, .. } = row;
     assignments.push(assignment.to_owned());
     let (name, value) = assignment.split_once('=').ok_or_else(|| format!("{assignment:?} is no NAME=VALUE"))?;
     if name == "method" {
         let names = || Baseline::ALL.map(Baseline::as_str).join(", ");
-        *baseline =
-            Some(Baseline::from_name(value).ok_or_else(|| format!("no method {value}; there are {}", names()))?);
+        let baseline = Baseline::from_name(value).ok_or_else(|| format!("no method {value}; there are {}", names()))?;
+        *method = Method::Baseline(baseline);
         return Ok(());
     }
     if let Some(setting) = name.strip_prefix("search.") {

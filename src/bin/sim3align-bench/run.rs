@@ -10,10 +10,11 @@ use sim3align::align::baseline::align_baseline;
 use sim3align::samples::benchmark::{BenchCase, Record, run_case, run_method};
 use sim3align::samples::evaluation::case::EvaluationSet;
 use sim3align::samples::evaluation::tier::{Class, Tier};
+use sim3align::samples::imported::imported;
 use sim3align::samples::records::{RecordFile, RecordKey};
 use sim3align::samples::scenes::{Prior, SceneSet};
 
-use crate::arguments::{Arguments, Row};
+use crate::arguments::{Arguments, Method, Row};
 use crate::scenes::Scenes;
 use crate::table;
 
@@ -111,11 +112,12 @@ fn go_on(
 }
 
 fn run_row(case: &BenchCase, row: &Row) -> Record {
-    match row.baseline {
-        None => run_case(case, &row.options, &row.search),
-        Some(baseline) => {
-            run_method(case, |observation, mesh, host| align_baseline(observation, mesh, baseline, &row.options, host))
+    match &row.method {
+        Method::Align => run_case(case, &row.options, &row.search),
+        Method::Baseline(baseline) => {
+            run_method(case, |observation, mesh, host| align_baseline(observation, mesh, *baseline, &row.options, host))
         }
+        Method::Import(folder) => imported(case, folder),
     }
 }
 
