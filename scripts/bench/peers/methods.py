@@ -140,12 +140,16 @@ def _kiss_matcher(problem: Problem) -> np.ndarray:
     config = kiss_matcher.KISSMatcherConfig()
     zoom = config.voxel_size / problem.voxel
     matcher = kiss_matcher.KISSMatcher(config)
-    clouds = [list((zoom * points).astype(np.float32)) for points in (problem.source, problem.target)]
+    # Its normals point to the origin: those of a mesh around it inwards. So that those of a view do too, the origin goes
+    # behind it, as far as the camera is in front.
+    behind = np.zeros(3) if problem.viewpoint is None else problem.viewpoint
+    clouds = [list((zoom * points).astype(np.float32)) for points in (problem.source, problem.target + behind)]
     solution = matcher.estimate(*clouds)
     if not solution.valid:
-        raise RuntimeError("KISS-Matcher calls its solution invalid")
+        matches = len(matcher.get_initial_correspondences())
+        raise RuntimeError(f"KISS-Matcher found no valid solution among {matches} matches")
     matrix = np.eye(4)
-    matrix[:3, :3], matrix[:3, 3] = solution.rotation, np.ravel(solution.translation) / zoom
+    matrix[:3, :3], matrix[:3, 3] = solution.rotation, np.ravel(solution.translation) / zoom - behind
     return matrix
 
 

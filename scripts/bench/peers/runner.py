@@ -96,6 +96,7 @@ def _quiet() -> None:
 def _run(task: Task) -> None:
     case: Any = None
     unreadable = None
+    task.begun(task.methods[0]).touch()
     try:
         case = _read(task)
     except Exception as error:  # It is the answer of every method.
