@@ -18,6 +18,10 @@ import { pythonEnvironment, pythonVariables } from "./python.mjs";
  * @property {(progress: Progress) => void} [onProgress] called once per answer
  */
 
+/** The environment's Python, installed where it has not been. @param {string} [program] */
+export const installPeers = (program = "python3") =>
+  pythonEnvironment("peers", at("scripts", "bench", "peers", "requirements.txt"), program);
+
 /**
  * Runs the methods; installs them first where that has not been done.
  * @param {PeersRun} options
@@ -43,8 +47,8 @@ export const testPeers = (python) => peers(["--self-test"], python, console.log)
  * @param {string} [program]
  * @param {(line: string) => void} [onLine]
  */
-async function peers(args, program = "python3", onLine = () => {}) {
-  const python = await pythonEnvironment("peers", at("scripts", "bench", "peers", "requirements.txt"), program);
+async function peers(args, program, onLine = () => {}) {
+  const python = await installPeers(program);
   const child = spawn(python, ["-m", "peers", ...args], {
     stdio: ["ignore", "pipe", "inherit"],
     env: { ...process.env, ...pythonVariables },

@@ -19,9 +19,9 @@ export const pythonVariables = { PYTHONPATH: at("scripts", "bench"), PYTHONDONTW
 export async function pythonEnvironment(name, requirements, program) {
   const folder = at("target", "bench", name);
   const python = process.platform === "win32" ? join(folder, "Scripts", "python.exe") : join(folder, "bin", "python");
+  const stamp = new Stamp(join(folder, "installed-from"), digest([requirements]), [python]);
+  if (stamp.isCurrent) return python;
   await step(`Python, ${name}`, async (say) => {
-    const stamp = new Stamp(join(folder, "installed-from"), digest([requirements]), [python]);
-    if (stamp.isCurrent) return say("up to date");
     rmSync(folder, { recursive: true, force: true });
     const remedy = "install Python 3.11 or 3.12 with venv, name it with --python, and check that PyPI can be reached";
     await run(program, ["-m", "venv", folder], { remedy });
