@@ -8,6 +8,7 @@ pub mod depth;
 pub mod distortion;
 pub mod evaluation;
 pub mod imported;
+pub mod overlay;
 pub mod records;
 pub mod scenes;
 pub mod shape;

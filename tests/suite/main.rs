@@ -48,6 +48,8 @@ pub mod normals;
 pub mod number;
 pub mod observe;
 pub mod order;
+#[cfg(all(feature = "samples", not(target_arch = "wasm32")))]
+pub mod overlay;
 pub mod pinhole;
 pub mod pose_error;
 pub mod precise;
@@ -63,6 +65,8 @@ pub mod register;
 pub mod sample;
 #[cfg(all(feature = "samples", not(target_arch = "wasm32")))]
 pub mod samples;
+#[cfg(all(feature = "samples", not(target_arch = "wasm32")))]
+pub mod scenes;
 pub mod search;
 pub mod shapes;
 pub mod silhouette;

@@ -23,7 +23,7 @@ const MASK_PX: [f64; 2] = [20_000.0, 350.0];
 const OFFSET_PX: [f64; 2] = [0.0, 2.5];
 const DISTANCE_M: [f64; 2] = [0.5, 1.6];
 /// Difficulties below the first are easy, below the second medium; about a third of the pairs each.
-const TIERS: [f64; 2] = [0.25, 0.37];
+const TIERS: [f64; 2] = [0.175, 0.305];
 
 /// How hard a pair is, from 0 to 1: 0.4 · hidden + 0.3 · small + 0.15 · wrongly masked + 0.15 · far, each from 0 to 1.
 ///

@@ -1,6 +1,6 @@
 //! What stands where: things packed beside each other so that none is within another.
 
-use core::f64::consts::TAU;
+use core::f64::consts::{PI, TAU};
 
 use glam::{DVec2, DVec3, Vec3};
 
@@ -22,6 +22,8 @@ const STEP_M: f64 = 0.004;
 const FARTHEST_M: f64 = 3.0;
 /// Of the objects, how many have been put down on any side.
 const TUMBLED: f64 = 0.25;
+/// Of the objects, how many are put behind or before another one.
+const IN_A_LINE: f64 = 0.7;
 /// What would never be left lying on its shade.
 const UPRIGHT: &[&str] = &["lamp", "teapot"];
 
@@ -91,7 +93,7 @@ impl Floor {
         let is_free = |at: DVec2| self.0.iter().all(|(other, place)| other.gap(&footprint, at - *place) >= gap);
         let steps = (FARTHEST_M / STEP_M) as usize;
         let places = (0..=steps).map(|i| from + direction * (STEP_M * i as f64));
-        let place = places.clone().find(|at| is_free(*at)).or(places.last()).unwrap_or(from);
+        let place = places.clone().find(|at| is_free(*at)).or_else(|| places.clone().next_back()).unwrap_or(from);
         self.0.push((footprint, place));
         place
     }
@@ -100,6 +102,7 @@ impl Floor {
 impl Layout {
     /// This many objects and their surroundings.
     pub fn draw(count: usize, random: &mut Random, object_random: &mut Random) -> Result<Self> {
+        let front = TAU * random.uniform();
         let mut floor = Floor::default();
         let mut objects = Vec::new();
         for _ in 0..count {
@@ -108,7 +111,13 @@ impl Layout {
                 0 => DVec2::ZERO,
                 n => floor.0[random.below(n)].1,
             };
-            let place = floor.take(Footprint::of(&mesh), from, heading(random), between(random, 0.004, 0.035));
+            // Mostly behind or before another, seen from the camera.
+            let side = if chance(random, IN_A_LINE) {
+                front + if chance(random, 0.5) { PI } else { 0.0 } + between(random, -0.6, 0.6)
+            } else {
+                TAU * random.uniform()
+            };
+            let place = floor.take(Footprint::of(&mesh), from, unit(side), between(random, 0.003, 0.02));
             objects.push(Placed { object, mesh: moved(&mesh, place)?, symmetry });
         }
         let points = || objects.iter().flat_map(|placed| placed.mesh.positions());
@@ -116,13 +125,12 @@ impl Layout {
         let centre = (low + high) * 0.5;
         let reach = f64::from(points().fold(0.0f32, |far, p| far.max((*p - centre).length())));
 
-        let front = TAU * random.uniform();
         let middle = centre.truncate().as_dvec2();
         let mut meshes = Vec::new();
         for _ in 0..2 + random.below(4) {
             let mesh = clutter::thing(random)?;
             let gap = between(random, 0.006, 0.06);
-            let place = floor.take(Footprint::of(&mesh), middle, heading(random), gap);
+            let place = floor.take(Footprint::of(&mesh), middle, unit(TAU * random.uniform()), gap);
             meshes.push(moved(&mesh, place)?);
         }
         let back = -unit(front);
@@ -143,10 +151,6 @@ impl Layout {
 fn unit(angle: f64) -> DVec2 {
     let (sine, cosine) = libm::sincos(angle);
     DVec2::new(cosine, sine)
-}
-
-fn heading(random: &mut Random) -> DVec2 {
-    unit(TAU * random.uniform())
 }
 
 /// An object at rest above the origin: mostly as it is made to stand, some on any side that they come to lie on.

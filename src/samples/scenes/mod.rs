@@ -3,7 +3,7 @@
 //!
 //! The form is that of the paper's benchmark (100 cluttered scenes, 338 pairs), the content procedural. Each pair comes
 //! with two meshes of different failure styles, see [`Prior`]; depth, mask, camera and the object's true pose are the
-//! same for both. A pair follows from the set's seed and size, its scene, its object and the prior alone. A scene that
+//! same for both. A pair follows from the set's seed, its scene, its object and the prior alone. A scene that
 //! shows too little of one of its objects is drawn again.
 
 mod case;

@@ -20,7 +20,7 @@ use crate::stages::umeyama::{Pair, ScaleMode, umeyama};
 /// Pixels that the smooth prior's best fit is taken over, at most.
 const FITTED_PIXELS: usize = 4000;
 /// Triangles of a smooth prior, about.
-const SMOOTH_TRIANGLES: usize = 9000;
+const SMOOTH_TRIANGLES: usize = 8000;
 
 /// The style of the generated mesh.
 ///
@@ -109,8 +109,7 @@ fn smooth(placed: &Placed, scene: &Scene, seed: u64) -> Result<Generated> {
     let away = (middle - scene.camera_from_world.inverse().translation).normalize();
     let flatten = Matrix3::identity() - away * away.transpose() * (1.0 - flattened);
     let flat = |p: Vector3<f64>| middle + flatten * (p - middle);
-    let pairs = seen.iter().map(|&p| Pair { source: flat(p), target: p, weight: 1.0 });
-    let back = umeyama(pairs, ScaleMode::Free).unwrap_or_else(|_| Similarity::identity());
+    let back = best_fit(&seen, flat, middle, away)?;
     let positions = mesh.positions().iter().map(|p| vec3(&back.apply(flat(vector3(*p))))).collect();
     Ok(Generated {
         mesh: Mesh::new(positions, mesh.triangles().to_vec())?,
@@ -118,6 +117,27 @@ fn smooth(placed: &Placed, scene: &Scene, seed: u64) -> Result<Generated> {
         tags: vec!["melted", "flattened"],
         parameters: vec![("blur", blur), ("flattened", flattened)],
     })
+}
+
+/// The similarity that best brings what was seen, and became flat, back to where it was: in its turn and its place by
+/// the distance in space, in its size by that across the line of sight. (By the distance in space, a deep object would
+/// be too large in the picture, to make up for some of the depth that it lost.)
+fn best_fit(
+    seen: &[Vector3<f64>],
+    flat: impl Fn(Vector3<f64>) -> Vector3<f64>,
+    middle: Vector3<f64>,
+    away: Vector3<f64>,
+) -> Result<Similarity> {
+    let pairs = seen.iter().map(|&p| Pair { source: flat(p), target: p, weight: 1.0 });
+    let rotation = umeyama(pairs, ScaleMode::Free).unwrap_or_else(|_| Similarity::identity()).rotation;
+    let across = |v: Vector3<f64>| v - away * away.dot(&v);
+    let (mut product, mut square) = (0.0, 0.0);
+    for &p in seen {
+        let (from, to) = (across(rotation * (flat(p) - middle)), across(p - middle));
+        (product, square) = (product + from.dot(&to), square + from.norm_squared());
+    }
+    let scale = if square > 0.0 { product / square } else { 1.0 };
+    Similarity::from_parts(scale, *rotation.matrix(), middle - rotation * middle * scale)
 }
 
 /// What a scene shows of its object, in the world's frame.

@@ -77,9 +77,10 @@ impl ClutteredScene {
             let layout = Layout::draw(objects, &mut Random::new(seed, LAYOUT_STREAM), things)?;
             let view_random = &mut Random::new(seed, SCENE_STREAM);
             // Every tenth scene or so may show an object that the border cuts.
-            let cut = if chance(view_random, 0.1) { MOST_CUT } else { 0.0 };
+            let too_near = chance(view_random, 0.1);
+            let cut = if too_near { MOST_CUT } else { 0.0 };
             for view in 0..VIEWS {
-                let seen = View::draw(&layout, view_random)?.see(&layout);
+                let seen = View::draw(&layout, too_near, view_random)?.see(&layout);
                 if seen.shows_enough(&layout, cut, view_random)
                     && let Some(scene) = Self::read(&layout, &seen, index, mixed([seed, view]))?
                 {

@@ -4,10 +4,13 @@ use super::COUNT_STREAM;
 use super::scene::ClutteredScene;
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::random::Random;
+use crate::samples::mixed;
 
-/// Of 100 scenes, how many have four objects, and how many three; the others have two. That makes 338 pairs.
+/// Of 100 scenes, how many have four objects, and how many three or more; the others have two. That makes 338 pairs.
 const FOUR: usize = 52;
-const THREE: usize = 34;
+const THREE_OR_MORE: usize = 86;
+/// So many scenes, each time, have them as evenly as can be, in an order of their own.
+const BLOCK: usize = 10;
 
 /// A set of cluttered scenes.
 #[derive(Debug, Clone)]
@@ -18,18 +21,10 @@ pub struct SceneSet {
 }
 
 impl SceneSet {
-    /// The set of a seed and a number of scenes: of any number, the same shares have four, three and two objects.
+    /// The set of a seed and a number of scenes. A larger set begins with the scenes of a smaller one.
     pub fn new(seed: u64, scenes: usize) -> Self {
-        let share = |of_hundred: usize| (scenes.saturating_mul(of_hundred) + 50) / 100;
-        let four = share(FOUR).min(scenes);
-        let three = share(THREE).min(scenes - four);
-        let count = |i: usize| if i < four { 4 } else { 2 + usize::from(i < four + three) };
-        let mut objects: Vec<usize> = (0..scenes).map(count).collect();
-        // Fisher and Yates.
-        let mut random = Random::new(seed, COUNT_STREAM);
-        for last in (1..scenes).rev() {
-            objects.swap(last, random.below(last + 1));
-        }
+        let blocks = scenes.div_ceil(BLOCK);
+        let objects = (0..blocks).flat_map(|block| objects_of_block(seed, block)).take(scenes).collect();
         Self { seed, objects }
     }
 
@@ -69,4 +64,19 @@ impl SceneSet {
         };
         ClutteredScene::draw(self.seed, index, objects)
     }
+}
+
+fn objects_of_block(seed: u64, block: usize) -> [usize; BLOCK] {
+    let before = |block: usize, of_hundred: usize| (block * BLOCK * of_hundred + 50) / 100;
+    let within = |of_hundred: usize| before(block + 1, of_hundred) - before(block, of_hundred);
+    let (four, three_or_more) = (within(FOUR), within(THREE_OR_MORE));
+    let mut objects = [2; BLOCK];
+    objects.iter_mut().take(three_or_more).for_each(|n| *n = 3);
+    objects.iter_mut().take(four).for_each(|n| *n = 4);
+    // Fisher and Yates.
+    let mut random = Random::new(mixed([seed, block as u64]), COUNT_STREAM);
+    for last in (1..BLOCK).rev() {
+        objects.swap(last, random.below(last + 1));
+    }
+    objects
 }

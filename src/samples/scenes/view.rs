@@ -40,18 +40,18 @@ pub struct Seen {
 }
 
 impl View {
-    /// A camera at a desk, that has the objects about in the middle of its picture.
-    pub fn draw(layout: &Layout, random: &mut Random) -> Result<Self> {
+    /// A camera at a desk, that has the objects about in the middle of its picture, or so near that the border may cut them.
+    pub fn draw(layout: &Layout, too_near: bool, random: &mut Random) -> Result<Self> {
         let fov = between(random, 38.0, 60.0);
         let mut camera = Pinhole::from_vertical_fov(fov, WIDTH, HEIGHT)?;
         camera.cx += between(random, -6.0, 6.0);
         camera.cy += between(random, -6.0, 6.0);
         // The share of the picture's height that the objects would take, were they a ball.
-        let fill = between(random, 0.6, 1.15);
+        let fill = between(random, 0.6, 1.15) * if too_near { 1.4 } else { 1.0 };
         let distance = 2.0 * layout.reach * camera.fy / (fill * HEIGHT as f64);
-        let distance = distance.max(DISTANCE_M[0]).min(DISTANCE_M[1]);
-        let (rise, level) = libm::sincos(between(random, 14.0, 52.0).to_radians());
-        let (sine, cosine) = libm::sincos(layout.front + between(random, -0.6, 0.6));
+        let distance = distance.clamp(DISTANCE_M[0], DISTANCE_M[1]);
+        let (rise, level) = libm::sincos(between(random, 9.0, 42.0).to_radians());
+        let (sine, cosine) = libm::sincos(layout.front + between(random, -0.5, 0.5));
         let towards = Vector3::new(cosine * level, sine * level, rise);
         let mut aside = || between(random, -0.12, 0.12) * layout.reach;
         let target = vector3(layout.centre) + Vector3::new(aside(), aside(), aside());
