@@ -219,7 +219,7 @@ def main():
         for kind in KINDS:
             for seed in range(arguments.first_seed, arguments.first_seed + arguments.problems):
                 write(pathlib.Path(folder), kind, seed)
-        command = ["cargo", "test", "--features", "baselines", "--test", "suite", "baselines_agreement"]
+        command = ["cargo", "test", "--features", "bench", "--test", "suite", "baselines_agreement"]
         environment = {**os.environ, "SIM3ALIGN_AGREEMENT": folder}
         raise SystemExit(subprocess.run([*command, "--", "--nocapture"], env=environment).returncode)
 
