@@ -167,9 +167,20 @@ def kiss(p, use_quatro):
     return rigid(np.array(answer.rotation), np.array(answer.translation).ravel())
 
 
+def without_disagreement(p, found):
+    """Without small_gicp's answers where Open3D has another: its steps are not the closed form's, and nearest points may
+    come to rest in several pairings. There is no one optimum to compare then."""
+    for method in ("icp-point-to-point", "gicp"):
+        off = np.abs(np.array(found[f"open3d {method}"]) - np.array(found[f"small_gicp {method}"])).max()
+        if off > 1e-3:
+            print(f"{p['kind']} {p['seed']}: small_gicp's {method} is {off:.1e} off Open3D's, and left out")
+            del found[f"small_gicp {method}"]
+    return found
+
+
 def answers(p):
     if p["kind"] == "local":
-        return {
+        found = {
             "open3d icp-point-to-plane": open3d_icp(p, registration.TransformationEstimationPointToPlane()),
             "open3d icp-point-to-point": open3d_icp(p, registration.TransformationEstimationPointToPoint()),
             "open3d gicp": open3d_icp(
@@ -181,6 +192,7 @@ def answers(p):
             "small_gicp icp-point-to-point": small_gicp_by(p, "ICP"),
             "small_gicp gicp": small_gicp_by(p, "GICP"),
         }
+        return without_disagreement(p, found)
     if p["kind"] == "upright":
         return {"kiss_matcher quatro": kiss(p, True)}
     return {
@@ -219,7 +231,7 @@ def main():
         for kind in KINDS:
             for seed in range(arguments.first_seed, arguments.first_seed + arguments.problems):
                 write(pathlib.Path(folder), kind, seed)
-        command = ["cargo", "test", "--features", "baselines", "--test", "suite", "baselines_agreement"]
+        command = ["cargo", "test", "--features", "bench", "--test", "suite", "baselines_agreement"]
         environment = {**os.environ, "SIM3ALIGN_AGREEMENT": folder}
         raise SystemExit(subprocess.run([*command, "--", "--nocapture"], env=environment).returncode)
 

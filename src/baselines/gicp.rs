@@ -18,7 +18,7 @@ use crate::geometry::kd_tree::KdTree;
 use crate::geometry::normal_equations::NormalEquations;
 use crate::geometry::similarity::{Similarity, vector3};
 use crate::stages::icp::{Refined, moved, movement, rigid_jacobian};
-use crate::stages::normals::{Orientation, estimate_normals};
+use crate::stages::normals::{Neighborhood, Orientation, estimate_normals};
 
 /// Fewer pairs than this do not determine a pose.
 const MIN_PAIRS: usize = 6;
@@ -81,7 +81,7 @@ pub fn solve(
 ) -> Result<Refined> {
     let normals = |points: &[Vec3], tree: &KdTree| {
         // To which side a normal points is no matter to a covariance.
-        estimate_normals(points, tree, settings.neighbors, Orientation::TowardsCamera)
+        estimate_normals(points, tree, Neighborhood::nearest(settings.neighbors), Orientation::TowardsCamera)
     };
     let (source_normals, target_normals) = (normals(source, &KdTree::new(source)), normals(target, target_tree));
     let pairs = |pose: &Similarity| -> Vec<Patches> {

@@ -11,6 +11,9 @@ use crate::stages::matching::Match;
 /// The random stream of the thinning.
 const STREAM: u64 = 7;
 
+/// The random stream of [`links`].
+const LINKS_STREAM: u64 = 9;
+
 /// Points with their counterparts, finite.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Matched {
@@ -104,14 +107,18 @@ impl Matched {
     }
 }
 
-/// Pairs of `n` points: each with those `links` places further on, the places spread evenly over half of the round; all
-/// pairs once where there are no more. One link is a closed chain.
-pub fn links(n: usize, links: usize) -> Vec<[usize; 2]> {
+/// Pairs of `n` points: each with those `count` places further on, the places drawn one from each of as many equal runs
+/// of half the round, so that no order of the points is hit or missed by their regularity; all pairs once where there
+/// are no more. One link is a closed chain.
+pub fn links(n: usize, count: usize, seed: u64) -> Vec<[usize; 2]> {
     let half = n / 2;
-    let links = links.min(half);
-    let mut pairs = Vec::with_capacity(n * links);
-    for k in 0..links {
-        let step = 1 + k * half / links;
+    let steps: Vec<usize> = if count == 1 && half > 0 {
+        vec![1]
+    } else {
+        Random::new(seed, LINKS_STREAM).one_of_each_run(half, count.min(half)).map(|place| 1 + place).collect()
+    };
+    let mut pairs = Vec::with_capacity(n * steps.len());
+    for step in steps {
         // Half the round leads from both ends to the same pair.
         let begins = if 2 * step == n { step } else { n };
         pairs.extend((0..begins).map(|i| [i, (i + step) % n]));

@@ -100,7 +100,7 @@ pub(super) fn solve_with(matched: &Matched, settings: &TeaserSettings, turns: Tu
     let matched = matched.clone().thinned(settings.max_matches.max(MIN_MATCHES), settings.seed);
     let scale = match settings.scale {
         ScaleMode::Fixed(scale) => positive("options.scale", scale)?,
-        ScaleMode::Free => voted_scale(&matched, beta).ok_or_else(|| too_few(0))?,
+        ScaleMode::Free => voted_scale(&matched, beta, settings.seed).ok_or_else(|| too_few(0))?,
     };
     let (indices, is_largest_clique) = select(&matched, scale, beta, settings.selection);
     if indices.len() < MIN_MATCHES {
@@ -108,7 +108,7 @@ pub(super) fn solve_with(matched: &Matched, settings: &TeaserSettings, turns: Tu
     }
     let selected = matched.select(&indices);
 
-    let mut vectors = selected.differences(&links(selected.len(), settings.links.max(1)));
+    let mut vectors = selected.differences(&links(selected.len(), settings.links.max(1), settings.seed));
     vectors.iter_mut().for_each(|[a, _]| *a *= scale);
     // The difference of two points is off by twice as much.
     let rotation = gnc_tls(&vectors, 2.0 * beta, turns).ok_or_else(|| too_few(indices.len()))?.rotation;
@@ -130,8 +130,8 @@ fn positive(argument: &'static str, value: f64) -> Result<f64> {
 }
 
 /// The scale that most ratios of lengths agree with. A length of the source is known to within 2β.
-fn voted_scale(matched: &Matched, beta: f64) -> Option<f64> {
-    let pairs = links(matched.len(), (MAX_RATIOS / matched.len()).max(1));
+fn voted_scale(matched: &Matched, beta: f64, seed: u64) -> Option<f64> {
+    let pairs = links(matched.len(), (MAX_RATIOS / matched.len()).max(1), seed);
     let (mut ratios, mut ranges) = (Vec::with_capacity(pairs.len()), Vec::with_capacity(pairs.len()));
     for [a, b] in matched.differences(&pairs) {
         let length = a.norm();

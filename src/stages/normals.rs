@@ -69,7 +69,7 @@ pub fn estimate_normals(
 pub fn outward_normals(points: &[Vec3], neighbors: usize) -> Vec<Vec3> {
     let middle = |axis: usize| median(points.iter().map(|p| p[axis])).unwrap_or_default();
     let center = Vec3::new(middle(0), middle(1), middle(2));
-    estimate_normals(points, &KdTree::new(points), neighbors, Orientation::AwayFrom(center))
+    estimate_normals(points, &KdTree::new(points), Neighborhood::nearest(neighbors), Orientation::AwayFrom(center))
 }
 
 /// Unit, or zero where the neighbours do not span a plane. Sums are taken about `point`, to keep digits.

@@ -201,8 +201,8 @@ const EXPECTED: ([u64; 7], [u64; 7]) = (
         0x6dd540f42086a34c,
         0xd1af9289b66aa3e4,
         0x9d24cc4ac2554b13,
-        0x80787d5836db8414,
-        0x55caf8958cab054c,
+        0x67a3f0a2676e5b00,
+        0x2bb1b421da983c0c,
     ],
     [
         0xa96d6f8d318013f2,

@@ -146,9 +146,12 @@ fn votes_cost_as_little_as_any_number() {
 
 #[wasm_bindgen_test(unsupported = test)]
 fn links_reach_across_the_whole_set() {
+    // One is a chain.
+    assert_eq!(links(5, 1, 3), [[0, 1], [1, 2], [2, 3], [3, 4], [4, 0]]);
     for n in 0..24_usize {
         for count in 1..14 {
-            let mut pairs: Vec<[usize; 2]> = links(n, count).into_iter().map(|[i, j]| [i.min(j), i.max(j)]).collect();
+            let mut pairs: Vec<[usize; 2]> =
+                links(n, count, 3).into_iter().map(|[i, j]| [i.min(j), i.max(j)]).collect();
             let all = pairs.len();
             assert!(pairs.iter().all(|[i, j]| i < j && *j < n), "{n} {count}");
             pairs.sort_unstable();
@@ -157,7 +160,9 @@ fn links_reach_across_the_whole_set() {
             if count >= n / 2 {
                 assert_eq!(all, n * n.saturating_sub(1) / 2, "{n} {count}: not all pairs");
             } else {
-                assert_eq!(all, n * count, "{n} {count}");
+                // Of an even round, the step over half of it gives half as many.
+                let fewer = if n % 2 == 0 { n / 2 } else { 0 };
+                assert!(all == n * count || all == n * count - fewer, "{n} {count}: {all}");
             }
         }
     }
@@ -211,7 +216,9 @@ fn teaser_finds_poses_among_nine_wrong_matches_in_ten() {
     for seed in 0..6 {
         let draw = &mut Draw::new(seed);
         let truth = draw.similarity([0.3, 3.0], 5.0);
-        let [source, target] = matched(draw, &truth, 400, 9);
+        // Every tenth is right; in the larger set only a share of the ratios votes.
+        let count = if seed == 0 { 2000 } else { 400 };
+        let [source, target] = matched(draw, &truth, count, 9);
         for scale in [ScaleMode::Free, ScaleMode::Fixed(truth.scale)] {
             for selection in [InlierSelection::LargestClique, InlierSelection::InnermostCore] {
                 let settings = TeaserSettings { selection, ..TeaserSettings::new(0.01 * truth.scale, scale) };
@@ -222,7 +229,10 @@ fn teaser_finds_poses_among_nine_wrong_matches_in_ten() {
                 assert!(pose.rotation_angle_to(&truth) < 0.02, "{what}");
                 assert!((pose.translation - truth.translation).norm() < 0.02 * truth.scale, "{what}");
                 let right = found.inliers.iter().filter(|i| *i % 10 == 9).count();
-                assert!(right >= 30 && found.inliers.len() - right <= 5, "{right} right, {what}");
+                assert!(
+                    10 * right >= count * 3 / 4 && found.inliers.len() - right <= count / 80,
+                    "{right} right, {what}"
+                );
                 assert_eq!(found.is_largest_clique, selection == InlierSelection::LargestClique, "{what}");
             }
         }
