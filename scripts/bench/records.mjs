@@ -11,11 +11,25 @@ import { isWithin, strict } from "./tolerance.mjs";
  * @typedef {object} BenchRecord
  * @property {string} name
  * @property {string} tier
- * @property {{ score: number | null, confidence: number | null, metrics: { iou: number | null } } | null} alignment
+ * @property {Record<string, number>} parameters
+ * @property {BenchAlignment | null} alignment
  * @property {PoseErrors | null} errors
- * @property {object | null} truthMetrics
+ * @property {Metrics | null} truthMetrics
  * @property {number | null} truthScore
  * @property {number} seconds
+ */
+
+/** @typedef {Record<string, number | null>} Metrics by name, as `src/metrics/mod.rs` has them */
+
+/**
+ * `Alignment` of `src/align/report.rs`, as far as tables need it.
+ * @typedef {object} BenchAlignment
+ * @property {{ matrix: number[] }} cameraFromMesh
+ * @property {number | null} score
+ * @property {number | null} confidence
+ * @property {boolean} collapsed
+ * @property {boolean} clamped
+ * @property {Metrics} metrics
  */
 
 /** @typedef {{ row: string, records: BenchRecord[] }} BenchRow */

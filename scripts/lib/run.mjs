@@ -3,6 +3,7 @@ import { spawn } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { homedir } from "node:os";
 import { delimiter, join } from "node:path";
+import { createInterface } from "node:readline";
 import { at, repository } from "./paths.mjs";
 
 /** A command that failed: what it was, what it said, and what to do about it. */
@@ -39,6 +40,7 @@ function environment() {
  * @property {NodeJS.ProcessEnv} [env] added to the environment
  * @property {boolean | "errors"} [echo] pass the output, or standard error alone, on to the console as it comes, besides
  * returning it
+ * @property {(line: string) => void} [onLine] gets every line of standard output as it comes
  * @property {boolean} [attach] let the command have the console, and return nothing
  */
 
@@ -68,6 +70,8 @@ export function attempt(command, args, options = {}) {
       stdoutChunks.push(chunk);
       if (options.echo === true) process.stdout.write(chunk);
     });
+    const { onLine } = options;
+    if (child.stdout && onLine) createInterface({ input: child.stdout }).on("line", onLine);
     child.stderr?.on("data", (chunk) => {
       chunks.push(chunk);
       if (options.echo) process.stderr.write(chunk);

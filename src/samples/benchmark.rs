@@ -76,7 +76,7 @@ pub struct Record {
     pub truth_score: Option<f64>,
     /// The true scale by the initial one, s / s_init.
     pub truth_scale_ratio: Option<f64>,
-    /// What `align` took.
+    /// What `align` took; NaN, `null` in JSON, where another program did not say what it took.
     pub seconds: f64,
 }
 
@@ -250,9 +250,19 @@ pub fn run_method(
     let begun = Instant::now();
     let outcome = method(&case.observation, &case.mesh, &mut Clock(begun));
     let seconds = begun.elapsed().as_secs_f64();
+    record_of(case, outcome.map_err(|error| described(&error)), seconds)
+}
+
+/// An error as records have it.
+pub(super) fn described(error: &Error) -> String {
+    format!("{}: {error}", error.code.as_str())
+}
+
+/// The record of a case, of what came of it or of what went wrong, and of what that took.
+pub(super) fn record_of(case: &BenchCase, outcome: core::result::Result<Alignment, String>, seconds: f64) -> Record {
     let (alignment, error) = match outcome {
         Ok(alignment) => (Some(alignment), None),
-        Err(error) => (None, Some(format!("{}: {error}", error.code.as_str()))),
+        Err(error) => (None, Some(error)),
     };
     let evaluated = case.truth.as_ref().map(|truth| {
         let scored =

@@ -7,7 +7,9 @@ pub mod case;
 pub mod depth;
 pub mod distortion;
 pub mod evaluation;
+pub mod imported;
 pub mod overlay;
+pub mod records;
 pub mod scenes;
 pub mod shape;
 

@@ -42,6 +42,13 @@ pub struct Guard {
     pub mode: GuardMode,
 }
 
+impl Guard {
+    /// Whether a scale stands at a bound.
+    pub fn is_bound(&self, scale: f64) -> bool {
+        scale <= self.min * (1.0 + ROUNDING) || scale >= self.max * (1.0 - ROUNDING)
+    }
+}
+
 /// Settings of [`ransac`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RansacSettings {

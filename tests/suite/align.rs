@@ -24,7 +24,7 @@ const WIDTH: usize = 240;
 const HEIGHT: usize = 180;
 
 /// A body with bumps and dents at many places, so that no turn maps it onto itself.
-fn body() -> Mesh {
+pub fn body() -> Mesh {
     let wave = |x: f32| libm::sinf(x);
     mapped(&ellipsoid(Vec3::new(0.5, 0.38, 0.3), 40), |p| {
         p * (1.0
@@ -42,7 +42,7 @@ fn truth() -> Similarity {
 }
 
 /// What a camera sees of the body in front of a wall; depths in units of `unit_m` metres.
-fn observe(mesh: &Mesh, unit_m: f32) -> Observation {
+pub fn observe(mesh: &Mesh, unit_m: f32) -> Observation {
     let camera = Pinhole::new(420.0, 420.0, 119.5, 89.5).unwrap();
     let mut rasteriser = Rasteriser::new();
     rasteriser.render(mesh, &truth(), &camera, WIDTH, HEIGHT);
@@ -122,6 +122,10 @@ fn every_ablation_runs_and_does_what_it_says() {
 
     let unlocked = solve(&AlignOptions { lock_scale: Some(false), ..paper() });
     assert_ne!(unlocked.camera_from_mesh.scale, default.camera_from_mesh.scale, "ICP left an unlocked scale alone");
+    // The refinement is stopped at the guard too, and says so.
+    let tight = AlignOptions { lock_scale: Some(false), guard: Some([0.999, 1.001]), ..paper() };
+    let stopped = solve(&tight);
+    assert!(stopped.clamped && stopped.counts.clamped == 0, "{} {:?}", stopped.scale_ratio, stopped.counts);
 
     let unrefined = solve(&AlignOptions { icp: Icp::None, ..paper() });
     assert_eq!(unrefined.counts.icp_iterations, 0);

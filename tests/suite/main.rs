@@ -5,6 +5,12 @@
 
 pub mod align;
 pub mod angle;
+#[cfg(feature = "baselines")]
+pub mod baselines;
+#[cfg(feature = "baselines")]
+pub mod baselines_agreement;
+#[cfg(feature = "baselines")]
+pub mod baselines_solvers;
 pub mod density;
 pub mod determinism;
 pub mod distance_transform;
@@ -31,6 +37,8 @@ pub mod formats_mesh;
 pub mod fpfh;
 pub mod icp;
 pub mod image;
+#[cfg(all(feature = "bench", not(target_arch = "wasm32")))]
+pub mod imported;
 pub mod kd_tree;
 pub mod matching;
 pub mod mesh;
@@ -51,6 +59,8 @@ pub mod rasteriser_oracle;
 pub mod rasteriser_seams;
 #[cfg(all(feature = "formats", not(target_arch = "wasm32")))]
 pub mod real_cases;
+#[cfg(all(feature = "samples", not(target_arch = "wasm32")))]
+pub mod records;
 pub mod register;
 pub mod sample;
 #[cfg(all(feature = "samples", not(target_arch = "wasm32")))]

@@ -6,12 +6,17 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use serde_json::json;
-use sim3align::samples::benchmark::{BenchCase, Record, run_case};
+use sim3align::align::baseline::align_baseline;
+use sim3align::geometry::similarity::Similarity;
+use sim3align::samples::benchmark::{BenchCase, Record, run_case, run_method};
 use sim3align::samples::evaluation::case::EvaluationSet;
 use sim3align::samples::evaluation::tier::{Class, Tier};
+use sim3align::samples::imported::imported;
+use sim3align::samples::overlay::picture;
+use sim3align::samples::records::{RecordFile, RecordKey};
 use sim3align::samples::scenes::{Prior, SceneSet};
 
-use crate::arguments::Arguments;
+use crate::arguments::{Arguments, Method, Row};
 use crate::scenes::Scenes;
 use crate::table;
 
@@ -20,6 +25,17 @@ pub enum Source {
     Generated(usize),
     Scene { scene: usize, pair: usize, prior: Prior },
     Folder(PathBuf),
+}
+
+impl Source {
+    /// What tells the case from the others of a run.
+    fn id(&self) -> String {
+        match self {
+            Self::Generated(index) => format!("generated-{index:04}"),
+            Self::Scene { scene, pair, prior } => format!("scene-{scene:03}-{pair}-{}", prior.as_str()),
+            Self::Folder(folder) => folder.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+        }
+    }
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), String> {
@@ -42,10 +58,17 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
         });
         return written.into_iter().collect();
     }
+    let load = |source: &Source| load(source, &set, &scenes);
+    if let (Some(path), Some(source)) = (&arguments.picture, sources.first()) {
+        return draw(&load(source)?, arguments.matrix.as_deref(), path);
+    }
+    if let Some(path) = &arguments.records {
+        return go_on(arguments, &sources, &load, path);
+    }
     let begun = std::time::Instant::now();
     let records = in_order(arguments.threads, &sources, |source| {
-        let case = load(source, &set, &scenes)?;
-        Ok(arguments.rows.iter().map(|row| run_case(&case, &row.options, &row.search)).collect())
+        let case = load(source)?;
+        Ok(arguments.rows.iter().map(|row| run_row(&case, row)).collect())
     });
     let records: Vec<Vec<Record>> = records.into_iter().collect::<Result<_, String>>()?;
     eprintln!("{} cases in {:.1} s", records.len(), begun.elapsed().as_secs_f64());
@@ -59,6 +82,61 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
         fs::write(path, format!("{all}\n")).map_err(|error| format!("{}: {error}", path.display()))?;
     }
     Ok(())
+}
+
+/// Adds to a file of records what is not there yet. What is done is told on standard output as JSON, a line each.
+fn go_on(
+    arguments: &Arguments,
+    sources: &[Source],
+    load: &(dyn Fn(&Source) -> Result<BenchCase, String> + Sync),
+    path: &Path,
+) -> Result<(), String> {
+    let file = RecordFile::open(path).map_err(|error| error.to_string())?;
+    let missing = |source: &Source| -> Vec<(&Row, RecordKey)> {
+        let keyed = arguments.rows.iter().map(|row| (row, row.key(source.id())));
+        keyed.filter(|(_, key)| !file.has(key)).collect()
+    };
+    let total = sources.len() * arguments.rows.len();
+    let left: usize = sources.iter().map(|source| missing(source).len()).sum();
+    println!("{}", json!({ "total": total, "done": total - left }));
+    in_order(arguments.threads, sources, |source| {
+        let missing = missing(source);
+        if missing.is_empty() {
+            return Ok(());
+        }
+        let case = load(source)?;
+        for (row, key) in missing {
+            let record = run_row(&case, row);
+            file.add(&key, &record).map_err(|error| error.to_string())?;
+            println!("{}", json!({ "row": key.row, "case": key.case, "seconds": record.seconds }));
+        }
+        Ok(())
+    })
+    .into_iter()
+    .collect()
+}
+
+fn draw(case: &BenchCase, matrix: Option<&[f64]>, path: &Path) -> Result<(), String> {
+    let pose = match matrix {
+        Some(matrix) => {
+            let numbers = <&[f64; 16]>::try_from(matrix).map_err(|_| "--matrix: expected 16 numbers")?;
+            Some(Similarity::from_column_major(numbers).map_err(|error| error.to_string())?)
+        }
+        None => case.truth.as_ref().map(|truth| truth.camera_from_mesh),
+    };
+    let pose = pose.ok_or("the case has no true pose: pass --matrix")?;
+    let png = picture(case, &pose).map_err(|error| error.to_string())?;
+    fs::write(path, png).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+fn run_row(case: &BenchCase, row: &Row) -> Record {
+    match &row.method {
+        Method::Align => run_case(case, &row.options, &row.search),
+        Method::Baseline(baseline) => {
+            run_method(case, |observation, mesh, host| align_baseline(observation, mesh, *baseline, &row.options, host))
+        }
+        Method::Import(folder) => imported(case, folder),
+    }
 }
 
 fn load(source: &Source, set: &EvaluationSet, scenes: &Scenes) -> Result<BenchCase, String> {

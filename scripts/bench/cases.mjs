@@ -1,4 +1,4 @@
-/** `npm run bench -- …`: `sim3align-bench`, as fast as it gets; `npm run bench -- --help` tells its arguments. */
+/** `npm run bench:cases -- …`: `sim3align-bench`, as fast as it gets; `npm run bench:cases -- --help` tells its arguments. */
 import { script } from "../lib/step.mjs";
 import { runBenchmark } from "./records.mjs";
 

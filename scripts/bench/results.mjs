@@ -1,0 +1,66 @@
+/** The folder that a benchmark's results are kept in, and that a killed run goes on with. */
+import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { cpus, platform, release, totalmem } from "node:os";
+import { join } from "node:path";
+import { attempt } from "../lib/run.mjs";
+
+/** @typedef {import("./records.mjs").BenchRecord} BenchRecord */
+
+/**
+ * Opens a folder for the run that `identity` tells from others: its inputs and the code.
+ * @param {string} folder
+ * @param {Record<string, unknown>} identity
+ * @param {boolean} fresh forget what is there
+ */
+export function openResults(folder, identity, fresh) {
+  if (fresh) rmSync(folder, { recursive: true, force: true });
+  mkdirSync(join(folder, "records"), { recursive: true });
+  const file = join(folder, "identity.json");
+  const text = `${JSON.stringify(identity, null, 2)}\n`;
+  if (existsSync(file) && readFileSync(file, "utf8") !== text) {
+    const remedy = "Remedy: --fresh forgets them, --out DIR leaves them as they are.";
+    throw new Error(`${folder} holds results of other inputs or another version of the code. ${remedy}`);
+  }
+  writeFileSync(file, text);
+}
+
+/** Machine and versions, for people who compare figures. */
+export async function surroundings() {
+  const said = async (/** @type {string} */ command, /** @type {string[]} */ args) =>
+    (await attempt(command, args)).output.trim();
+  const [commit, changes, rustc] = await Promise.all([
+    said("git", ["rev-parse", "HEAD"]),
+    said("git", ["status", "--porcelain", "--untracked-files=no"]),
+    said("rustc", ["--version"]),
+  ]);
+  const processors = cpus();
+  return {
+    commit: changes === "" ? commit : `${commit} with changes`,
+    date: new Date().toISOString(),
+    machine: `${processors.length} × ${processors[0]?.model.trim() ?? "?"}, ${Math.round(totalmem() / 2 ** 30)} GiB`,
+    system: `${platform()} ${release()}`,
+    node: process.version,
+    rustc,
+  };
+}
+
+/**
+ * The records of a file, by row, each row's in the order of the cases' names: the order in which threads were done
+ * says nothing.
+ * @param {string} file
+ * @returns {Map<string, BenchRecord[]>}
+ */
+export function readRecords(file) {
+  /** @type {Map<string, BenchRecord[]>} */
+  const rows = new Map();
+  if (!existsSync(file)) return rows;
+  for (const line of readFileSync(file, "utf8").split("\n")) {
+    if (line === "") continue;
+    const { row, case: name, record } = JSON.parse(line);
+    const records = rows.get(row) ?? [];
+    records.push({ ...record, name });
+    rows.set(row, records);
+  }
+  for (const records of rows.values()) records.sort((a, b) => (a.name < b.name ? -1 : 1));
+  return rows;
+}
