@@ -2,7 +2,7 @@
 import { describe } from "../error.js";
 import type { MeshArrays } from "../input/types.js";
 import type { Sim3Like } from "../sim3.js";
-import { isRecord, isTypedArray, wrongKind } from "../values.js";
+import { isKind, isRecord, isTypedArray, wrongKind } from "../values.js";
 import { inFrame } from "./frames.js";
 import { type GltfNode, type GltfNodeOptions, toGltfNode } from "./gltf-node.js";
 import { meshOf } from "./mesh.js";
@@ -83,12 +83,12 @@ export function placeGlb(
   options: GltfNodeOptions = {},
 ): Uint8Array {
   const { json, others } = chunksOf(glb);
-  const nodes = Array.isArray(json.nodes) ? (json.nodes as { children?: number[] }[]) : [];
+  const nodes = objectsOf(json, "nodes");
   const children = new Set(nodes.flatMap((node) => node.children ?? []));
   const roots = nodes.flatMap((_, i) => (children.has(i) ? [] : [i]));
-  const scenes = Array.isArray(json.scenes) ? (json.scenes as { nodes?: number[] }[]) : [{ nodes: roots }];
+  const scenes = json.scenes === undefined ? [{ nodes: roots }] : objectsOf(json, "scenes");
   const scene = typeof json.scene === "number" ? json.scene : 0;
-  const shown = scenes[scene]?.nodes ?? [];
+  const shown = (scenes[scene]?.nodes ?? []) as number[];
   const node: GltfNode & { children?: number[] } = toGltfNode(transform, options);
   // An empty list of children is against the format.
   if (shown.length > 0) node.children = shown;
@@ -110,6 +110,13 @@ function bounds(vertices: Float32Array): { min: number[]; max: number[] } {
     max[i % 3] = Math.max(max[i % 3] ?? x, x);
   });
   return { min, max };
+}
+
+/** The objects in a list that the file's JSON may have. */
+function objectsOf(json: Record<string, unknown>, name: string): Record<string, unknown>[] {
+  const list = json[name] ?? [];
+  if (Array.isArray(list) && list.every(isRecord)) return list;
+  throw failure("CORRUPT_FILE", "glb", `${describe(list)} as its ${name}`, "a list of objects", "Export it again.");
 }
 
 /** A file of a JSON chunk and others, each filled up to a multiple of four bytes. */
@@ -135,11 +142,8 @@ function glbOf(json: object, others: readonly (readonly [type: number, content: 
 }
 
 function chunksOf(glb: unknown): { json: Record<string, unknown>; others: [number, Uint8Array][] } {
-  const bytes = isTypedArray<Uint8Array>(glb, "Uint8Array")
-    ? glb
-    : glb instanceof ArrayBuffer
-      ? new Uint8Array(glb)
-      : null;
+  const isBuffer = isKind<ArrayBuffer>(glb, "ArrayBuffer");
+  const bytes = isBuffer ? new Uint8Array(glb) : isTypedArray<Uint8Array>(glb, "Uint8Array") ? glb : null;
   if (bytes === null) throw wrongKind("glb", glb, "the bytes of a GLB file", "Uint8Array");
   const corrupt = (found: string) =>
     failure("CORRUPT_FILE", "glb", found, "a whole GLB file", "Pass the file that was aligned, unchanged.");

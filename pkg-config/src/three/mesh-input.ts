@@ -2,7 +2,7 @@
 import { failure, finiteNumbers, oneOf } from "../conventions/numbers.js";
 import { describe } from "../error.js";
 import type { MeshArrays } from "../input/types.js";
-import type { AttributeLike, GeometryLike, MeshTree } from "./types.js";
+import type { AttributeLike, GeometryLike, MeshTree, PlacedObject } from "./types.js";
 
 /** A 4×4 matrix, column by column. */
 type Matrix4 = readonly number[];
@@ -54,13 +54,14 @@ const isTree = (value: unknown): value is MeshTree => isObject(value) && typeof 
 function appendTree(arrays: { positions: number[]; indices: number[] }, tree: MeshTree, frame: "object" | "world") {
   tree.updateWorldMatrix(true, true);
   const base = frame === "world" ? identity : inverse(matrixOf(tree.matrixWorld.elements));
-  tree.traverse((found: Record<string, unknown>) => {
+  tree.traverse((object) => {
+    const found = object as PlacedObject & Record<string, unknown>;
     if (found.isMesh !== true || !isGeometry(found.geometry)) return;
     if (found.isBatchedMesh === true) {
       const remedy = "Merge its geometries, or pass them one by one.";
       throw failure("UNSUPPORTED_FORMAT", "source", "a BatchedMesh", "meshes and instances", remedy);
     }
-    const local = product(base, matrixOf((found.matrixWorld as { elements: unknown }).elements));
+    const local = product(base, matrixOf(found.matrixWorld.elements));
     if (found.isInstancedMesh !== true) return append(arrays, found.geometry, local);
     const { array } = found.instanceMatrix as { array: ArrayLike<number> };
     for (let i = 0; i < (found.count as number); i++) {

@@ -48,7 +48,7 @@ export interface GeometryLike {
 
 /** `Object3D`, as far as its meshes are read. */
 export interface MeshTree extends PlacedObject {
-  traverse(callback: (object: never) => void): void;
+  traverse(callback: (object: PlacedObject) => void): void;
 }
 
 /** `PerspectiveCamera`, as far as its lens is set. */
