@@ -69,6 +69,7 @@ test("a result's metrics and confidence go into the file, and the aligner reads 
   const { width, height, depth, mask, camera } = view;
   const input = { depth, width, height, mask, camera };
   const result = await aligner.align({ ...input, mesh });
+  assert.deepEqual(toSim3(result).matrix, result.matrix, "to the bit");
   const glb = exportGlb(mesh, result);
   await assertValid(glb);
   const { userData } = (await load(glb)).children[0] ?? {};
@@ -117,7 +118,10 @@ test("a GLB without a scene, and one with nothing in it, can be placed", async (
 test("PLY: three.js reads the vertices and triangles", () => {
   forSeeds(3, (random, seed) => {
     const pose = random.pose();
-    const geometry = new PLYLoader().parse(buffer(exportPly(mesh, pose)));
+    const file = exportPly(mesh, pose);
+    const header = Buffer.from(file).indexOf("end_header\n") + 11;
+    assert.equal(file.length, header + 4 * mesh.positions.length + (13 * mesh.indices.length) / 3, seed);
+    const geometry = new PLYLoader().parse(buffer(file));
     assertNear(geometry.attributes.position?.array ?? [], applyToPoints(pose, mesh.positions), seed, 1e-6);
     assert.deepEqual(Array.from(geometry.index?.array ?? []), Array.from(mesh.indices), seed);
   });

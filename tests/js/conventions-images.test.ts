@@ -34,8 +34,8 @@ test("a mask is chosen from a tensor by its number or its score", () => {
     height: 2,
   });
   assert.deepEqual([...maskFromTensor({ data: [true, false], dims: [1, 2] }).data], [1, 0]);
-  const logits = { data: Float32Array.of(-3, 0.1, Number.NaN, 7), dims: [1, 1, 2, 2] };
-  assert.deepEqual([...maskFromTensor(logits).data], [0, 1, 0, 1]);
+  const logits = { data: Float32Array.of(-3, 0.1, Number.NaN, 7, 0, -0), dims: [1, 1, 2, 3] };
+  assert.deepEqual([...maskFromTensor(logits).data], [0, 1, 0, 1, 0, 0]);
 });
 
 test("tensors that leave the choice open, or are none, are refused", async () => {

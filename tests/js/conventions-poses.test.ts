@@ -80,6 +80,19 @@ test("quaternions survive: those of every rotation, near half turns too", () => 
   });
 });
 
+test("what a few decimals leave of a rotation is one again", () => {
+  forSeeds(20, (random, seed) => {
+    const pose = random.pose();
+    const rounded = rotationRows(pose.rotation).map((row) => row.map((x) => Math.round(1e4 * x) / 1e4));
+    const { rotationMatrix } = toSim3({ ...pose, rotation: rounded });
+    const m = new Matrix4().set(
+      ...([...rotationMatrix.flatMap((row) => [...row, 0]), 0, 0, 0, 1] as Parameters<Matrix4["set"]>),
+    );
+    assertNear(m.clone().multiply(m.clone().transpose()).elements, new Matrix4().elements, seed, 1e-14);
+    assertNear(rotationMatrix.flat(), rounded.flat(), seed, 2e-4);
+  });
+});
+
 test("row-major matrices are NumPy's", () => {
   for (const { scale, quaternionWxyz, translation, rowMajor, rotationRows } of fixtures.poses) {
     const rotation = xyzwFromWxyz(quaternionWxyz);

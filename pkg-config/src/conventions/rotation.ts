@@ -62,6 +62,8 @@ export function rotationOf(argument: string, m: Matrix3): Matrix3 {
     const remedy = "A similarity has no shear, no mirror image, and one scale for all axes.";
     throw failure("INVALID_TRANSFORM", argument, found, "a rotation: orthonormal with determinant +1", remedy);
   }
+  // A result's own rotation stays as it is, to the bit.
+  if (off < 1e-15) return m;
   let rotation = m;
   // Newton's iteration squares the error at every step.
   for (let i = 0; i < 3; i++) {

@@ -42,7 +42,7 @@ export function applyToObject3D(
   oneOf("options.frame", frame, framesOfScenes);
   let pose = toFrame(transform, camera === undefined ? frame : "opengl");
   if (camera !== undefined) {
-    pose = compose(worldFrom(camera), pose);
+    pose = compose(worldFromCamera(camera), pose);
     if (object.parent) pose = compose(invert(worldFrom(object.parent)), pose);
   }
   object.position.set(...pose.translation);
@@ -67,7 +67,7 @@ export function applyToObject3D(
  */
 export function transformFromObject3D(object: PosableObject, { frame = "opengl", camera }: PoseOptions = {}): Sim3 {
   oneOf("options.frame", frame, framesOfScenes);
-  if (camera !== undefined) return fromFrame(compose(invert(worldFrom(camera)), worldFrom(object)), "opengl");
+  if (camera !== undefined) return fromFrame(compose(invert(worldFromCamera(camera)), worldFrom(object)), "opengl");
   object.updateMatrix();
   return fromFrame(numbersOf(object.matrix.elements), frame);
 }
@@ -76,5 +76,8 @@ function worldFrom(object: PlacedObject): Sim3 {
   object.updateWorldMatrix(true, false);
   return toSim3(numbersOf(object.matrixWorld.elements));
 }
+
+/** Without the scale that a camera may have from its parents: three.js does not see by it either. */
+const worldFromCamera = (camera: PlacedObject): Sim3Like => ({ ...worldFrom(camera), scale: 1 });
 
 const numbersOf = (elements: unknown) => finiteNumbers("matrix.elements", elements, 16, "16 finite numbers");
