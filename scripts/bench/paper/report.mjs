@@ -10,8 +10,8 @@ import { makeTables, secondsOf, tableMarkdown } from "./tables.mjs";
 
 /** @typedef {import("../records.mjs").BenchRecord} BenchRecord */
 /** @typedef {import("./rows.mjs").TableSpec} TableSpec */
-/** @typedef {{ id: string, title: string, note: string, markdown: string, data: unknown }} GeneralTable */
-/** @typedef {Awaited<ReturnType<import("../results.mjs").surroundings>>} Surroundings */
+/** @typedef {{ id: string, title: string, markdown: string, data: unknown }} GeneralTable */
+/** @typedef {Awaited<ReturnType<typeof import("../results.mjs").surroundings>>} Surroundings */
 /**
  * @typedef {object} Finished
  * @property {readonly TableSpec[]} specs
@@ -57,7 +57,7 @@ export async function report({ specs, out, run, folders, general, snapshot }) {
   const tables = makeTables(specs, recordsOf, readPaperFigures());
   const seconds = secondsOf(tables, recordsOf);
   const sections = tables.map((table) => `## ${table.title}\n\n${tableMarkdown(table, seconds[table.id] ?? {})}`);
-  sections.push(...general.map(({ title, note, markdown }) => `## ${title}\n\n${note}\n\n${markdown}`));
+  sections.push(...general.map(({ title, markdown }) => `## ${title}\n\n${markdown}`));
   const markdown = `# Benchmark\n\n${described(run)}\n\n${notes}\n\n${sections.join("\n\n")}\n`;
 
   const write = (/** @type {string} */ name, /** @type {unknown} */ content) =>
@@ -129,7 +129,8 @@ async function pictureOf(title, record, cases, out) {
   const file = join(out, `${title.replaceAll(/\W+/g, "-")}.png`);
   const folder = basename(cases) === record.name ? cases : join(cases, record.name);
   const matrix = record.alignment?.cameraFromMesh.matrix.join(",") ?? "";
-  await runProgram(at("target", "native", "sim3align-samples"), ["picture", folder, file, `--matrix=${matrix}`]);
+  const args = ["--cases", folder, "--picture", file, `--matrix=${matrix}`];
+  await runProgram(at("target", "native", "sim3align-bench"), args);
   const png = readFileSync(file);
   const name = `${title}: ${record.name}, IoU ${(record.alignment?.metrics.iou ?? 0).toFixed(3)}`;
   // Width and height stand in a PNG's first chunk.
