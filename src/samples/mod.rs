@@ -7,6 +7,8 @@ pub mod case;
 pub mod depth;
 pub mod distortion;
 pub mod evaluation;
+#[cfg(feature = "bench")]
+pub mod registration;
 pub mod shape;
 
 use crate::geometry::random::Random;

@@ -13,7 +13,7 @@ mod mask;
 mod readings;
 mod scans;
 mod scene;
-mod solid;
+pub(super) mod solid;
 pub mod tier;
 mod tools;
 
@@ -31,17 +31,17 @@ const READINGS_STREAM: u64 = 4;
 const MASK_STREAM: u64 = 5;
 
 /// Standard normal (Box and Muller).
-fn normal(random: &mut Random) -> f64 {
+pub(super) fn normal(random: &mut Random) -> f64 {
     let (u, v) = (1.0 - random.uniform(), random.uniform());
     (-2.0 * libm::log(u)).sqrt() * libm::cos(core::f64::consts::TAU * v)
 }
 
 /// `true` with this probability.
-fn chance(random: &mut Random, probability: f64) -> bool {
+pub(super) fn chance(random: &mut Random, probability: f64) -> bool {
     random.uniform() < probability
 }
 
 /// −1 or 1.
-fn sign(random: &mut Random) -> f64 {
+pub(super) fn sign(random: &mut Random) -> f64 {
     if chance(random, 0.5) { -1.0 } else { 1.0 }
 }
