@@ -129,14 +129,14 @@ pub(super) struct Estimate {
 }
 
 /// A cloud at both of its resolutions.
-struct Side<'a> {
-    full: &'a Cloud,
-    voxels: Cloud,
-    tree: KdTree,
+pub(super) struct Side<'a> {
+    pub(super) full: &'a Cloud,
+    pub(super) voxels: Cloud,
+    pub(super) tree: KdTree,
 }
 
 impl<'a> Side<'a> {
-    fn new(full: &'a Cloud, voxel_size: f32) -> Self {
+    pub(super) fn new(full: &'a Cloud, voxel_size: f32) -> Self {
         let mut voxels = voxel_downsample(full, voxel_size);
         // A surface has a quarter of the cells when they are twice as large: a few rounds at most.
         let mut size = voxel_size;
@@ -258,7 +258,12 @@ fn refit_on_supported(
 }
 
 /// ICP on the voxel grid, then on the points themselves.
-fn refine_coarse_to_fine(source: &Side<'_>, target: &Side<'_>, initial: &Similarity, settings: &Settings) -> Refined {
+pub(super) fn refine_coarse_to_fine(
+    source: &Side<'_>,
+    target: &Side<'_>,
+    initial: &Similarity,
+    settings: &Settings,
+) -> Refined {
     let Some(metric) = settings.icp else {
         return Refined { target_from_source: *initial, iterations: 0, converged: true, supported: 0, rms: 0.0 };
     };

@@ -1,5 +1,7 @@
 //! Which of several transforms between two clouds is right: the one under which the whole clouds agree best.
 
+use glam::Vec3;
+
 use super::estimate::{Estimate, Problem, Settings};
 use super::frames::Frames;
 use super::options::{RegisterOptions, ScaleOption};
@@ -13,6 +15,9 @@ use crate::geometry::similarity::Similarity;
 use crate::metrics::evidence::NORMAL_NEIGHBORS;
 use crate::stages::extents::target_from_source;
 use crate::stages::normals::{Neighborhood, Orientation, estimate_normals};
+
+/// Voxels along the target's box diagonal, where the caller says nothing.
+const DIVISIONS: f64 = 30.0;
 
 /// Poses tried for one pair of clouds at most.
 const POSES: usize = 6;
@@ -56,8 +61,8 @@ impl Judge {
         }
         let frames = Frames::of(source_xyz, target_xyz, scale)?;
         stages.enter(Stage::Normals);
-        let source = with_normals(frames.source.normalized_flat(source_xyz));
-        let target = with_normals(frames.target.normalized_flat(target_xyz));
+        let source = with_normals(frames.source.normalized_flat(source_xyz), None);
+        let target = with_normals(frames.target.normalized_flat(target_xyz), None);
         let settings =
             Settings::of_register(options, unit_voxel_size(options, &frames), frames.scale_mode, frames.guard);
         let mut problem = Problem::new(&source, &target, &settings, stages);
@@ -119,16 +124,16 @@ pub(super) struct Attempt {
 }
 
 /// How well the source's points agree with the target's.
-struct Agreement {
+pub(super) struct Agreement {
     /// Share of the source points that land within the inlier distance of a target point.
-    fitness: f64,
+    pub(super) fitness: f64,
     /// Mean of 1 − (r/d)² over the source points, 0 beyond d, a third of the inlier distance: in clutter every
     /// point has something near; only under the right pose it has something very near.
     score: f64,
 }
 
 impl Agreement {
-    fn of(source: &Cloud, target: &KdTree, unit: &Similarity, distance: f32) -> Self {
+    pub(super) fn of(source: &Cloud, target: &KdTree, unit: &Similarity, distance: f32) -> Self {
         let transform = unit.to_f32();
         let (mut near, mut sum) = (0_usize, 0.0);
         for &point in &source.points {
@@ -145,14 +150,16 @@ impl Agreement {
 
 /// The voxel size where the target's diagonal is 1.
 fn unit_voxel_size(options: &RegisterOptions, frames: &Frames) -> f64 {
-    options.voxel_size.map_or(1.0 / options.voxel_divisions, |size| size / frames.target.diagonal())
+    options
+        .voxel_size
+        .map_or(1.0 / options.voxel_divisions.unwrap_or(DIVISIONS), |size| size / frames.target.diagonal())
 }
 
-/// Normals that point away from the middle of the cloud: the median, which clutter moves least. Without a
-/// viewpoint that is the orientation that both clouds can agree on.
-fn with_normals(mut cloud: Cloud) -> Cloud {
+/// Normals that point away from where the cloud was seen from or, where that is not known, from its middle: the
+/// median, which clutter moves least. Without a viewpoint that is the orientation that both clouds can agree on.
+pub(super) fn with_normals(mut cloud: Cloud, eye: Option<Vec3>) -> Cloud {
     let median = |axis: usize| order::median(cloud.points.iter().map(|p| p[axis])).unwrap_or_default();
-    let center = glam::Vec3::new(median(0), median(1), median(2));
+    let center = eye.unwrap_or_else(|| Vec3::new(median(0), median(1), median(2)));
     let tree = KdTree::new(&cloud.points);
     cloud.normals =
         estimate_normals(&cloud.points, &tree, Neighborhood::nearest(NORMAL_NEIGHBORS), Orientation::AwayFrom(center));

@@ -8,6 +8,7 @@ use super::judge::Judge;
 use super::options::{RegisterOptions, ScaleOption};
 use super::progress::{Host, Stage, Stopwatch};
 use super::report::Registration;
+use super::rigid::register_rigid;
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::random::Random;
 use crate::number::number;
@@ -51,6 +52,9 @@ pub fn register(
     let mut stages = Stopwatch::new(host, PLAN);
 
     stages.enter(Stage::Sample);
+    if matches!(scale, ScaleOption::Fixed(_)) {
+        return register_rigid(source_xyz, target_xyz, scale, options, stages);
+    }
     let mut random = Random::new(u64::from(options.seed), STREAM);
     let source_xyz = subsample(source_xyz, options.max_points as usize, &mut random);
     let target_xyz = subsample(target_xyz, options.max_points as usize, &mut random);

@@ -202,7 +202,7 @@ fn gauss_newton(residuals: &Residuals, pose: &Similarity, lock_scale: bool) -> O
 }
 
 /// The furthest that a corner of the unit box moves from one pose to the next.
-fn movement(from: &Similarity, to: &Similarity) -> f64 {
+pub fn movement(from: &Similarity, to: &Similarity) -> f64 {
     let corner = |i: usize| Vector3::new(0.5 - (i & 1) as f64, 0.5 - (i >> 1 & 1) as f64, 0.5 - (i >> 2 & 1) as f64);
     (0..8).map(|i| (from.apply(corner(i)) - to.apply(corner(i))).norm()).fold(0.0, f64::max)
 }

@@ -50,6 +50,8 @@ pub mod rasteriser_seams;
 #[cfg(all(feature = "formats", not(target_arch = "wasm32")))]
 pub mod real_cases;
 pub mod register;
+#[cfg(all(feature = "bench", not(target_arch = "wasm32")))]
+pub mod registration;
 pub mod sample;
 #[cfg(all(feature = "samples", not(target_arch = "wasm32")))]
 pub mod samples;
