@@ -22,6 +22,10 @@ const DIVISIONS: f64 = 30.0;
 /// Poses tried for one pair of clouds at most.
 const POSES: usize = 6;
 
+/// Minimal sets drawn at most where there is a pose already that only one beyond doubt could replace: enough for clouds
+/// that are the same but for their clutter.
+const DOUBTFUL_ITERATIONS: usize = 20_000;
+
 /// Agreement at which no further pose is tried: nine points in ten all but coincide.
 const BEYOND_DOUBT: f64 = 0.9;
 
@@ -32,6 +36,8 @@ pub(super) struct Judge {
     target: KdTree,
     inlier_distance: f32,
     best: Option<(Agreement, Attempt)>,
+    /// Whether nothing that is not beyond doubt takes the place of the best.
+    holds: bool,
     failure: Option<Error>,
 }
 
@@ -43,8 +49,25 @@ impl Judge {
             inlier_distance: (options.inlier_distance_voxels * unit_voxel_size(options, &frames)) as f32,
             frames,
             best: None,
+            holds: false,
             failure: None,
         }
+    }
+
+    /// Keeps a pose that was chosen from all of both scenes, unless another is beyond doubt: where these share little, a
+    /// wrong pose can make more of their points agree.
+    pub(super) fn hold(&mut self, attempt: Result<Attempt>) {
+        match attempt {
+            Ok(attempt) => {
+                self.consider(attempt);
+                self.holds = true;
+            }
+            Err(error) => self.failure = Some(error),
+        }
+    }
+
+    pub(super) fn holds(&self) -> bool {
+        self.holds
     }
 
     /// Solves for these clouds pose after pose until the agreement is beyond doubt.
@@ -63,10 +86,14 @@ impl Judge {
         stages.enter(Stage::Normals);
         let source = with_normals(frames.source.normalized_flat(source_xyz), None);
         let target = with_normals(frames.target.normalized_flat(target_xyz), None);
-        let settings =
+        let mut settings =
             Settings::of_register(options, unit_voxel_size(options, &frames), frames.scale_mode, frames.guard);
+        if self.holds {
+            settings.ransac.max_iterations = settings.ransac.max_iterations.min(DOUBTFUL_ITERATIONS);
+        }
         let mut problem = Problem::new(&source, &target, &settings, stages);
-        for _ in 0..POSES {
+        let poses = if self.holds { 1 } else { POSES };
+        for _ in 0..poses {
             if self.is_beyond_doubt() {
                 break;
             }
@@ -97,7 +124,8 @@ impl Judge {
     fn consider(&mut self, attempt: Attempt) {
         let unit = self.frames.unit(&attempt.target_from_source);
         let agreement = Agreement::of(&self.source, &self.target, &unit, self.inlier_distance);
-        if self.best.as_ref().is_none_or(|(best, _)| agreement.score > best.score) {
+        let is_taken = !self.holds || agreement.score >= BEYOND_DOUBT;
+        if is_taken && self.best.as_ref().is_none_or(|(best, _)| agreement.score > best.score) {
             self.best = Some((agreement, attempt));
         }
     }
@@ -117,23 +145,23 @@ impl Judge {
 
 /// A transform between the clouds' own frames, and how it came about.
 pub(super) struct Attempt {
-    target_from_source: Similarity,
-    estimate: Estimate,
+    pub(super) target_from_source: Similarity,
+    pub(super) estimate: Estimate,
     /// In target units.
-    residual: f64,
+    pub(super) residual: f64,
 }
 
 /// How well the source's points agree with the target's.
-pub(super) struct Agreement {
+struct Agreement {
     /// Share of the source points that land within the inlier distance of a target point.
-    pub(super) fitness: f64,
+    fitness: f64,
     /// Mean of 1 − (r/d)² over the source points, 0 beyond d, a third of the inlier distance: in clutter every
     /// point has something near; only under the right pose it has something very near.
     score: f64,
 }
 
 impl Agreement {
-    pub(super) fn of(source: &Cloud, target: &KdTree, unit: &Similarity, distance: f32) -> Self {
+    fn of(source: &Cloud, target: &KdTree, unit: &Similarity, distance: f32) -> Self {
         let transform = unit.to_f32();
         let (mut near, mut sum) = (0_usize, 0.0);
         for &point in &source.points {

@@ -3,16 +3,15 @@
 //! The voxel follows from the number of points; poses come from matches that keep their distances; both scenes as a
 //! whole choose among them, and what their sensors saw to be empty.
 
-use super::estimate::{Settings, Side, refine_coarse_to_fine};
+use super::estimate::{Estimate, Settings, Side, refine_coarse_to_fine};
 use super::frames::Frames;
-use super::judge::{Agreement, about_clouds, with_normals};
+use super::judge::{Attempt, about_clouds, with_normals};
 use super::options::{RegisterOptions, ScaleOption};
 use super::progress::{Stage, Stopwatch};
-use super::report::{Counts, Registration};
+use super::report::Counts;
 use super::verifier::{Verifier, distinctiveness};
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::cloud::Cloud;
-use crate::geometry::kd_tree::KdTree;
 use crate::geometry::similarity::{Similarity, vec3};
 use crate::geometry::voxel_grid::{voxel_downsample, voxel_size_leaving};
 use crate::stages::compatibility::{Hypothesis, hypotheses};
@@ -40,12 +39,11 @@ const FREE_SLACK_VOXELS: f32 = 2.0;
 
 /// Aligns clouds whose scale is known, in frames that make it 1.
 pub(super) fn register_rigid(
-    source_xyz: &[f64],
-    target_xyz: &[f64],
+    [source_xyz, target_xyz]: [&[f64]; 2],
     scale: ScaleOption,
     options: &RegisterOptions,
-    mut stages: Stopwatch<'_>,
-) -> Result<Registration> {
+    stages: &mut Stopwatch<'_>,
+) -> Result<Attempt> {
     let frames = Frames::of(source_xyz, target_xyz, scale)?;
     let most = options.max_points as usize;
     let source = thin(frames.source.normalized_flat(source_xyz), most);
@@ -92,36 +90,40 @@ pub(super) fn register_rigid(
     let candidates = most_different(&verifier, found);
 
     stages.enter(Stage::Icp);
-    let mut best: Option<(f64, Similarity, usize)> = None;
+    let mut best: Option<(f64, Similarity, Vec<usize>)> = None;
     for hypothesis in candidates {
         let pose = settle(&source, &target, &hypothesis.target_from_source, &settings);
         let score = verifier.score(&pose);
-        if best.is_none_or(|(highest, ..)| score > highest) {
-            best = Some((score, pose, hypothesis.inliers.len()));
+        if best.as_ref().is_none_or(|(highest, ..)| score > *highest) {
+            best = Some((score, pose, hypothesis.inliers));
         }
     }
     let Some((_, pose, inliers)) = best else { return Err(no_consensus(matches.len())) };
     let refined = refine_coarse_to_fine(&source, &target, &pose, &settings);
-    let unit = refined.target_from_source;
-    let agreement = Agreement::of(source.full, &KdTree::new(&target.full.points), &unit, distance);
     let counts = Counts {
         source_points: source.full.len(),
         target_points: target.full.len(),
         source_voxels: source.voxels.len(),
         target_voxels: target.voxels.len(),
         matches: matches.len(),
-        inliers,
+        inliers: inliers.len(),
         supported: refined.supported,
         iterations,
         icp_iterations: refined.iterations,
         ..Counts::default()
     };
-    let own = target_from_source(&frames.target, &unit, &frames.source);
-    Ok(Registration {
+    let unit = refined.target_from_source;
+    Ok(Attempt {
+        target_from_source: target_from_source(&frames.target, &unit, &frames.source),
         residual: refined.rms * frames.target.diagonal(),
-        converged: refined.converged,
-        fitness: agreement.fitness,
-        ..frames.registration(&own, options.seed, counts, stages)
+        estimate: Estimate {
+            target_from_source: unit,
+            clamped: false,
+            converged: refined.converged,
+            rms: refined.rms,
+            counts,
+            inliers,
+        },
     })
 }
 
