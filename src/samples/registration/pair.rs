@@ -18,10 +18,10 @@ pub const ROTATION_DEG: f64 = 5.0;
 pub const TRANSLATION_M: f64 = 2.0;
 
 /// What makes an estimate right.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Criterion {
     /// 3DMatch: the root mean squared distance of corresponding points, by this information matrix, below 0.2 m.
-    Rmse(Matrix6<f64>),
+    Rmse(Box<Matrix6<f64>>),
     /// KITTI: rotation within 5°, translation within 2 m.
     Errors,
 }

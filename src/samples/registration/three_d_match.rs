@@ -66,7 +66,7 @@ pub fn pairs(root: &Path, benchmark: Option<&str>) -> Result<Vec<Pair>> {
                 source: cloud(source),
                 target: cloud(target),
                 target_from_source: rigid(&log, block)?,
-                criterion: Criterion::Rmse(*matrix),
+                criterion: Criterion::Rmse(Box::new(*matrix)),
                 voxel_size_m: VOXEL_SIZE_M,
                 overlap: overlaps.get(&(scene.name.clone(), source, target)).copied(),
                 group: scene.name.clone(),
