@@ -18,6 +18,8 @@ pub mod precise;
 pub mod progress;
 pub mod register;
 pub mod report;
+mod rigid;
+mod verifier;
 pub mod warnings;
 
 use crate::error::Result;
