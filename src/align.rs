@@ -16,6 +16,7 @@ pub mod precise;
 pub mod progress;
 pub mod register;
 pub mod report;
+pub mod split;
 pub mod warnings;
 
 use crate::error::Result;
@@ -29,7 +30,7 @@ use crate::stages::sample::{check_shape, sample_surface};
 use crate::stages::search::SearchSettings;
 
 use field::Options;
-use options::{AlignOptions, Preset, Quality, SearchScope};
+use options::{AlignOptions, Preset};
 use progress::{Host, Stage, Stopwatch};
 use report::{Alignment, Alternative, Counts, ScoreTerms, Uncertainty};
 
@@ -58,11 +59,7 @@ pub fn align_with(
     align_by(observation, mesh, options, plan, host, |evidence, extents, stages| match options.preset {
         Preset::Paper => paper::estimate(evidence, extents, options, stages),
         Preset::Precise => {
-            // Descriptors are weak evidence, but of another kind: where time is no matter, their pose is a candidate too.
-            let hypothesis = (options.quality == Quality::Best && options.search == SearchScope::Global)
-                .then(|| paper::estimate(evidence, extents, options, stages).ok())
-                .flatten()
-                .map(|found| found.camera_from_mesh);
+            let hypothesis = precise::hypothesis(evidence, extents, options, stages);
             precise::estimate(observation, mesh, hypothesis, options, search, stages)
         }
     })

@@ -1,12 +1,11 @@
 //! The aligner's exports: each reads its arguments, calls the core, and hands back a plain object.
 
-use js_sys::Function;
 use serde::Serialize;
 use serde_wasm_bindgen::Serializer;
 use wasm_bindgen::prelude::*;
 
 use super::error::to_js;
-use super::host::JsHost;
+use super::host::{JsHost, Listener};
 use super::value::Value;
 use super::{input, object, options, transform};
 use crate::align::evaluate::EvaluateOptions;
@@ -19,7 +18,7 @@ use crate::error::{Error, ErrorCode, Result};
 pub fn align(
     input: &JsValue,
     options: &JsValue,
-    on_progress: Option<Function>,
+    on_progress: Option<Listener>,
 ) -> core::result::Result<JsValue, JsValue> {
     let run = || {
         let options: AlignOptions = options::options(options, &[])?;
@@ -90,7 +89,7 @@ pub fn version() -> String {
 }
 
 /// What JavaScript gets: the result as a plain object, or the error to be thrown.
-fn answer<T: Serialize>(result: Result<T>) -> core::result::Result<JsValue, JsValue> {
+pub(super) fn answer<T: Serialize>(result: Result<T>) -> core::result::Result<JsValue, JsValue> {
     to_object(result.map(|value| Value::of(&value)))
 }
 
