@@ -19,7 +19,7 @@ pub mod report;
 pub mod split;
 pub mod warnings;
 
-use crate::error::Result;
+use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::Similarity;
 use crate::metrics;
@@ -77,6 +77,25 @@ pub fn align_by(
     plan: &'static [(Stage, f64)],
     host: &mut dyn Host,
     method: impl FnOnce(&Evidence, [&Extents; 2], &mut Stopwatch<'_>) -> Result<Estimated>,
+) -> Result<Alignment> {
+    // One copy of the pipeline for all methods.
+    let mut method = Some(method);
+    align_once(observation, mesh, options, plan, host, &mut |evidence, extents, stages| {
+        let called_twice = || Error::new(ErrorCode::Internal, "method", "two calls", "one", "");
+        method.take().ok_or_else(called_twice)?(evidence, extents, stages)
+    })
+}
+
+/// A method, as a function that is called once.
+type Method<'a> = &'a mut dyn FnMut(&Evidence, [&Extents; 2], &mut Stopwatch<'_>) -> Result<Estimated>;
+
+fn align_once(
+    observation: &Observation,
+    mesh: &Mesh,
+    options: &AlignOptions,
+    plan: &'static [(Stage, f64)],
+    host: &mut dyn Host,
+    method: Method<'_>,
 ) -> Result<Alignment> {
     options.validate()?;
     check_shape(mesh)?;

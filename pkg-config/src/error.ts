@@ -84,3 +84,19 @@ export function internalError(cause: unknown): Sim3AlignError {
     { cause },
   );
 }
+
+/** The parts alone, which go from one thread to another. */
+export function partsOf({ code, argument, found, expected, remedy }: Sim3AlignError): ErrorParts {
+  return { code, argument, found, expected, remedy };
+}
+
+/** What calls of an aligner get that is no more. */
+export function disposed(): Sim3AlignError {
+  return new Sim3AlignError({
+    code: "DISPOSED",
+    argument: "aligner",
+    found: "an aligner that was disposed of",
+    expected: "one in use",
+    remedy: "Create a new one with createAligner(), or dispose of it later.",
+  });
+}

@@ -1,7 +1,5 @@
 //! An alignment whose search is done in parts, by several who each hold the whole input.
 
-use core::ops::Range;
-
 use super::field::Options;
 use super::options::{AlignOptions, Preset};
 use super::progress::{Host, Silent};
@@ -14,6 +12,7 @@ use crate::stages::sample::check_shape;
 use crate::stages::search::Found;
 use crate::stages::search::pose::CropPose;
 use crate::stages::search::rounds::Rounds;
+use crate::stages::search::score::Score;
 
 /// One's share of an alignment by `precise`. All go through the same rounds: each does some of a round's tasks and is
 /// told what came of all; any of them can then say what was found, to the same bits as [`align`](super::align).
@@ -22,6 +21,7 @@ pub struct Share {
     mesh: Mesh,
     options: AlignOptions,
     rounds: Rounds,
+    has_begun: bool,
 }
 
 impl Share {
@@ -33,7 +33,7 @@ impl Share {
         options.validate()?;
         check_shape(&mesh)?;
         let rounds = precise::prepare(&observation, &mesh, &options, &precise::search_settings(&options))?;
-        Ok(Self { observation, mesh, options, rounds })
+        Ok(Self { observation, mesh, options, rounds, has_begun: false })
     }
 
     /// How many tasks the present round has; 0 when there is nothing left to do.
@@ -42,18 +42,46 @@ impl Share {
         if self.options.preset == Preset::Precise { self.rounds.tasks() } else { 0 }
     }
 
-    /// Does some of the round's tasks.
-    pub fn run(&self, tasks: Range<usize>) -> Vec<Found> {
-        self.rounds.run(tasks)
+    /// Whether all that is left is refinement.
+    pub fn is_refinement(&self) -> bool {
+        self.rounds.is_refinement()
+    }
+
+    /// Does a part of the round's tasks: every `parts`-th, the first of them being `part`. Also says how many candidates
+    /// come of each; one more, drawn by nobody, is what the first part adds to the first round: the pose that
+    /// `quality: "best"` takes from descriptors.
+    pub fn run(&mut self, part: usize, parts: usize) -> (Vec<Found>, usize) {
+        let mut found = self.rounds.run(part, parts);
+        let per_task = found.len() / (part..self.tasks()).step_by(parts.max(1)).len().max(1);
+        if part == 0 && !core::mem::replace(&mut self.has_begun, true) {
+            let pose = self.hypothesis();
+            found.extend(pose.map(|pose| Found { pose, score: Score::default(), converged: false, renders: 0 }));
+        }
+        (found, per_task)
     }
 
     /// Takes what came of all the round's tasks, in their order.
-    pub fn advance(&mut self, found: Vec<Found>) {
+    pub fn advance(&mut self, mut found: Vec<Found>) {
+        if let Some(hypothesis) = found.pop_if(|f| f.renders == 0) {
+            self.rounds.join(hypothesis.pose);
+        }
         self.rounds.advance(found);
+        // Of the scores, only the totals were told.
+        self.rounds.complete_scores();
     }
 
-    /// The pose that `quality: "best"` takes from descriptors: work for one, before the first round is over.
-    pub fn hypothesis(&self) -> Option<CropPose> {
+    /// The alignment, once no task is left.
+    ///
+    /// # Errors
+    /// As [`align`](super::align).
+    pub fn finish(self, host: &mut dyn Host) -> Result<Alignment> {
+        let Self { observation, mesh, options, rounds, .. } = self;
+        align_by(&observation, &mesh, &options, precise::PLAN, host, |_, _, _| {
+            precise::conclude(rounds, &mesh, &options)
+        })
+    }
+
+    fn hypothesis(&self) -> Option<CropPose> {
         let mut found = None;
         let Self { observation, mesh, options, .. } = self;
         // Nothing but the evidence is wanted of the pipeline.
@@ -62,21 +90,5 @@ impl Share {
             Err(Error::new(ErrorCode::Internal, "", "", "", ""))
         });
         CropPose::of_similarity(&found?, &self.rounds.search.frame)
-    }
-
-    /// Makes the hypothesis a candidate.
-    pub fn join(&mut self, hypothesis: CropPose) {
-        self.rounds.join(hypothesis);
-    }
-
-    /// The alignment, once no task is left.
-    ///
-    /// # Errors
-    /// As [`align`](super::align).
-    pub fn finish(self, host: &mut dyn Host) -> Result<Alignment> {
-        let Self { observation, mesh, options, rounds } = self;
-        align_by(&observation, &mesh, &options, precise::PLAN, host, |_, _, _| {
-            precise::conclude(rounds, &mesh, &options)
-        })
     }
 }

@@ -1,104 +1,86 @@
-//! One's share of an alignment, as JavaScript holds it: see `pkg-config/src/split.ts`.
+//! One's share of an alignment, as JavaScript works on it: one at a time. See `pkg-config/src/pool/split.ts`.
+
+use core::cell::Cell;
 
 use glam::{DQuat, DVec2};
+use js_sys::Float64Array;
 use wasm_bindgen::prelude::*;
 
 use super::aligner::answer;
 use super::error::to_js;
 use super::host::{JsHost, Listener};
 use super::{input, options};
-use crate::align::split;
+use crate::align::split::Share;
+use crate::error::{Error, ErrorCode, Result};
 use crate::stages::search::Found;
-use crate::stages::search::coarse::Candidate;
 use crate::stages::search::pose::CropPose;
 use crate::stages::search::score::Score;
 
-/// Numbers in which a candidate goes from one module to another.
-const NUMBERS: usize = 21;
+/// Numbers in which a candidate goes from one to another.
+const NUMBERS: usize = 11;
 
-/// A share of an alignment.
-#[wasm_bindgen(skip_typescript)]
-pub struct Share(split::Share);
-
-#[wasm_bindgen]
-impl Share {
-    /// Prepares the search.
-    #[wasm_bindgen(constructor)]
-    pub fn new(input: &JsValue, options: &JsValue) -> Result<Self, JsValue> {
-        let run = || {
-            let options = options::options(options, &[])?;
-            let (observation, mesh) = (input::observation(input)?, input::mesh(input)?);
-            split::Share::new(observation, mesh, options)
-        };
-        run().map(Self).map_err(|e| to_js(&e))
-    }
-
-    /// How many tasks this round has; 0 when there is nothing left to do.
-    pub fn tasks(&self) -> usize {
-        self.0.tasks()
-    }
-
-    /// Does the tasks `begin..end`.
-    pub fn run(&self, begin: usize, end: usize) -> Vec<f64> {
-        self.0.run(begin..end).iter().flat_map(to_numbers).collect()
-    }
-
-    /// Takes what came of all tasks, in their order.
-    pub fn advance(&mut self, found: Vec<f64>) {
-        self.0.advance(found.chunks_exact(NUMBERS).map(of_numbers).collect());
-    }
-
-    /// The pose that descriptors ask for, as a candidate, where the options want it.
-    pub fn hypothesis(&self) -> Vec<f64> {
-        let found = self.0.hypothesis().map(|pose| Found::from(Candidate { pose, score: Score::default() }));
-        found.iter().flat_map(to_numbers).collect()
-    }
-
-    /// Makes that a candidate.
-    pub fn join(&mut self, hypothesis: Vec<f64>) {
-        hypothesis.chunks_exact(NUMBERS).for_each(|numbers| self.0.join(of_numbers(numbers).pose));
-    }
-
-    /// The alignment.
-    pub fn finish(self, on_progress: Option<Listener>) -> Result<JsValue, JsValue> {
-        answer(self.0.finish(&mut JsHost::new(on_progress)))
-    }
+thread_local! {
+    static SHARE: Cell<Option<Box<Share>>> = const { Cell::new(None) };
 }
 
-fn to_numbers(found: &Found) -> [f64; NUMBERS] {
-    let Found { pose, score: s, converged, renders } = found;
-    let [x, y, z, w] = pose.rotation.to_array();
-    let terms = [s.total, s.overlap, s.coverage, s.depth, s.normals, s.outline, s.hidden, s.union].map(f64::from);
-    let counts = s.counts.map(f64::from);
-    let mut numbers = [0.0; NUMBERS];
-    numbers[..8].copy_from_slice(&[x, y, z, w, pose.size, pose.place.x, pose.place.y, pose.distance]);
-    numbers[8..16].copy_from_slice(&terms);
-    numbers[16..19].copy_from_slice(&counts);
-    numbers[19..].copy_from_slice(&[f64::from(u8::from(*converged)), *renders as f64]);
-    numbers
+/// Prepares the search, in place of any other that is under way.
+#[wasm_bindgen(js_name = beginShare, skip_typescript)]
+pub fn begin_share(input: &JsValue, options: &JsValue) -> core::result::Result<(), JsValue> {
+    let run = || {
+        let options = options::options(options, &[])?;
+        let (observation, mesh) = (input::observation(input)?, input::mesh(input)?);
+        Share::new(observation, mesh, options)
+    };
+    SHARE.set(Some(Box::new(run().map_err(|e| to_js(&e))?)));
+    Ok(())
 }
 
-fn of_numbers(n: &[f64]) -> Found {
-    let single = |i: usize| n[i] as f32;
-    Found {
-        pose: CropPose {
-            rotation: DQuat::from_xyzw(n[0], n[1], n[2], n[3]),
-            size: n[4],
-            place: DVec2::new(n[5], n[6]),
-            distance: n[7],
-        },
-        score: Score {
-            total: single(8),
-            overlap: single(9),
-            coverage: single(10),
-            depth: single(11),
-            normals: single(12),
-            outline: single(13),
-            hidden: single(14),
-            union: single(15),
-            counts: [16, 17, 18].map(|i| n[i] as u32),
-        },
-        converged: n[19] != 0.0,
-        renders: n[20] as usize,
+/// Takes what came of all tasks of the last round, in their order; then does every `parts`-th of the next round's, the
+/// first of them being `part`. Without parts, ends the share.
+///
+/// What comes of it: how many tasks the round has, all parts together; whether it is refinement; in how many numbers a
+/// task's outcome is told; then these numbers, task by task.
+#[wasm_bindgen(js_name = stepShare, skip_typescript)]
+pub fn step_share(
+    found: Option<Float64Array>,
+    part: usize,
+    parts: usize,
+) -> core::result::Result<Float64Array, JsValue> {
+    let mut share = share().map_err(|e| to_js(&e))?;
+    if parts == 0 {
+        return Ok(Float64Array::default());
     }
+    found.into_iter().for_each(|found| share.advance(of_numbers(&found)));
+    let (found, per_task) = share.run(part, parts);
+    let mut numbers = vec![share.tasks() as f64, f64::from(u8::from(share.is_refinement()))];
+    numbers.push((per_task * NUMBERS) as f64);
+    for Found { pose, score, converged, renders } in found {
+        numbers.extend(pose.rotation.to_array());
+        numbers.extend([pose.size, pose.place.x, pose.place.y, pose.distance]);
+        numbers.extend([f64::from(score.total), f64::from(u8::from(converged)), renders as f64]);
+    }
+    SHARE.set(Some(share));
+    Ok(Float64Array::from(numbers.as_slice()))
+}
+
+/// The alignment, once no task is left. Ends the share.
+#[wasm_bindgen(js_name = finishShare, skip_typescript)]
+pub fn finish_share(on_progress: Option<Listener>) -> core::result::Result<JsValue, JsValue> {
+    answer(share().and_then(|share| share.finish(&mut JsHost::new(on_progress))))
+}
+
+fn share() -> Result<Box<Share>> {
+    SHARE.take().ok_or_else(|| Error::new(ErrorCode::Internal, "share", "none", "one that was begun", ""))
+}
+
+fn of_numbers(numbers: &Float64Array) -> Vec<Found> {
+    let numbers = numbers.to_vec();
+    let (records, _) = numbers.as_chunks::<NUMBERS>();
+    let found = records.iter().map(|&[x, y, z, w, size, u, v, distance, total, converged, renders]| Found {
+        pose: CropPose { rotation: DQuat::from_xyzw(x, y, z, w), size, place: DVec2::new(u, v), distance },
+        score: Score { total: total as f32, ..Score::default() },
+        converged: converged != 0.0,
+        renders: renders as usize,
+    });
+    found.collect()
 }

@@ -1,6 +1,7 @@
 /** Cameras: intrinsics as they are, or a camera file. */
 import { invalidArgument, Sim3AlignError } from "../error.js";
-import type { Formats, LoadedModule } from "../modules.js";
+import type { Formats } from "../core.js";
+import type { LoadedModule } from "../wasm-module.js";
 import { isRecord, plainNumbers, withoutOptions, withoutUndefined } from "../values.js";
 import { fileBytes } from "./bytes.js";
 

@@ -1,6 +1,7 @@
 /** Depth maps and point maps, brought to arrays with their size. */
 import { Sim3AlignError } from "../error.js";
-import type { Formats, LoadedModule } from "../modules.js";
+import type { Formats } from "../core.js";
+import type { LoadedModule } from "../wasm-module.js";
 import { isRecord, isTypedArray, withoutOptions, withoutUndefined, wrongKind } from "../values.js";
 import { fileBytes } from "./bytes.js";
 

@@ -3,8 +3,6 @@
 //! What comes of a round's tasks, put in their order, determines the next round; equal scores are told apart by that
 //! order. So a round can be done in parts, by anyone and in any order, and no bit of the result tells who did what.
 
-use core::ops::Range;
-
 use glam::Vec3;
 
 use super::anchors::{Anchor, anchors};
@@ -81,32 +79,35 @@ impl Rounds {
         if self.round == 0 { self.search.settings.rotations } else { self.poses.len() }
     }
 
-    /// Does some of this round's tasks.
-    pub fn run(&self, tasks: Range<usize>) -> Vec<Found> {
+    /// Does a part of this round's tasks: every `parts`-th, the first of them being `part`.
+    pub fn run(&self, part: usize, parts: usize) -> Vec<Found> {
         let mut canvas = Canvas::default();
         let objective = self.search.objective(LEVEL[self.round.min(LEVEL.len() - 1)], &self.grid);
         let stage = Coarse { objective, median_m: self.search.observation.median_m };
-        let count = self.search.settings.rotations;
-        if self.round == 0 {
-            let mut candidates = Vec::with_capacity(tasks.len() * self.anchors.len());
-            for i in tasks {
-                let rotation = super_fibonacci(i, count);
-                stage.try_anchors(&mut canvas, &self.outermost, rotation, &self.anchors, &mut candidates);
-            }
-            return candidates.into_iter().map(Found::from).collect();
-        }
-        let poses = self.poses.iter().skip(tasks.start).take(tasks.len());
-        if !self.is_refinement() {
-            return poses.map(|pose| stage.at_its_distance(&mut canvas, *pose).into()).collect();
-        }
         let refiner = Refiner { objective, lock_scale: self.search.settings.lock_scale };
-        let iterations = self.search.settings.iterations[self.round - FIRST_REFINEMENT];
-        poses.map(|pose| refiner.refine(&mut canvas, *pose, iterations).into()).collect()
+        let count = self.search.settings.rotations;
+        let (mut tried, mut found) = (Vec::new(), Vec::new());
+        for task in (part..self.tasks()).step_by(parts.max(1)) {
+            let pose = || self.poses[task];
+            match self.round {
+                0 => {
+                    let rotation = super_fibonacci(task, count);
+                    stage.try_anchors(&mut canvas, &self.outermost, rotation, &self.anchors, &mut tried);
+                    found.extend(tried.drain(..).map(Found::from));
+                }
+                1 => found.push(stage.at_its_distance(&mut canvas, pose()).into()),
+                round => {
+                    let iterations = self.search.settings.iterations[(round - FIRST_REFINEMENT).min(3)];
+                    found.push(refiner.refine(&mut canvas, pose(), iterations).into());
+                }
+            }
+        }
+        found
     }
 
     /// Does all of this round's tasks, and begins the next one.
     pub fn step(&mut self) {
-        let found = self.run(0..self.tasks());
+        let found = self.run(0, 1);
         self.advance(found);
     }
 
@@ -137,6 +138,13 @@ impl Rounds {
         self.round += 1;
         if let Some(level) = LEVEL.get(self.round).filter(|_| !self.poses.is_empty()) {
             self.grid = self.search.grid(*level);
+        }
+    }
+
+    /// Draws what was found once more, for all terms of its scores; to be called after every round.
+    pub fn complete_scores(&mut self) {
+        if self.round == COMPARED + 1 {
+            self.found.iter_mut().for_each(|found| found.score = self.search.score(&found.pose));
         }
     }
 

@@ -1,0 +1,42 @@
+/** What an aligner and its workers tell each other. One request at a time; each ends in a result or an error. */
+import type { ErrorParts } from "../error.js";
+import type { Stage } from "../generated/types.js";
+import type { Job } from "../jobs.js";
+
+/** To the worker. */
+export type Request =
+  /** The first: the compiled core. */
+  | { type: "start"; core: WebAssembly.Module }
+  /** What the worker asked for: the compiled file readers, or why there are none. */
+  | { type: "formats"; module: WebAssembly.Module }
+  | { type: "formats"; error: ErrorParts }
+  | { type: "job"; job: Job; wantsProgress: boolean; returnData: boolean }
+  | ShareRequest;
+
+/** An alignment that several work on, step by step. */
+export type ShareRequest =
+  /** Prepares the search. */
+  | { type: "share"; job: Job & { method: "align" } }
+  /** Takes what came of the last round's tasks, and does a part of the next one's. */
+  | { type: "step"; found: Float64Array | null; hypothesis: Float64Array | null; part: number; parts: number }
+  | { type: "hypothesis" }
+  | { type: "finish"; wantsProgress: boolean }
+  /** Forgets the share. */
+  | { type: "drop" };
+
+/** From the worker. */
+export type Reply =
+  | { type: "progress"; stage: Stage; fraction: number }
+  /** The worker needs the file readers. */
+  | { type: "needs-formats" }
+  | { type: "result"; result: unknown; data?: unknown }
+  | { type: "error"; error: ErrorParts; data?: unknown };
+
+/** What came of a step of a share. */
+export interface StepResult {
+  /** Tasks of the round, all parts together; 0 when there is nothing left to do. */
+  tasks: number;
+  isRefinement: boolean;
+  /** What came of the part. */
+  found: Float64Array;
+}
