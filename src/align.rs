@@ -2,6 +2,8 @@
 //! depth, mask and mesh in, the similarity x_cam = s·R·p + t and its metrics out.
 
 mod alternatives;
+#[cfg(feature = "baselines")]
+pub mod baseline;
 mod combination;
 mod confidence;
 mod estimate;

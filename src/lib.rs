@@ -3,9 +3,11 @@
 //! Monocular Observations".
 //!
 //! The crate is layered; a module imports only from those below it in this list:
-//! `bindings` and `samples`, `formats`, [`align`], [`metrics`], [`stages`], [`geometry`], [`error`].
+//! `bindings` and `samples`, `formats`, [`align`], [`metrics`] and `baselines`, [`stages`], [`geometry`], [`error`].
 
 pub mod align;
+#[cfg(feature = "baselines")]
+pub mod baselines;
 pub mod bindings;
 pub mod error;
 #[cfg(feature = "formats")]

@@ -9,11 +9,12 @@ import { run } from "../lib/run.mjs";
 import { digest } from "../lib/stamp.mjs";
 import { duration, step } from "../lib/step.mjs";
 import { command, count } from "./command.mjs";
-import { generalJobs, generalTables } from "./general.mjs";
+import { datasets, generalJobs, generalTable } from "./general.mjs";
 import { importJob, ownJob, peersJob } from "./paper/jobs.mjs";
 import { report } from "./paper/report.mjs";
 import { tableSpecs } from "./paper/rows.mjs";
-import { preparePeers } from "./peers.mjs";
+import { meshMethods, versionsOf } from "./peer-methods.mjs";
+import { installPeers } from "./peers.mjs";
 import { Progress } from "./progress.mjs";
 import { openResults, surroundings } from "./results.mjs";
 
@@ -65,28 +66,35 @@ async function benchmark(options) {
   const name = options.cases === undefined ? `scenes-${scenes}-seed-${options.setSeed}` : "cases";
   const out = resolve(options.out ?? at("benches", "results", name));
   await step("Programs", () => buildPrograms());
-  const peers = options.peers ? await preparePeers(options.python) : null;
+  if (options.peers) await installPeers(options.python);
   /** @type {Record<string, string>} */
   const folders = options.cases === undefined ? await writeScenes(scenes, options.setSeed) : { given: options.cases };
+  const clouds = await datasets(options);
 
   const code = digest([at("src"), at("Cargo.toml"), at("Cargo.lock")]);
-  openResults(out, { code, scenes, setSeed: options.setSeed, cases: options.cases ?? null }, options.fresh);
-  const imports = options.import.map(namedFolder);
-  const names = [...(peers?.methods(options.quick) ?? []), ...imports.map(([importName]) => importName)];
-  const specs = tableSpecs(names, Object.keys(folders));
+  const identity = { code, scenes, setSeed: options.setSeed, cases: options.cases ?? null, clouds };
+  openResults(out, identity, options.fresh);
 
-  const [first = "given"] = Object.keys(folders);
-  const folder = folders[first] ?? "";
-  /** @type {Job[]} */
-  const jobs = Object.entries(folders).map(([prior, cases]) => ownJob(specs, prior, cases, out, options.threads));
-  if (peers) jobs.push(peersJob(peers, options.quick, folder, join(out, "answers", first)));
-  const answers = (peers?.methods(options.quick) ?? []).map((method) => [method, join(out, "answers", first, method)]);
-  if (answers.length + imports.length > 0) jobs.push(importJob([...answers, ...imports], folder, first, out));
-  jobs.push(...(await generalJobs(options, peers, out)));
+  const [prior = "", folder = ""] = Object.entries(folders)[0] ?? [];
+  const answers = join(out, "answers", prior);
+  const methods = options.peers ? meshMethods(options.quick) : {};
+  /** @type {[string, string][]} */
+  const imports = [
+    ...Object.keys(methods).map((method) => /** @type {[string, string]} */ ([method, join(answers, method)])),
+    ...options.import.map(namedFolder),
+  ];
+  const names = imports.map(([importName]) => importName);
+  const specs = tableSpecs(names, Object.keys(folders));
+  const jobs = Object.entries(folders).map(([each, cases]) => ownJob(specs, each, cases, out, options.threads));
+  if (options.peers) jobs.push(peersJob(methods, folder, answers, options.python));
+  if (imports.length > 0) jobs.push(importJob(imports, folder, prior, out));
+  for (const set of clouds) jobs.push(...(await generalJobs(set, out, options.peers ? options.python : null)));
   await runAll(jobs);
 
-  const run = { ...(await surroundings()), software: peers?.versions() ?? {}, setSeed: options.setSeed, scenes };
-  const markdown = await report({ specs, out, run, folders, general: generalTables(out), snapshot: options.snapshot });
+  const software = options.peers ? versionsOf(answers) : {};
+  const run = { ...(await surroundings()), software, setSeed: options.setSeed, scenes };
+  const general = clouds.map((set) => generalTable(set, out));
+  const markdown = await report({ specs, out, run, folders, general, snapshot: options.snapshot });
   console.log(`\n${markdown}\nTables and figures are in ${out}; all took ${duration(performance.now() - started)}.`);
 }
 

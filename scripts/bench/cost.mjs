@@ -167,9 +167,9 @@ function stageTable(all) {
 /** @param {string[]} folders @param {{ rounds: number, threads: number, python: string, json?: string }} options */
 async function cost(folders, { rounds, threads, python, json }) {
   await builtPackage();
-  await installOpen3d(python);
+  const environmentPython = await installOpen3d(python);
   const aligner = await (await packageModule("index.js")).createAligner();
-  const peer = await Open3d.start(threads);
+  const peer = await Open3d.start(environmentPython, threads);
   console.log(
     `\nOurs: WebAssembly on one thread, Node ${process.version}, align() on typed arrays with its metrics. Open3D ` +
       `${peer.version}: native, ${threads} threads, without reading files. Medians of ${rounds} rounds, in turn. ` +

@@ -1,12 +1,10 @@
 /** Open3D, in a process of its own that answers one request a line. */
 import { spawn } from "node:child_process";
-import { mkdirSync, rmSync, writeFileSync } from "node:fs";
+import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
 import { at } from "../lib/paths.mjs";
-import { run } from "../lib/run.mjs";
-import { digest, Stamp } from "../lib/stamp.mjs";
-import { step } from "../lib/step.mjs";
+import { pythonEnvironment, pythonVariables } from "./python.mjs";
 
 /** @typedef {import("./case.mjs").TypedCase} TypedCase */
 /** @typedef {{ ms: number, stages: Record<string, number>, matrix: number[] }} Answer */
@@ -15,27 +13,12 @@ import { step } from "../lib/step.mjs";
  * @typedef {{ withScaling?: boolean, thinned?: boolean }} Variant
  */
 
-const requirements = at("scripts", "bench", "requirements.txt");
-const environmentDir = at("target", "bench", "python");
-const python =
-  process.platform === "win32" ? join(environmentDir, "Scripts", "python.exe") : join(environmentDir, "bin", "python");
-
 /**
- * Makes the Python environment where it is missing or the requirements have changed.
+ * The environment with Open3D, and its Python.
  * @param {string} program the Python that makes it
  */
-export async function installOpen3d(program) {
-  await step("Open3D", async (say) => {
-    const stamp = new Stamp(join(environmentDir, "installed-from"), digest([requirements]), [python]);
-    if (stamp.isCurrent) return say("up to date");
-    rmSync(environmentDir, { recursive: true, force: true });
-    const remedy = "install Python 3.11 or 3.12 with venv, name it with --python, and check that PyPI can be reached";
-    await run(program, ["-m", "venv", environmentDir], { remedy });
-    await run(python, ["-m", "pip", "install", "--quiet", "--requirement", requirements], { remedy });
-    stamp.write();
-    say("installed");
-  });
-}
+export const installOpen3d = (program) =>
+  pythonEnvironment("open3d", at("scripts", "bench", "requirements.txt"), program);
 
 /** A process that has imported Open3D. */
 export class Open3d {
@@ -43,18 +26,18 @@ export class Open3d {
   #lines;
   version = "";
 
-  /** @param {number} threads */
-  constructor(threads) {
+  /** @param {string} python @param {number} threads */
+  constructor(python, threads) {
     this.#process = spawn(python, [at("scripts", "bench", "open3d_peer.py")], {
       stdio: ["pipe", "pipe", "inherit"],
-      env: { ...process.env, OMP_NUM_THREADS: `${threads}` },
+      env: { ...process.env, ...pythonVariables, OMP_NUM_THREADS: `${threads}` },
     });
     this.#lines = createInterface({ input: this.#process.stdout })[Symbol.asyncIterator]();
   }
 
-  /** @param {number} threads */
-  static async start(threads) {
-    const peer = new Open3d(threads);
+  /** @param {string} python the environment's @param {number} threads */
+  static async start(python, threads) {
+    const peer = new Open3d(python, threads);
     peer.version = (await peer.#next()).version;
     return peer;
   }
@@ -107,7 +90,7 @@ export class Open3d {
 
   async #next() {
     const { value, done } = await this.#lines.next();
-    if (done) throw new Error(`The Python process ended. Remedy: remove ${environmentDir}, and try again.`);
+    if (done) throw new Error(`The Python process ended. Remedy: remove target/bench/open3d, and try again.`);
     return JSON.parse(value);
   }
 }

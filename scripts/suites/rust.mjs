@@ -12,9 +12,9 @@ async function cargoTest(args, env = {}) {
   return withStatus(rustCounts(output), reason === "");
 }
 
-export const native = () => cargoTest(["--features", "formats,types,samples"]);
+export const native = () => cargoTest(["--features", "formats,types,samples,baselines"]);
 
 export const wasm = () =>
-  cargoTest(["--target", wasmTarget, "--features", "formats", "--test", "suite"], {
+  cargoTest(["--target", wasmTarget, "--features", "formats,baselines", "--test", "suite"], {
     CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER: wasmBindgenProgram("wasm-bindgen-test-runner"),
   });

@@ -1,7 +1,5 @@
 //! From two clouds with normals to a similarity: what `align` and `register` have in common.
 
-use glam::Vec3;
-
 use super::options::{AlignOptions, GuardMode, Icp, RegisterOptions};
 use super::progress::{Stage, Stopwatch};
 use super::report::Counts;
@@ -10,23 +8,16 @@ use crate::geometry::angle::sin_cos;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::similarity::{Similarity, vector3};
-use crate::geometry::voxel_grid::voxel_downsample;
 use crate::stages::filter::{SupportSettings, supported};
 use crate::stages::fpfh::fpfh;
+use crate::stages::grid_cloud::GridCloud;
 use crate::stages::icp::{IcpMetric, IcpSettings, Refined, refine};
-use crate::stages::matching::{Match, mutual_matches, one_way_matches};
-use crate::stages::normals::{Neighborhood, Orientation, estimate_normals};
+use crate::stages::matching::{Match, enough_matches};
 use crate::stages::ransac::{self, Consensus, Guard, RansacSettings, ransac};
 use crate::stages::umeyama::{Pair, ScaleMode, umeyama};
 
-/// Neighbours on the voxel grid from which a normal is estimated: about two voxels around.
-const GRID_NORMAL_NEIGHBORS: usize = 16;
-
 /// Points that descriptors are computed for at most; denser clouds get a coarser grid. Matching is quadratic.
-const MAX_FEATURES: usize = 8_000;
-
-/// Fewer mutual matches than this hold too few right ones among them: RANSAC then sifts the one-way matches.
-const MIN_MUTUAL_MATCHES: usize = 50;
+pub(super) const MAX_FEATURES: usize = 8_000;
 
 /// Source points of the last refinement at most.
 const FINE_POINTS: usize = 5_000;
@@ -107,7 +98,7 @@ impl Settings {
     }
 }
 
-fn icp_metric(icp: Icp) -> Option<IcpMetric> {
+pub(super) fn icp_metric(icp: Icp) -> Option<IcpMetric> {
     match icp {
         Icp::PointToPlane => Some(IcpMetric::PointToPlane),
         Icp::PointToPoint => Some(IcpMetric::PointToPoint),
@@ -137,32 +128,8 @@ struct Side<'a> {
 
 impl<'a> Side<'a> {
     fn new(full: &'a Cloud, voxel_size: f32) -> Self {
-        let mut voxels = voxel_downsample(full, voxel_size);
-        // A surface has a quarter of the cells when they are twice as large: a few rounds at most.
-        let mut size = voxel_size;
-        while voxels.len() > MAX_FEATURES && size < 1.0 {
-            size *= 1.25;
-            voxels = voxel_downsample(full, size);
-        }
-        let tree = KdTree::new(&voxels.points);
-        smooth_normals(&mut voxels, &tree);
-        Self { full, voxels, tree }
-    }
-}
-
-/// Normals for the descriptors, from the grid's own points: both clouds then have them at one scale, whatever
-/// their density and noise. The mean normals of the cells say which side is outside.
-fn smooth_normals(voxels: &mut Cloud, tree: &KdTree) {
-    let normals = estimate_normals(
-        &voxels.points,
-        tree,
-        Neighborhood::nearest(GRID_NORMAL_NEIGHBORS),
-        Orientation::TowardsCamera,
-    );
-    for (own, smooth) in voxels.normals.iter_mut().zip(normals) {
-        if smooth != Vec3::ZERO {
-            *own = if own.dot(smooth) < 0.0 { -smooth } else { smooth };
-        }
+        let GridCloud { cloud, tree } = GridCloud::of_at_most(MAX_FEATURES, full, voxel_size);
+        Self { full, voxels: cloud, tree }
     }
 }
 
@@ -184,11 +151,7 @@ impl<'a> Problem<'a> {
         let target_features = fpfh(&target.voxels, &target.tree, radius);
 
         stages.enter(Stage::Matching);
-        let mut matches = mutual_matches(&source_features, &target_features);
-        if matches.len() < MIN_MUTUAL_MATCHES {
-            matches = one_way_matches(&source_features, &target_features);
-        }
-        Self { source, target, matches }
+        Self { source, target, matches: enough_matches(&source_features, &target_features) }
     }
 
     /// The similarity that takes the source to the target.
@@ -267,6 +230,7 @@ fn refine_coarse_to_fine(source: &Side<'_>, target: &Side<'_>, initial: &Similar
     };
     let coarse = IcpSettings {
         metric,
+        robust: true,
         lock_scale: settings.lock_scale,
         scale_bounds: settings.ransac.guard.map(|g| [g.min, g.max]),
         max_iterations: settings.icp_iterations,

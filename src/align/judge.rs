@@ -8,11 +8,10 @@ use super::report::Registration;
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
-use crate::geometry::order;
 use crate::geometry::similarity::Similarity;
 use crate::metrics::evidence::NORMAL_NEIGHBORS;
 use crate::stages::extents::target_from_source;
-use crate::stages::normals::{Neighborhood, Orientation, estimate_normals};
+use crate::stages::normals::outward_normals;
 
 /// Poses tried for one pair of clouds at most.
 const POSES: usize = 6;
@@ -148,14 +147,8 @@ fn unit_voxel_size(options: &RegisterOptions, frames: &Frames) -> f64 {
     options.voxel_size.map_or(1.0 / options.voxel_divisions, |size| size / frames.target.diagonal())
 }
 
-/// Normals that point away from the middle of the cloud: the median, which clutter moves least. Without a
-/// viewpoint that is the orientation that both clouds can agree on.
 fn with_normals(mut cloud: Cloud) -> Cloud {
-    let median = |axis: usize| order::median(cloud.points.iter().map(|p| p[axis])).unwrap_or_default();
-    let center = glam::Vec3::new(median(0), median(1), median(2));
-    let tree = KdTree::new(&cloud.points);
-    cloud.normals =
-        estimate_normals(&cloud.points, &tree, Neighborhood::nearest(NORMAL_NEIGHBORS), Orientation::AwayFrom(center));
+    cloud.normals = outward_normals(&cloud.points, NORMAL_NEIGHBORS);
     cloud
 }
 

@@ -31,3 +31,12 @@ pub(crate) fn numbers<const N: usize>(value: &Value) -> Option<[f64; N]> {
     }
     slots.next().is_none().then_some(numbers)
 }
+
+/// What stands in place of something else, for the message; of long text the beginning.
+pub(crate) fn found(value: Option<&Value>) -> String {
+    const SHOWN: usize = 60;
+    let Some(value) = value else { return "nothing".into() };
+    let text = value.to_string();
+    let shown: String = text.chars().take(SHOWN).collect();
+    if shown.len() < text.len() { format!("{shown}…") } else { text }
+}

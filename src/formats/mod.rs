@@ -10,7 +10,7 @@ mod cursor;
 pub mod depth;
 pub mod gltf;
 pub mod guard;
-mod json;
+pub(crate) mod json;
 pub mod mask;
 pub mod mesh;
 mod mesh_builder;

@@ -19,22 +19,27 @@ pub fn read_truth(bytes: &[u8]) -> Result<Option<(Similarity, String)>> {
         return Ok(None);
     }
     let symmetry = value.get("symmetry").and_then(Value::as_str).unwrap_or("unknown");
-    Ok(Some((similarity(&value)?, symmetry.into())))
+    Ok(Some((similarity("truth", &value)?, symmetry.into())))
 }
 
-/// The similarity that a JSON object holds, in one of the forms that [`read_truth`] lists.
-fn similarity(value: &Value) -> Result<Similarity> {
-    if let Some(matrix) = value.get("matrix") {
+/// The similarity that a JSON object holds, in one of the forms that [`read_truth`] lists. `argument` names the object
+/// in errors.
+///
+/// # Errors
+/// [`ErrorCode::InvalidTransform`].
+pub(crate) fn similarity(argument: &str, value: &Value) -> Result<Similarity> {
+    let part = |name: &str| value.get(name);
+    let invalid = |name, expected| invalid(argument, name, part(name), expected);
+    if let Some(matrix) = part("matrix") {
         let matrix = json::numbers(matrix).ok_or_else(|| invalid("matrix", "16 numbers, column by column"))?;
         return Similarity::from_column_major(&matrix);
     }
-    let scale = value.get("scale").and_then(Value::as_f64).ok_or_else(|| invalid("scale", "a number"))?;
-    let translation = value.get("translation").and_then(json::numbers::<3>);
+    let scale = part("scale").and_then(Value::as_f64).ok_or_else(|| invalid("scale", "a number"))?;
+    let translation = part("translation").and_then(json::numbers::<3>);
     let translation = translation.ok_or_else(|| invalid("translation", "3 numbers, metres"))?;
-    let rotation = value.get("rotation").ok_or_else(|| invalid("rotation", "a rotation"))?;
-    let rotation = if let Some(rows) = json::numbers::<9>(rotation) {
+    let rotation = if let Some(rows) = part("rotation").and_then(json::numbers::<9>) {
         Matrix3::from_row_slice(&rows)
-    } else if let Some(xyzw) = json::numbers(rotation) {
+    } else if let Some(xyzw) = part("rotation").and_then(json::numbers) {
         Similarity::rotation_from_xyzw(&xyzw)?
     } else {
         return Err(invalid("rotation", "3 × 3 numbers row by row, or a quaternion x, y, z, w"));
@@ -42,11 +47,11 @@ fn similarity(value: &Value) -> Result<Similarity> {
     Similarity::from_parts(scale, rotation, Vector3::from(translation))
 }
 
-fn invalid(name: &str, expected: &str) -> Error {
+fn invalid(argument: &str, name: &str, found: Option<&Value>, expected: &str) -> Error {
     Error::new(
         ErrorCode::InvalidTransform,
-        format!("truth.{name}"),
-        "nothing, or something else",
+        format!("{argument}.{name}"),
+        json::found(found),
         expected.to_owned(),
         "Write { scale, rotation, translation } or { matrix }; x_cam = scale · R · p_mesh + translation.",
     )

@@ -3,11 +3,11 @@
 use std::io;
 
 use glam::Vec3;
-use image::codecs::png::PngEncoder;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 
 use crate::error::{Error, ErrorCode, Result};
-use crate::geometry::image::{DepthMap, Mask};
+use crate::geometry::image::{DepthMap, Mask, check_size};
 use crate::geometry::mesh::Mesh;
 
 /// A depth map as NumPy array, float32 H×W, metres.
@@ -55,9 +55,20 @@ pub fn mask_png(mask: &Mask) -> Result<Vec<u8>> {
     png(&bytes, mask.width(), mask.height(), ExtendedColorType::L8)
 }
 
+/// A picture as 8-bit RGB PNG, rows of red, green and blue.
+///
+/// # Errors
+/// [`ErrorCode::WrongLength`] and [`ErrorCode::EmptyImage`] for a size that is not the picture's.
+pub fn rgb_png(pixels: &[[u8; 3]], width: usize, height: usize) -> Result<Vec<u8>> {
+    check_size("image", width, height, pixels.len())?;
+    png(pixels.as_flattened(), width, height, ExtendedColorType::Rgb8)
+}
+
 fn png(bytes: &[u8], width: usize, height: usize, colour: ExtendedColorType) -> Result<Vec<u8>> {
     let mut file = io::Cursor::new(Vec::new());
-    let written = PngEncoder::new(&mut file).write_image(bytes, width as u32, height as u32, colour);
+    // Of 16-bit depth, half as large as with the encoder's defaults.
+    let encoder = PngEncoder::new_with_quality(&mut file, CompressionType::Best, FilterType::Sub);
+    let written = encoder.write_image(bytes, width as u32, height as u32, colour);
     written.map_err(|error| {
         let remedy = "Please report it.";
         Error::new(ErrorCode::Internal, "image", format!("a PNG encoder that says: {error}"), "a PNG", remedy)

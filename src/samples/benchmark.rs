@@ -6,6 +6,7 @@ use std::time::Instant;
 use serde::Serialize;
 use serde_json::Value;
 
+use super::case::parameters_json;
 use super::evaluation::case::EvaluationCase;
 use crate::align::align_with;
 use crate::align::evaluate::{EvaluateOptions, Truth, evaluate};
@@ -75,7 +76,7 @@ pub struct Record {
     pub truth_score: Option<f64>,
     /// The true scale by the initial one, s / s_init.
     pub truth_scale_ratio: Option<f64>,
-    /// What `align` took.
+    /// What `align` took; NaN, `null` in JSON, where another program did not say what it took.
     pub seconds: f64,
 }
 
@@ -113,15 +114,14 @@ impl Record {
 
 impl From<EvaluationCase> for BenchCase {
     fn from(case: EvaluationCase) -> Self {
-        let parameters: serde_json::Map<_, _> =
-            case.parameters.iter().map(|(name, value)| ((*name).to_owned(), Value::from(*value))).collect();
+        let parameters = parameters_json(&case.parameters);
         Self {
             name: case.name(),
             tier: case.tier.as_str().into(),
             class: case.class.as_str().into(),
             family: case.family,
             tags: case.tags.iter().map(|tag| (*tag).to_owned()).collect(),
-            parameters: parameters.into(),
+            parameters,
             observation: case.observation,
             mesh: case.mesh,
             truth: Some(Truth { camera_from_mesh: case.camera_from_mesh, symmetry: case.symmetry }),
@@ -250,9 +250,19 @@ pub fn run_method(
     let begun = Instant::now();
     let outcome = method(&case.observation, &case.mesh, &mut Clock(begun));
     let seconds = begun.elapsed().as_secs_f64();
+    record_of(case, outcome.map_err(|error| described(&error)), seconds)
+}
+
+/// An error as records have it.
+pub(super) fn described(error: &Error) -> String {
+    format!("{}: {error}", error.code.as_str())
+}
+
+/// The record of a case, of what came of it or of what went wrong, and of what that took.
+pub(super) fn record_of(case: &BenchCase, outcome: core::result::Result<Alignment, String>, seconds: f64) -> Record {
     let (alignment, error) = match outcome {
         Ok(alignment) => (Some(alignment), None),
-        Err(error) => (None, Some(format!("{}: {error}", error.code.as_str()))),
+        Err(error) => (None, Some(error)),
     };
     let evaluated = case.truth.as_ref().map(|truth| {
         let scored =

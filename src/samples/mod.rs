@@ -7,7 +7,10 @@ pub mod case;
 pub mod depth;
 pub mod distortion;
 pub mod evaluation;
+pub mod imported;
+pub mod overlay;
 pub mod records;
+pub mod scenes;
 pub mod shape;
 
 use crate::geometry::random::Random;
@@ -26,4 +29,14 @@ const FRAME_STREAM: u64 = 0x6672_616d;
 /// A number in [`low`, `high`).
 fn between(random: &mut Random, low: f64, high: f64) -> f64 {
     low + (high - low) * random.uniform()
+}
+
+/// A seed from several numbers: SplitMix64 over each in turn.
+fn mixed<const N: usize>(numbers: [u64; N]) -> u64 {
+    numbers.into_iter().fold(0, |state, x| {
+        let mut z = (state ^ x).wrapping_add(0x9e37_79b9_7f4a_7c15);
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    })
 }

@@ -13,7 +13,7 @@ use super::umeyama::{Pair, ScaleMode, umeyama};
 use crate::geometry::angle;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
-use crate::geometry::normal_equations::NormalEquations;
+use crate::geometry::normal_equations::{NormalEquations, PARAMETERS};
 use crate::geometry::similarity::{Similarity, nearest_rotation, vector3};
 
 /// What an iteration minimises.
@@ -30,6 +30,8 @@ pub enum IcpMetric {
 pub struct IcpSettings {
     /// What is minimised.
     pub metric: IcpMetric,
+    /// Tukey's biweight on the residuals; `false` gives every pair the same say, as classical ICP does.
+    pub robust: bool,
     /// ŝ stays as it came in (the paper's lock).
     pub lock_scale: bool,
     /// The scale never leaves this interval when it is not locked.
@@ -79,7 +81,7 @@ pub fn refine(
     while refined.iterations < settings.max_iterations {
         let support = supported(source, target, target_tree, &refined.target_from_source, &support_settings);
         refined.supported = support.len();
-        let residuals = Residuals::of(&support, target, settings.metric);
+        let residuals = Residuals::of(&support, target, settings);
         let Some(next) = step(source, &residuals, &refined.target_from_source, settings) else { break };
         refined.rms = residuals.rms();
         refined.iterations += 1;
@@ -113,7 +115,8 @@ struct Residual {
 struct Residuals(Vec<Residual>);
 
 impl Residuals {
-    fn of(support: &[Support], target: &Cloud, metric: IcpMetric) -> Self {
+    fn of(support: &[Support], target: &Cloud, settings: &IcpSettings) -> Self {
+        let metric = settings.metric;
         let residual = |s: &Support| {
             let index = s.target as usize;
             let (landed, point) = (vector3(s.landed), vector3(*target.points.get(index)?));
@@ -128,9 +131,11 @@ impl Residuals {
             Some(Residual { source: s.source as usize, landed, target: point, normal, value, weight: 1.0 })
         };
         let mut residuals: Vec<Residual> = support.iter().filter_map(residual).collect();
-        let values: Vec<f64> = residuals.iter().map(|r| r.value).collect();
-        for (residual, weight) in residuals.iter_mut().zip(biweights(&values, ROUNDING)) {
-            residual.weight = weight;
+        if settings.robust {
+            let values: Vec<f64> = residuals.iter().map(|r| r.value).collect();
+            for (residual, weight) in residuals.iter_mut().zip(biweights(&values, ROUNDING)) {
+                residual.weight = weight;
+            }
         }
         Self(residuals)
     }
@@ -183,16 +188,26 @@ fn gauss_newton(residuals: &Residuals, pose: &Similarity, lock_scale: bool) -> O
     let mut equations = NormalEquations::new();
     for r in residuals.0.iter().filter(|r| r.weight > 0.0) {
         let arm = r.landed - center;
-        let (turn, normal) = (arm.cross(&r.normal), r.normal);
-        let growth = if lock_scale { 0.0 } else { arm.dot(&normal) };
-        let jacobian = [turn.x, turn.y, turn.z, normal.x, normal.y, normal.z, growth];
+        let mut jacobian = rigid_jacobian(arm, r.normal);
+        jacobian[6] = if lock_scale { 0.0 } else { arm.dot(&r.normal) };
         equations.add(&jacobian, r.value, r.weight);
     }
     // Directions that the data leave free (a plane slides on itself) stay where they are.
     let delta = equations.solve(1e-9)?;
+    moved(pose, center, &delta)
+}
+
+/// The derivatives by (ω, τ, σ) of the distance along `direction` that a point at `arm` from the centre moves.
+pub fn rigid_jacobian(arm: Vector3<f64>, direction: Vector3<f64>) -> [f64; PARAMETERS] {
+    let turn = arm.cross(&direction);
+    [turn.x, turn.y, turn.z, direction.x, direction.y, direction.z, 0.0]
+}
+
+/// The pose after the step (ω, τ, σ) about `center`; `None` where that is not finite.
+pub fn moved(pose: &Similarity, center: Vector3<f64>, delta: &[f64; PARAMETERS]) -> Option<Similarity> {
     let turn = angle::turn(Vector3::new(delta[0], delta[1], delta[2]));
     let shift = Vector3::new(delta[3], delta[4], delta[5]);
-    let growth = if lock_scale { 1.0 } else { libm::exp(delta[6].clamp(-0.5, 0.5)) };
+    let growth = libm::exp(delta[6].clamp(-0.5, 0.5));
     let turn = turn.to_rotation_matrix();
     // Products of many small turns drift off SO(3) by rounding; the projection keeps R a rotation.
     let rotation = nearest_rotation((turn * pose.rotation).into_inner());
@@ -202,7 +217,7 @@ fn gauss_newton(residuals: &Residuals, pose: &Similarity, lock_scale: bool) -> O
 }
 
 /// The furthest that a corner of the unit box moves from one pose to the next.
-fn movement(from: &Similarity, to: &Similarity) -> f64 {
+pub fn movement(from: &Similarity, to: &Similarity) -> f64 {
     let corner = |i: usize| Vector3::new(0.5 - (i & 1) as f64, 0.5 - (i >> 1 & 1) as f64, 0.5 - (i >> 2 & 1) as f64);
     (0..8).map(|i| (from.apply(corner(i)) - to.apply(corner(i))).norm()).fold(0.0, f64::max)
 }

@@ -25,6 +25,15 @@ pub fn mutual_matches(source: &[Descriptor], target: &[Descriptor]) -> Vec<Match
     mutual.collect()
 }
 
+/// Fewer mutual matches than this hold too few right ones among them.
+const MIN_MUTUAL_MATCHES: usize = 50;
+
+/// The mutual matches, or the one-way matches where hardly any is mutual: robust estimators then sift these.
+pub fn enough_matches(source: &[Descriptor], target: &[Descriptor]) -> Vec<Match> {
+    let mutual = mutual_matches(source, target);
+    if mutual.len() < MIN_MUTUAL_MATCHES { one_way_matches(source, target) } else { mutual }
+}
+
 /// The best source point for every target point: many more pairs than the mutual ones, most of them wrong. For
 /// targets so partial or so noisy that hardly any pair is mutual. In the order of the target.
 pub fn one_way_matches(source: &[Descriptor], target: &[Descriptor]) -> Vec<Match> {

@@ -4,6 +4,7 @@ pub mod density;
 pub mod extents;
 pub mod filter;
 pub mod fpfh;
+pub mod grid_cloud;
 pub mod icp;
 pub mod matching;
 pub mod normals;

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3, Vec3};
 
 use crate::geometry::kd_tree::KdTree;
-use crate::geometry::order::index_of;
+use crate::geometry::order::{index_of, median};
 use crate::geometry::symmetric_eigen::SymmetricEigen;
 
 /// Variance across a neighbourhood, as a share of that along it, below which it is a line.
@@ -62,6 +62,14 @@ pub fn estimate_normals(
         *slot = if normal.dot(outward) < 0.0 { -normal } else { normal };
     });
     normals
+}
+
+/// Normals that point away from the middle of the points: the median, which clutter moves least. Without a viewpoint
+/// that is the orientation that two clouds can agree on.
+pub fn outward_normals(points: &[Vec3], neighbors: usize) -> Vec<Vec3> {
+    let middle = |axis: usize| median(points.iter().map(|p| p[axis])).unwrap_or_default();
+    let center = Vec3::new(middle(0), middle(1), middle(2));
+    estimate_normals(points, &KdTree::new(points), Neighborhood::nearest(neighbors), Orientation::AwayFrom(center))
 }
 
 /// Unit, or zero where the neighbours do not span a plane. Sums are taken about `point`, to keep digits.

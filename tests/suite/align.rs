@@ -24,7 +24,7 @@ const WIDTH: usize = 240;
 const HEIGHT: usize = 180;
 
 /// A body with bumps and dents at many places, so that no turn maps it onto itself.
-fn body() -> Mesh {
+pub fn body() -> Mesh {
     let wave = |x: f32| libm::sinf(x);
     mapped(&ellipsoid(Vec3::new(0.5, 0.38, 0.3), 40), |p| {
         p * (1.0
@@ -42,7 +42,7 @@ fn truth() -> Similarity {
 }
 
 /// What a camera sees of the body in front of a wall; depths in units of `unit_m` metres.
-fn observe(mesh: &Mesh, unit_m: f32) -> Observation {
+pub fn observe(mesh: &Mesh, unit_m: f32) -> Observation {
     let camera = Pinhole::new(420.0, 420.0, 119.5, 89.5).unwrap();
     let mut rasteriser = Rasteriser::new();
     rasteriser.render(mesh, &truth(), &camera, WIDTH, HEIGHT);

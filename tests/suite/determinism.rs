@@ -18,12 +18,12 @@ use wasm_bindgen_test::wasm_bindgen_test;
 use crate::support::{Draw, mug, pose_error, transformed, unit_box};
 
 /// FNV-1a over the bytes of 64-bit words.
-fn fingerprint(words: impl IntoIterator<Item = u64>) -> u64 {
+pub fn fingerprint(words: impl IntoIterator<Item = u64>) -> u64 {
     let bytes = words.into_iter().flat_map(u64::to_le_bytes);
     bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
 }
 
-fn of_pose(pose: &Similarity) -> u64 {
+pub fn of_pose(pose: &Similarity) -> u64 {
     fingerprint(pose.to_column_major().map(f64::to_bits))
 }
 
@@ -61,6 +61,7 @@ fn stages_give_the_same_bits_everywhere() {
         .map(|(metric, lock_scale)| {
             let settings = IcpSettings {
                 metric,
+                robust: true,
                 lock_scale,
                 scale_bounds: None,
                 max_iterations: 30,

@@ -22,6 +22,7 @@ const NOISE: f64 = 0.002;
 fn settings(metric: IcpMetric, lock_scale: bool) -> IcpSettings {
     IcpSettings {
         metric,
+        robust: true,
         lock_scale,
         scale_bounds: None,
         max_iterations: 200,

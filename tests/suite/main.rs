@@ -5,6 +5,12 @@
 
 pub mod align;
 pub mod angle;
+#[cfg(feature = "baselines")]
+pub mod baselines;
+#[cfg(feature = "baselines")]
+pub mod baselines_agreement;
+#[cfg(feature = "baselines")]
+pub mod baselines_solvers;
 pub mod density;
 pub mod determinism;
 pub mod distance_transform;
@@ -31,6 +37,8 @@ pub mod formats_mesh;
 pub mod fpfh;
 pub mod icp;
 pub mod image;
+#[cfg(all(feature = "bench", not(target_arch = "wasm32")))]
+pub mod imported;
 pub mod kd_tree;
 pub mod matching;
 pub mod mesh;
@@ -40,6 +48,8 @@ pub mod normals;
 pub mod number;
 pub mod observe;
 pub mod order;
+#[cfg(all(feature = "samples", not(target_arch = "wasm32")))]
+pub mod overlay;
 pub mod pinhole;
 pub mod pose_error;
 pub mod precise;
@@ -55,6 +65,8 @@ pub mod register;
 pub mod sample;
 #[cfg(all(feature = "samples", not(target_arch = "wasm32")))]
 pub mod samples;
+#[cfg(all(feature = "samples", not(target_arch = "wasm32")))]
+pub mod scenes;
 pub mod search;
 pub mod shapes;
 pub mod silhouette;

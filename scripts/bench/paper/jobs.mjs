@@ -1,12 +1,12 @@
 /** The work of the paper's tables: our methods, other libraries, and what they answered. */
 import { readdirSync } from "node:fs";
 import { join } from "node:path";
+import { runPeers } from "../peers.mjs";
 import { runBenchmark } from "../records.mjs";
 import { rowsToRun } from "./rows.mjs";
 
 /** @typedef {import("../progress.mjs").Progress} Progress */
 /** @typedef {import("./rows.mjs").TableSpec} TableSpec */
-/** @typedef {import("../peers.mjs").Peers} Peers */
 /**
  * @typedef {object} Job
  * @property {number} work seconds that it is expected to take, all of it
@@ -75,26 +75,37 @@ function recordsJob(args, file, records, each) {
 
 /**
  * Other libraries over the cases.
- * @param {Peers} peers
- * @param {boolean} quick
+ * @param {Record<string, number>} methods what an answer of each is expected to take, in seconds
  * @param {string} cases
  * @param {string} out
+ * @param {string} python
  * @returns {Job}
  */
-export function peersJob(peers, quick, cases, out) {
-  const methods = peers.methods(quick);
-  const each = (/** @type {string} */ method) => peers.expectedSeconds(method);
-  const left = methods.reduce((sum, method) => sum + each(method), 0) * caseCount(cases);
+export function peersJob(methods, cases, out, python) {
+  return answersJob(methods, caseCount(cases), (onProgress) =>
+    runPeers({ cases: [cases], out, methods: Object.keys(methods), python, onProgress }),
+  );
+}
+
+/**
+ * Counts answers as they come; those that were there already are not told.
+ * @param {Record<string, number>} methods
+ * @param {number} cases
+ * @param {(onProgress: NonNullable<import("../peers.mjs").PeersRun["onProgress"]>) => Promise<void>} run
+ * @returns {Job}
+ */
+export function answersJob(methods, cases, run) {
+  const work = Object.values(methods).reduce((sum, seconds) => sum + seconds, 0) * cases;
   return {
-    work: left,
+    work,
     async run(progress) {
       let advanced = 0;
-      await peers.run({ cases, out, methods }, ({ method, case: name }) => {
-        advanced += each(method);
-        progress.advance(each(method), `${method}, ${name}`);
+      await run(({ method, case: name }) => {
+        const seconds = methods[method] ?? 0;
+        advanced += seconds;
+        progress.advance(seconds, `${method}, ${name}`);
       });
-      // Answers that were there already are not told.
-      progress.skip(left - advanced);
+      progress.skip(work - advanced);
     },
   };
 }

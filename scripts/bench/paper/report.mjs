@@ -10,8 +10,8 @@ import { makeTables, secondsOf, tableMarkdown } from "./tables.mjs";
 
 /** @typedef {import("../records.mjs").BenchRecord} BenchRecord */
 /** @typedef {import("./rows.mjs").TableSpec} TableSpec */
-/** @typedef {{ id: string, title: string, note: string, markdown: string, data: unknown }} GeneralTable */
-/** @typedef {Awaited<ReturnType<import("../results.mjs").surroundings>>} Surroundings */
+/** @typedef {{ id: string, title: string, markdown: string, data: unknown }} GeneralTable */
+/** @typedef {Awaited<ReturnType<typeof import("../results.mjs").surroundings>>} Surroundings */
 /**
  * @typedef {object} Finished
  * @property {readonly TableSpec[]} specs
@@ -57,7 +57,7 @@ export async function report({ specs, out, run, folders, general, snapshot }) {
   const tables = makeTables(specs, recordsOf, readPaperFigures());
   const seconds = secondsOf(tables, recordsOf);
   const sections = tables.map((table) => `## ${table.title}\n\n${tableMarkdown(table, seconds[table.id] ?? {})}`);
-  sections.push(...general.map(({ title, note, markdown }) => `## ${title}\n\n${note}\n\n${markdown}`));
+  sections.push(...general.map(({ title, markdown }) => `## ${title}\n\n${markdown}`));
   const markdown = `# Benchmark\n\n${described(run)}\n\n${notes}\n\n${sections.join("\n\n")}\n`;
 
   const write = (/** @type {string} */ name, /** @type {unknown} */ content) =>

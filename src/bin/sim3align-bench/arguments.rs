@@ -1,24 +1,29 @@
 //! The command line.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use lexopt::prelude::*;
 use sim3align::align::field::{Field, Options};
 use sim3align::align::options::AlignOptions;
+use sim3align::baselines::Baseline;
+use sim3align::error::Error;
 use sim3align::samples::benchmark::override_setting;
 use sim3align::samples::evaluation::case::CASES;
 use sim3align::samples::evaluation::tier::{Class, Tier};
 use sim3align::samples::records::RecordKey;
+use sim3align::samples::scenes::Prior;
 use sim3align::stages::search::SearchSettings;
 
 pub const USAGE: &str = "\
-Usage: sim3align-bench [--generated N] [--cases DIR...] [options]
+Usage: sim3align-bench [--generated N] [--scenes N] [--cases DIR...] [options]
 
 Aligns cases with a known truth and prints Markdown tables: success, errors, metrics, failures.
 
 Cases
-  --generated N      cases 0 to N − 1 of the generated set; 240 where no --cases is given either
-  --set-seed S       seed of the generated set, default 0
+  --generated N      cases 0 to N − 1 of the generated set; 240 where no --cases or --scenes is given either
+  --scenes N         all pairs of a set of N cluttered scenes; 100 scenes are 338 pairs
+  --prior P          what made the meshes of the scenes: detailed (default), smooth or both
+  --set-seed S       seed of the generated set and of the scenes, default 0
   --meshes DIR       show the GLB files of a folder in a third of the generated cases
   --cases DIR...     case folders, or folders of case folders
   --tier T,…         only these: easy, medium, hard
@@ -31,38 +36,58 @@ Method
   --seed N           same as --option seed=N
   --option K=V       an option of align() by its JavaScript name; null, and min,max for guard; may be repeated
   --row 'NAME: K=V K=V…'
-                     one more row of the tables, with these options on top of the others; may be repeated
+                     one more row of the tables, with these options on top of the others; may be repeated;
+                     method=M is another method: fgr, gicp, icp-point-to-plane, icp-point-to-point, ransac, teaser,
+                     quatro
+  --import NAME=DIR  one more row: another program's answers, DIR/CASE.json (docs/importing-results.md); may be
+                     repeated; without --row these are the only rows
 
 Running
   --threads N        default: all
   --json FILE        everything about every case, for other tables
   --records FILE     the same, added one JSON line at a time; what the file has already is not run again. Instead of
                      tables, prints what is done
-  --write DIR        write the generated cases as case folders, and align nothing
+  --write DIR        write the cases of the generated set as case folders, and align nothing
   --failures N       failures listed at most a row, default 40
   --help             this text";
 
 /// A set of options that all cases are run with.
+#[derive(Clone, Default)]
 pub struct Row {
     /// Its name in the tables.
     pub name: String,
     /// The options.
     pub options: AlignOptions,
     pub search: Vec<(String, f64)>,
+    pub method: Method,
     /// All assignments, as they were written.
-    pub assignments: String,
+    pub assignments: Vec<String>,
+}
+
+/// What gives a row's poses.
+#[derive(Clone, Default)]
+pub enum Method {
+    /// `align`.
+    #[default]
+    Align,
+    /// Another method of the crate's.
+    Baseline(Baseline),
+    /// Another program, which has left its answers in this folder.
+    Import(PathBuf),
 }
 
 impl Row {
     /// What a record of this row is kept under.
     pub fn key(&self, case: String) -> RecordKey {
-        RecordKey { row: self.name.clone(), options: self.assignments.clone(), case }
+        RecordKey { row: self.name.clone(), options: self.assignments.join(" "), case }
     }
 }
 
 /// What is asked for.
 pub struct Arguments {
     pub generated: usize,
+    pub scenes: usize,
+    pub priors: Vec<Prior>,
     pub set_seed: u64,
     pub meshes: Option<PathBuf>,
     pub cases: Vec<PathBuf>,
@@ -81,9 +106,12 @@ impl Arguments {
     /// `None` where help is asked for.
     pub fn parse(mut parser: lexopt::Parser) -> Result<Option<Self>, lexopt::Error> {
         let mut generated = None;
-        let (mut options, mut rows) = (Vec::new(), Vec::new());
+        let said = |error: Error| error.to_string();
+        let (mut options, mut rows, mut imports) = (Vec::new(), Vec::new(), Vec::new());
         let mut arguments = Self {
             generated: 0,
+            scenes: 0,
+            priors: vec![Prior::Detailed],
             set_seed: 0,
             meshes: None,
             cases: Vec::new(),
@@ -100,6 +128,8 @@ impl Arguments {
         while let Some(argument) = parser.next()? {
             match argument {
                 Long("generated") => generated = Some(parser.value()?.parse()?),
+                Long("scenes") => arguments.scenes = parser.value()?.parse()?,
+                Long("prior") => arguments.priors = Prior::several(&parser.value()?.string()?).map_err(said)?,
                 Long("set-seed") => arguments.set_seed = parser.value()?.parse()?,
                 Long("meshes") => arguments.meshes = Some(parser.value()?.into()),
                 Long("cases") => arguments.cases.extend(parser.values()?.map(PathBuf::from)),
@@ -110,6 +140,7 @@ impl Arguments {
                 Long("seed") => options.push(format!("seed={}", parser.value()?.string()?)),
                 Long("option") => options.push(parser.value()?.string()?),
                 Long("row") => rows.push(parser.value()?.string()?),
+                Long("import") => imports.push(parser.value()?.string()?),
                 Long("threads") => arguments.threads = parser.value()?.parse::<usize>()?.max(1),
                 Long("json") => arguments.json = Some(parser.value()?.into()),
                 Long("records") => arguments.records = Some(parser.value()?.into()),
@@ -119,28 +150,33 @@ impl Arguments {
                 _ => return Err(argument.unexpected()),
             }
         }
-        let mut base = AlignOptions::default();
-        let mut base_search = Vec::new();
+        let mut base = Row::default();
         for assignment in &options {
-            assign(&mut base, &mut base_search, assignment)?;
+            assign(&mut base, assignment)?;
         }
-        let base_assignments = options;
         for text in rows {
             let (name, assignments) = text.split_once(':').ok_or("--row without a colon after its name")?;
-            let mut options = base.clone();
-            let mut search = base_search.clone();
+            let mut row = Row { name: name.trim().into(), ..base.clone() };
             for assignment in assignments.split_whitespace() {
-                assign(&mut options, &mut search, assignment)?;
+                assign(&mut row, assignment)?;
             }
-            let written = base_assignments.iter().map(String::as_str).chain(assignments.split_whitespace());
-            let written = written.collect::<Vec<_>>().join(" ");
-            arguments.rows.push(Row { name: name.trim().into(), options, search, assignments: written });
+            arguments.rows.push(row);
+        }
+        for text in imports {
+            let (name, folder) = text.split_once('=').ok_or("--import without NAME= before its folder")?;
+            if !Path::new(folder).is_dir() {
+                return Err(format!("--import {text}: found no folder {folder}").into());
+            }
+            arguments.rows.push(Row { name: name.into(), method: Method::Import(folder.into()), ..Row::default() });
         }
         if arguments.rows.is_empty() {
-            let assignments = base_assignments.join(" ");
-            arguments.rows.push(Row { name: name_of(base.preset), options: base, search: base_search, assignments });
+            let name = match &base.method {
+                Method::Baseline(baseline) => baseline.as_str().into(),
+                _ => name_of(base.options.preset),
+            };
+            arguments.rows.push(Row { name, ..base });
         }
-        let anything_else = !arguments.cases.is_empty() || arguments.only.is_some();
+        let anything_else = !arguments.cases.is_empty() || arguments.only.is_some() || arguments.scenes > 0;
         arguments.generated = generated.unwrap_or(if anything_else { 0 } else { CASES });
         Ok(Some(arguments))
     }
@@ -154,9 +190,17 @@ fn list<T, E: std::fmt::Display>(text: &str, parse: impl Fn(&str) -> Result<T, E
     text.split(',').map(|part| parse(part.trim()).map_err(|error| format!("{part:?}: {error}"))).collect()
 }
 
-/// Sets an option from `name=value`, or one of the search's settings from `search.name=number`.
-fn assign(options: &mut AlignOptions, search: &mut Vec<(String, f64)>, assignment: &str) -> Result<(), String> {
+/// Sets an option from `name=value`, one of the search's settings from `search.name=number`, or the method.
+fn assign(row: &mut Row, assignment: &str) -> Result<(), String> {
+    let Row { options, search, method, assignments, .. } = row;
+    assignments.push(assignment.to_owned());
     let (name, value) = assignment.split_once('=').ok_or_else(|| format!("{assignment:?} is no NAME=VALUE"))?;
+    if name == "method" {
+        let names = || Baseline::ALL.map(Baseline::as_str).join(", ");
+        let baseline = Baseline::from_name(value).ok_or_else(|| format!("no method {value}; there are {}", names()))?;
+        *method = Method::Baseline(baseline);
+        return Ok(());
+    }
     if let Some(setting) = name.strip_prefix("search.") {
         let value = value.parse().map_err(|_| format!("{name}: found {value:?}, expected a number"))?;
         if !override_setting(&mut SearchSettings::default(), setting, value) {

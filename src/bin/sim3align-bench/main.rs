@@ -2,6 +2,7 @@
 
 mod arguments;
 mod run;
+mod scenes;
 mod table;
 
 use std::process::ExitCode;

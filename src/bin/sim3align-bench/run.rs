@@ -6,17 +6,22 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use serde_json::json;
-use sim3align::samples::benchmark::{BenchCase, Record, run_case};
+use sim3align::align::baseline::align_baseline;
+use sim3align::samples::benchmark::{BenchCase, Record, run_case, run_method};
 use sim3align::samples::evaluation::case::EvaluationSet;
 use sim3align::samples::evaluation::tier::{Class, Tier};
+use sim3align::samples::imported::imported;
 use sim3align::samples::records::{RecordFile, RecordKey};
+use sim3align::samples::scenes::{Prior, SceneSet};
 
-use crate::arguments::{Arguments, Row};
+use crate::arguments::{Arguments, Method, Row};
+use crate::scenes::Scenes;
 use crate::table;
 
 /// Where a case comes from.
-enum Source {
+pub enum Source {
     Generated(usize),
+    Scene { scene: usize, pair: usize, prior: Prior },
     Folder(PathBuf),
 }
 
@@ -25,6 +30,7 @@ impl Source {
     fn id(&self) -> String {
         match self {
             Self::Generated(index) => format!("generated-{index:04}"),
+            Self::Scene { scene, pair, prior } => format!("scene-{scene:03}-{pair}-{}", prior.as_str()),
             Self::Folder(folder) => folder.file_name().unwrap_or_default().to_string_lossy().into_owned(),
         }
     }
@@ -35,7 +41,8 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
         Some(folder) => EvaluationSet::with_meshes(arguments.set_seed, folder).map_err(|error| error.to_string())?,
         None => EvaluationSet::new(arguments.set_seed),
     };
-    let sources = sources(arguments)?;
+    let scenes = Scenes::new(SceneSet::new(arguments.set_seed, arguments.scenes));
+    let sources = sources(arguments, &scenes)?;
     if sources.is_empty() {
         return Err("no case left to run".into());
     }
@@ -45,17 +52,18 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
                 let case = set.case(*index).map_err(|error| error.to_string())?;
                 case.write(&folder.join(case.name())).map_err(|error| error.to_string())
             }
-            Source::Folder(_) => Ok(()),
+            Source::Scene { .. } | Source::Folder(_) => Ok(()),
         });
         return written.into_iter().collect();
     }
+    let load = |source: &Source| load(source, &set, &scenes);
     if let Some(path) = &arguments.records {
-        return go_on(arguments, &sources, &set, path);
+        return go_on(arguments, &sources, &load, path);
     }
     let begun = std::time::Instant::now();
     let records = in_order(arguments.threads, &sources, |source| {
-        let case = load(source, &set)?;
-        Ok(arguments.rows.iter().map(|row| run_case(&case, &row.options, &row.search)).collect())
+        let case = load(source)?;
+        Ok(arguments.rows.iter().map(|row| run_row(&case, row)).collect())
     });
     let records: Vec<Vec<Record>> = records.into_iter().collect::<Result<_, String>>()?;
     eprintln!("{} cases in {:.1} s", records.len(), begun.elapsed().as_secs_f64());
@@ -72,7 +80,12 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
 }
 
 /// Adds to a file of records what is not there yet. What is done is told on standard output as JSON, a line each.
-fn go_on(arguments: &Arguments, sources: &[Source], set: &EvaluationSet, path: &Path) -> Result<(), String> {
+fn go_on(
+    arguments: &Arguments,
+    sources: &[Source],
+    load: &(dyn Fn(&Source) -> Result<BenchCase, String> + Sync),
+    path: &Path,
+) -> Result<(), String> {
     let file = RecordFile::open(path).map_err(|error| error.to_string())?;
     let missing = |source: &Source| -> Vec<(&Row, RecordKey)> {
         let keyed = arguments.rows.iter().map(|row| (row, row.key(source.id())));
@@ -86,9 +99,9 @@ fn go_on(arguments: &Arguments, sources: &[Source], set: &EvaluationSet, path: &
         if missing.is_empty() {
             return Ok(());
         }
-        let case = load(source, set)?;
+        let case = load(source)?;
         for (row, key) in missing {
-            let record = run_case(&case, &row.options, &row.search);
+            let record = run_row(&case, row);
             file.add(&key, &record).map_err(|error| error.to_string())?;
             println!("{}", json!({ "row": key.row, "case": key.case, "seconds": record.seconds }));
         }
@@ -98,15 +111,26 @@ fn go_on(arguments: &Arguments, sources: &[Source], set: &EvaluationSet, path: &
     .collect()
 }
 
-fn load(source: &Source, set: &EvaluationSet) -> Result<BenchCase, String> {
+fn run_row(case: &BenchCase, row: &Row) -> Record {
+    match &row.method {
+        Method::Align => run_case(case, &row.options, &row.search),
+        Method::Baseline(baseline) => {
+            run_method(case, |observation, mesh, host| align_baseline(observation, mesh, *baseline, &row.options, host))
+        }
+        Method::Import(folder) => imported(case, folder),
+    }
+}
+
+fn load(source: &Source, set: &EvaluationSet, scenes: &Scenes) -> Result<BenchCase, String> {
     let case = match source {
         Source::Generated(index) => set.case(*index).map(BenchCase::from),
+        Source::Scene { scene, pair, prior } => scenes.case(*scene, *pair, *prior),
         Source::Folder(folder) => BenchCase::read(folder),
     };
     case.map_err(|error| error.to_string())
 }
 
-fn sources(arguments: &Arguments) -> Result<Vec<Source>, String> {
+fn sources(arguments: &Arguments, scenes: &Scenes) -> Result<Vec<Source>, String> {
     let fits =
         |&index: &usize| arguments.tiers.contains(&Tier::of(index)) && arguments.classes.contains(&Class::of(index));
     let generated: Vec<usize> = match &arguments.only {
@@ -114,6 +138,7 @@ fn sources(arguments: &Arguments) -> Result<Vec<Source>, String> {
         None => (0..arguments.generated).filter(fits).collect(),
     };
     let mut sources: Vec<Source> = generated.into_iter().map(Source::Generated).collect();
+    sources.extend(scenes.sources(&arguments.priors));
     for folder in &arguments.cases {
         sources.extend(case_folders(folder)?.into_iter().map(Source::Folder));
     }

@@ -92,7 +92,9 @@ fn line(out: &mut String, group: &str, name: &str, records: &[&Record]) {
         error(2, |e| 100.0 * e.translation_error_relative),
     );
     metrics(out, records, |record| record.alignment.as_ref().map(|alignment| alignment.metrics));
-    let _ = writeln!(out, " | {} |", text(median(records.iter().map(|record| record.seconds).collect()), 2));
+    // Of answers that were imported it may not be known.
+    let seconds = records.iter().map(|record| record.seconds).filter(|seconds| seconds.is_finite());
+    let _ = writeln!(out, " | {} |", text(median(seconds.collect()), 2));
 }
 
 fn truth_line(out: &mut String, group: &str, records: &[&Record]) {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use glam::DVec3;
-use serde_json::{Value, json};
+use serde_json::json;
 
 use super::draft::{Axis, Object};
 use super::generator::generate;
@@ -18,8 +18,9 @@ use crate::geometry::mesh::Mesh;
 use crate::geometry::random::Random;
 use crate::geometry::similarity::Similarity;
 use crate::metrics::symmetry::{Symmetry, SymmetryAxis};
-use crate::samples::case::{case_files, write_files};
+use crate::samples::case::{case_files, parameters_json, symmetry_json, write_files};
 use crate::samples::distortion::canonicalise;
+use crate::samples::mixed;
 use crate::stages::observe::Observation;
 use crate::stages::sample::SurfaceMoments;
 
@@ -88,7 +89,7 @@ impl EvaluationSet {
     /// None that its input could cause.
     pub fn case(&self, index: usize) -> Result<EvaluationCase> {
         for draw in 0..DRAWS {
-            if let Some(case) = self.draw(index, mixed(self.seed, index as u64, draw))? {
+            if let Some(case) = self.draw(index, mixed([self.seed, index as u64, draw]))? {
                 return Ok(case);
             }
         }
@@ -171,20 +172,8 @@ impl EvaluationCase {
     /// # Errors
     /// [`ErrorCode::Internal`] where an encoder fails.
     pub fn files(&self) -> Result<Vec<(&'static str, Vec<u8>)>> {
-        let axes = match &self.symmetry {
-            Symmetry::Declared(axes) => axes.as_slice(),
-            _ => &[],
-        };
-        let words = match axes.iter().find(|axis| axis.fold.is_none()) {
-            Some(_) => "continuous",
-            None if axes.is_empty() => "none",
-            None => "discrete",
-        };
-        let axes: Vec<Value> =
-            axes.iter().map(|a| json!({ "axis": [a.axis.x, a.axis.y, a.axis.z], "fold": a.fold })).collect();
-        let truth = json!({ "symmetry": words, "symmetryAxes": axes, "note": format!("generated: {}", self.name()) });
-        let parameters: serde_json::Map<_, _> =
-            self.parameters.iter().map(|(name, value)| ((*name).to_owned(), json!(value))).collect();
+        let truth = symmetry_json(&self.symmetry, &self.name());
+        let parameters = parameters_json(&self.parameters);
         let meta = json!({
             "index": self.index,
             "tier": self.tier.as_str(),
@@ -193,7 +182,7 @@ impl EvaluationCase {
             "tags": self.tags,
             "parameters": parameters,
         });
-        let mut files = case_files(&self.observation, &self.mesh, &self.camera_from_mesh, truth)?.to_vec();
+        let mut files = case_files(&self.observation, &self.mesh, &self.camera_from_mesh, truth, None)?;
         files.push(("meta.json", format!("{meta:#}\n").into_bytes()));
         Ok(files)
     }
@@ -245,7 +234,7 @@ fn shows_enough(scene: &Scene, placed: &Mesh, object: &Object, tier: Tier, class
 }
 
 /// Whether what is flat is not seen on edge, nor what is long from its end: nobody takes such a photo to be measured.
-fn is_telling(scene: &Scene, placed: &Mesh, tier: Tier) -> bool {
+pub(in crate::samples) fn is_telling(scene: &Scene, placed: &Mesh, tier: Tier) -> bool {
     let moments = SurfaceMoments::of(placed);
     let axes = moments.principal_axes();
     let [thin, middle, long] = axes.values.map(|variance| variance.max(0.0).sqrt());
@@ -258,7 +247,7 @@ fn is_telling(scene: &Scene, placed: &Mesh, tier: Tier) -> bool {
 }
 
 /// The symmetry in the frame of the mesh.
-fn declared(axes: &[Axis], object_from_mesh: &Similarity) -> Symmetry {
+pub(in crate::samples) fn declared(axes: &[Axis], object_from_mesh: &Similarity) -> Symmetry {
     if axes.is_empty() {
         return Symmetry::None;
     }
@@ -268,14 +257,4 @@ fn declared(axes: &[Axis], object_from_mesh: &Similarity) -> Symmetry {
         SymmetryAxis { axis: nalgebra::Vector3::from(turned.to_array()), fold }
     };
     Symmetry::Declared(axes.iter().map(axis).collect())
-}
-
-/// A seed from three numbers: SplitMix64 over each in turn.
-fn mixed(seed: u64, index: u64, draw: u64) -> u64 {
-    [seed, index, draw].into_iter().fold(0, |state, x| {
-        let mut z = (state ^ x).wrapping_add(0x9e37_79b9_7f4a_7c15);
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    })
 }

@@ -79,8 +79,20 @@ const FAMILIES: &[Family] = &[
     Family("sofa", figures::sofa, Kind::Common),
 ];
 
+/// Families that stand on floors.
+const FURNITURE: &[&str] = &["chair", "sofa"];
+
 /// Of the cases for which there is a choice, how many show a scan where there are any.
 const SCANS: f64 = 0.35;
+
+impl Family {
+    fn object(&self, random: &mut Random) -> Result<Object> {
+        let Self(name, make, _) = self;
+        let Draft { solid, symmetry, keys, losable } = make(random);
+        let (mesh, parts) = solid.finish()?;
+        Ok(Object { family: (*name).into(), mesh, parts, symmetry, keys, losable, any_side_up: false })
+    }
+}
 
 impl Object {
     /// An object for a case.
@@ -98,10 +110,13 @@ impl Object {
             _ => *kind == Kind::Common || (*kind == Kind::Thin && tier != Tier::Easy) || tier == Tier::Hard,
         };
         let families: Vec<&Family> = FAMILIES.iter().filter(fits).collect();
-        let Family(name, make, _) = families[random.below(families.len())];
-        let Draft { solid, symmetry, keys, losable } = make(random);
-        let (mesh, parts) = solid.finish()?;
-        Ok(Self { family: (*name).into(), mesh, parts, symmetry, keys, losable, any_side_up: false })
+        families[random.below(families.len())].object(random)
+    }
+
+    /// An object that has room on a desk beside others, of any such family.
+    pub fn for_desk(random: &mut Random) -> Result<Self> {
+        let families: Vec<&Family> = FAMILIES.iter().filter(|Family(name, ..)| !FURNITURE.contains(name)).collect();
+        families[random.below(families.len())].object(random)
     }
 
     /// The diagonal of the box around it, metres.

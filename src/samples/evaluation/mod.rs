@@ -5,30 +5,30 @@
 
 pub mod case;
 mod cluster;
-mod draft;
+pub(in crate::samples) mod draft;
 mod figures;
-mod generator;
+pub(in crate::samples) mod generator;
 mod kitchen;
-mod mask;
-mod readings;
+pub(in crate::samples) mod mask;
+pub(in crate::samples) mod readings;
 mod scans;
-mod scene;
-mod solid;
+pub(in crate::samples) mod scene;
+pub(in crate::samples) mod solid;
 pub mod tier;
 mod tools;
 
 use crate::geometry::random::Random;
 
 /// Which object, and its dimensions.
-const OBJECT_STREAM: u64 = 1;
+pub(in crate::samples) const OBJECT_STREAM: u64 = 1;
 /// Camera and scene.
-const SCENE_STREAM: u64 = 2;
+pub(in crate::samples) const SCENE_STREAM: u64 = 2;
 /// Faults of the generated mesh.
-const GENERATOR_STREAM: u64 = 3;
+pub(in crate::samples) const GENERATOR_STREAM: u64 = 3;
 /// Faults of the depth map.
-const READINGS_STREAM: u64 = 4;
+pub(in crate::samples) const READINGS_STREAM: u64 = 4;
 /// Faults of the mask.
-const MASK_STREAM: u64 = 5;
+pub(in crate::samples) const MASK_STREAM: u64 = 5;
 
 /// Standard normal (Box and Muller).
 fn normal(random: &mut Random) -> f64 {
@@ -37,11 +37,11 @@ fn normal(random: &mut Random) -> f64 {
 }
 
 /// `true` with this probability.
-fn chance(random: &mut Random, probability: f64) -> bool {
+pub(in crate::samples) fn chance(random: &mut Random, probability: f64) -> bool {
     random.uniform() < probability
 }
 
 /// −1 or 1.
-fn sign(random: &mut Random) -> f64 {
+pub(in crate::samples) fn sign(random: &mut Random) -> f64 {
     if chance(random, 0.5) { -1.0 } else { 1.0 }
 }

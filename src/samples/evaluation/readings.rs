@@ -21,35 +21,55 @@ pub struct Readings {
     pub kind: &'static str,
     /// Share of the object's visible pixels without a reading.
     pub missing: f64,
+    /// By what share the warp moves each of the things asked for along its rays: what its truth has to follow.
+    pub drifts: Vec<f64>,
 }
 
 impl Readings {
     /// Reads a scene that shows an object of this diagonal, metres.
-    pub fn draw(scene: &Scene, diagonal: f64, (tier, class): (Tier, Class), random: &mut Random) -> Result<Self> {
+    pub fn draw(scene: &Scene, diagonal: f64, cell: (Tier, Class), random: &mut Random) -> Result<Self> {
+        Self::of_several(scene, &[], (diagonal, 1.0), cell, random)
+    }
+
+    /// Reads a scene that shows several things, each at these pixels, all of them being what the scene calls visible;
+    /// of a monocular model's grain, it has this share.
+    pub fn of_several(
+        scene: &Scene,
+        things: &[&[bool]],
+        (diagonal, grain): (f64, f64),
+        (tier, class): (Tier, Class),
+        random: &mut Random,
+    ) -> Result<Self> {
         let sensor = chance(random, tier.pick(0.3, 0.35, 0.3)) || class == Class::SparseSensor;
-        let (mut depth, bias) = if sensor {
-            let depth = sensed(scene, diagonal, (tier, class), random);
-            (depth, 1.0)
+        let (mut depth, drifts, bias) = if sensor {
+            (sensed(scene, diagonal, (tier, class), random), vec![0.0; things.len()], 1.0)
         } else {
-            (estimated(scene, diagonal, tier, random), libm::exp(between(random, libm::log(0.8), libm::log(1.25))))
+            let (depth, drifts) = estimated(scene, things, (diagonal, grain), tier, random);
+            (depth, drifts, libm::exp(between(random, libm::log(0.8), libm::log(1.25))))
         };
         depth.iter_mut().for_each(|z| *z *= bias as f32);
         let shown = || depth.iter().zip(&scene.visible).filter(|(_, visible)| **visible);
         let missing = shown().filter(|(z, _)| **z == 0.0).count() as f64 / shown().count().max(1) as f64;
         let kind = if sensor { "sensor" } else { "monocular" };
-        Ok(Self { depth: DepthMap::from_metres(scene.width, scene.height, depth)?, bias, kind, missing })
+        Ok(Self { depth: DepthMap::from_metres(scene.width, scene.height, depth)?, bias, kind, missing, drifts })
     }
 }
 
 /// Monocular: blurred over edges, warped by long waves, hardly any noise. The warp has no part that moves the object
-/// as a whole: that is the bias, which the truth follows.
-fn estimated(scene: &Scene, diagonal: f64, tier: Tier, random: &mut Random) -> Vec<f32> {
+/// as a whole: that is the bias, which the truth follows. Of several things it moves each by a share, which is returned.
+fn estimated(
+    scene: &Scene,
+    things: &[&[bool]],
+    (diagonal, grain): (f64, f64),
+    tier: Tier,
+    random: &mut Random,
+) -> (Vec<f32>, Vec<f64>) {
     let (width, height) = (scene.width, scene.height);
     let resolution = (width as f64 / 640.0).round() as usize;
     let radius = resolution * tier.pick(usize::from(chance(random, 0.5)), 1, 1 + random.below(2));
     let mut depth = blurred(&scene.depth, width, height, radius);
     let amplitude = between(random, 0.3, 1.0) * tier.pick(0.003, 0.012, 0.025) * diagonal;
-    let noise = between(random, 0.3, 1.0) * tier.pick(0.0007, 0.0015, 0.003) * diagonal;
+    let noise = between(random, 0.3, 1.0) * tier.pick(0.0007, 0.0015, 0.003) * diagonal * grain;
     // Waves no shorter than the object: a model gets its parts right to each other, and the whole not quite.
     let z_mean = mean(scene.object_depth.iter().filter(|z| **z > 0.0).map(|z| f64::from(*z)));
     let span = scene.camera.fx * diagonal / z_mean;
@@ -75,12 +95,14 @@ fn estimated(scene: &Scene, diagonal: f64, tier: Tier, random: &mut Random) -> V
         sum * amplitude / (1.5f64.sqrt() * z_mean)
     };
     let pixels = || (0..height).flat_map(|v| (0..width).map(move |u| (u, v)));
-    let offset = mean(pixels().zip(&scene.visible).filter(|(_, visible)| **visible).map(|((u, v), _)| wave(u, v)));
+    let over = |shown: &[bool]| mean(pixels().zip(shown).filter(|(_, shown)| **shown).map(|((u, v), _)| wave(u, v)));
+    let offset = over(&scene.visible);
+    let drifts = things.iter().map(|shown| over(shown) - offset).collect();
     for ((u, v), z) in pixels().zip(&mut depth) {
         let grain = (random.uniform() + random.uniform() - 1.0) * noise;
         *z = (f64::from(*z) * (1.0 + wave(u, v) - offset) + if *z > 0.0 { grain } else { 0.0 }) as f32;
     }
-    depth
+    (depth, drifts)
 }
 
 /// Mean over a square of readings.

@@ -23,7 +23,7 @@ use crate::samples::distortion::random_rotation;
 const OCCLUDERS: usize = 12;
 
 /// What the camera sees, without any fault.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Scene {
     /// Pixels in a row.
     pub width: usize,
@@ -66,6 +66,11 @@ pub fn put_down(object: &Object, tier: Tier, random: &mut Random) -> Result<(Mes
     } else {
         drawn
     };
+    put_down_turned(object, &rotation)
+}
+
+/// The object turned and put down: above the origin, its lowest point at z = 0.
+pub fn put_down_turned(object: &Object, rotation: &Matrix3<f64>) -> Result<(Mesh, Vec<Axis>)> {
     let turned: Vec<_> = object.mesh.positions().iter().map(|p| rotation * vector3(*p)).collect();
     let low = turned.iter().fold(f64::INFINITY, |low, p| low.min(p.z));
     let middle = [0, 1].map(|axis| {
@@ -75,7 +80,7 @@ pub fn put_down(object: &Object, tier: Tier, random: &mut Random) -> Result<(Mes
     });
     let down = Vector3::new(middle[0], middle[1], low);
     let positions = turned.iter().map(|p| crate::geometry::similarity::vec3(&(p - down))).collect();
-    let symmetry = object.symmetry.iter().map(|&(axis, fold)| (turned_axis(&rotation, axis), fold)).collect();
+    let symmetry = object.symmetry.iter().map(|&(axis, fold)| (turned_axis(rotation, axis), fold)).collect();
     Ok((Mesh::new(positions, object.mesh.triangles().to_vec())?, symmetry))
 }
 
@@ -174,13 +179,8 @@ impl Scene {
         let visible = object_depth.iter().zip(&others).map(|(&z, &other)| in_front(z, other)).collect();
         drop(solid);
         let mut depth = background(&pose, &camera, wall, width, height);
-        for ((z, &object), &other) in depth.iter_mut().zip(&object_depth).zip(&others) {
-            for nearer in [object, other] {
-                if nearer > 0.0 && (*z == 0.0 || nearer < *z) {
-                    *z = nearer;
-                }
-            }
-        }
+        put_before(&mut depth, &object_depth);
+        put_before(&mut depth, &others);
         let share = |px: usize| px as f64 / silhouette_px.max(1) as f64;
         Ok(Self {
             width,
@@ -216,8 +216,7 @@ impl Plan {
         let distance = self.camera.fx * self.diagonal / span;
         let eye = self.centre + self.towards * distance;
         let forward = -self.towards;
-        let right = forward.cross(&Vector3::z()).normalize();
-        let look = Matrix3::from_rows(&[right.transpose(), forward.cross(&right).transpose(), forward.transpose()]);
+        let look = looking(&forward);
         let ray = vector3(self.camera.back_project(self.aim[0], self.aim[1], 1.0));
         let aside = Rotation3::rotation_between(&Vector3::z(), &ray).unwrap_or_else(Rotation3::identity);
         let roll = Rotation3::from_axis_angle(&Vector3::z_axis(), self.roll);
@@ -293,6 +292,12 @@ fn aim(random: &mut Random, class: Class, span: f64, width: f64, height: f64) ->
     }
 }
 
+/// The axes of a camera that looks along `forward`, level: world to camera.
+pub fn looking(forward: &Vector3<f64>) -> Matrix3<f64> {
+    let right = forward.cross(&Vector3::z()).normalize();
+    Matrix3::from_rows(&[right.transpose(), forward.cross(&right).transpose(), forward.transpose()])
+}
+
 fn rendered(solid: &Solid, pose: &Similarity, plan: &Plan) -> Result<Vec<f32>> {
     if solid.is_empty() {
         return Ok(vec![0.0; plan.width * plan.height]);
@@ -303,20 +308,38 @@ fn rendered(solid: &Solid, pose: &Similarity, plan: &Plan) -> Result<Vec<f32>> {
     Ok(rasteriser.depth().to_vec())
 }
 
-fn count(depth: &[f32]) -> usize {
+/// What is nearer, of two images of z-depth, 0 being nothing.
+pub fn put_before(depth: &mut [f32], other: &[f32]) {
+    for (z, &other) in depth.iter_mut().zip(other) {
+        if other > 0.0 && (*z == 0.0 || other < *z) {
+            *z = other;
+        }
+    }
+}
+
+/// Pixels that show something.
+pub fn count(depth: &[f32]) -> usize {
     depth.iter().filter(|z| **z > 0.0).count()
 }
 
-fn in_front(z: f32, other: f32) -> bool {
+/// Whether a pixel shows what is at depth `z`, and not the other; 0 is nothing.
+pub fn in_front(z: f32, other: f32) -> bool {
     z > 0.0 && (other == 0.0 || z <= other)
 }
 
-fn hidden(object: &[f32], others: &[f32]) -> usize {
+/// Pixels of the object that something else hides.
+pub fn hidden(object: &[f32], others: &[f32]) -> usize {
     object.iter().zip(others).filter(|(z, other)| **z > 0.0 && !in_front(**z, **other)).count()
 }
 
-/// z-depth of the table and of the wall behind it.
-fn background(pose: &Similarity, camera: &Pinhole, wall: (Vector3<f64>, f64), width: usize, height: usize) -> Vec<f32> {
+/// z-depth of the table and of the wall behind it: what it faces, and how far it is behind the origin.
+pub fn background(
+    pose: &Similarity,
+    camera: &Pinhole,
+    wall: (Vector3<f64>, f64),
+    width: usize,
+    height: usize,
+) -> Vec<f32> {
     // n·p = d in the world's frame, as 1/z = (n·ray)/d in the camera's.
     let inverse_depth = |normal: Vector3<f64>, distance: f64| {
         let normal = pose.rotation * normal;
