@@ -12,6 +12,8 @@ use crate::align::evaluate::EvaluateOptions;
 use crate::align::options::{AlignOptions, EstimateOptions, RegisterOptions};
 use crate::align::{self, estimate_sim3, register};
 use crate::error::{Error, ErrorCode, Result};
+use crate::geometry::mesh::Mesh;
+use crate::stages::observe::Observation;
 
 /// Aligns a mesh to an observation; see `Aligner.align` in the TypeScript package.
 #[wasm_bindgen(skip_typescript)]
@@ -21,11 +23,17 @@ pub fn align(
     on_progress: Option<Listener>,
 ) -> core::result::Result<JsValue, JsValue> {
     let run = || {
-        let options: AlignOptions = options::options(options, &[])?;
-        let (observation, mesh) = (input::observation(input)?, input::mesh(input)?);
+        let (observation, mesh, options) = case(input, options)?;
         align::align(&observation, &mesh, &options, &mut JsHost::new(on_progress))
     };
     answer(run())
+}
+
+/// What an alignment is about.
+#[inline(never)]
+pub(super) fn case(input: &JsValue, options: &JsValue) -> Result<(Observation, Mesh, AlignOptions)> {
+    let options = options::options(options, &[])?;
+    Ok((input::observation(input)?, input::mesh(input)?, options))
 }
 
 /// Scores a transform; see `Aligner.evaluate` in the TypeScript package.

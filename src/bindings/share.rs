@@ -6,10 +6,9 @@ use glam::{DQuat, DVec2};
 use js_sys::Float64Array;
 use wasm_bindgen::prelude::*;
 
-use super::aligner::answer;
+use super::aligner::{answer, case};
 use super::error::to_js;
 use super::host::{JsHost, Listener};
-use super::{input, options};
 use crate::align::split::Share;
 use crate::error::{Error, ErrorCode, Result};
 use crate::stages::search::Found;
@@ -26,11 +25,7 @@ thread_local! {
 /// Prepares the search, in place of any other that is under way.
 #[wasm_bindgen(js_name = beginShare, skip_typescript)]
 pub fn begin_share(input: &JsValue, options: &JsValue) -> core::result::Result<(), JsValue> {
-    let run = || {
-        let options = options::options(options, &[])?;
-        let (observation, mesh) = (input::observation(input)?, input::mesh(input)?);
-        Share::new(observation, mesh, options)
-    };
+    let run = || case(input, options).and_then(|(observation, mesh, options)| Share::new(observation, mesh, options));
     SHARE.set(Some(Box::new(run().map_err(|e| to_js(&e))?)));
     Ok(())
 }
@@ -55,9 +50,9 @@ pub fn step_share(
     let mut numbers = vec![share.tasks() as f64, f64::from(u8::from(share.is_refinement()))];
     numbers.push((per_task * NUMBERS) as f64);
     for Found { pose, score, converged, renders } in found {
-        numbers.extend(pose.rotation.to_array());
-        numbers.extend([pose.size, pose.place.x, pose.place.y, pose.distance]);
-        numbers.extend([f64::from(score.total), f64::from(u8::from(converged)), renders as f64]);
+        let CropPose { rotation: DQuat { x, y, z, w }, size, place, distance } = pose;
+        let (total, converged) = (f64::from(score.total), f64::from(u8::from(converged)));
+        numbers.extend_from_slice(&[x, y, z, w, size, place.x, place.y, distance, total, converged, renders as f64]);
     }
     SHARE.set(Some(share));
     Ok(Float64Array::from(numbers.as_slice()))
