@@ -18,23 +18,11 @@ export interface Core extends Glue {
   estimateSim3(source: Cloud, target: Cloud, correspondences: Uint32Array, options: object): Results.Registration;
   defaults(): Defaults;
   version(): string;
-  Share: new (input: CoreInput, options: object) => Share;
-}
-
-/** One's share of an alignment that several work on: see `src/align/split.rs`. */
-export interface Share {
-  /** How many tasks this round has; 0 when there is nothing left to do. */
-  tasks(): number;
-  isRefinement(): boolean;
-  /** What comes of every `parts`-th task, the first of them being `part`. */
-  run(part: number, parts: number): Float64Array;
-  /** Takes what came of all tasks, in their order. */
-  advance(found: Float64Array): void;
-  hypothesis(): Float64Array;
-  join(hypothesis: Float64Array): void;
+  beginShare(input: CoreInput, options: object): void;
+  /** See {@link ShareStep}; without parts, ends the share. */
+  stepShare(found: Float64Array | undefined, part: number, parts: number): Float64Array;
   /** Ends the share. */
-  finish(onProgress: CoreListener | undefined): Results.Alignment;
-  free(): void;
+  finishShare(onProgress: CoreListener | undefined): Results.Alignment;
 }
 
 /** The file readers' functions. */

@@ -1,5 +1,6 @@
 /** Who does the jobs: this thread, or workers. */
 import type { Core, CoreListener, Formats } from "./core.js";
+import { disposed } from "./error.js";
 import { type Job, perform, type Results } from "./jobs.js";
 import type { ProgressListener } from "./progress.js";
 import { type LoadedModule, Stopped } from "./wasm-module.js";
@@ -22,17 +23,18 @@ export interface Outcome<J extends Job> {
 
 /** Does jobs. */
 export interface Engine {
-  /** How many jobs it does at once. */
-  readonly width: number;
+  /** How many jobs it can be given at once without any of them waiting long. */
+  readonly capacity: number;
   run<J extends Job>(job: J, call: Call): Promise<Outcome<J>>;
   dispose(): void;
 }
 
 /** Does jobs here, one after the other: the thread is busy meanwhile. */
 export class HereEngine implements Engine {
-  readonly width = 1;
+  readonly capacity = 1;
   readonly #core: LoadedModule<Core>;
   readonly #formats: () => Promise<LoadedModule<Formats>>;
+  #isDisposed = false;
 
   constructor(core: LoadedModule<Core>, formats: () => Promise<LoadedModule<Formats>>) {
     this.#core = core;
@@ -40,19 +42,28 @@ export class HereEngine implements Engine {
   }
 
   async run<J extends Job>(job: J, { signal, progress }: Call): Promise<Outcome<J>> {
-    signal?.throwIfAborted();
+    const check = () => {
+      if (this.#isDisposed) throw disposed();
+      signal?.throwIfAborted();
+    };
+    check();
+    if (signal !== undefined) {
+      // This thread is about to be busy: whoever wants to abort gets a turn.
+      await new Promise((resolve) => setTimeout(resolve));
+      check();
+    }
     const listener: CoreListener = (stage, fraction) => {
       try {
-        signal?.throwIfAborted();
+        check();
         progress.report(stage, fraction);
-        signal?.throwIfAborted();
+        check();
       } catch (error) {
         throw new Stopped(error);
       }
     };
     const formats = async () => {
       const module = await this.#formats();
-      signal?.throwIfAborted();
+      check();
       return module;
     };
     const isFollowed = progress.isWanted || signal !== undefined;
@@ -60,5 +71,7 @@ export class HereEngine implements Engine {
     return { result: await perform(job, tools, isFollowed ? listener : undefined), data: job.data };
   }
 
-  dispose(): void {}
+  dispose(): void {
+    this.#isDisposed = true;
+  }
 }

@@ -8,6 +8,8 @@ export type ErrorCode =
   | "NOT_INITIALISED"
   /** The aligner was disposed of. Create a new one. */
   | "DISPOSED"
+  /** A worker could not be started, or ended twice under the same call. Other calls go on, with new workers. */
+  | "WORKER_FAILED"
   /** A file that the command line looked for is not there. */
   | "FILE_NOT_FOUND";
 
@@ -35,6 +37,8 @@ export class Sim3AlignError extends Error implements ErrorParts {
   readonly found: string;
   readonly expected: string;
   readonly remedy: string;
+  /** With `transfer: true`: the input, handed back, where the worker could do so. */
+  input?: unknown;
 
   constructor({ code, argument, found, expected, remedy }: ErrorParts, options?: ErrorOptions) {
     super(`${argument}: found ${found}, expected ${expected}. ${remedy}`, options);

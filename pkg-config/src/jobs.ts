@@ -1,18 +1,18 @@
 /** The calls that do the work, as data: so that they can be done here or in a worker, by the same code. */
-import type { Cloud, Core, CoreListener, Formats } from "./core.js";
+import type { Core, CoreListener, Formats } from "./core.js";
 import { resolveInput } from "./input/resolve.js";
 import type { AlignInput } from "./input/types.js";
-import { type Alignment, alignmentOf, type Evaluation, type Registration, withWarnings } from "./results.js";
+import {
+  type Alignment,
+  alignmentOf,
+  type Clouds,
+  type Evaluation,
+  type Registration,
+  withWarnings,
+} from "./results.js";
 import { withTypedMatrix } from "./sim3.js";
 import { isTypedArray, wrongKind } from "./values.js";
 import type { LoadedModule } from "./wasm-module.js";
-
-/** Two clouds, and for `estimateSim3` which of their points belong together. */
-export interface Clouds {
-  source: Cloud;
-  target: Cloud;
-  correspondences?: Uint32Array;
-}
 
 /** A call. `data` holds all its large arrays; options are in the core's form. */
 export type Job =

@@ -124,7 +124,8 @@ const given = (source: LazySource) => (typeof source === "function" ? source() :
 
 async function compiled(source: WasmSource): Promise<WebAssembly.Module> {
   if (isKind<WebAssembly.Module>(source, "WebAssembly.Module")) return source;
-  const code = source instanceof URL || typeof source === "string" ? await fetched(String(source)) : source;
+  const isAddress = typeof source === "string" || isKind<URL>(source, "URL");
+  const code = isAddress ? await fetched(String(source)) : source;
   if (!isKind<Response>(code, "Response")) return WebAssembly.compile(code as BufferSource);
   if (!code.ok) throw new Error(`${code.status} ${code.statusText} at ${code.url}`);
   // Servers that don't know the type are no reason to fail, and none for a warning on the console.

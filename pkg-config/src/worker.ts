@@ -1,9 +1,9 @@
 /** What runs in a worker: does the jobs that its aligner asks for, one after the other. */
-import type { Core, Formats, Share } from "./core.js";
+import type { Core, Formats } from "./core.js";
 import { internalError, partsOf, Sim3AlignError } from "./error.js";
 import { resolveInput } from "./input/resolve.js";
 import { type Job, perform, withoutInput } from "./jobs.js";
-import type { Reply, Request, ShareRequest, StepResult } from "./pool/protocol.js";
+import { type Reply, type Request, SEARCHED, type ShareRequest } from "./pool/protocol.js";
 
 import { alignmentOf, withWarnings } from "./results.js";
 import { buffersOf } from "./transfer.js";
@@ -20,7 +20,8 @@ class Workplace {
   #core: Promise<LoadedModule<Core>> | undefined;
   #formats: Promise<LoadedModule<Formats>> | undefined;
   #hearFormats: ((message: Request & { type: "formats" }) => void) | undefined;
-  #share: { share: Share; warnings: string[] } | undefined;
+  /** Of the input that is shared. */
+  #warnings: string[] = [];
 
   constructor(post: Post) {
     this.#post = post;
@@ -51,35 +52,22 @@ class Workplace {
 
   /** A step of an alignment that several work on. */
   async #step(request: ShareRequest): Promise<unknown> {
-    if (request.type === "share") {
-      const { core, formats } = await this.#tools();
-      const { core: input, warnings } = await resolveInput(request.job.data, formats);
-      this.#share?.share.free();
-      this.#share = undefined;
-      const share = core.call((c) => new c.Share(input, request.job.options), withoutInput);
-      this.#share = { share, warnings };
-      return null;
-    }
-    if (request.type === "drop") {
-      this.#share?.share.free();
-      this.#share = undefined;
-      return null;
-    }
-    if (this.#share === undefined) throw new Error("no share");
-    const { share, warnings } = this.#share;
-    const { core } = await this.#tools();
-    return core.call(() => {
-      if (request.type === "hypothesis") return share.hypothesis();
-      if (request.type === "finish") {
-        // It is gone, whatever comes.
-        this.#share = undefined;
-        return withWarnings(alignmentOf(share.finish(this.#listener(request.wantsProgress, 0.75))), warnings);
+    const { core, formats } = await this.#tools();
+    switch (request.type) {
+      case "share": {
+        const { data, options } = request.job;
+        const { core: input, warnings } = await resolveInput(data, formats);
+        core.call((c) => c.beginShare(input, options), withoutInput);
+        this.#warnings = warnings;
+        return null;
       }
-      if (request.hypothesis !== null) share.join(request.hypothesis);
-      if (request.found !== null) share.advance(request.found);
-      const found = share.run(request.part, request.parts);
-      return { tasks: share.tasks(), isRefinement: share.isRefinement(), found } satisfies StepResult;
-    }, withoutInput);
+      case "step":
+        return core.call((c) => c.stepShare(request.found, request.part, request.parts));
+      case "finish": {
+        const listener = this.#listener(request.wantsProgress, SEARCHED);
+        return withWarnings(alignmentOf(core.call((c) => c.finishShare(listener), withoutInput)), this.#warnings);
+      }
+    }
   }
 
   async #tools() {

@@ -41,10 +41,11 @@ pub fn step_share(
     part: usize,
     parts: usize,
 ) -> core::result::Result<Float64Array, JsValue> {
-    let mut share = share().map_err(|e| to_js(&e))?;
     if parts == 0 {
+        SHARE.set(None);
         return Ok(Float64Array::default());
     }
+    let mut share = share().map_err(|e| to_js(&e))?;
     found.into_iter().for_each(|found| share.advance(of_numbers(&found)));
     let (found, per_task) = share.run(part, parts);
     let mut numbers = vec![share.tasks() as f64, f64::from(u8::from(share.is_refinement()))];

@@ -1,8 +1,9 @@
 /** Cameras: intrinsics as they are, or a camera file. */
-import { invalidArgument, Sim3AlignError } from "../error.js";
+
 import type { Formats } from "../core.js";
-import type { LoadedModule } from "../wasm-module.js";
+import { invalidArgument, Sim3AlignError } from "../error.js";
 import { isRecord, plainNumbers, withoutOptions, withoutUndefined } from "../values.js";
+import type { LoadedModule } from "../wasm-module.js";
 import { fileBytes } from "./bytes.js";
 
 /** The core's forms of a camera. */

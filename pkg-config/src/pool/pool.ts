@@ -1,9 +1,10 @@
 /** A pool of workers that does jobs side by side. */
-import { disposed, Sim3AlignError } from "../error.js";
+
 import type { Call, Engine, Outcome } from "../engine.js";
+import { disposed, Sim3AlignError } from "../error.js";
 import type { Job } from "../jobs.js";
 import { buffersOf, copied } from "../transfer.js";
-import { type Answer, JobFailed, type Supplies, WorkerLost, WorkerSlot } from "./slot.js";
+import { type Answer, JobFailed, type Supplies, Unsendable, WorkerLost, WorkerSlot } from "./slot.js";
 import { canBeSplit, splitAlign } from "./split.js";
 
 /** How often a job is tried whose worker is lost. */
@@ -11,7 +12,7 @@ const ATTEMPTS = 2;
 
 /** Workers, and whoever waits for one. */
 export class WorkerPool implements Engine {
-  readonly width: number;
+  readonly capacity: number;
   readonly #slots: readonly WorkerSlot[];
   readonly #here: Engine;
   readonly #idle: WorkerSlot[];
@@ -20,7 +21,8 @@ export class WorkerPool implements Engine {
 
   /** @param here does what can't be sent to a worker */
   constructor(width: number, supplies: Supplies, here: Engine) {
-    this.width = width;
+    // While one is being handed over, the next one is being worked on.
+    this.capacity = 2 * width;
     this.#here = here;
     this.#slots = Array.from({ length: width }, () => new WorkerSlot(supplies));
     this.#idle = [...this.#slots];
@@ -63,7 +65,8 @@ export class WorkerPool implements Engine {
         if (answer === null) return await this.#here.run(job, call);
         return { result: answer.result, data: answer.data ?? job.data } as Outcome<J>;
       } catch (error) {
-        if (error instanceof JobFailed) throw withData(error.error, call.transfer ? (error.data ?? job.data) : undefined);
+        if (error instanceof JobFailed)
+          throw withData(error.error, call.transfer ? (error.data ?? job.data) : undefined);
         if (!(error instanceof WorkerLost)) throw error;
         if (attempt === ATTEMPTS || isGone(job, call)) throw workerFailed(error);
       }
@@ -115,7 +118,7 @@ async function send(slot: WorkerSlot, job: Job, { transfer, progress }: Call): P
       const request = { type: "job", job: sent, wantsProgress: progress.isWanted, returnData: isMoved } as const;
       return await slot.request(request, buffersOf(sent.data), progress);
     } catch (error) {
-      if (!(error instanceof Error) || !["DataCloneError", "TypeError"].includes(error.name)) throw error;
+      if (!(error instanceof Unsendable)) throw error;
     }
   }
   return null;

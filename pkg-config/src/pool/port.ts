@@ -2,8 +2,13 @@
 import { Sim3AlignError } from "../error.js";
 import type { Reply, Request } from "./protocol.js";
 
-/** A worker of either kind: browsers' and Deno's and Bun's `Worker`, or Node's. */
-export type WorkerLike = Worker | import("node:worker_threads").Worker;
+/** A worker: a `Worker` of browsers, Deno and Bun, or one of Node's `worker_threads`. */
+export interface WorkerLike {
+  postMessage(message: unknown, transfer: ArrayBuffer[]): void;
+  terminate(): unknown;
+}
+
+type NodeWorker = import("node:worker_threads").Worker;
 
 /** Makes a worker that runs this package's `worker.js`. */
 export type CreateWorker = () => WorkerLike;
@@ -24,24 +29,29 @@ export interface Ears {
 }
 
 /** Listens to a worker. */
-export function portOf(worker: WorkerLike, { onMessage, onFailure }: Ears): Port {
-  if ("on" in worker) {
-    worker.on("message", onMessage);
-    worker.on("error", (error: Error) => onFailure(`${error.name}: ${error.message}`));
-    worker.on("messageerror", () => onFailure("a message that could not be read"));
-    worker.on("exit", (code) => onFailure(`an end with exit code ${code}`));
-    worker.unref();
-    return {
-      post: (message, transfer = []) => worker.postMessage(message, transfer),
-      hold: (isHeld) => (isHeld ? worker.ref() : worker.unref()),
-      terminate: () => void worker.terminate(),
-    };
-  }
+export function portOf(worker: WorkerLike, ears: Ears): Port {
+  return "on" in worker ? portOfNode(worker as NodeWorker, ears) : portOfWeb(worker as Worker, ears);
+}
+
+function portOfNode(worker: NodeWorker, { onMessage, onFailure }: Ears): Port {
+  worker.on("message", onMessage);
+  worker.on("error", (error: Error) => onFailure(`${error.name}: ${error.message}`));
+  worker.on("messageerror", () => onFailure("a message that could not be read"));
+  worker.on("exit", (code) => onFailure(`an end with exit code ${code}`));
+  worker.unref();
+  return {
+    post: (message, transfer = []) => worker.postMessage(message, transfer),
+    hold: (isHeld) => (isHeld ? worker.ref() : worker.unref()),
+    terminate: () => void worker.terminate(),
+  };
+}
+
+function portOfWeb(worker: Worker, { onMessage, onFailure }: Ears): Port {
   worker.addEventListener("message", ({ data }) => onMessage(data));
   worker.addEventListener("error", (event) => {
     // Else it goes on to the page's own error handlers, as if nobody had seen it.
     event.preventDefault();
-    onFailure(event.message ?? "a script that could not be loaded");
+    onFailure(event.message || "a script that could not be loaded");
   });
   worker.addEventListener("messageerror", () => onFailure("a message that could not be read"));
   return {
@@ -68,9 +78,9 @@ export async function workshop(): Promise<Workshop> {
   }
   try {
     const [threads, os] = await Promise.all([nodeModule("node:worker_threads"), nodeModule("node:os")]);
-    const { Worker: NodeWorker } = threads as typeof import("node:worker_threads");
+    const { Worker: ThreadWorker } = threads as typeof import("node:worker_threads");
     const url = new URL(/* webpackIgnore: true */ /* @vite-ignore */ "../worker.js", import.meta.url);
-    return { create: () => new NodeWorker(url), cores: (os as typeof import("node:os")).availableParallelism() };
+    return { create: () => new ThreadWorker(url), cores: (os as typeof import("node:os")).availableParallelism() };
   } catch (cause) {
     throw new Sim3AlignError(
       {

@@ -17,12 +17,9 @@ export type Request =
 export type ShareRequest =
   /** Prepares the search. */
   | { type: "share"; job: Job & { method: "align" } }
-  /** Takes what came of the last round's tasks, and does a part of the next one's. */
-  | { type: "step"; found: Float64Array | null; hypothesis: Float64Array | null; part: number; parts: number }
-  | { type: "hypothesis" }
-  | { type: "finish"; wantsProgress: boolean }
-  /** Forgets the share. */
-  | { type: "drop" };
+  /** Takes what came of the last round's tasks, and does a part of the next one's; without parts, forgets the share. */
+  | { type: "step"; found: Float64Array | undefined; part: number; parts: number }
+  | { type: "finish"; wantsProgress: boolean };
 
 /** From the worker. */
 export type Reply =
@@ -32,11 +29,5 @@ export type Reply =
   | { type: "result"; result: unknown; data?: unknown }
   | { type: "error"; error: ErrorParts; data?: unknown };
 
-/** What came of a step of a share. */
-export interface StepResult {
-  /** Tasks of the round, all parts together; 0 when there is nothing left to do. */
-  tasks: number;
-  isRefinement: boolean;
-  /** What came of the part. */
-  found: Float64Array;
-}
+/** How much of a shared alignment is done when its search is. */
+export const SEARCHED = 0.75;

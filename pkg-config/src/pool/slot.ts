@@ -1,11 +1,14 @@
 /** A place for a worker, which is replaced when it fails. */
-import { type ErrorParts, Sim3AlignError } from "../error.js";
+import { type ErrorParts, partsOf, Sim3AlignError } from "../error.js";
 import type { ProgressListener } from "../progress.js";
 import { type CreateWorker, type Port, portOf } from "./port.js";
 import type { Reply, Request } from "./protocol.js";
 
 /** The worker ended, or trapped: what it had been asked was not answered, and may be asked again. */
 export class WorkerLost extends Error {}
+
+/** The message can't be sent: something in it can't be cloned, or moved. */
+export class Unsendable extends Error {}
 
 /** A job that failed in a worker, with the data that came back. */
 export class JobFailed {
@@ -65,11 +68,15 @@ export class WorkerSlot {
 
   /**
    * Asks the worker for something; one thing at a time.
-   * @throws `DataCloneError` where the message can't be sent, {@link WorkerLost}, {@link JobFailed}, what `end` was given
+   * @throws {@link Unsendable}, {@link WorkerLost}, {@link JobFailed}, what `end` was given
    */
   async request(message: Request, transfer: ArrayBuffer[] = [], progress?: ProgressListener): Promise<Answer> {
     const port = this.#started();
-    port.post(message, transfer);
+    try {
+      port.post(message, transfer);
+    } catch (cause) {
+      throw new Unsendable("a message that can't be sent", { cause });
+    }
     port.hold(true);
     try {
       return await new Promise<Answer>((resolve, reject) => {
@@ -100,22 +107,22 @@ export class WorkerSlot {
   #hear(message: Reply): void {
     switch (message.type) {
       case "needs-formats":
-        return void this.#sendFormats();
+        this.#sendFormats();
+        break;
       case "progress":
         try {
           this.#pending?.progress?.report(message.stage, message.fraction);
         } catch (error) {
           this.end(error);
         }
-        return;
+        break;
       case "result":
-        return this.#pending?.resolve(message);
-      case "error": {
-        const { error, data } = message;
+        this.#pending?.resolve(message);
+        break;
+      case "error":
         // After a trap the module's state is unknown, and its memory may be used up.
-        if (error.code === "INTERNAL") return this.end(new WorkerLost(error.found));
-        return this.#pending?.reject(new JobFailed(error, data));
-      }
+        if (message.error.code === "INTERNAL") this.end(new WorkerLost(message.error.found));
+        else this.#pending?.reject(new JobFailed(message.error, message.data));
     }
   }
 
@@ -128,9 +135,4 @@ export class WorkerSlot {
       else this.end(error);
     }
   }
-}
-
-/** An error as it goes from one thread to the other. */
-export function partsOf({ code, argument, found, expected, remedy }: Sim3AlignError): ErrorParts {
-  return { code, argument, found, expected, remedy };
 }

@@ -6,13 +6,13 @@ import type { Call } from "../engine.js";
 import type { Job } from "../jobs.js";
 import type { Alignment } from "../results.js";
 import { buffersOf, copied } from "../transfer.js";
-import type { ShareRequest, StepResult } from "./protocol.js";
-import { JobFailed, WorkerLost, type WorkerSlot } from "./slot.js";
+import { SEARCHED, type ShareRequest } from "./protocol.js";
+import { JobFailed, Unsendable, WorkerLost, type WorkerSlot } from "./slot.js";
 
 type AlignJob = Job & { method: "align" };
 
-/** Progress when the rounds of the search are through. */
-const ROUNDS = [0.35, 0.4, 0.55, 0.65, 0.72, 0.75];
+/** Progress after each step; the last one only takes what came of the last round. */
+const ROUNDS = [0.35, 0.4, 0.55, 0.65, 0.72, SEARCHED, SEARCHED];
 
 /** Whether a job's search has parts: that of `precise` has. */
 export function canBeSplit(job: Job): job is AlignJob {
@@ -33,33 +33,26 @@ export async function splitAlign(slots: readonly WorkerSlot[], job: AlignJob, ca
     const prepared = performance.now();
     call.progress.report("search", 0.1);
     const ms = { prepare: prepared - began, search: 0, refine: 0 };
-    let found: Float64Array | null = null;
-    let hypothesis: Float64Array | null = null;
-    for (let round = 0; ; round++) {
+    let found: Float64Array | undefined;
+    for (const done of ROUNDS) {
       const start = performance.now();
-      const answers = await every(slots, (part) => [
-        { type: "step", found, hypothesis, part, parts: slots.length },
-        [],
-      ]);
-      const steps = answers.map(({ result }) => result as StepResult);
-      const { tasks = 0, isRefinement = true } = steps[0] ?? {};
-      if (tasks === 0 && round === 0) return await dropped(slots);
+      const answers = await every(slots, (part) => [{ type: "step", found, part, parts: slots.length }, []]);
+      const steps = answers.map(({ result }) => stepOf(result as Float64Array));
+      const { tasks, isRefinement } = steps[0] as Step;
+      // What was taken in the last step was all, or there is nothing that could be shared.
       if (tasks === 0) break;
-      // Descriptors join the candidates of the grid, after the first of its rounds.
-      hypothesis = round === 0 ? ((await leader.request({ type: "hypothesis" })).result as Float64Array) : null;
-      found = interleaved(
-        steps.map((step) => step.found),
-        tasks,
-      );
-      ms[isRefinement ? "refine" : "search"] += performance.now() - start;
-      call.progress.report(isRefinement ? "refine" : "search", ROUNDS[round] ?? 0.75);
+      found = interleaved(steps);
+      const stage = isRefinement ? "refine" : "search";
+      ms[stage] += performance.now() - start;
+      call.progress.report(stage, done);
     }
+    if (found === undefined) return await dropped(slots);
     const finish = { type: "finish", wantsProgress: call.progress.isWanted } as const;
     const { result } = await leader.request(finish, [], call.progress);
     await dropped(slots.slice(1));
     return withTimes(result as Alignment, ms);
   } catch (error) {
-    if (!(error instanceof JobFailed || error instanceof WorkerLost) && !isCloneError(error)) throw error;
+    if (![JobFailed, WorkerLost, Unsendable].some((kind) => error instanceof kind)) throw error;
     await dropped(slots);
     return null;
   }
@@ -74,21 +67,40 @@ async function every(slots: readonly WorkerSlot[], request: (part: number) => [S
   });
 }
 
+/** Has the shares forgotten, as far as there are any. */
 async function dropped(slots: readonly WorkerSlot[]): Promise<null> {
-  await every(slots, () => [{ type: "drop" }, []]);
+  const nothing = { type: "step", found: undefined, part: 0, parts: 0 } as const;
+  await Promise.allSettled(slots.map((slot) => slot.request(nothing)));
   return null;
 }
 
-const isCloneError = (error: unknown) => error instanceof Error && ["DataCloneError", "TypeError"].includes(error.name);
+/** What came of a step. */
+interface Step {
+  /** Tasks of the round, all parts together; 0 when there is nothing left to do. */
+  tasks: number;
+  isRefinement: boolean;
+  /** In how many numbers a task's outcome is told. */
+  size: number;
+  /** What came of the part's tasks, and what else its worker found. */
+  found: Float64Array;
+}
 
-/** What came of all tasks, in their order: each of n parts has every n-th. */
-function interleaved(parts: readonly Float64Array[], tasks: number): Float64Array {
-  const all = new Float64Array(parts.reduce((sum, part) => sum + part.length, 0));
-  const size = all.length / tasks;
-  for (let task = 0; task < tasks; task++) {
-    const begin = Math.floor(task / parts.length) * size;
-    const part = parts[task % parts.length];
-    if (part !== undefined) all.set(part.subarray(begin, begin + size), task * size);
+function stepOf(numbers: Float64Array): Step {
+  const [tasks = 0, isRefinement = 0, size = 0] = numbers;
+  return { tasks, isRefinement: isRefinement === 1, size, found: numbers.subarray(3) };
+}
+
+/** What came of all tasks, in their order, each of n parts having every n-th; then what else was found. */
+function interleaved(steps: readonly Step[]): Float64Array {
+  const all = new Float64Array(steps.reduce((sum, { found }) => sum + found.length, 0));
+  const parts = steps.length;
+  let end = 0;
+  for (const [part, { tasks, size, found }] of steps.entries()) {
+    const own = Math.ceil((tasks - part) / parts);
+    for (let i = 0; i < own; i++) all.set(found.subarray(i * size, (i + 1) * size), (part + i * parts) * size);
+    end = Math.max(end, tasks * size);
+    all.set(found.subarray(own * size), end);
+    end += found.length - own * size;
   }
   return all;
 }
