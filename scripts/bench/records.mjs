@@ -24,7 +24,7 @@ import { isWithin, strict } from "./tolerance.mjs";
 /**
  * `Alignment` of `src/align/report.rs`, as far as tables need it.
  * @typedef {object} BenchAlignment
- * @property {{ matrix: number[] }} cameraFromMesh
+ * @property {number[]} matrix camera from mesh, column by column
  * @property {number | null} score
  * @property {number | null} confidence
  * @property {boolean} collapsed

@@ -17,7 +17,7 @@ const [{ byDifficulty, byOverlap, figurePage }, { openResults, readRecords }] = 
 const metrics = { boundaryF: 0.8, centerDriftPx: 4, iou: 0.6, chamferMm: 10, uniChamferMm: 5 };
 const all = { ...metrics, fitness: 0.9, normalConsistency: 0.7, depthMaeMm: 8 };
 const right = { scaleError: 0.01, rotationErrorDeg: 2, translationErrorRelative: 0.01 };
-const alignment = { cameraFromMesh: { matrix: [] }, score: 1, confidence: 1, collapsed: false, clamped: false };
+const alignment = { matrix: [], score: 1, confidence: 1, collapsed: false, clamped: false };
 
 function record(changes: object = {}) {
   const posed = { ...alignment, metrics: all };

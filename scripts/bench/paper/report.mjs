@@ -128,7 +128,7 @@ async function picturesOf(rows, recordsOf, cases, out) {
 async function pictureOf(title, record, cases, out) {
   const file = join(out, `${title.replaceAll(/\W+/g, "-")}.png`);
   const folder = basename(cases) === record.name ? cases : join(cases, record.name);
-  const matrix = record.alignment?.cameraFromMesh.matrix.join(",") ?? "";
+  const matrix = record.alignment?.matrix.join(",") ?? "";
   const args = ["--cases", folder, "--picture", file, `--matrix=${matrix}`];
   await runProgram(at("target", "native", "sim3align-bench"), args);
   const png = readFileSync(file);
