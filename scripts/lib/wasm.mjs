@@ -23,7 +23,8 @@ export const wasmModules = [
 ];
 
 const optimise = [
-  ...["-O3", "--converge", "--strip-debug", "--strip-producers"],
+  // By name, functions of a kind are neighbours, and pack the better: 0.7 kB gzipped.
+  ...["-O3", "--converge", "--reorder-functions-by-name", "--strip-debug", "--strip-producers"],
   // Inlining was the compiler's affair, which knows what is hot; more of it makes the modules 2 kB gzipped larger.
   ...["--one-caller-inline-max-function-size=0", "--flexible-inline-max-function-size=0"],
 ];
