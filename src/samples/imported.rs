@@ -10,14 +10,31 @@ use super::benchmark::{BenchCase, Record, described, record_of};
 use crate::align::estimate_sim3::estimate_sim3;
 use crate::align::options::{AlignOptions, EstimateOptions, ScaleOption};
 use crate::align::progress::{Silent, Stage};
-use crate::align::report::{Alignment, Counts};
+use crate::align::report::{Alignment, Counts, Registration};
 use crate::align::{Estimated, align_by};
-use crate::error::{Error, ErrorCode, Result};
+use crate::error::{Error, ErrorCode, Result, Text};
 use crate::formats::{json, truth};
 use crate::geometry::similarity::Similarity;
 use crate::stages::extents::{Extents, initial_scale};
 
 const REMEDY: &str = "docs/importing-results.md describes the file.";
+
+/// What an answer calls its parts.
+#[derive(Debug, Clone, Copy)]
+pub struct Names {
+    /// The pose.
+    pub pose: &'static str,
+    /// Of pairs of points, those that the pose moves.
+    pub moved: &'static str,
+    /// Those that stay.
+    pub fixed: &'static str,
+}
+
+/// The answer to a case.
+pub const CASE: Names = Names { pose: "cameraFromMesh", moved: "mesh", fixed: "camera" };
+
+/// The answer to a pair of clouds.
+pub const CLOUDS: Names = Names { pose: "targetFromSource", moved: "source", fixed: "target" };
 
 /// When each stage begins, as a share of the whole: all that is computed here is the metrics.
 const PLAN: &[(Stage, f64)] = &[(Stage::Observe, 0.0), (Stage::Metrics, 0.2)];
@@ -45,17 +62,30 @@ pub enum Outcome {
     Failure(String),
 }
 
-/// Pairs of points; the i-th of the mesh belongs to the i-th of the camera.
+/// Pairs of points; the i-th that is moved belongs to the i-th that stays.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pairs {
-    /// In the mesh's frame, x, y, z one after the other.
-    pub mesh_xyz: Vec<f64>,
-    /// In the camera's frame, metres, likewise.
-    pub camera_xyz: Vec<f64>,
+    /// Those that the pose moves, in the mesh's or the source's frame, x, y, z one after the other.
+    pub moved_xyz: Vec<f64>,
+    /// Those that stay, in the camera's or the target's frame, metres, likewise.
+    pub fixed_xyz: Vec<f64>,
     /// What the estimate may do with the scale.
     pub scale: PairScale,
     /// A pair that the pose leaves further apart is an outlier; by default a twentieth of the box diagonal of P_obs.
     pub inlier_distance_m: Option<f64>,
+}
+
+impl Pairs {
+    /// The similarity that most of them agree with, by our own `estimateSim3`.
+    ///
+    /// # Errors
+    /// Those of [`estimate_sim3`].
+    pub fn estimate(&self, scale: ScaleOption, inlier_distance: f64) -> Result<Registration> {
+        let indices: Vec<u32> =
+            (0..u32::try_from(self.moved_xyz.len() / 3).unwrap_or(u32::MAX)).flat_map(|i| [i, i]).collect();
+        let options = EstimateOptions { inlier_distance: Some(inlier_distance), ..EstimateOptions::default() };
+        estimate_sim3(&self.moved_xyz, &self.fixed_xyz, &indices, scale, &options, &mut Silent)
+    }
 }
 
 /// What the estimate from pairs may do with the scale.
@@ -72,17 +102,24 @@ pub enum PairScale {
 /// The record of a case by the answer in `folder`, in the file of the case's name. Its seconds are the file's own, NaN
 /// where there are none. What is wrong with the file is the record's error.
 pub fn imported(case: &BenchCase, folder: &Path) -> Record {
-    let path = folder.join(format!("{}.json", case.name));
-    let answer = match std::fs::read(&path) {
-        Ok(bytes) => read_answer(&path.display().to_string(), &bytes).map_err(|error| described(&error)),
-        Err(error) if error.kind() == ErrorKind::NotFound => Err("no answer file".into()),
-        Err(error) => Err(described(&unreadable(&path, &error))),
-    };
-    let (outcome, seconds) = match answer {
+    let (outcome, seconds) = match answer_in(folder, &case.name, &CASE) {
         Ok(Answer { outcome, seconds }) => (align_as(case, outcome), seconds),
         Err(error) => (Err(error), None),
     };
     record_of(case, outcome, seconds.unwrap_or(f64::NAN))
+}
+
+/// The answer to `case` in `folder`, or what is wrong with it, in words.
+///
+/// # Errors
+/// Those of [`read_answer`], and that there is no such file.
+pub fn answer_in(folder: &Path, case: &str, names: &Names) -> core::result::Result<Answer, String> {
+    let path = folder.join(format!("{case}.json"));
+    match std::fs::read(&path) {
+        Ok(bytes) => read_answer(&path.display().to_string(), names, &bytes).map_err(|error| described(&error)),
+        Err(error) if error.kind() == ErrorKind::NotFound => Err("no answer file".into()),
+        Err(error) => Err(described(&unreadable(&path, &error))),
+    }
 }
 
 fn unreadable(path: &Path, error: &std::io::Error) -> Error {
@@ -113,11 +150,8 @@ fn estimated(pairs: &Pairs, [observed, reconstructed]: [&Extents; 2]) -> Result<
         (PairScale::Bounded, Some([min, max])) => ScaleOption::Between([min * initial, max * initial]),
         (PairScale::Bounded, None) | (PairScale::Free, _) => ScaleOption::Free,
     };
-    let indices: Vec<u32> =
-        (0..u32::try_from(pairs.mesh_xyz.len() / 3).unwrap_or(u32::MAX)).flat_map(|i| [i, i]).collect();
     let inlier_distance = pairs.inlier_distance_m.unwrap_or(INLIER_DISTANCE * observed.diagonal());
-    let options = EstimateOptions { inlier_distance: Some(inlier_distance), ..EstimateOptions::default() };
-    let found = estimate_sim3(&pairs.mesh_xyz, &pairs.camera_xyz, &indices, scale, &options, &mut Silent)?;
+    let found = pairs.estimate(scale, inlier_distance)?;
     Ok(Estimated {
         residual_m: found.residual,
         counts: Counts { source_points: 0, target_points: 0, ..found.counts },
@@ -125,12 +159,12 @@ fn estimated(pairs: &Pairs, [observed, reconstructed]: [&Extents; 2]) -> Result<
     })
 }
 
-/// Reads an answer. `argument` names the file in errors.
+/// Reads an answer. `argument` names the file in errors, `names` is what its parts are called.
 ///
 /// # Errors
 /// [`ErrorCode::CorruptFile`] for what is no JSON or holds something else, [`ErrorCode::InvalidTransform`] for what is
 /// no similarity, [`ErrorCode::WrongLength`] and [`ErrorCode::TooFewPoints`] for pairs that are none.
-pub fn read_answer(argument: &str, bytes: &[u8]) -> Result<Answer> {
+pub fn read_answer(argument: &str, names: &Names, bytes: &[u8]) -> Result<Answer> {
     let in_file = |error: Error| {
         let within = format!("{argument}: {}", error.argument);
         error.about(within)
@@ -140,28 +174,28 @@ pub fn read_answer(argument: &str, bytes: &[u8]) -> Result<Answer> {
         return Err(invalid(argument, json::found(Some(&value)), "a JSON object"));
     };
     let seconds = fields.get("seconds").map(|value| non_negative("seconds", value)).transpose().map_err(in_file)?;
-    let answers: Vec<(&str, &Value)> = ["cameraFromMesh", "correspondences", "error"]
+    let answers: Vec<(&str, &Value)> = [names.pose, "correspondences", "error"]
         .into_iter()
         .filter_map(|name| Some((name, fields.get(name)?)))
         .collect();
     let outcome = match answers[..] {
-        [("cameraFromMesh", pose)] => truth::similarity("cameraFromMesh", pose).map(Outcome::Pose),
-        [("correspondences", pairs)] => read_pairs(pairs, fields).map(Outcome::Pairs),
+        [(name, value)] if name == names.pose => truth::similarity(name, value).map(Outcome::Pose),
+        [("correspondences", pairs)] => read_pairs(names, pairs, fields).map(Outcome::Pairs),
         [("error", message)] => match message.as_str() {
             Some(message) => Ok(Outcome::Failure(message.to_owned())),
             None => Err(invalid("error", json::found(Some(message)), "text")),
         },
         _ => {
-            let names: Vec<&str> = fields.keys().map(String::as_str).take(12).collect();
+            let given: Vec<&str> = fields.keys().map(String::as_str).take(12).collect();
             let found =
-                format!("an object with {}", if names.is_empty() { "nothing".into() } else { names.join(", ") });
-            return Err(invalid(argument, found, "one of cameraFromMesh, correspondences, error"));
+                format!("an object with {}", if given.is_empty() { "nothing".into() } else { given.join(", ") });
+            return Err(invalid(argument, found, format!("one of {}, correspondences, error", names.pose)));
         }
     };
     Ok(Answer { outcome: outcome.map_err(in_file)?, seconds })
 }
 
-fn read_pairs(value: &Value, fields: &Map<String, Value>) -> Result<Pairs> {
+fn read_pairs(names: &Names, value: &Value, fields: &Map<String, Value>) -> Result<Pairs> {
     let points = |name: &str| -> Result<Vec<f64>> {
         let argument = format!("correspondences.{name}");
         let expected = "an array of points, each [x, y, z]";
@@ -174,19 +208,19 @@ fn read_pairs(value: &Value, fields: &Map<String, Value>) -> Result<Pairs> {
         }
         Ok(xyz)
     };
-    let (mesh_xyz, camera_xyz) = (points("mesh")?, points("camera")?);
-    let (in_mesh, in_camera) = (mesh_xyz.len() / 3, camera_xyz.len() / 3);
-    if in_mesh != in_camera {
+    let (moved_xyz, fixed_xyz) = (points(names.moved)?, points(names.fixed)?);
+    let (moved, fixed) = (moved_xyz.len() / 3, fixed_xyz.len() / 3);
+    if moved != fixed {
         return Err(Error::new(
             ErrorCode::WrongLength,
             "correspondences",
-            format!("{in_mesh} points of the mesh and {in_camera} of the camera"),
+            format!("{moved} points of {} and {fixed} of {}", names.moved, names.fixed),
             "as many of each",
             "The i-th point of the one belongs to the i-th of the other.",
         ));
     }
-    if in_mesh < 3 {
-        let (found, remedy) = (format!("{in_mesh} pairs"), "Write { \"error\": … } where a matcher finds no more.");
+    if moved < 3 {
+        let (found, remedy) = (format!("{moved} pairs"), "Write { \"error\": … } where a matcher finds no more.");
         return Err(Error::new(ErrorCode::TooFewPoints, "correspondences", found, "at least 3", remedy));
     }
     let scale = match fields.get("scale").map(|scale| (scale.as_str(), scale)) {
@@ -201,7 +235,7 @@ fn read_pairs(value: &Value, fields: &Map<String, Value>) -> Result<Pairs> {
         0.0 => Err(invalid("inlierDistanceM", "0".into(), "a number above 0, metres")),
         distance => Ok(distance),
     });
-    Ok(Pairs { mesh_xyz, camera_xyz, scale, inlier_distance_m: inlier_distance_m.transpose()? })
+    Ok(Pairs { moved_xyz, fixed_xyz, scale, inlier_distance_m: inlier_distance_m.transpose()? })
 }
 
 fn non_negative(name: &str, value: &Value) -> Result<f64> {
@@ -209,6 +243,6 @@ fn non_negative(name: &str, value: &Value) -> Result<f64> {
     number.ok_or_else(|| invalid(name, json::found(Some(value)), "a number from 0"))
 }
 
-fn invalid(argument: &str, found: String, expected: &'static str) -> Error {
+fn invalid(argument: &str, found: String, expected: impl Into<Text>) -> Error {
     Error::new(ErrorCode::CorruptFile, argument.to_owned(), found, expected, REMEDY)
 }

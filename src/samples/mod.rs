@@ -8,12 +8,14 @@ pub mod depth;
 pub mod distortion;
 pub mod evaluation;
 pub mod imported;
+pub mod in_order;
 pub mod overlay;
 pub mod records;
 #[cfg(feature = "bench")]
 pub mod registration;
 pub mod scenes;
 pub mod shape;
+pub mod table;
 
 use crate::geometry::random::Random;
 

@@ -11,7 +11,7 @@ use sim3align::geometry::random::Random;
 use sim3align::geometry::similarity::{Similarity, vector3};
 use sim3align::samples::benchmark::{BenchCase, Record, STRICT};
 use sim3align::samples::evaluation::case::EvaluationSet;
-use sim3align::samples::imported::{Outcome, imported, read_answer};
+use sim3align::samples::imported::{CASE, Outcome, imported, read_answer};
 
 const DOCUMENTATION: &str = include_str!("../../docs/importing-results.md");
 
@@ -96,7 +96,7 @@ fn a_pose_is_scored_as_evaluate_scores_it() {
     let near = Similarity { scale: truth.scale * 1.02, rotation: truth.rotation * turn, ..truth };
     for (pose, is_right) in [(truth, true), (near, true), (Similarity { scale: 0.5 * truth.scale, ..truth }, false)] {
         let answer = json!({ "cameraFromMesh": pose_json(&pose), "seconds": 2 }).to_string();
-        let Outcome::Pose(read) = read_answer("answer", answer.as_bytes()).unwrap().outcome else { panic!() };
+        let Outcome::Pose(read) = read_answer("answer", &CASE, answer.as_bytes()).unwrap().outcome else { panic!() };
         assert_near(&read, &pose, 1e-12);
         let expected =
             evaluate(&case.observation, &case.mesh, &read, case.truth.as_ref(), &EvaluateOptions::default()).unwrap();
@@ -198,7 +198,7 @@ fn what_is_wrong_with_a_file_is_said() {
         (pairs("5", three, ""), corrupt, "correspondences.mesh: found 5, expected an array of points"),
         (r#"{ "correspondences": {} }"#.into(), corrupt, "correspondences.mesh: found nothing"),
         (pairs(three, "[[0, 0, 0], [1, 0]]", ""), corrupt, "correspondences.camera: found [1,0] as point 1"),
-        (pairs(three, "[[0, 0, 0]]", ""), ErrorCode::WrongLength, "3 points of the mesh and 1 of the camera"),
+        (pairs(three, "[[0, 0, 0]]", ""), ErrorCode::WrongLength, "3 points of mesh and 1 of camera"),
         (pairs("[]", "[]", ""), ErrorCode::TooFewPoints, "found 0 pairs, expected at least 3"),
         (pairs(three, three, r#", "scale": "fixed""#), corrupt, "scale: found \"fixed\", expected \"initial\""),
         (pairs(three, three, r#", "scale": 1"#), corrupt, "scale: found 1, expected"),
@@ -210,7 +210,7 @@ fn what_is_wrong_with_a_file_is_said() {
     ];
     let case = case();
     for (answer, code, words) in answers {
-        let error = read_answer("some/answer.json", answer.as_bytes()).unwrap_err();
+        let error = read_answer("some/answer.json", &CASE, answer.as_bytes()).unwrap_err();
         let text = error.to_string();
         assert_eq!(error.code, code, "{answer}: {text}");
         assert!(text.contains("some/answer.json"), "{answer}: {text}");

@@ -64,6 +64,8 @@ pub mod records;
 pub mod register;
 #[cfg(all(feature = "bench", not(target_arch = "wasm32")))]
 pub mod registration;
+#[cfg(all(feature = "bench", not(target_arch = "wasm32")))]
+pub mod registration_program;
 pub mod sample;
 #[cfg(all(feature = "samples", not(target_arch = "wasm32")))]
 pub mod samples;

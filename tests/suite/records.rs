@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::PathBuf;
 
+use serde::de::IgnoredAny;
 use sim3align::align::options::{AlignOptions, Quality};
 use sim3align::error::ErrorCode;
 use sim3align::samples::benchmark::{BenchCase, Record, run_case};
@@ -29,7 +30,7 @@ fn record() -> Record {
 fn what_is_there_is_not_asked_for_again() {
     let path = fresh("resume");
     let record = record();
-    let file = RecordFile::open(&path).unwrap();
+    let file = RecordFile::<IgnoredAny>::open(&path).unwrap();
     assert!(!file.has(&key("a", "1")));
     file.add(&key("a", "1"), &record).unwrap();
     file.add(&key("a", "2"), &record).unwrap();
@@ -40,7 +41,7 @@ fn what_is_there_is_not_asked_for_again() {
     let end_of_first = whole.iter().position(|byte| *byte == b'\n').unwrap() + 1;
     for cut in [end_of_first + 1, (end_of_first + whole.len()) / 2, whole.len() - 1] {
         fs::write(&path, &whole[..cut]).unwrap();
-        let file = RecordFile::open(&path).unwrap();
+        let file = RecordFile::<IgnoredAny>::open(&path).unwrap();
         assert!(file.has(&key("a", "1")) && !file.has(&key("a", "2")), "cut at {cut}");
         assert!(!file.has(&key("b", "1")));
         assert!(!file.has(&RecordKey { options: "quality=best".into(), ..key("a", "1") }));
@@ -54,7 +55,7 @@ fn what_is_there_is_not_asked_for_again() {
 fn a_line_is_the_record_as_it_is() {
     let path = fresh("line");
     let record = record();
-    RecordFile::open(&path).unwrap().add(&key("a", "1"), &record).unwrap();
+    RecordFile::<IgnoredAny>::open(&path).unwrap().add(&key("a", "1"), &record).unwrap();
     let line: serde_json::Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
     // Both read from text, where the last bit of a number may be lost.
     let written = serde_json::to_string(&record).unwrap();
@@ -68,10 +69,10 @@ fn what_is_no_file_of_records_is_left_alone() {
     let path = fresh("other");
     for content in ["a text\n", "{\"row\":\"a\"}\n", "{\"row\":\"a\",\"options\":\"\",\"case\":\"1\"}\n", "\n"] {
         fs::write(&path, content).unwrap();
-        assert_eq!(RecordFile::open(&path).unwrap_err().code, ErrorCode::CorruptFile, "{content:?}");
+        assert_eq!(RecordFile::<IgnoredAny>::open(&path).unwrap_err().code, ErrorCode::CorruptFile, "{content:?}");
         assert_eq!(fs::read_to_string(&path).unwrap(), content);
     }
     fs::remove_file(&path).unwrap();
     let nowhere = path.join("below").join("nothing");
-    assert_eq!(RecordFile::open(&nowhere).unwrap_err().code, ErrorCode::InvalidArgument);
+    assert_eq!(RecordFile::<IgnoredAny>::open(&nowhere).unwrap_err().code, ErrorCode::InvalidArgument);
 }

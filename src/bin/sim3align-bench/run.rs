@@ -2,9 +2,8 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
+use serde::de::IgnoredAny;
 use serde_json::json;
 use sim3align::align::baseline::align_baseline;
 use sim3align::geometry::similarity::Similarity;
@@ -12,6 +11,7 @@ use sim3align::samples::benchmark::{BenchCase, Record, run_case, run_method};
 use sim3align::samples::evaluation::case::EvaluationSet;
 use sim3align::samples::evaluation::tier::{Class, Tier};
 use sim3align::samples::imported::imported;
+use sim3align::samples::in_order;
 use sim3align::samples::overlay::picture;
 use sim3align::samples::records::{RecordFile, RecordKey};
 use sim3align::samples::scenes::{Prior, SceneSet};
@@ -49,14 +49,14 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
         return Err("no case left to run".into());
     }
     if let Some(folder) = &arguments.write {
-        let written = in_order(arguments.threads, &sources, |source| match source {
+        return in_order(arguments.threads, &sources, |source| match source {
             Source::Generated(index) => {
                 let case = set.case(*index).map_err(|error| error.to_string())?;
                 case.write(&folder.join(case.name())).map_err(|error| error.to_string())
             }
             Source::Scene { .. } | Source::Folder(_) => Ok(()),
-        });
-        return written.into_iter().collect();
+        })
+        .map(drop);
     }
     let load = |source: &Source| load(source, &set, &scenes);
     if let (Some(path), Some(source)) = (&arguments.picture, sources.first()) {
@@ -66,11 +66,10 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
         return go_on(arguments, &sources, &load, path);
     }
     let begun = std::time::Instant::now();
-    let records = in_order(arguments.threads, &sources, |source| {
+    let records: Vec<Vec<Record>> = in_order(arguments.threads, &sources, |source| {
         let case = load(source)?;
         Ok(arguments.rows.iter().map(|row| run_row(&case, row)).collect())
-    });
-    let records: Vec<Vec<Record>> = records.into_iter().collect::<Result<_, String>>()?;
+    })?;
     eprintln!("{} cases in {:.1} s", records.len(), begun.elapsed().as_secs_f64());
     let names = arguments.rows.iter().map(|row| row.name.clone());
     let rows: Vec<(String, Vec<&Record>)> =
@@ -91,7 +90,7 @@ fn go_on(
     load: &(dyn Fn(&Source) -> Result<BenchCase, String> + Sync),
     path: &Path,
 ) -> Result<(), String> {
-    let file = RecordFile::open(path).map_err(|error| error.to_string())?;
+    let file = RecordFile::<IgnoredAny>::open(path).map_err(|error| error.to_string())?;
     let missing = |source: &Source| -> Vec<(&Row, RecordKey)> {
         let keyed = arguments.rows.iter().map(|row| (row, row.key(source.id())));
         keyed.filter(|(_, key)| !file.has(key)).collect()
@@ -112,8 +111,7 @@ fn go_on(
         }
         Ok(())
     })
-    .into_iter()
-    .collect()
+    .map(drop)
 }
 
 fn draw(case: &BenchCase, matrix: Option<&[f64]>, path: &Path) -> Result<(), String> {
@@ -176,29 +174,17 @@ fn case_folders(folder: &Path) -> Result<Vec<PathBuf>, String> {
     Ok(folders)
 }
 
-/// What `work` makes of every item, on several threads, in the items' order.
-fn in_order<T: Sync, R: Send>(threads: usize, items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
-    let next = AtomicUsize::new(0);
-    let done = AtomicUsize::new(0);
-    let results: Vec<Mutex<Option<R>>> = items.iter().map(|_| Mutex::new(None)).collect();
-    std::thread::scope(|scope| {
-        for _ in 0..threads.min(items.len()) {
-            scope.spawn(|| {
-                loop {
-                    let i = next.fetch_add(1, Ordering::Relaxed);
-                    let (Some(item), Some(slot)) = (items.get(i), results.get(i)) else { break };
-                    let result = work(item);
-                    if let Ok(mut slot) = slot.lock() {
-                        *slot = Some(result);
-                    }
-                    let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-                    if done.is_multiple_of(10) || done == items.len() {
-                        eprint!("\r{done} of {} ", items.len());
-                    }
-                }
-            });
+/// What `work` makes of every item; how many are done is told on standard error.
+fn in_order<T: Sync, R: Send>(
+    threads: usize,
+    items: &[T],
+    work: impl Fn(&T) -> Result<R, String> + Sync,
+) -> Result<Vec<R>, String> {
+    let result = in_order::in_order(threads, items, work, |done| {
+        if done.is_multiple_of(10) || done == items.len() {
+            eprint!("\r{done} of {} ", items.len());
         }
     });
     eprintln!();
-    results.into_iter().filter_map(|slot| slot.into_inner().ok().flatten()).collect()
+    result
 }

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use sim3align::metrics::Metrics;
 use sim3align::metrics::pose_error::PoseErrors;
 use sim3align::samples::benchmark::{LOOSE, Record, STRICT};
+use sim3align::samples::table::{cell, mean, median};
 
 /// A column of a metric.
 struct Column {
@@ -77,7 +78,7 @@ fn line(out: &mut String, group: &str, name: &str, records: &[&Record]) {
     // No answer is as wrong as can be.
     let known = || records.iter().filter(|record| record.truth_metrics.is_some());
     let error = |digits, of: fn(&PoseErrors) -> f64| {
-        text(median(known().map(|record| record.errors.as_ref().map_or(f64::INFINITY, of)).collect()), digits)
+        cell(median(known().map(|record| record.errors.as_ref().map_or(f64::INFINITY, of)).collect()), digits)
     };
     let unanswered = records.iter().filter(|record| record.alignment.is_none()).count();
     let count = if unanswered == 0 { String::new() } else { format!(" ({unanswered} unanswered)") };
@@ -94,7 +95,7 @@ fn line(out: &mut String, group: &str, name: &str, records: &[&Record]) {
     metrics(out, records, |record| record.alignment.as_ref().map(|alignment| alignment.metrics));
     // Of answers that were imported it may not be known.
     let seconds = records.iter().map(|record| record.seconds).filter(|seconds| seconds.is_finite());
-    let _ = writeln!(out, " | {} |", text(median(seconds.collect()), 2));
+    let _ = writeln!(out, " | {} |", cell(median(seconds.collect()), 2));
 }
 
 fn truth_line(out: &mut String, group: &str, records: &[&Record]) {
@@ -108,8 +109,7 @@ fn truth_line(out: &mut String, group: &str, records: &[&Record]) {
 fn metrics(out: &mut String, records: &[&Record], of: impl Fn(&Record) -> Option<Metrics>) {
     for Column { digits, value, .. } in METRICS {
         let values: Vec<f64> = records.iter().filter_map(|record| value(&of(record)?)).collect();
-        let mean = (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64);
-        let _ = write!(out, " | {}", text(mean, *digits));
+        let _ = write!(out, " | {}", cell(mean(&values), *digits));
     }
 }
 
@@ -127,7 +127,7 @@ fn list_failures(out: &mut String, name: &str, records: &[&Record], most: usize)
     for record in failed.iter().take(most) {
         let found = record.alignment.as_ref().map(|alignment| alignment.metrics);
         let both = |digits, of: fn(&Metrics) -> Option<f64>| {
-            let [found, truth] = [found, record.truth_metrics].map(|m| text(m.as_ref().and_then(of), digits));
+            let [found, truth] = [found, record.truth_metrics].map(|m| cell(m.as_ref().and_then(of), digits));
             format!("{found} ({truth})")
         };
         let errors = match (&record.errors, &record.error) {
@@ -159,15 +159,4 @@ fn list_failures(out: &mut String, name: &str, records: &[&Record], most: usize)
 fn signed_scale_error(record: &Record) -> f64 {
     let ratio = record.alignment.as_ref().map(|alignment| alignment.scale_ratio);
     ratio.zip(record.truth_scale_ratio).map_or(f64::NAN, |(found, truth)| found / truth - 1.0)
-}
-
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    let n = values.len();
-    let at = |i: usize| values.get(i).copied();
-    if n % 2 == 1 { at(n / 2) } else { Some(0.5 * (at((n / 2).checked_sub(1)?)? + at(n / 2)?)) }
-}
-
-fn text(value: Option<f64>, digits: usize) -> String {
-    value.map_or("–".into(), |value| format!("{value:.digits$}"))
 }

@@ -1,10 +1,9 @@
 //! What registers a pair: the one place where methods are plugged in.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use glam::Vec3;
-use serde_json::Value;
 use sim3align::align::field::{Field, Options};
 use sim3align::align::options::{RegisterOptions, ScaleOption};
 use sim3align::align::progress::Silent;
@@ -12,14 +11,20 @@ use sim3align::align::register::register;
 use sim3align::baselines::{Baseline, PairSettings, register_pair};
 use sim3align::geometry::cloud::Cloud;
 use sim3align::geometry::similarity::Similarity;
+use sim3align::samples::imported::{CLOUDS, Outcome, answer_in};
+use sim3align::samples::records::RecordKey;
 use sim3align::samples::registration::cloud_file::flat;
 use sim3align::samples::registration::pair::Pair;
 use sim3align::stages::icp::IcpMetric;
 
+/// Correspondences of another program agree with a pose that leaves them this near, in the pair's voxels, where the
+/// file does not say.
+const INLIER_VOXELS: f64 = 1.5;
+
 /// A registration method. To add one: a variant, its name in [`Method::from_name`], its call in [`Method::run`].
 pub enum Method {
     /// `register` with the scale fixed at 1.
-    Register(Box<RegisterOptions>),
+    Register { options: Box<RegisterOptions>, assignments: Vec<String> },
     /// Another method of the crate's, at the pair's voxel size.
     Baseline(Baseline),
     /// Transforms that another program has written, under a name for the tables.
@@ -52,16 +57,25 @@ impl Method {
             assign(&mut options, name, value).ok_or_else(|| format!("--option {assignment}: not an option"))?;
         }
         options.validate().map_err(|error| error.to_string())?;
-        Ok(Self::Register(Box::new(options)))
+        Ok(Self::Register { options: Box::new(options), assignments: assignments.to_vec() })
     }
 
     /// Its name in the tables.
     pub fn name(&self) -> &str {
         match self {
-            Self::Register(_) => "register",
+            Self::Register { .. } => "register",
             Self::Baseline(baseline) => baseline.as_str(),
             Self::Import { name, .. } => name,
         }
+    }
+
+    /// What its record of a pair is kept under; `moved` is the seed of the moves.
+    pub fn key(&self, pair: &Pair, moved: u64) -> RecordKey {
+        let mut options = vec![format!("moved={moved}")];
+        if let Self::Register { assignments, .. } = self {
+            options.extend_from_slice(assignments);
+        }
+        RecordKey { row: self.name().into(), options: options.join(" "), case: pair.id.clone() }
     }
 
     /// Whether it needs the clouds.
@@ -72,7 +86,7 @@ impl Method {
     /// Registers a pair.
     pub fn run(&self, pair: &Pair, source: &[Vec3], target: &[Vec3]) -> Answer {
         match self {
-            Self::Register(options) => {
+            Self::Register { options, .. } => {
                 let (source, target) = (flat(source), flat(target));
                 let begun = Instant::now();
                 let found = register(&source, &target, ScaleOption::Fixed(1.0), options, &mut Silent);
@@ -90,7 +104,7 @@ impl Method {
                 let seconds = begun.elapsed().as_secs_f64();
                 Answer { target_from_source: pose.map_err(|error| error.to_string()), seconds }
             }
-            Self::Import { folder, .. } => imported(&folder.join(format!("{}.json", pair.id))),
+            Self::Import { folder, .. } => imported(pair, folder),
         }
     }
 }
@@ -107,33 +121,21 @@ fn assign(options: &mut RegisterOptions, name: &str, text: &str) -> Option<()> {
     Some(())
 }
 
-/// `{ targetFromSource: { scale, rotation: [rows], translation }, seconds }` or `{ error }`.
-fn imported(path: &std::path::Path) -> Answer {
-    let none = |error: String| Answer { target_from_source: Err(error), seconds: f64::NAN };
-    let bytes = match std::fs::read(path) {
-        Ok(bytes) => bytes,
-        Err(error) => return none(format!("{}: {error}", path.display())),
+/// The answer of another program.
+fn imported(pair: &Pair, folder: &Path) -> Answer {
+    let (outcome, seconds) = match answer_in(folder, &pair.id, &CLOUDS) {
+        Ok(answer) => (Ok(answer.outcome), answer.seconds),
+        Err(error) => (Err(error), None),
     };
-    let json: Value = match serde_json::from_slice(&bytes) {
-        Ok(json) => json,
-        Err(error) => return none(format!("{}: {error}", path.display())),
-    };
-    let seconds = json.get("seconds").and_then(Value::as_f64).unwrap_or(f64::NAN);
-    if let Some(error) = json.get("error").and_then(Value::as_str) {
-        return Answer { target_from_source: Err(error.to_owned()), seconds };
-    }
-    let pose = transform(&json).ok_or_else(|| format!("{}: no targetFromSource", path.display()));
-    let checked = pose.and_then(|(scale, rotation, translation)| {
-        let matrix = nalgebra::Matrix3::from_row_slice(rotation.as_flattened());
-        Similarity::from_parts(scale, matrix, translation.into()).map_err(|error| error.to_string())
+    let pose = outcome.and_then(|outcome| match outcome {
+        Outcome::Pose(pose) => Ok(pose),
+        Outcome::Failure(message) => Err(format!("the method's own error: {message}")),
+        Outcome::Pairs(pairs) => {
+            let distance = pairs.inlier_distance_m.unwrap_or(INLIER_VOXELS * pair.voxel_size_m);
+            let found = pairs.estimate(ScaleOption::Fixed(1.0), distance);
+            let pose = found.and_then(|found| Similarity::from_column_major(&found.target_from_source.matrix));
+            pose.map_err(|error| error.to_string())
+        }
     });
-    Answer { target_from_source: checked, seconds }
-}
-
-fn transform(json: &Value) -> Option<(f64, [[f64; 3]; 3], [f64; 3])> {
-    let pose = json.get("targetFromSource")?;
-    let part = |name: &str| pose.get(name).cloned();
-    let scale = part("scale").map_or(Some(1.0), |scale| scale.as_f64())?;
-    let rotation = serde_json::from_value(part("rotation")?).ok()?;
-    Some((scale, rotation, serde_json::from_value(part("translation")?).ok()?))
+    Answer { target_from_source: pose, seconds: seconds.unwrap_or(f64::NAN) }
 }

@@ -1,8 +1,5 @@
 //! The pairs, shared out among threads.
 
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use glam::Vec3;
 use serde_json::json;
 use sim3align::geometry::cloud::Cloud;
@@ -10,6 +7,8 @@ use sim3align::geometry::random::Random;
 use sim3align::geometry::rotations::super_fibonacci;
 use sim3align::geometry::similarity::{Similarity, vec3, vector3};
 use sim3align::geometry::voxel_grid::voxel_downsample;
+use sim3align::samples::in_order::in_order;
+use sim3align::samples::records::RecordFile;
 use sim3align::samples::registration::cloud_file::read_cloud;
 use sim3align::samples::registration::lidar_set::write_lidar;
 use sim3align::samples::registration::overlap::overlap;
@@ -19,7 +18,7 @@ use sim3align::samples::registration::{kitti, three_d_match};
 
 use crate::arguments::{Command, Kind, Protocol, Run};
 use crate::method::Method;
-use crate::record::{Record, Records};
+use crate::record::Record;
 use crate::table;
 
 /// The random stream of `--moved`.
@@ -49,40 +48,11 @@ fn run_pairs(run: &Run) -> Result<(), String> {
         let list: Vec<_> = list.collect::<Result<_, String>>()?;
         return std::fs::write(path, json!(list).to_string()).map_err(|error| format!("{}: {error}", path.display()));
     }
-    let records = Records::open(run.records.as_deref())?;
-    let results: Vec<Mutex<Vec<Record>>> = pairs.iter().map(|_| Mutex::default()).collect();
-    let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
-    let failure = Mutex::new(None);
-    std::thread::scope(|scope| {
-        for _ in 0..run.threads.min(pairs.len()) {
-            scope.spawn(|| {
-                while let Some((pair, slot)) = {
-                    let i = next.fetch_add(1, Ordering::Relaxed);
-                    pairs.get(i).zip(results.get(i))
-                } {
-                    match run_pair(pair, run, &records) {
-                        Ok(made) => {
-                            if let Ok(mut slot) = slot.lock() {
-                                *slot = made;
-                            }
-                        }
-                        Err(error) => {
-                            if let Ok(mut failure) = failure.lock() {
-                                failure.get_or_insert(error);
-                            }
-                            break;
-                        }
-                    }
-                    eprint!("\r{} of {} ", done.fetch_add(1, Ordering::Relaxed) + 1, pairs.len());
-                }
-            });
-        }
-    });
+    let records = run.records.as_deref().map(RecordFile::open).transpose().map_err(|error| error.to_string())?;
+    let work = |pair: &Pair| run_pair(pair, run, records.as_ref());
+    let made = in_order(run.threads, &pairs, work, |done| eprint!("\r{done} of {} ", pairs.len()));
     eprintln!();
-    if let Ok(Some(error)) = failure.into_inner() {
-        return Err(error);
-    }
-    let all: Vec<Record> = results.into_iter().filter_map(|slot| slot.into_inner().ok()).flatten().collect();
+    let all: Vec<Record> = made?.into_iter().flatten().collect();
     let methods: Vec<&str> = run.methods.iter().map(Method::name).collect();
     print!("{}", table::report(&all, &methods));
     if let Some(path) = &run.json {
@@ -102,14 +72,16 @@ fn pairs(run: &Run) -> Result<Vec<Pair>, String> {
     pairs.map_err(|error| error.to_string())
 }
 
-fn run_pair(pair: &Pair, run: &Run, records: &Records) -> Result<Vec<Record>, String> {
-    let known = |method: &Method| records.get(&pair.id, method.name()).filter(|_| method.needs_clouds()).cloned();
+fn run_pair(pair: &Pair, run: &Run, records: Option<&RecordFile<Record>>) -> Result<Vec<Record>, String> {
+    let known = |method: &Method| records?.get(&method.key(pair, run.moved)).filter(|_| method.needs_clouds()).cloned();
     let missing = run.methods.iter().any(|method| method.needs_clouds() && known(method).is_none());
+    let overlap_of = |method| known(method)?.overlap;
+    let measured = pair.overlap.or_else(|| run.methods.iter().find_map(overlap_of));
+    let measure = run.measure_overlap && measured.is_none();
     let read = |path| read_cloud(path).map_err(|error| error.to_string());
-    let measure = run.measure_overlap && pair.overlap.is_none();
     let (source, target) =
         if missing || measure { (read(&pair.source)?, read(&pair.target)?) } else { (Vec::new(), Vec::new()) };
-    let share = pair.overlap.or_else(|| {
+    let share = measured.or_else(|| {
         let voxels =
             |points: &[Vec3]| voxel_downsample(&Cloud::from_points(points.to_vec()), 0.5 * pair.voxel_size_m as f32);
         let (a, b) = (voxels(&source).points, voxels(&target).points);
@@ -145,8 +117,8 @@ fn run_pair(pair: &Pair, run: &Run, records: &Records) -> Result<Vec<Record>, St
             seconds: Some(answer.seconds).filter(|seconds| seconds.is_finite()),
             matrix: answer.target_from_source.as_ref().ok().map(Similarity::to_column_major),
         };
-        if method.needs_clouds() {
-            records.append(&record)?;
+        if let (true, Some(file)) = (method.needs_clouds(), records) {
+            file.add(&method.key(pair, run.moved), &record).map_err(|error| error.to_string())?;
         }
         made.push(record);
     }

@@ -3,6 +3,8 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
+use sim3align::samples::table::{cell, mean, median};
+
 use crate::record::Record;
 
 /// Lower ends of the bins of overlap, and their names.
@@ -73,27 +75,12 @@ fn line(out: &mut String, group: &str, method: &str, records: &[&Record]) {
         "| {group} | {method} | {} | {:.1} % | {} % | {} | {} | {} | {} | {} | {} |",
         records.len(),
         recall(records),
-        text(mean(&by_scene), 1),
-        text(mean(&rotation), 2),
-        text(mean(&translation), 3),
-        text(median(rotation.clone()), 2),
-        text(median(translation.clone()), 3),
-        text(mean(&successes(|r| r.rmse_m)), 3),
-        text(mean(&seconds), 2),
+        cell(mean(&by_scene), 1),
+        cell(mean(&rotation), 2),
+        cell(mean(&translation), 3),
+        cell(median(rotation.clone()), 2),
+        cell(median(translation.clone()), 3),
+        cell(mean(&successes(|r| r.rmse_m)), 3),
+        cell(mean(&seconds), 2),
     );
-}
-
-fn mean(values: &[f64]) -> Option<f64> {
-    (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
-}
-
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    let n = values.len();
-    let at = |i: usize| values.get(i).copied();
-    if n % 2 == 1 { at(n / 2) } else { Some(0.5 * (at((n / 2).checked_sub(1)?)? + at(n / 2)?)) }
-}
-
-fn text(value: Option<f64>, digits: usize) -> String {
-    value.map_or("–".into(), |value| format!("{value:.digits$}"))
 }

@@ -18,6 +18,7 @@ pub mod trajectory;
 
 use std::path::Path;
 
+use super::case::unwritable;
 use crate::error::{Error, ErrorCode, Result, Text};
 
 /// Walls and furniture.
@@ -45,15 +46,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>> {
 /// Writes a file, and the folders that it is in.
 pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     let written = path.parent().map_or(Ok(()), std::fs::create_dir_all).and_then(|()| std::fs::write(path, bytes));
-    written.map_err(|error| {
-        Error::new(
-            ErrorCode::InvalidArgument,
-            path.display().to_string(),
-            format!("a file system that says: {error}"),
-            "a folder to write to",
-            "Name a folder that exists or can be created, on a disk that is not full.",
-        )
-    })
+    written.map_err(|error| unwritable(path, error))
 }
 
 /// A file that contradicts itself.

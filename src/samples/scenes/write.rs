@@ -2,7 +2,6 @@
 
 use std::fs;
 use std::path::Path;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use serde_json::json;
 
@@ -10,6 +9,7 @@ use super::prior::Prior;
 use super::set::SceneSet;
 use crate::error::{Error, ErrorCode, Result};
 use crate::samples::case::unwritable;
+use crate::samples::in_order::in_order;
 
 /// What says of a folder which set is in it.
 const LABEL: &str = "set.json";
@@ -31,28 +31,8 @@ impl SceneSet {
         progress: impl Fn(usize) + Sync,
     ) -> Result<()> {
         self.label(folder)?;
-        let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
-        let work = || -> Result<()> {
-            loop {
-                let scene = next.fetch_add(1, Ordering::Relaxed);
-                if scene >= self.scenes() {
-                    return Ok(());
-                }
-                if let Err(error) = self.write_scene(scene, folder, priors) {
-                    // The others need not go on.
-                    next.store(self.scenes(), Ordering::Relaxed);
-                    return Err(error);
-                }
-                progress(done.fetch_add(1, Ordering::Relaxed) + 1);
-            }
-        };
-        std::thread::scope(|scope| {
-            let threads: Vec<_> = (0..threads.clamp(1, self.scenes().max(1))).map(|_| scope.spawn(work)).collect();
-            threads.into_iter().try_for_each(|thread| {
-                let died = || Error::new(ErrorCode::Internal, "thread", "one that died", "none", "Please report it.");
-                thread.join().unwrap_or_else(|_| Err(died()))
-            })
-        })
+        let scenes: Vec<usize> = (0..self.scenes()).collect();
+        in_order(threads, &scenes, |&scene| self.write_scene(scene, folder, priors), progress).map(drop)
     }
 
     fn write_scene(&self, index: usize, folder: &Path, priors: &[Prior]) -> Result<()> {
