@@ -10,7 +10,7 @@ import { buildPackage } from "./lib/package.mjs";
 import { setUp } from "./lib/setup.mjs";
 import { duration, explain, script } from "./lib/step.mjs";
 import { lint, types } from "./suites/lint.mjs";
-import { browser, javaScript, lintPackage } from "./suites/package.mjs";
+import { browser, bundlers, javaScript, lintPackage } from "./suites/package.mjs";
 import { native, wasm } from "./suites/rust.mjs";
 import { checkSizes } from "./suites/size.mjs";
 
@@ -33,6 +33,7 @@ const suites = [
   { name: "package", title: "Package checks", run: lintPackage, usesPackage: true },
   { name: "js", title: "JavaScript tests on the installed package", run: javaScript, usesPackage: true },
   { name: "browser", title: "Browser tests", run: browser, usesPackage: true },
+  { name: "bundlers", title: "The package in bundlers' apps", run: bundlers, usesPackage: true },
 ];
 
 async function build() {

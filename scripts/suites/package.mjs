@@ -47,7 +47,7 @@ async function install() {
   });
   await step("compile the tests", async () => {
     rmSync(join(installDir, "tests"), { recursive: true, force: true });
-    for (const folder of ["js", "browser", "support"].filter((name) => existsSync(at("tests", name)))) {
+    for (const folder of ["js", "browser", "bundlers", "support"].filter((name) => existsSync(at("tests", name)))) {
       cpSync(at("tests", folder), join(installDir, "tests", folder), { recursive: true });
     }
     const tsconfig = { extends: at("tests", "tsconfig.installed.json"), include: ["tests"] };
@@ -81,10 +81,16 @@ async function nodeTest(folder, env = {}) {
 
 export const javaScript = () => nodeTest("js");
 
-export async function browser() {
+/** @param {string} folder of tests that show pages */
+async function inBrowser(folder) {
   const path = await chromium();
-  if (path) return nodeTest("browser", { CHROMIUM_PATH: path });
+  if (path) return nodeTest(folder, { CHROMIUM_PATH: path });
   console.log(`No Chromium. Remedy: ${chromiumRemedy}.`);
   // On a developer's machine that is a gap; in continuous integration it would hide every failure of the page.
   return { ...noTests(), ...(process.env.CI ? { failed: 1 } : { skipped: 1 }) };
 }
+
+export const browser = () => inBrowser("browser");
+
+/** The package in other people's apps. */
+export const bundlers = () => inBrowser("bundlers");
