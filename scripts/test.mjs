@@ -11,6 +11,7 @@ import { setUp } from "./lib/setup.mjs";
 import { duration, explain, script } from "./lib/step.mjs";
 import { lint, types } from "./suites/lint.mjs";
 import { browser, bundlers, javaScript, lintPackage } from "./suites/package.mjs";
+import { runtimes } from "./suites/runtimes.mjs";
 import { native, wasm } from "./suites/rust.mjs";
 import { checkSizes } from "./suites/size.mjs";
 
@@ -34,6 +35,7 @@ const suites = [
   { name: "js", title: "JavaScript tests on the installed package", run: javaScript, usesPackage: true },
   { name: "browser", title: "Browser tests", run: browser, usesPackage: true },
   { name: "bundlers", title: "The package in bundlers' apps", run: bundlers, usesPackage: true },
+  { name: "runtimes", title: "The package in Deno and Bun", run: runtimes, usesPackage: true },
 ];
 
 async function build() {
