@@ -54,7 +54,7 @@ pub fn picture(case: &BenchCase, pose: &Similarity) -> Result<Vec<u8>> {
     let [near, far] = [NEAREST, FARTHEST].map(|share| f64::from(quantile(readings(), share).unwrap_or(1.0)));
     let shade = |z: f32| (far - f64::from(z)) / (far - near).max(1e-9);
     let mut pixels: Vec<[u8; 3]> =
-        depth.data().iter().map(|&z| if z > 0.0 { cubehelix(0.1 + 0.75 * shade(z)) } else { NO_READING }).collect();
+        depth.data().iter().map(|&z| if z > 0.0 { cubehelix(0.06 + 0.6 * shade(z)) } else { NO_READING }).collect();
 
     let silhouette = |pose: &Similarity| {
         let mut rasteriser = Rasteriser::new();

@@ -2,6 +2,7 @@ import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
+import { dirname, join, relative } from "node:path";
 import { test } from "node:test";
 import { commandLine } from "../support/environment.js";
 
@@ -15,6 +16,45 @@ for (const name of ["core", "formats"]) {
     assert.ok(WebAssembly.validate(bytes));
   });
 }
+
+/** The files of the package that an entry loads, itself included, and what it imports from elsewhere. */
+function importsOf(entry: string): { own: string[]; foreign: string[] } {
+  const own = [require.resolve(entry)];
+  const foreign: string[] = [];
+  for (const file of own) {
+    for (const [, specifier = ""] of readFileSync(file, "utf8").matchAll(
+      /^(?:import|export)\b[^;]*?from "([^"]+)"/gm,
+    )) {
+      const imported = join(dirname(file), specifier);
+      if (!specifier.startsWith(".")) foreign.push(specifier);
+      else if (!own.includes(imported)) own.push(imported);
+    }
+  }
+  const root = dirname(require.resolve("sim3align/package.json"));
+  return { own: own.map((file) => relative(root, file)), foreign };
+}
+
+test("the main entry loads nothing of the conventions", () => {
+  const { own, foreign } = importsOf("sim3align");
+  assert.deepEqual(
+    own.filter((file) => /^(conventions|three)\b/.test(file)),
+    [],
+  );
+  assert.deepEqual(foreign, []);
+  assert.ok(own.includes("aligner.js"), "imports are followed");
+});
+
+test("the conventions load no WebAssembly, and three.js' no three.js", () => {
+  for (const entry of ["sim3align/conventions", "sim3align/three"]) {
+    const { own, foreign } = importsOf(entry);
+    assert.deepEqual(
+      own.filter((file) => /wasm|aligner|modules/.test(file)),
+      [],
+    );
+    assert.deepEqual(foreign, [], entry);
+    assert.ok(own.includes(join("conventions", "frames.js")), "imports are followed");
+  }
+});
 
 test("what is not exported stays private", () => {
   assert.throws(() => require.resolve("sim3align/cli.js"), { code: "ERR_PACKAGE_PATH_NOT_EXPORTED" });

@@ -62,6 +62,8 @@ pub mod real_cases;
 #[cfg(all(feature = "samples", not(target_arch = "wasm32")))]
 pub mod records;
 pub mod register;
+#[cfg(all(feature = "bench", not(target_arch = "wasm32")))]
+pub mod registration;
 pub mod sample;
 #[cfg(all(feature = "samples", not(target_arch = "wasm32")))]
 pub mod samples;

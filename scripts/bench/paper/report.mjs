@@ -129,7 +129,8 @@ async function pictureOf(title, record, cases, out) {
   const file = join(out, `${title.replaceAll(/\W+/g, "-")}.png`);
   const folder = basename(cases) === record.name ? cases : join(cases, record.name);
   const matrix = record.alignment?.cameraFromMesh.matrix.join(",") ?? "";
-  await runProgram(at("target", "native", "sim3align-samples"), ["picture", folder, file, `--matrix=${matrix}`]);
+  const args = ["--cases", folder, "--picture", file, `--matrix=${matrix}`];
+  await runProgram(at("target", "native", "sim3align-bench"), args);
   const png = readFileSync(file);
   const name = `${title}: ${record.name}, IoU ${(record.alignment?.metrics.iou ?? 0).toFixed(3)}`;
   // Width and height stand in a PNG's first chunk.

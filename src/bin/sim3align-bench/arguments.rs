@@ -48,6 +48,8 @@ Running
   --records FILE     the same, added one JSON line at a time; what the file has already is not run again. Instead of
                      tables, prints what is done
   --write DIR        write the cases of the generated set as case folders, and align nothing
+  --picture FILE     a PNG of the first case's depth with the outlines of mask, truth and, with --matrix, a pose
+  --matrix N,N,…     the pose: camera from mesh, 16 numbers column by column; without it the true pose
   --failures N       failures listed at most a row, default 40
   --help             this text";
 
@@ -99,6 +101,8 @@ pub struct Arguments {
     pub json: Option<PathBuf>,
     pub records: Option<PathBuf>,
     pub write: Option<PathBuf>,
+    pub picture: Option<PathBuf>,
+    pub matrix: Option<Vec<f64>>,
     pub failures: usize,
 }
 
@@ -123,6 +127,8 @@ impl Arguments {
             json: None,
             records: None,
             write: None,
+            picture: None,
+            matrix: None,
             failures: 40,
         };
         while let Some(argument) = parser.next()? {
@@ -145,6 +151,8 @@ impl Arguments {
                 Long("json") => arguments.json = Some(parser.value()?.into()),
                 Long("records") => arguments.records = Some(parser.value()?.into()),
                 Long("write") => arguments.write = Some(parser.value()?.into()),
+                Long("picture") => arguments.picture = Some(parser.value()?.into()),
+                Long("matrix") => arguments.matrix = Some(list(&parser.value()?.string()?, str::parse::<f64>)?),
                 Long("failures") => arguments.failures = parser.value()?.parse()?,
                 Long("help") | Short('h') => return Ok(None),
                 _ => return Err(argument.unexpected()),

@@ -7,10 +7,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use serde_json::json;
 use sim3align::align::baseline::align_baseline;
+use sim3align::geometry::similarity::Similarity;
 use sim3align::samples::benchmark::{BenchCase, Record, run_case, run_method};
 use sim3align::samples::evaluation::case::EvaluationSet;
 use sim3align::samples::evaluation::tier::{Class, Tier};
 use sim3align::samples::imported::imported;
+use sim3align::samples::overlay::picture;
 use sim3align::samples::records::{RecordFile, RecordKey};
 use sim3align::samples::scenes::{Prior, SceneSet};
 
@@ -57,6 +59,9 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
         return written.into_iter().collect();
     }
     let load = |source: &Source| load(source, &set, &scenes);
+    if let (Some(path), Some(source)) = (&arguments.picture, sources.first()) {
+        return draw(&load(source)?, arguments.matrix.as_deref(), path);
+    }
     if let Some(path) = &arguments.records {
         return go_on(arguments, &sources, &load, path);
     }
@@ -109,6 +114,19 @@ fn go_on(
     })
     .into_iter()
     .collect()
+}
+
+fn draw(case: &BenchCase, matrix: Option<&[f64]>, path: &Path) -> Result<(), String> {
+    let pose = match matrix {
+        Some(matrix) => {
+            let numbers = <&[f64; 16]>::try_from(matrix).map_err(|_| "--matrix: expected 16 numbers")?;
+            Some(Similarity::from_column_major(numbers).map_err(|error| error.to_string())?)
+        }
+        None => case.truth.as_ref().map(|truth| truth.camera_from_mesh),
+    };
+    let pose = pose.ok_or("the case has no true pose: pass --matrix")?;
+    let png = picture(case, &pose).map_err(|error| error.to_string())?;
+    fs::write(path, png).map_err(|error| format!("{}: {error}", path.display()))
 }
 
 fn run_row(case: &BenchCase, row: &Row) -> Record {

@@ -35,9 +35,11 @@ pub enum Prior {
     /// and flattened along the line of sight to 0.6 to 0.85 of its depth.
     ///
     /// No similarity undoes a flattening. The truth is the one that brings the flattened side that was *seen* back to
-    /// where it was, with the least squared distance over its pixels; of the rest it says nothing. So the true pose's
-    /// own row is far from ideal: on the first 30 scenes of seed 0, its silhouette overlaps the mask by 0.79 on average
-    /// (0.86 of the detailed prior), and its depth is off by 6.5 mm (4.1 mm).
+    /// where it was: turn and place by the least squared distance over its pixels, size by that across the line of
+    /// sight, so that the picture agrees as far as it can. Of the rest it says nothing. So the true pose's own row is
+    /// further from ideal than that of [`Prior::Detailed`]: on the first 20 scenes of seed 0, silhouette and mask
+    /// overlap by 0.759 on average (detailed: 0.786; where little is hidden 0.906 and 0.943), and the depth is off by
+    /// 5.4 mm (3.0 mm). Among poses that explain the picture as well, some are 2 % smaller or larger and turned by 5°.
     Smooth,
 }
 

@@ -1,0 +1,47 @@
+/**
+ * Other tools' conventions: frames, matrices and quaternions, masks, depth, cameras, and files. It needs no WebAssembly.
+ *
+ * Where nothing else is said, the camera frame is OpenCV's (x right, y down, z forward), lengths are in metres,
+ * quaternions are x, y, z, w, matrices are column-major, and pixel centres are at whole numbers.
+ * @packageDocumentation
+ */
+export { type BopExport, type BopPose, fromBop, toBop } from "./conventions/bop.js";
+export { fromCocoRle, toCocoRle } from "./conventions/coco-rle.js";
+export { type Cuboid, type CuboidOptions, type MeshAxis, toCuboid } from "./conventions/cuboid.js";
+export { type CvatMaskElement, fromCvatRle } from "./conventions/cvat-rle.js";
+export { depthFromDisparity } from "./conventions/disparity.js";
+export {
+  type CameraFrame,
+  fromFrame,
+  type RosPose,
+  type ThreePose,
+  toFrame,
+  toOpenGL,
+  toRos,
+  toThree,
+} from "./conventions/frames.js";
+export { exportGlb, type GlbOptions, placeGlb } from "./conventions/glb.js";
+export { type GltfNode, type GltfNodeOptions, toGltfNode } from "./conventions/gltf-node.js";
+export { fromLabelStudioRle } from "./conventions/label-studio-rle.js";
+export { type MogeOutput, pointMapFromMoge } from "./conventions/moge.js";
+export type { Quaternion, Vector3 } from "./conventions/numbers.js";
+export { type DimensionOptions, type ObjectBox, objectDimensions } from "./conventions/object-box.js";
+export type { StatedCamera } from "./conventions/pinhole.js";
+export type { DepthPixels, ImageSize, MaskPixels } from "./conventions/pixels.js";
+export { exportPly } from "./conventions/ply.js";
+export {
+  type CropInput,
+  cropInput,
+  maskBox,
+  type PixelBox,
+  resizeCamera,
+  resizeDepth,
+  resizeMask,
+} from "./conventions/resize.js";
+export { wxyzFromXyzw, xyzwFromWxyz } from "./conventions/rotation.js";
+export { fromSam3d, type Nested, type Sam3dLayout, type Sam3dVertices, toSam3d } from "./conventions/sam3d.js";
+export { applyToPoints, compose, invert, toRowMajor, toSim3 } from "./conventions/similarity.js";
+export { depthFromTensor, type MaskChoice, maskFromTensor, type TensorLike } from "./conventions/tensor.js";
+export { type ErrorCode, type ErrorParts, Sim3AlignError } from "./error.js";
+export type { CocoRle, MeshArrays, PinholeCamera, PixelArray } from "./input/types.js";
+export type { Sim3, Sim3Like } from "./sim3.js";

@@ -1,0 +1,65 @@
+/** Poses as the BOP benchmark writes them. */
+import type { Sim3, Sim3Like } from "../sim3.js";
+import { finiteNumbers, positive, record, vector3, whole } from "./numbers.js";
+import { type Matrix3, rotationOf } from "./rotation.js";
+import { sim3Of, similarityOf } from "./similarity.js";
+
+/** One object of BOP's `scene_gt.json`: camera from model, OpenCV camera frame, models in millimetres. */
+export interface BopPose {
+  /** The rotation: nine numbers row by row. */
+  cam_R_m2c: readonly number[];
+  /** The translation, in millimetres. */
+  cam_t_m2c: readonly number[];
+  /** The number of the model. */
+  obj_id?: number;
+}
+
+/** A BOP pose, and the scale, which BOP's format has not. */
+export interface BopExport {
+  /** What belongs into `scene_gt.json`. */
+  entry: { cam_R_m2c: number[]; cam_t_m2c: number[]; obj_id?: number };
+  /** Metres per mesh unit. The model file that the entry is about has the mesh's vertices times 1000 · scale. */
+  scale: number;
+}
+
+/**
+ * A pose for BOP's `scene_gt.json`. BOP's models are in millimetres and its poses have no scale, so that the model has
+ * to be written at its real size: the mesh's vertices times `1000 · scale`.
+ *
+ * @param transform OpenCV camera from mesh, metres
+ * @param options `objId`: the model's number, from 1 on
+ *
+ * @example
+ * const { entry, scale } = toBop(result, { objId: 3 });
+ * const sceneGt = { 0: [entry] };
+ * const modelMm = mesh.positions.map((x) => 1000 * scale * x);
+ * @throws {@link Sim3AlignError} for what is no similarity
+ */
+export function toBop(transform: Sim3Like, { objId }: { objId?: number } = {}): BopExport {
+  const { scale, rotation, translation } = similarityOf(transform);
+  const entry = { cam_R_m2c: [...rotation], cam_t_m2c: translation.map((metres) => 1000 * metres) };
+  return { entry: objId === undefined ? entry : { ...entry, obj_id: whole("options.objId", objId, 0) }, scale };
+}
+
+/**
+ * A transform from an entry of BOP's `scene_gt.json`.
+ *
+ * @param entry `cam_R_m2c` (nine numbers row by row) and `cam_t_m2c` (millimetres)
+ * @param options `scale`: metres per mesh unit; by default 0.001, for a mesh with BOP's millimetres
+ * @returns OpenCV camera from mesh, metres
+ *
+ * @example
+ * const truth = fromBop(sceneGt["0"][0]);
+ * await aligner.evaluate(input, result, { truth });
+ * @throws {@link Sim3AlignError} for missing or wrong numbers
+ */
+export function fromBop(entry: BopPose, { scale = 0.001 }: { scale?: number } = {}): Sim3 {
+  const { cam_R_m2c, cam_t_m2c } = record("entry", entry, "an entry of scene_gt.json");
+  const nine = finiteNumbers("entry.cam_R_m2c", cam_R_m2c, 9, "nine finite numbers, row by row");
+  const [x, y, z] = vector3("entry.cam_t_m2c", cam_t_m2c);
+  return sim3Of({
+    scale: positive("options.scale", scale),
+    rotation: rotationOf("entry.cam_R_m2c", nine as unknown as Matrix3),
+    translation: [x / 1000, y / 1000, z / 1000],
+  });
+}

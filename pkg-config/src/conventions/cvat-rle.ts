@@ -1,0 +1,92 @@
+/** Masks as CVAT writes them: run lengths along the rows of the mask's own box. */
+import { describe } from "../error.js";
+import type { PixelArray } from "../input/types.js";
+import { isRecord } from "../values.js";
+import { failure, whole } from "./numbers.js";
+import { type ImageSize, sizeOf } from "./pixels.js";
+import { filledRuns } from "./runs.js";
+
+/** A `<mask>` of CVAT's XML ("CVAT for images"); its attributes may be texts, as an XML parser gives them. */
+export interface CvatMaskElement {
+  /** Run lengths, comma-separated, beginning with background. */
+  rle: string;
+  left: number | string;
+  top: number | string;
+  width: number | string;
+  height: number | string;
+}
+
+/**
+ * The mask of a shape of CVAT's: the `points` of a mask shape from its API or SDK (run lengths, then the box's left,
+ * top, right and bottom, all four within the box), or a `<mask>` element of its XML.
+ *
+ * @param mask the `points`, or the element's attributes
+ * @param image the size of the whole image, in pixels
+ * @returns the whole image's mask; 1 is the object
+ *
+ * @example
+ * fromCvatRle([1, 2, 1, 1, 0, 2, 1], { width: 3, height: 2 }).data;    // Uint8Array [0, 0, 1, 0, 1, 0]
+ * @throws {@link Sim3AlignError} `CORRUPT_FILE` for runs that do not fill the box, `SIZE_MISMATCH` for a box that leaves
+ * the image
+ */
+export function fromCvatRle(mask: ArrayLike<number> | CvatMaskElement, image: ImageSize): PixelArray<Uint8Array> {
+  const { width, height } = sizeOf("image", image);
+  const { runs, left, top, boxWidth, boxHeight } = isRecord(mask) ? fromElement(mask) : fromPoints(mask);
+  if (left + boxWidth > width || top + boxHeight > height) {
+    const found = `a box of ${boxWidth} × ${boxHeight} at ${left}, ${top} in ${width} × ${height} pixels`;
+    throw failure("SIZE_MISMATCH", "mask", found, "a box within the image", "Pass the size of the annotated image.");
+  }
+  const box = filledRuns("mask", runs, boxWidth * boxHeight);
+  const data = new Uint8Array(width * height);
+  for (let v = 0; v < boxHeight; v++) {
+    data.set(box.subarray(v * boxWidth, (v + 1) * boxWidth), (top + v) * width + left);
+  }
+  return { data, width, height };
+}
+
+interface BoxRuns {
+  runs: readonly unknown[];
+  left: number;
+  top: number;
+  boxWidth: number;
+  boxHeight: number;
+}
+
+function fromPoints(points: unknown): BoxRuns {
+  if (!Array.isArray(points) && !ArrayBuffer.isView(points)) {
+    const expected = "[run, run, …, left, top, right, bottom], or { rle, left, top, width, height }";
+    throw failure("INVALID_ARGUMENT", "mask", describe(points), expected, "Pass the points of a mask shape.");
+  }
+  const numbers = Array.from(points as unknown as ArrayLike<unknown>);
+  if (numbers.length < 5) {
+    const remedy = "Pass the points of a shape of the type mask.";
+    throw failure(
+      "WRONG_LENGTH",
+      "mask",
+      `${numbers.length} numbers`,
+      "run lengths and the box's four numbers",
+      remedy,
+    );
+  }
+  const [left, top, right, bottom] = numbers.splice(-4);
+  const [x, y] = [whole("mask.left", left, 0), whole("mask.top", top, 0)];
+  // Right and bottom are the last column and row of the box, not the first beyond it.
+  const boxWidth = whole("mask.right", right, x) - x + 1;
+  return { runs: numbers, left: x, top: y, boxWidth, boxHeight: whole("mask.bottom", bottom, y) - y + 1 };
+}
+
+function fromElement({ rle, left, top, width, height }: Record<string, unknown>): BoxRuns {
+  if (typeof rle !== "string") {
+    const remedy = "Pass the attributes of a mask element.";
+    throw failure("INVALID_ARGUMENT", "mask.rle", describe(rle), "run lengths in a text, separated by commas", remedy);
+  }
+  const number = (name: string, value: unknown, least: number) =>
+    whole(`mask.${name}`, typeof value === "string" && value.trim() !== "" ? Number(value) : value, least);
+  return {
+    runs: rle.split(",").map(Number),
+    left: number("left", left, 0),
+    top: number("top", top, 0),
+    boxWidth: number("width", width, 1),
+    boxHeight: number("height", height, 1),
+  };
+}

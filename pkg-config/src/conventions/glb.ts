@@ -1,0 +1,178 @@
+/** GLB files: a mesh where it really is, or a GLB put there. */
+import { describe } from "../error.js";
+import type { MeshArrays } from "../input/types.js";
+import type { Sim3Like } from "../sim3.js";
+import { isKind, isRecord, isTypedArray, wrongKind } from "../values.js";
+import { inFrame } from "./frames.js";
+import { type GltfNode, type GltfNodeOptions, toGltfNode } from "./gltf-node.js";
+import { meshOf } from "./mesh.js";
+import { failure, oneOf } from "./numbers.js";
+import { applyToPoints, sim3Of, similarityOf } from "./similarity.js";
+
+/** What {@link exportGlb} can be told. */
+export interface GlbOptions extends GltfNodeOptions {
+  /** "node", the default, keeps the vertices and transforms the node; "baked" transforms the vertices. */
+  mode?: "node" | "baked" | undefined;
+}
+
+const magic = 0x46546c67;
+const jsonChunk = 0x4e4f534a;
+const binaryChunk = 0x004e4942;
+
+/**
+ * A GLB file of a mesh where it really is, at its real size, in metres, seen from a camera at the origin. It has
+ * positions and triangles only; for a GLB with its materials, see {@link placeGlb}.
+ *
+ * @param mesh `positions` and `indices`, as they were aligned
+ * @param transform OpenCV camera from mesh: a result of `align`, whose metrics are kept in the node's extras
+ *
+ * @example
+ * const bytes = exportGlb(mesh, result);
+ * await writeFile("placed.glb", bytes);
+ * @throws {@link Sim3AlignError} for what is no mesh or no similarity, and `INVALID_OPTION`
+ */
+export function exportGlb(mesh: MeshArrays, transform: Sim3Like, options: GlbOptions = {}): Uint8Array {
+  const { positions, indices } = meshOf("mesh", mesh);
+  const { mode = "node", frame = "opengl" } = options;
+  const isBaked = oneOf("options.mode", mode, ["node", "baked"]) === "baked";
+  const node = toGltfNode(transform, options);
+  const placed = sim3Of(inFrame("options.frame", similarityOf(transform), frame));
+  const vertices = isBaked ? applyToPoints(placed, positions) : positions;
+  const corners = indices === null ? new Uint32Array() : Uint32Array.from(indices);
+  const buffer = new Uint8Array(vertices.byteLength + corners.byteLength);
+  buffer.set(bytesOf(vertices));
+  buffer.set(bytesOf(corners), vertices.byteLength);
+  const [positionsView, cornersView] = [
+    { buffer: 0, byteOffset: 0, byteLength: vertices.byteLength, target: 34962 },
+    { buffer: 0, byteOffset: vertices.byteLength, byteLength: corners.byteLength, target: 34963 },
+  ];
+  const positionsAccessor = {
+    ...{ bufferView: 0, componentType: 5126, type: "VEC3", count: vertices.length / 3 },
+    ...bounds(vertices),
+  };
+  const cornersAccessor = { bufferView: 1, componentType: 5125, type: "SCALAR", count: corners.length };
+  const hasIndices = corners.length > 0;
+  const primitive = { attributes: { POSITION: 0 }, ...(hasIndices ? { indices: 1 } : {}) };
+  const json = {
+    asset: { version: "2.0", generator: "sim3align" },
+    scene: 0,
+    scenes: [{ nodes: [0] }],
+    nodes: [{ ...(isBaked ? { name: node.name, extras: node.extras } : node), mesh: 0 }],
+    meshes: [{ primitives: [primitive] }],
+    accessors: hasIndices ? [positionsAccessor, cornersAccessor] : [positionsAccessor],
+    bufferViews: hasIndices ? [positionsView, cornersView] : [positionsView],
+    buffers: [{ byteLength: buffer.byteLength }],
+  };
+  return glbOf(json, [[binaryChunk, buffer]]);
+}
+
+/**
+ * A GLB file with everything in it put where it really is: its scene hangs below one more node. Materials, textures and
+ * animations stay; nothing is decoded.
+ *
+ * @param glb the bytes of the file that was aligned
+ * @param transform OpenCV camera from mesh: a result of `align` for that very file
+ *
+ * @example
+ * const bytes = placeGlb(generated, await aligner.align({ depth, mask, camera, mesh: generated }));
+ * @throws {@link Sim3AlignError} `CORRUPT_FILE` for bytes that are no GLB, `UNSUPPORTED_FORMAT` for glTF 1
+ */
+export function placeGlb(
+  glb: Uint8Array | ArrayBuffer,
+  transform: Sim3Like,
+  options: GltfNodeOptions = {},
+): Uint8Array {
+  const { json, others } = chunksOf(glb);
+  const nodes = objectsOf(json, "nodes");
+  const children = new Set(nodes.flatMap((node) => node.children ?? []));
+  const roots = nodes.flatMap((_, i) => (children.has(i) ? [] : [i]));
+  const scenes = json.scenes === undefined ? [{ nodes: roots }] : objectsOf(json, "scenes");
+  const scene = typeof json.scene === "number" ? json.scene : 0;
+  const shown = (scenes[scene]?.nodes ?? []) as number[];
+  const node: GltfNode & { children?: number[] } = toGltfNode(transform, options);
+  // An empty list of children is against the format.
+  if (shown.length > 0) node.children = shown;
+  const placed = {
+    ...json,
+    scene,
+    scenes: scenes.map((other, i) => (i === scene ? { ...other, nodes: [nodes.length] } : other)),
+    nodes: [...nodes, node],
+  };
+  return glbOf(placed, others);
+}
+
+const bytesOf = (array: Float32Array | Uint32Array) => new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
+
+function bounds(vertices: Float32Array): { min: number[]; max: number[] } {
+  const [min, max] = [Array<number>(3).fill(Number.POSITIVE_INFINITY), Array<number>(3).fill(Number.NEGATIVE_INFINITY)];
+  vertices.forEach((x, i) => {
+    min[i % 3] = Math.min(min[i % 3] ?? x, x);
+    max[i % 3] = Math.max(max[i % 3] ?? x, x);
+  });
+  return { min, max };
+}
+
+/** The objects in a list that the file's JSON may have. */
+function objectsOf(json: Record<string, unknown>, name: string): Record<string, unknown>[] {
+  const list = json[name] ?? [];
+  if (Array.isArray(list) && list.every(isRecord)) return list;
+  throw failure("CORRUPT_FILE", "glb", `${describe(list)} as its ${name}`, "a list of objects", "Export it again.");
+}
+
+/** A file of a JSON chunk and others, each filled up to a multiple of four bytes. */
+function glbOf(json: object, others: readonly (readonly [type: number, content: Uint8Array])[]): Uint8Array {
+  const chunks = [[jsonChunk, new TextEncoder().encode(JSON.stringify(json))] as const, ...others];
+  const padded = (content: Uint8Array) => Math.ceil(content.length / 4) * 4;
+  const length = chunks.reduce((sum, [, content]) => sum + 8 + padded(content), 12);
+  const file = new Uint8Array(length);
+  const view = new DataView(file.buffer);
+  [magic, 2, length].forEach((word, i) => {
+    view.setUint32(4 * i, word, true);
+  });
+  let place = 12;
+  for (const [type, content] of chunks) {
+    view.setUint32(place, padded(content), true);
+    view.setUint32(place + 4, type, true);
+    // JSON ends with spaces, everything else with zeros.
+    if (type === jsonChunk) file.fill(0x20, place + 8, place + 8 + padded(content));
+    file.set(content, place + 8);
+    place += 8 + padded(content);
+  }
+  return file;
+}
+
+function chunksOf(glb: unknown): { json: Record<string, unknown>; others: [number, Uint8Array][] } {
+  const isBuffer = isKind<ArrayBuffer>(glb, "ArrayBuffer");
+  const bytes = isBuffer ? new Uint8Array(glb) : isTypedArray<Uint8Array>(glb, "Uint8Array") ? glb : null;
+  if (bytes === null) throw wrongKind("glb", glb, "the bytes of a GLB file", "Uint8Array");
+  const corrupt = (found: string) =>
+    failure("CORRUPT_FILE", "glb", found, "a whole GLB file", "Pass the file that was aligned, unchanged.");
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  if (bytes.length < 20 || view.getUint32(0, true) !== magic) throw corrupt(`${bytes.length} bytes without its header`);
+  const [version, length] = [view.getUint32(4, true), view.getUint32(8, true)];
+  if (version !== 2) {
+    throw failure("UNSUPPORTED_FORMAT", "glb", `glTF ${version}`, "glTF 2", "Convert it to glTF 2 first.");
+  }
+  if (length > bytes.length) throw corrupt(`${bytes.length} bytes of ${length}`);
+  const chunks: [number, Uint8Array][] = [];
+  for (let place = 12; place + 8 <= length; ) {
+    const end = place + 8 + view.getUint32(place, true);
+    if (end > length) throw corrupt(`a chunk up to byte ${end} of ${length}`);
+    chunks.push([view.getUint32(place + 4, true), bytes.subarray(place + 8, end)]);
+    place = end;
+  }
+  const [first, ...others] = chunks;
+  if (first?.[0] !== jsonChunk) throw corrupt("no JSON at its beginning");
+  return { json: parsed(first[1], corrupt), others };
+}
+
+function parsed(bytes: Uint8Array, corrupt: (found: string) => Error): Record<string, unknown> {
+  let json: unknown;
+  try {
+    json = JSON.parse(new TextDecoder().decode(bytes));
+  } catch {
+    throw corrupt("JSON that cannot be read");
+  }
+  if (!isRecord(json)) throw corrupt(`${describe(json)} as its JSON`);
+  return json;
+}

@@ -1,0 +1,84 @@
+/** Brush masks as Label Studio writes them: a stream of bits over the flattened RGBA pixels. */
+import { describe } from "../error.js";
+import type { PixelArray } from "../input/types.js";
+import { failure } from "./numbers.js";
+import { type ImageSize, sizeOf } from "./pixels.js";
+
+/**
+ * The mask of a brush annotation of Label Studio's (`BrushLabels`, `format: "rle"`).
+ *
+ * @param rle the bytes in `value.rle`
+ * @param image the image's size in pixels: the result's `original_width` and `original_height`
+ * @returns 1 is the object: where the brush's layer is not wholly transparent
+ *
+ * @example
+ * const { value, original_width: width, original_height: height } = annotation.result[0];
+ * const mask = fromLabelStudioRle(value.rle, { width, height });
+ * @throws {@link Sim3AlignError} `CORRUPT_FILE` for bytes that end too early, `SIZE_MISMATCH` for those of another image
+ */
+export function fromLabelStudioRle(rle: ArrayLike<number>, image: ImageSize): PixelArray<Uint8Array> {
+  const { width, height } = sizeOf("image", image);
+  const bits = new BitReader(bytesOf(rle));
+  const count = bits.read(32);
+  if (count !== 4 * width * height) {
+    const found = `${count} values, beside an image of ${width} × ${height}`;
+    const remedy = "Pass the result's original_width and original_height.";
+    throw failure("SIZE_MISMATCH", "rle", found, `width × height × 4 = ${4 * width * height}`, remedy);
+  }
+  const wordBits = bits.read(5) + 1;
+  // How many bits a run's length has, by a number of two bits before it.
+  const lengthBits = [bits.read(4) + 1, bits.read(4) + 1, bits.read(4) + 1, bits.read(4) + 1];
+  const data = new Uint8Array(width * height);
+  for (let place = 0; place < count; ) {
+    const isRun = bits.read(1) === 1;
+    const length = bits.read(lengthBits[bits.read(2)] ?? 1) + 1;
+    const end = place + length;
+    if (end > count) {
+      throw failure("CORRUPT_FILE", "rle", `a run up to ${end}`, `${count} values in all`, "Pass value.rle unchanged.");
+    }
+    if (isRun) {
+      // Of red, green, blue and alpha, the last is the brush's: pixel i's is value 4·i + 3.
+      if (bits.read(wordBits) !== 0) data.fill(1, Math.floor(place / 4), Math.floor(end / 4));
+    } else {
+      for (; place < end; place++) {
+        if (bits.read(wordBits) !== 0 && place % 4 === 3) data[(place - 3) / 4] = 1;
+      }
+    }
+    place = end;
+  }
+  return { data, width, height };
+}
+
+function bytesOf(rle: unknown): ArrayLike<number> {
+  const isList = Array.isArray(rle) || ArrayBuffer.isView(rle);
+  if (isList && Array.prototype.every.call(rle, (byte) => Number.isInteger(byte) && byte >= 0 && byte < 256)) {
+    return rle as ArrayLike<number>;
+  }
+  const expected = "bytes: whole numbers from 0 to 255";
+  throw failure("INVALID_ARGUMENT", "rle", describe(rle), expected, "Pass value.rle of a result of type brushlabels.");
+}
+
+/** Bits from bytes, the highest first. */
+class BitReader {
+  #place = 0;
+
+  constructor(private readonly bytes: ArrayLike<number>) {}
+
+  /** The number in the next bits, 32 at most. */
+  read(count: number): number {
+    let value = 0;
+    for (let left = count; left > 0; ) {
+      const byte = this.bytes[this.#place >> 3];
+      if (byte === undefined) {
+        const found = `${this.bytes.length} bytes, which end in the middle`;
+        throw failure("CORRUPT_FILE", "rle", found, "a whole mask", "Pass value.rle unchanged.");
+      }
+      const unread = 8 - (this.#place & 7);
+      const taken = Math.min(unread, left);
+      value = value * 2 ** taken + ((byte >> (unread - taken)) & (2 ** taken - 1));
+      this.#place += taken;
+      left -= taken;
+    }
+    return value;
+  }
+}

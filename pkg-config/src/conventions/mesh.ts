@@ -1,0 +1,56 @@
+/** Meshes as arrays, checked. */
+import { describe } from "../error.js";
+import type { MeshArrays } from "../input/types.js";
+import { isTypedArray, wrongKind } from "../values.js";
+import { failure, record } from "./numbers.js";
+
+/** A triangle mesh whose indices are in range. */
+export interface Mesh {
+  /** x, y, z per vertex. */
+  positions: Float32Array;
+  /** Three per triangle; `null` where every three vertices are one. */
+  indices: Uint32Array | Uint16Array | null;
+}
+
+/** A mesh's arrays. */
+export function meshOf(argument: string, mesh: unknown): Mesh {
+  const { positions, indices } = record(argument, mesh, "{ positions, indices? }") as {
+    [K in keyof MeshArrays]: unknown;
+  };
+  const [named, namedIndices] = [`${argument}.positions`, `${argument}.indices`];
+  if (!isTypedArray<Float32Array>(positions, "Float32Array")) {
+    throw wrongKind(named, positions, "a Float32Array, x, y, z per vertex", "Float32Array");
+  }
+  const count = positions.length / 3;
+  if (count === 0) throw failure("EMPTY_MESH", argument, "no vertex", "triangles", "Pass a mesh.");
+  if (!Number.isInteger(count)) {
+    throw failure("WRONG_LENGTH", named, `${positions.length} numbers`, "x, y, z per vertex", "Leave nothing out.");
+  }
+  const wrong = positions.findIndex((number) => !Number.isFinite(number));
+  if (wrong >= 0) {
+    const found = `${positions[wrong]} in vertex ${Math.floor(wrong / 3)}`;
+    throw failure("NON_FINITE", named, found, "finite numbers", "Remove the vertices that have no position.");
+  }
+  if (indices === undefined || indices === null) {
+    if (count % 3 === 0) return { positions, indices: null };
+    const remedy = "Pass indices, or three vertices per triangle.";
+    throw failure("WRONG_LENGTH", named, `${count} vertices without indices`, "three per triangle", remedy);
+  }
+  if (!isTypedArray<Uint32Array | Uint16Array>(indices, "Uint32Array", "Uint16Array")) {
+    throw wrongKind(namedIndices, indices, "a Uint32Array or a Uint16Array", "Uint32Array");
+  }
+  if (indices.length === 0) throw failure("EMPTY_MESH", argument, "no triangle", "triangles", "Pass a mesh.");
+  if (indices.length % 3 !== 0) {
+    const remedy = "Split polygons into triangles.";
+    throw failure("WRONG_LENGTH", namedIndices, `${indices.length} indices`, "three per triangle", remedy);
+  }
+  const outside = indices.find((index) => index >= count);
+  if (outside !== undefined) {
+    throw failure("INDEX_OUT_OF_RANGE", namedIndices, describe(outside), `indices below ${count}`, "Check the mesh.");
+  }
+  return { positions, indices };
+}
+
+/** How many triangles. */
+export const triangleCount = ({ positions, indices }: Mesh): number =>
+  (indices ?? { length: positions.length / 3 }).length / 3;

@@ -1,0 +1,152 @@
+/** The axes of a small box around a mesh. */
+import type { Mesh } from "./mesh.js";
+import type { Vector3 } from "./numbers.js";
+import { principalAxes } from "./principal-axes.js";
+import { column, fromColumns, type Matrix3 } from "./rotation.js";
+
+const dot = (a: Vector3, b: Vector3) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+
+type Point2 = readonly [number, number];
+
+/** Vertices of triangles that lie outermost in some of many directions, or all where they are few. */
+function outermost({ positions, indices }: Mesh): Vector3[] {
+  const used = indices === null ? Array.from({ length: positions.length / 3 }, (_, i) => i) : [...new Set(indices)];
+  const vertex = (i: number): Vector3 => [positions[3 * i] ?? 0, positions[3 * i + 1] ?? 0, positions[3 * i + 2] ?? 0];
+  const points = used.map(vertex);
+  if (points.length <= 2000) return points;
+  const kept = new Set<Vector3>();
+  // Directions through a grid on half of a cube's surface; each finds the two ends of the mesh.
+  const steps = Array.from({ length: 13 }, (_, i) => (i - 6) / 6);
+  const directions = steps.flatMap((a) =>
+    steps.flatMap((b): Vector3[] => [
+      [1, a, b],
+      [a, 1, b],
+      [a, b, 1],
+    ]),
+  );
+  for (const direction of directions) {
+    let [low, high] = [Number.POSITIVE_INFINITY, Number.NEGATIVE_INFINITY];
+    let [first, last] = [points[0], points[0]];
+    for (const point of points) {
+      const along = dot(direction, point);
+      if (along < low) [low, first] = [along, point];
+      if (along > high) [high, last] = [along, point];
+    }
+    for (const end of [first, last]) if (end !== undefined) kept.add(end);
+  }
+  return [...kept];
+}
+
+/** The corners of the convex hull, counter-clockwise: Andrew's monotone chain. */
+function hull(points: readonly Point2[]): Point2[] {
+  const sorted = [...points].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
+  const half = (ordered: readonly Point2[]) => {
+    const chain: Point2[] = [];
+    for (const point of ordered) {
+      for (;;) {
+        const [a, b] = chain.slice(-2);
+        if (a === undefined || b === undefined) break;
+        if ((b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0]) > 0) break;
+        chain.pop();
+      }
+      chain.push(point);
+    }
+    return chain.slice(0, -1);
+  };
+  return [...half(sorted), ...half(sorted.reverse())];
+}
+
+/** How far points reach along a direction of the plane. */
+function width(points: readonly Point2[], x: number, y: number): number {
+  let [low, high] = [Number.POSITIVE_INFINITY, Number.NEGATIVE_INFINITY];
+  for (const [a, b] of points) {
+    const along = a * x + b * y;
+    if (along < low) low = along;
+    if (along > high) high = along;
+  }
+  return high - low;
+}
+
+/** The smallest rectangle around points has a side along one of their hull's edges: that edge's direction. */
+function smallestRectangle(points: readonly Point2[]): { cos: number; sin: number; area: number } {
+  const corners = hull(points);
+  let best = { cos: 1, sin: 0, area: width(corners, 1, 0) * width(corners, 0, 1) };
+  corners.forEach(([x, y], i) => {
+    const [nextX, nextY] = corners[(i + 1) % corners.length] ?? [x, y];
+    const length = Math.hypot(nextX - x, nextY - y);
+    if (length === 0) return;
+    const [cos, sin] = [(nextX - x) / length, (nextY - y) / length];
+    const area = width(corners, cos, sin) * width(corners, -sin, cos);
+    if (area < best.area) best = { cos, sin, area };
+  });
+  return best;
+}
+
+function volume(points: readonly Vector3[], axes: readonly Vector3[]): number {
+  return axes.reduce((product, axis) => {
+    const along = points.map((point): Point2 => [dot(axis, point), 0]);
+    return product * width(along, 1, 0);
+  }, 1);
+}
+
+type Axes = [Vector3, Vector3, Vector3];
+
+/** Turns the axes about each of them to the smallest rectangle, until the volume stays. */
+function refined(points: readonly Vector3[], start: Axes): { axes: Axes; volume: number } {
+  let axes = start;
+  let size = volume(points, axes);
+  for (let round = 0; round < 20; round++) {
+    const before = size;
+    for (const k of [0, 1, 2] as const) {
+      const [fixed, a, b] = [axes[k], axes[((k + 1) % 3) as 0], axes[((k + 2) % 3) as 0]];
+      const { cos, sin } = smallestRectangle(points.map((point) => [dot(a, point), dot(b, point)]));
+      const mix = (p: number, q: number) => a.map((x, i) => p * x + q * (b[i] ?? 0)) as Vector3;
+      const turned: Axes = [...axes];
+      [turned[k], turned[((k + 1) % 3) as 0], turned[((k + 2) % 3) as 0]] = [fixed, mix(cos, sin), mix(-sin, cos)];
+      const turnedSize = volume(points, turned);
+      if (turnedSize < size) [axes, size] = [turned, turnedSize];
+    }
+    if (!(size < before * (1 - 1e-9))) break;
+  }
+  return { axes, volume: size };
+}
+
+/**
+ * The axes with the names and senses that are nearest to the mesh's own: of all ways, the largest trace. That is never a
+ * mirror image: these have traces up to 1, while some turn always has more than 1.9.
+ */
+function named(axes: Axes): Matrix3 {
+  const orders = [
+    [0, 1, 2],
+    [1, 2, 0],
+    [2, 0, 1],
+    [0, 2, 1],
+    [2, 1, 0],
+    [1, 0, 2],
+  ] as const;
+  const ways = orders.map((order) => {
+    const [x, y, z] = order.map((i, k) => {
+      const axis = axes[i];
+      return (axis[k] ?? 0) < 0 ? axis.map((number) => -number) : axis;
+    }) as Axes;
+    return fromColumns(x, y, z);
+  });
+  const trace = (m: Matrix3) => m[0] + m[4] + m[8];
+  return ways.reduce((best, way) => (trace(way) > trace(best) ? way : best));
+}
+
+/** The axes, as columns in the mesh's frame, of the smallest box that was found. */
+export function smallestBoxAxes(mesh: Mesh): Matrix3 {
+  const points = outermost(mesh);
+  const own: Axes = [
+    [1, 0, 0],
+    [0, 1, 0],
+    [0, 0, 1],
+  ];
+  const principal = principalAxes(mesh);
+  const starts: Axes[] = [own, [column(principal, 0), column(principal, 1), column(principal, 2)]];
+  const found = starts.map((start) => refined(points, start));
+  const [first, second] = found as [(typeof found)[0], (typeof found)[0]];
+  // The mesh's own axes unless the others are better by more than rounding.
+  return named(second.volume < first.volume * (1 - 1e-9) ? second.axes : first.axes);
+}

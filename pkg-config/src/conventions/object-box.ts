@@ -1,0 +1,82 @@
+/** Boxes around objects: their real dimensions. */
+import type { MeshArrays } from "../input/types.js";
+import type { Sim3Like } from "../sim3.js";
+import { type Mesh, meshOf } from "./mesh.js";
+import { smallestBoxAxes } from "./minimal-box.js";
+import { oneOf, type Quaternion, type Vector3 } from "./numbers.js";
+import { type Matrix3, product, quaternionOf, transposed, turned } from "./rotation.js";
+import { moved, similarityOf } from "./similarity.js";
+
+/** An oriented box around an object, in the OpenCV camera frame. */
+export interface ObjectBox {
+  /** Its sides along its own x, y and z, in metres; for a mesh that stands along y: width, height, depth. */
+  sizeM: Vector3;
+  /** Its centre, in metres. */
+  centerM: Vector3;
+  /** Camera from box: how its axes lie, as a quaternion x, y, z, w. */
+  rotation: Quaternion;
+  /** Its corners, in metres: the lowest x, y, z first, x changing fastest, the highest last. */
+  corners: [Vector3, Vector3, Vector3, Vector3, Vector3, Vector3, Vector3, Vector3];
+}
+
+/** What {@link objectDimensions} can be told. */
+export interface DimensionOptions {
+  /**
+   * "axes", the default, takes the mesh's own axes; "minimal" the smallest box that was found. The latter's axes are
+   * named after those of the mesh that they are nearest to.
+   */
+  box?: "axes" | "minimal" | undefined;
+}
+
+/**
+ * The real size of an aligned object, in metres, and the box around it.
+ *
+ * With `box: "minimal"`, the box is turned to be small: from the mesh's axes and from its surface's principal axes, each
+ * pair of axes is turned to the smallest rectangle around the projected vertices until the volume stays. That is exact
+ * in each plane and near the smallest in space, though not proven to be. Only vertices of triangles count.
+ *
+ * @param mesh as it was aligned
+ * @param transform OpenCV camera from mesh: a result of `align`
+ *
+ * @example
+ * const { sizeM: [width, height, depth] } = objectDimensions(mesh, result);
+ * @throws {@link Sim3AlignError} for what is no mesh or no similarity, and `INVALID_OPTION`
+ */
+export function objectDimensions(
+  mesh: MeshArrays,
+  transform: Sim3Like,
+  { box = "axes" }: DimensionOptions = {},
+): ObjectBox {
+  const checked = meshOf("mesh", mesh);
+  const similarity = similarityOf(transform);
+  const isMinimal = oneOf("options.box", box, ["axes", "minimal"]) === "minimal";
+  const meshFromBox: Matrix3 = isMinimal ? smallestBoxAxes(checked) : [1, 0, 0, 0, 1, 0, 0, 0, 1];
+  const { low, high } = extent(checked, transposed(meshFromBox));
+  const corner = (i: number): Vector3 => {
+    const inBox: Vector3 = [(i & 1 ? high : low)[0], (i & 2 ? high : low)[1], (i & 4 ? high : low)[2]];
+    return moved(similarity, turned(meshFromBox, inBox));
+  };
+  const middle = low.map((x, k) => (x + (high[k] ?? x)) / 2) as Vector3;
+  return {
+    sizeM: low.map((x, k) => similarity.scale * ((high[k] ?? x) - x)) as Vector3,
+    centerM: moved(similarity, turned(meshFromBox, middle)),
+    rotation: quaternionOf(product(similarity.rotation, meshFromBox)),
+    corners: [corner(0), corner(1), corner(2), corner(3), corner(4), corner(5), corner(6), corner(7)],
+  };
+}
+
+/** The vertices' bounds along the rows of a matrix. */
+function extent({ positions, indices }: Mesh, rows: Matrix3): { low: Vector3; high: Vector3 } {
+  const low: Vector3 = [Number.POSITIVE_INFINITY, Number.POSITIVE_INFINITY, Number.POSITIVE_INFINITY];
+  const high: Vector3 = [Number.NEGATIVE_INFINITY, Number.NEGATIVE_INFINITY, Number.NEGATIVE_INFINITY];
+  const count = indices?.length ?? positions.length / 3;
+  for (let i = 0; i < count; i++) {
+    const place = 3 * (indices === null ? i : (indices[i] ?? 0));
+    const point = turned(rows, [positions[place] ?? 0, positions[place + 1] ?? 0, positions[place + 2] ?? 0]);
+    for (const k of [0, 1, 2] as const) {
+      if (point[k] < low[k]) low[k] = point[k];
+      if (point[k] > high[k]) high[k] = point[k];
+    }
+  }
+  return { low, high };
+}

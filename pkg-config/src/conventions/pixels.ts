@@ -1,0 +1,51 @@
+/** Images as they go in and out: pixels with their size. */
+import type { PixelArray } from "../input/types.js";
+import { isTypedArray, wrongKind } from "../values.js";
+import { failure, record, whole } from "./numbers.js";
+
+/** An image's size in pixels. */
+export interface ImageSize {
+  /** Pixels in a row. */
+  width: number;
+  /** Rows. */
+  height: number;
+}
+
+/** A mask's pixels; non-zero is the object. */
+export type MaskPixels = Uint8Array | Uint8ClampedArray;
+
+/** A depth map's pixels. */
+export type DepthPixels = Float32Array | Uint16Array;
+
+/** A size of at least one pixel. */
+export function sizeOf(argument: string, size: unknown): ImageSize {
+  const { width, height } = record(argument, size, "{ width, height }");
+  return { width: whole(`${argument}.width`, width, 1), height: whole(`${argument}.height`, height, 1) };
+}
+
+/** Pixels of one of these kinds, as many as their size says. */
+export function pixelsOf<T extends ArrayLike<number>>(
+  argument: string,
+  image: unknown,
+  kinds: readonly string[],
+  channels = 1,
+): PixelArray<T> {
+  const { data } = record(argument, image, "{ data, width, height }");
+  const { width, height } = sizeOf(argument, image);
+  if (!isTypedArray<T>(data, ...kinds)) throw wrongKind(`${argument}.data`, data, kinds.join(" or "), kinds[0] ?? "");
+  checkCount(`${argument}.data`, data.length, { width, height }, channels);
+  return { data, width, height };
+}
+
+/** Whether there is a value for every pixel. */
+export function checkCount(argument: string, count: number, { width, height }: ImageSize, channels = 1): void {
+  if (count === width * height * channels) return;
+  const perPixel = channels === 1 ? "" : ` × ${channels}`;
+  const expected = `${width} × ${height}${perPixel} = ${width * height * channels}`;
+  throw failure("WRONG_LENGTH", argument, `${count} values`, expected, "Pass the size that the pixels belong to.");
+}
+
+/** The kinds of array of a mask, of depth, of points. */
+export const maskKinds = ["Uint8Array", "Uint8ClampedArray"];
+export const depthKinds = ["Float32Array", "Uint16Array"];
+export const pointKinds = ["Float32Array"];

@@ -1,0 +1,190 @@
+/** Images and their cameras at another size, or in part, with the intrinsics kept right. */
+import { describe } from "../error.js";
+import type { PinholeCamera, PixelArray } from "../input/types.js";
+import { failure, record, whole } from "./numbers.js";
+import { pinholeOf, type StatedCamera } from "./pinhole.js";
+import {
+  type DepthPixels,
+  depthKinds,
+  type ImageSize,
+  type MaskPixels,
+  maskKinds,
+  pixelsOf,
+  pointKinds,
+  sizeOf,
+} from "./pixels.js";
+
+/** Part of an image, in whole pixels. */
+export interface PixelBox extends ImageSize {
+  /** Its first column. */
+  left: number;
+  /** Its first row. */
+  top: number;
+}
+
+/** Takes from each new pixel's place what `source` says, over all channels. */
+function sampled<T extends Float32Array | Uint16Array | MaskPixels>(
+  { data, width }: PixelArray<T>,
+  to: ImageSize,
+  source: { column: (u: number) => number; row: (v: number) => number },
+  channels = 1,
+): PixelArray<T> {
+  const length = to.width * to.height * channels;
+  const Kind = data.constructor as new (length: number) => T;
+  const result = new Kind(length);
+  for (let v = 0; v < to.height; v++) {
+    const row = source.row(v) * width;
+    for (let u = 0; u < to.width; u++) {
+      const from = (row + source.column(u)) * channels;
+      for (let c = 0; c < channels; c++) result[(v * to.width + u) * channels + c] = data[from + c] ?? 0;
+    }
+  }
+  return { data: result, width: to.width, height: to.height };
+}
+
+// The new pixel's centre falls into this old one.
+const nearest = (i: number, to: number, from: number) => Math.floor(((2 * i + 1) * from) / (2 * to));
+
+function resized<T extends DepthPixels | MaskPixels>(image: PixelArray<T>, to: unknown): PixelArray<T> {
+  const size = sizeOf("size", to);
+  const column = (u: number) => nearest(u, size.width, image.width);
+  return sampled(image, size, { column, row: (v) => nearest(v, size.height, image.height) });
+}
+
+/**
+ * A depth map at another size, each pixel taken from the nearest old one. Interpolated depth would have points in the
+ * air at every edge. The camera has to follow: {@link resizeCamera}.
+ *
+ * @example
+ * const small = resizeDepth(depth, { width: 640, height: 480 });
+ * @throws {@link Sim3AlignError} for arrays of other kinds or lengths, and sizes below one pixel
+ */
+export const resizeDepth = <T extends DepthPixels>(depth: PixelArray<T>, size: ImageSize): PixelArray<T> =>
+  resized(pixelsOf<T>("depth", depth, depthKinds), size);
+
+/**
+ * A mask at another size, each pixel taken from the nearest old one.
+ *
+ * @example
+ * const mask = resizeMask(maskFromTensor(masks, { index: 0 }), { width: 640, height: 480 });
+ * @throws {@link Sim3AlignError} for arrays of other kinds or lengths, and sizes below one pixel
+ */
+export const resizeMask = <T extends MaskPixels>(mask: PixelArray<T>, size: ImageSize): PixelArray<T> =>
+  resized(pixelsOf<T>("mask", mask, maskKinds), size);
+
+/**
+ * The intrinsics for a resized image. Pixel centres are at whole numbers, so that an image of width w goes from −0.5 to
+ * w − 0.5, and cx becomes (cx + 0.5)·s − 0.5, not cx·s.
+ *
+ * @param camera { fx, fy, cx, cy }, { K } or { fovYDeg }, for the image of `fromWidth` × `fromHeight`
+ * @param size from what to what, in pixels
+ *
+ * @example
+ * resizeCamera({ fx: 600, fy: 600, cx: 319.5, cy: 239.5 }, { fromWidth: 640, fromHeight: 480, width: 320, height: 240 });
+ * // { fx: 300, fy: 300, cx: 159.5, cy: 119.5, width: 320, height: 240 }
+ * @throws {@link Sim3AlignError} `INVALID_CAMERA`, or for sizes below one pixel
+ */
+export function resizeCamera(
+  camera: StatedCamera,
+  size: ImageSize & { fromWidth: number; fromHeight: number },
+): PinholeCamera & ImageSize {
+  const { width, height } = sizeOf("size", size);
+  const from = {
+    width: whole("size.fromWidth", size.fromWidth, 1),
+    height: whole("size.fromHeight", size.fromHeight, 1),
+  };
+  const { fx, fy, cx, cy } = pinholeOf("camera", camera, from);
+  const [x, y] = [width / from.width, height / from.height];
+  return { fx: fx * x, fy: fy * y, cx: (cx + 0.5) * x - 0.5, cy: (cy + 0.5) * y - 0.5, width, height };
+}
+
+/**
+ * The box around a mask's object.
+ *
+ * @param mask non-zero is the object
+ * @param options `marginPx`: how many pixels more on every side, as far as the image goes; 0 by default
+ *
+ * @example
+ * const box = maskBox(mask, { marginPx: 40 });
+ * @throws {@link Sim3AlignError} `EMPTY_MASK` where no pixel is the object
+ */
+export function maskBox(mask: PixelArray<MaskPixels>, { marginPx = 0 }: { marginPx?: number } = {}): PixelBox {
+  const { data, width, height } = pixelsOf<MaskPixels>("mask", mask, maskKinds);
+  const margin = whole("options.marginPx", marginPx, 0);
+  let [left, top, right, bottom] = [width, height, -1, -1];
+  data.forEach((pixel, i) => {
+    if (pixel === 0) return;
+    const [u, v] = [i % width, Math.floor(i / width)];
+    [left, top] = [Math.min(left, u), Math.min(top, v)];
+    [right, bottom] = [Math.max(right, u), Math.max(bottom, v)];
+  });
+  if (right < 0) {
+    throw failure("EMPTY_MASK", "mask", "no pixel of the object", "non-zero pixels", "Pass the object's mask.");
+  }
+  [left, top] = [Math.max(0, left - margin), Math.max(0, top - margin)];
+  [right, bottom] = [Math.min(width - 1, right + margin), Math.min(height - 1, bottom + margin)];
+  return { left, top, width: right - left + 1, height: bottom - top + 1 };
+}
+
+/** Images and a camera that belong together; what is left out stays out. */
+export interface CropInput {
+  depth?: PixelArray<DepthPixels> | undefined;
+  pointMap?: PixelArray<Float32Array> | undefined;
+  mask?: PixelArray<MaskPixels> | undefined;
+  camera?: StatedCamera | undefined;
+}
+
+/**
+ * Part of an input, with the intrinsics for it: cx and cy move by the box's corner. What else the input has stays as it
+ * is. A result for the crop is one for the whole image, too: the camera's frame stays the same.
+ *
+ * Leave a margin around the object: where a mask touches the image's border, the object is taken to go on beyond it.
+ *
+ * @param input `depth`, `mask` and `pointMap` as `{ data, width, height }`, all of one size; `camera` with intrinsics
+ * @param box in pixels of the image; {@link maskBox} makes one
+ *
+ * @example
+ * await aligner.align(cropInput({ depth, mask, camera, mesh }, maskBox(mask, { marginPx: 40 })));
+ * @throws {@link Sim3AlignError} `SIZE_MISMATCH` for images of different sizes, or a box that leaves them
+ */
+export function cropInput<T extends CropInput>(input: T, box: PixelBox): T {
+  const { depth, pointMap, mask, camera } = record("input", input, "{ depth, mask, camera }") as T;
+  const { width, height } = sizeOf("box", box);
+  const [left, top] = [whole("box.left", box.left, 0), whole("box.top", box.top, 0)];
+  const whose = Object.entries({ depth, mask, pointMap }).filter(([, image]) => image !== undefined);
+  const [first] = whose;
+  if (first === undefined) {
+    throw failure("INVALID_ARGUMENT", "input", describe(input), "depth, mask or pointMap", "Pass the images.");
+  }
+  const size = sizeOf(`input.${first[0]}`, first[1]);
+  for (const [name, image] of whose) {
+    const found = sizeOf(`input.${name}`, image);
+    if (found.width === size.width && found.height === size.height) continue;
+    const expected = `${size.width} × ${size.height}, as the input's ${first[0]}`;
+    const remedy = "Bring the images to one size first: resizeMask, resizeDepth.";
+    throw failure("SIZE_MISMATCH", `input.${name}`, `${found.width} × ${found.height} pixels`, expected, remedy);
+  }
+  if (left + width > size.width || top + height > size.height) {
+    const found = `${width} × ${height} pixels at ${left}, ${top}`;
+    const expected = `a box within ${size.width} × ${size.height} pixels`;
+    throw failure("SIZE_MISMATCH", "box", found, expected, "Keep the box within the image.");
+  }
+  const source = { column: (u: number) => left + u, row: (v: number) => top + v };
+  const part = <A extends DepthPixels | MaskPixels>(name: string, image: unknown, kinds: string[], channels = 1) =>
+    image === undefined
+      ? {}
+      : { [name]: sampled(pixelsOf<A>(`input.${name}`, image, kinds, channels), { width, height }, source, channels) };
+  return {
+    ...input,
+    ...part("depth", depth, depthKinds),
+    ...part("mask", mask, maskKinds),
+    ...part<Float32Array>("pointMap", pointMap, pointKinds, 3),
+    ...(camera === undefined ? {} : { camera: moved(pinholeOf("input.camera", camera, size), { left, top }, box) }),
+  };
+}
+
+const moved = (
+  { fx, fy, cx, cy }: { fx: number; fy: number; cx: number; cy: number },
+  { left, top }: { left: number; top: number },
+  { width, height }: ImageSize,
+): PinholeCamera => ({ fx, fy, cx: cx - left, cy: cy - top, width, height });

@@ -1,0 +1,140 @@
+/** Rotations as nine numbers row by row, and as quaternions in either order. */
+import { failure, finiteNumbers, type Quaternion, type Vector3 } from "./numbers.js";
+
+/** A 3×3 matrix, row by row. */
+export type Matrix3 = readonly [number, number, number, number, number, number, number, number, number];
+
+/** A matrix of numbers computed by index. */
+const matrixOf = (entry: (row: 0 | 1 | 2, column: 0 | 1 | 2) => number): Matrix3 => [
+  ...([entry(0, 0), entry(0, 1), entry(0, 2)] as const),
+  ...([entry(1, 0), entry(1, 1), entry(1, 2)] as const),
+  ...([entry(2, 0), entry(2, 1), entry(2, 2)] as const),
+];
+
+/** One entry. */
+export const entry = (m: Matrix3, row: 0 | 1 | 2, column: 0 | 1 | 2): number => m[(3 * row + column) as 0];
+
+/** a·b. */
+export const product = (a: Matrix3, b: Matrix3): Matrix3 =>
+  matrixOf(
+    (i, j) => entry(a, i, 0) * entry(b, 0, j) + entry(a, i, 1) * entry(b, 1, j) + entry(a, i, 2) * entry(b, 2, j),
+  );
+
+/** The rows as columns. */
+export const transposed = (m: Matrix3): Matrix3 => matrixOf((i, j) => entry(m, j, i));
+
+/** m·v. */
+export const turned = (m: Matrix3, [x, y, z]: Readonly<Vector3>): Vector3 => [
+  m[0] * x + m[1] * y + m[2] * z,
+  m[3] * x + m[4] * y + m[5] * z,
+  m[6] * x + m[7] * y + m[8] * z,
+];
+
+/** One column. */
+export const column = (m: Matrix3, j: 0 | 1 | 2): Vector3 => [entry(m, 0, j), entry(m, 1, j), entry(m, 2, j)];
+
+/** The matrix with these columns. */
+export const fromColumns = (...columns: readonly [Vector3, Vector3, Vector3]): Matrix3 =>
+  matrixOf((i, j) => columns[j][i]);
+
+/** The determinant. */
+export const determinant = (m: Matrix3): number =>
+  m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) + m[2] * (m[3] * m[7] - m[4] * m[6]);
+
+/** The matrix of signed minors: the inverse's transpose times the determinant. */
+const cofactors = (m: Matrix3): Matrix3 => [
+  ...([m[4] * m[8] - m[5] * m[7], m[5] * m[6] - m[3] * m[8], m[3] * m[7] - m[4] * m[6]] as const),
+  ...([m[2] * m[7] - m[1] * m[8], m[0] * m[8] - m[2] * m[6], m[1] * m[6] - m[0] * m[7]] as const),
+  ...([m[1] * m[5] - m[2] * m[4], m[2] * m[3] - m[0] * m[5], m[0] * m[4] - m[1] * m[3]] as const),
+];
+
+/** How far a matrix may be from a rotation, as in the core: what a few decimals in a JSON file leave. */
+const tolerance = 1e-3;
+
+/** The rotation nearest to a matrix that is almost one, by the polar decomposition. */
+export function rotationOf(argument: string, m: Matrix3): Matrix3 {
+  const square = product(transposed(m), m);
+  const off = Math.max(...square.map((x, i) => Math.abs(x - (i % 4 === 0 ? 1 : 0))));
+  const volume = determinant(m);
+  // Written so that NaN, from numbers whose squares overflow, fails.
+  if (!(off <= tolerance && volume > 0)) {
+    const found = `a matrix with |RᵀR − 1| up to ${off} and determinant ${volume}`;
+    const remedy = "A similarity has no shear, no mirror image, and one scale for all axes.";
+    throw failure("INVALID_TRANSFORM", argument, found, "a rotation: orthonormal with determinant +1", remedy);
+  }
+  // A result's own rotation stays as it is, to the bit.
+  if (off < 1e-15) return m;
+  let rotation = m;
+  // Newton's iteration squares the error at every step.
+  for (let i = 0; i < 3; i++) {
+    const [minors, volume] = [cofactors(rotation), determinant(rotation)];
+    rotation = matrixOf((row, col) => (entry(rotation, row, col) + entry(minors, row, col) / volume) / 2);
+  }
+  return rotation;
+}
+
+/** The rotation of a quaternion x, y, z, w of any length above 0. */
+export function rotationFromQuaternion(argument: string, quaternion: unknown): Matrix3 {
+  const numbers = finiteNumbers(argument, quaternion, 4, "a quaternion of four finite numbers") as Quaternion;
+  const length = Math.hypot(...numbers);
+  if (!(length > 1e-12)) {
+    const remedy = "The identity is x, y, z, w = 0, 0, 0, 1.";
+    throw failure("INVALID_TRANSFORM", argument, `[${numbers.join(", ")}]`, "a quaternion other than 0", remedy);
+  }
+  const [x, y, z, w] = numbers.map((q) => q / length) as Quaternion;
+  return [
+    ...([1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)] as const),
+    ...([2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)] as const),
+    ...([2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)] as const),
+  ];
+}
+
+/** A rotation as a unit quaternion x, y, z, w with w ≥ 0. */
+export function quaternionOf(m: Matrix3): Quaternion {
+  // Each component's square, times four; dividing by the largest keeps all of the precision.
+  const squares = [
+    1 + m[0] - m[4] - m[8],
+    1 - m[0] + m[4] - m[8],
+    1 - m[0] - m[4] + m[8],
+    1 + m[0] + m[4] + m[8],
+  ] as const;
+  const [xy, xz, yz] = [m[1] + m[3], m[2] + m[6], m[5] + m[7]];
+  const [xw, yw, zw] = [m[7] - m[5], m[2] - m[6], m[3] - m[1]];
+  const products: readonly Quaternion[] = [
+    [squares[0], xy, xz, xw],
+    [xy, squares[1], yz, yw],
+    [xz, yz, squares[2], zw],
+    [xw, yw, zw, squares[3]],
+  ];
+  const largest = squares.indexOf(Math.max(...squares));
+  const [x, y, z, w] = products[largest] ?? [0, 0, 0, 1];
+  const length = Math.hypot(x, y, z, w) * (w < 0 ? -1 : 1);
+  // Adding 0 turns −0 into 0.
+  return [x / length + 0, y / length + 0, z / length + 0, w / length + 0];
+}
+
+/**
+ * A quaternion x, y, z, w (three.js, glTF, ROS, SciPy; this package) from w, x, y, z (PyTorch3D, Blender, Eigen's
+ * constructor, SAM 3D Objects, COLMAP).
+ *
+ * @example
+ * xyzwFromWxyz([1, 0, 0, 0]);    // [0, 0, 0, 1], no turn
+ * @throws {@link Sim3AlignError} for anything but four finite numbers
+ */
+export function xyzwFromWxyz(quaternion: ArrayLike<number>): Quaternion {
+  const [w, x, y, z] = finiteNumbers("quaternion", quaternion, 4, "four finite numbers: w, x, y, z") as Quaternion;
+  return [x, y, z, w];
+}
+
+/**
+ * A quaternion w, x, y, z (PyTorch3D, Blender, Eigen's constructor, SAM 3D Objects, COLMAP) from x, y, z, w (three.js,
+ * glTF, ROS, SciPy; this package).
+ *
+ * @example
+ * wxyzFromXyzw([0, 0, 0, 1]);    // [1, 0, 0, 0], no turn
+ * @throws {@link Sim3AlignError} for anything but four finite numbers
+ */
+export function wxyzFromXyzw(quaternion: ArrayLike<number>): [w: number, x: number, y: number, z: number] {
+  const [x, y, z, w] = finiteNumbers("quaternion", quaternion, 4, "four finite numbers: x, y, z, w") as Quaternion;
+  return [w, x, y, z];
+}

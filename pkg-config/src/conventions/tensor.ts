@@ -1,0 +1,103 @@
+/** What transformers.js returns: tensors of masks and of depth. */
+import { describe } from "../error.js";
+import type { PixelArray } from "../input/types.js";
+import { isTypedArray } from "../values.js";
+import { failure, flattened, record, whole } from "./numbers.js";
+import { checkCount } from "./pixels.js";
+
+/** A tensor of transformers.js, or anything else with its data and dimensions. */
+export interface TensorLike {
+  /** The values, the last dimension fastest. */
+  readonly data: unknown;
+  /** The dimensions, the last two being height and width. */
+  readonly dims: readonly number[];
+}
+
+/** Which mask of several. */
+export interface MaskChoice {
+  /** Its number among all that the tensor has. */
+  index?: number | undefined;
+  /** The masks' scores, `iou_scores`: the mask with the highest is taken. */
+  scores?: TensorLike | ArrayLike<number> | undefined;
+}
+
+function dimensions(tensor: unknown) {
+  const { data, dims } = record("tensor", tensor, "a tensor: { data, dims }");
+  if (!Array.isArray(dims) || dims.length < 2) {
+    const expected = "[…, height, width]";
+    throw failure("INVALID_ARGUMENT", "tensor.dims", describe(dims), expected, "Pass one tensor, not a list of them.");
+  }
+  const [height, width] = dims.slice(-2).map((dimension) => whole("tensor.dims", dimension, 1)) as [number, number];
+  const count = dims.slice(0, -2).reduce((all: number, dimension) => all * whole("tensor.dims", dimension, 1), 1);
+  checkCount("tensor.data", (data as ArrayLike<unknown> | undefined)?.length ?? 0, { width, height }, count);
+  return { data, width, height, count };
+}
+
+/**
+ * One mask of a tensor of masks, such as SAM's: what transformers.js' `post_process_masks` returns for one image (bool,
+ * 1 × 3 × height × width), or any tensor whose last two dimensions are height and width.
+ *
+ * @param tensor bool or whole numbers, of which non-zero is the object; floats are logits, above 0 for the object
+ * @param choice `index`, or `scores` (`iou_scores`, of which the highest counts); needed where there is more than one
+ * @returns 1 is the object
+ *
+ * @example
+ * const [masks] = await processor.post_process_masks(pred_masks, original_sizes, reshaped_input_sizes);
+ * const mask = maskFromTensor(masks, { scores: iou_scores });
+ * @throws {@link Sim3AlignError} for tensors of other dimensions than their data, and where no mask is chosen
+ */
+export function maskFromTensor(tensor: TensorLike, { index, scores }: MaskChoice = {}): PixelArray<Uint8Array> {
+  const { data, width, height, count } = dimensions(tensor);
+  const chosen = index ?? (scores === undefined ? undefined : best(scores, count)) ?? (count === 1 ? 0 : undefined);
+  if (chosen === undefined || !Number.isInteger(chosen) || chosen < 0 || chosen >= count) {
+    const found = chosen === undefined ? `nothing, beside ${count} masks` : String(chosen);
+    const remedy = "Pass { scores: iou_scores }, or the index of a mask.";
+    throw failure("INVALID_OPTION", "choice", found, `an index below ${count}, or scores`, remedy);
+  }
+  const values = data as ArrayLike<number>;
+  const mask = new Uint8Array(width * height);
+  const isLogit = isTypedArray(data, "Float16Array", "Float32Array", "Float64Array");
+  for (let i = 0; i < mask.length; i++) {
+    const value = values[chosen * mask.length + i] ?? 0;
+    mask[i] = (isLogit ? value > 0 : Number(value) !== 0) ? 1 : 0;
+  }
+  return { data: mask, width, height };
+}
+
+function best(scores: TensorLike | ArrayLike<number>, count: number): number {
+  const numbers = flattened("data" in scores ? scores.data : scores) as number[] | null;
+  if (numbers?.length !== count) {
+    const found = numbers === null ? describe(scores) : `${numbers.length} scores`;
+    throw failure("WRONG_LENGTH", "choice.scores", found, `one for each of ${count} masks`, "Pass iou_scores.");
+  }
+  return numbers.indexOf(Math.max(...numbers));
+}
+
+/**
+ * A depth map from a tensor: `predicted_depth` of a model whose depth is in metres (Depth Anything's metric
+ * checkpoints, Depth Pro, Metric3D, ZoeDepth). For relative models, whose values are larger where it is nearer, pass
+ * what this returns to {@link depthFromDisparity}.
+ *
+ * @param tensor floats, height × width, or with leading dimensions of 1
+ * @returns the values as they are
+ *
+ * @example
+ * const { predicted_depth } = await estimator(image);    // pipeline("depth-estimation", …)
+ * const depth = depthFromTensor(predicted_depth);
+ * @throws {@link Sim3AlignError} `EIGHT_BIT_DEPTH` for whole numbers: transformers.js' `depth` is a picture
+ */
+export function depthFromTensor(tensor: TensorLike): PixelArray<Float32Array> {
+  const { data, width, height, count } = dimensions(tensor);
+  if (count !== 1) {
+    const remedy = "Pass the map of one image: tensor[0].";
+    throw failure("WRONG_LENGTH", "tensor.dims", `${count} maps`, "one depth map", remedy);
+  }
+  if (isTypedArray<Float32Array>(data, "Float32Array")) return { data, width, height };
+  if (isTypedArray<Float64Array>(data, "Float64Array", "Float16Array")) {
+    return { data: Float32Array.from(data), width, height };
+  }
+  const isPicture = isTypedArray(data, "Uint8Array", "Uint8ClampedArray");
+  const remedy = isPicture ? "256 steps are a picture of the depth: pass predicted_depth." : "Pass predicted_depth.";
+  const code = isPicture ? "EIGHT_BIT_DEPTH" : "INVALID_ARGUMENT";
+  throw failure(code, "tensor.data", describe(data), "a Float32Array", remedy);
+}

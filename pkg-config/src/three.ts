@@ -1,0 +1,24 @@
+/**
+ * Alignments in three.js: objects where they really are, meshes from a scene, and cameras that see what the camera saw.
+ *
+ * three.js itself is not imported: its objects are taken by their shape, whatever version they are of.
+ * @packageDocumentation
+ */
+export type { StatedCamera } from "./conventions/pinhole.js";
+export { type ErrorCode, type ErrorParts, Sim3AlignError } from "./error.js";
+export type { MeshArrays } from "./input/types.js";
+export type { Sim3, Sim3Like } from "./sim3.js";
+export { applyPinhole, cameraFromPinhole, type LensOptions, type ThreeCamera } from "./three/camera.js";
+export { type MeshInputOptions, meshInputFromThree } from "./three/mesh-input.js";
+export { applyToObject3D, type PoseOptions, transformFromObject3D } from "./three/pose.js";
+export type {
+  AttributeLike,
+  GeometryLike,
+  Matrix4Like,
+  MeshTree,
+  PerspectiveCameraLike,
+  PlacedObject,
+  PosableObject,
+  QuaternionLike,
+  Vector3Like,
+} from "./three/types.js";

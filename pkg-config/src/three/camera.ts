@@ -1,0 +1,91 @@
+/** Cameras of three.js that see what a pinhole camera saw. */
+import { failure, positive } from "../conventions/numbers.js";
+import { pinholeOf, type StatedCamera } from "../conventions/pinhole.js";
+import { type ImageSize, sizeOf } from "../conventions/pixels.js";
+import type { PerspectiveCameraLike } from "./types.js";
+
+/** The image's size, and between which distances things are drawn. */
+export interface LensOptions extends ImageSize {
+  /** In metres, above 0; 0.01 by default. */
+  near?: number | undefined;
+  /** In metres, beyond `near`; 100 by default. */
+  far?: number | undefined;
+}
+
+/** A pinhole camera in three.js' terms. */
+export interface ThreeCamera {
+  /** The vertical field of view of an image with the principal point in its middle, in degrees. */
+  fov: number;
+  /** Its width by its height, as they would be with square pixels. */
+  aspect: number;
+  near: number;
+  far: number;
+  /** For `camera.setViewOffset`: what moves the principal point to where it is. */
+  view: { fullWidth: number; fullHeight: number; offsetX: number; offsetY: number; width: number; height: number };
+  /** For WebGL: clip space from the OpenGL camera frame, z in [−1, 1], column by column. */
+  projectionMatrix: Float64Array;
+}
+
+/**
+ * What a camera of three.js needs to see what a pinhole camera saw, with the principal point wherever it is, and pixels
+ * that need not be square. For a `PerspectiveCamera`, {@link applyPinhole} sets all of it.
+ *
+ * The image goes from −0.5 to width − 0.5, as pixel centres are at whole numbers.
+ *
+ * @param camera { fx, fy, cx, cy }, { K } or { fovYDeg }, in pixels
+ * @param lens the image's `width` and `height`, and `near` and `far` in metres
+ *
+ * @example
+ * const { fov, aspect, projectionMatrix } = cameraFromPinhole({ fx: 600, fy: 600, cx: 320, cy: 240 }, { width: 640, height: 480 });
+ * @throws {@link Sim3AlignError} `INVALID_CAMERA`, or for sizes below one pixel
+ */
+export function cameraFromPinhole(camera: StatedCamera, lens: LensOptions): ThreeCamera {
+  const { width, height } = sizeOf("lens", lens);
+  const near = positive("lens.near", lens.near ?? 0.01);
+  const far = positive("lens.far", lens.far ?? 100);
+  if (!(far > near)) {
+    throw failure("INVALID_ARGUMENT", "lens.far", `${far}`, `a distance beyond near, ${near}`, "Swap them.");
+  }
+  const { fx, fy, cx, cy } = pinholeOf("camera", camera, { width, height });
+  const projectionMatrix = new Float64Array(16);
+  projectionMatrix[0] = (2 * fx) / width;
+  projectionMatrix[5] = (2 * fy) / height;
+  // From the middle of the image to the principal point; v goes down, y up.
+  projectionMatrix[8] = 1 - (2 * cx + 1) / width;
+  projectionMatrix[9] = (2 * cy + 1) / height - 1;
+  projectionMatrix[10] = (far + near) / (near - far);
+  projectionMatrix[11] = -1;
+  projectionMatrix[14] = (2 * far * near) / (near - far);
+  return {
+    fov: (360 / Math.PI) * Math.atan(height / 2 / fy),
+    aspect: (width * fy) / (height * fx),
+    near,
+    far,
+    view: {
+      ...{ fullWidth: width, fullHeight: height, width, height },
+      ...{ offsetX: width / 2 - (cx + 0.5), offsetY: height / 2 - (cy + 0.5) },
+    },
+    projectionMatrix,
+  };
+}
+
+/**
+ * Makes a `PerspectiveCamera` see what a pinhole camera saw: sets its field of view, aspect, near, far and view offset,
+ * all of which `updateProjectionMatrix` keeps, for WebGL and for WebGPU. Draw to a canvas with the image's proportions,
+ * and do not set `aspect` when it is resized.
+ *
+ * @param target the three.js camera; its pose is left as it is
+ * @param camera as for {@link cameraFromPinhole}
+ *
+ * @example
+ * applyPinhole(threeCamera, { fx: 600, fy: 600, cx: 310, cy: 250 }, { width: 640, height: 480 });
+ * @throws {@link Sim3AlignError} as {@link cameraFromPinhole}
+ */
+export function applyPinhole(target: PerspectiveCameraLike, camera: StatedCamera, lens: LensOptions): void {
+  const { fov, aspect, near, far, view } = cameraFromPinhole(camera, lens);
+  Object.assign(target, { fov, near, far, zoom: 1, filmOffset: 0 });
+  target.setViewOffset(view.fullWidth, view.fullHeight, view.offsetX, view.offsetY, view.width, view.height);
+  // That has set the aspect for square pixels.
+  target.aspect = aspect;
+  target.updateProjectionMatrix();
+}

@@ -1,0 +1,123 @@
+/** Meshes from three.js' objects. */
+import { failure, finiteNumbers, oneOf } from "../conventions/numbers.js";
+import { describe } from "../error.js";
+import type { MeshArrays } from "../input/types.js";
+import type { AttributeLike, GeometryLike, MeshTree, PlacedObject } from "./types.js";
+
+/** A 4×4 matrix, column by column. */
+type Matrix4 = readonly number[];
+
+const identity: Matrix4 = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+
+/** What {@link meshInputFromThree} can be told. */
+export interface MeshInputOptions {
+  /**
+   * The frame of the positions: "object", the default, is the object's own, below its position, quaternion and scale,
+   * which `applyToObject3D` then sets; "world" has these applied too, and those of its parents.
+   */
+  frame?: "object" | "world" | undefined;
+}
+
+/**
+ * All triangles of a three.js geometry, or of an object and everything below it, as a mesh for `align`. The matrices of
+ * the objects below are applied, those of instances too. Bones and morph targets are not: the mesh is at rest.
+ *
+ * @param source a `BufferGeometry`, or an `Object3D` such as a `Mesh`, a `Group` or a loaded scene
+ * @returns x, y, z per vertex in the object's own frame, and three indices per triangle
+ *
+ * @example
+ * const mesh = meshInputFromThree(gltf.scene);
+ * @throws {@link Sim3AlignError} `EMPTY_MESH` where there is no triangle
+ */
+export function meshInputFromThree(
+  source: GeometryLike | MeshTree,
+  { frame = "object" }: MeshInputOptions = {},
+): MeshArrays & { indices: Uint32Array } {
+  oneOf("options.frame", frame, ["object", "world"]);
+  const arrays = { positions: [] as number[], indices: [] as number[] };
+  if (isGeometry(source)) append(arrays, source, identity);
+  else if (isTree(source)) appendTree(arrays, source, frame);
+  else {
+    const remedy = "Pass a geometry, a mesh, or a loaded scene.";
+    throw failure("INVALID_ARGUMENT", "source", describe(source), "a BufferGeometry or an Object3D", remedy);
+  }
+  if (arrays.indices.length === 0) {
+    throw failure("EMPTY_MESH", "source", "no triangle", "a mesh with triangles", "Pass an object that has meshes.");
+  }
+  return { positions: Float32Array.from(arrays.positions), indices: Uint32Array.from(arrays.indices) };
+}
+
+const isObject = (value: unknown): value is Record<string, unknown> => typeof value === "object" && value !== null;
+const isGeometry = (value: unknown): value is GeometryLike => isObject(value) && isObject(value.attributes);
+const isTree = (value: unknown): value is MeshTree => isObject(value) && typeof value.traverse === "function";
+
+function appendTree(arrays: { positions: number[]; indices: number[] }, tree: MeshTree, frame: "object" | "world") {
+  tree.updateWorldMatrix(true, true);
+  const base = frame === "world" ? identity : inverse(matrixOf(tree.matrixWorld.elements));
+  tree.traverse((object) => {
+    const found = object as PlacedObject & Record<string, unknown>;
+    if (found.isMesh !== true || !isGeometry(found.geometry)) return;
+    if (found.isBatchedMesh === true) {
+      const remedy = "Merge its geometries, or pass them one by one.";
+      throw failure("UNSUPPORTED_FORMAT", "source", "a BatchedMesh", "meshes and instances", remedy);
+    }
+    const local = product(base, matrixOf(found.matrixWorld.elements));
+    if (found.isInstancedMesh !== true) return append(arrays, found.geometry, local);
+    const { array } = found.instanceMatrix as { array: ArrayLike<number> };
+    for (let i = 0; i < (found.count as number); i++) {
+      append(
+        arrays,
+        found.geometry,
+        product(
+          local,
+          Array.from({ length: 16 }, (_, k) => array[16 * i + k] ?? 0),
+        ),
+      );
+    }
+  });
+}
+
+/** Adds a geometry's triangles, moved. */
+function append(arrays: { positions: number[]; indices: number[] }, { attributes, index }: GeometryLike, m: Matrix4) {
+  const position = attributes.position as AttributeLike | undefined;
+  if (!position || typeof position.getX !== "function") return;
+  const first = arrays.positions.length / 3;
+  const [a = 0, b = 0, c = 0, , d = 0, e = 0, f = 0, , g = 0, h = 0, k = 0, , tx = 0, ty = 0, tz = 0] = m;
+  for (let i = 0; i < position.count; i++) {
+    // By these, which know of normalised and interleaved numbers.
+    const [x, y, z] = [position.getX(i), position.getY(i), position.getZ(i)];
+    arrays.positions.push(a * x + d * y + g * z + tx, b * x + e * y + h * z + ty, c * x + f * y + k * z + tz);
+  }
+  const corner = (i: number) => first + (index === null ? i : index.getX(i));
+  const count = index === null ? position.count : index.count;
+  const isMirrored = a * (e * k - f * h) - d * (b * k - c * h) + g * (b * f - c * e) < 0;
+  // A mirrored triangle has its front where its back was: another order of its corners brings it back.
+  for (let i = 0; i + 2 < count; i += 3) {
+    arrays.indices.push(corner(i), corner(i + (isMirrored ? 2 : 1)), corner(i + (isMirrored ? 1 : 2)));
+  }
+}
+
+const matrixOf = (elements: unknown): Matrix4 =>
+  finiteNumbers("source.matrixWorld", elements, 16, "a matrix of 16 finite numbers");
+
+function product(a: Matrix4, b: Matrix4): Matrix4 {
+  return Array.from({ length: 16 }, (_, i) => {
+    const [row, column] = [i % 4, i - (i % 4)];
+    return [0, 1, 2, 3].reduce((sum, k) => sum + (a[4 * k + row] ?? 0) * (b[column + k] ?? 0), 0);
+  });
+}
+
+/** The inverse of an affine matrix, whatever its axes. */
+function inverse(m: Matrix4): Matrix4 {
+  const [a = 0, b = 0, c = 0, , d = 0, e = 0, f = 0, , g = 0, h = 0, k = 0, , x = 0, y = 0, z = 0] = m;
+  const minors = [e * k - f * h, c * h - b * k, b * f - c * e, f * g - d * k, a * k - c * g, c * d - a * f];
+  const all = [...minors, d * h - e * g, b * g - a * h, a * e - b * d];
+  const volume = a * (all[0] ?? 0) + d * (all[1] ?? 0) + g * (all[2] ?? 0);
+  if (volume === 0 || !Number.isFinite(volume)) {
+    const remedy = "Give the object and its parents scales other than 0.";
+    throw failure("INVALID_TRANSFORM", "source.matrixWorld", "a flat matrix", "one that can be inverted", remedy);
+  }
+  const [p = 0, q = 0, r = 0, s = 0, t = 0, u = 0, v = 0, w = 0, l = 0] = all.map((minor) => minor / volume);
+  const moved = [p * x + s * y + v * z, q * x + t * y + w * z, r * x + u * y + l * z].map((number) => -number);
+  return [p, q, r, 0, s, t, u, 0, v, w, l, 0, ...moved, 1];
+}

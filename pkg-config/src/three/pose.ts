@@ -1,0 +1,83 @@
+/** Poses of three.js' objects. */
+import { fromFrame, toFrame } from "../conventions/frames.js";
+import { finiteNumbers, oneOf } from "../conventions/numbers.js";
+import { compose, invert, toSim3 } from "../conventions/similarity.js";
+import type { Sim3, Sim3Like } from "../sim3.js";
+import type { PlacedObject, PosableObject } from "./types.js";
+
+/** How an object's scene is laid out. */
+export interface PoseOptions {
+  /**
+   * The frame of the object's parent (without `camera`): "opengl", the default, for a child of a three.js camera, or of
+   * a scene whose camera is at the origin, unturned; "opencv" for a scene that is built in OpenCV's camera frame.
+   */
+  frame?: "opencv" | "opengl" | undefined;
+  /** The three.js camera that stands for the one that saw the object, wherever it is. */
+  camera?: PlacedObject | undefined;
+}
+
+const framesOfScenes = ["opencv", "opengl"] as const;
+
+/**
+ * Puts an object of three.js where the alignment found the mesh: sets `position`, `quaternion`, `scale`.
+ *
+ * The mesh has to be the one that {@link meshInputFromThree} gives for that object. Its parent is the three.js camera,
+ * or a scene whose camera is at the origin; where the camera is elsewhere, pass it as `camera`, and the object's parent
+ * may be anything that is not sheared or stretched.
+ *
+ * @param object an `Object3D`
+ * @param transform OpenCV camera from mesh: a result of `align`
+ *
+ * @example
+ * const { scene: object } = await new GLTFLoader().loadAsync("generated.glb");
+ * const result = await aligner.align({ depth, mask, camera, mesh: meshInputFromThree(object) });
+ * applyToObject3D(object, result);
+ * @throws {@link Sim3AlignError} for what is no similarity, and `INVALID_OPTION` for another frame
+ */
+export function applyToObject3D(
+  object: PosableObject & { readonly parent?: PlacedObject | null },
+  transform: Sim3Like,
+  { frame = "opengl", camera }: PoseOptions = {},
+): void {
+  oneOf("options.frame", frame, framesOfScenes);
+  let pose = toFrame(transform, camera === undefined ? frame : "opengl");
+  if (camera !== undefined) {
+    pose = compose(worldFromCamera(camera), pose);
+    if (object.parent) pose = compose(invert(worldFrom(object.parent)), pose);
+  }
+  object.position.set(...pose.translation);
+  object.quaternion.set(...pose.rotation);
+  object.scale.set(pose.scale, pose.scale, pose.scale);
+  // For objects whose matrix is not updated by the renderer.
+  object.updateMatrix();
+}
+
+/**
+ * Where an object of three.js is, as a transform for `evaluate` or the option `initial`: what {@link applyToObject3D}
+ * sets, after somebody has moved the object.
+ *
+ * @param object an `Object3D`, scaled alike along all axes
+ * @param options as they were for {@link applyToObject3D}
+ * @returns OpenCV camera from mesh, metres
+ *
+ * @example
+ * const initial = transformFromObject3D(object);
+ * await aligner.align(input, { initial, search: "local" });
+ * @throws {@link Sim3AlignError} `INVALID_TRANSFORM` for an object that is stretched or mirrored
+ */
+export function transformFromObject3D(object: PosableObject, { frame = "opengl", camera }: PoseOptions = {}): Sim3 {
+  oneOf("options.frame", frame, framesOfScenes);
+  if (camera !== undefined) return fromFrame(compose(invert(worldFromCamera(camera)), worldFrom(object)), "opengl");
+  object.updateMatrix();
+  return fromFrame(numbersOf(object.matrix.elements), frame);
+}
+
+function worldFrom(object: PlacedObject): Sim3 {
+  object.updateWorldMatrix(true, false);
+  return toSim3(numbersOf(object.matrixWorld.elements));
+}
+
+/** Without the scale that a camera may have from its parents: three.js does not see by it either. */
+const worldFromCamera = (camera: PlacedObject): Sim3Like => ({ ...worldFrom(camera), scale: 1 });
+
+const numbersOf = (elements: unknown) => finiteNumbers("matrix.elements", elements, 16, "16 finite numbers");

@@ -1,0 +1,199 @@
+/** Exported files, read by three.js' loaders and judged by Khronos' validator. */
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+import { createAligner } from "sim3align";
+import { applyToPoints, exportGlb, exportPly, placeGlb, toOpenGL, toSim3 } from "sim3align/conventions";
+import { type BufferGeometry, type Group, Mesh, Vector3 } from "three";
+import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
+import { PLYLoader } from "three/addons/loaders/PLYLoader.js";
+import { repository } from "../support/environment.js";
+import { rejectsWith } from "../support/errors.js";
+import { glbOf } from "../support/files.js";
+import { assertValid } from "../support/gltf-validator.js";
+import { assertNear, forSeeds, Random } from "../support/random.js";
+import { mesh, truth, view } from "../support/scene.js";
+
+const buffer = (bytes: Uint8Array) => Uint8Array.from(bytes).buffer;
+const load = async (glb: Uint8Array): Promise<Group> => (await new GLTFLoader().parseAsync(buffer(glb), "")).scene;
+const soup = { positions: Float32Array.from(mesh.positions.subarray(0, 27)) };
+
+/** All vertices below an object, where the scene has them. */
+function vertices(object: Group): number[] {
+  object.updateMatrixWorld(true);
+  const found: number[] = [];
+  object.traverse((child) => {
+    if (!(child instanceof Mesh)) return;
+    const { position } = (child.geometry as BufferGeometry).attributes;
+    for (let i = 0; i < (position?.count ?? 0); i++) {
+      const vertex = new Vector3().fromBufferAttribute(position as never, i).applyMatrix4(child.matrixWorld);
+      found.push(...vertex.toArray());
+    }
+  });
+  return found;
+}
+
+for (const mode of ["node", "baked"] as const) {
+  for (const frame of ["opengl", "opencv"] as const) {
+    test(`GLB, ${mode}, ${frame}: valid, and its vertices are in the camera's frame`, async () => {
+      const glb = exportGlb(mesh, truth, { mode, frame });
+      const info = await assertValid(glb);
+      assert.equal(info.totalTriangleCount, mesh.indices.length / 3);
+      const pose = frame === "opengl" ? toOpenGL(truth) : truth;
+      const scene = await load(glb);
+      assertNear(vertices(scene), applyToPoints(pose, mesh.positions), mode, 1e-6);
+      const [object] = scene.children;
+      assert.equal(object?.name, "sim3align");
+      assert.deepEqual(object?.userData.sim3align, { frame, metresPerUnit: truth.scale });
+      if (mode === "node") assertNear([object?.scale.x ?? 0], [truth.scale], "the node has the scale");
+    });
+  }
+}
+
+test("GLB: meshes without indices, with 16-bit indices, and with one triangle", async () => {
+  await assertValid(exportGlb(soup, truth));
+  assertNear(
+    vertices(await load(exportGlb(soup, truth))),
+    applyToPoints(toOpenGL(truth), soup.positions),
+    "soup",
+    1e-6,
+  );
+  const [triangle, indices] = [soup.positions.slice(0, 9), Uint16Array.of(2, 0, 1)];
+  const info = await assertValid(exportGlb({ positions: triangle, indices }, truth, { mode: "baked" }));
+  assert.deepEqual([info.totalVertexCount, info.totalTriangleCount], [3, 1]);
+});
+
+test("a result's metrics and confidence go into the file, and the aligner reads it", async () => {
+  const aligner = await createAligner();
+  const { width, height, depth, mask, camera } = view;
+  const input = { depth, width, height, mask, camera };
+  const result = await aligner.align({ ...input, mesh });
+  assert.deepEqual(toSim3(result).matrix, result.matrix, "to the bit");
+  const glb = exportGlb(mesh, result);
+  await assertValid(glb);
+  const { userData } = (await load(glb)).children[0] ?? {};
+  assert.deepEqual(userData?.sim3align, {
+    frame: "opengl",
+    metresPerUnit: result.scale,
+    metrics: result.metrics,
+    confidence: result.confidence,
+  });
+  // Baked in OpenCV's frame, the mesh is where it should be: no transform is left.
+  const identity = toSim3({ scale: 1, rotation: [0, 0, 0, 1], translation: [0, 0, 0] });
+  const baked = exportGlb(mesh, truth, { mode: "baked", frame: "opencv" });
+  const { metrics } = await aligner.evaluate({ ...input, mesh: baked }, identity);
+  assert.ok((metrics.iou ?? 0) > 0.99, `iou ${metrics.iou}`);
+});
+
+for (const name of ["scene.glb", "mesh.glb"]) {
+  test(`${name} is put where it is, with all that it has`, async () => {
+    const original = readFileSync(join(repository, "tests", "fixtures", name));
+    const expected = applyToPoints(toOpenGL(truth), Float64Array.from(vertices(await load(original))));
+    const placed = placeGlb(original, truth, { name: "placed" });
+    await assertValid(placed);
+    assertNear(vertices(await load(placed)), expected, name, 1e-6);
+    assert.equal((await load(placed)).children[0]?.name, "placed");
+    const binary = (glb: Uint8Array) => glb.subarray(20 + new DataView(glb.buffer, glb.byteOffset).getUint32(12, true));
+    assert.deepEqual([...binary(placed)], [...binary(original)], "the binary chunk stays");
+    // And again: the transforms go one after the other.
+    await assertValid(placeGlb(buffer(placed), truth));
+  });
+}
+
+test("a GLB without a scene, and one with nothing in it, can be placed", async () => {
+  const nodes = [{ children: [1], translation: [1, 2, 3] }, { name: "leaf" }, { name: "other" }];
+  const placed = placeGlb(glbOf({ asset: { version: "2.0" }, nodes }, new Uint8Array()), truth);
+  const scene = await load(placed);
+  assert.deepEqual(
+    scene.children.map(({ name }) => name),
+    ["sim3align"],
+  );
+  assert.equal(scene.getObjectByName("leaf")?.parent?.position.y, 2);
+  assert.equal(scene.children[0]?.children.length, 2);
+  const nothing = glbOf({ asset: { version: "2.0" }, buffers: [{ byteLength: 4 }] }, new Uint8Array(4));
+  assert.equal((await load(placeGlb(nothing, truth))).children.length, 1);
+});
+
+test("PLY: three.js reads the vertices and triangles", () => {
+  forSeeds(3, (random, seed) => {
+    const pose = random.pose();
+    const file = exportPly(mesh, pose);
+    const header = Buffer.from(file).indexOf("end_header\n") + 11;
+    assert.equal(file.length, header + 4 * mesh.positions.length + (13 * mesh.indices.length) / 3, seed);
+    const geometry = new PLYLoader().parse(buffer(file));
+    assertNear(geometry.attributes.position?.array ?? [], applyToPoints(pose, mesh.positions), seed, 1e-6);
+    assert.deepEqual(Array.from(geometry.index?.array ?? []), Array.from(mesh.indices), seed);
+  });
+  const plain = new PLYLoader().parse(buffer(exportPly(soup)));
+  assert.deepEqual(plain.attributes.position?.array, soup.positions);
+  assert.deepEqual(Array.from(plain.index?.array ?? []), [0, 1, 2, 3, 4, 5, 6, 7, 8]);
+});
+
+test("what is no mesh is refused", async () => {
+  const { positions } = soup;
+  const cases: [unknown, Parameters<typeof rejectsWith>[1]][] = [
+    [{ positions: [0, 0, 0] }, { code: "INVALID_ARGUMENT", argument: "mesh.positions", message: /Float32Array\.from/ }],
+    [{ positions: positions.slice(0, 8) }, { code: "WRONG_LENGTH", argument: "mesh.positions", message: /8 numbers/ }],
+    [{ positions: positions.slice(0, 6) }, { code: "WRONG_LENGTH", argument: "mesh.positions", message: /2 vertices/ }],
+    [{ positions: new Float32Array() }, { code: "EMPTY_MESH", argument: "mesh", message: /no vertex/ }],
+    [
+      { positions, indices: new Uint32Array() },
+      { code: "EMPTY_MESH", argument: "mesh", message: /no triangle/ },
+    ],
+    [
+      { positions, indices: Uint32Array.of(0, 1, 9) },
+      { code: "INDEX_OUT_OF_RANGE", argument: "mesh.indices", message: /below 9/ },
+    ],
+    [
+      { positions, indices: Uint32Array.of(0, 1) },
+      { code: "WRONG_LENGTH", argument: "mesh.indices", message: /2 indices/ },
+    ],
+    [
+      { positions: positions.map((x, i) => (i === 5 ? Number.NaN : x)) },
+      { code: "NON_FINITE", argument: "mesh.positions", message: /NaN in vertex 1/ },
+    ],
+  ];
+  for (const [wrong, expected] of cases) await rejectsWith(async () => exportGlb(wrong as never, truth), expected);
+  await rejectsWith(async () => exportGlb(soup, truth, { mode: "bake" as never }), {
+    code: "INVALID_OPTION",
+    argument: "options.mode",
+    message: /"node" or "baked"/,
+  });
+});
+
+test("what is no GLB is refused, whatever its bytes", async () => {
+  const corrupt = (message: RegExp) => ({ code: "CORRUPT_FILE", argument: "glb", message }) as const;
+  const good = Uint8Array.from(exportGlb(soup, truth));
+  await rejectsWith(async () => placeGlb(new Uint8Array(7), truth), corrupt(/without its header/));
+  await rejectsWith(async () => placeGlb(good.slice(0, -1), truth), corrupt(/bytes of/));
+  const broken = good.slice();
+  broken[20] = 0x78;
+  await rejectsWith(async () => placeGlb(broken, truth), corrupt(/JSON/));
+  const long = good.slice();
+  long[15] = 0x7f;
+  await rejectsWith(async () => placeGlb(long, truth), corrupt(/a chunk up to/));
+  await rejectsWith(async () => placeGlb("glb" as never, truth), {
+    code: "INVALID_ARGUMENT",
+    argument: "glb",
+    message: /bytes of a GLB/,
+  });
+  const old = good.slice();
+  old[4] = 1;
+  await rejectsWith(async () => placeGlb(old, truth), {
+    code: "UNSUPPORTED_FORMAT",
+    argument: "glb",
+    message: /glTF 2/,
+  });
+  // Bytes changed at random are placed or refused, never anything else.
+  const random = new Random(5);
+  for (let i = 0; i < 300; i++) {
+    const changed = good.slice();
+    changed[random.whole(0, 200)] = random.whole(0, 255);
+    try {
+      placeGlb(changed, truth);
+    } catch (error) {
+      assert.equal((error as Error).name, "Sim3AlignError", `change ${i}: ${error}`);
+    }
+  }
+});

@@ -1,0 +1,54 @@
+/** The documentation's examples: all are compiled, and all but those marked `no-run` are run. */
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import { mkdirSync, rmSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+import { pathToFileURL } from "node:url";
+import { examples } from "../support/docs-examples.js";
+import { provideScene } from "../support/docs-scene.js";
+import { installDir, repository } from "../support/environment.js";
+
+const found = examples();
+const folder = join(installDir, "docs-examples");
+const errors = compile();
+provideScene();
+
+/** Compiles all examples; the compiler's messages by the example's name. */
+function compile(): Map<string, string[]> {
+  rmSync(folder, { recursive: true, force: true });
+  mkdirSync(folder, { recursive: true });
+  for (const { name, module } of found) writeFileSync(join(folder, `${name}.ts`), module);
+  const tsconfig = {
+    extends: join(repository, "tests", "tsconfig.installed.json"),
+    // An example shows a value; it need not use it.
+    compilerOptions: { noUnusedLocals: false, outDir: "out", rootDir: "..", sourceMap: false },
+    include: ["*.ts", "../tests/support/docs-globals.ts"],
+  };
+  writeFileSync(join(folder, "tsconfig.json"), JSON.stringify(tsconfig));
+  const tsc = join(repository, "node_modules", "typescript", "bin", "tsc");
+  const { stdout } = spawnSync(process.execPath, [tsc, "--pretty", "false", "--project", folder], {
+    cwd: folder,
+    encoding: "utf8",
+  });
+  const messages = new Map<string, string[]>();
+  for (const line of stdout.split("\n").filter((line) => /error TS/.test(line))) {
+    const name = /^(?:.*\/)?([\w-]+)\.ts\(/.exec(line)?.[1] ?? "";
+    messages.set(name, [...(messages.get(name) ?? []), line]);
+  }
+  return messages;
+}
+
+test("there are examples, and the compiler finds nothing else to say", () => {
+  assert.ok(found.length > 0);
+  const names = found.map(({ name }) => name);
+  const others = [...errors].filter(([name]) => !names.includes(name));
+  assert.deepEqual(others, []);
+});
+
+for (const { place, name, isRun } of found) {
+  test(`${place} compiles${isRun ? " and runs" : ""}`, async () => {
+    assert.deepEqual(errors.get(name) ?? [], []);
+    if (isRun) await import(pathToFileURL(join(folder, "out", "docs-examples", `${name}.js`)).href);
+  });
+}

@@ -1,0 +1,41 @@
+/**
+ * What the documentation's examples may use without having made it: a scene of 640 × 480 pixels, what was found in it,
+ * and names that stand for values of the reader's own. Each is a global variable in an example.
+ */
+import { createAligner } from "sim3align";
+import { resizeCamera, resizeDepth, resizeMask } from "sim3align/conventions";
+import { Object3D, PerspectiveCamera } from "three";
+import { glb } from "./files.js";
+import { mesh, truth, view } from "./scene.js";
+
+const size = { width: 640, height: 480 };
+const depth = resizeDepth({ data: view.depth, width: view.width, height: view.height }, size).data;
+const mask = resizeMask({ data: view.mask, width: view.width, height: view.height }, size).data;
+const camera = resizeCamera(view.camera, { fromWidth: view.width, fromHeight: view.height, ...size });
+const { fx, fy, cx, cy } = camera;
+const { width, height } = size;
+const input = { depth, width, height, mask, camera, mesh };
+
+const aligner = await createAligner();
+const result = await aligner.align(input);
+const { scale, rotation, translation } = result;
+const [x, y, z, w] = rotation;
+
+/** The globals, by name. */
+export const docsScene = {
+  aligner,
+  ...{ input, depth, width, height, mask, camera, fx, fy, cx, cy, mesh },
+  /** The bytes of a GLB file of the mesh. */
+  glb: glb(mesh),
+  result,
+  truth,
+  ...{ scale, rotation, translation, x, y, z, w },
+  /** An object of three.js, and one of its cameras. */
+  object3d: new Object3D(),
+  threeCamera: new PerspectiveCamera(),
+};
+
+/** Makes the globals. */
+export function provideScene(): void {
+  Object.assign(globalThis, docsScene);
+}
