@@ -18,9 +18,10 @@ pub mod precise;
 pub mod progress;
 pub mod register;
 pub mod report;
+pub mod split;
 pub mod warnings;
 
-use crate::error::Result;
+use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::Similarity;
 use crate::metrics;
@@ -31,7 +32,7 @@ use crate::stages::sample::{check_shape, sample_surface};
 use crate::stages::search::SearchSettings;
 
 use field::Options;
-use options::{AlignOptions, Preset, Quality, SearchScope};
+use options::{AlignOptions, Preset};
 use progress::{Host, Stage, Stopwatch};
 use report::{Alignment, Alternative, Counts, ScoreTerms, Uncertainty};
 
@@ -60,11 +61,7 @@ pub fn align_with(
     align_by(observation, mesh, options, plan, host, |evidence, extents, stages| match options.preset {
         Preset::Paper => paper::estimate(evidence, extents, options, stages),
         Preset::Precise => {
-            // Descriptors are weak evidence, but of another kind: where time is no matter, their pose is a candidate too.
-            let hypothesis = (options.quality == Quality::Best && options.search == SearchScope::Global)
-                .then(|| paper::estimate(evidence, extents, options, stages).ok())
-                .flatten()
-                .map(|found| found.camera_from_mesh);
+            let hypothesis = precise::hypothesis(evidence, extents, options, stages);
             precise::estimate(observation, mesh, hypothesis, options, search, stages)
         }
     })
@@ -82,6 +79,25 @@ pub fn align_by(
     plan: &'static [(Stage, f64)],
     host: &mut dyn Host,
     method: impl FnOnce(&Evidence, [&Extents; 2], &mut Stopwatch<'_>) -> Result<Estimated>,
+) -> Result<Alignment> {
+    // One copy of the pipeline for all methods.
+    let mut method = Some(method);
+    align_once(observation, mesh, options, plan, host, &mut |evidence, extents, stages| {
+        let called_twice = || Error::new(ErrorCode::Internal, "method", "two calls", "one", "");
+        method.take().ok_or_else(called_twice)?(evidence, extents, stages)
+    })
+}
+
+/// A method, as a function that is called once.
+type Method<'a> = &'a mut dyn FnMut(&Evidence, [&Extents; 2], &mut Stopwatch<'_>) -> Result<Estimated>;
+
+fn align_once(
+    observation: &Observation,
+    mesh: &Mesh,
+    options: &AlignOptions,
+    plan: &'static [(Stage, f64)],
+    host: &mut dyn Host,
+    method: Method<'_>,
 ) -> Result<Alignment> {
     options.validate()?;
     check_shape(mesh)?;

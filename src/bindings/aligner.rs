@@ -1,32 +1,39 @@
 //! The aligner's exports: each reads its arguments, calls the core, and hands back a plain object.
 
-use js_sys::Function;
 use serde::Serialize;
 use serde_wasm_bindgen::Serializer;
 use wasm_bindgen::prelude::*;
 
 use super::error::to_js;
-use super::host::JsHost;
+use super::host::{JsHost, Listener};
 use super::value::Value;
 use super::{input, object, options, transform};
 use crate::align::evaluate::EvaluateOptions;
 use crate::align::options::{AlignOptions, EstimateOptions, RegisterOptions};
 use crate::align::{self, estimate_sim3, register};
 use crate::error::{Error, ErrorCode, Result};
+use crate::geometry::mesh::Mesh;
+use crate::stages::observe::Observation;
 
 /// Aligns a mesh to an observation; see `Aligner.align` in the TypeScript package.
 #[wasm_bindgen(skip_typescript)]
 pub fn align(
     input: &JsValue,
     options: &JsValue,
-    on_progress: Option<Function>,
+    on_progress: Option<Listener>,
 ) -> core::result::Result<JsValue, JsValue> {
     let run = || {
-        let options: AlignOptions = options::options(options, &[])?;
-        let (observation, mesh) = (input::observation(input)?, input::mesh(input)?);
+        let (observation, mesh, options) = case(input, options)?;
         align::align(&observation, &mesh, &options, &mut JsHost::new(on_progress))
     };
     answer(run())
+}
+
+/// What an alignment is about.
+#[inline(never)]
+pub(super) fn case(input: &JsValue, options: &JsValue) -> Result<(Observation, Mesh, AlignOptions)> {
+    let options = options::options(options, &[])?;
+    Ok((input::observation(input)?, input::mesh(input)?, options))
 }
 
 /// Scores a transform; see `Aligner.evaluate` in the TypeScript package.
@@ -90,7 +97,7 @@ pub fn version() -> String {
 }
 
 /// What JavaScript gets: the result as a plain object, or the error to be thrown.
-fn answer<T: Serialize>(result: Result<T>) -> core::result::Result<JsValue, JsValue> {
+pub(super) fn answer<T: Serialize>(result: Result<T>) -> core::result::Result<JsValue, JsValue> {
     to_object(result.map(|value| Value::of(&value)))
 }
 

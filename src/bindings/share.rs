@@ -1,0 +1,82 @@
+//! One's share of an alignment, as JavaScript works on it: one at a time. See `pkg-config/src/pool/split.ts`.
+
+use core::cell::Cell;
+
+use glam::{DQuat, DVec2};
+use js_sys::Float64Array;
+use wasm_bindgen::prelude::*;
+
+use super::aligner::{answer, case};
+use super::error::to_js;
+use super::host::{JsHost, Listener};
+use crate::align::split::Share;
+use crate::error::{Error, ErrorCode, Result};
+use crate::stages::search::Found;
+use crate::stages::search::pose::CropPose;
+use crate::stages::search::score::Score;
+
+/// Numbers in which a candidate goes from one to another.
+const NUMBERS: usize = 11;
+
+thread_local! {
+    static SHARE: Cell<Option<Box<Share>>> = const { Cell::new(None) };
+}
+
+/// Prepares the search, in place of any other that is under way.
+#[wasm_bindgen(js_name = beginShare, skip_typescript)]
+pub fn begin_share(input: &JsValue, options: &JsValue) -> core::result::Result<(), JsValue> {
+    let run = || case(input, options).and_then(|(observation, mesh, options)| Share::new(observation, mesh, options));
+    SHARE.set(Some(Box::new(run().map_err(|e| to_js(&e))?)));
+    Ok(())
+}
+
+/// Takes what came of all tasks of the last round, in their order; then does every `parts`-th of the next round's, the
+/// first of them being `part`. Without parts, ends the share.
+///
+/// What comes of it: how many tasks the round has, all parts together; whether it is refinement; in how many numbers a
+/// task's outcome is told; then these numbers, task by task.
+#[wasm_bindgen(js_name = stepShare, skip_typescript)]
+pub fn step_share(
+    found: Option<Float64Array>,
+    part: usize,
+    parts: usize,
+) -> core::result::Result<Float64Array, JsValue> {
+    if parts == 0 {
+        SHARE.set(None);
+        return Ok(Float64Array::default());
+    }
+    let mut share = share().map_err(|e| to_js(&e))?;
+    found.into_iter().for_each(|found| share.advance(of_numbers(&found)));
+    let (found, per_task) = share.run(part, parts);
+    let mut numbers = vec![share.tasks() as f64, f64::from(u8::from(share.is_refinement()))];
+    numbers.push((per_task * NUMBERS) as f64);
+    for Found { pose, score, converged, renders } in found {
+        let CropPose { rotation: DQuat { x, y, z, w }, size, place, distance } = pose;
+        let (total, converged) = (f64::from(score.total), f64::from(u8::from(converged)));
+        numbers.extend_from_slice(&[x, y, z, w, size, place.x, place.y, distance, total, converged, renders as f64]);
+    }
+    SHARE.set(Some(share));
+    Ok(Float64Array::from(numbers.as_slice()))
+}
+
+/// The alignment, once no task is left. Ends the share.
+#[wasm_bindgen(js_name = finishShare, skip_typescript)]
+pub fn finish_share(on_progress: Option<Listener>) -> core::result::Result<JsValue, JsValue> {
+    answer(share().and_then(|share| share.finish(&mut JsHost::new(on_progress))))
+}
+
+fn share() -> Result<Box<Share>> {
+    SHARE.take().ok_or_else(|| Error::new(ErrorCode::Internal, "share", "none", "one that was begun", ""))
+}
+
+fn of_numbers(numbers: &Float64Array) -> Vec<Found> {
+    let numbers = numbers.to_vec();
+    let (records, _) = numbers.as_chunks::<NUMBERS>();
+    let found = records.iter().map(|&[x, y, z, w, size, u, v, distance, total, converged, renders]| Found {
+        pose: CropPose { rotation: DQuat::from_xyzw(x, y, z, w), size, place: DVec2::new(u, v), distance },
+        score: Score { total: total as f32, ..Score::default() },
+        converged: converged != 0.0,
+        renders: renders as usize,
+    });
+    found.collect()
+}
