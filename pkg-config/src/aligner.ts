@@ -46,7 +46,7 @@ export interface AlignerOptions {
 export interface Surroundings {
   wasm?: LazySource;
   formatsWasm?: LazySource;
-  createWorker?: CreateWorker;
+  workerScript?: string;
 }
 
 /** Workers that "auto" starts at most: each has a copy of its input. */
@@ -83,15 +83,14 @@ export class Aligner {
     const core = await coreModule.load(wasm);
     const here = new HereEngine(core, () => formatsModule.load(formatsWasm));
     if (workers === 0) return new Aligner(core, here);
-    let create = options.createWorker ?? surroundings.createWorker;
-    let cores = globalThis.navigator?.hardwareConcurrency;
-    if (create === undefined || cores === undefined) {
-      const found = await workshop();
-      create ??= found.create;
-      cores ??= found.cores;
-    }
-    const width = workers === "auto" ? Math.min(Math.max(cores - 1, 1), MAX_AUTO) : workers;
-    const supplies = { create, core: await coreModule.compile(), formats: () => formatsModule.compile(formatsWasm) };
+    const { createWorker } = options;
+    const found = await workshop(surroundings.workerScript, createWorker);
+    const width = workers === "auto" ? Math.min(Math.max(found.cores - 1, 1), MAX_AUTO) : workers;
+    const supplies = {
+      create: found.create,
+      core: await coreModule.compile(),
+      formats: () => formatsModule.compile(formatsWasm),
+    };
     return new Aligner(core, new WorkerPool(width, supplies, here));
   }
 

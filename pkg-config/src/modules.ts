@@ -1,18 +1,13 @@
 /** The two WebAssembly modules: the core, and the file readers that most callers never need. */
-import type { Core, Formats } from "./core.js";
+import type { Core } from "./core.js";
 import * as core from "./wasm/core.js";
 import { WasmModule } from "./wasm-module.js";
+
+export { formatsModule } from "./formats-module.js";
 
 /** The core, shared by all aligners of this realm. */
 export const coreModule = new WasmModule<Core>(
   "core",
   () => new URL("./wasm/core_bg.wasm", import.meta.url),
   () => core as unknown as Core,
-);
-
-/** The file readers. */
-export const formatsModule = new WasmModule<Formats>(
-  "formats",
-  () => new URL("./wasm/formats_bg.wasm", import.meta.url),
-  () => import("./wasm/formats.js"),
 );

@@ -39,8 +39,12 @@ export class WorkerPool implements Engine {
         if (!this.#ended.signal.aborted) startEarly(slot);
       }
     };
-    for (const signal of signals) signal.addEventListener("abort", stop);
     try {
+      for (const signal of signals) {
+        // Since the slot was given, a moment has passed.
+        signal.throwIfAborted();
+        signal.addEventListener("abort", stop);
+      }
       return await this.#attempt(job, call, slots);
     } finally {
       for (const signal of signals) signal.removeEventListener("abort", stop);

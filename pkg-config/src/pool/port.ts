@@ -67,20 +67,24 @@ export interface Workshop {
   cores: number;
 }
 
-/** What this environment has: `Worker`, or Node's module. */
-export async function workshop(): Promise<Workshop> {
-  if (typeof Worker === "function") {
-    return {
-      // Bundlers know this form, and none other.
-      create: () => new Worker(new URL("../worker.js", import.meta.url), { type: "module" }),
-      cores: globalThis.navigator?.hardwareConcurrency ?? 2,
-    };
+/**
+ * What this environment has: `Worker`, or Node's module.
+ * @param script of the worker, where it is not in a file
+ * @param createWorker the caller's way to make one
+ */
+export async function workshop(script?: string, createWorker?: CreateWorker): Promise<Workshop> {
+  if (typeof Worker === "function" || createWorker !== undefined) {
+    const cores = globalThis.navigator?.hardwareConcurrency ?? 2;
+    return { create: createWorker ?? (script === undefined ? fromFile : fromScript(script)), cores };
   }
   try {
     const [threads, os] = await Promise.all([nodeModule("node:worker_threads"), nodeModule("node:os")]);
-    const { Worker: ThreadWorker } = threads as typeof import("node:worker_threads");
-    const url = new URL(/* webpackIgnore: true */ /* @vite-ignore */ "../worker.js", import.meta.url);
-    return { create: () => new ThreadWorker(url), cores: (os as typeof import("node:os")).availableParallelism() };
+    const { Worker: Thread } = threads as typeof import("node:worker_threads");
+    const url = () => new URL(/* webpackIgnore: true */ /* @vite-ignore */ "../worker.js", import.meta.url);
+    return {
+      create: () => (script === undefined ? new Thread(url()) : new Thread(script, { eval: true })),
+      cores: (os as typeof import("node:os")).availableParallelism(),
+    };
   } catch (cause) {
     throw new Sim3AlignError(
       {
@@ -93,6 +97,18 @@ export async function workshop(): Promise<Workshop> {
       { cause },
     );
   }
+}
+
+/** Bundlers know this form, and no other. */
+const fromFile = () => new Worker(new URL("../worker.js", import.meta.url), { type: "module" });
+
+function fromScript(script: string): CreateWorker {
+  // One address for all, for as long as the page lives: when a browser has read it, it does not say.
+  let url: string | undefined;
+  return () => {
+    url ??= URL.createObjectURL(new Blob([script], { type: "text/javascript" }));
+    return new Worker(url, { type: "module" });
+  };
 }
 
 /** A module of Node's, by a name that bundlers for browsers don't follow: they never come here. */
