@@ -9,6 +9,7 @@ import { noTests, sum } from "./lib/counts.mjs";
 import { buildPackage } from "./lib/package.mjs";
 import { setUp } from "./lib/setup.mjs";
 import { duration, explain, script } from "./lib/step.mjs";
+import { examples } from "./suites/examples.mjs";
 import { lint, types } from "./suites/lint.mjs";
 import { browser, javaScript, lintPackage } from "./suites/package.mjs";
 import { native, wasm } from "./suites/rust.mjs";
@@ -33,6 +34,7 @@ const suites = [
   { name: "package", title: "Package checks", run: lintPackage, usesPackage: true },
   { name: "js", title: "JavaScript tests on the installed package", run: javaScript, usesPackage: true },
   { name: "browser", title: "Browser tests", run: browser, usesPackage: true },
+  { name: "examples", title: "Examples", run: examples, usesPackage: true },
 ];
 
 async function build() {

@@ -13,7 +13,7 @@ export function depthCloud({ data, width }, mask, { fx, fy, cx, cy }) {
     if (!(z > 0)) return;
     const [u, v] = [pixel % width, Math.floor(pixel / width)];
     positions.push(((u - cx) * z) / fx, (-(v - cy) * z) / fy, -z);
-    colours.push(...(mask.data[pixel] ? [0.4, 0.8, 1] : [0.25, 0.3, 0.35]));
+    colours.push(...(mask.data[pixel] ? [0.1, 0.45, 0.8] : [0.04, 0.05, 0.07]));
   });
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(Float32Array.from(positions), 3));

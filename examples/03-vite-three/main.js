@@ -1,7 +1,16 @@
 import { createAligner } from "sim3align";
 import { readDepth, readMask } from "sim3align/formats";
 import { applyPinhole, applyToObject3D, meshInputFromThree } from "sim3align/three";
-import { AmbientLight, Color, DirectionalLight, PerspectiveCamera, Scene, WebGLRenderer } from "three";
+import {
+  AmbientLight,
+  Color,
+  DirectionalLight,
+  Mesh,
+  MeshLambertMaterial,
+  PerspectiveCamera,
+  Scene,
+  WebGLRenderer,
+} from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { depthCloud } from "./depth-cloud.js";
@@ -41,7 +50,9 @@ async function show(folder) {
   const camera = new PerspectiveCamera();
   applyPinhole(camera, pinhole, { width, height });
   applyToObject3D(object, result);
-  object.traverse((part) => part.material?.color?.set(0xff7a1a));
+  object.traverse((part) => {
+    if (part instanceof Mesh) part.material = new MeshLambertMaterial({ color: 0xff7a1a });
+  });
   const cloud = depthCloud(depth, mask, pinhole);
   const light = new DirectionalLight(0xffffff, 2);
   light.position.set(-1, 1, 1);

@@ -2,7 +2,7 @@
 import { availableParallelism } from "node:os";
 import { UnrecoverableError, Worker } from "bullmq";
 import { createAligner, Sim3AlignError } from "sim3align";
-import { connect, queueName, readCase, resultsKey } from "./queue.mjs";
+import { connect, jobIdOf, queueName, readCase, resultsKey } from "./queue.mjs";
 
 const threads = Number(process.env.THREADS ?? availableParallelism());
 // How long a job may go without a sign of life before another worker takes it over. Alignments run in threads of their
@@ -20,13 +20,23 @@ const worker = new Worker(
     // Stored by a worker that died before it could say so.
     if (await connection.hexists(resultsKey, id)) return;
     const input = await readCase(folder);
+    // The result would stand under the name of another case.
+    if (jobIdOf(input, options) !== id) throw new UnrecoverableError("files or version have changed since");
     const { matrix, scale, confidence, alternatives, metrics, warnings } = await aligner
       .align(input, options)
       .catch((error) => {
         const isFinal = error instanceof Sim3AlignError && !passing.has(error.code);
         throw isFinal ? new UnrecoverableError(`${error.code}: ${error.message}`) : error;
       });
-    const record = { folder, matrix: [...matrix], scale, confidence, alternatives: alternatives.length, metrics, warnings };
+    const record = {
+      folder,
+      matrix: [...matrix],
+      scale,
+      confidence,
+      alternatives: alternatives.length,
+      metrics,
+      warnings,
+    };
     // The first one stays: should two have done the same job, their results are the same to the bit.
     const isFirst = await connection.hsetnx(resultsKey, id, JSON.stringify(record));
     if (isFirst) console.log("stored", id);

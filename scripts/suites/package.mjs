@@ -29,7 +29,7 @@ function checkNamedFiles() {
 }
 
 /** Packs pkg/ and installs the tarball into a folder of its own, then compiles the tests there. */
-async function install() {
+export async function install() {
   await step("install the packed package", async (say) => {
     const stamp = new Stamp(join(installDir, "installed-from"), digest([packageDir]), []);
     if (stamp.isCurrent) return say("up to date");
@@ -47,7 +47,7 @@ async function install() {
   });
   await step("compile the tests", async () => {
     rmSync(join(installDir, "tests"), { recursive: true, force: true });
-    for (const folder of ["js", "browser", "support"].filter((name) => existsSync(at("tests", name)))) {
+    for (const folder of ["js", "browser", "examples", "support"].filter((name) => existsSync(at("tests", name)))) {
       cpSync(at("tests", folder), join(installDir, "tests", folder), { recursive: true });
     }
     const tsconfig = { extends: at("tests", "tsconfig.installed.json"), include: ["tests"] };
@@ -58,13 +58,22 @@ async function install() {
 }
 
 /**
- * Runs one folder of compiled tests with the installed package.
+ * Runs one folder of tests with the installed package.
  * @param {string} folder
  * @param {NodeJS.ProcessEnv} [env]
  */
 async function nodeTest(folder, env = {}) {
   await makeSample();
   await install();
+  return runCompiled(folder, env);
+}
+
+/**
+ * Runs one folder of tests that {@link install} has compiled.
+ * @param {string} folder
+ * @param {NodeJS.ProcessEnv} [env]
+ */
+export async function runCompiled(folder, env = {}) {
   const files = filesBelow([join(installDir, "tests", folder)]).filter((file) => file.endsWith(".test.js"));
   if (files.length === 0) return noTests();
   const { output, reason } = await attempt(
