@@ -11,7 +11,8 @@ import { setUp } from "./lib/setup.mjs";
 import { duration, explain, script } from "./lib/step.mjs";
 import { examples } from "./suites/examples.mjs";
 import { lint, types } from "./suites/lint.mjs";
-import { browser, javaScript, lintPackage } from "./suites/package.mjs";
+import { browser, bundlers, javaScript, lintPackage } from "./suites/package.mjs";
+import { runtimes } from "./suites/runtimes.mjs";
 import { native, wasm } from "./suites/rust.mjs";
 import { checkSizes } from "./suites/size.mjs";
 
@@ -34,6 +35,8 @@ const suites = [
   { name: "package", title: "Package checks", run: lintPackage, usesPackage: true },
   { name: "js", title: "JavaScript tests on the installed package", run: javaScript, usesPackage: true },
   { name: "browser", title: "Browser tests", run: browser, usesPackage: true },
+  { name: "bundlers", title: "The package in bundlers' apps", run: bundlers, usesPackage: true },
+  { name: "runtimes", title: "The package in Deno and Bun", run: runtimes, usesPackage: true },
   { name: "examples", title: "Examples", run: examples, usesPackage: true },
 ];
 

@@ -18,7 +18,9 @@ pub mod precise;
 pub mod progress;
 pub mod register;
 pub mod report;
+mod rigid;
 pub mod split;
+mod verifier;
 pub mod warnings;
 
 use crate::error::{Error, ErrorCode, Result};

@@ -1,5 +1,5 @@
 /** `sim3align/inline`: the package in one piece, and the worker's script, whole, in it. */
-import { readFileSync, rmSync } from "node:fs";
+import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { build } from "esbuild";
 import { packageDir } from "./paths.mjs";
@@ -16,29 +16,39 @@ const common = /** @type {const} */ ({
 
 /** Bundles what the compiler has written to pkg/, which keeps everything else as it is. */
 export async function bundleInline() {
+  const base64 = Object.fromEntries(
+    wasmModules.map((module) => [module.name, readFileSync(wasmFile(module)).toString("base64")]),
+  );
   const worker = await build({ ...common, entryPoints: [join(packageDir, "worker.js")], write: false, minify: true });
-  /** @type {Map<string, string>} */
-  const inlined = new Map([["worker", worker.outputFiles[0]?.text ?? ""]]);
-  for (const module of wasmModules) inlined.set(module.name, readFileSync(wasmFile(module)).toString("base64"));
+  const inlined = new Map([
+    ["core", base64.core],
+    ["worker", worker.outputFiles[0]?.text],
+  ]);
+  // Most callers never need it: it stays beside.
+  const formats = "inline/formats.js";
+  mkdirSync(join(packageDir, "inline"), { recursive: true });
+  writeFileSync(join(packageDir, formats), `${exported(base64.formats)}\n`);
   rmSync(join(packageDir, "inlined.d.ts"), { force: true });
   await build({
     ...common,
     entryPoints: [join(packageDir, "inline.js")],
-    outdir: packageDir,
+    outfile: join(packageDir, "inline.js"),
     allowOverwrite: true,
     format: "esm",
-    splitting: true,
-    chunkNames: "inline/[name]-[hash]",
     plugins: [
       {
         name: "inlined",
         setup(build) {
+          build.onResolve({ filter: /^inlined:formats$/ }, () => ({ path: `./${formats}`, external: true }));
           build.onResolve({ filter: /^inlined:/ }, ({ path }) => ({ path: path.slice(8), namespace: "inlined" }));
           build.onLoad({ filter: /.*/, namespace: "inlined" }, ({ path }) => ({
-            contents: `export default ${JSON.stringify(inlined.get(path))};`,
+            contents: exported(inlined.get(path)),
           }));
         },
       },
     ],
   });
 }
+
+/** @param {string | undefined} text */
+const exported = (text) => `export default ${JSON.stringify(text)};`;

@@ -8,13 +8,35 @@ import { attempt, nodeProgram, run } from "../lib/run.mjs";
 import { makeSample, sampleDir } from "../lib/sample.mjs";
 import { digest, filesBelow, Stamp } from "../lib/stamp.mjs";
 import { step } from "../lib/step.mjs";
+import { kilobytes } from "../lib/wasm.mjs";
 import { runChecks } from "./checks.mjs";
 
-export function lintPackage() {
+/** What the tarball may take, in bytes: the WebAssembly is in it twice, the second time in `inline.js`. */
+const maxPacked = 1_200_000;
+
+/** Tests that use the installed package, and what they share. */
+const testFolders = ["js", "browser", "bundlers", "examples", "support"];
+
+export async function lintPackage() {
   const [node, publint] = nodeProgram("publint");
+  const [, attw] = nodeProgram("@arethetypeswrong/cli", "attw");
+  const folder = at("target", "packed");
+  mkdirSync(folder, { recursive: true });
+  const [tarball] = JSON.parse(await run("npm", ["pack", packageDir, "--json", "--pack-destination", folder]));
   return runChecks([
     ["publint", () => run(node, [publint, packageDir, "--strict"])],
+    [
+      "types, in modules' resolution",
+      () => run(node, [attw, join(folder, tarball.filename), "--profile", "esm-only", "--no-emoji"]),
+    ],
     ["every file that package.json names is there", checkNamedFiles],
+    [
+      `the tarball is within ${kilobytes(maxPacked)}`,
+      (say) => {
+        if (tarball.size > maxPacked) throw new Error(`It has ${kilobytes(tarball.size)}. Remedy: find what grew.`);
+        say(`${kilobytes(tarball.size)} packed, ${kilobytes(tarball.unpackedSize)} unpacked`);
+      },
+    ],
   ]);
 }
 
@@ -47,7 +69,7 @@ export async function install() {
   });
   await step("compile the tests", async () => {
     rmSync(join(installDir, "tests"), { recursive: true, force: true });
-    for (const folder of ["js", "browser", "examples", "support"].filter((name) => existsSync(at("tests", name)))) {
+    for (const folder of testFolders.filter((name) => existsSync(at("tests", name)))) {
       cpSync(at("tests", folder), join(installDir, "tests", folder), { recursive: true });
     }
     const tsconfig = { extends: at("tests", "tsconfig.installed.json"), include: ["tests"] };
@@ -90,10 +112,16 @@ export async function runCompiled(folder, env = {}) {
 
 export const javaScript = () => nodeTest("js");
 
-export async function browser() {
+/** @param {string} folder of tests that show pages */
+async function inBrowser(folder) {
   const path = await chromium();
-  if (path) return nodeTest("browser", { CHROMIUM_PATH: path });
+  if (path) return nodeTest(folder, { CHROMIUM_PATH: path });
   console.log(`No Chromium. Remedy: ${chromiumRemedy}.`);
   // On a developer's machine that is a gap; in continuous integration it would hide every failure of the page.
   return { ...noTests(), ...(process.env.CI ? { failed: 1 } : { skipped: 1 }) };
 }
+
+export const browser = () => inBrowser("browser");
+
+/** The package in other people's apps. */
+export const bundlers = () => inBrowser("bundlers");

@@ -120,14 +120,14 @@ pub(super) struct Estimate {
 }
 
 /// A cloud at both of its resolutions.
-struct Side<'a> {
-    full: &'a Cloud,
-    voxels: Cloud,
-    tree: KdTree,
+pub(super) struct Side<'a> {
+    pub(super) full: &'a Cloud,
+    pub(super) voxels: Cloud,
+    pub(super) tree: KdTree,
 }
 
 impl<'a> Side<'a> {
-    fn new(full: &'a Cloud, voxel_size: f32) -> Self {
+    pub(super) fn new(full: &'a Cloud, voxel_size: f32) -> Self {
         let GridCloud { cloud, tree } = GridCloud::of_at_most(MAX_FEATURES, full, voxel_size);
         Self { full, voxels: cloud, tree }
     }
@@ -224,7 +224,12 @@ fn refit_on_supported(
 }
 
 /// ICP on the voxel grid, then on the points themselves.
-fn refine_coarse_to_fine(source: &Side<'_>, target: &Side<'_>, initial: &Similarity, settings: &Settings) -> Refined {
+pub(super) fn refine_coarse_to_fine(
+    source: &Side<'_>,
+    target: &Side<'_>,
+    initial: &Similarity,
+    settings: &Settings,
+) -> Refined {
     let Some(metric) = settings.icp else {
         return Refined { target_from_source: *initial, iterations: 0, converged: true, supported: 0, rms: 0.0 };
     };

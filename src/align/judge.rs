@@ -1,5 +1,7 @@
 //! Which of several transforms between two clouds is right: the one under which the whole clouds agree best.
 
+use glam::Vec3;
+
 use super::estimate::{Estimate, Problem, Settings};
 use super::frames::Frames;
 use super::options::{RegisterOptions, ScaleOption};
@@ -13,8 +15,15 @@ use crate::metrics::evidence::NORMAL_NEIGHBORS;
 use crate::stages::extents::target_from_source;
 use crate::stages::normals::outward_normals;
 
+/// Voxels along the target's box diagonal, where the caller says nothing.
+const DIVISIONS: f64 = 30.0;
+
 /// Poses tried for one pair of clouds at most.
 const POSES: usize = 6;
+
+/// Minimal sets drawn at most where there is a pose already that only one beyond doubt could replace: enough for clouds
+/// that are the same but for their clutter.
+const DOUBTFUL_ITERATIONS: usize = 20_000;
 
 /// Agreement at which no further pose is tried: nine points in ten all but coincide.
 const BEYOND_DOUBT: f64 = 0.9;
@@ -26,6 +35,8 @@ pub(super) struct Judge {
     target: KdTree,
     inlier_distance: f32,
     best: Option<(Agreement, Attempt)>,
+    /// Whether nothing that is not beyond doubt takes the place of the best.
+    holds: bool,
     failure: Option<Error>,
 }
 
@@ -37,8 +48,25 @@ impl Judge {
             inlier_distance: (options.inlier_distance_voxels * unit_voxel_size(options, &frames)) as f32,
             frames,
             best: None,
+            holds: false,
             failure: None,
         }
+    }
+
+    /// Keeps a pose that was chosen from all of both scenes, unless another is beyond doubt: where these share little, a
+    /// wrong pose can make more of their points agree.
+    pub(super) fn hold(&mut self, attempt: Result<Attempt>) {
+        match attempt {
+            Ok(attempt) => {
+                self.consider(attempt);
+                self.holds = true;
+            }
+            Err(error) => self.failure = Some(error),
+        }
+    }
+
+    pub(super) fn holds(&self) -> bool {
+        self.holds
     }
 
     /// Solves for these clouds pose after pose until the agreement is beyond doubt.
@@ -55,12 +83,16 @@ impl Judge {
         }
         let frames = Frames::of(source_xyz, target_xyz, scale)?;
         stages.enter(Stage::Normals);
-        let source = with_normals(frames.source.normalized_flat(source_xyz));
-        let target = with_normals(frames.target.normalized_flat(target_xyz));
-        let settings =
+        let source = with_normals(frames.source.normalized_flat(source_xyz), None);
+        let target = with_normals(frames.target.normalized_flat(target_xyz), None);
+        let mut settings =
             Settings::of_register(options, unit_voxel_size(options, &frames), frames.scale_mode, frames.guard);
+        if self.holds {
+            settings.ransac.max_iterations = settings.ransac.max_iterations.min(DOUBTFUL_ITERATIONS);
+        }
         let mut problem = Problem::new(&source, &target, &settings, stages);
-        for _ in 0..POSES {
+        let poses = if self.holds { 1 } else { POSES };
+        for _ in 0..poses {
             if self.is_beyond_doubt() {
                 break;
             }
@@ -91,7 +123,8 @@ impl Judge {
     fn consider(&mut self, attempt: Attempt) {
         let unit = self.frames.unit(&attempt.target_from_source);
         let agreement = Agreement::of(&self.source, &self.target, &unit, self.inlier_distance);
-        if self.best.as_ref().is_none_or(|(best, _)| agreement.score > best.score) {
+        let is_taken = !self.holds || agreement.score >= BEYOND_DOUBT;
+        if is_taken && self.best.as_ref().is_none_or(|(best, _)| agreement.score > best.score) {
             self.best = Some((agreement, attempt));
         }
     }
@@ -111,10 +144,10 @@ impl Judge {
 
 /// A transform between the clouds' own frames, and how it came about.
 pub(super) struct Attempt {
-    target_from_source: Similarity,
-    estimate: Estimate,
+    pub(super) target_from_source: Similarity,
+    pub(super) estimate: Estimate,
     /// In target units.
-    residual: f64,
+    pub(super) residual: f64,
 }
 
 /// How well the source's points agree with the target's.
@@ -144,11 +177,14 @@ impl Agreement {
 
 /// The voxel size where the target's diagonal is 1.
 fn unit_voxel_size(options: &RegisterOptions, frames: &Frames) -> f64 {
-    options.voxel_size.map_or(1.0 / options.voxel_divisions, |size| size / frames.target.diagonal())
+    options
+        .voxel_size
+        .map_or(1.0 / options.voxel_divisions.unwrap_or(DIVISIONS), |size| size / frames.target.diagonal())
 }
 
-fn with_normals(mut cloud: Cloud) -> Cloud {
-    cloud.normals = outward_normals(&cloud.points, NORMAL_NEIGHBORS);
+/// See [`outward_normals`].
+pub(super) fn with_normals(mut cloud: Cloud, eye: Option<Vec3>) -> Cloud {
+    cloud.normals = outward_normals(&cloud.points, eye, NORMAL_NEIGHBORS);
     cloud
 }
 

@@ -300,23 +300,26 @@ impl ScaleOption {
 pub struct RegisterOptions {
     /// Seed of all random draws, 0 to 2³² − 1. Default 0.
     pub seed: u32,
-    /// Points of each cloud that are used at most, 32 to 1 000 000. Default 20 000.
+    /// Points of each cloud that are used at most, 32 to 1 000 000: of more, a random share or, with a fixed scale, the
+    /// means of small voxels. Default 20 000.
     pub max_points: u32,
     /// Voxel size in target units, above 0; `null` derives it from `voxelDivisions`. Default `null`.
     pub voxel_size: Option<f64>,
-    /// Voxels along the target's box diagonal, 5 to 200. Default 30.
-    pub voxel_divisions: f64,
+    /// Voxels along the target's box diagonal, 5 to 200; `null` takes 30 or, with a fixed scale, a voxel that leaves
+    /// 5000 points of the larger cloud. Default `null`.
+    pub voxel_divisions: Option<f64>,
     /// Radius of the FPFH descriptors, in voxels, 1 to 20. Default 5.
     pub fpfh_radius_voxels: f64,
-    /// Minimal sets that RANSAC draws at most, 1 to 10 000 000. Default 100 000.
+    /// Minimal sets that RANSAC draws at most, 1 to 10 000 000; with a fixed scale, which needs no draws, at most so
+    /// many poses are tried, and no more than 100. Default 100 000.
     pub ransac_iterations: u32,
-    /// RANSAC stops early at this probability of having missed nothing better, 0 to 0.999999.
-    /// Default 0.999.
+    /// RANSAC stops early at this probability of having missed nothing better, 0 to 0.999999; without effect where the
+    /// scale is fixed. Default 0.999.
     pub ransac_confidence: f64,
     /// A match within this distance of its counterpart is an inlier, in voxels, 0.1 to 20. Default 1.5.
     pub inlier_distance_voxels: f64,
-    /// How alike the three edges of a minimal set must be stretched: least over most stretched, 0 to 1.
-    /// Default 0.9.
+    /// How alike the three edges of a minimal set must be stretched: least over most stretched, 0 to 1;
+    /// without effect where the scale is fixed. Default 0.9.
     pub edge_similarity: f64,
     /// The refinement. Default `"point-to-plane"`.
     pub icp: Icp,
@@ -331,7 +334,7 @@ impl Default for RegisterOptions {
             seed: align.seed,
             max_points: align.max_observed_points,
             voxel_size: None,
-            voxel_divisions: align.voxel_divisions,
+            voxel_divisions: None,
             fpfh_radius_voxels: align.fpfh_radius_voxels,
             ransac_iterations: align.ransac_iterations,
             ransac_confidence: align.ransac_confidence,
@@ -349,7 +352,7 @@ impl Options for RegisterOptions {
             ("seed", Field::count(&mut self.seed, 0, u32::MAX)),
             ("maxPoints", Field::count(&mut self.max_points, 32, 1_000_000)),
             ("voxelSize", Field::Positive(&mut self.voxel_size)),
-            ("voxelDivisions", Field::number(&mut self.voxel_divisions, 5.0, 200.0)),
+            ("voxelDivisions", Field::Positive(&mut self.voxel_divisions)),
             ("fpfhRadiusVoxels", Field::number(&mut self.fpfh_radius_voxels, 1.0, 20.0)),
             ("ransacIterations", Field::count(&mut self.ransac_iterations, 1, 10_000_000)),
             ("ransacConfidence", Field::number(&mut self.ransac_confidence, 0.0, MAX_CONFIDENCE)),
@@ -358,6 +361,10 @@ impl Options for RegisterOptions {
             ("icp", Field::Choice(&mut self.icp)),
             ("icpIterations", Field::count(&mut self.icp_iterations, 1, 1_000)),
         ]
+    }
+
+    fn check_combination(&self) -> Result<()> {
+        self.voxel_divisions.map_or(Ok(()), |mut given| Field::number(&mut given, 5.0, 200.0).check("voxelDivisions"))
     }
 }
 

@@ -8,6 +8,7 @@ use super::judge::Judge;
 use super::options::{RegisterOptions, ScaleOption};
 use super::progress::{Host, Stage, Stopwatch};
 use super::report::Registration;
+use super::rigid::register_rigid;
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::random::Random;
 use crate::number::number;
@@ -51,18 +52,25 @@ pub fn register(
     let mut stages = Stopwatch::new(host, PLAN);
 
     stages.enter(Stage::Sample);
+    let given = [source_xyz, target_xyz];
     let mut random = Random::new(u64::from(options.seed), STREAM);
     let source_xyz = subsample(source_xyz, options.max_points as usize, &mut random);
     let target_xyz = subsample(target_xyz, options.max_points as usize, &mut random);
     let whole = Frames::of(&source_xyz, &target_xyz, scale)?;
 
-    // Clutter widens the boxes and drowns the descriptors; but where the density varies by nature (lidar),
+    // A known scale says which matches keep their distances. Otherwise, and where clutter defeats that:
+    // clutter widens the boxes and drowns the descriptors; but where the density varies by nature (lidar),
     // dropping the sparse points drops the scene. So both are tried, and the points themselves decide.
     let mut judge = Judge::new(&source_xyz, &target_xyz, whole, options);
+    if matches!(scale, ScaleOption::Fixed(_)) {
+        judge.hold(register_rigid(given, scale, options, &mut stages));
+    }
     if let Some((source_xyz, target_xyz)) = dense(&source_xyz, &target_xyz, &judge.frames) {
         judge.attempt(&source_xyz, &target_xyz, scale, options, &mut stages)?;
     }
-    judge.attempt(&source_xyz, &target_xyz, scale, options, &mut stages)?;
+    if !judge.holds() {
+        judge.attempt(&source_xyz, &target_xyz, scale, options, &mut stages)?;
+    }
     judge.verdict(options, stages)
 }
 

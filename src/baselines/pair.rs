@@ -86,7 +86,7 @@ pub fn register_pair(
     let grid = |argument: &str, cloud: &Cloud| {
         let mut cloud = frame.normalized(cloud);
         if cloud.normals.len() != cloud.len() {
-            cloud.normals = outward_normals(&cloud.points, NORMAL_NEIGHBORS);
+            cloud.normals = outward_normals(&cloud.points, None, NORMAL_NEIGHBORS);
         }
         let grid = GridCloud::new(&cloud, voxel_size as f32);
         enough(argument, grid.cloud.len(), "voxels").map(|()| grid)

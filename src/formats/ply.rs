@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 
 use crate::error::{Error, ErrorCode, Result};
 use crate::formats::cursor::Cursor;
-use crate::formats::guard::corrupt;
+use crate::formats::guard::{MAX_VERTICES, corrupt, too_large};
 use crate::formats::mesh_builder::MeshBuilder;
 use crate::formats::ply_header::{Element, Encoding, Header, Scalar};
 use crate::formats::text::{number, quoted};
@@ -23,7 +23,7 @@ pub fn read_ply(bytes: &[u8]) -> Result<Mesh> {
     for element in header.elements.iter().filter(|element| !element.properties.is_empty()) {
         body.check_count(element)?;
         match element.name.as_slice() {
-            b"vertex" => read_vertices(element, &mut body, &mut builder)?,
+            b"vertex" => read_vertices(element, &mut body, |point| builder.push_vertex(point).map(|_| ()))?,
             b"face" => read_faces(element, &mut body, &mut |corners| builder.push_fan(corners))?,
             b"tristrips" => read_faces(element, &mut body, &mut |corners| {
                 // −1, which arrives as u32::MAX, separates the strips.
@@ -35,7 +35,33 @@ pub fn read_ply(bytes: &[u8]) -> Result<Mesh> {
     builder.finish()
 }
 
-fn read_vertices(element: &Element, body: &mut Body<'_>, builder: &mut MeshBuilder) -> Result<()> {
+/// Reads the element `vertex` alone: the points of a cloud, which needs no face.
+///
+/// # Errors
+/// [`ErrorCode::CorruptFile`], [`ErrorCode::UnsupportedFormat`], [`ErrorCode::FileTooLarge`].
+pub fn read_ply_points(bytes: &[u8]) -> Result<Vec<Vec3>> {
+    let (header, body) = Header::read(bytes)?;
+    let mut body = Body { encoding: header.encoding, cursor: Cursor::new("cloud", body) };
+    let mut points = Vec::new();
+    for element in header.elements.iter().filter(|element| !element.properties.is_empty()) {
+        body.check_count(element)?;
+        if element.name != b"vertex" {
+            read_records(element, &mut body, |_, _| Ok(()))?;
+            continue;
+        }
+        if element.count > MAX_VERTICES {
+            return Err(too_large("cloud", format!("{} points", element.count), format!("at most {MAX_VERTICES}")));
+        }
+        read_vertices(element, &mut body, |point| {
+            points.push(point);
+            Ok(())
+        })?;
+        return Ok(points);
+    }
+    Err(corrupt("cloud", "no vertices", "the element vertex"))
+}
+
+fn read_vertices(element: &Element, body: &mut Body<'_>, mut push: impl FnMut(Vec3) -> Result<()>) -> Result<()> {
     let mut place = [0; 3];
     for (place, name) in place.iter_mut().zip([b"x", b"y", b"z"]) {
         *place =
@@ -52,7 +78,7 @@ fn read_vertices(element: &Element, body: &mut Body<'_>, builder: &mut MeshBuild
             }
         }
         if property == last {
-            builder.push_vertex(as_vec3(xyz))?;
+            push(as_vec3(xyz))?;
         }
         Ok(())
     })

@@ -76,6 +76,15 @@ fn png(bytes: &[u8], width: usize, height: usize, colour: ExtendedColorType) -> 
     Ok(file.into_inner())
 }
 
+/// Points as binary PLY: float x, y, z.
+pub fn ply_points(points: &[Vec3]) -> Vec<u8> {
+    let header = "ply\nformat binary_little_endian 1.0";
+    let properties = "property float x\nproperty float y\nproperty float z\nend_header\n";
+    let mut bytes = format!("{header}\nelement vertex {}\n{properties}", points.len()).into_bytes();
+    bytes.extend(points.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes));
+    bytes
+}
+
 /// A mesh as GLB: one node, one mesh, float positions and 32-bit indices.
 pub fn glb(mesh: &Mesh) -> Vec<u8> {
     let positions = mesh.positions();

@@ -8,6 +8,10 @@ use super::order::{index_of, sort};
 /// Cells along an axis; what lies beyond shares the last one. 2²¹ cells of 1 mm are two kilometres.
 const MAX_CELLS: u32 = (1 << 21) - 1;
 
+/// Rounds of [`voxel_size_leaving`], and how much the voxels grow in each at least: a thousandfold in the end.
+const MAX_ROUNDS: usize = 64;
+const MIN_GROWTH: f32 = 1.03;
+
 /// The mean point (and the normalised mean normal) of every occupied cell of edge `voxel_size`, cell by cell
 /// in ascending x, then y, then z. Cells are counted from the cloud's own smallest corner, so that the result
 /// moves with the cloud. Sorted rather than hashed: the order never depends on the platform. The cloud as it is
@@ -32,6 +36,23 @@ pub fn voxel_downsample(cloud: &Cloud, voxel_size: f32) -> Cloud {
         }
     }
     out
+}
+
+/// A voxel size that leaves at most `count` points of a cloud, and not many fewer, where these are of a surface.
+pub fn voxel_size_leaving(cloud: &Cloud, count: usize) -> f32 {
+    let wanted = count.max(1) as f32;
+    let Some(bounds) = Bounds::of(&cloud.points) else { return 0.0 };
+    // Too fine for any surface that fills its box; a surface has a quarter of the cells when they are twice as large.
+    let mut size = 0.3 * bounds.diagonal() / wanted.sqrt();
+    for _ in 0..MAX_ROUNDS {
+        let left = voxel_downsample(cloud, size).len();
+        if left <= count {
+            break;
+        }
+        let growth = (left as f32 / wanted).sqrt();
+        size *= if growth < MIN_GROWTH { MIN_GROWTH } else { growth };
+    }
+    size
 }
 
 fn cell(p: Vec3, min: Vec3, voxel_size: f32) -> [u32; 3] {

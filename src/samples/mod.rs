@@ -10,6 +10,8 @@ pub mod evaluation;
 pub mod imported;
 pub mod overlay;
 pub mod records;
+#[cfg(feature = "bench")]
+pub mod registration;
 pub mod scenes;
 pub mod shape;
 

@@ -41,6 +41,34 @@ pub fn one_way_matches(source: &[Descriptor], target: &[Descriptor]) -> Vec<Matc
     nearest.into_iter().zip(0..).filter_map(|(s, t)| Some(Match { source: s?, target: t })).collect()
 }
 
+/// The mutual pairs, then as many of the one-way ones as make `count` together, in turn from both sides.
+pub fn best_matches(source: &[Descriptor], target: &[Descriptor], count: usize) -> Vec<Match> {
+    let forward = nearest_of_each(source, target);
+    let backward = nearest_of_each(target, source);
+    let (mut mutual, mut others) = (Vec::new(), Vec::new());
+    for (&t, s) in forward.iter().zip(0..) {
+        let Some(target) = t else { continue };
+        let found = Match { source: s, target };
+        if backward.get(target as usize).copied().flatten() == Some(s) {
+            mutual.push(found)
+        } else {
+            others.push(found)
+        }
+    }
+    for (&s, target) in backward.iter().zip(0..) {
+        let Some(source) = s else { continue };
+        if forward.get(source as usize).copied().flatten() != Some(target) {
+            others.push(Match { source, target });
+        }
+    }
+    let wanted = count.saturating_sub(mutual.len());
+    if wanted > 0 {
+        let step = others.len().div_ceil(wanted).max(1);
+        mutual.extend(others.into_iter().step_by(step));
+    }
+    mutual
+}
+
 /// Index of the nearest of `among` for each descriptor.
 fn nearest_of_each(descriptors: &[Descriptor], among: &[Descriptor]) -> Vec<Option<u32>> {
     let nearest = |descriptor: &Descriptor| {

@@ -64,11 +64,11 @@ pub fn estimate_normals(
     normals
 }
 
-/// Normals that point away from the middle of the points: the median, which clutter moves least. Without a viewpoint
-/// that is the orientation that two clouds can agree on.
-pub fn outward_normals(points: &[Vec3], neighbors: usize) -> Vec<Vec3> {
+/// Normals that point away from where the points were seen from or, where that is not known, from their middle: the
+/// median, which clutter moves least. Without a viewpoint that is the orientation that two clouds can agree on.
+pub fn outward_normals(points: &[Vec3], eye: Option<Vec3>, neighbors: usize) -> Vec<Vec3> {
     let middle = |axis: usize| median(points.iter().map(|p| p[axis])).unwrap_or_default();
-    let center = Vec3::new(middle(0), middle(1), middle(2));
+    let center = eye.unwrap_or_else(|| Vec3::new(middle(0), middle(1), middle(2)));
     estimate_normals(points, &KdTree::new(points), Neighborhood::nearest(neighbors), Orientation::AwayFrom(center))
 }
 

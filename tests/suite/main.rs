@@ -62,6 +62,8 @@ pub mod real_cases;
 #[cfg(all(feature = "samples", not(target_arch = "wasm32")))]
 pub mod records;
 pub mod register;
+#[cfg(all(feature = "bench", not(target_arch = "wasm32")))]
+pub mod registration;
 pub mod sample;
 #[cfg(all(feature = "samples", not(target_arch = "wasm32")))]
 pub mod samples;
@@ -72,6 +74,7 @@ pub mod shapes;
 pub mod silhouette;
 pub mod similarity;
 pub mod singular_values;
+pub mod split;
 pub mod support;
 pub mod surface;
 pub mod symmetric_eigen;

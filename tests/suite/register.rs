@@ -66,6 +66,26 @@ fn recovers_any_similarity_of_a_full_surface_exactly() {
 }
 
 #[wasm_bindgen_test(unsupported = test)]
+fn a_known_scale_gives_the_pose_exactly_in_clutter_too() {
+    for (shape, surface) in [("blob", blob as fn(&mut Draw, usize) -> Cloud), ("mug", mug)] {
+        for (case, (scale, clutter)) in [(1.0, 0.0), (1.0, 0.25), (0.01, 0.5), (30.0, 0.5)].into_iter().enumerate() {
+            let seed = 300 + case as u64;
+            let draw = &mut Draw::new(seed);
+            let source: Vec<_> = surface(draw, 3000).points.into_iter().map(vector3).collect();
+            let truth = draw.similarity([scale, scale], 100.0);
+            let moved: Vec<_> = source.iter().map(|&p| truth.apply(p)).collect();
+            let target = cluttered(draw, &moved, clutter);
+            let what = format!("{shape}, seed {seed}, scale {scale}, clutter {clutter}");
+            let fixed = ScaleOption::Fixed(truth.scale);
+            let result = register(&flat(&source), &flat(&target), fixed, &RegisterOptions::default(), &mut Silent);
+            let result = result.unwrap_or_else(|e| panic!("{what}: {e}"));
+            assert_recovers(&result.target_from_source.matrix, &truth, &source, 1e-4, &what);
+            assert!(result.converged && result.fitness > 0.99, "{what}: fitness {}", result.fitness);
+        }
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
 fn a_known_scale_is_kept_and_bounds_are_respected() {
     let draw = &mut Draw::new(7);
     let source: Vec<_> = blob(draw, 2000).points.into_iter().map(vector3).collect();

@@ -183,7 +183,8 @@ export type RegisterOptions = {
  */
 seed: number, 
 /**
- * Points of each cloud that are used at most, 32 to 1 000 000. Default 20 000.
+ * Points of each cloud that are used at most, 32 to 1 000 000: of more, a random share or, with a fixed scale, the
+ * means of small voxels. Default 20 000.
  */
 maxPoints: number, 
 /**
@@ -191,20 +192,22 @@ maxPoints: number,
  */
 voxelSize: number | null, 
 /**
- * Voxels along the target's box diagonal, 5 to 200. Default 30.
+ * Voxels along the target's box diagonal, 5 to 200; `null` takes 30 or, with a fixed scale, a voxel that leaves
+ * 5000 points of the larger cloud. Default `null`.
  */
-voxelDivisions: number, 
+voxelDivisions: number | null, 
 /**
  * Radius of the FPFH descriptors, in voxels, 1 to 20. Default 5.
  */
 fpfhRadiusVoxels: number, 
 /**
- * Minimal sets that RANSAC draws at most, 1 to 10 000 000. Default 100 000.
+ * Minimal sets that RANSAC draws at most, 1 to 10 000 000; with a fixed scale, which needs no draws, at most so
+ * many poses are tried, and no more than 100. Default 100 000.
  */
 ransacIterations: number, 
 /**
- * RANSAC stops early at this probability of having missed nothing better, 0 to 0.999999.
- * Default 0.999.
+ * RANSAC stops early at this probability of having missed nothing better, 0 to 0.999999; without effect where the
+ * scale is fixed. Default 0.999.
  */
 ransacConfidence: number, 
 /**
@@ -212,8 +215,8 @@ ransacConfidence: number,
  */
 inlierDistanceVoxels: number, 
 /**
- * How alike the three edges of a minimal set must be stretched: least over most stretched, 0 to 1.
- * Default 0.9.
+ * How alike the three edges of a minimal set must be stretched: least over most stretched, 0 to 1;
+ * without effect where the scale is fixed. Default 0.9.
  */
 edgeSimilarity: number, 
 /**

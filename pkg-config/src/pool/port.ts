@@ -107,7 +107,8 @@ function fromScript(script: string): CreateWorker {
   let url: string | undefined;
   return () => {
     url ??= URL.createObjectURL(new Blob([script], { type: "text/javascript" }));
-    return new Worker(url, { type: "module" });
+    // In a sandboxed frame module workers have no origin that could load their script; Deno has no other workers.
+    return new Worker(url, { type: "Deno" in globalThis ? "module" : "classic" });
   };
 }
 

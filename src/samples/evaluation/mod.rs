@@ -31,7 +31,7 @@ pub(in crate::samples) const READINGS_STREAM: u64 = 4;
 pub(in crate::samples) const MASK_STREAM: u64 = 5;
 
 /// Standard normal (Box and Muller).
-fn normal(random: &mut Random) -> f64 {
+pub(super) fn normal(random: &mut Random) -> f64 {
     let (u, v) = (1.0 - random.uniform(), random.uniform());
     (-2.0 * libm::log(u)).sqrt() * libm::cos(core::f64::consts::TAU * v)
 }

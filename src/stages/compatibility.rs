@@ -1,0 +1,173 @@
+//! Poses from matches most of which are wrong, where the scale is known: right matches keep the distances between
+//! each other, and so have many such companions in common (second-order spatial compatibility: Chen et al.,
+//! "SC²-PCR", CVPR 2022).
+
+use glam::Vec3;
+
+use super::matching::Match;
+use super::umeyama::{Pair, ScaleMode, umeyama};
+use crate::geometry::order::{index_of, pack, select_smallest, sort};
+use crate::geometry::similarity::{Similarity, vector3};
+
+/// Companions that a seed's first pose comes from.
+const COMPANIONS: usize = 30;
+
+/// Rounds of the power iteration that weighs them.
+const POWER_ROUNDS: usize = 10;
+
+/// Closed-form refits on all that agree.
+const REFITS: usize = 5;
+
+/// A pose, and how well the matches agree with it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hypothesis {
+    /// The transform.
+    pub target_from_source: Similarity,
+    /// Indices of the matches that agree.
+    pub inliers: Vec<usize>,
+    /// Σ 1 − r²/d² over these.
+    pub score: f64,
+}
+
+/// Up to `count` poses, those with the most companions first, no two from the same matches. A match agrees that lands
+/// within `distance`; the scale is 1.
+pub fn hypotheses(source: &[Vec3], target: &[Vec3], matches: &[Match], distance: f32, count: usize) -> Vec<Hypothesis> {
+    let pairs: Vec<Pair> = matches
+        .iter()
+        .filter_map(|m| {
+            let (source, target) = (*source.get(m.source as usize)?, *target.get(m.target as usize)?);
+            Some(Pair { source: vector3(source), target: vector3(target), weight: 1.0 })
+        })
+        .collect();
+    if pairs.len() != matches.len() {
+        return Vec::new();
+    }
+    let graph = Graph::new(source, target, matches, distance);
+    let mut order: Vec<u64> = (0..pairs.len()).map(|i| pack(-graph.weight(i), i as u32)).collect();
+    sort(&mut order);
+    let mut taken = vec![false; pairs.len()];
+    let mut found: Vec<Hypothesis> = Vec::new();
+    for seed in order.into_iter().map(|key| index_of(key) as usize) {
+        if found.len() >= count {
+            break;
+        }
+        if taken[seed] {
+            continue;
+        }
+        let Some(first) = graph.consensus(seed, &pairs) else { continue };
+        let Some(hypothesis) = refit(first, &pairs, f64::from(distance)) else { continue };
+        taken[seed] = true;
+        for &i in &hypothesis.inliers {
+            taken[i] = true;
+        }
+        found.push(hypothesis);
+    }
+    found
+}
+
+/// Which matches keep their distance: a bit for each two.
+struct Graph {
+    words: usize,
+    rows: Vec<u64>,
+}
+
+impl Graph {
+    fn new(source: &[Vec3], target: &[Vec3], matches: &[Match], tolerance: f32) -> Self {
+        let ends: Vec<(Vec3, Vec3)> =
+            matches.iter().map(|m| (source[m.source as usize], target[m.target as usize])).collect();
+        let words = ends.len().div_ceil(64);
+        let mut rows = vec![0; words * ends.len()];
+        for (i, (p, q)) in ends.iter().enumerate() {
+            for (j, (other_p, other_q)) in ends.iter().enumerate().skip(i + 1) {
+                let (a, b) = (p.distance(*other_p), q.distance(*other_q));
+                // What is close keeps its distance whatever the pose.
+                if (a - b).abs() < tolerance && a.min(b) > tolerance {
+                    rows[i * words + j / 64] |= 1 << (j % 64);
+                    rows[j * words + i / 64] |= 1 << (i % 64);
+                }
+            }
+        }
+        Self { words, rows }
+    }
+
+    fn row(&self, i: usize) -> &[u64] {
+        &self.rows[i * self.words..(i + 1) * self.words]
+    }
+
+    fn companions(&self, i: usize) -> impl Iterator<Item = usize> {
+        self.row(i)
+            .iter()
+            .enumerate()
+            .flat_map(|(word, &bits)| (0..64).filter(move |bit| bits >> bit & 1 == 1).map(move |bit| 64 * word + bit))
+    }
+
+    fn are_compatible(&self, i: usize, j: usize) -> bool {
+        self.row(i)[j / 64] >> (j % 64) & 1 == 1
+    }
+
+    /// Companions that both have.
+    fn common(&self, i: usize, j: usize) -> u32 {
+        self.row(i).iter().zip(self.row(j)).map(|(a, b)| (a & b).count_ones()).sum()
+    }
+
+    /// Triangles that a match is part of.
+    fn weight(&self, i: usize) -> f32 {
+        self.companions(i).map(|j| self.common(i, j)).sum::<u32>() as f32
+    }
+
+    /// The pose of a seed and its best companions, each weighed by how well it goes with the others.
+    fn consensus(&self, seed: usize, pairs: &[Pair]) -> Option<Similarity> {
+        let mut keys: Vec<u64> =
+            self.companions(seed).map(|j| pack(-(self.common(seed, j) as f32), j as u32)).collect();
+        select_smallest(&mut keys, COMPANIONS);
+        keys.truncate(COMPANIONS);
+        sort(&mut keys);
+        let mut members = vec![seed];
+        members.extend(keys.into_iter().map(|key| index_of(key) as usize));
+        let n = members.len();
+        let mut affinity = vec![0.0; n * n];
+        for (a, b) in (0..n).flat_map(|a| (0..a).map(move |b| (a, b))) {
+            if self.are_compatible(members[a], members[b]) {
+                let common = f64::from(self.common(members[a], members[b]));
+                (affinity[a * n + b], affinity[b * n + a]) = (common, common);
+            }
+        }
+        let mut weights = vec![1.0; n];
+        for _ in 0..POWER_ROUNDS {
+            let next: Vec<f64> =
+                affinity.chunks_exact(n).map(|row| row.iter().zip(&weights).map(|(a, w)| a * w).sum()).collect();
+            let largest = next.iter().fold(0.0, |m: f64, x| m.max(*x));
+            if largest <= 0.0 {
+                return None;
+            }
+            weights = next.into_iter().map(|x| x / largest).collect();
+        }
+        let weighted = members.iter().zip(weights).map(|(&i, weight)| Pair { weight, ..pairs[i] });
+        umeyama(weighted, ScaleMode::Fixed(1.0)).ok()
+    }
+}
+
+/// Refits on all matches that agree, for as long as the score rises.
+fn refit(first: Similarity, pairs: &[Pair], distance: f64) -> Option<Hypothesis> {
+    let agree = |pose: Similarity| {
+        let (mut inliers, mut score) = (Vec::new(), 0.0);
+        for (i, pair) in pairs.iter().enumerate() {
+            let share = 1.0 - (pose.apply(pair.source) - pair.target).norm_squared() / (distance * distance);
+            if share > 0.0 {
+                inliers.push(i);
+                score += share;
+            }
+        }
+        Hypothesis { target_from_source: pose, inliers, score }
+    };
+    let mut best = agree(first);
+    for _ in 0..REFITS {
+        let Ok(pose) = umeyama(best.inliers.iter().map(|&i| pairs[i]), ScaleMode::Fixed(1.0)) else { break };
+        let next = agree(pose);
+        if next.score <= best.score {
+            break;
+        }
+        best = next;
+    }
+    (best.inliers.len() >= 3).then_some(best)
+}
