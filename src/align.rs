@@ -23,7 +23,7 @@ pub mod split;
 mod verifier;
 pub mod warnings;
 
-use crate::error::{Error, ErrorCode, Result};
+use crate::error::Result;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::Similarity;
 use crate::metrics;
@@ -82,75 +82,91 @@ pub fn align_by(
     host: &mut dyn Host,
     method: impl FnOnce(&Evidence, [&Extents; 2], &mut Stopwatch<'_>) -> Result<Estimated>,
 ) -> Result<Alignment> {
-    // One copy of the pipeline for all methods.
-    let mut method = Some(method);
-    align_once(observation, mesh, options, plan, host, &mut |evidence, extents, stages| {
-        let called_twice = || Error::new(ErrorCode::Internal, "method", "two calls", "one", "");
-        method.take().ok_or_else(called_twice)?(evidence, extents, stages)
-    })
+    let mut stages = Stopwatch::new(host, plan);
+    let clouds = Clouds::new(observation, mesh, options, &mut stages)?;
+    let estimated = method(&clouds.evidence, clouds.extents(), &mut stages)?;
+    clouds.report(observation, mesh, options, estimated, stages)
 }
 
-/// A method, as a function that is called once.
-type Method<'a> = &'a mut dyn FnMut(&Evidence, [&Extents; 2], &mut Stopwatch<'_>) -> Result<Estimated>;
+/// Both clouds, and their extents.
+struct Clouds {
+    evidence: Evidence,
+    observed: Extents,
+    reconstructed: Extents,
+}
 
-fn align_once(
-    observation: &Observation,
-    mesh: &Mesh,
-    options: &AlignOptions,
-    plan: &'static [(Stage, f64)],
-    host: &mut dyn Host,
-    method: Method<'_>,
-) -> Result<Alignment> {
-    options.validate()?;
-    check_shape(mesh)?;
-    let seed = u64::from(options.seed);
-    let mut stages = Stopwatch::new(host, plan);
+impl Clouds {
+    /// What comes before every method.
+    fn new(observation: &Observation, mesh: &Mesh, options: &AlignOptions, stages: &mut Stopwatch<'_>) -> Result<Self> {
+        options.validate()?;
+        check_shape(mesh)?;
+        let seed = u64::from(options.seed);
 
-    // §3.1: the partial cloud P_obs from depth and mask, the complete cloud P_rec from the mesh, s_init from the boxes.
-    stages.enter(Stage::Observe);
-    let observed = observation.cloud(options.max_observed_points as usize, seed);
-    stages.enter(Stage::Sample);
-    let reconstructed = sample_surface(mesh, options.surface_samples as usize, seed)?;
-    let extents_obs = Extents::of("depth", &observed.points)?;
-    let extents_rec = Extents::of("mesh", &reconstructed.points)?;
-    stages.enter(Stage::Normals);
-    let evidence = Evidence::new(observed, reconstructed);
+        // §3.1: the partial cloud P_obs from depth and mask, the complete cloud P_rec from the mesh, s_init from the
+        // boxes.
+        stages.enter(Stage::Observe);
+        let observed = observation.cloud(options.max_observed_points as usize, seed);
+        stages.enter(Stage::Sample);
+        let reconstructed = sample_surface(mesh, options.surface_samples as usize, seed)?;
+        let extents_obs = Extents::of("depth", &observed.points)?;
+        let extents_rec = Extents::of("mesh", &reconstructed.points)?;
+        stages.enter(Stage::Normals);
+        let evidence = Evidence::new(observed, reconstructed);
+        Ok(Self { evidence, observed: extents_obs, reconstructed: extents_rec })
+    }
 
-    let estimated = method(&evidence, [&extents_obs, &extents_rec], &mut stages)?;
+    fn extents(&self) -> [&Extents; 2] {
+        [&self.observed, &self.reconstructed]
+    }
 
-    stages.enter(Stage::Metrics);
-    let metrics = metrics::score(observation, mesh, &estimated.camera_from_mesh, &evidence)?;
-    let timings_ms = stages.finish();
+    /// What comes after every method.
+    fn report(
+        &self,
+        observation: &Observation,
+        mesh: &Mesh,
+        options: &AlignOptions,
+        estimated: Estimated,
+        mut stages: Stopwatch<'_>,
+    ) -> Result<Alignment> {
+        let Self { evidence, observed, reconstructed } = self;
+        stages.enter(Stage::Metrics);
+        let metrics = metrics::score(observation, mesh, &estimated.camera_from_mesh, evidence)?;
+        let timings_ms = stages.finish();
 
-    let initial_scale = initial_scale(&extents_obs, &extents_rec);
-    let scale_ratio = estimated.camera_from_mesh.scale / initial_scale;
-    let mut warnings = warnings::about_observation(observation);
-    warnings.extend(warnings::about_scale(scale_ratio, estimated.clamped, options.preset));
-    warnings.extend(warnings::about_convergence(estimated.converged, estimated.counts.icp_iterations, options.preset));
-    Ok(Alignment {
-        camera_from_mesh: (&estimated.camera_from_mesh).into(),
-        preset: options.preset,
-        seed: options.seed,
-        initial_scale,
-        scale_ratio,
-        collapsed: report::is_collapsed(scale_ratio),
-        clamped: estimated.clamped,
-        converged: estimated.converged,
-        residual_m: estimated.residual_m,
-        confidence: estimated.confidence,
-        score: estimated.score,
-        terms: estimated.terms,
-        alternatives: estimated.alternatives,
-        uncertainty: estimated.uncertainty,
-        metrics,
-        counts: Counts {
-            source_points: evidence.reconstructed.len(),
-            target_points: evidence.observed.len(),
-            ..estimated.counts
-        },
-        timings_ms,
-        warnings,
-    })
+        let initial_scale = initial_scale(observed, reconstructed);
+        let scale_ratio = estimated.camera_from_mesh.scale / initial_scale;
+        let mut warnings = warnings::about_observation(observation);
+        warnings.extend(warnings::about_scale(scale_ratio, estimated.clamped, options.preset));
+        warnings.extend(warnings::about_convergence(
+            estimated.converged,
+            estimated.counts.icp_iterations,
+            options.preset,
+        ));
+        Ok(Alignment {
+            camera_from_mesh: (&estimated.camera_from_mesh).into(),
+            preset: options.preset,
+            seed: options.seed,
+            initial_scale,
+            scale_ratio,
+            collapsed: report::is_collapsed(scale_ratio),
+            clamped: estimated.clamped,
+            converged: estimated.converged,
+            residual_m: estimated.residual_m,
+            confidence: estimated.confidence,
+            score: estimated.score,
+            terms: estimated.terms,
+            alternatives: estimated.alternatives,
+            uncertainty: estimated.uncertainty,
+            metrics,
+            counts: Counts {
+                source_points: evidence.reconstructed.len(),
+                target_points: evidence.observed.len(),
+                ..estimated.counts
+            },
+            timings_ms,
+            warnings,
+        })
+    }
 }
 
 /// What a method found.

@@ -50,7 +50,7 @@ pub(super) fn estimate(
     while rounds.tasks() > 0 {
         rounds.step();
     }
-    conclude(rounds, mesh, options)
+    conclude(&rounds, mesh, options)
 }
 
 /// A search that is about to begin.
@@ -79,10 +79,10 @@ pub(super) fn hypothesis(
 }
 
 /// What the search found, and how sure it is.
-pub(super) fn conclude(rounds: Rounds, mesh: &Mesh, options: &AlignOptions) -> Result<Estimated> {
-    let (found, search) = rounds.finish();
+pub(super) fn conclude(rounds: &Rounds, mesh: &Mesh, options: &AlignOptions) -> Result<Estimated> {
+    let (found, search) = (&rounds.found, &rounds.search);
     let best = found.first().ok_or_else(no_candidate)?;
-    let alternatives = alternatives(&found, &search, mesh, &options.symmetry)?;
+    let alternatives = alternatives(found, search, mesh, &options.symmetry)?;
     let (conditioning, residual_m) = search.conditioning(&best.pose);
     Ok(Estimated {
         camera_from_mesh: best.pose.similarity(&search.frame),

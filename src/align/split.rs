@@ -2,10 +2,10 @@
 
 use super::field::Options;
 use super::options::{AlignOptions, Preset};
-use super::progress::{Host, Silent};
+use super::progress::{Host, Silent, Stopwatch};
 use super::report::Alignment;
-use super::{align_by, precise};
-use crate::error::{Error, ErrorCode, Result};
+use super::{Clouds, precise};
+use crate::error::Result;
 use crate::geometry::mesh::Mesh;
 use crate::stages::observe::Observation;
 use crate::stages::sample::check_shape;
@@ -75,20 +75,19 @@ impl Share {
     /// # Errors
     /// As [`align`](super::align).
     pub fn finish(self, host: &mut dyn Host) -> Result<Alignment> {
-        let Self { observation, mesh, options, rounds, .. } = self;
-        align_by(&observation, &mesh, &options, precise::PLAN, host, |_, _, _| {
-            precise::conclude(rounds, &mesh, &options)
-        })
+        let Self { observation, mesh, options, .. } = &self;
+        let mut stages = Stopwatch::new(host, precise::PLAN);
+        let clouds = Clouds::new(observation, mesh, options, &mut stages)?;
+        let estimated = precise::conclude(&self.rounds, mesh, options)?;
+        clouds.report(observation, mesh, options, estimated, stages)
     }
 
     fn hypothesis(&self) -> Option<CropPose> {
-        let mut found = None;
         let Self { observation, mesh, options, .. } = self;
-        // Nothing but the evidence is wanted of the pipeline.
-        let _ = align_by(observation, mesh, options, precise::PLAN, &mut Silent, |evidence, extents, stages| {
-            found = precise::hypothesis(evidence, extents, options, stages);
-            Err(Error::new(ErrorCode::Internal, "", "", "", ""))
-        });
+        let mut silent = Silent;
+        let mut stages = Stopwatch::new(&mut silent, precise::PLAN);
+        let clouds = Clouds::new(observation, mesh, options, &mut stages).ok()?;
+        let found = precise::hypothesis(&clouds.evidence, clouds.extents(), options, &mut stages);
         CropPose::of_similarity(&found?, &self.rounds.search.frame)
     }
 }

@@ -1,11 +1,12 @@
 //! The aligner's exports: each reads its arguments, calls the core, and hands back a plain object.
 
+use js_sys::Function;
 use serde::Serialize;
 use serde_wasm_bindgen::Serializer;
 use wasm_bindgen::prelude::*;
 
 use super::error::to_js;
-use super::host::{JsHost, Listener};
+use super::host::JsHost;
 use super::value::Value;
 use super::{input, object, options, transform};
 use crate::align::evaluate::EvaluateOptions;
@@ -20,7 +21,7 @@ use crate::stages::observe::Observation;
 pub fn align(
     input: &JsValue,
     options: &JsValue,
-    on_progress: Option<Listener>,
+    on_progress: Option<Function>,
 ) -> core::result::Result<JsValue, JsValue> {
     let run = || {
         let (observation, mesh, options) = case(input, options)?;

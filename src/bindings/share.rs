@@ -3,14 +3,14 @@
 use core::cell::Cell;
 
 use glam::{DQuat, DVec2};
-use js_sys::Float64Array;
+use js_sys::{Float64Array, Function};
 use wasm_bindgen::prelude::*;
 
 use super::aligner::{answer, case};
 use super::error::to_js;
-use super::host::{JsHost, Listener};
+use super::host::JsHost;
 use crate::align::split::Share;
-use crate::error::{Error, ErrorCode, Result};
+use crate::error::{Error, ErrorCode};
 use crate::stages::search::Found;
 use crate::stages::search::pose::CropPose;
 use crate::stages::search::score::Score;
@@ -24,7 +24,7 @@ thread_local! {
 
 /// Prepares the search, in place of any other that is under way.
 #[wasm_bindgen(js_name = beginShare, skip_typescript)]
-pub fn begin_share(input: &JsValue, options: &JsValue) -> core::result::Result<(), JsValue> {
+pub fn begin_share(input: &JsValue, options: &JsValue) -> Result<(), JsValue> {
     let run = || case(input, options).and_then(|(observation, mesh, options)| Share::new(observation, mesh, options));
     SHARE.set(Some(Box::new(run().map_err(|e| to_js(&e))?)));
     Ok(())
@@ -34,39 +34,31 @@ pub fn begin_share(input: &JsValue, options: &JsValue) -> core::result::Result<(
 /// first of them being `part`. Without parts, ends the share.
 ///
 /// What comes of it: how many tasks the round has, all parts together; whether it is refinement; in how many numbers a
-/// task's outcome is told; then these numbers, task by task.
+/// task's outcome is told; then these numbers, task by task. Nothing where there is no share.
 #[wasm_bindgen(js_name = stepShare, skip_typescript)]
-pub fn step_share(
-    found: Option<Float64Array>,
-    part: usize,
-    parts: usize,
-) -> core::result::Result<Float64Array, JsValue> {
-    if parts == 0 {
-        SHARE.set(None);
-        return Ok(Float64Array::default());
+pub fn step_share(found: Option<Float64Array>, part: usize, parts: usize) -> Float64Array {
+    let mut numbers = Vec::new();
+    if let Some(mut share) = SHARE.take().filter(|_| parts > 0) {
+        found.into_iter().for_each(|found| share.advance(of_numbers(&found)));
+        let (found, per_task) = share.run(part, parts);
+        let is_refinement = f64::from(u8::from(share.is_refinement()));
+        numbers.extend_from_slice(&[share.tasks() as f64, is_refinement, (per_task * NUMBERS) as f64]);
+        for Found { pose, score, converged, renders } in found {
+            let CropPose { rotation: DQuat { x, y, z, w }, size, place, distance } = pose;
+            let (total, converged) = (f64::from(score.total), f64::from(u8::from(converged)));
+            let renders = renders as f64;
+            numbers.extend_from_slice(&[x, y, z, w, size, place.x, place.y, distance, total, converged, renders]);
+        }
+        SHARE.set(Some(share));
     }
-    let mut share = share().map_err(|e| to_js(&e))?;
-    found.into_iter().for_each(|found| share.advance(of_numbers(&found)));
-    let (found, per_task) = share.run(part, parts);
-    let mut numbers = vec![share.tasks() as f64, f64::from(u8::from(share.is_refinement()))];
-    numbers.push((per_task * NUMBERS) as f64);
-    for Found { pose, score, converged, renders } in found {
-        let CropPose { rotation: DQuat { x, y, z, w }, size, place, distance } = pose;
-        let (total, converged) = (f64::from(score.total), f64::from(u8::from(converged)));
-        numbers.extend_from_slice(&[x, y, z, w, size, place.x, place.y, distance, total, converged, renders as f64]);
-    }
-    SHARE.set(Some(share));
-    Ok(Float64Array::from(numbers.as_slice()))
+    Float64Array::from(numbers.as_slice())
 }
 
 /// The alignment, once no task is left. Ends the share.
 #[wasm_bindgen(js_name = finishShare, skip_typescript)]
-pub fn finish_share(on_progress: Option<Listener>) -> core::result::Result<JsValue, JsValue> {
-    answer(share().and_then(|share| share.finish(&mut JsHost::new(on_progress))))
-}
-
-fn share() -> Result<Box<Share>> {
-    SHARE.take().ok_or_else(|| Error::new(ErrorCode::Internal, "share", "none", "one that was begun", ""))
+pub fn finish_share(on_progress: Option<Function>) -> Result<JsValue, JsValue> {
+    let none = || Error::new(ErrorCode::Internal, "share", "none", "one that was begun", "");
+    answer(SHARE.take().ok_or_else(none).and_then(|share| share.finish(&mut JsHost::new(on_progress))))
 }
 
 fn of_numbers(numbers: &Float64Array) -> Vec<Found> {

@@ -39,7 +39,8 @@ pub struct Rounds {
     poses: Vec<CropPose>,
     /// Candidates that the grid of rotations did not find: before its own, and after.
     others: [Vec<CropPose>; 2],
-    found: Vec<Found>,
+    /// What was found, best first, once no task is left.
+    pub found: Vec<Found>,
 }
 
 impl Rounds {
@@ -146,11 +147,6 @@ impl Rounds {
         if self.round == COMPARED + 1 {
             self.found.iter_mut().for_each(|found| found.score = self.search.score(&found.pose));
         }
-    }
-
-    /// What was found, best first, and the search.
-    pub fn finish(self) -> (Vec<Found>, Search) {
-        (self.found, self.search)
     }
 }
 
