@@ -25,7 +25,7 @@ const registration = (args) => run(at("target", "native", "sim3align-registratio
  * @returns {Promise<Dataset[]>}
  */
 export async function datasets({ quick, setSeed, data }) {
-  const scenes = quick ? 1 : 4;
+  const scenes = quick ? 1 : 2;
   const generated = { rooms: "rooms in 3DMatch's layout", lidar: "streets in KITTI's layout" };
   /** @type {Dataset[]} */
   const made = [];
