@@ -25,7 +25,9 @@ object.traverse((part) => {
 });
 drawMesh(document.querySelector("#generated"));
 drawPlaced(document.querySelector("#placed"));
-const [wide, high, deep] = objectDimensions(mesh, result, { box: "minimal" }).sizeM.map((metres) => (100 * metres).toFixed(1));
+const [wide, high, deep] = objectDimensions(mesh, result, { box: "minimal" }).sizeM.map((metres) =>
+  (100 * metres).toFixed(1),
+);
 const sure = `confidence ${result.confidence.toFixed(2)}`;
 document.querySelector("#answer").textContent = `in its place: ${wide} × ${high} × ${deep} cm, ${sure}`;
 document.body.dataset.state = "done";
