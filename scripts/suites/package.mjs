@@ -1,6 +1,7 @@
 /** The package as its users get it: linted, installed from its tarball, and used. */
 import { cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
+import { writeApiDocs } from "../lib/api-docs.mjs";
 import { chromium, chromiumRemedy } from "../lib/chromium.mjs";
 import { nodeCounts, noTests, withStatus } from "../lib/counts.mjs";
 import { at, installDir, packageDir, repository } from "../lib/paths.mjs";
@@ -30,6 +31,7 @@ export async function lintPackage() {
       () => run(node, [attw, join(folder, tarball.filename), "--profile", "esm-only", "--no-emoji"]),
     ],
     ["every file that package.json names is there", checkNamedFiles],
+    ["the API reference, without a warning", writeApiDocs],
     [
       `the tarball is within ${kilobytes(maxPacked)}`,
       (say) => {
