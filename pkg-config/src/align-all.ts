@@ -1,6 +1,7 @@
 /** Many alignments, one after the other as they are ready, with few of them under way. */
 import type { Sim3AlignError } from "./error.js";
 import type { AlignInput } from "./input/types.js";
+import { onAbort } from "./on-abort.js";
 import type { AlignAllResult, Alignment } from "./results.js";
 
 /** How `alignAll` goes about it. */
@@ -23,16 +24,16 @@ export async function* alignAll(
 ): AsyncGenerator<AlignAllResult, void, undefined> {
   signal?.throwIfAborted();
   const stopped = new AbortController();
-  let stop = () => {};
+  let unfollow = () => {};
   const aborted = new Promise<never>((_, reject) => {
-    stop = () => {
-      stopped.abort(signal?.reason);
-      reject(signal?.reason);
-    };
+    if (signal === undefined) return;
+    unfollow = onAbort(signal, (reason) => {
+      stopped.abort(reason);
+      reject(reason);
+    });
   });
   // Nobody may be waiting just then.
   aborted.catch(() => {});
-  signal?.addEventListener("abort", stop);
   const iterator = Symbol.asyncIterator in inputs ? inputs[Symbol.asyncIterator]() : inputs[Symbol.iterator]();
   const running = new Map<number, Promise<number>>();
   const settled = new Map<number, Settled>();
@@ -71,7 +72,7 @@ export async function* alignAll(
     }
     isWhole = true;
   } finally {
-    signal?.removeEventListener("abort", stop);
+    unfollow();
     stopped.abort();
     // Whoever makes the inputs may be at it: nobody waits for that.
     if (!isWhole) Promise.allSettled([pull, iterator.return?.()]);

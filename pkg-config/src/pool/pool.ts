@@ -3,6 +3,7 @@
 import type { Call, Engine, Outcome } from "../engine.js";
 import { disposed, Sim3AlignError } from "../error.js";
 import type { Job } from "../jobs.js";
+import { onAbort } from "../on-abort.js";
 import { buffersOf, copied } from "../transfer.js";
 import { type Answer, JobFailed, type Supplies, Unsendable, WorkerLost, WorkerSlot } from "./slot.js";
 import { canBeSplit, splitAlign } from "./split.js";
@@ -33,21 +34,22 @@ export class WorkerPool implements Engine {
     const signals = [this.#ended.signal, ...(call.signal === undefined ? [] : [call.signal])];
     const slots = [await this.#acquire(signals)];
     if (call.splitSearch && canBeSplit(job)) slots.push(...this.#idle.splice(0));
-    const stop = (event: Event) => {
+    const stop = (reason: unknown) => {
       for (const slot of slots) {
-        slot.end((event.target as AbortSignal).reason);
+        slot.end(reason);
         if (!this.#ended.signal.aborted) startEarly(slot);
       }
     };
+    const endings: (() => void)[] = [];
     try {
       for (const signal of signals) {
         // Since the slot was given, a moment has passed.
         signal.throwIfAborted();
-        signal.addEventListener("abort", stop);
+        endings.push(onAbort(signal, stop));
       }
       return await this.#attempt(job, call, slots);
     } finally {
-      for (const signal of signals) signal.removeEventListener("abort", stop);
+      for (const end of endings) end();
       for (const slot of slots) this.#release(slot);
     }
   }
@@ -82,19 +84,16 @@ export class WorkerPool implements Engine {
       for (const signal of signals) if (signal.aborted) return reject(signal.reason);
       const slot = this.#idle.pop();
       if (slot !== undefined) return resolve(slot);
-      const settle = () => {
-        for (const signal of signals) signal.removeEventListener("abort", giveUp);
-      };
       const take = (freed: WorkerSlot) => {
-        settle();
+        for (const end of endings) end();
         resolve(freed);
       };
-      const giveUp = (event: Event) => {
-        settle();
+      const giveUp = (reason: unknown) => {
+        for (const end of endings) end();
         this.#waiting.splice(this.#waiting.indexOf(take), 1);
-        reject((event.target as AbortSignal).reason);
+        reject(reason);
       };
-      for (const signal of signals) signal.addEventListener("abort", giveUp);
+      const endings = signals.map((signal) => onAbort(signal, giveUp));
       this.#waiting.push(take);
     });
   }

@@ -127,13 +127,14 @@ impl Search {
             }
         }
         self.renders += near.len();
-        let neighbors = distinct(near, NEIGHBORS, 0.5 * NEIGHBORHOOD[0]);
-        core::iter::once(pose).chain(neighbors.into_iter().map(|c| c.pose)).collect()
+        let mut poses = vec![pose];
+        poses.extend(distinct(near, NEIGHBORS, 0.5 * NEIGHBORHOOD[0]).iter().map(|c| c.pose));
+        poses
     }
 
-    /// The evidence on one of the grids.
+    /// The evidence on one of the grids; see also `fine`.
     fn grid(&self, level: usize) -> CropGrid {
-        if level == FINE { self.fine.clone() } else { CropGrid::new(&self.observation, self.settings.cells[level]) }
+        CropGrid::new(&self.observation, self.settings.cells[level])
     }
 
     fn objective<'a>(&'a self, level: usize, grid: &'a CropGrid) -> Objective<'a> {

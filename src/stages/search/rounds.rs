@@ -83,7 +83,9 @@ impl Rounds {
     /// Does a part of this round's tasks: every `parts`-th, the first of them being `part`.
     pub fn run(&self, part: usize, parts: usize) -> Vec<Found> {
         let mut canvas = Canvas::default();
-        let objective = self.search.objective(LEVEL[self.round.min(LEVEL.len() - 1)], &self.grid);
+        let level = LEVEL[self.round.min(LEVEL.len() - 1)];
+        let grid = if level == FINE { &self.search.fine } else { &self.grid };
+        let objective = self.search.objective(level, grid);
         let stage = Coarse { objective, median_m: self.search.observation.median_m };
         let refiner = Refiner { objective, lock_scale: self.search.settings.lock_scale };
         let count = self.search.settings.rotations;
@@ -137,7 +139,8 @@ impl Rounds {
             }
         };
         self.round += 1;
-        if let Some(level) = LEVEL.get(self.round).filter(|_| !self.poses.is_empty()) {
+        // The middle grid serves two rounds, and the fine one is the search's own.
+        if let Some(level @ (&COARSE | &MIDDLE | &FINEST)) = LEVEL.get(self.round).filter(|_| self.round != 3) {
             self.grid = self.search.grid(*level);
         }
     }
