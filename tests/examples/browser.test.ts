@@ -23,7 +23,7 @@ async function opened(folder: string, path: string) {
   const browser = await PageTest.start(folder);
   started.push(browser);
   const { page, errors } = await browser.open(path);
-  await page.waitForSelector('#status:is([data-state="done"], [data-state="failed"])', { timeout: 60_000 });
+  await page.waitForSelector('#status:is([data-state="done"], [data-state="failed"])', { timeout: 120_000 });
   assert.deepEqual(errors, []);
   assert.equal(await page.getAttribute("#status", "data-state"), "done", (await page.textContent("#status")) ?? "");
   return { page, errors };

@@ -65,7 +65,7 @@ const redisProgram = program(
 
 test("07: all results are there once, though a worker is killed in the middle of a job", {
   skip: redisProgram.skip,
-  timeout: 110_000,
+  timeout: 240_000,
 }, async () => {
   const redis = await RedisServer.start(redisProgram.path, newFolder());
   started.push(() => redis.stop());
