@@ -9,6 +9,7 @@ import { noTests, sum } from "./lib/counts.mjs";
 import { buildPackage } from "./lib/package.mjs";
 import { setUp } from "./lib/setup.mjs";
 import { duration, explain, script } from "./lib/step.mjs";
+import { examples } from "./suites/examples.mjs";
 import { lint, types } from "./suites/lint.mjs";
 import { browser, bundlers, javaScript, lintPackage } from "./suites/package.mjs";
 import { runtimes } from "./suites/runtimes.mjs";
@@ -36,6 +37,7 @@ const suites = [
   { name: "browser", title: "Browser tests", run: browser, usesPackage: true },
   { name: "bundlers", title: "The package in bundlers' apps", run: bundlers, usesPackage: true },
   { name: "runtimes", title: "The package in Deno and Bun", run: runtimes, usesPackage: true },
+  { name: "examples", title: "Examples", run: examples, usesPackage: true },
 ];
 
 async function build() {

@@ -1,7 +1,10 @@
 /** The one error type, and how what the WebAssembly modules throw becomes it. */
 import type { ErrorCode as CoreErrorCode } from "./generated/types.js";
 
-/** What went wrong, as a name that stays the same from release to release. */
+/**
+ * What went wrong, as a name that stays the same from release to release. The guide on troubleshooting has a section for
+ * each: cause, example and fix.
+ */
 export type ErrorCode =
   | CoreErrorCode
   /** A WebAssembly module could not be loaded. The next call tries again. */
@@ -40,6 +43,7 @@ export class Sim3AlignError extends Error implements ErrorParts {
   /** With `transfer: true`: the input, handed back, where the worker could do so. */
   input?: unknown;
 
+  /** The message is made of the parts; `options` may hold a `cause`. */
   constructor({ code, argument, found, expected, remedy }: ErrorParts, options?: ErrorOptions) {
     super(`${argument}: found ${found}, expected ${expected}. ${remedy}`, options);
     this.code = code;

@@ -1,6 +1,7 @@
 /** The package as its users get it: linted, installed from its tarball, and used. */
 import { cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
+import { writeApiDocs } from "../lib/api-docs.mjs";
 import { chromium, chromiumRemedy } from "../lib/chromium.mjs";
 import { nodeCounts, noTests, withStatus } from "../lib/counts.mjs";
 import { at, installDir, packageDir, repository } from "../lib/paths.mjs";
@@ -13,6 +14,9 @@ import { runChecks } from "./checks.mjs";
 
 /** What the tarball may take, in bytes: the WebAssembly is in it twice, the second time in `inline.js`. */
 const maxPacked = 1_200_000;
+
+/** Tests that use the installed package, and what they share. */
+const testFolders = ["js", "browser", "bundlers", "examples", "support"];
 
 export async function lintPackage() {
   const [node, publint] = nodeProgram("publint");
@@ -27,6 +31,7 @@ export async function lintPackage() {
       () => run(node, [attw, join(folder, tarball.filename), "--profile", "esm-only", "--no-emoji"]),
     ],
     ["every file that package.json names is there", checkNamedFiles],
+    ["the API reference, without a warning", writeApiDocs],
     [
       `the tarball is within ${kilobytes(maxPacked)}`,
       (say) => {
@@ -66,7 +71,7 @@ export async function install() {
   });
   await step("compile the tests", async () => {
     rmSync(join(installDir, "tests"), { recursive: true, force: true });
-    for (const folder of ["js", "browser", "bundlers", "support"].filter((name) => existsSync(at("tests", name)))) {
+    for (const folder of testFolders.filter((name) => existsSync(at("tests", name)))) {
       cpSync(at("tests", folder), join(installDir, "tests", folder), { recursive: true });
     }
     const tsconfig = { extends: at("tests", "tsconfig.installed.json"), include: ["tests"] };
@@ -77,13 +82,22 @@ export async function install() {
 }
 
 /**
- * Runs one folder of compiled tests with the installed package.
+ * Runs one folder of tests with the installed package.
  * @param {string} folder
  * @param {NodeJS.ProcessEnv} [env]
  */
 async function nodeTest(folder, env = {}) {
   await makeSample();
   await install();
+  return runCompiled(folder, env);
+}
+
+/**
+ * Runs one folder of tests that {@link install} has compiled.
+ * @param {string} folder
+ * @param {NodeJS.ProcessEnv} [env]
+ */
+export async function runCompiled(folder, env = {}) {
   const files = filesBelow([join(installDir, "tests", folder)]).filter((file) => file.endsWith(".test.js"));
   if (files.length === 0) return noTests();
   const { output, reason } = await attempt(

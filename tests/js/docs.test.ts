@@ -1,4 +1,7 @@
-/** The documentation's examples: all are compiled, and all but those marked `no-run` are run. */
+/**
+ * The documentation's examples: all are compiled, and all but those marked `no-run` are run. Those marked `throws CODE`
+ * have to fail with that error.
+ */
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { mkdirSync, rmSync, writeFileSync } from "node:fs";
@@ -46,9 +49,13 @@ test("there are examples, and the compiler finds nothing else to say", () => {
   assert.deepEqual(others, []);
 });
 
-for (const { place, name, isRun } of found) {
-  test(`${place} compiles${isRun ? " and runs" : ""}`, async () => {
+for (const { place, name, isRun, throws } of found) {
+  const end = throws === undefined ? " and runs" : `, and throws ${throws}`;
+  test(`${place} compiles${isRun ? end : ""}`, async () => {
     assert.deepEqual(errors.get(name) ?? [], []);
-    if (isRun) await import(pathToFileURL(join(folder, "out", "docs-examples", `${name}.js`)).href);
+    if (!isRun) return;
+    const run = import(pathToFileURL(join(folder, "out", "docs-examples", `${name}.js`)).href);
+    if (throws === undefined) await run;
+    else await assert.rejects(run, { name: "Sim3AlignError", code: throws });
   });
 }
