@@ -7,8 +7,11 @@ import type { Glue } from "./wasm-module.js";
 /** Points, x, y, z one after the other. */
 export type Cloud = Float32Array | Float64Array;
 
-/** Called as a stage begins; what it throws ends the call. */
-export type CoreListener = (stage: Results.Stage, fraction: number) => void;
+/**
+ * Called as a stage begins, and after each round of a search: with the best pose, 16 numbers, and its score, once there is
+ * one. What it throws ends the call.
+ */
+export type CoreListener = (stage: Results.Stage, fraction: number, best?: Float64Array) => void;
 
 /** The core's functions: they check what they are given, and throw coded errors. */
 export interface Core extends Glue {

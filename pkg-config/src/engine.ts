@@ -52,10 +52,10 @@ export class HereEngine implements Engine {
       await new Promise((resolve) => setTimeout(resolve));
       check();
     }
-    const listener: CoreListener = (stage, fraction) => {
+    const listener: CoreListener = (stage, fraction, best) => {
       try {
         check();
-        progress.report(stage, fraction);
+        progress.report(stage, fraction, best);
         check();
       } catch (error) {
         throw new Stopped(error);

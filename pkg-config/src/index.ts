@@ -42,6 +42,7 @@ export type {
 export type {
   AlignAllOptions,
   AlignOptions,
+  BestSoFar,
   CallOptions,
   Defaults,
   Direction,

@@ -4,10 +4,23 @@ import type { Sim3Like } from "./sim3.js";
 
 /** How far a call has come. */
 export interface Progress {
-  /** The stage that begins now. */
+  /** The stage that is under way. */
   stage: Core.Stage;
   /** Share of the whole that is done, 0 to 1; it never falls. */
   fraction: number;
+  /** The best pose so far, once there is one: `precise`'s search has one after each round. The last is the result's. */
+  best?: BestSoFar | undefined;
+}
+
+/** The best pose that a search has found so far. */
+export interface BestSoFar {
+  /** Camera from mesh, 16 numbers column by column, as a result's `matrix`: camera x right, y down, z forward; metres. */
+  matrix: Float64Array;
+  /**
+   * The more the better. Early rounds draw smaller pictures, and scores of different rounds do not compare; the last one
+   * is the result's `score`.
+   */
+  score: number;
 }
 
 /** What every call can be told. */
@@ -48,7 +61,7 @@ export type ScaleBounds = number | readonly [min: number, max: number] | { reado
  * ```
  */
 export interface AlignOptions extends Partial<Core.AlignOptions>, CallOptions {
-  /** Called as each stage begins, at most 20 times a second. An exception that it throws ends the call, and rejects it. */
+  /** Called as each stage begins and after each round of the search, at most 20 times a second. An exception that it throws ends the call, and rejects it. */
   onProgress?: ((progress: Progress) => void) | undefined;
   /**
    * Lets all idle workers share the search of one alignment by `precise`. The bits stay the same; it takes less time,

@@ -1,6 +1,6 @@
 /** Progress on its way to the caller. */
 import { invalidArgument } from "./error.js";
-import type { Progress } from "./options.js";
+import type { BestSoFar, Progress } from "./options.js";
 
 /** Reports a second at most. */
 const MAX_PER_SECOND = 20;
@@ -10,6 +10,7 @@ export class ProgressListener {
   readonly #onProgress: ((progress: Progress) => void) | undefined;
   readonly #times: number[] = [];
   #fraction = 0;
+  #best: BestSoFar | undefined;
 
   constructor(onProgress: unknown) {
     if (onProgress === undefined) return;
@@ -24,9 +25,13 @@ export class ProgressListener {
     return this.#onProgress !== undefined;
   }
 
-  /** Calls the caller's function, whose exceptions are the caller's. */
-  report(stage: Progress["stage"], fraction: number): void {
+  /**
+   * Calls the caller's function, whose exceptions are the caller's.
+   * @param best the best pose, column by column, and its score, where there is news of it
+   */
+  report(stage: Progress["stage"], fraction: number, best?: Float64Array): void {
     if (this.#onProgress === undefined) return;
+    if (best !== undefined) this.#best = { matrix: best.slice(0, 16), score: best[16] as number };
     this.#fraction = Math.max(this.#fraction, fraction);
     const now = performance.now();
     while (this.#times[0] !== undefined && this.#times[0] <= now - 1000) this.#times.shift();
@@ -34,6 +39,6 @@ export class ProgressListener {
     const limit = this.#fraction < 1 ? MAX_PER_SECOND - 1 : MAX_PER_SECOND;
     if (this.#times.length >= limit) return;
     this.#times.push(now);
-    this.#onProgress({ stage, fraction: this.#fraction });
+    this.#onProgress({ stage, fraction: this.#fraction, best: this.#best });
   }
 }

@@ -98,8 +98,8 @@ class Workplace {
   /** Reports progress, where it is wanted; the first `done` of the whole is done already. */
   #listener(isWanted: boolean, done = 0) {
     if (!isWanted) return undefined;
-    return (stage: (Reply & { type: "progress" })["stage"], fraction: number) =>
-      this.#post({ type: "progress", stage, fraction: done + (1 - done) * fraction });
+    return (stage: (Reply & { type: "progress" })["stage"], fraction: number, best?: Float64Array) =>
+      this.#post({ type: "progress", stage, fraction: done + (1 - done) * fraction, best });
   }
 }
 

@@ -29,6 +29,9 @@ pub(super) const PLAN: &[(Stage, f64)] = &[
     (Stage::Metrics, 0.85),
 ];
 
+/// What is done of the whole when each round is.
+const DONE: [f64; 6] = [0.53, 0.6, 0.71, 0.78, 0.83, 0.85];
+
 /// Grid of rotations, refinement, choice. A `hypothesis` found otherwise joins the candidates of the grid.
 pub(super) fn estimate(
     observation: &Observation,
@@ -44,13 +47,21 @@ pub(super) fn estimate(
     let pose = hypothesis.and_then(|pose| CropPose::of_similarity(&pose, &rounds.search.frame));
     pose.into_iter().for_each(|pose| rounds.join(pose));
     while !rounds.is_refinement() {
-        rounds.step();
+        step(&mut rounds, stages);
     }
     stages.enter(Stage::Refine);
     while rounds.tasks() > 0 {
-        rounds.step();
+        step(&mut rounds, stages);
     }
     conclude(&rounds, mesh, options)
+}
+
+/// Does a round, and tells of it.
+#[inline(never)]
+fn step(rounds: &mut Rounds, stages: &mut Stopwatch<'_>) {
+    let done = DONE[rounds.round.min(DONE.len() - 1)];
+    rounds.step();
+    stages.reach(done, rounds.best());
 }
 
 /// A search that is about to begin.

@@ -7,6 +7,7 @@ use super::report::Alignment;
 use super::{Clouds, precise};
 use crate::error::Result;
 use crate::geometry::mesh::Mesh;
+use crate::geometry::similarity::Similarity;
 use crate::stages::observe::Observation;
 use crate::stages::sample::check_shape;
 use crate::stages::search::Found;
@@ -58,6 +59,11 @@ impl Share {
             found.extend(pose.map(|pose| Found { pose, score: Score::default(), converged: false, renders: 0 }));
         }
         (found, per_task)
+    }
+
+    /// The best pose so far, and its score.
+    pub fn best(&self) -> Option<(Similarity, f64)> {
+        self.rounds.best()
     }
 
     /// Takes what came of all the round's tasks, in their order.

@@ -1,10 +1,11 @@
 //! Clock and progress of a JavaScript host.
 
-use js_sys::Function;
+use js_sys::{Float64Array, Function};
 use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen::{JsValue, throw_val};
 
 use crate::align::progress::{Host, Stage};
+use crate::geometry::similarity::Similarity;
 
 #[wasm_bindgen]
 extern "C" {
@@ -14,12 +15,16 @@ extern "C" {
 }
 
 /// `globalThis.performance` and a callback, either of which may be missing.
-pub struct JsHost(Option<Function>);
+pub struct JsHost {
+    on_progress: Option<Function>,
+    best: JsValue,
+}
 
 impl JsHost {
-    /// A host that calls `on_progress(stage, fraction)`.
+    /// A host that calls `on_progress(stage, fraction, best)`: 16 numbers of a pose, column by column, and its score,
+    /// once there is one.
     pub fn new(on_progress: Option<Function>) -> Self {
-        Self(on_progress)
+        Self { on_progress, best: JsValue::UNDEFINED }
     }
 }
 
@@ -29,10 +34,20 @@ impl Host for JsHost {
     }
 
     fn progress(&mut self, stage: Stage, fraction: f64) {
-        if let Some(callback) = &self.0 {
-            let heard = callback.call2(&JsValue::NULL, &stage.as_str().into(), &fraction.into());
+        if let Some(callback) = &self.on_progress {
+            let heard = callback.call3(&JsValue::NULL, &stage.as_str().into(), &fraction.into(), &self.best);
             // It ends the call, and the instance with it: nothing is tidied up on the way.
             heard.unwrap_or_else(|error| throw_val(error));
         }
     }
+    fn best(&mut self, camera_from_mesh: &Similarity, score: f64) {
+        self.best = Float64Array::from(best_numbers(camera_from_mesh, score).as_slice()).into();
+    }
+}
+
+/// A pose, column by column, and its score.
+pub fn best_numbers(camera_from_mesh: &Similarity, score: f64) -> [f64; 17] {
+    let mut numbers = [score; 17];
+    numbers[..16].copy_from_slice(&camera_from_mesh.to_column_major());
+    numbers
 }

@@ -8,7 +8,7 @@ use wasm_bindgen::prelude::*;
 
 use super::aligner::{answer, case};
 use super::error::to_js;
-use super::host::JsHost;
+use super::host::{JsHost, best_numbers};
 use crate::align::split::Share;
 use crate::error::{Error, ErrorCode};
 use crate::stages::search::Found;
@@ -34,7 +34,8 @@ pub fn begin_share(input: &JsValue, options: &JsValue) -> Result<(), JsValue> {
 /// first of them being `part`. Without parts, ends the share.
 ///
 /// What comes of it: how many tasks the round has, all parts together; whether it is refinement; in how many numbers a
-/// task's outcome is told; then these numbers, task by task. Nothing where there is no share.
+/// task's outcome is told; the best pose so far, 16 numbers column by column, and its score, or 17 zeros; then the
+/// outcomes, task by task. Nothing where there is no share.
 #[wasm_bindgen(js_name = stepShare, skip_typescript)]
 pub fn step_share(found: Option<Float64Array>, part: usize, parts: usize) -> Float64Array {
     let mut numbers = Vec::new();
@@ -43,6 +44,7 @@ pub fn step_share(found: Option<Float64Array>, part: usize, parts: usize) -> Flo
         let (found, per_task) = share.run(part, parts);
         let is_refinement = f64::from(u8::from(share.is_refinement()));
         numbers.extend_from_slice(&[share.tasks() as f64, is_refinement, (per_task * NUMBERS) as f64]);
+        numbers.extend_from_slice(&share.best().map_or([0.0; 17], |(pose, score)| best_numbers(&pose, score)));
         for Found { pose, score, converged, renders } in found {
             let CropPose { rotation: DQuat { x, y, z, w }, size, place, distance } = pose;
             let (total, converged) = (f64::from(score.total), f64::from(u8::from(converged)));

@@ -69,8 +69,11 @@ for (const [name, aligner] of aligners) {
     for (const splitSearch of [false, true]) {
       const seen: (Progress & { at: number })[] = [];
       const onProgress = (progress: Progress) => seen.push({ ...progress, at: performance.now() });
-      await aligner.align(slowInput, { ...slow, splitSearch, onProgress });
+      const { matrix, score } = await aligner.align(slowInput, { ...slow, splitSearch, onProgress });
       assert.ok(seen.length > 5);
+      assert.equal(seen[0]?.best, undefined);
+      assert.ok(seen.filter(({ best, fraction }) => best && fraction < 0.85).length > 2, "poses come early");
+      assert.deepEqual(seen.at(-1)?.best, { matrix, score });
       assert.equal(seen.at(-1)?.fraction, 1);
       for (const [i, { fraction, at }] of seen.entries()) {
         assert.ok(fraction >= (seen[i - 1]?.fraction ?? 0) && fraction <= 1, `${fraction}`);

@@ -3,7 +3,7 @@
 use sim3align::align::align;
 use sim3align::align::options::{AlignOptions, Preset, Quality, SearchScope};
 use sim3align::align::progress::Silent;
-use sim3align::align::report::Alignment;
+use sim3align::align::report::{Alignment, Sim3};
 use sim3align::align::split::Share;
 use sim3align::error::ErrorCode;
 use sim3align::stages::search::Found;
@@ -43,7 +43,11 @@ fn shared(options: &AlignOptions, parts: usize) -> Alignment {
         rounds += 1;
     }
     assert!((4..=6).contains(&rounds), "{rounds}");
-    shares.pop().unwrap().finish(&mut Silent).unwrap()
+    let told = shares.pop().unwrap();
+    let (pose, score) = told.best().unwrap();
+    let found = told.finish(&mut Silent).unwrap();
+    assert_eq!((Sim3::from(&pose), Some(score)), (found.camera_from_mesh.clone(), found.score));
+    found
 }
 
 fn fast() -> AlignOptions {

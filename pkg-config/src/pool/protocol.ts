@@ -23,7 +23,7 @@ export type ShareRequest =
 
 /** From the worker. */
 export type Reply =
-  | { type: "progress"; stage: Stage; fraction: number }
+  | { type: "progress"; stage: Stage; fraction: number; best?: Float64Array | undefined }
   /** The worker needs the file readers. */
   | { type: "needs-formats" }
   | { type: "result"; result: unknown; data?: unknown }

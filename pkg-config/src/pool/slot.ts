@@ -111,7 +111,7 @@ export class WorkerSlot {
         break;
       case "progress":
         try {
-          this.#pending?.progress?.report(message.stage, message.fraction);
+          this.#pending?.progress?.report(message.stage, message.fraction, message.best);
         } catch (error) {
           this.end(error);
         }

@@ -38,13 +38,16 @@ export async function splitAlign(slots: readonly WorkerSlot[], job: AlignJob, ca
       const start = performance.now();
       const answers = await every(slots, (part) => [{ type: "step", found, part, parts: slots.length }, []]);
       const steps = answers.map(({ result }) => stepOf(result as Float64Array));
-      const { tasks, isRefinement } = steps[0] as Step;
+      const { tasks, isRefinement, best } = steps[0] as Step;
       // What was taken in the last step was all, or there is nothing that could be shared.
-      if (tasks === 0) break;
+      if (tasks === 0) {
+        if (found !== undefined) call.progress.report("refine", done, best);
+        break;
+      }
       found = interleaved(steps);
       const stage = isRefinement ? "refine" : "search";
       ms[stage] += performance.now() - start;
-      call.progress.report(stage, done);
+      call.progress.report(stage, done, best);
     }
     if (found === undefined) return await dropped(slots);
     const finish = { type: "finish", wantsProgress: call.progress.isWanted } as const;
@@ -81,13 +84,24 @@ interface Step {
   isRefinement: boolean;
   /** In how many numbers a task's outcome is told. */
   size: number;
+  /** The best pose of the rounds before, and its score, once there is one. */
+  best: Float64Array | undefined;
   /** What came of the part's tasks, and what else its worker found. */
   found: Float64Array;
 }
 
 function stepOf(numbers: Float64Array): Step {
   const [tasks = 0, isRefinement = 0, size = 0] = numbers;
-  return { tasks, isRefinement: isRefinement === 1, size, found: numbers.subarray(3) };
+  const best = numbers.slice(3, 20);
+  // The matrix's last number is 1, except where there is none.
+  const isThere = best[15] === 1;
+  return {
+    tasks,
+    isRefinement: isRefinement === 1,
+    size,
+    best: isThere ? best : undefined,
+    found: numbers.subarray(20),
+  };
 }
 
 /** What came of all tasks, in their order, each of n parts having every n-th; then what else was found. */

@@ -15,6 +15,7 @@ use super::render::Canvas;
 use super::settings::{COARSE, FINE, FINEST, MIDDLE, SIEVE};
 use super::{Found, Search};
 use crate::geometry::rotations::super_fibonacci;
+use crate::geometry::similarity::Similarity;
 
 /// Rotations nearer than this are one candidate, on the coarse grid and on the middle one; radians.
 const DISTINCT: [f64; 2] = [0.21, 0.105];
@@ -30,7 +31,8 @@ const COMPARED: usize = 4;
 pub struct Rounds {
     /// What is searched.
     pub search: Search,
-    round: usize,
+    /// The present round, from 0.
+    pub round: usize,
     grid: CropGrid,
     /// Sizes and places tried for each rotation, and what the mesh's boxes touch.
     anchors: Vec<Anchor>,
@@ -41,6 +43,8 @@ pub struct Rounds {
     others: [Vec<CropPose>; 2],
     /// What was found, best first, once no task is left.
     pub found: Vec<Found>,
+    /// The best of the last round, if it found any.
+    best: Vec<Found>,
 }
 
 impl Rounds {
@@ -61,6 +65,7 @@ impl Rounds {
             poses: if global { Vec::new() } else { around.clone() },
             others: [around, Vec::new()],
             found: Vec::new(),
+            best: Vec::new(),
             search,
         }
     }
@@ -117,6 +122,7 @@ impl Rounds {
     /// Takes what came of all tasks, in their order, and begins the next round.
     pub fn advance(&mut self, found: Vec<Found>) {
         self.search.renders += found.iter().map(|f| f.renders).sum::<usize>();
+        let best = best_of(&found, 1);
         let keep = self.search.settings.keep;
         self.poses = match self.round {
             0 => poses_of(&best_of(&found, keep[0])),
@@ -138,11 +144,19 @@ impl Rounds {
                 Vec::new()
             }
         };
+        self.best = best;
         self.round += 1;
         // The middle grid serves two rounds, and the fine one is the search's own.
         if let Some(level @ (&COARSE | &MIDDLE | &FINEST)) = LEVEL.get(self.round).filter(|_| self.round != 3) {
             self.grid = self.search.grid(*level);
         }
+    }
+
+    /// The best pose so far, and its score on the grid of its round: scores of different grids do not compare.
+    pub fn best(&self) -> Option<(Similarity, f64)> {
+        // Once there is an order for good, its first.
+        let best = self.found.first().or(self.best.first())?;
+        Some((best.pose.similarity(&self.search.frame), f64::from(best.score.total)))
     }
 
     /// Draws what was found once more, for all terms of its scores; to be called after every round.
