@@ -1,8 +1,11 @@
 /**
  * `npm run bench:pool`: what workers bring: alignments a second by their number, one alignment shared by several, how
- * long an abort takes, and what memory a thousand alignments leave.
+ * long an abort takes, what a lost worker costs, and what memory a thousand alignments leave.
  */
 import { availableParallelism } from "node:os";
+import { join } from "node:path";
+import { Worker } from "node:worker_threads";
+import { packageDir } from "../lib/paths.mjs";
 import { step } from "../lib/step.mjs";
 import { command, count } from "./command.mjs";
 import { builtPackage, packageModule } from "./package.mjs";
@@ -137,6 +140,48 @@ async function measureAborts(createAligner, aborts) {
   return (sorted.at(-1) ?? Number.POSITIVE_INFINITY) <= maxAbortMs;
 }
 
+/**
+ * Two alignments at once, undisturbed, and with one of their workers killed on the way: what that costs, and whether the
+ * bits stay the same.
+ * @param {typeof import("../../pkg/index.js").createAligner} createAligner
+ * @param {number} losses
+ */
+async function measureLosses(createAligner, losses) {
+  /** @type {Worker[]} */
+  const made = [];
+  const createWorker = () => {
+    const worker = new Worker(join(packageDir, "worker.js"));
+    made.push(worker);
+    return worker;
+  };
+  const aligner = await createAligner({ workers: 2, createWorker });
+  const matrices = async () => {
+    const results = await Promise.all([1, 3].map((i) => aligner.align(inputOf(i))));
+    return results.map(({ matrix }) => matrix.join()).join();
+  };
+  const expected = await matrices();
+  /** @type {[number[], number[]]} */
+  const times = [[], []];
+  let replaced = 0;
+  for (let i = 0; i < losses; i++) {
+    times[0].push(await timed(matrices));
+    const before = made.length;
+    const ms = await timed(async () => {
+      const found = matrices();
+      // Anywhere in the first 200 ms.
+      await new Promise((resolve) => setTimeout(resolve, (i * 37) % 200));
+      await made.at(-1)?.terminate();
+      if ((await found) !== expected) throw new Error("A lost worker changed the result.");
+    });
+    times[1].push(ms);
+    replaced += made.length - before;
+  }
+  aligner.dispose();
+  const rows = [[losses, replaced, ...times.map((ms) => fixed(median(ms)))]];
+  const head = ["workers killed", "replaced", "two alignments undisturbed, ms", "with one worker killed, ms"];
+  console.log(`\n${markdownTable(head, rows)}\n`);
+}
+
 const cloud = Float64Array.of(0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1);
 const pairs = Uint32Array.of(0, 0, 1, 1, 2, 2, 3, 3);
 
@@ -162,17 +207,19 @@ async function measureMemory(createAligner, alignments) {
 
 await command("bench:pool", (program) =>
   program
-    .description("Measures workers: throughput, one alignment shared, aborts (fails beyond 100 ms), memory.")
+    .description("Measures workers: throughput, one alignment shared, aborts (fails beyond 100 ms), losses, memory.")
     .option("--cases <n>", "inputs of alignAll", count, 60)
     .option("--repeats <n>", "how often each is measured, in turn", count, 3)
     .option("--aborts <n>", "how many calls are aborted", count, 100)
+    .option("--losses <n>", "how many workers are killed under their job", count, 20)
     .option("--alignments <n>", "how many the memory is watched over", count, 1000)
-    .action(async ({ cases, repeats, aborts, alignments }) => {
+    .action(async ({ cases, repeats, aborts, losses, alignments }) => {
       await builtPackage();
       const { createAligner } = await packageModule("index.js");
       await step("throughput", () => measureThroughput(createAligner, cases, repeats));
       await step("one alignment, shared", () => measureSplit(createAligner, repeats));
       const isQuick = await step("aborts", () => measureAborts(createAligner, aborts));
+      await step("lost workers", () => measureLosses(createAligner, losses));
       await step("memory", () => measureMemory(createAligner, alignments));
       if (!isQuick) {
         console.error(`An abort took longer than ${maxAbortMs} ms.`);

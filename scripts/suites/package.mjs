@@ -18,6 +18,25 @@ const maxPacked = 1_200_000;
 /** Tests that use the installed package, and what they share. */
 const testFolders = ["js", "browser", "bundlers", "examples", "support"];
 
+/** How users' compilers find declarations. */
+const resolutions = { node16: { module: "node16" }, bundler: { module: "esnext", moduleResolution: "bundler" } };
+
+/**
+ * Compiles code that uses the installed package as strictly as users may, its declarations included.
+ * @param {keyof typeof resolutions} name
+ */
+async function compileStrictly(name) {
+  await install();
+  const project = join(installDir, `tsconfig.${name}.json`);
+  const compilerOptions = { ...resolutions[name], strict: true, noEmit: true, target: "es2022", types: [] };
+  // Nothing of the repository's: it looks for packages in the folders above.
+  const lib = ["es2022", "esnext.disposable", "dom", "dom.iterable"];
+  const files = ["types", "conventions"].map((of) => `tests/js/${of}.test-d.ts`);
+  writeFileSync(project, JSON.stringify({ compilerOptions: { ...compilerOptions, lib }, files }));
+  const [node, tsc] = nodeProgram("typescript", "tsc");
+  await run(node, [tsc, "--project", project]);
+}
+
 export async function lintPackage() {
   const [node, publint] = nodeProgram("publint");
   const [, attw] = nodeProgram("@arethetypeswrong/cli", "attw");
@@ -30,6 +49,8 @@ export async function lintPackage() {
       "types, in modules' resolution",
       () => run(node, [attw, join(folder, tarball.filename), "--profile", "esm-only", "--no-emoji"]),
     ],
+    ["tsc --strict, resolution node16", () => compileStrictly("node16")],
+    ["tsc --strict, resolution bundler", () => compileStrictly("bundler")],
     ["every file that package.json names is there", checkNamedFiles],
     ["the API reference, without a warning", writeApiDocs],
     [

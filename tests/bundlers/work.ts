@@ -6,11 +6,14 @@ import { input, mesh } from "../support/scene.js";
 export type Found = Record<string, number[]>;
 
 /** Aligns arrays and a file, without workers and with two. */
-export async function work(createAligner: (options?: AlignerOptions) => Promise<Aligner>): Promise<Found> {
+export async function work(
+  createAligner: (options?: AlignerOptions) => Promise<Aligner>,
+  numbers: readonly number[] = [0, 2],
+): Promise<Found> {
   const quick = { quality: "fast" } as const;
   const file: AlignInput = { ...input, mesh: { bytes: new TextEncoder().encode(obj()), format: "obj" } };
   const found: Found = {};
-  for (const workers of [0, 2]) {
+  for (const workers of numbers) {
     const aligner = await createAligner({ workers });
     found[`arrays, ${workers}`] = Array.from((await aligner.align(input, quick)).matrix);
     found[`file, ${workers}`] = Array.from((await aligner.align(file, quick)).matrix);

@@ -26,7 +26,7 @@ function compile(): Map<string, string[]> {
     extends: join(repository, "tests", "tsconfig.installed.json"),
     // An example shows a value; it need not use it.
     compilerOptions: { noUnusedLocals: false, outDir: "out", rootDir: "..", sourceMap: false },
-    include: ["*.ts", "../tests/support/docs-globals.ts"],
+    include: ["*.ts", "../tests/support/docs-globals.ts", "../tests/support/wasm.d.ts"],
   };
   writeFileSync(join(folder, "tsconfig.json"), JSON.stringify(tsconfig));
   const tsc = join(repository, "node_modules", "typescript", "bin", "tsc");

@@ -36,6 +36,28 @@ test("any number of workers gives the same bits, whether they share a search or 
   }
 });
 
+test("the core is compiled once, however many aligners there are: workers are handed the module", async (t) => {
+  const compile = t.mock.method(WebAssembly, "compile");
+  const handed: unknown[] = [];
+  const workers = new Workers();
+  const createWorker = () => {
+    const worker = workers.create();
+    const post = worker.postMessage.bind(worker);
+    worker.postMessage = (message, transfer) => {
+      if (message.type === "start") handed.push(message.core);
+      post(message, transfer);
+    };
+    return worker;
+  };
+  const aligner = await createAligner({ workers: 3, createWorker });
+  assert.ok((await aligner.align(input, quick)).scale > 0);
+  aligner.dispose();
+  assert.equal(handed.length, 3);
+  assert.equal(new Set(handed).size, 1);
+  assert.ok(handed[0] instanceof WebAssembly.Module);
+  assert.equal(compile.mock.callCount(), 0, "the aligners before had it compiled");
+});
+
 test("a shared search has the stages and times of one that is not", async () => {
   const whole = await pool.align(input, quick);
   const shared = await pool.align(input, { ...quick, splitSearch: true });
