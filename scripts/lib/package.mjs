@@ -47,7 +47,9 @@ function copyFiles() {
     copyFileSync(at(name), join(packageDir, name));
   }
   mkdirSync(join(packageDir, "wasm"), { recursive: true });
-  cpSync(glueDir, join(packageDir, "wasm"), { recursive: true });
+  // What a module exports to its glue is nobody else's affair; whoever imports the module itself gets it compiled.
+  const isPublic = (/** @type {string} */ path) => !path.endsWith(".wasm.d.ts");
+  cpSync(glueDir, join(packageDir, "wasm"), { recursive: true, filter: isPublic });
   const { bin } = JSON.parse(readFileSync(join(skinDir, "package.json"), "utf8"));
   for (const program of Object.values(bin)) chmodSync(join(packageDir, String(program)), 0o755);
 }
