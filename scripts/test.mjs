@@ -9,8 +9,10 @@ import { noTests, sum } from "./lib/counts.mjs";
 import { buildPackage } from "./lib/package.mjs";
 import { setUp } from "./lib/setup.mjs";
 import { duration, explain, script } from "./lib/step.mjs";
+import { examples } from "./suites/examples.mjs";
 import { lint, types } from "./suites/lint.mjs";
-import { browser, javaScript, lintPackage } from "./suites/package.mjs";
+import { browser, bundlers, javaScript, lintPackage } from "./suites/package.mjs";
+import { runtimes } from "./suites/runtimes.mjs";
 import { native, wasm } from "./suites/rust.mjs";
 import { checkSizes } from "./suites/size.mjs";
 
@@ -33,6 +35,9 @@ const suites = [
   { name: "package", title: "Package checks", run: lintPackage, usesPackage: true },
   { name: "js", title: "JavaScript tests on the installed package", run: javaScript, usesPackage: true },
   { name: "browser", title: "Browser tests", run: browser, usesPackage: true },
+  { name: "bundlers", title: "The package in bundlers' apps", run: bundlers, usesPackage: true },
+  { name: "runtimes", title: "The package in Deno, Bun and workerd", run: runtimes, usesPackage: true },
+  { name: "examples", title: "Examples", run: examples, usesPackage: true },
 ];
 
 async function build() {

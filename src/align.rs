@@ -19,6 +19,7 @@ pub mod progress;
 pub mod register;
 pub mod report;
 mod rigid;
+pub mod split;
 mod verifier;
 pub mod warnings;
 
@@ -33,7 +34,7 @@ use crate::stages::sample::{check_shape, sample_surface};
 use crate::stages::search::SearchSettings;
 
 use field::Options;
-use options::{AlignOptions, Preset, Quality, SearchScope};
+use options::{AlignOptions, Preset};
 use progress::{Host, Stage, Stopwatch};
 use report::{Alignment, Alternative, Counts, ScoreTerms, Uncertainty};
 
@@ -62,11 +63,7 @@ pub fn align_with(
     align_by(observation, mesh, options, plan, host, |evidence, extents, stages| match options.preset {
         Preset::Paper => paper::estimate(evidence, extents, options, stages),
         Preset::Precise => {
-            // Descriptors are weak evidence, but of another kind: where time is no matter, their pose is a candidate too.
-            let hypothesis = (options.quality == Quality::Best && options.search == SearchScope::Global)
-                .then(|| paper::estimate(evidence, extents, options, stages).ok())
-                .flatten()
-                .map(|found| found.camera_from_mesh);
+            let hypothesis = precise::hypothesis(evidence, extents, options, stages);
             precise::estimate(observation, mesh, hypothesis, options, search, stages)
         }
     })
@@ -85,56 +82,91 @@ pub fn align_by(
     host: &mut dyn Host,
     method: impl FnOnce(&Evidence, [&Extents; 2], &mut Stopwatch<'_>) -> Result<Estimated>,
 ) -> Result<Alignment> {
-    options.validate()?;
-    check_shape(mesh)?;
-    let seed = u64::from(options.seed);
     let mut stages = Stopwatch::new(host, plan);
+    let clouds = Clouds::new(observation, mesh, options, &mut stages)?;
+    let estimated = method(&clouds.evidence, clouds.extents(), &mut stages)?;
+    clouds.report(observation, mesh, options, estimated, stages)
+}
 
-    // §3.1: the partial cloud P_obs from depth and mask, the complete cloud P_rec from the mesh, s_init from the boxes.
-    stages.enter(Stage::Observe);
-    let observed = observation.cloud(options.max_observed_points as usize, seed);
-    stages.enter(Stage::Sample);
-    let reconstructed = sample_surface(mesh, options.surface_samples as usize, seed)?;
-    let extents_obs = Extents::of("depth", &observed.points)?;
-    let extents_rec = Extents::of("mesh", &reconstructed.points)?;
-    stages.enter(Stage::Normals);
-    let evidence = Evidence::new(observed, reconstructed);
+/// Both clouds, and their extents.
+struct Clouds {
+    evidence: Evidence,
+    observed: Extents,
+    reconstructed: Extents,
+}
 
-    let estimated = method(&evidence, [&extents_obs, &extents_rec], &mut stages)?;
+impl Clouds {
+    /// What comes before every method.
+    fn new(observation: &Observation, mesh: &Mesh, options: &AlignOptions, stages: &mut Stopwatch<'_>) -> Result<Self> {
+        options.validate()?;
+        check_shape(mesh)?;
+        let seed = u64::from(options.seed);
 
-    stages.enter(Stage::Metrics);
-    let metrics = metrics::score(observation, mesh, &estimated.camera_from_mesh, &evidence)?;
-    let timings_ms = stages.finish();
+        // §3.1: the partial cloud P_obs from depth and mask, the complete cloud P_rec from the mesh, s_init from the
+        // boxes.
+        stages.enter(Stage::Observe);
+        let observed = observation.cloud(options.max_observed_points as usize, seed);
+        stages.enter(Stage::Sample);
+        let reconstructed = sample_surface(mesh, options.surface_samples as usize, seed)?;
+        let extents_obs = Extents::of("depth", &observed.points)?;
+        let extents_rec = Extents::of("mesh", &reconstructed.points)?;
+        stages.enter(Stage::Normals);
+        let evidence = Evidence::new(observed, reconstructed);
+        Ok(Self { evidence, observed: extents_obs, reconstructed: extents_rec })
+    }
 
-    let initial_scale = initial_scale(&extents_obs, &extents_rec);
-    let scale_ratio = estimated.camera_from_mesh.scale / initial_scale;
-    let mut warnings = warnings::about_observation(observation);
-    warnings.extend(warnings::about_scale(scale_ratio, estimated.clamped, options.preset));
-    warnings.extend(warnings::about_convergence(estimated.converged, estimated.counts.icp_iterations, options.preset));
-    Ok(Alignment {
-        camera_from_mesh: (&estimated.camera_from_mesh).into(),
-        preset: options.preset,
-        seed: options.seed,
-        initial_scale,
-        scale_ratio,
-        collapsed: report::is_collapsed(scale_ratio),
-        clamped: estimated.clamped,
-        converged: estimated.converged,
-        residual_m: estimated.residual_m,
-        confidence: estimated.confidence,
-        score: estimated.score,
-        terms: estimated.terms,
-        alternatives: estimated.alternatives,
-        uncertainty: estimated.uncertainty,
-        metrics,
-        counts: Counts {
-            source_points: evidence.reconstructed.len(),
-            target_points: evidence.observed.len(),
-            ..estimated.counts
-        },
-        timings_ms,
-        warnings,
-    })
+    fn extents(&self) -> [&Extents; 2] {
+        [&self.observed, &self.reconstructed]
+    }
+
+    /// What comes after every method.
+    fn report(
+        &self,
+        observation: &Observation,
+        mesh: &Mesh,
+        options: &AlignOptions,
+        estimated: Estimated,
+        mut stages: Stopwatch<'_>,
+    ) -> Result<Alignment> {
+        let Self { evidence, observed, reconstructed } = self;
+        stages.enter(Stage::Metrics);
+        let metrics = metrics::score(observation, mesh, &estimated.camera_from_mesh, evidence)?;
+        let timings_ms = stages.finish();
+
+        let initial_scale = initial_scale(observed, reconstructed);
+        let scale_ratio = estimated.camera_from_mesh.scale / initial_scale;
+        let mut warnings = warnings::about_observation(observation);
+        warnings.extend(warnings::about_scale(scale_ratio, estimated.clamped, options.preset));
+        warnings.extend(warnings::about_convergence(
+            estimated.converged,
+            estimated.counts.icp_iterations,
+            options.preset,
+        ));
+        Ok(Alignment {
+            camera_from_mesh: (&estimated.camera_from_mesh).into(),
+            preset: options.preset,
+            seed: options.seed,
+            initial_scale,
+            scale_ratio,
+            collapsed: report::is_collapsed(scale_ratio),
+            clamped: estimated.clamped,
+            converged: estimated.converged,
+            residual_m: estimated.residual_m,
+            confidence: estimated.confidence,
+            score: estimated.score,
+            terms: estimated.terms,
+            alternatives: estimated.alternatives,
+            uncertainty: estimated.uncertainty,
+            metrics,
+            counts: Counts {
+                source_points: evidence.reconstructed.len(),
+                target_points: evidence.observed.len(),
+                ..estimated.counts
+            },
+            timings_ms,
+            warnings,
+        })
+    }
 }
 
 /// What a method found.

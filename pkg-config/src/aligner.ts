@@ -1,13 +1,29 @@
 /// <reference lib="esnext.disposable" preserve="true" />
 /** The package's one class. */
-import { invalidArgument, Sim3AlignError } from "./error.js";
-import { resolveInput } from "./input/resolve.js";
+import { alignAll } from "./align-all.js";
+import type { Core } from "./core.js";
+import { type Engine, HereEngine } from "./engine.js";
+import { disposed, invalidArgument, Sim3AlignError } from "./error.js";
 import type { AlignInput } from "./input/types.js";
-import { type Core, coreModule, formatsModule, type LoadedModule, type WasmSource } from "./modules.js";
-import type { AlignOptions, Defaults, EstimateOptions, EvaluateOptions, Progress, RegisterOptions } from "./options.js";
-import { type Alignment, alignmentOf, type Evaluation, type Registration, withWarnings } from "./results.js";
-import { coreSim3, type Sim3Like, withTypedMatrix } from "./sim3.js";
-import { isRecord, isTypedArray, withoutUndefined, wrongKind } from "./values.js";
+import type { Job, Results } from "./jobs.js";
+import { coreModule, formatsModule } from "./modules.js";
+import type {
+  AlignAllOptions,
+  AlignOptions,
+  CallOptions,
+  Defaults,
+  EstimateOptions,
+  EvaluateOptions,
+  Progress,
+  RegisterOptions,
+} from "./options.js";
+import { WorkerPool } from "./pool/pool.js";
+import { type CreateWorker, workshop } from "./pool/port.js";
+import { ProgressListener } from "./progress.js";
+import type { AlignAllResult, Alignment, Evaluation, Registration } from "./results.js";
+import { coreSim3, type Sim3Like } from "./sim3.js";
+import { isKind, isRecord, withoutUndefined } from "./values.js";
+import type { LazySource, LoadedModule, WasmSource } from "./wasm-module.js";
 
 /** What `createAligner` can be told. */
 export interface AlignerOptions {
@@ -15,7 +31,26 @@ export interface AlignerOptions {
   wasm?: WasmSource | undefined;
   /** Where the file readers come from, once a file is passed. By default `wasm/formats_bg.wasm` beside this script. */
   formatsWasm?: WasmSource | undefined;
+  /**
+   * How many workers do the work: 0 (the default) does it on the calling thread; `"auto"` is one less than the machine
+   * has cores, 1 to 8. The workers are this package's `worker.js`, run as module `Worker`s, or by Node as
+   * `node:worker_threads`; they need neither shared memory nor special headers. Node's process does not wait for idle
+   * ones.
+   */
+  workers?: number | "auto" | undefined;
+  /** Makes a worker that runs this package's `worker.js`, where that can't be found beside this script. */
+  createWorker?: CreateWorker | undefined;
 }
+
+/** What `sim3align/inline` knows beforehand. */
+export interface Surroundings {
+  wasm?: LazySource;
+  formatsWasm?: LazySource;
+  workerScript?: string;
+}
+
+/** Workers that "auto" starts at most: each has a copy of its input. */
+const MAX_AUTO = 8;
 
 /**
  * Loads the core module and makes an aligner. The module is loaded once and shared by all aligners, whose state is
@@ -28,39 +63,78 @@ export async function createAligner(options: AlignerOptions = {}): Promise<Align
 
 /**
  * Finds similarity transforms. Every method rejects with {@link Sim3AlignError}, after which the aligner works on; none
- * changes its arguments or keeps them.
+ * changes its arguments or keeps them. With workers, the arguments are copied to them when their turn comes: leave them
+ * as they are until the call is over.
  */
 export class Aligner {
   readonly #core: LoadedModule<Core>;
-  readonly #formatsWasm: WasmSource | undefined;
+  readonly #engine: Engine;
   #isDisposed = false;
 
-  private constructor(core: LoadedModule<Core>, formatsWasm: WasmSource | undefined) {
+  private constructor(core: LoadedModule<Core>, engine: Engine) {
     this.#core = core;
-    this.#formatsWasm = formatsWasm;
+    this.#engine = engine;
   }
 
   /** @internal */
-  static async create({ wasm, formatsWasm }: AlignerOptions): Promise<Aligner> {
-    return new Aligner(await coreModule.load(wasm), formatsWasm);
+  static async create(options: AlignerOptions, surroundings: Surroundings = {}): Promise<Aligner> {
+    const { wasm = surroundings.wasm, formatsWasm = surroundings.formatsWasm } = options;
+    const workers = checkedWorkers(options.workers);
+    const core = await coreModule.load(wasm);
+    const here = new HereEngine(core, () => formatsModule.load(formatsWasm));
+    if (workers === 0) return new Aligner(core, here);
+    const { createWorker } = options;
+    const found = await workshop(surroundings.workerScript, createWorker);
+    const width = workers === "auto" ? Math.min(Math.max(found.cores - 1, 1), MAX_AUTO) : workers;
+    const supplies = {
+      create: found.create,
+      core: await coreModule.compile(),
+      formats: () => formatsModule.compile(formatsWasm),
+    };
+    return new Aligner(core, new WorkerPool(width, supplies, here));
   }
 
   /**
    * Puts a mesh where a depth map shows it, at its real size: x_cam = s·R·p_mesh + t, OpenCV camera frame (x right, y
-   * down, z forward), metres. The same input, options and seed give the same bits.
+   * down, z forward), metres. The same input, options and seed give the same bits, with any number of workers.
    *
    * The result says how sure it is (`confidence`), which other poses explain the same picture (`alternatives`), and
    * which parts of the pose the view leaves open (`uncertainty`).
    * @throws {@link Sim3AlignError} for bad input, `INVALID_OPTION` for options that contradict each other, and `NO_CONSENSUS` where nothing that the data support was found
    */
   async align(input: AlignInput, options: AlignOptions = {}): Promise<Alignment> {
-    const { onProgress, initial, ...rest } = checkedOptions(options);
+    const { initial, onProgress, splitSearch, ...rest } = checkedOptions(options);
     const coreOptions = initial === undefined ? rest : { ...rest, initial: coreSim3(initial) };
-    const { core: coreInput, warnings } = await this.#resolve(input);
-    const listener = new ProgressListener(onProgress);
-    const result = this.#core.call((core) => core.align(coreInput, coreOptions, listener.callback), withoutInput);
-    listener.rethrow();
-    return withWarnings(alignmentOf(result), warnings);
+    return this.#run("align", input, coreOptions, { onProgress, splitSearch });
+  }
+
+  /**
+   * Aligns many inputs, and yields each result as it is ready: `{ index, alignment }`, or `{ index, error }` where
+   * an input is at fault, after which the others go on. Inputs are pulled as there is room: at most twice as many as
+   * there are workers (one, without workers) have been pulled and not been yielded, so that inputs that are read on
+   * demand never fill the memory. Leaving the loop ends what is under way.
+   * @example
+   * ```ts
+   * for await (const { index, alignment, error } of aligner.alignAll(inputs)) console.log(index, alignment ?? error);
+   * ```
+   * @throws what `inputs` throws, the reason of an aborted signal, and {@link Sim3AlignError} `DISPOSED`
+   */
+  async *alignAll(
+    inputs: Iterable<AlignInput> | AsyncIterable<AlignInput>,
+    options: AlignAllOptions = {},
+  ): AsyncGenerator<AlignAllResult, void, undefined> {
+    this.#checkUsable();
+    const { ordered = false, onProgress, signal, ...rest } = checkedOptions(options);
+    yield* alignAll(inputs, {
+      limit: this.#engine.capacity,
+      ordered: checkedFlag("ordered", ordered),
+      signal: checkedSignal(signal),
+      align: (input, index, signal) => {
+        const own = onProgress && { onProgress: (progress: Progress) => onProgress({ ...progress, index }) };
+        return this.align(input, { ...rest, ...own, signal });
+      },
+      isOwn: (error): error is Sim3AlignError => error instanceof Sim3AlignError && error.code !== "DISPOSED",
+    });
   }
 
   /**
@@ -71,11 +145,7 @@ export class Aligner {
   async evaluate(input: AlignInput, transform: Sim3Like, options: EvaluateOptions = {}): Promise<Evaluation> {
     const { truth, ...rest } = checkedOptions(options);
     const coreOptions = truth === undefined ? rest : { ...rest, truth: coreSim3(truth) };
-    const { core: coreInput, warnings } = await this.#resolve(input);
-    return withWarnings(
-      this.#core.call((core) => core.evaluate(coreInput, coreSim3(transform), coreOptions), withoutInput),
-      warnings,
-    );
+    return this.#run("evaluate", input, coreOptions, { transform: coreSim3(transform) });
   }
 
   /**
@@ -89,10 +159,7 @@ export class Aligner {
     target: Float32Array | Float64Array,
     options: RegisterOptions = {},
   ): Promise<Registration> {
-    const coreOptions = checkedOptions(options);
-    checkCloud("source", source);
-    checkCloud("target", target);
-    return withTypedMatrix(this.#call((core) => core.register(source, target, coreOptions)));
+    return this.#run("register", { source, target }, checkedOptions(options));
   }
 
   /**
@@ -108,28 +175,29 @@ export class Aligner {
     correspondences: Uint32Array,
     options: EstimateOptions = {},
   ): Promise<Registration> {
-    const coreOptions = checkedOptions(options);
-    checkCloud("source", source);
-    checkCloud("target", target);
-    if (!isTypedArray(correspondences, "Uint32Array")) {
-      throw wrongKind("correspondences", correspondences, "a Uint32Array of index pairs", "Uint32Array");
-    }
-    return withTypedMatrix(this.#call((core) => core.estimateSim3(source, target, correspondences, coreOptions)));
+    return this.#run("estimateSim3", { source, target, correspondences }, checkedOptions(options));
   }
 
   /** The values that options take where they are left out. */
   async defaults(): Promise<Defaults> {
-    return this.#call((core) => core.defaults());
+    this.#checkUsable();
+    return this.#core.call((core) => core.defaults());
   }
 
   /** Which build the core is. */
   async buildInfo(): Promise<{ version: string }> {
-    return this.#call((core) => ({ version: core.version() }));
+    this.#checkUsable();
+    return this.#core.call((core) => ({ version: core.version() }));
   }
 
-  /** Ends the aligner: later calls reject with `DISPOSED`. The modules stay loaded for others. */
+  /**
+   * Ends the aligner and its workers: calls that are under way, and later ones, reject with `DISPOSED`. The modules stay
+   * loaded for others.
+   */
   dispose(): void {
+    if (this.#isDisposed) return;
     this.#isDisposed = true;
+    this.#engine.dispose();
   }
 
   /** The same, for `using`. */
@@ -137,55 +205,34 @@ export class Aligner {
     this.dispose();
   }
 
-  #call<T>(work: (core: Core) => T): T {
+  async #run<M extends Job["method"]>(
+    method: M,
+    data: (Job & { method: M })["data"],
+    { signal, transfer = false, ...options }: CallOptions,
+    {
+      onProgress,
+      splitSearch = false,
+      ...more
+    }: { onProgress?: unknown; splitSearch?: unknown; transform?: unknown } = {},
+  ): Promise<Results[M]> {
     this.#checkUsable();
-    return this.#core.call(work);
-  }
-
-  #resolve(input: AlignInput) {
-    this.#checkUsable();
-    return resolveInput(input, () => formatsModule.load(this.#formatsWasm));
+    const job = { method, data, options, ...more } as unknown as Job & { method: M };
+    const progress = new ProgressListener(onProgress);
+    const call = {
+      signal: checkedSignal(signal),
+      progress,
+      transfer: checkedFlag("transfer", transfer),
+      splitSearch: checkedFlag("splitSearch", splitSearch),
+    };
+    const outcome = await this.#engine.run(job, call);
+    const result = outcome.result as Results[M];
+    return transfer ? { ...result, input: outcome.data } : result;
   }
 
   #checkUsable(): void {
-    if (!this.#isDisposed) return;
-    throw new Sim3AlignError({
-      code: "DISPOSED",
-      argument: "aligner",
-      found: "an aligner that was disposed of",
-      expected: "one in use",
-      remedy: "Create a new one with createAligner(), or dispose of it later.",
-    });
+    if (this.#isDisposed) throw disposed();
   }
 }
-
-/** Hands progress on, and keeps what the caller's function throws away from the core. */
-class ProgressListener {
-  readonly callback: ((stage: Progress["stage"], fraction: number) => void) | undefined;
-  #failure: { error: unknown } | undefined;
-
-  constructor(onProgress: unknown) {
-    if (onProgress === undefined) return;
-    if (typeof onProgress !== "function") {
-      throw invalidArgument("options.onProgress", onProgress, "a function", "Pass ({ stage, fraction }) => void.");
-    }
-    this.callback = (stage, fraction) => {
-      try {
-        if (this.#failure === undefined) onProgress({ stage, fraction } satisfies Progress);
-      } catch (error) {
-        this.#failure = { error };
-      }
-    };
-  }
-
-  /** Throws what the caller's function threw first, if it did. */
-  rethrow(): void {
-    if (this.#failure !== undefined) throw this.#failure.error;
-  }
-}
-
-/** Properties of the input are named without it. */
-const withoutInput = (argument: string) => argument.replace(/^input\./, "");
 
 /** Options without those that are left undefined; the core checks names and values. */
 function checkedOptions<T extends object>(options: T) {
@@ -193,7 +240,22 @@ function checkedOptions<T extends object>(options: T) {
   throw invalidArgument("options", options, "an object", "Pass { name: value }, or leave it out.");
 }
 
-function checkCloud(argument: string, cloud: unknown): void {
-  if (isTypedArray(cloud, "Float32Array", "Float64Array")) return;
-  throw wrongKind(argument, cloud, "a Float32Array or a Float64Array, x, y, z per point", "Float64Array");
+function checkedFlag(name: string, value: unknown): boolean {
+  if (typeof value === "boolean") return value;
+  throw invalidArgument(`options.${name}`, value, "true or false", "Leave it out for the default.");
+}
+
+/** A signal of this realm or another. */
+function checkedSignal(signal: unknown): AbortSignal | undefined {
+  if (signal === undefined || signal === null) return undefined;
+  if (isKind<AbortSignal>(signal, "AbortSignal")) return signal;
+  throw invalidArgument("options.signal", signal, "an AbortSignal", "Pass the signal of an AbortController.");
+}
+
+function checkedWorkers(workers: unknown = 0): number | "auto" {
+  if (workers === "auto" || (Number.isInteger(workers) && (workers as number) >= 0 && (workers as number) <= 64)) {
+    return workers as number | "auto";
+  }
+  const remedy = "Leave it out to work on the calling thread.";
+  throw invalidArgument("workers", workers, 'a whole number from 0 to 64, or "auto"', remedy);
 }

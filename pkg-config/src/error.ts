@@ -1,13 +1,18 @@
 /** The one error type, and how what the WebAssembly modules throw becomes it. */
 import type { ErrorCode as CoreErrorCode } from "./generated/types.js";
 
-/** What went wrong, as a name that stays the same from release to release. */
+/**
+ * What went wrong, as a name that stays the same from release to release. The guide on troubleshooting has a section for
+ * each: cause, example and fix.
+ */
 export type ErrorCode =
   | CoreErrorCode
   /** A WebAssembly module could not be loaded. The next call tries again. */
   | "NOT_INITIALISED"
   /** The aligner was disposed of. Create a new one. */
   | "DISPOSED"
+  /** A worker could not be started, or ended twice under the same call. Other calls go on, with new workers. */
+  | "WORKER_FAILED"
   /** A file that the command line looked for is not there. */
   | "FILE_NOT_FOUND";
 
@@ -35,7 +40,10 @@ export class Sim3AlignError extends Error implements ErrorParts {
   readonly found: string;
   readonly expected: string;
   readonly remedy: string;
+  /** With `transfer: true`: the input, handed back, where the worker could do so. */
+  input?: unknown;
 
+  /** The message is made of the parts; `options` may hold a `cause`. */
   constructor({ code, argument, found, expected, remedy }: ErrorParts, options?: ErrorOptions) {
     super(`${argument}: found ${found}, expected ${expected}. ${remedy}`, options);
     this.code = code;
@@ -83,4 +91,20 @@ export function internalError(cause: unknown): Sim3AlignError {
     },
     { cause },
   );
+}
+
+/** The parts alone, which go from one thread to another. */
+export function partsOf({ code, argument, found, expected, remedy }: Sim3AlignError): ErrorParts {
+  return { code, argument, found, expected, remedy };
+}
+
+/** What calls of an aligner get that is no more. */
+export function disposed(): Sim3AlignError {
+  return new Sim3AlignError({
+    code: "DISPOSED",
+    argument: "aligner",
+    found: "an aligner that was disposed of",
+    expected: "one in use",
+    remedy: "Create a new one with createAligner(), or dispose of it later.",
+  });
 }

@@ -39,9 +39,11 @@ export type {
   PixelArray,
   PointMapAlignInput,
 } from "./input/types.js";
-export type { WasmSource } from "./modules.js";
 export type {
+  AlignAllOptions,
   AlignOptions,
+  BestSoFar,
+  CallOptions,
   Defaults,
   Direction,
   EstimateOptions,
@@ -53,5 +55,16 @@ export type {
   SymmetryAxis,
   SymmetryOption,
 } from "./options.js";
-export type { Alignment, Alternative, Evaluation, Registration, Warning, WarningCode } from "./results.js";
+export type { CreateWorker, WorkerLike } from "./pool/port.js";
+export type {
+  AlignAllResult,
+  Alignment,
+  Alternative,
+  Clouds,
+  Evaluation,
+  Registration,
+  Warning,
+  WarningCode,
+} from "./results.js";
 export type { Sim3, Sim3Like } from "./sim3.js";
+export type { WasmSource } from "./wasm-module.js";

@@ -4,10 +4,39 @@ import type { Sim3Like } from "./sim3.js";
 
 /** How far a call has come. */
 export interface Progress {
-  /** The stage that begins now. */
+  /** The stage that is under way. */
   stage: Core.Stage;
   /** Share of the whole that is done, 0 to 1; it never falls. */
   fraction: number;
+  /** The best pose so far, once there is one: `precise`'s search has one after each round. The last is the result's. */
+  best?: BestSoFar | undefined;
+}
+
+/** The best pose that a search has found so far. */
+export interface BestSoFar {
+  /** Camera from mesh, 16 numbers column by column, as a result's `matrix`: camera x right, y down, z forward; metres. */
+  matrix: Float64Array;
+  /**
+   * The more the better. Early rounds draw smaller pictures, and scores of different rounds do not compare; the last one
+   * is the result's `score`.
+   */
+  score: number;
+}
+
+/** What every call can be told. */
+export interface CallOptions {
+  /**
+   * Ends the call: it rejects with the signal's reason, by default an `AbortError`. A worker is ended at once, and
+   * replaced; without workers the signal is looked at before and between the stages, of which the thread is busy with
+   * one at a time.
+   */
+  signal?: AbortSignal | undefined;
+  /**
+   * Moves the arrays' buffers to the worker instead of copying them: they are empty here until the call is over, when
+   * the result's `input` holds them again (or the error's; they are lost with a worker that is ended while it has
+   * them). Other arrays in the same buffers move with them. Without workers nothing moves. Default `false`.
+   */
+  transfer?: boolean | undefined;
 }
 
 /** A direction, of any length above 0. */
@@ -31,9 +60,22 @@ export type ScaleBounds = number | readonly [min: number, max: number] | { reado
  * await aligner.align(input, { initial: { scale, rotation, translation }, search: "local" });
  * ```
  */
-export interface AlignOptions extends Partial<Core.AlignOptions> {
-  /** Called as each stage begins. An exception that it throws rejects the call. */
+export interface AlignOptions extends Partial<Core.AlignOptions>, CallOptions {
+  /** Called as each stage begins and after each round of the search, at most 20 times a second. An exception that it throws ends the call, and rejects it. */
   onProgress?: ((progress: Progress) => void) | undefined;
+  /**
+   * Lets all idle workers share the search of one alignment by `precise`. The bits stay the same; it takes less time,
+   * and more work. For many alignments `alignAll` makes better use of the workers. Default `false`.
+   */
+  splitSearch?: boolean | undefined;
+}
+
+/** Options of `Aligner.alignAll`: those of `align`, for every input. */
+export interface AlignAllOptions extends Omit<AlignOptions, "onProgress"> {
+  /** Whether results come in the order of the inputs, and not as they are ready. Default `false`. */
+  ordered?: boolean | undefined;
+  /** As that of `align`, with the input's place among the others. */
+  onProgress?: ((progress: Progress & { index: number }) => void) | undefined;
 }
 
 /** An axis about which the object looks the same after a turn; all axes pass through its surface's centroid. */
@@ -48,7 +90,7 @@ export interface SymmetryAxis {
 export type SymmetryOption = "none" | "auto" | "auto-revolution" | readonly SymmetryAxis[];
 
 /** Options of `Aligner.evaluate`. */
-export interface EvaluateOptions extends Partial<Core.EvaluateOptions> {
+export interface EvaluateOptions extends Partial<Core.EvaluateOptions>, CallOptions {
   /** The transform that is known to be right, for `errors`. */
   truth?: Sim3Like | undefined;
   /**
@@ -66,13 +108,13 @@ export interface EvaluateOptions extends Partial<Core.EvaluateOptions> {
 export type ScaleOption = "free" | "fixed" | number | readonly [min: number, max: number];
 
 /** Options of `Aligner.register`. */
-export interface RegisterOptions extends Partial<Core.RegisterOptions> {
+export interface RegisterOptions extends Partial<Core.RegisterOptions>, CallOptions {
   /** What may happen to the scale. Default `"free"`. */
   scale?: ScaleOption | undefined;
 }
 
 /** Options of `Aligner.estimateSim3`. */
-export interface EstimateOptions extends Partial<Core.EstimateOptions> {
+export interface EstimateOptions extends Partial<Core.EstimateOptions>, CallOptions {
   /** What may happen to the scale. Default `"free"`. */
   scale?: ScaleOption | undefined;
 }

@@ -1,5 +1,7 @@
 /** What the calls return: plain objects; `null` stands for what could not be measured. */
+import type { Sim3AlignError } from "./error.js";
 import type * as Core from "./generated/types.js";
+import type { AlignInput } from "./input/types.js";
 import { type Sim3, withTypedMatrix } from "./sim3.js";
 
 /** The kinds of warning. */
@@ -29,16 +31,35 @@ export interface Alignment extends Sim3, Omit<Core.Alignment, keyof Core.Sim3 | 
   alternatives: Alternative[];
   /** What the caller should know about the input. */
   warnings: Warning[];
+  /** With `transfer: true`: the input, handed back. */
+  input?: AlignInput;
 }
 
 /** What `evaluate` found. */
 export interface Evaluation extends Omit<Core.Evaluation, "warnings"> {
   /** What the caller should know about the input. */
   warnings: Warning[];
+  /** With `transfer: true`: the input, handed back. */
+  input?: AlignInput;
 }
 
 /** What `register` and `estimateSim3` found: target from source, y = s·R·x + t. */
-export interface Registration extends Sim3, Omit<Core.Registration, keyof Core.Sim3> {}
+export interface Registration extends Sim3, Omit<Core.Registration, keyof Core.Sim3> {
+  /** With `transfer: true`: the clouds, and the correspondences, handed back. */
+  input?: Clouds;
+}
+
+/** Two clouds, x, y, z one after the other, and for `estimateSim3` which of their points belong together. */
+export interface Clouds {
+  source: Float32Array | Float64Array;
+  target: Float32Array | Float64Array;
+  correspondences?: Uint32Array;
+}
+
+/** One of the results of `alignAll`: an alignment, or what prevented it. */
+export type AlignAllResult =
+  | { index: number; alignment: Alignment; input?: AlignInput; error?: undefined }
+  | { index: number; alignment?: undefined; input?: AlignInput; error: Sim3AlignError };
 
 /** The core's alignment with its matrices as typed arrays. */
 export function alignmentOf(result: Core.Alignment): Omit<Alignment, "warnings"> & { warnings: Core.Warning[] } {

@@ -3,6 +3,7 @@
 import { createHash } from "node:crypto";
 import { chmodSync, copyFileSync, cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
+import { bundleInline } from "./inline.mjs";
 import { at, glueDir, packageDir, skinDir } from "./paths.mjs";
 import { attempt, nodeProgram, run } from "./run.mjs";
 import { wasmBindgenVersion } from "./setup.mjs";
@@ -18,6 +19,7 @@ export async function buildPackage() {
     const [node, tsc] = nodeProgram("typescript", "tsc");
     await run(node, [tsc, "--project", skinDir], { remedy: "correct what the compiler names, in pkg-config/src" });
     copyFiles();
+    await bundleInline();
     await writeBuildInfo(version);
     say(`pkg/ holds sim3align ${version}`);
   });
@@ -45,7 +47,9 @@ function copyFiles() {
     copyFileSync(at(name), join(packageDir, name));
   }
   mkdirSync(join(packageDir, "wasm"), { recursive: true });
-  cpSync(glueDir, join(packageDir, "wasm"), { recursive: true });
+  // What a module exports to its glue is nobody else's affair; whoever imports the module itself gets it compiled.
+  const isPublic = (/** @type {string} */ path) => !path.endsWith(".wasm.d.ts");
+  cpSync(glueDir, join(packageDir, "wasm"), { recursive: true, filter: isPublic });
   const { bin } = JSON.parse(readFileSync(join(skinDir, "package.json"), "utf8"));
   for (const program of Object.values(bin)) chmodSync(join(packageDir, String(program)), 0o755);
 }

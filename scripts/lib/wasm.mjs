@@ -3,6 +3,7 @@ import { cpSync, existsSync, readdirSync, readFileSync, rmSync } from "node:fs";
 import { homedir } from "node:os";
 import { join } from "node:path";
 import { gzipSync } from "node:zlib";
+import { shortenImports } from "./imports.mjs";
 import { at, glueDir, repository } from "./paths.mjs";
 import { nodeProgram, run } from "./run.mjs";
 import { wasmBindgenProgram, wasmBindgenVersion, wasmTarget } from "./setup.mjs";
@@ -25,6 +26,8 @@ export const wasmModules = [
 const optimise = [
   // By name, functions of a kind are neighbours, and pack the better: 0.7 kB gzipped.
   ...["-O3", "--converge", "--reorder-functions-by-name", "--strip-debug", "--strip-producers"],
+  // What the compiler was allowed to use is for linkers to know.
+  "--strip-target-features",
   // Inlining was the compiler's affair, which knows what is hot; more of it makes the modules 2 kB gzipped larger.
   ...["--one-caller-inline-max-function-size=0", "--flexible-inline-max-function-size=0"],
 ];
@@ -32,8 +35,7 @@ const optimise = [
 /**
  * What LLVM copies for speed's sake. Its own limits suit processors that run what it writes; here another compiler
  * follows, and copies cost download: together these make the core 10 kB gzipped smaller, `precise` no slower, and
- * `paper` by a
- * fifteenth.
+ * `paper` by a fifteenth.
  */
 const llvm = [
   // How much a function may cost to be copied to its callers, and a loop's body to be written out.
@@ -86,7 +88,9 @@ export async function buildWasm() {
  */
 async function buildModule(module, rustc, say) {
   const outputs = [`${module.name}.js`, `${module.name}.d.ts`, `${module.name}_bg.wasm`, `${module.name}_bg.wasm.d.ts`];
-  const sources = ["src", "Cargo.toml", "Cargo.lock", ".cargo", "scripts/lib/wasm.mjs"].map((path) => at(path));
+  const sources = ["src", "Cargo.toml", "Cargo.lock", ".cargo", "scripts/lib/wasm.mjs", "scripts/lib/imports.mjs"].map(
+    (path) => at(path),
+  );
   const facts = [rustc, wasmBindgenVersion(), binaryenVersion(), process.env.RUSTFLAGS ?? ""];
   const stamp = new Stamp(
     at("target", "wasm", `${module.name}.stamp`),
@@ -118,6 +122,7 @@ async function buildModule(module, rustc, say) {
   const bare = wasmFile(module, folder);
   const [node, wasmOpt] = nodeProgram("binaryen", "wasm-opt");
   await run(node, [wasmOpt, bare, ...optimise, "-o", bare]);
+  shortenImports(bare, join(folder, `${module.name}.js`));
 
   cpSync(folder, glueDir, { recursive: true });
   stamp.write();

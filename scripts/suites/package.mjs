@@ -1,6 +1,7 @@
 /** The package as its users get it: linted, installed from its tarball, and used. */
 import { cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
+import { writeApiDocs } from "../lib/api-docs.mjs";
 import { chromium, chromiumRemedy } from "../lib/chromium.mjs";
 import { nodeCounts, noTests, withStatus } from "../lib/counts.mjs";
 import { at, installDir, packageDir, repository } from "../lib/paths.mjs";
@@ -8,13 +9,57 @@ import { attempt, nodeProgram, run } from "../lib/run.mjs";
 import { makeSample, sampleDir } from "../lib/sample.mjs";
 import { digest, filesBelow, Stamp } from "../lib/stamp.mjs";
 import { step } from "../lib/step.mjs";
+import { kilobytes } from "../lib/wasm.mjs";
 import { runChecks } from "./checks.mjs";
 
-export function lintPackage() {
+/** What the tarball may take, in bytes: the WebAssembly is in it twice, the second time in `inline.js`. */
+const maxPacked = 1_200_000;
+
+/** Tests that use the installed package, and what they share. */
+const testFolders = ["js", "browser", "bundlers", "examples", "support"];
+
+/** How users' compilers find declarations. */
+const resolutions = { node16: { module: "node16" }, bundler: { module: "esnext", moduleResolution: "bundler" } };
+
+/**
+ * Compiles code that uses the installed package as strictly as users may, its declarations included.
+ * @param {keyof typeof resolutions} name
+ */
+async function compileStrictly(name) {
+  await install();
+  const project = join(installDir, `tsconfig.${name}.json`);
+  const compilerOptions = { ...resolutions[name], strict: true, noEmit: true, target: "es2022", types: [] };
+  // Nothing of the repository's: it looks for packages in the folders above.
+  const lib = ["es2022", "esnext.disposable", "dom", "dom.iterable"];
+  const files = ["types", "conventions"].map((of) => `tests/js/${of}.test-d.ts`);
+  writeFileSync(project, JSON.stringify({ compilerOptions: { ...compilerOptions, lib }, files }));
+  const [node, tsc] = nodeProgram("typescript", "tsc");
+  await run(node, [tsc, "--project", project]);
+}
+
+export async function lintPackage() {
   const [node, publint] = nodeProgram("publint");
+  const [, attw] = nodeProgram("@arethetypeswrong/cli", "attw");
+  const folder = at("target", "packed");
+  mkdirSync(folder, { recursive: true });
+  const [tarball] = JSON.parse(await run("npm", ["pack", packageDir, "--json", "--pack-destination", folder]));
   return runChecks([
     ["publint", () => run(node, [publint, packageDir, "--strict"])],
+    [
+      "types, in modules' resolution",
+      () => run(node, [attw, join(folder, tarball.filename), "--profile", "esm-only", "--no-emoji"]),
+    ],
+    ["tsc --strict, resolution node16", () => compileStrictly("node16")],
+    ["tsc --strict, resolution bundler", () => compileStrictly("bundler")],
     ["every file that package.json names is there", checkNamedFiles],
+    ["the API reference, without a warning", writeApiDocs],
+    [
+      `the tarball is within ${kilobytes(maxPacked)}`,
+      (say) => {
+        if (tarball.size > maxPacked) throw new Error(`It has ${kilobytes(tarball.size)}. Remedy: find what grew.`);
+        say(`${kilobytes(tarball.size)} packed, ${kilobytes(tarball.unpackedSize)} unpacked`);
+      },
+    ],
   ]);
 }
 
@@ -29,7 +74,7 @@ function checkNamedFiles() {
 }
 
 /** Packs pkg/ and installs the tarball into a folder of its own, then compiles the tests there. */
-async function install() {
+export async function install() {
   await step("install the packed package", async (say) => {
     const stamp = new Stamp(join(installDir, "installed-from"), digest([packageDir]), []);
     if (stamp.isCurrent) return say("up to date");
@@ -47,7 +92,7 @@ async function install() {
   });
   await step("compile the tests", async () => {
     rmSync(join(installDir, "tests"), { recursive: true, force: true });
-    for (const folder of ["js", "browser", "support"].filter((name) => existsSync(at("tests", name)))) {
+    for (const folder of testFolders.filter((name) => existsSync(at("tests", name)))) {
       cpSync(at("tests", folder), join(installDir, "tests", folder), { recursive: true });
     }
     const tsconfig = { extends: at("tests", "tsconfig.installed.json"), include: ["tests"] };
@@ -58,13 +103,22 @@ async function install() {
 }
 
 /**
- * Runs one folder of compiled tests with the installed package.
+ * Runs one folder of tests with the installed package.
  * @param {string} folder
  * @param {NodeJS.ProcessEnv} [env]
  */
 async function nodeTest(folder, env = {}) {
   await makeSample();
   await install();
+  return runCompiled(folder, env);
+}
+
+/**
+ * Runs one folder of tests that {@link install} has compiled.
+ * @param {string} folder
+ * @param {NodeJS.ProcessEnv} [env]
+ */
+export async function runCompiled(folder, env = {}) {
   const files = filesBelow([join(installDir, "tests", folder)]).filter((file) => file.endsWith(".test.js"));
   if (files.length === 0) return noTests();
   const { output, reason } = await attempt(
@@ -81,10 +135,16 @@ async function nodeTest(folder, env = {}) {
 
 export const javaScript = () => nodeTest("js");
 
-export async function browser() {
+/** @param {string} folder of tests that show pages */
+async function inBrowser(folder) {
   const path = await chromium();
-  if (path) return nodeTest("browser", { CHROMIUM_PATH: path });
+  if (path) return nodeTest(folder, { CHROMIUM_PATH: path });
   console.log(`No Chromium. Remedy: ${chromiumRemedy}.`);
   // On a developer's machine that is a gap; in continuous integration it would hide every failure of the page.
   return { ...noTests(), ...(process.env.CI ? { failed: 1 } : { skipped: 1 }) };
 }
+
+export const browser = () => inBrowser("browser");
+
+/** The package in other people's apps. */
+export const bundlers = () => inBrowser("bundlers");

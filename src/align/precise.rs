@@ -1,18 +1,21 @@
 //! Preset `precise`: search by rendering.
 
-use super::Estimated;
 use super::alternatives::alternatives;
 use super::confidence::confidence;
 use super::options::{AlignOptions, ExtentAxis, Quality, SearchScope};
 use super::progress::{Stage, Stopwatch};
 use super::report::{Counts, Uncertainty};
+use super::{Estimated, paper};
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::cloud::Bounds;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::Similarity;
+use crate::metrics::evidence::Evidence;
+use crate::stages::extents::Extents;
 use crate::stages::observe::Observation;
 use crate::stages::search::pose::{CropPose, MeshFrame};
 use crate::stages::search::prior::Prior;
+use crate::stages::search::rounds::Rounds;
 use crate::stages::search::{Search, SearchSettings};
 
 /// When each stage begins, as a share of the whole; from profiles of real cases.
@@ -26,6 +29,9 @@ pub(super) const PLAN: &[(Stage, f64)] = &[
     (Stage::Metrics, 0.85),
 ];
 
+/// What is done of the whole when each round is.
+const DONE: [f64; 6] = [0.53, 0.6, 0.71, 0.78, 0.83, 0.85];
+
 /// Grid of rotations, refinement, choice. A `hypothesis` found otherwise joins the candidates of the grid.
 pub(super) fn estimate(
     observation: &Observation,
@@ -36,27 +42,62 @@ pub(super) fn estimate(
     stages: &mut Stopwatch<'_>,
 ) -> Result<Estimated> {
     stages.enter(Stage::Prepare);
-    let mut search = Search::new(observation, mesh, *settings).ok_or_else(no_candidate)?;
-    let prior = prior(options, mesh, &search.frame);
-    search.assume(prior);
-    let initial = options.initial.map(|pose| seen_from(&pose, &search.frame)).transpose()?;
-
+    let mut rounds = prepare(observation, mesh, options, settings)?;
     stages.enter(Stage::Search);
-    let mut candidates = initial.map_or_else(Vec::new, |pose| search.around(pose));
-    if options.search == SearchScope::Global {
-        candidates.extend(search.coarse());
-        let hypothesis = hypothesis.and_then(|pose| CropPose::of_similarity(&pose, &search.frame));
-        candidates.extend(hypothesis.into_iter().flat_map(|pose| search.around(pose)));
+    let pose = hypothesis.and_then(|pose| CropPose::of_similarity(&pose, &rounds.search.frame));
+    pose.into_iter().for_each(|pose| rounds.join(pose));
+    while !rounds.is_refinement() {
+        step(&mut rounds, stages);
     }
-
     stages.enter(Stage::Refine);
-    let found = search.refine(candidates);
+    while rounds.tasks() > 0 {
+        step(&mut rounds, stages);
+    }
+    conclude(&rounds, mesh, options)
+}
+
+/// Does a round, and tells of it.
+#[inline(never)]
+fn step(rounds: &mut Rounds, stages: &mut Stopwatch<'_>) {
+    let done = DONE[rounds.round.min(DONE.len() - 1)];
+    rounds.step();
+    stages.reach(done, rounds.best());
+}
+
+/// A search that is about to begin.
+pub(super) fn prepare(
+    observation: &Observation,
+    mesh: &Mesh,
+    options: &AlignOptions,
+    settings: &SearchSettings,
+) -> Result<Rounds> {
+    let mut search = Search::new(observation, mesh, *settings).ok_or_else(no_candidate)?;
+    search.assume(prior(options, mesh, &search.frame));
+    let initial = options.initial.map(|pose| seen_from(&pose, &search.frame)).transpose()?;
+    Ok(Rounds::new(search, initial, options.search == SearchScope::Global))
+}
+
+/// Descriptors are weak evidence, but of another kind: where time is no matter, their pose is a candidate too.
+pub(super) fn hypothesis(
+    evidence: &Evidence,
+    extents: [&Extents; 2],
+    options: &AlignOptions,
+    stages: &mut Stopwatch<'_>,
+) -> Option<Similarity> {
+    let is_wanted = options.quality == Quality::Best && options.search == SearchScope::Global;
+    let found = is_wanted.then(|| paper::estimate(evidence, extents, options, stages).ok()).flatten()?;
+    Some(found.camera_from_mesh)
+}
+
+/// What the search found, and how sure it is.
+pub(super) fn conclude(rounds: &Rounds, mesh: &Mesh, options: &AlignOptions) -> Result<Estimated> {
+    let (found, search) = (&rounds.found, &rounds.search);
     let best = found.first().ok_or_else(no_candidate)?;
-    let alternatives = alternatives(&found, &search, mesh, &options.symmetry)?;
+    let alternatives = alternatives(found, search, mesh, &options.symmetry)?;
     let (conditioning, residual_m) = search.conditioning(&best.pose);
     Ok(Estimated {
         camera_from_mesh: best.pose.similarity(&search.frame),
-        clamped: prior.holds(&best.pose),
+        clamped: search.is_held(&best.pose),
         converged: best.converged,
         residual_m,
         confidence: Some(confidence(best, &alternatives, conditioning.as_ref())),

@@ -3,6 +3,8 @@
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
+use crate::geometry::similarity::Similarity;
+
 /// A stage of the pipeline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
@@ -59,8 +61,11 @@ pub trait Host {
     /// Milliseconds since any fixed moment.
     fn now_ms(&mut self) -> f64;
 
-    /// A stage begins; `fraction` of the whole, from 0 to 1 and never falling, is done.
+    /// A stage begins, or goes on; `fraction` of the whole, from 0 to 1 and never falling, is done.
     fn progress(&mut self, stage: Stage, fraction: f64);
+
+    /// The best pose so far, and its score: it comes before the progress that it is part of.
+    fn best(&mut self, _camera_from_mesh: &Similarity, _score: f64) {}
 }
 
 /// A host without clock or ears: all times are 0.
@@ -125,6 +130,13 @@ impl<'a> Stopwatch<'a> {
         self.fraction = self.fraction.max(planned);
         self.host.progress(stage, self.fraction);
         self.running = Some(stage);
+    }
+
+    /// The stage goes on: so much of the whole is done, and this is the best pose and its score.
+    pub fn reach(&mut self, fraction: f64, best: Option<(Similarity, f64)>) {
+        best.inspect(|(camera_from_mesh, score)| self.host.best(camera_from_mesh, *score));
+        self.fraction = fraction;
+        self.running.into_iter().for_each(|stage| self.host.progress(stage, fraction));
     }
 
     /// The last stage has ended.

@@ -2,7 +2,6 @@
 
 use js_sys::Function;
 use serde::Serialize;
-use serde_wasm_bindgen::Serializer;
 use wasm_bindgen::prelude::*;
 
 use super::error::to_js;
@@ -12,7 +11,9 @@ use super::{input, object, options, transform};
 use crate::align::evaluate::EvaluateOptions;
 use crate::align::options::{AlignOptions, EstimateOptions, RegisterOptions};
 use crate::align::{self, estimate_sim3, register};
-use crate::error::{Error, ErrorCode, Result};
+use crate::error::Result;
+use crate::geometry::mesh::Mesh;
+use crate::stages::observe::Observation;
 
 /// Aligns a mesh to an observation; see `Aligner.align` in the TypeScript package.
 #[wasm_bindgen(skip_typescript)]
@@ -22,11 +23,17 @@ pub fn align(
     on_progress: Option<Function>,
 ) -> core::result::Result<JsValue, JsValue> {
     let run = || {
-        let options: AlignOptions = options::options(options, &[])?;
-        let (observation, mesh) = (input::observation(input)?, input::mesh(input)?);
+        let (observation, mesh, options) = case(input, options)?;
         align::align(&observation, &mesh, &options, &mut JsHost::new(on_progress))
     };
     answer(run())
+}
+
+/// What an alignment is about.
+#[inline(never)]
+pub(super) fn case(input: &JsValue, options: &JsValue) -> Result<(Observation, Mesh, AlignOptions)> {
+    let options = options::options(options, &[])?;
+    Ok((input::observation(input)?, input::mesh(input)?, options))
 }
 
 /// Scores a transform; see `Aligner.evaluate` in the TypeScript package.
@@ -75,7 +82,7 @@ pub fn estimate_sim3(
 /// The default options of every entry point.
 #[wasm_bindgen(skip_typescript)]
 pub fn defaults() -> JsValue {
-    options::object_of([
+    object::object_of([
         ("align", options::defaults::<AlignOptions>()),
         ("evaluate", options::defaults::<EvaluateOptions>()),
         ("register", options::defaults::<RegisterOptions>()),
@@ -90,19 +97,6 @@ pub fn version() -> String {
 }
 
 /// What JavaScript gets: the result as a plain object, or the error to be thrown.
-fn answer<T: Serialize>(result: Result<T>) -> core::result::Result<JsValue, JsValue> {
-    to_object(result.map(|value| Value::of(&value)))
-}
-
-#[inline(never)]
-fn to_object(result: Result<Value>) -> core::result::Result<JsValue, JsValue> {
-    let serializer = Serializer::json_compatible();
-    result
-        .and_then(|value| {
-            value.serialize(&serializer).map_err(|e| {
-                let remedy = "This is a fault of the package: please report it.";
-                Error::new(ErrorCode::Internal, "result", e.to_string(), "a serialisable result", remedy)
-            })
-        })
-        .map_err(|e| to_js(&e))
+pub(super) fn answer<T: Serialize>(result: Result<T>) -> core::result::Result<JsValue, JsValue> {
+    result.map(|value| object::of_value(&Value::of(&value))).map_err(|e| to_js(&e))
 }

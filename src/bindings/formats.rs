@@ -27,6 +27,7 @@ export interface ReadMeshOptions {
   resources?: Record<string, FileBytes>;
 }
 
+/** A mesh that was read. */
 export interface MeshArrays {
   /** x, y, z per vertex, in the file's unit and axes. */
   positions: Float32Array;
@@ -41,6 +42,7 @@ export interface ReadDepthOptions {
   integerDepthScale?: number;
 }
 
+/** A depth map that was read; `width` and `height` in pixels. */
 export interface DepthImage {
   /** Metres along the optical axis, row by row; 0 is no reading. */
   data: Float32Array;
@@ -48,6 +50,7 @@ export interface DepthImage {
   height: number;
 }
 
+/** A mask that was read; `width` and `height` in pixels. */
 export interface MaskImage {
   /** Row by row; 1 is the object. */
   data: Uint8Array;

@@ -1,35 +1,53 @@
 //! Clock and progress of a JavaScript host.
 
-use js_sys::{Function, Reflect};
-use wasm_bindgen::{JsCast, JsValue};
-use web_sys::Performance;
+use js_sys::{Float64Array, Function};
+use wasm_bindgen::prelude::wasm_bindgen;
+use wasm_bindgen::{JsValue, throw_val};
 
 use crate::align::progress::{Host, Stage};
+use crate::geometry::similarity::Similarity;
+
+#[wasm_bindgen]
+extern "C" {
+    /// Windows, workers and Node all have it; where it is missing, the call fails, and nothing else does.
+    #[wasm_bindgen(catch, js_namespace = performance, js_name = now)]
+    fn performance_now() -> Result<f64, JsValue>;
+}
 
 /// `globalThis.performance` and a callback, either of which may be missing.
 pub struct JsHost {
-    performance: Option<Performance>,
     on_progress: Option<Function>,
+    best: JsValue,
 }
 
 impl JsHost {
-    /// A host that calls `on_progress(stage, fraction)`.
+    /// A host that calls `on_progress(stage, fraction, best)`: 16 numbers of a pose, column by column, and its score,
+    /// once there is one.
     pub fn new(on_progress: Option<Function>) -> Self {
-        // Windows, workers and Node all have it on the global object; none shares a class for that object.
-        let performance = Reflect::get(&js_sys::global(), &"performance".into()).ok().filter(JsValue::is_object);
-        Self { performance: performance.map(JsCast::unchecked_into), on_progress }
+        Self { on_progress, best: JsValue::UNDEFINED }
     }
 }
 
 impl Host for JsHost {
     fn now_ms(&mut self) -> f64 {
-        self.performance.as_ref().map_or(0.0, Performance::now)
+        performance_now().unwrap_or_default()
     }
 
     fn progress(&mut self, stage: Stage, fraction: f64) {
         if let Some(callback) = &self.on_progress {
-            // A listener that throws is the listener's affair; the alignment goes on.
-            let _ = callback.call2(&JsValue::NULL, &stage.as_str().into(), &fraction.into());
+            let heard = callback.call3(&JsValue::NULL, &stage.as_str().into(), &fraction.into(), &self.best);
+            // It ends the call, and the instance with it: nothing is tidied up on the way.
+            heard.unwrap_or_else(|error| throw_val(error));
         }
     }
+    fn best(&mut self, camera_from_mesh: &Similarity, score: f64) {
+        self.best = Float64Array::from(best_numbers(camera_from_mesh, score).as_slice()).into();
+    }
+}
+
+/// A pose, column by column, and its score.
+pub fn best_numbers(camera_from_mesh: &Similarity, score: f64) -> [f64; 17] {
+    let mut numbers = [score; 17];
+    numbers[..16].copy_from_slice(&camera_from_mesh.to_column_major());
+    numbers
 }

@@ -14,6 +14,8 @@ mod object;
 #[cfg(feature = "aligner")]
 mod options;
 #[cfg(feature = "aligner")]
+pub mod share;
+#[cfg(feature = "aligner")]
 mod transform;
 #[cfg(feature = "aligner")]
 pub mod value;

@@ -78,6 +78,7 @@ impl Similarity {
     }
 
     /// The column-major 4×4 matrix.
+    #[inline(never)]
     pub fn to_column_major(&self) -> [f64; 16] {
         let m = self.rotation.matrix() * self.scale;
         let t = self.translation;

@@ -1,4 +1,7 @@
-/** The documentation's examples: all are compiled, and all but those marked `no-run` are run. */
+/**
+ * The documentation's examples: all are compiled, and all but those marked `no-run` are run. Those marked `throws CODE`
+ * have to fail with that error.
+ */
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { mkdirSync, rmSync, writeFileSync } from "node:fs";
@@ -23,7 +26,7 @@ function compile(): Map<string, string[]> {
     extends: join(repository, "tests", "tsconfig.installed.json"),
     // An example shows a value; it need not use it.
     compilerOptions: { noUnusedLocals: false, outDir: "out", rootDir: "..", sourceMap: false },
-    include: ["*.ts", "../tests/support/docs-globals.ts"],
+    include: ["*.ts", "../tests/support/docs-globals.ts", "../tests/support/wasm.d.ts"],
   };
   writeFileSync(join(folder, "tsconfig.json"), JSON.stringify(tsconfig));
   const tsc = join(repository, "node_modules", "typescript", "bin", "tsc");
@@ -46,9 +49,13 @@ test("there are examples, and the compiler finds nothing else to say", () => {
   assert.deepEqual(others, []);
 });
 
-for (const { place, name, isRun } of found) {
-  test(`${place} compiles${isRun ? " and runs" : ""}`, async () => {
+for (const { place, name, isRun, throws } of found) {
+  const end = throws === undefined ? " and runs" : `, and throws ${throws}`;
+  test(`${place} compiles${isRun ? end : ""}`, async () => {
     assert.deepEqual(errors.get(name) ?? [], []);
-    if (isRun) await import(pathToFileURL(join(folder, "out", "docs-examples", `${name}.js`)).href);
+    if (!isRun) return;
+    const run = import(pathToFileURL(join(folder, "out", "docs-examples", `${name}.js`)).href);
+    if (throws === undefined) await run;
+    else await assert.rejects(run, { name: "Sim3AlignError", code: throws });
   });
 }

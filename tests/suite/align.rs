@@ -5,9 +5,9 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use sim3align::align::align;
 use sim3align::align::evaluate::{EvaluateOptions, Truth, evaluate};
 use sim3align::align::field::Options;
-use sim3align::align::options::{AlignOptions, GuardMode, Icp, Preset, SearchScope};
+use sim3align::align::options::{AlignOptions, GuardMode, Icp, Preset, Quality, SearchScope};
 use sim3align::align::progress::{Host, Silent, Stage};
-use sim3align::align::report::{Alignment, WarningCode};
+use sim3align::align::report::{Alignment, Sim3, WarningCode};
 use sim3align::error::ErrorCode;
 use sim3align::geometry::image::{DepthMap, Mask};
 use sim3align::geometry::mesh::Mesh;
@@ -143,6 +143,7 @@ fn every_ablation_runs_and_does_what_it_says() {
 #[derive(Default)]
 struct Listener {
     calls: Vec<(Stage, f64)>,
+    best: Vec<(Similarity, f64)>,
     clock: f64,
 }
 
@@ -155,6 +156,22 @@ impl Host for Listener {
     fn progress(&mut self, stage: Stage, fraction: f64) {
         self.calls.push((stage, fraction));
     }
+
+    fn best(&mut self, camera_from_mesh: &Similarity, score: f64) {
+        self.best.push((*camera_from_mesh, score));
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn progress_brings_the_best_pose_of_every_round_and_in_the_end_the_result() {
+    let mesh = body();
+    let mut listener = Listener::default();
+    let options = AlignOptions { quality: Quality::Fast, ..AlignOptions::default() };
+    let result = align(&observe(&mesh, 1.0), &mesh, &options, &mut listener).unwrap();
+    assert_eq!(listener.best.len(), 6);
+    let (pose, score) = listener.best.last().unwrap();
+    assert_eq!((Sim3::from(pose), Some(*score)), (result.camera_from_mesh, result.score));
+    assert!(listener.calls.windows(2).all(|w| w[0].1 <= w[1].1), "{:?}", listener.calls);
 }
 
 #[wasm_bindgen_test(unsupported = test)]

@@ -25,14 +25,14 @@ const WIDTH: usize = 200;
 const HEIGHT: usize = 160;
 
 /// A body that no turn maps onto itself.
-fn body() -> Mesh {
+pub fn body() -> Mesh {
     let wave = |x: f32| libm::sinf(x);
     mapped(&ellipsoid(Vec3::new(0.5, 0.38, 0.3), 24), |p| {
         p * (1.0 + 0.5 * wave(4.0 * p.x + 1.0) * wave(5.0 * p.y + 0.5) + 0.3 * wave(9.0 * p.z + 5.0 * p.x - 1.0))
     })
 }
 
-fn truth() -> Similarity {
+pub fn truth() -> Similarity {
     Similarity {
         scale: 0.17,
         rotation: Rotation3::new(Vector3::new(0.9, -0.5, 2.1)),
@@ -45,7 +45,7 @@ fn camera() -> Pinhole {
 }
 
 /// The mesh as `pose` puts it, 15 cm or more before a wall.
-fn observe(mesh: &Mesh, pose: &Similarity) -> Observation {
+pub fn observe(mesh: &Mesh, pose: &Similarity) -> Observation {
     let mut rasteriser = Rasteriser::new();
     rasteriser.render(mesh, pose, &camera(), WIDTH, HEIGHT);
     let mask = rasteriser.depth().iter().map(|z| u8::from(*z > 0.0)).collect();

@@ -19,7 +19,7 @@ interface Server {
   close(): Promise<void>;
 }
 
-/** A browser and a server of the repository's folder. */
+/** A browser and a server of a folder: the repository's, where none is named. */
 export class PageTest {
   private constructor(
     private readonly browser: Browser,
@@ -27,19 +27,19 @@ export class PageTest {
   ) {}
 
   /** Starts both. */
-  static async start(): Promise<PageTest> {
+  static async start(folder = repository): Promise<PageTest> {
     const executablePath = process.env.CHROMIUM_PATH;
     if (executablePath === undefined) throw new Error('CHROMIUM_PATH is not set: run the tests by "npm test".');
     const module = pathToFileURL(join(repository, "scripts", "lib", "static-server.mjs")).href;
     const { serve } = (await import(module)) as { serve(folder: string): Promise<Server> };
-    const server = await serve(repository);
+    const server = await serve(folder);
     const browser = await chromium.launch({ executablePath, headless: true, args: flags });
     return new PageTest(browser, server);
   }
 
   /**
    * Opens a page of the repository.
-   * @param path its path in the repository, such as `www/index.html`
+   * @param path its path in the folder, such as `www/index.html`, or a whole address
    * @returns the page, and what it has logged as errors (a list that goes on growing)
    */
   async open(path: string): Promise<{ page: Page; errors: string[] }> {

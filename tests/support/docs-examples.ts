@@ -13,6 +13,8 @@ export interface Example {
   module: string;
   /** Whether it can be run, too; blocks marked `no-run` after the language are compiled only. */
   isRun: boolean;
+  /** The code of the error that it is about; of blocks marked `throws CODE`. */
+  throws: string | undefined;
 }
 
 /** The documents that have examples. */
@@ -39,6 +41,7 @@ export function examples(): Example[] {
         // Errors then name the document's own lines; what follows makes it a module in any case.
         module: `${"\n".repeat(first)}${code}\nexport {};\n`,
         isRun: !/\bno-run\b/.test(opening[1] ?? ""),
+        throws: /\bthrows (\w+)/.exec(opening[1] ?? "")?.[1],
       });
     }
     return found;

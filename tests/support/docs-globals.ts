@@ -1,9 +1,11 @@
 /** The types of the globals that the documentation's examples use. */
+import type { createAligner as create } from "sim3align";
 import type { docsScene } from "./docs-scene.js";
 
 type Scene = typeof docsScene;
 
 declare global {
+  var createAligner: typeof create;
   var aligner: Scene["aligner"];
   var input: Scene["input"];
   var depth: Scene["depth"];

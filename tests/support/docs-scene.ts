@@ -23,6 +23,7 @@ const [x, y, z, w] = rotation;
 
 /** The globals, by name. */
 export const docsScene = {
+  createAligner,
   aligner,
   ...{ input, depth, width, height, mask, camera, fx, fy, cx, cy, mesh },
   /** The bytes of a GLB file of the mesh. */

@@ -1,7 +1,8 @@
 /** What the test script tells the tests about where things are. */
 import { join } from "node:path";
 
-function required(name: string): string {
+/** An environment variable that the test script sets. */
+export function required(name: string): string {
   const value = process.env[name];
   if (value === undefined) throw new Error(`${name} is not set: run the tests by "npm test".`);
   return value;

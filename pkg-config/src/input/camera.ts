@@ -1,7 +1,9 @@
 /** Cameras: intrinsics as they are, or a camera file. */
+
+import type { Formats } from "../core.js";
 import { invalidArgument, Sim3AlignError } from "../error.js";
-import type { Formats, LoadedModule } from "../modules.js";
 import { isRecord, plainNumbers, withoutOptions, withoutUndefined } from "../values.js";
+import type { LoadedModule } from "../wasm-module.js";
 import { fileBytes } from "./bytes.js";
 
 /** The core's forms of a camera. */

@@ -1,7 +1,9 @@
 /** Depth maps and point maps, brought to arrays with their size. */
+
+import type { Formats } from "../core.js";
 import { Sim3AlignError } from "../error.js";
-import type { Formats, LoadedModule } from "../modules.js";
 import { isRecord, isTypedArray, withoutOptions, withoutUndefined, wrongKind } from "../values.js";
+import type { LoadedModule } from "../wasm-module.js";
 import { fileBytes } from "./bytes.js";
 
 /** The core's form of a depth map or a point map: one of the two. */

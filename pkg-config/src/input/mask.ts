@@ -1,7 +1,9 @@
 /** Masks, brought to bytes with their size. */
+
+import type { Formats } from "../core.js";
 import { invalidArgument } from "../error.js";
-import type { Formats, LoadedModule } from "../modules.js";
 import { isRecord, isTypedArray, wrongKind } from "../values.js";
+import type { LoadedModule } from "../wasm-module.js";
 import { beginsLikeImage, beginsLikeJson, fileBytes } from "./bytes.js";
 import type { SizedArray } from "./depth.js";
 

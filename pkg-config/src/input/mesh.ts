@@ -1,7 +1,9 @@
 /** Meshes: arrays as they are, or a mesh file. */
+
+import type { Formats } from "../core.js";
 import { invalidArgument } from "../error.js";
-import type { Formats, LoadedModule } from "../modules.js";
 import { isRecord, isTypedArray, withoutUndefined, wrongKind } from "../values.js";
+import type { LoadedModule } from "../wasm-module.js";
 import { fileBytes } from "./bytes.js";
 import type { MeshFile } from "./types.js";
 

@@ -1,7 +1,9 @@
 /** From what callers have to what the core takes: typed arrays and numbers. */
+
+import type { Formats } from "../core.js";
 import { invalidArgument, Sim3AlignError } from "../error.js";
-import type { Formats, LoadedModule } from "../modules.js";
 import { isRecord, isTypedArray, withoutUndefined } from "../values.js";
+import type { LoadedModule } from "../wasm-module.js";
 import { type CoreCamera, readCamera } from "./camera.js";
 import { readDepth, readPointMap } from "./depth.js";
 import { readMask } from "./mask.js";

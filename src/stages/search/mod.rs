@@ -16,15 +16,14 @@ pub mod ranking;
 pub mod refine;
 pub mod render;
 pub mod rim;
+pub mod rounds;
 pub mod score;
 pub mod settings;
 
 use crate::geometry::decimate::decimate;
 use crate::geometry::mesh::Mesh;
-use crate::geometry::rotations::super_fibonacci;
 use crate::stages::observe::Observation;
 
-use anchors::Anchor;
 use clean::CleanObservation;
 use coarse::{Candidate, Coarse};
 use conditioning::Conditioning;
@@ -32,16 +31,13 @@ use grid::CropGrid;
 use objective::Objective;
 use pose::{CropPose, MeshFrame};
 use prior::Prior;
-use ranking::{best_of, distinct};
-use refine::Refiner;
+use ranking::distinct;
+use refine::{Refined, Refiner};
 use render::{Canvas, Model};
 use score::Score;
 use settings::{COARSE, FINE, FINEST, LEVELS, MIDDLE, SIEVE};
 
 pub use settings::SearchSettings;
-
-/// Rotations nearer than this are one candidate, on the coarse grid and on the middle one; radians.
-const DISTINCT: [f64; 2] = [0.21, 0.105];
 
 /// Turns tried around a given pose, radians, and how many of them are refined.
 const NEIGHBORHOOD: [f64; 2] = [0.17, 0.4];
@@ -65,15 +61,29 @@ pub struct Search {
     fine: CropGrid,
 }
 
-/// A refined candidate.
+/// A candidate, as far as it has come.
 #[derive(Debug, Clone, Copy)]
 pub struct Found {
     /// The pose.
     pub pose: CropPose,
-    /// Its score on the fine grid.
+    /// Its score, in the end on the fine grid.
     pub score: Score,
     /// Whether its refinement came to rest.
     pub converged: bool,
+    /// Images drawn for it.
+    pub renders: usize,
+}
+
+impl From<Candidate> for Found {
+    fn from(Candidate { pose, score }: Candidate) -> Self {
+        Self { pose, score, converged: false, renders: 1 }
+    }
+}
+
+impl From<Refined> for Found {
+    fn from(Refined { pose, score, renders, converged }: Refined) -> Self {
+        Self { pose, score, converged, renders }
+    }
 }
 
 impl Search {
@@ -103,35 +113,10 @@ impl Search {
         self.prior = prior;
     }
 
-    /// The best distinct rotations of the grid.
-    pub fn coarse(&mut self) -> Vec<Candidate> {
-        let settings = &self.settings;
-        let [sieve, coarse] = [SIEVE, COARSE].map(|level| CropGrid::new(&self.observation, settings.cells[level]));
-        let anchors =
-            if settings.anchors { anchors::anchors(&coarse, settings.occlusion) } else { vec![Anchor::AS_IT_IS] };
-        let outermost = coarse::outermost(&self.models[FINE]);
-        let count = settings.rotations;
-        let mut canvas = Canvas::default();
-
-        let stage = self.stage(SIEVE, &sieve);
-        let mut candidates = Vec::with_capacity(count * anchors.len());
-        for i in 0..count {
-            stage.try_anchors(&mut canvas, &outermost, super_fibonacci(i, count), &anchors, &mut candidates);
-        }
-        let mut renders = candidates.len();
-        let stage = self.stage(COARSE, &coarse);
-        let promising = best_of(&candidates, settings.keep[0]);
-        let candidates: Vec<Candidate> =
-            promising.into_iter().map(|c| stage.at_its_distance(&mut canvas, c.pose)).collect();
-        renders += candidates.len();
-        self.renders += renders;
-        distinct(candidates, self.settings.keep[1], DISTINCT[0])
-    }
-
     /// A pose and its neighbourhood: turned about every axis, at its own distance and at that of the depths.
-    pub fn around(&mut self, pose: CropPose) -> Vec<Candidate> {
-        let grid = CropGrid::new(&self.observation, self.settings.cells[COARSE]);
-        let stage = self.stage(COARSE, &grid);
+    fn around(&mut self, pose: CropPose) -> Vec<CropPose> {
+        let grid = self.grid(COARSE);
+        let stage = Coarse { objective: self.objective(COARSE, &grid), median_m: self.observation.median_m };
         let mut canvas = Canvas::default();
         let mut near: Vec<Candidate> = Vec::new();
         for angle in [0.0, NEIGHBORHOOD[0], NEIGHBORHOOD[1]] {
@@ -142,13 +127,14 @@ impl Search {
             }
         }
         self.renders += near.len();
-        let mut kept = vec![Candidate { pose, score: Score::default() }];
-        kept.extend(distinct(near, NEIGHBORS, 0.5 * NEIGHBORHOOD[0]));
-        kept
+        let mut poses = vec![pose];
+        poses.extend(distinct(near, NEIGHBORS, 0.5 * NEIGHBORHOOD[0]).iter().map(|c| c.pose));
+        poses
     }
 
-    fn stage<'a>(&'a self, level: usize, grid: &'a CropGrid) -> Coarse<'a> {
-        Coarse { objective: self.objective(level, grid), median_m: self.observation.median_m }
+    /// The evidence on one of the grids; see also `fine`.
+    fn grid(&self, level: usize) -> CropGrid {
+        CropGrid::new(&self.observation, self.settings.cells[level])
     }
 
     fn objective<'a>(&'a self, level: usize, grid: &'a CropGrid) -> Objective<'a> {
@@ -156,33 +142,9 @@ impl Search {
         Objective { model: &self.models[level], grid, scoring, prior: self.prior }
     }
 
-    /// The candidates refined on the middle grid, and the best of them on the fine one; best first.
-    pub fn refine(&mut self, candidates: Vec<Candidate>) -> Vec<Found> {
-        let poses = candidates.into_iter().map(|c| c.pose).collect();
-        let (keep, iterations) = (self.settings.keep, self.settings.iterations);
-        let [middle, finest] = [MIDDLE, FINEST].map(|l| CropGrid::new(&self.observation, self.settings.cells[l]));
-        let (mut canvas, mut renders) = (Canvas::default(), 0);
-        let mut refine_on = |level, grid, poses: Vec<CropPose>, iterations, keep| {
-            let refiner = Refiner { objective: self.objective(level, grid), lock_scale: self.settings.lock_scale };
-            let mut found = Vec::with_capacity(poses.len());
-            for pose in poses {
-                let refined = refiner.refine(&mut canvas, pose, iterations);
-                renders += refined.renders;
-                found.push(Found { pose: refined.pose, score: refined.score, converged: refined.converged });
-            }
-            distinct(found, keep, DISTINCT[1])
-        };
-        let begun = refine_on(MIDDLE, &middle, poses, iterations[0], keep[2]);
-        let advanced = refine_on(MIDDLE, &middle, poses_of(&begun), iterations[1], keep[3]);
-        let mut found = refine_on(FINE, &self.fine, poses_of(&advanced), iterations[2], usize::MAX);
-        // The scores stay those of the fine grid: scores of different grids do not compare.
-        for best in found.iter_mut().take(keep[4]) {
-            for polished in refine_on(FINEST, &finest, vec![best.pose], iterations[3], 1) {
-                best.pose = polished.pose;
-            }
-        }
-        self.renders += renders;
-        found
+    /// Whether a pose stands at a bound of the scale that leaves a choice.
+    pub fn is_held(&self, pose: &CropPose) -> bool {
+        self.prior.holds(pose)
     }
 
     /// The score of any pose on the fine grid.
@@ -198,8 +160,4 @@ impl Search {
         let equations = refiner.equations(&canvas, &score);
         (Conditioning::of(&equations, pose), refiner.depth_rms(&canvas))
     }
-}
-
-fn poses_of(found: &[Found]) -> Vec<CropPose> {
-    found.iter().map(|f| f.pose).collect()
 }

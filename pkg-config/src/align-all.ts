@@ -1,0 +1,91 @@
+/** Many alignments, one after the other as they are ready, with few of them under way. */
+import type { Sim3AlignError } from "./error.js";
+import type { AlignInput } from "./input/types.js";
+import { onAbort } from "./on-abort.js";
+import type { AlignAllResult, Alignment } from "./results.js";
+
+/** How `alignAll` goes about it. */
+export interface Conveyor {
+  /** Inputs that are pulled, and whose results the caller has not got yet, at most. */
+  limit: number;
+  ordered: boolean;
+  signal: AbortSignal | undefined;
+  align(input: AlignInput, index: number, signal: AbortSignal): Promise<Alignment>;
+  /** Whether an error is about one input, and others may go on. */
+  isOwn(error: unknown): error is Sim3AlignError;
+}
+
+type Settled = { result: AlignAllResult } | { failure: unknown };
+
+/** Aligns the inputs; what ends the loop early, ends what is under way. */
+export async function* alignAll(
+  inputs: Iterable<AlignInput> | AsyncIterable<AlignInput>,
+  { limit, ordered, signal, align, isOwn }: Conveyor,
+): AsyncGenerator<AlignAllResult, void, undefined> {
+  signal?.throwIfAborted();
+  const stopped = new AbortController();
+  let unfollow = () => {};
+  const aborted = new Promise<never>((_, reject) => {
+    if (signal === undefined) return;
+    unfollow = onAbort(signal, (reason) => {
+      stopped.abort(reason);
+      reject(reason);
+    });
+  });
+  // Nobody may be waiting just then.
+  aborted.catch(() => {});
+  const iterator = Symbol.asyncIterator in inputs ? inputs[Symbol.asyncIterator]() : inputs[Symbol.iterator]();
+  const running = new Map<number, Promise<number>>();
+  const settled = new Map<number, Settled>();
+  let pull: Promise<"pulled"> | undefined;
+  let pulled = 0;
+  let hasEnded = false;
+
+  const one = async (input: AlignInput, index: number): Promise<number> => {
+    settled.set(index, await outcome(align(input, index, stopped.signal), index, isOwn));
+    return index;
+  };
+  const pullOne = async (): Promise<"pulled"> => {
+    const next = await iterator.next();
+    if (next.done === true) hasEnded = true;
+    else running.set(pulled, one(next.value, pulled++));
+    return "pulled";
+  };
+
+  let isWhole = false;
+  try {
+    for (let next = 0; ; ) {
+      if (pull === undefined && !hasEnded && running.size < limit) pull = pullOne();
+      if (pull === undefined && running.size === 0) break;
+      const awaited = ordered ? [running.get(next)] : running.values();
+      const first = await Promise.race([aborted, ...awaited, pull].filter((promise) => promise !== undefined));
+      if (first === "pulled") {
+        pull = undefined;
+        continue;
+      }
+      const ready = settled.get(first) as Settled;
+      if ("failure" in ready) throw ready.failure;
+      yield ready.result;
+      settled.delete(first);
+      running.delete(first);
+      next = first + 1;
+    }
+    isWhole = true;
+  } finally {
+    unfollow();
+    stopped.abort();
+    // Whoever makes the inputs may be at it: nobody waits for that.
+    if (!isWhole) Promise.allSettled([pull, iterator.return?.()]);
+  }
+}
+
+async function outcome(alignment: Promise<Alignment>, index: number, isOwn: Conveyor["isOwn"]): Promise<Settled> {
+  try {
+    const { input, ...rest } = await alignment;
+    return { result: { index, alignment: rest, ...(input === undefined ? {} : { input }) } };
+  } catch (error) {
+    if (!isOwn(error)) return { failure: error };
+    const { input } = error;
+    return { result: { index, error, ...(input === undefined ? {} : { input: input as AlignInput }) } };
+  }
+}

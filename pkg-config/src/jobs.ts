@@ -1,0 +1,83 @@
+/** The calls that do the work, as data: so that they can be done here or in a worker, by the same code. */
+import type { Core, CoreListener, Formats } from "./core.js";
+import { resolveInput } from "./input/resolve.js";
+import type { AlignInput } from "./input/types.js";
+import {
+  type Alignment,
+  alignmentOf,
+  type Clouds,
+  type Evaluation,
+  type Registration,
+  withWarnings,
+} from "./results.js";
+import { withTypedMatrix } from "./sim3.js";
+import { isTypedArray, wrongKind } from "./values.js";
+import type { LoadedModule } from "./wasm-module.js";
+
+/** A call. `data` holds all its large arrays; options are in the core's form. */
+export type Job =
+  | { method: "align"; data: AlignInput; options: object }
+  | { method: "evaluate"; data: AlignInput; options: object; transform: unknown }
+  | { method: "register"; data: Clouds; options: object }
+  | { method: "estimateSim3"; data: Clouds; options: object };
+
+/** What each call returns. */
+export interface Results {
+  align: Alignment;
+  evaluate: Evaluation;
+  register: Registration;
+  estimateSim3: Registration;
+}
+
+/** The modules that do it. */
+export interface Tools {
+  core: LoadedModule<Core>;
+  formats(): Promise<LoadedModule<Formats>>;
+}
+
+/** Does a job. `listener` is called as its stages begin; what it throws ends the job. */
+export async function perform<J extends Job>(
+  job: J,
+  { core, formats }: Tools,
+  listener?: CoreListener,
+): Promise<Results[J["method"]]>;
+export async function perform(job: Job, { core, formats }: Tools, listener?: CoreListener): Promise<unknown> {
+  const { options } = job;
+  switch (job.method) {
+    case "align": {
+      const { core: input, warnings } = await resolveInput(job.data, formats);
+      const result = core.call((c) => c.align(input, options, listener), withoutInput);
+      return withWarnings(alignmentOf(result), warnings);
+    }
+    case "evaluate": {
+      const { core: input, warnings } = await resolveInput(job.data, formats);
+      return withWarnings(
+        core.call((c) => c.evaluate(input, job.transform, options), withoutInput),
+        warnings,
+      );
+    }
+    case "register": {
+      const { source, target } = checkedClouds(job.data);
+      return withTypedMatrix(core.call((c) => c.register(source, target, options)));
+    }
+    case "estimateSim3": {
+      const { source, target, correspondences } = checkedClouds(job.data);
+      if (!isTypedArray<Uint32Array>(correspondences, "Uint32Array")) {
+        throw wrongKind("correspondences", correspondences, "a Uint32Array of index pairs", "Uint32Array");
+      }
+      return withTypedMatrix(core.call((c) => c.estimateSim3(source, target, correspondences, options)));
+    }
+  }
+}
+
+/** Properties of the input are named without it. */
+export const withoutInput = (argument: string) => argument.replace(/^input\./, "");
+
+function checkedClouds(clouds: Clouds): Clouds {
+  for (const argument of ["source", "target"] as const) {
+    const cloud: unknown = clouds[argument];
+    if (isTypedArray(cloud, "Float32Array", "Float64Array")) continue;
+    throw wrongKind(argument, cloud, "a Float32Array or a Float64Array, x, y, z per point", "Float64Array");
+  }
+  return clouds;
+}

@@ -1,0 +1,82 @@
+/** The package in runtimes other than Node: Deno, Bun and Cloudflare's workerd, whose programs are npm packages. */
+import { mkdirSync, writeFileSync } from "node:fs";
+import { basename, join } from "node:path";
+import { build } from "esbuild";
+import { noTests } from "../lib/counts.mjs";
+import { at, installDir } from "../lib/paths.mjs";
+import { attempt, run } from "../lib/run.mjs";
+import { step } from "../lib/step.mjs";
+import { runChecks } from "./checks.mjs";
+import { install } from "./package.mjs";
+
+/** They are 600 MB, which nothing else needs: they are not among the repository's own packages. */
+const versions = { bun: "1.4.5", deno: "2.9.6", workerd: "1.20261117.1" };
+const folder = at("target", "runtimes");
+const program = (/** @type {string} */ name) => join(folder, "node_modules", ".bin", name);
+
+/** Installs them where they are not; whether each runs. */
+async function installed() {
+  const runs = async (/** @type {string} */ name) => (await attempt(program(name), ["--version"])).reason === "";
+  const present = async () => (await Promise.all(Object.keys(versions).map(runs))).every(Boolean);
+  if (await present()) return true;
+  mkdirSync(folder, { recursive: true });
+  writeFileSync(join(folder, "package.json"), JSON.stringify({ private: true, dependencies: versions }));
+  const names = Object.keys(versions).join(", ");
+  await step(`install ${names}`, () => attempt("npm", ["install", "--no-audit", "--no-fund"], { cwd: folder }));
+  return present();
+}
+
+/** What other runtimes make of the package is, to the bit, what Node makes of it. */
+export async function runtimes() {
+  if (!(await installed())) {
+    console.log("Deno, Bun and workerd can't be installed here. Remedy: let npm run their install scripts.");
+    return { ...noTests(), ...(process.env.CI ? { failed: 1 } : { skipped: 1 }) };
+  }
+  await install();
+  const script = join(installDir, "tests", "bundlers", "runtime.js");
+  const expected = await run(process.execPath, [script], { cwd: installDir });
+  const same = (/** @type {string} */ name, /** @type {readonly string[]} */ args) => async () => {
+    hold(await run(program(name), [...args, script], { cwd: installDir }), expected);
+  };
+  return runChecks([
+    ["Deno, allowed to read files", same("deno", ["run", "--no-lock", "--allow-read"])],
+    ["Bun", same("bun", ["run"])],
+    ["workerd, given the compiled modules", () => checkWorkerd(JSON.parse(expected)[0])],
+  ]);
+}
+
+/**
+ * @param {string} output
+ * @param {string} expected
+ */
+function hold(output, expected) {
+  if (output.trim() !== expected.trim()) throw new Error(`It finds\n${output}\nwhere Node finds\n${expected}`);
+}
+
+/**
+ * As `wrangler` does it: the script is bundled, modules of WebAssembly stay files, and come compiled.
+ * @param {Record<string, number[]>} expected
+ */
+async function checkWorkerd(expected) {
+  const outdir = join(folder, "workerd");
+  await build({
+    entryPoints: [join(installDir, "tests", "bundlers", "workerd.js")],
+    ...{ bundle: true, format: "esm", outdir, loader: { ".wasm": "copy" }, assetNames: "[name]", logLevel: "silent" },
+  });
+  const wasm = ["core_bg.wasm", "formats_bg.wasm"];
+  const modules = [
+    `(name = "main", esModule = embed "workerd.js")`,
+    ...wasm.map((name) => `(name = "./${basename(name)}", wasm = embed "${name}")`),
+  ];
+  const config = join(outdir, "config.capnp");
+  writeFileSync(
+    config,
+    `using Workerd = import "/workerd/workerd.capnp";
+const config :Workerd.Config = (services = [(name = "main", worker = .main)]);
+const main :Workerd.Worker = (compatibilityDate = "2025-01-01", modules = [${modules.join(", ")}]);
+`,
+  );
+  const alone = Object.entries(expected).filter(([name]) => /^\w+, 0\b/.test(name));
+  const outcome = { found: Object.fromEntries(alone), code: "WORKER_FAILED" };
+  hold(await run(program("workerd"), ["test", config]), JSON.stringify(outcome));
+}

@@ -1,0 +1,156 @@
+/** Workers in a real browser: the same bits, cancel, and what becomes of workers that are lost. */
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import type { Page } from "playwright-core";
+import { createAligner } from "sim3align";
+import { PageTest } from "../support/browser.js";
+import { installDir } from "../support/environment.js";
+import { input } from "../support/scene.js";
+
+let browser: PageTest;
+let page: Page;
+let errors: string[];
+before(async () => {
+  browser = await PageTest.start(installDir);
+  ({ page, errors } = await browser.open("node_modules/sim3align/package.json"));
+});
+after(() => browser?.stop());
+
+/** What the functions below find in the page. */
+interface InPage {
+  sim3align: typeof import("sim3align");
+  scene: typeof import("../support/scene.js");
+}
+
+/** Runs a function in the page, with the installed package and the tests' scene. */
+async function run<T>(work: (modules: InPage) => Promise<T>): Promise<T> {
+  return page.evaluate(`(async () => {
+    const sim3align = await import("/node_modules/sim3align/index.js");
+    const scene = await import("/tests/support/scene.js");
+    return (${String(work)})({ sim3align, scene });
+  })()`) as Promise<T>;
+}
+
+test("the bits are those of Node, whoever does the work", async () => {
+  const { matrix } = await (await createAligner()).align(input);
+  const found = await run(async ({ sim3align, scene }) => {
+    const all: number[][] = [];
+    for (const workers of [0, 1, 3]) {
+      const aligner = await sim3align.createAligner({ workers });
+      for (const splitSearch of [false, true]) {
+        all.push(Array.from((await aligner.align(scene.input, { splitSearch })).matrix));
+      }
+      aligner.dispose();
+    }
+    return all;
+  });
+  for (const each of found) assert.deepEqual(each, Array.from(matrix));
+});
+
+test("aborting ends a worker's job, errors keep their class, and progress arrives while the page is free", async () => {
+  const outcome = await run(async ({ sim3align, scene }) => {
+    const aligner = await sim3align.createAligner({ workers: "auto" });
+    const controller = new AbortController();
+    const stages: string[] = [];
+    const reason = await aligner
+      .align(scene.input, {
+        quality: "best",
+        signal: controller.signal,
+        onProgress: ({ stage }) => {
+          stages.push(stage);
+          controller.abort();
+        },
+      })
+      .catch((error) => error.name);
+    const error = await aligner.align(scene.input, { search: "local" }).catch((caught) => caught);
+    const scale = (await aligner.align(scene.input, { quality: "fast" })).scale;
+    aligner.dispose();
+    const disposed = await aligner.align(scene.input).catch((caught) => caught.code);
+    return { reason, stages, isOurs: error instanceof sim3align.Sim3AlignError, code: error.code, scale, disposed };
+  });
+  const { scale, ...rest } = outcome;
+  assert.ok(scale > 0);
+  assert.deepEqual(rest, {
+    reason: "AbortError",
+    stages: ["observe"],
+    isOurs: true,
+    code: "INVALID_OPTION",
+    disposed: "DISPOSED",
+  });
+});
+
+test("arrays are moved and handed back", async () => {
+  const [lengthMeanwhile, lengthAfter] = await run(async ({ sim3align, scene }) => {
+    const aligner = await sim3align.createAligner({ workers: 1 });
+    const moved = structuredClone(scene.input);
+    const call = aligner.align(moved, { quality: "fast", transfer: true });
+    await new Promise((resolve) => setTimeout(resolve, 50));
+    const meanwhile = moved.depth.length;
+    const { input } = await call;
+    aligner.dispose();
+    return [meanwhile, (input as typeof moved).depth.length];
+  });
+  assert.equal(lengthMeanwhile, 0);
+  assert.equal(lengthAfter, input.depth.length);
+});
+
+test("workers that can't be loaded, or throw, are told of by each call; a lost one is replaced", async () => {
+  const outcome = await run(async ({ sim3align, scene }) => {
+    const codes: string[] = [];
+    const scripts = ["/no-such-script.js", URL.createObjectURL(new Blob(["throw new Error('broken')"]))];
+    for (const script of scripts) {
+      const createWorker = () => new Worker(script, { type: "module" });
+      const aligner = await sim3align.createAligner({ workers: 1, createWorker });
+      codes.push(await aligner.align(scene.input).catch((error) => error.code));
+      aligner.dispose();
+    }
+    // The first of these workers throws under its job.
+    let made = 0;
+    const faulty = `import "${location.origin}/node_modules/sim3align/worker.js"; setTimeout(() => { throw new Error("lost"); }, 0);`;
+    const createWorker = () => {
+      made += 1;
+      const script = made === 1 ? URL.createObjectURL(new Blob([faulty], { type: "text/javascript" })) : null;
+      return new Worker(script ?? "/node_modules/sim3align/worker.js", { type: "module" });
+    };
+    const aligner = await sim3align.createAligner({ workers: 1, createWorker });
+    const { scale } = await aligner.align(scene.input, { quality: "best" });
+    aligner.dispose();
+    return { codes, made, scale };
+  });
+  assert.deepEqual(outcome.codes, ["WORKER_FAILED", "WORKER_FAILED"]);
+  assert.equal(outcome.made, 2);
+  assert.ok(outcome.scale > 0);
+});
+
+test("a sandbox that loads nothing can use the package in one piece, with workers", async () => {
+  const scale = await page.evaluate(async () => {
+    const code = await (await fetch("/node_modules/sim3align/inline.js")).text();
+    const frame = document.createElement("iframe");
+    frame.sandbox.add("allow-scripts");
+    const policy = "default-src 'none'; script-src 'unsafe-inline' blob: 'wasm-unsafe-eval'; worker-src blob:";
+    frame.srcdoc = `
+      <meta http-equiv="Content-Security-Policy" content="${policy}">
+      <script type="module">
+        const code = ${JSON.stringify(code).replaceAll("</script", "<\\/script")};
+        const { createAligner } = await import(URL.createObjectURL(new Blob([code], { type: "text/javascript" })));
+        const cloud = Float64Array.of(0,0,0, 1,0,0, 0,1,0, 0,0,1);
+        const pairs = Uint32Array.of(0,0, 1,1, 2,2, 3,3);
+        createAligner({ workers: 1 })
+          .then((aligner) => aligner.estimateSim3(cloud, cloud.map((x) => 2 * x), pairs))
+          .then(({ scale }) => parent.postMessage(scale, "*"), (error) => parent.postMessage(String(error), "*"));
+      </script>`;
+    const answer = new Promise((resolve) => {
+      addEventListener("message", ({ data }) => resolve(data), { once: true });
+    });
+    document.body.append(frame);
+    return Promise.race([answer, new Promise((resolve) => setTimeout(() => resolve("nothing"), 20_000))]);
+  });
+  assert.ok(typeof scale === "number" && Math.abs(scale - 2) < 1e-9, String(scale));
+});
+
+test("none of this says anything on the console, but for the script that is not there", () => {
+  assert.deepEqual(
+    errors.filter((error) => !error.includes("404")),
+    [],
+  );
+});

@@ -1,0 +1,133 @@
+/** The package in apps of every kind, without any configuration for it, in a real browser: the bits are those of Node. */
+import assert from "node:assert/strict";
+import { mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { build as esbuild } from "esbuild";
+import { createAligner } from "sim3align";
+import { createServer, build as vite } from "vite";
+import webpack from "webpack";
+import { PageTest } from "../support/browser.js";
+import { installDir } from "../support/environment.js";
+import { type Found, work } from "./work.js";
+
+const folder = join(installDir, "apps");
+const appOf = (name: string) => join(installDir, "tests", "bundlers", `${name}.js`);
+const page = (script: string, head = "") =>
+  `<!doctype html><html><head><meta charset="utf-8"><link rel="icon" href="data:,">${head}</head>` +
+  `<body><script type="module" src="${script}"></script></body></html>`;
+
+let browser: PageTest;
+let expected: Found;
+before(async () => {
+  rmSync(folder, { recursive: true, force: true });
+  mkdirSync(folder, { recursive: true });
+  browser = await PageTest.start(installDir);
+  expected = await work(createAligner);
+  const first = JSON.stringify(Object.values(expected)[0]);
+  for (const matrix of Object.values(expected)) assert.equal(JSON.stringify(matrix), first, "workers change nothing");
+});
+after(() => browser?.stop());
+
+/** Opens a page of the installation, or of another server, and holds what it shows against Node's result. */
+async function check(path: string): Promise<void> {
+  const { page, errors } = await browser.open(path);
+  await page.waitForSelector("#outcome", { state: "attached", timeout: 120_000 });
+  assert.deepEqual(JSON.parse((await page.textContent("#outcome")) ?? ""), expected);
+  assert.deepEqual(errors, []);
+  await page.close();
+}
+
+/** A folder for one app, with its page. */
+function appFolder(name: string, html: string): string {
+  const path = join(folder, name);
+  mkdirSync(path, { recursive: true });
+  writeFileSync(join(path, "index.html"), html);
+  return path;
+}
+
+test("a plain module script, with an import map", async () => {
+  const map = { imports: { sim3align: "/node_modules/sim3align/index.js" } };
+  appFolder("plain", page("/tests/bundlers/app.js", `<script type="importmap">${JSON.stringify(map)}</script>`));
+  await check("apps/plain/index.html");
+});
+
+test("a plain module script, in one piece", async () => {
+  const map = { imports: { "sim3align/inline": "/node_modules/sim3align/inline.js" } };
+  appFolder(
+    "plain-inline",
+    page("/tests/bundlers/app-inline.js", `<script type="importmap">${JSON.stringify(map)}</script>`),
+  );
+  await check("apps/plain-inline/index.html");
+});
+
+for (const name of ["app", "app-inline"]) {
+  test(`Vite, built: ${name}`, async () => {
+    const root = appFolder(`vite-${name}`, page("./main.js"));
+    writeFileSync(join(root, "main.js"), `import ${JSON.stringify(appOf(name))};\n`);
+    await vite({ root, base: "./", logLevel: "error", configFile: false });
+    await check(`apps/vite-${name}/dist/index.html`);
+  });
+}
+
+test("Vite, as its development server serves it", async () => {
+  const root = appFolder("vite-dev", page("./main.js"));
+  writeFileSync(join(root, "main.js"), `import ${JSON.stringify(appOf("app"))};\n`);
+  const server = await createServer({
+    root,
+    configFile: false,
+    logLevel: "error",
+    server: { host: "127.0.0.1", port: 0, fs: { allow: [installDir] } },
+  });
+  try {
+    await server.listen();
+    await check(server.resolvedUrls?.local[0] ?? "");
+  } finally {
+    await server.close();
+  }
+});
+
+for (const name of ["app", "app-inline"]) {
+  test(`webpack: ${name}`, async () => {
+    const path = appFolder(`webpack-${name}`, page("./main.js"));
+    const stats = await new Promise<webpack.Stats | undefined>((resolve, reject) => {
+      const config = {
+        mode: "production",
+        performance: false,
+        entry: appOf(name),
+        output: { path, filename: "main.js" },
+      } as const;
+      webpack(config, (error, result) => (error ? reject(error) : resolve(result)));
+    });
+    const { errors = [], warnings = [] } = stats?.toJson({ all: false, errors: true, warnings: true }) ?? {};
+    assert.deepEqual([...errors, ...warnings], []);
+    await check(`apps/webpack-${name}/index.html`);
+  });
+}
+
+test("esbuild, in one piece, as one classic script", async () => {
+  const path = appFolder("esbuild", page("./main.js"));
+  const { warnings } = await esbuild({
+    entryPoints: [appOf("app-inline")],
+    bundle: true,
+    format: "iife",
+    outfile: join(path, "main.js"),
+    logLevel: "silent",
+  });
+  assert.deepEqual(warnings, []);
+  assert.deepEqual(readdirSync(path).sort(), ["index.html", "main.js"]);
+  assert.doesNotMatch(readFileSync(join(path, "main.js"), "utf8").slice(0, 100), /^import /);
+  await check("apps/esbuild/index.html");
+});
+
+test("what a bundler leaves out: who wants an error's class or a file reader gets no aligner", async () => {
+  const sizeOf = async (contents: string) => {
+    const { outputFiles } = await esbuild({
+      stdin: { contents, resolveDir: installDir },
+      ...{ bundle: true, format: "esm", splitting: true, outdir: folder, write: false, minify: true },
+    });
+    return outputFiles.find(({ path }) => path.endsWith("stdin.js"))?.contents.length ?? Number.POSITIVE_INFINITY;
+  };
+  assert.ok((await sizeOf('export { Sim3AlignError } from "sim3align";')) < 1000);
+  assert.ok((await sizeOf('export * from "sim3align/formats";')) < 6000);
+});

@@ -1,0 +1,115 @@
+/** The examples that are pages. */
+import assert from "node:assert/strict";
+import { type ChildProcess, execFileSync, spawn } from "node:child_process";
+import { once } from "node:events";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { createInterface } from "node:readline";
+import { after, test } from "node:test";
+import { createAligner } from "sim3align";
+import { readMask } from "sim3align/formats";
+import { PageTest } from "../support/browser.js";
+import { sampleDir } from "../support/environment.js";
+import { examplesDir, program } from "../support/examples.js";
+
+const { skip } = program("CHROMIUM_PATH", "Chromium", "install it (Debian and Ubuntu: apt-get install chromium)");
+const started: { stop(): unknown }[] = [];
+after(async () => {
+  for (const one of started) await one.stop();
+});
+
+/** Opens a page, and waits until it says that it is done. */
+async function opened(folder: string, path: string) {
+  const browser = await PageTest.start(folder);
+  started.push(browser);
+  const { page, errors } = await browser.open(path);
+  await page.waitForSelector('#status:is([data-state="done"], [data-state="failed"])', { timeout: 120_000 });
+  assert.deepEqual(errors, []);
+  assert.equal(await page.getAttribute("#status", "data-state"), "done", (await page.textContent("#status")) ?? "");
+  return { page, errors };
+}
+
+test("02-browser-esm aligns the sample to the same bits as Node", { skip }, async () => {
+  const { page } = await opened(examplesDir, "02-browser-esm/");
+  const shown = JSON.parse((await page.textContent("#result")) ?? "");
+  const read = (name: string) => readFileSync(join(sampleDir, name));
+  const [depth, mask, camera, mesh] = ["depth.npy", "mask.png", "camera.json", "mesh.glb"].map(read);
+  assert.ok(depth && mask && camera && mesh);
+  const direct = await (await createAligner()).align({ depth, mask, camera, mesh });
+  assert.deepEqual(shown.matrix, [...direct.matrix]);
+  assert.equal(shown.confidence, direct.confidence);
+  assert.equal(await page.$eval("#progress", (bar: HTMLProgressElement) => bar.value), 1);
+});
+
+const vite = join(examplesDir, "node_modules", "vite", "bin", "vite.js");
+const viteFolder = join(examplesDir, "03-vite-three");
+
+/** Vite's own server, as `npm start` starts it. */
+async function devServer(): Promise<string> {
+  const child: ChildProcess = spawn(process.execPath, [vite, "--host", "127.0.0.1", "--port", "0"], {
+    cwd: viteFolder,
+  });
+  started.push({
+    stop: () => {
+      child.kill();
+      return once(child, "exit");
+    },
+  });
+  assert.ok(child.stdout);
+  for await (const line of createInterface({ input: child.stdout })) {
+    // biome-ignore lint/suspicious/noControlCharactersInRegex: colours are control characters.
+    const address = /http:\/\/127\.0\.0\.1:\d+\//.exec(line.replace(/\u001b\[[0-9;]*m/g, ""));
+    if (address) return address[0];
+  }
+  throw new Error("Vite did not start.");
+}
+
+for (const kind of ["built", "served by Vite"]) {
+  test(`03-vite-three, ${kind}, draws the mesh where the mask is`, { skip }, async () => {
+    let path = "";
+    if (kind === "built") execFileSync(process.execPath, [vite, "build", "--logLevel", "warn"], { cwd: viteFolder });
+    else path = await devServer();
+    const { page, errors } = await opened(join(viteFolder, "dist"), path);
+    assert.match((await page.textContent("#status")) ?? "", /confidence (0\.[5-9]|1\.0)/);
+
+    // Orange pixels, which are the mesh's: with the depth's points before it some, without them all.
+    const drawn = async (isCloudShown: boolean) => {
+      await page.setChecked("#cloud", isCloudShown);
+      const url = await page.$eval("#view", (canvas: HTMLCanvasElement) => {
+        // Drawing buffers last until the frame ends.
+        canvas.ownerDocument.querySelector("#cloud")?.dispatchEvent(new Event("change"));
+        return canvas.toDataURL();
+      });
+      return page.evaluate(async (source: string) => {
+        const image = new Image();
+        image.src = source;
+        await image.decode();
+        const canvas = document.createElement("canvas");
+        [canvas.width, canvas.height] = [image.width, image.height];
+        const context = canvas.getContext("2d") as CanvasRenderingContext2D;
+        context.drawImage(image, 0, 0);
+        const { data } = context.getImageData(0, 0, image.width, image.height);
+        const isOrange = Array.from(
+          { length: data.length / 4 },
+          (_, i) => (data[4 * i] ?? 0) > 1.5 * (data[4 * i + 2] ?? 0) + 20,
+        );
+        const cloudPixels = isOrange.filter((orange, i) => !orange && (data[4 * i + 2] ?? 0) > 40).length;
+        return { width: image.width, height: image.height, isOrange, cloudPixels };
+      }, url);
+    };
+    const mask = await readMask(readFileSync(join(sampleDir, "mask.png")));
+    const mesh = await drawn(false);
+    assert.deepEqual([mesh.width, mesh.height], [mask.width, mask.height]);
+    let [intersection, union] = [0, 0];
+    mesh.isOrange.forEach((orange, i) => {
+      const isObject = mask.data[i] !== 0;
+      intersection += orange && isObject ? 1 : 0;
+      union += orange || isObject ? 1 : 0;
+    });
+    assert.ok(intersection / union > 0.85, `IoU of the drawn mesh and the mask: ${intersection / union}`);
+    assert.equal(mesh.cloudPixels, 0);
+    const { cloudPixels } = await drawn(true);
+    assert.ok(cloudPixels > 0.3 * mask.data.length, `${cloudPixels} pixels of the depth's points`);
+    assert.deepEqual(errors, []);
+  });
+}

@@ -1,0 +1,140 @@
+/** The example of a batch on a cluster: a queue, workers, and one that is killed. */
+import assert from "node:assert/strict";
+import { type ChildProcess, spawn } from "node:child_process";
+import { EventEmitter, once } from "node:events";
+import { readFileSync, renameSync } from "node:fs";
+import { join } from "node:path";
+import { createInterface } from "node:readline";
+import { after, test } from "node:test";
+import { createAligner } from "sim3align";
+import { otherPose, writeCase } from "../support/case-folder.js";
+import { examplesDir, newFolder, program, runExample } from "../support/examples.js";
+import { RedisServer } from "../support/redis.js";
+
+const name = "07-batch-on-a-cluster";
+const CASES = 12;
+/** Long enough to be killed in. */
+const OPTIONS = { quality: "best" } as const;
+
+const started: (() => unknown)[] = [];
+after(async () => {
+  for (const stop of started.reverse()) await stop();
+});
+
+/** A worker's process, and what it says. */
+class WorkerProcess extends EventEmitter<{ line: [string] }> {
+  readonly lines: string[] = [];
+  readonly child: ChildProcess;
+
+  constructor(env: NodeJS.ProcessEnv) {
+    super();
+    this.child = spawn(process.execPath, ["worker.mjs"], {
+      cwd: join(examplesDir, name),
+      env: { ...process.env, ...env },
+      stdio: ["ignore", "pipe", "inherit"],
+    });
+    createInterface({ input: this.child.stdout as NodeJS.ReadableStream }).on("line", (line) => {
+      this.lines.push(line);
+      this.emit("line", line);
+    });
+    started.push(() => this.stop("SIGKILL"));
+  }
+
+  async stop(signal: NodeJS.Signals): Promise<void> {
+    if (this.child.exitCode !== null || this.child.signalCode !== null) return;
+    this.child.kill(signal);
+    await once(this.child, "exit");
+  }
+
+  /** What it said with this word in front, without the word. */
+  said(word: string): string[] {
+    return this.lines.filter((line) => line.startsWith(`${word} `)).map((line) => line.split(" ")[1] ?? "");
+  }
+
+  /** Waits until what it said with this word in front is enough. */
+  async untilSaid(word: string, isEnough: (said: string[]) => boolean): Promise<void> {
+    while (!isEnough(this.said(word))) await once(this, "line");
+  }
+}
+
+const redisProgram = program(
+  "REDIS_SERVER_PATH",
+  "Redis",
+  "install it (Debian and Ubuntu: apt-get install redis-server)",
+);
+
+test("07: all results are there once, though a worker is killed in the middle of a job", {
+  skip: redisProgram.skip,
+  timeout: 240_000,
+}, async () => {
+  const redis = await RedisServer.start(redisProgram.path, newFolder());
+  started.push(() => redis.stop());
+  const env = { REDIS_URL: redis.url, THREADS: "1", LOCK_MS: "2000" };
+
+  const parent = newFolder();
+  const folders = Array.from({ length: CASES }, (_, i) => writeCase(parent, `case-${i}`, { pose: otherPose(i) }));
+  const atFault = writeCase(parent, "at-fault", { isEmpty: true });
+  const produce = async (cases: string[]) => {
+    const script = `${name}/producer.mjs`;
+    const { status, stdout, stderr } = await runExample(script, ["--options", JSON.stringify(OPTIONS), ...cases], env);
+    assert.equal(status, 0, stderr);
+    return stdout
+      .trim()
+      .split("\n")
+      .map((line) => line.split(" ")[0] ?? "");
+  };
+  const ids = await produce([...folders, atFault]);
+  assert.equal(new Set(ids).size, CASES + 1);
+  // Asked for again, and from a copy of the same files: the same jobs.
+  const copy = writeCase(parent, "copy-of-case-0", { pose: otherPose(0) });
+  assert.deepEqual(await produce([...folders.slice(0, 3), copy]), [...ids.slice(0, 3), ids[0]]);
+
+  // Storage that is away for a while.
+  const [late = "", lateId = ""] = [folders.at(-1), ids[CASES - 1]];
+  renameSync(late, `${late}-away`);
+  const [victim, survivor] = [new WorkerProcess(env), new WorkerProcess(env)];
+  await victim.untilSaid("active", ({ length }) => length === 2);
+  await victim.stop("SIGKILL");
+  const lost = victim
+    .said("active")
+    .filter((id) => !victim.said("stored").includes(id) && !victim.said("failed").includes(id));
+  assert.equal(lost.length, 1, `the worker was killed between jobs: ${victim.lines}`);
+
+  await survivor.untilSaid("failed", (failed) => failed.includes(lateId));
+  renameSync(`${late}-away`, late);
+
+  const { status, stdout, stderr } = await runExample(`${name}/collect.mjs`, [], env);
+  assert.equal(status, 0, stderr);
+  const { results, failures } = JSON.parse(stdout);
+  assert.deepEqual(results.map(({ id }: { id: string }) => id).sort(), ids.slice(0, CASES).sort());
+  const stored = [...victim.said("stored"), ...survivor.said("stored")];
+  assert.deepEqual(stored.sort(), ids.slice(0, CASES).sort(), "each result was stored once");
+  assert.ok(survivor.said("active").includes(lost[0] ?? ""), "the survivor took over what was lost");
+
+  const aligner = await createAligner({ workers: 1 });
+  for (const result of results) {
+    const read = (file: string) => readFileSync(join(result.folder, file));
+    const direct = await aligner.align(
+      {
+        depth: read("depth.npy"),
+        mask: read("mask.png"),
+        camera: read("camera.json"),
+        mesh: read("mesh.obj"),
+      },
+      OPTIONS,
+    );
+    assert.deepEqual(result.matrix, [...direct.matrix], result.folder);
+    assert.equal(result.confidence, direct.confidence);
+  }
+
+  // Bad input is not tried again; what is away is.
+  assert.ok(survivor.said("active").filter((id) => id === lateId).length >= 2);
+  assert.equal(failures.length, 1);
+  assert.equal(failures[0].folder, atFault);
+  assert.equal(failures[0].attempts, 1);
+  assert.match(failures[0].reason, /^EMPTY_MASK: /);
+
+  const ended = once(survivor.child, "exit");
+  survivor.child.kill("SIGTERM");
+  assert.deepEqual(await ended, [0, null], "a worker ends by itself when it is asked to");
+});

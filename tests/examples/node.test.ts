@@ -1,0 +1,170 @@
+/** The examples that run in Node. */
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import { existsSync, readFileSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+import { type Alignment, createAligner } from "sim3align";
+import { fromBop } from "sim3align/conventions";
+import { readMesh } from "sim3align/formats";
+import { otherPose, writeCase } from "../support/case-folder.js";
+import { repository, sampleDir } from "../support/environment.js";
+import { examplesDir, newFolder, runExample } from "../support/examples.js";
+
+const aligner = await createAligner();
+
+/** A case's files, as bytes. */
+function filesOf(folder: string) {
+  const read = (...names: string[]) => {
+    const name = names.find((candidate) => existsSync(join(folder, candidate))) ?? "";
+    return readFileSync(join(folder, name));
+  };
+  const [depth, mask, camera] = [read("depth.npy"), read("mask.png"), read("camera.json")];
+  return { depth, mask, camera, mesh: read("mesh.glb", "mesh.obj") };
+}
+
+const sample = filesOf(sampleDir);
+const gt = JSON.parse(readFileSync(join(sampleDir, "gt.json"), "utf8"));
+const truth = { scale: gt.scale, rotation: gt.rotation, translation: gt.translation };
+
+/** Checks a pose of the sample against what is known of it. */
+async function isRight(matrix: number[]): Promise<void> {
+  const { errors } = await aligner.evaluate(sample, { matrix }, { truth });
+  assert.ok(errors !== null);
+  assert.ok(errors.scaleError < 0.05 && errors.translationErrorRelative < 0.05, JSON.stringify(errors));
+  assert.ok(errors.rotationErrorDeg < 10, JSON.stringify(errors));
+}
+
+test("the compiler finds nothing wrong in the examples", () => {
+  const tsc = join(repository, "node_modules", "typescript", "bin", "tsc");
+  const { stdout } = spawnSync(process.execPath, [tsc, "--project", examplesDir], { encoding: "utf8" });
+  assert.equal(stdout, "");
+});
+
+test("01-one-call prints the transform of a case folder", async () => {
+  const { status, stdout, stderr } = await runExample("01-one-call/align.mjs", [sampleDir]);
+  assert.equal(status, 0, stderr);
+  const printed = JSON.parse(stdout);
+  const direct = await aligner.align(sample);
+  assert.deepEqual(printed.matrix, [...direct.matrix]);
+  assert.equal(printed.confidence, direct.confidence);
+  await isRight(printed.matrix);
+});
+
+test("04-worker-pool-batch writes a table and all results, in order, and goes on after a case at fault", async () => {
+  const parent = newFolder();
+  const folders = [0, 1, 2].map((i) => writeCase(parent, `case-${i}`, { pose: otherPose(i) }));
+  folders.splice(1, 0, writeCase(parent, "at-fault", { isEmpty: true }));
+  const out = join(parent, "results");
+  const { status, stderr } = await runExample("04-worker-pool-batch/batch.mjs", [
+    ...folders,
+    ...["--out", out, "--workers", "2"],
+  ]);
+  assert.equal(status, 1, stderr);
+
+  const [header = "", ...lines] = readFileSync(`${out}.csv`, "utf8").trim().split("\n");
+  const columns = header.split(",");
+  const rows = lines.map((line) => new Map(line.split(",").map((cell, i) => [columns[i] ?? "", cell])));
+  assert.deepEqual(
+    rows.map((row) => [row.get("case"), row.get("error")]),
+    [
+      ["case-0", ""],
+      ["at-fault", "EMPTY_MASK"],
+      ["case-1", ""],
+      ["case-2", ""],
+    ],
+  );
+  const records = JSON.parse(readFileSync(`${out}.json`, "utf8"));
+  for (const [i, folder] of folders.entries()) {
+    assert.equal(records[i].folder, folder);
+    if (i === 1) continue;
+    const direct = await aligner.align(filesOf(folder));
+    assert.deepEqual(records[i].matrix, [...direct.matrix]);
+    assert.equal(Number(rows[i]?.get("scale")), direct.scale);
+    assert.equal(Number(rows[i]?.get("confidence")), direct.confidence);
+  }
+});
+
+test("05-annotation-loop brings a dragged object back, keeps the known size, and exports it", async () => {
+  const out = join(newFolder(), "annotation");
+  const { status, stdout, stderr } = await runExample("05-annotation-loop/annotate.mjs", [sampleDir, out]);
+  assert.equal(status, 0, stderr);
+  assert.match(stdout, /proposal turned by 0°/);
+
+  const { poses, sizeM, knownExtentM, modelMmPerUnit } = JSON.parse(readFileSync(join(out, "annotation.json"), "utf8"));
+  const [dragged, refined, locked] = poses as number[][];
+  await assert.rejects(isRight(dragged ?? []), "what was dragged is off");
+  await isRight(refined ?? []);
+  await isRight(locked ?? []);
+  assert.ok(Math.abs(sizeM[1] - knownExtentM) < 1e-6, `${sizeM}`);
+
+  const { 0: [entry] = [] } = JSON.parse(readFileSync(join(out, "scene_gt.json"), "utf8"));
+  const fromEntry = fromBop(entry, { scale: modelMmPerUnit / 1000 });
+  for (const [i, x] of fromEntry.matrix.entries()) assert.ok(Math.abs(x - (locked?.[i] ?? 0)) < 1e-9);
+
+  // The GLB is in OpenGL's frame: y and z change their signs.
+  const [mesh, placed] = await Promise.all(
+    [sample.mesh, readFileSync(join(out, "placed.glb"))].map((f) => readMesh(f)),
+  );
+  assert.ok(mesh && placed && locked);
+  assert.equal(placed.positions.length, mesh.positions.length);
+  for (let i = 0; i < mesh.positions.length; i += 300) {
+    const at = (k: number) => mesh.positions[i + k] ?? 0;
+    [1, -1, -1].forEach((sign, row) => {
+      const [a = 0, b = 0, c = 0, t = 0] = [0, 4, 8, 12].map((column) => locked[column + row]);
+      const expected = sign * (a * at(0) + b * at(1) + c * at(2) + t);
+      assert.ok(Math.abs((placed.positions[i + row] ?? 0) - expected) < 1e-5);
+    });
+  }
+});
+
+/** As transformers.js' `Tensor`: everything but what onnxruntime has made is behind getters. */
+class Tensor {
+  constructor(
+    private readonly ort_tensor: { type: string; data: Float32Array | Uint8Array; dims: readonly number[] },
+  ) {}
+  get type() {
+    return this.ort_tensor.type;
+  }
+  get data() {
+    return this.ort_tensor.data;
+  }
+  get dims() {
+    return this.ort_tensor.dims;
+  }
+  get size() {
+    return this.ort_tensor.data.length;
+  }
+}
+
+test("06-transformersjs aligns the tensors of a depth pipeline and of SAM", async () => {
+  const { readDepth, readMask } = await import("sim3align/formats");
+  const { data, width, height } = await readDepth(sample.depth);
+  const mask = (await readMask(sample.mask)).data.map((value) => (value === 0 ? 0 : 1));
+  const direct = await aligner.align(sample);
+
+  // Three masks: a part of the object, the object, and everything.
+  const part = mask.map((value, i) => (i % width < 0.5 * width ? value : 0));
+  const three = Uint8Array.from([part, mask, new Uint8Array(mask.length).fill(1)].flatMap((one) => [...one]));
+  const masks = new Tensor({ type: "bool", data: three, dims: [1, 3, height, width] });
+  const iou_scores = new Tensor({ type: "float32", data: Float32Array.of(0.88, 0.98, 0.93), dims: [1, 1, 3] });
+  const { alignTensors } = await import(join(examplesDir, "06-transformersjs", "align-tensors.mjs"));
+  const aligned = (values: Float32Array, disparity?: { scale: number; shift: number }): Promise<Alignment> => {
+    const predicted_depth = new Tensor({ type: "float32", data: values, dims: [height, width] });
+    return alignTensors(
+      aligner,
+      { predicted_depth, masks, iou_scores, disparity },
+      JSON.parse(`${sample.camera}`),
+      sample.mesh,
+    );
+  };
+
+  const metric = await aligned(data);
+  assert.deepEqual(metric.matrix, direct.matrix);
+  const relative = data.map((z) => (z > 0 ? (1 / z - 0.2) / 3 : Number.NaN));
+  await isRight([...(await aligned(relative, { scale: 3, shift: 0.2 })).matrix]);
+
+  const { status, stderr } = await runExample("06-transformersjs/main.mjs", ["photo.jpg", "mug.glb", "320,240", "50"]);
+  assert.equal(status, 1);
+  assert.match(stderr, /npm install @huggingface\/transformers/);
+});

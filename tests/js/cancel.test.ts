@@ -1,0 +1,172 @@
+/** Cancel and progress, with workers and without. No bound here is a claim: `npm run bench:pool` measures. */
+import assert from "node:assert/strict";
+import { after, test } from "node:test";
+import { type Aligner, createAligner, type Progress } from "sim3align";
+import { rejectsWith } from "../support/errors.js";
+import { input, truth } from "../support/scene.js";
+import { slowInput, underWay, Workers, withoutTimes } from "../support/workers.js";
+
+const here = await createAligner();
+const workers = new Workers();
+const pool = await createAligner({ workers: 2, createWorker: workers.create });
+after(() => pool.dispose());
+
+const quick = { quality: "fast" } as const;
+const slow = { quality: "best" } as const;
+const aligners: [string, Aligner][] = [
+  ["without workers", here],
+  ["with workers", pool],
+];
+const isAbort = (error: unknown) => error instanceof DOMException && error.name === "AbortError";
+
+for (const [name, aligner] of aligners) {
+  test(`${name}: what is aborted before it begins does not begin`, async () => {
+    const signal = AbortSignal.abort();
+    await assert.rejects(aligner.align(input, { signal }), isAbort);
+    await assert.rejects(aligner.evaluate(input, truth, { signal }), isAbort);
+    await assert.rejects(aligner.register(new Float32Array(9), new Float32Array(9), { signal }), isAbort);
+    const pairs = new Uint32Array(6);
+    await assert.rejects(aligner.estimateSim3(new Float32Array(9), new Float32Array(9), pairs, { signal }), isAbort);
+    await assert.rejects(async () => {
+      for await (const _ of aligner.alignAll([input], { signal }));
+    }, isAbort);
+  });
+
+  test(`${name}: the signal's own reason is what the call rejects with`, async () => {
+    const reason = new TypeError("the user has left");
+    const controller = new AbortController();
+    const call = aligner.align(slowInput, { ...slow, signal: controller.signal });
+    controller.abort(reason);
+    await assert.rejects(call, (error) => error === reason);
+  });
+
+  test(`${name}: aborting between the stages ends the call, and the next one has the same bits as ever`, async () => {
+    const expected = withoutTimes(await here.align(input, quick));
+    const controller = new AbortController();
+    const stages: string[] = [];
+    const onProgress = ({ stage }: Progress) => {
+      stages.push(stage);
+      if (stage === "prepare") controller.abort();
+    };
+    await assert.rejects(aligner.align(slowInput, { ...slow, signal: controller.signal, onProgress }), isAbort);
+    assert.ok(!stages.includes("metrics"), `${stages}`);
+    assert.deepEqual(withoutTimes(await aligner.align(input, quick)), expected);
+  });
+
+  test(`${name}: what onProgress throws ends the call`, async () => {
+    const failure = new TypeError("not now");
+    let calls = 0;
+    const onProgress = () => {
+      calls += 1;
+      throw failure;
+    };
+    await assert.rejects(aligner.align(slowInput, { ...slow, onProgress }), (error) => error === failure);
+    assert.equal(calls, 1);
+    assert.ok((await aligner.align(input, quick)).scale > 0);
+  });
+
+  test(`${name}: progress rises to 1, at most 20 times a second`, async () => {
+    for (const splitSearch of [false, true]) {
+      const seen: (Progress & { at: number })[] = [];
+      const onProgress = (progress: Progress) => seen.push({ ...progress, at: performance.now() });
+      const { matrix, score } = await aligner.align(slowInput, { ...slow, splitSearch, onProgress });
+      assert.ok(seen.length > 5);
+      assert.equal(seen[0]?.best, undefined);
+      assert.ok(seen.filter(({ best, fraction }) => best && fraction < 0.85).length > 2, "poses come early");
+      assert.deepEqual(seen.at(-1)?.best, { matrix, score });
+      assert.equal(seen.at(-1)?.fraction, 1);
+      for (const [i, { fraction, at }] of seen.entries()) {
+        assert.ok(fraction >= (seen[i - 1]?.fraction ?? 0) && fraction <= 1, `${fraction}`);
+        const twentyBefore = seen[i - 20]?.at ?? Number.NEGATIVE_INFINITY;
+        assert.ok(at - twentyBefore >= 1000, "21 reports in less than a second");
+      }
+    }
+  });
+
+  test(`${name}: a signal that is none is refused`, async () => {
+    const signal = { aborted: false } as AbortSignal;
+    await rejectsWith(() => aligner.align(input, { signal }), {
+      code: "INVALID_ARGUMENT",
+      argument: "options.signal",
+      message: /AbortSignal/,
+    });
+  });
+
+  test(`${name}: alignAll ends when its signal does, also while it waits for an input`, async () => {
+    const controller = new AbortController();
+    async function* stuck() {
+      yield input;
+      controller.abort();
+      await new Promise(() => {});
+    }
+    const indices: number[] = [];
+    await assert.rejects(async () => {
+      for await (const { index } of aligner.alignAll(stuck(), { ...quick, signal: controller.signal })) {
+        indices.push(index);
+      }
+    }, isAbort);
+    assert.ok(indices.length <= 1);
+  });
+}
+
+test("a worker is ended under its job at once, and the job that waits for it is not touched", async () => {
+  const one = await createAligner({ workers: 1 });
+  const controller = new AbortController();
+  const running = one.align(slowInput, { ...slow, signal: controller.signal });
+  const waiting = one.align(input, quick);
+  await underWay();
+  const aborted = performance.now();
+  controller.abort();
+  await assert.rejects(running, isAbort);
+  assert.ok(performance.now() - aborted < 1000, "the whole call takes longer");
+  assert.deepEqual(withoutTimes(await waiting), withoutTimes(await here.align(input, quick)));
+  one.dispose();
+});
+
+test("a job that waits can be aborted, and is not done", async () => {
+  const one = await createAligner({ workers: 1 });
+  const running = one.align(input, quick);
+  const controller = new AbortController();
+  const moved = structuredClone(input);
+  const waiting = one.align(moved, { ...quick, signal: controller.signal, transfer: true });
+  controller.abort();
+  await assert.rejects(waiting, isAbort);
+  assert.deepEqual(moved.depth, input.depth, "it was not moved");
+  assert.ok((await running).scale > 0);
+  assert.ok((await one.align(input, quick)).scale > 0);
+  one.dispose();
+});
+
+test("aborting a shared search ends all of its workers, which are replaced", async () => {
+  const expected = withoutTimes(await here.align(input, slow));
+  const made = workers.made.length;
+  const controller = new AbortController();
+  const call = pool.align(slowInput, { ...slow, splitSearch: true, signal: controller.signal });
+  await underWay();
+  controller.abort();
+  await assert.rejects(call, isAbort);
+  assert.equal(workers.made.length, made + 2);
+  assert.deepEqual(withoutTimes(await pool.align(input, { ...slow, splitSearch: true })), expected);
+});
+
+test("a hundred calls with one signal leave no listener behind", async () => {
+  const { signal } = new AbortController();
+  let listeners = 0;
+  const { addEventListener, removeEventListener } = signal;
+  signal.addEventListener = (...args: Parameters<typeof addEventListener>) => {
+    listeners += 1;
+    addEventListener.apply(signal, args);
+  };
+  signal.removeEventListener = (...args: Parameters<typeof removeEventListener>) => {
+    listeners -= 1;
+    removeEventListener.apply(signal, args);
+  };
+  const warnings: Error[] = [];
+  const warn = (warning: Error) => warnings.push(warning);
+  process.on("warning", warn);
+  const calls = Array.from({ length: 100 }, () => pool.evaluate(input, truth, { signal }));
+  await Promise.all(calls);
+  process.off("warning", warn);
+  assert.equal(listeners, 0);
+  assert.deepEqual(warnings, [], "Node sees no leak");
+});

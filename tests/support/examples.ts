@@ -1,0 +1,49 @@
+/** The examples as they are installed, and how they are run. */
+import { execFile } from "node:child_process";
+import { mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { required } from "./environment.js";
+
+/** The folder of the examples, a copy of the repository's with its packages installed. */
+export const examplesDir = required("SIM3ALIGN_EXAMPLES");
+
+/** What a script printed, and how it ended. */
+export interface Outcome {
+  status: number;
+  stdout: string;
+  stderr: string;
+}
+
+/**
+ * Runs an example's script to its end, in its own folder.
+ * @param script such as `01-one-call/align.mjs`
+ */
+export function runExample(script: string, args: string[] = [], env: NodeJS.ProcessEnv = {}): Promise<Outcome> {
+  const [folder = "", file = ""] = script.split("/");
+  const options = { cwd: join(examplesDir, folder), env: { ...process.env, ...env }, maxBuffer: 1 << 26 };
+  return new Promise((resolve) => {
+    execFile(process.execPath, [file, ...args], options, (error, stdout, stderr) => {
+      const status = error === null ? 0 : typeof error.code === "number" ? error.code : -1;
+      resolve({ status, stdout, stderr });
+    });
+  });
+}
+
+/** A new folder for what an example writes, gone when the test's process ends. */
+export function newFolder(): string {
+  const folder = mkdtempSync(join(tmpdir(), "sim3align-example-"));
+  process.on("exit", () => rmSync(folder, { recursive: true, force: true }));
+  return folder;
+}
+
+/**
+ * A program that a test needs beside Node.
+ * @param variable what the test script names it in
+ * @returns its path, and what `test` takes as `skip`: in continuous integration nothing is skipped, but fails
+ */
+export function program(variable: string, name: string, remedy: string): { path: string; skip: string | false } {
+  const path = process.env[variable] ?? "";
+  if (path !== "" || process.env.CI) return { path, skip: false };
+  return { path, skip: `No ${name}. Remedy: ${remedy}, or name it in ${variable}.` };
+}
