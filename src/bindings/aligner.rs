@@ -2,6 +2,7 @@
 
 use js_sys::Function;
 use serde::Serialize;
+use serde_wasm_bindgen::Serializer;
 use wasm_bindgen::prelude::*;
 
 use super::error::to_js;
@@ -11,7 +12,7 @@ use super::{input, object, options, transform};
 use crate::align::evaluate::EvaluateOptions;
 use crate::align::options::{AlignOptions, EstimateOptions, RegisterOptions};
 use crate::align::{self, estimate_sim3, register};
-use crate::error::Result;
+use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::mesh::Mesh;
 use crate::stages::observe::Observation;
 
@@ -82,7 +83,7 @@ pub fn estimate_sim3(
 /// The default options of every entry point.
 #[wasm_bindgen(skip_typescript)]
 pub fn defaults() -> JsValue {
-    object::object_of([
+    options::object_of([
         ("align", options::defaults::<AlignOptions>()),
         ("evaluate", options::defaults::<EvaluateOptions>()),
         ("register", options::defaults::<RegisterOptions>()),
@@ -98,5 +99,18 @@ pub fn version() -> String {
 
 /// What JavaScript gets: the result as a plain object, or the error to be thrown.
 pub(super) fn answer<T: Serialize>(result: Result<T>) -> core::result::Result<JsValue, JsValue> {
-    result.map(|value| object::of_value(&Value::of(&value))).map_err(|e| to_js(&e))
+    to_object(result.map(|value| Value::of(&value)))
+}
+
+#[inline(never)]
+fn to_object(result: Result<Value>) -> core::result::Result<JsValue, JsValue> {
+    let serializer = Serializer::json_compatible();
+    result
+        .and_then(|value| {
+            value.serialize(&serializer).map_err(|e| {
+                let remedy = "This is a fault of the package: please report it.";
+                Error::new(ErrorCode::Internal, "result", e.to_string(), "a serialisable result", remedy)
+            })
+        })
+        .map_err(|e| to_js(&e))
 }

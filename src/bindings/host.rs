@@ -3,15 +3,16 @@
 use js_sys::{Float64Array, Function};
 use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen::{JsValue, throw_val};
+use web_sys::Performance;
 
 use crate::align::progress::{Host, Stage};
 use crate::geometry::similarity::Similarity;
 
 #[wasm_bindgen]
 extern "C" {
-    /// Windows, workers and Node all have it; where it is missing, the call fails, and nothing else does.
-    #[wasm_bindgen(catch, js_namespace = performance, js_name = now)]
-    fn performance_now() -> Result<f64, JsValue>;
+    /// Windows, workers and Node all have it, by this name, on global objects that share no class.
+    #[wasm_bindgen(thread_local_v2, js_name = performance)]
+    static PERFORMANCE: Option<Performance>;
 }
 
 /// `globalThis.performance` and a callback, either of which may be missing.
@@ -30,7 +31,7 @@ impl JsHost {
 
 impl Host for JsHost {
     fn now_ms(&mut self) -> f64 {
-        performance_now().unwrap_or_default()
+        PERFORMANCE.with(|performance| performance.as_ref().map_or(0.0, Performance::now))
     }
 
     fn progress(&mut self, stage: Stage, fraction: f64) {

@@ -1,35 +1,12 @@
-//! Reads properties of JavaScript objects, with errors that name them; makes plain ones.
+//! Reads properties of JavaScript objects, with errors that name them.
 
 use js_sys::{
     Array, Float32Array, Float64Array, Object, Reflect, Uint8Array, Uint8ClampedArray, Uint16Array, Uint32Array,
 };
 use wasm_bindgen::{JsCast, JsValue};
 
-use super::value::Value;
 use crate::error::{Error, ErrorCode, Result};
 use crate::number::number as number_text;
-
-/// A plain object.
-pub fn object_of<'a>(properties: impl IntoIterator<Item = (&'a str, JsValue)>) -> JsValue {
-    let object = Object::new();
-    for (name, value) in properties {
-        // A fresh object is extensible: setting a property on it can't fail.
-        let _ = Reflect::set(&object, &name.into(), &value);
-    }
-    object.into()
-}
-
-/// Plain objects, arrays and primitives for a tree of values.
-pub fn of_value(value: &Value) -> JsValue {
-    match value {
-        Value::Null => JsValue::NULL,
-        Value::Flag(flag) => (*flag).into(),
-        Value::Number(number) => (*number).into(),
-        Value::Text(text) => text.into(),
-        Value::List(items) => items.iter().map(of_value).collect::<Array>().into(),
-        Value::Record(fields) => object_of(fields.iter().map(|(name, value)| (name.as_str(), of_value(value)))),
-    }
-}
 
 /// The property `key`, or `None` where it is missing, `undefined` or `null`.
 pub fn get(object: &JsValue, key: &str) -> Option<JsValue> {

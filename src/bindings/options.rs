@@ -3,7 +3,7 @@
 use js_sys::{Array, Object, Reflect};
 use wasm_bindgen::{JsCast, JsValue};
 
-use super::object::{describe, get, number, object_of, to_number, to_numbers, wrong_type};
+use super::object::{describe, get, number, to_number, to_numbers, wrong_type};
 use super::transform::similarity;
 use crate::align::evaluate::Truth;
 use crate::align::field::{Field, Options, SYMMETRY};
@@ -52,6 +52,16 @@ fn set_fields(object: &JsValue, also: &[&str], fields: &mut [(&'static str, Fiel
 pub fn defaults<T: Options>() -> JsValue {
     let mut options = T::default();
     object_of(options.fields().iter().map(|(name, field)| (*name, value_of(field))))
+}
+
+/// A plain object.
+pub fn object_of<'a>(properties: impl IntoIterator<Item = (&'a str, JsValue)>) -> JsValue {
+    let object = Object::new();
+    for (name, value) in properties {
+        // A fresh object is extensible: setting a property on it can't fail.
+        let _ = Reflect::set(&object, &name.into(), &value);
+    }
+    object.into()
 }
 
 fn value_of(field: &Field<'_>) -> JsValue {

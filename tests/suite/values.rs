@@ -37,21 +37,10 @@ fn options_sequences_and_variants_are_plain() {
     assert_eq!(Value::of(&vec![warning]), Value::List(vec![expected]));
 }
 
-fn json(value: &Value) -> serde_json::Value {
-    match value {
-        Value::Null => serde_json::Value::Null,
-        Value::Flag(flag) => (*flag).into(),
-        Value::Number(number) => (*number).into(),
-        Value::Text(text) => text.as_str().into(),
-        Value::List(items) => items.iter().map(json).collect(),
-        Value::Record(fields) => fields.iter().map(|(name, value)| (name.clone(), json(value))).collect(),
-    }
-}
-
 #[wasm_bindgen_test(unsupported = test)]
-fn a_tree_holds_what_it_was_made_of() {
+fn a_tree_serialises_as_what_it_was_made_of() {
     let camera_from_mesh = Sim3::from(&Similarity::identity());
     let alternative = Alternative { camera_from_mesh, score: 0.25, turn_deg: 90.5 };
     let direct = serde_json::to_value(&alternative).unwrap();
-    assert_eq!(json(&Value::of(&alternative)), direct);
+    assert_eq!(serde_json::to_value(Value::of(&alternative)).unwrap(), direct);
 }
