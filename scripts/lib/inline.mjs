@@ -1,7 +1,6 @@
 /** `sim3align/inline`: the package in one piece, and the worker's script, whole, in it. */
 import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { build } from "esbuild";
 import { packageDir } from "./paths.mjs";
 import { wasmFile, wasmModules } from "./wasm.mjs";
 
@@ -16,6 +15,8 @@ const common = /** @type {const} */ ({
 
 /** Bundles what the compiler has written to pkg/, which keeps everything else as it is. */
 export async function bundleInline() {
+  // The set-up installs it first.
+  const { build } = await import("esbuild");
   const base64 = Object.fromEntries(
     wasmModules.map((module) => [module.name, readFileSync(wasmFile(module)).toString("base64")]),
   );

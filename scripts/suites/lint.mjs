@@ -1,6 +1,8 @@
 /** Formatters and linters, with warnings denied. */
+import { at } from "../lib/paths.mjs";
 import { nodeProgram, run } from "../lib/run.mjs";
 import { wasmTarget } from "../lib/setup.mjs";
+import { staticPackages } from "../lib/static-imports.mjs";
 import { wasmModules } from "../lib/wasm.mjs";
 import { runChecks } from "./checks.mjs";
 
@@ -16,7 +18,17 @@ export function lint() {
         /** @type {const} */ ([`clippy, ${name} module`, clippy(["--lib", "--target", wasmTarget, ...features])]),
     ),
     ["biome", () => run(node, [biome, "ci", "--error-on-warnings"], { remedy: "npm run format, then what is left" })],
+    ["commands start before any package is installed", checkCommands],
   ]);
+}
+
+/** `npm start` and `npm test` install what they need: nothing may be missing before they do. */
+function checkCommands() {
+  const commands = ["start", "test", "build", "format"].map((name) => at("scripts", `${name}.mjs`));
+  const early = commands.flatMap((command) => staticPackages(command));
+  if (early.length === 0) return;
+  const list = early.map(({ name, importer }) => `${name} in ${importer}`).join(", ");
+  throw new Error(`They import ${list} at once. Remedy: \`await import(…)\` where it is used.`);
 }
 
 /** Type checks of what the build does not compile; they need the built package's declarations. */

@@ -1,7 +1,9 @@
-/** The package in runtimes other than Node: Deno, Bun and Cloudflare's workerd, whose programs are npm packages. */
+/**
+ * The package in other runtimes than the one at hand: Node's oldest and newest, Deno, Bun and Cloudflare's workerd, whose
+ * programs are npm packages.
+ */
 import { mkdirSync, writeFileSync } from "node:fs";
 import { basename, join } from "node:path";
-import { build } from "esbuild";
 import { noTests } from "../lib/counts.mjs";
 import { at, installDir } from "../lib/paths.mjs";
 import { attempt, run } from "../lib/run.mjs";
@@ -9,19 +11,30 @@ import { step } from "../lib/step.mjs";
 import { runChecks } from "./checks.mjs";
 import { install } from "./package.mjs";
 
-/** They are 600 MB, which nothing else needs: they are not among the repository's own packages. */
-const versions = { bun: "1.4.5", deno: "2.9.6", workerd: "1.20261117.1" };
+/** They are 800 MB, which nothing else needs: they are not among the repository's own packages. */
+const packages = {
+  bun: "1.4.5",
+  deno: "2.9.6",
+  "node-newest": "npm:node@26.10.0",
+  // What the package's `engines` promise.
+  "node-oldest": "npm:node@20.0.0",
+  workerd: "1.20261117.1",
+};
 const folder = at("target", "runtimes");
-const program = (/** @type {string} */ name) => join(folder, "node_modules", ".bin", name);
+/** @param {string} name */
+const program = (name) =>
+  name.startsWith("node-")
+    ? join(folder, "node_modules", name, "bin", "node")
+    : join(folder, "node_modules", ".bin", name);
 
 /** Installs them where they are not; whether each runs. */
 async function installed() {
   const runs = async (/** @type {string} */ name) => (await attempt(program(name), ["--version"])).reason === "";
-  const present = async () => (await Promise.all(Object.keys(versions).map(runs))).every(Boolean);
+  const present = async () => (await Promise.all(Object.keys(packages).map(runs))).every(Boolean);
   if (await present()) return true;
   mkdirSync(folder, { recursive: true });
-  writeFileSync(join(folder, "package.json"), JSON.stringify({ private: true, dependencies: versions }));
-  const names = Object.keys(versions).join(", ");
+  writeFileSync(join(folder, "package.json"), JSON.stringify({ private: true, dependencies: packages }));
+  const names = Object.keys(packages).join(", ");
   await step(`install ${names}`, () => attempt("npm", ["install", "--no-audit", "--no-fund"], { cwd: folder }));
   return present();
 }
@@ -29,7 +42,9 @@ async function installed() {
 /** What other runtimes make of the package is, to the bit, what Node makes of it. */
 export async function runtimes() {
   if (!(await installed())) {
-    console.log("Deno, Bun and workerd can't be installed here. Remedy: let npm run their install scripts.");
+    console.log(
+      "Node's versions, Deno, Bun and workerd can't be installed here. Remedy: let npm run their install scripts.",
+    );
     return { ...noTests(), ...(process.env.CI ? { failed: 1 } : { skipped: 1 }) };
   }
   await install();
@@ -39,6 +54,8 @@ export async function runtimes() {
     hold(await run(program(name), [...args, script], { cwd: installDir }), expected);
   };
   return runChecks([
+    ["Node 20.0", same("node-oldest", [])],
+    ["Node 26", same("node-newest", [])],
     ["Deno, allowed to read files", same("deno", ["run", "--no-lock", "--allow-read"])],
     ["Bun", same("bun", ["run"])],
     ["workerd, given the compiled modules", () => checkWorkerd(JSON.parse(expected)[0])],
@@ -58,6 +75,8 @@ function hold(output, expected) {
  * @param {Record<string, number[]>} expected
  */
 async function checkWorkerd(expected) {
+  // The set-up installs it first.
+  const { build } = await import("esbuild");
   const outdir = join(folder, "workerd");
   await build({
     entryPoints: [join(installDir, "tests", "bundlers", "workerd.js")],
