@@ -1,17 +1,13 @@
 /** How the site is built from `www/`, the package in `pkg/` and the samples. */
-import { existsSync, readdirSync } from "node:fs";
+import { existsSync, readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { defineConfig } from "vite";
 
 const www = dirname(fileURLToPath(import.meta.url));
 const repository = dirname(www);
-const samples = join(repository, "target", "samples");
-
-/** Names of the samples' files, so that the page need not ask for a list before it asks for them. */
-const sampleFiles = Object.fromEntries(
-  (existsSync(samples) ? readdirSync(samples) : []).map((name) => [name, readdirSync(join(samples, name)).sort()]),
-);
+/** The samples, listed in the script, so that the page need not ask for the list before it asks for them. */
+const samples = join(www, "samples", "index.json");
 
 export default defineConfig({
   root: www,
@@ -24,7 +20,7 @@ export default defineConfig({
       { find: /^sim3align\/(.+)$/, replacement: join(repository, "pkg", "$1.js") },
     ],
   },
-  define: { SAMPLE_FILES: JSON.stringify(sampleFiles) },
+  define: { SAMPLES: existsSync(samples) ? readFileSync(samples, "utf8") : "[]" },
   worker: { format: "es" },
   logLevel: "warn",
   build: {

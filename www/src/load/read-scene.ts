@@ -103,11 +103,16 @@ async function readObjects(inputs: Inputs, width: number, height: number): Promi
         meshOf(source),
         readTruth(partner(file, inputs.truths, ({ path }) => path)),
       ]);
-      const own = stem(file.path).replace(/^mask[-_ ]*/i, "");
-      const name = own !== "" ? own : several ? `Object ${i + 1}` : inputs.name;
+      const name = file.title ?? nameOf(file.path, several ? `Object ${i + 1}` : inputs.name);
       return { id: `${i}`, name, colour: colours[i % colours.length] ?? "#f08a24", mask, ...mesh, truth };
     }),
   );
+}
+
+/** A name from a mask's path: `mask-cup.png` and `cup/mask.png` are of a cup. */
+function nameOf(path: string, otherwise: string): string {
+  const own = stem(path).replace(/^masks?[-_ ]*/i, "");
+  return own || path.split("/").at(-2) || otherwise;
 }
 
 async function readMaskAt(file: NamedFile, width: number, height: number, resize: boolean): Promise<Uint8Array> {

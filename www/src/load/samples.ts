@@ -1,45 +1,46 @@
 /** The samples that come with the page. */
-import { assigned, type Inputs, noInputs } from "./inputs.js";
+import { type Inputs, noInputs } from "./inputs.js";
 import type { NamedFile } from "./named-file.js";
 
-/** File names by sample; written in by the build. */
-declare const SAMPLE_FILES: Readonly<Record<string, readonly string[]>>;
-
-/** A sample. */
+/** A sample as it was made; paths are below `samples/`. */
 export interface Sample {
   id: string;
   title: string;
   /** What it shows. */
   about: string;
+  depth: string;
+  camera: string;
+  objects: readonly { id: string; title: string; mask: string; mesh: string; truth: string }[];
 }
 
-const known: readonly Sample[] = [
-  { id: "mug", title: "Mug", about: "A mug, seen from one side." },
-  { id: "hammer", title: "Hammer", about: "Long, with a small head." },
-  { id: "spoon", title: "Spoon", about: "Thin: few readings, mostly at its edges." },
-  { id: "occluded", title: "Behind something", about: "Something stands before the object, and hides part of it." },
-  { id: "table", title: "Several on a table", about: "Three objects in one depth map." },
-];
+/** Written in by the build. */
+declare const SAMPLES: readonly Sample[];
 
-/** Those that were built with the page. */
-export const samples: readonly Sample[] = Object.keys(SAMPLE_FILES)
-  .map((id) => known.find((sample) => sample.id === id) ?? { id, title: id, about: "" })
-  .sort((a, b) => known.indexOf(a) - known.indexOf(b));
+export const samples: readonly Sample[] = SAMPLES;
 
 export const sampleOf = (id: string | null): Sample | undefined => samples.find((sample) => sample.id === id);
 
-const folder = (id: string) => new URL(`samples/${id}/`, document.baseURI);
-
-/** A sample's inputs; its files are on their way. */
-export function sampleInputs(sample: Sample): Inputs {
-  const files = (SAMPLE_FILES[sample.id] ?? []).map((path): NamedFile => {
-    const content = fetch(new URL(path, folder(sample.id))).then(async (response) => {
-      if (!response.ok) throw new Error(`${path} could not be loaded: ${response.status} ${response.statusText}.`);
-      return new Uint8Array(await response.arrayBuffer());
-    });
-    // Whoever reads it will say what went wrong.
-    content.catch(() => {});
-    return { path, bytes: () => content };
+/** A file of a sample, which is on its way from now on. */
+function fetched(path: string, title?: string): NamedFile {
+  const content = fetch(new URL(`samples/${path}`, document.baseURI)).then(async (response) => {
+    if (!response.ok) throw new Error(`${path} could not be loaded: ${response.status} ${response.statusText}.`);
+    return new Uint8Array(await response.arrayBuffer());
   });
-  return { ...assigned(files, noInputs, sample.title), sample: sample.id };
+  // Whoever reads it will say what went wrong.
+  content.catch(() => {});
+  return { path, bytes: () => content, ...(title === undefined ? {} : { title }) };
+}
+
+/** A sample's inputs. */
+export function sampleInputs({ id, title, depth, camera, objects }: Sample): Inputs {
+  return {
+    ...noInputs,
+    name: title,
+    sample: id,
+    depth: fetched(depth),
+    camera: { kind: "file", file: fetched(camera) },
+    masks: objects.map(({ mask, title }) => fetched(mask, title)),
+    meshes: objects.map(({ mesh }) => ({ file: fetched(mesh), beside: [] })),
+    truths: objects.map(({ truth }) => fetched(truth)),
+  };
 }
