@@ -1,5 +1,6 @@
 /** The page's beginning: what takes long is begun at once, and side by side. */
 import { render } from "preact";
+import { loadFormats } from "sim3align/formats";
 import { App } from "./app.js";
 import { openSample } from "./load/open.js";
 import { sampleOf, samples } from "./load/samples.js";
@@ -17,14 +18,23 @@ import "../style/panels.css";
 const sample = sampleOf(asked().sample) ?? samples[0];
 followAddress();
 followPoses();
-aligner().catch((error) => say(String(error), "failed"));
+// The sample's files need it as soon as they are there.
+loadFormats().catch(() => {});
+aligner().then(
+  () => performance.mark("aligner ready"),
+  (error) => say(String(error), "failed"),
+);
 const opened = sample === undefined ? Promise.resolve(false) : openSample(sample);
 
 const root = document.getElementById("app");
 if (root !== null) render(<App />, root);
 
-if (await opened) await alignAll();
-else if (sample === undefined) say("Choose files to begin.");
+if (await opened) {
+  performance.mark("opened");
+  await alignAll();
+  performance.mark("aligned");
+}
+if (sample === undefined) say("Choose files to begin.");
 
 addEventListener("hashchange", async () => {
   const next = sampleOf(asked().sample);

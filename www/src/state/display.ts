@@ -7,6 +7,8 @@ export interface ImageLayers {
   outline: boolean;
   silhouette: boolean;
   difference: boolean;
+  /** Whether the objects fill the view, and not the whole image. */
+  zoom: boolean;
   /** Where before ends and after begins, 0 (all after) to 1. */
   wipe: number;
 }
@@ -16,6 +18,7 @@ export const layers = signal<ImageLayers>({
   outline: true,
   silhouette: true,
   difference: false,
+  zoom: true,
   wipe: 0,
 });
 
@@ -31,7 +34,7 @@ export interface Display3d {
   pointSize: number;
 }
 
-export const display3d = signal<Display3d>({ cloud: true, mesh: true, wireframe: false, pointSize: 2 });
+export const display3d = signal<Display3d>({ cloud: true, mesh: true, wireframe: false, pointSize: 1 });
 
 export const gizmo = signal<"translate" | "rotate" | "scale" | null>(null);
 

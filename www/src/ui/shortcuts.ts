@@ -60,6 +60,7 @@ export const shortcuts: readonly Shortcut[] = [
   { key: "m", shown: "M", does: "Mesh on or off", act: toggle3d("mesh") },
   { key: "d", shown: "D", does: "Depth difference", act: () => setLayer("difference", !layers.peek().difference) },
   { key: "b", shown: "B", does: "Before and after", act: () => setLayer("wipe", layers.peek().wipe < 0.5 ? 1 : 0) },
+  { key: "z", shown: "Z", does: "Zoom to the objects", act: () => setLayer("zoom", !layers.peek().zoom) },
   { key: "v", shown: "V", does: "Swap the views", act: swapViews },
   { key: "0", shown: "0 to 9", does: "The result, and its alternatives", act: () => {} },
   { key: "?", shown: "?", does: "This help", act: toggleHelp },

@@ -3,6 +3,7 @@ import { computed, effect } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { depthPicture } from "../draw/colours.js";
 import { compose, differenceLimit, drawn } from "../draw/composition.js";
+import { wholeImage, zoomToObjects } from "../draw/zoom.js";
 import { layers, pointed, setLayer } from "../state/display.js";
 import { objectAt, scene, select, selected } from "../state/scene.js";
 import { drawing, drawingsAt } from "./drawings.js";
@@ -21,6 +22,11 @@ const before = computed(() => {
   return whole === null
     ? []
     : whole.objects.map((object) => drawn(whole, object, object.start.transform.matrix, false));
+});
+
+const zoom = computed(() => {
+  const whole = scene.value;
+  return whole === null || !layers.value.zoom ? wholeImage : zoomToObjects(whole);
 });
 
 let canvasNow: HTMLCanvasElement | null = null;
@@ -43,10 +49,11 @@ function draw(canvas: HTMLCanvasElement): void {
   canvas.getContext("2d")?.putImageData(image, 0, 0);
 }
 
-const switches: readonly [name: "outline" | "silhouette" | "difference", title: string][] = [
+const switches: readonly [name: "outline" | "silhouette" | "difference" | "zoom", title: string][] = [
   ["outline", "Mask"],
   ["silhouette", "Silhouette"],
   ["difference", "Depth difference"],
+  ["zoom", "Zoom"],
 ];
 
 export function ImageView() {
@@ -69,6 +76,7 @@ export function ImageView() {
   const whole = scene.value;
   const { base: shownBase, wipe, difference } = layers.value;
   const ratio = whole === null ? 4 / 3 : whole.width / whole.height;
+  const { factor, x, y } = zoom.value;
   const limit = selected.value === null ? null : 1000 * differenceLimit(selected.value);
   return (
     <section class="view image" aria-labelledby="image-title">
@@ -100,7 +108,7 @@ export function ImageView() {
         </fieldset>
       </div>
       <div class="view-host">
-        <div class="picture" style={{ "--ratio": ratio }}>
+        <div class="picture" style={{ "--ratio": ratio, "--zoom": factor, "--x": x, "--y": y }}>
           <canvas
             ref={canvas}
             role="img"

@@ -54,9 +54,9 @@ export function SpaceView() {
             <span>Size</span>
             <input
               type="range"
-              min="1"
-              max="6"
-              step="0.5"
+              min="0.4"
+              max="3"
+              step="0.2"
               value={pointSize}
               aria-label="Size of the points"
               onInput={({ currentTarget }) => set({ pointSize: currentTarget.valueAsNumber })}
