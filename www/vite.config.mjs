@@ -27,6 +27,8 @@ export default defineConfig({
     outDir: join(repository, "target", "www"),
     emptyOutDir: true,
     target: "es2022",
+    // All of these know light-dark(), which the theme's switch needs as it is.
+    cssTarget: ["chrome123", "firefox120", "safari17.5"],
     // three.js is one chunk, which is loaded when everything else is there.
     chunkSizeWarningLimit: 1000,
   },

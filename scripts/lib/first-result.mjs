@@ -16,7 +16,7 @@ export async function firstResult(executablePath, url) {
   try {
     const page = await browser.newPage();
     await page.goto(url);
-    const done = page.locator('#status:is([data-state="done"], [data-state="failed"]):not(.visually-hidden)');
+    const done = page.locator('#status:is([data-state="done"], [data-state="failed"]):not(.behind)');
     await done.filter({ hasText: /Aligned|:/ }).waitFor({ timeout: LIMIT_MS });
     await page.locator("#dimensions").waitFor({ timeout: LIMIT_MS });
     const milliseconds = await page.evaluate(() => performance.now());

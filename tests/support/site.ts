@@ -47,7 +47,7 @@ export class SitePage {
 
   /** Waits for a line that says so. */
   async says(text: RegExp): Promise<string> {
-    const status = this.page.locator("#status:not(.visually-hidden)").filter({ hasText: text });
+    const status = this.page.locator("#status:not(.behind)").filter({ hasText: text });
     await status.waitFor(PATIENCE);
     return (await status.textContent()) ?? "";
   }

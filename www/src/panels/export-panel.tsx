@@ -22,36 +22,39 @@ export function ExportPanel() {
       <summary>
         <h2>Take along</h2>
       </summary>
-      {isReady ? (
-        <div class="exports">
-          <button type="button" onClick={() => copy(matrixText(object, "columns"), "the matrix, column by column")}>
-            Matrix, columns
-          </button>
-          <button type="button" onClick={() => copy(matrixText(object, "rows"), "the matrix, row by row")}>
-            Matrix, rows
-          </button>
-          <button type="button" onClick={() => download(`${name}.json`, jsonText(whole), "application/json")}>
-            JSON
-          </button>
-          <button type="button" onClick={() => download("scene_gt.json", bopText(whole), "application/json")}>
-            BOP JSON
-          </button>
-          <button type="button" onClick={() => download(`${name}-placed.glb`, glbBytes(object), "model/gltf-binary")}>
-            GLB
-          </button>
-          <button type="button" onClick={() => download(`${name}-placed.ply`, plyBytes(object))}>
-            PLY
-          </button>
-          <button type="button" onClick={savePicture}>
-            PNG of view
-          </button>
-          <button type="button" onClick={() => copy(permalink(), "the link")}>
-            Copy link
-          </button>
-        </div>
-      ) : (
-        <p class="quiet">Align first.</p>
-      )}
+      <fieldset class="exports" disabled={!isReady}>
+        <legend class="visually-hidden">Poses, files and pictures</legend>
+        <button
+          type="button"
+          onClick={() => object && copy(matrixText(object, "columns"), "the matrix, column by column")}
+        >
+          Matrix, columns
+        </button>
+        <button type="button" onClick={() => object && copy(matrixText(object, "rows"), "the matrix, row by row")}>
+          Matrix, rows
+        </button>
+        <button type="button" onClick={() => whole && download(`${name}.json`, jsonText(whole), "application/json")}>
+          JSON
+        </button>
+        <button type="button" onClick={() => whole && download("scene_gt.json", bopText(whole), "application/json")}>
+          BOP JSON
+        </button>
+        <button
+          type="button"
+          onClick={() => object && download(`${name}-placed.glb`, glbBytes(object), "model/gltf-binary")}
+        >
+          GLB
+        </button>
+        <button type="button" onClick={() => object && download(`${name}-placed.ply`, plyBytes(object))}>
+          PLY
+        </button>
+        <button type="button" onClick={savePicture}>
+          PNG of view
+        </button>
+        <button type="button" onClick={() => copy(permalink(), "the link")}>
+          Copy link
+        </button>
+      </fieldset>
       {whole !== null && whole.sample === null && (
         <p class="quiet">A link holds the options, and not your own files: these stay here.</p>
       )}

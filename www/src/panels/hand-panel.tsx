@@ -115,7 +115,7 @@ export function HandPanel() {
           </button>
         </fieldset>
       </details>
-      {object !== null && <KnownSize object={object} />}
+      <KnownSize object={object} />
       <div class="row">
         <button type="button" id="refine" disabled={!isReady} aria-keyshortcuts="F" onClick={refine}>
           Refine from here

@@ -8,19 +8,19 @@ import { centimetres } from "../ui/format.js";
 
 const sides = ["Width", "Height", "Depth"] as const;
 
-export function KnownSize({ object }: { object: ObjectModel }) {
+export function KnownSize({ object }: { object: ObjectModel | null }) {
   const [side, setSide] = useState(1);
-  const now = object.box.value.sizeM[side] ?? 0;
+  const now = object?.box.value.sizeM[side] ?? 0;
 
   const apply = (field: HTMLInputElement) => {
     const wanted = field.valueAsNumber / 100;
-    if (!(wanted > 0) || !(now > 0) || centimetres(wanted) === centimetres(now)) return;
+    if (object === null || !(wanted > 0) || !(now > 0) || centimetres(wanted) === centimetres(now)) return;
     const transform = nudged(object.mesh, object.pose.peek().transform, { scale: wanted / now });
     place(object, { transform, source: "hand" });
     setOption("lockScale", true);
   };
   return (
-    <fieldset class="row known">
+    <fieldset class="row known" disabled={object === null}>
       <legend>Known size</legend>
       <select aria-label="Side" value={side} onChange={({ currentTarget }) => setSide(Number(currentTarget.value))}>
         {sides.map((title, i) => (
@@ -36,7 +36,7 @@ export function KnownSize({ object }: { object: ObjectModel }) {
         step="any"
         inputMode="decimal"
         aria-label={`${sides[side]} in centimetres`}
-        value={centimetres(now)}
+        value={now > 0 ? centimetres(now) : ""}
         onChange={({ currentTarget }) => apply(currentTarget)}
       />
       <span class="unit">cm</span>

@@ -1,4 +1,9 @@
-/** What came of it: size, pose, how sure it is, metrics, other poses. */
+/**
+ * What came of it: size, pose, how sure it is, metrics, other poses. Everything has its place before there is anything to
+ * be shown, so that nothing jumps.
+ */
+import type { PoseErrors } from "sim3align";
+import { inputs } from "../load/open.js";
 import { applyAlternative, shownAlternative } from "../run/alternatives.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { scene, selected } from "../state/scene.js";
@@ -8,40 +13,21 @@ import { Tip } from "../ui/tip.js";
 import { StageTimes } from "./stage-times.js";
 
 export function ResultPanel() {
-  const object = selected.value;
+  const chosen = selected.value;
+  const run = chosen?.run.value;
+  const object = chosen?.isPlaced ? chosen : null;
   return (
-    <section class="result panel" aria-labelledby="result-title" data-source={object?.pose.value.source ?? "none"}>
+    <section class="result panel" aria-labelledby="result-title" data-source={chosen?.pose.value.source ?? "none"}>
       <h2 id="result-title">
         Result
-        {object !== null && (scene.value?.objects.length ?? 0) > 1 && (
+        {chosen !== null && (scene.value?.objects.length ?? 0) > 1 && (
           <span class="of">
-            <span class="swatch" style={{ background: object.colour }} /> {object.name}
+            <span class="swatch" style={{ background: chosen.colour }} /> {chosen.name}
           </span>
         )}
       </h2>
-      {object?.isPlaced ? <Result object={object} /> : <Nothing object={object} />}
-    </section>
-  );
-}
-
-function Nothing({ object }: { object: ObjectModel | null }) {
-  const run = object?.run.value;
-  if (run?.state === "failed") {
-    return (
-      <p class="error" role="alert">
-        {run.error.message}
-      </p>
-    );
-  }
-  return <p class="quiet">{run?.state === "cancelled" ? "Cancelled before there was a result." : "No result yet."}</p>;
-}
-
-function Result({ object }: { object: ObjectModel }) {
-  const run = object.run.value;
-  return (
-    <>
       <Size object={object} />
-      {run.state === "failed" && (
+      {run?.state === "failed" && (
         <p class="error" role="alert">
           {run.error.message}
         </p>
@@ -50,15 +36,16 @@ function Result({ object }: { object: ObjectModel }) {
       <MetricTable object={object} />
       <Pose object={object} />
       <Warnings object={object} />
-      <StageTimes object={object} />
-    </>
+      {object !== null && <StageTimes object={object} />}
+    </section>
   );
 }
 
 const sides = ["width", "height", "depth"];
 
-function Size({ object }: { object: ObjectModel }) {
-  const { sizeM } = object.box.value;
+function Size({ object }: { object: ObjectModel | null }) {
+  const sizeM = object?.box.value.sizeM ?? [null, null, null];
+  const largestM = Math.max(...sizeM.map((side) => side ?? 0));
   return (
     <div class="size">
       <p class="dimensions" id="dimensions">
@@ -66,7 +53,7 @@ function Size({ object }: { object: ObjectModel }) {
           <span key={sides[i]}>
             {i > 0 && <span class="times"> × </span>}
             <span title={`${sides[i]}, along the mesh's ${"xyz"[i]} axis`}>
-              {centimetres(side, Math.max(...sizeM))}
+              {orDash(side, (m) => centimetres(m, largestM))}
             </span>
           </span>
         ))}{" "}
@@ -77,7 +64,14 @@ function Size({ object }: { object: ObjectModel }) {
   );
 }
 
-function Confidence({ object }: { object: ObjectModel }) {
+function Confidence({ object }: { object: ObjectModel | null }) {
+  if (object === null) {
+    return (
+      <p class="badge" data-level="none">
+        No result yet
+      </p>
+    );
+  }
   const { source } = object.pose.value;
   const confidence = object.alignment.value?.confidence ?? null;
   if (source === "hand")
@@ -116,30 +110,30 @@ function Confidence({ object }: { object: ObjectModel }) {
   );
 }
 
-function Alternatives({ object }: { object: ObjectModel }) {
-  const alignment = object.alignment.value;
-  const count = alignment?.alternatives.length ?? 0;
-  if (alignment === null) return null;
-  const shown = shownAlternative(object);
+function Alternatives({ object }: { object: ObjectModel | null }) {
+  const alignment = object?.alignment.value ?? null;
+  const alternatives = alignment?.alternatives ?? [];
+  const shown = object === null ? null : shownAlternative(object);
+  const put = (index: number) => object !== null && applyAlternative(object, index);
   return (
-    <fieldset class="alternatives">
+    <fieldset class="alternatives" disabled={alignment === null}>
       <legend class="visually-hidden">Poses that explain the picture</legend>
-      <button type="button" aria-pressed={shown === -1} onClick={() => applyAlternative(object, -1)}>
+      <button type="button" aria-pressed={shown === -1} onClick={() => put(-1)}>
         Best
       </button>
-      {alignment.alternatives.slice(0, 8).map(({ turnDeg, score }, i) => (
+      {alternatives.slice(0, 8).map(({ turnDeg, score }, i) => (
         <button
           key={`${turnDeg} ${score}`}
           type="button"
           aria-pressed={shown === i}
-          title={`Turned by ${turnDeg.toFixed(0)}°, score ${score.toFixed(3)} (best: ${alignment.score?.toFixed(3)})`}
-          onClick={() => applyAlternative(object, i)}
+          title={`Turned by ${turnDeg.toFixed(0)}°, score ${score.toFixed(3)} (best: ${alignment?.score?.toFixed(3)})`}
+          onClick={() => put(i)}
         >
           {turnDeg.toFixed(0)}°
         </button>
       ))}
       <span class="quiet">
-        {count === 0 ? "No other pose comes near." : "Other poses, by their turn."}
+        {alternatives.length === 0 ? "No other pose comes near." : "Other poses, by their turn."}
         <Tip label="an alternative">
           Poses that explain the picture nearly as well, best first: an object that looks alike from several sides has
           several. Each button turns the mesh to one of them.
@@ -149,8 +143,8 @@ function Alternatives({ object }: { object: ObjectModel }) {
   );
 }
 
-function MetricTable({ object }: { object: ObjectModel }) {
-  const metrics = object.metrics.value;
+function MetricTable({ object }: { object: ObjectModel | null }) {
+  const metrics = object?.metrics.value ?? null;
   return (
     <dl class="metrics" id="metrics">
       {metricTexts.map(({ name, title, about, better, show }) => (
@@ -162,7 +156,7 @@ function MetricTable({ object }: { object: ObjectModel }) {
             </Tip>
           </dt>
           <dd data-metric={name} data-value={metrics?.[name] ?? ""}>
-            {metrics === null ? "…" : orDash(metrics[name], show)}
+            {metrics === null ? (object === null ? "–" : "…") : orDash(metrics[name], show)}
           </dd>
         </div>
       ))}
@@ -170,53 +164,59 @@ function MetricTable({ object }: { object: ObjectModel }) {
   );
 }
 
-function Pose({ object }: { object: ObjectModel }) {
-  const { transform, source } = object.pose.value;
-  const { centerM } = object.box.value;
-  const found = object.alignment.value;
-  const uncertainty = source === "aligned" || source === "refined" ? (found?.uncertainty ?? null) : null;
-  const errors = object.errors.value;
+function Pose({ object }: { object: ObjectModel | null }) {
+  const source = object?.pose.value.source;
+  const isResult = source === "aligned" || source === "refined";
+  const uncertainty = isResult ? object?.alignment.value?.uncertainty : null;
+  // What the view leaves open, to one standard deviation.
+  const within = (value: number | undefined, unit: string) =>
+    value === undefined ? "" : ` ± ${significant(value, 2)}${unit}`;
+  const transform = object?.pose.value.transform;
+  const list = (numbers: readonly number[] | undefined) => numbers?.map((x) => x.toFixed(3)).join(", ") ?? "–";
+  const rows = [
+    [
+      "Scale",
+      `${orDash(transform?.scale, (s) => significant(s, 5))} m per mesh unit${within(uncertainty ? 100 * uncertainty.scale : undefined, " %")}`,
+    ],
+    [
+      "Middle",
+      `${list(object?.box.value.centerM)} m${within(uncertainty ? 1000 * uncertainty.distanceM : undefined, " mm")}`,
+    ],
+    ["Rotation", `${list(transform?.rotation)}${within(uncertainty?.rotationDeg, "°")}`],
+  ];
+  const isKnown = object === null ? inputs.value.truths.length > 0 : object.truth !== null;
   return (
     <dl class="facts">
-      <div>
-        <dt>Scale</dt>
-        <dd>
-          {significant(transform.scale, 5)} m per mesh unit
-          {uncertainty !== null && ` ± ${significant(100 * uncertainty.scale, 2)} %`}
-        </dd>
-      </div>
-      <div>
-        <dt>Middle</dt>
-        <dd>
-          {centerM.map((x) => x.toFixed(3)).join(", ")} m
-          {uncertainty !== null && ` ± ${significant(1000 * uncertainty.distanceM, 2)} mm`}
-        </dd>
-      </div>
-      <div>
-        <dt>Rotation</dt>
-        <dd>
-          {transform.rotation.map((x) => x.toFixed(3)).join(", ")}
-          {uncertainty !== null && ` ± ${significant(uncertainty.rotationDeg, 2)}°`}
-        </dd>
-      </div>
-      {object.truth !== null && (
+      {rows.map(([title, text]) => (
+        <div key={title}>
+          <dt>{title}</dt>
+          <dd>{text}</dd>
+        </div>
+      ))}
+      {isKnown && (
         <div id="errors">
-          <dt>Truth</dt>
-          <dd>
-            {errors === null
-              ? "…"
-              : `scale ${significant(100 * errors.scaleError, 2)} %, turned ${significant(errors.rotationErrorDeg, 2)}°, moved ${significant(1000 * errors.translationErrorM, 2)} mm`}
-          </dd>
+          <dt>
+            Truth
+            <Tip label="the truth">How far the pose is from the one that is known to be right.</Tip>
+          </dt>
+          <dd>{orDash(object?.errors.value, errorText)}</dd>
         </div>
       )}
     </dl>
   );
 }
 
-function Warnings({ object }: { object: ObjectModel }) {
+const errorText = ({ scaleError, rotationErrorDeg, translationErrorM }: PoseErrors) =>
+  [
+    `scale ${significant(100 * scaleError, 2)} %`,
+    `turned ${significant(rotationErrorDeg, 2)}°`,
+    `moved ${significant(1000 * translationErrorM, 2)} mm`,
+  ].join(", ");
+
+function Warnings({ object }: { object: ObjectModel | null }) {
   const warnings = [
     ...(scene.value?.warnings ?? []),
-    ...(object.alignment.value?.warnings.map(({ message }) => message) ?? []),
+    ...(object?.alignment.value?.warnings.map(({ message }) => message) ?? []),
   ];
   if (warnings.length === 0) return null;
   return (

@@ -1,5 +1,6 @@
 /** Align, cancel, and how far it has come. */
 import type { Stage } from "sim3align";
+import { inputs, isReading } from "../load/open.js";
 import { alignAll, alignSelected, cancel, fraction, isRunning } from "../run/align.js";
 import { announcement } from "../state/announcement.js";
 import { type Options, options, setOption } from "../state/options.js";
@@ -39,6 +40,7 @@ function chooseEffort(value: string): void {
 export function RunBar() {
   const { preset, quality } = options.value;
   const objects = scene.value?.objects ?? [];
+  const awaited = isReading.value ? inputs.value.masks.length : 0;
   const running = isRunning.value;
   const run = selected.value?.run.value;
   const stage = run?.state === "running" && run.stage !== null ? stageNames[run.stage] : "";
@@ -70,9 +72,9 @@ export function RunBar() {
             Align
           </button>
         )}
-        {objects.length > 1 && (
-          <button type="button" id="align-all" disabled={running} onClick={alignAll}>
-            Align all {objects.length}
+        {Math.max(objects.length, awaited) > 1 && (
+          <button type="button" id="align-all" disabled={running || objects.length === 0} onClick={alignAll}>
+            Align all {Math.max(objects.length, awaited)}
           </button>
         )}
       </div>
@@ -83,15 +85,17 @@ export function RunBar() {
         data-running={running}
         aria-label="Progress of the alignment"
       />
-      {/* Every stage would be too much to listen to: what is said aloud is the line that replaces it. */}
-      {running && (
-        <p class="stage" aria-hidden="true">
-          {stage || "Waiting"} … {percent} %
+      <div class="said">
+        {/* Every stage would be too much to listen to: what is said aloud is the line below it. */}
+        {running && (
+          <p class="stage" aria-hidden="true">
+            {stage || "Waiting"} … {percent} %
+          </p>
+        )}
+        <p id="status" class={running ? "behind" : ""} role="status" data-state={kind} title={text}>
+          {text}
         </p>
-      )}
-      <p id="status" class={running ? "visually-hidden" : ""} role="status" data-state={kind} title={text}>
-        {text}
-      </p>
+      </div>
     </section>
   );
 }

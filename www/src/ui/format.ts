@@ -9,5 +9,5 @@ export const percent = (share: number): string => `${Math.round(100 * share)} %`
 export const centimetres = (m: number, largestM = m): string => (100 * m).toFixed(Math.abs(largestM) < 0.1 ? 2 : 1);
 
 /** What cannot be measured is a dash. */
-export const orDash = (value: number | null | undefined, show: (value: number) => string): string =>
+export const orDash = <T>(value: T | null | undefined, show: (value: T) => string): string =>
   value === null || value === undefined ? "–" : show(value);

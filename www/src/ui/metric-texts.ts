@@ -31,7 +31,7 @@ export const metricTexts: readonly MetricText[] = [
   },
   {
     name: "depthMaeMm",
-    title: "Depth difference",
+    title: "Depth off",
     better: "low",
     about: "How far, on average, the mesh's surface is before or behind what was measured, inside the mask.",
     show: mm,

@@ -82,7 +82,13 @@ const isTyping = (target: EventTarget | null) =>
 
 function onKey(event: KeyboardEvent): void {
   const { key, ctrlKey, metaKey, altKey, target } = event;
-  if (altKey || event.defaultPrevented || isTyping(target) || document.querySelector("dialog[open]") !== null) return;
+  if (
+    altKey ||
+    event.defaultPrevented ||
+    isTyping(target) ||
+    document.querySelector("dialog[open], :popover-open") !== null
+  )
+    return;
   const isMod = ctrlKey || metaKey;
   if (!isMod && /^\d$/.test(key)) {
     const object = selected.peek();
@@ -91,7 +97,8 @@ function onKey(event: KeyboardEvent): void {
   }
   const found = shortcuts.find((shortcut) => shortcut.key === `${isMod ? "Mod+" : ""}${key}`);
   if (found === undefined) return;
-  event.preventDefault();
+  // Escape closes what is open, too.
+  if (key !== "Escape") event.preventDefault();
   found.act();
 }
 
