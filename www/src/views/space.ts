@@ -13,6 +13,9 @@ export type SpaceState = { kind: "loading" } | { kind: "ready"; view: View } | {
 
 export const space = signal<SpaceState>({ kind: "loading" });
 
+/** Whether the first alignment is over: before, the 3D view would take the processor from it. */
+export const isSettled = signal(false);
+
 /** How long a mesh takes to its place. */
 const ANIMATION_MS = 900;
 
