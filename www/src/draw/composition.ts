@@ -4,6 +4,7 @@ import type { ObjectModel } from "../state/object-model.js";
 import type { Scene } from "../state/scene.js";
 import { differenceColour, type Rgb, rgbOf } from "./colours.js";
 import { type DepthDrawing, drawDepth } from "./rasteriser.js";
+import type { Zoom } from "./zoom.js";
 
 /** A mesh as it is drawn. */
 export interface DrawnObject {
@@ -23,7 +24,7 @@ export function drawn(scene: Scene, object: ObjectModel, matrix: ArrayLike<numbe
 
 /** A fiftieth of the object, in round millimetres: what an eye would call "off". */
 export function differenceLimit({ seen }: ObjectModel): number {
-  const mm = Math.max(1, Math.round((1000 * seen.sizeM) / 20));
+  const mm = Math.max(1, Math.round((1000 * seen.sizeM) / 50));
   return (mm > 10 ? 5 * Math.round(mm / 5) : mm) / 1000;
 }
 
@@ -34,15 +35,20 @@ export function compose(
   before: readonly DrawnObject[],
   after: readonly DrawnObject[],
   { outline, silhouette, difference, wipe }: ImageLayers,
+  zoom: Zoom,
 ): ImageData {
   const { width, height, depthM } = scene;
   const image = new ImageData(Uint8ClampedArray.from(base), width, height);
-  const split = Math.round(wipe * width);
+  const split = wipe >= 1 ? width : wipe > 0 ? columnAt(wipe, zoom, width) : 0;
   const thickness = Math.max(1, Math.round(width / 400));
   paint(before, 0, split);
   paint(after, split, width);
   if (split > 0 && split < width) {
-    for (let v = 0; v < height; v++) mix(image.data, v * width + split, [255, 255, 255], 0.9);
+    // As thick on the screen, however large the pixels are.
+    const line = Math.max(1, Math.round(width / zoom.factor / 200));
+    for (let v = 0; v < height; v++) {
+      for (let u = split; u < Math.min(split + line, width); u++) mix(image.data, v * width + u, [255, 255, 255], 1);
+    }
   }
   return image;
 
@@ -65,6 +71,12 @@ export function compose(
       }
     }
   }
+}
+
+/** The column at a share of what the zoom leaves to be seen. */
+function columnAt(share: number, { factor, x }: Zoom, width: number): number {
+  const column = Math.round((x + (share - 0.5) / factor) * width);
+  return Math.min(Math.max(column, 0), width);
 }
 
 function mix(data: Uint8ClampedArray, pixel: number, colour: Rgb, share: number): void {

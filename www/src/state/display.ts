@@ -9,7 +9,7 @@ export interface ImageLayers {
   difference: boolean;
   /** Whether the objects fill the view, and not the whole image. */
   zoom: boolean;
-  /** Where before ends and after begins, 0 (all after) to 1. */
+  /** Where before ends and after begins, as a share of what is seen: 0 is all after, 1 all before. */
   wipe: number;
 }
 

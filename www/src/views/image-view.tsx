@@ -45,7 +45,7 @@ function draw(canvas: HTMLCanvasElement): void {
   }
   const after = drawingsAt.value;
   const shown = layers.value;
-  const image = compose(whole, picture, shown.wipe > 0 ? before.value : [], after, shown);
+  const image = compose(whole, picture, shown.wipe > 0 ? before.value : [], after, shown, zoom.value);
   canvas.getContext("2d")?.putImageData(image, 0, 0);
 }
 
@@ -66,7 +66,7 @@ export function ImageView() {
     canvas.current?.addEventListener("contextrestored", redraw);
     const stop = effect(() => {
       // Read here, so that each change asks for one drawing in the next frame.
-      void [scene.value, base.value, layers.value, drawingsAt.value];
+      void [scene.value, base.value, layers.value, zoom.value, drawingsAt.value];
       cancelAnimationFrame(frame);
       frame = requestAnimationFrame(redraw);
     });
@@ -132,18 +132,18 @@ export function ImageView() {
       </div>
       <div class="image-foot">
         <label class="wipe">
-          <span>Before</span>
+          <span>After</span>
           <input
             id="wipe"
             type="range"
             min="0"
             max="1"
             step="0.01"
-            value={1 - wipe}
-            aria-label="Before and after"
-            onInput={({ currentTarget }) => setLayer("wipe", 1 - currentTarget.valueAsNumber)}
+            value={wipe}
+            aria-label="From after to before"
+            onInput={({ currentTarget }) => setLayer("wipe", currentTarget.valueAsNumber)}
           />
-          <span>After</span>
+          <span>Before</span>
         </label>
         {difference && limit !== null ? (
           <p class="legend">
