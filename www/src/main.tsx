@@ -9,6 +9,7 @@ import { aligner } from "./run/aligner.js";
 import { followPoses } from "./run/evaluate.js";
 import { say } from "./state/announcement.js";
 import { asked, followAddress } from "./state/permalink.js";
+import { isSettled } from "./views/space.js";
 import "../style/theme.css";
 import "../style/layout.css";
 import "../style/controls.css";
@@ -35,6 +36,7 @@ if (await opened) {
   performance.mark("aligned");
 }
 if (sample === undefined) say("Choose files to begin.");
+isSettled.value = true;
 
 addEventListener("hashchange", async () => {
   const next = sampleOf(asked().sample);

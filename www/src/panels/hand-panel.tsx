@@ -38,7 +38,7 @@ const turns: readonly [title: string, sign: string, axis: Vector3, degrees: numb
 function nudge(how: Nudge): void {
   const object = selected.peek();
   if (object === null) return;
-  place(object, { transform: nudged(object.mesh, object.pose.peek().transform, how), source: "hand" });
+  place(object, { transform: nudged(object.box.peek().centerM, object.pose.peek().transform, how), source: "hand" });
 }
 
 function move(direction: Vector3): void {

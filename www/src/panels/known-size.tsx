@@ -15,7 +15,7 @@ export function KnownSize({ object }: { object: ObjectModel | null }) {
   const apply = (field: HTMLInputElement) => {
     const wanted = field.valueAsNumber / 100;
     if (object === null || !(wanted > 0) || !(now > 0) || centimetres(wanted) === centimetres(now)) return;
-    const transform = nudged(object.mesh, object.pose.peek().transform, { scale: wanted / now });
+    const transform = nudged(object.box.peek().centerM, object.pose.peek().transform, { scale: wanted / now });
     place(object, { transform, source: "hand" });
     setOption("lockScale", true);
   };

@@ -1,7 +1,8 @@
 /** One object: its mask, its mesh, and what has become of it. */
 import { computed, type Signal, signal } from "@preact/signals";
 import type { Alignment, MeshArrays, Metrics, PoseErrors, Sim3AlignError, Stage } from "sim3align";
-import { type ObjectBox, objectDimensions, type Sim3Like } from "sim3align/conventions";
+import type { Sim3Like } from "sim3align/conventions";
+import { type Bounds, boundsOf, type PlacedBox, placed } from "./bounds.js";
 import { type Pose, startPose } from "./pose.js";
 
 /** How an alignment goes. */
@@ -39,6 +40,7 @@ export class ObjectModel implements Readonly<ObjectParts> {
   readonly glb: Uint8Array | null;
   readonly truth: ObjectParts["truth"];
   readonly seen: ObjectParts["seen"];
+  private readonly bounds: Bounds;
   /** Where the mesh is before anything is aligned. */
   readonly start: Pose;
 
@@ -52,7 +54,7 @@ export class ObjectModel implements Readonly<ObjectParts> {
   /** How far the present pose is from the truth, where that is known. */
   readonly errors = signal<PoseErrors | null>(null);
   /** The box around the object at the present pose. */
-  readonly box = computed<ObjectBox>(() => objectDimensions(this.mesh, this.pose.value.transform));
+  readonly box = computed<PlacedBox>(() => placed(this.bounds, this.pose.value.transform));
 
   constructor(parts: ObjectParts) {
     this.id = parts.id;
@@ -63,7 +65,8 @@ export class ObjectModel implements Readonly<ObjectParts> {
     this.glb = parts.glb;
     this.truth = parts.truth;
     this.seen = parts.seen;
-    this.start = { transform: startPose(parts.mesh, parts.seen.middleM, parts.seen.sizeM), source: "start" };
+    this.bounds = boundsOf(parts.mesh);
+    this.start = { transform: startPose(this.bounds, parts.seen.middleM, parts.seen.sizeM), source: "start" };
     this.pose = signal<Pose>(this.start);
   }
 

@@ -1,7 +1,7 @@
 /** Poses of a mesh: camera from mesh, OpenCV camera frame, metres. */
 
-import type { MeshArrays } from "sim3align";
-import { compose, objectDimensions, type Sim3, type Sim3Like, toSim3, type Vector3 } from "sim3align/conventions";
+import { compose, type Sim3, toSim3, type Vector3 } from "sim3align/conventions";
+import { type Bounds, placed } from "./bounds.js";
 
 /** What put the mesh where it is. */
 export type PoseSource = "start" | "aligned" | "alternative" | "refined" | "hand";
@@ -30,24 +30,24 @@ export interface Nudge {
 
 /** The pose after a nudge. */
 export function nudged(
-  mesh: MeshArrays,
-  from: Sim3Like,
+  centerM: Vector3,
+  from: Sim3,
   { moveM = [0, 0, 0], rotation = [0, 0, 0, 1], scale = 1 }: Nudge,
-) {
-  const { centerM } = objectDimensions(mesh, from);
-  const away = { scale: 1, rotation: [0, 0, 0, 1], translation: centerM.map((x) => -x) };
-  const back = { scale: 1, rotation: [0, 0, 0, 1], translation: centerM.map((x, k) => x + (moveM[k] ?? 0)) };
+): Sim3 {
+  const still = [0, 0, 0, 1];
+  const away = { scale: 1, rotation: still, translation: centerM.map((x) => -x) };
+  const back = { scale: 1, rotation: still, translation: centerM.map((x, k) => x + (moveM[k] ?? 0)) };
   return compose(back, { scale, rotation, translation: [0, 0, 0] }, away, from);
 }
 
 /**
- * Where nobody has aligned anything yet: the mesh upright, as in glTF, before the object's middle, about as large as what
- * is seen of it.
+ * Where nobody has aligned anything yet: the mesh upright, as in glTF, in the object's middle, about as large as what is
+ * seen of it.
  */
-export function startPose(mesh: MeshArrays, middleM: Vector3, sizeM: number): Sim3 {
-  const upright = { scale: 1, rotation: [1, 0, 0, 0], translation: [0, 0, 0] };
-  const { sizeM: sides, centerM } = objectDimensions(mesh, upright);
-  const scale = sizeM / (Math.hypot(...sides) || 1);
-  const translation = middleM.map((x, k) => x - scale * (centerM[k] ?? 0)) as Vector3;
+export function startPose(bounds: Bounds, middleM: Vector3, sizeM: number): Sim3 {
+  const scale = sizeM / (Math.hypot(...bounds.sides) || 1);
+  const upright = toSim3({ scale, rotation: [1, 0, 0, 0], translation: [0, 0, 0] });
+  const { centerM } = placed(bounds, upright);
+  const translation = middleM.map((x, k) => x - (centerM[k] ?? 0)) as Vector3;
   return toSim3({ scale, rotation: [1, 0, 0, 0], translation });
 }

@@ -38,7 +38,7 @@ export const metricTexts: readonly MetricText[] = [
   },
   {
     name: "uniChamferMm",
-    title: "Seen to mesh",
+    title: "Points off",
     better: "low",
     about: "How far the measured points are from the mesh, on average, in any direction (one-way chamfer distance).",
     show: mm,

@@ -1,5 +1,6 @@
 /** The stage: a canvas that fills its host, drawn when there is something new to see. */
 import { type Color, type PerspectiveCamera, Scene, WebGPURenderer } from "three/webgpu";
+import { isPresentable } from "./presentable.js";
 
 /** Sharper than this, no eye can tell, and every frame takes longer. */
 const mostPixelRatio = 2;
@@ -29,6 +30,7 @@ interface Graphics {
 }
 
 interface Adapter {
+  requestDevice?(): Promise<unknown>;
   readonly info?: { readonly isFallbackAdapter?: boolean; readonly architecture?: string };
 }
 
@@ -38,9 +40,12 @@ const software = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 async function webGpu(): Promise<Graphics | null> {
   try {
     const { gpu } = navigator as { gpu?: { requestAdapter(): Promise<Adapter | null> } };
-    const info = (await gpu?.requestAdapter())?.info;
-    const isSoftware = info?.isFallbackAdapter === true || software.test(info?.architecture ?? "");
-    return info ? { isWebGpu: true, isSoftware } : null;
+    const adapter = await gpu?.requestAdapter();
+    const info = adapter?.info;
+    if (!adapter || !info) return null;
+    const isSoftware = info.isFallbackAdapter === true || software.test(info.architecture ?? "");
+    if (isSoftware && !(await isPresentable(adapter))) return null;
+    return { isWebGpu: true, isSoftware };
   } catch {
     return null;
   }
@@ -54,6 +59,16 @@ function webGl(): Graphics | null {
   // Browsers allow few contexts at a time.
   context.getExtension("WEBGL_lose_context")?.loseContext();
   return { isWebGpu: false, isSoftware: software.test(name) };
+}
+
+/** Where WebGPU has just failed, the browser may have to start its graphics process anew. */
+async function webGlSoon(): Promise<Graphics | null> {
+  for (let i = 0; i < 8 && "gpu" in navigator; i++) {
+    const found = webGl();
+    if (found) return found;
+    await new Promise((resolve) => setTimeout(resolve, 250));
+  }
+  return webGl();
 }
 
 /** A canvas and its renderer. */
@@ -92,7 +107,7 @@ export class Stage {
   }
 
   private async start(): Promise<void> {
-    const graphics = (this.forceWebGL ? null : await webGpu()) ?? webGl();
+    const graphics = (this.forceWebGL ? null : await webGpu()) ?? (await webGlSoon());
     if (!graphics) throw new NoGraphics();
     const { canvas } = this;
     canvas.style.cssText = "display:block;position:absolute;inset:0;width:100%;height:100%;touch-action:none";

@@ -61,15 +61,19 @@ export function ImageView() {
   useEffect(() => {
     canvasNow = canvas.current;
     let frame = 0;
+    // Drawn again where the graphics device was lost, and all pictures with it.
+    const redraw = () => canvas.current !== null && draw(canvas.current);
+    canvas.current?.addEventListener("contextrestored", redraw);
     const stop = effect(() => {
       // Read here, so that each change asks for one drawing in the next frame.
       void [scene.value, base.value, layers.value, drawingsAt.value];
       cancelAnimationFrame(frame);
-      frame = requestAnimationFrame(() => canvas.current !== null && draw(canvas.current));
+      frame = requestAnimationFrame(redraw);
     });
     return () => {
       stop();
       cancelAnimationFrame(frame);
+      canvasNow?.removeEventListener("contextrestored", redraw);
       canvasNow = null;
     };
   }, []);

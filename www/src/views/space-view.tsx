@@ -1,9 +1,7 @@
 /** The 3D view's frame: the place for its canvas, and what can be switched in it. */
 import { useEffect, useRef } from "preact/hooks";
-import { isRunning } from "../run/align.js";
 import { type Display3d, display3d } from "../state/display.js";
-import { scene } from "../state/scene.js";
-import { mountSpace, space } from "./space.js";
+import { isSettled, mountSpace, space } from "./space.js";
 
 const switches: readonly [name: "cloud" | "mesh" | "wireframe", title: string][] = [
   ["cloud", "Points"],
@@ -24,14 +22,10 @@ const set = (change: Partial<Display3d>) => {
 
 export function SpaceView() {
   const host = useRef<HTMLDivElement>(null);
-  // The first alignment goes before: both want the processor.
-  const isFirstDone = scene.value !== null && !isRunning.value;
-  const isBegun = useRef(false);
+  const isWanted = isSettled.value;
   useEffect(() => {
-    if (!isFirstDone || isBegun.current || host.current === null) return;
-    isBegun.current = true;
-    mountSpace(host.current);
-  }, [isFirstDone]);
+    if (isWanted && host.current !== null) mountSpace(host.current);
+  }, [isWanted]);
   const state = space.value;
   const { pointSize } = display3d.value;
   return (

@@ -6,12 +6,15 @@ import { place } from "../state/history.js";
 import type { ObjectModel } from "../state/object-model.js";
 import type { Pose } from "../state/pose.js";
 import { type Scene, scene, select, selected } from "../state/scene.js";
-import { loadViewModule, type ObjectInput, type View } from "./view-module.js";
+import type { ObjectInput, View } from "../view3d/types.js";
 
 /** How the 3D view is. */
 export type SpaceState = { kind: "loading" } | { kind: "ready"; view: View } | { kind: "none"; reason: string };
 
 export const space = signal<SpaceState>({ kind: "loading" });
+
+/** Whether the first alignment is over: before, the 3D view would take the processor from it. */
+export const isSettled = signal(false);
 
 /** How long a mesh takes to its place. */
 const ANIMATION_MS = 900;
@@ -21,10 +24,9 @@ export async function mountSpace(host: HTMLElement): Promise<void> {
   /** Where a drag began. */
   let dragged: { object: ObjectModel; from: Pose } | undefined;
   try {
-    const { createView } = await loadViewModule();
-    const parameters = new URLSearchParams(location.search);
-    const options = parameters.get("graphics") === "webgl" ? { forceWebGL: true } : {};
-    if (parameters.get("graphics") === "none") throw new Error("The 3D view is off: the address says graphics=none.");
+    // The library for it is larger than all the rest, and comes when the rest is there.
+    const { createView } = await import("../view3d/index.js");
+    const options = { forceWebGL: new URLSearchParams(location.search).get("graphics") === "webgl" };
     const view = await createView(
       host,
       {
