@@ -22,6 +22,7 @@ import {
 import { matrixOf, moved, type Pose, poseOf } from "./pose.js";
 import type { Display, Matrix, ObjectInput } from "./types.js";
 
+const white = new Color(0xffffff);
 /** The outline's width as a share of the mesh's box diagonal. */
 const outlineWidth = 0.006;
 
@@ -84,7 +85,7 @@ export class Model {
   /** Normals, materials that can be seen in this light, and outlines. */
   private prepare(): void {
     const width = uniform(2 * this.radius * outlineWidth);
-    const outline = new MeshBasicNodeMaterial({ side: BackSide, color: this.colour });
+    const outline = new MeshBasicNodeMaterial({ side: BackSide, color: this.colour.clone().lerp(white, 0.7) });
     // In the mesh's own frame, whose scale is that of the nodes at most.
     outline.positionNode = positionLocal.add(normalLocal.mul(width));
     this.materials.push(outline);

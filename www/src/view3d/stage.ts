@@ -125,6 +125,7 @@ export class Stage {
       renderer.dispose();
       throw new NoGraphics(error);
     }
+    if (this.isDisposed) return renderer.dispose();
     this.renderer = renderer;
     const isWebGpu = (renderer.backend as { isWebGPUBackend?: boolean }).isWebGPUBackend === true;
     this.graphics = { ...graphics, isWebGpu };
@@ -189,6 +190,7 @@ export class Stage {
       if (++this.losses > 1) throw new NoGraphics();
       this.canvas = document.createElement("canvas");
       await this.start();
+      if (this.isDisposed) return;
       if (label) this.canvas.setAttribute("aria-label", label);
       this.events?.onCanvas(this.canvas);
       this.fit();

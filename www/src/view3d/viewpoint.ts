@@ -17,6 +17,8 @@ export class Viewpoint {
   isCamera = false;
   /** Whether somebody has moved it since the last look. */
   isTouched = false;
+  /** Whether somebody has taken hold of it since the last look. */
+  private isHeld = false;
   private scene: SceneInput | null = null;
   private size = { width: 1, height: 1 };
   private readonly lens = { near: 0.01, far: 100 };
@@ -25,10 +27,13 @@ export class Viewpoint {
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = !matchMedia("(prefers-reduced-motion: reduce)").matches;
     this.controls.dampingFactor = 0.12;
-    this.controls.addEventListener("change", onChange);
     this.controls.addEventListener("start", () => {
-      this.isCamera = false;
-      this.isTouched = true;
+      this.isHeld = true;
+    });
+    this.controls.addEventListener("change", () => {
+      // A click alone moves nothing; what has been let go may go on turning.
+      if (this.isHeld) this.isCamera = false;
+      this.isTouched ||= this.isHeld;
       onChange();
     });
   }
@@ -75,8 +80,6 @@ export class Viewpoint {
 
   /** Looks at a target of a radius, metres. */
   lookFrom(which: Look, target: Vector3, radius: number): void {
-    this.isCamera = which === "camera";
-    this.isTouched = false;
     const { camera, controls } = this;
     camera.up.set(0, 1, 0);
     // What is left of the last movement must not go on.
@@ -98,6 +101,9 @@ export class Viewpoint {
     }
     controls.update();
     controls.enableDamping = isDamped;
+    this.isHeld = false;
+    this.isTouched = false;
+    this.isCamera = which === "camera";
   }
 
   /** Turns about another point from now on, which comes to the middle. */
