@@ -84,6 +84,7 @@ function follow(view: View, isDragging: () => boolean): void {
       if (scene.peek() !== whole) return;
       stopPoses = whole.objects.map((object) => followPose(view, object, isDragging));
       view.select(selected.peek()?.id ?? null);
+      view.focus();
     }, console.error);
   });
   effect(() => {
