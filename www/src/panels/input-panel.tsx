@@ -1,15 +1,25 @@
 /** The inputs: files by field, or a whole case at once. */
+import { useEffect, useRef } from "preact/hooks";
 import { baseName, fromFile } from "../load/named-file.js";
-import { inputs, open, openFiles } from "../load/open.js";
+import { fieldErrors, inputs, open, openFiles } from "../load/open.js";
 import { CameraField } from "./camera-field.js";
 import { FileField } from "./file-field.js";
 
 const names = (files: readonly { path: string }[]) => files.map(({ path }) => baseName(path)).join(", ");
 
 export function InputPanel() {
+  const panel = useRef<HTMLDetailsElement>(null);
+  const errors = fieldErrors.value;
+  // What is wrong has to be seen, wherever the panel was scrolled to.
+  useEffect(() => {
+    const wrong = panel.current?.querySelector('[data-wrong="true"]');
+    if (panel.current === null || wrong === null || wrong === undefined) return;
+    panel.current.open = true;
+    wrong.scrollIntoView({ block: "nearest" });
+  }, [errors]);
   const { depth, masks, meshes, photo, depthScale, resizeMasks } = inputs.value;
   return (
-    <details class="panel input-panel" id="inputs" open>
+    <details class="panel input-panel" id="inputs" open ref={panel}>
       <summary>
         <h2>Input</h2>
       </summary>

@@ -52,12 +52,13 @@ function Size({ object }: { object: ObjectModel | null }) {
         {sizeM.map((side, i) => (
           <span key={sides[i]}>
             {i > 0 && <span class="times"> × </span>}
-            <span title={`${sides[i]}, along the mesh's ${"xyz"[i]} axis`}>
-              {orDash(side, (m) => centimetres(m, largestM))}
-            </span>
+            {orDash(side, (m) => centimetres(m, largestM))}
           </span>
         ))}{" "}
         <span class="unit">cm</span>
+        <Tip label="the size">
+          Width × height × depth of the box around the object, along the mesh's own x, y and z.
+        </Tip>
       </p>
       <Confidence object={object} />
     </div>
