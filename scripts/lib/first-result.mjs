@@ -19,7 +19,7 @@ export async function firstResult(executablePath, url) {
     const done = page.locator('#status:is([data-state="done"], [data-state="failed"]):not(.behind)');
     await done.filter({ hasText: /Aligned|:/ }).waitFor({ timeout: LIMIT_MS });
     await page.locator("#dimensions").waitFor({ timeout: LIMIT_MS });
-    const milliseconds = await page.evaluate(() => performance.now());
+    const milliseconds = await page.evaluate(() => performance.getEntriesByName("aligned")[0]?.startTime ?? 0);
     const text = async (/** @type {string} */ selector) => (await page.textContent(selector))?.trim() ?? "";
     const [status, dimensions, confidence] = await Promise.all(["#status", "#dimensions", "#confidence"].map(text));
     return { status: status ?? "", dimensions: dimensions ?? "", confidence: confidence ?? "", milliseconds };

@@ -48,14 +48,16 @@ function Size({ object }: { object: ObjectModel | null }) {
   const largestM = Math.max(...sizeM.map((side) => side ?? 0));
   return (
     <div class="size">
-      <p class="dimensions" id="dimensions">
-        {sizeM.map((side, i) => (
-          <span key={sides[i]}>
-            {i > 0 && <span class="times"> × </span>}
-            {orDash(side, (m) => centimetres(m, largestM))}
-          </span>
-        ))}{" "}
-        <span class="unit">cm</span>
+      <p class="dimensions">
+        <span id="dimensions">
+          {sizeM.map((side, i) => (
+            <span key={sides[i]}>
+              {i > 0 && <span class="times"> × </span>}
+              {orDash(side, (m) => centimetres(m, largestM))}
+            </span>
+          ))}{" "}
+          <span class="unit">cm</span>
+        </span>
         <Tip label="the size">
           Width × height × depth of the box around the object, along the mesh's own x, y and z.
         </Tip>
@@ -100,8 +102,10 @@ function Confidence({ object }: { object: ObjectModel | null }) {
     low: "Unsure",
   }[level];
   return (
-    <p class="badge" id="confidence" data-level={level}>
-      {percent(confidence)} · {advice}
+    <p class="badge" data-level={level}>
+      <span id="confidence">
+        {percent(confidence)} · {advice}
+      </span>
       <Tip label="the confidence">
         How likely the pose is right: scale within 5 %, rotation within 10°, position within 5 % of the object's size.
         It was calibrated on generated cases. From 90 % on, take it; below 70 %, try the alternatives, or say what is
