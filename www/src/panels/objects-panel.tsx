@@ -9,7 +9,7 @@ function stateOf(run: Run, object: ObjectModel): string {
   if (run.state === "running") return `${Math.round(100 * run.fraction)} %`;
   if (run.state === "failed") return "failed";
   if (!object.isPlaced) return run.state === "cancelled" ? "cancelled" : "not aligned";
-  return `${object.box.value.sizeM.map((side) => Math.round(100 * side)).join(" × ")} cm`;
+  return `${object.box.value.sizeM.map((side) => Math.round(100 * side)).join("×")} cm`;
 }
 
 export function ObjectsPanel() {

@@ -84,7 +84,8 @@ function follow(view: View, isDragging: () => boolean): void {
       if (scene.peek() !== whole) return;
       stopPoses = whole.objects.map((object) => followPose(view, object, isDragging));
       view.select(selected.peek()?.id ?? null);
-      view.focus();
+      // Several are seen together, as they are.
+      if (whole.objects.length === 1) view.focus();
     }, console.error);
   });
   effect(() => {
