@@ -1,5 +1,5 @@
 /**
- * The file readers alone: depth maps, masks and meshes, without the aligner. `Aligner.align` takes the same files as they
+ * The file readers alone: depth maps, masks, meshes and cameras, without the aligner. `Aligner.align` takes the same files as they
  * are; these are for those who want to look at what is in them.
  * @packageDocumentation
  */
@@ -8,12 +8,12 @@ import { formatsModule } from "./formats-module.js";
 import { fileBytes } from "./input/bytes.js";
 import type { CocoRle, EncodedBytes, MeshFormat } from "./input/types.js";
 import { isRecord, withoutUndefined } from "./values.js";
-import type { DepthImage, MaskImage, MeshArrays } from "./wasm/formats.js";
+import type { CameraFile, DepthImage, MaskImage, MeshArrays } from "./wasm/formats.js";
 import type { WasmSource } from "./wasm-module.js";
 
 export { type ErrorCode, type ErrorParts, Sim3AlignError } from "./error.js";
 export type { CocoRle, EncodedBytes, MeshFormat } from "./input/types.js";
-export type { DepthImage, MaskImage, MeshArrays } from "./wasm/formats.js";
+export type { CameraFile, DepthImage, MaskImage, MeshArrays } from "./wasm/formats.js";
 export type { WasmSource } from "./wasm-module.js";
 
 /**
@@ -28,11 +28,12 @@ export async function loadFormats(wasm?: WasmSource): Promise<void> {
 /**
  * Reads a 16-bit grey PNG or a `.npy` array: metres along the optical axis, row by row; 0 is no reading.
  * @param options.depthScale metres per unit, above 0; by default whole numbers are millimetres, and floats metres
+ * @param options.integerDepthScale the same, for whole numbers alone: what a camera file says
  * @throws {@link Sim3AlignError} for what is no such file
  */
 export async function readDepth(
   file: EncodedBytes,
-  options: { depthScale?: number | undefined } = {},
+  options: { depthScale?: number | undefined; integerDepthScale?: number | undefined } = {},
 ): Promise<DepthImage> {
   const bytes = await bytesOf(file);
   return (await formatsModule.load()).call((readers) => readers.readDepth(bytes, withoutUndefined(options)));
@@ -66,6 +67,21 @@ export async function readMesh(
 ): Promise<MeshArrays> {
   const bytes = await bytesOf(file);
   return (await formatsModule.load()).call((readers) => readers.readMesh(bytes, withoutUndefined(options)));
+}
+
+/**
+ * Reads a camera file: our own `camera.json`, BOP's `scene_camera.json`, ROS CameraInfo, Open3D's intrinsics; bytes, text
+ * or parsed JSON. Pixel centres are at whole numbers.
+ * @param options.width the image's size, to which stated intrinsics have to belong
+ * @param options.imageId which entry of a `scene_camera.json`
+ * @throws {@link Sim3AlignError} for what is no such file
+ */
+export async function readCamera(
+  file: EncodedBytes | string | Readonly<Record<string, unknown>>,
+  options: { width?: number | undefined; height?: number | undefined; imageId?: string | number | undefined } = {},
+): Promise<CameraFile> {
+  const content = isRecord(file) || typeof file === "string" ? file : await bytesOf(file);
+  return (await formatsModule.load()).call((readers) => readers.readCamera(content, withoutUndefined(options)));
 }
 
 async function bytesOf(file: unknown): Promise<Uint8Array> {

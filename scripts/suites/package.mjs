@@ -7,6 +7,7 @@ import { nodeCounts, noTests, withStatus } from "../lib/counts.mjs";
 import { at, installDir, packageDir, repository } from "../lib/paths.mjs";
 import { attempt, nodeProgram, run } from "../lib/run.mjs";
 import { makeSample, sampleDir } from "../lib/sample.mjs";
+import { buildSite } from "../lib/site.mjs";
 import { digest, filesBelow, Stamp } from "../lib/stamp.mjs";
 import { step } from "../lib/step.mjs";
 import { kilobytes } from "../lib/wasm.mjs";
@@ -144,7 +145,10 @@ async function inBrowser(folder) {
   return { ...noTests(), ...(process.env.CI ? { failed: 1 } : { skipped: 1 }) };
 }
 
-export const browser = () => inBrowser("browser");
+export async function browser() {
+  await buildSite();
+  return inBrowser("browser");
+}
 
 /** The package in other people's apps. */
 export const bundlers = () => inBrowser("bundlers");

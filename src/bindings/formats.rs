@@ -71,7 +71,7 @@ export interface ReadCameraOptions {
   /** Which entry of a BOP `scene_camera.json`. */
   imageId?: string | number;
 }
-
+/** What a camera file says: intrinsics, pixels (centres at whole numbers), for an image of width × height. */
 export interface CameraFile {
   fx: number;
   fy: number;

@@ -42,9 +42,10 @@ impl SampleCase {
     pub fn new(kind: Kind, seed: u64) -> Result<Self> {
         let object = kind.mesh(seed)?;
         let view = View::new(&object, seed)?;
-        let seen = view.see(&object, seed)?;
+        let occluder = kind.occluder(seed)?.map(|thing| view.before(&object, &thing)).transpose()?;
+        let seen = view.see(&object, occluder.as_ref(), seed)?;
         // In the object's frame, before the mesh gets its own: so the truth is exact.
-        let generated = hallucinate(&object, &seen.vertices, seed)?;
+        let generated = hallucinate(&object, &seen.vertices, kind.bulge(), seed)?;
         let (mesh, object_from_mesh) = canonicalise(&generated, seed)?;
         Ok(Self {
             kind,
@@ -57,24 +58,25 @@ impl SampleCase {
         })
     }
 
-    /// The files of its case folder: name and content.
+    /// The files of its case folder: name and content. Depth is written as floats, or, with metres per unit, as whole
+    /// numbers.
     ///
     /// # Errors
     /// [`ErrorCode::Internal`] where an encoder fails.
-    pub fn files(&self) -> Result<Vec<(&'static str, Vec<u8>)>> {
+    pub fn files(&self, depth_scale: Option<f64>) -> Result<Vec<(&'static str, Vec<u8>)>> {
         let note =
             format!("generated: {}, seed {}; the side that was not seen is invented", self.kind.as_str(), self.seed);
         let truth = json!({ "symmetry": self.kind.symmetry(), "note": note });
-        case_files(&self.observation, &self.mesh, &self.camera_from_mesh, truth, None)
+        case_files(&self.observation, &self.mesh, &self.camera_from_mesh, truth, depth_scale)
     }
 
-    /// Writes the case folder, and creates it where it does not exist.
+    /// Writes the case folder, and creates it where it does not exist. For `depth_scale` see [`SampleCase::files`].
     ///
     /// # Errors
     /// [`ErrorCode::InvalidArgument`] where the folder or a file can't be written, and those of
     /// [`SampleCase::files`].
-    pub fn write(&self, folder: &Path) -> Result<()> {
-        write_files(folder, &self.files()?)
+    pub fn write(&self, folder: &Path, depth_scale: Option<f64>) -> Result<()> {
+        write_files(folder, &self.files(depth_scale)?)
     }
 }
 

@@ -2,20 +2,27 @@
 
 use core::f64::consts::TAU;
 
+use glam::Vec3;
 use nalgebra::{Matrix3, Vector3};
 
+use super::evaluation::scene::{count, hidden, in_front, put_before};
 use super::{DEPTH_STREAM, VIEW_STREAM, between};
 use crate::error::Result;
 use crate::geometry::image::{DepthMap, Image, Mask};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::pinhole::Pinhole;
 use crate::geometry::random::Random;
-use crate::geometry::rasteriser::{NO_TRIANGLE, Rasteriser};
-use crate::geometry::similarity::{Similarity, vector3};
+use crate::geometry::rasteriser::Rasteriser;
+use crate::geometry::similarity::{Similarity, vec3, vector3};
 
 const WIDTH: usize = 640;
 const HEIGHT: usize = 480;
 
+/// The largest share of an object that is hidden, and how many half centimetres aside a thing moves at most to hide less.
+const MOST_HIDDEN: f64 = 0.35;
+const STEPS_ASIDE: u8 = 40;
+/// How far apart they stand, metres.
+const GAP_M: f32 = 0.008;
 /// Largest sum of the amplitudes of the low-frequency warp, as a share of depth.
 const WARP: f64 = 0.01;
 /// Waves that the warp is made of.
@@ -79,24 +86,59 @@ impl View {
         })
     }
 
-    /// Renders the object on its table and degrades the depth as a monocular model would. The warp has no part that
+    /// The thing moved to where it hides a good part of the object, if it is of a fitting size: on the table, right before
+    /// the object, and aside as far as it has to be.
+    ///
+    /// # Errors
+    /// Those of [`Mesh::new`], which a fault of the generator alone could cause.
+    pub fn before(&self, object: &Mesh, thing: &Mesh) -> Result<Mesh> {
+        let rendered = |mesh: &Mesh| {
+            let mut rasteriser = Rasteriser::new();
+            rasteriser.render_depth(mesh, &self.camera_from_object, &self.camera, WIDTH, HEIGHT);
+            rasteriser.depth().to_vec()
+        };
+        let alone = rendered(object);
+        let towards = vec3(&self.wall.0);
+        let reach = |mesh: &Mesh, way: Vec3| mesh.positions().iter().fold(0.0f32, |far, p| far.max(p.dot(way)));
+        let before = towards * (GAP_M + reach(object, towards) + reach(thing, -towards));
+        let aside = Vec3::Z.cross(towards);
+        let at = |step: u8| {
+            let place = before + aside * (0.005 * f32::from(step));
+            Mesh::new(thing.positions().iter().map(|p| *p + place).collect(), thing.triangles().to_vec())
+        };
+        for step in 0..STEPS_ASIDE {
+            let placed = at(step)?;
+            if hidden(&alone, &rendered(&placed)) as f64 <= MOST_HIDDEN * count(&alone) as f64 {
+                return Ok(placed);
+            }
+        }
+        at(STEPS_ASIDE)
+    }
+
+    /// Renders the object on its table, with what stands before it, and degrades the depth as a monocular model would. The warp has no part that
     /// scales the object as a whole: the truth is that of the depth map's own metric.
     ///
     /// # Errors
     /// Those of [`Image::new`], which a fault of the generator alone could cause.
-    pub fn see(&self, mesh: &Mesh, seed: u64) -> Result<Seen> {
+    pub fn see(&self, mesh: &Mesh, occluder: Option<&Mesh>, seed: u64) -> Result<Seen> {
         let mut rasteriser = Rasteriser::new();
+        let mut others = vec![0.0; WIDTH * HEIGHT];
+        if let Some(occluder) = occluder {
+            rasteriser.render_depth(occluder, &self.camera_from_object, &self.camera, WIDTH, HEIGHT);
+            others.copy_from_slice(rasteriser.depth());
+        }
         rasteriser.render(mesh, &self.camera_from_object, &self.camera, WIDTH, HEIGHT);
-        let object = rasteriser.depth();
-        let mask = Image::new("mask", WIDTH, HEIGHT, object.iter().map(|&z| u8::from(z > 0.0)).collect())?;
+        let visible: Vec<bool> = rasteriser.depth().iter().zip(&others).map(|(&z, &o)| in_front(z, o)).collect();
+        let mask = Image::new("mask", WIDTH, HEIGHT, visible.iter().map(|&visible| u8::from(visible)).collect())?;
         let mut vertices = vec![false; mesh.positions().len()];
-        for &id in rasteriser.triangles().iter().filter(|&&id| id != NO_TRIANGLE) {
+        for (&id, _) in rasteriser.triangles().iter().zip(visible).filter(|(_, visible)| *visible) {
             for vertex in mesh.triangles()[id as usize] {
                 vertices[vertex as usize] = true;
             }
         }
         let mut random = Random::new(seed, DEPTH_STREAM);
-        let mut depth = self.with_flying_pixels(object, &mut random);
+        put_before(&mut others, rasteriser.depth());
+        let mut depth = self.with_flying_pixels(&others, &mut random);
         let warp = warp(&mask, &mut random);
         for (z, warp) in depth.iter_mut().zip(warp) {
             let noise = NOISE * (random.uniform() + random.uniform() - 1.0);
@@ -106,7 +148,7 @@ impl View {
         Ok(Seen { depth: DepthMap::from_metres(WIDTH, HEIGHT, depth)?, mask, vertices })
     }
 
-    /// Object and background, mixed along the silhouette: inside up to two pixels, outside one.
+    /// What stands on the table and the background, mixed along the silhouette: inside up to two pixels, outside one.
     fn with_flying_pixels(&self, object: &[f32], random: &mut Random) -> Vec<f32> {
         let mut depth: Vec<f32> = self.background();
         let inside = |u: usize, v: usize| object[v * WIDTH + u] > 0.0;

@@ -14,8 +14,6 @@ use crate::geometry::mesh::Mesh;
 use crate::geometry::random::Random;
 use crate::geometry::similarity::{Similarity, vec3, vector3};
 
-/// How far the invented side bulges at most, as a share of the box diagonal.
-const BULGE: f64 = 0.085;
 /// Path over the surface, from what was seen, up to which the invention agrees with it, and from which on it is
 /// invention altogether; shares of the box diagonal.
 const AGREES: f64 = 0.02;
@@ -25,11 +23,12 @@ const SMOOTHING_PASSES: usize = 2;
 const SMOOTHING: [f64; 2] = [0.04, 0.5];
 
 /// The mesh with a hallucinated back: vertices far from the `seen` ones, over the surface, move outwards by a smooth
-/// amount, and what is invented is smoother than what is not. Vertices and triangles keep their order.
+/// amount, at most by `bulge` as a share of the box diagonal, and what is invented is smoother than what is not. Vertices
+/// and triangles keep their order.
 ///
 /// # Errors
 /// Those of [`Mesh::new`], which a fault of the generator alone could cause.
-pub fn hallucinate(mesh: &Mesh, seen: &[bool], seed: u64) -> Result<Mesh> {
+pub fn hallucinate(mesh: &Mesh, seen: &[bool], bulge: f64, seed: u64) -> Result<Mesh> {
     let mut random = Random::new(seed, DISTORTION_STREAM);
     let (low, high) = bounds(mesh);
     let diagonal = (high - low).length();
@@ -41,7 +40,7 @@ pub fn hallucinate(mesh: &Mesh, seen: &[bool], seed: u64) -> Result<Mesh> {
             t * t * (3.0 - 2.0 * t)
         })
         .collect();
-    let strength = between(&mut random, 0.85, 1.0) * BULGE * diagonal;
+    let strength = between(&mut random, 0.85, 1.0) * bulge * diagonal;
     let wave = DVec3::new(random.uniform(), random.uniform(), random.uniform()) * (TAU / diagonal);
     let phase = TAU * random.uniform();
     let mut positions: Vec<DVec3> = mesh

@@ -3,7 +3,10 @@
 use core::f64::consts::{PI, TAU};
 
 use glam::DVec3;
+use nalgebra::{Rotation3, Vector3};
 
+use super::evaluation::draft::Object;
+use super::evaluation::scene::put_down_turned;
 use super::{SHAPE_STREAM, between};
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::mesh::Mesh;
@@ -14,16 +17,25 @@ use crate::geometry::random::Random;
 pub enum Kind {
     /// A mug: a hollow cup, some 10 cm tall, with a handle towards +x.
     Mug,
+    /// A hammer that lies on the table.
+    Hammer,
+    /// A spoon that lies on the table: a few millimetres thin.
+    Spoon,
+    /// A teapot, of which a mug that stands before it hides a good part.
+    Occluded,
 }
 
 impl Kind {
     /// All kinds.
-    pub const ALL: &[Self] = &[Self::Mug];
+    pub const ALL: &[Self] = &[Self::Mug, Self::Hammer, Self::Spoon, Self::Occluded];
 
     /// The kind's name, as the command line spells it.
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Mug => "mug",
+            Self::Hammer => "hammer",
+            Self::Spoon => "spoon",
+            Self::Occluded => "occluded",
         }
     }
 
@@ -47,7 +59,18 @@ impl Kind {
     /// The kind's symmetry, in the words of a case's `gt.json`.
     pub fn symmetry(self) -> &'static str {
         match self {
-            Self::Mug => "none",
+            Self::Mug | Self::Hammer | Self::Spoon | Self::Occluded => "none",
+        }
+    }
+
+    /// How far the side that nobody sees bulges at most, as a share of the box diagonal: what is thin has little room
+    /// for inventions.
+    pub fn bulge(self) -> f64 {
+        match self {
+            Self::Mug => 0.085,
+            Self::Hammer => 0.03,
+            Self::Spoon => 0.015,
+            Self::Occluded => 0.05,
         }
     }
 
@@ -59,8 +82,31 @@ impl Kind {
         let mut random = Random::new(seed, SHAPE_STREAM);
         match self {
             Self::Mug => mug(&mut random),
+            Self::Hammer => lying("hammer", between(&mut random, 0.2, 0.6), &mut random),
+            Self::Spoon => lying("spoon", between(&mut random, 0.2, 0.6), &mut random),
+            Self::Occluded => lying("teapot", 0.0, &mut random),
         }
     }
+
+    /// What stands before an object of this kind and hides a part of it, about the origin of a frame of its own.
+    ///
+    /// # Errors
+    /// Those of [`Kind::mesh`].
+    pub fn occluder(self, seed: u64) -> Result<Option<Mesh>> {
+        match self {
+            Self::Occluded => Self::Mug.mesh(seed).map(Some),
+            Self::Mug | Self::Hammer | Self::Spoon => Ok(None),
+        }
+    }
+}
+
+/// One of the evaluation set's objects as it is made to lie or stand, turned about the vertical, radians.
+fn lying(family: &'static str, heading: f64, random: &mut Random) -> Result<Mesh> {
+    let object = Object::of_family(family, random)?.ok_or_else(|| {
+        Error::new(ErrorCode::Internal, "family", "none", format!("one named {family}"), "Please report it.")
+    })?;
+    let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), heading);
+    Ok(put_down_turned(&object, turn.matrix())?.0)
 }
 
 /// A cup as surface of revolution and a handle as tube, whose ends are hidden in the cup's wall.

@@ -1,39 +1,105 @@
+/** The page as it opens: its sample aligned, by what people see and by the library's own numbers. */
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { PageTest } from "../support/browser.js";
+import { createAligner } from "sim3align";
+import { readMask } from "sim3align/formats";
+import { SiteTest, siteDir } from "../support/site.js";
 
-let browser: PageTest;
+let site: SiteTest;
 before(async () => {
-  browser = await PageTest.start();
+  site = await SiteTest.start();
 });
-after(() => browser?.stop());
+after(() => site?.stop());
 
-test("the page aligns the sample and shows transform, metrics and times", async () => {
-  const { page, errors } = await browser.open("www/index.html");
-  await page.waitForSelector('#status:is([data-state="done"], [data-state="failed"])', { timeout: 120_000 });
-  assert.equal(await page.textContent("#status"), "Aligned.");
-  assert.ok(await page.isVisible("#result"));
+const sampleFile = (path: string) => Uint8Array.from(readFileSync(join(siteDir, "samples", path)));
 
-  const rows = (id: string) =>
-    page.$$eval(`#${id} tr`, (found: HTMLTableRowElement[]) =>
-      found.map((row) => [row.cells[0]?.textContent ?? "", row.cells[1]?.textContent ?? ""]),
-    );
-  const transform = new Map((await rows("transform")) as [string, string][]);
-  assert.ok(Number(transform.get("scale")) > 0, `scale: ${transform.get("scale")}`);
-  const numbers = (text: string | undefined) => (text ?? "").split(", ").map(Number);
-  const quaternion = numbers(transform.get("rotation (quaternion x, y, z, w)"));
-  assert.equal(quaternion.length, 4);
-  assert.ok(Math.abs(Math.hypot(...quaternion) - 1) < 1e-3, `rotation: ${quaternion}`);
-  const translation = numbers(transform.get("translation (m)"));
-  assert.ok(translation.length === 3 && translation.every(Number.isFinite), `translation: ${translation}`);
+test("the page aligns its sample, as the library does", async () => {
+  const opened = await site.open();
+  const { page } = opened;
+  const input = {
+    depth: sampleFile("mug/depth.png"),
+    mask: sampleFile("mug/mask.png"),
+    mesh: sampleFile("mug/mesh.glb"),
+    camera: sampleFile("mug/camera.json"),
+  };
+  const quality = (await page.inputValue("#effort")) as "fast" | "balanced";
+  const { metrics, confidence } = await (await createAligner()).align(input, { quality });
+  assert.equal(await opened.metric("iou"), metrics.iou);
+  assert.equal(await opened.metric("depthMaeMm"), metrics.depthMaeMm);
+  assert.match((await page.textContent("#confidence")) ?? "", new RegExp(`^${Math.round(100 * (confidence ?? -1))} %`));
+  assert.equal((await opened.dimensions()).length, 3);
+  assert.match((await page.textContent("#errors")) ?? "", /scale [\d.]+ %/);
+  await opened.close();
+});
 
-  const confidence = transform.get("confidence") ?? "";
-  assert.ok(confidence === "–" || (Number(confidence) >= 0 && Number(confidence) <= 1), `confidence: ${confidence}`);
-  assert.match(transform.get("alternatives") ?? "", /^\d+$/);
+test("the silhouette that is drawn is the one that is measured", async () => {
+  const opened = await site.open();
+  const { page } = opened;
+  const mask = await readMask(sampleFile("mug/mask.png"));
+  // Without outlines, what differs between the two pictures is the silhouette.
+  await page.uncheck("#layer-outline");
+  const shown = await opened.imagePixels();
+  await page.uncheck("#layer-silhouette");
+  const bare = await opened.imagePixels();
+  assert.deepEqual([shown.width, shown.height], [mask.width, mask.height]);
+  let [both, either] = [0, 0];
+  mask.data.forEach((inside, pixel) => {
+    const isDrawn = [0, 1, 2].some((k) => shown.data[4 * pixel + k] !== bare.data[4 * pixel + k]);
+    if (isDrawn && inside !== 0) both++;
+    if (isDrawn || inside !== 0) either++;
+  });
+  const iou = await opened.metric("iou");
+  assert.ok(iou > 0.5 && Math.abs(both / either - iou) < 0.002, `drawn ${both / either}, measured ${iou}`);
+  await opened.close();
+});
 
-  const metrics = new Map((await rows("metrics")) as [string, string][]);
-  const iou = Number(metrics.get("iou"));
-  assert.ok(iou > 0 && iou <= 1, `iou: ${iou}`);
-  assert.ok((await rows("timings")).length > 0);
-  assert.deepEqual(errors, []);
+test("before and after are different pictures, and so is the depth difference", async () => {
+  const opened = await site.open();
+  const { page } = opened;
+  const after = await opened.imagePixels();
+  await page.keyboard.press("b");
+  const before = await opened.imagePixels();
+  await page.keyboard.press("b");
+  await page.keyboard.press("d");
+  const difference = await opened.imagePixels();
+  const changed = (a: Buffer, b: Buffer) => a.filter((value, i) => value !== b[i]).length;
+  assert.ok(changed(after.data, before.data) > 1000, "before");
+  assert.ok(changed(after.data, difference.data) > 1000, "difference");
+  assert.ok(await page.isVisible(".legend"));
+  await opened.close();
+});
+
+test("every sample can be chosen, and is aligned", async () => {
+  const opened = await site.open();
+  const { page } = opened;
+  const ids = await page.$$eval("#sample option", (found) =>
+    found.map((option) => (option as HTMLOptionElement).value),
+  );
+  assert.ok(ids.length >= 4, ids.join());
+  for (const id of ids.slice(1)) {
+    await page.selectOption("#sample", id);
+    await page.waitForFunction((id) => location.hash.includes(`sample=${id}`), id);
+    await opened.aligned();
+    assert.ok((await opened.metric("iou")) > 0.3, id);
+  }
+  await opened.close();
+});
+
+test("a link holds the sample and the options", async () => {
+  const first = await site.open("#sample=desk&quality=fast&seed=7&knownExtentAxis=y");
+  assert.equal(await first.page.inputValue("#sample"), "desk");
+  assert.equal(await first.page.inputValue("#effort"), "fast");
+  assert.equal(await first.page.inputValue("#option-seed"), "7");
+  assert.equal(await first.page.inputValue("#option-knownExtentAxis"), "y");
+  await first.page.selectOption("#effort", "best");
+  const { hash } = new URL(first.page.url());
+  const names = await first.page.$$eval(".objects .name", (found) => found.map((name) => name.textContent));
+  assert.equal(names.length, 3);
+  await first.close();
+  const second = await site.open(hash);
+  assert.equal(await second.page.inputValue("#effort"), "best");
+  assert.equal(await second.page.inputValue("#option-seed"), "7");
+  await second.close();
 });

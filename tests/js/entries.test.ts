@@ -7,7 +7,7 @@ import { dirname, join } from "node:path";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 import { createAligner } from "sim3align";
-import { readDepth, readMask, readMesh, Sim3AlignError } from "sim3align/formats";
+import { readCamera, readDepth, readMask, readMesh, Sim3AlignError } from "sim3align/formats";
 import * as inline from "sim3align/inline";
 import { cocoRle, npy, obj, png } from "../support/files.js";
 import { input, mesh } from "../support/scene.js";
@@ -58,6 +58,12 @@ test("formats: what the files hold", async () => {
     Array.from(whole.data, (z) => Math.round(1000 * z)),
     [0, 2000, 4000, 8],
   );
+  const inTenths = await readDepth(png(Uint16Array.of(0, 1, 2, 3), 2, 2), { integerDepthScale: 0.1 });
+  assert.equal(inTenths.data[2], Math.fround(0.2));
+  const intrinsics = { fx: 300, fy: 301, cx: 79.5, cy: 60 };
+  const { fx, fy, cx, cy } = await readCamera(JSON.stringify({ ...intrinsics, width, height }), { width, height });
+  assert.deepEqual({ fx, fy, cx, cy }, intrinsics);
+  await assert.rejects(readCamera({ nothing: 1 }), (error) => error instanceof Sim3AlignError);
   for (const file of [npy(mask, height, width), png(mask, width, height), cocoRle(mask, width, height)]) {
     assert.deepEqual((await readMask(file)).data, mask);
   }

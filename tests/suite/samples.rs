@@ -2,14 +2,15 @@
 
 use std::fs;
 
+use nalgebra::{Rotation3, Vector3};
 use sim3align::align::align;
-use sim3align::align::options::{AlignOptions, Preset};
+use sim3align::align::options::{AlignOptions, Preset, Quality};
 use sim3align::align::progress::Silent;
 use sim3align::error::ErrorCode;
 use sim3align::formats::case::read_case;
 use sim3align::geometry::image::DepthMap;
 use sim3align::geometry::rasteriser::{NO_TRIANGLE, Rasteriser};
-use sim3align::geometry::similarity::{vec3, vector3};
+use sim3align::geometry::similarity::{Similarity, vec3, vector3};
 use sim3align::geometry::triangle_tree::TriangleTree;
 use sim3align::metrics::{EvaluateOptions, evaluate};
 use sim3align::samples::case::SampleCase;
@@ -32,7 +33,7 @@ fn mean_depth(case: &SampleCase) -> f64 {
 #[test]
 fn the_same_seed_gives_the_same_bytes_and_another_seed_others() {
     for &kind in Kind::ALL {
-        let files = |seed| SampleCase::new(kind, seed).unwrap().files().unwrap();
+        let files = |seed| SampleCase::new(kind, seed).unwrap().files(None).unwrap();
         let (one, again, other) = (files(1), files(1), files(2));
         assert_eq!(one, again);
         for ((name, bytes), (_, others)) in one.iter().zip(&other) {
@@ -48,7 +49,9 @@ fn the_truth_scores_as_one() {
             evaluate(&case.observation, &case.mesh, &case.camera_from_mesh, &EvaluateOptions::default()).unwrap();
         let depth_mm = 1000.0 * mean_depth(&case);
         println!("{:?} {}: at {depth_mm:.0} mm, {metrics:?}", case.kind, case.seed);
-        assert!(metrics.iou.unwrap() >= 0.95, "seed {}: {metrics:?}", case.seed);
+        // What hides it is no part of the mask, but the whole mesh is drawn.
+        let least = if case.kind == Kind::Occluded { 0.6 } else { 0.9 };
+        assert!(metrics.iou.unwrap() >= least, "{:?} {}: {metrics:?}", case.kind, case.seed);
         assert!(metrics.depth_mae_mm.unwrap() < 0.01 * depth_mm, "seed {}: {metrics:?}", case.seed);
         assert!(metrics.normal_consistency.unwrap() >= 0.85, "seed {}: {metrics:?}", case.seed);
     }
@@ -61,7 +64,8 @@ fn what_was_seen_is_right_and_what_was_not_is_invented() {
         let mut rasteriser = Rasteriser::new();
         rasteriser.render(&case.mesh, &case.camera_from_mesh, &case.observation.camera(), width, height);
         let mut visible = vec![false; case.mesh.positions().len()];
-        for &id in rasteriser.triangles().iter().filter(|&&id| id != NO_TRIANGLE) {
+        let shown = rasteriser.triangles().iter().zip(case.observation.mask().data()).filter(|(_, m)| **m != 0);
+        for &id in shown.map(|(id, _)| id).filter(|&&id| id != NO_TRIANGLE) {
             for i in case.mesh.triangles()[id as usize] {
                 visible[i as usize] = true;
             }
@@ -81,8 +85,10 @@ fn what_was_seen_is_right_and_what_was_not_is_invented() {
             *worst = worst.max(off);
         }
         println!("{:?} {}: {seen:.4} seen, {unseen:.4} unseen", case.kind, case.seed);
-        assert!(seen <= 0.005, "seed {}: {seen} of the diagonal", case.seed);
-        assert!(unseen >= 0.05, "seed {}: {unseen} of the diagonal", case.seed);
+        assert!(seen <= 0.005, "{:?} {}: {seen} of the diagonal", case.kind, case.seed);
+        // Of what lies flat, nothing is far from what was seen.
+        let invented = if case.kind == Kind::Mug { 0.05 } else { 3.0 * seen };
+        assert!(unseen >= invented, "{:?} {}: {unseen} of the diagonal", case.kind, case.seed);
     }
 }
 
@@ -94,19 +100,28 @@ fn the_depth_map_has_a_depth_models_faults_and_no_scale_of_its_own() {
         let (object, pose) = (&case.object, &case.camera_from_object);
         rasteriser.render_depth(object, pose, &case.observation.camera(), depth.width(), depth.height());
         let ratios = || {
-            let pixels = depth.data().iter().zip(rasteriser.depth());
-            pixels.filter(|(z, rendered)| **z > 0.0 && **rendered > 0.0).map(|(z, rendered)| f64::from(z / rendered))
+            let pixels = depth.data().iter().zip(rasteriser.depth()).zip(case.observation.mask().data());
+            let pixels = pixels.filter(|((z, rendered), m)| **m != 0 && **z > 0.0 && **rendered > 0.0);
+            pixels.map(|((z, rendered), _)| f64::from(z / rendered))
         };
         let mut sorted: Vec<f64> = ratios().collect();
         sorted.sort_by(f64::total_cmp);
         let quantile = |q: f64| sorted[(q * (sorted.len() - 1) as f64) as usize];
         let (low, median, high) = (quantile(0.01), quantile(0.5), quantile(1.0));
-        assert!((median - 1.0).abs() < 0.002, "seed {}: median {median}", case.seed);
+        // Of what is thin, many pixels are at the rim, and fly.
+        let off = if case.kind == Kind::Mug { 0.002 } else { 0.004 };
+        assert!((median - 1.0).abs() < off, "{:?} {}: median {median}", case.kind, case.seed);
         assert!(low > 0.98 && low < 0.9995, "seed {}: nearest {low}", case.seed);
-        assert!(high > 1.03, "seed {}: no pixel flies, {high}", case.seed);
+        // What lies on the table has nothing far behind it.
+        let flies = if matches!(case.kind, Kind::Hammer | Kind::Spoon) { 1.005 } else { 1.03 };
+        assert!(high > flies, "{:?} {}: no pixel flies, {high}", case.kind, case.seed);
         let mask = case.observation.mask().data();
-        let silhouette = rasteriser.depth().iter().map(|z| u8::from(*z > 0.0));
-        assert!(silhouette.eq(mask.iter().copied()), "seed {}", case.seed);
+        let silhouette = rasteriser.depth().iter().filter(|z| **z > 0.0).count() as f64;
+        let visible = mask.iter().zip(rasteriser.depth()).filter(|(m, z)| **m != 0 && **z > 0.0).count();
+        assert_eq!(visible, mask.iter().filter(|m| **m != 0).count(), "{:?} {}", case.kind, case.seed);
+        let hidden = 1.0 - visible as f64 / silhouette;
+        let expected = if case.kind == Kind::Occluded { 0.15..=0.35 } else { 0.0..=0.0 };
+        assert!(expected.contains(&hidden), "{:?} {}: {hidden} is hidden", case.kind, case.seed);
         let holes = |z: &DepthMap| z.data().iter().zip(mask).filter(|(z, m)| **m != 0 && **z == 0.0).count();
         assert!((4..200).contains(&holes(depth)), "seed {}: {} pixels without depth", case.seed, holes(depth));
     }
@@ -117,7 +132,7 @@ fn the_meshes_are_whole_and_delivered_in_a_unit_box() {
     for case in cases() {
         check_shape(&case.mesh).unwrap();
         let count = case.mesh.triangles().len();
-        assert!((5_000..=10_000).contains(&count), "{count} triangles");
+        assert!((2_000..=10_000).contains(&count), "{:?}: {count} triangles", case.kind);
         for mesh in [&case.object, &case.mesh] {
             assert!(mesh.signed_volume6() > 0.0, "seed {}: inside out", case.seed);
             // Closed and consistently oriented: every edge is walked once in each direction.
@@ -136,10 +151,10 @@ fn the_meshes_are_whole_and_delivered_in_a_unit_box() {
 fn a_written_case_reads_back_and_the_paper_preset_aligns_it() {
     let folder = std::env::temp_dir().join(format!("sim3align-{}-samples", std::process::id()));
     let sample = SampleCase::new(Kind::Mug, 1).unwrap();
-    sample.write(&folder).unwrap();
+    sample.write(&folder, None).unwrap();
     let case = read_case(&folder);
     // A file is no folder.
-    let refused = sample.write(&folder.join("gt.json")).unwrap_err();
+    let refused = sample.write(&folder.join("gt.json"), None).unwrap_err();
     fs::remove_dir_all(&folder).unwrap();
     let case = case.unwrap();
     assert_eq!(refused.code, ErrorCode::InvalidArgument);
@@ -162,6 +177,27 @@ fn a_written_case_reads_back_and_the_paper_preset_aligns_it() {
 #[test]
 fn an_unknown_kind_is_refused_by_name() {
     let error = Kind::from_name("teapot").unwrap_err();
-    assert_eq!((error.code, &*error.expected), (ErrorCode::InvalidOption, "mug"));
+    assert_eq!((error.code, &*error.expected), (ErrorCode::InvalidOption, "mug or hammer or spoon or occluded"));
     assert!(error.found.contains("teapot"));
+}
+
+#[test]
+fn the_page_s_samples_align_by_either_quality() {
+    // The seeds are those of scripts/lib/sample.mjs.
+    for (kind, seed) in [(Kind::Mug, 1), (Kind::Hammer, 2), (Kind::Spoon, 2), (Kind::Occluded, 4)] {
+        let case = SampleCase::new(kind, seed).unwrap();
+        for quality in [Quality::Fast, Quality::Balanced] {
+            let options = AlignOptions { quality, ..AlignOptions::default() };
+            let result = align(&case.observation, &case.mesh, &options, &mut Silent).unwrap();
+            let found = &result.camera_from_mesh;
+            let rotation = Rotation3::from_matrix_unchecked(Similarity::rotation_from_xyzw(&found.rotation).unwrap());
+            let turn_deg = rotation.angle_to(&case.camera_from_mesh.rotation).to_degrees();
+            let scale = found.scale / case.camera_from_mesh.scale;
+            let offset_m = (Vector3::from(found.translation) - case.camera_from_mesh.translation).norm();
+            println!("{kind:?} {quality:?}: {turn_deg:.2} deg, scale {scale:.3}, {:.2} mm", 1000.0 * offset_m);
+            assert!(turn_deg < 3.0, "{kind:?} {quality:?}: {turn_deg}");
+            assert!((0.98..=1.02).contains(&scale), "{kind:?} {quality:?}: {scale}");
+            assert!(offset_m < 0.003, "{kind:?} {quality:?}: {offset_m}");
+        }
+    }
 }

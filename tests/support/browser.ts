@@ -1,7 +1,7 @@
 /** A browser that shows pages served from the repository. */
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
-import { type Browser, chromium, type Page } from "playwright-core";
+import { type Browser, type BrowserContextOptions, chromium, type Page } from "playwright-core";
 import { repository } from "./environment.js";
 
 const flags = [
@@ -26,24 +26,33 @@ export class PageTest {
     private readonly server: Server,
   ) {}
 
-  /** Starts both. */
-  static async start(folder = repository): Promise<PageTest> {
+  /**
+   * Starts both.
+   * @param folder what the server serves
+   * @param more flags of Chromium; those that begin with "!" are taken away
+   */
+  static async start(folder = repository, more: readonly string[] = []): Promise<PageTest> {
     const executablePath = process.env.CHROMIUM_PATH;
     if (executablePath === undefined) throw new Error('CHROMIUM_PATH is not set: run the tests by "npm test".');
     const module = pathToFileURL(join(repository, "scripts", "lib", "static-server.mjs")).href;
     const { serve } = (await import(module)) as { serve(folder: string): Promise<Server> };
     const server = await serve(folder);
-    const browser = await chromium.launch({ executablePath, headless: true, args: flags });
+    const args = [
+      ...flags.filter((flag) => !more.includes(`!${flag}`)),
+      ...more.filter((flag) => !flag.startsWith("!")),
+    ];
+    const browser = await chromium.launch({ executablePath, headless: true, args });
     return new PageTest(browser, server);
   }
 
   /**
    * Opens a page of the repository.
    * @param path its path in the folder, such as `www/index.html`, or a whole address
+   * @param context how the browser is: its window's size, its colours
    * @returns the page, and what it has logged as errors (a list that goes on growing)
    */
-  async open(path: string): Promise<{ page: Page; errors: string[] }> {
-    const page = await this.browser.newPage();
+  async open(path: string, context: BrowserContextOptions = {}): Promise<{ page: Page; errors: string[] }> {
+    const page = await this.browser.newPage(context);
     const errors: string[] = [];
     page.on("pageerror", (error) => errors.push(error.message));
     page.on("console", (message) => {

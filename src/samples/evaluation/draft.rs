@@ -119,6 +119,14 @@ impl Object {
         families[random.below(families.len())].object(random)
     }
 
+    /// An object of the family of that name; `None` where there is none.
+    ///
+    /// # Errors
+    /// Those of [`Mesh::new`], which a fault of the generator alone could cause.
+    pub fn of_family(name: &str, random: &mut Random) -> Result<Option<Self>> {
+        FAMILIES.iter().find(|Family(family, ..)| *family == name).map(|family| family.object(random)).transpose()
+    }
+
     /// The diagonal of the box around it, metres.
     pub fn diagonal(&self) -> f64 {
         Bounds::of(self.mesh.positions()).map_or(0.0, |b| f64::from(b.diagonal()))

@@ -1,0 +1,133 @@
+/** For everybody: axe's rules, keyboard, phones, light and dark, nothing that jumps. */
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import type { BrowserContextOptions } from "playwright-core";
+import { repository } from "../support/environment.js";
+import { type SitePage, SiteTest } from "../support/site.js";
+
+let site: SiteTest;
+before(async () => {
+  site = await SiteTest.start();
+});
+after(() => site?.stop());
+
+const axe = readFileSync(join(repository, "node_modules", "axe-core", "axe.min.js"), "utf8");
+
+/** What axe finds, in one line for each rule. */
+async function violations({ page }: SitePage): Promise<string[]> {
+  await page.evaluate(axe);
+  const run = `axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"] })`;
+  const found = (await page.evaluate(run)) as { violations: { id: string; nodes: { html: string }[] }[] };
+  return found.violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html.slice(0, 160)).join(" | ")}`);
+}
+
+const phone = { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true } satisfies BrowserContextOptions;
+const views: readonly [string, BrowserContextOptions][] = [
+  ["a laptop", { viewport: { width: 1280, height: 800 } }],
+  ["a laptop, dark", { viewport: { width: 1280, height: 800 }, colorScheme: "dark" }],
+  ["a phone", phone],
+  ["a phone, dark", { ...phone, colorScheme: "dark" }],
+];
+
+for (const [name, context] of views) {
+  test(`axe finds nothing on ${name}`, async () => {
+    const opened = await site.open("#sample=desk", context);
+    const { page } = opened;
+    for (const summary of await page.locator("details:not([open]) > summary").all()) {
+      if (await summary.isVisible()) await summary.click();
+    }
+    assert.deepEqual(await violations(opened), []);
+    await page.locator(".head").getByRole("button", { name: "Help" }).click();
+    assert.deepEqual(await violations(opened), []);
+    await page.keyboard.press("Escape");
+    const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+    assert.ok(overflow <= 0, `the page is ${overflow} pixels wider than the window`);
+    await opened.close();
+  });
+}
+
+test("everything can be reached and seen by keyboard", async () => {
+  const opened = await site.open();
+  const { page } = opened;
+  const reached = new Set<string>();
+  for (let i = 0; i < 120; i++) {
+    await page.keyboard.press("Tab");
+    const found = (await page.evaluate(() => {
+      const element = document.activeElement;
+      if (!(element instanceof HTMLElement) || element === document.body) return null;
+      const outlined = element.closest(".button") ?? element;
+      const label = element.id || element.getAttribute("aria-label") || element.textContent?.trim() || element.tagName;
+      return { label, outline: getComputedStyle(outlined).outlineStyle };
+    })) as { label: string; outline: string } | null;
+    if (found === null) break;
+    assert.notEqual(found.outline, "none", `${found.label} does not show that it has the focus`);
+    reached.add(found.label);
+  }
+  for (const name of ["sample", "theme", "effort", "align", "refine", "JSON", "depth-file", "wipe"]) {
+    assert.ok(reached.has(name), `${name} is not among ${[...reached].join(", ")}`);
+  }
+  await opened.close();
+});
+
+test("the metrics explain themselves by keyboard", async () => {
+  const opened = await site.open();
+  const { page } = opened;
+  const tip = page.getByRole("button", { name: "What is overlap?" });
+  await tip.focus();
+  await page.keyboard.press("Enter");
+  const box = page.locator(".tip-box:popover-open");
+  assert.match((await box.textContent()) ?? "", /silhouette/);
+  const [place, window] = [await box.boundingBox(), page.viewportSize()];
+  assert.ok(place !== null && window !== null && place.x >= 0 && place.x + place.width <= window.width);
+  await page.keyboard.press("Escape");
+  assert.equal(await box.count(), 0);
+  await opened.close();
+});
+
+test("keys open the help, which lists them, and Escape closes it", async () => {
+  const opened = await site.open();
+  const { page } = opened;
+  await page.keyboard.press("?");
+  assert.ok(await page.isVisible("dialog.help"));
+  assert.ok((await page.locator("dialog.help kbd").count()) > 15);
+  await page.keyboard.press("Escape");
+  assert.ok(!(await page.isVisible("dialog.help")));
+  await opened.close();
+});
+
+test("the theme follows the switch, and is remembered", async () => {
+  const opened = await site.open("", { colorScheme: "light" });
+  const { page } = opened;
+  const paper = () => page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor);
+  const light = await paper();
+  await page.selectOption("#theme", "dark");
+  const dark = await paper();
+  assert.notEqual(dark, light);
+  await page.reload();
+  await opened.aligned();
+  assert.equal(await paper(), dark);
+  await opened.close();
+});
+
+test("nothing jumps while the page loads, aligns, and aligns again", async () => {
+  const opened = await site.visit();
+  const { page } = opened;
+  await page.evaluate(() => {
+    const shifts: number[] = [];
+    Object.assign(globalThis, { shifts });
+    new PerformanceObserver((list) => {
+      for (const entry of list.getEntries()) shifts.push((entry as unknown as { value: number }).value);
+    }).observe({ type: "layout-shift", buffered: true });
+  });
+  await opened.aligned();
+  await page.click("#align");
+  await opened.aligned();
+  await page.waitForTimeout(500);
+  const shifts = (await page.evaluate("shifts")) as number[];
+  const sum = shifts.reduce((total, shift) => total + shift, 0);
+  // Google's limit for "good" is 0.1.
+  assert.ok(sum < 0.05, `cumulative layout shift ${sum}: ${shifts}`);
+  await opened.close();
+});

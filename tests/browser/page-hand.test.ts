@@ -1,0 +1,65 @@
+/** By hand: small steps, a known size, refine, undo and redo. */
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { type SitePage, SiteTest } from "../support/site.js";
+
+let site: SiteTest;
+before(async () => {
+  site = await SiteTest.start();
+});
+after(() => site?.stop());
+
+const showSteps = ({ page }: SitePage) => page.click(".hand-panel .more summary");
+
+test("small steps move the mesh, and undo and redo take them back and forth", async () => {
+  const opened = await site.open();
+  const { page } = opened;
+  const iou = await opened.metric("iou");
+  await showSteps(opened);
+  const names = ["Move left", "Move up", "Turn clockwise"];
+  for (const name of names) await page.getByRole("button", { name, exact: true }).click();
+  await opened.isNow("hand");
+  const moved = await opened.metric("iou");
+  assert.ok(moved < iou, `${moved} is not below ${iou}`);
+  await page.click("#undo");
+  await page.keyboard.press("Control+z");
+  await page.keyboard.press("Control+z");
+  await opened.isNow("aligned");
+  assert.equal(await opened.metric("iou"), iou);
+  for (const _ of names) await page.click("#redo");
+  await opened.isNow("hand");
+  assert.equal(await opened.metric("iou"), moved);
+  assert.ok(await page.isDisabled("#redo"));
+  await opened.close();
+});
+
+test("refine from here brings back a mesh that was moved", async () => {
+  const opened = await site.open();
+  const { page } = opened;
+  const iou = await opened.metric("iou");
+  await showSteps(opened);
+  await page.getByRole("button", { name: "Move right", exact: true }).click();
+  await page.getByRole("button", { name: "Larger" }).click();
+  await opened.isNow("hand");
+  await page.click("#refine");
+  await opened.isNow("refined");
+  const refined = await opened.metric("iou");
+  assert.ok(refined > iou - 0.02, `${refined}, was ${iou}`);
+  await opened.close();
+});
+
+test("a known size is the mesh's from then on, and stays locked through refine", async () => {
+  const opened = await site.open();
+  const { page } = opened;
+  const [, height = 0] = await opened.dimensions();
+  const known = (0.97 * height).toFixed(1);
+  await page.fill("#known-size", known);
+  await page.press("#known-size", "Enter");
+  await opened.isNow("hand");
+  assert.equal((await opened.dimensions())[1], Number(known));
+  assert.ok(await page.isChecked("#lock-scale"));
+  await page.click("#refine");
+  await opened.isNow("refined");
+  assert.equal((await opened.dimensions())[1], Number(known));
+  await opened.close();
+});

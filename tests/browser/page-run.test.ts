@@ -1,0 +1,99 @@
+/** Aligning: cancel, several objects, alternatives, and options that cannot be. */
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { PATIENCE, SiteTest } from "../support/site.js";
+
+let site: SiteTest;
+before(async () => {
+  site = await SiteTest.start();
+});
+after(() => site?.stop());
+
+test("an alignment can be cancelled, by button and by key, and begun again", async () => {
+  const opened = await site.open("#sample=mug&quality=best");
+  const { page } = opened;
+  const before = await opened.dimensions();
+  await page.click("#align");
+  await page.locator("#cancel").click(PATIENCE);
+  await opened.says(/^Cancelled/);
+  assert.deepEqual(await opened.dimensions(), before);
+  await page.keyboard.press("a");
+  await page.locator("#cancel").waitFor(PATIENCE);
+  await page.keyboard.press("Escape");
+  await opened.says(/^Cancelled/);
+  await page.click("#align");
+  await opened.aligned();
+  await opened.close();
+});
+
+test("the page answers while it aligns, and says how far it has come", async () => {
+  const opened = await site.open("#sample=mug&quality=best");
+  const { page } = opened;
+  await page.evaluate(() => {
+    const seen: number[] = [];
+    Object.assign(globalThis, { seen });
+    const look = () => {
+      if (document.querySelector("#cancel") !== null) {
+        seen.push((document.querySelector("#progress") as HTMLProgressElement).value);
+      }
+      requestAnimationFrame(look);
+    };
+    requestAnimationFrame(look);
+  });
+  await page.click("#align");
+  await page.locator("#cancel").waitFor(PATIENCE);
+  await opened.aligned();
+  const values = (await page.evaluate("seen")) as number[];
+  assert.ok(new Set(values).size > 2, `progress: ${[...new Set(values)]}`);
+  assert.deepEqual(
+    values,
+    [...values].sort((a, b) => a - b),
+  );
+  await opened.close();
+});
+
+test("several objects of one scene are aligned, each with its own result", async () => {
+  const opened = await site.open("#sample=desk");
+  const { page } = opened;
+  const rows = page.locator(".objects button");
+  assert.equal(await rows.count(), 3);
+  const seen = new Set<string>();
+  for (let i = 0; i < 3; i++) {
+    await rows.nth(i).click();
+    assert.equal(await rows.nth(i).getAttribute("aria-pressed"), "true");
+    seen.add((await opened.dimensions()).join());
+    assert.match((await rows.nth(i).textContent()) ?? "", /\d %$/);
+  }
+  assert.equal(seen.size, 3);
+  await page.click("#align-all");
+  await opened.says(/^Aligned 3 objects/);
+  await opened.close();
+});
+
+test("alternatives put the mesh elsewhere, with metrics of their own, and back", async () => {
+  const opened = await site.open("#sample=desk&symmetry=none");
+  const { page } = opened;
+  const buttons = page.locator(".alternatives button:not(.tip)");
+  assert.ok((await buttons.count()) > 1, "the box has no alternative");
+  const iou = await opened.metric("iou");
+  await page.keyboard.press("1");
+  await opened.isNow("alternative");
+  const other = await opened.metric("iou");
+  assert.ok(other > 0 && other !== iou, `${other} and ${iou}`);
+  await buttons.first().click();
+  await opened.isNow("aligned");
+  assert.equal(await opened.metric("iou"), iou);
+  await opened.close();
+});
+
+test("options that contradict each other are the library's error, and the page goes on", async () => {
+  const opened = await site.visit("#knownExtentCm=9&scaleMin=2&scaleMax=3");
+  const { page } = opened;
+  await opened.says(/knownExtentM/);
+  assert.match((await page.textContent(".result .error")) ?? "", /options\.(knownExtentM|scale)/);
+  await page.click(".options-panel summary");
+  for (const name of ["knownExtentCm", "scaleMin", "scaleMax"]) await page.fill(`#option-${name}`, "");
+  await page.click("#align");
+  await opened.aligned();
+  await opened.close();
+});

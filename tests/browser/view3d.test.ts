@@ -1,0 +1,169 @@
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import type { PageTest } from "../support/browser.js";
+import {
+  isGreen,
+  isNear,
+  open,
+  openCube,
+  type Place,
+  pixelOf,
+  placeOf,
+  pose,
+  startWithWebGl,
+  startWithWebGpu,
+} from "../support/view3d.js";
+
+let withWebGpu: PageTest;
+let withoutWebGpu: PageTest;
+before(async () => {
+  withWebGpu = await startWithWebGpu();
+  withoutWebGpu = await startWithWebGl();
+});
+after(async () => {
+  await withWebGpu?.stop();
+  await withoutWebGpu?.stop();
+});
+
+const modes: [string, () => PageTest, object, "webgpu" | "webgl"][] = [
+  ["WebGPU", () => withWebGpu, {}, "webgpu"],
+  ["WebGL, asked for", () => withWebGpu, { forceWebGL: true }, "webgl"],
+  ["WebGL, as there is no WebGPU", () => withoutWebGpu, {}, "webgl"],
+];
+
+for (const [name, browser, options, expected] of modes) {
+  test(`${name}: the cloud and the mesh are drawn where the depth camera sees them`, async () => {
+    const { page, errors, facts, backend, colours } = await openCube(browser(), options);
+    assert.equal(backend, expected);
+    const at = (u: number, v: number) => placeOf(facts, u, v);
+    const points = await colours([at(10, 10), at(78, 30), at(82, 30), at(10, 110), at(150, 110), [3, 150], [497, 150]]);
+    const [first, left, right, third, fourth, ...bars] = points;
+    const [red, blue, yellow, grey] = facts.quarters;
+    isNear(first, red ?? []);
+    isNear(left, red ?? []);
+    isNear(right, blue ?? []);
+    isNear(third, yellow ?? []);
+    isNear(fourth, grey ?? []);
+    for (const bar of bars) isNear(bar, [250, 251, 252]);
+
+    // The mask's points, beside the cube, have some of its colour, and those beside the mask do not.
+    const [masked, beside] = await colours([at(120, 90), at(120, 104)]);
+    assert.ok((masked?.[1] ?? 0) > (masked?.[0] ?? 0) + 20, `${masked}`);
+    isNear(beside, grey ?? []);
+
+    // The cube's front is at 0.75 m, 0.1 m wide: just inside and just outside of its edges.
+    const inside = [-0.046, 0.046].flatMap((x) => [-0.045, 0.045].map((y) => pixelOf(facts, x, y, 0.75)));
+    const outside = [-0.055, 0.055].flatMap((x) => [pixelOf(facts, x, 0, 0.75), pixelOf(facts, 0, x, 0.75)]);
+    for (const colour of await colours(inside.map(([u, v]) => at(u, v)))) assert.ok(isGreen(colour), `${colour}`);
+    for (const colour of await colours(outside.map(([u, v]) => at(u, v)))) assert.ok(!isGreen(colour), `${colour}`);
+
+    const [u, v] = pixelOf(facts, 0, 0, 0.75);
+    await page.evaluate(() => harness.view.setPose("cube", null));
+    assert.ok(!isGreen((await colours([at(u, v)]))[0]), "a hidden mesh");
+    assert.deepEqual(errors, []);
+  });
+}
+
+test("a glTF's nodes are applied, and a broken one leaves everything as it was", async () => {
+  const { page, errors, facts, colours } = await openCube(withoutWebGpu, {}, "glb");
+  const [u, v] = pixelOf(facts, 0, 0, 0.75);
+  const [beside] = [pixelOf(facts, 0.056, 0, 0.75)];
+  const places = [placeOf(facts, u, v), placeOf(facts, ...beside)];
+  const check = async () => {
+    const [inside, outside] = await colours(places);
+    assert.ok(isGreen(inside) && !isGreen(outside), `${inside}; ${outside}`);
+  };
+  await check();
+  const said = await page.evaluate(() =>
+    harness.view.setObjects([harness.object("cube", "#ff0000", "broken")]).then(
+      () => "nothing",
+      (error: Error) => error.name,
+    ),
+  );
+  assert.match(said, /Error/);
+  await check();
+  assert.deepEqual(errors, []);
+});
+
+test("poses are animated, or not where less motion is preferred; then nothing is drawn any more", async () => {
+  const { page, errors, facts, colours } = await openCube(withoutWebGpu, {});
+  const move = ([from, to]: number[][]) => harness.view.setPose("cube", to ?? [], { from, durationMs: 400 });
+  const seen = async () => {
+    const [there, before] = await colours([
+      placeOf(facts, ...pixelOf(facts, 0.2, 0, 0.75)),
+      placeOf(facts, ...pixelOf(facts, 0, 0, 0.75)),
+    ]);
+    return isGreen(there) && !isGreen(before);
+  };
+  await page.evaluate(move, [pose(0, 0), pose(0.2, 0)]);
+  assert.ok(await seen());
+  assert.equal(await page.evaluate(() => harness.idleFrames()), 0);
+  await page.emulateMedia({ reducedMotion: "reduce" });
+  await page.evaluate((pose) => harness.view.setPose("cube", pose), pose(0, 0));
+  await page.evaluate(
+    ([from, to]: number[][]) => {
+      void harness.view.setPose("cube", to ?? [], { from, durationMs: 1e9 });
+    },
+    [pose(0, 0), pose(0.2, 0)],
+  );
+  assert.ok(await seen(), "at once");
+  assert.deepEqual(errors, []);
+});
+
+test("the view fits its host when that is resized, and takes everything away in the end", async () => {
+  const { page, errors, facts } = await openCube(withoutWebGpu, {});
+  await page.evaluate(() => {
+    const host = document.querySelector("#host") as HTMLElement;
+    Object.assign(host.style, { width: "200px", height: "400px" });
+    return new Promise((resolve) => setTimeout(resolve, 300));
+  });
+  // Now with bars above and below.
+  const scale = 200 / facts.width;
+  const top = (400 - scale * facts.height) / 2;
+  const at = (u: number, v: number): Place => [scale * (u + 0.5), top + scale * (v + 0.5)];
+  const [first, fourth, bar] = await page.evaluate(
+    (places) => harness.colours(places),
+    [at(10, 10), at(150, 110), [100, 5] as Place],
+  );
+  isNear(first, facts.quarters[0] ?? []);
+  isNear(fourth, facts.quarters[3] ?? []);
+  isNear(bar, [250, 251, 252]);
+  const label = await page.getAttribute("#host canvas", "aria-label");
+  assert.match(label ?? "", /^3D view from the camera's place: 19,200 points of the scene, placed meshes: cube$/);
+  await page.evaluate(() => harness.view.dispose());
+  assert.equal(await page.locator("#host *").count(), 0);
+  assert.equal(await page.evaluate(() => harness.idleFrames()), 0);
+  assert.deepEqual(errors, []);
+});
+
+test("a lost graphics device is replaced once; then there is a message", async () => {
+  const { page, errors, facts, colours } = await openCube(withoutWebGpu, {});
+  const lose = () =>
+    page.evaluate(() => {
+      const canvas = document.querySelector("#host canvas") as HTMLCanvasElement;
+      canvas.getContext("webgl2")?.getExtension("WEBGL_lose_context")?.loseContext();
+      canvas.id = "old";
+    });
+  await lose();
+  await page.waitForSelector("#host canvas:not(#old)");
+  const [cube, wall] = await colours([placeOf(facts, ...pixelOf(facts, 0, 0, 0.75)), placeOf(facts, 10, 10)]);
+  assert.ok(isGreen(cube), `${cube}`);
+  isNear(wall, facts.quarters[0] ?? []);
+  await lose();
+  await page.waitForSelector('#host [role="alert"]');
+  assert.deepEqual(errors, []);
+});
+
+test("where there is neither WebGPU nor WebGL 2, NoGraphics says so and leaves nothing behind", async () => {
+  const { page, errors } = await open(withoutWebGpu);
+  const said = await page.evaluate(() => {
+    HTMLCanvasElement.prototype.getContext = () => null;
+    return harness.start(100, 100).then(
+      () => "a view",
+      (error: Error) => error.name,
+    );
+  });
+  assert.equal(said, "NoGraphics");
+  assert.equal(await page.locator("#host *").count(), 0);
+  assert.deepEqual(errors, []);
+});

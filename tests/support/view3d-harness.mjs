@@ -1,0 +1,125 @@
+/** What runs in the page of the 3D view's tests: esbuild bundles it with the view. */
+import { exportGlb } from "sim3align/conventions";
+import { createView } from "../../www/src/view3d/index.ts";
+
+const [width, height] = [160, 120];
+/** Off-centre, and with pixels that are not square. */
+const camera = { fx: 190, fy: 170, cx: 70, cy: 66 };
+/** The photo's quarters, from the top left, row by row. */
+const quarters = [
+  [200, 40, 40],
+  [40, 60, 200],
+  [220, 200, 30],
+  [120, 120, 120],
+];
+/** Everything is a wall at this distance, metres. */
+const wallM = 1;
+/** The object's pixels: from and to, in columns and rows. */
+const maskBox = [90, 130, 70, 100];
+
+const scene = () => ({
+  ...{ width, height, camera, depthM: new Float32Array(width * height).fill(wallM) },
+  rgba: Uint8ClampedArray.from({ length: 4 * width * height }, (_, i) => {
+    const [u, v] = [(i >> 2) % width, Math.floor((i >> 2) / width)];
+    return quarters[(v < height / 2 ? 0 : 2) + (u < width / 2 ? 0 : 1)][i % 4] ?? 255;
+  }),
+});
+
+const mask = () =>
+  Uint8Array.from({ length: width * height }, (_, i) => {
+    const [u, v] = [i % width, Math.floor(i / width)];
+    return u >= maskBox[0] && u < maskBox[1] && v >= maskBox[2] && v < maskBox[3] ? 1 : 0;
+  });
+
+/** A cube of side 1 about a point. */
+function cube([x, y, z]) {
+  const corners = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((i) => [
+    x + (i & 1) - 0.5,
+    y + ((i >> 1) & 1) - 0.5,
+    z + (i >> 2) - 0.5,
+  ]);
+  const faces = [
+    [0, 2, 3, 1],
+    [4, 5, 7, 6],
+    [0, 1, 5, 4],
+    [2, 6, 7, 3],
+    [0, 4, 6, 2],
+    [1, 3, 7, 5],
+  ];
+  return {
+    positions: Float32Array.from(corners),
+    indices: Uint32Array.from(faces.flatMap(([a, b, c, d]) => [a, b, c, a, c, d])),
+  };
+}
+
+/** A cube about (3, 0, 0): by arrays, or by a glTF node that moves it there and doubles it. */
+function mesh(kind) {
+  if (kind === "arrays") return cube([3, 0, 0]);
+  if (kind === "broken") return { glb: new TextEncoder().encode("glTF, but not really") };
+  const moved = { scale: 2, rotation: [0, 0, 0, 1], translation: [1, 0, 0] };
+  const half = cube([1, 0, 0]);
+  return {
+    glb: exportGlb({ ...half, positions: half.positions.map((x, i) => (i % 3 ? x / 2 : (x - 1) / 2 + 1)) }, moved, {
+      frame: "opencv",
+    }),
+  };
+}
+
+const object = (id, colour, kind = "arrays") => ({ id, colour, mask: mask(), mesh: mesh(kind) });
+
+/** Counts frames that are asked for, by whomever. */
+let frames = 0;
+const request = requestAnimationFrame;
+window.requestAnimationFrame = (callback) => {
+  frames++;
+  return request(callback);
+};
+
+globalThis.harness = {
+  ...{ camera, width, height, quarters, wallM, object, scene },
+  told: [],
+  /** Makes a view in a host of that size. */
+  async start(hostWidth, hostHeight, options) {
+    const host = document.createElement("div");
+    host.id = "host";
+    host.style.cssText = `width:${hostWidth}px;height:${hostHeight}px;background:rgb(250, 251, 252)`;
+    document.body.style.margin = "0";
+    document.body.replaceChildren(host);
+    const { told } = harness;
+    const events = {
+      onPose: (id, pose, phase) => told.push({ kind: "pose", id, pose: Array.from(pose), phase }),
+      onSelect: (id) => told.push({ kind: "select", id }),
+      onHover: (pixel) => told.push({ kind: "hover", pixel }),
+    };
+    harness.view = await createView(host, events, options);
+    return harness.view.backend;
+  },
+  /** Shows the wall, from the camera. */
+  show(display = {}) {
+    harness.view.setDisplay({ cloud: true, mesh: true, wireframe: false, pointSize: 1, theme: "light", ...display });
+    harness.view.setScene(scene());
+    harness.view.lookFrom("camera");
+  },
+  /** The colours at places of the picture, CSS pixels. */
+  async colours(places) {
+    const bitmap = await createImageBitmap(await harness.view.snapshot());
+    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
+    context.drawImage(bitmap, 0, 0);
+    const ratio = bitmap.width / document.querySelector("#host").clientWidth;
+    const at = ([x, y]) => [
+      ...context.getImageData(Math.floor(x * ratio), Math.floor(y * ratio), 1, 1).data.slice(0, 3),
+    ];
+    return places.map(at);
+  },
+  /** How many frames are asked for while nothing happens. */
+  async idleFrames() {
+    const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+    for (let last = -1; last !== frames; ) {
+      last = frames;
+      await pause(700);
+    }
+    const before = frames;
+    await pause(700);
+    return frames - before;
+  },
+};

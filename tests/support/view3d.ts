@@ -1,0 +1,139 @@
+/** A page with the 3D view alone, and what its tests share. */
+import assert from "node:assert/strict";
+import { mkdirSync, writeFileSync } from "node:fs";
+import { basename, join } from "node:path";
+import { build } from "esbuild";
+import type { Page } from "playwright-core";
+import { PageTest } from "./browser.js";
+import { repository } from "./environment.js";
+
+export type Place = [number, number];
+export type Told =
+  | { kind: "pose"; id: string; pose: number[]; phase: string }
+  | { kind: "select"; id: string | null }
+  | { kind: "hover"; pixel: { x: number; y: number } | null };
+
+/** What tests/support/view3d-harness.mjs offers in the page. */
+export interface Harness {
+  told: Told[];
+  camera: { fx: number; fy: number; cx: number; cy: number };
+  width: number;
+  height: number;
+  quarters: [number, number, number][];
+  object(id: string, colour: string, kind?: string): object;
+  start(width: number, height: number, options?: object): Promise<"webgpu" | "webgl">;
+  show(display?: object): void;
+  colours(places: Place[]): Promise<[number, number, number][]>;
+  idleFrames(): Promise<number>;
+  view: {
+    setObjects(objects: object[]): Promise<void>;
+    setPose(id: string, pose: number[] | null, animate?: object): Promise<void>;
+    select(id: string | null): void;
+    setGizmo(mode: string | null): void;
+    setDisplay(display: object): void;
+    lookFrom(which: string): void;
+    focus(point?: [number, number, number]): void;
+    dispose(): void;
+  };
+}
+declare global {
+  var harness: Harness;
+}
+
+/** One per test file: they run at the same time. */
+const folder = join(repository, "target", "view3d-test", basename(process.argv[1] ?? ""));
+const webGpu = ["--use-vulkan=swiftshader", "--enable-features=Vulkan"];
+const software = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--enable-gpu"];
+
+/** A browser in which WebGPU is there, drawn by software. */
+export async function startWithWebGpu(): Promise<PageTest> {
+  await bundleHarness();
+  return PageTest.start(folder, [...software, ...webGpu]);
+}
+
+/** A browser in which there is WebGL 2 only. */
+export async function startWithWebGl(): Promise<PageTest> {
+  await bundleHarness();
+  return PageTest.start(folder, [...software, "!--enable-unsafe-webgpu", "--disable-blink-features=WebGPU"]);
+}
+
+async function bundleHarness(): Promise<void> {
+  mkdirSync(folder, { recursive: true });
+  const html =
+    '<!doctype html><link rel="icon" href="data:,"><title>3D</title><script type="module" src="harness.js"></script>';
+  writeFileSync(join(folder, "index.html"), html);
+  await build({
+    entryPoints: [join(repository, "tests", "support", "view3d-harness.mjs")],
+    ...{ bundle: true, format: "esm", outfile: join(folder, "harness.js"), logLevel: "error" },
+    alias: {
+      "sim3align/conventions": join(repository, "pkg", "conventions.js"),
+      "sim3align/three": join(repository, "pkg", "three.js"),
+    },
+  });
+}
+
+/** Wide, so that the image has bars at its sides. */
+export const host = { width: 500, height: 300 };
+
+/** Where on the page a pixel of the depth map is, with the image letterboxed. */
+export function placeOf({ width, height }: Harness, u: number, v: number): Place {
+  const scale = Math.min(host.width / width, host.height / height);
+  return [(host.width - scale * width) / 2 + scale * (u + 0.5), (host.height - scale * height) / 2 + scale * (v + 0.5)];
+}
+
+/** Side 0.1 m, its centre, which is (3, 0, 0) in the mesh's frame, at (x, y, 0.8) metres: before the wall. */
+export const pose = (x: number, y: number, scale = 0.1) => [
+  scale,
+  0,
+  0,
+  0,
+  0,
+  scale,
+  0,
+  0,
+  0,
+  0,
+  scale,
+  0,
+  x - 3 * scale,
+  y,
+  0.8,
+  1,
+];
+
+/** The pixel of a point of the camera frame. */
+export const pixelOf = ({ camera }: Harness, x: number, y: number, z: number): Place => [
+  (camera.fx * x) / z + camera.cx,
+  (camera.fy * y) / z + camera.cy,
+];
+
+export const isNear = (found: readonly number[] | undefined, wanted: readonly number[], within = 4) =>
+  assert.ok(
+    found && wanted.every((tone, k) => Math.abs((found[k] ?? 999) - tone) <= within),
+    `${found} is not about ${wanted}`,
+  );
+export const isGreen = ([r = 0, g = 0, b = 0]: readonly number[] = []) => g > 60 && g > 1.8 * r && g > 1.8 * b;
+
+/** A page with the harness, and its constants. */
+export async function open(browser: PageTest): Promise<{ page: Page; errors: string[]; facts: Harness }> {
+  const { page, errors } = await browser.open("index.html");
+  page.setDefaultTimeout(120_000);
+  await page.waitForFunction(() => "harness" in globalThis);
+  const facts = (await page.evaluate(() => JSON.parse(JSON.stringify(harness)))) as Harness;
+  return { page, errors, facts };
+}
+
+/** A view of the wall from the camera, with a green cube. */
+export async function openCube(browser: PageTest, options: object, kind = "arrays") {
+  const opened = await open(browser);
+  const start = ([size, options]: [typeof host, object]) => harness.start(size.width, size.height, options);
+  const backend = await opened.page.evaluate(start, [host, options] as [typeof host, object]);
+  const show = async ([kind, pose]: [string, number[]]) => {
+    harness.show();
+    await harness.view.setObjects([harness.object("cube", "#00c040", kind)]);
+    await harness.view.setPose("cube", pose);
+  };
+  await opened.page.evaluate(show, [kind, pose(0, 0)] as [string, number[]]);
+  const colours = (places: Place[]) => opened.page.evaluate((places) => harness.colours(places), places);
+  return { ...opened, backend, colours };
+}

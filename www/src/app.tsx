@@ -1,0 +1,43 @@
+/** The page. */
+import { useEffect } from "preact/hooks";
+import { DropOverlay } from "./panels/drop-overlay.js";
+import { ExportPanel } from "./panels/export-panel.js";
+import { HandPanel } from "./panels/hand-panel.js";
+import { Header } from "./panels/header.js";
+import { HelpDialog } from "./panels/help-dialog.js";
+import { InputPanel } from "./panels/input-panel.js";
+import { ObjectsPanel } from "./panels/objects-panel.js";
+import { OptionsPanel } from "./panels/options-panel.js";
+import { ResultPanel } from "./panels/result-panel.js";
+import { RunBar } from "./panels/run-bar.js";
+import { largeView } from "./state/display.js";
+import { listenToKeys } from "./ui/shortcuts.js";
+import { ImageView } from "./views/image-view.js";
+import { space } from "./views/space.js";
+import { SpaceView } from "./views/space-view.js";
+
+export function App() {
+  useEffect(listenToKeys, []);
+  // Without 3D the image has the large place.
+  const large = space.value.kind === "none" ? "image" : largeView.value;
+  return (
+    <div class="frame">
+      <Header />
+      <main class="page" data-large={large}>
+        <SpaceView />
+        <ImageView />
+        <ResultPanel />
+        <aside class="side" aria-label="Settings">
+          <RunBar />
+          <ObjectsPanel />
+          <HandPanel />
+          <ExportPanel />
+          <InputPanel />
+          <OptionsPanel />
+        </aside>
+      </main>
+      <HelpDialog />
+      <DropOverlay />
+    </div>
+  );
+}

@@ -1,0 +1,98 @@
+/** The image view's picture: the photo or the depth map, with masks, silhouettes and differences on it. */
+import type { ImageLayers } from "../state/display.js";
+import type { ObjectModel } from "../state/object-model.js";
+import type { Scene } from "../state/scene.js";
+import { differenceColour, type Rgb, rgbOf } from "./colours.js";
+import { type DepthDrawing, drawDepth } from "./rasteriser.js";
+import type { Zoom } from "./zoom.js";
+
+/** A mesh as it is drawn. */
+export interface DrawnObject {
+  mask: Uint8Array;
+  colour: string;
+  drawing: DepthDrawing;
+  isSelected: boolean;
+  /** The difference that has the full colour. */
+  limitM: number;
+}
+
+/** Draws an object at a pose, as far as the layers need it. */
+export function drawn(scene: Scene, object: ObjectModel, matrix: ArrayLike<number>, isSelected: boolean): DrawnObject {
+  const { mask, mesh, colour } = object;
+  return { mask, colour, isSelected, drawing: drawDepth(mesh, matrix, scene), limitM: differenceLimit(object) };
+}
+
+/** A fiftieth of the object, in round millimetres: what an eye would call "off". */
+export function differenceLimit({ seen }: ObjectModel): number {
+  const mm = Math.max(1, Math.round((1000 * seen.sizeM) / 50));
+  return (mm > 10 ? 5 * Math.round(mm / 5) : mm) / 1000;
+}
+
+/** Composes the picture: `before` is what is left of the wipe, `after` what is right of it. */
+export function compose(
+  scene: Scene,
+  base: Uint8ClampedArray,
+  before: readonly DrawnObject[],
+  after: readonly DrawnObject[],
+  { outline, silhouette, difference, wipe }: ImageLayers,
+  zoom: Zoom,
+): ImageData {
+  const { width, height, depthM } = scene;
+  const image = new ImageData(Uint8ClampedArray.from(base), width, height);
+  const split = wipe >= 1 ? width : wipe > 0 ? columnAt(wipe, zoom, width) : 0;
+  const thickness = Math.max(1, Math.round(width / 400));
+  paint(before, 0, split);
+  paint(after, split, width);
+  if (split > 0 && split < width) {
+    // As thick on the screen, however large the pixels are.
+    const line = Math.max(1, Math.round(width / zoom.factor / 200));
+    for (let v = 0; v < height; v++) {
+      for (let u = split; u < Math.min(split + line, width); u++) mix(image.data, v * width + u, [255, 255, 255], 1);
+    }
+  }
+  return image;
+
+  function paint(objects: readonly DrawnObject[], left: number, right: number): void {
+    for (const { mask, colour, drawing, isSelected, limitM } of objects) {
+      const own = rgbOf(colour);
+      const isEdge = edges(drawing, width, height, thickness);
+      const isBorder = edges(mask, width, height, thickness);
+      const fill = isSelected ? 0.45 : 0.3;
+      for (let v = 0; v < height; v++) {
+        for (let u = left; u < right; u++) {
+          const pixel = v * width + u;
+          const [mesh, measured] = [drawing[pixel] as number, depthM[pixel] as number];
+          if (mesh > 0 && difference && mask[pixel] !== 0 && measured > 0) {
+            mix(image.data, pixel, differenceColour(mesh - measured, limitM), 0.92);
+          } else if (mesh > 0 && silhouette) mix(image.data, pixel, own, fill);
+          if (mesh > 0 && (silhouette || difference) && isEdge(u, v)) mix(image.data, pixel, own, 1);
+          if (outline && mask[pixel] !== 0 && isBorder(u, v)) mix(image.data, pixel, [255, 255, 255], 0.95);
+        }
+      }
+    }
+  }
+}
+
+/** The column at a share of what the zoom leaves to be seen. */
+function columnAt(share: number, { factor, x }: Zoom, width: number): number {
+  const column = Math.round((x + (share - 0.5) / factor) * width);
+  return Math.min(Math.max(column, 0), width);
+}
+
+function mix(data: Uint8ClampedArray, pixel: number, colour: Rgb, share: number): void {
+  for (let k = 0; k < 3; k++) {
+    const place = 4 * pixel + k;
+    data[place] = (data[place] as number) * (1 - share) + (colour[k] as number) * share;
+  }
+}
+
+/** Whether a pixel of a shape has the outside within so many pixels. */
+function edges(shape: ArrayLike<number>, width: number, height: number, thickness: number) {
+  const isInside = (u: number, v: number) => u >= 0 && v >= 0 && u < width && v < height && shape[v * width + u] !== 0;
+  return (u: number, v: number): boolean => {
+    for (let d = 1; d <= thickness; d++) {
+      if (!isInside(u - d, v) || !isInside(u + d, v) || !isInside(u, v - d) || !isInside(u, v + d)) return true;
+    }
+    return false;
+  };
+}

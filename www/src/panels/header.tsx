@@ -1,0 +1,58 @@
+/** The page's head: what it is, which sample, and the theme. */
+import { openSample } from "../load/open.js";
+import { sampleOf, samples } from "../load/samples.js";
+import { alignAll } from "../run/align.js";
+import { type Theme, theme } from "../state/display.js";
+import { scene } from "../state/scene.js";
+import { toggleHelp } from "../ui/help.js";
+
+const themes: readonly [Theme, string][] = [
+  ["system", "System"],
+  ["light", "Light"],
+  ["dark", "Dark"],
+];
+
+async function choose(id: string): Promise<void> {
+  const sample = sampleOf(id);
+  if (sample !== undefined && (await openSample(sample))) await alignAll();
+}
+
+export function Header() {
+  const shown = scene.value?.sample ?? "";
+  return (
+    <header class="head">
+      <h1>sim3align</h1>
+      <p class="claim">Puts a generated mesh where it really is, at its real size. Nothing leaves this machine.</p>
+      <label class="field-inline">
+        <span>Sample</span>
+        <select id="sample" value={shown} onChange={({ currentTarget }) => choose(currentTarget.value)}>
+          {shown === "" && <option value="">own files</option>}
+          {samples.map(({ id, title, about }) => (
+            <option key={id} value={id} title={about}>
+              {title}
+            </option>
+          ))}
+        </select>
+      </label>
+      <label class="field-inline">
+        <span>Theme</span>
+        <select
+          id="theme"
+          value={theme.value}
+          onChange={({ currentTarget }) => {
+            theme.value = currentTarget.value as Theme;
+          }}
+        >
+          {themes.map(([value, title]) => (
+            <option key={value} value={value}>
+              {title}
+            </option>
+          ))}
+        </select>
+      </label>
+      <button type="button" onClick={toggleHelp} aria-keyshortcuts="?">
+        Help
+      </button>
+    </header>
+  );
+}

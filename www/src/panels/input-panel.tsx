@@ -1,0 +1,93 @@
+/** The inputs: files by field, or a whole case at once. */
+import { useEffect, useRef } from "preact/hooks";
+import { baseName, fromFile } from "../load/named-file.js";
+import { fieldErrors, inputs, open, openFiles } from "../load/open.js";
+import { CameraField } from "./camera-field.js";
+import { FileField } from "./file-field.js";
+
+const names = (files: readonly { path: string }[]) => files.map(({ path }) => baseName(path)).join(", ");
+
+export function InputPanel() {
+  const panel = useRef<HTMLDetailsElement>(null);
+  const errors = fieldErrors.value;
+  // What is wrong has to be seen, wherever the panel was scrolled to.
+  useEffect(() => {
+    const wrong = panel.current?.querySelector('[data-wrong="true"]');
+    if (panel.current === null || wrong === null || wrong === undefined) return;
+    panel.current.open = true;
+    wrong.scrollIntoView({ block: "nearest" });
+  }, [errors]);
+  const { depth, masks, meshes, photo, depthScale, resizeMasks } = inputs.value;
+  return (
+    <details class="panel input-panel" id="inputs" open ref={panel}>
+      <summary>
+        <h2>Input</h2>
+      </summary>
+      <p class="quiet">Drop files anywhere, or a case folder or zip. They stay on this machine.</p>
+      <div class="row">
+        <label class="button">
+          <span>Open folder</span>
+          <input
+            id="folder"
+            class="visually-hidden"
+            type="file"
+            {...{ webkitdirectory: true }}
+            onChange={({ currentTarget }) => openFiles(Array.from(currentTarget.files ?? [], (file) => fromFile(file)))}
+          />
+        </label>
+        <label class="button">
+          <span>Open zip or files</span>
+          <input
+            id="files"
+            class="visually-hidden"
+            type="file"
+            multiple
+            onChange={({ currentTarget }) => openFiles(Array.from(currentTarget.files ?? [], (file) => fromFile(file)))}
+          />
+        </label>
+      </div>
+      <FileField field="depth" title="Depth" chosen={depth === null ? "" : baseName(depth.path)} accept=".png,.npy">
+        <label class="field-inline sub">
+          <span>Unit</span>
+          <select
+            id="depth-scale"
+            value={depthScale ?? ""}
+            onChange={({ currentTarget: { value } }) =>
+              open({ ...inputs.peek(), depthScale: value === "" ? null : Number(value) })
+            }
+          >
+            <option value="">as the file says</option>
+            <option value="1">metres</option>
+            <option value="0.001">millimetres</option>
+            <option value="0.0001">tenths of a millimetre</option>
+            <option value="0.00025">a quarter of a millimetre</option>
+          </select>
+        </label>
+      </FileField>
+      <FileField field="mask" title="Mask" chosen={names(masks)} accept=".png,.npy,.json" multiple>
+        <label class="check sub">
+          <input
+            type="checkbox"
+            checked={resizeMasks}
+            onChange={({ currentTarget }) => open({ ...inputs.peek(), resizeMasks: currentTarget.checked })}
+          />
+          <span>Resize masks to the depth map</span>
+        </label>
+      </FileField>
+      <FileField
+        field="mesh"
+        title="Mesh"
+        chosen={names(meshes.map(({ file }) => file))}
+        accept=".glb,.gltf,.obj,.ply,.stl,.bin"
+        multiple
+      />
+      <CameraField />
+      <FileField
+        field="photo"
+        title="Photo"
+        chosen={photo === null ? "" : baseName(photo.path)}
+        accept="image/png,image/jpeg,image/webp"
+      />
+    </details>
+  );
+}

@@ -1,0 +1,57 @@
+/** Keeps the metrics of every object's present pose. */
+import { effect } from "@preact/signals";
+import { toSim3 } from "sim3align/conventions";
+import type { ObjectModel } from "../state/object-model.js";
+import { type Scene, scene } from "../state/scene.js";
+import { aligner } from "./aligner.js";
+import { inputOf } from "./input.js";
+
+/** A pose that is being dragged changes with every frame. */
+const REST_MS = 120;
+
+/** Follows the objects of every scene; to be called once. */
+export function followPoses(): void {
+  let stop: (() => void)[] = [];
+  effect(() => {
+    const whole = scene.value;
+    for (const end of stop) end();
+    stop = whole === null ? [] : whole.objects.map((object) => follow(whole, object));
+  });
+}
+
+function follow(whole: Scene, object: ObjectModel): () => void {
+  let abort = new AbortController();
+  let timer: ReturnType<typeof setTimeout> | undefined;
+  const stop = effect(() => {
+    const pose = object.pose.value;
+    abort.abort();
+    abort = new AbortController();
+    clearTimeout(timer);
+    const alignment = object.alignment.peek();
+    const isResult = alignment !== null && (pose.source === "aligned" || pose.source === "refined");
+    const isSame = isResult && toSim3(alignment).matrix.every((x, i) => x === pose.transform.matrix[i]);
+    object.metrics.value = isSame ? alignment.metrics : null;
+    object.errors.value = null;
+    if (pose.source === "start" || (isSame && object.truth === null)) return;
+    timer = setTimeout(() => evaluate(whole, object, abort.signal), REST_MS);
+  });
+  return () => {
+    stop();
+    abort.abort();
+    clearTimeout(timer);
+  };
+}
+
+async function evaluate(whole: Scene, object: ObjectModel, signal: AbortSignal): Promise<void> {
+  const { truth } = object;
+  const compared = truth === null ? {} : { truth: truth.transform, symmetry: truth.symmetry };
+  try {
+    const { transform } = object.pose.peek();
+    const { metrics, errors } = await (await aligner()).evaluate(inputOf(whole, object), transform, compared);
+    if (signal.aborted) return;
+    object.metrics.value = metrics;
+    object.errors.value = errors;
+  } catch {
+    // A pose that cannot be scored (behind the camera, say) has no metrics; nothing else depends on them.
+  }
+}

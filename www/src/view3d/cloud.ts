@@ -1,0 +1,145 @@
+/** The cloud: all points of a depth map in one draw call, as squares of a size that can be set. */
+import {
+  attribute,
+  cameraProjectionMatrix,
+  colorSpaceToWorking,
+  float,
+  modelViewMatrix,
+  positionGeometry,
+  uniform,
+  vec2,
+  vec4,
+  vertexIndex,
+} from "three/tsl";
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  Mesh,
+  NodeMaterial,
+  type PerspectiveCamera,
+  SRGBColorSpace,
+  Vector2,
+} from "three/webgpu";
+import { type Points, pointsOf, type Rgb, tonesOf } from "./points.js";
+import type { ObjectInput, SceneInput } from "./types.js";
+
+/** How much of the object's colour its points get: when it is selected, and when it is not. */
+const highlight = { selected: 0.55, others: 0.38 };
+
+/** Bytes of a colour as they are in sRGB, from 0 to 1. */
+export const rgbOf = (color: Color): Rgb => {
+  const { r, g, b } = color.getRGB({ r: 0, g: 0, b: 0 }, SRGBColorSpace);
+  return [r, g, b];
+};
+
+/** A point cloud. */
+export class Cloud {
+  readonly object: Mesh<BufferGeometry, NodeMaterial>;
+  readonly points: Points;
+  /** Half a point's width at one metre, in the directions of x and y. */
+  private readonly halfWidth = uniform(new Vector2());
+  /** Half a screen pixel at one metre: no point is smaller. */
+  private readonly least = uniform(0);
+  private readonly tones: BufferAttribute;
+  private base: Uint8Array;
+
+  constructor(
+    private readonly scene: SceneInput,
+    near: Color,
+    far: Color,
+    mostPoints: number,
+  ) {
+    this.points = pointsOf(scene, mostPoints);
+    this.base = tonesOf(scene, this.points, rgbOf(near), rgbOf(far));
+    this.tones = new BufferAttribute(repeated(this.base, 4), 4, true);
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(repeated(this.points.positions, 3), 3));
+    geometry.setAttribute("tone", this.tones);
+    geometry.setIndex(new BufferAttribute(squares(this.points.pixels.length), 1));
+    this.object = new Mesh(geometry, this.material());
+    // To know its bounds would cost more than it saves: it is always in view.
+    this.object.frustumCulled = false;
+  }
+
+  /** Squares that face the screen, in the picture's own colours. */
+  private material(): NodeMaterial {
+    const inView = modelViewMatrix.mul(vec4(positionGeometry, 1));
+    const corner = vec2(float(vertexIndex.bitAnd(1)), float(vertexIndex.shiftRight(1).bitAnd(1)))
+      .mul(2)
+      .sub(1);
+    const half = vec2(this.halfWidth)
+      .mul(positionGeometry.z)
+      .max(vec2(this.least.mul(inView.z.negate())));
+    const material = new NodeMaterial();
+    material.vertexNode = cameraProjectionMatrix.mul(inView.add(vec4(corner.mul(half), 0, 0)));
+    // Bytes are sRGB, the renderer calculates in linear light.
+    material.colorNode = colorSpaceToWorking(attribute<"vec4">("tone", "vec4"), SRGBColorSpace);
+    material.lights = false;
+    material.fog = false;
+    return material;
+  }
+
+  /** A point's width in pixels of the depth map. */
+  setPointSize(size: number): void {
+    const { fx, fy } = this.scene.camera;
+    const half = 0.5 * Math.max(0, size) * this.points.stride;
+    this.halfWidth.value.set(half / fx, half / fy);
+  }
+
+  /** Colours of a scene without photo. */
+  setTheme(near: Color, far: Color): void {
+    if (!this.scene.rgba) this.base = tonesOf(this.scene, this.points, rgbOf(near), rgbOf(far));
+  }
+
+  /** Gives the points of masks the colours of their objects. */
+  highlight(objects: readonly ObjectInput[], selected: string | null): void {
+    const tones = this.base.slice();
+    const { pixels } = this.points;
+    for (const { id, colour, mask } of objects) {
+      const share = id === selected ? highlight.selected : highlight.others;
+      const rgb = rgbOf(new Color(colour));
+      for (let i = 0; i < pixels.length; i++) {
+        if (!mask[pixels[i] as number]) continue;
+        for (let at = 4 * i; at < 4 * i + 3; at++) {
+          tones[at] = (1 - share) * (this.base[at] as number) + share * 255 * (rgb[at % 4] as number) + 0.5;
+        }
+      }
+    }
+    (this.tones.array as Uint8Array).set(repeated(tones, 4));
+    this.tones.needsUpdate = true;
+  }
+
+  /** What has to be known of the screen, before each frame. */
+  prepare(camera: PerspectiveCamera, heightPx: number): void {
+    const scale = camera.projectionMatrix.elements[5] ?? 1;
+    this.least.value = 1 / (scale * Math.max(1, heightPx));
+  }
+
+  dispose(): void {
+    this.object.removeFromParent();
+    this.object.geometry.dispose();
+    this.object.material.dispose();
+  }
+}
+
+/** Four corners with the same numbers for every point: instances of four vertices would be slower, in software by far. */
+function repeated<T extends Float32Array | Uint8Array>(numbers: T, size: number): T {
+  const all = new (numbers.constructor as new (length: number) => T)(4 * numbers.length);
+  for (let i = 0, to = 0; i < numbers.length; i += size) {
+    for (let corner = 0; corner < 4; corner++) {
+      for (let k = 0; k < size; k++) all[to++] = numbers[i + k] as number;
+    }
+  }
+  return all;
+}
+
+/** Two triangles per point, of corners in the order of bits: left or right, below or above. */
+function squares(count: number): Uint32Array {
+  const indices = new Uint32Array(6 * count);
+  for (let i = 0; i < count; i++) {
+    const corner = 4 * i;
+    indices.set([corner, corner + 1, corner + 3, corner, corner + 3, corner + 2], 6 * i);
+  }
+  return indices;
+}

@@ -1,0 +1,169 @@
+/** A mesh in the view: loaded, coloured, and where its pose puts it. */
+import { applyToObject3D } from "sim3align/three";
+import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
+import { normalLocal, positionLocal, uniform } from "three/tsl";
+import {
+  BackSide,
+  Box3,
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  DoubleSide,
+  Group,
+  type Intersection,
+  type Material,
+  Mesh,
+  MeshBasicNodeMaterial,
+  MeshStandardMaterial,
+  type Object3D,
+  type Raycaster,
+  Vector3,
+} from "three/webgpu";
+import { matrixOf, moved, type Pose, poseOf } from "./pose.js";
+import type { Display, Matrix, ObjectInput } from "./types.js";
+
+const white = new Color(0xffffff);
+/** The outline's width as a share of the mesh's box diagonal. */
+const outlineWidth = 0.006;
+
+/** A mesh. */
+export class Model {
+  /** At the mesh's centre, so that the gizmo is there and scales about it: its child is the mesh, moved back. */
+  readonly pivot = new Group();
+  /** The middle of the mesh's box, in its own frame. */
+  readonly centre = new Vector3();
+  /** Half the diagonal of that box. */
+  readonly radius: number;
+  private readonly outlines = new Group();
+  private readonly materials: Material[] = [];
+  private isPlaced = false;
+
+  private constructor(
+    readonly id: string,
+    private readonly content: Object3D,
+    readonly colour: Color,
+  ) {
+    content.updateMatrixWorld(true);
+    const box = new Box3().setFromObject(content, true);
+    box.getCenter(this.centre);
+    this.radius = box.getSize(new Vector3()).length() / 2;
+    const frame = new Group();
+    frame.position.copy(this.centre).negate();
+    frame.add(content, this.outlines);
+    this.pivot.add(frame);
+    this.pivot.visible = false;
+    this.prepare();
+  }
+
+  /** Reads a mesh; its frame is the glTF scene's, with the transforms of the nodes applied. */
+  static async load({ id, colour, mesh }: ObjectInput): Promise<Model> {
+    if ("glb" in mesh) {
+      // The loader keeps views of the buffer.
+      const { scene } = await new GLTFLoader().parseAsync(mesh.glb.slice().buffer, "");
+      return new Model(id, new Group().add(scene), new Color(colour));
+    }
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(mesh.positions, 3));
+    geometry.setIndex(new BufferAttribute(mesh.indices, 1));
+    return new Model(id, new Group().add(new Mesh(geometry)), new Color(colour));
+  }
+
+  /** All meshes of the content. */
+  private meshes(): Mesh[] {
+    const found: Mesh[] = [];
+    this.content.traverse((object) => {
+      if ((object as Mesh).isMesh) found.push(object as Mesh);
+    });
+    return found;
+  }
+
+  /** Where a ray first meets the mesh. */
+  intersect(ray: Raycaster): Intersection | undefined {
+    return ray.intersectObject(this.content, true)[0];
+  }
+
+  /** Normals, materials that can be seen in this light, and outlines. */
+  private prepare(): void {
+    const width = uniform(2 * this.radius * outlineWidth);
+    const outline = new MeshBasicNodeMaterial({ side: BackSide, color: this.colour.clone().lerp(white, 0.7) });
+    // In the mesh's own frame, whose scale is that of the nodes at most.
+    outline.positionNode = positionLocal.add(normalLocal.mul(width));
+    this.materials.push(outline);
+    for (const mesh of this.meshes()) {
+      if (!mesh.geometry.attributes.normal) mesh.geometry.computeVertexNormals();
+      const given = Array.isArray(mesh.material) ? mesh.material[0] : mesh.material;
+      mesh.material = this.seen(given, mesh.geometry);
+      const hull = new Mesh(mesh.geometry, outline);
+      hull.applyMatrix4(mesh.matrixWorld);
+      this.outlines.add(hull);
+    }
+    this.outlines.visible = false;
+  }
+
+  /** The material, or, of a mesh without colours of its own, one in the object's. */
+  private seen(given: Material | undefined, { attributes }: BufferGeometry): Material {
+    const standard = given as MeshStandardMaterial | undefined;
+    const hasColours =
+      attributes.color !== undefined ||
+      Boolean(standard?.map) ||
+      (standard?.color && standard.color.getHex() !== 0xffffff);
+    if (standard?.isMeshStandardMaterial && hasColours) {
+      // There is nothing around that metal could mirror: it would be black.
+      standard.metalness = 0;
+      standard.roughness = Math.max(0.5, standard.roughness);
+      this.materials.push(standard);
+      return standard;
+    }
+    given?.dispose();
+    const material = new MeshStandardMaterial({ color: this.colour, roughness: 0.62, metalness: 0, side: DoubleSide });
+    if (attributes.color !== undefined) {
+      material.vertexColors = true;
+      material.color.set(0xffffff);
+    }
+    this.materials.push(material);
+    return material;
+  }
+
+  /** Where the mesh is: OpenCV camera from mesh. */
+  get pose(): Float64Array | null {
+    if (!this.isPlaced) return null;
+    const { position, quaternion, scale } = this.pivot;
+    const placed: Pose = { position: position.clone(), quaternion: quaternion.clone(), scale: scale.x };
+    return matrixOf(moved(placed, this.centre.clone().negate()));
+  }
+
+  /** Puts the mesh somewhere, or hides it. */
+  set pose(pose: Matrix | null) {
+    this.isPlaced = pose !== null;
+    this.pivot.visible = this.isPlaced;
+    if (pose === null) return;
+    // The pivot's parent is in the OpenCV camera frame.
+    applyToObject3D(this.pivot, matrixOf(moved(poseOf(pose), this.centre)), { frame: "opencv" });
+  }
+
+  /** Takes over the colour and the highlight. */
+  show(display: Display, isSelected: boolean): void {
+    const opacity = Math.min(1, Math.max(0, display.meshOpacity ?? 1));
+    this.pivot.visible = this.isPlaced && display.mesh;
+    this.outlines.visible = isSelected && !display.wireframe && opacity === 1;
+    for (const material of this.materials) {
+      if (!(material as MeshStandardMaterial).isMeshStandardMaterial) continue;
+      const standard = material as MeshStandardMaterial;
+      standard.wireframe = display.wireframe;
+      const isTransparent = opacity < 1;
+      if (standard.transparent !== isTransparent) standard.needsUpdate = true;
+      standard.transparent = isTransparent;
+      standard.depthWrite = !isTransparent;
+      standard.opacity = opacity;
+    }
+  }
+
+  dispose(): void {
+    this.pivot.removeFromParent();
+    for (const mesh of this.meshes()) mesh.geometry.dispose();
+    for (const material of this.materials) {
+      for (const value of Object.values(material)) if (value?.isTexture) value.dispose();
+      material.dispose();
+    }
+  }
+}

@@ -1,0 +1,80 @@
+/** The pointer on the canvas: clicks, and what it is over. */
+
+/** Farther than this, in CSS pixels, it is no click but a drag. */
+const clickPx = 5;
+
+/** A place on the canvas, CSS pixels from the left and top. */
+export interface Place {
+  x: number;
+  y: number;
+}
+
+/** What a pointer tells. */
+export interface PointerEvents {
+  onClick(place: Place): void;
+  onDoubleClick(place: Place): void;
+  /** At most once a frame, and with no button pressed; null where it has left. */
+  onHover(place: Place | null): void;
+}
+
+/** Listens to a canvas until it is disposed of. */
+export class Pointer {
+  private readonly listeners = new AbortController();
+  private frame = 0;
+
+  constructor(canvas: HTMLCanvasElement, events: PointerEvents) {
+    const { signal } = this.listeners;
+    const place = (event: MouseEvent): Place => {
+      const { left, top } = canvas.getBoundingClientRect();
+      return { x: event.clientX - left, y: event.clientY - top };
+    };
+    let pressed: (Place & { id: number }) | null = null;
+    canvas.addEventListener(
+      "pointerdown",
+      (event) => {
+        // A second finger makes it no click.
+        pressed = pressed === null && event.button === 0 ? { ...place(event), id: event.pointerId } : null;
+      },
+      { signal },
+    );
+    canvas.addEventListener(
+      "pointerup",
+      (event) => {
+        const [from, to] = [pressed, place(event)];
+        pressed = null;
+        if (from?.id === event.pointerId && Math.hypot(to.x - from.x, to.y - from.y) <= clickPx) events.onClick(to);
+      },
+      { signal },
+    );
+    canvas.addEventListener(
+      "pointercancel",
+      () => {
+        pressed = null;
+      },
+      { signal },
+    );
+    canvas.addEventListener("dblclick", (event) => events.onDoubleClick(place(event)), { signal });
+    canvas.addEventListener(
+      "pointermove",
+      (event) => {
+        if (event.buttons !== 0) return;
+        cancelAnimationFrame(this.frame);
+        this.frame = requestAnimationFrame(() => events.onHover(place(event)));
+      },
+      { signal },
+    );
+    canvas.addEventListener(
+      "pointerleave",
+      () => {
+        cancelAnimationFrame(this.frame);
+        events.onHover(null);
+      },
+      { signal },
+    );
+  }
+
+  dispose(): void {
+    cancelAnimationFrame(this.frame);
+    this.listeners.abort();
+  }
+}

@@ -1,0 +1,293 @@
+/** The 3D view: a cloud, meshes, a gizmo, and somebody who looks at them. */
+import { DirectionalLight, Group, HemisphereLight, Vector3 } from "three/webgpu";
+import { Cloud } from "./cloud.js";
+import { Frustum } from "./frustum.js";
+import { Gizmo } from "./gizmo.js";
+import { Model } from "./model.js";
+import { Movements } from "./movement.js";
+import { Picker } from "./picker.js";
+import { Pointer } from "./pointer.js";
+import { type Extent, extentOf, quantile, sortedDepths } from "./points.js";
+import type { Stage } from "./stage.js";
+import { colours } from "./theme.js";
+import type {
+  Animation,
+  Display,
+  GizmoMode,
+  Look,
+  Matrix,
+  ObjectInput,
+  SceneInput,
+  View,
+  ViewEvents,
+} from "./types.js";
+import { Viewpoint } from "./viewpoint.js";
+
+const looks: Record<Look, string> = { camera: "the camera's place", orbit: "beside", top: "above", side: "the side" };
+
+/** No screen shows more points at once, and no processor that draws them itself draws more in good time. */
+const mostPoints = { hardware: 400_000, software: 80_000 };
+
+/** A view on a stage. */
+export class SceneView implements View {
+  /** Its children are in the OpenCV camera frame; three.js' y goes up, its z towards the camera. */
+  private readonly root = new Group();
+  private readonly viewpoint: Viewpoint;
+  private readonly gizmo: Gizmo;
+  private readonly movements = new Movements();
+  private readonly models = new Map<string, Model>();
+  private readonly poses = new Map<string, Matrix | null>();
+  private pointer: Pointer;
+  private scene: SceneInput | null = null;
+  private cloud: Cloud | null = null;
+  private frustum: Frustum | null = null;
+  private objects: readonly ObjectInput[] = [];
+  private selected: string | null = null;
+  private gizmoMode: GizmoMode | null = null;
+  private look: Look = "orbit";
+  private loading = 0;
+  private display: Display = { cloud: true, mesh: true, wireframe: false, pointSize: 1.2, theme: "light" };
+
+  constructor(
+    private readonly stage: Stage,
+    private readonly host: HTMLElement,
+    private readonly events: ViewEvents,
+  ) {
+    this.viewpoint = new Viewpoint(stage.canvas, () => this.update());
+    const { camera, controls } = this.viewpoint;
+    this.gizmo = new Gizmo(stage.scene, camera, stage.canvas, {
+      onChange: () => stage.invalidate(),
+      onHold: (isHeld) => {
+        controls.enabled = !isHeld;
+      },
+      onPose: (model, phase) => this.moved(model, phase),
+    });
+    this.root.rotation.x = Math.PI;
+    // From where one looks, a little from above.
+    const lamp = new DirectionalLight(0xffffff, 2.1);
+    lamp.position.set(-0.4, 1, 0.8);
+    camera.add(lamp, lamp.target);
+    stage.scene.add(this.root, camera, new HemisphereLight(0xffffff, 0x8d8a86, 1.5));
+    this.pointer = this.listen();
+    stage.run(camera, {
+      onResize: (width, height) => this.viewpoint.resize(width, height),
+      onFrame: (_, height) => {
+        const isMoving = this.movements.step();
+        const isTurning = controls.update();
+        this.cloud?.prepare(camera, height);
+        return isMoving || isTurning;
+      },
+      onCanvas: (canvas) => {
+        this.viewpoint.connect(canvas);
+        this.gizmo.connect(canvas);
+        this.pointer.dispose();
+        this.pointer = this.listen();
+      },
+    });
+    this.update();
+  }
+
+  get backend() {
+    return this.stage.backend;
+  }
+
+  private listen(): Pointer {
+    const picked = (place: { x: number; y: number }) => {
+      const { clientWidth: width, clientHeight: height } = this.stage.canvas;
+      const models = this.display.mesh ? [...this.models.values()] : [];
+      const cloud = this.display.cloud ? this.cloud : null;
+      return new Picker(this.viewpoint.camera, this.root).pick(place, { width, height }, models, cloud, this.scene);
+    };
+    return new Pointer(this.stage.canvas, {
+      onClick: (place) => {
+        if (this.gizmo.isBusy) return;
+        const hit = picked(place);
+        const { pixel } = hit ?? {};
+        const index = pixel ? pixel.y * (this.scene?.width ?? 0) + pixel.x : -1;
+        const id = hit?.id ?? this.objects.find(({ mask }) => mask[index])?.id ?? null;
+        this.select(id);
+        this.events.onSelect(id);
+      },
+      onDoubleClick: (place) => {
+        const hit = this.gizmo.isBusy ? null : picked(place);
+        if (hit) this.focus(hit.point);
+      },
+      onHover: (place) => {
+        if (this.events.onHover) this.events.onHover(place ? (picked(place)?.pixel ?? null) : null);
+      },
+    });
+  }
+
+  setScene(scene: SceneInput): void {
+    this.cloud?.dispose();
+    this.frustum?.dispose();
+    const { near, far, frustum } = colours(this.display.theme, this.host);
+    this.scene = scene;
+    this.cloud = new Cloud(scene, near, far, this.stage.isSoftware ? mostPoints.software : mostPoints.hardware);
+    const depths = sortedDepths(this.cloud.points);
+    const [first, last] = [quantile(depths, 0.01) || 1, quantile(depths, 0.99) || 1];
+    this.frustum = new Frustum(scene, 0.22 * first, frustum);
+    this.root.add(this.cloud.object, this.frustum.object);
+    this.viewpoint.setScene(scene, first, last);
+    this.lookFrom(this.look);
+    this.highlight();
+  }
+
+  async setObjects(objects: ObjectInput[]): Promise<void> {
+    const attempt = ++this.loading;
+    const before = new Map(this.objects.map((object) => [object.id, object]));
+    const isSame = (object: ObjectInput) => {
+      const old = before.get(object.id);
+      return old !== undefined && old.mesh === object.mesh && old.colour === object.colour;
+    };
+    const kept = (object: ObjectInput) => (isSame(object) ? this.models.get(object.id) : undefined);
+    const loaded = await Promise.allSettled(objects.map((object) => kept(object) ?? Model.load(object)));
+    const models = loaded.flatMap((result) => (result.status === "fulfilled" ? [result.value] : []));
+    const fresh = models.filter((model) => this.models.get(model.id) !== model);
+    const failed = loaded.find((result) => result.status === "rejected");
+    if (failed !== undefined || attempt !== this.loading) {
+      for (const model of fresh) model.dispose();
+      if (failed !== undefined) throw failed.reason;
+      return;
+    }
+    this.gizmo.set(null, null);
+    for (const model of this.models.values()) if (!models.includes(model)) model.dispose();
+    this.models.clear();
+    for (const model of models) {
+      this.models.set(model.id, model);
+      model.pose = this.poses.get(model.id) ?? null;
+      this.root.add(model.pivot);
+    }
+    for (const id of [...this.poses.keys()]) if (!this.models.has(id)) this.poses.delete(id);
+    this.objects = objects;
+    if (this.selected !== null && !this.models.has(this.selected)) this.selected = null;
+    if (!this.viewpoint.isTouched) this.lookFrom(this.look);
+    this.highlight();
+  }
+
+  async setPose(id: string, pose: Matrix | null, animate?: Animation): Promise<void> {
+    this.movements.stop(id);
+    this.poses.set(id, pose);
+    const model = this.models.get(id);
+    if (!model) return;
+    const isStill = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    if (pose !== null && animate && animate.durationMs > 0 && !isStill) {
+      const arrival = this.movements.start(id, animate, pose, model.centre, (at) => {
+        model.pose = at;
+      });
+      this.update();
+      await arrival;
+      return;
+    }
+    model.pose = pose;
+    this.update();
+  }
+
+  /** The gizmo has moved a model. */
+  private moved(model: Model, phase: "drag" | "end"): void {
+    const { pose } = model;
+    if (!pose) return;
+    this.movements.stop(model.id);
+    this.poses.set(model.id, pose);
+    this.stage.invalidate();
+    this.events.onPose(model.id, pose, phase);
+  }
+
+  select(id: string | null): void {
+    if (id === this.selected) return;
+    this.selected = id;
+    this.highlight();
+  }
+
+  setGizmo(mode: GizmoMode | null): void {
+    this.gizmoMode = mode;
+    this.update();
+  }
+
+  setDisplay(display: Display): void {
+    const isOther = display.theme !== this.display.theme;
+    this.display = { ...display };
+    if (isOther) {
+      const { near, far, frustum } = colours(display.theme, this.host);
+      this.cloud?.setTheme(near, far);
+      this.frustum?.object.material.color.copy(frustum);
+      this.highlight();
+    }
+    this.update();
+  }
+
+  lookFrom(which: Look): void {
+    this.look = which;
+    const { centre, radius } = this.extent();
+    this.viewpoint.lookFrom(which, toThree(centre), radius);
+    this.update();
+  }
+
+  focus(point: [number, number, number] = this.extent().centre): void {
+    this.viewpoint.focus(toThree(point));
+    this.update();
+  }
+
+  /** Where the selected object is, or all objects, or the scene. */
+  private extent(): Extent {
+    const model = this.selected === null ? undefined : this.models.get(this.selected);
+    if (model?.pose) {
+      const { position, scale } = model.pivot;
+      return { centre: position.toArray(), radius: scale.x * model.radius };
+    }
+    if (!this.cloud) return { centre: [0, 0, 1], radius: 0.5 };
+    const masks = this.objects.filter(({ id }) => this.selected === null || id === this.selected);
+    return extentOf(this.cloud.points, (pixel) => masks.some(({ mask }) => mask[pixel]));
+  }
+
+  private highlight(): void {
+    this.cloud?.highlight(this.objects, this.selected);
+    this.update();
+  }
+
+  /** Brings everything into the state that was asked for. */
+  private update(): void {
+    const { display, selected, stage, viewpoint } = this;
+    stage.background = colours(display.theme, this.host).background;
+    if (this.cloud) {
+      this.cloud.object.visible = display.cloud;
+      this.cloud.setPointSize(display.pointSize);
+    }
+    if (this.frustum) this.frustum.object.visible = !viewpoint.isCamera;
+    for (const model of this.models.values()) model.show(display, model.id === selected);
+    const model = selected === null ? undefined : this.models.get(selected);
+    this.gizmo?.set(model ?? null, this.gizmoMode);
+    stage.canvas.setAttribute("aria-label", this.label());
+    stage.invalidate();
+  }
+
+  /** What is seen, in words. */
+  private label(): string {
+    if (!this.cloud) return "3D view, empty";
+    const points = this.cloud.points.pixels.length.toLocaleString("en-GB");
+    const placed = [...this.models.values()].filter(({ pose }) => pose !== null).map(({ id }) => id);
+    const meshes = placed.length === 0 ? "no mesh placed yet" : `placed meshes: ${placed.join(", ")}`;
+    const from = looks[this.viewpoint.isCamera ? "camera" : this.look === "camera" ? "orbit" : this.look];
+    return `3D view from ${from}: ${points} points of the scene, ${meshes}`;
+  }
+
+  snapshot(): Promise<Blob> {
+    return this.stage.snapshot();
+  }
+
+  dispose(): void {
+    this.loading++;
+    this.movements.stopAll();
+    this.pointer.dispose();
+    this.gizmo.dispose();
+    this.viewpoint.dispose();
+    for (const model of this.models.values()) model.dispose();
+    this.models.clear();
+    this.cloud?.dispose();
+    this.frustum?.dispose();
+    this.stage.dispose();
+  }
+}
+
+/** A point of the OpenCV camera frame in three.js' terms. */
+const toThree = ([x, y, z]: readonly [number, number, number]) => new Vector3(x, -y, -z);

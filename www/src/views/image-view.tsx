@@ -1,0 +1,211 @@
+/** The image view: photo or depth, with mask, silhouette and difference on it. */
+import { computed, effect } from "@preact/signals";
+import { useEffect, useRef } from "preact/hooks";
+import { depthPicture } from "../draw/colours.js";
+import { compose, differenceLimit, drawn } from "../draw/composition.js";
+import { wholeImage, zoomToObjects } from "../draw/zoom.js";
+import { layers, pointed, setLayer } from "../state/display.js";
+import { objectAt, scene, select, selected } from "../state/scene.js";
+import { drawing, drawingsAt } from "./drawings.js";
+import { space } from "./space.js";
+
+/** The picture that everything is drawn on. */
+const base = computed(() => {
+  const whole = scene.value;
+  if (whole === null) return null;
+  return layers.value.base === "photo" && whole.rgba !== null ? whole.rgba : depthPicture(whole.depthM);
+});
+
+/** Every object where nobody had aligned anything. */
+const before = computed(() => {
+  const whole = scene.value;
+  return whole === null
+    ? []
+    : whole.objects.map((object) => drawn(whole, object, object.start.transform.matrix, false));
+});
+
+const zoom = computed(() => {
+  const whole = scene.value;
+  return whole === null || !layers.value.zoom ? wholeImage : zoomToObjects(whole);
+});
+
+let canvasNow: HTMLCanvasElement | null = null;
+
+/** The image view as a PNG. */
+export function imageSnapshot(): Promise<Blob | null> {
+  return new Promise((resolve) => (canvasNow === null ? resolve(null) : canvasNow.toBlob(resolve)));
+}
+
+function draw(canvas: HTMLCanvasElement): void {
+  const [whole, picture] = [scene.value, base.value];
+  if (whole === null || picture === null) return;
+  if (canvas.width !== whole.width || canvas.height !== whole.height) {
+    canvas.width = whole.width;
+    canvas.height = whole.height;
+  }
+  const after = drawingsAt.value;
+  const shown = layers.value;
+  const image = compose(whole, picture, shown.wipe > 0 ? before.value : [], after, shown, zoom.value);
+  canvas.getContext("2d")?.putImageData(image, 0, 0);
+}
+
+const switches: readonly [name: "outline" | "silhouette" | "difference" | "zoom", title: string][] = [
+  ["outline", "Mask"],
+  ["silhouette", "Silhouette"],
+  ["difference", "Depth difference"],
+  ["zoom", "Zoom"],
+];
+
+export function ImageView() {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  useEffect(() => {
+    canvasNow = canvas.current;
+    let frame = 0;
+    // Drawn again where the graphics device was lost, and all pictures with it.
+    const redraw = () => canvas.current !== null && draw(canvas.current);
+    canvas.current?.addEventListener("contextrestored", redraw);
+    const stop = effect(() => {
+      // Read here, so that each change asks for one drawing in the next frame.
+      void [scene.value, base.value, layers.value, zoom.value, drawingsAt.value];
+      cancelAnimationFrame(frame);
+      frame = requestAnimationFrame(redraw);
+    });
+    return () => {
+      stop();
+      cancelAnimationFrame(frame);
+      canvasNow?.removeEventListener("contextrestored", redraw);
+      canvasNow = null;
+    };
+  }, []);
+  const whole = scene.value;
+  const { base: shownBase, wipe, difference } = layers.value;
+  const ratio = whole === null ? 4 / 3 : whole.width / whole.height;
+  const { factor, x, y } = zoom.value;
+  const limit = selected.value === null ? null : 1000 * differenceLimit(selected.value);
+  return (
+    <section class="view image" aria-labelledby="image-title">
+      <div class="view-head">
+        <h2 id="image-title">Image</h2>
+        <fieldset>
+          <legend class="visually-hidden">Shown in the image</legend>
+          <select
+            aria-label="Background"
+            value={shownBase}
+            onChange={({ currentTarget }) => setLayer("base", currentTarget.value as "photo" | "depth")}
+          >
+            <option value="photo" disabled={whole?.rgba === null}>
+              Photo
+            </option>
+            <option value="depth">Depth</option>
+          </select>
+          {switches.map(([name, title]) => (
+            <label key={name} class="check">
+              <input
+                id={`layer-${name}`}
+                type="checkbox"
+                checked={layers.value[name]}
+                onChange={({ currentTarget }) => setLayer(name, currentTarget.checked)}
+              />
+              <span>{title}</span>
+            </label>
+          ))}
+        </fieldset>
+      </div>
+      <div class="view-host">
+        <div class="picture" style={{ "--ratio": ratio, "--zoom": factor, "--x": x, "--y": y }}>
+          <canvas
+            ref={canvas}
+            role="img"
+            aria-label={description()}
+            width={whole?.width ?? 640}
+            height={whole?.height ?? 480}
+            onPointerMove={(event) => {
+              pointed.value = pixelOf(event);
+            }}
+            onPointerLeave={() => {
+              pointed.value = null;
+            }}
+            onClick={focusOn}
+          />
+          <Cross />
+        </div>
+      </div>
+      <div class="image-foot">
+        <label class="wipe">
+          <span>After</span>
+          <input
+            id="wipe"
+            type="range"
+            min="0"
+            max="1"
+            step="0.01"
+            value={wipe}
+            aria-label="From after to before"
+            onInput={({ currentTarget }) => setLayer("wipe", currentTarget.valueAsNumber)}
+          />
+          <span>Before</span>
+        </label>
+        {difference && limit !== null ? (
+          <p class="legend">
+            <span>{limit} mm nearer</span>
+            <span class="legend-bar" />
+            <span>{limit} mm farther</span>
+          </p>
+        ) : (
+          <Readout />
+        )}
+      </div>
+    </section>
+  );
+}
+
+function description(): string {
+  const whole = scene.value;
+  if (whole === null) return "No image yet";
+  const names = whole.objects.map((object) => `${object.name}${object.isPlaced ? ", its mesh in place" : ""}`);
+  return `${layers.value.base === "photo" ? "Photo" : "Depth map"} of ${whole.name}, with ${names.join("; ")}`;
+}
+
+function pixelOf(event: MouseEvent): { x: number; y: number } | null {
+  const canvas = event.currentTarget as HTMLCanvasElement;
+  const { left, top, width, height } = canvas.getBoundingClientRect();
+  const x = Math.floor(((event.clientX - left) * canvas.width) / width);
+  const y = Math.floor(((event.clientY - top) * canvas.height) / height);
+  return x >= 0 && y >= 0 && x < canvas.width && y < canvas.height ? { x, y } : null;
+}
+
+/** Turns the 3D view about what was clicked on. */
+function focusOn(event: MouseEvent): void {
+  const [whole, pixel, state] = [scene.peek(), pixelOf(event), space.peek()];
+  if (whole === null || pixel === null) return;
+  select(objectAt(pixel.x, pixel.y)?.id ?? null);
+  const z = whole.depthM[pixel.y * whole.width + pixel.x] ?? 0;
+  const { fx, fy, cx, cy } = whole.camera;
+  if (state.kind === "ready" && z > 0) {
+    state.view.focus([((pixel.x - cx) * z) / fx, ((pixel.y - cy) * z) / fy, z]);
+  }
+}
+
+/** Marks the pixel that is pointed at in the other view. */
+function Cross() {
+  const [pixel, whole] = [pointed.value, scene.value];
+  if (pixel === null || whole === null) return null;
+  const [left, top] = [(100 * (pixel.x + 0.5)) / whole.width, (100 * (pixel.y + 0.5)) / whole.height];
+  return <span class="cross" style={{ left: `${left}%`, top: `${top}%` }} />;
+}
+
+/** What is at the pixel that is pointed at. */
+function Readout() {
+  const [pixel, whole] = [pointed.value, scene.value];
+  if (pixel === null || whole === null) return <p class="readout quiet">Point at the image to read its depth.</p>;
+  const at = pixel.y * whole.width + pixel.x;
+  const measured = whole.depthM[at] ?? 0;
+  const mesh = Math.min(...drawing.value.map((one) => (one[at] || Number.POSITIVE_INFINITY) as number));
+  const difference = measured > 0 && Number.isFinite(mesh) ? 1000 * (mesh - measured) : null;
+  return (
+    <p class="readout">
+      {pixel.x}, {pixel.y}: {measured > 0 ? `${measured.toFixed(3)} m` : "no reading"}
+      {difference !== null && `, mesh ${difference < 0 ? "−" : "+"}${Math.abs(difference).toFixed(1)} mm`}
+    </p>
+  );
+}

@@ -1,0 +1,79 @@
+/** The 3D view's frame: the place for its canvas, and what can be switched in it. */
+import { useEffect, useRef } from "preact/hooks";
+import { type Display3d, display3d } from "../state/display.js";
+import { isSettled, mountSpace, space } from "./space.js";
+
+const switches: readonly [name: "cloud" | "mesh" | "wireframe", title: string][] = [
+  ["cloud", "Points"],
+  ["mesh", "Mesh"],
+  ["wireframe", "Wires"],
+];
+
+const looks = [
+  ["camera", "Camera"],
+  ["orbit", "Aside"],
+  ["top", "Top"],
+  ["side", "Side"],
+] as const;
+
+const set = (change: Partial<Display3d>) => {
+  display3d.value = { ...display3d.peek(), ...change };
+};
+
+export function SpaceView() {
+  const host = useRef<HTMLDivElement>(null);
+  const isWanted = isSettled.value;
+  useEffect(() => {
+    if (isWanted && host.current !== null) mountSpace(host.current);
+  }, [isWanted]);
+  const state = space.value;
+  const { pointSize } = display3d.value;
+  return (
+    <section class="view space" aria-labelledby="space-title" data-state={state.kind}>
+      <div class="view-head">
+        <h2 id="space-title">3D</h2>
+        <fieldset disabled={state.kind !== "ready"}>
+          <legend class="visually-hidden">Shown in 3D</legend>
+          {switches.map(([name, title]) => (
+            <label key={name} class="check">
+              <input
+                type="checkbox"
+                checked={display3d.value[name]}
+                onChange={({ currentTarget }) => set({ [name]: currentTarget.checked })}
+              />
+              <span>{title}</span>
+            </label>
+          ))}
+          <label class="check points">
+            <span>Size</span>
+            <input
+              type="range"
+              min="0.4"
+              max="3"
+              step="0.2"
+              value={pointSize}
+              aria-label="Size of the points"
+              onInput={({ currentTarget }) => set({ pointSize: currentTarget.valueAsNumber })}
+            />
+          </label>
+        </fieldset>
+        <fieldset class="looks" disabled={state.kind !== "ready"}>
+          <legend class="visually-hidden">Look from</legend>
+          {looks.map(([from, title]) => (
+            <button key={from} type="button" onClick={() => state.kind === "ready" && state.view.lookFrom(from)}>
+              {title}
+            </button>
+          ))}
+        </fieldset>
+      </div>
+      <div class="view-host" ref={host} data-backend={state.kind === "ready" ? state.view.backend : undefined}>
+        {state.kind === "loading" && <p class="view-note">The 3D view is loading …</p>}
+        {state.kind === "none" && (
+          <p class="view-note" role="note">
+            No 3D view: {state.reason} The image view shows all there is.
+          </p>
+        )}
+      </div>
+    </section>
+  );
+}

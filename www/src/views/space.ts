@@ -1,0 +1,112 @@
+/** Keeps the 3D view as the state says. */
+import { effect, signal } from "@preact/signals";
+import { toSim3 } from "sim3align/conventions";
+import { display3d, gizmo, pointed, shownTheme } from "../state/display.js";
+import { place } from "../state/history.js";
+import type { ObjectModel } from "../state/object-model.js";
+import type { Pose } from "../state/pose.js";
+import { type Scene, scene, select, selected } from "../state/scene.js";
+import type { ObjectInput, View } from "../view3d/types.js";
+
+/** How the 3D view is. */
+export type SpaceState = { kind: "loading" } | { kind: "ready"; view: View } | { kind: "none"; reason: string };
+
+export const space = signal<SpaceState>({ kind: "loading" });
+
+/** Whether the first alignment is over: before, the 3D view would take the processor from it. */
+export const isSettled = signal(false);
+
+/** How long a mesh takes to its place. */
+const ANIMATION_MS = 900;
+
+/** Makes the 3D view, and follows the state from then on. */
+export async function mountSpace(host: HTMLElement): Promise<void> {
+  /** Where a drag began. */
+  let dragged: { object: ObjectModel; from: Pose } | undefined;
+  try {
+    // The library for it is larger than all the rest, and comes when the rest is there.
+    const { createView } = await import("../view3d/index.js");
+    const options = { forceWebGL: new URLSearchParams(location.search).get("graphics") === "webgl" };
+    const view = await createView(
+      host,
+      {
+        onPose(id, matrix, phase) {
+          const object = scene.peek()?.objects.find((object) => object.id === id);
+          if (object === undefined) return;
+          dragged ??= { object, from: object.pose.peek() };
+          const pose: Pose = { transform: toSim3(matrix), source: "hand" };
+          if (phase === "end") {
+            place(object, pose, dragged.from);
+            dragged = undefined;
+          } else object.pose.value = pose;
+        },
+        onSelect: select,
+        onHover: (pixel) => {
+          pointed.value = pixel;
+        },
+      },
+      options,
+    );
+    space.value = { kind: "ready", view };
+    follow(view, () => dragged !== undefined);
+  } catch (error) {
+    space.value = { kind: "none", reason: error instanceof Error ? error.message : String(error) };
+  }
+}
+
+const objectInput = ({ id, colour, mask, mesh, glb }: ObjectModel): ObjectInput => ({
+  id,
+  colour,
+  mask,
+  mesh:
+    glb !== null
+      ? { glb }
+      : {
+          positions: mesh.positions,
+          indices: Uint32Array.from(mesh.indices ?? { length: mesh.positions.length / 3 }, (x, i) => x ?? i),
+        },
+});
+
+const sceneInput = ({ depthM, width, height, camera, rgba }: Scene) => ({
+  ...{ depthM, width, height, camera },
+  ...(rgba === null ? {} : { rgba }),
+});
+
+function follow(view: View, isDragging: () => boolean): void {
+  let stopPoses: (() => void)[] = [];
+  effect(() => {
+    const whole = scene.value;
+    for (const stop of stopPoses) stop();
+    stopPoses = [];
+    if (whole === null) return;
+    view.setScene(sceneInput(whole));
+    view.setObjects(whole.objects.map(objectInput)).then(() => {
+      if (scene.peek() !== whole) return;
+      stopPoses = whole.objects.map((object) => followPose(view, object, isDragging));
+      view.select(selected.peek()?.id ?? null);
+      // Several are seen together, as they are.
+      if (whole.objects.length === 1) view.focus();
+    }, console.error);
+  });
+  effect(() => {
+    view.setDisplay({ ...display3d.value, theme: shownTheme() });
+  });
+  effect(() => view.select(selected.value?.id ?? null));
+  effect(() => view.setGizmo(gizmo.value));
+}
+
+function followPose(view: View, object: ObjectModel, isDragging: () => boolean): () => void {
+  // A view that comes late still shows where everything began.
+  let shown: Pose = object.start;
+  return effect(() => {
+    const pose = object.pose.value;
+    if (isDragging()) {
+      shown = pose;
+      return;
+    }
+    const isMoved = pose !== shown && pose.source !== "hand";
+    const animate = isMoved ? { from: shown.transform.matrix, durationMs: ANIMATION_MS } : undefined;
+    shown = pose;
+    view.setPose(object.id, pose.transform.matrix, animate).catch(console.error);
+  });
+}
