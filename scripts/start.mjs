@@ -5,7 +5,6 @@
 import { spawn } from "node:child_process";
 import { parseArgs } from "node:util";
 import { chromium, chromiumRemedy } from "./lib/chromium.mjs";
-import { firstResult } from "./lib/first-result.mjs";
 import { buildPackage } from "./lib/package.mjs";
 import { setUp } from "./lib/setup.mjs";
 import { buildSite, siteDir } from "./lib/site.mjs";
@@ -44,6 +43,8 @@ function openInBrowser(url) {
 async function check(url) {
   const executable = await chromium();
   if (executable === undefined) throw new Error(`No Chromium. Remedy: ${chromiumRemedy}.`);
+  // It needs Playwright, which the set-up has installed by now.
+  const { firstResult } = await import("./lib/first-result.mjs");
   const { status, dimensions, confidence, milliseconds } = await firstResult(executable, url);
   console.log(`\n${status}\nSize: ${dimensions}\nConfidence: ${confidence}\nAfter ${Math.round(milliseconds)} ms`);
 }
@@ -60,5 +61,5 @@ await script(async () => {
   }
   console.log(`\n  The page:  ${server.url}\n  Ctrl-C ends it.\n`);
   if (!values["no-open"]) openInBrowser(server.url);
-  process.once("SIGINT", () => server.close().then(() => process.exit(0)));
+  for (const signal of ["SIGINT", "SIGTERM"]) process.once(signal, () => server.close().then(() => process.exit(0)));
 });

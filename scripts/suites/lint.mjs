@@ -24,7 +24,9 @@ export function lint() {
 
 /** `npm start` and `npm test` install what they need: nothing may be missing before they do. */
 function checkCommands() {
-  const commands = ["start", "test", "build", "format"].map((name) => at("scripts", `${name}.mjs`));
+  const commands = ["start", "test", "build", "build-www", "docs", "format"].map((name) =>
+    at("scripts", `${name}.mjs`),
+  );
   const early = commands.flatMap((command) => staticPackages(command));
   if (early.length === 0) return;
   const list = early.map(({ name, importer }) => `${name} in ${importer}`).join(", ");
