@@ -26,10 +26,27 @@ interface Picture {
   data: Buffer;
 }
 
-/** What is seen of the 3D view. */
-async function seen(page: Page): Promise<Picture> {
-  // An animation ends, and a frame is drawn.
-  await page.waitForTimeout(1500);
+/** A frame without a graphics card may take this long, in milliseconds, and an animation longer. */
+const FRAME_MS = 1500;
+
+/**
+ * What is seen of the 3D view once it keeps still, and no longer shows what was seen before; or what it has come to in
+ * twenty frames.
+ */
+async function seen(page: Page, before?: Picture): Promise<Picture> {
+  let last = await glimpse(page);
+  for (let frame = 0; frame < 20; frame++) {
+    await page.waitForTimeout(FRAME_MS);
+    const now = await glimpse(page);
+    const isStill = now.data.equals(last.data);
+    if (isStill && before?.data.equals(now.data) !== true) return now;
+    last = now;
+  }
+  return last;
+}
+
+/** What is seen of the 3D view at the moment. */
+async function glimpse(page: Page): Promise<Picture> {
   const png = await page.locator(".space .view-host").screenshot();
   const decoded = (await page.evaluate(async (base64) => {
     const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
@@ -70,10 +87,10 @@ for (const [backend, flags] of backends) {
       await show(page, "Mesh", false);
       const nothing = await seen(page);
       await show(page, "Mesh", true);
-      const mesh = await seen(page);
+      const mesh = await seen(page, nothing);
       await show(page, "Points", true);
       await show(page, "Mesh", false);
-      const points = await seen(page);
+      const points = await seen(page, mesh);
       const total = nothing.width * nothing.height;
       const [ofMesh, ofPoints] = [changed(mesh, nothing), changed(points, nothing)];
       assert.ok(ofMesh.length > 0.003 * total && ofMesh.length < 0.4 * total, `mesh: ${ofMesh.length} of ${total}`);
@@ -85,8 +102,10 @@ for (const [backend, flags] of backends) {
 
       await show(page, "Points", false);
       await show(page, "Mesh", true);
+      // As it was, before there are handles too.
+      await seen(page, points);
       await page.getByRole("button", { name: "Move", exact: true }).click();
-      const handles = await seen(page);
+      const handles = await seen(page, mesh);
       const red = changed(handles, mesh).filter((pixel) => {
         const [r = 0, g = 0, b = 0] = handles.data.subarray(4 * pixel, 4 * pixel + 3);
         return r > 150 && g < 90 && b < 90;
@@ -134,7 +153,7 @@ test("the two views are linked", async () => {
     await page.locator(".objects button").nth(2).click();
     await page.locator(".image canvas").click();
     await page.getByRole("button", { name: "Top", exact: true }).click();
-    assert.ok(changed(await seen(page), before).length > 1000);
+    assert.ok(changed(await seen(page, before), before).length > 1000);
     await opened.close();
   } finally {
     await site.stop();

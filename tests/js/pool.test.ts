@@ -5,7 +5,7 @@ import { type AlignInput, type AlignOptions, createAligner, Sim3AlignError } fro
 import { rejectsWith } from "../support/errors.js";
 import { glb, npy, png } from "../support/files.js";
 import { brick, input, mesh, transformed, truth } from "../support/scene.js";
-import { slowInput, underWay, Workers, withoutTimes } from "../support/workers.js";
+import { atAnswer, slowInput, underWay, Workers, withoutTimes } from "../support/workers.js";
 
 const here = await createAligner();
 const pools = await Promise.all([1, 2, 3].map((workers) => createAligner({ workers })));
@@ -191,6 +191,30 @@ test("a worker that is lost is replaced, and its job done again", async () => {
   await workers.made.at(-1)?.terminate();
   assert.deepEqual(withoutTimes(await shared), expected);
   aligner.dispose();
+});
+
+test("a worker that is lost between two rounds of a shared search is missed", async () => {
+  const expected = withoutTimes(await here.align(brick, quick));
+  for (const [lost, other] of [
+    [0, 1],
+    [1, 0],
+  ] as const) {
+    const workers = new Workers();
+    const aligner = await createAligner({ workers: 2, createWorker: workers.create });
+    const [victim, witness] = [workers.made[lost], workers.made[other]];
+    assert.ok(victim && witness);
+    const gone = new Promise((resolve) => victim.once("exit", resolve));
+    // The first answer is to the input, the others are to rounds; the other worker's waits until this one has gone.
+    atAnswer(victim, 3, (deliver) => {
+      deliver();
+      void victim.terminate();
+    });
+    atAnswer(witness, 3, (deliver) => void gone.then(deliver));
+    const found = await aligner.align(brick, { ...quick, splitSearch: true });
+    assert.deepEqual(withoutTimes(found), expected, `worker ${lost} lost`);
+    assert.ok(workers.made.length > 2);
+    aligner.dispose();
+  }
 });
 
 test("a job that loses two workers fails, and others go on", async () => {

@@ -20,6 +20,18 @@ export class Workers {
   };
 }
 
+/** Decides how a worker's n-th answer, counted from 1, arrives. */
+export function atAnswer(worker: Worker, n: number, act: (deliver: () => void) => void): void {
+  const emit = worker.emit.bind(worker) as (...event: unknown[]) => boolean;
+  let count = 0;
+  worker.emit = ((...event: unknown[]) => {
+    const [name, message] = event as [string, { type?: string }];
+    if (name !== "message" || message.type !== "result" || ++count !== n) return emit(...event);
+    act(() => emit(...event));
+    return true;
+  }) as typeof worker.emit;
+}
+
 /** A result without what differs from run to run. */
 export const withoutTimes = ({ timingsMs: _, ...result }: Alignment) => result;
 

@@ -50,6 +50,11 @@ export class WorkerSlot {
     this.#supplies = supplies;
   }
 
+  /** The worker that is here now: another object once it has been replaced. */
+  get worker(): unknown {
+    return this.#port;
+  }
+
   /** Starts a worker where there is none. A failure shows at the next request. */
   start(): Port {
     if (this.#port !== undefined) return this.#port;

@@ -30,13 +30,18 @@ export async function splitAlign(slots: readonly WorkerSlot[], job: AlignJob, ca
       const own = { ...job, data: copied(job.data) };
       return [{ type: "share", job: own }, buffersOf(own.data)];
     });
+    const holders = slots.map((slot) => slot.worker);
     const prepared = performance.now();
     call.progress.report("search", 0.1);
     const ms = { prepare: prepared - began, search: 0, refine: 0 };
     let found: Float64Array | undefined;
     for (const done of ROUNDS) {
       const start = performance.now();
-      const answers = await every(slots, (part) => [{ type: "step", found, part, parts: slots.length }, []]);
+      const step = (part: number): [ShareRequest, ArrayBuffer[]] => [
+        { type: "step", found, part, parts: slots.length },
+        [],
+      ];
+      const answers = await every(slots, step, holders);
       const steps = answers.map(({ result }) => stepOf(result as Float64Array));
       const { tasks, isRefinement, best } = steps[0] as Step;
       // What was taken in the last step was all, or there is nothing that could be shared.
@@ -51,7 +56,7 @@ export async function splitAlign(slots: readonly WorkerSlot[], job: AlignJob, ca
     }
     if (found === undefined) return await dropped(slots);
     const finish = { type: "finish", wantsProgress: call.progress.isWanted } as const;
-    const { result } = await leader.request(finish, [], call.progress);
+    const { result } = await fromHolder(leader, holders[0]).request(finish, [], call.progress);
     await dropped(slots.slice(1));
     return withTimes(result as Alignment, ms);
   } catch (error) {
@@ -61,13 +66,28 @@ export async function splitAlign(slots: readonly WorkerSlot[], job: AlignJob, ca
   }
 }
 
-/** Asks all at once, and waits for all: also for the others' answers where one fails. */
-async function every(slots: readonly WorkerSlot[], request: (part: number) => [ShareRequest, ArrayBuffer[]]) {
-  const answers = await Promise.allSettled(slots.map((slot, part) => slot.request(...request(part))));
+/**
+ * Asks all at once, and waits for all: also for the others' answers where one fails.
+ * @param holders the workers that have to be asked, where others would know nothing of it
+ */
+async function every(
+  slots: readonly WorkerSlot[],
+  request: (part: number) => [ShareRequest, ArrayBuffer[]],
+  holders?: readonly unknown[],
+) {
+  const ask = async (slot: WorkerSlot, part: number) =>
+    (holders === undefined ? slot : fromHolder(slot, holders[part])).request(...request(part));
+  const answers = await Promise.allSettled(slots.map(ask));
   return answers.map((answer) => {
     if (answer.status === "rejected") throw answer.reason;
     return answer.value;
   });
+}
+
+/** The slot, as long as the worker that holds a share is in it: one that is lost between two rounds fails no request. */
+function fromHolder(slot: WorkerSlot, holder: unknown): WorkerSlot {
+  if (slot.worker !== holder) throw new WorkerLost("it held a share of a search");
+  return slot;
 }
 
 /** Has the shares forgotten, as far as there are any. */
