@@ -92,6 +92,32 @@ fn a_run_goes_on_where_it_was_stopped_and_keeps_what_other_options_found() {
 }
 
 #[test]
+fn every_third_pair_is_what_it_says() {
+    let scene = Scene::new("every");
+    let identity = nalgebra::Matrix4::identity();
+    let pairs: Vec<Block<4>> =
+        (2..9).map(|source| Block { target: 0, source, fragments: 9, matrix: identity }).collect();
+    let information: Vec<Block<6>> = pairs
+        .iter()
+        .map(|pair| Block { target: 0, source: pair.source, fragments: 9, matrix: nalgebra::Matrix6::identity() })
+        .collect();
+    fs::write(scene.root.join("kitchen/gt.log"), text(&pairs)).unwrap();
+    fs::write(scene.root.join("kitchen/gt.info"), text(&information)).unwrap();
+    let list = scene.root.join("list.json");
+    let output = Command::new(env!("CARGO_BIN_EXE_sim3align-registration"))
+        .args(["run", "--every", "3", "--data"])
+        .arg(&scene.root)
+        .arg("--pairs-json")
+        .arg(&list)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let listed: Vec<Value> = serde_json::from_slice(&fs::read(list).unwrap()).unwrap();
+    let ids: Vec<&str> = listed.iter().map(|pair| pair["id"].as_str().unwrap()).collect();
+    assert_eq!(ids, ["kitchen-0-2", "kitchen-0-5", "kitchen-0-8"]);
+}
+
+#[test]
 fn answers_of_other_programs_are_poses_or_pairs_of_points() {
     let scene = Scene::new("import");
     let rows = |points: &[Vec3]| points.iter().step_by(10).map(|p| p.to_array()).collect::<Vec<_>>();

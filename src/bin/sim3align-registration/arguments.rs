@@ -23,6 +23,7 @@ run: registers pairs and prints a Markdown table of recall and errors
                      NAME=import:DIR: DIR/<id>.json from another program; may be repeated
   --option K=V       an option of register() by its JavaScript name; may be repeated
   --only TEXT        only pairs whose id contains this
+  --every N          of these, the first and every N-th after it; default 1
   --measure-overlap  measures the overlap where it is not listed, for the table's bins
   --moved SEED       moves each source by a random rigid transform first, each target by another, so that no method
                      can use where the sensor stood; 0 (default) moves nothing
@@ -56,6 +57,7 @@ pub struct Run {
     pub benchmark: Option<String>,
     pub methods: Vec<Method>,
     pub only: Option<String>,
+    pub every: usize,
     pub measure_overlap: bool,
     pub moved: u64,
     pub records: Option<PathBuf>,
@@ -104,6 +106,7 @@ fn run(mut parser: lexopt::Parser) -> Result<Option<Command>, lexopt::Error> {
         benchmark: None,
         methods: Vec::new(),
         only: None,
+        every: 1,
         measure_overlap: false,
         moved: 0,
         records: None,
@@ -126,6 +129,7 @@ fn run(mut parser: lexopt::Parser) -> Result<Option<Command>, lexopt::Error> {
             Long("method") => methods.push(parser.value()?.string()?),
             Long("option") => options.push(parser.value()?.string()?),
             Long("only") => run.only = Some(parser.value()?.string()?),
+            Long("every") => run.every = parser.value()?.parse::<usize>()?.max(1),
             Long("measure-overlap") => run.measure_overlap = true,
             Long("moved") => run.moved = parser.value()?.parse()?,
             Long("records") => run.records = Some(parser.value()?.into()),

@@ -36,6 +36,7 @@ pub fn run(command: &Command) -> Result<(), String> {
 fn run_pairs(run: &Run) -> Result<(), String> {
     let mut pairs = pairs(run)?;
     pairs.retain(|pair| run.only.as_ref().is_none_or(|text| pair.id.contains(text)));
+    let pairs: Vec<Pair> = pairs.into_iter().step_by(run.every).collect();
     if pairs.is_empty() {
         return Err("no pair left to run".into());
     }
