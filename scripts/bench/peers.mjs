@@ -1,5 +1,6 @@
 /** Other libraries' registration on our cases, and on pairs of clouds: the Python package `peers`. */
 import { spawn } from "node:child_process";
+import { availableParallelism } from "node:os";
 import { resolve } from "node:path";
 import { createInterface } from "node:readline";
 import { at } from "../lib/paths.mjs";
@@ -13,7 +14,7 @@ import { pythonEnvironment, pythonVariables } from "./python.mjs";
  * @property {string} [pairs] or a list of pairs of clouds, `[{ id, source, target, voxelSizeM }]`
  * @property {string} out answers go to `OUT/METHOD/NAME.json`; those that are there are kept
  * @property {readonly string[]} [methods] all that apply by default
- * @property {number} [jobs] processes, 1 by default
+ * @property {number} [jobs] processes, each on one core; as many as there are cores by default
  * @property {string} [python] the Python, 3.11 or 3.12, that makes the environment
  * @property {(progress: Progress) => void} [onProgress] called once per answer
  */
@@ -26,7 +27,7 @@ export const installPeers = (program = "python3") =>
  * Runs the methods; installs them first where that has not been done.
  * @param {PeersRun} options
  */
-export async function runPeers({ cases, pairs, out, methods, jobs = 1, python, onProgress }) {
+export async function runPeers({ cases, pairs, out, methods, jobs = availableParallelism(), python, onProgress }) {
   /** @type {string[]} */
   const input =
     pairs === undefined ? ["--cases", ...(cases ?? []).map((path) => resolve(path))] : ["--pairs", resolve(pairs)];

@@ -39,7 +39,7 @@ def main() -> int:
     what.add_argument("--self-test", action="store_true", help="recover known motions by every method")
     parser.add_argument("--methods", metavar="A,B,…", help=f"of {', '.join(METHODS)}; by default all that apply")
     parser.add_argument("--out", type=Path, metavar="DIR", help="where the answers go; those that are there are kept")
-    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes, default 1")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes, each on one core, default 1")
     arguments = parser.parse_args()
 
     known = PAIR_METHODS if arguments.pairs else tuple(METHODS)

@@ -59,7 +59,7 @@ def run_tasks(tasks: Iterable[Task], jobs: int) -> None:
             task.begun(method).parent.mkdir(parents=True, exist_ok=True)
             # Of a run that was stopped.
             task.begun(method).unlink(missing_ok=True)
-    os.environ.setdefault("OMP_NUM_THREADS", str(max(1, (os.cpu_count() or 1) // jobs)))
+    os.environ["OMP_NUM_THREADS"] = "1"
     while tasks := [left for task in tasks if (left := task.left()).methods]:
         if _run_all(tasks, jobs):
             continue
@@ -76,7 +76,11 @@ def run_tasks(tasks: Iterable[Task], jobs: int) -> None:
 def _run_all(tasks: list[Task], jobs: int) -> bool:
     """Whether all processes lived."""
     context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(min(jobs, len(tasks)), context, initializer=_quiet) as pool:
+    cores = context.Queue()
+    available = sorted(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else [0]
+    for job in range(jobs):
+        cores.put(available[job % len(available)])
+    with ProcessPoolExecutor(min(jobs, len(tasks)), context, initializer=_begin, initargs=(cores,)) as pool:
         futures = [pool.submit(_run, task) for task in tasks]
         try:
             for future in futures:
@@ -86,8 +90,13 @@ def _run_all(tasks: list[Task], jobs: int) -> bool:
     return True
 
 
-def _quiet() -> None:
-    """Leaves standard output to the progress: what libraries print goes to standard error."""
+def _begin(cores: Any) -> None:
+    """
+    Puts the process on one core: several threads would not find the same twice, and would take more than one core's
+    time. Leaves standard output to the progress: what libraries print goes to standard error.
+    """
+    if hasattr(os, "sched_setaffinity"):
+        os.sched_setaffinity(0, {cores.get()})
     global _progress
     _progress = os.fdopen(os.dup(1), "w", buffering=1)
     os.dup2(2, 1)
