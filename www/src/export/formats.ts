@@ -10,7 +10,7 @@ import { copy, download, fileName } from "./download.js";
 export type Format = "columns" | "rows" | "json" | "bop" | "glb" | "ply" | "png" | "link";
 
 /** Copies or saves an object, or its whole scene, in a format. What writes the files loads when it is wanted. */
-export async function takeAlong(format: Format, scene: Scene, object: ObjectModel): Promise<void> {
+export async function exportAs(format: Format, scene: Scene, object: ObjectModel): Promise<void> {
   const name = fileName(object.name);
   if (format === "link") return copy(permalink(), "the link");
   if (format === "png") return savePicture(name);

@@ -1,5 +1,5 @@
 /** What leaves the page. */
-import { type Format, takeAlong } from "../export/formats.js";
+import { exportAs, type Format } from "../export/formats.js";
 import { scene, selected } from "../state/scene.js";
 
 const formats: readonly [format: Format, title: string][] = [
@@ -18,7 +18,7 @@ export function ExportPanel() {
   return (
     <details class="panel export-panel" open>
       <summary>
-        <h2>Take along</h2>
+        <h2>Export</h2>
       </summary>
       <fieldset class="exports" disabled={whole === null || !object?.isPlaced}>
         <legend class="visually-hidden">Poses, files and pictures</legend>
@@ -26,7 +26,7 @@ export function ExportPanel() {
           <button
             key={format}
             type="button"
-            onClick={() => whole !== null && object !== null && takeAlong(format, whole, object)}
+            onClick={() => whole !== null && object !== null && exportAs(format, whole, object)}
           >
             {title}
           </button>

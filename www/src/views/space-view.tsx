@@ -11,7 +11,7 @@ const switches: readonly [name: "cloud" | "mesh" | "wireframe", title: string][]
 
 const looks = [
   ["camera", "Camera"],
-  ["orbit", "Aside"],
+  ["orbit", "Orbit"],
   ["top", "Top"],
   ["side", "Side"],
 ] as const;
