@@ -74,7 +74,7 @@ test("everything can be reached and seen by keyboard", async () => {
 test("the metrics explain themselves by keyboard", async () => {
   const opened = await site.open();
   const { page } = opened;
-  const tip = page.getByRole("button", { name: "What is overlap?" });
+  const tip = page.getByRole("button", { name: "What is IoU?" });
   await tip.focus();
   await page.keyboard.press("Enter");
   const box = page.locator(".tip-box:popover-open");

@@ -156,7 +156,7 @@ function MetricTable({ object }: { object: ObjectModel | null }) {
         <div key={name}>
           <dt>
             {title}
-            <Tip label={title.toLowerCase()}>
+            <Tip label={title}>
               {about} {better === "high" ? "More is better." : "Less is better."}
             </Tip>
           </dt>
