@@ -38,6 +38,13 @@ export class SiteTest {
   }
 }
 
+/** A picture's pixels: red, green, blue, opacity. */
+export interface Pixels {
+  width: number;
+  height: number;
+  data: Buffer;
+}
+
 /** The page as somebody uses it. */
 export class SitePage {
   constructor(
@@ -81,8 +88,25 @@ export class SitePage {
     await this.page.locator(`.result[data-source="${source}"]`).waitFor(PATIENCE);
   }
 
-  /** The image view's pixels: red, green, blue, opacity. */
-  async imagePixels(): Promise<{ width: number; height: number; data: Buffer }> {
+  /**
+   * The image view's pixels, once it keeps still: red, green, blue, opacity.
+   *
+   * Where a software device goes down under the 3D view, it takes the picture along, which is then drawn again: so the
+   * 3D view comes first, and a picture that is empty is none.
+   */
+  async imagePixels(): Promise<Pixels> {
+    await this.page.locator('.space:not([data-state="loading"])').waitFor(PATIENCE);
+    let last = await this.glimpse();
+    for (let look = 0; look < 40; look++) {
+      await this.page.waitForTimeout(150);
+      const now = await this.glimpse();
+      if (now.data.equals(last.data) && now.data.some((value) => value !== 0)) return now;
+      last = now;
+    }
+    return last;
+  }
+
+  private async glimpse(): Promise<Pixels> {
     // As text, which goes between the processes a hundred times faster than numbers.
     const { width, height, text } = (await this.page.evaluate(`(async () => {
       await new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
