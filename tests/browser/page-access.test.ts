@@ -82,7 +82,7 @@ test("the metrics explain themselves by keyboard", async () => {
   const [place, window] = [await box.boundingBox(), page.viewportSize()];
   assert.ok(place !== null && window !== null && place.x >= 0 && place.x + place.width <= window.width);
   await page.keyboard.press("Escape");
-  assert.equal(await box.count(), 0);
+  await box.waitFor({ state: "detached", ...PATIENCE });
   await opened.close();
 });
 
@@ -90,10 +90,10 @@ test("keys open the help, which lists them, and Escape closes it", async () => {
   const opened = await site.open();
   const { page } = opened;
   await page.keyboard.press("?");
-  assert.ok(await page.isVisible("dialog.help"));
+  await page.locator("dialog.help").waitFor(PATIENCE);
   assert.ok((await page.locator("dialog.help kbd").count()) > 15);
   await page.keyboard.press("Escape");
-  assert.ok(!(await page.isVisible("dialog.help")));
+  await page.locator("dialog.help").waitFor({ state: "hidden", ...PATIENCE });
   await opened.close();
 });
 
