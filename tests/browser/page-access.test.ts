@@ -5,7 +5,7 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 import type { BrowserContextOptions } from "playwright-core";
 import { repository } from "../support/environment.js";
-import { type SitePage, SiteTest } from "../support/site.js";
+import { PATIENCE, type SitePage, SiteTest } from "../support/site.js";
 
 let site: SiteTest;
 before(async () => {
