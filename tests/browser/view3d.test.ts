@@ -136,7 +136,25 @@ test("the view fits its host when that is resized, and takes everything away in 
   assert.deepEqual(errors, []);
 });
 
-test("a lost graphics device is replaced once; then there is a message", async () => {
+test("where WebGPU's device is lost twice, WebGL 2 draws", async () => {
+  const { page, errors, facts, backend, colours } = await openCube(withWebGpu, {});
+  assert.equal(backend, "webgpu");
+  for (const expected of ["webgpu", "webgl"]) {
+    await page.evaluate(() => {
+      (document.querySelector("#host canvas") as HTMLElement).id = "old";
+      harness.loseWebGpu();
+    });
+    await page.waitForSelector("#host canvas:not(#old)");
+    await page.waitForSelector("#old", { state: "detached" });
+    assert.equal(await page.evaluate(() => harness.view.backend), expected);
+    const [cube, wall] = await colours([placeOf(facts, ...pixelOf(facts, 0, 0, 0.75)), placeOf(facts, 10, 10)]);
+    assert.ok(isGreen(cube), `${cube}`);
+    isNear(wall, facts.quarters[0] ?? []);
+  }
+  assert.deepEqual(errors, []);
+});
+
+test("a lost device of WebGL 2 is replaced once; then there is a message", async () => {
   const { page, errors, facts, colours } = await openCube(withoutWebGpu, {});
   const lose = () =>
     page.evaluate(() => {

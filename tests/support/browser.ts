@@ -9,10 +9,23 @@ const flags = [
   "--enable-unsafe-webgpu",
   "--disable-background-networking",
   "--disable-component-update",
+  // Where a processor draws, a long frame is no graphics card that hangs.
+  "--disable-gpu-watchdog",
   "--disable-quic",
   "--disable-sync",
   "--no-first-run",
 ];
+
+/** The processor draws, as WebGL 2 has it. */
+export const SOFTWARE = [
+  "--use-angle=swiftshader",
+  "--enable-unsafe-swiftshader",
+  "--ignore-gpu-blocklist",
+  "--enable-gpu",
+];
+
+/** The processor draws, as WebGPU has it too. */
+export const SOFTWARE_WEBGPU = [...SOFTWARE, "--enable-features=Vulkan", "--use-vulkan=swiftshader"];
 
 interface Server {
   url: string;

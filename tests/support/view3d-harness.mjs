@@ -75,6 +75,19 @@ window.requestAnimationFrame = (callback) => {
   return request(callback);
 };
 
+/** Ends the last of WebGPU's devices, as far as its owner can tell. */
+let end = () => {};
+const { prototype } = globalThis.GPUAdapter ?? { prototype: {} };
+const { requestDevice } = prototype;
+prototype.requestDevice = async function (...options) {
+  const device = await requestDevice.apply(this, options);
+  const fault = new Promise((resolve) => {
+    end = () => resolve({ reason: "unknown", message: "a fault of the driver" });
+  });
+  Object.defineProperty(device, "lost", { value: Promise.race([device.lost, fault]) });
+  return device;
+};
+
 globalThis.harness = {
   ...{ camera, width, height, quarters, wallM, object, scene },
   told: [],
@@ -100,6 +113,7 @@ globalThis.harness = {
     harness.view.setScene(scene());
     harness.view.lookFrom("camera");
   },
+  loseWebGpu: () => end(),
   /** The colours at places of the picture, CSS pixels. */
   async colours(places) {
     const bitmap = await createImageBitmap(await harness.view.snapshot());

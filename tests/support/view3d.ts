@@ -4,7 +4,7 @@ import { mkdirSync, writeFileSync } from "node:fs";
 import { basename, join } from "node:path";
 import { build } from "esbuild";
 import type { Page } from "playwright-core";
-import { PageTest } from "./browser.js";
+import { PageTest, SOFTWARE, SOFTWARE_WEBGPU } from "./browser.js";
 import { repository } from "./environment.js";
 
 export type Place = [number, number];
@@ -23,9 +23,11 @@ export interface Harness {
   object(id: string, colour: string, kind?: string): object;
   start(width: number, height: number, options?: object): Promise<"webgpu" | "webgl">;
   show(display?: object): void;
+  loseWebGpu(): void;
   colours(places: Place[]): Promise<[number, number, number][]>;
   idleFrames(): Promise<number>;
   view: {
+    readonly backend: "webgpu" | "webgl";
     setObjects(objects: object[]): Promise<void>;
     setPose(id: string, pose: number[] | null, animate?: object): Promise<void>;
     select(id: string | null): void;
@@ -42,19 +44,17 @@ declare global {
 
 /** One per test file: they run at the same time. */
 const folder = join(repository, "target", "view3d-test", basename(process.argv[1] ?? ""));
-const webGpu = ["--use-vulkan=swiftshader", "--enable-features=Vulkan"];
-const software = ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--enable-gpu"];
 
 /** A browser in which WebGPU is there, drawn by software. */
 export async function startWithWebGpu(): Promise<PageTest> {
   await bundleHarness();
-  return PageTest.start(folder, [...software, ...webGpu]);
+  return PageTest.start(folder, SOFTWARE_WEBGPU);
 }
 
 /** A browser in which there is WebGL 2 only. */
 export async function startWithWebGl(): Promise<PageTest> {
   await bundleHarness();
-  return PageTest.start(folder, [...software, "!--enable-unsafe-webgpu", "--disable-blink-features=WebGPU"]);
+  return PageTest.start(folder, [...SOFTWARE, "!--enable-unsafe-webgpu", "--disable-blink-features=WebGPU"]);
 }
 
 async function bundleHarness(): Promise<void> {

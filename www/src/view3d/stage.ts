@@ -5,6 +5,9 @@ import { isPresentable } from "./presentable.js";
 /** Sharper than this, no eye can tell, and every frame takes longer. */
 const mostPixelRatio = 2;
 
+/** A device that is lost within this time after another one has something against what is drawn. */
+const SOON_MS = 60_000;
+
 /** Neither WebGPU nor WebGL 2 is there. */
 export class NoGraphics extends Error {
   override name = "NoGraphics";
@@ -81,13 +84,14 @@ export class Stage {
   private events: StageEvents | null = null;
   private readonly observer = new ResizeObserver(() => this.fit());
   private frame = 0;
-  private losses = 0;
+  /** When graphics devices were lost, in milliseconds since the page began. */
+  private losses: number[] = [];
   private isDisposed = false;
   private graphics: Graphics | null = null;
 
   private constructor(
     private readonly host: HTMLElement,
-    private readonly forceWebGL: boolean,
+    private forceWebGL: boolean,
   ) {}
 
   /** Puts a canvas into the host. */
@@ -180,14 +184,14 @@ export class Stage {
     );
   }
 
-  /** Once, another device; after that, a message. */
+  /** Another device; where that is lost soon too, one of WebGL 2; after that, a message. */
   private async recover(): Promise<void> {
     if (this.isDisposed) return;
     const [lost, label] = [this.renderer, this.canvas.getAttribute("aria-label")];
     this.renderer = null;
     const old = this.canvas;
     try {
-      if (++this.losses > 1) throw new NoGraphics();
+      this.countLoss();
       this.canvas = document.createElement("canvas");
       await this.start();
       if (this.isDisposed) return;
@@ -203,6 +207,15 @@ export class Stage {
     }
     old.remove();
     lost?.dispose();
+  }
+
+  private countLoss(): void {
+    const now = performance.now();
+    this.losses = [...this.losses.filter((then) => now - then < SOON_MS), now];
+    if (this.losses.length === 1) return;
+    if (this.backend === "webgl") throw new NoGraphics();
+    this.forceWebGL = true;
+    this.losses = [];
   }
 
   dispose(): void {
