@@ -36,7 +36,7 @@ const suites = [
   { name: "js", title: "JavaScript tests on the installed package", run: javaScript, usesPackage: true },
   { name: "browser", title: "Browser tests", run: browser, usesPackage: true },
   { name: "bundlers", title: "The package in bundlers' apps", run: bundlers, usesPackage: true },
-  { name: "runtimes", title: "The package in Deno, Bun and workerd", run: runtimes, usesPackage: true },
+  { name: "runtimes", title: "The package in other runtimes", run: runtimes, usesPackage: true },
   { name: "examples", title: "Examples", run: examples, usesPackage: true },
 ];
 

@@ -22,9 +22,11 @@ export const pageSamplesDir = at("www", "samples");
  * @typedef {{ id: string, title: string, about: string, depth: string, camera: string, objects: SampleObject[] }} Sample
  */
 
+const mug = { id: "mug", seed: 1, title: "Mug", about: "What the generator could not see, it invented." };
+
 /** Samples of one object; the seeds are those of pretty pictures. */
 const kinds = [
-  { id: "mug", seed: 1, title: "Mug", about: "What the generator could not see, it invented." },
+  mug,
   { id: "hammer", seed: 2, title: "Hammer", about: "Long, and almost the same turned half round." },
   { id: "spoon", seed: 2, title: "Spoon", about: "A few millimetres thin." },
   { id: "occluded", seed: 4, title: "Teapot behind a mug", about: "A third of it is hidden." },
@@ -45,7 +47,7 @@ export async function makeSample() {
     stamp.clear();
     rmSync(sampleDir, { recursive: true, force: true });
     rmSync(pageSamplesDir, { recursive: true, force: true });
-    await generate([sampleDir, "--kind", "mug", "--seed", "1"]);
+    await generateKind(mug, sampleDir, "npy");
     cpSync(sampleDir, copy, { recursive: true });
     const samples = [];
     for (const kind of kinds) samples.push(await makeKind(kind));
@@ -61,11 +63,20 @@ const generate = (args) =>
   run("cargo", ["run", "--quiet", "--features", "samples", "--bin", "sim3align-samples", "--", ...args]);
 
 /**
- * @param {typeof kinds[number]} kind
+ * @param {typeof mug} kind
+ * @param {string} folder
+ * @param {"npy" | "png"} depth
+ */
+const generateKind = ({ id, seed }, folder, depth) =>
+  generate([folder, "--kind", id, "--seed", `${seed}`, "--depth", depth]);
+
+/**
+ * @param {typeof mug} kind
  * @returns {Promise<Sample>}
  */
-async function makeKind({ id, seed, title, about }) {
-  await generate([join(pageSamplesDir, id), "--kind", id, "--seed", `${seed}`, "--depth", "png"]);
+async function makeKind(kind) {
+  const { id, title, about } = kind;
+  await generateKind(kind, join(pageSamplesDir, id), "png");
   return { id, title, about, ...sceneFiles(id), objects: [{ id, title, ...objectFiles(id) }] };
 }
 

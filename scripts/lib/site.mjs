@@ -1,8 +1,8 @@
 /** The static site: `www/` with the built package and the samples, written to target/www. */
 import { cpSync, existsSync, readdirSync, rmSync } from "node:fs";
 import { join } from "node:path";
-import { at, packageDir, repository } from "./paths.mjs";
-import { run } from "./run.mjs";
+import { at, packageDir } from "./paths.mjs";
+import { nodeProgram, run } from "./run.mjs";
 import { makeSample, pageSamplesDir } from "./sample.mjs";
 import { digest, Stamp } from "./stamp.mjs";
 import { step } from "./step.mjs";
@@ -21,9 +21,8 @@ export async function buildSite() {
     if (stamp.isCurrent) return say("target/www, up to date");
     stamp.clear();
     rmSync(siteDir, { recursive: true, force: true });
-    // A process of its own: the bundler is in memory for as long as it is needed.
-    const build = 'import("vite").then(({ build }) => build({ configFile: "www/vite.config.mjs" }))';
-    await run(process.execPath, ["--input-type=module", "--eval", build], { cwd: repository });
+    const [node, vite] = nodeProgram("vite");
+    await run(node, [vite, "build", "--config", at("www", "vite.config.mjs")]);
     cpSync(pageSamplesDir, join(siteDir, "samples"), { recursive: true });
     stamp.write();
     say("target/www");

@@ -3,7 +3,7 @@
  * programs are npm packages.
  */
 import { mkdirSync, writeFileSync } from "node:fs";
-import { basename, join } from "node:path";
+import { join } from "node:path";
 import { noTests } from "../lib/counts.mjs";
 import { at, installDir } from "../lib/paths.mjs";
 import { attempt, run } from "../lib/run.mjs";
@@ -85,7 +85,7 @@ async function checkWorkerd(expected) {
   const wasm = ["core_bg.wasm", "formats_bg.wasm"];
   const modules = [
     `(name = "main", esModule = embed "workerd.js")`,
-    ...wasm.map((name) => `(name = "./${basename(name)}", wasm = embed "${name}")`),
+    ...wasm.map((name) => `(name = "./${name}", wasm = embed "${name}")`),
   ];
   const config = join(outdir, "config.capnp");
   writeFileSync(

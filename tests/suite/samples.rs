@@ -50,7 +50,11 @@ fn the_truth_scores_as_one() {
         let depth_mm = 1000.0 * mean_depth(&case);
         println!("{:?} {}: at {depth_mm:.0} mm, {metrics:?}", case.kind, case.seed);
         // What hides it is no part of the mask, but the whole mesh is drawn.
-        let least = if case.kind == Kind::Occluded { 0.6 } else { 0.9 };
+        let least = match case.kind {
+            Kind::Mug => 0.95,
+            Kind::Hammer | Kind::Spoon => 0.9,
+            Kind::Occluded => 0.6,
+        };
         assert!(metrics.iou.unwrap() >= least, "{:?} {}: {metrics:?}", case.kind, case.seed);
         assert!(metrics.depth_mae_mm.unwrap() < 0.01 * depth_mm, "seed {}: {metrics:?}", case.seed);
         assert!(metrics.normal_consistency.unwrap() >= 0.85, "seed {}: {metrics:?}", case.seed);
@@ -132,7 +136,8 @@ fn the_meshes_are_whole_and_delivered_in_a_unit_box() {
     for case in cases() {
         check_shape(&case.mesh).unwrap();
         let count = case.mesh.triangles().len();
-        assert!((2_000..=10_000).contains(&count), "{:?}: {count} triangles", case.kind);
+        let least = if case.kind == Kind::Mug { 5_000 } else { 2_000 };
+        assert!((least..=10_000).contains(&count), "{:?}: {count} triangles", case.kind);
         for mesh in [&case.object, &case.mesh] {
             assert!(mesh.signed_volume6() > 0.0, "seed {}: inside out", case.seed);
             // Closed and consistently oriented: every edge is walked once in each direction.

@@ -37,11 +37,8 @@ export async function splitAlign(slots: readonly WorkerSlot[], job: AlignJob, ca
     let found: Float64Array | undefined;
     for (const done of ROUNDS) {
       const start = performance.now();
-      const step = (part: number): [ShareRequest, ArrayBuffer[]] => [
-        { type: "step", found, part, parts: slots.length },
-        [],
-      ];
-      const answers = await every(slots, step, holders);
+      const sharers = slots.map((slot, part) => fromHolder(slot, holders[part]));
+      const answers = await every(sharers, (part) => [{ type: "step", found, part, parts: slots.length }, []]);
       const steps = answers.map(({ result }) => stepOf(result as Float64Array));
       const { tasks, isRefinement, best } = steps[0] as Step;
       // What was taken in the last step was all, or there is nothing that could be shared.
@@ -66,18 +63,9 @@ export async function splitAlign(slots: readonly WorkerSlot[], job: AlignJob, ca
   }
 }
 
-/**
- * Asks all at once, and waits for all: also for the others' answers where one fails.
- * @param holders the workers that have to be asked, where others would know nothing of it
- */
-async function every(
-  slots: readonly WorkerSlot[],
-  request: (part: number) => [ShareRequest, ArrayBuffer[]],
-  holders?: readonly unknown[],
-) {
-  const ask = async (slot: WorkerSlot, part: number) =>
-    (holders === undefined ? slot : fromHolder(slot, holders[part])).request(...request(part));
-  const answers = await Promise.allSettled(slots.map(ask));
+/** Asks all at once, and waits for all: also for the others' answers where one fails. */
+async function every(slots: readonly WorkerSlot[], request: (part: number) => [ShareRequest, ArrayBuffer[]]) {
+  const answers = await Promise.allSettled(slots.map((slot, part) => slot.request(...request(part))));
   return answers.map((answer) => {
     if (answer.status === "rejected") throw answer.reason;
     return answer.value;

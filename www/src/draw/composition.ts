@@ -16,10 +16,10 @@ export interface DrawnObject {
   limitM: number;
 }
 
-/** Draws an object at a pose, as far as the layers need it. */
-export function drawn(scene: Scene, object: ObjectModel, matrix: ArrayLike<number>, isSelected: boolean): DrawnObject {
+/** Draws an object at a pose, not selected. */
+export function drawn(scene: Scene, object: ObjectModel, matrix: ArrayLike<number>): DrawnObject {
   const { mask, mesh, colour } = object;
-  return { mask, colour, isSelected, drawing: drawDepth(mesh, matrix, scene), limitM: differenceLimit(object) };
+  return { mask, colour, isSelected: false, drawing: drawDepth(mesh, matrix, scene), limitM: differenceLimit(object) };
 }
 
 /** A fiftieth of the object, in round millimetres: what an eye would call "off". */

@@ -28,14 +28,13 @@ function projected(positions: Float32Array, m: ArrayLike<number>, { fx, fy, cx, 
 /**
  * Draws a mesh.
  * @param matrix camera from mesh, 16 numbers column by column
- * @param into a drawing to add to; nearer surfaces win
  */
 export function drawDepth(
   { positions, indices }: MeshArrays,
   matrix: ArrayLike<number>,
   { width, height, camera }: Pick<Scene, "width" | "height" | "camera">,
-  into: DepthDrawing = new Float32Array(width * height),
 ): DepthDrawing {
+  const into = new Float32Array(width * height);
   const vertices = projected(positions, matrix, camera);
   const count = indices?.length ?? positions.length / 3;
   for (let t = 0; t + 2 < count; t += 3) {
@@ -78,15 +77,4 @@ function drawTriangle(
       if (before === 0 || depth < before) into[pixel] = depth;
     }
   }
-}
-
-/** Intersection over union of a mask and what was drawn. */
-export function overlap(mask: Uint8Array, drawing: DepthDrawing): number {
-  let [both, either] = [0, 0];
-  mask.forEach((inside, pixel) => {
-    const [a, b] = [inside !== 0, drawing[pixel] !== 0];
-    if (a && b) both++;
-    if (a || b) either++;
-  });
-  return either === 0 ? 0 : both / either;
 }

@@ -1,7 +1,7 @@
 /** From files to a scene. */
 import { type MeshArrays, Sim3AlignError } from "sim3align";
 import { fromBop, resizeMask, type Sim3Like } from "sim3align/conventions";
-import { type CameraFile, readCamera, readDepth, readMask, readMesh } from "sim3align/formats";
+import { readCamera, readDepth, readMask, readMesh } from "sim3align/formats";
 import { ObjectModel, type ObjectParts } from "../state/object-model.js";
 import type { Scene } from "../state/scene.js";
 import { FieldError, forField } from "./field-error.js";
@@ -51,8 +51,7 @@ export async function readScene(inputs: Inputs): Promise<Scene> {
 
 function given<T>(field: FieldError["field"], value: T | null, what: string): T {
   if (value !== null) return value;
-  const error = new FieldError(field, new Error(`Still to be chosen: ${what}.`));
-  throw error;
+  throw new FieldError(field, new Error(`Still to be chosen: ${what}.`));
 }
 
 /** The first reading is for the scale only; what is wrong with the file, the second one says. */
@@ -78,9 +77,7 @@ async function intrinsicsOf(
     return { fx: f, fy: f, cx: (width - 1) / 2, cy: (height - 1) / 2, warnings: [warning] };
   }
   const { fx, fy, cx, cy, warnings } =
-    source.kind === "numbers"
-      ? { ...source, warnings: [] }
-      : await readCamera(bytes as Uint8Array, { width, height }).then((file: CameraFile) => file);
+    source.kind === "numbers" ? { ...source, warnings: [] } : await readCamera(bytes as Uint8Array, { width, height });
   return { fx, fy, cx, cy, warnings };
 }
 

@@ -4,6 +4,7 @@ import { sampleOf, samples } from "../load/samples.js";
 import { alignAll } from "../run/align.js";
 import { type Theme, theme } from "../state/display.js";
 import { scene } from "../state/scene.js";
+import { Choices } from "../ui/choices.js";
 import { toggleHelp } from "../ui/help.js";
 
 const themes: readonly [Theme, string][] = [
@@ -34,21 +35,16 @@ export function Header() {
           ))}
         </select>
       </label>
-      <label class="field-inline">
+      <label class="field-inline" for="theme">
         <span>Theme</span>
-        <select
+        <Choices
           id="theme"
           value={theme.value}
-          onChange={({ currentTarget }) => {
-            theme.value = currentTarget.value as Theme;
+          choices={themes}
+          onChoose={(chosen) => {
+            theme.value = chosen;
           }}
-        >
-          {themes.map(([value, title]) => (
-            <option key={value} value={value}>
-              {title}
-            </option>
-          ))}
-        </select>
+        />
       </label>
       <button type="button" onClick={toggleHelp} aria-keyshortcuts="?">
         Help

@@ -2,8 +2,18 @@
 import { useEffect, useRef } from "preact/hooks";
 import { baseName, fromFile } from "../load/named-file.js";
 import { fieldErrors, inputs, open, openFiles } from "../load/open.js";
+import { Choices } from "../ui/choices.js";
 import { CameraField } from "./camera-field.js";
 import { FileField } from "./file-field.js";
+
+/** Metres per unit of depth, as text; none is for the file to say. */
+const depthUnits = [
+  ["", "as the file says"],
+  ["1", "metres"],
+  ["0.001", "millimetres"],
+  ["0.0001", "tenths of a millimetre"],
+  ["0.00025", "a quarter of a millimetre"],
+] as const;
 
 const names = (files: readonly { path: string }[]) => files.map(({ path }) => baseName(path)).join(", ");
 
@@ -47,21 +57,14 @@ export function InputPanel() {
         </label>
       </div>
       <FileField field="depth" title="Depth" chosen={depth === null ? "" : baseName(depth.path)} accept=".png,.npy">
-        <label class="field-inline sub">
+        <label class="field-inline sub" for="depth-scale">
           <span>Unit</span>
-          <select
+          <Choices
             id="depth-scale"
-            value={depthScale ?? ""}
-            onChange={({ currentTarget: { value } }) =>
-              open({ ...inputs.peek(), depthScale: value === "" ? null : Number(value) })
-            }
-          >
-            <option value="">as the file says</option>
-            <option value="1">metres</option>
-            <option value="0.001">millimetres</option>
-            <option value="0.0001">tenths of a millimetre</option>
-            <option value="0.00025">a quarter of a millimetre</option>
-          </select>
+            value={`${depthScale ?? ""}` as (typeof depthUnits)[number][0]}
+            choices={depthUnits}
+            onChoose={(value) => open({ ...inputs.peek(), depthScale: value === "" ? null : Number(value) })}
+          />
         </label>
       </FileField>
       <FileField field="mask" title="Mask" chosen={names(masks)} accept=".png,.npy,.json" multiple>

@@ -4,9 +4,11 @@ import { place } from "../state/history.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { setOption } from "../state/options.js";
 import { nudged } from "../state/pose.js";
+import { Choices } from "../ui/choices.js";
 import { centimetres } from "../ui/format.js";
 
 const sides = ["Width", "Height", "Depth"] as const;
+const choices = sides.map((title, i) => [`${i}`, title] as const);
 
 export function KnownSize({ object }: { object: ObjectModel | null }) {
   const [side, setSide] = useState(1);
@@ -22,13 +24,7 @@ export function KnownSize({ object }: { object: ObjectModel | null }) {
   return (
     <fieldset class="row known" disabled={object === null}>
       <legend>Known size</legend>
-      <select aria-label="Side" value={side} onChange={({ currentTarget }) => setSide(Number(currentTarget.value))}>
-        {sides.map((title, i) => (
-          <option key={title} value={i}>
-            {title}
-          </option>
-        ))}
-      </select>
+      <Choices label="Side" value={`${side}`} choices={choices} onChoose={(value) => setSide(Number(value))} />
       <input
         id="known-size"
         type="number"

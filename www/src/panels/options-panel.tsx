@@ -1,5 +1,6 @@
 /** What is known of the object, and how the search goes about it. */
 import { defaultOptions, type Options, options, setOption } from "../state/options.js";
+import { Choices } from "../ui/choices.js";
 import { Tip } from "../ui/tip.js";
 
 interface Choice<K extends keyof Options> {
@@ -50,17 +51,7 @@ function Select<K extends "knownExtentAxis" | "up" | "symmetry">({ name, title, 
     <div class="option">
       <label for={id}>{title}</label>
       <Tip label={title.toLowerCase()}>{about}</Tip>
-      <select
-        id={id}
-        value={options.value[name]}
-        onChange={({ currentTarget }) => setOption(name, currentTarget.value as Options[K])}
-      >
-        {choices.map(([value, label]) => (
-          <option key={value} value={value}>
-            {label}
-          </option>
-        ))}
-      </select>
+      <Choices id={id} value={options.value[name]} choices={choices} onChoose={(value) => setOption(name, value)} />
     </div>
   );
 }

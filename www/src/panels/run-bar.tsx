@@ -5,6 +5,7 @@ import { alignAll, alignSelected, cancel, fraction, isRunning } from "../run/ali
 import { announcement } from "../state/announcement.js";
 import { type Options, options, setOption } from "../state/options.js";
 import { scene, selected } from "../state/scene.js";
+import { Choices } from "../ui/choices.js";
 
 /** What the stages do, for people. */
 export const stageNames: { readonly [S in Stage]: string } = {
@@ -49,19 +50,14 @@ export function RunBar() {
   return (
     <section class="run" aria-label="Run">
       <div class="run-row">
-        <label class="field-inline grow">
+        <label class="field-inline grow" for="effort">
           <span>Effort</span>
-          <select
+          <Choices
             id="effort"
             value={preset === "paper" ? "paper" : quality}
-            onChange={({ currentTarget }) => chooseEffort(currentTarget.value)}
-          >
-            {efforts.map(([value, title]) => (
-              <option key={value} value={value}>
-                {title}
-              </option>
-            ))}
-          </select>
+            choices={efforts.map(([value, title]) => [value, title] as const)}
+            onChoose={chooseEffort}
+          />
         </label>
         {running ? (
           <button type="button" id="cancel" class="primary" onClick={cancel}>

@@ -6,20 +6,6 @@ import { SceneView } from "./scene-view.js";
 import { Stage } from "./stage.js";
 import type { View, ViewEvents, ViewOptions } from "./types.js";
 
-export { NoGraphics } from "./stage.js";
-export type {
-  Animation,
-  Display,
-  GizmoMode,
-  Look,
-  Matrix,
-  ObjectInput,
-  SceneInput,
-  View,
-  ViewEvents,
-  ViewOptions,
-} from "./types.js";
-
 /**
  * Makes a view that fills its host.
  * @throws {NoGraphics} where there is neither WebGPU nor WebGL 2

@@ -9,7 +9,7 @@ const ofObjects = computed<readonly ReadonlySignal<{ object: ObjectModel; shown:
   const whole = scene.value;
   if (whole === null) return [];
   return whole.objects.map((object) =>
-    computed(() => ({ object, shown: drawn(whole, object, object.pose.value.transform.matrix, false) })),
+    computed(() => ({ object, shown: drawn(whole, object, object.pose.value.transform.matrix) })),
   );
 });
 

@@ -9,25 +9,23 @@ import { objectAt, scene, select, selected } from "../state/scene.js";
 import { drawing, drawingsAt } from "./drawings.js";
 import { space } from "./space.js";
 
+/** Of the scene alone: what is shown changes with every step of a slider. */
+const depth = computed(() => (scene.value === null ? null : depthPicture(scene.value.depthM)));
+const onObjects = computed(() => (scene.value === null ? wholeImage : zoomToObjects(scene.value)));
+
 /** The picture that everything is drawn on. */
 const base = computed(() => {
-  const whole = scene.value;
-  if (whole === null) return null;
-  return layers.value.base === "photo" && whole.rgba !== null ? whole.rgba : depthPicture(whole.depthM);
+  const rgba = scene.value?.rgba ?? null;
+  return layers.value.base === "photo" && rgba !== null ? rgba : depth.value;
 });
 
 /** Every object where nobody had aligned anything. */
 const before = computed(() => {
   const whole = scene.value;
-  return whole === null
-    ? []
-    : whole.objects.map((object) => drawn(whole, object, object.start.transform.matrix, false));
+  return whole === null ? [] : whole.objects.map((object) => drawn(whole, object, object.start.transform.matrix));
 });
 
-const zoom = computed(() => {
-  const whole = scene.value;
-  return whole === null || !layers.value.zoom ? wholeImage : zoomToObjects(whole);
-});
+const zoom = computed(() => (layers.value.zoom ? onObjects.value : wholeImage));
 
 let canvasNow: HTMLCanvasElement | null = null;
 
