@@ -175,6 +175,30 @@ test("the two views are linked", async () => {
     await page.hover(".space canvas");
     await page.locator(".image .cross").waitFor();
     assert.match((await page.textContent(".readout")) ?? "", /^\d+, \d+: /);
+    // The image's middle is the 3D view's, from the camera's place.
+    await page.hover(".image canvas");
+    const marked = await seen(
+      page,
+      (picture) => `the mark has ${changed(picture, before).length} pixels`,
+      (picture) => changed(picture, before).length > 30,
+    );
+    const ring = changed(marked, before);
+    for (const [size, at] of [
+      [marked.width, (pixel: number) => pixel % marked.width],
+      [marked.height, (pixel: number) => Math.floor(pixel / marked.width)],
+    ] as const) {
+      const [low, high] = [Math.min(...ring.map(at)), Math.max(...ring.map(at))];
+      assert.ok(
+        Math.abs((low + high) / 2 - size / 2) < 4 && high - low < 40,
+        `a mark from ${low} to ${high} of ${size}`,
+      );
+    }
+    await page.hover("h1");
+    await seen(
+      page,
+      (picture) => `the mark stays: ${changed(picture, before).length} pixels`,
+      (picture) => changed(picture, before).length === 0,
+    );
     // A click in the image chooses the object, and turns the other view about it.
     await page.locator(".objects button").nth(2).click();
     await page.locator(".image canvas").click();

@@ -49,13 +49,13 @@ export class PageTest {
     if (executablePath === undefined) throw new Error('CHROMIUM_PATH is not set: run the tests by "npm test".');
     const module = pathToFileURL(join(repository, "scripts", "lib", "static-server.mjs")).href;
     const { serve } = (await import(module)) as { serve(folder: string): Promise<Server> };
-    const server = await serve(folder);
     const args = [
       ...flags.filter((flag) => !more.includes(`!${flag}`)),
       ...more.filter((flag) => !flag.startsWith("!")),
     ];
+    // First what may fail: a server that nobody stops would keep the tests from ending.
     const browser = await chromium.launch({ executablePath, headless: true, args });
-    return new PageTest(browser, server);
+    return new PageTest(browser, await serve(folder));
   }
 
   /**

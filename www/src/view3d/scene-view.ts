@@ -3,6 +3,7 @@ import { DirectionalLight, Group, HemisphereLight, Vector3 } from "three/webgpu"
 import { Cloud } from "./cloud.js";
 import { Frustum } from "./frustum.js";
 import { Gizmo } from "./gizmo.js";
+import { Mark } from "./mark.js";
 import { Model } from "./model.js";
 import { Movements } from "./movement.js";
 import { Picker } from "./picker.js";
@@ -34,6 +35,7 @@ export class SceneView implements View {
   private readonly root = new Group();
   private readonly viewpoint: Viewpoint;
   private readonly gizmo: Gizmo;
+  private readonly ring = new Mark();
   private readonly movements = new Movements();
   private readonly models = new Map<string, Model>();
   private readonly poses = new Map<string, Matrix | null>();
@@ -63,6 +65,7 @@ export class SceneView implements View {
       onPose: (model, phase) => this.moved(model, phase),
     });
     this.root.rotation.x = Math.PI;
+    this.root.add(this.ring.object);
     // From where one looks, a little from above.
     const lamp = new DirectionalLight(0xffffff, 2.1);
     lamp.position.set(-0.4, 1, 0.8);
@@ -271,6 +274,11 @@ export class SceneView implements View {
     return `3D view from ${from}: ${points} points of the scene, ${meshes}`;
   }
 
+  mark(point: [number, number, number] | null): void {
+    this.ring.point = point;
+    this.stage.invalidate();
+  }
+
   snapshot(): Promise<Blob> {
     return this.stage.snapshot();
   }
@@ -280,6 +288,7 @@ export class SceneView implements View {
     this.movements.stopAll();
     this.pointer.dispose();
     this.gizmo.dispose();
+    this.ring.dispose();
     this.viewpoint.dispose();
     for (const model of this.models.values()) model.dispose();
     this.models.clear();

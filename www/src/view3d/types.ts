@@ -88,6 +88,8 @@ export interface View {
   lookFrom(which: Look): void;
   /** Turns about this point of the camera frame (OpenCV, metres) from now on; the selected object's centre by default. */
   focus(point?: [number, number, number]): void;
+  /** A ring about a point of the camera frame (OpenCV, metres), or none. */
+  mark(point: [number, number, number] | null): void;
   /** A PNG of what is seen. */
   snapshot(): Promise<Blob>;
   dispose(): void;

@@ -117,12 +117,8 @@ export function ImageView() {
             aria-label={description()}
             width={whole?.width ?? 640}
             height={whole?.height ?? 480}
-            onPointerMove={(event) => {
-              pointed.value = pixelOf(event);
-            }}
-            onPointerLeave={() => {
-              pointed.value = null;
-            }}
+            onPointerMove={(event) => point(pixelOf(event))}
+            onPointerLeave={() => point(null)}
             onClick={focusOn}
           />
           <Cross />
@@ -164,7 +160,9 @@ function description(): string {
   return `${layers.value.base === "photo" ? "Photo" : "Depth map"} of ${whole.name}, with ${names.join("; ")}`;
 }
 
-function pixelOf(event: MouseEvent): { x: number; y: number } | null {
+type Pixel = { x: number; y: number };
+
+function pixelOf(event: MouseEvent): Pixel | null {
   const canvas = event.currentTarget as HTMLCanvasElement;
   const { left, top, width, height } = canvas.getBoundingClientRect();
   const x = Math.floor(((event.clientX - left) * canvas.width) / width);
@@ -174,14 +172,27 @@ function pixelOf(event: MouseEvent): { x: number; y: number } | null {
 
 /** Turns the 3D view about what was clicked on. */
 function focusOn(event: MouseEvent): void {
-  const [whole, pixel, state] = [scene.peek(), pixelOf(event), space.peek()];
-  if (whole === null || pixel === null) return;
+  const [pixel, state] = [pixelOf(event), space.peek()];
+  if (pixel === null) return;
   select(objectAt(pixel.x, pixel.y)?.id ?? null);
-  const z = whole.depthM[pixel.y * whole.width + pixel.x] ?? 0;
+  const seen = placeOf(pixel);
+  if (state.kind === "ready" && seen !== null) state.view.focus(seen);
+}
+
+/** Tells the depth at a pixel, and shows where it is in 3D. */
+function point(pixel: Pixel | null): void {
+  pointed.value = pixel;
+  const state = space.peek();
+  if (state.kind === "ready") state.view.mark(pixel === null ? null : placeOf(pixel));
+}
+
+/** Where in front of the camera a pixel's reading is, metres. */
+function placeOf({ x, y }: Pixel): [number, number, number] | null {
+  const whole = scene.peek();
+  const z = whole?.depthM[y * whole.width + x] ?? 0;
+  if (whole === null || !(z > 0)) return null;
   const { fx, fy, cx, cy } = whole.camera;
-  if (state.kind === "ready" && z > 0) {
-    state.view.focus([((pixel.x - cx) * z) / fx, ((pixel.y - cy) * z) / fy, z]);
-  }
+  return [((x - cx) * z) / fx, ((y - cy) * z) / fy, z];
 }
 
 /** Marks the pixel that is pointed at in the other view. */
