@@ -23,7 +23,9 @@ export function Header() {
   return (
     <header class="head">
       <h1>sim3align</h1>
-      <p class="claim">Puts a generated mesh where it really is, at its real size. Nothing leaves this machine.</p>
+      <p class="claim">
+        <span>Puts a generated mesh where it really is, at its real size.</span> Nothing leaves this machine.
+      </p>
       <label class="field-inline">
         <span>Sample</span>
         <select id="sample" value={shown} onChange={({ currentTarget }) => choose(currentTarget.value)}>
