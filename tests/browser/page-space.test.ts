@@ -3,19 +3,12 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { Page } from "playwright-core";
 import { SOFTWARE_WEBGPU } from "../support/browser.js";
-import { PATIENCE, type SitePage, SiteTest } from "../support/site.js";
+import { PATIENCE, type Pixels, type SitePage, SiteTest } from "../support/site.js";
 
 const backends: readonly ["webgpu" | "webgl", string[]][] = [
   ["webgpu", SOFTWARE_WEBGPU],
   ["webgl", ["!--enable-unsafe-webgpu"]],
 ];
-
-/** A picture's pixels: red, green, blue, opacity. */
-interface Picture {
-  width: number;
-  height: number;
-  data: Buffer;
-}
 
 /**
  * What is seen of the 3D view, as soon as it is what is waited for.
@@ -24,7 +17,7 @@ interface Picture {
  * still, which an old picture does too.
  * @param what for the message: what it should be, and how far it is from that
  */
-async function seen(page: Page, what: (picture: Picture) => string, isIt: (picture: Picture) => boolean) {
+async function seen(page: Page, what: (picture: Pixels) => string, isIt: (picture: Pixels) => boolean) {
   const end = Date.now() + PATIENCE.timeout;
   for (;;) {
     const picture = await glimpse(page);
@@ -38,8 +31,8 @@ async function seen(page: Page, what: (picture: Picture) => string, isIt: (pictu
 }
 
 /** The 3D view once it keeps still. */
-async function still(page: Page): Promise<Picture> {
-  let last: Picture | undefined;
+async function still(page: Page): Promise<Pixels> {
+  let last: Pixels | undefined;
   return seen(
     page,
     () => "the 3D view goes on moving",
@@ -52,7 +45,7 @@ async function still(page: Page): Promise<Picture> {
 }
 
 /** What is seen of the 3D view at the moment. */
-async function glimpse(page: Page): Promise<Picture> {
+async function glimpse(page: Page): Promise<Pixels> {
   const png = await page.locator(".space .view-host").screenshot();
   const decoded = (await page.evaluate(async (base64) => {
     const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
@@ -68,23 +61,23 @@ async function glimpse(page: Page): Promise<Picture> {
 }
 
 /** The pixels that differ plainly from what they are compared with: another picture's, or a colour. */
-function differing({ data }: Picture, other: (pixel: number, channel: number) => number): number[] {
+function differing({ data }: Pixels, other: (pixel: number, channel: number) => number): number[] {
   return Array.from({ length: data.length / 4 }, (_, pixel) => pixel).filter((pixel) =>
     [0, 1, 2].some((k) => Math.abs((data[4 * pixel + k] ?? 0) - other(pixel, k)) > 24),
   );
 }
 
 /** The pixels that differ plainly between two pictures. */
-function changed(a: Picture, b: Picture): number[] {
+function changed(a: Pixels, b: Pixels): number[] {
   assert.deepEqual([a.width, a.height], [b.width, b.height]);
   return differing(a, (pixel, k) => b.data[4 * pixel + k] ?? 0);
 }
 
 /** The pixels that are not as a corner is, where nothing is. */
-const drawn = (picture: Picture) => differing(picture, (_, k) => picture.data[k] ?? 0);
+const drawn = (picture: Pixels) => differing(picture, (_, k) => picture.data[k] ?? 0);
 
 /** The ratio of the pixels where something is. */
-const ratio = (picture: Picture) => drawn(picture).length / (picture.width * picture.height);
+const ratio = (picture: Pixels) => drawn(picture).length / (picture.width * picture.height);
 
 const ready = ({ page }: SitePage, backend: string) =>
   page.locator(`.view-host[data-backend="${backend}"] canvas`).waitFor(PATIENCE);
@@ -99,7 +92,7 @@ for (const [backend, flags] of backends) {
       const opened = await site.open();
       const { page } = opened;
       await ready(opened, backend);
-      const told = (picture: Picture) => `something is at ${ratio(picture)} of the pixels`;
+      const told = (picture: Pixels) => `something is at ${ratio(picture)} of the pixels`;
       await seen(page, told, (picture) => ratio(picture) > 0.01);
       await page.getByRole("button", { name: "Camera", exact: true }).click();
       await show(page, "Points", false);
@@ -126,7 +119,7 @@ for (const [backend, flags] of backends) {
         (picture) => changed(picture, mesh).length === 0,
       );
       await page.getByRole("button", { name: "Move", exact: true }).click();
-      const redOf = (picture: Picture) =>
+      const redOf = (picture: Pixels) =>
         changed(picture, mesh).filter((pixel) => {
           const [r = 0, g = 0, b = 0] = picture.data.subarray(4 * pixel, 4 * pixel + 3);
           return r > 150 && g < 90 && b < 90;

@@ -84,8 +84,8 @@ export class Stage {
   private events: StageEvents | null = null;
   private readonly observer = new ResizeObserver(() => this.fit());
   private frame = 0;
-  /** When graphics devices were lost, in milliseconds since the page began. */
-  private losses: number[] = [];
+  /** When a graphics device was lost, in milliseconds since the page began. */
+  private lastLoss = Number.NEGATIVE_INFINITY;
   private isDisposed = false;
   private graphics: Graphics | null = null;
 
@@ -211,11 +211,12 @@ export class Stage {
 
   private countLoss(): void {
     const now = performance.now();
-    this.losses = [...this.losses.filter((then) => now - then < SOON_MS), now];
-    if (this.losses.length === 1) return;
+    const isSoon = now - this.lastLoss < SOON_MS;
+    this.lastLoss = now;
+    if (!isSoon) return;
     if (this.backend === "webgl") throw new NoGraphics();
     this.forceWebGL = true;
-    this.losses = [];
+    this.lastLoss = Number.NEGATIVE_INFINITY;
   }
 
   dispose(): void {
