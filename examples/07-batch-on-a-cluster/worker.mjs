@@ -23,7 +23,7 @@ const worker = new Worker(
     // If the files have changed since, the id would belong to another case.
     if (jobIdOf(input, options) !== id) throw new UnrecoverableError("files or version have changed since");
     const { matrix, scale, confidence, alternatives, metrics, warnings } = await aligner
-      .align(input, options)
+      .align(input, /** @type {import("sim3align").AlignOptions} */ (options))
       .catch((error) => {
         const isFinal = error instanceof Sim3AlignError && !retryable.has(error.code);
         throw isFinal ? new UnrecoverableError(`${error.code}: ${error.message}`) : error;
