@@ -19,7 +19,6 @@ pub mod progress;
 pub mod register;
 pub mod report;
 mod rigid;
-pub mod split;
 mod verifier;
 pub mod warnings;
 

@@ -32,7 +32,7 @@ pub fn align(
 
 /// What an alignment is about.
 #[inline(never)]
-pub(super) fn case(input: &JsValue, options: &JsValue) -> Result<(Observation, Mesh, AlignOptions)> {
+fn case(input: &JsValue, options: &JsValue) -> Result<(Observation, Mesh, AlignOptions)> {
     let options = options::options(options, &[])?;
     Ok((input::observation(input)?, input::mesh(input)?, options))
 }
@@ -98,7 +98,7 @@ pub fn version() -> String {
 }
 
 /// What JavaScript gets: the result as a plain object, or the error to be thrown.
-pub(super) fn answer<T: Serialize>(result: Result<T>) -> core::result::Result<JsValue, JsValue> {
+fn answer<T: Serialize>(result: Result<T>) -> core::result::Result<JsValue, JsValue> {
     to_object(result.map(|value| Value::of(&value)))
 }
 

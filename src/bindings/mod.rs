@@ -14,8 +14,6 @@ mod object;
 #[cfg(feature = "aligner")]
 mod options;
 #[cfg(feature = "aligner")]
-pub mod share;
-#[cfg(feature = "aligner")]
 mod transform;
 #[cfg(feature = "aligner")]
 pub mod value;

@@ -76,7 +76,6 @@ pub mod shapes;
 pub mod silhouette;
 pub mod similarity;
 pub mod singular_values;
-pub mod split;
 pub mod support;
 pub mod surface;
 pub mod symmetric_eigen;
