@@ -114,7 +114,7 @@ test("aborting ends the worker and its job, and the job that waits for it is not
   await begun.opened;
   controller.abort();
   await assert.rejects(running, isAbort);
-  await own.made[0]?.hasEnded;
+  await own.made[0]?.ended();
   assert.equal(own.made.length, 2, "it was replaced");
   assert.deepEqual(withoutTimes(await waiting), withoutTimes(await here.align(input, quick)));
   one.dispose();

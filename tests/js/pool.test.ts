@@ -241,7 +241,7 @@ test("disposing ends the workers, and what waits for them", async () => {
   const expected = { code: "DISPOSED", argument: "aligner", message: /createAligner\(\)/ } as const;
   for (const call of calls) await rejectsWith(() => call, expected);
   await rejectsWith(() => aligner.align(input), expected);
-  await worker.hasEnded;
+  await worker.ended();
   assert.equal(workers.made.length, 1);
 });
 

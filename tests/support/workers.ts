@@ -13,8 +13,8 @@ export const workerUrl = pathToFileURL(join(installDir, "node_modules", "sim3ali
 export interface WatchedWorker extends Worker {
   /** Resolves when its job reports progress for the first time; the call needs an `onProgress`. */
   readonly isBusy: Promise<void>;
-  /** Resolves when it has ended. */
-  readonly hasEnded: Promise<void>;
+  /** Resolves when it has ended; keeps the process alive until then. */
+  ended(): Promise<void>;
 }
 
 /** Makes workers, and remembers them. */
@@ -28,7 +28,11 @@ export class Workers {
       worker.on("message", ({ type }: { type: string }) => type === "progress" && resolve());
     });
     const hasEnded = new Promise<void>((resolve) => worker.once("exit", () => resolve()));
-    const watched = Object.assign(worker, { isBusy, hasEnded });
+    const ended = () => {
+      worker.ref();
+      return hasEnded;
+    };
+    const watched = Object.assign(worker, { isBusy, ended });
     this.made.push(watched);
     for (const wake of this.#awaited.splice(0)) wake();
     return watched;
