@@ -17,14 +17,14 @@ import type {
   Progress,
   RegisterOptions,
 } from "./options.js";
-import type { CreateWorker, WasmSource } from "./platform.js";
+import type { CreateWorker, LazySource, WasmSource } from "./platform.js";
 import { WorkerPool } from "./pool/pool.js";
 import { workerFactory } from "./pool/port.js";
 import { ProgressListener } from "./progress.js";
 import type { AlignAllResult, Alignment, Evaluation, Registration } from "./results.js";
 import { coreSim3, type Sim3Like } from "./sim3.js";
 import { isKind, isRecord, withoutUndefined } from "./values.js";
-import type { LazySource, LoadedModule } from "./wasm-module.js";
+import type { LoadedModule } from "./wasm-module.js";
 
 /** What `createAligner` can be told. */
 export interface AlignerOptions {
@@ -43,7 +43,10 @@ export interface AlignerOptions {
   createWorker?: CreateWorker | undefined;
 }
 
-/** The files that `sim3align/inline` brings along. */
+/**
+ * The files that `sim3align/inline` brings along.
+ * @internal
+ */
 export interface BundledAssets {
   wasm?: LazySource;
   formatsWasm?: LazySource;
