@@ -1,4 +1,4 @@
-// Four files in, a transform out: node align.mjs [FOLDER]
+// Four files in, one transform out: node align.mjs [FOLDER]
 import { readFile } from "node:fs/promises";
 import { createAligner } from "sim3align";
 
@@ -11,4 +11,4 @@ const aligner = await createAligner();
 const result = await aligner.align({ depth, mask, cameraFile, mesh });
 
 const { scale, rotation, translation, matrix, confidence } = result;
-console.log(JSON.stringify({ scale, rotation, translation, matrix: [...matrix], confidence }, null, 2));
+console.log(JSON.stringify({ scale, rotation, translation, matrix, confidence }, null, 2));
