@@ -1,6 +1,8 @@
 /** What the calls can be told to do otherwise. Units, ranges and defaults are in each field's documentation. */
+import type { Sim3Like, SymmetryOption } from "./argument-types.js";
 import type * as Core from "./generated/types.js";
-import type { Sim3Like } from "./sim3.js";
+
+export type { Direction, ScaleBounds, SymmetryAxis, SymmetryOption } from "./argument-types.js";
 
 /** How far a call has come. */
 export interface Progress {
@@ -39,12 +41,6 @@ export interface CallOptions {
   transfer?: boolean | undefined;
 }
 
-/** A direction, of any length above 0. */
-export type Direction = readonly [x: number, y: number, z: number];
-
-/** A scale that is known, or bounds of it, in metres per mesh unit, above 0. */
-export type ScaleBounds = number | readonly [min: number, max: number] | { readonly min: number; readonly max: number };
-
 /**
  * Options of `Aligner.align`: most callers need none.
  * @example The mug is 9.5 cm tall, and the mesh's y axis is up:
@@ -72,17 +68,6 @@ export interface AlignAllOptions extends Omit<AlignOptions, "onProgress"> {
   /** As that of `align`, with the input's place among the others. */
   onProgress?: ((progress: Progress & { index: number }) => void) | undefined;
 }
-
-/** An axis about which the object looks the same after a turn; all axes pass through its surface's centroid. */
-export interface SymmetryAxis {
-  /** In the mesh's frame. */
-  axis: Direction;
-  /** How many times the object looks the same in a full turn; without it, at any angle (a surface of revolution). */
-  fold?: number | undefined;
-}
-
-/** The turns under which an object looks the same: found in the mesh, or declared. */
-export type SymmetryOption = "none" | "auto" | "auto-revolution" | readonly SymmetryAxis[];
 
 /** Options of `Aligner.evaluate`. */
 export interface EvaluateOptions extends Partial<Core.EvaluateOptions>, CallOptions {

@@ -1,4 +1,6 @@
 /** Similarities: what is taken for one, and how the results carry theirs. */
+export type { Sim3Like } from "./argument-types.js";
+
 import type * as Core from "./generated/types.js";
 import { isRecord, plainNumbers } from "./values.js";
 
@@ -7,20 +9,6 @@ export interface Sim3 extends Omit<Core.Sim3, "matrix"> {
   /** The 4×4 matrix, **column by column** (three.js `Matrix4.elements`, glTF `node.matrix`, WebGPU). */
   matrix: Float64Array;
 }
-
-/**
- * A similarity as an argument: anything with a 4×4 `matrix` (column by column) or with `scale`, `rotation` (quaternion
- * x, y, z, w; 9 numbers row by row; or three rows of three) and `translation`; or the 16 numbers alone. So a result
- * of `align` is one.
- */
-export type Sim3Like =
-  | ArrayLike<number>
-  | { readonly matrix: ArrayLike<number> }
-  | {
-      readonly scale: number;
-      readonly rotation: ArrayLike<number> | readonly (readonly number[])[];
-      readonly translation: ArrayLike<number>;
-    };
 
 /** The core's form of a similarity; it checks the numbers. */
 export function coreSim3(transform: unknown): unknown {

@@ -35,7 +35,10 @@ export async function readTypedCase(folder) {
   return {
     name,
     input: { depth: metres, width, height, mask, camera, mesh: { positions: mesh.positions, indices } },
-    truth: truth && { matrix: Array.from(truth.transform.matrix), symmetry: declaredSymmetry(folder) ?? truth.symmetry },
+    truth: truth && {
+      matrix: Array.from(truth.transform.matrix),
+      symmetry: declaredSymmetry(folder) ?? truth.symmetry,
+    },
   };
 }
 

@@ -51,8 +51,7 @@ fn declarations_are_those_of_the_rust_structs() {
         declaration::<Registration>(&config),
     ];
     let header = "// Generated from the Rust structs by tests/suite/typescript.rs; do not edit.\n\n\
-        import type { Direction, ScaleBounds, SymmetryOption } from \"../options.js\";\n\
-        import type { Sim3Like } from \"../sim3.js\";\n\n";
+        import type { Direction, ScaleBounds, Sim3Like, SymmetryOption } from \"../argument-types.js\";\n\n";
     let generated = header.to_owned() + &declarations.join("\n");
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../pkg-config/src/generated/types.ts");
     if std::env::var_os("UPDATE").is_some() {

@@ -1,7 +1,6 @@
 // Generated from the Rust structs by tests/suite/typescript.rs; do not edit.
 
-import type { Direction, ScaleBounds, SymmetryOption } from "../options.js";
-import type { Sim3Like } from "../sim3.js";
+import type { Direction, ScaleBounds, Sim3Like, SymmetryOption } from "../argument-types.js";
 
 /**
  * Which method runs.
