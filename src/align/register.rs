@@ -5,10 +5,11 @@ use nalgebra::Vector3;
 use super::field::Options;
 use super::frames::Frames;
 use super::judge::Judge;
-use super::options::{RegisterOptions, ScaleOption};
 use super::progress::{Host, Stage, Stopwatch};
+use super::register_options::RegisterOptions;
 use super::report::Registration;
 use super::rigid::register_rigid;
+use super::scale::ScaleOption;
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::random::Random;
 use crate::number::number;
@@ -41,12 +42,10 @@ pub(super) const PLAN: &[(Stage, f64)] = &[
 pub fn register(
     source_xyz: &[f64],
     target_xyz: &[f64],
-    scale: ScaleOption,
     options: &RegisterOptions,
     host: &mut dyn Host,
 ) -> Result<Registration> {
     options.validate()?;
-    scale.validate()?;
     check_cloud("source", source_xyz, MIN_POINTS)?;
     check_cloud("target", target_xyz, MIN_POINTS)?;
     let mut stages = Stopwatch::new(host, PLAN);
@@ -56,20 +55,20 @@ pub fn register(
     let mut random = Random::new(u64::from(options.seed), STREAM);
     let source_xyz = subsample(source_xyz, options.max_points as usize, &mut random);
     let target_xyz = subsample(target_xyz, options.max_points as usize, &mut random);
-    let whole = Frames::of(&source_xyz, &target_xyz, scale)?;
+    let whole = Frames::of(&source_xyz, &target_xyz, options.scale)?;
 
     // A known scale says which matches keep their distances. Otherwise, and where clutter defeats that:
     // clutter widens the boxes and drowns the descriptors; but where the density varies by nature (lidar),
     // dropping the sparse points drops the scene. So both are tried, and the points themselves decide.
     let mut judge = Judge::new(&source_xyz, &target_xyz, whole, options);
-    if matches!(scale, ScaleOption::Fixed(_)) {
-        judge.hold(register_rigid(given, scale, options, &mut stages));
+    if matches!(options.scale, ScaleOption::Fixed(_)) {
+        judge.hold(register_rigid(given, options, &mut stages));
     }
     if let Some((source_xyz, target_xyz)) = dense(&source_xyz, &target_xyz, &judge.frames) {
-        judge.attempt(&source_xyz, &target_xyz, scale, options, &mut stages)?;
+        judge.attempt(&source_xyz, &target_xyz, options, &mut stages)?;
     }
     if !judge.holds() {
-        judge.attempt(&source_xyz, &target_xyz, scale, options, &mut stages)?;
+        judge.attempt(&source_xyz, &target_xyz, options, &mut stages)?;
     }
     judge.verdict(options, stages)
 }

@@ -6,8 +6,8 @@
 use super::estimate::{Estimate, Settings, Side, refine_coarse_to_fine};
 use super::frames::Frames;
 use super::judge::{Attempt, about_clouds, with_normals};
-use super::options::{RegisterOptions, ScaleOption};
 use super::progress::{Stage, Stopwatch};
+use super::register_options::RegisterOptions;
 use super::report::Counts;
 use super::verifier::{Verifier, distinctiveness};
 use crate::error::{Error, ErrorCode, Result};
@@ -40,11 +40,10 @@ const FREE_SLACK_VOXELS: f32 = 2.0;
 /// Aligns clouds whose scale is known, in frames that make it 1.
 pub(super) fn register_rigid(
     [source_xyz, target_xyz]: [&[f64]; 2],
-    scale: ScaleOption,
     options: &RegisterOptions,
     stages: &mut Stopwatch<'_>,
 ) -> Result<Attempt> {
-    let frames = Frames::of(source_xyz, target_xyz, scale)?;
+    let frames = Frames::of(source_xyz, target_xyz, options.scale)?;
     let most = options.max_points as usize;
     let source = thin(frames.source.normalized_flat(source_xyz), most);
     let target = thin(frames.target.normalized_flat(target_xyz), most);

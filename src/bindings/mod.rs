@@ -14,11 +14,7 @@ mod object;
 #[cfg(feature = "aligner")]
 mod options;
 #[cfg(feature = "aligner")]
-pub mod share;
-#[cfg(feature = "aligner")]
 mod transform;
-#[cfg(feature = "aligner")]
-pub mod value;
 
 /// Two-level segregated fit, constant time to get and to give back: a fifth of the standard allocator's bytes.
 #[cfg(target_arch = "wasm32")]
