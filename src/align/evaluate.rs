@@ -106,10 +106,8 @@ pub fn evaluate(
     let reconstructed = Extents::of("mesh", &evidence.reconstructed.points)?;
     let initial_scale = initial_scale(&observed, &reconstructed);
     let scale_ratio = camera_from_mesh.scale / initial_scale;
-    let errors = options
-        .truth
-        .map(|truth| pose_errors(mesh, camera_from_mesh, &truth, &options.symmetry))
-        .transpose()?;
+    let errors =
+        options.truth.map(|truth| pose_errors(mesh, camera_from_mesh, &truth, &options.symmetry)).transpose()?;
     Ok(Evaluation {
         metrics,
         errors,

@@ -51,7 +51,13 @@ impl Frames {
     }
 
     /// The report of a transform between the clouds' own frames.
-    pub(super) fn registration(&self, transform: &Similarity, fit: Fit, seed: u32, stages: Stopwatch<'_>) -> Registration {
+    pub(super) fn registration(
+        &self,
+        transform: &Similarity,
+        fit: Fit,
+        seed: u32,
+        stages: Stopwatch<'_>,
+    ) -> Registration {
         let Fit { fitness, residual, converged, counts } = fit;
         let initial_scale = initial_scale(&self.target, &self.source);
         Registration {

@@ -133,8 +133,7 @@ impl Judge {
             return Err(self.failure.unwrap_or_else(no_attempt));
         };
         let Attempt { target_from_source, estimate, residual } = attempt;
-        let fit =
-            Fit { fitness: agreement.fitness, residual, converged: estimate.converged, counts: estimate.counts };
+        let fit = Fit { fitness: agreement.fitness, residual, converged: estimate.converged, counts: estimate.counts };
         Ok(self.frames.registration(&target_from_source, fit, options.seed, stages))
     }
 }

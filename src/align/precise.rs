@@ -3,10 +3,10 @@
 use super::alternatives::alternatives;
 use super::confidence::confidence;
 use super::options::{AlignOptions, ExtentAxis, Quality, SearchScope};
+use super::paper_options::PaperOptions;
 use super::progress::{Stage, Stopwatch};
 use super::report::{Alternative, Counts, ScoreTerms, Uncertainty};
 use super::{Clouds, Solution, paper};
-use super::paper_options::PaperOptions;
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::cloud::Bounds;
 use crate::geometry::mesh::Mesh;

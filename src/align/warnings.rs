@@ -62,8 +62,7 @@ pub fn about_observation(observation: &Observation) -> Vec<Warning> {
 pub fn about_scale(scale_ratio: f64, clamped: bool, preset: Preset) -> Option<Warning> {
     let precise = preset == Preset::Precise;
     if is_collapsed(scale_ratio) && !precise {
-        let message =
-            format!("The scale collapsed to {} of the initial one. Set options.guard.", number(scale_ratio));
+        let message = format!("The scale collapsed to {} of the initial one. Set options.guard.", number(scale_ratio));
         return Some(Warning { code: WarningCode::ScaleCollapsed, message });
     }
     clamped.then(|| Warning {

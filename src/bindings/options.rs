@@ -141,7 +141,7 @@ fn scale_of(value: &JsValue) -> Option<ScaleOption> {
     fixed.or_else(|| to_numbers(value, "").ok().map(ScaleOption::Between))
 }
 
-/// Names further away than this are no misspellings.
+/// Similarity of two names, 0 to 1, from which one is suggested for the other.
 const MISSPELT: f64 = 0.6;
 
 fn unknown_option(name: &str, known: &[&str]) -> Error {

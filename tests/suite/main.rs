@@ -76,7 +76,6 @@ pub mod shapes;
 pub mod silhouette;
 pub mod similarity;
 pub mod singular_values;
-pub mod split;
 pub mod support;
 pub mod surface;
 pub mod symmetric_eigen;
@@ -85,5 +84,4 @@ pub mod tukey;
 #[cfg(all(feature = "types", not(target_arch = "wasm32")))]
 pub mod typescript;
 pub mod umeyama;
-pub mod values;
 pub mod voxel_grid;
