@@ -1,26 +1,26 @@
-/** Many alignments, one after the other as they are ready, with few of them under way. */
+/** Many alignments, yielded as they are ready, with a bounded number of them running. */
 import type { Sim3AlignError } from "./error.js";
 import type { AlignInput } from "./input/types.js";
 import { onAbort } from "./on-abort.js";
 import type { AlignAllResult, Alignment } from "./results.js";
 
-/** How `alignAll` goes about it. */
-export interface Conveyor {
-  /** Inputs that are pulled, and whose results the caller has not got yet, at most. */
+/** Options of a batch. */
+export interface BatchOptions {
+  /** How many inputs may have been pulled whose results have not been yielded. */
   limit: number;
   ordered: boolean;
   signal: AbortSignal | undefined;
   align(input: AlignInput, index: number, signal: AbortSignal): Promise<Alignment>;
-  /** Whether an error is about one input, and others may go on. */
+  /** Whether an error is about one input only, so that the others continue. */
   isOwn(error: unknown): error is Sim3AlignError;
 }
 
 type Settled = { result: AlignAllResult } | { failure: unknown };
 
-/** Aligns the inputs; what ends the loop early, ends what is under way. */
+/** Aligns the inputs. Leaving the loop early ends the alignments that are running. */
 export async function* alignAll(
   inputs: Iterable<AlignInput> | AsyncIterable<AlignInput>,
-  { limit, ordered, signal, align, isOwn }: Conveyor,
+  { limit, ordered, signal, align, isOwn }: BatchOptions,
 ): AsyncGenerator<AlignAllResult, void, undefined> {
   signal?.throwIfAborted();
   const stopped = new AbortController();
@@ -32,7 +32,7 @@ export async function* alignAll(
       reject(reason);
     });
   });
-  // Nobody may be waiting just then.
+  // It may reject while nobody waits for it.
   aborted.catch(() => {});
   const iterator = Symbol.asyncIterator in inputs ? inputs[Symbol.asyncIterator]() : inputs[Symbol.iterator]();
   const running = new Map<number, Promise<number>>();
@@ -74,12 +74,12 @@ export async function* alignAll(
   } finally {
     unfollow();
     stopped.abort();
-    // Whoever makes the inputs may be at it: nobody waits for that.
+    // The source may be busy making an input: do not wait for it.
     if (!isWhole) Promise.allSettled([pull, iterator.return?.()]);
   }
 }
 
-async function outcome(alignment: Promise<Alignment>, index: number, isOwn: Conveyor["isOwn"]): Promise<Settled> {
+async function outcome(alignment: Promise<Alignment>, index: number, isOwn: BatchOptions["isOwn"]): Promise<Settled> {
   try {
     const { input, ...rest } = await alignment;
     return { result: { index, alignment: rest, ...(input === undefined ? {} : { input }) } };

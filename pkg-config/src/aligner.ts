@@ -1,12 +1,12 @@
 /// <reference lib="esnext.disposable" preserve="true" />
 /** The package's one class. */
 import { alignAll } from "./align-all.js";
-import type { Core } from "./core.js";
-import { type Engine, HereEngine } from "./engine.js";
+import { type Core, coreModule } from "./core.js";
+import { type Engine, MainThreadEngine } from "./engine.js";
 import { disposed, invalidArgument, Sim3AlignError } from "./error.js";
+import { formatsModule } from "./formats-module.js";
 import type { AlignInput } from "./input/types.js";
 import type { Job, Results } from "./jobs.js";
-import { coreModule, formatsModule } from "./modules.js";
 import type {
   AlignAllOptions,
   AlignOptions,
@@ -17,13 +17,14 @@ import type {
   Progress,
   RegisterOptions,
 } from "./options.js";
+import type { CreateWorker, WasmSource } from "./platform.js";
 import { WorkerPool } from "./pool/pool.js";
-import { type CreateWorker, workshop } from "./pool/port.js";
+import { workerFactory } from "./pool/port.js";
 import { ProgressListener } from "./progress.js";
 import type { AlignAllResult, Alignment, Evaluation, Registration } from "./results.js";
 import { coreSim3, type Sim3Like } from "./sim3.js";
 import { isKind, isRecord, withoutUndefined } from "./values.js";
-import type { LazySource, LoadedModule, WasmSource } from "./wasm-module.js";
+import type { LazySource, LoadedModule } from "./wasm-module.js";
 
 /** What `createAligner` can be told. */
 export interface AlignerOptions {
@@ -42,8 +43,8 @@ export interface AlignerOptions {
   createWorker?: CreateWorker | undefined;
 }
 
-/** What `sim3align/inline` knows beforehand. */
-export interface Surroundings {
+/** The files that `sim3align/inline` brings along. */
+export interface BundledAssets {
   wasm?: LazySource;
   formatsWasm?: LazySource;
   workerScript?: string;
@@ -77,21 +78,21 @@ export class Aligner {
   }
 
   /** @internal */
-  static async create(options: AlignerOptions, surroundings: Surroundings = {}): Promise<Aligner> {
-    const { wasm = surroundings.wasm, formatsWasm = surroundings.formatsWasm } = options;
+  static async create(options: AlignerOptions, assets: BundledAssets = {}): Promise<Aligner> {
+    const { wasm = assets.wasm, formatsWasm = assets.formatsWasm } = options;
     const workers = checkedWorkers(options.workers);
     const core = await coreModule.load(wasm);
-    const here = new HereEngine(core, () => formatsModule.load(formatsWasm));
-    if (workers === 0) return new Aligner(core, here);
+    const mainThread = new MainThreadEngine(core, () => formatsModule.load(formatsWasm));
+    if (workers === 0) return new Aligner(core, mainThread);
     const { createWorker } = options;
-    const found = await workshop(surroundings.workerScript, createWorker);
-    const width = workers === "auto" ? Math.min(Math.max(found.cores - 1, 1), MAX_AUTO) : workers;
-    const supplies = {
-      create: found.create,
+    const factory = await workerFactory(assets.workerScript, createWorker);
+    const size = workers === "auto" ? Math.min(Math.max(factory.cores - 1, 1), MAX_AUTO) : workers;
+    const setup = {
+      create: factory.create,
       core: await coreModule.compile(),
       formats: () => formatsModule.compile(formatsWasm),
     };
-    return new Aligner(core, new WorkerPool(width, supplies, here));
+    return new Aligner(core, new WorkerPool(size, setup, mainThread));
   }
 
   /**
@@ -103,9 +104,9 @@ export class Aligner {
    * @throws {@link Sim3AlignError} for bad input, `INVALID_OPTION` for options that contradict each other, and `NO_CONSENSUS` where nothing that the data support was found
    */
   async align(input: AlignInput, options: AlignOptions = {}): Promise<Alignment> {
-    const { initial, onProgress, splitSearch, ...rest } = checkedOptions(options);
+    const { initial, onProgress, ...rest } = checkedOptions(options);
     const coreOptions = initial === undefined ? rest : { ...rest, initial: coreSim3(initial) };
-    return this.#run("align", input, coreOptions, { onProgress, splitSearch });
+    return this.#run("align", input, coreOptions, { onProgress });
   }
 
   /**
@@ -209,21 +210,12 @@ export class Aligner {
     method: M,
     data: (Job & { method: M })["data"],
     { signal, transfer = false, ...options }: CallOptions,
-    {
-      onProgress,
-      splitSearch = false,
-      ...more
-    }: { onProgress?: unknown; splitSearch?: unknown; transform?: unknown } = {},
+    { onProgress, ...more }: { onProgress?: unknown; transform?: unknown } = {},
   ): Promise<Results[M]> {
     this.#checkUsable();
     const job = { method, data, options, ...more } as unknown as Job & { method: M };
     const progress = new ProgressListener(onProgress);
-    const call = {
-      signal: checkedSignal(signal),
-      progress,
-      transfer: checkedFlag("transfer", transfer),
-      splitSearch: checkedFlag("splitSearch", splitSearch),
-    };
+    const call = { signal: checkedSignal(signal), progress, transfer: checkedFlag("transfer", transfer) };
     const outcome = await this.#engine.run(job, call);
     const result = outcome.result as Results[M];
     return transfer ? { ...result, input: outcome.data } : result;

@@ -23,6 +23,7 @@ export type {
 } from "./generated/types.js";
 export type {
   AlignInput,
+  CameraFileInput,
   CameraInput,
   CocoRle,
   DepthAlignInput,
@@ -55,7 +56,7 @@ export type {
   SymmetryAxis,
   SymmetryOption,
 } from "./options.js";
-export type { CreateWorker, WorkerLike } from "./pool/port.js";
+export type { CreateWorker, WasmSource, WorkerLike } from "./platform.js";
 export type {
   AlignAllResult,
   Alignment,
@@ -67,4 +68,3 @@ export type {
   WarningCode,
 } from "./results.js";
 export type { Sim3, Sim3Like } from "./sim3.js";
-export type { WasmSource } from "./wasm-module.js";

@@ -1,5 +1,7 @@
 /** The calls that do the work, as data: so that they can be done here or in a worker, by the same code. */
-import type { Core, CoreListener, Formats } from "./core.js";
+import type { Core, CoreInput, CoreListener } from "./core.js";
+import type { LoadFormats } from "./formats-module.js";
+import type * as CoreResults from "./generated/types.js";
 import { resolveInput } from "./input/resolve.js";
 import type { AlignInput } from "./input/types.js";
 import {
@@ -29,24 +31,32 @@ export interface Results {
   estimateSim3: Registration;
 }
 
-/** The modules that do it. */
-export interface Tools {
+/** The modules that run a job. */
+export interface JobModules {
   core: LoadedModule<Core>;
-  formats(): Promise<LoadedModule<Formats>>;
+  formats: LoadFormats;
+  /** Aligns in another way than by one call of the core. */
+  align?: (input: CoreInput, options: object, listener?: CoreListener) => Promise<CoreResults.Alignment>;
 }
 
 /** Does a job. `listener` is called as its stages begin; what it throws ends the job. */
 export async function perform<J extends Job>(
   job: J,
-  { core, formats }: Tools,
+  modules: JobModules,
   listener?: CoreListener,
 ): Promise<Results[J["method"]]>;
-export async function perform(job: Job, { core, formats }: Tools, listener?: CoreListener): Promise<unknown> {
+export async function perform(
+  job: Job,
+  { core, formats, align }: JobModules,
+  listener?: CoreListener,
+): Promise<unknown> {
   const { options } = job;
   switch (job.method) {
     case "align": {
       const { core: input, warnings } = await resolveInput(job.data, formats);
-      const result = core.call((c) => c.align(input, options, listener), withoutInput);
+      const result = await (align === undefined
+        ? core.call((c) => c.align(input, options, listener), withoutInput)
+        : align(input, options, listener));
       return withWarnings(alignmentOf(result), warnings);
     }
     case "evaluate": {

@@ -63,11 +63,6 @@ export type ScaleBounds = number | readonly [min: number, max: number] | { reado
 export interface AlignOptions extends Partial<Core.AlignOptions>, CallOptions {
   /** Called as each stage begins and after each round of the search, at most 20 times a second. An exception that it throws ends the call, and rejects it. */
   onProgress?: ((progress: Progress) => void) | undefined;
-  /**
-   * Lets all idle workers share the search of one alignment by `precise`. The bits stay the same; it takes less time,
-   * and more work. For many alignments `alignAll` makes better use of the workers. Default `false`.
-   */
-  splitSearch?: boolean | undefined;
 }
 
 /** Options of `Aligner.alignAll`: those of `align`, for every input. */

@@ -69,7 +69,7 @@ export function alignmentOf(result: Core.Alignment): Omit<Alignment, "warnings">
 /** A result with the input's own warnings before those of the core. */
 export function withWarnings<T extends { warnings: Core.Warning[] }>(
   result: T,
-  messages: string[],
+  messages: readonly string[],
 ): T & { warnings: Warning[] } {
   const warnings = messages.map((message): Warning => ({ code: "CAMERA_NOT_PINHOLE", message }));
   return { ...result, warnings: [...warnings, ...result.warnings] };

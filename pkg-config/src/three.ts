@@ -4,8 +4,9 @@
  * three.js itself is not imported: its objects are taken by their shape, whatever version they are of.
  * @packageDocumentation
  */
-export type { StatedCamera } from "./conventions/pinhole.js";
+
 export { type ErrorCode, type ErrorParts, Sim3AlignError } from "./error.js";
+export type { StatedCamera } from "./formats/pinhole.js";
 export type { MeshArrays } from "./input/types.js";
 export type { Sim3, Sim3Like } from "./sim3.js";
 export { applyPinhole, cameraFromPinhole, type LensOptions, type ThreeCamera } from "./three/camera.js";

@@ -2,7 +2,7 @@
 import { statSync } from "node:fs";
 import { basename, resolve } from "node:path";
 import { Command, Option } from "commander";
-import { type Case, type CasePaths, type CaseSettings, readCaseFiles, readCaseFolder } from "../case-folder.js";
+import { type CaseOnDisk, type CasePaths, type CaseSettings, readCaseFiles, readCaseFolder } from "../case-folder.js";
 import { type Aligner, type AlignOptions, createAligner, Sim3AlignError } from "../index.js";
 import { withoutUndefined } from "../values.js";
 import {
@@ -156,7 +156,7 @@ function report(outcomes: readonly Outcome[], { style }: Output): string[] {
 /** A case to be read and aligned. */
 interface Job {
   name: string;
-  read(): Promise<Case>;
+  read(): Promise<CaseOnDisk>;
 }
 
 function jobsOf(folders: readonly string[], flags: AlignFlags): Job[] {
@@ -199,7 +199,7 @@ async function alignCase(
   flags: AlignFlags,
   progress: ProgressLine,
 ): Promise<Outcome> {
-  let files: Case["files"] = {};
+  let files: CaseOnDisk["files"] = {};
   try {
     const { input, truth, ...read_ } = await read();
     files = read_.files;
@@ -208,8 +208,8 @@ async function alignCase(
     const alignment = await aligner.align(input, { ...options, onProgress: (state) => progress.update(state) });
     const success: Success = { name, alignment, errors: null };
     if (truth === null) return success;
-    const { matrix, symmetry } = truth;
-    const { errors } = await aligner.evaluate(input, alignment, { truth: { matrix }, symmetry });
+    const { transform, symmetry } = truth;
+    const { errors } = await aligner.evaluate(input, alignment, { truth: transform, symmetry });
     return { ...success, errors };
   } catch (error) {
     if (isAboutOptions(error)) throw new UsageError(error.message);

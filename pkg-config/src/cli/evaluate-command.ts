@@ -62,10 +62,11 @@ async function evaluateCase(folder: string, flags: EvaluateFlags): Promise<[name
     const { input, truth, ...known } = await readCaseFolder(folder, caseSettings(flags));
     ({ name, files } = known);
     if (flags.transform === "gt" && truth === null) throw noTruth(folder);
-    const matrix = flags.transform === "gt" ? truth?.matrix : await readTransform("transform", flags.transform, name);
+    const matrix =
+      flags.transform === "gt" ? truth?.transform.matrix : await readTransform("transform", flags.transform, name);
     const aligner = await createAligner();
     const seed = flags.seed === undefined ? {} : { seed: flags.seed };
-    const against = truth === null ? {} : { truth: { matrix: truth.matrix }, symmetry: truth.symmetry };
+    const against = truth === null ? {} : { truth: truth.transform, symmetry: truth.symmetry };
     return [name, await aligner.evaluate(input, { matrix: matrix ?? [] }, { ...seed, ...against })];
   } catch (error) {
     return [name, failure(name, error, files)];

@@ -1,9 +1,7 @@
 /** Depth maps and point maps, brought to arrays with their size. */
-
-import type { Formats } from "../core.js";
 import { Sim3AlignError } from "../error.js";
-import { isRecord, isTypedArray, withoutOptions, withoutUndefined, wrongKind } from "../values.js";
-import type { LoadedModule } from "../wasm-module.js";
+import type { LoadFormats } from "../formats-module.js";
+import { isRecord, isTypedArray, withoutUndefined, wrongKind } from "../values.js";
 import { fileBytes } from "./bytes.js";
 
 /** The core's form of a depth map or a point map: one of the two. */
@@ -32,7 +30,7 @@ export async function readDepth(
   depth: unknown,
   size: StatedSize,
   scale: { depthScale: number | undefined; integerDepthScale: number | undefined },
-  formats: () => Promise<LoadedModule<Formats>>,
+  formats: LoadFormats,
 ): Promise<SizedArray<DepthArray>> {
   if (isDepthArray(depth)) return { data: depth, ...required(size) };
   if (isRecord(depth) && "data" in depth) return sized("depth", depth, depthKinds, isDepthArray, size);
@@ -48,7 +46,10 @@ export async function readDepth(
     });
   }
   const module = await formats();
-  const file = module.call((readers) => readers.readDepth(bytes, withoutUndefined(scale)), withoutOptions);
+  const file = module.call(
+    (readers) => readers.readDepth(bytes, withoutUndefined(scale)),
+    (argument) => argument.replace(/^options\./, ""),
+  );
   checkStatedSize("depth", file, size);
   return file;
 }

@@ -1,7 +1,8 @@
 /** Cameras of three.js that see what a pinhole camera saw. */
-import { failure, positive } from "../conventions/numbers.js";
-import { pinholeOf, type StatedCamera } from "../conventions/pinhole.js";
-import { type ImageSize, sizeOf } from "../conventions/pixels.js";
+
+import { pinholeOf, type StatedCamera } from "../formats/pinhole.js";
+import { type ImageSize, sizeOf } from "../formats/pixels.js";
+import { failure, positive } from "../values.js";
 import type { PerspectiveCameraLike } from "./types.js";
 
 /** The image's size, and between which distances things are drawn. */

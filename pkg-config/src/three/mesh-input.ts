@@ -1,7 +1,8 @@
 /** Meshes from three.js' objects. */
-import { failure, finiteNumbers, oneOf } from "../conventions/numbers.js";
+
 import { describe } from "../error.js";
 import type { MeshArrays } from "../input/types.js";
+import { failure, finiteNumbers, oneOf } from "../values.js";
 import type { AttributeLike, GeometryLike, MeshTree, PlacedObject } from "./types.js";
 
 /** A 4×4 matrix, column by column. */

@@ -1,6 +1,6 @@
 /** Run lengths: background, object, background, … */
 import { describe } from "../error.js";
-import { failure } from "./numbers.js";
+import { failure } from "../values.js";
 
 /**
  * Pixels from their runs: 0 for the first, 1 for the second and so on.

@@ -1,7 +1,6 @@
 /** Images as they go in and out: pixels with their size. */
 import type { PixelArray } from "../input/types.js";
-import { isTypedArray, wrongKind } from "../values.js";
-import { failure, record, whole } from "./numbers.js";
+import { failure, isTypedArray, record, whole, wrongKind } from "../values.js";
 
 /** An image's size in pixels. */
 export interface ImageSize {
