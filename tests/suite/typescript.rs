@@ -219,7 +219,7 @@ fn table<T: Options>(name: &str) -> String {
 }
 
 fn options() -> String {
-    let imports = "import type { OptionRow } from \"../option-row.js\";\nimport type {\n  AlignOptions,\n  EstimateSim3Options,\n  \
+    let imports = "import type { OptionRow } from \"../options.js\";\nimport type {\n  AlignOptions,\n  EstimateSim3Options,\n  \
         EvaluateOptions,\n  PaperOptions,\n  RegisterOptions,\n} from \"./types.js\";\n\n";
     let constants = [
         defaults::<AlignOptions>("ALIGN_DEFAULTS", "Defaults of `align`.", "AlignOptions", Some("precise")),
