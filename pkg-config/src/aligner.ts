@@ -111,7 +111,8 @@ export class Aligner {
     const given: { initial?: unknown; onProgress?: unknown } = checkedOptions(options ?? {});
     const { initial, onProgress, ...rest } = given;
     const coreOptions = initial === undefined ? rest : { ...rest, initial: coreSim3(initial) };
-    return this.#run("align", input, coreOptions, { onProgress });
+    const result: AlignResult = await this.#run("align", input, coreOptions, { onProgress });
+    return result as AlignResult<P, M>;
   }
 
   /**

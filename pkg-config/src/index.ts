@@ -31,7 +31,6 @@ export type {
   RegistrationDiagnostics,
   ScoreTerms,
   SearchScope,
-  Sim3,
   Stage,
   Timings,
   Uncertainty,
@@ -87,4 +86,4 @@ export type {
   Registration,
   WithoutMetrics,
 } from "./results.js";
-export type { Sim3Like } from "./sim3.js";
+export type { Sim3, Sim3Like } from "./sim3.js";

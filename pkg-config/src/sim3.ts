@@ -1,6 +1,8 @@
 /** Similarity transforms as arguments. */
 import { isRecord, plainNumbers } from "./values.js";
 
+export type { Sim3 } from "./generated/types.js";
+
 /**
  * A similarity as an argument: anything with a 4×4 `matrix` (column by column) or with `scale`, `rotation` (quaternion
  * x, y, z, w; 9 numbers row by row; or three rows of three) and `translation`; or the 16 numbers alone. Results of

@@ -21,8 +21,8 @@ import {
   conventionsHelp,
   statusHelp,
 } from "./case-options.js";
-import { failure, type Outcome, outcomesJson, type Success } from "./outcome.js";
 import { addOptionFlags, givenOptions } from "./option-flags.js";
+import { failure, type Outcome, outcomesJson, type Success } from "./outcome.js";
 import { Output } from "./output.js";
 import { camera, jsonObject } from "./parse.js";
 import { ProgressLine } from "./progress-line.js";
@@ -79,11 +79,7 @@ export function alignCommand(): Command {
     .option("--depth <file>", "the depth map (.npy or 16-bit .png), instead of a case folder")
     .option("--mask <file>", "the mask (.png, .npy, or .json with COCO RLE)")
     .option("--mesh <file>", "the mesh (.glb, .gltf, .obj, .ply or .stl)")
-    .option(
-      "--camera <file|fx,fy,cx,cy|fov:deg>",
-      "the camera: a file, intrinsics or a vertical field of view",
-      camera,
-    )
+    .option("--camera <file|fx,fy,cx,cy|fov:deg>", "the camera: a file, intrinsics or a vertical field of view", camera)
     .option("--json <file>", 'write the results as JSON; "-" is stdout')
     .addOption(new Option("--preset <name>", "the method (default precise)").choices(["precise", "paper"]));
   addOptionFlags(addCaseOptions(command), shared);

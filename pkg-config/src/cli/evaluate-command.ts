@@ -10,8 +10,8 @@ import {
   conventionsHelp,
   statusHelp,
 } from "./case-options.js";
-import { evaluationJson, type Failure, failure, failureText } from "./outcome.js";
 import { addOptionFlags, givenOptions } from "./option-flags.js";
+import { evaluationJson, type Failure, failure, failureText } from "./outcome.js";
 import { Output } from "./output.js";
 import { evaluationDetails } from "./report.js";
 import { readTransform, transformFileHelp } from "./transform-file.js";

@@ -27,7 +27,7 @@ export function guard(text: string): [number, number] | "none" {
 export function scale(text: string): ScaleOption {
   if (text === "free") return text;
   const [value, max] = numbers(text, 1) ?? numbers(text, 2) ?? [];
-  if (value === undefined) throw new InvalidArgumentError("Give \"free\", a number such as 0.001, or MIN,MAX.");
+  if (value === undefined) throw new InvalidArgumentError('Give "free", a number such as 0.001, or MIN,MAX.');
   return max === undefined ? value : [value, max];
 }
 

@@ -1,6 +1,5 @@
 /** Poses as the BOP benchmark writes them. */
-import type { Sim3 } from "../generated/types.js";
-import type { Sim3Like } from "../sim3.js";
+import type { Sim3, Sim3Like } from "../sim3.js";
 import { finiteNumbers, positive, record, vector3, whole } from "../values.js";
 import { type Matrix3, rotationOf } from "./rotation.js";
 import { sim3Of, similarityOf } from "./similarity.js";

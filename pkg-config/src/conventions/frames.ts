@@ -1,6 +1,5 @@
 /** The frames that cameras are described in. */
-import type { Sim3 } from "../generated/types.js";
-import type { Sim3Like } from "../sim3.js";
+import type { Sim3, Sim3Like } from "../sim3.js";
 import { oneOf, type Quaternion, type Vector3 } from "../values.js";
 import { type Matrix3, transposed } from "./rotation.js";
 import { composed, type Similarity, sim3Of, similarityOf } from "./similarity.js";

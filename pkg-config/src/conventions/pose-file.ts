@@ -1,6 +1,6 @@
 /** Pose files: a case's `gt.json`, an annotation, or a saved result. */
 import { corruptJson, isNumber, type JsonFile, numbersIn, parsedJson, shown } from "../formats/json.js";
-import type { Sim3 } from "../generated/types.js";
+import type { Sim3 } from "../sim3.js";
 import { failure, isRecord } from "../values.js";
 import { fromBop } from "./bop.js";
 import { sim3Of, similarityOf } from "./similarity.js";

@@ -1,6 +1,5 @@
 /** The layout of SAM 3D Objects. */
-import type { Sim3 } from "../generated/types.js";
-import type { Sim3Like } from "../sim3.js";
+import type { Sim3, Sim3Like } from "../sim3.js";
 import { failure, finiteNumbers, flattened, oneOf, record, type Vector3, vector3 } from "../values.js";
 import { turnTo } from "./frames.js";
 import {

@@ -1,7 +1,6 @@
 /** Similarities from whatever form they come in, and what is computed with them. */
 import { describe } from "../error.js";
-import type { Sim3 } from "../generated/types.js";
-import type { Sim3Like } from "../sim3.js";
+import type { Sim3, Sim3Like } from "../sim3.js";
 import { failure, finiteNumbers, isRecord, isTypedArray, type Vector3, vector3, wrongKind } from "../values.js";
 import {
   determinant,
