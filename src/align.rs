@@ -1,44 +1,29 @@
 //! Alignment: depth, mask and mesh in, the similarity x_cam = s·R·p + t and its metrics out.
 
-mod alternatives;
-#[cfg(feature = "baselines")]
-pub mod baseline;
-mod confidence;
-mod estimate;
-pub mod estimate_sim3;
 pub mod evaluate;
 pub mod field;
-mod frames;
-mod judge;
 pub mod options;
-mod paper;
 pub mod paper_options;
-pub mod precise;
-pub mod progress;
-pub mod register;
-pub mod register_options;
 pub mod report;
-mod rigid;
 pub mod scale;
-mod verifier;
 pub mod warnings;
 
 use crate::error::Result;
+use crate::evidence::Evidence;
+use crate::evidence::extents::{Extents, initial_scale};
+use crate::evidence::observation::Observation;
+use crate::evidence::sample::{check_shape, sample_surface};
 use crate::geometry::cloud::Cloud;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::Similarity;
 use crate::metrics;
-use crate::metrics::evidence::Evidence;
-use crate::stages::extents::{Extents, initial_scale};
-use crate::stages::observe::Observation;
-use crate::stages::sample::{check_shape, sample_surface};
-use crate::stages::search::SearchSettings;
+use crate::precise::settings::SearchSettings;
 
+use crate::progress::{Host, Stage, Stopwatch};
+use crate::{paper, precise};
 use field::Options;
 use options::{AlignOptions, Method, Preset};
 use paper_options::PaperOptions;
-use precise::Certainty;
-use progress::{Host, Stage, Stopwatch};
 use report::{Alignment, AnyAlignment, Counts, Diagnostics, PaperAlignment, PreciseDiagnostics};
 
 /// Aligns a mesh to an observation by the method that the caller chose.
@@ -79,7 +64,7 @@ pub fn align_with(
         precise::estimate(observation, mesh, hypothesis, options, search, stages)
     })?;
     let PaperAlignment { camera_from_mesh, metrics, warnings, diagnostics } = aligned;
-    let Certainty { confidence, alternatives, uncertainty, score, terms } = certainty;
+    let precise::Certainty { confidence, alternatives, uncertainty, score, terms } = certainty;
     let diagnostics = PreciseDiagnostics { common: diagnostics, score, terms };
     Ok(Alignment { camera_from_mesh, confidence, alternatives, uncertainty, metrics, warnings, diagnostics })
 }

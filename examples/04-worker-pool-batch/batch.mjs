@@ -15,13 +15,13 @@ if (folders.length === 0) folders.push("../sample/mug");
 async function* cases() {
   for (const folder of folders) {
     const file = (/** @type {string} */ name) => readFile(`${folder}/${name}`);
-    const [depth, mask, camera, mesh] = await Promise.all([
+    const [depth, mask, cameraFile, mesh] = await Promise.all([
       file("depth.npy").catch(() => file("depth.png")),
       file("mask.png"),
       file("camera.json"),
       file("mesh.glb").catch(() => file("mesh.obj")),
     ]);
-    yield { depth, mask, camera, mesh };
+    yield { depth, mask, cameraFile, mesh };
   }
 }
 

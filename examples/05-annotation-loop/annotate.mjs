@@ -5,11 +5,11 @@ import { compose, objectDimensions, placeGlb, toBop } from "sim3align/convention
 import { readMesh } from "sim3align/formats";
 
 const [folder = "../sample/mug", out = "annotation"] = process.argv.slice(2);
-const [depth, mask, camera, glb] = await Promise.all(
+const [depth, mask, cameraFile, glb] = await Promise.all(
   ["depth.npy", "mask.png", "camera.json", "mesh.glb"].map((name) => readFile(`${folder}/${name}`)),
 );
 const mesh = await readMesh(glb);
-const input = { depth, mask, camera, mesh };
+const input = { depth, mask, cameraFile, mesh };
 const aligner = await createAligner({ workers: 1 });
 
 // 1. What the tool proposes, and what else would explain the picture: the annotator chooses.

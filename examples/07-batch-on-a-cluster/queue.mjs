@@ -19,12 +19,12 @@ export const connect = () =>
  * @param {string} folder
  */
 export async function readCase(folder) {
-  const [depth, mask, camera, mesh] = await Promise.all(
+  const [depth, mask, cameraFile, mesh] = await Promise.all(
     [["depth.npy", "depth.png"], ["mask.png"], ["camera.json"], ["mesh.glb", "mesh.obj", "mesh.ply"]].map((names) =>
       firstOf(names.map((name) => `${folder}/${name}`)),
     ),
   );
-  return { depth, mask, camera, mesh };
+  return { depth, mask, cameraFile, mesh };
 }
 
 /** @param {string[]} paths */

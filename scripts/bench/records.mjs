@@ -42,7 +42,7 @@ import { isWithin, strict } from "./tolerance.mjs";
  * @param {import("../lib/run.mjs").RunOptions} options
  */
 export async function runBenchmark(args, options) {
-  const binary = ["run", "--quiet", "--profile", "native", "--features", "bench", "--bin", "sim3align-bench", "--"];
+  const binary = ["run", "--quiet", "--profile", "native", "--package", "sim3align-lab", "--", "bench"];
   await run("cargo", [...binary, ...args], options);
 }
 

@@ -31,7 +31,7 @@ export async function buildPackage() {
  */
 export function packageVersion() {
   const { version } = JSON.parse(readFileSync(join(skinDir, "package.json"), "utf8"));
-  const crate = /^\[package\][^[]*?^version = "([^"]+)"/ms.exec(readFileSync(at("Cargo.toml"), "utf8"))?.[1];
+  const crate = /^\[workspace\.package\][^[]*?^version = "([^"]+)"/ms.exec(readFileSync(at("Cargo.toml"), "utf8"))?.[1];
   if (version !== crate) {
     throw new Error(
       `pkg-config/package.json has version ${version}, Cargo.toml has ${crate}. Remedy: write the same in both.`,

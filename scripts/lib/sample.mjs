@@ -60,7 +60,7 @@ export async function makeSample() {
 
 /** @param {string[]} args */
 const generate = (args) =>
-  run("cargo", ["run", "--quiet", "--features", "samples", "--bin", "sim3align-samples", "--", ...args]);
+  run("cargo", ["run", "--quiet", "--package", "sim3align-lab", "--", "case", ...args]);
 
 /**
  * @param {typeof mug} kind

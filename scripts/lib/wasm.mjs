@@ -1,4 +1,4 @@
-/** The two WebAssembly modules, built from the one crate. */
+/** The two WebAssembly modules. */
 import { cpSync, existsSync, readdirSync, readFileSync, rmSync } from "node:fs";
 import { homedir } from "node:os";
 import { join } from "node:path";
@@ -13,14 +13,14 @@ import { step } from "./step.mjs";
 /**
  * @typedef {object} WasmModule
  * @property {string} name of the generated files
- * @property {readonly string[]} features cargo's arguments that select the features
+ * @property {string} crate that it is built from
  * @property {number} budget bytes, gzipped
  */
 
 /** @type {readonly WasmModule[]} */
 export const wasmModules = [
-  { name: "core", features: [], budget: 120_000 },
-  { name: "formats", features: ["--no-default-features", "--features", "formats"], budget: 240_000 },
+  { name: "core", crate: "sim3align", budget: 160_000 },
+  { name: "formats", crate: "sim3align-formats", budget: 260_000 },
 ];
 
 const optimise = [
@@ -88,7 +88,7 @@ export async function buildWasm() {
  */
 async function buildModule(module, rustc, say) {
   const outputs = [`${module.name}.js`, `${module.name}.d.ts`, `${module.name}_bg.wasm`, `${module.name}_bg.wasm.d.ts`];
-  const sources = ["src", "Cargo.toml", "Cargo.lock", ".cargo", "scripts/lib/wasm.mjs", "scripts/lib/imports.mjs"].map(
+  const sources = ["src", "geometry", "formats", "Cargo.toml", "Cargo.lock", ".cargo", "scripts/lib/wasm.mjs", "scripts/lib/imports.mjs"].map(
     (path) => at(path),
   );
   const facts = [rustc, wasmBindgenVersion(), binaryenVersion(), process.env.RUSTFLAGS ?? ""];
@@ -104,11 +104,8 @@ async function buildModule(module, rustc, say) {
   if (stamp.isCurrent) return say(`${size()}, up to date`);
   stamp.clear();
 
-  // Both modules are the same file to cargo, which would take one for the other: it compares times, not features.
-  const compiled = at("target", wasmTarget, "release", "sim3align.wasm");
-  rmSync(compiled, { force: true });
-  rmSync(at("target", wasmTarget, "release", "deps", "sim3align.wasm"), { force: true });
-  await run("cargo", ["build", "--release", "--lib", "--target", wasmTarget, ...module.features], {
+  const compiled = at("target", wasmTarget, "release", `${module.crate.replace("-", "_")}.wasm`);
+  await run("cargo", ["build", "--release", "--lib", "--target", wasmTarget, "--package", module.crate], {
     env: { CARGO_ENCODED_RUSTFLAGS: await rustFlags() },
   });
 

@@ -3,7 +3,6 @@ import { at } from "../lib/paths.mjs";
 import { nodeProgram, run } from "../lib/run.mjs";
 import { wasmTarget } from "../lib/setup.mjs";
 import { staticPackages } from "../lib/static-imports.mjs";
-import { wasmModules } from "../lib/wasm.mjs";
 import { runChecks } from "./checks.mjs";
 
 export function lint() {
@@ -12,11 +11,8 @@ export function lint() {
   const [node, biome] = nodeProgram("@biomejs/biome", "biome");
   return runChecks([
     ["rustfmt", () => run("cargo", ["fmt", "--all", "--check"], { remedy: "npm run format" })],
-    ["clippy, native", clippy(["--all-targets", "--all-features"])],
-    ...wasmModules.map(
-      ({ name, features }) =>
-        /** @type {const} */ ([`clippy, ${name} module`, clippy(["--lib", "--target", wasmTarget, ...features])]),
-    ),
+    ["clippy, native", clippy(["--workspace", "--all-targets"])],
+    ["clippy, WebAssembly", clippy(["--lib", "--target", wasmTarget])],
     ["biome", () => run(node, [biome, "ci", "--error-on-warnings"], { remedy: "npm run format, then what is left" })],
     ["commands start before any package is installed", checkCommands],
   ]);

@@ -12,9 +12,9 @@ async function cargoTest(args, env = {}) {
   return withStatus(rustCounts(output), reason === "");
 }
 
-export const native = () => cargoTest(["--features", "formats,types,samples,baselines"]);
+export const native = () => cargoTest(["--workspace"]);
 
 export const wasm = () =>
-  cargoTest(["--target", wasmTarget, "--features", "formats,baselines", "--test", "suite"], {
+  cargoTest(["--target", wasmTarget, "--package", "sim3align", "--test", "suite"], {
     CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER: wasmBindgenProgram("wasm-bindgen-test-runner"),
   });

@@ -8,8 +8,8 @@ use wasm_bindgen::prelude::*;
 use super::error::to_js;
 use super::host::JsHost;
 use super::{input, object, options, transform};
-use crate::align::{self, estimate_sim3, register};
 use crate::error::Result;
+use crate::{align, register};
 
 /// Aligns a mesh to an observation; see `Aligner.align` in the TypeScript package.
 #[wasm_bindgen(skip_typescript)]
@@ -61,7 +61,7 @@ pub fn estimate_sim3(
         let options = options::options(options, &[], |_| None)?;
         let (source, target) = (object::to_f64s(source, "source")?, object::to_f64s(target, "target")?);
         let correspondences = object::to_u32s(correspondences, "correspondences")?;
-        estimate_sim3::estimate_sim3(&source, &target, &correspondences, &options, &mut JsHost::new(None))
+        register::estimate_sim3(&source, &target, &correspondences, &options, &mut JsHost::new(None))
     };
     answer(run())
 }

@@ -24,7 +24,7 @@ export async function accepted(aligner: Aligner): Promise<void> {
   const icp: number | undefined = alignment.timingsMs.icp;
   void [matrix, x, y, z, w, iou, total, icp];
 
-  await aligner.align({ depth: blob, mask: blob, camera: "{}", mesh: blob }, { preset: "paper", guard: null });
+  await aligner.align({ depth: blob, mask: blob, cameraFile: "{}", mesh: blob }, { preset: "paper", guard: null });
   const confidence: number | null = alignment.confidence;
   const others: Float64Array[] = alignment.alternatives.map((alternative) => alternative.matrix);
   const doubtM: number | undefined = alignment.uncertainty?.distanceM;

@@ -63,14 +63,22 @@ export interface PinholeCamera extends CameraSize {
   fovYDeg?: undefined;
 }
 
+/** No other form of intrinsics beside a matrix or a field of view. */
+interface NoPinhole {
+  fx?: undefined;
+  fy?: undefined;
+  cx?: undefined;
+  cy?: undefined;
+}
+
 /** Intrinsics as a matrix: 9 numbers row by row, or three rows of three. */
-export interface MatrixCamera extends CameraSize {
+export interface MatrixCamera extends CameraSize, NoPinhole {
   K: ArrayLike<number> | readonly (readonly number[])[];
   fovYDeg?: undefined;
 }
 
 /** A vertical field of view in degrees, for square pixels and a principal point in the middle of the image. */
-export interface FieldOfViewCamera extends CameraSize {
+export interface FieldOfViewCamera extends CameraSize, NoPinhole {
   fovYDeg: number;
   K?: undefined;
 }
