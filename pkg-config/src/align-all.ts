@@ -2,26 +2,26 @@
 import type { Sim3AlignError } from "./error.js";
 import type { AlignInput } from "./input/types.js";
 import { onAbort } from "./on-abort.js";
-import type { AlignAllResult, Alignment } from "./results.js";
+import type { AlignAllResult } from "./results.js";
 
 /** Options of a batch. */
-export interface BatchOptions {
+export interface BatchOptions<A> {
   /** How many inputs may have been pulled whose results have not been yielded. */
   limit: number;
   ordered: boolean;
   signal: AbortSignal | undefined;
-  align(input: AlignInput, index: number, signal: AbortSignal): Promise<Alignment>;
+  align(input: AlignInput, index: number, signal: AbortSignal): Promise<A>;
   /** Whether an error is about one input only, so that the others continue. */
   isOwn(error: unknown): error is Sim3AlignError;
 }
 
-type Settled = { result: AlignAllResult } | { failure: unknown };
+type Settled<A> = { result: AlignAllResult<A> } | { failure: unknown };
 
 /** Aligns the inputs. Leaving the loop early ends the alignments that are running. */
-export async function* alignAll(
+export async function* alignAll<A extends { input?: AlignInput }>(
   inputs: Iterable<AlignInput> | AsyncIterable<AlignInput>,
-  { limit, ordered, signal, align, isOwn }: BatchOptions,
-): AsyncGenerator<AlignAllResult, void, undefined> {
+  { limit, ordered, signal, align, isOwn }: BatchOptions<A>,
+): AsyncGenerator<AlignAllResult<A>, void, undefined> {
   signal?.throwIfAborted();
   const stopped = new AbortController();
   let unfollow = () => {};
@@ -36,7 +36,7 @@ export async function* alignAll(
   aborted.catch(() => {});
   const iterator = Symbol.asyncIterator in inputs ? inputs[Symbol.asyncIterator]() : inputs[Symbol.iterator]();
   const running = new Map<number, Promise<number>>();
-  const settled = new Map<number, Settled>();
+  const settled = new Map<number, Settled<A>>();
   let pull: Promise<"pulled"> | undefined;
   let pulled = 0;
   let hasEnded = false;
@@ -63,7 +63,7 @@ export async function* alignAll(
         pull = undefined;
         continue;
       }
-      const ready = settled.get(first) as Settled;
+      const ready = settled.get(first) as Settled<A>;
       if ("failure" in ready) throw ready.failure;
       yield ready.result;
       settled.delete(first);
@@ -79,10 +79,16 @@ export async function* alignAll(
   }
 }
 
-async function outcome(alignment: Promise<Alignment>, index: number, isOwn: BatchOptions["isOwn"]): Promise<Settled> {
+async function outcome<A extends { input?: AlignInput }>(
+  aligned: Promise<A>,
+  index: number,
+  isOwn: BatchOptions<A>["isOwn"],
+): Promise<Settled<A>> {
   try {
-    const { input, ...rest } = await alignment;
-    return { result: { index, alignment: rest, ...(input === undefined ? {} : { input }) } };
+    const alignment = await aligned;
+    const { input } = alignment;
+    delete alignment.input;
+    return { result: { index, alignment, ...(input === undefined ? {} : { input }) } };
   } catch (error) {
     if (!isOwn(error)) return { failure: error };
     const { input } = error;

@@ -3,24 +3,24 @@
 /** A direction, of any length above 0. */
 export type Direction = readonly [x: number, y: number, z: number];
 
-/** A scale that is known, or bounds of it, in metres per mesh unit, above 0. */
-export type ScaleBounds = number | readonly [min: number, max: number] | { readonly min: number; readonly max: number };
+/** A scale in target units per source unit: `"free"` to have it estimated, its value, or bounds. */
+export type ScaleOption = "free" | number | readonly [min: number, max: number];
 
-/** An axis about which the object looks the same after a turn; all axes pass through its surface's centroid. */
+/** A rotational symmetry about an axis through the centroid of the object's surface. */
 export interface SymmetryAxis {
-  /** In the mesh's frame. */
+  /** The axis in the mesh's frame. */
   axis: Direction;
-  /** How many times the object looks the same in a full turn; without it, at any angle (a surface of revolution). */
+  /** How many times the object looks the same in a full turn. Leave it out for a surface of revolution. */
   fold?: number | undefined;
 }
 
-/** The turns under which an object looks the same: found in the mesh, or declared. */
+/** An object's symmetry: none, detected in the mesh, or declared. */
 export type SymmetryOption = "none" | "auto" | "auto-revolution" | readonly SymmetryAxis[];
 
 /**
  * A similarity as an argument: anything with a 4×4 `matrix` (column by column) or with `scale`, `rotation` (quaternion
- * x, y, z, w; 9 numbers row by row; or three rows of three) and `translation`; or the 16 numbers alone. So a result
- * of `align` is one.
+ * x, y, z, w; 9 numbers row by row; or three rows of three) and `translation`; or the 16 numbers alone. Results of
+ * `align` and `register` are accepted as they are.
  */
 export type Sim3Like =
   | ArrayLike<number>

@@ -1,7 +1,6 @@
 /** The core WebAssembly module: what it takes and returns. */
 import type { Pinhole } from "./formats/pinhole.js";
 import type * as Results from "./generated/types.js";
-import type { Defaults } from "./options.js";
 import * as glue from "./wasm/core.js";
 import { type Glue, WasmModule } from "./wasm-module.js";
 
@@ -26,6 +25,9 @@ export interface CoreMesh {
   indices?: Uint32Array | Uint16Array;
 }
 
+/** The result of either preset. */
+export type CoreAlignment = Results.Alignment | Results.PaperAlignment;
+
 /** Points, x, y, z one after the other. */
 export type Cloud = Float32Array | Float64Array;
 
@@ -38,18 +40,17 @@ export type CoreListener = (stage: Results.Stage, fraction: number, best?: Float
 /** An alignment that is computed in steps, so that the thread can do other work between them. */
 export interface AlignTask {
   /** Works for about this long; returns the result once it is there. */
-  step(sliceMs: number): Results.Alignment | undefined;
+  step(sliceMs: number): CoreAlignment | undefined;
   free(): void;
 }
 
 /** The functions of the core: they check their arguments, and throw coded errors. */
 export interface Core extends Glue {
-  align(input: CoreInput, options: object, onProgress: CoreListener | undefined): Results.Alignment;
+  align(input: CoreInput, options: object, onProgress: CoreListener | undefined): CoreAlignment;
   beginAlign?(input: CoreInput, options: object, onProgress: CoreListener | undefined): AlignTask;
   evaluate(input: CoreInput, transform: unknown, options: object): Results.Evaluation;
   register(source: Cloud, target: Cloud, options: object): Results.Registration;
   estimateSim3(source: Cloud, target: Cloud, correspondences: Uint32Array, options: object): Results.Registration;
-  defaults(): Defaults;
   version(): string;
 }
 

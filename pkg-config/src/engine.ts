@@ -1,8 +1,7 @@
 /** Engines run jobs: on this thread, or in workers. */
-import type { Core, CoreInput, CoreListener } from "./core.js";
+import type { Core, CoreAlignment, CoreInput, CoreListener } from "./core.js";
 import { disposed } from "./error.js";
 import type { LoadFormats } from "./formats-module.js";
-import type { Alignment } from "./generated/types.js";
 import { type Job, perform, type Results, withoutInput } from "./jobs.js";
 import type { ProgressListener } from "./progress.js";
 import { type LoadedModule, Stopped } from "./wasm-module.js";
@@ -89,7 +88,7 @@ async function alignInSteps(
   core: LoadedModule<Core>,
   args: Parameters<Core["align"]>,
   check: () => void,
-): Promise<Alignment> {
+): Promise<CoreAlignment> {
   const task = core.call((c) => c.beginAlign?.(...args), withoutInput);
   if (task === undefined) return core.call((c) => c.align(...args), withoutInput);
   const { instance } = core;

@@ -74,9 +74,11 @@ export function describe(value: unknown): string {
   return names.length === 0 ? "an empty object" : `an object with ${names.slice(0, 8).join(", ")}`;
 }
 
-/** Whether a WebAssembly module threw this about its input. Anything else that it throws is a trap. */
-export function isCoded(error: unknown): error is Error & ErrorParts {
-  return error instanceof Error && error.name === "Sim3AlignError" && "code" in error;
+/** Whether a module threw this about its arguments: a plain object. Anything else that it throws is a trap. */
+export function isCoded(error: unknown): error is ErrorParts {
+  if (typeof error !== "object" || error === null || error instanceof Error) return false;
+  const parts: Partial<Record<keyof ErrorParts, unknown>> = error;
+  return typeof parts.code === "string" && typeof parts.argument === "string" && typeof parts.remedy === "string";
 }
 
 /** The error for a trap inside WebAssembly, which no input should be able to cause. */

@@ -24,14 +24,11 @@ fn property(value: &JsValue, name: &str) -> JsValue {
 #[track_caller]
 fn error_of(result: Result<JsValue, JsValue>) -> (String, String) {
     let error = result.unwrap_err();
-    assert!(error.is_instance_of::<js_sys::Error>());
     let string = |name: &str| property(&error, name).as_string().unwrap_or_else(|| panic!("no {name}"));
-    assert_eq!(string("name"), "Sim3AlignError");
-    assert!(string("message").contains(&string("found")) && string("message").contains(&string("remedy")));
-    assert!(string("message").contains(&string("expected")));
     let own: Vec<String> =
         Object::keys(error.unchecked_ref::<Object>()).iter().filter_map(|name| name.as_string()).collect();
-    assert!(["code", "argument", "found", "expected", "remedy"].iter().all(|name| own.iter().any(|own| own == name)));
+    assert_eq!(own, ["code", "argument", "found", "expected", "remedy"]);
+    assert!(["found", "expected", "remedy"].iter().all(|name| !string(name).is_empty()));
     (string("code"), string("argument"))
 }
 

@@ -76,7 +76,7 @@ export const toOpenGL = (transform: Sim3Like): Sim3 => toFrame(transform, "openg
 /** What an object of three.js is posed with. */
 export interface ThreePose {
   /** For `object.matrix.fromArray(…)`, with `object.matrixAutoUpdate = false`. */
-  matrix: Float64Array;
+  matrix: number[];
   /** For `object.position.set(…)`. */
   position: Vector3;
   /** For `object.quaternion.set(…)`: x, y, z, w. */

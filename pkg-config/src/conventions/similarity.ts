@@ -75,7 +75,7 @@ export function sim3Of({ scale, rotation, translation }: Similarity): Sim3 {
       [g, h, i],
     ],
     translation: [...translation],
-    matrix: Float64Array.from([...columns, ...translation, 1]),
+    matrix: [...columns, ...translation, 1],
   };
 }
 
