@@ -11,4 +11,4 @@ const aligner = await createAligner();
 const result = await aligner.align({ depth, mask, cameraFile, mesh });
 
 const { scale, rotation, translation, matrix, confidence } = result;
-console.log(JSON.stringify({ scale, rotation, translation, matrix: [...matrix], confidence }, null, 2));
+console.log(JSON.stringify({ scale, rotation, translation, matrix, confidence }, null, 2));

@@ -46,7 +46,7 @@ for await (const { index, alignment, error } of aligner.alignAll(cases(), { orde
     iou: metrics?.iou,
   });
   // A typed array would become an object in JSON.
-  records.push({ folder, error: error?.code, ...alignment, matrix: alignment && [...alignment.matrix] });
+  records.push({ folder, error: error?.code, ...alignment });
 }
 aligner.dispose();
 await writeFile(`${values.out}.csv`, stringify(rows, { header: true }));

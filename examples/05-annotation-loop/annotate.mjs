@@ -14,8 +14,8 @@ const aligner = await createAligner({ workers: 1 });
 
 // 1. What the tool proposes, and what else would explain the picture: the annotator chooses.
 const proposal = await aligner.align(input);
-for (const { turnDeg, score } of [{ turnDeg: 0, score: proposal.score }, ...proposal.alternatives]) {
-  console.log(`proposal turned by ${turnDeg.toFixed(0)}°: score ${score?.toFixed(3)}`);
+for (const { turnDeg, score } of [{ turnDeg: 0, score: proposal.diagnostics.score }, ...proposal.alternatives]) {
+  console.log(`proposal turned by ${turnDeg.toFixed(0)}°: score ${score.toFixed(3)}`);
 }
 
 // 2. The annotator drags the object: here by 12° about the camera's y axis and 2 cm to the right, 8 % too large.
@@ -50,8 +50,8 @@ const summary = {
   knownExtentM,
   sizeM: objectDimensions(mesh, locked).sizeM,
   modelMmPerUnit: 1000 * metresPerUnit,
-  poses: [dragged, refined, locked].map(({ matrix }) => [...matrix]),
-  scores: [proposal.score, refined.score, locked.score],
+  poses: [dragged, refined, locked].map(({ matrix }) => matrix),
+  scores: [proposal, refined, locked].map(({ diagnostics }) => diagnostics.score),
   uncertainty: locked.uncertainty,
 };
 await writeFile(`${out}/annotation.json`, JSON.stringify(summary, null, 2));

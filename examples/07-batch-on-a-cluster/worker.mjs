@@ -30,7 +30,7 @@ const worker = new Worker(
       });
     const record = {
       folder,
-      matrix: [...matrix],
+      matrix,
       scale,
       confidence,
       alternatives: alternatives.length,
