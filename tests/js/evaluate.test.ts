@@ -77,7 +77,10 @@ test("an alignment is a transform, and scores as align said", async () => {
 });
 
 test("the defaults passed as options change nothing", async () => {
-  const [plain, spelt] = [await aligner.evaluate(input, truth), await aligner.evaluate(input, truth, EVALUATE_DEFAULTS)];
+  const [plain, spelt] = [
+    await aligner.evaluate(input, truth),
+    await aligner.evaluate(input, truth, EVALUATE_DEFAULTS),
+  ];
   assert.deepEqual(spelt, plain);
 });
 

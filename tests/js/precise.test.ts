@@ -46,11 +46,11 @@ const effects: readonly [options: AlignOptions & { metrics?: true }, check: Chec
   ],
   [{ knownExtentM: 0.2 }, (found) => near(found.scale * Math.max(...extent), 0.2)],
   [{ knownExtentM: 0.2, knownExtentAxis: "y" }, (found) => near(found.scale * (extent[1] ?? 0), 0.2)],
+  [{ knownExtentM: 0.2, initial: truth }, (found) => near(found.scale * Math.max(...extent), 0.2)],
   [
-    { knownExtentM: 0.2, initial: truth },
-    (found) => near(found.scale * Math.max(...extent), 0.2),
+    { initial: truth, scale: [0.05, 0.2] },
+    (found) => found.diagnostics.counts.renders > plain.diagnostics.counts.renders,
   ],
-  [{ initial: truth, scale: [0.05, 0.2] }, (found) => found.diagnostics.counts.renders > plain.diagnostics.counts.renders],
   [
     { initial: truth, search: "local" },
     (found) => found.diagnostics.counts.renders < 0.5 * plain.diagnostics.counts.renders,

@@ -82,7 +82,10 @@ test("estimateSim3 finds the transform that correct correspondences agree on, am
 });
 
 test("the defaults passed as options change nothing", async () => {
-  const [plain, spelt] = [await aligner.register(source, target), await aligner.register(source, target, REGISTER_DEFAULTS)];
+  const [plain, spelt] = [
+    await aligner.register(source, target),
+    await aligner.register(source, target, REGISTER_DEFAULTS),
+  ];
   assert.deepEqual(spelt.matrix, plain.matrix);
   const bounded = await aligner.estimateSim3(source, target, pairs, { ...ESTIMATE_SIM3_DEFAULTS, scale: [2, 2.4] });
   assert.ok(bounded.scale >= 2 - 1e-9 && bounded.scale <= 2.4 + 1e-9, `${bounded.scale}`);

@@ -2,7 +2,7 @@
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 import { Worker } from "node:worker_threads";
-import type { AlignInput, Alignment } from "sim3align";
+import type { AlignInput } from "sim3align";
 import { installDir } from "./environment.js";
 import { blob, render, truth } from "./scene.js";
 
@@ -56,7 +56,6 @@ export class Gate {
   });
 }
 
-/** A result without what differs from run to run. */
 export { withoutTimes } from "./results.js";
 
 const mesh = blob(60, 90);
