@@ -66,12 +66,12 @@ for (const [name, aligner] of aligners) {
 
   test(`${name}: progress rises to 1, and its last pose is the result's`, async () => {
     const seen: Progress[] = [];
-    const { matrix, score } = await aligner.align(slowInput, {
+    const { matrix, diagnostics } = await aligner.align(slowInput, {
       ...slow,
       onProgress: (progress) => seen.push(progress),
     });
     assert.equal(seen[0]?.best, undefined);
-    assert.deepEqual(seen.at(-1)?.best, { matrix, score });
+    assert.deepEqual(seen.at(-1)?.best, { matrix, score: diagnostics.score });
     assert.equal(seen.at(-1)?.fraction, 1);
     for (const [i, { fraction }] of seen.entries()) {
       assert.ok(fraction >= (seen[i - 1]?.fraction ?? 0) && fraction <= 1, `${fraction}`);

@@ -1,7 +1,7 @@
 /** Workers: the same bits, whoever does the work; what becomes of a worker that is lost; many inputs, few at a time. */
 import assert from "node:assert/strict";
 import { after, test } from "node:test";
-import { type AlignInput, type AlignOptions, createAligner, Sim3AlignError } from "sim3align";
+import { type AlignInput, type AlignOptions, type PaperOptions, createAligner, Sim3AlignError } from "sim3align";
 import { rejectsWith } from "../support/errors.js";
 import { glb, npy, png } from "../support/files.js";
 import { brick, input, mesh, transformed, truth } from "../support/scene.js";
@@ -17,7 +17,7 @@ after(() => {
 const quick = { quality: "fast" } as const;
 
 test("any number of workers gives the same bits", async () => {
-  const poses: AlignOptions[] = [
+  const poses: (AlignOptions | PaperOptions)[] = [
     {},
     { quality: "best" },
     { quality: "fast", seed: 5, scale: [0.05, 0.2], cameraUp: [0, -1, 0.2], meshUp: [0, 1, 0] },
