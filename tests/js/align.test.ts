@@ -190,7 +190,7 @@ test("what onProgress throws rejects the call, and leaves the aligner usable", a
 });
 
 test("options left undefined take their defaults", async () => {
-  const options = { seed: 3, preset: undefined, quality: undefined, onProgress: undefined };
+  const options = { seed: 3, quality: undefined, onProgress: undefined };
   assert.deepEqual(withoutTimes(await aligner.align(input, options)), reference);
 });
 

@@ -53,7 +53,7 @@ for (const folder of cases === undefined ? [] : folders) {
   test(`the truth of ${folder.split("/").pop()} scores well`, {
     skip: available ? false : "its pose is not known",
   }, () => {
-    const [{ metrics, errors }] = Object.values(run("evaluate", folder)) as [
+    const [{ metrics, errors }] = Object.values(run("evaluate", folder)) as unknown as [
       { metrics: { iou: number; normalConsistency: number }; errors: { rotationErrorDeg: number } },
     ];
     assert.ok(metrics.iou >= 0.92, `iou ${metrics.iou}`);
