@@ -4,15 +4,15 @@ use super::frames::{Fit, Frames};
 use super::judge::about_clouds;
 use super::options::EstimateSim3Options;
 use super::{PLAN, check_cloud};
-use crate::align::field::Options;
-use crate::align::report::{Counts, Registration};
-use crate::align::scale::ScaleOption;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::extents::target_from_source;
 use crate::geometry::similarity::vector3;
+use crate::options::Options;
+use crate::options::scale::ScaleOption;
 use crate::progress::{Host, Stage, Stopwatch};
 use crate::register::matching::Match;
 use crate::register::ransac::{Guard, GuardMode, RansacSettings, ransac, reweighted};
+use crate::report::{Counts, Registration};
 
 /// The similarity that most correspondences agree with; `correspondences` are pairs of indices, source then
 /// target, made by any matcher.

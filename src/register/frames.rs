@@ -1,12 +1,12 @@
 //! The frames in which two clouds are compared: centred, and of one size as far as that is known beforehand.
 
-use crate::align::report::{Counts, Registration, RegistrationDiagnostics};
-use crate::align::scale::ScaleOption;
 use crate::error::Result;
 use crate::evidence::extents::{Extents, initial_scale};
 use crate::geometry::similarity::Similarity;
+use crate::options::scale::ScaleOption;
 use crate::progress::Stopwatch;
 use crate::register::umeyama::ScaleMode;
+use crate::report::{Counts, Registration, RegistrationDiagnostics};
 
 /// How far a free scale may be from the ratio of the boxes. Wide: clutter widens a box at will.
 const FREE_GUARD: [f64; 2] = [0.2, 5.0];

@@ -1,13 +1,12 @@
 //! From two clouds with normals to a similarity: what `align` and `register` have in common.
 
 use super::options::RegisterOptions;
-use crate::align::paper_options::{GuardMode, Icp, PaperOptions};
-use crate::align::report::Counts;
 use crate::error::Result;
 use crate::geometry::angle::sin_cos;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::similarity::{Similarity, vector3};
+use crate::paper::options::{GuardMode, Icp, PaperOptions};
 use crate::progress::{Stage, Stopwatch};
 use crate::register::fpfh::fpfh;
 use crate::register::grid_cloud::GridCloud;
@@ -16,6 +15,7 @@ use crate::register::matching::{Match, enough_matches};
 use crate::register::ransac::{self, Consensus, Guard, RansacSettings, ransac};
 use crate::register::support::{SupportSettings, supported};
 use crate::register::umeyama::{Pair, ScaleMode, umeyama};
+use crate::report::Counts;
 
 /// Points that descriptors are computed for at most; denser clouds get a coarser grid. Matching is quadratic.
 pub const MAX_FEATURES: usize = 8_000;

@@ -5,7 +5,6 @@ use glam::Vec3;
 use super::frames::{Fit, Frames};
 use super::global::{Estimate, Problem, Settings};
 use super::options::RegisterOptions;
-use crate::align::report::Registration;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::NORMAL_NEIGHBORS;
 use crate::evidence::extents::target_from_source;
@@ -14,6 +13,7 @@ use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::similarity::Similarity;
 use crate::progress::{Stage, Stopwatch};
+use crate::report::Registration;
 
 /// Voxels along the target's box diagonal, where the caller says nothing.
 const DIVISIONS: f64 = 30.0;

@@ -23,15 +23,15 @@ pub use estimate_sim3::estimate_sim3;
 
 use nalgebra::Vector3;
 
-use crate::align::field::Options;
-use crate::align::report::Registration;
-use crate::align::scale::ScaleOption;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::observation::MIN_POINTS;
 use crate::geometry::random::Random;
 use crate::number::number;
+use crate::options::Options;
+use crate::options::scale::ScaleOption;
 use crate::progress::{Host, Stage, Stopwatch};
 use crate::register::density::dense_points;
+use crate::report::Registration;
 use frames::Frames;
 use judge::Judge;
 use options::RegisterOptions;

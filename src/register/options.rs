@@ -1,8 +1,8 @@
 //! Options of `register` and `estimateSim3`.
 
-use crate::align::field::options;
-use crate::align::paper_options::{Icp, MAX_CONFIDENCE};
-use crate::align::scale::ScaleOption;
+use crate::options::options;
+use crate::options::scale::ScaleOption;
+use crate::paper::options::{Icp, MAX_CONFIDENCE};
 
 options! {
     /// Options of `register`. All have defaults.

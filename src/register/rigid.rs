@@ -8,7 +8,6 @@ use super::global::{Estimate, Settings, Side, refine_coarse_to_fine};
 use super::judge::{Attempt, about_clouds, with_normals};
 use super::options::RegisterOptions;
 use super::verifier::{Verifier, distinctiveness};
-use crate::align::report::Counts;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::extents::target_from_source;
 use crate::geometry::cloud::Cloud;
@@ -20,6 +19,7 @@ use crate::register::fpfh::fpfh;
 use crate::register::free_space::FreeSpace;
 use crate::register::icp::{IcpSettings, movement, refine};
 use crate::register::matching::best_matches;
+use crate::report::Counts;
 
 /// Voxels of the larger cloud, at most, where the caller gives no voxel size: a scene's furniture, and seconds.
 const VOXELS: usize = 5_000;

@@ -2,11 +2,28 @@
 
 use serde::Serialize;
 
-use super::options::Preset;
 use crate::geometry::similarity::Similarity;
 use crate::metrics::Metrics;
-use crate::precise::score::Score;
+use crate::options::{Choice, choices};
 use crate::progress::Timings;
+
+choices! {
+    /// The method of an alignment.
+    pub enum Preset {
+        /// Search by rendering: finds the pose whose rendering best explains mask, free space and depth.
+        #[default]
+        Precise = "precise",
+        /// The paper's method: FPFH, guarded Sim(3) RANSAC, hallucination filtering, scale-locked ICP.
+        Paper = "paper",
+    }
+}
+
+impl Preset {
+    /// The name in JavaScript.
+    pub fn as_str(self) -> &'static str {
+        self.name()
+    }
+}
 
 /// A similarity y = s·R·x + t in the forms that applications use.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -122,19 +139,6 @@ pub struct ScoreTerms {
     pub outline: f64,
     /// Share of the silhouette that is hidden.
     pub hidden: f64,
-}
-
-impl From<&Score> for ScoreTerms {
-    fn from(score: &Score) -> Self {
-        Self {
-            overlap: score.overlap.into(),
-            coverage: score.coverage.into(),
-            depth: score.depth.into(),
-            normals: score.normals.into(),
-            outline: score.outline.into(),
-            hidden: score.hidden.into(),
-        }
-    }
 }
 
 /// Another pose that explains the observation: a transform like the alignment's own.
@@ -344,4 +348,26 @@ pub struct RegistrationDiagnostics {
 /// The paper's definition of a collapsed scale.
 pub fn is_collapsed(scale_ratio: f64) -> bool {
     scale_ratio < 0.3
+}
+
+/// The pose that a method found.
+#[derive(Debug, Clone, Copy)]
+pub struct Solution {
+    /// The pose.
+    pub camera_from_mesh: Similarity,
+    /// Whether the scale was held at a bound.
+    pub clamped: bool,
+    /// Whether the refinement converged.
+    pub converged: bool,
+    /// Root mean square residual of the refinement, in metres.
+    pub residual_m: f64,
+    /// Sizes of the problem and events during the run.
+    pub counts: Counts,
+}
+
+impl Solution {
+    /// A pose of which nothing else is known.
+    pub fn of_pose(camera_from_mesh: Similarity) -> Self {
+        Self { camera_from_mesh, clamped: false, converged: true, residual_m: 0.0, counts: Counts::default() }
+    }
 }

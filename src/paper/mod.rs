@@ -1,14 +1,17 @@
 //! Preset `paper`: the paper's method, faithfully (§3.1 to §3.3).
 
-use crate::align::paper_options::PaperOptions;
-use crate::align::{Clouds, Solution};
+pub mod options;
+
 use crate::error::Result;
+use crate::evidence::clouds::Clouds;
 use crate::evidence::extents::target_from_source;
+use crate::paper::options::PaperOptions;
 use crate::progress::{Stage, Stopwatch};
 use crate::register::global::{Problem, Settings};
+use crate::report::Solution;
 
 /// When each stage begins, as a share of the whole; from profiles of real cases.
-pub(super) const PLAN: &[(Stage, f64)] = &[
+pub const PLAN: &[(Stage, f64)] = &[
     (Stage::Observe, 0.0),
     (Stage::Sample, 0.02),
     (Stage::Normals, 0.05),
@@ -21,7 +24,7 @@ pub(super) const PLAN: &[(Stage, f64)] = &[
 ];
 
 /// Descriptors, guarded RANSAC, hallucination filter, scale-locked ICP.
-pub(super) fn estimate(clouds: &mut Clouds, options: &PaperOptions, stages: &mut Stopwatch<'_>) -> Result<Solution> {
+pub fn estimate(clouds: &mut Clouds, options: &PaperOptions, stages: &mut Stopwatch<'_>) -> Result<Solution> {
     let (evidence, [observed, reconstructed]) = clouds.evidence(stages);
     // §3.1: from here both clouds are centred, with a box diagonal of 1.
     let target = observed.normalized(&evidence.observed);

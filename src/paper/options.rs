@@ -1,6 +1,6 @@
 //! Options of the paper's method.
 
-use super::field::{choices, options};
+use crate::options::{choices, options};
 
 /// The highest probability that RANSAC can be asked for: at 1 it would never stop early.
 pub const MAX_CONFIDENCE: f64 = 0.999_999;

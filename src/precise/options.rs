@@ -1,26 +1,14 @@
-//! Options of `align`: those of the default method, and the choice of the method.
+//! Options of the default method.
 
-use super::field::{Choice, choices, options};
-use super::paper_options::PaperOptions;
-use super::scale::ScaleOption;
 use crate::error::{Error, ErrorCode, Result, Text};
 use crate::geometry::similarity::Similarity;
 use crate::metrics::symmetry::Symmetry;
 use crate::number::number;
+use crate::options::scale::ScaleOption;
+use crate::options::{choices, options};
 
 /// How far, as a share of it, an initial scale may lie outside its bounds: 32-bit floats round.
 const ROUNDING: f64 = 1e-6;
-
-choices! {
-    /// The method of an alignment.
-    pub enum Preset {
-        /// Search by rendering: finds the pose whose rendering best explains mask, free space and depth.
-        #[default]
-        Precise = "precise",
-        /// The paper's method: FPFH, guarded Sim(3) RANSAC, hallucination filtering, scale-locked ICP.
-        Paper = "paper",
-    }
-}
 
 choices! {
     /// How much work the search does.
@@ -138,48 +126,4 @@ fn check_combination(options: &AlignOptions) -> Result<()> {
 
 fn invalid(argument: &'static str, found: impl Into<Text>, expected: impl Into<Text>, remedy: &'static str) -> Error {
     Error::new(ErrorCode::InvalidOption, argument, found, expected, remedy)
-}
-
-/// A preset with its options.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Method {
-    /// Search by rendering.
-    Precise(AlignOptions),
-    /// The paper's method.
-    Paper(PaperOptions),
-}
-
-impl Method {
-    /// The preset.
-    pub fn preset(&self) -> Preset {
-        match self {
-            Self::Precise(_) => Preset::Precise,
-            Self::Paper(_) => Preset::Paper,
-        }
-    }
-}
-
-impl Default for Method {
-    fn default() -> Self {
-        Self::Precise(AlignOptions::default())
-    }
-}
-
-impl From<AlignOptions> for Method {
-    fn from(options: AlignOptions) -> Self {
-        Self::Precise(options)
-    }
-}
-
-impl From<PaperOptions> for Method {
-    fn from(options: PaperOptions) -> Self {
-        Self::Paper(options)
-    }
-}
-
-impl Preset {
-    /// The name in JavaScript.
-    pub fn as_str(self) -> &'static str {
-        self.name()
-    }
 }

@@ -1,13 +1,15 @@
 //! Declares options: one line per option gives the struct's field, its default, its JavaScript name, its range and its
 //! documentation, which the bindings, the TypeScript declarations and the command line all read.
 
+pub mod scale;
+
 use core::ops::RangeInclusive;
 
-use super::scale::{self, ScaleOption};
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::similarity::Similarity;
 use crate::metrics::symmetry::Symmetry;
 use crate::number::{number, numbers};
+use scale::ScaleOption;
 
 /// The values that a symmetry option takes, for error messages.
 pub const SYMMETRY: &str = "\"none\", \"auto\", \"auto-revolution\" or [{ axis: [x, y, z], fold? }]";
@@ -73,7 +75,7 @@ macro_rules! choices {
             )+
         }
 
-        impl $crate::align::field::Choice for $type {
+        impl $crate::options::Choice for $type {
             fn type_name(&self) -> &'static str {
                 stringify!($type)
             }
@@ -99,7 +101,7 @@ macro_rules! choices {
 
         impl serde::Serialize for $type {
             fn serialize<S: serde::Serializer>(&self, serializer: S) -> core::result::Result<S::Ok, S::Error> {
-                serializer.serialize_str($crate::align::field::Choice::name(self))
+                serializer.serialize_str($crate::options::Choice::name(self))
             }
         }
     };
@@ -129,13 +131,13 @@ macro_rules! options {
             }
         }
 
-        impl $crate::align::field::Options for $type {
+        impl $crate::options::Options for $type {
             const DOC: &'static str = concat!($($type_doc, "\n"),*);
             const FIELDS: &'static [(&'static str, &'static str)] =
                 &[$((stringify!($name), concat!($($doc, "\n"),+))),+];
 
-            fn fields(&mut self) -> Vec<$crate::align::field::Field<'_>> {
-                vec![$($crate::align::field::Field::$kind(&mut self.$name $(, $range)?)),+]
+            fn fields(&mut self) -> Vec<$crate::options::Field<'_>> {
+                vec![$($crate::options::Field::$kind(&mut self.$name $(, $range)?)),+]
             }
 
             $(fn check_combination(&self) -> $crate::error::Result<()> {
