@@ -1,4 +1,4 @@
-// Four files in, a transform out: node align.mjs [FOLDER]
+// Four files in, one transform out: node align.mjs [FOLDER]
 import { readFile } from "node:fs/promises";
 import { createAligner } from "sim3align";
 

@@ -1,4 +1,4 @@
-// Many case folders, all cores: node batch.mjs [--out NAME] FOLDER...
+// Aligns many case folders on all cores: node batch.mjs [--out NAME] FOLDER...
 import { readFile, writeFile } from "node:fs/promises";
 import { basename } from "node:path";
 import { parseArgs } from "node:util";
@@ -11,7 +11,7 @@ const { values, positionals: folders } = parseArgs({
 });
 if (folders.length === 0) folders.push("../sample/mug");
 
-/** Reads each case once there is room for it: thousands do not fill the memory. */
+/** Reads each case on demand, so that thousands of cases do not fill the memory. */
 async function* cases() {
   for (const folder of folders) {
     const file = (/** @type {string} */ name) => readFile(`${folder}/${name}`);
@@ -29,7 +29,7 @@ const workers = values.workers === "auto" ? values.workers : Number(values.worke
 const aligner = await createAligner({ workers });
 const rows = [];
 const records = [];
-// In the order of the folders; one that cannot be aligned does not stop the others.
+// Results come in the order of the folders. A case that fails does not stop the others.
 for await (const { index, alignment, error } of aligner.alignAll(cases(), { ordered: true })) {
   const folder = folders[index] ?? "";
   console.error(`${index + 1}/${folders.length} ${folder}: ${error?.message ?? `confidence ${alignment?.confidence}`}`);
@@ -45,7 +45,6 @@ for await (const { index, alignment, error } of aligner.alignAll(cases(), { orde
     alternatives: alternatives?.length,
     iou: metrics?.iou,
   });
-  // A typed array would become an object in JSON.
   records.push({ folder, error: error?.code, ...alignment });
 }
 aligner.dispose();

@@ -17,14 +17,14 @@ import type {
   Progress,
   RegisterOptions,
 } from "./options.js";
-import type { CreateWorker, WasmSource } from "./platform.js";
+import type { CreateWorker, LazySource, WasmSource } from "./platform.js";
 import { WorkerPool } from "./pool/pool.js";
 import { workerFactory } from "./pool/port.js";
 import { ProgressListener } from "./progress.js";
 import type { AlignAllResult, AlignResult, Evaluation, Registration } from "./results.js";
 import { coreSim3, type Sim3Like } from "./sim3.js";
 import { isKind, isRecord, withoutUndefined } from "./values.js";
-import type { LazySource, LoadedModule } from "./wasm-module.js";
+import type { LoadedModule } from "./wasm-module.js";
 
 /** Options of `createAligner`. */
 export interface AlignerOptions {
@@ -42,7 +42,10 @@ export interface AlignerOptions {
   createWorker?: CreateWorker | undefined;
 }
 
-/** The files that `sim3align/inline` brings along. */
+/**
+ * The files that `sim3align/inline` brings along.
+ * @internal
+ */
 export interface BundledAssets {
   wasm?: LazySource;
   formatsWasm?: LazySource;

@@ -34,6 +34,7 @@ const meshFormats: readonly string[] = ["glb", "gltf", "obj", "ply", "stl"] sati
 /**
  * Reads a case: depth map, mask, mesh, camera file and `gt.json`, known by their names.
  * @param place of the files, for errors
+ * @internal
  */
 export async function caseFrom(
   files: CaseFiles,
@@ -66,6 +67,7 @@ export async function caseFrom(
 /**
  * A mesh file as an input: its format is that of its name, and the buffers of a `.gltf` come from beside it.
  * @param read gives the bytes of a file by its path, relative to the mesh's folder
+ * @internal
  */
 export async function meshFile(
   name: string,

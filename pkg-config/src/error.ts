@@ -76,7 +76,7 @@ export function describe(value: unknown): string {
 
 /** Whether a module threw this about its arguments: a plain object. Anything else that it throws is a trap. */
 export function isCoded(error: unknown): error is ErrorParts {
-  if (typeof error !== "object" || error === null || error instanceof Error) return false;
+  if (typeof error !== "object" || error === null) return false;
   const parts: Partial<Record<keyof ErrorParts, unknown>> = error;
   return typeof parts.code === "string" && typeof parts.argument === "string" && typeof parts.remedy === "string";
 }

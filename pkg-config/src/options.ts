@@ -1,6 +1,8 @@
 /** Options of the calls. Ranges and defaults are in each field's documentation. */
 import type * as Core from "./generated/types.js";
 
+export type { Direction, ScaleOption, SymmetryAxis, SymmetryOption } from "./argument-types.js";
+
 /** The progress of a call. */
 export interface Progress {
   /** The stage that is running. */
@@ -45,23 +47,6 @@ interface AlignCallOptions extends CallOptions {
    */
   onProgress?: ((progress: Progress) => void) | undefined;
 }
-
-/** A direction, of any length above 0. */
-export type Direction = readonly [x: number, y: number, z: number];
-
-/** A scale in target units per source unit: `"free"` to have it estimated, its value, or bounds. */
-export type ScaleOption = "free" | number | readonly [min: number, max: number];
-
-/** A rotational symmetry about an axis through the centroid of the object's surface. */
-export interface SymmetryAxis {
-  /** The axis in the mesh's frame. */
-  axis: Direction;
-  /** How many times the object looks the same in a full turn. Leave it out for a surface of revolution. */
-  fold?: number | undefined;
-}
-
-/** An object's symmetry: none, detected in the mesh, or declared. */
-export type SymmetryOption = "none" | "auto" | "auto-revolution" | readonly SymmetryAxis[];
 
 /**
  * Options of `Aligner.align` with the default preset, `"precise"`.

@@ -18,6 +18,9 @@ export type CompiledModule = typeof globalThis extends { WebAssembly: { Module: 
 /** Where a WebAssembly module comes from: an address, a response, the bytes, or the compiled module. */
 export type WasmSource = URL | string | ResponseLike | ArrayBuffer | ArrayBufferView | CompiledModule;
 
+/** The source of a WebAssembly module, or a function that gets it when it is needed. */
+export type LazySource = WasmSource | (() => WasmSource | Promise<WasmSource>);
+
 /** A worker: a `Worker` of browsers, Deno and Bun, or one of Node's `worker_threads`. */
 export interface WorkerLike {
   postMessage(message: unknown, transfer: ArrayBuffer[]): void;

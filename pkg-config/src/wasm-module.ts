@@ -1,10 +1,7 @@
 /** Loading and calling one WebAssembly module. */
 import { internalError, isCoded, Sim3AlignError } from "./error.js";
-import type { WasmSource } from "./platform.js";
+import type { LazySource, WasmSource } from "./platform.js";
 import { isKind } from "./values.js";
-
-/** The source of a WebAssembly module, or a function that gets it when it is needed. */
-export type LazySource = WasmSource | (() => WasmSource | Promise<WasmSource>);
 
 /** The exports of wasm-bindgen's glue beside the module's own functions. */
 export interface Glue {

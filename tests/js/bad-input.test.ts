@@ -51,7 +51,7 @@ const arrays: Bad[] = [
     "depth.data",
     /Float32Array\.from/,
   ],
-  ["8-bit depth", { depth: new Uint8Array(pixels).fill(9) }, "EIGHT_BIT_DEPTH", "depth", /256 steps/],
+  ["8-bit depth", { depth: new Uint8Array(pixels).fill(9) }, "EIGHT_BIT_DEPTH", "depth", /256 levels/],
   ["depth too short", { depth: depth.slice(1) }, "WRONG_LENGTH", "depth", /19199 values.*160 × 120 = 19200/],
   ["depth of no size", { depth: new Float32Array(0), width: 0, height: 0 }, "EMPTY_IMAGE", "depth", /0 × 0 pixels/],
   ["width missing", { width: undefined }, "INVALID_ARGUMENT", "width", /nothing/],

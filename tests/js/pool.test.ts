@@ -1,7 +1,7 @@
 /** Workers: the same bits, whoever does the work; what becomes of a worker that is lost; many inputs, few at a time. */
 import assert from "node:assert/strict";
 import { after, test } from "node:test";
-import { type AlignInput, type AlignOptions, type PaperOptions, createAligner, Sim3AlignError } from "sim3align";
+import { type AlignInput, type AlignOptions, createAligner, type PaperOptions, Sim3AlignError } from "sim3align";
 import { rejectsWith } from "../support/errors.js";
 import { glb, npy, png } from "../support/files.js";
 import { brick, input, mesh, transformed, truth } from "../support/scene.js";

@@ -182,8 +182,7 @@ fn types() -> String {
         declaration::<RegistrationDiagnostics>(&config),
         declaration::<Registration>(&config),
     ];
-    let imports = "import type { Direction, ScaleOption, SymmetryOption } from \"../options.js\";\n\
-        import type { Sim3Like } from \"../sim3.js\";\n\n";
+    let imports = "import type { Direction, ScaleOption, Sim3Like, SymmetryOption } from \"../argument-types.js\";\n\n";
     HEADER.to_owned() + imports + &declarations.join("\n")
 }
 

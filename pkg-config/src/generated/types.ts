@@ -1,7 +1,6 @@
 // Generated from the Rust declarations by tests/suite/typescript.rs; do not edit.
 
-import type { Direction, ScaleOption, SymmetryOption } from "../options.js";
-import type { Sim3Like } from "../sim3.js";
+import type { Direction, ScaleOption, Sim3Like, SymmetryOption } from "../argument-types.js";
 
 /**
  * The method of an alignment.

@@ -16,7 +16,7 @@ type DepthArray = Float32Array | Uint16Array;
 const depthKinds =
   "a Float32Array (metres), a Uint16Array (with depthScale), { data, width, height } of these, or the bytes of a 16-bit PNG or a .npy file";
 
-/** The image size that the input states. */
+/** The image size that the input states, as far as it does. */
 export interface StatedSize {
   width?: number | undefined;
   height?: number | undefined;
@@ -42,7 +42,7 @@ export async function readDepth(
       argument: "depth",
       found: `a Uint8Array of ${size.width} × ${size.height} values`,
       expected: depthKinds,
-      remedy: "256 steps are a picture of the depth, not metres: pass the depth map itself.",
+      remedy: "256 levels are a picture of the depth, not metres: pass the depth map itself.",
     });
   }
   const module = await formats();
