@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use lexopt::prelude::*;
-use sim3align::align::method::Method;
+use sim3align::align::method;
 use sim3align::options::{Choice, Options};
 use sim3align::paper::options::PaperOptions;
 use sim3align::precise::SearchSettings;
@@ -89,7 +89,7 @@ pub enum Method {
 
 impl Row {
     /// The preset with its options.
-    pub fn preset_options(&self) -> Method {
+    pub fn preset_options(&self) -> method::Method {
         match self.preset {
             Preset::Precise => self.precise.clone().into(),
             Preset::Paper => self.paper.clone().into(),
