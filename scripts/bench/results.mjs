@@ -4,8 +4,6 @@ import { cpus, platform, release, totalmem } from "node:os";
 import { join } from "node:path";
 import { attempt } from "../lib/run.mjs";
 
-/** @typedef {import("./records.mjs").BenchRecord} BenchRecord */
-
 /**
  * Opens a folder for the run that `identity` tells from others: its inputs and the code.
  * @param {string} folder
@@ -42,25 +40,4 @@ export async function surroundings() {
     node: process.version,
     rustc,
   };
-}
-
-/**
- * The records of a file, by row, each row's in the order of the cases' names: the order in which threads were done
- * says nothing.
- * @param {string} file
- * @returns {Map<string, BenchRecord[]>}
- */
-export function readRecords(file) {
-  /** @type {Map<string, BenchRecord[]>} */
-  const rows = new Map();
-  if (!existsSync(file)) return rows;
-  for (const line of readFileSync(file, "utf8").split("\n")) {
-    if (line === "") continue;
-    const { row, case: name, record } = JSON.parse(line);
-    const records = rows.get(row) ?? [];
-    records.push({ ...record, name });
-    rows.set(row, records);
-  }
-  for (const records of rows.values()) records.sort((a, b) => (a.name < b.name ? -1 : 1));
-  return rows;
 }

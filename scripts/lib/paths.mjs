@@ -20,3 +20,9 @@ export const glueDir = at("pkg-config", "src", "wasm");
 export const toolsDir = at("target", "tools");
 /** The package, installed as its users install it, with the tests that use it. */
 export const installDir = at("target", "install-test");
+/** What `npm run build:www` writes: a folder for any static host, at any path. */
+export const siteDir = at("target", "www");
+/** What `npm run docs` writes. */
+export const docsDir = at("target", "docs");
+/** A case folder with depth as .npy, copied from the page's samples. */
+export const sampleDir = at("target", "samples", "mug");
