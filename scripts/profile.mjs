@@ -37,7 +37,7 @@ function medians(results) {
  * @returns {Promise<Result[]>}
  */
 async function native(folder, quality, runs) {
-  const binary = ["run", "--quiet", "--profile", "native", "--features", "native", "--bin", "sim3align-native", "--"];
+  const binary = ["run", "--quiet", "--profile", "native", "--package", "sim3align-lab", "--", "profile"];
   const output = await run("cargo", [...binary, "--quality", quality, String(runs), folder]);
   return JSON.parse(output.slice(output.indexOf("{")))[folder];
 }

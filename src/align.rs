@@ -1,41 +1,27 @@
 //! The pipeline ("Robust 3D Alignment of Generative Reconstructions via Partial Monocular Observations"):
 //! depth, mask and mesh in, the similarity x_cam = s·R·p + t and its metrics out.
 
-mod alternatives;
-#[cfg(feature = "baselines")]
-pub mod baseline;
 mod combination;
-mod confidence;
-mod estimate;
-pub mod estimate_sim3;
 pub mod evaluate;
 pub mod field;
-mod frames;
-mod judge;
 pub mod options;
-mod paper;
-pub mod precise;
-pub mod progress;
-pub mod register;
 pub mod report;
-mod rigid;
-pub mod split;
-mod verifier;
 pub mod warnings;
 
 use crate::error::Result;
+use crate::evidence::Evidence;
+use crate::evidence::extents::{Extents, initial_scale};
+use crate::evidence::observation::Observation;
+use crate::evidence::sample::{check_shape, sample_surface};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::Similarity;
 use crate::metrics;
-use crate::metrics::evidence::Evidence;
-use crate::stages::extents::{Extents, initial_scale};
-use crate::stages::observe::Observation;
-use crate::stages::sample::{check_shape, sample_surface};
-use crate::stages::search::SearchSettings;
+use crate::precise::settings::SearchSettings;
 
+use crate::progress::{Host, Stage, Stopwatch};
+use crate::{paper, precise};
 use field::Options;
 use options::{AlignOptions, Preset};
-use progress::{Host, Stage, Stopwatch};
 use report::{Alignment, Alternative, Counts, ScoreTerms, Uncertainty};
 
 /// Aligns a mesh to an observation, by the preset's method.

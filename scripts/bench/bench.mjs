@@ -112,8 +112,7 @@ async function runAll(jobs) {
 }
 
 async function buildPrograms() {
-  const programs = ["sim3align-bench", "sim3align-samples", "sim3align-registration"].flatMap((bin) => ["--bin", bin]);
-  await run("cargo", ["build", "--quiet", "--profile", "native", "--features", "bench", ...programs]);
+  await run("cargo", ["build", "--quiet", "--profile", "native", "--package", "sim3align-lab"]);
 }
 
 /**
@@ -126,7 +125,7 @@ async function writeScenes(scenes, seed) {
   await step("Scenes", async (say) => {
     mkdirSync(folder, { recursive: true });
     const args = ["scenes", folder, "--scenes", `${scenes}`, "--set-seed", `${seed}`, "--prior", "both"];
-    await run(at("target", "native", "sim3align-samples"), args);
+    await run(at("target", "native", "sim3align-lab"), args);
     say(`${readdirSync(join(folder, "detailed")).length} pairs`);
   });
   return { detailed: join(folder, "detailed"), smooth: join(folder, "smooth") };

@@ -17,7 +17,7 @@ const ours = ["register", "fgr", "ransac", "teaser", "quatro"];
 const expectedSeconds = 1;
 
 /** @param {readonly string[]} args */
-const registration = (args) => run(at("target", "native", "sim3align-registration"), args);
+const registration = (args) => run(at("target", "native", "sim3align-lab"), ["registration", ...args]);
 
 /**
  * The pairs of a run: rooms and streets of its seed, and folders of the caller's.

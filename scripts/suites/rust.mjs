@@ -25,7 +25,7 @@ export async function native() {
 
 export async function wasm() {
   await wasmBindgen();
-  return cargoTest(["--target", wasmTarget, "--test", "suite"], {
+  return cargoTest(["--target", wasmTarget, "--package", "sim3align", "--test", "suite"], {
     CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER: wasmBindgenProgram("wasm-bindgen-test-runner"),
   });
 }

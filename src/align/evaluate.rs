@@ -7,14 +7,14 @@ use super::options::AlignOptions;
 use super::report::{Warning, is_collapsed};
 use super::warnings;
 use crate::error::Result;
+use crate::evidence::extents::{Extents, initial_scale};
+use crate::evidence::observation::Observation;
+use crate::evidence::{Evidence, Sampling};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::Similarity;
-use crate::metrics::evidence::Evidence;
 use crate::metrics::pose_error::{PoseErrors, pose_errors};
 use crate::metrics::symmetry::Symmetry;
 use crate::metrics::{self, Metrics};
-use crate::stages::extents::{Extents, initial_scale};
-use crate::stages::observe::Observation;
 
 /// Options of `evaluate`.
 #[derive(Debug, Clone, PartialEq)]
@@ -93,7 +93,7 @@ pub fn evaluate(
     let evidence = Evidence::of(
         observation,
         mesh,
-        &metrics::EvaluateOptions {
+        &Sampling {
             max_points: options.max_observed_points as usize,
             surface_samples: options.surface_samples as usize,
             seed: u64::from(options.seed),

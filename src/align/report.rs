@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use super::options::Preset;
-use super::progress::Timings;
 use crate::geometry::similarity::Similarity;
 use crate::metrics::Metrics;
-use crate::stages::search::score::Score;
+use crate::precise::score::Score;
+use crate::progress::Timings;
 
 /// A similarity y = s·R·x + t in every form that callers ask for.
 #[derive(Debug, Clone, PartialEq, Serialize)]

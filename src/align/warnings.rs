@@ -2,9 +2,9 @@
 
 use super::options::Preset;
 use super::report::{Warning, WarningCode, is_collapsed};
+use crate::evidence::observation::Observation;
 use crate::geometry::order::median;
 use crate::number::number;
-use crate::stages::observe::Observation;
 
 /// Metres beyond which no depth of a single object is plausible, but millimetres are.
 const IMPLAUSIBLE_DEPTH_M: f32 = 100.0;

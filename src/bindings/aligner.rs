@@ -11,10 +11,10 @@ use super::value::Value;
 use super::{input, object, options, transform};
 use crate::align::evaluate::EvaluateOptions;
 use crate::align::options::{AlignOptions, EstimateOptions, RegisterOptions};
-use crate::align::{self, estimate_sim3, register};
 use crate::error::{Error, ErrorCode, Result};
+use crate::evidence::observation::Observation;
 use crate::geometry::mesh::Mesh;
-use crate::stages::observe::Observation;
+use crate::{align, register};
 
 /// Aligns a mesh to an observation; see `Aligner.align` in the TypeScript package.
 #[wasm_bindgen(skip_typescript)]
@@ -75,7 +75,7 @@ pub fn estimate_sim3(
         let options: EstimateOptions = options::options(options, &["scale"])?;
         let (source, target) = (object::to_f64s(source, "source")?, object::to_f64s(target, "target")?);
         let correspondences = object::to_u32s(correspondences, "correspondences")?;
-        estimate_sim3::estimate_sim3(&source, &target, &correspondences, scale, &options, &mut JsHost::new(None))
+        register::estimate_sim3(&source, &target, &correspondences, scale, &options, &mut JsHost::new(None))
     };
     answer(run())
 }

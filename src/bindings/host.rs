@@ -5,8 +5,8 @@ use wasm_bindgen::prelude::wasm_bindgen;
 use wasm_bindgen::{JsValue, throw_val};
 use web_sys::Performance;
 
-use crate::align::progress::{Host, Stage};
 use crate::geometry::similarity::Similarity;
+use crate::progress::{Host, Stage};
 
 #[wasm_bindgen]
 extern "C" {

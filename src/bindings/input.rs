@@ -5,11 +5,11 @@ use wasm_bindgen::{JsCast, JsValue};
 
 use super::object::{get, number, required_number, size, to_f32s, to_number, to_numbers, to_u8s, to_u32s, wrong_type};
 use crate::error::{Error, ErrorCode, Result};
+use crate::evidence::observation::{Observation, from_point_map};
 use crate::geometry::image::{DepthMap, Image, Mask, check_size};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::pinhole::Pinhole;
 use crate::number::number as number_text;
-use crate::stages::observe::{Observation, from_point_map};
 
 /// Metres per unit of whole-number depth where the caller does not say: millimetres.
 const DEFAULT_DEPTH_SCALE: f64 = 0.001;

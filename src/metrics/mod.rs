@@ -1,6 +1,5 @@
 //! How well a transform fits the observation: the paper's columns, and errors against a known truth.
 
-pub mod evidence;
 pub mod pose_error;
 pub mod silhouette;
 pub mod surface;
@@ -9,30 +8,13 @@ pub mod symmetry;
 use serde::Serialize;
 
 use crate::error::Result;
+use crate::evidence::observation::Observation;
+use crate::evidence::{Evidence, Sampling};
 use crate::geometry::image::{DepthMap, Mask};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::rasteriser::Rasteriser;
 use crate::geometry::similarity::Similarity;
-use crate::stages::observe::Observation;
-use evidence::Evidence;
 use surface::{Mean, surface_agreement};
-
-/// How much of the data [`evaluate`] looks at.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct EvaluateOptions {
-    /// Most observed points used; more are subsampled.
-    pub max_points: usize,
-    /// Points drawn on the mesh's surface.
-    pub surface_samples: usize,
-    /// Seed of both draws.
-    pub seed: u64,
-}
-
-impl Default for EvaluateOptions {
-    fn default() -> Self {
-        Self { max_points: 20_000, surface_samples: 20_000, seed: 0 }
-    }
-}
 
 /// Agreement of a posed mesh with the observation. `null` is "nothing to measure", never a good number.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -70,7 +52,7 @@ pub fn evaluate(
     observation: &Observation,
     mesh: &Mesh,
     camera_from_mesh: &Similarity,
-    options: &EvaluateOptions,
+    options: &Sampling,
 ) -> Result<Metrics> {
     score(observation, mesh, camera_from_mesh, &Evidence::of(observation, mesh, options)?)
 }

@@ -6,11 +6,11 @@ use serde::Serialize;
 use super::surface::Mean;
 use super::symmetry::{Symmetry, mesh_diagonal};
 use crate::error::{Error, ErrorCode, Result};
+use crate::evidence::sample::{SurfaceMoments, sample_surface};
 use crate::geometry::cloud::Bounds;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::{Similarity, vec3, vector3};
 use crate::geometry::triangle_tree::{Hint, TriangleTree};
-use crate::stages::sample::{SurfaceMoments, sample_surface};
 
 /// Surface points over which ADD-S is averaged.
 const SAMPLES: usize = 5000;

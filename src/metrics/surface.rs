@@ -7,7 +7,7 @@ use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::{Similarity, vec3, vector3};
 use crate::geometry::triangle_tree::{Hint, TriangleTree};
 
-use super::evidence::Evidence;
+use crate::evidence::Evidence;
 
 /// How near a point must be to the surface to fit, as a share of the points' box diagonal.
 pub const FITNESS_TOLERANCE: f64 = 0.05;

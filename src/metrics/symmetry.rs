@@ -4,13 +4,13 @@ use glam::DVec3;
 use nalgebra::{Unit, UnitQuaternion, Vector3};
 
 use crate::error::{Error, ErrorCode, Result};
+use crate::evidence::sample::{SurfaceMoments, sample_surface};
 use crate::geometry::angle::sin_cos;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::order::quantile;
 use crate::geometry::similarity::{vec3, vector3};
 use crate::geometry::triangle_tree::TriangleTree;
 use crate::number::numbers;
-use crate::stages::sample::{SurfaceMoments, sample_surface};
 
 /// Mean distance between a surface and its turned self, as a share of the diagonal of the box around the mesh,
 /// up to which [`Symmetry::Auto`] calls the turn a symmetry. On scanned objects, real symmetries gave 0.1 to

@@ -1,56 +1,19 @@
 //! The whole pipeline on an observation rendered from a known pose.
 
 use glam::Vec3;
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::{Matrix3, Rotation3};
 use sim3align::align::align;
 use sim3align::align::evaluate::{EvaluateOptions, Truth, evaluate};
 use sim3align::align::field::Options;
 use sim3align::align::options::{AlignOptions, GuardMode, Icp, Preset, Quality, SearchScope};
-use sim3align::align::progress::{Host, Silent, Stage};
 use sim3align::align::report::{Alignment, Sim3, WarningCode};
 use sim3align::error::ErrorCode;
-use sim3align::geometry::image::{DepthMap, Mask};
-use sim3align::geometry::mesh::Mesh;
-use sim3align::geometry::pinhole::Pinhole;
-use sim3align::geometry::rasteriser::Rasteriser;
 use sim3align::geometry::similarity::Similarity;
 use sim3align::metrics::symmetry::Symmetry;
-use sim3align::stages::observe::Observation;
+use sim3align::progress::{Host, Silent, Stage};
 use wasm_bindgen_test::wasm_bindgen_test;
 
-use crate::shapes::{cuboid, ellipsoid, mapped};
-
-const WIDTH: usize = 240;
-const HEIGHT: usize = 180;
-
-/// A body with bumps and dents at many places, so that no turn maps it onto itself.
-pub fn body() -> Mesh {
-    let wave = |x: f32| libm::sinf(x);
-    mapped(&ellipsoid(Vec3::new(0.5, 0.38, 0.3), 40), |p| {
-        p * (1.0
-            + 0.5 * wave(4.0 * p.x + 1.0) * wave(5.0 * p.y + 0.5)
-            + 0.35 * wave(9.0 * p.z + 5.0 * p.x - 1.0) * wave(6.0 * p.y))
-    })
-}
-
-fn truth() -> Similarity {
-    Similarity {
-        scale: 0.17,
-        rotation: Rotation3::new(Vector3::new(0.9, -0.5, 2.1)),
-        translation: Vector3::new(0.015, -0.01, 0.55),
-    }
-}
-
-/// What a camera sees of the body in front of a wall; depths in units of `unit_m` metres.
-pub fn observe(mesh: &Mesh, unit_m: f32) -> Observation {
-    let camera = Pinhole::new(420.0, 420.0, 119.5, 89.5).unwrap();
-    let mut rasteriser = Rasteriser::new();
-    rasteriser.render(mesh, &truth(), &camera, WIDTH, HEIGHT);
-    let mask = rasteriser.depth().iter().map(|z| u8::from(*z > 0.0)).collect();
-    let depth = rasteriser.depth().iter().map(|z| if *z > 0.0 { z / unit_m } else { 1.0 / unit_m }).collect();
-    let depth = DepthMap::from_metres(WIDTH, HEIGHT, depth).unwrap();
-    Observation::new(depth, Mask::new("mask", WIDTH, HEIGHT, mask).unwrap(), camera).unwrap()
-}
+use crate::shapes::{body, cuboid, observe, truth};
 
 fn solve(options: &AlignOptions) -> Alignment {
     let mesh = body();

@@ -5,27 +5,16 @@
 //! failure message once native and WebAssembly print the same.
 
 use sim3align::geometry::kd_tree::KdTree;
-use sim3align::geometry::similarity::Similarity;
 use sim3align::geometry::voxel_grid::voxel_downsample;
-use sim3align::stages::filter::SupportSettings;
-use sim3align::stages::fpfh::fpfh;
-use sim3align::stages::icp::{IcpMetric, IcpSettings, refine};
-use sim3align::stages::matching::mutual_matches;
-use sim3align::stages::ransac::{RansacSettings, ransac};
-use sim3align::stages::umeyama::ScaleMode;
+use sim3align::register::fpfh::fpfh;
+use sim3align::register::icp::{IcpMetric, IcpSettings, refine};
+use sim3align::register::matching::mutual_matches;
+use sim3align::register::ransac::{RansacSettings, ransac};
+use sim3align::register::support::SupportSettings;
+use sim3align::register::umeyama::ScaleMode;
 use wasm_bindgen_test::wasm_bindgen_test;
 
-use crate::support::{Draw, mug, pose_error, transformed, unit_box};
-
-/// FNV-1a over the bytes of 64-bit words.
-pub fn fingerprint(words: impl IntoIterator<Item = u64>) -> u64 {
-    let bytes = words.into_iter().flat_map(u64::to_le_bytes);
-    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
-}
-
-pub fn of_pose(pose: &Similarity) -> u64 {
-    fingerprint(pose.to_column_major().map(f64::to_bits))
-}
+use crate::support::{Draw, fingerprint, mug, of_pose, pose_error, transformed, unit_box};
 
 #[wasm_bindgen_test(unsupported = test)]
 fn stages_give_the_same_bits_everywhere() {

@@ -3,9 +3,9 @@
 use glam::Vec3;
 use nalgebra::{Rotation3, Vector3};
 use sim3align::error::ErrorCode;
+use sim3align::evidence::extents::{Extents, initial_scale, target_from_source};
 use sim3align::geometry::cloud::{Bounds, Cloud};
 use sim3align::geometry::similarity::{Similarity, vector3};
-use sim3align::stages::extents::{Extents, initial_scale, target_from_source};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::support::{Draw, blob, transformed};

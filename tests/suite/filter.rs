@@ -5,7 +5,7 @@ use nalgebra::{Rotation3, Vector3};
 use sim3align::geometry::cloud::Cloud;
 use sim3align::geometry::kd_tree::KdTree;
 use sim3align::geometry::similarity::{Similarity, vec3};
-use sim3align::stages::filter::{Support, SupportSettings, supported};
+use sim3align::register::support::{Support, SupportSettings, supported};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::support::{Draw, blob};

@@ -5,12 +5,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use sim3align::error::{ErrorCode, Result};
-use sim3align::formats::case::read_case;
-use sim3align::formats::gltf::external_resources;
-use sim3align::formats::mesh::{MeshReadOptions, read_mesh};
-use sim3align::formats::write;
 use sim3align::geometry::image::{DepthMap, Image};
 use sim3align::geometry::mesh::Mesh;
+use sim3align_formats::gltf::external_resources;
+use sim3align_formats::mesh::{MeshReadOptions, read_mesh};
+use sim3align_lab::case_folder::case::read_case;
+use sim3align_lab::case_folder::write;
 
 use crate::formats_fixtures::{area, assert_near, bounds, fixture};
 

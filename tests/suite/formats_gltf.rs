@@ -1,9 +1,9 @@
 //! glTF: hierarchies, every kind of accessor, and files that mean harm.
 
 use sim3align::error::{Error, ErrorCode, Result};
-use sim3align::formats::gltf::external_resources;
-use sim3align::formats::mesh::{MeshReadOptions, read_mesh};
 use sim3align::geometry::mesh::Mesh;
+use sim3align_formats::gltf::external_resources;
+use sim3align_formats::mesh::{MeshReadOptions, read_mesh};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::formats_fixtures::{area, assert_near, bounds, corners, fixture, glb};

@@ -1,12 +1,12 @@
 //! Files cut at every length and files with random bytes changed: an answer or a typed error, never a panic.
 
 use sim3align::error::ErrorCode;
-use sim3align::formats::camera::read_camera;
-use sim3align::formats::depth::{DepthReadOptions, read_depth};
-use sim3align::formats::mask::read_mask;
-use sim3align::formats::mesh::{MeshFormat, MeshReadOptions, read_mesh};
-use sim3align::formats::truth::read_truth;
 use sim3align::geometry::random::Random;
+use sim3align_formats::camera::read_camera;
+use sim3align_formats::depth::{DepthReadOptions, read_depth};
+use sim3align_formats::mask::read_mask;
+use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, read_mesh};
+use sim3align_formats::truth::read_truth;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::formats_fixtures::{MESHES, fixture};

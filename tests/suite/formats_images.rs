@@ -1,12 +1,12 @@
 //! Depth maps and masks from files.
 
 use sim3align::error::ErrorCode;
-use sim3align::formats::depth::{DepthReadOptions, read_depth};
-use sim3align::formats::mask::read_mask;
-use sim3align::formats::rle::Rle;
-use sim3align::formats::write;
 use sim3align::geometry::image::{DepthMap, Image, Mask};
 use sim3align::geometry::random::Random;
+use sim3align_formats::depth::{DepthReadOptions, read_depth};
+use sim3align_formats::mask::read_mask;
+use sim3align_formats::rle::Rle;
+use sim3align_lab::case_folder::write;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::formats_fixtures::fixture;

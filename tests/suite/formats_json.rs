@@ -1,9 +1,9 @@
 //! Cameras and true poses from JSON.
 
 use sim3align::error::{Error, ErrorCode};
-use sim3align::formats::camera::{CameraFile, read_camera};
-use sim3align::formats::truth::read_truth;
 use sim3align::geometry::pinhole::Pinhole;
+use sim3align_formats::camera::{CameraFile, read_camera};
+use sim3align_formats::truth::read_truth;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 const CAMERA: Pinhole = Pinhole { fx: 600.0, fy: 610.0, cx: 319.5, cy: 239.5 };

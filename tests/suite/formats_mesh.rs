@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 use sim3align::error::ErrorCode;
-use sim3align::formats::mesh::{MeshFormat, MeshReadOptions, read_mesh};
-use sim3align::formats::write;
 use sim3align::geometry::mesh::Mesh;
+use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, read_mesh};
+use sim3align_lab::case_folder::write;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::formats_fixtures::{MESHES, area, assert_near, bounds, corners, fixture};

@@ -5,8 +5,8 @@ use nalgebra::{Rotation3, Vector3};
 use sim3align::geometry::cloud::Cloud;
 use sim3align::geometry::kd_tree::KdTree;
 use sim3align::geometry::similarity::{Similarity, vec3};
-use sim3align::stages::filter::SupportSettings;
-use sim3align::stages::icp::{IcpMetric, IcpSettings, Refined, refine};
+use sim3align::register::icp::{IcpMetric, IcpSettings, Refined, refine};
+use sim3align::register::support::SupportSettings;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::support::{Draw, assert_no_dead_axis, blob, mug, pose_error, rotation_defect, transformed, unit_box};

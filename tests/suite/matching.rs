@@ -1,7 +1,7 @@
 //! Mutual nearest descriptors against a table of all distances.
 
-use sim3align::stages::fpfh::{DIMENSION, Descriptor};
-use sim3align::stages::matching::{Match, mutual_matches, one_way_matches};
+use sim3align::register::fpfh::{DIMENSION, Descriptor};
+use sim3align::register::matching::{Match, mutual_matches, one_way_matches};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::support::Draw;

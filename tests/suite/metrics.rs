@@ -3,13 +3,14 @@
 use glam::Vec3;
 use nalgebra::{Rotation3, Vector3};
 use sim3align::error::ErrorCode;
+use sim3align::evidence::Sampling;
+use sim3align::evidence::observation::Observation;
 use sim3align::geometry::image::{DepthMap, Mask};
 use sim3align::geometry::mesh::Mesh;
 use sim3align::geometry::pinhole::Pinhole;
 use sim3align::geometry::rasteriser::Rasteriser;
 use sim3align::geometry::similarity::Similarity;
-use sim3align::metrics::{EvaluateOptions, Metrics, evaluate};
-use sim3align::stages::observe::Observation;
+use sim3align::metrics::{Metrics, evaluate};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::shapes::{cuboid, ellipsoid, mapped, sphere};
@@ -37,7 +38,7 @@ fn observe(mesh: &Mesh, offset: f32) -> Observation {
 }
 
 fn score(observation: &Observation, mesh: &Mesh, pose: &Similarity) -> Metrics {
-    evaluate(observation, mesh, pose, &EvaluateOptions::default()).unwrap()
+    evaluate(observation, mesh, pose, &Sampling::default()).unwrap()
 }
 
 #[wasm_bindgen_test(unsupported = test)]
@@ -116,7 +117,7 @@ fn json_has_the_documented_names() {
 fn the_same_seed_gives_the_same_bits() {
     let mesh = ellipsoid(Vec3::new(0.5, 0.3, 0.4), 24);
     let observation = observe(&mesh, 0.003);
-    let options = |seed| EvaluateOptions { max_points: 500, surface_samples: 400, seed };
+    let options = |seed| Sampling { max_points: 500, surface_samples: 400, seed };
     let run = |seed| evaluate(&observation, &mesh, &pose(), &options(seed)).unwrap();
     assert_eq!(run(1), run(1));
     assert_ne!(run(1).chamfer_mm, run(2).chamfer_mm);
@@ -128,9 +129,8 @@ fn what_cannot_be_scored_is_refused() {
     let mesh = sphere(0.5, 16);
     let observation = observe(&mesh, 0.0);
     let flat = mapped(&mesh, |_| Vec3::ONE);
-    let code = |mesh: &Mesh, pose: &Similarity| {
-        evaluate(&observation, mesh, pose, &EvaluateOptions::default()).unwrap_err().code
-    };
+    let code =
+        |mesh: &Mesh, pose: &Similarity| evaluate(&observation, mesh, pose, &Sampling::default()).unwrap_err().code;
     assert_eq!(code(&flat, &pose()), ErrorCode::DegenerateMesh);
     for scale in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert_eq!(code(&mesh, &Similarity { scale, ..pose() }), ErrorCode::InvalidTransform, "scale {scale}");

@@ -1,10 +1,10 @@
 //! Normals against surfaces whose normals are known.
 
 use glam::Vec3;
+use sim3align::evidence::normals::{Neighborhood, Orientation, estimate_normals};
+use sim3align::evidence::sample::sample_surface;
 use sim3align::geometry::kd_tree::KdTree;
 use sim3align::geometry::random::Random;
-use sim3align::stages::normals::{Neighborhood, Orientation, estimate_normals};
-use sim3align::stages::sample::sample_surface;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::shapes::sphere;

@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 use sim3align::error::ErrorCode;
+use sim3align::evidence::observation::{MIN_POINTS, Observation, from_point_map};
 use sim3align::geometry::image::{DepthMap, Mask};
 use sim3align::geometry::pinhole::Pinhole;
-use sim3align::stages::observe::{MIN_POINTS, Observation, from_point_map};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::support::Draw;

@@ -3,9 +3,9 @@
 use glam::Vec3;
 use sim3align::error::ErrorCode;
 use sim3align::geometry::similarity::{Similarity, vec3, vector3};
-use sim3align::stages::matching::Match;
-use sim3align::stages::ransac::{Consensus, Guard, GuardMode, RansacSettings, ransac};
-use sim3align::stages::umeyama::ScaleMode;
+use sim3align::register::matching::Match;
+use sim3align::register::ransac::{Consensus, Guard, GuardMode, RansacSettings, ransac};
+use sim3align::register::umeyama::ScaleMode;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::support::{Draw, pose_error, rotation_defect};

@@ -1,13 +1,13 @@
 //! General registration recovers known transforms.
 
 use nalgebra::Vector3;
-use sim3align::align::estimate_sim3::estimate_sim3;
 use sim3align::align::options::{EstimateOptions, RegisterOptions, ScaleOption};
-use sim3align::align::progress::Silent;
-use sim3align::align::register::register;
 use sim3align::error::ErrorCode;
 use sim3align::geometry::cloud::Cloud;
 use sim3align::geometry::similarity::{Similarity, vector3};
+use sim3align::progress::Silent;
+use sim3align::register::estimate_sim3;
+use sim3align::register::register;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::support::{Draw, blob, mug};

@@ -1,6 +1,7 @@
 //! The parts of the search, against brute force and against the exact rasteriser.
 
 use glam::{DQuat, DVec2, DVec3, Vec3};
+use sim3align::evidence::observation::Observation;
 use sim3align::geometry::cloud::Bounds;
 use sim3align::geometry::decimate::decimate;
 use sim3align::geometry::image::{DepthMap, Mask};
@@ -10,11 +11,10 @@ use sim3align::geometry::random::Random;
 use sim3align::geometry::rasteriser::Rasteriser;
 use sim3align::geometry::rotations::{angle_between, exp, super_fibonacci};
 use sim3align::geometry::triangle_tree::TriangleTree;
-use sim3align::stages::observe::Observation;
-use sim3align::stages::search::clean::CleanObservation;
-use sim3align::stages::search::grid::CropGrid;
-use sim3align::stages::search::pose::{CropPose, MeshFrame};
-use sim3align::stages::search::render::{Canvas, Model};
+use sim3align::precise::clean::CleanObservation;
+use sim3align::precise::grid::CropGrid;
+use sim3align::precise::pose::{CropPose, MeshFrame};
+use sim3align::precise::render::{Canvas, Model};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::shapes::{ellipsoid, mapped, sphere};

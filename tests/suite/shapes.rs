@@ -1,7 +1,13 @@
 //! Meshes that the tests share.
 
 use glam::Vec3;
+use nalgebra::{Rotation3, Vector3};
+use sim3align::evidence::observation::Observation;
+use sim3align::geometry::image::{DepthMap, Mask};
 use sim3align::geometry::mesh::Mesh;
+use sim3align::geometry::pinhole::Pinhole;
+use sim3align::geometry::rasteriser::Rasteriser;
+use sim3align::geometry::similarity::Similarity;
 
 /// A box with outward faces, centred on the origin.
 pub fn cuboid(extent: Vec3) -> Mesh {
@@ -56,4 +62,36 @@ pub fn inverted(mesh: &Mesh) -> Mesh {
 /// The mesh with its vertices passed through `f`.
 pub fn mapped(mesh: &Mesh, f: impl Fn(Vec3) -> Vec3) -> Mesh {
     Mesh::new(mesh.positions().iter().map(|&p| f(p)).collect(), mesh.triangles().to_vec()).unwrap()
+}
+
+pub const WIDTH: usize = 240;
+pub const HEIGHT: usize = 180;
+
+/// A body with bumps and dents at many places, so that no turn maps it onto itself.
+pub fn body() -> Mesh {
+    let wave = |x: f32| libm::sinf(x);
+    mapped(&ellipsoid(Vec3::new(0.5, 0.38, 0.3), 40), |p| {
+        p * (1.0
+            + 0.5 * wave(4.0 * p.x + 1.0) * wave(5.0 * p.y + 0.5)
+            + 0.35 * wave(9.0 * p.z + 5.0 * p.x - 1.0) * wave(6.0 * p.y))
+    })
+}
+
+pub fn truth() -> Similarity {
+    Similarity {
+        scale: 0.17,
+        rotation: Rotation3::new(Vector3::new(0.9, -0.5, 2.1)),
+        translation: Vector3::new(0.015, -0.01, 0.55),
+    }
+}
+
+/// What a camera sees of the body in front of a wall; depths in units of `unit_m` metres.
+pub fn observe(mesh: &Mesh, unit_m: f32) -> Observation {
+    let camera = Pinhole::new(420.0, 420.0, 119.5, 89.5).unwrap();
+    let mut rasteriser = Rasteriser::new();
+    rasteriser.render(mesh, &truth(), &camera, WIDTH, HEIGHT);
+    let mask = rasteriser.depth().iter().map(|z| u8::from(*z > 0.0)).collect();
+    let depth = rasteriser.depth().iter().map(|z| if *z > 0.0 { z / unit_m } else { 1.0 / unit_m }).collect();
+    let depth = DepthMap::from_metres(WIDTH, HEIGHT, depth).unwrap();
+    Observation::new(depth, Mask::new("mask", WIDTH, HEIGHT, mask).unwrap(), camera).unwrap()
 }

@@ -202,3 +202,13 @@ fn on_torus(draw: &mut Draw, turn: f64) -> (Vector3<f64>, Vector3<f64>) {
     let n = out * libm::cos(angle) + Vector3::z() * libm::sin(angle);
     (out + n * 0.35, n)
 }
+
+/// FNV-1a over the bytes of 64-bit words.
+pub fn fingerprint(words: impl IntoIterator<Item = u64>) -> u64 {
+    let bytes = words.into_iter().flat_map(u64::to_le_bytes);
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
+}
+
+pub fn of_pose(pose: &Similarity) -> u64 {
+    fingerprint(pose.to_column_major().map(f64::to_bits))
+}

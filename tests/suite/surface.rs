@@ -2,10 +2,10 @@
 
 use glam::Vec3;
 use nalgebra::{Rotation3, Vector3};
+use sim3align::evidence::Evidence;
 use sim3align::geometry::cloud::Cloud;
 use sim3align::geometry::mesh::Mesh;
 use sim3align::geometry::similarity::{Similarity, vec3, vector3};
-use sim3align::metrics::evidence::Evidence;
 use sim3align::metrics::surface::{SurfaceAgreement, surface_agreement};
 use wasm_bindgen_test::wasm_bindgen_test;
 

@@ -1,6 +1,6 @@
 //! Tukey's biweight by hand.
 
-use sim3align::stages::tukey::biweights;
+use sim3align::register::tukey::biweights;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 #[wasm_bindgen_test(unsupported = test)]

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Matrix4, Quaternion, Rotation3, UnitQuaternion, Vector3};
 use sim3align::error::ErrorCode;
 use sim3align::geometry::similarity::Similarity;
-use sim3align::stages::umeyama::{Pair, ScaleMode, umeyama};
+use sim3align::register::umeyama::{Pair, ScaleMode, umeyama};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::support::{Draw, rotation_defect};

@@ -129,8 +129,8 @@ async function pictureOf(title, record, cases, out) {
   const file = join(out, `${title.replaceAll(/\W+/g, "-")}.png`);
   const folder = basename(cases) === record.name ? cases : join(cases, record.name);
   const matrix = record.alignment?.matrix.join(",") ?? "";
-  const args = ["--cases", folder, "--picture", file, `--matrix=${matrix}`];
-  await runProgram(at("target", "native", "sim3align-bench"), args);
+  const args = ["bench", "--cases", folder, "--picture", file, `--matrix=${matrix}`];
+  await runProgram(at("target", "native", "sim3align-lab"), args);
   const png = readFileSync(file);
   const name = `${title}: ${record.name}, IoU ${(record.alignment?.metrics.iou ?? 0).toFixed(3)}`;
   // Width and height stand in a PNG's first chunk.

@@ -1,0 +1,221 @@
+//! Typed views of buffers: every offset is checked before a byte is read.
+
+use ::gltf::json;
+use ::gltf::json::accessor::{ComponentType, Type};
+use ::gltf::json::validation::Checked;
+use glam::Vec3;
+
+use crate::gltf::Document;
+use crate::gltf::buffers::Buffers;
+use crate::guard::{MAX_TRIANGLES, MAX_VERTICES, corrupt, too_large};
+use sim3align_geometry::error::Result;
+
+/// Most elements of an accessor without bytes of its own, which are zeros: no file size speaks for their number.
+const MAX_ZEROS: usize = 1 << 20;
+
+/// Most elements read in all, so that many small primitives on one large accessor can't run for hours.
+const MAX_ELEMENTS_READ: usize = 1 << 28;
+
+/// Reads accessors of a document.
+pub(super) struct AccessorReader<'a> {
+    pub document: &'a Document,
+    pub buffers: Buffers<'a>,
+    pub elements_read: usize,
+}
+
+/// One number as written, and how it is to be read.
+#[derive(Clone, Copy)]
+struct Component {
+    kind: ComponentType,
+    normalized: bool,
+}
+
+impl<'a> AccessorReader<'a> {
+    /// A POSITION accessor: floats, or the integers of `KHR_mesh_quantization`.
+    pub fn positions(&mut self, index: usize) -> Result<Vec<Vec3>> {
+        let accessor = self.accessor(index)?;
+        let kind = component_type(accessor, Type::Vec3, index)?;
+        let component = Component { kind, normalized: accessor.normalized };
+        let size = kind.size();
+        self.read(accessor, MAX_VERTICES, 3 * size, Vec3::ZERO, |bytes| {
+            let value = |i: usize| component.read(bytes.get(i * size..).unwrap_or_default());
+            Vec3::new(value(0), value(1), value(2))
+        })
+    }
+
+    /// An accessor of vertex indices.
+    pub fn indices(&mut self, index: usize) -> Result<Vec<u32>> {
+        let accessor = self.accessor(index)?;
+        let kind = component_type(accessor, Type::Scalar, index)?;
+        if !matches!(kind, ComponentType::U8 | ComponentType::U16 | ComponentType::U32) {
+            let found = format!("indices of type {kind:?} in accessor {index}");
+            return Err(corrupt("mesh", found, "unsigned whole numbers"));
+        }
+        self.read(accessor, 3 * MAX_TRIANGLES, kind.size(), 0, |bytes| unsigned(kind, bytes))
+    }
+
+    fn accessor(&self, index: usize) -> Result<&'a json::Accessor> {
+        let document: &'a Document = self.document;
+        let accessors = &document.accessors;
+        accessors.get(index).ok_or_else(|| {
+            let found = format!("accessor {index} of {}", accessors.len());
+            corrupt("mesh", found, "an accessor that exists")
+        })
+    }
+
+    fn read<T: Copy>(
+        &mut self,
+        accessor: &json::Accessor,
+        limit: usize,
+        element_bytes: usize,
+        zero: T,
+        parse: impl Fn(&[u8]) -> T,
+    ) -> Result<Vec<T>> {
+        let limit = if accessor.buffer_view.is_some() { limit } else { MAX_ZEROS };
+        let count = match usize::try_from(accessor.count.0) {
+            Ok(count) if count <= limit => count,
+            _ => {
+                let found = format!("an accessor of {} elements", accessor.count.0);
+                return Err(too_large("mesh", found, format!("at most {limit}")));
+            }
+        };
+        self.spend(count)?;
+        let mut elements = match accessor.buffer_view {
+            None => vec![zero; count],
+            Some(view) => {
+                let offset = accessor.byte_offset.map_or(0, |offset| offset.0);
+                let run = self.run(view.value(), offset, count, element_bytes)?;
+                run.map(&parse).collect()
+            }
+        };
+        if let Some(sparse) = &accessor.sparse {
+            self.apply_sparse(sparse, &mut elements, element_bytes, &parse)?;
+        }
+        Ok(elements)
+    }
+
+    /// Replaces the elements that a sparse accessor names.
+    fn apply_sparse<T>(
+        &mut self,
+        sparse: &json::accessor::sparse::Sparse,
+        elements: &mut [T],
+        element_bytes: usize,
+        parse: &impl Fn(&[u8]) -> T,
+    ) -> Result<()> {
+        let count = usize::try_from(sparse.count.0).unwrap_or(usize::MAX);
+        if count > elements.len() {
+            let found = format!("{} sparse elements in an accessor of {}", sparse.count.0, elements.len());
+            return Err(corrupt("mesh", found, "at most as many"));
+        }
+        let Checked::Valid(json::accessor::IndexComponentType(kind)) = sparse.indices.component_type else {
+            return Err(corrupt("mesh", "sparse indices of an unknown type", "5121, 5123 or 5125"));
+        };
+        self.spend(2 * count)?;
+        let (view, offset) = (sparse.indices.buffer_view.value(), sparse.indices.byte_offset.0);
+        let places: Vec<u32> = self.run(view, offset, count, kind.size())?.map(|bytes| unsigned(kind, bytes)).collect();
+        let (view, offset) = (sparse.values.buffer_view.value(), sparse.values.byte_offset.0);
+        let values = self.run(view, offset, count, element_bytes)?;
+        let length = elements.len();
+        for (place, bytes) in places.into_iter().zip(values) {
+            match elements.get_mut(place as usize) {
+                Some(element) => *element = parse(bytes),
+                None => {
+                    let found = format!("sparse element {place} in an accessor of {length}");
+                    return Err(corrupt("mesh", found, "an element that exists"));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The bytes of `count` elements that begin at `offset` in a buffer view.
+    fn run(
+        &mut self,
+        view_index: usize,
+        offset: u64,
+        count: usize,
+        element_bytes: usize,
+    ) -> Result<impl Iterator<Item = &[u8]>> {
+        let document: &'a Document = self.document;
+        let Some(view) = document.buffer_views.get(view_index) else {
+            let found = format!("buffer view {view_index} of {}", document.buffer_views.len());
+            return Err(corrupt("mesh", found, "a buffer view that exists"));
+        };
+        if !self.buffers.has_source(view.buffer.value()) {
+            document.refuse_meshopt()?;
+        }
+        let stride = view.byte_stride.map_or(element_bytes, |stride| stride.0);
+        let bytes = self.buffers.get(view.buffer.value())?;
+        let part = |bytes: &'_ [u8], offset: u64, length: Option<u64>| -> Option<core::ops::Range<usize>> {
+            let start = usize::try_from(offset).ok()?;
+            let end = match length {
+                Some(length) => usize::try_from(offset.checked_add(length)?).ok()?,
+                None => bytes.len(),
+            };
+            (start <= end && end <= bytes.len()).then_some(start..end)
+        };
+        let in_view = part(bytes, view.byte_offset.map_or(0, |offset| offset.0), Some(view.byte_length.0))
+            .and_then(|range| bytes.get(range))
+            .and_then(|bytes| part(bytes, offset, None).and_then(|range| bytes.get(range)))
+            .unwrap_or_default();
+        let needed = match count {
+            0 => Some(0),
+            _ => (count - 1).checked_mul(stride).and_then(|bytes| bytes.checked_add(element_bytes)),
+        };
+        if stride < element_bytes || needed.is_none_or(|needed| needed > in_view.len()) {
+            return Err(corrupt(
+                "mesh",
+                format!("{count} elements of {element_bytes} bytes, {stride} apart, in buffer view {view_index}"),
+                format!("as many as fit: {} bytes are left there", in_view.len()),
+            ));
+        }
+        Ok(in_view.chunks(stride.max(1)).take(count).map(move |chunk| chunk.get(..element_bytes).unwrap_or_default()))
+    }
+
+    /// Counts work against [`MAX_ELEMENTS_READ`].
+    pub fn spend(&mut self, elements: usize) -> Result<()> {
+        self.elements_read = self.elements_read.saturating_add(elements);
+        if self.elements_read > MAX_ELEMENTS_READ {
+            let found = format!("accessors of more than {MAX_ELEMENTS_READ} elements together");
+            return Err(too_large("mesh", found, "fewer"));
+        }
+        Ok(())
+    }
+}
+
+fn component_type(accessor: &json::Accessor, shape: Type, index: usize) -> Result<ComponentType> {
+    let Checked::Valid(json::accessor::GenericComponentType(kind)) = accessor.component_type else {
+        let found = format!("accessor {index} of an unknown component type");
+        return Err(corrupt("mesh", found, "5120 to 5126"));
+    };
+    if accessor.type_ != Checked::Valid(shape) {
+        let found = format!("accessor {index} of type {:?}", accessor.type_);
+        return Err(corrupt("mesh", found, format!("{shape:?}")));
+    }
+    Ok(kind)
+}
+
+fn unsigned(kind: ComponentType, bytes: &[u8]) -> u32 {
+    match (kind, bytes) {
+        (ComponentType::U8, &[a, ..]) => a.into(),
+        (ComponentType::U16, &[a, b, ..]) => u16::from_le_bytes([a, b]).into(),
+        (_, &[a, b, c, d, ..]) => u32::from_le_bytes([a, b, c, d]),
+        _ => u32::MAX,
+    }
+}
+
+impl Component {
+    /// glTF 2.0, section 3.11 (animations) and KHR_mesh_quantization give the same table for normalised integers.
+    fn read(self, bytes: &[u8]) -> f32 {
+        let (value, most) = match (self.kind, bytes) {
+            (ComponentType::I8, &[a, ..]) => (f32::from(a as i8), 127.0),
+            (ComponentType::U8, &[a, ..]) => (f32::from(a), 255.0),
+            (ComponentType::I16, &[a, b, ..]) => (f32::from(i16::from_le_bytes([a, b])), 32767.0),
+            (ComponentType::U16, &[a, b, ..]) => (f32::from(u16::from_le_bytes([a, b])), 65535.0),
+            (ComponentType::U32, &[a, b, c, d, ..]) => (u32::from_le_bytes([a, b, c, d]) as f32, 4_294_967_295.0),
+            (ComponentType::F32, &[a, b, c, d, ..]) => return f32::from_le_bytes([a, b, c, d]),
+            _ => return f32::NAN,
+        };
+        if self.normalized { (value / most).max(-1.0) } else { value }
+    }
+}

@@ -1,0 +1,95 @@
+//! Where a glTF scene's bytes are: the GLB's own chunk, data URIs, files beside it.
+
+use std::borrow::Cow;
+
+use ::gltf::json;
+
+use crate::gltf::data_uri;
+use crate::guard::{MAX_BUFFER_BYTES, corrupt, too_large};
+use crate::mesh::Resources;
+use sim3align_geometry::error::{Error, ErrorCode, Result};
+
+/// The buffers, each loaded when first read: those of animations and images are never asked for.
+pub(super) struct Buffers<'a> {
+    declared: &'a [json::Buffer],
+    binary: Option<&'a [u8]>,
+    resources: Option<Resources<'a>>,
+    loaded: Vec<Option<Cow<'a, [u8]>>>,
+    loaded_bytes: usize,
+}
+
+impl<'a> Buffers<'a> {
+    pub fn new(declared: &'a [json::Buffer], binary: Option<&'a [u8]>, resources: Option<Resources<'a>>) -> Self {
+        Self { declared, binary, resources, loaded: vec![None; declared.len()], loaded_bytes: 0 }
+    }
+
+    /// Whether buffer `index` has bytes at all. Compressed files have one that has none.
+    pub fn has_source(&self, index: usize) -> bool {
+        let has_uri = self.declared.get(index).is_some_and(|buffer| buffer.uri.is_some());
+        has_uri || (index == 0 && self.binary.is_some())
+    }
+
+    /// The bytes of buffer `index`.
+    pub fn get(&mut self, index: usize) -> Result<&[u8]> {
+        let (Some(declared), Some(slot)) = (self.declared.get(index), self.loaded.get_mut(index)) else {
+            let found = format!("buffer {index} of {}", self.declared.len());
+            return Err(corrupt("mesh", found, "a buffer that exists"));
+        };
+        let bytes = match slot.take() {
+            Some(bytes) => bytes,
+            None => {
+                let bytes = load(declared, index, self.binary, self.resources)?;
+                self.loaded_bytes = self.loaded_bytes.saturating_add(bytes.len());
+                if self.loaded_bytes > MAX_BUFFER_BYTES {
+                    let found = format!("{} bytes of buffers", self.loaded_bytes);
+                    return Err(too_large("mesh", found, format!("at most {MAX_BUFFER_BYTES}")));
+                }
+                bytes
+            }
+        };
+        Ok(slot.insert(bytes))
+    }
+}
+
+fn load<'a>(
+    declared: &'a json::Buffer,
+    index: usize,
+    binary: Option<&'a [u8]>,
+    resources: Option<Resources<'a>>,
+) -> Result<Cow<'a, [u8]>> {
+    let bytes = match (&declared.uri, binary) {
+        (None, Some(binary)) if index == 0 => Cow::Borrowed(binary),
+        (None, _) => {
+            let found = format!("buffer {index} without URI or binary chunk");
+            return Err(corrupt("mesh", found, "bytes for every buffer"));
+        }
+        (Some(uri), _) if uri.starts_with("data:") => match data_uri::decode(uri) {
+            Some(bytes) => Cow::Owned(bytes),
+            None => {
+                let found = format!("buffer {index} with a broken data URI");
+                return Err(corrupt("mesh", found, "data:…;base64,…"));
+            }
+        },
+        (Some(uri), _) => Cow::Owned(external(uri, resources)?),
+    };
+    if (bytes.len() as u64) < declared.byte_length.0 {
+        let found = format!("buffer {index} of {} bytes", bytes.len());
+        return Err(corrupt("mesh", found, format!("{} bytes, as its byteLength says", declared.byte_length.0)));
+    }
+    Ok(bytes)
+}
+
+fn external(uri: &str, resources: Option<Resources<'_>>) -> Result<Vec<u8>> {
+    let find = resources.and_then(|find| {
+        find(uri).or_else(|| find(core::str::from_utf8(&data_uri::percent_decode(uri.as_bytes())).ok()?))
+    });
+    find.ok_or_else(|| {
+        Error::new(
+            ErrorCode::InvalidArgument,
+            "options.resources",
+            format!("no bytes for {uri:?}"),
+            "the bytes of every external buffer, by the URI in the .gltf file",
+            "Pass them in resources, or pack the file into one: npx @gltf-transform/cli copy in.gltf out.glb.",
+        )
+    })
+}

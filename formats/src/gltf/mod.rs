@@ -1,0 +1,155 @@
+//! glTF 2.0: the default scene as one mesh, in the scene's frame.
+//!
+//! The `gltf` crate's types parse the JSON; all that follows an index or an offset is read by our own checked
+//! code, because a hostile file must end in an error. Only the parts that say where the triangles are get parsed, so that
+//! an odd material or texture can't keep a mesh from being read.
+
+mod accessor;
+mod buffers;
+mod container;
+mod data_uri;
+mod scene;
+
+use ::gltf::json;
+use serde::Deserialize;
+
+use self::container::Container;
+use crate::guard::{corrupt, too_large, unsupported};
+use crate::mesh::Resources;
+use sim3align_geometry::error::{Error, ErrorCode, Result};
+use sim3align_geometry::mesh::Mesh;
+
+/// Most objects in a file's JSON: each costs memory far beyond its two letters.
+const MAX_JSON_OBJECTS: usize = 1 << 20;
+
+const DRACO: &str = "KHR_draco_mesh_compression";
+
+const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
+
+/// Extensions that may be required: they are applied, or don't touch the shape.
+const SUPPORTED_EXTENSIONS: &str = "KHR_mesh_quantization, KHR_materials_*, KHR_texture_*, EXT_texture_*, \
+    MSFT_texture_dds, KHR_lights_punctual, KHR_animation_pointer and KHR_xmp_json_ld";
+
+/// The parts of a glTF file that say where its triangles are.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Document {
+    #[serde(default)]
+    accessors: Vec<json::Accessor>,
+    #[serde(default)]
+    buffers: Vec<json::Buffer>,
+    #[serde(default)]
+    buffer_views: Vec<json::buffer::View>,
+    #[serde(default)]
+    meshes: Vec<json::Mesh>,
+    #[serde(default)]
+    nodes: Vec<json::Node>,
+    #[serde(default)]
+    scenes: Vec<Scene>,
+    scene: Option<usize>,
+    #[serde(default)]
+    extensions_used: Vec<String>,
+    #[serde(default)]
+    extensions_required: Vec<String>,
+}
+
+#[derive(Deserialize)]
+struct Scene {
+    #[serde(default)]
+    nodes: Vec<usize>,
+}
+
+impl Document {
+    fn parse(json: &[u8]) -> Result<Self> {
+        let objects = json.iter().filter(|&&b| b == b'{').count();
+        if objects > MAX_JSON_OBJECTS {
+            return Err(too_large("mesh", format!("{objects} JSON objects"), format!("at most {MAX_JSON_OBJECTS}")));
+        }
+        json::deserialize::from_slice(json)
+            .map_err(|error| corrupt("mesh", format!("glTF JSON that can't be read: {error}"), "glTF 2.0"))
+    }
+
+    fn uses(&self, extension: &str) -> bool {
+        self.extensions_used.iter().chain(&self.extensions_required).any(|name| name == extension)
+    }
+
+    /// For geometry that has no bytes to read: whether that is Draco's doing.
+    fn refuse_draco(&self) -> Result<()> {
+        if self.uses(DRACO) { Err(compressed(DRACO)) } else { Ok(()) }
+    }
+
+    /// The same for meshopt.
+    fn refuse_meshopt(&self) -> Result<()> {
+        MESHOPT.iter().find(|name| self.uses(name)).map_or(Ok(()), |name| Err(compressed(name)))
+    }
+
+    /// Refuses required extensions that may change the shape. Compression is left to where its bytes are missed:
+    /// files may carry an uncompressed fallback.
+    fn check_extensions(&self) -> Result<()> {
+        let harmless = |name: &str| {
+            name.starts_with("KHR_materials_")
+                || name.starts_with("KHR_texture_")
+                || name.starts_with("EXT_texture_")
+                || [
+                    "KHR_mesh_quantization",
+                    "MSFT_texture_dds",
+                    "KHR_lights_punctual",
+                    "KHR_animation_pointer",
+                    "KHR_xmp_json_ld",
+                    DRACO,
+                    MESHOPT[0],
+                    MESHOPT[1],
+                ]
+                .contains(&name)
+        };
+        let unknown: Vec<&str> = self.extensions_required.iter().map(String::as_str).filter(|n| !harmless(n)).collect();
+        if unknown.is_empty() {
+            return Ok(());
+        }
+        Err(unsupported(
+            "mesh",
+            format!("required extension {}", unknown.join(", ")),
+            format!("none but {SUPPORTED_EXTENSIONS}"),
+            "Export the mesh without it.",
+        ))
+    }
+}
+
+fn compressed(extension: &str) -> Error {
+    Error::new(
+        ErrorCode::CompressedMesh,
+        "mesh",
+        format!("geometry compressed with {extension}"),
+        "uncompressed or quantised geometry",
+        "Unpack it with glTF-Transform: npx @gltf-transform/cli copy in.glb out.glb.",
+    )
+}
+
+/// Reads a `.glb` or `.gltf`: the nodes of the default scene (of the first where none is named; without scenes,
+/// every root node), their transforms applied, all triangles, strips and fans merged. Points and lines are passed
+/// over. Skins and morph targets are not applied.
+///
+/// # Errors
+/// [`ErrorCode::CorruptFile`], [`ErrorCode::FileTooLarge`], [`ErrorCode::UnsupportedFormat`] for required
+/// extensions, [`ErrorCode::CompressedMesh`], [`ErrorCode::InvalidArgument`] for a buffer that `resources` lacks,
+/// and those of [`Mesh::new`].
+pub fn read_gltf(bytes: &[u8], resources: Option<Resources<'_>>) -> Result<Mesh> {
+    let container = Container::split(bytes)?;
+    let document = Document::parse(container.json)?;
+    document.check_extensions()?;
+    let buffers = buffers::Buffers::new(&document.buffers, container.binary, resources);
+    scene::read_scene(accessor::AccessorReader { document: &document, buffers, elements_read: 0 })
+}
+
+/// The URIs of the files that a `.gltf` keeps its buffers in, as written, each once: what `resources` has to know.
+///
+/// # Errors
+/// [`ErrorCode::CorruptFile`], [`ErrorCode::FileTooLarge`], [`ErrorCode::UnsupportedFormat`].
+pub fn external_resources(bytes: &[u8]) -> Result<Vec<String>> {
+    let document = Document::parse(Container::split(bytes)?.json)?;
+    let uris = document.buffers.into_iter().filter_map(|buffer| buffer.uri);
+    let mut external: Vec<String> = uris.filter(|uri| !uri.starts_with("data:")).collect();
+    external.sort();
+    external.dedup();
+    Ok(external)
+}

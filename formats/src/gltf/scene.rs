@@ -1,0 +1,160 @@
+//! The node hierarchy, flattened.
+
+use ::gltf::json;
+use ::gltf::json::mesh::{Mode, Semantic};
+use ::gltf::json::validation::Checked;
+use glam::{DMat4, DQuat, DVec3};
+
+use crate::gltf::Document;
+use crate::gltf::accessor::AccessorReader;
+use crate::guard::corrupt;
+use crate::mesh_builder::MeshBuilder;
+use sim3align_geometry::error::{Error, ErrorCode, Result};
+use sim3align_geometry::mesh::Mesh;
+
+/// All triangles of the scene in its frame.
+pub(super) fn read_scene(mut reader: AccessorReader<'_>) -> Result<Mesh> {
+    let document = reader.document;
+    let mut parts: Vec<Option<Vec<Mesh>>> = vec![None; document.meshes.len()];
+    let mut builder = MeshBuilder::default();
+    let mut skipped = 0;
+    for (index, transform) in instances(document)? {
+        let (Some(mesh), Some(slot)) = (document.meshes.get(index), parts.get_mut(index)) else {
+            let found = format!("mesh {index} of {}", document.meshes.len());
+            return Err(corrupt("mesh", found, "a mesh that exists"));
+        };
+        let parts = match slot.take() {
+            Some(parts) => parts,
+            None => {
+                let mut parts = Vec::new();
+                for primitive in &mesh.primitives {
+                    match read_primitive(&mut reader, primitive)? {
+                        Some(part) => parts.push(part),
+                        None => skipped += 1,
+                    }
+                }
+                parts
+            }
+        };
+        // A mesh of no triangles can be instanced without end at no cost in vertices.
+        reader.spend(mesh.primitives.len())?;
+        for part in slot.insert(parts) {
+            builder.append(part, &transform)?;
+        }
+    }
+    if builder.vertex_count() == 0 {
+        return Err(Error::new(
+            ErrorCode::EmptyMesh,
+            "mesh",
+            format!(
+                "{} nodes, {} meshes, {skipped} parts of points, lines or nothing",
+                document.nodes.len(),
+                document.meshes.len()
+            ),
+            "triangles in the default scene",
+            "A point cloud can't be rendered: mesh it first.",
+        ));
+    }
+    builder.finish()
+}
+
+/// The meshes in the scene, each with its transform into the scene.
+fn instances(document: &Document) -> Result<Vec<(usize, DMat4)>> {
+    let mut stack: Vec<(usize, DMat4)> = roots(document)?.into_iter().map(|node| (node, DMat4::IDENTITY)).collect();
+    stack.reverse();
+    let mut visited = vec![false; document.nodes.len()];
+    let mut instances = Vec::new();
+    while let Some((index, scene_from_parent)) = stack.pop() {
+        let (Some(node), Some(visited)) = (document.nodes.get(index), visited.get_mut(index)) else {
+            let found = format!("node {index} of {}", document.nodes.len());
+            return Err(corrupt("mesh", found, "a node that exists"));
+        };
+        if core::mem::replace(visited, true) {
+            let found = format!("node {index} twice in the hierarchy");
+            return Err(corrupt("mesh", found, "a tree: each node below one parent, and no cycle"));
+        }
+        let scene_from_node = scene_from_parent * parent_from_node(node);
+        if let Some(mesh) = node.mesh {
+            instances.push((mesh.value(), scene_from_node));
+        }
+        let children = node.children.iter().flatten().rev();
+        stack.extend(children.map(|child| (child.value(), scene_from_node)));
+    }
+    Ok(instances)
+}
+
+fn roots(document: &Document) -> Result<Vec<usize>> {
+    if !document.scenes.is_empty() || document.scene.is_some() {
+        let index = document.scene.unwrap_or(0);
+        return match document.scenes.get(index) {
+            Some(scene) => Ok(scene.nodes.clone()),
+            None => {
+                let found = format!("scene {index} of {}", document.scenes.len());
+                Err(corrupt("mesh", found, "a scene that exists"))
+            }
+        };
+    }
+    let mut is_root = vec![true; document.nodes.len()];
+    for child in document.nodes.iter().flat_map(|node| node.children.iter().flatten()) {
+        if let Some(is_root) = is_root.get_mut(child.value()) {
+            *is_root = false;
+        }
+    }
+    Ok(is_root.iter().enumerate().filter(|(_, is_root)| **is_root).map(|(i, _)| i).collect())
+}
+
+fn parent_from_node(node: &json::Node) -> DMat4 {
+    if let Some(matrix) = node.matrix {
+        return DMat4::from_cols_array(&matrix.map(f64::from));
+    }
+    let vector = |xyz: Option<[f32; 3]>| xyz.map(|xyz| DVec3::from_array(xyz.map(f64::from)));
+    let rotation = node.rotation.map_or(DQuat::IDENTITY, |q| {
+        let q = DQuat::from_array(q.0.map(f64::from));
+        // A zero quaternion is written by some exporters where they mean none.
+        if q.length_squared() > 0.0 { q.normalize() } else { DQuat::IDENTITY }
+    });
+    DMat4::from_scale_rotation_translation(
+        vector(node.scale).unwrap_or(DVec3::ONE),
+        rotation,
+        vector(node.translation).unwrap_or(DVec3::ZERO),
+    )
+}
+
+/// The triangles of a primitive in its mesh's frame; `None` for points, lines and empty ones.
+fn read_primitive(reader: &mut AccessorReader<'_>, primitive: &json::mesh::Primitive) -> Result<Option<Mesh>> {
+    let Checked::Valid(mode) = primitive.mode else {
+        return Err(corrupt("mesh", "a primitive of an unknown mode", "0 to 6"));
+    };
+    if !matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
+        return Ok(None);
+    }
+    let Some(positions) = primitive.attributes.get(&Checked::Valid(Semantic::Positions)) else {
+        reader.document.refuse_draco()?;
+        return Ok(None);
+    };
+    for accessor in primitive.indices.iter().chain([positions]) {
+        let accessor = reader.document.accessors.get(accessor.value());
+        if accessor.is_some_and(|accessor| accessor.buffer_view.is_none() && accessor.sparse.is_none()) {
+            reader.document.refuse_draco()?;
+        }
+    }
+    let positions = reader.positions(positions.value())?;
+    let corners = match primitive.indices {
+        Some(indices) => reader.indices(indices.value())?,
+        None => (0..positions.len() as u32).collect(),
+    };
+    let mut builder = MeshBuilder::with_positions(positions);
+    match mode {
+        Mode::TriangleStrip => builder.push_strip(&corners)?,
+        Mode::TriangleFan => builder.push_fan(&corners)?,
+        _ => {
+            let (triangles, rest) = corners.as_chunks::<3>();
+            if !rest.is_empty() {
+                let found = format!("{} indices of a triangle list", corners.len());
+                return Err(corrupt("mesh", found, "a multiple of 3"));
+            }
+            triangles.iter().try_for_each(|&triangle| builder.push_triangle(triangle))?;
+        }
+    }
+    if builder.triangle_count() == 0 { Ok(None) } else { builder.finish().map(Some) }
+}

@@ -1,0 +1,98 @@
+//! What the readers refuse, and in which words.
+
+use sim3align_geometry::error::{Error, ErrorCode, Result};
+use sim3align_geometry::image::check_not_empty;
+
+/// Most pixels of an image: 8192 × 8192.
+pub const MAX_PIXELS: usize = 1 << 26;
+
+/// Most vertices of a mesh: 16.7 million, some fifty times what generative models write.
+pub const MAX_VERTICES: usize = 1 << 24;
+
+/// Most triangles of a mesh: 33.5 million.
+pub const MAX_TRIANGLES: usize = 1 << 25;
+
+/// Most bytes that a glTF scene may bring along in buffers: 1 GiB.
+pub const MAX_BUFFER_BYTES: usize = 1 << 30;
+
+/// Most bytes of a JSON file other than glTF: 16 MiB.
+pub const MAX_JSON_BYTES: usize = 1 << 24;
+
+/// A file that ends early or contradicts itself.
+pub(crate) fn corrupt(
+    argument: &str,
+    found: impl Into<sim3align_geometry::error::Text>,
+    expected: impl Into<sim3align_geometry::error::Text>,
+) -> Error {
+    Error::new(
+        ErrorCode::CorruptFile,
+        argument.to_owned(),
+        found,
+        expected,
+        "The file may be cut short: download or export it again.",
+    )
+}
+
+/// A file that asks for more than this package opens.
+pub(crate) fn too_large(
+    argument: &str,
+    found: impl Into<sim3align_geometry::error::Text>,
+    expected: impl Into<sim3align_geometry::error::Text>,
+) -> Error {
+    Error::new(
+        ErrorCode::FileTooLarge,
+        argument.to_owned(),
+        found,
+        expected,
+        "Simplify or downscale it first; a small file that says so is broken or hostile.",
+    )
+}
+
+/// A file of a kind that is not read.
+pub(crate) fn unsupported(
+    argument: &str,
+    found: impl Into<sim3align_geometry::error::Text>,
+    expected: impl Into<sim3align_geometry::error::Text>,
+    remedy: impl Into<sim3align_geometry::error::Text>,
+) -> Error {
+    Error::new(ErrorCode::UnsupportedFormat, argument.to_owned(), found, expected, remedy)
+}
+
+/// The number of pixels, or why there can't be so many.
+pub(crate) fn pixel_count(argument: &str, width: usize, height: usize) -> Result<usize> {
+    check_not_empty(argument, width, height)?;
+    match width.checked_mul(height) {
+        Some(count) if count <= MAX_PIXELS => Ok(count),
+        _ => Err(too_large(
+            argument,
+            format!("{width} × {height} pixels"),
+            format!("at most {MAX_PIXELS} pixels (8192 × 8192)"),
+        )),
+    }
+}
+
+/// What a file that no reader recognises begins with, for the message.
+pub(crate) fn beginning(bytes: &[u8]) -> String {
+    const KNOWN: [(&[u8], &str); 10] = [
+        (b"\x89PNG\r\n\x1a\n", "a PNG image"),
+        (b"\x93NUMPY", "a NumPy array"),
+        (b"\xff\xd8\xff", "a JPEG image"),
+        (b"RIFF", "a RIFF file (WebP?)"),
+        (b"II*\0", "a TIFF image"),
+        (b"MM\0*", "a TIFF image"),
+        (b"v/1\x01", "an OpenEXR image"),
+        (b"Kaydara FBX", "an FBX scene"),
+        (b"PK\x03\x04", "a ZIP archive (NPZ, USDZ, 3MF?)"),
+        (b"\x1f\x8b", "a gzip stream"),
+    ];
+    if bytes.is_empty() {
+        return "no bytes".into();
+    }
+    match KNOWN.iter().find(|(magic, _)| bytes.starts_with(magic)) {
+        Some((_, name)) => (*name).into(),
+        None => {
+            let head = bytes.get(..bytes.len().min(12)).unwrap_or_default();
+            format!("{} bytes that begin with \"{}\"", bytes.len(), head.escape_ascii())
+        }
+    }
+}

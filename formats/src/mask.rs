@@ -1,0 +1,59 @@
+//! Masks from files.
+
+use crate::guard::{beginning, unsupported};
+use crate::npy::{self, NpyImage};
+use crate::png::{self, PngInfo};
+use crate::rle::Rle;
+use sim3align_geometry::error::Result;
+use sim3align_geometry::image::{Image, Mask};
+
+/// Reads a mask whose object pixels become 1, the others 0:
+///
+/// - PNG of any bit depth. Where the alpha channel varies, it is a cut-out: alpha above 0 is the object. Otherwise
+///   a pixel is the object when any colour channel is above 0; of a palette image, when its colour is not that of
+///   index 0.
+/// - `.npy` array (H×W, H×W×1, 1×H×W) of booleans or numbers: everything but 0 and NaN is the object.
+/// - JSON with a COCO run-length encoding, `{"size": [h, w], "counts": …}`, or with such under `segmentation`.
+///
+/// # Errors
+/// [`UnsupportedFormat`](sim3align_geometry::error::ErrorCode::UnsupportedFormat),
+/// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile), [`FileTooLarge`](sim3align_geometry::error::ErrorCode::FileTooLarge),
+/// [`EmptyImage`](sim3align_geometry::error::ErrorCode::EmptyImage).
+pub fn read_mask(bytes: &[u8]) -> Result<Mask> {
+    if bytes.starts_with(png::MAGIC) {
+        return read_png(bytes);
+    }
+    if bytes.starts_with(npy::MAGIC) {
+        let array = NpyImage::read("mask", bytes)?;
+        let object = array.values().map(|value| u8::from(value != 0.0 && !value.is_nan())).collect();
+        return Image::new("mask", array.width, array.height, object);
+    }
+    if bytes.trim_ascii_start().starts_with(b"{") {
+        return Rle::from_json(bytes)?.decode();
+    }
+    Err(unsupported(
+        "mask",
+        beginning(bytes),
+        "a PNG, a .npy array or COCO RLE in JSON",
+        "Save the mask as PNG: lossy formats smear its edge.",
+    ))
+}
+
+fn read_png(bytes: &[u8]) -> Result<Mask> {
+    let info = PngInfo::read("mask", bytes)?;
+    let pixels = info.decode("mask", bytes)?;
+    let channels = pixels.channels.max(1);
+    let colours = if pixels.has_alpha { channels - 1 } else { channels };
+    let alpha = |pixel: &[u16]| pixel.last().copied().unwrap_or_default();
+    let first_alpha = pixels.samples.get(..channels).map(alpha);
+    let is_cut_out = pixels.has_alpha && pixels.samples.chunks_exact(channels).any(|p| Some(alpha(p)) != first_alpha);
+    let background = info.first_palette_colour.unwrap_or_default().map(u16::from);
+    let is_object = |pixel: &[u16]| {
+        if is_cut_out {
+            return alpha(pixel) > 0;
+        }
+        pixel.iter().take(colours).zip(background).any(|(&sample, background)| sample != background)
+    };
+    let object = pixels.samples.chunks_exact(channels).map(|pixel| u8::from(is_object(pixel))).collect();
+    Image::new("mask", info.width, info.height, object)
+}

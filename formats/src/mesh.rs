@@ -1,0 +1,107 @@
+//! Mesh files of any supported format.
+
+use core::fmt;
+
+use crate::guard::{beginning, unsupported};
+use crate::{gltf, obj, ply, stl, text};
+use sim3align_geometry::error::{Error, ErrorCode, Result};
+use sim3align_geometry::mesh::Mesh;
+
+/// The mesh formats that are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MeshFormat {
+    /// glTF 2.0, binary (`.glb`) or JSON (`.gltf`).
+    Gltf,
+    /// Wavefront OBJ: `v` and `f` lines.
+    Obj,
+    /// Stanford PLY: ASCII, and binary in both byte orders.
+    Ply,
+    /// STL: ASCII and binary.
+    Stl,
+}
+
+impl MeshFormat {
+    /// The format of this name or file extension, in any case: `glb`, `gltf`, `obj`, `ply`, `stl`.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidOption`], which lists the names.
+    pub fn from_name(name: &str) -> Result<Self> {
+        match name.trim_start_matches('.').to_ascii_lowercase().as_str() {
+            "glb" | "gltf" => Ok(Self::Gltf),
+            "obj" => Ok(Self::Obj),
+            "ply" => Ok(Self::Ply),
+            "stl" => Ok(Self::Stl),
+            _ => Err(Error::new(
+                ErrorCode::InvalidOption,
+                "options.format",
+                format!("{name:?}"),
+                "\"glb\", \"gltf\", \"obj\", \"ply\" or \"stl\"",
+                "Leave it out to have the format told from the content.",
+            )),
+        }
+    }
+
+    /// The format told from the content, or `None`.
+    ///
+    /// A binary STL is known by its length, since its header may begin with "solid" as the text form does.
+    pub fn sniff(bytes: &[u8]) -> Option<Self> {
+        let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
+        if bytes.starts_with(b"glTF") || text.starts_with(b"{") {
+            return Some(Self::Gltf);
+        }
+        if bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r") {
+            return Some(Self::Ply);
+        }
+        if stl::has_binary_length(bytes) || text.starts_with(b"solid") {
+            return Some(Self::Stl);
+        }
+        let words = text::lines(text).filter_map(|line| text::words(line).next());
+        let mut statements = words.filter(|word| !word.starts_with(b"#"));
+        let before_vertices: [&[u8]; 9] = [b"vn", b"vt", b"vp", b"o", b"g", b"s", b"mtllib", b"usemtl", b"cstype"];
+        let first_other = statements.find(|word| !before_vertices.contains(word));
+        (first_other == Some(b"v".as_slice())).then_some(Self::Obj)
+    }
+}
+
+/// Finds the bytes behind a relative URI in a `.gltf` file.
+pub type Resources<'a> = &'a dyn Fn(&str) -> Option<Vec<u8>>;
+
+/// How to read a mesh file.
+#[derive(Clone, Copy, Default)]
+pub struct MeshReadOptions<'a> {
+    /// The format; told from the content when `None`.
+    pub format: Option<MeshFormat>,
+    /// The external buffers of a `.gltf` file, by URI as written in it; see [`gltf::external_resources`].
+    pub resources: Option<Resources<'a>>,
+}
+
+impl fmt::Debug for MeshReadOptions<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("MeshReadOptions")
+            .field("format", &self.format)
+            .field("resources", &self.resources.is_some())
+            .finish()
+    }
+}
+
+/// Reads a mesh: all its parts merged, node transforms applied, in the file's own unit and axes. Vertices that
+/// no triangle uses are left out; normals, colours and textures are not read.
+///
+/// # Errors
+/// [`ErrorCode::UnsupportedFormat`], [`ErrorCode::CorruptFile`], [`ErrorCode::FileTooLarge`],
+/// [`ErrorCode::CompressedMesh`], [`ErrorCode::InvalidArgument`] for a missing external buffer,
+/// and those of [`Mesh::new`].
+pub fn read_mesh(bytes: &[u8], options: &MeshReadOptions<'_>) -> Result<Mesh> {
+    match options.format.or_else(|| MeshFormat::sniff(bytes)) {
+        Some(MeshFormat::Gltf) => gltf::read_gltf(bytes, options.resources),
+        Some(MeshFormat::Obj) => obj::read_obj(bytes),
+        Some(MeshFormat::Ply) => ply::read_ply(bytes),
+        Some(MeshFormat::Stl) => stl::read_stl(bytes),
+        None => Err(unsupported(
+            "mesh",
+            beginning(bytes),
+            "GLB, glTF, OBJ, PLY or STL",
+            "Convert it, for example with Blender or trimesh; if it is one of these, it is damaged.",
+        )),
+    }
+}

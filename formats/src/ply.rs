@@ -1,0 +1,209 @@
+//! Stanford PLY, ASCII and binary of both byte orders.
+
+use glam::{DVec3, Vec3};
+
+use crate::cursor::Cursor;
+use crate::guard::{MAX_VERTICES, corrupt, too_large};
+use crate::mesh_builder::MeshBuilder;
+use crate::ply_header::{Element, Encoding, Header, Scalar};
+use crate::text::{number, quoted};
+use sim3align_geometry::error::{Error, ErrorCode, Result};
+use sim3align_geometry::mesh::Mesh;
+
+/// Reads the elements `vertex` (x, y, z of any type, anywhere among the properties), `face` (polygons, as fans)
+/// and `tristrips`; passes over the others.
+///
+/// # Errors
+/// [`ErrorCode::CorruptFile`], [`ErrorCode::UnsupportedFormat`], [`ErrorCode::FileTooLarge`],
+/// [`ErrorCode::IndexOutOfRange`] and those of [`Mesh::new`].
+pub fn read_ply(bytes: &[u8]) -> Result<Mesh> {
+    let (header, body) = Header::read(bytes)?;
+    let mut body = Body { encoding: header.encoding, cursor: Cursor::new("mesh", body) };
+    let mut builder = MeshBuilder::default();
+    for element in header.elements.iter().filter(|element| !element.properties.is_empty()) {
+        body.check_count(element)?;
+        match element.name.as_slice() {
+            b"vertex" => read_vertices(element, &mut body, |point| builder.push_vertex(point).map(|_| ()))?,
+            b"face" => read_faces(element, &mut body, &mut |corners| builder.push_fan(corners))?,
+            b"tristrips" => read_faces(element, &mut body, &mut |corners| {
+                // −1, which arrives as u32::MAX, separates the strips.
+                corners.split(|&corner| corner == u32::MAX).try_for_each(|strip| builder.push_strip(strip))
+            })?,
+            _ => read_records(element, &mut body, |_, _| Ok(()))?,
+        }
+    }
+    builder.finish()
+}
+
+/// Reads the element `vertex` alone: the points of a cloud, which needs no face.
+///
+/// # Errors
+/// [`ErrorCode::CorruptFile`], [`ErrorCode::UnsupportedFormat`], [`ErrorCode::FileTooLarge`].
+pub fn read_ply_points(bytes: &[u8]) -> Result<Vec<Vec3>> {
+    let (header, body) = Header::read(bytes)?;
+    let mut body = Body { encoding: header.encoding, cursor: Cursor::new("cloud", body) };
+    let mut points = Vec::new();
+    for element in header.elements.iter().filter(|element| !element.properties.is_empty()) {
+        body.check_count(element)?;
+        if element.name != b"vertex" {
+            read_records(element, &mut body, |_, _| Ok(()))?;
+            continue;
+        }
+        if element.count > MAX_VERTICES {
+            return Err(too_large("cloud", format!("{} points", element.count), format!("at most {MAX_VERTICES}")));
+        }
+        read_vertices(element, &mut body, |point| {
+            points.push(point);
+            Ok(())
+        })?;
+        return Ok(points);
+    }
+    Err(corrupt("cloud", "no vertices", "the element vertex"))
+}
+
+fn read_vertices(element: &Element, body: &mut Body<'_>, mut push: impl FnMut(Vec3) -> Result<()>) -> Result<()> {
+    let mut place = [0; 3];
+    for (place, name) in place.iter_mut().zip([b"x", b"y", b"z"]) {
+        *place =
+            element.properties.iter().position(|p| p.name == name && p.list_length.is_none()).ok_or_else(|| {
+                corrupt("mesh", format!("vertices without {}", name.escape_ascii()), "the properties x, y and z")
+            })?;
+    }
+    let last = element.properties.len() - 1;
+    let mut xyz = [0.0; 3];
+    read_records(element, body, |property, values| {
+        for (x, place) in xyz.iter_mut().zip(place) {
+            if property == place {
+                *x = values.first().copied().unwrap_or(f64::NAN);
+            }
+        }
+        if property == last {
+            push(as_vec3(xyz))?;
+        }
+        Ok(())
+    })
+}
+
+fn as_vec3(xyz: [f64; 3]) -> Vec3 {
+    DVec3::from_array(xyz).as_vec3()
+}
+
+fn read_faces(element: &Element, body: &mut Body<'_>, push: &mut dyn FnMut(&[u32]) -> Result<()>) -> Result<()> {
+    let is_indices = |name: &[u8]| name == b"vertex_indices" || name == b"vertex_index";
+    let Some(place) = element.properties.iter().position(|p| p.list_length.is_some() && is_indices(&p.name)) else {
+        return Err(corrupt("mesh", "faces without vertex_indices", "a list property vertex_indices"));
+    };
+    let is_strip = element.name == b"tristrips";
+    let mut corners = Vec::new();
+    read_records(element, body, |property, values| {
+        if property != place {
+            return Ok(());
+        }
+        corners.clear();
+        for &value in values {
+            let separates = is_strip && value == -1.0;
+            let is_index = value >= 0.0 && value < f64::from(u32::MAX) && value == value.trunc();
+            if !separates && !is_index {
+                return Err(Error::new(
+                    ErrorCode::IndexOutOfRange,
+                    "mesh",
+                    format!("vertex index {value}"),
+                    "whole numbers from 0",
+                    "Export the mesh again.",
+                ));
+            }
+            corners.push(if separates { u32::MAX } else { value as u32 });
+        }
+        push(&corners)
+    })
+}
+
+/// Calls `visit` with the place of each property and its values (one, or the list), record by record.
+fn read_records(
+    element: &Element,
+    body: &mut Body<'_>,
+    mut visit: impl FnMut(usize, &[f64]) -> Result<()>,
+) -> Result<()> {
+    let mut values = Vec::new();
+    for _ in 0..element.count {
+        for (place, property) in element.properties.iter().enumerate() {
+            values.clear();
+            let length = match property.list_length {
+                None => 1,
+                Some(scalar) => body.list_length(scalar)?,
+            };
+            for _ in 0..length {
+                values.push(body.next(property.scalar)?);
+            }
+            visit(place, &values)?;
+        }
+    }
+    Ok(())
+}
+
+/// The numbers after the header.
+struct Body<'a> {
+    encoding: Encoding,
+    cursor: Cursor<'a>,
+}
+
+impl Body<'_> {
+    /// A count that the rest of the file can't hold is a lie: told before anything is read or allocated.
+    fn check_count(&self, element: &Element) -> Result<()> {
+        // The last number of an ASCII file needs no space after it, hence the one byte more.
+        let available = self.cursor.remaining().len() + 1;
+        match element.count.checked_mul(element.min_bytes(self.encoding)) {
+            Some(bytes) if bytes <= available => Ok(()),
+            _ => Err(corrupt(
+                "mesh",
+                format!("{} bytes for {} × {}", available - 1, element.count, quoted(&element.name)),
+                "as many records as the PLY header says",
+            )),
+        }
+    }
+
+    fn list_length(&mut self, scalar: Scalar) -> Result<usize> {
+        let length = self.next(scalar)?;
+        if !(length >= 0.0 && length == length.trunc() && length <= self.cursor.remaining().len() as f64) {
+            let found = format!("a list of {length} numbers in {} bytes", self.cursor.remaining().len());
+            return Err(corrupt("mesh", found, "a length that the file holds"));
+        }
+        Ok(length as usize)
+    }
+
+    /// The next number; f64 holds each of the types exactly.
+    fn next(&mut self, scalar: Scalar) -> Result<f64> {
+        if self.encoding == Encoding::Ascii {
+            return self.next_word();
+        }
+        let mut bytes = [0; 8];
+        let bytes = &mut bytes[..scalar.size()];
+        bytes.copy_from_slice(self.cursor.take(scalar.size())?);
+        if self.encoding == Encoding::BigEndian {
+            bytes.reverse();
+        }
+        Ok(match (scalar, &*bytes) {
+            (Scalar::I8, &[a]) => f64::from(a as i8),
+            (Scalar::U8, &[a]) => f64::from(a),
+            (Scalar::I16, &[a, b]) => f64::from(i16::from_le_bytes([a, b])),
+            (Scalar::U16, &[a, b]) => f64::from(u16::from_le_bytes([a, b])),
+            (Scalar::I32, &[a, b, c, d]) => f64::from(i32::from_le_bytes([a, b, c, d])),
+            (Scalar::U32, &[a, b, c, d]) => f64::from(u32::from_le_bytes([a, b, c, d])),
+            (Scalar::F32, &[a, b, c, d]) => f64::from(f32::from_le_bytes([a, b, c, d])),
+            (_, &[a, b, c, d, e, f, g, h]) => f64::from_le_bytes([a, b, c, d, e, f, g, h]),
+            _ => f64::NAN,
+        })
+    }
+
+    fn next_word(&mut self) -> Result<f64> {
+        let rest = self.cursor.remaining();
+        let start = rest.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(rest.len());
+        let length = rest.iter().skip(start).take_while(|b| !b.is_ascii_whitespace()).count();
+        let taken = self.cursor.take(start + length)?;
+        let word = taken.get(start..).unwrap_or_default();
+        number(word).ok_or_else(|| {
+            let found = if word.is_empty() { "the end of the file".into() } else { quoted(word) };
+            corrupt("mesh", found, "a number")
+        })
+    }
+}

@@ -1,0 +1,159 @@
+//! The header of a PLY file: which elements follow, with which properties, in which encoding.
+
+use crate::guard::{corrupt, unsupported};
+use crate::text::{quoted, words};
+use sim3align_geometry::error::Result;
+
+/// How the body is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Encoding {
+    Ascii,
+    LittleEndian,
+    BigEndian,
+}
+
+/// The type of a number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+impl Scalar {
+    fn from_name(name: &[u8]) -> Option<Self> {
+        Some(match name {
+            b"char" | b"int8" => Self::I8,
+            b"uchar" | b"uint8" => Self::U8,
+            b"short" | b"int16" => Self::I16,
+            b"ushort" | b"uint16" => Self::U16,
+            b"int" | b"int32" => Self::I32,
+            b"uint" | b"uint32" => Self::U32,
+            b"float" | b"float32" => Self::F32,
+            b"double" | b"float64" => Self::F64,
+            _ => return None,
+        })
+    }
+
+    /// Bytes of one number in a binary body.
+    pub fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+}
+
+/// One property of an element.
+#[derive(Debug, Clone)]
+pub(crate) struct Property {
+    pub name: Vec<u8>,
+    /// The type of the list's length, for a list.
+    pub list_length: Option<Scalar>,
+    pub scalar: Scalar,
+}
+
+/// A run of records.
+#[derive(Debug, Clone)]
+pub(crate) struct Element {
+    pub name: Vec<u8>,
+    pub count: usize,
+    pub properties: Vec<Property>,
+}
+
+impl Element {
+    /// Fewest bytes that a record can take: what a count is checked against before anything is allocated.
+    pub fn min_bytes(&self, encoding: Encoding) -> usize {
+        match encoding {
+            Encoding::Ascii => 2 * self.properties.len(),
+            _ => self.properties.iter().map(|p| p.list_length.unwrap_or(p.scalar).size()).sum(),
+        }
+    }
+}
+
+/// The header.
+#[derive(Debug, Clone)]
+pub(crate) struct Header {
+    pub encoding: Encoding,
+    pub elements: Vec<Element>,
+}
+
+impl Header {
+    /// Reads the header; gives it and the body.
+    pub fn read(bytes: &[u8]) -> Result<(Self, &[u8])> {
+        // Files that end lines with a bare \r exist, and a binary body may begin with \n: the first line tells.
+        let end = if bytes.starts_with(b"ply\r") && !bytes.starts_with(b"ply\r\n") { b'\r' } else { b'\n' };
+        let mut rest = bytes;
+        let mut encoding = None;
+        let mut elements: Vec<Element> = Vec::new();
+        loop {
+            let Some(length) = rest.iter().position(|&b| b == end) else {
+                return Err(corrupt("mesh", "no \"end_header\" line", "a PLY header that ends with \"end_header\""));
+            };
+            let (line, after) = rest.split_at(length);
+            rest = after.get(1..).unwrap_or_default();
+            let words: Vec<&[u8]> = words(line).collect();
+            match words.as_slice() {
+                [b"end_header"] => break,
+                [b"format", name, ..] => encoding = Some(read_encoding(name)?),
+                [b"element", name, count] => elements.push(Element {
+                    name: name.to_vec(),
+                    count: core::str::from_utf8(count)
+                        .ok()
+                        .and_then(|count| count.parse().ok())
+                        .ok_or_else(|| corrupt("mesh", quoted(count), "the number of elements in the PLY header"))?,
+                    properties: Vec::new(),
+                }),
+                [b"property", description @ ..] => {
+                    let property = read_property(description).ok_or_else(|| {
+                        let expected = "property TYPE NAME or property list TYPE TYPE NAME in the PLY header";
+                        corrupt("mesh", quoted(line), expected)
+                    })?;
+                    let Some(element) = elements.last_mut() else {
+                        return Err(corrupt("mesh", "a property before any element", "element lines first"));
+                    };
+                    element.properties.push(property);
+                }
+                [] | [b"ply" | b"comment" | b"obj_info", ..] => {}
+                _ => return Err(corrupt("mesh", quoted(line), "a PLY header line")),
+            }
+        }
+        match encoding {
+            Some(encoding) => Ok((Self { encoding, elements }, rest)),
+            None => Err(corrupt("mesh", "no \"format\" line", "a \"format\" line in the PLY header")),
+        }
+    }
+}
+
+fn read_encoding(name: &[u8]) -> Result<Encoding> {
+    match name {
+        b"ascii" => Ok(Encoding::Ascii),
+        b"binary_little_endian" => Ok(Encoding::LittleEndian),
+        b"binary_big_endian" => Ok(Encoding::BigEndian),
+        _ => Err(unsupported(
+            "mesh",
+            format!("PLY format {}", quoted(name)),
+            "ascii, binary_little_endian or binary_big_endian",
+            "Export the mesh again.",
+        )),
+    }
+}
+
+fn read_property(words: &[&[u8]]) -> Option<Property> {
+    match words {
+        [b"list", length, scalar, name] => Some(Property {
+            name: name.to_vec(),
+            list_length: Some(Scalar::from_name(length)?),
+            scalar: Scalar::from_name(scalar)?,
+        }),
+        [scalar, name] => Some(Property { name: name.to_vec(), list_length: None, scalar: Scalar::from_name(scalar)? }),
+        _ => None,
+    }
+}

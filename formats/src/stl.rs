@@ -1,0 +1,113 @@
+//! STL, ASCII and binary: a triangle soup, welded.
+
+use std::collections::HashMap;
+
+use glam::{DVec3, Vec3};
+
+use crate::cursor::Cursor;
+use crate::guard::corrupt;
+use crate::mesh_builder::MeshBuilder;
+use crate::text::{lines, number, quoted, words};
+use sim3align_geometry::error::Result;
+use sim3align_geometry::mesh::Mesh;
+
+const HEADER_BYTES: usize = 80;
+const TRIANGLE_BYTES: usize = 50;
+
+/// Whether the length is exactly that of a binary STL: what tells it from text, as its header may begin with "solid".
+pub(crate) fn has_binary_length(bytes: &[u8]) -> bool {
+    let mut cursor = Cursor::new("mesh", bytes);
+    let count = cursor.take(HEADER_BYTES).and_then(|_| cursor.u32_le());
+    count.is_ok_and(|count| (count as usize).checked_mul(TRIANGLE_BYTES) == Some(cursor.remaining().len()))
+}
+
+/// Reads an STL. Vertices with the same coordinates become one; nothing is rounded.
+///
+/// # Errors
+/// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile), [`FileTooLarge`](sim3align_geometry::error::ErrorCode::FileTooLarge)
+/// and those of [`Mesh::new`].
+pub fn read_stl(bytes: &[u8]) -> Result<Mesh> {
+    let is_text = !has_binary_length(bytes)
+        && bytes.trim_ascii_start().starts_with(b"solid")
+        && !bytes.iter().take(1024).any(|&b| b == 0);
+    if is_text { read_text(bytes) } else { read_binary(bytes) }
+}
+
+fn read_binary(bytes: &[u8]) -> Result<Mesh> {
+    let mut cursor = Cursor::new("mesh", bytes);
+    cursor.take(HEADER_BYTES)?;
+    let count = cursor.u32_le()?;
+    let mut welder = Welder::default();
+    for _ in 0..count {
+        let triangle: [u8; TRIANGLE_BYTES] = cursor.array()?;
+        let mut corners = [Vec3::ZERO; 3];
+        for (corner, xyz) in corners.iter_mut().zip(triangle[12..48].as_chunks::<12>().0) {
+            let [x, y, z] = [0, 4, 8].map(|i| f32::from_le_bytes([xyz[i], xyz[i + 1], xyz[i + 2], xyz[i + 3]]));
+            *corner = Vec3::new(x, y, z);
+        }
+        welder.push(corners)?;
+    }
+    welder.builder.finish()
+}
+
+fn read_text(bytes: &[u8]) -> Result<Mesh> {
+    let mut welder = Welder::default();
+    let mut corners = Vec::with_capacity(3);
+    let mut ended = false;
+    for (i, line) in lines(bytes).enumerate() {
+        let mut words = words(line);
+        let keyword = words.next().unwrap_or_default();
+        match keyword.to_ascii_lowercase().as_slice() {
+            b"vertex" => {
+                let mut xyz = [0.0; 3];
+                for x in &mut xyz {
+                    let word = words.next().unwrap_or_default();
+                    let found = || format!("{} in line {}", quoted(word), i + 1);
+                    *x = number(word).ok_or_else(|| corrupt("mesh", found(), "vertex x y z: three numbers"))?;
+                }
+                corners.push(DVec3::from_array(xyz).as_vec3());
+            }
+            b"endloop" => {
+                let &[a, b, c] = corners.as_slice() else {
+                    let found = format!("a facet of {} vertices before line {}", corners.len(), i + 1);
+                    return Err(corrupt("mesh", found, "3"));
+                };
+                welder.push([a, b, c])?;
+                corners.clear();
+            }
+            b"endsolid" => ended = true,
+            _ => {}
+        }
+    }
+    if !ended {
+        return Err(corrupt("mesh", "no \"endsolid\" line", "\"endsolid\" at the end of an ASCII STL"));
+    }
+    welder.builder.finish()
+}
+
+/// Gives equal coordinates one index.
+#[derive(Default)]
+struct Welder {
+    builder: MeshBuilder,
+    indices: HashMap<[u32; 3], u32>,
+}
+
+impl Welder {
+    fn push(&mut self, corners: [Vec3; 3]) -> Result<()> {
+        let mut triangle = [0; 3];
+        for (index, corner) in triangle.iter_mut().zip(corners) {
+            // −0 + 0 is +0: the two zeros are one place.
+            let corner = corner + Vec3::ZERO;
+            let key = corner.to_array().map(f32::to_bits);
+            *index = match self.indices.get(&key) {
+                Some(&known) => known,
+                None => {
+                    let new = self.builder.push_vertex(corner)?;
+                    self.indices.insert(key, new);
+                    new
+                }
+            };
+        }
+        self.builder.push_triangle(triangle)
+    }
+}

@@ -1,0 +1,23 @@
+//! Lines, words and numbers of text formats, from bytes of any encoding.
+
+/// The lines of a file, whichever of \n, \r\n and \r ends them (a trailing \r is white space to [`words`]).
+pub fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let end = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };
+    bytes.split(move |&b| b == end)
+}
+
+/// The words of a line.
+pub fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
+    line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())
+}
+
+/// A decimal number.
+pub fn number(word: &[u8]) -> Option<f64> {
+    core::str::from_utf8(word).ok()?.parse().ok()
+}
+
+/// A word for a message: short, and without control characters.
+pub fn quoted(word: &[u8]) -> String {
+    let head = word.get(..word.len().min(40)).unwrap_or_default();
+    format!("\"{}\"", head.escape_ascii())
+}

@@ -1,0 +1,175 @@
+//! Fast Global Registration (Zhou, Park, Koltun, "Fast Global Registration", ECCV 2016).
+//!
+//! Minimises Σ μ r²/(μ + r²) over the matches' distances r by its line process: weights (μ/(μ + r²))², one
+//! Gauss-Newton step, and so on, while μ falls from the size of the clouds, where the objective is all but quadratic,
+//! to a small one, where wrong matches have no say.
+//!
+//! Options and their defaults are Open3D's, also where it departs from the paper: the clouds are divided by the larger
+//! of both radii, and μ, which is a squared distance, falls until it is below `max_correspondence_distance`, which is
+//! none. On purpose otherwise:
+//! - μ begins at the radius in the frame it is used in, as published: 1 in the normalised one. Open3D 0.20 begins there at
+//!   the radius in the clouds' own unit, so that its answer depends on whether they are in metres or in millimetres
+//!   ([`FgrSettings::initial_mu`] repeats that).
+//! - Too few matches are an error where Open3D returns the identity.
+//! - The source is moved and not the target, and small turns are turns and not Euler's angles: this does not move the
+//!   optimum.
+
+use glam::Vec3;
+use nalgebra::{Rotation3, Vector3};
+
+use super::measurements::{Matched, no_consensus};
+use sim3align::register::icp::{moved, rigid_jacobian};
+use sim3align::register::matching::Match;
+use sim3align_geometry::error::Result;
+use sim3align_geometry::normal_equations::NormalEquations;
+use sim3align_geometry::random::Random;
+use sim3align_geometry::similarity::{Similarity, vector3};
+
+/// The random stream of the tuple test.
+const STREAM: u64 = 6;
+
+/// Matches, after the tuple test, that an answer needs.
+const MIN_MATCHES: usize = 10;
+
+/// Tuples tried for each match.
+const TRIALS_PER_MATCH: usize = 100;
+
+/// Matches that are used at most: an even share of more.
+const MAX_MATCHES: usize = 100_000;
+
+/// Iterations in which μ does not fall, between two in which it does.
+const HOLD: usize = 4;
+
+/// Settings of [`solve`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FgrSettings {
+    /// By what μ is divided every fourth iteration, above 1.
+    pub division_factor: f64,
+    /// Leaves the clouds in their own unit: `max_correspondence_distance` is then in it too.
+    pub use_absolute_scale: bool,
+    /// μ at the beginning, in the normalised frame; `None` is 1, or the larger radius where the scale is absolute.
+    pub initial_mu: Option<f64>,
+    /// Whether μ falls at all.
+    pub decrease_mu: bool,
+    /// μ no longer falls once it is below this, a share of the larger cloud's radius.
+    pub max_correspondence_distance: f64,
+    /// Iterations.
+    pub iterations: usize,
+    /// How alike the sides of three matches' triangles must be, in (0, 1]; `None` leaves the tuple test out.
+    pub tuple_scale: Option<f64>,
+    /// Tuples that are used at most.
+    pub max_tuples: usize,
+    /// Seed of the tuple test.
+    pub seed: u64,
+}
+
+impl Default for FgrSettings {
+    fn default() -> Self {
+        Self {
+            division_factor: 1.4,
+            use_absolute_scale: false,
+            initial_mu: None,
+            decrease_mu: true,
+            max_correspondence_distance: 0.025,
+            iterations: 64,
+            tuple_scale: Some(0.95),
+            max_tuples: 1000,
+            seed: 0,
+        }
+    }
+}
+
+/// What [`solve`] found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fgr {
+    /// The rigid transform.
+    pub target_from_source: Similarity,
+    /// The matches that were optimised over, by their numbers: those of the tuples one after the other, or all.
+    pub used: Vec<usize>,
+    /// The last μ, in the clouds' unit squared.
+    pub mu: f64,
+}
+
+/// The rigid transform that the matches agree with.
+///
+/// # Errors
+/// [`NoConsensus`](sim3align_geometry::error::ErrorCode::NoConsensus) for fewer than ten matches, or where fewer than four triples
+/// of them form like triangles; [`NonFinite`](sim3align_geometry::error::ErrorCode::NonFinite),
+/// [`DegeneratePoints`](sim3align_geometry::error::ErrorCode::DegeneratePoints) where a cloud is one point.
+pub fn solve(source: &[Vec3], target: &[Vec3], matches: &[Match], settings: &FgrSettings) -> Result<Fgr> {
+    let matched = Matched::of(source, target, matches)?.thinned(MAX_MATCHES, settings.seed);
+    let used = match settings.tuple_scale {
+        Some(scale) => tuples(&matched, scale, settings),
+        None => (0..matched.len()).collect(),
+    };
+    if used.len() < MIN_MATCHES {
+        return Err(no_consensus(matched.len(), used.len(), "ten that form like triangles in both clouds"));
+    }
+    let (source_center, source_radius) = middle_and_radius(source);
+    let (target_center, target_radius) = middle_and_radius(target);
+    let radius = source_radius.max(target_radius);
+    if !(radius > 0.0 && radius.is_finite()) {
+        return Err(no_consensus(matched.len(), 0, "points that span a surface"));
+    }
+    let (unit, mu) = if settings.use_absolute_scale { (1.0, radius) } else { (radius, 1.0) };
+    let mut mu = settings.initial_mu.unwrap_or(mu);
+    let pairs: Vec<[Vector3<f64>; 2]> = used
+        .iter()
+        .map(|&i| [(matched.source[i] - source_center) / unit, (matched.target[i] - target_center) / unit])
+        .collect();
+
+    let mut pose = Similarity::identity();
+    for iteration in 0..settings.iterations {
+        let mut equations = NormalEquations::new();
+        for [p, q] in &pairs {
+            let landed = pose.apply(*p);
+            let off = landed - q;
+            let line = mu / (off.norm_squared() + mu);
+            for axis in 0..3 {
+                equations.add(&rigid_jacobian(landed, Vector3::ith(axis, 1.0)), off[axis], line * line);
+            }
+        }
+        let next = equations.solve(1e-12).and_then(|delta| moved(&pose, Vector3::zeros(), &delta));
+        let Some(next) = next else { return Err(no_consensus(matched.len(), used.len(), "ten off one line")) };
+        pose = next;
+        if settings.decrease_mu && iteration % HOLD == 0 && mu > settings.max_correspondence_distance {
+            mu /= settings.division_factor;
+        }
+    }
+    let own = |center: Vector3<f64>| Similarity { scale: unit, rotation: Rotation3::identity(), translation: center };
+    let target_from_source = own(target_center).compose(&pose).compose(&own(source_center).inverse());
+    Ok(Fgr {
+        // Divided and multiplied by the unit, the scale may be off by a rounding.
+        target_from_source: Similarity { scale: 1.0, ..target_from_source },
+        used: used.into_iter().map(|i| matched.numbers[i]).collect(),
+        mu: mu * unit * unit,
+    })
+}
+
+/// Matches whose triangles have sides alike, three by three, each as often as it was drawn.
+fn tuples(matched: &Matched, scale: f64, settings: &FgrSettings) -> Vec<usize> {
+    let n = matched.len();
+    let mut random = Random::new(settings.seed, STREAM);
+    let mut used = Vec::new();
+    let alike = |i: usize, j: usize| {
+        let source = (matched.source[i] - matched.source[j]).norm();
+        let target = (matched.target[i] - matched.target[j]).norm();
+        source * scale < target && target * scale < source
+    };
+    for _ in 0..n * TRIALS_PER_MATCH {
+        if used.len() >= 3 * settings.max_tuples {
+            break;
+        }
+        let [i, j, k] = [0; 3].map(|_| random.below(n));
+        if alike(i, j) && alike(j, k) && alike(k, i) {
+            used.extend([i, j, k]);
+        }
+    }
+    used
+}
+
+/// The mean of the points, and how far they are from it at most.
+fn middle_and_radius(points: &[Vec3]) -> (Vector3<f64>, f64) {
+    let mean = points.iter().map(|&p| vector3(p)).sum::<Vector3<f64>>() / points.len() as f64;
+    (mean, points.iter().map(|&p| (vector3(p) - mean).norm()).fold(0.0, f64::max))
+}

@@ -1,0 +1,157 @@
+//! Generalized ICP, plane to plane (Segal, Haehnel, Thrun, "Generalized-ICP", RSS 2009).
+//!
+//! Every point stands for a patch of surface: its covariance is 1 along the surface and ε across it. A pair's residual
+//! is weighed by the inverse of both covariances' sum, so that patches may slide on each other but not apart. As in
+//! small_gicp and Open3D: ε = 1e-3, 20 neighbours, nearest neighbours paired anew in every iteration; steps are
+//! Levenberg's, as in small_gicp.
+//!
+//! On purpose otherwise: a covariance is kept as its normal, from which it follows; where the neighbours lie on one
+//! line, it is 1 in all directions, as small_gicp has it where there are too few.
+
+use glam::Vec3;
+use nalgebra::{Matrix3, Vector3};
+
+use super::clouds::no_overlap;
+use super::icp::TOLERANCE;
+use sim3align::evidence::normals::{Neighborhood, Orientation, estimate_normals};
+use sim3align::register::icp::{Refined, moved, movement, rigid_jacobian};
+use sim3align_geometry::error::Result;
+use sim3align_geometry::kd_tree::KdTree;
+use sim3align_geometry::normal_equations::NormalEquations;
+use sim3align_geometry::similarity::{Similarity, vector3};
+
+/// Fewer pairs than this do not determine a pose.
+const MIN_PAIRS: usize = 6;
+
+/// Steps tried from one linearisation at most.
+const TRIALS: usize = 10;
+
+/// The first step's damping, as a share of the trace.
+const DAMPING: f64 = 1e-6;
+
+/// By how much the damping grows where a step gained nothing, and shrinks where it did.
+const DAMPING_FACTOR: f64 = 10.0;
+
+/// Settings of [`solve`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GicpSettings {
+    /// Source points without a target point this near take no part, in the target's unit.
+    pub max_correspondence_distance: f32,
+    /// Most iterations.
+    pub max_iterations: usize,
+    /// Neighbours from which a point's surface is estimated, itself included.
+    pub neighbors: usize,
+    /// Variance across a surface, that along it being 1.
+    pub epsilon: f64,
+}
+
+impl GicpSettings {
+    /// The published ones.
+    pub fn new(max_correspondence_distance: f32, max_iterations: usize) -> Self {
+        Self { max_correspondence_distance, max_iterations, neighbors: 20, epsilon: 1e-3 }
+    }
+}
+
+/// A pair of an iteration.
+struct Patches {
+    source: Vector3<f64>,
+    target: Vector3<f64>,
+    /// Rows W with WᵀW the inverse of both covariances' sum.
+    whitening: [Vector3<f64>; 3],
+}
+
+impl Patches {
+    fn error(&self, pose: &Similarity) -> f64 {
+        let off = pose.apply(self.source) - self.target;
+        self.whitening.iter().map(|row| row.dot(&off) * row.dot(&off)).sum()
+    }
+}
+
+/// Rigid GICP, the scale that of `initial`. `target_tree` is the tree over the target.
+///
+/// # Errors
+/// [`NoConsensus`](sim3align_geometry::error::ErrorCode::NoConsensus) where fewer than six source points have a target point within
+/// reach.
+pub fn solve(
+    source: &[Vec3],
+    target: &[Vec3],
+    target_tree: &KdTree,
+    initial: &Similarity,
+    settings: &GicpSettings,
+) -> Result<Refined> {
+    let normals = |points: &[Vec3], tree: &KdTree| {
+        // To which side a normal points is no matter to a covariance.
+        estimate_normals(points, tree, Neighborhood::nearest(settings.neighbors), Orientation::TowardsCamera)
+    };
+    let (source_normals, target_normals) = (normals(source, &KdTree::new(source)), normals(target, target_tree));
+    let pairs = |pose: &Similarity| -> Vec<Patches> {
+        let transform = pose.to_f32();
+        let pair = |(&p, &p_normal): (&Vec3, &Vec3)| {
+            let nearest =
+                target_tree.nearest_within(transform.apply(p), settings.max_correspondence_distance)?.index as usize;
+            let (q, q_normal) = (target.get(nearest)?, target_normals.get(nearest)?);
+            let sum = covariance(pose.rotation * vector3(p_normal), settings.epsilon)
+                + covariance(vector3(*q_normal), settings.epsilon);
+            Some(Patches { source: vector3(p), target: vector3(*q), whitening: whitening(&sum)? })
+        };
+        source.iter().zip(&source_normals).filter_map(pair).collect()
+    };
+
+    let mut refined = Refined { target_from_source: *initial, iterations: 0, converged: false, supported: 0, rms: 0.0 };
+    let mut damping = DAMPING;
+    while refined.iterations < settings.max_iterations && !refined.converged {
+        let pose = refined.target_from_source;
+        let pairs = pairs(&pose);
+        refined.supported = pairs.len();
+        if pairs.len() < MIN_PAIRS {
+            break;
+        }
+        refined.iterations += 1;
+        let mut equations = NormalEquations::new();
+        for pair in &pairs {
+            let landed = pose.apply(pair.source);
+            for row in pair.whitening {
+                equations.add(&rigid_jacobian(landed, row), row.dot(&(landed - pair.target)), 1.0);
+            }
+        }
+        let error = |pose: &Similarity| pairs.iter().map(|pair| pair.error(pose)).sum::<f64>();
+        let before = error(&pose);
+        // As a distance across the surfaces, of which both have a variance of ε.
+        refined.rms = (2.0 * settings.epsilon * before / pairs.len() as f64).sqrt();
+        // Where no step gains anything the pose is at rest.
+        refined.converged = true;
+        for _ in 0..TRIALS {
+            let next = equations.solve(damping).and_then(|delta| moved(&pose, Vector3::zeros(), &delta));
+            if let Some(next) = next.filter(|next| error(next) <= before) {
+                refined.target_from_source = next;
+                refined.converged = movement(&pose, &next) < TOLERANCE;
+                damping /= DAMPING_FACTOR;
+                break;
+            }
+            damping *= DAMPING_FACTOR;
+        }
+        // A damping of 0 would leave directions that the data leave free undetermined.
+        damping = damping.max(1e-12);
+    }
+    if refined.iterations == 0 { Err(no_overlap(refined.supported)) } else { Ok(refined) }
+}
+
+/// 1 along the surface, ε across it; 1 everywhere where there is no normal.
+fn covariance(normal: Vector3<f64>, epsilon: f64) -> Matrix3<f64> {
+    Matrix3::identity() - normal * normal.transpose() * (1.0 - epsilon)
+}
+
+/// The rows of L⁻¹ with L Lᵀ = `c`, by Cholesky's method; `None` where `c` is not positive definite.
+fn whitening(c: &Matrix3<f64>) -> Option<[Vector3<f64>; 3]> {
+    let l00 = c[(0, 0)].sqrt();
+    let (l10, l20) = (c[(1, 0)] / l00, c[(2, 0)] / l00);
+    let l11 = (c[(1, 1)] - l10 * l10).sqrt();
+    let l21 = (c[(2, 1)] - l20 * l10) / l11;
+    let l22 = (c[(2, 2)] - l20 * l20 - l21 * l21).sqrt();
+    let rows = [
+        Vector3::new(1.0 / l00, 0.0, 0.0),
+        Vector3::new(-l10 / l00, 1.0, 0.0) / l11,
+        Vector3::new((l10 * l21 / l11 - l20) / l00, -l21 / l11, 1.0) / l22,
+    ];
+    rows.iter().all(|row| row.iter().all(|x| x.is_finite())).then_some(rows)
+}

@@ -1,0 +1,44 @@
+//! Classical ICP: every pair within reach has the same say, and the reach stays as it is.
+
+use super::clouds::no_overlap;
+use sim3align::register::icp::{IcpMetric, IcpSettings, Refined, refine};
+use sim3align::register::support::SupportSettings;
+use sim3align_geometry::cloud::Cloud;
+use sim3align_geometry::error::Result;
+use sim3align_geometry::kd_tree::KdTree;
+use sim3align_geometry::similarity::Similarity;
+
+/// The settings under which [`refine`] is what Besl & McKay and Chen & Medioni published, with a largest distance of
+/// correspondences as Open3D's `registration_icp` has it: no weights, no shrinking reach, no look at the normals' angle.
+pub fn classical(metric: IcpMetric, max_correspondence_distance: f32, max_iterations: usize) -> IcpSettings {
+    IcpSettings {
+        metric,
+        robust: false,
+        lock_scale: true,
+        scale_bounds: None,
+        max_iterations,
+        support: SupportSettings { max_distance: max_correspondence_distance, min_cosine: -1.0 },
+        final_distance: max_correspondence_distance,
+        tolerance: TOLERANCE,
+    }
+}
+
+/// Settled when nothing in the unit box moves further than this in an iteration. Open3D stops where fitness and
+/// residual change by less than a millionth, which on a flat objective is earlier.
+pub(super) const TOLERANCE: f64 = 1e-6;
+
+/// Rigid ICP, the scale that of `initial`.
+///
+/// # Errors
+/// [`NoConsensus`](sim3align_geometry::error::ErrorCode::NoConsensus) where fewer than six source points have a target point within
+/// reach: `initial` would be no answer.
+pub fn solve(
+    source: &Cloud,
+    target: &Cloud,
+    target_tree: &KdTree,
+    initial: &Similarity,
+    settings: &IcpSettings,
+) -> Result<Refined> {
+    let refined = refine(source, target, target_tree, initial, settings);
+    if refined.iterations == 0 { Err(no_overlap(refined.supported)) } else { Ok(refined) }
+}

@@ -1,0 +1,137 @@
+//! General registration: two clouds of one scale, such as scans of a room or of a street.
+
+use nalgebra::Vector3;
+
+use super::{Baseline, Clouds, UnitSettings};
+use sim3align::evidence::extents::{Extents, target_from_source};
+use sim3align::evidence::normals::outward_normals;
+use sim3align::evidence::observation::MIN_POINTS;
+use sim3align::register::grid_cloud::GridCloud;
+use sim3align::register::icp::IcpMetric;
+use sim3align_geometry::cloud::Cloud;
+use sim3align_geometry::error::{Error, ErrorCode, Result};
+use sim3align_geometry::number::number;
+use sim3align_geometry::similarity::Similarity;
+
+/// Neighbours from which the normal of a point is estimated that has none.
+const NORMAL_NEIGHBORS: usize = 30;
+
+/// Settings of [`register_pair`], in the clouds' own unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PairSettings {
+    /// Edge of the voxels, above 0.
+    pub voxel_size: f64,
+    /// Radius of the descriptors, in voxels.
+    pub fpfh_radius_voxels: f64,
+    /// Points of each cloud that are matched at most, an even share of more. Matching is quadratic.
+    pub max_features: usize,
+    /// A match that is off by less is right, in voxels; β of TEASER and Quatro.
+    pub inlier_distance_voxels: f64,
+    /// Within which local methods look for nearest points, in voxels.
+    pub max_correspondence_distance_voxels: f64,
+    /// Minimal sets that RANSAC draws at most.
+    pub ransac_iterations: usize,
+    /// What refines RANSAC's pose, if anything.
+    pub icp: Option<IcpMetric>,
+    /// Iterations of local methods at most.
+    pub icp_iterations: usize,
+    /// Up in both frames, which Quatro turns about.
+    pub up: [f64; 3],
+    /// Seed of all draws.
+    pub seed: u64,
+}
+
+impl PairSettings {
+    /// The usual ones; z is up.
+    pub fn new(voxel_size: f64) -> Self {
+        Self {
+            voxel_size,
+            fpfh_radius_voxels: 5.0,
+            max_features: 8_000,
+            inlier_distance_voxels: 1.5,
+            max_correspondence_distance_voxels: 3.0,
+            ransac_iterations: 100_000,
+            icp: None,
+            icp_iterations: 60,
+            up: [0.0, 0.0, 1.0],
+            seed: 0,
+        }
+    }
+}
+
+/// The rigid transform that takes the source to the target. Local methods begin where the clouds are.
+///
+/// Normals are taken from the clouds, where they have them: for scans, pointing to the scanner. Else they are estimated,
+/// and point away from the middle of each cloud.
+///
+/// # Errors
+/// [`ErrorCode::TooFewPoints`], [`ErrorCode::NonFinite`], [`ErrorCode::DegeneratePoints`],
+/// [`ErrorCode::InvalidOption`] for a voxel size that is not above 0, [`ErrorCode::NoConsensus`].
+pub fn register_pair(
+    source: &Cloud,
+    target: &Cloud,
+    baseline: Baseline,
+    settings: &PairSettings,
+) -> Result<Similarity> {
+    if !(settings.voxel_size.is_finite() && settings.voxel_size > 0.0) {
+        let remedy = "Pass it in the unit of the points.";
+        let found = number(settings.voxel_size);
+        return Err(Error::new(ErrorCode::InvalidOption, "options.voxelSize", found, "a number above 0", remedy));
+    }
+    check("source", source)?;
+    check("target", target)?;
+    // One frame for both, so that where they are is where they stay.
+    let frame = Extents::of("target", &target.points)?;
+    let voxel_size = settings.voxel_size / frame.diagonal();
+    let grid = |argument: &str, cloud: &Cloud| {
+        let mut cloud = frame.normalized(cloud);
+        if cloud.normals.len() != cloud.len() {
+            cloud.normals = outward_normals(&cloud.points, None, NORMAL_NEIGHBORS);
+        }
+        let grid = GridCloud::new(&cloud, voxel_size as f32);
+        enough(argument, grid.cloud.len(), "voxels").map(|()| grid)
+    };
+    let clouds = Clouds { source: grid("source", source)?, target: grid("target", target)? };
+    let up = Vector3::from(settings.up);
+    let unit = UnitSettings {
+        fpfh_radius: (settings.fpfh_radius_voxels * voxel_size) as f32,
+        max_features: settings.max_features,
+        inlier_distance: settings.inlier_distance_voxels * voxel_size,
+        edge_similarity: 0.9,
+        ransac_iterations: settings.ransac_iterations,
+        ransac_confidence: 0.999,
+        icp: settings.icp,
+        max_correspondence_distance: (settings.max_correspondence_distance_voxels * voxel_size) as f32,
+        icp_iterations: settings.icp_iterations,
+        estimates_scale: false,
+        up: Some([up, up]),
+        seed: settings.seed,
+    };
+    let matches = if baseline.is_local() { Vec::new() } else { clouds.matches(&unit) };
+    let found = clouds.solve(baseline, &matches, &unit)?.target_from_source;
+    let own = target_from_source(&frame, &found, &frame);
+    // The frame's scale and its inverse may be a rounding off 1.
+    Ok(Similarity { scale: 1.0, ..own })
+}
+
+fn check(argument: &str, cloud: &Cloud) -> Result<()> {
+    enough(argument, cloud.len(), "points")?;
+    if cloud.points.iter().chain(&cloud.normals).all(|p| p.is_finite()) {
+        return Extents::of(argument, &cloud.points).map(|_| ());
+    }
+    let remedy = "Leave points without a reading out.";
+    Err(Error::new(ErrorCode::NonFinite, argument.to_owned(), "a number that is not finite", "finite numbers", remedy))
+}
+
+fn enough(argument: &str, count: usize, of_what: &str) -> Result<()> {
+    if count >= MIN_POINTS {
+        return Ok(());
+    }
+    Err(Error::new(
+        ErrorCode::TooFewPoints,
+        argument.to_owned(),
+        format!("{count} {of_what}"),
+        format!("at least {MIN_POINTS}"),
+        "A shape can't be told from so few: pass more points, or a smaller voxel size.",
+    ))
+}

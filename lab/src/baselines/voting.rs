@@ -1,0 +1,98 @@
+//! Adaptive voting: the number that most of many measurements agree with, each known to within a range.
+//!
+//! min over x of Σ min((v − x)²/r², 1), exactly: which measurements agree changes at the ends of their ranges only, and
+//! between two ends the best x is their weighted mean (Yang, Shi, Carlone, "TEASER", T-RO 2021, §V).
+//!
+//! On purpose otherwise: TEASER++ and KISS-Matcher add squares that are not divided by r² to ranges that are not
+//! squared, so that their compromise between near and many depends on the unit of length.
+
+use sim3align_geometry::order::{index_of, pack, sort};
+
+/// The outcome of a vote.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Vote {
+    /// x.
+    pub value: f64,
+    /// Σ min((v − x)²/r², 1).
+    pub cost: f64,
+    /// Which measurements are within their range of x.
+    pub agreeing: Vec<bool>,
+}
+
+/// Sums over those that agree.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    count: f64,
+    weight: f64,
+    value: f64,
+    square: f64,
+}
+
+impl Sums {
+    /// A measurement comes (1.0) or goes (-1.0).
+    fn add(&mut self, sign: f64, value: f64, range: f64) {
+        let weight = sign / (range * range);
+        self.count += sign;
+        self.weight += weight;
+        self.value += weight * value;
+        self.square += weight * value * value;
+    }
+
+    fn mean(&self) -> f64 {
+        self.value / self.weight
+    }
+
+    /// What it costs beside agreeing with none: squares for ones.
+    fn gain(&self) -> f64 {
+        self.count - (self.square - self.value * self.mean())
+    }
+}
+
+/// The vote of `values`, each known to within its `range` above 0; `None` for none, and where a number is not finite.
+pub fn vote(values: &[f64], ranges: &[f64]) -> Option<Vote> {
+    let n = values.len().min(ranges.len());
+    let (values, ranges) = (&values[..n], &ranges[..n]);
+    let sound = |(v, r): (&f64, &f64)| v.is_finite() && r.is_finite() && *r > 0.0;
+    if n == 0 || !values.iter().zip(ranges).all(sound) {
+        return None;
+    }
+    // About one of them: squares of large numbers would drown their differences.
+    let origin = values[0];
+    let mut ends = Vec::with_capacity(2 * n);
+    for (i, (value, range)) in (0_u32..).zip(values.iter().zip(ranges)) {
+        // Of equal ends those that begin come first.
+        ends.push(pack((value - origin - range) as f32, i));
+        ends.push(pack((value - origin + range) as f32, i + n as u32));
+    }
+    sort(&mut ends);
+
+    let (mut sums, mut best) = (Sums::default(), (f64::NEG_INFINITY, 0));
+    for (passed, &end) in ends.iter().enumerate() {
+        let index = index_of(end) as usize;
+        let (i, sign) = if index < n { (index, 1.0) } else { (index - n, -1.0) };
+        sums.add(sign, values[i] - origin, ranges[i]);
+        if sums.count == 0.0 {
+            // What came and went leaves roundings.
+            sums = Sums::default();
+        } else if sums.gain() > best.0 {
+            best = (sums.gain(), passed);
+        }
+    }
+    // Once more, without what came and went: sums of those that agree, in their own order.
+    let mut agrees = vec![false; n];
+    for &end in &ends[..=best.1] {
+        let index = index_of(end) as usize;
+        agrees[if index < n { index } else { index - n }] = index < n;
+    }
+    let mut sums = Sums::default();
+    for i in (0..n).filter(|&i| agrees[i]) {
+        sums.add(1.0, values[i] - origin, ranges[i]);
+    }
+    let value = origin + sums.mean();
+    let ratio = |i: usize| ((values[i] - value) / ranges[i]).abs();
+    Some(Vote {
+        value,
+        cost: (0..n).map(|i| (ratio(i) * ratio(i)).min(1.0)).sum(),
+        agreeing: (0..n).map(|i| ratio(i) <= 1.0).collect(),
+    })
+}

@@ -1,0 +1,98 @@
+//! A case: a folder with one observation, one mesh and, where it is known, the true pose.
+
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+
+use sim3align::evidence::observation::Observation;
+use sim3align_formats::camera::{CameraFile, read_camera};
+use sim3align_formats::depth::{DepthReadOptions, read_depth};
+use sim3align_formats::mask::read_mask;
+use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, read_mesh};
+use sim3align_formats::truth::read_truth;
+use sim3align_geometry::error::{Error, ErrorCode, Result};
+use sim3align_geometry::mesh::Mesh;
+use sim3align_geometry::similarity::Similarity;
+
+/// The files that may hold each part, in order of preference.
+const DEPTH_FILES: &[&str] = &["depth.npy", "depth.png"];
+const MASK_FILES: &[&str] = &["mask.png", "mask.npy", "mask.json"];
+const MESH_FILES: &[&str] = &["mesh.glb", "mesh.gltf", "mesh.obj", "mesh.ply", "mesh.stl"];
+const CAMERA_FILES: &[&str] = &["camera.json"];
+
+/// The content of a case folder.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// The folder's name.
+    pub name: String,
+    /// Depth, mask and camera.
+    pub observation: Observation,
+    /// The mesh, in its own frame.
+    pub mesh: Mesh,
+    /// `camera_from_mesh` and the declared symmetry in words, where `gt.json` has them.
+    pub truth: Option<(Similarity, String)>,
+    /// What the camera file warns of.
+    pub warnings: Vec<String>,
+}
+
+/// Reads a case folder: `depth.npy|png`, `mask.png|npy|json` (COCO RLE), `mesh.glb|gltf|obj|ply|stl`, `camera.json`
+/// and, optionally, `gt.json`. Whole-number depth uses the camera file's depth scale, else millimetres.
+///
+/// # Errors
+/// [`ErrorCode::InvalidArgument`] for a missing file, and those of the readers and of
+/// [`Observation::new`]; the argument names the file.
+pub fn read_case(folder: &Path) -> Result<Case> {
+    let name = folder.canonicalize().ok().and_then(|path| Some(path.file_name()?.to_string_lossy().into_owned()));
+    let (depth_path, depth_bytes) = find(folder, DEPTH_FILES)?;
+    let (camera_path, camera_bytes) = find(folder, CAMERA_FILES)?;
+    let (mask_path, mask_bytes) = find(folder, MASK_FILES)?;
+    let (mesh_path, mesh_bytes) = find(folder, MESH_FILES)?;
+    let in_file = |path: &Path| {
+        let path = path.display().to_string();
+        move |error: Error| error.about(path)
+    };
+    // The camera may need the image's size, and the depth the camera's scale: the first look is only for the scale.
+    let depth_scale_m = read_camera(&camera_bytes, None, None).ok().and_then(|camera| camera.depth_scale_m);
+    let depth_options = DepthReadOptions { depth_scale: None, integer_depth_scale: depth_scale_m };
+    let depth = read_depth(&depth_bytes, &depth_options).map_err(in_file(&depth_path))?;
+    let size = Some((depth.width(), depth.height()));
+    let CameraFile { camera, warnings, .. } = read_camera(&camera_bytes, size, None).map_err(in_file(&camera_path))?;
+    let mask = read_mask(&mask_bytes).map_err(in_file(&mask_path))?;
+    let resources = |uri: &str| read_beside(folder, uri);
+    let extension = mesh_path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+    let mesh_options = MeshReadOptions { format: Some(MeshFormat::from_name(extension)?), resources: Some(&resources) };
+    let mesh = read_mesh(&mesh_bytes, &mesh_options).map_err(in_file(&mesh_path))?;
+    let truth_path = folder.join("gt.json");
+    let truth = match fs::read(&truth_path) {
+        Ok(bytes) => read_truth(&bytes).map_err(in_file(&truth_path))?,
+        Err(_) => None,
+    };
+    let observation = Observation::new(depth, mask, camera).map_err(|error| {
+        let argument = format!("{}: {}", folder.display(), error.argument);
+        error.about(argument)
+    })?;
+    Ok(Case { name: name.unwrap_or_else(|| folder.display().to_string()), observation, mesh, truth, warnings })
+}
+
+/// The first of `names` in the folder, and its bytes.
+fn find(folder: &Path, names: &[&str]) -> Result<(PathBuf, Vec<u8>)> {
+    let missing = |found: String| {
+        Error::new(
+            ErrorCode::InvalidArgument,
+            folder.display().to_string(),
+            found,
+            names.join(" or "),
+            "A case folder holds depth, mask, camera.json and mesh; the documentation lists the names.",
+        )
+    };
+    let Some(path) = names.iter().map(|name| folder.join(name)).find(|path| path.is_file()) else {
+        return Err(missing("no such file".into()));
+    };
+    let bytes = fs::read(&path).map_err(|error| missing(format!("{}: {error}", path.display())))?;
+    Ok((path, bytes))
+}
+
+/// A file that a `.gltf` names, from below its folder only.
+fn read_beside(folder: &Path, uri: &str) -> Option<Vec<u8>> {
+    let is_below = Path::new(uri).components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
+    if is_below { fs::read(folder.join(uri)).ok() } else { None }
+}

@@ -1,0 +1,127 @@
+//! Core types out, as files that other programs read.
+
+use std::io;
+
+use glam::Vec3;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{ExtendedColorType, ImageEncoder};
+
+use sim3align_geometry::error::{Error, ErrorCode, Result};
+use sim3align_geometry::image::{DepthMap, Mask, check_size};
+use sim3align_geometry::mesh::Mesh;
+
+/// A depth map as NumPy array, float32 H×W, metres.
+pub fn depth_npy(depth: &DepthMap) -> Vec<u8> {
+    let mut header =
+        format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, {}), }}", depth.height(), depth.width());
+    // Magic, version and length take 10 bytes; the data begin at a multiple of 64, the header ends in a line feed.
+    let header_bytes = (10 + header.len() + 1).next_multiple_of(64) - 10;
+    header.extend(core::iter::repeat_n(' ', header_bytes - 1 - header.len()));
+    header.push('\n');
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((header_bytes as u16).to_le_bytes());
+    bytes.extend(header.as_bytes());
+    bytes.extend(depth.data().iter().flat_map(|z| z.to_le_bytes()));
+    bytes
+}
+
+/// A depth map as 16-bit grey PNG, rounded to `depth_scale` metres per unit.
+///
+/// # Errors
+/// [`ErrorCode::InvalidOption`] for a scale that is not above 0, or too fine for the farthest depth.
+pub fn depth_png(depth: &DepthMap, depth_scale: f64) -> Result<Vec<u8>> {
+    let farthest = depth.data().iter().copied().fold(0.0, f32::max);
+    if !(depth_scale > 0.0 && (f64::from(farthest) / depth_scale).round() <= 65535.0) {
+        return Err(Error::new(
+            ErrorCode::InvalidOption,
+            "options.depthScale",
+            format!("{depth_scale} with depths up to {farthest} m"),
+            "a scale above 0 with which the farthest depth is at most 65535 units",
+            "Pass metres per unit: 0.001 reaches 65 m.",
+        ));
+    }
+    // The encoder takes 16-bit samples in the machine's order.
+    let units = depth.data().iter().map(|&z| (f64::from(z) / depth_scale).round() as u16);
+    let bytes: Vec<u8> = units.flat_map(u16::to_ne_bytes).collect();
+    png(&bytes, depth.width(), depth.height(), ExtendedColorType::L16)
+}
+
+/// A mask as 8-bit grey PNG: 255 is the object.
+///
+/// # Errors
+/// [`ErrorCode::Internal`] where the encoder fails.
+pub fn mask_png(mask: &Mask) -> Result<Vec<u8>> {
+    let bytes: Vec<u8> = mask.data().iter().map(|&m| if m == 0 { 0 } else { 255 }).collect();
+    png(&bytes, mask.width(), mask.height(), ExtendedColorType::L8)
+}
+
+/// A picture as 8-bit RGB PNG, rows of red, green and blue.
+///
+/// # Errors
+/// [`ErrorCode::WrongLength`] and [`ErrorCode::EmptyImage`] for a size that is not the picture's.
+pub fn rgb_png(pixels: &[[u8; 3]], width: usize, height: usize) -> Result<Vec<u8>> {
+    check_size("image", width, height, pixels.len())?;
+    png(pixels.as_flattened(), width, height, ExtendedColorType::Rgb8)
+}
+
+fn png(bytes: &[u8], width: usize, height: usize, colour: ExtendedColorType) -> Result<Vec<u8>> {
+    let mut file = io::Cursor::new(Vec::new());
+    // Of 16-bit depth, half as large as with the encoder's defaults.
+    let encoder = PngEncoder::new_with_quality(&mut file, CompressionType::Best, FilterType::Sub);
+    let written = encoder.write_image(bytes, width as u32, height as u32, colour);
+    written.map_err(|error| {
+        let remedy = "Please report it.";
+        Error::new(ErrorCode::Internal, "image", format!("a PNG encoder that says: {error}"), "a PNG", remedy)
+    })?;
+    Ok(file.into_inner())
+}
+
+/// Points as binary PLY: float x, y, z.
+pub fn ply_points(points: &[Vec3]) -> Vec<u8> {
+    let header = "ply\nformat binary_little_endian 1.0";
+    let properties = "property float x\nproperty float y\nproperty float z\nend_header\n";
+    let mut bytes = format!("{header}\nelement vertex {}\n{properties}", points.len()).into_bytes();
+    bytes.extend(points.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes));
+    bytes
+}
+
+/// A mesh as GLB: one node, one mesh, float positions and 32-bit indices.
+pub fn glb(mesh: &Mesh) -> Vec<u8> {
+    let positions = mesh.positions();
+    let low = positions.iter().copied().fold(Vec3::INFINITY, Vec3::min);
+    let high = positions.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
+    let corners = mesh.triangles().as_flattened();
+    let (position_bytes, index_bytes) = (12 * positions.len(), 4 * corners.len());
+    let mut json = format!(
+        concat!(
+            r#"{{"asset":{{"version":"2.0","generator":"sim3align"}},"scene":0,"scenes":[{{"nodes":[0]}}],"#,
+            r#""nodes":[{{"mesh":0}}],"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"indices":1}}]}}],"#,
+            r#""accessors":[{{"bufferView":0,"componentType":5126,"count":{},"type":"VEC3","min":{:?},"max":{:?}}},"#,
+            r#"{{"bufferView":1,"componentType":5125,"count":{},"type":"SCALAR"}}],"#,
+            r#""bufferViews":[{{"buffer":0,"byteLength":{},"target":34962}},"#,
+            r#"{{"buffer":0,"byteOffset":{},"byteLength":{},"target":34963}}],"buffers":[{{"byteLength":{}}}]}}"#,
+        ),
+        positions.len(),
+        low.to_array(),
+        high.to_array(),
+        corners.len(),
+        position_bytes,
+        position_bytes,
+        index_bytes,
+        position_bytes + index_bytes,
+    );
+    json.extend(core::iter::repeat_n(' ', json.len().next_multiple_of(4) - json.len()));
+    let binary_bytes = position_bytes + index_bytes;
+    let mut bytes = Vec::with_capacity(28 + json.len() + binary_bytes);
+    bytes.extend(b"glTF");
+    for word in [2, 28 + json.len() + binary_bytes, json.len()] {
+        bytes.extend((word as u32).to_le_bytes());
+    }
+    bytes.extend(b"JSON");
+    bytes.extend(json.as_bytes());
+    bytes.extend((binary_bytes as u32).to_le_bytes());
+    bytes.extend(b"BIN\0");
+    bytes.extend(positions.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes));
+    bytes.extend(corners.iter().flat_map(|i| i.to_le_bytes()));
+    bytes
+}

@@ -1,0 +1,273 @@
+//! The command line.
+
+use std::path::{Path, PathBuf};
+
+use lexopt::prelude::*;
+use sim3align::align::field::{Field, Options};
+use sim3align::align::options::AlignOptions;
+use sim3align::precise::SearchSettings;
+use sim3align_geometry::error::Error;
+use sim3align_lab::baselines::Baseline;
+use sim3align_lab::samples::benchmark::override_setting;
+use sim3align_lab::samples::evaluation::case::CASES;
+use sim3align_lab::samples::evaluation::tier::{Class, Tier};
+use sim3align_lab::samples::records::RecordKey;
+use sim3align_lab::samples::scenes::Prior;
+
+pub const USAGE: &str = "\
+Usage: sim3align-lab bench [--generated N] [--scenes N] [--cases DIR...] [options]
+
+Aligns cases with a known truth and prints Markdown tables: success, errors, metrics, failures.
+
+Cases
+  --generated N      cases 0 to N − 1 of the generated set; 240 where no --cases or --scenes is given either
+  --scenes N         all pairs of a set of N cluttered scenes; 100 scenes are 338 pairs
+  --prior P          what made the meshes of the scenes: detailed (default), smooth or both
+  --set-seed S       seed of the generated set and of the scenes, default 0
+  --meshes DIR       show the GLB files of a folder in a third of the generated cases
+  --cases DIR...     case folders, or folders of case folders
+  --tier T,…         only these: easy, medium, hard
+  --class C,…        only these: plain, occluded, border-cut, tiny, thin, missing-part, extra-part, ragged-mask,
+                     warped, sparse-sensor, ambiguous
+  --only I,…         only these indices of the generated set (--generated is not needed)
+
+Method
+  --preset P         same as --option preset=P
+  --seed N           same as --option seed=N
+  --option K=V       an option of align() by its JavaScript name; null, and min,max for guard; may be repeated
+  --row 'NAME: K=V K=V…'
+                     one more row of the tables, with these options on top of the others; may be repeated;
+                     method=M is another method: fgr, gicp, icp-point-to-plane, icp-point-to-point, ransac, teaser,
+                     quatro
+  --import NAME=DIR  one more row: another program's answers, DIR/CASE.json (docs/importing-results.md); may be
+                     repeated; without --row these are the only rows
+
+Running
+  --threads N        default: all
+  --json FILE        everything about every case, for other tables
+  --records FILE     the same, added one JSON line at a time; what the file has already is not run again. Instead of
+                     tables, prints what is done
+  --write DIR        write the cases of the generated set as case folders, and align nothing
+  --picture FILE     a PNG of the first case's depth with the outlines of mask, truth and, with --matrix, a pose
+  --matrix N,N,…     the pose: camera from mesh, 16 numbers column by column; without it the true pose
+  --failures N       failures listed at most a row, default 40
+  --help             this text";
+
+/// A set of options that all cases are run with.
+#[derive(Clone, Default)]
+pub struct Row {
+    /// Its name in the tables.
+    pub name: String,
+    /// The options.
+    pub options: AlignOptions,
+    pub search: Vec<(String, f64)>,
+    pub method: Method,
+    /// All assignments, as they were written.
+    pub assignments: Vec<String>,
+}
+
+/// What gives a row's poses.
+#[derive(Clone, Default)]
+pub enum Method {
+    /// `align`.
+    #[default]
+    Align,
+    /// Another method of the crate's.
+    Baseline(Baseline),
+    /// Another program, which has left its answers in this folder.
+    Import(PathBuf),
+}
+
+impl Row {
+    /// What a record of this row is kept under.
+    pub fn key(&self, case: String) -> RecordKey {
+        RecordKey { row: self.name.clone(), options: self.assignments.join(" "), case }
+    }
+}
+
+/// What is asked for.
+pub struct Arguments {
+    pub generated: usize,
+    pub scenes: usize,
+    pub priors: Vec<Prior>,
+    pub set_seed: u64,
+    pub meshes: Option<PathBuf>,
+    pub cases: Vec<PathBuf>,
+    pub tiers: Vec<Tier>,
+    pub classes: Vec<Class>,
+    pub only: Option<Vec<usize>>,
+    pub rows: Vec<Row>,
+    pub threads: usize,
+    pub json: Option<PathBuf>,
+    pub records: Option<PathBuf>,
+    pub write: Option<PathBuf>,
+    pub picture: Option<PathBuf>,
+    pub matrix: Option<Vec<f64>>,
+    pub failures: usize,
+}
+
+impl Arguments {
+    /// `None` where help is asked for.
+    pub fn parse(mut parser: lexopt::Parser) -> Result<Option<Self>, lexopt::Error> {
+        let mut generated = None;
+        let said = |error: Error| error.to_string();
+        let (mut options, mut rows, mut imports) = (Vec::new(), Vec::new(), Vec::new());
+        let mut arguments = Self {
+            generated: 0,
+            scenes: 0,
+            priors: vec![Prior::Detailed],
+            set_seed: 0,
+            meshes: None,
+            cases: Vec::new(),
+            tiers: Tier::ALL.to_vec(),
+            classes: Class::ALL.to_vec(),
+            only: None,
+            rows: Vec::new(),
+            threads: std::thread::available_parallelism().map_or(1, usize::from),
+            json: None,
+            records: None,
+            write: None,
+            picture: None,
+            matrix: None,
+            failures: 40,
+        };
+        while let Some(argument) = parser.next()? {
+            match argument {
+                Long("generated") => generated = Some(parser.value()?.parse()?),
+                Long("scenes") => arguments.scenes = parser.value()?.parse()?,
+                Long("prior") => arguments.priors = Prior::several(&parser.value()?.string()?).map_err(said)?,
+                Long("set-seed") => arguments.set_seed = parser.value()?.parse()?,
+                Long("meshes") => arguments.meshes = Some(parser.value()?.into()),
+                Long("cases") => arguments.cases.extend(parser.values()?.map(PathBuf::from)),
+                Long("tier") => arguments.tiers = list(&parser.value()?.string()?, Tier::from_name)?,
+                Long("class") => arguments.classes = list(&parser.value()?.string()?, Class::from_name)?,
+                Long("only") => arguments.only = Some(list(&parser.value()?.string()?, str::parse::<usize>)?),
+                Long("preset") => options.push(format!("preset={}", parser.value()?.string()?)),
+                Long("seed") => options.push(format!("seed={}", parser.value()?.string()?)),
+                Long("option") => options.push(parser.value()?.string()?),
+                Long("row") => rows.push(parser.value()?.string()?),
+                Long("import") => imports.push(parser.value()?.string()?),
+                Long("threads") => arguments.threads = parser.value()?.parse::<usize>()?.max(1),
+                Long("json") => arguments.json = Some(parser.value()?.into()),
+                Long("records") => arguments.records = Some(parser.value()?.into()),
+                Long("write") => arguments.write = Some(parser.value()?.into()),
+                Long("picture") => arguments.picture = Some(parser.value()?.into()),
+                Long("matrix") => arguments.matrix = Some(list(&parser.value()?.string()?, str::parse::<f64>)?),
+                Long("failures") => arguments.failures = parser.value()?.parse()?,
+                Long("help") | Short('h') => return Ok(None),
+                _ => return Err(argument.unexpected()),
+            }
+        }
+        let mut base = Row::default();
+        for assignment in &options {
+            assign(&mut base, assignment)?;
+        }
+        for text in rows {
+            let (name, assignments) = text.split_once(':').ok_or("--row without a colon after its name")?;
+            let mut row = Row { name: name.trim().into(), ..base.clone() };
+            for assignment in assignments.split_whitespace() {
+                assign(&mut row, assignment)?;
+            }
+            arguments.rows.push(row);
+        }
+        for text in imports {
+            let (name, folder) = text.split_once('=').ok_or("--import without NAME= before its folder")?;
+            if !Path::new(folder).is_dir() {
+                return Err(format!("--import {text}: found no folder {folder}").into());
+            }
+            arguments.rows.push(Row { name: name.into(), method: Method::Import(folder.into()), ..Row::default() });
+        }
+        if arguments.rows.is_empty() {
+            let name = match &base.method {
+                Method::Baseline(baseline) => baseline.as_str().into(),
+                _ => name_of(base.options.preset),
+            };
+            arguments.rows.push(Row { name, ..base });
+        }
+        let anything_else = !arguments.cases.is_empty() || arguments.only.is_some() || arguments.scenes > 0;
+        arguments.generated = generated.unwrap_or(if anything_else { 0 } else { CASES });
+        Ok(Some(arguments))
+    }
+}
+
+fn name_of(preset: impl serde::Serialize) -> String {
+    serde_json::to_value(preset).ok().and_then(|name| Some(name.as_str()?.to_owned())).unwrap_or_default()
+}
+
+fn list<T, E: std::fmt::Display>(text: &str, parse: impl Fn(&str) -> Result<T, E>) -> Result<Vec<T>, String> {
+    text.split(',').map(|part| parse(part.trim()).map_err(|error| format!("{part:?}: {error}"))).collect()
+}
+
+/// Sets an option from `name=value`, one of the search's settings from `search.name=number`, or the method.
+fn assign(row: &mut Row, assignment: &str) -> Result<(), String> {
+    let Row { options, search, method, assignments, .. } = row;
+    assignments.push(assignment.to_owned());
+    let (name, value) = assignment.split_once('=').ok_or_else(|| format!("{assignment:?} is no NAME=VALUE"))?;
+    if name == "method" {
+        let names = || Baseline::ALL.map(Baseline::as_str).join(", ");
+        let baseline = Baseline::from_name(value).ok_or_else(|| format!("no method {value}; there are {}", names()))?;
+        *method = Method::Baseline(baseline);
+        return Ok(());
+    }
+    if let Some(setting) = name.strip_prefix("search.") {
+        let value = value.parse().map_err(|_| format!("{name}: found {value:?}, expected a number"))?;
+        if !override_setting(&mut SearchSettings::default(), setting, value) {
+            return Err(format!("the search has no setting {setting}"));
+        }
+        search.push((setting.to_owned(), value));
+        return Ok(());
+    }
+    let mut fields = options.fields();
+    let known = || AlignOptions::default().fields().iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
+    let (_, field) = fields
+        .iter_mut()
+        .find(|(field, _)| *field == name)
+        .ok_or_else(|| format!("no option {name}; there are {}", known()))?;
+    if !set(field, value) {
+        return Err(format!("{name}: found {value:?}, expected {}", field.expected()));
+    }
+    field.check(name).map_err(|error| error.to_string())
+}
+
+/// Sets a field from text; `false` where that does not fit its type.
+fn set(field: &mut Field<'_>, text: &str) -> bool {
+    fn store<T: std::str::FromStr>(slot: &mut T, text: &str) -> bool {
+        text.parse().map(|value| *slot = value).is_ok()
+    }
+    match field {
+        Field::Count { value, .. } => store(*value, text),
+        Field::Number { value, .. } => store(*value, text),
+        Field::Flag(flag) => store(*flag, text),
+        Field::Choice(choice) => choice.set(text),
+        Field::Positive(number) if text == "null" => {
+            **number = None;
+            true
+        }
+        Field::Positive(number) => text.parse().map(|value| **number = Some(value)).is_ok(),
+        Field::Switch(flag) => {
+            **flag = None;
+            text == "null" || text.parse().map(|value| **flag = Some(value)).is_ok()
+        }
+        Field::Bounds(bounds) => match list(text, str::parse::<f64>).as_deref() {
+            Ok([fixed]) => {
+                **bounds = Some([*fixed, *fixed]);
+                true
+            }
+            Ok([min, max]) => {
+                **bounds = Some([*min, *max]);
+                true
+            }
+            _ => false,
+        },
+        // Differ from case to case.
+        Field::Direction(_) | Field::Symmetry(_) | Field::Transform(_) => false,
+        Field::Guard(guard) if text == "null" => {
+            **guard = None;
+            true
+        }
+        Field::Guard(guard) => {
+            let bounds = list(text, str::parse::<f64>).ok().and_then(|bounds| <[f64; 2]>::try_from(bounds).ok());
+            bounds.map(|bounds| **guard = Some(bounds)).is_some()
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! The cases, shared out among threads; what comes back is in their order.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde::de::IgnoredAny;
+use serde_json::json;
+use sim3align_geometry::similarity::Similarity;
+use sim3align_lab::baselines::align::align_baseline;
+use sim3align_lab::samples::benchmark::{BenchCase, Record, run_case, run_method};
+use sim3align_lab::samples::evaluation::case::EvaluationSet;
+use sim3align_lab::samples::evaluation::tier::{Class, Tier};
+use sim3align_lab::samples::imported::imported;
+use sim3align_lab::samples::in_order;
+use sim3align_lab::samples::overlay::picture;
+use sim3align_lab::samples::records::{RecordFile, RecordKey};
+use sim3align_lab::samples::scenes::{Prior, SceneSet};
+
+use super::arguments::{Arguments, Method, Row};
+use super::scenes::Scenes;
+use super::table;
+
+/// Where a case comes from.
+pub enum Source {
+    Generated(usize),
+    Scene { scene: usize, pair: usize, prior: Prior },
+    Folder(PathBuf),
+}
+
+impl Source {
+    /// What tells the case from the others of a run.
+    fn id(&self) -> String {
+        match self {
+            Self::Generated(index) => format!("generated-{index:04}"),
+            Self::Scene { scene, pair, prior } => format!("scene-{scene:03}-{pair}-{}", prior.as_str()),
+            Self::Folder(folder) => folder.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+        }
+    }
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), String> {
+    let set = match &arguments.meshes {
+        Some(folder) => EvaluationSet::with_meshes(arguments.set_seed, folder).map_err(|error| error.to_string())?,
+        None => EvaluationSet::new(arguments.set_seed),
+    };
+    let scenes = Scenes::new(SceneSet::new(arguments.set_seed, arguments.scenes));
+    let sources = sources(arguments, &scenes)?;
+    if sources.is_empty() {
+        return Err("no case left to run".into());
+    }
+    if let Some(folder) = &arguments.write {
+        return in_order(arguments.threads, &sources, |source| match source {
+            Source::Generated(index) => {
+                let case = set.case(*index).map_err(|error| error.to_string())?;
+                case.write(&folder.join(case.name())).map_err(|error| error.to_string())
+            }
+            Source::Scene { .. } | Source::Folder(_) => Ok(()),
+        })
+        .map(drop);
+    }
+    let load = |source: &Source| load(source, &set, &scenes);
+    if let (Some(path), Some(source)) = (&arguments.picture, sources.first()) {
+        return draw(&load(source)?, arguments.matrix.as_deref(), path);
+    }
+    if let Some(path) = &arguments.records {
+        return go_on(arguments, &sources, &load, path);
+    }
+    let begun = std::time::Instant::now();
+    let records: Vec<Vec<Record>> = in_order(arguments.threads, &sources, |source| {
+        let case = load(source)?;
+        Ok(arguments.rows.iter().map(|row| run_row(&case, row)).collect())
+    })?;
+    eprintln!("{} cases in {:.1} s", records.len(), begun.elapsed().as_secs_f64());
+    let names = arguments.rows.iter().map(|row| row.name.clone());
+    let rows: Vec<(String, Vec<&Record>)> =
+        names.enumerate().map(|(i, name)| (name, records.iter().map(|case| &case[i]).collect())).collect();
+    print!("{}", table::report(&rows, arguments.failures));
+    if let Some(path) = &arguments.json {
+        let rows: Vec<_> = rows.iter().map(|(name, records)| json!({ "row": name, "records": records })).collect();
+        let all = json!({ "setSeed": arguments.set_seed, "rows": rows });
+        fs::write(path, format!("{all}\n")).map_err(|error| format!("{}: {error}", path.display()))?;
+    }
+    Ok(())
+}
+
+/// Adds to a file of records what is not there yet. What is done is told on standard output as JSON, a line each.
+fn go_on(
+    arguments: &Arguments,
+    sources: &[Source],
+    load: &(dyn Fn(&Source) -> Result<BenchCase, String> + Sync),
+    path: &Path,
+) -> Result<(), String> {
+    let file = RecordFile::<IgnoredAny>::open(path).map_err(|error| error.to_string())?;
+    let missing = |source: &Source| -> Vec<(&Row, RecordKey)> {
+        let keyed = arguments.rows.iter().map(|row| (row, row.key(source.id())));
+        keyed.filter(|(_, key)| !file.has(key)).collect()
+    };
+    let total = sources.len() * arguments.rows.len();
+    let left: usize = sources.iter().map(|source| missing(source).len()).sum();
+    println!("{}", json!({ "total": total, "done": total - left }));
+    in_order(arguments.threads, sources, |source| {
+        let missing = missing(source);
+        if missing.is_empty() {
+            return Ok(());
+        }
+        let case = load(source)?;
+        for (row, key) in missing {
+            let record = run_row(&case, row);
+            file.add(&key, &record).map_err(|error| error.to_string())?;
+            println!("{}", json!({ "row": key.row, "case": key.case, "seconds": record.seconds }));
+        }
+        Ok(())
+    })
+    .map(drop)
+}
+
+fn draw(case: &BenchCase, matrix: Option<&[f64]>, path: &Path) -> Result<(), String> {
+    let pose = match matrix {
+        Some(matrix) => {
+            let numbers = <&[f64; 16]>::try_from(matrix).map_err(|_| "--matrix: expected 16 numbers")?;
+            Some(Similarity::from_column_major(numbers).map_err(|error| error.to_string())?)
+        }
+        None => case.truth.as_ref().map(|truth| truth.camera_from_mesh),
+    };
+    let pose = pose.ok_or("the case has no true pose: pass --matrix")?;
+    let png = picture(case, &pose).map_err(|error| error.to_string())?;
+    fs::write(path, png).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+fn run_row(case: &BenchCase, row: &Row) -> Record {
+    match &row.method {
+        Method::Align => run_case(case, &row.options, &row.search),
+        Method::Baseline(baseline) => {
+            run_method(case, |observation, mesh, host| align_baseline(observation, mesh, *baseline, &row.options, host))
+        }
+        Method::Import(folder) => imported(case, folder),
+    }
+}
+
+fn load(source: &Source, set: &EvaluationSet, scenes: &Scenes) -> Result<BenchCase, String> {
+    let case = match source {
+        Source::Generated(index) => set.case(*index).map(BenchCase::from),
+        Source::Scene { scene, pair, prior } => scenes.case(*scene, *pair, *prior),
+        Source::Folder(folder) => BenchCase::read(folder),
+    };
+    case.map_err(|error| error.to_string())
+}
+
+fn sources(arguments: &Arguments, scenes: &Scenes) -> Result<Vec<Source>, String> {
+    let fits =
+        |&index: &usize| arguments.tiers.contains(&Tier::of(index)) && arguments.classes.contains(&Class::of(index));
+    let generated: Vec<usize> = match &arguments.only {
+        Some(only) => only.clone(),
+        None => (0..arguments.generated).filter(fits).collect(),
+    };
+    let mut sources: Vec<Source> = generated.into_iter().map(Source::Generated).collect();
+    sources.extend(scenes.sources(&arguments.priors));
+    for folder in &arguments.cases {
+        sources.extend(case_folders(folder)?.into_iter().map(Source::Folder));
+    }
+    Ok(sources)
+}
+
+/// The folder itself where it holds a camera file, else the case folders in it.
+fn case_folders(folder: &Path) -> Result<Vec<PathBuf>, String> {
+    let is_case = |folder: &Path| folder.join("camera.json").is_file();
+    if is_case(folder) {
+        return Ok(vec![folder.into()]);
+    }
+    let entries = fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let mut folders: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    folders.retain(|folder| is_case(folder));
+    folders.sort();
+    Ok(folders)
+}
+
+/// What `work` makes of every item; how many are done is told on standard error.
+fn in_order<T: Sync, R: Send>(
+    threads: usize,
+    items: &[T],
+    work: impl Fn(&T) -> Result<R, String> + Sync,
+) -> Result<Vec<R>, String> {
+    let result = in_order::in_order(threads, items, work, |done| {
+        if done.is_multiple_of(10) || done == items.len() {
+            eprint!("\r{done} of {} ", items.len());
+        }
+    });
+    eprintln!();
+    result
+}

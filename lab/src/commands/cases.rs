@@ -1,0 +1,67 @@
+//! Writes one generated case with a known truth.
+
+use std::path::PathBuf;
+
+use lexopt::prelude::*;
+use sim3align_geometry::error::Error;
+use sim3align_lab::samples::case::SampleCase;
+use sim3align_lab::samples::scenes::DEPTH_SCALE;
+use sim3align_lab::samples::shape::Kind;
+
+use super::Failure;
+
+const USAGE: &str = "\
+Usage: sim3align-lab case OUT_DIR [--kind KIND] [--seed N] [--depth FORMAT]
+
+Writes a generated case folder: depth.npy, mask.png, camera.json, mesh.glb and, with the true pose, gt.json.
+
+  --kind KIND     what to show: mug (default), hammer, spoon, or occluded, a teapot behind a mug
+  --seed N        0 to 18446744073709551615, default 0; the same seed gives the same bytes
+  --depth FORMAT  npy (default), or png: tenths of millimetres, a fifth of the bytes
+  --help          this text";
+
+struct Arguments {
+    folder: PathBuf,
+    kind: Kind,
+    seed: u64,
+    depth_scale: Option<f64>,
+}
+
+/// `None` where help is asked for.
+fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Error> {
+    let (mut folder, mut kind, mut seed, mut depth_scale) = (None, Kind::Mug, 0, None);
+    let message = |error: Error| error.to_string();
+    while let Some(argument) = parser.next()? {
+        match argument {
+            Long("help") | Short('h') => return Ok(None),
+            Value(path) if folder.is_none() => folder = Some(PathBuf::from(path)),
+            Value(path) => return Err(format!("a second folder, {}", path.to_string_lossy()).into()),
+            Long("kind") => kind = Kind::from_name(&parser.value()?.string()?).map_err(message)?,
+            Long("seed") => seed = parser.value()?.parse()?,
+            Long("depth") => depth_scale = depth_format(&parser.value()?.string()?)?,
+            _ => return Err(argument.unexpected()),
+        }
+    }
+    let folder = folder.ok_or("no folder to write to")?;
+    Ok(Some(Arguments { folder, kind, seed, depth_scale }))
+}
+
+/// Metres per unit of a depth map in a format; `None` for floats.
+fn depth_format(name: &str) -> Result<Option<f64>, lexopt::Error> {
+    match name {
+        "npy" => Ok(None),
+        "png" => Ok(Some(DEPTH_SCALE)),
+        _ => Err(format!("--depth {name}: npy or png is expected").into()),
+    }
+}
+
+/// Runs the command.
+pub fn main(arguments: lexopt::Parser) -> Result<(), Failure> {
+    match parse(arguments) {
+        Ok(Some(Arguments { folder, kind, seed, depth_scale })) => SampleCase::new(kind, seed)
+            .and_then(|case| case.write(&folder, depth_scale))
+            .map_err(|error| Failure::Failed(error.to_string())),
+        Ok(None) => Err(Failure::Help(USAGE)),
+        Err(error) => Err(Failure::Usage(error, USAGE)),
+    }
+}

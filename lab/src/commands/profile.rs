@@ -1,0 +1,85 @@
+//! Aligns case folders with the natively compiled core: what `npm run profile` compares WebAssembly with.
+
+use std::time::Instant;
+
+use lexopt::prelude::*;
+use serde_json::{Map, Value as Json};
+use sim3align::align::align;
+use sim3align::align::field::Choice;
+use sim3align::align::options::AlignOptions;
+use sim3align::progress::{Host, Stage};
+use sim3align_geometry::error::Error;
+use sim3align_lab::case_folder::case::read_case;
+
+use super::Failure;
+
+const USAGE: &str = "\
+Usage: sim3align-lab profile [--quality QUALITY] RUNS CASE...
+
+Aligns each case folder RUNS times and prints JSON: { \"<folder>\": [result, …] }. QUALITY is fast, balanced (default) or
+best; all other options are the defaults.";
+
+struct Clock(Instant);
+
+impl Host for Clock {
+    fn now_ms(&mut self) -> f64 {
+        self.0.elapsed().as_secs_f64() * 1000.0
+    }
+
+    fn progress(&mut self, _stage: Stage, _fraction: f64) {}
+}
+
+fn results(folder: &str, runs: usize, options: &AlignOptions) -> Result<Vec<Json>, Error> {
+    let case = read_case(folder.as_ref())?;
+    (0..runs)
+        .map(|_| {
+            let mut clock = Clock(Instant::now());
+            let alignment = align(&case.observation, &case.mesh, options, &mut clock)?;
+            Ok(serde_json::to_value(alignment).unwrap_or_default())
+        })
+        .collect()
+}
+
+struct Arguments {
+    options: AlignOptions,
+    runs: usize,
+    folders: Vec<String>,
+}
+
+/// `None` where help is asked for.
+fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Error> {
+    let (mut options, mut runs, mut folders) = (AlignOptions::default(), None, Vec::new());
+    while let Some(argument) = parser.next()? {
+        match argument {
+            Long("help") | Short('h') => return Ok(None),
+            Long("quality") => {
+                let name = parser.value()?.string()?;
+                if !options.quality.set(&name) {
+                    return Err(format!("--quality {name}: fast, balanced or best is expected").into());
+                }
+            }
+            Value(count) if runs.is_none() => runs = Some(count.parse()?),
+            Value(folder) => folders.push(folder.string()?),
+            _ => return Err(argument.unexpected()),
+        }
+    }
+    let runs = runs.ok_or("no number of runs")?;
+    Ok(Some(Arguments { options, runs, folders }))
+}
+
+/// Runs the command.
+pub fn main(arguments: lexopt::Parser) -> Result<(), Failure> {
+    let Arguments { options, runs, folders } = match parse(arguments) {
+        Ok(Some(arguments)) => arguments,
+        Ok(None) => return Err(Failure::Help(USAGE)),
+        Err(error) => return Err(Failure::Usage(error, USAGE)),
+    };
+    let mut all = Map::new();
+    for folder in folders {
+        let values = results(&folder, runs, &options)
+            .map_err(|error| Failure::Failed(format!("{folder}: {} {error}", error.code.as_str())))?;
+        all.insert(folder, values.into());
+    }
+    println!("{}", Json::Object(all));
+    Ok(())
+}

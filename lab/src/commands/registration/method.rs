@@ -1,0 +1,141 @@
+//! What registers a pair: the one place where methods are plugged in.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use glam::Vec3;
+use sim3align::align::field::{Field, Options};
+use sim3align::align::options::{RegisterOptions, ScaleOption};
+use sim3align::progress::Silent;
+use sim3align::register::icp::IcpMetric;
+use sim3align::register::register;
+use sim3align_geometry::cloud::Cloud;
+use sim3align_geometry::similarity::Similarity;
+use sim3align_lab::baselines::{Baseline, PairSettings, register_pair};
+use sim3align_lab::samples::imported::{CLOUDS, Outcome, answer_in};
+use sim3align_lab::samples::records::RecordKey;
+use sim3align_lab::samples::registration::cloud_file::flat;
+use sim3align_lab::samples::registration::pair::Pair;
+
+/// Correspondences of another program agree with a pose that leaves them this near, in the pair's voxels, where the
+/// file does not say.
+const INLIER_VOXELS: f64 = 1.5;
+
+/// A registration method. To add one: a variant, its name in [`Method::from_name`], its call in [`Method::run`].
+pub enum Method {
+    /// `register` with the scale fixed at 1.
+    Register { options: Box<RegisterOptions>, assignments: Vec<String> },
+    /// Another method of the crate's, at the pair's voxel size.
+    Baseline(Baseline),
+    /// Transforms that another program has written, under a name for the tables.
+    Import { name: String, folder: PathBuf },
+}
+
+/// A transform, or why there is none, and what it took.
+pub struct Answer {
+    pub target_from_source: Result<Similarity, String>,
+    pub seconds: f64,
+}
+
+impl Method {
+    /// `register`, a baseline's name, `import:DIR` or `NAME=import:DIR`.
+    pub fn from_name(text: &str, assignments: &[String]) -> Result<Self, String> {
+        if let Some((before, folder)) = text.split_once("import:") {
+            let folder = PathBuf::from(folder);
+            let own_name = folder.file_name().map_or("import".into(), |name| name.to_string_lossy().into_owned());
+            let name = if before.is_empty() { own_name } else { before.trim_end_matches('=').to_owned() };
+            return Ok(Self::Import { name, folder });
+        }
+        if text != "register" {
+            let names = || Baseline::ALL.map(Baseline::as_str).join(", ");
+            let unknown = || format!("--method {text}: expected register, {}, or NAME=import:DIR", names());
+            return Baseline::from_name(text).map(Self::Baseline).ok_or_else(unknown);
+        }
+        let mut options = RegisterOptions::default();
+        for assignment in assignments {
+            let (name, value) = assignment.split_once('=').ok_or_else(|| format!("--option {assignment}: no ="))?;
+            assign(&mut options, name, value).ok_or_else(|| format!("--option {assignment}: not an option"))?;
+        }
+        options.validate().map_err(|error| error.to_string())?;
+        Ok(Self::Register { options: Box::new(options), assignments: assignments.to_vec() })
+    }
+
+    /// Its name in the tables.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Register { .. } => "register",
+            Self::Baseline(baseline) => baseline.as_str(),
+            Self::Import { name, .. } => name,
+        }
+    }
+
+    /// What its record of a pair is kept under; `moved` is the seed of the moves.
+    pub fn key(&self, pair: &Pair, moved: u64) -> RecordKey {
+        let mut options = vec![format!("moved={moved}")];
+        if let Self::Register { assignments, .. } = self {
+            options.extend_from_slice(assignments);
+        }
+        RecordKey { row: self.name().into(), options: options.join(" "), case: pair.id.clone() }
+    }
+
+    /// Whether it needs the clouds.
+    pub fn needs_clouds(&self) -> bool {
+        !matches!(self, Self::Import { .. })
+    }
+
+    /// Registers a pair.
+    pub fn run(&self, pair: &Pair, source: &[Vec3], target: &[Vec3]) -> Answer {
+        match self {
+            Self::Register { options, .. } => {
+                let (source, target) = (flat(source), flat(target));
+                let begun = Instant::now();
+                let found = register(&source, &target, ScaleOption::Fixed(1.0), options, &mut Silent);
+                let seconds = begun.elapsed().as_secs_f64();
+                let pose = found.and_then(|found| Similarity::from_column_major(&found.target_from_source.matrix));
+                Answer { target_from_source: pose.map_err(|error| error.to_string()), seconds }
+            }
+            Self::Baseline(baseline) => {
+                let [source, target] = [source, target].map(|points| Cloud::from_points(points.to_vec()));
+                let begun = Instant::now();
+                // As the tutorials have it, RANSAC's pose is refined.
+                let settings =
+                    PairSettings { icp: Some(IcpMetric::PointToPlane), ..PairSettings::new(pair.voxel_size_m) };
+                let pose = register_pair(&source, &target, *baseline, &settings);
+                let seconds = begun.elapsed().as_secs_f64();
+                Answer { target_from_source: pose.map_err(|error| error.to_string()), seconds }
+            }
+            Self::Import { folder, .. } => imported(pair, folder),
+        }
+    }
+}
+
+fn assign(options: &mut RegisterOptions, name: &str, text: &str) -> Option<()> {
+    let (_, field) = options.fields().into_iter().find(|(own, _)| *own == name)?;
+    match field {
+        Field::Count { value, .. } => *value = text.parse().ok()?,
+        Field::Number { value, .. } => *value = text.parse().ok()?,
+        Field::Positive(value) => *value = if text == "null" { None } else { Some(text.parse().ok()?) },
+        Field::Choice(choice) => return choice.set(text).then_some(()),
+        _ => return None,
+    }
+    Some(())
+}
+
+/// The answer of another program.
+fn imported(pair: &Pair, folder: &Path) -> Answer {
+    let (outcome, seconds) = match answer_in(folder, &pair.id, &CLOUDS) {
+        Ok(answer) => (Ok(answer.outcome), answer.seconds),
+        Err(error) => (Err(error), None),
+    };
+    let pose = outcome.and_then(|outcome| match outcome {
+        Outcome::Pose(pose) => Ok(pose),
+        Outcome::Failure(message) => Err(format!("the method's own error: {message}")),
+        Outcome::Pairs(pairs) => {
+            let distance = pairs.inlier_distance_m.unwrap_or(INLIER_VOXELS * pair.voxel_size_m);
+            let found = pairs.estimate(ScaleOption::Fixed(1.0), distance);
+            let pose = found.and_then(|found| Similarity::from_column_major(&found.target_from_source.matrix));
+            pose.map_err(|error| error.to_string())
+        }
+    });
+    Answer { target_from_source: pose, seconds: seconds.unwrap_or(f64::NAN) }
+}

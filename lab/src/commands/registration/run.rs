@@ -1,0 +1,141 @@
+//! The pairs, shared out among threads.
+
+use glam::Vec3;
+use serde_json::json;
+use sim3align_geometry::cloud::Cloud;
+use sim3align_geometry::random::Random;
+use sim3align_geometry::rotations::super_fibonacci;
+use sim3align_geometry::similarity::{Similarity, vec3, vector3};
+use sim3align_geometry::voxel_grid::voxel_downsample;
+use sim3align_lab::samples::in_order::in_order;
+use sim3align_lab::samples::records::RecordFile;
+use sim3align_lab::samples::registration::cloud_file::read_cloud;
+use sim3align_lab::samples::registration::lidar_set::write_lidar;
+use sim3align_lab::samples::registration::overlap::overlap;
+use sim3align_lab::samples::registration::pair::Pair;
+use sim3align_lab::samples::registration::room_set::write_rooms;
+use sim3align_lab::samples::registration::{kitti, three_d_match};
+
+use super::arguments::{Command, Kind, Protocol, Run};
+use super::method::Method;
+use super::record::Record;
+use super::table;
+
+/// The random stream of `--moved`.
+const MOVED_STREAM: u64 = 0x6d6f_7665;
+
+pub fn run(command: &Command) -> Result<(), String> {
+    match command {
+        Command::Write { kind: Kind::Rooms, out, seed, scenes } => write_rooms(out, *seed, *scenes),
+        Command::Write { kind: Kind::Lidar, out, seed, scenes } => write_lidar(out, *seed, *scenes),
+        Command::Run(run) => return run_pairs(run),
+    }
+    .map_err(|error| error.to_string())
+}
+
+fn run_pairs(run: &Run) -> Result<(), String> {
+    let mut pairs = pairs(run)?;
+    pairs.retain(|pair| run.only.as_ref().is_none_or(|text| pair.id.contains(text)));
+    let pairs: Vec<Pair> = pairs.into_iter().step_by(run.every).collect();
+    if pairs.is_empty() {
+        return Err("no pair left to run".into());
+    }
+    if let Some(path) = &run.pairs_json {
+        let absolute = |path: &std::path::Path| std::path::absolute(path).map_err(|error| error.to_string());
+        let list = pairs.iter().map(|pair| {
+            let (source, target) = (absolute(&pair.source)?, absolute(&pair.target)?);
+            Ok(json!({ "id": pair.id, "source": source, "target": target, "voxelSizeM": pair.voxel_size_m }))
+        });
+        let list: Vec<_> = list.collect::<Result<_, String>>()?;
+        return std::fs::write(path, json!(list).to_string()).map_err(|error| format!("{}: {error}", path.display()));
+    }
+    let records = run.records.as_deref().map(RecordFile::open).transpose().map_err(|error| error.to_string())?;
+    let work = |pair: &Pair| run_pair(pair, run, records.as_ref());
+    let made = in_order(run.threads, &pairs, work, |done| eprint!("\r{done} of {} ", pairs.len()));
+    eprintln!();
+    let all: Vec<Record> = made?.into_iter().flatten().collect();
+    let methods: Vec<&str> = run.methods.iter().map(Method::name).collect();
+    print!("{}", table::report(&all, &methods));
+    if let Some(path) = &run.json {
+        std::fs::write(path, format!("{}\n", json!(all))).map_err(|error| format!("{}: {error}", path.display()))?;
+    }
+    Ok(())
+}
+
+fn pairs(run: &Run) -> Result<Vec<Pair>, String> {
+    let is_kitti = match run.protocol {
+        Protocol::Kitti => true,
+        Protocol::ThreeDMatch => false,
+        Protocol::Auto => kitti::is_layout(&run.data),
+    };
+    let pairs =
+        if is_kitti { kitti::pairs(&run.data) } else { three_d_match::pairs(&run.data, run.benchmark.as_deref()) };
+    pairs.map_err(|error| error.to_string())
+}
+
+fn run_pair(pair: &Pair, run: &Run, records: Option<&RecordFile<Record>>) -> Result<Vec<Record>, String> {
+    let known = |method: &Method| records?.get(&method.key(pair, run.moved)).filter(|_| method.needs_clouds()).cloned();
+    let missing = run.methods.iter().any(|method| method.needs_clouds() && known(method).is_none());
+    let overlap_of = |method| known(method)?.overlap;
+    let measured = pair.overlap.or_else(|| run.methods.iter().find_map(overlap_of));
+    let measure = run.measure_overlap && measured.is_none();
+    let read = |path| read_cloud(path).map_err(|error| error.to_string());
+    let (source, target) =
+        if missing || measure { (read(&pair.source)?, read(&pair.target)?) } else { (Vec::new(), Vec::new()) };
+    let share = measured.or_else(|| {
+        let voxels =
+            |points: &[Vec3]| voxel_downsample(&Cloud::from_points(points.to_vec()), 0.5 * pair.voxel_size_m as f32);
+        let (a, b) = (voxels(&source).points, voxels(&target).points);
+        measure.then(|| overlap(&a, &b, &pair.target_from_source, 0.75 * pair.voxel_size_m as f32))
+    });
+    // Another frame for each cloud; what is found is taken back to their own.
+    let (source_move, target_move) = (moved(run.moved, &pair.id, 0), moved(run.moved, &pair.id, 1));
+    let [source, target] = [(source, source_move), (target, target_move)]
+        .map(|(points, pose)| points.iter().map(|&p| vec3(&pose.apply(vector3(p)))).collect::<Vec<Vec3>>());
+    let mut made = Vec::new();
+    for method in &run.methods {
+        if let Some(record) = known(method) {
+            made.push(Record { overlap: share.or(record.overlap), ..record });
+            continue;
+        }
+        let mut answer = method.run(pair, &source, &target);
+        if method.needs_clouds() {
+            answer.target_from_source =
+                answer.target_from_source.map(|pose| target_move.inverse().compose(&pose).compose(&source_move));
+        }
+        let errors = answer.target_from_source.as_ref().ok().map(|pose| pair.errors(pose));
+        let record = Record {
+            id: pair.id.clone(),
+            group: pair.group.clone(),
+            method: method.name().to_owned(),
+            overlap: share,
+            distance_m: pair.distance_m(),
+            success: errors.is_some_and(|errors| errors.success),
+            rotation_deg: errors.map(|errors| errors.rotation_deg),
+            translation_m: errors.map(|errors| errors.translation_m),
+            rmse_m: errors.and_then(|errors| errors.rmse_m),
+            error: answer.target_from_source.as_ref().err().cloned(),
+            seconds: Some(answer.seconds).filter(|seconds| seconds.is_finite()),
+            matrix: answer.target_from_source.as_ref().ok().map(Similarity::to_column_major),
+        };
+        if let (true, Some(file)) = (method.needs_clouds(), records) {
+            file.add(&method.key(pair, run.moved), &record).map_err(|error| error.to_string())?;
+        }
+        made.push(record);
+    }
+    Ok(made)
+}
+
+/// A random rigid transform for a pair; the identity for seed 0.
+fn moved(seed: u64, id: &str, side: u64) -> Similarity {
+    if seed == 0 {
+        return Similarity::identity();
+    }
+    let of_id = id.bytes().fold(side, |sum, byte| sum.wrapping_mul(31).wrapping_add(u64::from(byte)));
+    let mut random = Random::new(seed ^ of_id << 8, MOVED_STREAM);
+    const ROTATIONS: usize = 1 << 20;
+    let [x, y, z, w] = super_fibonacci(random.below(ROTATIONS), ROTATIONS).to_array();
+    let matrix = Similarity::rotation_from_xyzw(&[x, y, z, w]);
+    let shift = nalgebra::Vector3::from_fn(|_, _| 60.0 * random.uniform() - 30.0);
+    matrix.and_then(|matrix| Similarity::from_parts(1.0, matrix, shift)).unwrap_or_else(|_| Similarity::identity())
+}

@@ -1,0 +1,65 @@
+//! Writes cluttered scenes as case folders.
+
+use std::path::PathBuf;
+
+use lexopt::prelude::*;
+use sim3align_geometry::error::Error;
+use sim3align_lab::samples::scenes::{Prior, SCENES, SceneSet};
+
+use super::Failure;
+
+const USAGE: &str = "\
+Usage: sim3align-lab scenes OUT_DIR [--scenes N] [--set-seed S] [--prior P] [--threads N]
+
+Writes cluttered scenes as case folders OUT_DIR/PRIOR/SCENE-OBJECT-FAMILY: depth.png, mask.png, camera.json, mesh.glb,
+gt.json and meta.json. Folders that exist are left alone: a run that was stopped goes on.
+
+  --scenes N    how many, default 100, which are 338 pairs
+  --set-seed S  default 0
+  --prior P     what made the meshes: detailed, smooth or both (default)
+  --threads N   default: all
+  --help        this text";
+
+struct Arguments {
+    folder: PathBuf,
+    set: SceneSet,
+    priors: Vec<Prior>,
+    threads: usize,
+}
+
+/// `None` where help is asked for.
+fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Error> {
+    let (mut folder, mut scenes, mut set_seed, mut priors) = (None, SCENES, 0, Prior::ALL.to_vec());
+    let mut threads = std::thread::available_parallelism().map_or(1, usize::from);
+    while let Some(argument) = parser.next()? {
+        match argument {
+            Long("help") | Short('h') => return Ok(None),
+            Value(path) if folder.is_none() => folder = Some(PathBuf::from(path)),
+            Value(path) => return Err(format!("a second folder, {}", path.to_string_lossy()).into()),
+            Long("scenes") => scenes = parser.value()?.parse()?,
+            Long("set-seed") => set_seed = parser.value()?.parse()?,
+            Long("prior") => {
+                priors = Prior::several(&parser.value()?.string()?).map_err(|error: Error| error.to_string())?;
+            }
+            Long("threads") => threads = parser.value()?.parse()?,
+            _ => return Err(argument.unexpected()),
+        }
+    }
+    let folder = folder.ok_or("no folder to write to")?;
+    Ok(Some(Arguments { folder, set: SceneSet::new(set_seed, scenes), priors, threads }))
+}
+
+/// Runs the command.
+pub fn main(arguments: lexopt::Parser) -> Result<(), Failure> {
+    let Arguments { folder, set, priors, threads } = match parse(arguments) {
+        Ok(Some(arguments)) => arguments,
+        Ok(None) => return Err(Failure::Help(USAGE)),
+        Err(error) => return Err(Failure::Usage(error, USAGE)),
+    };
+    let all = set.scenes();
+    let written = set.write(&folder, &priors, threads, |done| {
+        let end = if done == all { "\n" } else { "" };
+        eprint!("\r{done} of {all} scenes {end}");
+    });
+    written.map_err(|error| Failure::Failed(error.to_string()))
+}

@@ -1,0 +1,309 @@
+//! Cluttered scenes: as many pairs as said, nothing within another, true to their truth.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::PathBuf;
+use std::sync::OnceLock;
+
+use sim3align::evidence::Sampling;
+use sim3align::evidence::sample::{SurfaceMoments, check_shape};
+use sim3align::metrics::symmetry::Symmetry;
+use sim3align::metrics::{Metrics, evaluate};
+use sim3align_geometry::cloud::Bounds;
+use sim3align_geometry::error::ErrorCode;
+use sim3align_geometry::mesh::Mesh;
+use sim3align_geometry::order::median;
+use sim3align_geometry::rasteriser::Rasteriser;
+use sim3align_geometry::triangle_tree::TriangleTree;
+use sim3align_lab::samples::benchmark::BenchCase;
+use sim3align_lab::samples::evaluation::tier::Tier;
+use sim3align_lab::samples::scenes::{
+    ClutteredScene, LEAST_VISIBLE, MIN_MASK_PX, Prior, SceneCase, ScenePair, SceneSet, Sight, difficulty, tier,
+};
+
+const SEED: u64 = 7;
+const LOOKED_AT: usize = 5;
+
+/// A few scenes, drawn once for all tests.
+fn scenes() -> &'static [ClutteredScene] {
+    static SCENES: OnceLock<Vec<ClutteredScene>> = OnceLock::new();
+    SCENES.get_or_init(|| {
+        let set = SceneSet::new(SEED, LOOKED_AT);
+        (0..LOOKED_AT).map(|index| set.scene(index).unwrap()).collect()
+    })
+}
+
+fn pairs() -> impl Iterator<Item = &'static ScenePair> {
+    scenes().iter().flat_map(|scene| &scene.pairs)
+}
+
+fn parameter(case: &SceneCase, name: &str) -> f64 {
+    case.parameters.iter().find(|(n, _)| *n == name).unwrap().1
+}
+
+fn truth_metrics(case: &SceneCase) -> Metrics {
+    evaluate(&case.observation, &case.mesh, &case.camera_from_mesh, &Sampling::default()).unwrap()
+}
+
+fn folder(name: &str) -> PathBuf {
+    std::env::temp_dir().join(format!("sim3align-{}-{name}", std::process::id()))
+}
+
+#[test]
+fn a_hundred_scenes_hold_338_pairs() {
+    for seed in 0..20 {
+        let set = SceneSet::new(seed, 100);
+        let with = |n| (0..100).filter(|&scene| set.pairs_of(scene) == n).count();
+        assert_eq!((set.scenes(), set.pairs(), with(4), with(3), with(2)), (100, 338, 52, 34, 14), "seed {seed}");
+        // The same shares in every ten, and a smaller set is the beginning of a larger one.
+        let first = SceneSet::new(seed, 10);
+        assert!((33..=35).contains(&first.pairs()), "seed {seed}: {}", first.pairs());
+        assert!((0..10).all(|scene| first.pairs_of(scene) == set.pairs_of(scene)), "seed {seed}");
+    }
+    let order = |seed| (0..100).map(|scene| SceneSet::new(seed, 100).pairs_of(scene)).collect::<Vec<_>>();
+    assert_ne!(order(0), order(1));
+    assert_eq!((SceneSet::new(0, 0).pairs(), SceneSet::new(0, 5).pairs_of(5)), (0, 0));
+    assert_eq!(SceneSet::new(0, 5).scene(5).unwrap_err().code, ErrorCode::InvalidArgument);
+}
+
+#[test]
+fn every_scene_has_as_many_pairs_as_its_set_says() {
+    let set = SceneSet::new(SEED, 100);
+    for scene in scenes() {
+        assert_eq!(scene.pairs.len(), set.pairs_of(scene.index));
+        assert!((2..=4).contains(&scene.pairs.len()));
+        assert!(scene.pairs.iter().enumerate().all(|(k, pair)| (pair.scene, pair.index) == (scene.index, k)));
+    }
+}
+
+#[test]
+fn a_pair_follows_from_the_sets_seed_its_place_and_the_prior_alone() {
+    let files = |seed, scenes, prior| {
+        let scene = SceneSet::new(seed, scenes).scene(1).unwrap();
+        scene.pairs.last().unwrap().case(prior).unwrap().files().unwrap()
+    };
+    for prior in Prior::ALL {
+        assert_eq!(files(1, 2, *prior), files(1, 100, *prior), "{prior:?}");
+        assert_ne!(files(1, 2, *prior), files(2, 2, *prior), "{prior:?}");
+    }
+}
+
+/// The number of a mesh's vertices within another one, by parity along rays upwards; the meshes' parts are closed.
+fn vertices_within(inner: &Mesh, outer: &Mesh) -> usize {
+    let triangles: Vec<_> = outer.triangles().iter().map(|t| outer.corners(*t).map(|p| p.as_dvec3())).collect();
+    let bounds = Bounds::of(outer.positions()).unwrap();
+    let is_within = |p: &glam::Vec3| {
+        if p.cmplt(bounds.min).any() || p.cmpgt(bounds.max).any() {
+            return false;
+        }
+        // Off the lattice that meshes of revolution are made of.
+        let p = p.as_dvec3() + glam::DVec3::new(1.234e-6, 2.345e-6, 0.0);
+        let depth: i32 = triangles
+            .iter()
+            .map(|[a, b, c]| {
+                let side = |a: &glam::DVec3, b: &glam::DVec3| (*b - *a).truncate().perp_dot((p - *a).truncate());
+                let sides = [side(a, b), side(b, c), side(c, a)];
+                let way = if sides.iter().all(|s| *s > 0.0) { 1 } else { -i32::from(sides.iter().all(|s| *s < 0.0)) };
+                let normal = (*b - *a).cross(*c - *a);
+                let height = a.z - ((p - *a).truncate().dot(normal.truncate())) / normal.z;
+                if way != 0 && height > p.z { way } else { 0 }
+            })
+            .sum();
+        depth > 0
+    };
+    inner.positions().iter().filter(|p| is_within(p)).count()
+}
+
+#[test]
+fn nothing_is_within_another() {
+    for scene in scenes() {
+        let meshes: Vec<&Mesh> = scene.pairs.iter().map(|pair| &pair.object).chain([&scene.clutter]).collect();
+        let trees: Vec<TriangleTree> = meshes.iter().map(|mesh| TriangleTree::new(mesh)).collect();
+        for (i, mesh) in meshes.iter().enumerate() {
+            for (k, other) in meshes.iter().enumerate().filter(|(k, _)| *k != i) {
+                assert_eq!(vertices_within(mesh, other), 0, "scene {}: {i} in {k}", scene.index);
+                let distance = |p: &glam::Vec3| trees[k].nearest(*p).unwrap().distance_squared.sqrt();
+                let nearest = mesh.positions().iter().map(distance).fold(f32::INFINITY, f32::min);
+                assert!(nearest >= 0.002, "scene {}: {i} and {k} are {nearest} m apart", scene.index);
+            }
+        }
+    }
+    // The count finds what is within: a thing half as large, about the same middle.
+    let mesh = &scenes()[0].pairs[0].object;
+    let centre = SurfaceMoments::of(mesh).centroid.as_vec3();
+    let shrunk = mesh.positions().iter().map(|p| centre + (*p - centre) * 0.5).collect();
+    assert!(vertices_within(&Mesh::new(shrunk, mesh.triangles().to_vec()).unwrap(), mesh) > 0);
+}
+
+#[test]
+fn everything_rests_on_the_plane() {
+    for pair in pairs() {
+        let lowest = pair.object.positions().iter().fold(f32::INFINITY, |low, p| low.min(p.z));
+        assert!(lowest.abs() < 1e-6, "{}: {lowest}", pair.name());
+        // What stands on a point would fall: it touches the plane, or nearly, on either side of its middle.
+        let size = Bounds::of(pair.object.positions()).unwrap().diagonal();
+        let centre = SurfaceMoments::of(&pair.object).centroid.truncate().as_vec2();
+        let touching = pair.object.positions().iter().filter(|p| p.z < 0.012 * size).map(|p| p.truncate() - centre);
+        let touching: Vec<glam::Vec2> = touching.collect();
+        let away = |d: glam::Vec2| touching.iter().map(|p| p.dot(d)).fold(f32::NEG_INFINITY, f32::max);
+        let least = (0..16)
+            .map(|k| away(glam::Vec2::from_angle(k as f32 * std::f32::consts::FRAC_PI_8)))
+            .fold(f32::INFINITY, f32::min);
+        println!("{}: {least}", pair.name());
+        assert!(least > -0.02 * size || pair.family == "lamp", "{}: {least} of {size}", pair.name());
+    }
+    for scene in scenes() {
+        assert!(scene.clutter.positions().iter().all(|p| p.z > -1e-6));
+    }
+}
+
+#[test]
+fn every_object_shows_enough() {
+    let mut hidden = 0;
+    for pair in pairs() {
+        let mask_px = pair.observation.mask().data().iter().filter(|m| **m != 0).count();
+        assert!(mask_px >= MIN_MASK_PX, "{}: {mask_px} pixels", pair.name());
+        assert!(pair.visible() >= LEAST_VISIBLE, "{}: {}", pair.name(), pair.visible());
+        hidden += usize::from(pair.visible() < 0.95);
+    }
+    // They stand close enough to hide each other.
+    assert!(hidden >= 3, "{hidden} hidden");
+    let families: BTreeSet<&str> = pairs().map(|pair| pair.family.as_str()).collect();
+    assert!(families.len() >= 6, "{families:?}");
+}
+
+#[test]
+fn the_object_is_where_the_depth_says() {
+    let mut rasteriser = Rasteriser::new();
+    for pair in pairs() {
+        let (depth, mask) = (pair.observation.depth(), pair.observation.mask());
+        let camera = pair.observation.camera();
+        rasteriser.render_depth(&pair.object, &pair.camera_from_object, &camera, depth.width(), depth.height());
+        let shown = rasteriser.depth().iter().zip(depth.data()).zip(mask.data());
+        let both = shown.filter(|((drawn, read), masked)| **masked != 0 && **drawn > 0.0 && **read > 0.0);
+        let off: Vec<f32> = both.map(|((drawn, read), _)| read - drawn).collect();
+        // Medians: along its rim, and where the mask is wrong, it shows something else.
+        let [signed, absolute] =
+            [median(off.iter().copied()), median(off.iter().map(|x| x.abs()))].map(|x| 1000.0 * x.unwrap());
+        let diagonal_mm = 1000.0 * Bounds::of(pair.object.positions()).unwrap().diagonal();
+        println!("{}: {signed} mm, {absolute} mm of {diagonal_mm} mm", pair.name());
+        assert!(signed.abs() < 0.008 * diagonal_mm, "{}: {signed} mm of {diagonal_mm} mm", pair.name());
+        assert!(absolute < 0.02 * diagonal_mm, "{}: {absolute} mm of {diagonal_mm} mm", pair.name());
+        let inside = mask.data().iter().zip(rasteriser.depth()).filter(|(m, z)| **m != 0 && **z > 0.0).count();
+        let masked = mask.data().iter().filter(|m| **m != 0).count();
+        // Of a thin thing, a pixel more or less is much.
+        assert!(inside as f64 > 0.6 * masked as f64, "{}: {inside} of {masked} pixels", pair.name());
+    }
+}
+
+#[test]
+fn the_truth_fits_what_the_priors_make_as_well_as_they_let_it() {
+    let mut overlap = [0.0; 2];
+    for pair in pairs() {
+        let cases = Prior::ALL.iter().map(|prior| pair.case(*prior).unwrap());
+        for ((case, least), sum) in cases.zip([0.65, 0.5]).zip(&mut overlap) {
+            let metrics = truth_metrics(&case);
+            println!("{} {}: {metrics:?}", case.name, case.prior.as_str());
+            check_shape(&case.mesh).unwrap();
+            let farthest = case.mesh.positions().iter().fold(0.0f32, |far, p| far.max(p.length()));
+            assert!((0.5..=0.87).contains(&farthest), "{}: {farthest}", case.name);
+            assert!(metrics.iou.unwrap() >= least * pair.visible(), "{}: {metrics:?}", case.name);
+            assert!(metrics.fitness.unwrap() >= 0.6, "{}: {metrics:?}", case.name);
+            let diagonal_mm = 1000.0 * parameter(&case, "diagonalM");
+            assert!(metrics.depth_mae_mm.unwrap() < 0.12 * diagonal_mm, "{}: {metrics:?}", case.name);
+            *sum += metrics.iou.unwrap();
+        }
+    }
+    // The smooth prior is the worse one.
+    assert!(overlap[1] < overlap[0], "{overlap:?}");
+}
+
+#[test]
+fn priors_share_all_but_the_mesh() {
+    for scene in scenes() {
+        let pair = &scene.pairs[0];
+        let [detailed, smooth] = [Prior::Detailed, Prior::Smooth].map(|prior| pair.case(prior).unwrap());
+        assert_eq!(detailed.observation.depth(), smooth.observation.depth());
+        assert_eq!(detailed.observation.mask(), smooth.observation.mask());
+        assert_eq!(detailed.observation.camera(), smooth.observation.camera());
+        assert_ne!(detailed.mesh, smooth.mesh);
+        for other in &scene.pairs {
+            assert_eq!(other.observation.depth(), pair.observation.depth());
+        }
+        assert!((0.6..=0.85).contains(&parameter(&smooth, "flattened")));
+        assert_eq!((detailed.tier, &detailed.name), (smooth.tier, &smooth.name));
+    }
+}
+
+#[test]
+fn difficulty_rises_with_what_makes_a_pair_hard() {
+    let sight = Sight { visible: 0.8, mask_px: 5000, mask_offset_px: 0.5, distance_m: 0.8 };
+    let base = difficulty(&sight);
+    for harder in [
+        Sight { visible: 0.6, ..sight },
+        Sight { mask_px: 1000, ..sight },
+        Sight { mask_offset_px: -1.5, ..sight },
+        Sight { distance_m: 1.2, ..sight },
+    ] {
+        assert!(difficulty(&harder) > base, "{harder:?}");
+    }
+    let best = Sight { visible: 1.0, mask_px: 30_000, mask_offset_px: 0.0, distance_m: 0.4 };
+    let worst = Sight { visible: 0.3, mask_px: 300, mask_offset_px: 3.0, distance_m: 2.0 };
+    assert_eq!(difficulty(&best), 0.0);
+    assert!((difficulty(&worst) - 1.0).abs() < 1e-12);
+    assert_eq!([0.0, 0.25, 1.0].map(tier), [Tier::Easy, Tier::Medium, Tier::Hard]);
+}
+
+#[test]
+fn a_written_set_reads_back_and_is_not_written_again() {
+    let folder = folder("scenes");
+    let set = SceneSet::new(SEED, 1);
+    set.write(&folder, Prior::ALL, 2, |_| {}).unwrap();
+    let pair = &scenes()[0].pairs[0];
+    for prior in Prior::ALL {
+        let parent = folder.join(prior.as_str());
+        let names: BTreeSet<String> =
+            fs::read_dir(&parent).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        assert_eq!(names, scenes()[0].pairs.iter().map(ScenePair::name).collect());
+        let (read, made) = (BenchCase::read(&parent.join(pair.name())).unwrap(), pair.case(*prior).unwrap());
+        let symmetric = matches!(made.symmetry, Symmetry::Declared(_));
+        let made = BenchCase::from(made);
+        // The depth is in whole units already: nothing is lost.
+        assert_eq!(read.observation.depth(), made.observation.depth());
+        assert_eq!(read.mesh, made.mesh);
+        assert_eq!((&read.name, &read.tier, &read.class), (&made.name, &made.tier, &made.class));
+        assert_eq!((&read.family, &read.tags), (&made.family, &made.tags));
+        assert_eq!((read.class.as_str(), &read.parameters["prior"]), ("scene", &prior.as_str().into()));
+        for name in ["difficulty", "visible", "maskPx", "hidden", "cut", "maskOffsetPx", "depthBias", "objects"] {
+            let off = read.parameters[name].as_f64().unwrap() - made.parameters[name].as_f64().unwrap();
+            assert!(off.abs() <= 1e-12, "{name}");
+        }
+        let (read, made) = (read.truth.unwrap(), made.truth.unwrap());
+        assert!((read.camera_from_mesh.scale / made.camera_from_mesh.scale - 1.0).abs() < 1e-12);
+        assert!((read.camera_from_mesh.translation - made.camera_from_mesh.translation).norm() < 1e-12);
+        assert_eq!(matches!(read.symmetry, Symmetry::Declared(_)), symmetric);
+    }
+
+    // A second run leaves what is there, makes what is missing, and another set does not go into the same folder.
+    let gone = folder.join("smooth").join(pair.name());
+    let kept = folder.join("detailed").join(pair.name()).join("depth.png");
+    fs::remove_dir_all(&gone).unwrap();
+    fs::write(&kept, b"kept").unwrap();
+    set.write(&folder, Prior::ALL, 1, |_| {}).unwrap();
+    let mixed = SceneSet::new(SEED + 1, 1).write(&folder, Prior::ALL, 1, |_| {}).unwrap_err();
+    let (again, kept) = (gone.join("mesh.glb").is_file(), fs::read(&kept).unwrap());
+    fs::remove_dir_all(&folder).unwrap();
+    assert!(again);
+    assert_eq!(kept, b"kept");
+    assert_eq!(mixed.code, ErrorCode::InvalidArgument);
+}
+
+#[test]
+fn priors_have_names() {
+    for prior in Prior::ALL {
+        assert_eq!(Prior::from_name(prior.as_str()), Ok(*prior));
+        assert_eq!(Prior::several(prior.as_str()), Ok(vec![*prior]));
+    }
+    assert_eq!(Prior::several("both").unwrap(), Prior::ALL);
+    assert_eq!(Prior::several("sharp").unwrap_err().code, ErrorCode::InvalidOption);
+}

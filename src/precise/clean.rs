@@ -1,0 +1,347 @@
+//! Clean: which pixels of the observation can be trusted to be the object, and which depths to be its own.
+//!
+//! Masks come with pin-holes and stray islands, depth maps with flying pixels along every jump and with background
+//! that the mask holds by mistake. What is doubtful is left out of the evidence rather than judged.
+
+use super::rim::rim_offset;
+use crate::evidence::observation::Observation;
+use crate::geometry::distance_transform::squared_distances;
+use crate::geometry::order::{self, quantile};
+use crate::geometry::pinhole::Pinhole;
+
+/// Image around the mask that takes part, as a share of the mask's longer side.
+const MARGIN: f64 = 0.45;
+/// A hole smaller than this share of the mask is a fault of the mask, not of the object.
+const PIN_HOLE: f64 = 0.01;
+/// Components at least this share of the largest belong to the object, split by an occluder; smaller ones, down to
+/// the second share, only where they are near.
+const COMPONENT: f64 = 0.2;
+const ISLAND: f64 = 0.04;
+/// How far a small component may be, as a share of the mask's longer side.
+const ISLAND_REACH: f64 = 0.25;
+/// How far behind the object something has to be for the depth map to show the outline: a share of the object's
+/// width, which leaves out the slope of a round limb, and one of its depth.
+const RIM_JUMP: [f64; 2] = [0.15, 0.01];
+/// Depths looked at to find the densest window.
+const WINDOW_SAMPLES: usize = 4096;
+
+/// The observation around its mask, with what is doubtful taken out.
+#[derive(Debug, Clone)]
+pub struct CleanObservation {
+    /// The whole image's camera.
+    pub camera: Pinhole,
+    /// Where the crop's first pixel is in the image.
+    pub origin: [usize; 2],
+    /// Pixels in a row of the crop.
+    pub width: usize,
+    /// Rows of the crop.
+    pub height: usize,
+    /// Size of the whole image.
+    pub image: [usize; 2],
+    /// Signed distance to the object's outline, pixels, negative inside.
+    pub outline: Vec<f32>,
+    /// By how much the mask's own outline was moved outwards, pixels (see [`rim_offset`]).
+    pub rim_offset: f64,
+    /// Depth that is the object's own, metres; 0 elsewhere.
+    pub depth: Vec<f32>,
+    /// Every reading, metres; 0 where there is none.
+    pub scene: Vec<f32>,
+    /// Box of the mask in the image: first and last column, first and last row.
+    pub bounds: [[f64; 2]; 2],
+    /// Pixels of the mask.
+    pub pixels: usize,
+    /// Median of the object's depths, metres.
+    pub median_m: f64,
+    /// Diagonal of the box around the object's points, metres, without the outermost ones.
+    pub diagonal_m: f64,
+}
+
+impl CleanObservation {
+    /// Cleans mask and depth.
+    pub fn new(observation: &Observation) -> Self {
+        let mut crop = Crop::new(observation);
+        crop.close_pin_holes();
+        crop.drop_islands();
+        let mut clean = crop.into_clean(observation);
+        let extent_m = (0..2).map(|axis| clean.bounds[axis][1] - clean.bounds[axis][0]).fold(0.0, f64::max)
+            / clean.camera.fx
+            * clean.median_m;
+        let offset = rim_offset(&clean, RIM_JUMP[0] * extent_m + RIM_JUMP[1] * clean.median_m);
+        clean.move_rim(offset);
+        clean
+    }
+
+    /// Moves the outline outwards.
+    fn move_rim(&mut self, offset: f64) {
+        self.rim_offset = offset;
+        self.outline.iter_mut().for_each(|d| *d -= offset as f32);
+        let inside = |d: &&f32| **d < 0.0;
+        self.pixels = self.outline.iter().filter(inside).count().max(1);
+        for bounds in &mut self.bounds {
+            bounds[0] -= offset;
+            bounds[1] += offset;
+        }
+    }
+}
+
+/// The raw images around the mask.
+struct Crop {
+    camera: Pinhole,
+    origin: [usize; 2],
+    width: usize,
+    height: usize,
+    mask: Vec<bool>,
+    scene: Vec<f32>,
+}
+
+impl Crop {
+    fn new(observation: &Observation) -> Self {
+        let (mask, depth) = (observation.mask(), observation.depth());
+        let size = [mask.width(), mask.height()];
+        let bounds = bounds_of(mask.data().iter().map(|m| *m != 0), size[0]);
+        let margin = (MARGIN * longer_side(&bounds)) as usize + 4;
+        let origin = bounds.map(|[low, _]| low.saturating_sub(margin));
+        let end = [0, 1].map(|axis| (bounds[axis][1] + margin + 1).min(size[axis]));
+        let (width, height) = (end[0] - origin[0], end[1] - origin[1]);
+        let rows = || (origin[1]..end[1]).map(|v| v * size[0] + origin[0]..v * size[0] + end[0]);
+        Self {
+            camera: observation.camera(),
+            origin,
+            width,
+            height,
+            mask: rows().flat_map(|row| mask.data()[row].iter().map(|&m| m != 0)).collect(),
+            scene: rows().flat_map(|row| depth.data()[row].iter().copied()).collect(),
+        }
+    }
+
+    fn count(&self) -> usize {
+        self.mask.iter().filter(|set| **set).count()
+    }
+
+    /// Fills small holes.
+    fn close_pin_holes(&mut self) {
+        let limit = (PIN_HOLE * self.count() as f64) as usize;
+        let outside: Vec<bool> = self.mask.iter().map(|set| !set).collect();
+        for component in components(&outside, self.width, self.height) {
+            if component.pixels.len() <= limit.max(4) && !component.touches_border {
+                component.pixels.iter().for_each(|&i| self.mask[i as usize] = true);
+            }
+        }
+    }
+
+    /// Keeps the components that can be parts of one object.
+    fn drop_islands(&mut self) {
+        let components = components(&self.mask, self.width, self.height);
+        if components.len() < 2 {
+            return;
+        }
+        let median_depth = |c: &Component| {
+            let depths = c.pixels.iter().map(|&i| self.scene[i as usize]).filter(|z| *z > 0.0);
+            quantile(depths, 0.5).map(f64::from)
+        };
+        let area = |c: &Component| c.pixels.len() as f64;
+        let Some(largest) = components.iter().max_by_key(|c| c.pixels.len()) else { return };
+        let is_large = |c: &Component| area(c) >= COMPONENT * area(largest);
+        let main = self.mask_of(components.iter().filter(|c| is_large(c)));
+        let extent_px = longer_side(&bounds_of(main.iter().copied(), self.width));
+        let largest_m = median_depth(largest);
+        let extent_m = largest_m.map_or(f64::INFINITY, |z| extent_px * z / self.camera.fx);
+        let reach = ISLAND_REACH * extent_px + 4.0;
+        let distances = squared_distances(&main, self.width, self.height);
+        let kept = components.iter().filter(|c| {
+            let large = is_large(c);
+            let near = || c.pixels.iter().any(|&i| f64::from(distances[i as usize]) <= reach * reach);
+            let apart_m = median_depth(c).zip(largest_m).map_or(0.0, |(a, b)| (a - b).abs());
+            let at_depth = apart_m <= if large { 2.5 } else { 1.0 } * extent_m;
+            at_depth && (large || (area(c) >= ISLAND * area(largest) && near()))
+        });
+        self.mask = self.mask_of(kept);
+    }
+
+    /// The mask that holds these components alone.
+    fn mask_of<'a>(&self, components: impl Iterator<Item = &'a Component>) -> Vec<bool> {
+        let mut mask = vec![false; self.mask.len()];
+        components.flat_map(|c| &c.pixels).for_each(|&i| mask[i as usize] = true);
+        mask
+    }
+
+    fn into_clean(self, observation: &Observation) -> CleanObservation {
+        let pixels = self.count();
+        let bounds = bounds_of(self.mask.iter().copied(), self.width);
+        let extent_px = longer_side(&bounds);
+        let outline = signed_distance(&self.mask, self.width, self.height);
+        let inner = self.inner_readings(&outline);
+        let (median, spread) = self.densest_window(&inner, extent_px);
+        let extent_m = extent_px / self.camera.fx * median;
+        let reach = (1.2 * extent_m).max(5.0 * spread);
+        let near: Vec<bool> =
+            inner.iter().zip(&self.scene).map(|(&inner, &z)| inner && (f64::from(z) - median).abs() < reach).collect();
+        let jump = (0.06 * extent_m + 0.006 * median) as f32;
+        let smooth: Vec<bool> = (0..near.len()).map(|i| near[i] && self.range_around(i) <= jump).collect();
+        let count = |set: &[bool]| set.iter().filter(|s| **s).count();
+        let trusted = if 10 * count(&smooth) > 3 * count(&near) { smooth } else { near };
+        let depth: Vec<f32> = trusted.iter().zip(&self.scene).map(|(&t, &z)| if t { z } else { 0.0 }).collect();
+        let median_m = quantile(depth.iter().copied().filter(|z| *z > 0.0), 0.5).map_or(median, f64::from);
+        let diagonal_m = self.diagonal(&depth).max(1e-3 * median_m);
+        let size = [observation.mask().width(), observation.mask().height()];
+        CleanObservation {
+            camera: self.camera,
+            origin: self.origin,
+            width: self.width,
+            height: self.height,
+            image: size,
+            bounds: [0, 1].map(|axis| bounds[axis].map(|x| (x + self.origin[axis]) as f64)),
+            outline,
+            rim_offset: 0.0,
+            depth,
+            scene: self.scene,
+            pixels,
+            median_m,
+            diagonal_m,
+        }
+    }
+
+    /// Readings in the mask, away from its rim as far as that leaves enough of them.
+    fn inner_readings(&self, outline: &[f32]) -> Vec<bool> {
+        let pixels = self.count();
+        // Two pixels, and more where the image is larger than what depth networks see.
+        let two = (0.011 * (pixels as f64).sqrt()).clamp(2.0, 4.0);
+        for (rim, share) in [(two, 0.3), (1.0, 0.2), (0.0, 0.0)] {
+            let inside = |(i, set): (usize, &bool)| *set && 0.5 - f64::from(outline[i]) > rim;
+            let inner: Vec<bool> = self.mask.iter().enumerate().map(inside).collect();
+            let readings = inner.iter().zip(&self.scene).filter(|(inner, z)| **inner && **z > 0.0).count();
+            let enough = inner.iter().filter(|inner| **inner).count() as f64 >= share * pixels as f64;
+            if (enough && readings >= 32) || rim == 0.0 {
+                return inner.iter().zip(&self.scene).map(|(&inner, &z)| inner && z > 0.0).collect();
+            }
+        }
+        Vec::new()
+    }
+
+    /// Median depth, and its median absolute deviation, within the window of depths, as deep as the object is wide,
+    /// that holds most readings: never a plain median, which background inside the mask draws away.
+    fn densest_window(&self, inner: &[bool], extent_px: f64) -> (f64, f64) {
+        let readings: Vec<f32> = inner.iter().zip(&self.scene).filter(|(i, _)| **i).map(|(_, &z)| z).collect();
+        let step = readings.len().div_ceil(WINDOW_SAMPLES).max(1);
+        let mut keys: Vec<u64> = readings.iter().step_by(step).map(|&z| order::pack(z, 0)).collect();
+        order::sort(&mut keys);
+        let depths: Vec<f32> = keys.into_iter().map(order::value_of).collect();
+        let deep = 1.0 + (1.2 * extent_px / self.camera.fx).max(0.1) as f32;
+        let (mut best, mut end) = (0..0, 0);
+        for (start, &z) in depths.iter().enumerate() {
+            while end < depths.len() && depths[end] <= z * deep {
+                end += 1;
+            }
+            if end - start > best.len() {
+                best = start..end;
+            }
+        }
+        let window = &depths[best];
+        let median = window.get(window.len() / 2).copied().unwrap_or(1.0);
+        let spread = quantile(window.iter().map(|z| (z - median).abs()), 0.5).unwrap_or(0.0);
+        (f64::from(median), 1.4826 * f64::from(spread))
+    }
+
+    /// Largest less smallest depth of a pixel and its eight neighbours.
+    fn range_around(&self, i: usize) -> f32 {
+        let (u, v) = (i % self.width, i / self.width);
+        let (mut low, mut high) = (f32::INFINITY, 0.0f32);
+        for y in v.saturating_sub(1)..=(v + 1).min(self.height - 1) {
+            for x in u.saturating_sub(1)..=(u + 1).min(self.width - 1) {
+                let z = self.scene[y * self.width + x];
+                if z > 0.0 {
+                    (low, high) = (low.min(z), high.max(z));
+                }
+            }
+        }
+        high - low
+    }
+
+    /// Diagonal of the box that holds all but half a percent of the points at either end of each axis.
+    fn diagonal(&self, depth: &[f32]) -> f64 {
+        let readings = depth.iter().filter(|z| **z > 0.0).count();
+        let step = readings.div_ceil(WINDOW_SAMPLES).max(1);
+        let points: Vec<glam::Vec3> = (depth.iter().enumerate().filter(|(_, z)| **z > 0.0).step_by(step))
+            .map(|(i, &z)| {
+                let (u, v) = (i % self.width + self.origin[0], i / self.width + self.origin[1]);
+                self.camera.back_project(u as f64, v as f64, f64::from(z))
+            })
+            .collect();
+        let side = |axis: usize| {
+            let at = |q| quantile(points.iter().map(|p| p[axis]), q).map_or(0.0, f64::from);
+            at(0.995) - at(0.005)
+        };
+        (0..3).map(|axis| side(axis) * side(axis)).sum::<f64>().sqrt()
+    }
+}
+
+/// Distance of each pixel's centre to the mask's outline, pixels, negative inside.
+fn signed_distance(mask: &[bool], width: usize, height: usize) -> Vec<f32> {
+    let outside: Vec<bool> = mask.iter().map(|set| !set).collect();
+    let to_mask = squared_distances(mask, width, height);
+    let to_outside = squared_distances(&outside, width, height);
+    let distance = |(set, (to_mask, to_outside)): (&bool, (&u32, &u32))| {
+        if *set { 0.5 - (*to_outside as f32).sqrt() } else { (*to_mask as f32).sqrt() - 0.5 }
+    };
+    mask.iter().zip(to_mask.iter().zip(&to_outside)).map(distance).collect()
+}
+
+/// First and last column, first and last row of the set pixels.
+fn bounds_of(mask: impl Iterator<Item = bool>, width: usize) -> [[usize; 2]; 2] {
+    let mut bounds = [[usize::MAX, 0]; 2];
+    for (i, _) in mask.enumerate().filter(|(_, set)| *set) {
+        for (bound, at) in bounds.iter_mut().zip([i % width, i / width]) {
+            *bound = [bound[0].min(at), bound[1].max(at)];
+        }
+    }
+    bounds.map(|[low, high]| [low.min(high), high])
+}
+
+fn longer_side(bounds: &[[usize; 2]; 2]) -> f64 {
+    bounds.iter().map(|[low, high]| high - low).max().unwrap_or(0) as f64
+}
+
+/// A connected set of pixels (four neighbours).
+struct Component {
+    pixels: Vec<u32>,
+    touches_border: bool,
+}
+
+/// The connected sets of an image's set pixels.
+fn components(set: &[bool], width: usize, height: usize) -> Vec<Component> {
+    let mut seen = vec![false; set.len()];
+    let mut list = Vec::new();
+    for start in 0..set.len() {
+        if !set[start] || seen[start] {
+            continue;
+        }
+        seen[start] = true;
+        let mut component = Component { pixels: vec![start as u32], touches_border: false };
+        let mut next = 0;
+        while let Some(&i) = component.pixels.get(next) {
+            next += 1;
+            let (u, v) = (i as usize % width, i as usize / width);
+            component.touches_border |= u == 0 || v == 0 || u + 1 == width || v + 1 == height;
+            let mut visit = |j: usize| {
+                if set[j] && !seen[j] {
+                    seen[j] = true;
+                    component.pixels.push(j as u32);
+                }
+            };
+            if u > 0 {
+                visit(i as usize - 1);
+            }
+            if u + 1 < width {
+                visit(i as usize + 1);
+            }
+            if v > 0 {
+                visit(i as usize - width);
+            }
+            if v + 1 < height {
+                visit(i as usize + width);
+            }
+        }
+        list.push(component);
+    }
+    list
+}

@@ -1,0 +1,60 @@
+//! Ranking: the best of many candidates, and the best that differ.
+
+use glam::DQuat;
+
+use super::coarse::Candidate;
+use super::search::Found;
+use crate::geometry::order;
+use crate::geometry::rotations::angle_between;
+
+/// A pose with a score.
+pub trait Scored: Copy {
+    /// R.
+    fn rotation(&self) -> DQuat;
+    /// The score.
+    fn total(&self) -> f32;
+}
+
+impl Scored for Candidate {
+    fn rotation(&self) -> DQuat {
+        self.pose.rotation
+    }
+
+    fn total(&self) -> f32 {
+        self.score.total
+    }
+}
+
+impl Scored for Found {
+    fn rotation(&self) -> DQuat {
+        self.pose.rotation
+    }
+
+    fn total(&self) -> f32 {
+        self.score.total
+    }
+}
+
+/// The best `count` candidates, best first.
+pub fn best_of<T: Scored>(candidates: &[T], count: usize) -> Vec<T> {
+    let mut keys: Vec<u64> = (0..).zip(candidates).map(|(i, c)| order::pack(-c.total(), i)).collect();
+    order::select_smallest(&mut keys, count);
+    keys.truncate(count);
+    order::sort(&mut keys);
+    keys.into_iter().map(|key| candidates[order::index_of(key) as usize]).collect()
+}
+
+/// The best `count` candidates of which no two rotations are nearer than `angle`, best first.
+pub fn distinct<T: Scored>(candidates: Vec<T>, count: usize, angle: f64) -> Vec<T> {
+    let mut kept: Vec<T> = Vec::new();
+    for candidate in best_of(&candidates, candidates.len()) {
+        if kept.len() >= count {
+            break;
+        }
+        let turn = |k: &T| angle_between(k.rotation(), candidate.rotation());
+        if kept.iter().all(|k| turn(k) > angle) {
+            kept.push(candidate);
+        }
+    }
+    kept
+}
