@@ -1,6 +1,7 @@
 /** `npm run picture`: draws the README's picture, `docs/picture.png`, from the first sample. */
-import { launchChromium } from "./lib/programs.mjs";
+
 import { at, repository } from "./lib/paths.mjs";
+import { launchChromium } from "./lib/programs.mjs";
 import { copySample } from "./lib/sample.mjs";
 import { serve } from "./lib/static-server.mjs";
 import { script, step } from "./lib/step.mjs";

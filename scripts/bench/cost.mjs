@@ -79,7 +79,11 @@ function table(all, hasTruth) {
     const accuracy = [hits(strict), hits(loose), fixed(100 * (scale ?? 0), 1), fixed(rotation, 1)];
     accuracy.push(fixed(100 * (translation ?? 0), 1));
     const cells = [method, fixed(milliseconds(all, method)), ...ratios.map((ratio) => fixed(ratio, 2))];
-    return [...cells, ...accuracy.map((cell) => (hasTruth ? cell : "–")), fixed(median(measurements.map(({ iou }) => iou)), 3)];
+    return [
+      ...cells,
+      ...accuracy.map((cell) => (hasTruth ? cell : "–")),
+      fixed(median(measurements.map(({ iou }) => iou)), 3),
+    ];
   });
   const head = ["method", "ms", ...peers.map((_, i) => `/ Open3D ${"abc"[i]}`), "strict", "loose"];
   return markdownTable([...head, "scale %", "rotation °", "transl. %", "IoU"], rows);
@@ -113,7 +117,9 @@ async function cost(folders, { rounds, threads, python, json }) {
   }
   const all = [...results.values()];
   for (const [i, { name, input, truth }] of cases.entries()) {
-    console.log(`\n### ${name}: ${input.mesh.indices.length / 3} triangles\n\n${table(all.slice(i, i + 1), truth !== null)}`);
+    console.log(
+      `\n### ${name}: ${input.mesh.indices.length / 3} triangles\n\n${table(all.slice(i, i + 1), truth !== null)}`,
+    );
   }
   const known = cases.every(({ truth }) => truth !== null);
   console.log(`\n### All ${all.length} cases\n\n${table(all, known)}`);

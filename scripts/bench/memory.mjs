@@ -4,13 +4,13 @@
  */
 import { readdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
+import { buildPackage } from "../lib/package.mjs";
 import { step } from "../lib/step.mjs";
 import { command, count } from "./command.mjs";
-import { builtPackage, packageModule } from "./package.mjs";
-import { bumpyRing, pictureOf } from "./scene.mjs";
+import { bumpyRing, packageModule, pictureOf } from "./inputs.mjs";
 import { fixed, markdownTable } from "./table.mjs";
 
-/** @typedef {import("./case.mjs").TypedCase} TypedCase */
+/** @typedef {import("./inputs.mjs").TypedCase} TypedCase */
 
 /** What the core's memory may grow to, in bytes: 128 MB. */
 const limit = 128_000_000;
@@ -128,7 +128,7 @@ await command("bench:memory", (program) =>
     )
     .option("--alignments <n>", "how many on one instance", count, 500)
     .action(async ({ meshes, alignments }) => {
-      await builtPackage();
+      await buildPackage();
       const isWithin = await measurePeaks(meshes);
       console.log();
       const isFlat = await measureGrowth(alignments);

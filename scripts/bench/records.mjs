@@ -1,7 +1,7 @@
 /** Records of `sim3align-lab bench`: what came of each case. */
 import { existsSync, mkdirSync, readFileSync } from "node:fs";
 import { dirname, resolve } from "node:path";
-import { run } from "../lib/run.mjs";
+import { runLab } from "../lib/lab.mjs";
 
 /** @typedef {{ scaleError: number, rotationErrorDeg: number, translationErrorRelative: number }} PoseErrors */
 

@@ -22,8 +22,11 @@ export function openResults(folder, identity, fresh) {
   writeFileSync(file, text);
 }
 
+/** The file of the records of a kind of mesh. @param {string} folder @param {string} prior */
+export const recordsFile = (folder, prior) => join(folder, "records", `${prior}.jsonl`);
+
 /** Machine and versions, for people who compare figures. */
-export async function surroundings() {
+export async function environment() {
   const said = async (/** @type {string} */ command, /** @type {string[]} */ args) =>
     (await attempt(command, args)).output.trim();
   const [commit, changes, rustc] = await Promise.all([

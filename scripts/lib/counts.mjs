@@ -21,7 +21,9 @@ const plain = (output) => output.replace(/\u001b\[[0-9;]*m/g, "");
  */
 export function rustCounts(output) {
   const results = plain(output).matchAll(/test result: \w+\. (\d+) passed; (\d+) failed; (\d+) ignored/g);
-  return sum(Array.from(results, ([, ...n]) => ({ passed: Number(n[0]), failed: Number(n[1]), skipped: Number(n[2]) })));
+  return sum(
+    Array.from(results, ([, ...n]) => ({ passed: Number(n[0]), failed: Number(n[1]), skipped: Number(n[2]) })),
+  );
 }
 
 /**

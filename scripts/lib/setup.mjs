@@ -27,7 +27,10 @@ export const npmPackages = once(() =>
 export const rustToolchain = once(() =>
   step("Rust toolchain", async (say) => {
     const { stdout } = await attempt("rustc", ["--print", "sysroot"]);
-    const parts = [["lib", "rustlib", wasmTarget], ...["cargo-clippy", "rustfmt"].map((name) => ["bin", program(name)])];
+    const parts = [
+      ["lib", "rustlib", wasmTarget],
+      ...["cargo-clippy", "rustfmt"].map((name) => ["bin", program(name)]),
+    ];
     if (!stdout || !parts.every((path) => existsSync(join(stdout.trim(), ...path)))) {
       await run("rustup", ["toolchain", "install"], {
         remedy: "install rustup (https://rustup.rs), and check that its server can be reached",

@@ -6,7 +6,14 @@ import { gzipSync } from "node:zlib";
 import { cached, digest, once } from "./cache.mjs";
 import { at, glueDir, repository } from "./paths.mjs";
 import { nodeProgram, run } from "./run.mjs";
-import { npmPackages, rustToolchain, wasmBindgen, wasmBindgenProgram, wasmBindgenVersion, wasmTarget } from "./setup.mjs";
+import {
+  npmPackages,
+  rustToolchain,
+  wasmBindgen,
+  wasmBindgenProgram,
+  wasmBindgenVersion,
+  wasmTarget,
+} from "./setup.mjs";
 import { step } from "./step.mjs";
 
 /**

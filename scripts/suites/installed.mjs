@@ -43,7 +43,8 @@ export const install = once(async () => {
   });
   await step("compile the tests", async () => {
     rmSync(join(installDir, "tests"), { recursive: true, force: true });
-    for (const folder of testFolders) cpSync(at("tests", folder), join(installDir, "tests", folder), { recursive: true });
+    for (const folder of testFolders)
+      cpSync(at("tests", folder), join(installDir, "tests", folder), { recursive: true });
     const tsconfig = { extends: at("tests", "tsconfig.installed.json"), include: ["tests"] };
     writeFileSync(join(installDir, "tsconfig.json"), JSON.stringify(tsconfig, null, 2));
     const [node, tsc] = nodeProgram("typescript", "tsc");

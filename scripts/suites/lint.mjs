@@ -29,7 +29,9 @@ function checkCommands() {
   );
   const early = [];
   for (const path of modules) {
-    const statements = readFileSync(path, "utf8").matchAll(/^(?:import|export)\b[^;]*?\bfrom "([^"]+)"|^import "([^"]+)"/gm);
+    const statements = readFileSync(path, "utf8").matchAll(
+      /^(?:import|export)\b[^;]*?\bfrom "([^"]+)"|^import "([^"]+)"/gm,
+    );
     for (const [, from, bare] of statements) {
       const name = from ?? bare ?? "";
       const file = join(dirname(path), name);
