@@ -11,6 +11,9 @@ export function print(text) {
   else process.stdout.write(text);
 }
 
+/** Whether what is printed now is seen now. */
+export const isLive = () => collecting.getStore() === undefined;
+
 /**
  * Runs an action and returns its result with everything that it printed.
  * @template T

@@ -1,5 +1,5 @@
 /** Steps, checks and errors of the commands, and what they print. */
-import { print } from "./output.mjs";
+import { isLive, print } from "./output.mjs";
 import { CommandError } from "./run.mjs";
 
 /** @typedef {import("./counts.mjs").Counts} Counts */
@@ -23,7 +23,7 @@ export async function step(title, action) {
   const started = performance.now();
   let note = "done";
   // Shows what takes its time.
-  const announcement = setTimeout(() => print(`${title} …\n`), 2000);
+  const announcement = setTimeout(() => isLive() && print(`${title} …\n`), 2000);
   const end = (/** @type {string} */ outcome) => {
     clearTimeout(announcement);
     print(`${title}: ${outcome} (${duration(performance.now() - started)})\n`);
