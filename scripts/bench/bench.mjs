@@ -1,6 +1,6 @@
 /**
  * `npm run bench [-- --quick]`: the whole benchmark: generated scenes (or case folders), every method and ablation, other
- * libraries beside them, general registration; tables and figures of it all. A killed run goes on where it was.
+ * libraries beside them, general registration; tables and figures of it all. An interrupted run is resumed.
  */
 import { mkdirSync, readdirSync } from "node:fs";
 import { join, resolve } from "node:path";
@@ -35,7 +35,7 @@ const collect = (/** @type {string} */ value, /** @type {string[]} */ all) => [.
 
 await command("bench", (program) =>
   program
-    .description("Runs the benchmark and writes its tables and figures. A killed run goes on where it was.")
+    .description("Runs the benchmark and writes its tables and figures. An interrupted run is resumed.")
     .option("--quick", "a subset that takes about five minutes", false)
     .option("--scenes <n>", "generated scenes: 100 make 338 pairs of object and mesh (12 where --quick)", count)
     .option("--set-seed <s>", "seed of the generated scenes", Number, 0)

@@ -1,5 +1,5 @@
 /**
- * `npm run bench:cost -- CASE_DIR…`: time and success of alignments as WebAssembly on one thread, in turn with Open3D's
+ * `npm run bench:cost -- CASE_DIR…`: time and success of alignments as WebAssembly on one thread, alternating with Open3D's
  * FPFH, RANSAC and ICP on all threads.
  */
 import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -126,7 +126,7 @@ async function cost(folders, { rounds, threads, python, json }) {
   console.log(`
 Ours: WebAssembly on one thread, Node ${process.version}, with metrics. Open3D: native, ${threads} threads, without reading
 files; a: its tutorial's FPFH, RANSAC without scale and ICP on all points, b: RANSAC with scale, c: ICP on thinned clouds.
-A ratio below 1 is faster. Medians of ${rounds} rounds, in turn. Load of the machine beforehand: ${fixed(load, 1)}; above
+A ratio below 1 is faster. Medians of ${rounds} alternating rounds. Load of the machine beforehand: ${fixed(load, 1)}; above
 0.5 Open3D's threads wait for one another. strict, loose: within 5 %, 10°, 5 % (10 %, 20°, 10 %) of the true scale, rotation
 and place.`);
   if (json === undefined) return;
@@ -136,7 +136,9 @@ and place.`);
 
 await command("bench:cost", (program) =>
   program
-    .description("Times alignments as WebAssembly against Open3D's FPFH, RANSAC and ICP, and tells how right each is.")
+    .description(
+      "Times alignments as WebAssembly against Open3D's FPFH, RANSAC and ICP, and reports the accuracy of each.",
+    )
     .argument("<case...>", "case folders, or folders of case folders")
     .option("--rounds <n>", "rounds that count", count, 5)
     .option("--threads <n>", "threads of Open3D's; on a busy machine 1 may be faster", count, availableParallelism())

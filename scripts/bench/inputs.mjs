@@ -47,7 +47,7 @@ export async function readTypedCase(folder) {
 }
 
 /**
- * What a generated case says of its object's symmetry, as `evaluate` takes it.
+ * The symmetry that a generated case declares, as an option of `evaluate`.
  * @param {string} folder
  */
 function declaredSymmetry(folder) {

@@ -19,7 +19,7 @@ import { recordsFile } from "./results.mjs";
  * @property {(progress: Progress) => Promise<void>} run
  */
 
-/** What one alignment is expected to take, in seconds: enough for the time left. */
+/** Expected seconds of one alignment, for the estimate of the time left. */
 const expected = { own: 0.12, imported: 0.05 };
 
 /** @param {string} folder */
@@ -117,7 +117,7 @@ function answersJob(methods, cases, run) {
 
 /** `register`, and the baselines that need no start near the truth. */
 const ours = ["register", "fgr", "ransac", "teaser", "quatro"];
-/** What a pair is expected to take by one of them, in seconds. */
+/** Expected seconds of one of them on one pair. */
 const expectedSeconds = 1;
 
 /** @param {readonly string[]} args */

@@ -12,9 +12,9 @@ import { fixed, markdownTable } from "./table.mjs";
 
 /** @typedef {import("./inputs.mjs").TypedCase} TypedCase */
 
-/** What the core's memory may grow to, in bytes: 128 MB. */
+/** Limit of the core's memory, in bytes: 128 MB. */
 const limit = 128_000_000;
-/** What it is measured with. */
+/** The input that the limit holds for. */
 const large = { triangles: 227_000, width: 1920, height: 1080 };
 /** The mixed sizes: triangles, width, height. All have come up within the first alignments that the last are held against. */
 const mixed = [
@@ -98,7 +98,7 @@ async function measurePeaks(meshes) {
 }
 
 /**
- * What the memory has grown to after few alignments of mixed sizes, and after many.
+ * Measures the memory after a few alignments of mixed sizes, and after many.
  * @param {number} alignments
  */
 async function measureGrowth(alignments) {

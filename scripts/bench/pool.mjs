@@ -48,7 +48,7 @@ async function timed(action) {
 }
 
 /**
- * One row a number of workers, in turn, so that a busy machine is busy for all.
+ * One row for each number of workers. They alternate, so that other load on the machine affects all.
  * @param {typeof import("../../pkg/index.js").createAligner} createAligner
  * @param {number} cases
  * @param {number} repeats

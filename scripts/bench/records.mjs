@@ -22,7 +22,7 @@ export const isWithin = (errors, tolerance) =>
   errors.translationErrorRelative <= tolerance.translation;
 
 /**
- * What came of a case: `Record` of `src/samples/benchmark.rs`, as far as tables need it.
+ * The outcome of a case: the fields of `Record` in `lab/src/samples/benchmark.rs` that the tables use.
  * @typedef {object} BenchRecord
  * @property {string} name
  * @property {string} tier

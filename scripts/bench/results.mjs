@@ -1,11 +1,11 @@
-/** The folder that a benchmark's results are kept in, and that a killed run goes on with. */
+/** The folder of a benchmark's results, from which an interrupted run is resumed. */
 import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { cpus, platform, release, totalmem } from "node:os";
 import { join } from "node:path";
 import { attempt } from "../lib/run.mjs";
 
 /**
- * Opens a folder for the run that `identity` tells from others: its inputs and the code.
+ * Opens the folder of a run. `identity`, its inputs and the digest of the code, distinguishes it from other runs.
  * @param {string} folder
  * @param {Record<string, unknown>} identity
  * @param {boolean} fresh forget what is there

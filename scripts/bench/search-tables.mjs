@@ -1,4 +1,4 @@
-/** Tables over generated cases: the parts of the search, the reliability of confidence, and whose failures there are. */
+/** Tables over generated cases: the parts of the search, the reliability of confidence, and the kinds of failures. */
 import { failureCounts, isWithin, judged, loose, strict, tiersOf } from "./records.mjs";
 import { fixed, markdownTable, mean, median, percent, share } from "./table.mjs";
 
@@ -88,7 +88,7 @@ function reliabilityLine(name, group, of) {
 }
 
 /**
- * Wrong poses by whose fault they are, in all and by tier.
+ * Wrong poses by the kind of failure, in all and by tier.
  * @param {readonly BenchRecord[]} all
  */
 export function failureTable(all) {

@@ -44,7 +44,7 @@ await command(`bench:${name}`, (program) => {
     return program.description("Leaves out one part of the search at a time, and prints one table.").action(ablation);
   }
   return program
-    .description("Holds confidence against success, and tells whose fault wrong poses are.")
+    .description("Compares confidence with success, and counts failures of the search and of its scoring.")
     .option("--row <name>", "which row of the file; the first by default")
     .action(reliability);
 });

@@ -48,7 +48,7 @@ function copyFiles() {
     copyFileSync(at(name), join(packageDir, name));
   }
   mkdirSync(join(packageDir, "wasm"), { recursive: true });
-  // What a module exports to its glue is nobody else's affair; whoever imports the module itself gets it compiled.
+  // The declarations of a module's raw exports are internal: they would be resolved for imports of the .wasm file.
   const isPublic = (/** @type {string} */ path) => !path.endsWith(".wasm.d.ts");
   cpSync(glueDir, join(packageDir, "wasm"), { recursive: true, filter: isPublic });
   const { bin } = JSON.parse(readFileSync(join(skinDir, "package.json"), "utf8"));

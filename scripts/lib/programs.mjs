@@ -60,7 +60,7 @@ async function locate(program) {
   return find(program);
 }
 
-/** What to do where there is no Chromium. */
+/** The remedy for a missing Chromium. */
 export const chromiumRemedy = `install Chromium (Debian and Ubuntu: apt-get install chromium), or name it in ${chromiumProgram.variable}`;
 
 /** Chromium's path, or undefined where there is none. */

@@ -25,7 +25,7 @@ export class CommandError extends Error {
 }
 
 /**
- * What every program gets: cargo on the path, and the repository's own target folder.
+ * The environment of every program: cargo on the path, and the repository's target folder.
  * @returns {NodeJS.ProcessEnv}
  */
 function environment() {

@@ -39,7 +39,7 @@ const optimise = ["-O3", "--strip-debug", "--strip-producers", "--strip-target-f
 export const wasmFile = ({ name }, folder = glueDir) => join(folder, `${name}_bg.wasm`);
 
 /**
- * Size as it is and gzipped, in bytes.
+ * Raw and gzipped size, in bytes.
  * @param {string} file
  */
 export function sizes(file) {

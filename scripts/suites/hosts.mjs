@@ -18,7 +18,7 @@ const packages = {
   bun: "1.4.5",
   deno: "2.9.6",
   "node-newest": "npm:node@26.10.0",
-  // What the package's `engines` promise.
+  // The oldest version that the package's `engines` allow.
   "node-oldest": "npm:node@20.0.0",
   workerd: "1.20261117.1",
 };

@@ -71,7 +71,7 @@ async function nodeTest(folder, env = {}) {
 
 export const javaScript = () => nodeTest("js");
 
-/** Where a program is missing: a gap on a developer's machine, but a failure in continuous integration. */
+/** Counts where a program is missing: skipped on a developer's machine, failed in continuous integration. */
 export const missing = () => ({ ...noTests(), ...(process.env.CI ? { failed: 1 } : { skipped: 1 }) });
 
 /** @param {string} folder of tests that show pages */
@@ -87,11 +87,11 @@ export async function browser() {
   return inBrowser("browser");
 }
 
-/** A copy of the repository, as far as the examples know it: the unpacked tarball as pkg/, and the examples. */
+/** A copy of what the examples use: the unpacked tarball as pkg/, and the examples. */
 const copy = at("target", "examples");
 const examplesDir = join(copy, "examples");
 
-/** What working in the examples' folder leaves there. */
+/** Files that working in the examples' folder leaves there. */
 const made = new Set(["node_modules", "sample", "dist", "annotation"]);
 const isSource = (/** @type {string} */ path) => !made.has(basename(path));
 

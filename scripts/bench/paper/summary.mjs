@@ -80,7 +80,7 @@ export function summarise(records) {
 }
 
 /**
- * What the true pose's own metrics are: no pose can be expected to do better.
+ * The metrics of the true pose: no pose can be expected to do better.
  * @param {readonly BenchRecord[]} records
  * @returns {Pick<Summary, "n" | "answered" | "metrics">}
  */
@@ -96,7 +96,7 @@ function metricsOf(all) {
 }
 
 /**
- * What an answer takes, in seconds: the median. Apart from the rest, which does not depend on the machine.
+ * The median time of an answer, in seconds. It is kept apart from the other values, which do not depend on the machine.
  * @param {readonly BenchRecord[]} records
  */
 export const typicalSeconds = (records) => finite(median(records.map(({ seconds }) => seconds)));

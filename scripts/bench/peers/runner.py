@@ -1,6 +1,6 @@
 """Runs methods over cases or pairs and writes one JSON file per answer.
 
-An answer is written beside its place and renamed, so that a run that was stopped goes on where it ended. A library that
+An answer is written beside its place and renamed, so that an interrupted run can be resumed. A library that
 takes its process down with it leaves the file it had begun: that item is tried once more in a process of its own, and
 what ends that one too counts as the method's error.
 """

@@ -13,7 +13,7 @@ from .methods import METHODS, PAIR_METHODS
 from .runner import similarity
 
 MAX_TURN_DEG = 2.0
-# What is not refined is as exact as its voxels allow, and gets smaller ones.
+# Without refinement, a method is as exact as its voxels: it gets smaller ones.
 MAX_COARSE_TURN_DEG = 4.0
 VOXEL_DIVISIONS, COARSE_VOXEL_DIVISIONS = 30, 60
 # Shares of the diagonal, and of the scale.
