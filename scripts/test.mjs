@@ -85,6 +85,7 @@ async function runAll(chosen) {
         done.set(name, { counts: { ...noTests(), skipped: 1 }, ms: 0 });
       } else if (chosen.length === 1) done.set(name, { counts: await outcome(suite), ms: performance.now() - started });
       else {
+        print(`${name} … (${chosen.length - waiting.length} of ${chosen.length})\n`);
         const { result: counts, output } = await collect(() => outcome(suite));
         print(output);
         done.set(name, { counts, ms: performance.now() - started });
