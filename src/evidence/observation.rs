@@ -68,16 +68,7 @@ impl Observation {
     /// P_obs: x = D(u,v)·K⁻¹\[u,v,1\]ᵀ for every reading in the mask, row by row; where there are more than
     /// `max_points`, one drawn at random from each of `max_points` equal runs of them (seeded).
     pub fn cloud(&self, max_points: usize, seed: u64) -> Cloud {
-        self.back_projected(max_points, seed, true)
-    }
-
-    /// The rest of the readings, outside the mask: the scene around the object, subsampled likewise.
-    pub fn scene_cloud(&self, max_points: usize, seed: u64) -> Cloud {
-        self.back_projected(max_points, seed, false)
-    }
-
-    fn back_projected(&self, max_points: usize, seed: u64, inside: bool) -> Cloud {
-        let readings: Vec<usize> = self.readings(inside).map(|(i, _)| i).collect();
+        let readings: Vec<usize> = self.readings().map(|(i, _)| i).collect();
         let width = self.depth.width();
         let back_project = |i: usize| -> Vec3 {
             self.camera.back_project((i % width) as f64, (i / width) as f64, f64::from(self.depth.data()[i]))
@@ -90,10 +81,10 @@ impl Observation {
         Cloud::from_points(random.one_of_each_run(n, max_points).map(|k| back_project(readings[k])).collect())
     }
 
-    /// Index and depth of each reading inside (or outside) the mask.
-    fn readings(&self, inside: bool) -> impl Iterator<Item = (usize, f32)> {
+    /// Index and depth of each reading inside the mask, row-major.
+    fn readings(&self) -> impl Iterator<Item = (usize, f32)> {
         let pixels = self.depth.data().iter().zip(self.mask.data()).enumerate();
-        pixels.filter(move |&(_, (&z, &m))| z > 0.0 && (m != 0) == inside).map(|(i, (&z, _))| (i, z))
+        pixels.filter(|&(_, (&z, &m))| z > 0.0 && m != 0).map(|(i, (&z, _))| (i, z))
     }
 
     fn check_readings(&self) -> Result<()> {
@@ -107,7 +98,7 @@ impl Observation {
                 "Check the mask's instance or class value, and that it was not inverted or lost in resizing.",
             ));
         }
-        let count = self.readings(true).count();
+        let count = self.readings().count();
         if count == 0 {
             return Err(Error::new(
                 ErrorCode::NoDepthInMask,
@@ -126,7 +117,7 @@ impl Observation {
                 "Use a larger image of the object, or a depth source with fewer holes.",
             ));
         }
-        let mut depths = self.readings(true).map(|(_, z)| z);
+        let mut depths = self.readings().map(|(_, z)| z);
         let first = depths.next().unwrap_or_default();
         if depths.all(|z| z == first) {
             return Err(Error::new(
