@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::{Baseline, Clouds, UnitSettings};
+use super::baseline::Baseline;
+use super::clouds::{Clouds, UnitSettings};
 use sim3align::align::options::AlignOptions;
 use sim3align::align::report::{Alignment, Counts};
 use sim3align::align::{Estimated, align_by};

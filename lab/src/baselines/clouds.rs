@@ -3,7 +3,7 @@
 use glam::Vec3;
 use nalgebra::Vector3;
 
-use super::Baseline;
+use super::baseline::Baseline;
 use super::fgr::{self, FgrSettings};
 use super::gicp::{self, GicpSettings};
 use super::icp::{self, classical};
@@ -171,17 +171,6 @@ impl Clouds {
             refined: None,
         })
     }
-}
-
-/// What local methods say whose clouds do not touch.
-pub(super) fn no_overlap(pairs: usize) -> Error {
-    Error::new(
-        ErrorCode::NoConsensus,
-        "source",
-        format!("{pairs} points within reach of the target"),
-        "six at least",
-        "Start nearer, or widen the largest distance of correspondences.",
-    )
 }
 
 fn no_vertical() -> Error {

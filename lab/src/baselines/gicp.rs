@@ -11,8 +11,7 @@
 use glam::Vec3;
 use nalgebra::{Matrix3, Vector3};
 
-use super::clouds::no_overlap;
-use super::icp::TOLERANCE;
+use super::icp::{TOLERANCE, no_overlap};
 use sim3align::evidence::normals::{Neighborhood, Orientation, estimate_normals};
 use sim3align::register::icp::{Refined, moved, movement, rigid_jacobian};
 use sim3align_geometry::error::Result;

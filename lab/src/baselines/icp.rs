@@ -1,10 +1,9 @@
 //! Classical ICP: every pair within reach has the same say, and the reach stays as it is.
 
-use super::clouds::no_overlap;
 use sim3align::register::icp::{IcpMetric, IcpSettings, Refined, refine};
 use sim3align::register::support::SupportSettings;
 use sim3align_geometry::cloud::Cloud;
-use sim3align_geometry::error::Result;
+use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::kd_tree::KdTree;
 use sim3align_geometry::similarity::Similarity;
 
@@ -41,4 +40,15 @@ pub fn solve(
 ) -> Result<Refined> {
     let refined = refine(source, target, target_tree, initial, settings);
     if refined.iterations == 0 { Err(no_overlap(refined.supported)) } else { Ok(refined) }
+}
+
+/// Error of local methods if the clouds do not overlap at the initial pose.
+pub(super) fn no_overlap(pairs: usize) -> Error {
+    Error::new(
+        ErrorCode::NoConsensus,
+        "source",
+        format!("{pairs} points within reach of the target"),
+        "six at least",
+        "Start nearer, or widen the largest distance of correspondences.",
+    )
 }

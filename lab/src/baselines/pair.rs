@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::{Baseline, Clouds, UnitSettings};
+use super::baseline::Baseline;
+use super::clouds::{Clouds, UnitSettings};
 use sim3align::evidence::extents::{Extents, target_from_source};
 use sim3align::evidence::normals::outward_normals;
 use sim3align::evidence::observation::MIN_POINTS;

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use lexopt::prelude::*;
 use sim3align_geometry::error::Error;
 use sim3align_lab::samples::case::SampleCase;
-use sim3align_lab::samples::scenes::DEPTH_SCALE;
 use sim3align_lab::samples::shape::Kind;
+use sim3align_lab::scenes::DEPTH_SCALE;
 
 use super::Failure;
 

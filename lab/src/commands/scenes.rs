@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use lexopt::prelude::*;
 use sim3align_geometry::error::Error;
-use sim3align_lab::samples::scenes::{Prior, SCENES, SceneSet};
+use sim3align_lab::scenes::{Prior, SCENES, SceneSet};
 
 use super::Failure;
 

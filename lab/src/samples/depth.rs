@@ -5,8 +5,8 @@ use core::f64::consts::TAU;
 use glam::Vec3;
 use nalgebra::{Matrix3, Vector3};
 
-use super::evaluation::scene::{count, hidden, in_front, put_before};
-use super::{DEPTH_STREAM, VIEW_STREAM, between};
+use crate::cases::scene::{count, hidden, in_front, put_before};
+use crate::draws::between;
 use sim3align_geometry::error::Result;
 use sim3align_geometry::image::{DepthMap, Image, Mask};
 use sim3align_geometry::mesh::Mesh;
@@ -14,6 +14,12 @@ use sim3align_geometry::pinhole::Pinhole;
 use sim3align_geometry::random::Random;
 use sim3align_geometry::rasteriser::Rasteriser;
 use sim3align_geometry::similarity::{Similarity, vec3, vector3};
+
+/// Random stream of the viewpoint.
+const VIEW_STREAM: u64 = 0x7669_6577;
+
+/// Random stream of the errors of the depth map.
+const DEPTH_STREAM: u64 = 0x6465_7074;
 
 const WIDTH: usize = 640;
 const HEIGHT: usize = 480;

@@ -5,12 +5,15 @@ use core::f64::consts::{PI, TAU};
 use glam::DVec3;
 use nalgebra::{Rotation3, Vector3};
 
-use super::evaluation::draft::Object;
-use super::evaluation::scene::put_down_turned;
-use super::{SHAPE_STREAM, between};
+use crate::cases::families;
+use crate::cases::scene::put_down_turned;
+use crate::draws::between;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::random::Random;
+
+/// Random stream of the dimensions.
+const SHAPE_STREAM: u64 = 0x7368_6170;
 
 /// What can be generated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -102,7 +105,7 @@ impl Kind {
 
 /// One of the evaluation set's objects as it is made to lie or stand, turned about the vertical, radians.
 fn lying(family: &'static str, heading: f64, random: &mut Random) -> Result<Mesh> {
-    let object = Object::of_family(family, random)?.ok_or_else(|| {
+    let object = families::draw_from(family, random)?.ok_or_else(|| {
         Error::new(ErrorCode::Internal, "family", "none", format!("one named {family}"), "Please report it.")
     })?;
     let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), heading);

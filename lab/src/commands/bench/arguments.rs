@@ -8,11 +8,11 @@ use sim3align::align::options::AlignOptions;
 use sim3align::precise::SearchSettings;
 use sim3align_geometry::error::Error;
 use sim3align_lab::baselines::Baseline;
-use sim3align_lab::samples::benchmark::override_setting;
-use sim3align_lab::samples::evaluation::case::CASES;
-use sim3align_lab::samples::evaluation::tier::{Class, Tier};
-use sim3align_lab::samples::records::RecordKey;
-use sim3align_lab::samples::scenes::Prior;
+use sim3align_lab::bench::benchmark::override_setting;
+use sim3align_lab::bench::records::RecordKey;
+use sim3align_lab::cases::case::CASES;
+use sim3align_lab::cases::tier::{Class, Tier};
+use sim3align_lab::scenes::Prior;
 
 pub const USAGE: &str = "\
 Usage: sim3align-lab bench [--generated N] [--scenes N] [--cases DIR...] [options]

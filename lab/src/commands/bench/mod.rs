@@ -2,7 +2,6 @@
 
 mod arguments;
 mod run;
-mod scenes;
 mod table;
 
 use super::Failure;

@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use sim3align::metrics::Metrics;
 use sim3align::metrics::pose_error::PoseErrors;
-use sim3align_lab::samples::benchmark::{LOOSE, Record, STRICT};
-use sim3align_lab::samples::table::{cell, mean, median};
+use sim3align_lab::bench::benchmark::{LOOSE, Record, STRICT};
+use sim3align_lab::bench::statistics::{cell, mean, median};
 
 /// A column of a metric.
 struct Column {

@@ -12,10 +12,10 @@ use sim3align::register::register;
 use sim3align_geometry::cloud::Cloud;
 use sim3align_geometry::similarity::Similarity;
 use sim3align_lab::baselines::{Baseline, PairSettings, register_pair};
-use sim3align_lab::samples::imported::{CLOUDS, Outcome, answer_in};
-use sim3align_lab::samples::records::RecordKey;
-use sim3align_lab::samples::registration::cloud_file::flat;
-use sim3align_lab::samples::registration::pair::Pair;
+use sim3align_lab::bench::imported::{CLOUDS, Outcome, answer_in};
+use sim3align_lab::bench::records::RecordKey;
+use sim3align_lab::clouds::cloud_file::flat;
+use sim3align_lab::clouds::pair::Pair;
 
 /// Correspondences of another program agree with a pose that leaves them this near, in the pair's voxels, where the
 /// file does not say.

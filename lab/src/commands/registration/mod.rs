@@ -2,7 +2,6 @@
 
 mod arguments;
 mod method;
-mod record;
 mod run;
 mod table;
 

@@ -7,19 +7,18 @@ use sim3align_geometry::random::Random;
 use sim3align_geometry::rotations::super_fibonacci;
 use sim3align_geometry::similarity::{Similarity, vec3, vector3};
 use sim3align_geometry::voxel_grid::voxel_downsample;
-use sim3align_lab::samples::in_order::in_order;
-use sim3align_lab::samples::records::RecordFile;
-use sim3align_lab::samples::registration::cloud_file::read_cloud;
-use sim3align_lab::samples::registration::lidar_set::write_lidar;
-use sim3align_lab::samples::registration::overlap::overlap;
-use sim3align_lab::samples::registration::pair::Pair;
-use sim3align_lab::samples::registration::room_set::write_rooms;
-use sim3align_lab::samples::registration::{kitti, three_d_match};
+use sim3align_lab::bench::records::RecordFile;
+use sim3align_lab::clouds::cloud_file::read_cloud;
+use sim3align_lab::clouds::lidar_set::write_lidar;
+use sim3align_lab::clouds::overlap::overlap;
+use sim3align_lab::clouds::pair::Pair;
+use sim3align_lab::clouds::room_set::write_rooms;
+use sim3align_lab::clouds::{kitti, three_d_match};
+use sim3align_lab::parallel::parallel_map;
 
 use super::arguments::{Command, Kind, Protocol, Run};
 use super::method::Method;
-use super::record::Record;
-use super::table;
+use super::table::{self, Record};
 
 /// The random stream of `--moved`.
 const MOVED_STREAM: u64 = 0x6d6f_7665;
@@ -51,7 +50,7 @@ fn run_pairs(run: &Run) -> Result<(), String> {
     }
     let records = run.records.as_deref().map(RecordFile::open).transpose().map_err(|error| error.to_string())?;
     let work = |pair: &Pair| run_pair(pair, run, records.as_ref());
-    let made = in_order(run.threads, &pairs, work, |done| eprint!("\r{done} of {} ", pairs.len()));
+    let made = parallel_map(run.threads, &pairs, work, |done| eprint!("\r{done} of {} ", pairs.len()));
     eprintln!();
     let all: Vec<Record> = made?.into_iter().flatten().collect();
     let methods: Vec<&str> = run.methods.iter().map(Method::name).collect();

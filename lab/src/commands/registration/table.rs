@@ -1,11 +1,10 @@
-//! Markdown tables.
+//! Records of registrations, and Markdown tables of them.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use sim3align_lab::samples::table::{cell, mean, median};
-
-use super::record::Record;
+use serde::{Deserialize, Serialize};
+use sim3align_lab::bench::statistics::{cell, mean, median};
 
 /// Lower ends of the bins of overlap, and their names.
 const OVERLAPS: [(f64, &str); 4] =
@@ -19,6 +18,25 @@ const DISTANCES_M: [(f64, &str); 5] = [
     (34.0, "about 30 m"),
     (f64::INFINITY, "about 40 m"),
 ];
+
+/// The result of a method on a pair, as stored in the file of records.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Record {
+    pub id: String,
+    pub group: String,
+    pub method: String,
+    pub overlap: Option<f64>,
+    pub distance_m: f64,
+    pub success: bool,
+    pub rotation_deg: Option<f64>,
+    pub translation_m: Option<f64>,
+    pub rmse_m: Option<f64>,
+    pub error: Option<String>,
+    pub seconds: Option<f64>,
+    /// Target from source, column-major.
+    pub matrix: Option<[f64; 16]>,
+}
 
 /// Recall and errors of every method, over all pairs and by bin.
 pub fn report(records: &[Record], methods: &[&str]) -> String {
