@@ -3,7 +3,7 @@
 //! All problems share one size, so that the decomposition is compiled once.
 //!
 //! ```
-//! use sim3align::geometry::normal_equations::NormalEquations;
+//! use sim3align_geometry::normal_equations::NormalEquations;
 //!
 //! // Two residuals in the first parameter: r₁ = x − 1, r₂ = x − 3, at x = 0.
 //! let mut equations = NormalEquations::new();
