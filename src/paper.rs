@@ -1,10 +1,9 @@
 //! Preset `paper`: the paper's method, faithfully (§3.1 to §3.3).
 
-use crate::align::Estimated;
-use crate::align::options::AlignOptions;
+use crate::align::paper_options::PaperOptions;
+use crate::align::{Clouds, Solution};
 use crate::error::Result;
-use crate::evidence::Evidence;
-use crate::evidence::extents::{Extents, target_from_source};
+use crate::evidence::extents::target_from_source;
 use crate::progress::{Stage, Stopwatch};
 use crate::register::global::{Problem, Settings};
 
@@ -22,23 +21,18 @@ pub(super) const PLAN: &[(Stage, f64)] = &[
 ];
 
 /// Descriptors, guarded RANSAC, hallucination filter, scale-locked ICP.
-pub(super) fn estimate(
-    evidence: &Evidence,
-    extents: [&Extents; 2],
-    options: &AlignOptions,
-    stages: &mut Stopwatch<'_>,
-) -> Result<Estimated> {
-    let [observed, reconstructed] = extents;
+pub(super) fn estimate(clouds: &mut Clouds, options: &PaperOptions, stages: &mut Stopwatch<'_>) -> Result<Solution> {
+    let (evidence, [observed, reconstructed]) = clouds.evidence(stages);
     // §3.1: from here both clouds are centred, with a box diagonal of 1.
     let target = observed.normalized(&evidence.observed);
     let source = reconstructed.normalized(&evidence.reconstructed);
     let settings = Settings::of(options);
-    let estimated = Problem::new(&source, &target, &settings, stages).solve(&settings, stages)?;
-    Ok(Estimated {
-        clamped: estimated.clamped,
-        converged: estimated.converged,
-        residual_m: estimated.rms * observed.diagonal(),
-        counts: estimated.counts,
-        ..Estimated::of_pose(target_from_source(observed, &estimated.target_from_source, reconstructed))
+    let estimate = Problem::new(&source, &target, &settings, stages).solve(&settings, stages)?;
+    Ok(Solution {
+        clamped: estimate.clamped,
+        converged: estimate.converged,
+        residual_m: estimate.rms * observed.diagonal(),
+        counts: estimate.counts,
+        ..Solution::of_pose(target_from_source(observed, &estimate.target_from_source, reconstructed))
     })
 }

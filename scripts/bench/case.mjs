@@ -22,7 +22,7 @@ import { packageModule } from "./package.mjs";
  */
 export async function readTypedCase(folder) {
   const [{ readCaseFolder }, { resolveInput }, { formatsModule }] = await Promise.all(
-    ["case-folder.js", "input/resolve.js", "modules.js"].map(packageModule),
+    ["case-folder.js", "input/resolve.js", "formats-module.js"].map(packageModule),
   );
   const { name, input, truth } = await readCaseFolder(folder);
   const { core } = await resolveInput(input, () => formatsModule.load());
@@ -35,7 +35,10 @@ export async function readTypedCase(folder) {
   return {
     name,
     input: { depth: metres, width, height, mask, camera, mesh: { positions: mesh.positions, indices } },
-    truth: truth && { matrix: truth.matrix, symmetry: declaredSymmetry(folder) ?? truth.symmetry },
+    truth: truth && {
+      matrix: Array.from(truth.transform.matrix),
+      symmetry: declaredSymmetry(folder) ?? truth.symmetry,
+    },
   };
 }
 

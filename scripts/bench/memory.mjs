@@ -43,7 +43,9 @@ const megabytes = (/** @type {number} */ bytes) => fixed(bytes / 1e6, 1);
  * @returns {Promise<{ name: string, mesh: TypedCase["mesh"], off?: number }>}
  */
 async function meshFrom(folder) {
-  const [{ readMesh }, { formatsModule }] = await Promise.all(["input/mesh.js", "modules.js"].map(packageModule));
+  const [{ readMesh }, { formatsModule }] = await Promise.all(
+    ["input/mesh.js", "formats-module.js"].map(packageModule),
+  );
   let best = null;
   for (const name of readdirSync(folder).filter((file) => file.endsWith(".glb"))) {
     const bytes = new Uint8Array(readFileSync(join(folder, name)));

@@ -79,31 +79,6 @@ async function measureThroughput(createAligner, cases, repeats) {
 }
 
 /**
- * One alignment, by one worker and shared by two.
- * @param {typeof import("../../pkg/index.js").createAligner} createAligner
- * @param {number} repeats
- */
-async function measureSplit(createAligner, repeats) {
-  const aligner = await createAligner({ workers: 2 });
-  const rows = [];
-  for (const quality of /** @type {const} */ (["fast", "balanced", "best"])) {
-    /** @type {[number[], number[]]} */
-    const times = [[], []];
-    for (let repeat = -1; repeat < repeats * inputs.length; repeat++) {
-      const input = inputOf(Math.max(repeat, 0));
-      for (const i of /** @type {const} */ ([0, 1])) {
-        const ms = await timed(() => aligner.align(input, { quality, splitSearch: i === 1 }));
-        if (repeat >= 0) times[i].push(ms);
-      }
-    }
-    const [one, two] = times.map(median);
-    rows.push([quality, fixed(one), fixed(two), fixed((one ?? 0) / (two ?? 1), 2)]);
-  }
-  aligner.dispose();
-  console.log(`\n${markdownTable(["one alignment, median", "one worker, ms", "shared by two, ms", "times"], rows)}\n`);
-}
-
-/**
  * From the abort to the rejection, and to the end of the next alignment beyond what it takes anyway.
  * @param {typeof import("../../pkg/index.js").createAligner} createAligner
  * @param {number} aborts
@@ -217,7 +192,6 @@ await command("bench:pool", (program) =>
       await builtPackage();
       const { createAligner } = await packageModule("index.js");
       await step("throughput", () => measureThroughput(createAligner, cases, repeats));
-      await step("one alignment, shared", () => measureSplit(createAligner, repeats));
       const isQuick = await step("aborts", () => measureAborts(createAligner, aborts));
       await step("lost workers", () => measureLosses(createAligner, losses));
       await step("memory", () => measureMemory(createAligner, alignments));

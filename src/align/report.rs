@@ -1,4 +1,4 @@
-//! What the entry points return.
+//! The results of the entry points.
 
 use serde::Serialize;
 
@@ -8,7 +8,7 @@ use crate::metrics::Metrics;
 use crate::precise::score::Score;
 use crate::progress::Timings;
 
-/// A similarity y = s·R·x + t in every form that callers ask for.
+/// A similarity y = s·R·x + t in the forms that applications use.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "camelCase")]
@@ -22,6 +22,7 @@ pub struct Sim3 {
     /// t, in target units; for `align`, metres.
     pub translation: [f64; 3],
     /// The 4×4 matrix, 16 numbers **column by column** (three.js `Matrix4.elements`, glTF `node.matrix`, WebGPU).
+    #[cfg_attr(feature = "types", ts(type = "number[]"))]
     pub matrix: [f64; 16],
 }
 
@@ -38,13 +39,13 @@ impl From<&Similarity> for Sim3 {
     }
 }
 
-/// Something about the input that the caller should know; the result stands.
+/// A condition that the caller should know about; the result stands.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 pub struct Warning {
-    /// A stable name.
+    /// The kind of warning, stable across releases.
     pub code: WarningCode,
-    /// What was found and what to do about it.
+    /// What was found, and what to do about it.
     pub message: String,
 }
 
@@ -60,16 +61,18 @@ pub enum WarningCode {
     MaskTouchesBorder,
     /// Less than half of the mask has a depth reading.
     SparseDepth,
-    /// The scale stands at a bound of the guard.
+    /// The scale was held at a bound of `scale` or of the guard.
     ScaleClamped,
-    /// The scale fell below 0.3 of the initial one.
+    /// The scale fell below 0.3 of the initial scale.
     ScaleCollapsed,
-    /// The refinement ended before it came to rest.
+    /// The refinement ended before it converged.
     NotConverged,
+    /// The camera file has lens distortion, which the pinhole model leaves out. The package's camera reader warns of it.
+    CameraNotPinhole,
 }
 
-/// How much went in and how much of it counted. `precise` counts the points of both and the renders, every other method
-/// all but the renders; the rest is 0.
+/// Sizes of the problem and events during the run. `precise` counts points and renders, the other methods everything but
+/// renders; what a method does not count is 0.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "camelCase")]
@@ -102,20 +105,20 @@ pub struct Counts {
     pub renders: usize,
 }
 
-/// What the search's score is made of: agreements from 0 to 1, on the search's own grid of the cleaned observation.
+/// The terms of the search's score: agreements from 0 to 1, measured on the search's own grid of the cleaned observation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "camelCase")]
 pub struct ScoreTerms {
-    /// Of mask and silhouette; what an occluder or the image border hides hardly counts.
+    /// Overlap of mask and silhouette; parts hidden by an occluder or by the image border hardly count.
     pub overlap: f64,
     /// Share of the mask that the mesh covers.
     pub coverage: f64,
-    /// Of depths, where both have one.
+    /// Agreement of the depths, where both have one.
     pub depth: f64,
-    /// Of normals, where both have one.
+    /// Agreement of the normals, where both have one.
     pub normals: f64,
-    /// Of outlines.
+    /// Agreement of the outlines.
     pub outline: f64,
     /// Share of the silhouette that is hidden.
     pub hidden: f64,
@@ -134,7 +137,7 @@ impl From<&Score> for ScoreTerms {
     }
 }
 
-/// Another pose that explains the observation, as a transform like the alignment's own.
+/// Another pose that explains the observation: a transform like the alignment's own.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "camelCase")]
@@ -142,103 +145,199 @@ pub struct Alternative {
     /// The transform from the mesh's frame to the camera's.
     #[serde(flatten)]
     pub camera_from_mesh: Sim3,
-    /// Its score, to be compared with the alignment's own.
+    /// Its score, which compares with the alignment's `diagnostics.score`.
     pub score: f64,
     /// The angle between its rotation and the alignment's, in degrees, 0 to 180.
     pub turn_deg: f64,
 }
 
-/// How far the pose could move, to one standard deviation, before the observation would contradict it: what a single
-/// view of a symmetric or flat object leaves free is large.
+/// Standard deviations of the pose's parts, as the observation determines them. Parts that a single view leaves open, such
+/// as the turn of a round object about its axis, have large ones.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "camelCase")]
 pub struct Uncertainty {
-    /// Of the scale, as a share of it: 0.01 is one per cent.
+    /// Of the scale, relative: 0.01 is one per cent.
     pub scale: f64,
-    /// Of the rotation about the axis that is determined worst, in degrees.
+    /// Of the rotation about the least determined axis, in degrees.
     pub rotation_deg: f64,
-    /// That axis: a direction of length 1 in the camera's frame.
+    /// That axis: a unit vector in the camera's frame.
     pub rotation_axis: [f64; 3],
-    /// Of the position of the mesh's middle across the line of sight, in metres.
+    /// Of the mesh centre's position across the line of sight, in metres.
     pub lateral_m: f64,
-    /// Of its distance from the camera, in metres.
+    /// Of the mesh centre's distance from the camera, in metres.
     pub distance_m: f64,
 }
 
-/// What `align` found: camera from mesh, x_cam = s·R·p + t.
+/// What all presets report of an alignment besides the pose.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "camelCase")]
-pub struct Alignment {
-    /// The transform from the mesh's frame to the camera's (OpenCV: x right, y down, z forward; metres).
-    #[serde(flatten)]
-    pub camera_from_mesh: Sim3,
+pub struct Diagnostics {
     /// The method that ran.
     pub preset: Preset,
     /// The seed it ran with.
     pub seed: u32,
-    /// s_init: the ratio of the box diagonals of P_obs and P_rec (§3.1).
+    /// s_init: the ratio of the bounding boxes' diagonals, observation to mesh (§3.1).
     pub initial_scale: f64,
-    /// s / s_init.
+    /// The scale divided by the initial scale.
     pub scale_ratio: f64,
-    /// Whether the scale collapsed: scaleRatio below 0.3.
+    /// Whether the scale collapsed: `scaleRatio` is below 0.3.
     pub collapsed: bool,
-    /// Whether the scale was projected to a bound of the guard.
+    /// Whether the scale was held at a bound.
     pub clamped: bool,
-    /// Whether the refinement came to rest.
+    /// Whether the refinement converged.
     pub converged: bool,
     /// Root mean square residual of the refinement, in metres.
     pub residual_m: f64,
-    /// `precise`: how likely the pose is right (scale within 5 %, rotation within 10° up to symmetry, translation
-    /// within 5 % of the diameter), 0 to 1, calibrated on generated cases; `null` for `paper`.
-    pub confidence: Option<f64>,
-    /// `precise`: what the search maximised, 0 to about 2, which says how two poses of one input compare and nothing
-    /// about different inputs. `null` for `paper`.
-    pub score: Option<f64>,
-    /// `precise`: what the score is made of; `null` for `paper`.
-    pub terms: Option<ScoreTerms>,
-    /// `precise`: other poses that explain the observation nearly as well, best first: flips, and symmetries that the
-    /// object has and the mesh has not. Empty where none comes near, and for `paper`.
-    pub alternatives: Vec<Alternative>,
-    /// `precise`: how well each part of the pose is determined; `null` for `paper`.
-    pub uncertainty: Option<Uncertainty>,
-    /// The eight metrics of the pose.
-    pub metrics: Metrics,
-    /// The counts.
+    /// Sizes of the problem and events during the run.
     pub counts: Counts,
-    /// Milliseconds by stage, and their total.
-    #[cfg_attr(feature = "types", ts(type = "Partial<Record<Stage, number>> & { total: number }"))]
+    /// Milliseconds per stage, and their total.
+    #[cfg_attr(feature = "types", ts(type = "Timings"))]
     pub timings_ms: Timings,
-    /// What the caller should know about the input.
-    pub warnings: Vec<Warning>,
 }
 
-/// What `register` and `estimateSim3` found: target from source, y = s·R·x + t.
+/// Diagnostics of the preset `precise`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "camelCase")]
+pub struct PreciseDiagnostics {
+    /// What all presets report.
+    #[serde(flatten)]
+    pub common: Diagnostics,
+    /// The search's objective, 0 to about 2. It compares poses of one input; scores of different inputs do not compare.
+    pub score: f64,
+    /// The terms of the score.
+    pub terms: ScoreTerms,
+}
+
+/// The result of `align`: camera from mesh, x_cam = s·R·p_mesh + t (OpenCV camera: x right, y down, z forward; metres).
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "camelCase")]
+pub struct Alignment {
+    /// The transform.
+    #[serde(flatten)]
+    pub camera_from_mesh: Sim3,
+    /// Probability that the pose is right (scale within 5 %, rotation within 10° up to symmetry, translation within 5 %
+    /// of the diameter), calibrated on generated cases. It assumes that the mesh is the object's.
+    pub confidence: f64,
+    /// Other poses that explain the observation nearly as well, best first: flips, and turns under which the object looks
+    /// alike though the mesh does not.
+    pub alternatives: Vec<Alternative>,
+    /// How well the observation determines each part of the pose; `null` where the search could not tell.
+    pub uncertainty: Option<Uncertainty>,
+    /// Agreement of the posed mesh with the observation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "types", ts(as = "Metrics"))]
+    pub metrics: Option<Metrics>,
+    /// Conditions that the caller should know about; the result stands.
+    pub warnings: Vec<Warning>,
+    /// Everything else: initial scale, score, counts, timings.
+    pub diagnostics: PreciseDiagnostics,
+}
+
+/// The result of `align` with `preset: "paper"`: camera from mesh, x_cam = s·R·p_mesh + t (OpenCV camera: x right, y
+/// down, z forward; metres).
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "camelCase")]
+pub struct PaperAlignment {
+    /// The transform.
+    #[serde(flatten)]
+    pub camera_from_mesh: Sim3,
+    /// Agreement of the posed mesh with the observation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "types", ts(as = "Metrics"))]
+    pub metrics: Option<Metrics>,
+    /// Conditions that the caller should know about; the result stands.
+    pub warnings: Vec<Warning>,
+    /// Everything else: initial scale, counts, timings.
+    pub diagnostics: Diagnostics,
+}
+
+/// The result of an alignment by either preset.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum AnyAlignment {
+    /// Of the preset `precise`.
+    Precise(Box<Alignment>),
+    /// Of the preset `paper`.
+    Paper(Box<PaperAlignment>),
+}
+
+impl AnyAlignment {
+    /// The transform.
+    pub fn camera_from_mesh(&self) -> &Sim3 {
+        match self {
+            Self::Precise(found) => &found.camera_from_mesh,
+            Self::Paper(found) => &found.camera_from_mesh,
+        }
+    }
+
+    /// The metrics, unless they were not asked for.
+    pub fn metrics(&self) -> Option<Metrics> {
+        match self {
+            Self::Precise(found) => found.metrics,
+            Self::Paper(found) => found.metrics,
+        }
+    }
+
+    /// What all presets report.
+    pub fn diagnostics(&self) -> &Diagnostics {
+        match self {
+            Self::Precise(found) => &found.diagnostics.common,
+            Self::Paper(found) => &found.diagnostics,
+        }
+    }
+}
+
+impl From<Alignment> for AnyAlignment {
+    fn from(alignment: Alignment) -> Self {
+        Self::Precise(Box::new(alignment))
+    }
+}
+
+impl From<PaperAlignment> for AnyAlignment {
+    fn from(alignment: PaperAlignment) -> Self {
+        Self::Paper(Box::new(alignment))
+    }
+}
+
+/// The result of `register` and `estimateSim3`: target from source, y = s·R·x + t.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "camelCase")]
 pub struct Registration {
-    /// The transform from the source's frame to the target's.
+    /// The transform.
     #[serde(flatten)]
     pub target_from_source: Sim3,
+    /// Share of the source points that land within the inlier distance of a target point, 0 to 1; for `estimateSim3`, the
+    /// share of the correspondences that are inliers.
+    pub fitness: f64,
+    /// Root mean square distance of the inliers (or residual of the refinement), in target units.
+    pub residual: f64,
+    /// Everything else: initial scale, counts, timings.
+    pub diagnostics: RegistrationDiagnostics,
+}
+
+/// What `register` and `estimateSim3` report besides the transform and its fit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "camelCase")]
+pub struct RegistrationDiagnostics {
     /// The seed it ran with.
     pub seed: u32,
-    /// The ratio of the clouds' box diagonals, around which a free scale is sought.
+    /// The ratio of the bounding boxes' diagonals, target to source, around which a free scale is sought.
     pub initial_scale: f64,
-    /// s / s_init.
+    /// The scale divided by the initial scale.
     pub scale_ratio: f64,
-    /// Whether the refinement came to rest; `true` where none was asked for.
+    /// Whether the refinement converged; `true` where there was none.
     pub converged: bool,
-    /// Root mean square distance of the inliers (or of the refinement's residuals), in target units.
-    pub residual: f64,
-    /// Share of the source points that land within the inlier distance of a target point, 0 to 1; for
-    /// `estimateSim3`, share of the correspondences that are inliers.
-    pub fitness: f64,
-    /// The counts.
+    /// Sizes of the problem and events during the run.
     pub counts: Counts,
-    /// Milliseconds by stage, and their total.
-    #[cfg_attr(feature = "types", ts(type = "Partial<Record<Stage, number>> & { total: number }"))]
+    /// Milliseconds per stage, and their total.
+    #[cfg_attr(feature = "types", ts(type = "Timings"))]
     pub timings_ms: Timings,
 }
 

@@ -24,20 +24,19 @@ pub mod rounds;
 pub mod score;
 pub mod search;
 
-use crate::align::Estimated;
+use std::rc::Rc;
+
 use crate::align::options::{AlignOptions, ExtentAxis, Quality, SearchScope};
-use crate::align::report::{Counts, Uncertainty};
+use crate::align::paper_options::PaperOptions;
+use crate::align::report::{Alternative, Counts, ScoreTerms, Uncertainty};
+use crate::align::{Clouds, Solution};
 use crate::error::{Error, ErrorCode, Result};
-use crate::evidence::Evidence;
-use crate::evidence::extents::Extents;
 use crate::evidence::observation::Observation;
 use crate::geometry::cloud::Bounds;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::Similarity;
 use crate::paper;
 use crate::progress::{Stage, Stopwatch};
-use std::rc::Rc;
-
 use alternatives::alternatives;
 use confidence::confidence;
 use mesh_pyramid::MeshPyramid;
@@ -67,7 +66,7 @@ pub(super) fn estimate(
     options: &AlignOptions,
     settings: &SearchSettings,
     stages: &mut Stopwatch<'_>,
-) -> Result<Estimated> {
+) -> Result<(Solution, Certainty)> {
     stages.enter(Stage::Prepare);
     let mut rounds = prepare(observation, mesh, options, settings)?;
     stages.enter(Stage::Search);
@@ -83,8 +82,8 @@ pub(super) fn estimate(
     conclude(&rounds, mesh, options)
 }
 
-/// A search that is about to begin.
-pub(super) fn prepare(
+/// The search before its first round.
+fn prepare(
     observation: &Observation,
     mesh: &Mesh,
     options: &AlignOptions,
@@ -97,32 +96,47 @@ pub(super) fn prepare(
     Ok(Rounds::new(search, initial, options.search == SearchScope::Global))
 }
 
-/// Descriptors are weak evidence, but of another kind: where time is no matter, their pose is a candidate too.
+/// The paper's pose, at the best quality: descriptors are weak evidence, but independent of the search's.
 pub(super) fn hypothesis(
-    evidence: &Evidence,
-    extents: [&Extents; 2],
+    clouds: &mut Clouds,
     options: &AlignOptions,
     stages: &mut Stopwatch<'_>,
 ) -> Option<Similarity> {
     let is_wanted = options.quality == Quality::Best && options.search == SearchScope::Global;
-    let found = is_wanted.then(|| paper::estimate(evidence, extents, options, stages).ok()).flatten()?;
+    let paper = PaperOptions {
+        seed: options.seed,
+        max_observed_points: options.max_observed_points,
+        surface_samples: options.surface_samples,
+        ..PaperOptions::default()
+    };
+    let found = is_wanted.then(|| paper::estimate(clouds, &paper, stages).ok()).flatten()?;
     Some(found.camera_from_mesh)
 }
 
-/// What the search found, and how sure it is.
-pub(super) fn conclude(rounds: &Rounds, mesh: &Mesh, options: &AlignOptions) -> Result<Estimated> {
+/// How certain the search is of its pose.
+pub(super) struct Certainty {
+    pub(super) confidence: f64,
+    pub(super) alternatives: Vec<Alternative>,
+    pub(super) uncertainty: Option<Uncertainty>,
+    pub(super) score: f64,
+    pub(super) terms: ScoreTerms,
+}
+
+/// The best pose of the search, and how certain it is.
+fn conclude(rounds: &Rounds, mesh: &Mesh, options: &AlignOptions) -> Result<(Solution, Certainty)> {
     let (found, search) = (&rounds.found, &rounds.search);
     let best = found.first().ok_or_else(no_candidate)?;
     let alternatives = alternatives(found, search, mesh, &options.symmetry)?;
     let (conditioning, residual_m) = search.conditioning(&best.pose);
-    Ok(Estimated {
+    let solution = Solution {
         camera_from_mesh: best.pose.similarity(&search.mesh.frame),
         clamped: search.is_held(&best.pose),
         converged: best.converged,
         residual_m,
-        confidence: Some(confidence(best, &alternatives, conditioning.as_ref())),
-        score: Some(f64::from(best.score.total)),
-        terms: Some((&best.score).into()),
+        counts: Counts { renders: search.renders, ..Counts::default() },
+    };
+    let certainty = Certainty {
+        confidence: confidence(best, &alternatives, conditioning.as_ref()),
         alternatives,
         uncertainty: conditioning.map(|c| Uncertainty {
             scale: c.scale,
@@ -131,8 +145,10 @@ pub(super) fn conclude(rounds: &Rounds, mesh: &Mesh, options: &AlignOptions) -> 
             lateral_m: c.lateral_m,
             distance_m: c.distance_m,
         }),
-        counts: Counts { renders: search.renders, ..Counts::default() },
-    })
+        score: f64::from(best.score.total),
+        terms: (&best.score).into(),
+    };
+    Ok((solution, certainty))
 }
 
 /// The search that the options ask for.
@@ -142,12 +158,12 @@ pub fn search_settings(options: &AlignOptions) -> SearchSettings {
         Quality::Balanced => SearchSettings::default(),
         Quality::Best => SearchSettings::best(),
     };
-    let fixed = options.scale.is_some_and(|[min, max]| min == max) || options.known_extent_m.is_some();
-    let settings = SearchSettings { lock_scale: fixed || options.lock_scale == Some(true), ..settings };
-    options.budget_ms.map_or(settings, |budget_ms| settings.within(budget_ms))
+    let is_fixed = options.scale.bounds().is_some_and(|[min, max]| min == max) || options.known_extent_m.is_some();
+    let settings = SearchSettings { lock_scale: is_fixed, ..settings };
+    options.work_budget.map_or(settings, |budget| settings.within(budget))
 }
 
-/// What the options say of size and attitude.
+/// The prior on size and attitude.
 fn prior(options: &AlignOptions, mesh: &Mesh, frame: &MeshFrame) -> Prior {
     let extent = Bounds::of(mesh.positions()).map_or(glam::Vec3::ONE, |b| b.extent());
     let side = f64::from(match options.known_extent_axis {
@@ -157,9 +173,7 @@ fn prior(options: &AlignOptions, mesh: &Mesh, frame: &MeshFrame) -> Prior {
         ExtentAxis::Z => extent.z,
     });
     let known = options.known_extent_m.map(|length| [length / side; 2]);
-    // A scale that is locked from the beginning is that of the initial pose.
-    let locked = options.initial.filter(|_| options.lock_scale == Some(true)).map(|pose| [pose.scale; 2]);
-    let bounds = options.scale.or(known).or(locked);
+    let bounds = options.scale.bounds().or(known);
     let direction = |v: [f64; 3]| glam::DVec3::from(v).normalize_or_zero();
     Prior {
         scale: bounds.map(|b| b.map(|s| s * frame.diagonal)),

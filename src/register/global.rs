@@ -1,6 +1,7 @@
 //! From two clouds with normals to a similarity: what `align` and `register` have in common.
 
-use crate::align::options::{AlignOptions, GuardMode, Icp, RegisterOptions};
+use super::options::RegisterOptions;
+use crate::align::paper_options::{GuardMode, Icp, PaperOptions};
 use crate::align::report::Counts;
 use crate::error::Result;
 use crate::geometry::angle::sin_cos;
@@ -39,7 +40,7 @@ pub(crate) struct Settings {
 }
 
 impl Settings {
-    pub(crate) fn of(options: &AlignOptions) -> Self {
+    pub(crate) fn of(options: &PaperOptions) -> Self {
         let voxel_size = 1.0 / options.voxel_divisions;
         let mode = match options.guard_mode {
             GuardMode::Reject => ransac::GuardMode::Reject,
@@ -66,7 +67,7 @@ impl Settings {
                 SupportSettings::EVERYTHING
             },
             icp: icp_metric(options.icp),
-            lock_scale: options.lock_scale.unwrap_or(true),
+            lock_scale: options.lock_scale,
             icp_iterations: options.icp_iterations as usize,
         }
     }
@@ -78,7 +79,7 @@ impl Settings {
         scale_mode: ScaleMode,
         guard: Option<[f64; 2]>,
     ) -> Self {
-        let mut settings = Self::of(&AlignOptions {
+        let mut settings = Self::of(&PaperOptions {
             seed: options.seed,
             voxel_divisions: 1.0 / voxel_size,
             fpfh_radius_voxels: options.fpfh_radius_voxels,
@@ -89,9 +90,9 @@ impl Settings {
             edge_similarity: options.edge_similarity,
             support_angle_deg: 180.0,
             icp: options.icp,
-            lock_scale: Some(matches!(scale_mode, ScaleMode::Fixed(_))),
+            lock_scale: matches!(scale_mode, ScaleMode::Fixed(_)),
             icp_iterations: options.icp_iterations,
-            ..AlignOptions::default()
+            ..PaperOptions::default()
         });
         settings.ransac.scale_mode = scale_mode;
         settings

@@ -50,5 +50,4 @@ pub mod symmetric_eigen;
 pub mod triangle_tree;
 pub mod tukey;
 pub mod umeyama;
-pub mod values;
 pub mod voxel_grid;

@@ -2,6 +2,7 @@
 
 pub mod benchmark;
 pub mod imported;
+pub mod option_text;
 pub mod overlay;
 pub mod records;
 pub mod statistics;

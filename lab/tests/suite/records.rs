@@ -23,7 +23,7 @@ fn key(row: &str, case: &str) -> RecordKey {
 
 fn record() -> Record {
     let case = BenchCase::from(EvaluationSet::new(3).case(0).unwrap());
-    run_case(&case, &AlignOptions { quality: Quality::Fast, ..AlignOptions::default() }, &[])
+    run_case(&case, &AlignOptions { quality: Quality::Fast, ..AlignOptions::default() }.into(), &[])
 }
 
 #[test]

@@ -1,8 +1,9 @@
-/** COCO's run lengths: down the columns, beginning with background. */
+/** COCO's run-length encoding of masks: down the columns, beginning with background. */
 import { describe } from "../error.js";
 import type { CocoRle, PixelArray } from "../input/types.js";
-import { failure, finiteNumbers, record } from "./numbers.js";
-import { type MaskPixels, maskKinds, pixelsOf, sizeOf } from "./pixels.js";
+import { failure, finiteNumbers, isRecord, record, whole } from "../values.js";
+import { corruptJson, type JsonFile, numbersIn, parsedJson } from "./json.js";
+import { type ImageSize, type MaskPixels, maskKinds, pixelsOf } from "./pixels.js";
 import { filledRuns } from "./runs.js";
 
 /**
@@ -50,17 +51,15 @@ export function toCocoRle(mask: PixelArray<MaskPixels>, { compressed = true }: {
  * fromCocoRle({ size: [2, 2], counts: [1, 3] }).data;    // Uint8Array [0, 1, 1, 1]
  * @throws {@link Sim3AlignError} `CORRUPT_FILE` where the runs are not those of that many pixels
  */
-export function fromCocoRle(rle: CocoRle): PixelArray<Uint8Array> {
-  const { size, counts } = record("rle", rle, "{ size: [height, width], counts }");
-  const [height, width] = finiteNumbers("rle.size", size, 2, "[height, width]") as [number, number];
-  sizeOf("rle.size", { width, height });
-  const isList = Array.isArray(counts) || ArrayBuffer.isView(counts);
-  if (!isList && typeof counts !== "string") {
-    const remedy = "Polygons have to be drawn first, by pycocotools' annToMask.";
-    throw failure("INVALID_ARGUMENT", "rle.counts", describe(counts), "a string, or a list of run lengths", remedy);
-  }
-  const runs = typeof counts === "string" ? decompressed(counts) : Array.from(counts as ArrayLike<number>);
-  const columns = filledRuns("rle.counts", runs, width * height);
+export const fromCocoRle = (rle: CocoRle): PixelArray<Uint8Array> => decodedRle("rle", rle);
+
+/** As {@link fromCocoRle}; `argument` is the name of the encoding in errors. */
+export function decodedRle(argument: string, rle: unknown): PixelArray<Uint8Array> {
+  const { size, counts } = record(argument, rle, "{ size: [height, width], counts }");
+  const [height, width] = finiteNumbers(`${argument}.size`, size, 2, "[height, width]") as [number, number];
+  const runs = runsOf(`${argument}.counts`, counts);
+  checkSize(`${argument}.size`, { width, height });
+  const columns = filledRuns(`${argument}.counts`, runs, width * height);
   const data = new Uint8Array(columns.length);
   for (let place = 0; place < data.length; place++) {
     data[(place % height) * width + Math.floor(place / height)] = columns[place] ?? 0;
@@ -68,8 +67,40 @@ export function fromCocoRle(rle: CocoRle): PixelArray<Uint8Array> {
   return { data, width, height };
 }
 
-// Five bits a letter, the lowest first, with a sixth that says whether more follow, from "0" on. From the fourth run
-// on, the difference to the run before the last is written.
+/** The mask in a JSON file: an encoding, or an annotation that has one as its `segmentation`. */
+export function readRleFile(argument: string, file: JsonFile): PixelArray<Uint8Array> {
+  const json = parsedJson(argument, file);
+  const rle = isRecord(json) && isRecord(json.segmentation) ? json.segmentation : json;
+  if (isRecord(rle) && numbersIn(rle.size, 2) !== null && rle.counts !== undefined) return decodedRle(argument, rle);
+  throw corruptJson(argument, "JSON without a run-length encoding", '{"size": [height, width], "counts": …}');
+}
+
+/** The run lengths, each checked, of a list or a compressed string. */
+function runsOf(argument: string, counts: unknown): number[] {
+  if (typeof counts === "string") return decompressed(argument, counts);
+  if (Array.isArray(counts) || ArrayBuffer.isView(counts)) return Array.from(counts as ArrayLike<number>);
+  const remedy = "Draw polygons first, with pycocotools' annToMask.";
+  throw failure("INVALID_ARGUMENT", argument, describe(counts), "a string, or a list of run lengths", remedy);
+}
+
+/** Pixels of a mask at most, as for image files: 8192 × 8192. */
+const MAX_PIXELS = 1 << 26;
+
+/** Whether an image of this size can be allocated: sizes in files may be made up. */
+function checkSize(argument: string, { width, height }: ImageSize): void {
+  whole(`${argument}.width`, width, 0);
+  whole(`${argument}.height`, height, 0);
+  const found = `${width} × ${height} pixels`;
+  if (width * height === 0) {
+    throw failure("EMPTY_IMAGE", argument, found, "at least one pixel", "Pass [height, width] of the image.");
+  }
+  if (width * height <= MAX_PIXELS) return;
+  const remedy = "Downscale the mask first; a small file that states such a size is broken or hostile.";
+  throw failure("FILE_TOO_LARGE", argument, found, `at most ${MAX_PIXELS} pixels (8192 × 8192)`, remedy);
+}
+
+// Each letter holds five bits, the lowest first, and a sixth bit that is set where more letters follow; the letters
+// start at "0". From the fourth run on, the string holds the difference to the run before the last.
 const firstLetter = 48;
 
 function compress(counts: readonly number[]): string {
@@ -86,10 +117,10 @@ function compress(counts: readonly number[]): string {
   return text;
 }
 
-function decompressed(text: string): number[] {
+function decompressed(argument: string, text: string): number[] {
   const broken = (found: string) => {
     const remedy = "Pass counts as pycocotools writes them, decoded as ASCII.";
-    return failure("CORRUPT_FILE", "rle.counts", found, "a string of COCO's run lengths", remedy);
+    return failure("CORRUPT_FILE", argument, found, "a string of COCO's run lengths", remedy);
   };
   const counts: number[] = [];
   let value = 0;

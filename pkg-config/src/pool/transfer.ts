@@ -1,5 +1,5 @@
-/** Arrays on their way to a worker: copied, or moved. */
-import { isKind } from "./values.js";
+/** Copies and lists the arrays that are posted to a worker. */
+import { isKind } from "../values.js";
 
 type View = new (buffer: ArrayBuffer) => ArrayBufferView;
 
@@ -9,7 +9,7 @@ export function copied<T>(value: T): T {
     if (!ArrayBuffer.isView(array)) return array.slice(0);
     const Kind = (globalThis as unknown as Record<string, View>)[kindOf(array)] as View;
     const bytes = new Uint8Array(array.byteLength);
-    // An array whose buffer was given away has no bytes, and can't be looked into.
+    // The buffer of an array without bytes may be detached, and cannot be read.
     if (array.byteLength > 0) bytes.set(new Uint8Array(array.buffer, array.byteOffset, array.byteLength));
     return new Kind(bytes.buffer);
   });

@@ -1,9 +1,9 @@
-/** Run lengths: background, object, background, … */
+/** Masks from run lengths: background, object, background, … */
 import { describe } from "../error.js";
-import { failure } from "./numbers.js";
+import { failure } from "../values.js";
 
 /**
- * Pixels from their runs: 0 for the first, 1 for the second and so on.
+ * The pixels of alternating runs: 0 in the first run, 1 in the second, and so on.
  * @param count how many pixels the runs have to sum up to
  */
 export function filledRuns(argument: string, runs: readonly unknown[], count: number): Uint8Array {
@@ -15,7 +15,7 @@ export function filledRuns(argument: string, runs: readonly unknown[], count: nu
       `run lengths that sum up to ${count}`,
       "Pass the runs and their own size.",
     );
-  // Before anything is allocated: a size that somebody made up stays a number.
+  // Checked before the pixels are allocated: sizes in files may be made up.
   let total = 0;
   for (const run of runs) {
     if (!Number.isSafeInteger(run) || (run as number) < 0) throw corrupt(`${describe(run)} among the runs`);

@@ -1,7 +1,6 @@
-/** Images as they go in and out: pixels with their size. */
+/** Images: pixels with their size. */
 import type { PixelArray } from "../input/types.js";
-import { isTypedArray, wrongKind } from "../values.js";
-import { failure, record, whole } from "./numbers.js";
+import { failure, isTypedArray, record, whole, wrongKind } from "../values.js";
 
 /** An image's size in pixels. */
 export interface ImageSize {
@@ -11,19 +10,19 @@ export interface ImageSize {
   height: number;
 }
 
-/** A mask's pixels; non-zero is the object. */
+/** The pixels of a mask; non-zero is the object. */
 export type MaskPixels = Uint8Array | Uint8ClampedArray;
 
-/** A depth map's pixels. */
+/** The pixels of a depth map. */
 export type DepthPixels = Float32Array | Uint16Array;
 
-/** A size of at least one pixel. */
+/** An image size of at least one pixel, checked. */
 export function sizeOf(argument: string, size: unknown): ImageSize {
   const { width, height } = record(argument, size, "{ width, height }");
   return { width: whole(`${argument}.width`, width, 1), height: whole(`${argument}.height`, height, 1) };
 }
 
-/** Pixels of one of these kinds, as many as their size says. */
+/** An image whose pixels are of one of these kinds, and as many as its size says. */
 export function pixelsOf<T extends ArrayLike<number>>(
   argument: string,
   image: unknown,
@@ -37,7 +36,7 @@ export function pixelsOf<T extends ArrayLike<number>>(
   return { data, width, height };
 }
 
-/** Whether there is a value for every pixel. */
+/** Checks that there is a value for every pixel. */
 export function checkCount(argument: string, count: number, { width, height }: ImageSize, channels = 1): void {
   if (count === width * height * channels) return;
   const perPixel = channels === 1 ? "" : ` × ${channels}`;
