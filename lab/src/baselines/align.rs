@@ -10,8 +10,9 @@ use sim3align::align::{Setup, Solution, align_by};
 use sim3align::evidence::extents::target_from_source;
 use sim3align::evidence::observation::Observation;
 use sim3align::progress::{Host, Stage};
-use sim3align::register::global::{MAX_FEATURES, icp_metric};
+use sim3align::register::cloud_pair::MAX_FEATURES;
 use sim3align::register::grid_cloud::GridCloud;
+use sim3align::register::settings::icp_metric;
 use sim3align_geometry::error::Result;
 use sim3align_geometry::mesh::Mesh;
 

@@ -1,26 +1,27 @@
-//! The frames in which two clouds are compared: centred, and of one size as far as that is known beforehand.
+//! The normalised frames in which two clouds are compared: centred, and of about the same size.
 
 use crate::align::report::{Counts, Registration, RegistrationDiagnostics};
 use crate::align::scale::ScaleOption;
 use crate::error::Result;
-use crate::evidence::extents::{Extents, initial_scale};
+use crate::evidence::extents::{Extents, initial_scale, target_from_source};
 use crate::geometry::similarity::Similarity;
 use crate::progress::Stopwatch;
 use crate::register::umeyama::ScaleMode;
 
-/// How far a free scale may be from the ratio of the boxes. Wide: clutter widens a box at will.
+/// Bounds of a free scale relative to the ratio of the bounding boxes. Wide, because clutter can enlarge a box
+/// arbitrarily.
 const FREE_GUARD: [f64; 2] = [0.2, 5.0];
 
-/// The normalised frames of both clouds, and what is known of the scale between them.
-pub(crate) struct Frames {
+/// The normalised frames of both clouds, and the constraint on the scale between them.
+pub(crate) struct NormalizedPair {
     pub(crate) source: Extents,
     pub(crate) target: Extents,
     pub(crate) scale_mode: ScaleMode,
     pub(crate) guard: Option<[f64; 2]>,
 }
 
-impl Frames {
-    /// The frames in which the initial scale is 1: the ratio of the boxes, or what the caller knows.
+impl NormalizedPair {
+    /// The frames in which the initial scale is 1; it is the ratio of the boxes, within the bounds of `scale`.
     pub(crate) fn of(source_xyz: &[f64], target_xyz: &[f64], scale: ScaleOption) -> Result<Self> {
         let (source, target) = (Extents::of_flat("source", source_xyz)?, Extents::of_flat("target", target_xyz)?);
         let ratio = initial_scale(&target, &source);
@@ -44,13 +45,18 @@ impl Frames {
         })
     }
 
-    /// A transform between the clouds' own frames, taken to the normalised ones.
-    pub(crate) fn unit(&self, target_from_source: &Similarity) -> Similarity {
+    /// Converts a transform between normalised frames to the frames of the clouds.
+    pub(crate) fn denormalized(&self, unit: &Similarity) -> Similarity {
+        target_from_source(&self.target, unit, &self.source)
+    }
+
+    /// Converts a transform between the frames of the clouds to the normalised ones.
+    pub(crate) fn normalized(&self, target_from_source: &Similarity) -> Similarity {
         let own_from_unit = self.source.unit_from_own().inverse();
         self.target.unit_from_own().compose(target_from_source).compose(&own_from_unit)
     }
 
-    /// The report of a transform between the clouds' own frames.
+    /// The result for a transform between the frames of the clouds.
     pub(crate) fn registration(
         &self,
         transform: &Similarity,
@@ -76,7 +82,7 @@ impl Frames {
     }
 }
 
-/// How well a transform fits the clouds, as a [`Registration`] reports it.
+/// The quality of a transform, as reported in a [`Registration`].
 pub(super) struct Fit {
     pub(super) fitness: f64,
     pub(super) residual: f64,
