@@ -50,7 +50,7 @@ pub fn sin_cos(angle: f64) -> (f64, f64) {
 }
 
 /// exp(ω): the rotation by |ω| radians about the direction of ω.
-pub fn turn(rotation: Vector3<f64>) -> UnitQuaternion<f64> {
+pub fn exp_so3(rotation: Vector3<f64>) -> UnitQuaternion<f64> {
     let angle = rotation.norm();
     let (sin, cos) = sin_cos(0.5 * angle);
     let along = if angle > 0.0 { sin / angle } else { 0.5 };

@@ -4,7 +4,7 @@ use core::f64::consts::{SQRT_2, TAU};
 
 use glam::{DQuat, DVec3};
 
-use super::angle::{sin_cos, turn};
+use super::angle::{exp_so3, sin_cos};
 
 /// ψ of the super-Fibonacci spiral: the root of ψ⁴ = ψ + 4.
 const PSI: f64 = 1.533_751_168_755_204_3;
@@ -30,5 +30,5 @@ pub fn angle_between(a: DQuat, b: DQuat) -> f64 {
 
 /// The rotation by |`vector`| radians about `vector`.
 pub fn exp(vector: DVec3) -> DQuat {
-    DQuat::from_array(turn(vector.to_array().into()).coords.into()).normalize()
+    DQuat::from_array(exp_so3(vector.to_array().into()).coords.into()).normalize()
 }

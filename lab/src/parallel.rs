@@ -1,12 +1,13 @@
-//! Work on many things, shared out among threads.
+//! Parallel maps.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// What `work` makes of every item, in the items' order. `progress` is told after each item how many are done.
+/// Maps items on up to `threads` threads; results are in the order of the items. After each item, `progress` gets the
+/// number of completed items.
 ///
 /// # Errors
-/// An error of `work`; what was not begun by then is left out.
+/// The first error of `work`, after which no further items are started.
 pub fn parallel_map<T: Sync, R: Send, E: Send>(
     threads: usize,
     items: &[T],

@@ -1,4 +1,4 @@
-//! Other methods under the paper's preprocessing: the same clouds, the same initial scale, the same voxel grid.
+//! Other methods with the preprocessing of the paper: the same clouds, initial scale and voxel grid.
 
 use nalgebra::Vector3;
 
@@ -16,7 +16,7 @@ use sim3align::register::settings::icp_metric;
 use sim3align_geometry::error::Result;
 use sim3align_geometry::mesh::Mesh;
 
-/// When each stage begins, as a share of the whole.
+/// Progress at the start of each stage, 0 to 1.
 const PLAN: &[(Stage, f64)] = &[
     (Stage::Observe, 0.0),
     (Stage::Sample, 0.02),

@@ -1,11 +1,11 @@
 //! The names of the methods.
 
-/// A method to compare with.
+/// A method for comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Baseline {
     /// Fast Global Registration (Zhou, Park, Koltun 2016), on FPFH matches.
     Fgr,
-    /// Generalized ICP, plane to plane (Segal, Haehnel, Thrun 2009), from where the clouds are.
+    /// Generalized ICP, plane to plane (Segal, Haehnel, Thrun 2009), starting at the given poses.
     Gicp,
     /// ICP point to plane (Chen, Medioni 1992), from where the clouds are.
     IcpPointToPlane,
@@ -20,11 +20,11 @@ pub enum Baseline {
 }
 
 impl Baseline {
-    /// All of them.
+    /// All methods.
     pub const ALL: [Self; 7] =
         [Self::Fgr, Self::Gicp, Self::IcpPointToPlane, Self::IcpPointToPoint, Self::Ransac, Self::Teaser, Self::Quatro];
 
-    /// The name that a user writes.
+    /// The name on the command line.
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Fgr => "fgr",
@@ -37,12 +37,12 @@ impl Baseline {
         }
     }
 
-    /// The method of that name.
+    /// The method with a name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|baseline| baseline.as_str() == name)
     }
 
-    /// Whether it only finds the pose near the one it starts from.
+    /// Whether the method is local: it needs an initial pose near the solution.
     pub fn is_local(self) -> bool {
         matches!(self, Self::Gicp | Self::IcpPointToPlane | Self::IcpPointToPoint)
     }

@@ -1,7 +1,7 @@
-//! Other methods for the same task, to compare with: each as published, on the crate's own clouds and solvers.
+//! Other registration methods for comparison, implemented as published on the clouds and solvers of the aligner.
 //!
-//! All are rigid but TEASER, which can estimate the scale. Where they need descriptors, normals or a voxel grid, they
-//! get those of the paper's method, so that a comparison is one of methods and not of preprocessing.
+//! All are rigid except TEASER, which can estimate the scale. Descriptors, normals and voxel grids are those of the paper's
+//! method, so that methods are compared and not preprocessing.
 
 pub mod align;
 mod baseline;

@@ -1,4 +1,4 @@
-//! Runs methods over cases and keeps all that tables are made of.
+//! Runs methods over cases, and records the results for tables.
 
 use std::path::Path;
 use std::rc::Rc;
@@ -28,7 +28,7 @@ use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::similarity::Similarity;
 
-/// A case, wherever it came from.
+/// A case from any source.
 #[derive(Debug, Clone)]
 pub struct BenchCase {
     /// Its name.
@@ -37,21 +37,21 @@ pub struct BenchCase {
     pub tier: String,
     /// Of a folder, what its `meta.json` says, else `"given"`.
     pub class: String,
-    /// What it shows.
+    /// The object.
     pub family: String,
-    /// Names of its faults.
+    /// Names of the simulated errors.
     pub tags: Vec<String>,
-    /// Measures of its faults, by name.
+    /// Magnitudes of the simulated errors, by name.
     pub parameters: Value,
     /// Depth, mask and camera.
     pub observation: Observation,
     /// The mesh.
     pub mesh: Mesh,
-    /// The true pose, where it is known.
+    /// The true pose, if known.
     pub truth: Option<Truth>,
 }
 
-/// What came of a case.
+/// The record of a case.
 #[derive(Debug, Clone, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Record {
@@ -69,38 +69,38 @@ pub struct Record {
     pub parameters: Value,
     /// The result of `align`.
     pub alignment: Option<AnyAlignment>,
-    /// Or its error.
+    /// The error, if it failed.
     pub error: Option<String>,
-    /// The errors against the truth, where both are there.
+    /// Errors relative to the true pose, if available.
     pub errors: Option<PoseErrors>,
-    /// The true pose's own metrics.
+    /// Metrics of the true pose.
     pub truth_metrics: Option<Metrics>,
-    /// What the search's own objective says of the truth.
+    /// Score of the true pose by the objective of the search.
     pub truth_score: Option<f64>,
-    /// The true scale by the initial one, s / s_init.
+    /// Ratio of the true to the initial scale, s / s_init.
     pub truth_scale_ratio: Option<f64>,
     /// What `align` took; NaN, `null` in JSON, where another program did not say what it took.
     pub seconds: f64,
 }
 
-/// How near is near enough.
+/// Maximum errors of a success.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerance {
     /// |s / s_true − 1|.
     pub scale: f64,
     /// Degrees.
     pub rotation_deg: f64,
-    /// Share of the diameter.
+    /// Fraction of the diameter.
     pub translation: f64,
 }
 
 /// Scale within 5 %, rotation within 10°, translation within 5 % of the diameter.
 pub const STRICT: Tolerance = Tolerance { scale: 0.05, rotation_deg: 10.0, translation: 0.05 };
-/// Twice as far.
+/// Twice the errors of [`STRICT`].
 pub const LOOSE: Tolerance = Tolerance { scale: 0.1, rotation_deg: 20.0, translation: 0.1 };
 
 impl Tolerance {
-    /// Whether a pose is near enough.
+    /// Whether the errors of a pose are within the tolerance.
     pub fn holds(&self, errors: &PoseErrors) -> bool {
         errors.scale_error <= self.scale
             && errors.rotation_error_deg <= self.rotation_deg
@@ -109,7 +109,7 @@ impl Tolerance {
 }
 
 impl Record {
-    /// Whether the pose is within a tolerance; `None` where the truth is not known. An error is a failure.
+    /// Whether the pose is within a tolerance; `None` if the true pose is unknown. An error is a failure.
     pub fn success(&self, tolerance: &Tolerance) -> Option<bool> {
         self.truth_metrics.map(|_| self.errors.is_some_and(|errors| tolerance.holds(&errors)))
     }
@@ -187,7 +187,7 @@ fn symmetry_of(axes: &Value) -> Option<Symmetry> {
     Some(if axes.is_empty() { Symmetry::None } else { Symmetry::Declared(axes) })
 }
 
-/// A host with a clock.
+/// A host with a clock and no listener.
 struct Clock(Instant);
 
 impl Host for Clock {
@@ -254,7 +254,7 @@ fn element<'a, T>(name: &str, stem: &str, values: &'a mut [T]) -> Option<&'a mut
     values.get_mut(index)
 }
 
-/// [`run_case`] with any method.
+/// Like [`run_case`], for any method.
 pub fn run_method(
     case: &BenchCase,
     method: impl FnOnce(&Observation, &Mesh, &mut dyn Host) -> Result<AnyAlignment>,
@@ -265,12 +265,12 @@ pub fn run_method(
     record_of(case, outcome.map_err(|error| described(&error)), seconds)
 }
 
-/// An error as records have it.
+/// Text of an error in a record.
 pub(super) fn described(error: &Error) -> String {
     format!("{}: {error}", error.code.as_str())
 }
 
-/// The record of a case, of what came of it or of what went wrong, and of what that took.
+/// The record of a case: the result or error, and the run time.
 pub(super) fn record_of(case: &BenchCase, outcome: core::result::Result<AnyAlignment, String>, seconds: f64) -> Record {
     let (alignment, error) = match outcome {
         Ok(alignment) => (Some(alignment), None),

@@ -1,5 +1,5 @@
-//! Answers of other programs, one JSON file per case, scored as our own are; `docs/importing-results.md` describes the
-//! files.
+//! Results of other programs, one JSON file per case, evaluated like those of the aligner. `docs/importing-results.md`
+//! describes the files.
 
 use std::io::ErrorKind;
 use std::path::Path;
@@ -21,21 +21,21 @@ use sim3align_geometry::similarity::Similarity;
 
 const REMEDY: &str = "docs/importing-results.md describes the file.";
 
-/// What an answer calls its parts.
+/// Names of the fields of a result file.
 #[derive(Debug, Clone, Copy)]
 pub struct Names {
     /// The pose.
     pub pose: &'static str,
-    /// Of pairs of points, those that the pose moves.
+    /// Field of the transformed points of correspondences.
     pub moved: &'static str,
-    /// Those that stay.
+    /// Field of the reference points of correspondences.
     pub fixed: &'static str,
 }
 
-/// The answer to a case.
+/// Fields of the result for a case.
 pub const CASE: Names = Names { pose: "cameraFromMesh", moved: "mesh", fixed: "camera" };
 
-/// The answer to a pair of clouds.
+/// Fields of the result for a pair of clouds.
 pub const CLOUDS: Names = Names { pose: "targetFromSource", moved: "source", fixed: "target" };
 
 /// When each stage begins, as a share of the whole: all that is computed here is the metrics.
@@ -44,27 +44,27 @@ const PLAN: &[(Stage, f64)] = &[(Stage::Observe, 0.0), (Stage::Metrics, 0.2)];
 /// An inlier's distance by default, as a share of the box diagonal of P_obs: 1.5 voxels of the paper's.
 const INLIER_DISTANCE: f64 = 0.05;
 
-/// What a file answers.
+/// The content of a result file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
-    /// The pose, or what it follows from.
+    /// The pose, or the data that determine it.
     pub outcome: Outcome,
-    /// What the program took, where the file says so.
+    /// Run time of the program, if known, in seconds.
     pub seconds: Option<f64>,
 }
 
-/// An answer without its time.
+/// A result without its run time.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
     /// The pose itself.
     Pose(Similarity),
-    /// Pairs of points that belong together, of which the pose is estimated here.
+    /// Correspondences from which the pose is estimated.
     Pairs(Pairs),
-    /// What the program says went wrong.
+    /// The error message of the program.
     Failure(String),
 }
 
-/// Pairs of points; the i-th that is moved belongs to the i-th that stays.
+/// Corresponding points, by position.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pairs {
     /// Those that the pose moves, in the mesh's or the source's frame, x, y, z one after the other.
@@ -78,7 +78,7 @@ pub struct Pairs {
 }
 
 impl Pairs {
-    /// The similarity that most of them agree with, by our own `estimateSim3`.
+    /// The similarity with the highest consensus, by `estimateSim3`.
     ///
     /// # Errors
     /// Those of [`estimate_sim3`].

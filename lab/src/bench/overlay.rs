@@ -1,4 +1,4 @@
-//! A picture of a pose: outlines over the depth map.
+//! Visualisation of a pose: outlines over the depth map.
 
 use core::f64::consts::TAU;
 
@@ -12,26 +12,26 @@ use sim3align_geometry::pinhole::Pinhole;
 use sim3align_geometry::rasteriser::Rasteriser;
 use sim3align_geometry::similarity::Similarity;
 
-/// The mask's outline: white.
+/// Colour of the outline of the mask: white.
 pub const MASK_COLOUR: [u8; 3] = [255, 255, 255];
-/// The true pose's outline: green.
+/// Colour of the outline of the true pose: green.
 pub const TRUTH_COLOUR: [u8; 3] = [40, 230, 90];
-/// The pose's outline: orange; drawn last.
+/// Colour of the outline of the estimated pose: orange; drawn last.
 pub const POSE_COLOUR: [u8; 3] = [255, 120, 0];
-/// Where there is no reading.
+/// Colour of pixels without reading.
 const NO_READING: [u8; 3] = [36, 36, 36];
 
-/// The picture's size at most, pixels: it fills one of the two.
+/// Maximum size of the image in pixels; it fills width or height.
 const WIDTH_PX: f64 = 320.0;
 const HEIGHT_PX: f64 = 400.0;
-/// Around the mask, as a share of its box' longer side, and pixels of the depth map at least.
+/// Margin around the mask: fraction of the longer side of its box, and minimum in pixels of the depth map.
 const MARGIN: f64 = 0.3;
 const MARGIN_PX: f64 = 8.0;
-/// Shares of the readings that are the nearest and the farthest colour, or beyond.
+/// Quantiles of the readings that map to the nearest and farthest colours.
 const NEAREST: f64 = 0.02;
 const FARTHEST: f64 = 0.98;
 
-/// The part of a depth map that is shown, and how much larger.
+/// The visible part of a depth map, and its magnification.
 struct Crop {
     left: usize,
     top: usize,
@@ -40,8 +40,8 @@ struct Crop {
     zoom: f64,
 }
 
-/// A pose of a case as PNG: the depth about the mask, near is bright, with the outlines of the mask, of the true pose
-/// where it is known, and of the pose.
+/// Renders a pose of a case as PNG: depth around the mask (near is bright), with the outlines of the mask, the true pose (if
+/// known) and the estimated pose.
 ///
 /// # Errors
 /// [`sim3align_geometry::error::ErrorCode::Internal`] where the encoder fails.
@@ -90,13 +90,13 @@ impl Crop {
         Self { left: low[0], top: low[1], width, height, zoom }
     }
 
-    /// The picture's width and height.
+    /// Width and height of the image.
     fn size(&self) -> (usize, usize) {
         let scaled = |n: usize| ((n as f64 * self.zoom).round() as usize).max(1);
         (scaled(self.width), scaled(self.height))
     }
 
-    /// The camera of the picture: a pixel's middle stays where it is.
+    /// The camera of the image; pixel centres are preserved.
     fn camera(&self, camera: &Pinhole) -> Pinhole {
         let (width, height) = self.size();
         let zoom = [width as f64 / self.width as f64, height as f64 / self.height as f64];
@@ -119,7 +119,7 @@ impl Crop {
     }
 }
 
-/// Draws the outline of what is inside, two pixels wide.
+/// Draws the outline of a region, two pixels wide.
 fn draw(pixels: &mut [[u8; 3]], inside: &Mask, colour: [u8; 3]) {
     let width = inside.width();
     for (i, _) in boundary(inside).into_iter().enumerate().filter(|(_, outline)| *outline) {

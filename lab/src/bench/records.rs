@@ -1,4 +1,4 @@
-//! A file of records that a run adds to, and that a run after a broken one goes on with: JSON, one record a line.
+//! A file of records (JSON lines) to which runs append, and from which an interrupted run resumes.
 
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
@@ -11,12 +11,12 @@ use serde::{Deserialize, Serialize};
 
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 
-/// What tells a record from all others: the row, its options as they were written, and the case.
+/// The unique key of a record: the row, its options as written, and the case.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct RecordKey {
-    /// The row's name.
+    /// Name of the row.
     pub row: String,
-    /// The row's options: under other options a row of the same name is another one.
+    /// Options of the row; rows with the same name and other options are different.
     pub options: String,
     /// The case.
     pub case: String,
@@ -30,8 +30,8 @@ struct Line<T> {
     record: T,
 }
 
-/// The file, open for more. `T` is what is kept of the records that it has already: [`serde::de::IgnoredAny`] where
-/// they need only be known to be there.
+/// A file of records, open for appending. `T` is the content kept of existing records; [`serde::de::IgnoredAny`] if only their
+/// existence matters.
 #[derive(Debug)]
 pub struct RecordFile<T> {
     file: Mutex<File>,
@@ -40,7 +40,7 @@ pub struct RecordFile<T> {
 }
 
 impl<T: DeserializeOwned> RecordFile<T> {
-    /// Opens a file, and creates it where there is none. A last line that was cut off is removed.
+    /// Opens a file, and creates it if necessary. A truncated last line is removed.
     ///
     /// # Errors
     /// [`ErrorCode::InvalidArgument`] where the file can't be read or written; [`ErrorCode::CorruptFile`] for a whole
@@ -79,7 +79,7 @@ impl<T: DeserializeOwned> RecordFile<T> {
         self.done.get(key)
     }
 
-    /// Adds a record; it is in the file when this returns.
+    /// Appends a record and flushes it to the file.
     ///
     /// # Errors
     /// [`ErrorCode::InvalidArgument`] where it can't be written.

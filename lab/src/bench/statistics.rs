@@ -1,11 +1,11 @@
-//! What tables are made of: means, medians, and cells.
+//! Means, medians, and cells of tables.
 
-/// The arithmetic mean; `None` of nothing.
+/// The arithmetic mean; `None` without values.
 pub fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
-/// The median: of an even number of values, the mean of the two in the middle; `None` of nothing.
+/// The median; for an even number of values, the mean of the two middle ones. `None` without values.
 pub fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     let n = values.len();
@@ -13,7 +13,7 @@ pub fn median(mut values: Vec<f64>) -> Option<f64> {
     if n % 2 == 1 { at(n / 2) } else { Some(0.5 * (at((n / 2).checked_sub(1)?)? + at(n / 2)?)) }
 }
 
-/// A number with that many digits behind the point; a dash for none.
+/// A number with `digits` decimals, or a dash.
 pub fn cell(value: Option<f64>, digits: usize) -> String {
     value.map_or("–".into(), |value| format!("{value:.digits$}"))
 }

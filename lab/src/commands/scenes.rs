@@ -1,4 +1,4 @@
-//! Writes cluttered scenes as case folders.
+//! `scenes`: writes cluttered scenes as case folders.
 
 use std::path::PathBuf;
 
@@ -27,7 +27,7 @@ struct Arguments {
     threads: usize,
 }
 
-/// `None` where help is asked for.
+/// `None` if help is requested.
 fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Error> {
     let (mut folder, mut scenes, mut set_seed, mut priors) = (None, SCENES, 0, Prior::ALL.to_vec());
     let mut threads = std::thread::available_parallelism().map_or(1, usize::from);

@@ -1,4 +1,4 @@
-//! The command line.
+//! Command line of `bench`.
 
 use std::path::{Path, PathBuf};
 
@@ -69,19 +69,19 @@ pub struct Row {
     pub paper: PaperOptions,
     pub search: Vec<(String, f64)>,
     pub method: Method,
-    /// All assignments, as they were written.
+    /// All assignments, as written.
     pub assignments: Vec<String>,
 }
 
-/// What gives a row's poses.
+/// The method that computes the poses of a row.
 #[derive(Clone, Default)]
 pub enum Method {
     /// `align`.
     #[default]
     Align,
-    /// Another method of the crate's.
+    /// Another method of this crate.
     Baseline(Baseline),
-    /// Another program, which has left its answers in this folder.
+    /// Another program; the folder holds its results.
     Import(PathBuf),
 }
 
@@ -101,13 +101,13 @@ impl Row {
         BaselineOptions { paper: self.paper.clone(), lock_scale, up: None }
     }
 
-    /// What a record of this row is kept under.
+    /// The key of a record of this row.
     pub fn key(&self, case: String) -> RecordKey {
         RecordKey { row: self.name.clone(), options: self.assignments.join(" "), case }
     }
 }
 
-/// What is asked for.
+/// The parsed command line.
 pub struct Arguments {
     pub generated: usize,
     pub scenes: usize,
@@ -129,7 +129,7 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    /// `None` where help is asked for.
+    /// `None` if help is requested.
     pub fn parse(mut parser: lexopt::Parser) -> Result<Option<Self>, lexopt::Error> {
         let mut generated = None;
         let said = |error: Error| error.to_string();

@@ -1,4 +1,4 @@
-//! The cases, shared out among threads; what comes back is in their order.
+//! Runs the cases on several threads; results are in the order of the cases.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -21,7 +21,7 @@ use sim3align_lab::scenes::{ClutteredScene, Prior, SceneSet};
 use super::arguments::{Arguments, Method, Row};
 use super::table;
 
-/// Where a case comes from.
+/// The source of a case.
 pub enum Source {
     Generated(usize),
     Scene { scene: usize, pair: usize, prior: Prior },
@@ -29,7 +29,7 @@ pub enum Source {
 }
 
 impl Source {
-    /// What tells the case from the others of a run.
+    /// Unique name of the case within a run.
     fn id(&self) -> String {
         match self {
             Self::Generated(index) => format!("generated-{index:04}"),
@@ -120,7 +120,7 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
     Ok(())
 }
 
-/// Adds to a file of records what is not there yet. What is done is told on standard output as JSON, a line each.
+/// Adds missing records to a file, and prints each as a line of JSON on standard output.
 fn go_on(
     arguments: &Arguments,
     sources: &[Source],
@@ -201,7 +201,7 @@ fn sources(arguments: &Arguments, scenes: &Scenes) -> Result<Vec<Source>, String
     Ok(sources)
 }
 
-/// The folder itself where it holds a camera file, else the case folders in it.
+/// The folder itself if it contains a camera file, otherwise the case folders in it.
 fn case_folders(folder: &Path) -> Result<Vec<PathBuf>, String> {
     let is_case = |folder: &Path| folder.join("camera.json").is_file();
     if is_case(folder) {
@@ -214,7 +214,7 @@ fn case_folders(folder: &Path) -> Result<Vec<PathBuf>, String> {
     Ok(folders)
 }
 
-/// What `work` makes of every item; how many are done is told on standard error.
+/// Maps items in parallel, and reports progress on standard error.
 fn map_with_progress<T: Sync, R: Send>(
     threads: usize,
     items: &[T],

@@ -1,4 +1,4 @@
-//! Writes pairs of clouds with a known transform, and runs registration methods over such pairs.
+//! `registration`: writes pairs of clouds with a known transform, and runs registration methods over them.
 
 mod arguments;
 mod method;

@@ -1,4 +1,4 @@
-//! The pairs, shared out among threads.
+//! Registers the pairs on several threads.
 
 use glam::Vec3;
 use serde_json::json;
@@ -20,7 +20,7 @@ use super::arguments::{Command, Kind, Protocol, Run};
 use super::method::Method;
 use super::table::{self, Record};
 
-/// The random stream of `--moved`.
+/// Random stream of `--moved`.
 const MOVED_STREAM: u64 = 0x6d6f_7665;
 
 pub fn run(command: &Command) -> Result<(), String> {
@@ -87,7 +87,7 @@ fn run_pair(pair: &Pair, run: &Run, records: Option<&RecordFile<Record>>) -> Res
         let (a, b) = (voxels(&source).points, voxels(&target).points);
         measure.then(|| overlap(&a, &b, &pair.target_from_source, 0.75 * pair.voxel_size_m as f32))
     });
-    // Another frame for each cloud; what is found is taken back to their own.
+    // Transforms each cloud randomly, and converts the result back to the original frames.
     let (source_move, target_move) = (moved(run.moved, &pair.id, 0), moved(run.moved, &pair.id, 1));
     let [source, target] = [(source, source_move), (target, target_move)]
         .map(|(points, pose)| points.iter().map(|&p| vec3(&pose.apply(vector3(p)))).collect::<Vec<Vec3>>());

@@ -6,11 +6,11 @@ use std::fmt::Write;
 use serde::{Deserialize, Serialize};
 use sim3align_lab::bench::statistics::{cell, mean, median};
 
-/// Lower ends of the bins of overlap, and their names.
+/// Lower bounds of the overlap bins, with names.
 const OVERLAPS: [(f64, &str); 4] =
     [(0.6, "overlap ≥ 60 %"), (0.3, "overlap 30–60 %"), (0.1, "overlap 10–30 %"), (0.0, "overlap < 10 %")];
 
-/// Upper ends of the bins of distance, which concern lidar alone, and their names.
+/// Upper bounds of the distance bins, with names; for lidar only.
 const DISTANCES_M: [(f64, &str); 5] = [
     (7.5, "about 5 m"),
     (15.0, "about 10 m"),
@@ -38,7 +38,7 @@ pub struct Record {
     pub matrix: Option<[f64; 16]>,
 }
 
-/// Recall and errors of every method, over all pairs and by bin.
+/// Table of recall and errors of every method, over all pairs and per bin.
 pub fn report(records: &[Record], methods: &[&str]) -> String {
     let mut out = String::new();
     let _ = writeln!(
