@@ -2,18 +2,19 @@
 
 use serde::Serialize;
 
-use super::field::{Options, options};
-use super::report::{Warning, is_collapsed};
 use super::warnings;
 use crate::error::Result;
+use crate::evidence::Evidence;
+use crate::evidence::clouds::Sampling;
 use crate::evidence::extents::{Extents, initial_scale};
 use crate::evidence::observation::Observation;
-use crate::evidence::{Evidence, Sampling};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::Similarity;
 use crate::metrics::pose_error::{PoseErrors, pose_errors};
 use crate::metrics::symmetry::Symmetry;
 use crate::metrics::{self, Metrics};
+use crate::options::{Options, options};
+use crate::report::{Warning, is_collapsed};
 
 options! {
     /// Options of `evaluate`. All have defaults.

@@ -1,10 +1,10 @@
 //! Warnings about inputs and results that are valid but suspicious.
 
-use super::options::Preset;
-use super::report::{Warning, WarningCode, is_collapsed};
 use crate::evidence::observation::Observation;
 use crate::geometry::order::median;
 use crate::number::number;
+use crate::report::Preset;
+use crate::report::{Warning, WarningCode, is_collapsed};
 
 /// Median depth in metres above which the depth is probably in millimetres.
 const IMPLAUSIBLE_DEPTH_M: f32 = 100.0;

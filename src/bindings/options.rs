@@ -5,13 +5,15 @@ use wasm_bindgen::{JsCast, JsValue};
 
 use super::object::{describe, get, number, to_numbers, wrong_type};
 use super::transform::similarity;
-use crate::align::field::{Field, Options, SYMMETRY};
-use crate::align::options::{AlignOptions, Method, Preset};
-use crate::align::paper_options::PaperOptions;
-use crate::align::scale::ScaleOption;
+use crate::align::method::Method;
 use crate::error::{Error, ErrorCode, Result};
 use crate::metrics::symmetry::{Symmetry, SymmetryAxis};
 use crate::number::{number as number_text, numbers};
+use crate::options::scale::ScaleOption;
+use crate::options::{Field, Options, SYMMETRY};
+use crate::paper::options::PaperOptions;
+use crate::precise::options::AlignOptions;
+use crate::report::Preset;
 
 /// The options of `align`: `preset` chooses the method, and with it the options that there are.
 pub fn method(value: &JsValue) -> Result<Method> {

@@ -1,5 +1,6 @@
 //! The evidence for a pose: observed points with normals, and points on the surface of the mesh.
 
+pub mod clouds;
 pub mod extents;
 pub mod normals;
 pub mod observation;
@@ -9,29 +10,13 @@ use crate::error::Result;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::mesh::Mesh;
+use clouds::Sampling;
 use normals::{Neighborhood, Orientation, estimate_normals};
 use observation::Observation;
 use sample::sample_surface;
 
 /// Neighbours for the normal estimation of observed points.
 pub const NORMAL_NEIGHBORS: usize = 30;
-
-/// Sampling of both clouds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Sampling {
-    /// Maximum number of observed points; more are subsampled.
-    pub max_points: usize,
-    /// Number of points on the surface of the mesh.
-    pub surface_samples: usize,
-    /// Seed of both draws.
-    pub seed: u64,
-}
-
-impl Default for Sampling {
-    fn default() -> Self {
-        Self { max_points: 20_000, surface_samples: 20_000, seed: 0 }
-    }
-}
 
 /// Both clouds; independent of the pose, so that they are computed once.
 #[derive(Debug, Clone)]

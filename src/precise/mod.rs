@@ -13,7 +13,9 @@ mod confidence;
 pub mod grid;
 pub mod mesh_pyramid;
 pub mod objective;
+pub mod options;
 pub mod pose;
+pub mod prepared_mesh;
 pub mod prior;
 pub mod ranking;
 pub mod recipe;
@@ -24,23 +26,21 @@ pub mod rounds;
 pub mod score;
 pub mod search;
 
-use std::rc::Rc;
-
-use crate::align::options::{AlignOptions, ExtentAxis, Quality, SearchScope};
-use crate::align::paper_options::PaperOptions;
-use crate::align::report::{Alternative, Counts, ScoreTerms, Uncertainty};
-use crate::align::{Clouds, Solution};
 use crate::error::{Error, ErrorCode, Result};
+use crate::evidence::clouds::Clouds;
 use crate::evidence::observation::Observation;
 use crate::geometry::cloud::Bounds;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::Similarity;
 use crate::paper;
+use crate::paper::options::PaperOptions;
+use crate::precise::options::{AlignOptions, ExtentAxis, Quality, SearchScope};
 use crate::progress::{Stage, Stopwatch};
+use crate::report::{Alternative, Counts, ScoreTerms, Solution, Uncertainty};
 use alternatives::alternatives;
 use confidence::confidence;
-use mesh_pyramid::MeshPyramid;
 use pose::{CropPose, MeshFrame};
+use prepared_mesh::PreparedMesh;
 use prior::Prior;
 pub use recipe::SearchSettings;
 use recipe::Task;
@@ -48,7 +48,7 @@ use rounds::Rounds;
 pub use search::Search;
 
 /// When each stage begins, as a share of the whole; from profiles of real cases.
-pub(super) const PLAN: &[(Stage, f64)] = &[
+pub const PLAN: &[(Stage, f64)] = &[
     (Stage::Observe, 0.0),
     (Stage::Sample, 0.01),
     (Stage::Normals, 0.02),
@@ -58,50 +58,47 @@ pub(super) const PLAN: &[(Stage, f64)] = &[
     (Stage::Metrics, 0.85),
 ];
 
-/// Grid of rotations, refinement, choice. A `hypothesis` found otherwise joins the candidates of the grid.
-pub(super) fn estimate(
+/// The search before its first round. A `hypothesis` found otherwise joins the candidates of the grid.
+///
+/// # Errors
+/// [`ErrorCode::NoConsensus`] where decimation leaves no triangle, [`ErrorCode::InvalidOption`] for an initial pose
+/// behind the camera.
+pub fn begin(
     observation: &Observation,
-    mesh: &Mesh,
+    mesh: &PreparedMesh<'_>,
     hypothesis: Option<Similarity>,
     options: &AlignOptions,
     settings: &SearchSettings,
     stages: &mut Stopwatch<'_>,
-) -> Result<(Solution, Certainty)> {
+) -> Result<Rounds> {
     stages.enter(Stage::Prepare);
-    let mut rounds = prepare(observation, mesh, options, settings)?;
+    let pyramid = mesh.pyramid(&settings.grids).ok_or_else(no_candidate)?;
+    let mut search = Search::new(observation, pyramid, *settings);
+    search.assume(prior(options, mesh.mesh(), &search.mesh.frame));
+    let initial = options.initial.map(|pose| seen_from(&pose, &search.mesh.frame)).transpose()?;
+    let mut rounds = Rounds::new(search, initial, options.search == SearchScope::Global);
     stages.enter(Stage::Search);
     let pose = hypothesis.and_then(|pose| CropPose::of_similarity(&pose, &rounds.search.mesh.frame));
     pose.into_iter().for_each(|pose| rounds.join(pose));
+    Ok(rounds)
+}
+
+/// Goes on with the search until it is over or `pause` returns true. Returns whether it is over.
+pub fn run(rounds: &mut Rounds, pause: &mut dyn FnMut() -> bool, stages: &mut Stopwatch<'_>) -> bool {
     while let Some(round) = rounds.round() {
         if round.task == Task::Refine && stages.running() != Some(Stage::Refine) {
             stages.enter(Stage::Refine);
         }
-        rounds.run(&mut || false);
+        if !rounds.run(pause) {
+            return false;
+        }
         stages.reach(round.done, rounds.best());
     }
-    conclude(&rounds, mesh, options)
-}
-
-/// The search before its first round.
-fn prepare(
-    observation: &Observation,
-    mesh: &Mesh,
-    options: &AlignOptions,
-    settings: &SearchSettings,
-) -> Result<Rounds> {
-    let pyramid = MeshPyramid::new(mesh, &settings.grids).ok_or_else(no_candidate)?;
-    let mut search = Search::new(observation, Rc::new(pyramid), *settings);
-    search.assume(prior(options, mesh, &search.mesh.frame));
-    let initial = options.initial.map(|pose| seen_from(&pose, &search.mesh.frame)).transpose()?;
-    Ok(Rounds::new(search, initial, options.search == SearchScope::Global))
+    true
 }
 
 /// The paper's pose, at the best quality: descriptors are weak evidence, but independent of the search's.
-pub(super) fn hypothesis(
-    clouds: &mut Clouds,
-    options: &AlignOptions,
-    stages: &mut Stopwatch<'_>,
-) -> Option<Similarity> {
+pub fn hypothesis(clouds: &mut Clouds, options: &AlignOptions, stages: &mut Stopwatch<'_>) -> Option<Similarity> {
     let is_wanted = options.quality == Quality::Best && options.search == SearchScope::Global;
     let paper = PaperOptions {
         seed: options.seed,
@@ -114,16 +111,24 @@ pub(super) fn hypothesis(
 }
 
 /// How certain the search is of its pose.
-pub(super) struct Certainty {
-    pub(super) confidence: f64,
-    pub(super) alternatives: Vec<Alternative>,
-    pub(super) uncertainty: Option<Uncertainty>,
-    pub(super) score: f64,
-    pub(super) terms: ScoreTerms,
+pub struct Certainty {
+    /// See [`Alignment::confidence`](crate::report::Alignment::confidence).
+    pub confidence: f64,
+    /// Other poses that explain the observation.
+    pub alternatives: Vec<Alternative>,
+    /// How well each part of the pose is determined.
+    pub uncertainty: Option<Uncertainty>,
+    /// The score of the pose.
+    pub score: f64,
+    /// The terms of the score.
+    pub terms: ScoreTerms,
 }
 
 /// The best pose of the search, and how certain it is.
-fn conclude(rounds: &Rounds, mesh: &Mesh, options: &AlignOptions) -> Result<(Solution, Certainty)> {
+///
+/// # Errors
+/// [`ErrorCode::NoConsensus`] where no pose overlaps the mask.
+pub fn conclude(rounds: &Rounds, mesh: &Mesh, options: &AlignOptions) -> Result<(Solution, Certainty)> {
     let (found, search) = (&rounds.found, &rounds.search);
     let best = found.first().ok_or_else(no_candidate)?;
     let alternatives = alternatives(found, search, mesh, &options.symmetry)?;

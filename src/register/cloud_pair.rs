@@ -5,11 +5,11 @@ use super::grid_cloud::GridCloud;
 use super::icp::{IcpSettings, Refined, refine};
 use super::settings::RegistrationSettings;
 use super::support::SupportSettings;
-use crate::align::report::Counts;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::similarity::Similarity;
 use crate::progress::{Stage, Stopwatch};
+use crate::report::Counts;
 
 /// Maximum number of descriptors per cloud; denser clouds get a coarser grid. Matching is quadratic.
 pub const MAX_FEATURES: usize = 8_000;

@@ -7,11 +7,11 @@ use super::ransac::{Consensus, ransac};
 use super::settings::RegistrationSettings;
 use super::support::supported;
 use super::umeyama::{Pair, ScaleMode, umeyama};
-use crate::align::report::Counts;
 use crate::error::Result;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::similarity::{Similarity, vector3};
 use crate::progress::{Stage, Stopwatch};
+use crate::report::Counts;
 
 /// An estimated transform between normalised frames.
 #[derive(Debug, Clone)]

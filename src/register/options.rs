@@ -1,8 +1,23 @@
 //! Options of `register` and `estimateSim3`.
 
-use crate::align::field::options;
-use crate::align::paper_options::{Icp, MAX_CONFIDENCE};
-use crate::align::scale::ScaleOption;
+use crate::options::scale::ScaleOption;
+use crate::options::{choices, options};
+
+/// Largest RANSAC confidence: with 1, RANSAC would never stop early.
+pub const MAX_CONFIDENCE: f64 = 0.999_999;
+
+choices! {
+    /// The distance that ICP minimises.
+    pub enum Icp {
+        /// To the tangent plane at the nearest target point.
+        #[default]
+        PointToPlane = "point-to-plane",
+        /// To the nearest target point.
+        PointToPoint = "point-to-point",
+        /// No refinement: the RANSAC pose is returned.
+        None = "none",
+    }
+}
 
 options! {
     /// Options of `register`. All have defaults.

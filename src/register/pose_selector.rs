@@ -6,7 +6,6 @@ use super::feature_registration::{Estimate, FeatureRegistration};
 use super::normalized_pair::{Fit, NormalizedPair};
 use super::options::RegisterOptions;
 use super::settings::RegistrationSettings;
-use crate::align::report::Registration;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::NORMAL_NEIGHBORS;
 use crate::evidence::normals::outward_normals;
@@ -14,6 +13,7 @@ use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::similarity::Similarity;
 use crate::progress::{Stage, Stopwatch};
+use crate::report::Registration;
 
 /// Default number of voxels along the diagonal of the target's bounding box.
 const DIVISIONS: f64 = 30.0;

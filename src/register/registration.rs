@@ -6,13 +6,13 @@ use super::normalized_pair::NormalizedPair;
 use super::options::RegisterOptions;
 use super::pose_selector::PoseSelector;
 use super::rigid::register_rigid;
-use crate::align::field::Options;
-use crate::align::report::Registration;
-use crate::align::scale::ScaleOption;
 use crate::error::Result;
 use crate::evidence::observation::MIN_POINTS;
 use crate::geometry::random::Random;
+use crate::options::Options;
+use crate::options::scale::ScaleOption;
 use crate::progress::{Host, Stage, Stopwatch};
+use crate::report::Registration;
 
 /// Random stream of the subsampling.
 const STREAM: u64 = 5;

@@ -10,7 +10,6 @@ use super::options::RegisterOptions;
 use super::pose_scorer::{PoseScorer, distinctiveness};
 use super::pose_selector::{Candidate, about_clouds, with_normals};
 use super::settings::RegistrationSettings;
-use crate::align::report::Counts;
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::cloud::Cloud;
 use crate::geometry::similarity::{Similarity, vec3};
@@ -20,6 +19,7 @@ use crate::register::compatibility::{Hypothesis, hypotheses};
 use crate::register::free_space::FreeSpace;
 use crate::register::icp::{IcpSettings, movement};
 use crate::register::matching::best_matches;
+use crate::report::Counts;
 
 /// Maximum number of voxels of the larger cloud by default: it resolves furniture and keeps the run time at seconds.
 const VOXELS: usize = 5_000;

@@ -5,7 +5,7 @@ use super::options::RegisterOptions;
 use super::ransac::{Guard, GuardMode, RansacSettings};
 use super::support::SupportSettings;
 use super::umeyama::ScaleMode;
-use crate::align::paper_options::Icp;
+use crate::register::options::Icp;
 
 /// Distance of support at the start of the refinement of `register`, in voxels.
 const SUPPORT_DISTANCE_VOXELS: f64 = 3.0;

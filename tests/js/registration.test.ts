@@ -87,8 +87,12 @@ test("the defaults passed as options change nothing", async () => {
     await aligner.register(source, target, REGISTER_DEFAULTS),
   ];
   assert.deepEqual(spelt.matrix, plain.matrix);
-  const bounded = await aligner.estimateSim3(source, target, pairs, { ...ESTIMATE_SIM3_DEFAULTS, scale: [2, 2.4] });
-  assert.ok(bounded.scale >= 2 - 1e-9 && bounded.scale <= 2.4 + 1e-9, `${bounded.scale}`);
+  const estimated = await aligner.estimateSim3(source, target, pairs, ESTIMATE_SIM3_DEFAULTS);
+  assert.deepEqual(estimated.matrix, (await aligner.estimateSim3(source, target, pairs)).matrix);
+  const bounded = await aligner.estimateSim3(source, target, pairs, { scale: [2.4, 2.6] });
+  assertPose(bounded, 1e-5);
+  const outside = aligner.estimateSim3(source, target, pairs, { scale: [3, 4] });
+  await assert.rejects(outside, { code: "NO_CONSENSUS" });
 });
 
 const line = Float64Array.from({ length: 300 }, (_, i) => (i % 3 === 0 ? i : 0));

@@ -3,16 +3,18 @@
 use glam::Vec3;
 use nalgebra::{Matrix3, Rotation3};
 use sim3align::align::evaluate::{EvaluateOptions, Truth, evaluate};
-use sim3align::align::field::Options;
-use sim3align::align::options::{AlignOptions, Preset, Quality, SearchScope};
-use sim3align::align::paper_options::{GuardMode, Icp, PaperOptions};
-use sim3align::align::report::{PaperAlignment, Sim3, WarningCode};
-use sim3align::align::scale::ScaleOption;
 use sim3align::align::{align, align_paper};
 use sim3align::error::ErrorCode;
 use sim3align::geometry::similarity::Similarity;
 use sim3align::metrics::symmetry::Symmetry;
+use sim3align::options::Options;
+use sim3align::options::scale::ScaleOption;
+use sim3align::paper::options::{GuardMode, PaperOptions};
+use sim3align::precise::options::{AlignOptions, Quality, SearchScope};
 use sim3align::progress::{Host, Silent, Stage};
+use sim3align::register::options::Icp;
+use sim3align::report::Preset;
+use sim3align::report::{PaperAlignment, Sim3, WarningCode};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::shapes::{body, cuboid, observe, truth};

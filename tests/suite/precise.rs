@@ -3,9 +3,6 @@
 use glam::{DVec3, Vec3};
 use nalgebra::{Rotation3, Vector3};
 use sim3align::align::align;
-use sim3align::align::options::{AlignOptions, ExtentAxis, Quality, SearchScope};
-use sim3align::align::report::Alignment;
-use sim3align::align::scale::ScaleOption;
 use sim3align::error::ErrorCode;
 use sim3align::evidence::observation::Observation;
 use sim3align::geometry::cloud::Bounds;
@@ -16,8 +13,11 @@ use sim3align::geometry::random::Random;
 use sim3align::geometry::rasteriser::Rasteriser;
 use sim3align::geometry::similarity::Similarity;
 use sim3align::metrics::symmetry::{Symmetry, SymmetryAxis};
+use sim3align::options::scale::ScaleOption;
+use sim3align::precise::options::{AlignOptions, ExtentAxis, Quality, SearchScope};
 use sim3align::precise::search_settings;
 use sim3align::progress::Silent;
+use sim3align::report::Alignment;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::shapes::{cuboid, ellipsoid, mapped};

@@ -1,10 +1,10 @@
 //! General registration recovers known transforms.
 
 use nalgebra::Vector3;
-use sim3align::align::scale::ScaleOption;
 use sim3align::error::ErrorCode;
 use sim3align::geometry::cloud::Cloud;
 use sim3align::geometry::similarity::{Similarity, vector3};
+use sim3align::options::scale::ScaleOption;
 use sim3align::progress::Silent;
 use sim3align::register::estimate_sim3;
 use sim3align::register::options::{EstimateSim3Options, RegisterOptions};

@@ -4,15 +4,15 @@ use nalgebra::Vector3;
 
 use super::baseline::Baseline;
 use super::clouds::{Clouds, UnitSettings};
-use sim3align::align::paper_options::PaperOptions;
-use sim3align::align::report::{Counts, PaperAlignment};
-use sim3align::align::{Setup, Solution, align_by};
+use sim3align::align::{Setup, align_by};
 use sim3align::evidence::extents::target_from_source;
 use sim3align::evidence::observation::Observation;
+use sim3align::paper::options::PaperOptions;
 use sim3align::progress::{Host, Stage};
 use sim3align::register::cloud_pair::MAX_FEATURES;
 use sim3align::register::grid_cloud::GridCloud;
 use sim3align::register::settings::icp_metric;
+use sim3align::report::{Counts, PaperAlignment, Solution};
 use sim3align_geometry::error::Result;
 use sim3align_geometry::mesh::Mesh;
 
@@ -89,9 +89,9 @@ pub fn align_baseline(
             },
             ..Solution::of_pose(target_from_source(observed, &found.target_from_source, reconstructed))
         };
-        Ok((solution, ()))
+        Ok(solution)
     });
-    Ok(aligned?.0)
+    aligned
 }
 
 fn unit_settings(options: &BaselineOptions, baseline: Baseline) -> UnitSettings {

@@ -7,14 +7,16 @@ use std::path::Path;
 use serde_json::{Map, Value};
 
 use super::benchmark::{BenchCase, Record, described, record_of};
-use sim3align::align::paper_options::PaperOptions;
-use sim3align::align::report::{AnyAlignment, Counts, Registration};
-use sim3align::align::scale::ScaleOption;
-use sim3align::align::{Setup, Solution, align_by};
+use sim3align::align::Setup;
+use sim3align::align::align_by;
 use sim3align::evidence::extents::{Extents, initial_scale};
+use sim3align::options::scale::ScaleOption;
+use sim3align::paper::options::PaperOptions;
 use sim3align::progress::{Silent, Stage};
 use sim3align::register::estimate_sim3;
 use sim3align::register::options::EstimateSim3Options;
+use sim3align::report::Solution;
+use sim3align::report::{AnyAlignment, Counts, Registration};
 use sim3align_formats::{json, truth};
 use sim3align_geometry::error::{Error, ErrorCode, Result, Text};
 use sim3align_geometry::similarity::Similarity;
@@ -143,10 +145,10 @@ fn align_as(case: &BenchCase, outcome: Outcome) -> core::result::Result<AnyAlign
                 // Taken care of above.
                 Outcome::Failure(_) => Solution::of_pose(Similarity::identity()),
             };
-            Ok((solution, ()))
+            Ok(solution)
         })
     });
-    aligned.map(|(alignment, ())| alignment.into()).map_err(|error| described(&error))
+    aligned.map(Into::into).map_err(|error| described(&error))
 }
 
 fn estimated(pairs: &Pairs, [observed, reconstructed]: [&Extents; 2]) -> Result<Solution> {

@@ -1,7 +1,7 @@
 //! Options from text, as the programs' command lines have them.
 
-use sim3align::align::field::{Field, Options};
-use sim3align::align::scale::ScaleOption;
+use sim3align::options::scale::ScaleOption;
+use sim3align::options::{Field, Options};
 
 /// Sets an option by its JavaScript name. Directions, symmetries and poses differ from case to case and have no text.
 ///

@@ -5,14 +5,14 @@ use std::fs;
 use std::path::PathBuf;
 
 use nalgebra::{Rotation3, Unit, Vector3};
-use sim3align::align::options::Method;
-use sim3align::align::paper_options::PaperOptions;
-use sim3align::evidence::Sampling;
+use sim3align::align::method::Method;
+use sim3align::evidence::clouds::Sampling;
 use sim3align::evidence::sample::{SurfaceMoments, check_shape};
 use sim3align::metrics::evaluate;
 use sim3align::metrics::pose_error::{PoseErrors, pose_errors};
 use sim3align::metrics::silhouette::iou;
 use sim3align::metrics::symmetry::Symmetry;
+use sim3align::paper::options::PaperOptions;
 use sim3align_geometry::error::ErrorCode;
 use sim3align_geometry::image::Mask;
 use sim3align_geometry::rasteriser::Rasteriser;

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use sim3align::align::align_paper;
 use sim3align::align::evaluate::{EvaluateOptions, Truth, evaluate};
-use sim3align::align::paper_options::PaperOptions;
 use sim3align::metrics::symmetry::Symmetry;
+use sim3align::paper::options::PaperOptions;
 use sim3align::progress::Silent;
 use sim3align_geometry::similarity::Similarity;
 use sim3align_lab::case_folder::case::{Case, read_case};

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use serde::de::IgnoredAny;
-use sim3align::align::options::{AlignOptions, Quality};
+use sim3align::precise::options::{AlignOptions, Quality};
 use sim3align_geometry::error::ErrorCode;
 use sim3align_lab::bench::benchmark::{BenchCase, Record, run_case};
 use sim3align_lab::bench::records::{RecordFile, RecordKey};

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use glam::Vec3;
 use nalgebra::{Matrix4, Vector3};
-use sim3align::align::scale::ScaleOption;
+use sim3align::options::scale::ScaleOption;
 use sim3align::progress::Silent;
 use sim3align::register::options::RegisterOptions;
 use sim3align::register::register;

@@ -3,12 +3,12 @@
 use std::fs;
 
 use nalgebra::{Rotation3, Vector3};
-use sim3align::align::options::{AlignOptions, Quality};
-use sim3align::align::paper_options::PaperOptions;
 use sim3align::align::{align, align_paper};
-use sim3align::evidence::Sampling;
+use sim3align::evidence::clouds::Sampling;
 use sim3align::evidence::sample::check_shape;
 use sim3align::metrics::evaluate;
+use sim3align::paper::options::PaperOptions;
+use sim3align::precise::options::{AlignOptions, Quality};
 use sim3align::progress::Silent;
 use sim3align_geometry::error::ErrorCode;
 use sim3align_geometry::image::DepthMap;

@@ -8,19 +8,21 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 use sim3align::align::evaluate::{EvaluateOptions, Evaluation, EvaluationDiagnostics};
-use sim3align::align::field::{Field, Options};
-use sim3align::align::options::{AlignOptions, ExtentAxis, Preset, Quality, SearchScope};
-use sim3align::align::paper_options::{GuardMode, Icp, PaperOptions};
-use sim3align::align::report::{
-    Alignment, Alternative, Counts, Diagnostics, PaperAlignment, PreciseDiagnostics, Registration,
-    RegistrationDiagnostics, ScoreTerms, Sim3, Uncertainty, Warning, WarningCode,
-};
-use sim3align::align::scale::ScaleOption;
 use sim3align::metrics::Metrics;
 use sim3align::metrics::pose_error::PoseErrors;
 use sim3align::metrics::symmetry::Symmetry;
+use sim3align::options::scale::ScaleOption;
+use sim3align::options::{Field, Options};
+use sim3align::paper::options::{GuardMode, PaperOptions};
+use sim3align::precise::options::{AlignOptions, ExtentAxis, Quality, SearchScope};
 use sim3align::progress::Stage;
+use sim3align::register::options::Icp;
 use sim3align::register::options::{EstimateSim3Options, RegisterOptions};
+use sim3align::report::Preset;
+use sim3align::report::{
+    Alignment, Alternative, Counts, Diagnostics, PaperAlignment, PreciseDiagnostics, Registration,
+    RegistrationDiagnostics, ScoreTerms, Sim3, Uncertainty, Warning, WarningCode,
+};
 use sim3align_geometry::error::ErrorCode;
 use ts_rs::{Config, TS};
 

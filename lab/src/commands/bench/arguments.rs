@@ -3,10 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use lexopt::prelude::*;
-use sim3align::align::field::{Choice, Options};
-use sim3align::align::options::{self, AlignOptions, Preset};
-use sim3align::align::paper_options::PaperOptions;
+use sim3align::align::method;
+use sim3align::options::{Choice, Options};
+use sim3align::paper::options::PaperOptions;
 use sim3align::precise::SearchSettings;
+use sim3align::precise::options::AlignOptions;
+use sim3align::report::Preset;
 use sim3align_geometry::error::Error;
 use sim3align_lab::baselines::Baseline;
 use sim3align_lab::baselines::align::BaselineOptions;
@@ -87,7 +89,7 @@ pub enum Method {
 
 impl Row {
     /// The preset with its options.
-    pub fn preset_options(&self) -> options::Method {
+    pub fn preset_options(&self) -> method::Method {
         match self.preset {
             Preset::Precise => self.precise.clone().into(),
             Preset::Paper => self.paper.clone().into(),

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use glam::Vec3;
-use sim3align::align::field::Options;
-use sim3align::align::scale::ScaleOption;
+use sim3align::options::Options;
+use sim3align::options::scale::ScaleOption;
 use sim3align::progress::Silent;
 use sim3align::register::icp::IcpMetric;
 use sim3align::register::options::RegisterOptions;
