@@ -16,7 +16,8 @@ use sim3align_geometry::image::{Image, Mask};
 ///
 /// # Errors
 /// [`UnsupportedFormat`](sim3align_geometry::error::ErrorCode::UnsupportedFormat),
-/// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile), [`FileTooLarge`](sim3align_geometry::error::ErrorCode::FileTooLarge),
+/// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile),
+/// [`FileTooLarge`](sim3align_geometry::error::ErrorCode::FileTooLarge),
 /// [`EmptyImage`](sim3align_geometry::error::ErrorCode::EmptyImage).
 pub fn read_mask(bytes: &[u8]) -> Result<Mask> {
     if bytes.starts_with(png::MAGIC) {

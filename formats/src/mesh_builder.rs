@@ -67,8 +67,8 @@ impl MeshBuilder {
         Ok(())
     }
 
-    /// Adds a mesh under a transform (f64). If the transform mirrors, the orientation of the triangles is reversed, so that
-    /// they still face outward.
+    /// Adds a mesh under a transform (f64). If the transform mirrors, the orientation of the triangles is reversed, so
+    /// that they still face outward.
     pub fn append(&mut self, mesh: &Mesh, transform: &DMat4) -> Result<()> {
         let offset = self.positions.len() as u32;
         for position in mesh.positions() {

@@ -29,8 +29,8 @@ pub(crate) struct NpyImage<'a> {
 }
 
 impl<'a> NpyImage<'a> {
-    /// Reads the header and checks that the data are complete. Rejects sizes above the limit and shapes other than those
-    /// of an image.
+    /// Reads the header and checks that the data are complete. Rejects sizes above the limit and shapes other than
+    /// those of an image.
     pub fn read(argument: &'static str, bytes: &'a [u8]) -> Result<Self> {
         let mut cursor = Cursor::new(argument, bytes);
         if cursor.take(MAGIC.len())? != MAGIC {

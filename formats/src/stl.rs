@@ -14,8 +14,8 @@ use sim3align_geometry::mesh::Mesh;
 const HEADER_BYTES: usize = 80;
 const TRIANGLE_BYTES: usize = 50;
 
-/// Whether the length is exactly that of a binary STL. The header does not distinguish it from text, because it may begin
-/// with "solid".
+/// Whether the length is exactly that of a binary STL. The header does not distinguish it from text, because it may
+/// begin with "solid".
 pub(crate) fn has_binary_length(bytes: &[u8]) -> bool {
     let mut cursor = Cursor::new("mesh", bytes);
     let count = cursor.take(HEADER_BYTES).and_then(|_| cursor.u32_le());
@@ -25,8 +25,8 @@ pub(crate) fn has_binary_length(bytes: &[u8]) -> bool {
 /// Reads an STL. Vertices with equal coordinates are merged, without rounding.
 ///
 /// # Errors
-/// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile), [`FileTooLarge`](sim3align_geometry::error::ErrorCode::FileTooLarge)
-/// and those of [`Mesh::new`].
+/// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile),
+/// [`FileTooLarge`](sim3align_geometry::error::ErrorCode::FileTooLarge) and those of [`Mesh::new`].
 pub fn read_stl(bytes: &[u8]) -> Result<Mesh> {
     let is_text = !has_binary_length(bytes)
         && bytes.trim_ascii_start().starts_with(b"solid")

@@ -36,9 +36,9 @@ impl ClipVolume {
 
     /// The part of a triangle inside the volume, a convex polygon: its corners are the first `n` entries of the array.
     ///
-    /// Intersections are computed from the inside corner to the outside one, whatever the direction of the edge, so that
-    /// two triangles that share an edge get the same bits for it and no crack opens between them
-    /// (Sutherland and Hodgman 1974).
+    /// Intersections are computed from the inside corner to the outside one, whatever the direction of the edge, so
+    /// that two triangles that share an edge get the same bits for it and no crack opens between them (Sutherland and
+    /// Hodgman 1974).
     pub fn clip(&self, triangle: [DVec3; 3]) -> ([DVec3; MAX_CORNERS], usize) {
         let mut polygon = [DVec3::ZERO; MAX_CORNERS];
         polygon[..3].copy_from_slice(&triangle);

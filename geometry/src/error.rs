@@ -14,7 +14,8 @@ use serde::Serialize;
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[non_exhaustive]
 pub enum ErrorCode {
-    /// An argument is missing or of the wrong type. Example: `depth` is a plain array. Pass the type that the message names.
+    /// An argument is missing or of the wrong type. Example: `depth` is a plain array. Pass the type that the message
+    /// names.
     InvalidArgument,
     /// An option's value is outside its range. Example: `voxelDivisions: 0`. The message gives the range.
     InvalidOption,

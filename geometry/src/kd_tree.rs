@@ -1,8 +1,8 @@
 //! A kd-tree over 3D points: nearest, k nearest, within a radius.
 //!
-//! A median-split tree of bounding boxes with leaves of sixteen points, stored in leaf order. On surface points it is as
-//! fast as the established crates, at a thirtieth of their WebAssembly size. Ties in distance go to the smaller index,
-//! so that results do not depend on the structure of the tree.
+//! A median-split tree of bounding boxes with leaves of sixteen points, stored in leaf order. On surface points it is
+//! as fast as the established crates, at a thirtieth of their WebAssembly size. Ties in distance go to the smaller
+//! index, so that results do not depend on the structure of the tree.
 
 use glam::Vec3;
 

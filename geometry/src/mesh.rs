@@ -101,8 +101,8 @@ impl Mesh {
         triangle.map(|i| self.positions[i as usize])
     }
 
-    /// Six times the signed enclosed volume: negative if the triangles face inward. 0 is inconclusive. Computed relative
-    /// to the first vertex, so that a mesh far from the origin loses no precision.
+    /// Six times the signed enclosed volume: negative if the triangles face inward. 0 is inconclusive. Computed
+    /// relative to the first vertex, so that a mesh far from the origin loses no precision.
     pub fn signed_volume6(&self) -> f64 {
         let Some(&origin) = self.positions.first() else { return 0.0 };
         let volume = |t: &[u32; 3]| {

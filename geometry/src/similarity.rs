@@ -148,7 +148,8 @@ impl Similarity {
         Self { scale, rotation, translation: -(rotation * self.translation) * scale }
     }
 
-    /// The angle between the rotations of two transforms, in radians. Accurate near 0, unlike the arc cosine of the trace.
+    /// The angle between the rotations of two transforms, in radians. Accurate near 0, unlike the arc cosine of the
+    /// trace.
     pub fn rotation_angle_to(&self, other: &Self) -> f64 {
         let relative = self.rotation.matrix().transpose() * other.rotation.matrix();
         let sine = Vector3::new(
@@ -203,8 +204,8 @@ fn cube_root(x: f64) -> f64 {
     if root.is_normal() { root - (root - x / (root * root)) / 3.0 } else { root }
 }
 
-/// The rotation nearest to an almost orthonormal matrix, by Newton's iteration for the polar decomposition. The error is
-/// squared in each step, so that three steps reduce 1e-3 below the rounding of f64.
+/// The rotation nearest to an almost orthonormal matrix, by Newton's iteration for the polar decomposition. The error
+/// is squared in each step, so that three steps reduce 1e-3 below the rounding of f64.
 pub fn nearest_rotation(mut m: Matrix3<f64>) -> Rotation3<f64> {
     for _ in 0..3 {
         if let Some(inverse) = m.try_inverse() {

@@ -1,7 +1,8 @@
 //! Eigenvalues and eigenvectors of a symmetric 3×3 matrix, in f64.
 //!
-//! Cyclic Jacobi rotations instead of `nalgebra::SymmetricEigen` (tridiagonalisation and QR iterations): this is the hot
-//! loop of normal estimation, and the bits of results depend on it: nalgebra's eigenvectors differ in the last digits.
+//! Cyclic Jacobi rotations instead of `nalgebra::SymmetricEigen` (tridiagonalisation and QR iterations): this is the
+//! hot loop of normal estimation, and the bits of results depend on it: nalgebra's eigenvectors differ in the last
+//! digits.
 
 use glam::{DMat3, DVec3};
 

@@ -10,10 +10,9 @@ use crate::error::Result;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::mesh::Mesh;
-use clouds::Sampling;
 use normals::{Neighborhood, Orientation, estimate_normals};
 use observation::Observation;
-use sample::sample_surface;
+use sample::{Sampling, sample_surface};
 
 /// Neighbours for the normal estimation of observed points.
 pub const NORMAL_NEIGHBORS: usize = 30;

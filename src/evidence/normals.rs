@@ -42,8 +42,8 @@ pub enum Orientation {
 
 /// Unit normals of `points` by principal component analysis of their neighbours (Hoppe et al. 1992, §3.2): the
 /// eigenvector of the smallest eigenvalue of the covariance. The zero vector if there are fewer than three
-/// neighbours or all are collinear. `tree` is the search tree over the same points; a number as `neighborhood` means that
-/// many nearest neighbours.
+/// neighbours or all are collinear. `tree` is the search tree over the same points; a number as `neighborhood` means
+/// that many nearest neighbours.
 pub fn estimate_normals(
     points: &[Vec3],
     tree: &KdTree,
@@ -64,8 +64,8 @@ pub fn estimate_normals(
     normals
 }
 
-/// Normals that point away from the viewpoint `eye` or, if it is unknown, from the median of the points, which is robust to
-/// clutter. Without viewpoints, this orientation is consistent between two clouds.
+/// Normals that point away from the viewpoint `eye` or, if it is unknown, from the median of the points, which is
+/// robust to clutter. Without viewpoints, this orientation is consistent between two clouds.
 pub fn outward_normals(points: &[Vec3], eye: Option<Vec3>, neighbors: usize) -> Vec<Vec3> {
     let middle = |axis: usize| median(points.iter().map(|p| p[axis])).unwrap_or_default();
     let center = eye.unwrap_or_else(|| Vec3::new(middle(0), middle(1), middle(2)));

@@ -132,8 +132,8 @@ impl Observation {
     }
 }
 
-/// Depth and camera from a point map (H×W×3, camera frame, metres), for example of MoGe. Points with z ≤ 0 or a non-finite
-/// coordinate are no readings.
+/// Depth and camera from a point map (H×W×3, camera frame, metres), for example of MoGe. Points with z ≤ 0 or a
+/// non-finite coordinate are no readings.
 ///
 /// The intrinsics are the least-squares fit of u = fx·x/z + cx and v = fy·y/z + cy over the readings.
 ///

@@ -12,15 +12,32 @@ use crate::number::number;
 /// Random stream of [`sample_surface`].
 const STREAM: u64 = 2;
 
-/// Root-mean-square thickness, relative to the box diagonal, below which a surface is a plane (or, in its second direction,
-/// a line). A sheet of A4 paper has 1.4e-4, a bank card 4e-3; the rounding of f32 vertices 1e-7.
+/// Root-mean-square thickness, relative to the box diagonal, below which a surface is a plane (or, in its second
+/// direction, a line). A sheet of A4 paper has 1.4e-4, a bank card 4e-3; the rounding of f32 vertices 1e-7.
 pub const MIN_THICKNESS: f64 = 1e-4;
+
+/// Sampling of both clouds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Sampling {
+    /// Maximum number of observed points; more are subsampled evenly at random.
+    pub max_points: usize,
+    /// Number of points on the surface of the mesh.
+    pub surface_samples: usize,
+    /// Seed of both draws.
+    pub seed: u64,
+}
+
+impl Default for Sampling {
+    fn default() -> Self {
+        Self { max_points: 20_000, surface_samples: 20_000, seed: 0 }
+    }
+}
 
 /// `count` points spread evenly by area over the mesh's surface, each with its triangle's unit normal.
 ///
-/// Stratified: the cumulative area over all triangles is divided into `count` equal intervals with one point each, so that a
-/// triangle with n intervals gets n ± 1 points. If the mesh faces inward (negative signed volume), all normals are
-/// flipped.
+/// Stratified: the cumulative area over all triangles is divided into `count` equal intervals with one point each, so
+/// that a triangle with n intervals gets n ± 1 points. If the mesh faces inward (negative signed volume), all normals
+/// are flipped.
 ///
 /// # Errors
 /// [`ErrorCode::DegenerateMesh`] if the area is 0 or not finite.

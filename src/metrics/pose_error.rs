@@ -24,8 +24,8 @@ pub struct PoseErrors {
     pub scale_error: f64,
     /// Angle between the rotations, degrees, 0 to 180; the smallest over the symmetries of the object.
     pub rotation_error_deg: f64,
-    /// Distance between the centres of the mesh's bounding box under both transforms, metres. Unlike |t − t_true|, it does
-    /// not depend on the origin of the mesh. Uses the symmetry of the rotation error.
+    /// Distance between the centres of the mesh's bounding box under both transforms, metres. Unlike |t − t_true|, it
+    /// does not depend on the origin of the mesh. Uses the symmetry of the rotation error.
     pub translation_error_m: f64,
     /// The translation error relative to the diameter of the object: the diagonal of the mesh's bounding box × the true
     /// scale.
@@ -35,8 +35,8 @@ pub struct PoseErrors {
     pub add_s_mm: f64,
 }
 
-/// The errors of `estimate` relative to the true pose `truth`, both camera from mesh. Among the equivalent true poses under
-/// the symmetries of the object, the one with the nearest rotation is used.
+/// The errors of `estimate` relative to the true pose `truth`, both camera from mesh. Among the equivalent true poses
+/// under the symmetries of the object, the one with the nearest rotation is used.
 ///
 /// # Errors
 /// [`ErrorCode::DegenerateMesh`] for a mesh without area, [`ErrorCode::InvalidTransform`] if the distance

@@ -25,8 +25,9 @@ pub fn center_drift_px(a: &Mask, b: &Mask) -> Option<f64> {
 /// Boundary F-measure of DAVIS (Perazzi et al. 2016, §4.1, as the 2017 evaluation code computes it), 0 to 1.
 ///
 /// Boundaries are one pixel wide (see [`boundary`]). Precision is the fraction of the boundary of b within
-/// ⌈0.008 · image diagonal⌉ pixels of that of a, recall the fraction of the boundary of a within the same distance of that
-/// of b, and F = 2PR/(P + R). The result is 0 if a mask is empty, 1 if both masks fill the image, and 0 if only one does.
+/// ⌈0.008 · image diagonal⌉ pixels of that of a, recall the fraction of the boundary of a within the same distance of
+/// that of b, and F = 2PR/(P + R). The result is 0 if a mask is empty, 1 if both masks fill the image, and 0 if only
+/// one does.
 pub fn boundary_f(a: &Mask, b: &Mask) -> f64 {
     let empty = |mask: &Mask| mask.data().iter().all(|&m| m == 0);
     if empty(a) || empty(b) {
@@ -52,8 +53,8 @@ pub fn boundary_f(a: &Mask, b: &Mask) -> f64 {
     if precision + recall == 0.0 { 0.0 } else { 2.0 * precision * recall / (precision + recall) }
 }
 
-/// The boundary of a mask, one pixel wide: pixels that differ from their right, lower or lower right neighbour. The image
-/// border is not part of the boundary.
+/// The boundary of a mask, one pixel wide: pixels that differ from their right, lower or lower right neighbour. The
+/// image border is not part of the boundary.
 pub fn boundary(mask: &Mask) -> Vec<bool> {
     let (width, height, data) = (mask.width(), mask.height(), mask.data());
     let mut outline = Vec::with_capacity(data.len());

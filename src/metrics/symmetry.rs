@@ -12,9 +12,9 @@ use crate::geometry::similarity::{vec3, vector3};
 use crate::geometry::triangle_tree::TriangleTree;
 use crate::number::numbers;
 
-/// Maximum mean distance between a surface and its rotated copy, relative to the box diagonal of the mesh, for a symmetry in
-/// [`Symmetry::Auto`]. On scanned objects, true symmetries have 0.1 to 0.5 %, a bottle turned upside down 1.8 %, and
-/// dissimilar rotations 3 % and more.
+/// Maximum mean distance between a surface and its rotated copy, relative to the box diagonal of the mesh, for a
+/// symmetry in [`Symmetry::Auto`]. On scanned objects, true symmetries have 0.1 to 0.5 %, a bottle turned upside down
+/// 1.8 %, and dissimilar rotations 3 % and more.
 pub const AUTO_MEAN: f64 = 0.01;
 
 /// The same for the 95th percentile, which detects small asymmetric parts such as a handle. True symmetries have 0.2 to
@@ -30,7 +30,8 @@ const SAME_TURN: f64 = 1e-9;
 /// Number of surface samples that [`Symmetry::Auto`] compares.
 const AUTO_SAMPLES: usize = 2000;
 
-/// The rotational symmetry of an object. All axes pass through the centroid of the surface, a fixed point of every symmetry.
+/// The rotational symmetry of an object. All axes pass through the centroid of the surface, a fixed point of every
+/// symmetry.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Symmetry {
     /// None.
@@ -55,8 +56,8 @@ pub struct SymmetryAxis {
 }
 
 impl Symmetry {
-    /// The symmetry for a description in a data set: text starting with `discrete` is [`Symmetry::Auto`], with `continuous`
-    /// [`Symmetry::AutoRevolution`]; anything else (`none`, `unknown`) is [`Symmetry::None`].
+    /// The symmetry for a description in a data set: text starting with `discrete` is [`Symmetry::Auto`], with
+    /// `continuous` [`Symmetry::AutoRevolution`]; anything else (`none`, `unknown`) is [`Symmetry::None`].
     pub fn from_description(text: &str) -> Self {
         let text = text.trim().to_ascii_lowercase();
         if text.starts_with("discrete") {
@@ -188,8 +189,8 @@ fn invalid(found: String, expected: &str) -> Error {
     )
 }
 
-/// The principal axes of the surface that are symmetry axes of the mesh: of half turns or, if `revolution` is set, of any
-/// rotation.
+/// The principal axes of the surface that are symmetry axes of the mesh: of half turns or, if `revolution` is set, of
+/// any rotation.
 ///
 /// # Errors
 /// [`ErrorCode::DegenerateMesh`] for a mesh without area.

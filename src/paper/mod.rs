@@ -1,5 +1,5 @@
-//! Preset `paper`: the method of the paper (§3.1 to §3.3): descriptors, guarded RANSAC, hallucination filter, scale-locked
-//! ICP.
+//! Preset `paper`: the method of the paper (§3.1 to §3.3): descriptors, guarded RANSAC, hallucination filter,
+//! scale-locked ICP.
 
 pub mod options;
 

@@ -1,5 +1,5 @@
-//! Poses from mostly incorrect matches with a known scale. Correct matches preserve the distances between their points, so
-//! that they have many compatible matches in common (second-order spatial compatibility: Chen et al., "SC²-PCR",
+//! Poses from mostly incorrect matches with a known scale. Correct matches preserve the distances between their points,
+//! so that they have many compatible matches in common (second-order spatial compatibility: Chen et al., "SC²-PCR",
 //! CVPR 2022).
 
 use glam::Vec3;
@@ -29,8 +29,8 @@ pub struct Hypothesis {
     pub score: f64,
 }
 
-/// Up to `count` poses of scale 1 from disjoint seeds, those with the highest compatibility first. A match within `distance`
-/// is an inlier. Empty if a match refers to a point that does not exist.
+/// Up to `count` poses of scale 1 from disjoint seeds, those with the highest compatibility first. A match within
+/// `distance` is an inlier. Empty if a match refers to a point that does not exist.
 pub fn hypotheses(source: &[Vec3], target: &[Vec3], matches: &[Match], distance: f32, count: usize) -> Vec<Hypothesis> {
     let pairs: Vec<Pair> = matches
         .iter()

@@ -1,5 +1,5 @@
-//! Registration by features (paper §3.2, §3.3): FPFH descriptors, mutual matches, guarded RANSAC, hallucination filter, ICP.
-//! Shared by the preset `paper` and `register`.
+//! Registration by features (paper §3.2, §3.3): FPFH descriptors, mutual matches, guarded RANSAC, hallucination filter,
+//! ICP. Shared by the preset `paper` and `register`.
 
 use super::cloud_pair::CloudPair;
 use super::matching::{Match, enough_matches};
@@ -91,8 +91,8 @@ impl<'a> FeatureRegistration<'a> {
         self.matches.retain(|_| index.next().is_none_or(|i| matches.binary_search(&i).is_err()));
     }
 
-    /// Refits the closed form on the inliers whose source points the observation supports. Keeps the consensus if too few
-    /// remain, or if the new scale is outside the guard.
+    /// Refits the closed form on the inliers whose source points the observation supports. Keeps the consensus if too
+    /// few remain, or if the new scale is outside the guard.
     fn refit_on_supported(&self, consensus: &Consensus, settings: &RegistrationSettings) -> Similarity {
         let [source, target] = [&self.clouds.source.grid, &self.clouds.target.grid];
         let pose = consensus.target_from_source;

@@ -22,8 +22,8 @@ const MAX_NEIGHBORS: usize = 128;
 /// Sine of the angle between normal and connecting line below which they are parallel up to rounding.
 const PARALLEL: f32 = 1e-5;
 
-/// The descriptors of a cloud with normals, one per point, from the neighbours within `radius`. `tree` is the search tree
-/// over the same points.
+/// The descriptors of a cloud with normals, one per point, from the neighbours within `radius`. `tree` is the search
+/// tree over the same points.
 pub fn fpfh(cloud: &Cloud, tree: &KdTree, radius: f32) -> Vec<Descriptor> {
     let mut found = Vec::new();
     let neighborhoods: Vec<Vec<Neighbor>> = cloud

@@ -29,8 +29,8 @@ pub struct FreeSpace {
 }
 
 impl FreeSpace {
-    /// The free space of `points` observed from `eye`, with the tolerance `slack`. `None` if the viewpoint is implausible:
-    /// too far away, or with too many points hidden by others.
+    /// The free space of `points` observed from `eye`, with the tolerance `slack`. `None` if the viewpoint is
+    /// implausible: too far away, or with too many points hidden by others.
     pub fn seen_from(eye: Vec3, points: &[Vec3], slack: f32) -> Option<Self> {
         let bounds = Bounds::of(points)?;
         if eye.is_nan() || bounds.center().distance(eye) > MAX_AWAY * bounds.diagonal() {

@@ -25,8 +25,8 @@ impl GridCloud {
         Self::with_smooth_normals(voxel_downsample(full, voxel_size))
     }
 
-    /// Like [`GridCloud::new`], for a cloud with a box diagonal of 1. If more than `count` voxels are occupied, the grid is
-    /// coarser.
+    /// Like [`GridCloud::new`], for a cloud with a box diagonal of 1. If more than `count` voxels are occupied, the
+    /// grid is coarser.
     pub fn of_at_most(count: usize, full: &Cloud, voxel_size: f32) -> Self {
         let mut cloud = voxel_downsample(full, voxel_size);
         // Doubling the voxels quarters the cells of a surface, so that few rounds suffice.
@@ -38,8 +38,8 @@ impl GridCloud {
         Self::with_smooth_normals(cloud)
     }
 
-    /// Estimates normals from the points of the grid, so that both clouds have normals at the same scale, independent of
-    /// density and noise. The mean normals of the cells determine the orientation.
+    /// Estimates normals from the points of the grid, so that both clouds have normals at the same scale, independent
+    /// of density and noise. The mean normals of the cells determine the orientation.
     fn with_smooth_normals(mut cloud: Cloud) -> Self {
         let tree = KdTree::new(&cloud.points);
         let neighborhood = Neighborhood::nearest(NORMAL_NEIGHBORS);

@@ -1,9 +1,9 @@
 //! Scale-locked ICP (paper §3.3): refines R and t, and s only if it is unlocked.
 //!
 //! Each iteration pairs every supported source point with its nearest target point and takes one weighted
-//! Gauss-Newton step (point-to-plane) or one closed form (point-to-point). Tukey's biweight, with a width from the median
-//! of the residuals, excludes outliers. The support distance decreases as the pose improves, and the hallucination filter
-//! is evaluated in every iteration.
+//! Gauss-Newton step (point-to-plane) or one closed form (point-to-point). Tukey's biweight, with a width from the
+//! median of the residuals, excludes outliers. The support distance decreases as the pose improves, and the
+//! hallucination filter is evaluated in every iteration.
 
 use nalgebra::Vector3;
 
@@ -67,8 +67,8 @@ const ROUNDING: f64 = 1e-6;
 /// Factor of the support distance per iteration.
 const SHRINK: f32 = 0.75;
 
-/// Refines a pose of `source` relative to `target`; `target_tree` is the search tree over the target. With too little support
-/// for a step (fewer than six points), iteration stops and `converged` is false.
+/// Refines a pose of `source` relative to `target`; `target_tree` is the search tree over the target. With too little
+/// support for a step (fewer than six points), iteration stops and `converged` is false.
 pub fn refine(
     source: &Cloud,
     target: &Cloud,

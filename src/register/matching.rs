@@ -34,8 +34,8 @@ pub fn enough_matches(source: &[Descriptor], target: &[Descriptor]) -> Vec<Match
     if mutual.len() < MIN_MUTUAL_MATCHES { one_way_matches(source, target) } else { mutual }
 }
 
-/// The nearest source descriptor for each target descriptor, in the order of the target. More pairs than the mutual ones,
-/// most of them incorrect; for targets so partial or noisy that few pairs are mutual.
+/// The nearest source descriptor for each target descriptor, in the order of the target. More pairs than the mutual
+/// ones, most of them incorrect; for targets so partial or noisy that few pairs are mutual.
 pub fn one_way_matches(source: &[Descriptor], target: &[Descriptor]) -> Vec<Match> {
     let nearest = nearest_of_each(target, source);
     nearest.into_iter().zip(0..).filter_map(|(s, t)| Some(Match { source: s?, target: t })).collect()

@@ -58,8 +58,8 @@ impl PoseScorer<'_> {
     }
 }
 
-/// Squared distance of each descriptor from the mean one, which is about that of a plane; 1 on average. Points on planes
-/// match under sliding, and would dominate the score.
+/// Squared distance of each descriptor from the mean one, which is about that of a plane; 1 on average. Points on
+/// planes match under sliding, and would dominate the score.
 pub(super) fn distinctiveness(descriptors: &[Descriptor]) -> Vec<f32> {
     let count = descriptors.len().max(1) as f32;
     let mut mean = [0.0; DIMENSION];

@@ -21,8 +21,8 @@ const DIVISIONS: f64 = 30.0;
 /// Maximum number of poses tried per pair of clouds.
 const POSES: usize = 6;
 
-/// Limit on minimal sets once a pose exists that only a certain one can replace. It suffices for clouds that differ only
-/// in clutter.
+/// Limit on minimal sets once a pose exists that only a certain one can replace. It suffices for clouds that differ
+/// only in clutter.
 const ITERATIONS_WITH_PREFERRED: usize = 20_000;
 
 /// Agreement at which a pose is certain and the search stops: about nine of ten points coincide.
@@ -165,8 +165,8 @@ impl Candidate {
 struct Agreement {
     /// Fraction of the source points within the inlier distance of a target point.
     fitness: f64,
-    /// Mean of max(0, 1 − (r/d)²) over the source points; d is a third of the inlier distance. In clutter, every point has
-    /// a near neighbour; only under the correct pose, many have a very near one.
+    /// Mean of max(0, 1 − (r/d)²) over the source points; d is a third of the inlier distance. In clutter, every point
+    /// has a near neighbour; only under the correct pose, many have a very near one.
     score: f64,
 }
 

@@ -1,8 +1,8 @@
 //! Guarded Sim(3) RANSAC over correspondences (paper §3.2).
 //!
-//! With an unconstrained scale, RANSAC maximises inliers by shrinking the mesh into a patch of the observation. The loop
-//! therefore compares the scale of each hypothesis with the initial one: outside [λmin, λmax]·s_init, the hypothesis is
-//! rejected (or, in clamp mode, its scale is projected back).
+//! With an unconstrained scale, RANSAC maximises inliers by shrinking the mesh into a patch of the observation. The
+//! loop therefore compares the scale of each hypothesis with the initial one: outside [λmin, λmax]·s_init, the
+//! hypothesis is rejected (or, in clamp mode, its scale is projected back).
 
 use super::matching::Match;
 use super::tukey::biweights;

@@ -55,10 +55,10 @@ pub fn register(
     let target_xyz = subsample(target_xyz, options.max_points as usize, &mut random);
     let frames = NormalizedPair::of(&source_xyz, &target_xyz, options.scale)?;
 
-    // With a known scale, correct matches preserve distances, which rigid registration uses. Otherwise, or if that fails,
-    // clouds are registered by features. Clutter enlarges the boxes and disturbs the descriptors, so that the dense points
-    // are tried first; but if the density varies by nature (lidar), they omit most of the scene, so that all points are
-    // tried as well. The agreement of all points selects the result.
+    // With a known scale, correct matches preserve distances, which rigid registration uses. Otherwise, or if that
+    // fails, clouds are registered by features. Clutter enlarges the boxes and disturbs the descriptors, so that the
+    // dense points are tried first; but if the density varies by nature (lidar), they omit most of the scene, so that
+    // all points are tried as well. The agreement of all points selects the result.
     let mut selector = PoseSelector::new(&source_xyz, &target_xyz, frames, options);
     if matches!(options.scale, ScaleOption::Fixed(_)) {
         selector.prefer(register_rigid(complete, options, &mut stages));

@@ -1,7 +1,7 @@
 //! Registration with a known scale, for partial scans of scenes with low overlap and repeated structure.
 //!
-//! The voxel size follows from the number of points. Poses come from matches that preserve distances, and are ranked by the
-//! agreement of both complete scenes and by the free space of their sensors.
+//! The voxel size follows from the number of points. Poses come from matches that preserve distances, and are ranked by
+//! the agreement of both complete scenes and by the free space of their sensors.
 
 use super::cloud_pair::CloudPair;
 use super::feature_registration::Estimate;

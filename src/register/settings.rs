@@ -33,8 +33,8 @@ pub(crate) struct RegistrationSettings {
 }
 
 impl RegistrationSettings {
-    /// The settings of `register`. Without a camera, the side of a normal is unknown, so that support only depends on the
-    /// distance.
+    /// The settings of `register`. Without a camera, the side of a normal is unknown, so that support only depends on
+    /// the distance.
     pub(super) fn new(
         options: &RegisterOptions,
         voxel_size: f64,

@@ -1,5 +1,5 @@
-//! Hallucination filtering (paper §3.1): generators hallucinate the side that the camera did not see. Only source points
-//! are used that the observation supports under the current pose, by position and normal.
+//! Hallucination filtering (paper §3.1): generators hallucinate the side that the camera did not see. Only source
+//! points are used that the observation supports under the current pose, by position and normal.
 
 use glam::Vec3;
 

@@ -8,8 +8,8 @@ const TUKEY: f64 = 4.685;
 /// Ratio of the standard deviation to the median absolute residual of a Gaussian.
 const MAD_TO_SIGMA: f64 = 1.4826;
 
-/// The weights of residuals, from 0 to 1. The width follows from their median, but is at least `floor`, the rounding error
-/// of the coordinates: for exact data, the median is 0.
+/// The weights of residuals, from 0 to 1. The width follows from their median, but is at least `floor`, the rounding
+/// error of the coordinates: for exact data, the median is 0.
 pub fn biweights(residuals: &[f64], floor: f64) -> Vec<f64> {
     let median = median(residuals.iter().map(|r| r.abs() as f32)).unwrap_or_default();
     let width = (TUKEY * MAD_TO_SIGMA * f64::from(median)).max(floor);

@@ -10,8 +10,8 @@ use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::similarity::Similarity;
 use crate::geometry::singular_values::SingularValues;
 
-/// Ratio of the second to the first singular value below which points are collinear up to rounding, so that the rotation
-/// about their line is undetermined.
+/// Ratio of the second to the first singular value below which points are collinear up to rounding, so that the
+/// rotation about their line is undetermined.
 const COLLINEAR: f64 = 1e-6;
 
 /// Whether the scale is estimated.

@@ -1,8 +1,8 @@
 //! glTF 2.0: the default scene as one mesh, in the scene's frame.
 //!
-//! The types of the `gltf-json` crate parse the JSON. Indices and offsets are resolved by checked code of this module, so
-//! that a malicious file results in an error. Only the parts that define triangles are parsed, so that an invalid material
-//! or texture does not prevent reading the mesh.
+//! The types of the `gltf-json` crate parse the JSON. Indices and offsets are resolved by checked code of this module,
+//! so that a malicious file results in an error. Only the parts that define triangles are parsed, so that an invalid
+//! material or texture does not prevent reading the mesh.
 
 mod accessor;
 mod buffers;
@@ -126,8 +126,8 @@ fn compressed(extension: &str) -> Error {
 }
 
 /// Reads a `.glb` or `.gltf`: the nodes of the default scene (the first scene if there is no default;
-/// without scenes, all root nodes), with transforms applied and all triangles, strips and fans merged. Points and lines are
-/// ignored. Skins and morph targets are not applied.
+/// without scenes, all root nodes), with transforms applied and all triangles, strips and fans merged. Points and lines
+/// are ignored. Skins and morph targets are not applied.
 ///
 /// # Errors
 /// [`ErrorCode::CorruptFile`], [`ErrorCode::FileTooLarge`], [`ErrorCode::UnsupportedFormat`] for required

@@ -31,8 +31,9 @@ const PLAN: &[(Stage, f64)] = &[
 /// Options of a baseline.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct BaselineOptions {
-    /// Clouds, descriptors, RANSAC and ICP, as in the paper's method. `inlier_distance_voxels` is also the noise bound of
-    /// TEASER and Quatro; `support_distance_voxels` bounds the correspondences of local methods and of the refinement.
+    /// Clouds, descriptors, RANSAC and ICP, as in the paper's method. `inlier_distance_voxels` is also the noise bound
+    /// of TEASER and Quatro; `support_distance_voxels` bounds the correspondences of local methods and of the
+    /// refinement.
     pub paper: PaperOptions,
     /// Keeps the initial scale under TEASER, which estimates its own otherwise. All other methods always keep it.
     pub lock_scale: bool,
@@ -43,11 +44,12 @@ pub struct BaselineOptions {
 /// Aligns a mesh to an observation by another method: the mask's cloud, centred, the mesh scaled by the ratio of the
 /// boxes' diagonals, both on a grid of `voxel_divisions`.
 ///
-/// Local methods begin at the centred, unrotated pose. RANSAC's pose is refined by plain ICP unless `icp` is `None`; the
-/// others stand as they are published.
+/// Local methods begin at the centred, unrotated pose. RANSAC's pose is refined by plain ICP unless `icp` is `None`;
+/// the others stand as they are published.
 ///
 /// # Errors
-/// As [`align`](sim3align::align::align); [`NoConsensus`](sim3align_geometry::error::ErrorCode::NoConsensus) where the method has no answer.
+/// As [`align`](sim3align::align::align); [`NoConsensus`](sim3align_geometry::error::ErrorCode::NoConsensus) where the
+/// method has no answer.
 pub fn align_baseline(
     observation: &Observation,
     mesh: &Mesh,

@@ -109,7 +109,8 @@ impl Graph {
         (left, order)
     }
 
-    /// The vertices of the innermost core, in ascending order: it contains most large cliques, and is found in linear time.
+    /// The vertices of the innermost core, in ascending order: it contains most large cliques, and is found in linear
+    /// time.
     pub fn innermost_core(&self) -> Vec<usize> {
         let (cores, _) = self.cores();
         let innermost = cores.iter().copied().max().unwrap_or_default();

@@ -7,7 +7,8 @@
 //! Options and their defaults are Open3D's, also where it departs from the paper: the clouds are divided by the larger
 //! of both radii, and μ, which is a squared distance, falls until it is below `max_correspondence_distance`, which is
 //! none. Intentional differences:
-//! - μ begins at the radius in the frame it is used in, as published: 1 in the normalised one. Open3D 0.20 begins there at
+//! - μ begins at the radius in the frame it is used in, as published: 1 in the normalised one. Open3D 0.20 begins there
+//!   at
 //!   the radius in the clouds' own unit, so that its answer depends on whether they are in metres or in millimetres
 //!   ([`FgrSettings::initial_mu`] repeats that).
 //! - Too few matches are an error where Open3D returns the identity.
@@ -93,8 +94,8 @@ pub struct Fgr {
 /// Estimates the rigid transform from matches.
 ///
 /// # Errors
-/// [`NoConsensus`](sim3align_geometry::error::ErrorCode::NoConsensus) for fewer than ten matches, or where fewer than four triples
-/// of them form like triangles; [`NonFinite`](sim3align_geometry::error::ErrorCode::NonFinite),
+/// [`NoConsensus`](sim3align_geometry::error::ErrorCode::NoConsensus) for fewer than ten matches, or where fewer than
+/// four triples of them form like triangles; [`NonFinite`](sim3align_geometry::error::ErrorCode::NonFinite),
 /// [`DegeneratePoints`](sim3align_geometry::error::ErrorCode::DegeneratePoints) where a cloud is one point.
 pub fn solve(source: &[Vec3], target: &[Vec3], matches: &[Match], settings: &FgrSettings) -> Result<Fgr> {
     let matched = Matched::of(source, target, matches)?.thinned(MAX_MATCHES, settings.seed);

@@ -1,12 +1,12 @@
 //! Generalized ICP, plane to plane (Segal, Haehnel, Thrun, "Generalized-ICP", RSS 2009).
 //!
 //! Every point represents a surface patch with covariance 1 along and ε across the surface. The residual of a pair is
-//! weighted by the inverse of the sum of both covariances, so that patches can slide along each other but not apart. As in
-//! small_gicp and Open3D: ε = 1e-3, 20 neighbours, nearest neighbours paired anew in every iteration; steps are
+//! weighted by the inverse of the sum of both covariances, so that patches can slide along each other but not apart. As
+//! in small_gicp and Open3D: ε = 1e-3, 20 neighbours, nearest neighbours paired anew in every iteration; steps are
 //! those of Levenberg–Marquardt, as in small_gicp.
 //!
-//! Intentional differences: a covariance is stored as its normal; if the neighbours are collinear, it is 1 in all directions,
-//! as in small_gicp for too few neighbours.
+//! Intentional differences: a covariance is stored as its normal; if the neighbours are collinear, it is 1 in all
+//! directions, as in small_gicp for too few neighbours.
 
 use glam::Vec3;
 use nalgebra::{Matrix3, Vector3};
@@ -69,8 +69,8 @@ impl Patches {
 /// Rigid GICP, the scale that of `initial`. `target_tree` is the tree over the target.
 ///
 /// # Errors
-/// [`NoConsensus`](sim3align_geometry::error::ErrorCode::NoConsensus) where fewer than six source points have a target point within
-/// reach.
+/// [`NoConsensus`](sim3align_geometry::error::ErrorCode::NoConsensus) where fewer than six source points have a target
+/// point within reach.
 pub fn solve(
     source: &[Vec3],
     target: &[Vec3],

@@ -17,8 +17,8 @@ const MAX_ITERATIONS: usize = 100;
 /// Converged if the cost changes by less than this, in squared noise bounds.
 const REST: f64 = 1e-9;
 
-/// Ratio of the second to the first singular value below which vectors are collinear, so that the rotation about their line is
-/// undetermined.
+/// Ratio of the second to the first singular value below which vectors are collinear, so that the rotation about their
+/// line is undetermined.
 const COLLINEAR: f64 = 1e-6;
 
 /// A vector in the source frame and its counterpart in the target frame.

@@ -7,8 +7,8 @@ use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::kd_tree::KdTree;
 use sim3align_geometry::similarity::Similarity;
 
-/// Settings for which [`refine`] is the ICP of Besl & McKay or Chen & Medioni with a maximum correspondence distance, like
-/// `registration_icp` of Open3D: without weights, decreasing distance, and check of the normals.
+/// Settings for which [`refine`] is the ICP of Besl & McKay or Chen & Medioni with a maximum correspondence distance,
+/// like `registration_icp` of Open3D: without weights, decreasing distance, and check of the normals.
 pub fn classical(metric: IcpMetric, max_correspondence_distance: f32, max_iterations: usize) -> IcpSettings {
     IcpSettings {
         metric,
@@ -22,15 +22,15 @@ pub fn classical(metric: IcpMetric, max_correspondence_distance: f32, max_iterat
     }
 }
 
-/// Converged if no corner of the unit box moves further than this in an iteration. Open3D stops if fitness and residual change
-/// by less than 10⁻⁶, which is earlier for a flat objective.
+/// Converged if no corner of the unit box moves further than this in an iteration. Open3D stops if fitness and residual
+/// change by less than 10⁻⁶, which is earlier for a flat objective.
 pub(super) const TOLERANCE: f64 = 1e-6;
 
 /// Rigid ICP, the scale that of `initial`.
 ///
 /// # Errors
-/// [`NoConsensus`](sim3align_geometry::error::ErrorCode::NoConsensus) where fewer than six source points have a target point within
-/// reach: `initial` would be no answer.
+/// [`NoConsensus`](sim3align_geometry::error::ErrorCode::NoConsensus) where fewer than six source points have a target
+/// point within reach: `initial` would be no answer.
 pub fn solve(
     source: &Cloud,
     target: &Cloud,

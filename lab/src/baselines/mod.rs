@@ -1,7 +1,7 @@
 //! Other registration methods for comparison, implemented as published on the clouds and solvers of the aligner.
 //!
-//! All are rigid except TEASER, which can estimate the scale. Descriptors, normals and voxel grids are those of the paper's
-//! method, so that methods are compared and not preprocessing.
+//! All are rigid except TEASER, which can estimate the scale. Descriptors, normals and voxel grids are those of the
+//! paper's method, so that methods are compared and not preprocessing.
 
 pub mod align;
 mod baseline;

@@ -62,8 +62,8 @@ impl PairSettings {
 
 /// Estimates the rigid transform from source to target. Local methods start at the identity.
 ///
-/// Normals of the clouds are used if present (for scans, they point to the scanner). Otherwise they are estimated, and point
-/// away from the centre of each cloud.
+/// Normals of the clouds are used if present (for scans, they point to the scanner). Otherwise they are estimated, and
+/// point away from the centre of each cloud.
 ///
 /// # Errors
 /// [`ErrorCode::TooFewPoints`], [`ErrorCode::NonFinite`], [`ErrorCode::DegeneratePoints`],

@@ -7,9 +7,9 @@
 //! 3. Rotation by graduated non-convexity on the vectors between the remaining matches.
 //! 4. Translation by adaptive voting per axis.
 //!
-//! Intentional differences: a rotation is fitted to vectors across the whole set ([`TeaserSettings::links`]), where TEASER++
-//! chains each match to the next, which in the order of a voxel grid is its neighbour: short vectors are mostly noise.
-//! Large sets of length ratios are subsampled. Failure is an error, not the identity.
+//! Intentional differences: a rotation is fitted to vectors across the whole set ([`TeaserSettings::links`]), where
+//! TEASER++ chains each match to the next, which in the order of a voxel grid is its neighbour: short vectors are
+//! mostly noise. Large sets of length ratios are subsampled. Failure is an error, not the identity.
 
 use nalgebra::{Rotation3, Vector3};
 
@@ -83,8 +83,9 @@ pub struct Teaser {
 /// Estimates the similarity from corresponding points.
 ///
 /// # Errors
-/// [`ErrorCode::NoConsensus`] if fewer than three matches agree or their rotation is undetermined; [`ErrorCode::WrongLength`],
-/// [`ErrorCode::NonFinite`], [`ErrorCode::InvalidOption`] for a noise bound or a scale that is not above 0.
+/// [`ErrorCode::NoConsensus`] if fewer than three matches agree or their rotation is undetermined;
+/// [`ErrorCode::WrongLength`], [`ErrorCode::NonFinite`], [`ErrorCode::InvalidOption`] for a noise bound or a scale that
+/// is not above 0.
 pub fn solve(source: &[Vector3<f64>], target: &[Vector3<f64>], settings: &TeaserSettings) -> Result<Teaser> {
     solve_with(&Matched::from_points(source, target)?, settings, Turns::All)
 }

@@ -1,7 +1,7 @@
 //! Adaptive voting: the value that most of many scalar measurements with known ranges agree with.
 //!
-//! Minimises Σ min((v − x)²/r², 1) over x exactly: the consensus set changes only at the ends of ranges, and between two
-//! ends the best x is its weighted mean (Yang, Shi, Carlone, "TEASER", T-RO 2021, §V).
+//! Minimises Σ min((v − x)²/r², 1) over x exactly: the consensus set changes only at the ends of ranges, and between
+//! two ends the best x is its weighted mean (Yang, Shi, Carlone, "TEASER", T-RO 2021, §V).
 //!
 //! Intentional difference: TEASER++ and KISS-Matcher add squares that are not divided by r² to ranges that are not
 //! squared, so that their compromise between near and many depends on the unit of length.

@@ -40,11 +40,11 @@ struct Crop {
     zoom: f64,
 }
 
-/// Renders a pose of a case as PNG: depth around the mask (near is bright), with the outlines of the mask, the true pose (if
-/// known) and the estimated pose.
+/// Renders a pose of a case as PNG: depth around the mask (near is bright), with the outlines of the mask, the true
+/// pose (if known) and the estimated pose.
 ///
 /// # Errors
-/// [`sim3align_geometry::error::ErrorCode::Internal`] where the encoder fails.
+/// [`sim3align_geometry::error::ErrorCode::Internal`] if the encoder fails.
 pub fn picture(case: &BenchCase, pose: &Similarity) -> Result<Vec<u8>> {
     let (depth, mask) = (case.observation.depth(), case.observation.mask());
     let crop = Crop::about(mask);

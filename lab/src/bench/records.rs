@@ -30,8 +30,8 @@ struct Line<T> {
     record: T,
 }
 
-/// A file of records, open for appending. `T` is the content kept of existing records; [`serde::de::IgnoredAny`] if only their
-/// existence matters.
+/// A file of records, open for appending. `T` is the content kept of existing records; [`serde::de::IgnoredAny`] if
+/// only their existence matters.
 #[derive(Debug)]
 pub struct RecordFile<T> {
     file: Mutex<File>,

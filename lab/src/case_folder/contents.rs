@@ -9,8 +9,8 @@ use sim3align_geometry::error::Result;
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::similarity::Similarity;
 
-/// Names and contents of the files. `truth` holds the fields of `gt.json` other than the pose. Depth is written as floats
-/// (NPY, metres) or, given `depth_scale` (metres per unit), as integers (16-bit PNG).
+/// Names and contents of the files. `truth` holds the fields of `gt.json` other than the pose. Depth is written as
+/// floats (NPY, metres) or, given `depth_scale` (metres per unit), as integers (16-bit PNG).
 pub(crate) fn case_files(
     observation: &Observation,
     mesh: &Mesh,

@@ -14,7 +14,8 @@ use sim3align_geometry::mesh::Mesh;
 pub fn depth_npy(depth: &DepthMap) -> Vec<u8> {
     let mut header =
         format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, {}), }}", depth.height(), depth.width());
-    // Magic, version and length take 10 bytes; the data begin at a multiple of 64, and the header ends with a line feed.
+    // Magic, version and length take 10 bytes; the data begin at a multiple of 64, and the header ends with a line
+    // feed.
     let header_bytes = (10 + header.len() + 1).next_multiple_of(64) - 10;
     header.extend(core::iter::repeat_n(' ', header_bytes - 1 - header.len()));
     header.push('\n');
@@ -49,7 +50,7 @@ pub fn depth_png(depth: &DepthMap, depth_scale: f64) -> Result<Vec<u8>> {
 /// A mask as 8-bit grey PNG: 255 is the object.
 ///
 /// # Errors
-/// [`ErrorCode::Internal`] where the encoder fails.
+/// [`ErrorCode::Internal`] if the encoder fails.
 pub fn mask_png(mask: &Mask) -> Result<Vec<u8>> {
     let bytes: Vec<u8> = mask.data().iter().map(|&m| if m == 0 { 0 } else { 255 }).collect();
     png(&bytes, mask.width(), mask.height(), ExtendedColorType::L8)

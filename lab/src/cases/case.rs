@@ -26,13 +26,13 @@ use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::random::Random;
 use sim3align_geometry::similarity::Similarity;
 
-/// How many cases a set has unless another number is asked for.
+/// Default number of cases.
 pub const CASES: usize = 240;
-/// Fewest pixels in a mask.
+/// Minimum number of pixels in a mask.
 pub const MIN_MASK_PX: usize = 350;
-/// Nothing farther away is shown.
+/// Maximum distance of the object.
 const FARTHEST_M: f32 = 12.0;
-/// Draws of one case before giving up.
+/// Maximum number of draws per case.
 const DRAWS: u64 = 400;
 
 /// A set of cases.
@@ -45,27 +45,27 @@ pub struct EvaluationSet {
 /// A generated case with its truth.
 #[derive(Debug, Clone)]
 pub struct EvaluationCase {
-    /// Its place in the set.
+    /// Index in the set.
     pub index: usize,
-    /// How hard it is.
+    /// Difficulty.
     pub tier: Tier,
-    /// What it was made to show.
+    /// The property that the case tests.
     pub class: Class,
     /// What it shows: the family's name, or the mesh file's.
     pub family: String,
-    /// Names of its faults.
+    /// Names of the simulated errors.
     pub tags: Vec<&'static str>,
-    /// Measures of its faults.
+    /// Magnitudes of the simulated errors.
     pub parameters: Vec<(&'static str, f64)>,
     /// Depth, mask and camera.
     pub observation: Observation,
-    /// The generated mesh, in a frame of its own.
+    /// The generated mesh, in its canonical frame.
     pub mesh: Mesh,
-    /// The truth, in the depth map's own metric.
+    /// The true pose, in the scale of the depth map.
     pub camera_from_mesh: Similarity,
-    /// The turns under which the mesh looks the same, in its frame.
+    /// Rotational symmetries of the mesh, in its frame.
     pub symmetry: Symmetry,
-    /// The object as it is: metres, z up, on the table.
+    /// The true object: metres, z up, on the table.
     pub object: Mesh,
     /// Where it is seen, in the depth map's own metric.
     pub camera_from_object: Similarity,
@@ -80,7 +80,7 @@ impl EvaluationSet {
     /// The set that shows, in a third of its cases, the GLB files of a folder.
     ///
     /// # Errors
-    /// [`ErrorCode::InvalidArgument`] for a folder that can't be read, and those of the readers.
+    /// [`ErrorCode::InvalidArgument`] if a folder cannot be read, and those of the readers.
     pub fn with_meshes(seed: u64, folder: &Path) -> Result<Self> {
         Ok(Self { seed, scans: Scan::all(folder)? })
     }
@@ -88,7 +88,7 @@ impl EvaluationSet {
     /// Case `index`. It depends on the set's seed, its meshes and the index alone.
     ///
     /// # Errors
-    /// None that its input could cause.
+    /// Only in case of a bug in the generator.
     pub fn case(&self, index: usize) -> Result<EvaluationCase> {
         for draw in 0..DRAWS {
             if let Some(case) = self.draw(index, mixed([self.seed, index as u64, draw]))? {
@@ -104,7 +104,7 @@ impl EvaluationSet {
         ))
     }
 
-    /// A draw of a case; `None` where it shows too little, or not what its class is about.
+    /// A draw of a case; `None` if it shows too little of the object, or not the property of its class.
     fn draw(&self, index: usize, seed: u64) -> Result<Option<EvaluationCase>> {
         let (tier, class) = (Tier::of(index), Class::of(index));
         let random = &mut Random::new(seed, OBJECT_STREAM);
@@ -128,7 +128,7 @@ impl EvaluationSet {
         let generated = generate(&object, &placed, &symmetry, &scene, (tier, class), random)?;
         let (mesh, object_from_mesh) = canonicalise(&generated.mesh, seed)?;
 
-        // A depth map with a metric of its own: the whole camera frame is scaled.
+        // The scale error of the depth map scales the camera frame.
         let metric = Similarity { scale: readings.bias, ..Similarity::identity() };
         let camera_from_object = metric.compose(&scene.camera_from_world);
         tags.push(readings.kind);
@@ -163,7 +163,7 @@ impl EvaluationSet {
 }
 
 impl EvaluationCase {
-    /// The case's name, and that of its folder.
+    /// Name of the case and its folder.
     pub fn name(&self) -> String {
         format!("{:04}-{}-{}-{}", self.index, self.tier.as_str(), self.class.as_str(), self.family)
     }
@@ -172,7 +172,7 @@ impl EvaluationCase {
     /// them, and, exactly, as `symmetryAxes`.
     ///
     /// # Errors
-    /// [`ErrorCode::Internal`] where an encoder fails.
+    /// [`ErrorCode::Internal`] if an encoder fails.
     pub fn files(&self) -> Result<Vec<(&'static str, Vec<u8>)>> {
         let truth = symmetry_json(&self.symmetry, &self.name());
         let parameters = parameters_json(&self.parameters);
@@ -189,10 +189,10 @@ impl EvaluationCase {
         Ok(files)
     }
 
-    /// Writes the case folder, and creates it where it does not exist.
+    /// Writes the case folder, and creates it if necessary.
     ///
     /// # Errors
-    /// [`ErrorCode::InvalidArgument`] where the folder or a file can't be written, and those of
+    /// [`ErrorCode::InvalidArgument`] if the folder or a file cannot be written, and those of
     /// [`EvaluationCase::files`].
     pub fn write(&self, folder: &Path) -> Result<()> {
         write_files(folder, &self.files()?)

@@ -1,5 +1,5 @@
-//! What a generator makes of an object that it saw from one side: what was seen is right, what was not is invented,
-//! and the whole comes in a frame of its own.
+//! Simulates a generator that saw an object from one side: the visible part is accurate, the other part is
+//! hallucinated, and the mesh is in a canonical frame.
 
 use core::cmp::Reverse;
 use core::f64::consts::TAU;
@@ -29,11 +29,11 @@ const SMOOTHING_PASSES: usize = 2;
 const SMOOTHING: [f64; 2] = [0.04, 0.5];
 
 /// The mesh with a hallucinated back: vertices far from the `seen` ones, over the surface, move outwards by a smooth
-/// amount, at most by `bulge` as a share of the box diagonal, and what is invented is smoother than what is not. Vertices
-/// and triangles keep their order.
+/// amount, at most by `bulge` as a share of the box diagonal, and what is invented is smoother than what is not.
+/// Vertices and triangles keep their order.
 ///
 /// # Errors
-/// Those of [`Mesh::new`], which a fault of the generator alone could cause.
+/// Those of [`Mesh::new`], which only a bug in the generator could cause.
 pub fn hallucinate(mesh: &Mesh, seen: &[bool], bulge: f64, seed: u64) -> Result<Mesh> {
     let mut random = Random::new(seed, DISTORTION_STREAM);
     let (low, high) = bounds(mesh);
@@ -78,7 +78,7 @@ pub fn hallucinate(mesh: &Mesh, seen: &[bool], bulge: f64, seed: u64) -> Result<
 /// `object_from_mesh`.
 ///
 /// # Errors
-/// Those of [`Mesh::new`] and [`Similarity::from_parts`], which a fault of the generator alone could cause.
+/// Those of [`Mesh::new`] and [`Similarity::from_parts`], which only a bug in the generator could cause.
 pub fn canonicalise(mesh: &Mesh, seed: u64) -> Result<(Mesh, Similarity)> {
     let mut random = Random::new(seed, FRAME_STREAM);
     let (low, high) = bounds(mesh);

@@ -9,23 +9,23 @@ use sim3align_geometry::mesh::Mesh;
 /// An axis of symmetry in the object's frame: direction, and how many times it looks the same in a full turn.
 pub type Axis = (DVec3, Option<u32>);
 
-/// What a family makes.
+/// An object under construction by a family.
 #[derive(Debug, Default)]
 pub struct Draft {
     /// The parts.
     pub solid: Solid,
-    /// The object's symmetry.
+    /// The symmetry of the object.
     pub symmetry: Vec<Axis>,
-    /// Parts of which at least one has to be seen to tell how the object is turned.
+    /// Parts of which at least one must be visible to determine the orientation.
     pub keys: Vec<usize>,
-    /// Parts that a generator may lose, and the symmetry without them.
+    /// Parts that a generator may omit, and the symmetry without them.
     pub losable: Vec<(usize, Vec<Axis>)>,
 }
 
 /// An object.
 #[derive(Debug, Clone)]
 pub struct Object {
-    /// The family's, or the file's, name.
+    /// Name of the family or the mesh file.
     pub family: String,
     /// The surface.
     pub mesh: Mesh,
@@ -37,12 +37,12 @@ pub struct Object {
     pub keys: Vec<usize>,
     /// See [`Draft::losable`].
     pub losable: Vec<(usize, Vec<Axis>)>,
-    /// Whether it lies in any way, or mostly as it is made.
+    /// Whether it rests on any side, instead of mostly upright.
     pub any_side_up: bool,
 }
 
 impl Object {
-    /// The diagonal of the box around it, metres.
+    /// The diagonal of its bounding box, metres.
     pub fn diagonal(&self) -> f64 {
         Bounds::of(self.mesh.positions()).map_or(0.0, |b| f64::from(b.diagonal()))
     }

@@ -41,10 +41,10 @@ const FAMILIES: &[Family] = &[
     Family("sofa", figures::sofa, Kind::Common),
 ];
 
-/// Families that stand on floors.
+/// Families that stand on the floor.
 const FURNITURE: &[&str] = &["chair", "sofa"];
 
-/// Of the cases for which there is a choice, how many show a scan where there are any.
+/// Fraction of the eligible cases that show a scan, if scans are available.
 const SCANS: f64 = 0.35;
 
 impl Family {
@@ -56,7 +56,7 @@ impl Family {
     }
 }
 
-/// An object for a case.
+/// Draws an object for a case.
 pub(crate) fn draw(random: &mut Random, tier: Tier, class: Class, scans: &[Scan]) -> Result<Object> {
     let free = !matches!(class, Class::Thin | Class::Ambiguous | Class::MissingPart);
     if free && !scans.is_empty() && chance(random, SCANS) {
@@ -74,16 +74,16 @@ pub(crate) fn draw(random: &mut Random, tier: Tier, class: Class, scans: &[Scan]
     families[random.below(families.len())].object(random)
 }
 
-/// An object that has room on a desk beside others, of any such family.
+/// Draws an object of any family that fits on a desk with others.
 pub(crate) fn draw_for_desk(random: &mut Random) -> Result<Object> {
     let families: Vec<&Family> = FAMILIES.iter().filter(|Family(name, ..)| !FURNITURE.contains(name)).collect();
     families[random.below(families.len())].object(random)
 }
 
-/// An object of the family of that name; `None` where there is none.
+/// Draws an object of a family by name; `None` for an unknown family.
 ///
 /// # Errors
-/// Those of [`Mesh::new`], which a fault of the generator alone could cause.
+/// Those of [`Mesh::new`], which only a bug in the generator could cause.
 pub(crate) fn draw_from(name: &str, random: &mut Random) -> Result<Option<Object>> {
     FAMILIES.iter().find(|Family(family, ..)| *family == name).map(|family| family.object(random)).transpose()
 }

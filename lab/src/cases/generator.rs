@@ -1,4 +1,4 @@
-//! What a generative model makes of an object that it saw in one photo.
+//! Simulates a generative model that reconstructs an object from one photo.
 
 use core::f64::consts::TAU;
 
@@ -18,20 +18,20 @@ use sim3align_geometry::random::Random;
 use sim3align_geometry::rasteriser::NO_TRIANGLE;
 use sim3align_geometry::similarity::{vec3, vector3};
 
-/// What a generator made, in the world's frame, and what was done to it.
+/// A generated mesh in the world frame, and its simulated errors.
 #[derive(Debug)]
 pub struct Generated {
     /// The mesh.
     pub mesh: Mesh,
     /// The symmetry of what can be told by it.
     pub symmetry: Vec<Axis>,
-    /// Names of faults.
+    /// Names of the simulated errors.
     pub tags: Vec<&'static str>,
-    /// Measures of faults.
+    /// Magnitudes of the simulated errors.
     pub parameters: Vec<(&'static str, f64)>,
 }
 
-/// How much of each fault.
+/// Magnitude of each error.
 struct Strength {
     /// Largest logarithm of an axis' stretch.
     stretch: f64,

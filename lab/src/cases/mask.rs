@@ -1,4 +1,4 @@
-//! Masks as a segmentation model gives them.
+//! Masks with the errors of segmentation models.
 
 use super::readings::disc;
 use super::scene::Scene;
@@ -9,14 +9,14 @@ use sim3align_geometry::error::Result;
 use sim3align_geometry::image::{Image, Mask};
 use sim3align_geometry::random::Random;
 
-/// A mask with its faults.
+/// A mask with simulated errors.
 #[derive(Debug)]
 pub struct Segmented {
     /// The mask.
     pub mask: Mask,
-    /// By how many pixels it is too large; negative: too small.
+    /// Offset of the boundary in pixels; positive if the mask is too large.
     pub offset_px: f64,
-    /// Names of faults.
+    /// Names of the simulated errors.
     pub tags: Vec<&'static str>,
 }
 

@@ -1,8 +1,9 @@
-//! The evaluation set: cases of many objects, with the errors of segmentation models, depth models and generated meshes.
+//! The evaluation set: cases of many objects, with the errors of segmentation models, depth models and generated
+//! meshes.
 //!
-//! Case i depends on the seed of the set and i alone. i % 3 is its tier, and i / 3 cycles through the classes of the tier,
-//! so that any range of cases contains all of them evenly. A draw that shows too little of the object is repeated with
-//! other random numbers.
+//! Case i depends on the seed of the set and i alone. i % 3 is its tier, and i / 3 cycles through the classes of the
+//! tier, so that any range of cases contains all of them evenly. A draw that shows too little of the object is repeated
+//! with other random numbers.
 
 pub mod case;
 mod cluster;

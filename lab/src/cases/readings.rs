@@ -1,4 +1,4 @@
-//! Depth as a monocular model or a sensor gives it.
+//! Depth maps with the errors of monocular models or sensors.
 
 use core::f64::consts::TAU;
 
@@ -9,16 +9,16 @@ use sim3align_geometry::error::Result;
 use sim3align_geometry::image::DepthMap;
 use sim3align_geometry::random::Random;
 
-/// A depth map with its faults.
+/// A depth map with simulated errors.
 #[derive(Debug)]
 pub struct Readings {
-    /// Metres of its own metric.
+    /// Depth in metres, including the scale error.
     pub depth: DepthMap,
-    /// Its metres by true metres.
+    /// Ratio of measured to true metres.
     pub bias: f64,
     /// `"monocular"` or `"sensor"`.
     pub kind: &'static str,
-    /// Share of the object's visible pixels without a reading.
+    /// Fraction of the visible pixels of the object without a reading.
     pub missing: f64,
     /// By what share the warp moves each of the things asked for along its rays: what its truth has to follow.
     pub drifts: Vec<f64>,
@@ -55,7 +55,8 @@ impl Readings {
 }
 
 /// Monocular: blurred over edges, warped by long waves, hardly any noise. The warp has no part that moves the object
-/// as a whole: that is the bias, which the truth follows. Of several things it moves each by a share, which is returned.
+/// as a whole: that is the bias, which the truth follows. Of several things it moves each by a share, which is
+/// returned.
 fn estimated(
     scene: &Scene,
     things: &[&[bool]],

@@ -1,4 +1,4 @@
-//! Camera and scene: an object on a table before a wall, with what stands before and behind it.
+//! Camera and scene: an object on a table in front of a wall, with occluders and background objects.
 
 use core::f64::consts::TAU;
 
@@ -18,37 +18,37 @@ use sim3align_geometry::random::Random;
 use sim3align_geometry::rasteriser::{NO_TRIANGLE, Rasteriser};
 use sim3align_geometry::similarity::{Similarity, vector3};
 
-/// Occluders that are tried for one that hides as much as it should.
+/// Maximum number of occluders tried for the required occlusion.
 const OCCLUDERS: usize = 12;
 
-/// What the camera sees, without any fault.
+/// The scene as seen by an ideal camera.
 #[derive(Debug, Clone)]
 pub struct Scene {
-    /// Pixels in a row.
+    /// Width, in pixels.
     pub width: usize,
-    /// Rows.
+    /// Height, in pixels.
     pub height: usize,
     /// Intrinsics.
     pub camera: Pinhole,
     /// World (metres, z up, the table at z = 0) to camera.
     pub camera_from_world: Similarity,
-    /// The object alone: z-depth, 0 where it is not.
+    /// The object alone: z-depth, 0 elsewhere.
     pub object_depth: Vec<f32>,
-    /// The object alone: its triangle at each pixel.
+    /// The object alone: triangle index per pixel.
     pub object_triangles: Vec<u32>,
-    /// Everything: z-depth, 0 where there is nothing.
+    /// The complete scene: z-depth, 0 where it is empty.
     pub depth: Vec<f32>,
-    /// The pixels that show the object.
+    /// Mask of the visible pixels of the object.
     pub visible: Vec<bool>,
-    /// Pixels of the object, were nothing before it and the image larger.
+    /// Number of pixels of the object without occluders and image border.
     pub silhouette_px: usize,
-    /// Shares of those that the border cuts off, and that something hides.
+    /// Fractions of these pixels that are outside the image, and that are occluded.
     pub cut: f64,
     /// See `cut`.
     pub hidden: f64,
 }
 
-/// The object put down: its mesh in the world's frame, and its axes of symmetry there.
+/// Places the object: returns its mesh and its symmetry axes in the world frame.
 pub fn put_down(object: &Object, tier: Tier, random: &mut Random) -> Result<(Mesh, Vec<Axis>)> {
     let quarter =
         |random: &mut Random| Rotation3::from_axis_angle(&Vector3::x_axis(), 0.25 * TAU * random.below(4) as f64);
@@ -68,7 +68,7 @@ pub fn put_down(object: &Object, tier: Tier, random: &mut Random) -> Result<(Mes
     put_down_turned(object, &rotation)
 }
 
-/// The object turned and put down: above the origin, its lowest point at z = 0.
+/// Rotates the object and places it above the origin, with its lowest point at z = 0.
 pub fn put_down_turned(object: &Object, rotation: &Matrix3<f64>) -> Result<(Mesh, Vec<Axis>)> {
     let turned: Vec<_> = object.mesh.positions().iter().map(|p| rotation * vector3(*p)).collect();
     let low = turned.iter().fold(f64::INFINITY, |low, p| low.min(p.z));
@@ -83,12 +83,12 @@ pub fn put_down_turned(object: &Object, rotation: &Matrix3<f64>) -> Result<(Mesh
     Ok((Mesh::new(positions, object.mesh.triangles().to_vec())?, symmetry))
 }
 
-/// An axis under a rotation.
+/// Rotates an axis.
 pub fn turned_axis(rotation: &Matrix3<f64>, axis: DVec3) -> DVec3 {
     DVec3::from_array((rotation * Vector3::from(axis.to_array())).into())
 }
 
-/// What is decided before anything is rendered.
+/// Properties of a scene that are drawn before rendering.
 struct Plan {
     width: usize,
     height: usize,
@@ -98,12 +98,12 @@ struct Plan {
     azimuth: f64,
     towards: Vector3<f64>,
     roll: f64,
-    /// Where the object's centre is to appear, pixels.
+    /// Target pixel of the centre of the object.
     aim: [f64; 2],
 }
 
 impl Scene {
-    /// A scene; whether it shows enough is for the caller to judge.
+    /// Draws a scene, without checking how much of the object is visible.
     pub fn draw(object: &Mesh, tier: Tier, class: Class, random: &mut Random) -> Result<Self> {
         let wide = random.uniform();
         let (width, height) = match wide {
@@ -196,12 +196,12 @@ impl Scene {
         })
     }
 
-    /// Pixels that show the object.
+    /// Number of pixels that show the object.
     pub fn visible_px(&self) -> usize {
         self.visible.iter().filter(|v| **v).count()
     }
 
-    /// Pixels that show one of these parts.
+    /// Number of pixels that show one of these parts.
     pub fn part_px(&self, parts: &[usize], of: &[usize]) -> usize {
         let shown =
             self.object_triangles.iter().zip(&self.visible).filter(|(t, visible)| **visible && **t != NO_TRIANGLE);
@@ -223,7 +223,7 @@ impl Plan {
         Similarity::from_parts(1.0, rotation, -(rotation * eye))
     }
 
-    /// Boxes, cylinders and balls beside and behind the object.
+    /// Boxes, cylinders and balls next to and behind the object.
     fn neighbours(&self, reach: f64, tier: Tier, random: &mut Random) -> Solid {
         let mut solid = Solid::default();
         for _ in 0..random.below(tier.pick(2, 3, 5)) {
@@ -272,7 +272,7 @@ fn thing(solid: &mut Solid, spot: DVec3, lean: f64, half_width: f64, height: f64
     }
 }
 
-/// Where the object's centre is to appear: within the image, or so that a border cuts the object.
+/// The target pixel of the centre: inside the image, or such that the border cuts the object.
 fn aim(random: &mut Random, class: Class, span: f64, width: f64, height: f64) -> [f64; 2] {
     let within = |random: &mut Random, size: f64| {
         let margin = (0.5 * span + 4.0).min(0.5 * size);
@@ -307,7 +307,7 @@ fn rendered(solid: &Solid, pose: &Similarity, plan: &Plan) -> Result<Vec<f32>> {
     Ok(rasteriser.depth().to_vec())
 }
 
-/// What is nearer, of two images of z-depth, 0 being nothing.
+/// Pixelwise minimum of two z-depth images, where 0 is empty.
 pub fn put_before(depth: &mut [f32], other: &[f32]) {
     for (z, &other) in depth.iter_mut().zip(other) {
         if other > 0.0 && (*z == 0.0 || other < *z) {
@@ -316,17 +316,17 @@ pub fn put_before(depth: &mut [f32], other: &[f32]) {
     }
 }
 
-/// Pixels that show something.
+/// Number of pixels above 0.
 pub fn count(depth: &[f32]) -> usize {
     depth.iter().filter(|z| **z > 0.0).count()
 }
 
-/// Whether a pixel shows what is at depth `z`, and not the other; 0 is nothing.
+/// Whether depth `z` is in front of the other; 0 is empty.
 pub fn in_front(z: f32, other: f32) -> bool {
     z > 0.0 && (other == 0.0 || z <= other)
 }
 
-/// Pixels of the object that something else hides.
+/// Number of occluded pixels of the object.
 pub fn hidden(object: &[f32], others: &[f32]) -> usize {
     object.iter().zip(others).filter(|(z, other)| **z > 0.0 && !in_front(**z, **other)).count()
 }

@@ -1,4 +1,4 @@
-//! Objects put together from closed parts that overlap, as generators make them.
+//! Objects composed of overlapping closed parts, like those of mesh generators.
 
 use core::f64::consts::{PI, TAU};
 use std::collections::BTreeMap;

@@ -1,26 +1,26 @@
-//! How hard a case is, and what makes it so.
+//! Tiers of difficulty, and classes of cases.
 
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 
-/// How hard a case is.
+/// Tier of difficulty of a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Tier {
-    /// What an application can count on: exact masks, good depth, faithful meshes.
+    /// Good conditions: exact masks, good depth, accurate meshes.
     Easy,
-    /// What today's models give on a good day.
+    /// Typical output of current models.
     Medium,
-    /// What they give on others.
+    /// Poor output of current models.
     Hard,
 }
 
-/// What a case was made to show; the other faults of its tier come on top.
+/// The property that a case tests, in addition to the errors of its tier.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Class {
-    /// Nothing in particular.
+    /// No special property.
     Plain,
-    /// Something stands before the object.
+    /// The object is occluded.
     Occluded,
-    /// The image's border cuts the object.
+    /// The image border cuts the object.
     BorderCut,
     /// A few hundred pixels of mask.
     Tiny,
@@ -36,7 +36,7 @@ pub enum Class {
     Warped,
     /// Depth from a sensor, with many readings missing.
     SparseSensor,
-    /// An object that looks almost the same turned half round: phone, toy car, banana.
+    /// An object that looks almost the same after a half turn: phone, toy car, banana.
     Ambiguous,
 }
 

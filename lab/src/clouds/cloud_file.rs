@@ -1,4 +1,4 @@
-//! Clouds as files: PLY, and KITTI's `.bin`.
+//! Cloud files: PLY, and `.bin` of KITTI.
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ const READING: usize = 16;
 /// The points of a `.ply` or `.bin` file.
 ///
 /// # Errors
-/// [`ErrorCode::InvalidArgument`] for a file that can't be read or is of neither kind, [`ErrorCode::CorruptFile`],
+/// [`ErrorCode::InvalidArgument`] if a file cannot be read or is of neither kind, [`ErrorCode::CorruptFile`],
 /// [`ErrorCode::FileTooLarge`], [`ErrorCode::NonFinite`] and those of [`read_ply_points`].
 pub fn read_cloud(path: &Path) -> Result<Vec<Vec3>> {
     let points = match path.extension().and_then(|extension| extension.to_str()) {
@@ -56,7 +56,7 @@ pub fn bin(points: &[Vec3]) -> Vec<u8> {
     points.iter().flat_map(|p| [p.x, p.y, p.z, 0.0]).flat_map(f32::to_le_bytes).collect()
 }
 
-/// x, y, z one after the other, as `register` takes them.
+/// Interleaved x, y, z, for `register`.
 pub fn flat(points: &[Vec3]) -> Vec<f64> {
     points.iter().flat_map(|p| p.to_array()).map(f64::from).collect()
 }

@@ -55,7 +55,7 @@ impl Stand {
 /// A fragment in the frame of its first camera, and room from that frame.
 ///
 /// # Errors
-/// None that its input could cause.
+/// Only in case of a bug in the generator.
 pub fn fragment(room: &Mesh, stand: Stand, seed: u64) -> Result<(Vec<Vec3>, Similarity)> {
     let random = &mut Random::new(seed, CAMERA_STREAM);
     let camera = Pinhole::from_vertical_fov(FOV_Y_DEG, WIDTH, HEIGHT)?;

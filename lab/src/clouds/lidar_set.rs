@@ -47,7 +47,7 @@ impl Drive {
     /// The first `frames` frames of the drive of a seed.
     ///
     /// # Errors
-    /// None that its input could cause.
+    /// Only in case of a bug in the generator.
     pub fn new(seed: u64, frames: u32) -> Result<Self> {
         let street = Street::new(seed, STEP_M * f64::from(FRAMES));
         let random = &mut Random::new(seed, LIDAR_STREAM);
@@ -109,7 +109,7 @@ impl Drive {
 /// Writes `scenes` drives: `sequences/<n>/velodyne/<frame>.bin` and `calib.txt`, `poses/<n>.txt`, `pairs.json`.
 ///
 /// # Errors
-/// [`InvalidArgument`](sim3align_geometry::error::ErrorCode::InvalidArgument) where a file can't be written.
+/// [`InvalidArgument`](sim3align_geometry::error::ErrorCode::InvalidArgument) if a file cannot be written.
 pub fn write_lidar(root: &Path, seed: u64, scenes: u32) -> Result<()> {
     let mut listed = Vec::new();
     for i in 0..scenes {

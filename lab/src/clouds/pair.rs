@@ -19,7 +19,7 @@ pub const ROTATION_DEG: f64 = 5.0;
 /// Largest translation error of a success on KITTI, in metres.
 pub const TRANSLATION_M: f64 = 2.0;
 
-/// What makes an estimate right.
+/// Success criterion of an estimate.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Criterion {
     /// 3DMatch: the root mean squared distance of corresponding points, by this information matrix, below 0.2 m.
@@ -28,28 +28,28 @@ pub enum Criterion {
     Errors,
 }
 
-/// Two clouds.
+/// A pair of clouds with a known transform.
 #[derive(Debug, Clone)]
 pub struct Pair {
-    /// A name fit for a file.
+    /// Name, valid as file name.
     pub id: String,
-    /// The scene or sequence that it belongs to.
+    /// Scene or sequence.
     pub group: String,
-    /// The cloud that is moved.
+    /// File of the source cloud.
     pub source: PathBuf,
-    /// The cloud that stays.
+    /// File of the target cloud.
     pub target: PathBuf,
-    /// The truth.
+    /// The true transform.
     pub target_from_source: Similarity,
-    /// When an estimate is right.
+    /// Success criterion of an estimate.
     pub criterion: Criterion,
-    /// The voxel size that baselines are run with.
+    /// Voxel size for other methods.
     pub voxel_size_m: f64,
-    /// Share of the points of both that the other has, where it is known.
+    /// Overlap of both clouds, 0 to 1, if known.
     pub overlap: Option<f64>,
 }
 
-/// How far an estimate is off.
+/// Errors of an estimate.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Errors {
@@ -59,12 +59,12 @@ pub struct Errors {
     pub translation_m: f64,
     /// Root mean squared distance of corresponding points; `None` where no information matrix is known.
     pub rmse_m: Option<f64>,
-    /// Whether it is right.
+    /// Whether the estimate is a success.
     pub success: bool,
 }
 
 impl Pair {
-    /// How far an estimate is off.
+    /// Errors of an estimate.
     pub fn errors(&self, estimate: &Similarity) -> Errors {
         let truth = &self.target_from_source;
         let rotation_deg = truth.rotation_angle_to(estimate).to_degrees();
@@ -79,13 +79,13 @@ impl Pair {
         Errors { rotation_deg, translation_m, rmse_m, success }
     }
 
-    /// How far apart the clouds' origins are, in metres: the way that the sensor went.
+    /// Distance of the origins of the clouds, in metres: the motion of the sensor.
     pub fn distance_m(&self) -> f64 {
         self.target_from_source.translation.norm()
     }
 }
 
-/// A pair of a generated set.
+/// Entry of the `pairs.json` of a generated set.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Listed {
@@ -95,11 +95,11 @@ pub struct Listed {
     pub source: u32,
     /// Number of the target's file.
     pub target: u32,
-    /// Share of the points of both clouds that the other has.
+    /// Overlap of both clouds, 0 to 1.
     pub overlap: f64,
 }
 
-/// The list of a folder; `None` where there is none.
+/// Reads `pairs.json` of a folder; `None` if it does not exist.
 ///
 /// # Errors
 /// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile).

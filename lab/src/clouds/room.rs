@@ -29,7 +29,7 @@ impl Room {
     /// The room of a seed.
     ///
     /// # Errors
-    /// Those of [`Mesh::new`], which a fault of the generator alone could cause.
+    /// Those of [`Mesh::new`], which only a bug in the generator could cause.
     pub fn new(seed: u64) -> Result<Self> {
         let random = &mut Random::new(seed, ROOM_STREAM);
         let half = DVec3::new(between(random, 2.2, 3.4), between(random, 1.8, 2.8), between(random, 1.25, 1.4));

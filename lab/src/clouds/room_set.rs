@@ -48,7 +48,7 @@ impl RoomScene {
     /// The scene of a seed.
     ///
     /// # Errors
-    /// None that its input could cause.
+    /// Only in case of a bug in the generator.
     pub fn new(seed: u64) -> Result<Self> {
         let room = Room::new(seed)?;
         let random = &mut Random::new(seed, CAMERA_STREAM);
@@ -125,7 +125,7 @@ fn all_pairs(random: &mut Random) -> Vec<(u32, u32)> {
 /// Writes `scenes` rooms: `room-<n>/cloud_bin_<i>.ply`, `room-<n>-evaluation/gt.log` and `gt.info`, `pairs.json`.
 ///
 /// # Errors
-/// [`InvalidArgument`](sim3align_geometry::error::ErrorCode::InvalidArgument) where a file can't be written.
+/// [`InvalidArgument`](sim3align_geometry::error::ErrorCode::InvalidArgument) if a file cannot be written.
 pub fn write_rooms(root: &Path, seed: u64, scenes: u32) -> Result<()> {
     let mut listed = Vec::new();
     for i in 0..scenes {

@@ -25,7 +25,7 @@ pub struct Block<const N: usize> {
 /// Reads all blocks of a file.
 ///
 /// # Errors
-/// [`InvalidArgument`](sim3align_geometry::error::ErrorCode::InvalidArgument) for a file that can't be read,
+/// [`InvalidArgument`](sim3align_geometry::error::ErrorCode::InvalidArgument) if a file cannot be read,
 /// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile) for one that holds anything but whole blocks.
 pub fn read_blocks<const N: usize>(path: &Path) -> Result<Vec<Block<N>>> {
     let bytes = read(path)?;

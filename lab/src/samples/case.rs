@@ -17,17 +17,17 @@ use sim3align_geometry::similarity::Similarity;
 /// A generated case.
 #[derive(Debug, Clone)]
 pub struct SampleCase {
-    /// What it shows.
+    /// The object.
     pub kind: Kind,
     /// All that is random follows from it.
     pub seed: u64,
     /// Depth, mask and camera.
     pub observation: Observation,
-    /// The generated mesh, in a frame of its own.
+    /// The generated mesh, in its canonical frame.
     pub mesh: Mesh,
     /// The truth: puts what is right of `mesh` where it was seen.
     pub camera_from_mesh: Similarity,
-    /// The object as it is: metres, z up, on the plane z = 0.
+    /// The true object: metres, z up, on the plane z = 0.
     pub object: Mesh,
     /// Where the object was seen.
     pub camera_from_object: Similarity,
@@ -37,7 +37,7 @@ impl SampleCase {
     /// The case of a kind and a seed; the same ones give the same bits.
     ///
     /// # Errors
-    /// None that its input could cause.
+    /// Only in case of a bug in the generator.
     pub fn new(kind: Kind, seed: u64) -> Result<Self> {
         let object = kind.mesh(seed)?;
         let view = View::new(&object, seed)?;
@@ -61,7 +61,7 @@ impl SampleCase {
     /// numbers.
     ///
     /// # Errors
-    /// [`ErrorCode::Internal`] where an encoder fails.
+    /// [`ErrorCode::Internal`] if an encoder fails.
     pub fn files(&self, depth_scale: Option<f64>) -> Result<Vec<(&'static str, Vec<u8>)>> {
         let note =
             format!("generated: {}, seed {}; the side that was not seen is invented", self.kind.as_str(), self.seed);
@@ -69,10 +69,10 @@ impl SampleCase {
         case_files(&self.observation, &self.mesh, &self.camera_from_mesh, truth, depth_scale)
     }
 
-    /// Writes the case folder, and creates it where it does not exist. For `depth_scale` see [`SampleCase::files`].
+    /// Writes the case folder, and creates it if necessary. For `depth_scale` see [`SampleCase::files`].
     ///
     /// # Errors
-    /// [`ErrorCode::InvalidArgument`] where the folder or a file can't be written, and those of
+    /// [`ErrorCode::InvalidArgument`] if the folder or a file cannot be written, and those of
     /// [`SampleCase::files`].
     pub fn write(&self, folder: &Path, depth_scale: Option<f64>) -> Result<()> {
         write_files(folder, &self.files(depth_scale)?)

@@ -15,7 +15,7 @@ use sim3align_geometry::random::Random;
 /// Random stream of the dimensions.
 const SHAPE_STREAM: u64 = 0x7368_6170;
 
-/// What can be generated.
+/// Kinds of generated objects.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// A mug: a hollow cup, some 10 cm tall, with a handle towards +x.
@@ -32,7 +32,7 @@ impl Kind {
     /// All kinds.
     pub const ALL: &[Self] = &[Self::Mug, Self::Hammer, Self::Spoon, Self::Occluded];
 
-    /// The kind's name, as the command line spells it.
+    /// The name on the command line.
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Mug => "mug",
@@ -42,7 +42,7 @@ impl Kind {
         }
     }
 
-    /// The kind of a name.
+    /// The kind with a name.
     ///
     /// # Errors
     /// [`ErrorCode::InvalidOption`] for any other.
@@ -80,7 +80,7 @@ impl Kind {
     /// An object of this kind; the seed varies its dimensions.
     ///
     /// # Errors
-    /// Those of [`Mesh::new`], which a fault of the generator alone could cause.
+    /// Those of [`Mesh::new`], which only a bug in the generator could cause.
     pub fn mesh(self, seed: u64) -> Result<Mesh> {
         let mut random = Random::new(seed, SHAPE_STREAM);
         match self {

@@ -27,23 +27,23 @@ const CLASS: &str = "scene";
 pub struct SceneCase {
     /// See [`super::ScenePair::name`].
     pub name: String,
-    /// What made the mesh.
+    /// The generator of the mesh.
     pub prior: Prior,
-    /// How hard it is.
+    /// Difficulty.
     pub tier: Tier,
-    /// What it shows.
+    /// The object.
     pub family: String,
-    /// Names of its faults.
+    /// Names of the simulated errors.
     pub tags: Vec<&'static str>,
-    /// Measures of its faults.
+    /// Magnitudes of the simulated errors.
     pub parameters: Vec<(&'static str, f64)>,
     /// Depth, mask and camera.
     pub observation: Observation,
-    /// The generated mesh, in a frame of its own.
+    /// The generated mesh, in its canonical frame.
     pub mesh: Mesh,
-    /// The truth, in the depth map's own metric.
+    /// The true pose, in the scale of the depth map.
     pub camera_from_mesh: Similarity,
-    /// The turns under which the object looks the same, in the mesh's frame.
+    /// Rotational symmetries of the object, in the frame of the mesh.
     pub symmetry: Symmetry,
 }
 
@@ -57,7 +57,7 @@ impl SceneCase {
     /// The files of its case folder: name and content. `meta.json` has the prior among the parameters.
     ///
     /// # Errors
-    /// [`sim3align_geometry::error::ErrorCode::Internal`] where an encoder fails.
+    /// [`sim3align_geometry::error::ErrorCode::Internal`] if an encoder fails.
     pub fn files(&self) -> Result<Vec<(&'static str, Vec<u8>)>> {
         let truth = symmetry_json(&self.symmetry, &format!("{}, {}", self.name, self.prior.as_str()));
         let meta = json!({
@@ -72,11 +72,11 @@ impl SceneCase {
         Ok(files)
     }
 
-    /// Writes the case folder, and creates it where it does not exist.
+    /// Writes the case folder, and creates it if necessary.
     ///
     /// # Errors
-    /// [`sim3align_geometry::error::ErrorCode::InvalidArgument`] where the folder or a file can't be written, and those of
-    /// [`SceneCase::files`].
+    /// [`sim3align_geometry::error::ErrorCode::InvalidArgument`] if the folder or a file cannot be written, and those
+    /// of [`SceneCase::files`].
     pub fn write(&self, folder: &Path) -> Result<()> {
         write_files(folder, &self.files()?)
     }

@@ -1,4 +1,4 @@
-//! What lies about on desks and is not asked for.
+//! Clutter on desks.
 
 use core::f64::consts::TAU;
 

@@ -1,8 +1,8 @@
-//! How hard a pair is, as one number.
+//! Difficulty of a pair as one number.
 
 use crate::cases::tier::Tier;
 
-/// What a pair shows of its object.
+/// Visibility of the object of a pair.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sight {
     /// Visible share of its silhouette.

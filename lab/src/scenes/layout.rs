@@ -1,4 +1,4 @@
-//! What stands where: things packed beside each other so that none is within another.
+//! Layout: objects placed close to each other without intersection.
 
 use core::f64::consts::{PI, TAU};
 

@@ -40,7 +40,7 @@ const GRAIN: f64 = 0.1;
 /// A cluttered scene.
 #[derive(Debug, Clone)]
 pub struct ClutteredScene {
-    /// Its place in the set.
+    /// Index in the set.
     pub index: usize,
     /// One pair per masked object.
     pub pairs: Vec<ScenePair>,
@@ -129,8 +129,8 @@ impl ClutteredScene {
                 mask_offset_px: segmented.offset_px,
                 distance_m: f64::from(distance_m),
             };
-            // A map with a metric of its own, whose warp moves each object by a share of it: along the rays, so that its
-            // picture stays the same.
+            // A map with a metric of its own, whose warp moves each object by a share of it: along the rays, so that
+            // its picture stays the same.
             let bias = readings.bias * (1.0 + readings.drifts[k]);
             let metric = Similarity { scale: bias, ..Similarity::identity() };
             let difficulty = difficulty(&sight);
@@ -176,7 +176,7 @@ impl ScenePair {
     /// The pair with what a prior makes of the object.
     ///
     /// # Errors
-    /// None that its input could cause.
+    /// Only in case of a bug in the generator.
     pub fn case(&self, prior: Prior) -> Result<SceneCase> {
         let seed = mixed([self.seed, prior as u64]);
         let generated = prior.generate(&self.placed, &self.view, seed)?;

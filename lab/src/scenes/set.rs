@@ -42,17 +42,17 @@ impl SceneSet {
         Self { seed, objects }
     }
 
-    /// How many scenes it has.
+    /// Number of scenes.
     pub fn scenes(&self) -> usize {
         self.objects.len()
     }
 
-    /// How many pairs of an object and its generated mesh all scenes have together.
+    /// Total number of pairs of an object and its generated mesh.
     pub fn pairs(&self) -> usize {
         self.objects.iter().sum()
     }
 
-    /// How many pairs a scene has; 0 where there is no such scene.
+    /// Number of pairs of a scene; 0 if it does not exist.
     pub fn pairs_of(&self, scene: usize) -> usize {
         self.objects.get(scene).copied().unwrap_or_default()
     }
@@ -65,7 +65,7 @@ impl SceneSet {
     /// Scene `index`.
     ///
     /// # Errors
-    /// [`ErrorCode::InvalidArgument`] where there is no such scene.
+    /// [`ErrorCode::InvalidArgument`] if the scene does not exist.
     pub fn scene(&self, index: usize) -> Result<ClutteredScene> {
         let Some(&objects) = self.objects.get(index) else {
             return Err(Error::new(
@@ -79,11 +79,10 @@ impl SceneSet {
         ClutteredScene::draw(self.seed, index, objects)
     }
 
-    /// Writes every pair as `folder`/PRIOR/SCENE-OBJECT-FAMILY, on several threads; `progress` is told after each scene
-    /// how many are done.
+    /// Writes every pair as `folder`/PRIOR/SCENE-OBJECT-FAMILY, on several threads; `progress` gets the number of
+    /// completed scenes.
     ///
-    /// A case folder appears whole, under its name, or not at all, and those that are there are left alone: a run that
-    /// was stopped goes on where it was.
+    /// Case folders are written atomically, and existing ones are kept, so that an interrupted run resumes.
     ///
     /// # Errors
     /// [`ErrorCode::InvalidArgument`] for a folder that can't be written, or that holds another set.
@@ -104,7 +103,7 @@ impl SceneSet {
             let entries = fs::read_dir(folder.join(prior.as_str())).into_iter().flatten().filter_map(|e| e.ok());
             entries.filter(|entry| entry.file_name().to_string_lossy().starts_with(&format!("{index:03}-"))).count()
         };
-        // Which names a scene's folders have is known once it has been drawn.
+        // The names of the folders of a scene are only known after drawing it.
         if priors.iter().all(|prior| written(prior) == self.pairs_of(index)) {
             return Ok(());
         }
@@ -122,7 +121,7 @@ impl SceneSet {
         Ok(())
     }
 
-    /// Says in the folder which set is in it, unless it says so already.
+    /// Identifies the set in the folder, or checks that the folder belongs to this set.
     fn label(&self, folder: &Path) -> Result<()> {
         fs::create_dir_all(folder).map_err(|error| unwritable(folder, error))?;
         let path = folder.join(LABEL);

@@ -40,7 +40,8 @@ pub struct Seen {
 }
 
 impl View {
-    /// A camera at a desk, that has the objects about in the middle of its picture, or so near that the border may cut them.
+    /// A camera at a desk, that has the objects about in the middle of its picture, or so near that the border may cut
+    /// them.
     pub fn draw(layout: &Layout, too_near: bool, random: &mut Random) -> Result<Self> {
         let fov = between(random, 38.0, 60.0);
         let mut camera = Pinhole::from_vertical_fov(fov, WIDTH, HEIGHT)?;
