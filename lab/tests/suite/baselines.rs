@@ -3,9 +3,10 @@
 use glam::Vec3;
 use nalgebra::{Rotation3, Vector3};
 use sim3align::evidence::sample::sample_surface;
-use sim3align::paper::options::{Icp, PaperOptions};
+use sim3align::paper::options::PaperOptions;
 use sim3align::progress::Silent;
 use sim3align::register::icp::IcpMetric;
+use sim3align::register::options::Icp;
 use sim3align::report::PaperAlignment;
 use sim3align_geometry::cloud::Cloud;
 use sim3align_geometry::error::{ErrorCode, Result};
