@@ -55,7 +55,7 @@ pub fn observe(mesh: &Mesh, pose: &Similarity) -> Observation {
 }
 
 /// Few rotations and few candidates: the body is clear.
-fn quick() -> AlignOptions {
+pub fn quick() -> AlignOptions {
     AlignOptions {
         quality: Quality::Fast,
         surface_samples: 500,
