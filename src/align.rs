@@ -16,7 +16,7 @@ use crate::evidence::sample::{check_shape, sample_surface};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::Similarity;
 use crate::metrics;
-use crate::precise::settings::SearchSettings;
+use crate::precise::SearchSettings;
 
 use crate::progress::{Host, Stage, Stopwatch};
 use crate::{paper, precise};

@@ -139,6 +139,11 @@ impl<'a> Stopwatch<'a> {
         self.running.into_iter().for_each(|stage| self.host.progress(stage, fraction));
     }
 
+    /// The stage that is under way.
+    pub fn running(&self) -> Option<Stage> {
+        self.running
+    }
+
     /// The last stage has ended.
     pub fn finish(mut self) -> Timings {
         self.end_stage();

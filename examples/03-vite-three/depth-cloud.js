@@ -1,9 +1,9 @@
 import { BufferAttribute, BufferGeometry, Points, PointsMaterial } from "three";
 
 /**
- * A depth map as points, in the frame of a three.js camera: y up, looking along −z.
+ * Returns a depth map as points in the frame of a three.js camera (y up, looking along −z).
  * @param {{ data: Float32Array, width: number }} depth metres
- * @param {{ data: Uint8Array }} mask drawn brighter
+ * @param {{ data: Uint8Array }} mask its pixels are drawn brighter
  * @param {{ fx: number, fy: number, cx: number, cy: number }} pinhole
  */
 export function depthCloud({ data, width }, mask, { fx, fy, cx, cy }) {

@@ -42,10 +42,10 @@ async function show(folder) {
 
   status.textContent = "Aligning …";
   const aligner = await createAligner({ workers: 1 });
-  const result = await aligner.align({ depth, mask, camera: pinhole, mesh: meshInputFromThree(object) });
+  const result = await aligner.align({ depth, mask, cameraFile: pinhole, mesh: meshInputFromThree(object) });
   aligner.dispose();
 
-  // A camera at the origin that sees what the depth camera saw, and the object in front of it.
+  // A camera at the origin with the intrinsics of the depth camera, and the object in front of it.
   const { width, height } = depth;
   const camera = new PerspectiveCamera();
   applyPinhole(camera, pinhole, { width, height });
@@ -63,7 +63,7 @@ async function show(folder) {
   renderer.setSize(width, height, false);
   const render = () => renderer.render(scene, camera);
   const controls = new OrbitControls(camera, renderer.domElement);
-  // Straight ahead, at the object's distance, so that the view begins as the camera's own.
+  // Orbit about a point straight ahead, at the distance of the object: the initial view is that of the depth camera.
   controls.target.set(0, 0, -result.translation[2]);
   controls.update();
   controls.addEventListener("change", render);
@@ -73,7 +73,7 @@ async function show(folder) {
   });
   render();
 
-  const confidence = result.confidence?.toFixed(2);
+  const confidence = result.confidence.toFixed(2);
   status.textContent = `Aligned: 1 mesh unit is ${result.scale.toFixed(3)} m, confidence ${confidence}.`;
   status.dataset.state = "done";
 }

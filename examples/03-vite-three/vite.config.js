@@ -1,9 +1,9 @@
 import { defineConfig } from "vite";
 
 export default defineConfig({
-  // Case folders, served as they are.
+  // Serves the case folders unchanged.
   publicDir: "../sample",
-  // The worker and the WebAssembly are found by their place beside the package's scripts, so these stay where they are.
+  // The package locates its worker and its WebAssembly relative to its modules, so Vite must not move these.
   optimizeDeps: { exclude: ["sim3align"] },
   worker: { format: "es" },
   build: { target: "es2022", chunkSizeWarningLimit: 1000 },

@@ -1,4 +1,4 @@
-// Many case folders, all cores: node batch.mjs [--out NAME] FOLDER...
+// Aligns many case folders on all cores: node batch.mjs [--out NAME] FOLDER...
 import { readFile, writeFile } from "node:fs/promises";
 import { basename } from "node:path";
 import { parseArgs } from "node:util";
@@ -11,17 +11,17 @@ const { values, positionals: folders } = parseArgs({
 });
 if (folders.length === 0) folders.push("../sample/mug");
 
-/** Reads each case once there is room for it: thousands do not fill the memory. */
+/** Reads each case on demand, so that thousands of cases do not fill the memory. */
 async function* cases() {
   for (const folder of folders) {
     const file = (/** @type {string} */ name) => readFile(`${folder}/${name}`);
-    const [depth, mask, camera, mesh] = await Promise.all([
+    const [depth, mask, cameraFile, mesh] = await Promise.all([
       file("depth.npy").catch(() => file("depth.png")),
       file("mask.png"),
       file("camera.json"),
       file("mesh.glb").catch(() => file("mesh.obj")),
     ]);
-    yield { depth, mask, camera, mesh };
+    yield { depth, mask, cameraFile, mesh };
   }
 }
 
@@ -29,7 +29,7 @@ const workers = values.workers === "auto" ? values.workers : Number(values.worke
 const aligner = await createAligner({ workers });
 const rows = [];
 const records = [];
-// In the order of the folders; one that cannot be aligned does not stop the others.
+// Results come in the order of the folders. A case that fails does not stop the others.
 for await (const { index, alignment, error } of aligner.alignAll(cases(), { ordered: true })) {
   const folder = folders[index] ?? "";
   console.error(`${index + 1}/${folders.length} ${folder}: ${error?.message ?? `confidence ${alignment?.confidence}`}`);
@@ -45,8 +45,7 @@ for await (const { index, alignment, error } of aligner.alignAll(cases(), { orde
     alternatives: alternatives?.length,
     iou: metrics?.iou,
   });
-  // A typed array would become an object in JSON.
-  records.push({ folder, error: error?.code, ...alignment, matrix: alignment && [...alignment.matrix] });
+  records.push({ folder, error: error?.code, ...alignment });
 }
 aligner.dispose();
 await writeFile(`${values.out}.csv`, stringify(rows, { header: true }));

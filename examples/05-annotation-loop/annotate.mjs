@@ -5,20 +5,21 @@ import { compose, objectDimensions, placeGlb, toBop } from "sim3align/convention
 import { readMesh } from "sim3align/formats";
 
 const [folder = "../sample/mug", out = "annotation"] = process.argv.slice(2);
-const [depth, mask, camera, glb] = await Promise.all(
+const [depth, mask, cameraFile, glb] = await Promise.all(
   ["depth.npy", "mask.png", "camera.json", "mesh.glb"].map((name) => readFile(`${folder}/${name}`)),
 );
 const mesh = await readMesh(glb);
-const input = { depth, mask, camera, mesh };
 const aligner = await createAligner({ workers: 1 });
+const prepared = await aligner.prepareMesh(mesh);
+const input = { depth, mask, cameraFile, mesh: prepared };
 
-// 1. What the tool proposes, and what else would explain the picture: the annotator chooses.
+// 1. The tool proposes a pose and its alternatives. The annotator chooses one.
 const proposal = await aligner.align(input);
-for (const { turnDeg, score } of [{ turnDeg: 0, score: proposal.score }, ...proposal.alternatives]) {
-  console.log(`proposal turned by ${turnDeg.toFixed(0)}°: score ${score?.toFixed(3)}`);
+for (const { turnDeg, score } of [{ turnDeg: 0, score: proposal.diagnostics.score }, ...proposal.alternatives]) {
+  console.log(`proposal turned by ${turnDeg.toFixed(0)}°: score ${score.toFixed(3)}`);
 }
 
-// 2. The annotator drags the object: here by 12° about the camera's y axis and 2 cm to the right, 8 % too large.
+// 2. The annotator drags the object. Here: 12° about the y axis of the camera, 2 cm to the right, and 8 % too large.
 const half = (12 * Math.PI) / 360;
 const [tx, ty, tz] = proposal.translation;
 const aboutCentre = compose(
@@ -27,10 +28,10 @@ const aboutCentre = compose(
 );
 const dragged = compose(aboutCentre, proposal);
 
-// 3. The tool snaps it into place, from there and no farther.
+// 3. The tool refines the pose, and searches only near it.
 const refined = await aligner.align(input, { initial: dragged, search: "local" });
 
-// 4. The annotator knows a dimension: the scale is fixed, and the rest follows. Here: the height that was found.
+// 4. The annotator knows a dimension, which fixes the scale. Here it is the height that was found, rounded to millimetres.
 const { sizeM } = objectDimensions(mesh, refined);
 const knownExtentM = Math.round(1000 * sizeM[1]) / 1000;
 const { scale, ...pose } = refined;
@@ -41,7 +42,7 @@ const locked = await aligner.align(input, {
 });
 aligner.dispose();
 
-// 5. The annotation: BOP's pose, whose model is in millimetres at its real size, and a GLB in its place.
+// 5. The annotation: a pose for BOP, whose model is in millimetres at its real size, and the placed GLB.
 const { entry, scale: metresPerUnit } = toBop(locked, { objId: 1 });
 await mkdir(out, { recursive: true });
 await writeFile(`${out}/scene_gt.json`, JSON.stringify({ 0: [entry] }, null, 2));
@@ -50,8 +51,8 @@ const summary = {
   knownExtentM,
   sizeM: objectDimensions(mesh, locked).sizeM,
   modelMmPerUnit: 1000 * metresPerUnit,
-  poses: [dragged, refined, locked].map(({ matrix }) => [...matrix]),
-  scores: [proposal.score, refined.score, locked.score],
+  poses: [dragged, refined, locked].map(({ matrix }) => matrix),
+  scores: [proposal, refined, locked].map(({ diagnostics }) => diagnostics.score),
   uncertainty: locked.uncertainty,
 };
 await writeFile(`${out}/annotation.json`, JSON.stringify(summary, null, 2));

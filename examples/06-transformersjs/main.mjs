@@ -1,5 +1,5 @@
-// node main.mjs IMAGE MESH U,V FOVY_DEG: aligns a mesh to the object at pixel (U, V) of a photograph.
-// transformers.js fetches the models at the first run.
+// node main.mjs IMAGE MESH U,V FOVY_DEG: aligns a mesh with the object at pixel (U, V) of a photo.
+// transformers.js downloads the models on the first run.
 import { readFile } from "node:fs/promises";
 import { createAligner } from "sim3align";
 import { alignTensors } from "./align-tensors.mjs";
@@ -10,7 +10,7 @@ const { AutoProcessor, RawImage, SamModel, pipeline } = await import("@huggingfa
   throw new Error("transformers.js is missing. Remedy: npm install @huggingface/transformers");
 });
 
-// Any model with metric depth; for a relative one pass { disparity: { scale, shift } } below.
+// Any model of metric depth. For a relative one, pass { disparity: { scale, shift } } below.
 const depthModel = process.env.DEPTH_MODEL ?? "onnx-community/DepthPro-ONNX";
 const maskModel = process.env.MASK_MODEL ?? "Xenova/sam-vit-base";
 

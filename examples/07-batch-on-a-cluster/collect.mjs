@@ -1,4 +1,4 @@
-// Waits until the queue is empty and writes what came of it as JSON: node collect.mjs > results.json
+// Waits until the queue is empty and writes results and failures as JSON: node collect.mjs > results.json
 import { setTimeout as pause } from "node:timers/promises";
 import { Queue } from "bullmq";
 import { connect, queueName, resultsKey } from "./queue.mjs";

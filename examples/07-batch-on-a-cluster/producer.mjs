@@ -1,4 +1,4 @@
-// Puts cases on the queue: node producer.mjs [--options JSON] FOLDER...
+// Adds cases to the queue: node producer.mjs [--options JSON] FOLDER...
 import { resolve } from "node:path";
 import { parseArgs } from "node:util";
 import { Queue } from "bullmq";
@@ -13,7 +13,7 @@ const connection = connect();
 const queue = new Queue(queueName, { connection });
 for (const folder of folders.map((name) => resolve(name))) {
   const jobId = jobIdOf(await readCase(folder), options);
-  // A job whose id is on the queue, waiting, done or failed, is not added again.
+  // BullMQ does not add a job whose id already exists, whether it is waiting, completed or failed.
   await queue.add("align", { folder, options }, { jobId, attempts: 5, backoff: { type: "exponential", delay: 1000 } });
   console.log(jobId, folder);
 }

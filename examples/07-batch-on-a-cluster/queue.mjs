@@ -1,11 +1,11 @@
-// What producer, workers and collector agree on.
+// Names and functions that producer, workers and collector share.
 import { createHash } from "node:crypto";
 import { readFile } from "node:fs/promises";
 import { createRequire } from "node:module";
 import { Redis } from "ioredis";
 
 export const queueName = "sim3align";
-/** A hash in Redis: job id → result as JSON. It does not depend on how long the queue keeps its jobs. */
+/** A hash in Redis: job id → result as JSON. It is independent of how long the queue keeps its jobs. */
 export const resultsKey = "sim3align:results";
 
 const { version } = createRequire(import.meta.url)("sim3align/package.json");
@@ -15,16 +15,16 @@ export const connect = () =>
   new Redis(process.env.REDIS_URL ?? "redis://127.0.0.1:6379", { maxRetriesPerRequest: null });
 
 /**
- * A case's files, undecoded. In a cluster the folder is on storage that all machines see.
+ * Reads the files of a case without decoding them. In a cluster, the folder is on storage that all machines can read.
  * @param {string} folder
  */
 export async function readCase(folder) {
-  const [depth, mask, camera, mesh] = await Promise.all(
+  const [depth, mask, cameraFile, mesh] = await Promise.all(
     [["depth.npy", "depth.png"], ["mask.png"], ["camera.json"], ["mesh.glb", "mesh.obj", "mesh.ply"]].map((names) =>
       firstOf(names.map((name) => `${folder}/${name}`)),
     ),
   );
-  return { depth, mask, camera, mesh };
+  return { depth, mask, cameraFile, mesh };
 }
 
 /** @param {string[]} paths */
@@ -36,7 +36,7 @@ async function firstOf([path, ...others]) {
 }
 
 /**
- * The same files, options and version give the same id: asked for twice, a case is aligned once.
+ * The id depends on files, options and version only, so a case that is queued twice is aligned once.
  * @param {Awaited<ReturnType<typeof readCase>>} files
  * @param {object} options
  */

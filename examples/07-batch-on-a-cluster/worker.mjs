@@ -1,15 +1,15 @@
-// Does what is on the queue; as many of these on as many machines as you like: node worker.mjs
+// Processes the queue. Run any number of these, on any number of machines: node worker.mjs
 import { availableParallelism } from "node:os";
 import { UnrecoverableError, Worker } from "bullmq";
 import { createAligner, Sim3AlignError } from "sim3align";
 import { connect, jobIdOf, queueName, readCase, resultsKey } from "./queue.mjs";
 
 const threads = Number(process.env.THREADS ?? availableParallelism());
-// How long a job may go without a sign of life before another worker takes it over. Alignments run in threads of their
-// own: this one is free to give those signs, however long an alignment takes.
+// After this time without renewal of its lock, a job is taken over by another worker. Alignments run in their own threads,
+// so this thread can renew the locks however long an alignment takes.
 const lockDuration = Number(process.env.LOCK_MS ?? 30_000);
-/** Faults of the surroundings: another attempt may succeed. All others are the input's, and stay. */
-const passing = new Set(["WORKER_FAILED", "NOT_INITIALISED", "INTERNAL"]);
+/** Codes of errors of the environment, for which a retry may succeed. All other codes are errors of the input. */
+const retryable = new Set(["WORKER_FAILED", "NOT_INITIALISED", "INTERNAL"]);
 
 const connection = connect();
 const aligner = await createAligner({ workers: threads });
@@ -17,27 +17,27 @@ const aligner = await createAligner({ workers: threads });
 const worker = new Worker(
   queueName,
   async ({ id = "", data: { folder, options } }) => {
-    // Stored by a worker that died before it could say so.
+    // A worker stored the result and was killed before it completed the job.
     if (await connection.hexists(resultsKey, id)) return;
     const input = await readCase(folder);
-    // The result would stand under the name of another case.
+    // If the files have changed since, the id would belong to another case.
     if (jobIdOf(input, options) !== id) throw new UnrecoverableError("files or version have changed since");
     const { matrix, scale, confidence, alternatives, metrics, warnings } = await aligner
-      .align(input, options)
+      .align(input, /** @type {import("sim3align").AlignOptions} */ (options))
       .catch((error) => {
-        const isFinal = error instanceof Sim3AlignError && !passing.has(error.code);
+        const isFinal = error instanceof Sim3AlignError && !retryable.has(error.code);
         throw isFinal ? new UnrecoverableError(`${error.code}: ${error.message}`) : error;
       });
     const record = {
       folder,
-      matrix: [...matrix],
+      matrix,
       scale,
       confidence,
       alternatives: alternatives.length,
       metrics,
       warnings,
     };
-    // The first one stays: should two have done the same job, their results are the same to the bit.
+    // Keep the first result: if two workers did the same job, their results are bit-identical.
     const isFirst = await connection.hsetnx(resultsKey, id, JSON.stringify(record));
     if (isFirst) console.log("stored", id);
   },
@@ -46,7 +46,7 @@ const worker = new Worker(
     concurrency: threads,
     lockDuration,
     stalledInterval: lockDuration,
-    // A job that was three times on a machine that went down may be what brings them down.
+    // A job whose worker was killed three times may be the cause.
     maxStalledCount: 3,
   },
 );
@@ -54,7 +54,7 @@ worker.on("active", ({ id }) => console.log("active", id));
 worker.on("failed", (job, error) => console.log("failed", job?.id, error.message));
 worker.on("error", (error) => console.error(error.message));
 
-// Finishes what it has begun.
+// On shutdown, finishes the running jobs.
 for (const signal of ["SIGTERM", "SIGINT"]) {
   process.once(signal, async () => {
     await worker.close();

@@ -4,7 +4,7 @@
 //! several kilobytes of WebAssembly apiece. The operations follow its order, and give its bits.
 //!
 //! ```
-//! use sim3align::geometry::normal_equations::NormalEquations;
+//! use sim3align_geometry::normal_equations::NormalEquations;
 //!
 //! // Two residuals in the first parameter: r₁ = x − 1, r₂ = x − 3, at x = 0.
 //! let mut equations = NormalEquations::new();

@@ -28,8 +28,8 @@ const MAX_COORDINATE: f64 = 1e60;
 /// A rasteriser with its buffers, to be reused: after the first render of a size, a render allocates nothing.
 ///
 /// ```
-/// # use sim3align::geometry::{mesh::Mesh, pinhole::Pinhole, rasteriser::Rasteriser, similarity::Similarity};
-/// # fn main() -> sim3align::error::Result<()> {
+/// # use sim3align_geometry::{mesh::Mesh, pinhole::Pinhole, rasteriser::Rasteriser, similarity::Similarity};
+/// # fn main() -> sim3align_geometry::error::Result<()> {
 /// let mesh = Mesh::from_flat(&[0.0, 0.0, 2.0, 3.0, 0.0, 2.0, 0.0, 3.0, 2.0], None)?;
 /// let mut rasteriser = Rasteriser::new();
 /// rasteriser.render(&mesh, &Similarity::identity(), &Pinhole::new(2.0, 2.0, 0.0, 0.0)?, 3, 2);

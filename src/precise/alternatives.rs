@@ -44,7 +44,7 @@ pub(super) fn alternatives(
         }
     }
     let report = |other: &&Found| Alternative {
-        camera_from_mesh: (&other.pose.similarity(&search.frame)).into(),
+        camera_from_mesh: (&other.pose.similarity(&search.mesh.frame)).into(),
         score: f64::from(other.score.total),
         turn_deg: turn(best, other).to_degrees(),
     };
@@ -67,10 +67,10 @@ impl Likeness {
             Symmetry::None => Self::Never,
             Symmetry::Declared(_) => Self::Turns(Box::new(symmetry.group(mesh)?)),
             Symmetry::Auto | Symmetry::AutoRevolution => {
-                let positions = search.mesh.positions();
+                let positions = search.mesh.fine.positions();
                 let step = positions.len().div_ceil(SAMPLES).max(1);
                 let samples = positions.iter().step_by(step).map(|p| p.as_dvec3()).collect();
-                Self::Surfaces(Box::new(TriangleTree::new(&search.mesh)), samples)
+                Self::Surfaces(Box::new(TriangleTree::new(&search.mesh.fine)), samples)
             }
         })
     }

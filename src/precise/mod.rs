@@ -11,17 +11,18 @@ pub mod coarse;
 pub mod conditioning;
 mod confidence;
 pub mod grid;
+pub mod mesh_pyramid;
 pub mod objective;
 pub mod pose;
 pub mod prior;
 pub mod ranking;
+pub mod recipe;
 pub mod refine;
 pub mod render;
 pub mod rim;
 pub mod rounds;
 pub mod score;
 pub mod search;
-pub mod settings;
 
 use crate::align::Estimated;
 use crate::align::options::{AlignOptions, ExtentAxis, Quality, SearchScope};
@@ -35,13 +36,17 @@ use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::Similarity;
 use crate::paper;
 use crate::progress::{Stage, Stopwatch};
+use std::rc::Rc;
+
 use alternatives::alternatives;
 use confidence::confidence;
+use mesh_pyramid::MeshPyramid;
 use pose::{CropPose, MeshFrame};
 use prior::Prior;
+pub use recipe::SearchSettings;
+use recipe::Task;
 use rounds::Rounds;
 pub use search::Search;
-pub use settings::SearchSettings;
 
 /// When each stage begins, as a share of the whole; from profiles of real cases.
 pub(super) const PLAN: &[(Stage, f64)] = &[
@@ -53,9 +58,6 @@ pub(super) const PLAN: &[(Stage, f64)] = &[
     (Stage::Refine, 0.6),
     (Stage::Metrics, 0.85),
 ];
-
-/// What is done of the whole when each round is.
-const DONE: [f64; 6] = [0.53, 0.6, 0.71, 0.78, 0.83, 0.85];
 
 /// Grid of rotations, refinement, choice. A `hypothesis` found otherwise joins the candidates of the grid.
 pub(super) fn estimate(
@@ -69,24 +71,16 @@ pub(super) fn estimate(
     stages.enter(Stage::Prepare);
     let mut rounds = prepare(observation, mesh, options, settings)?;
     stages.enter(Stage::Search);
-    let pose = hypothesis.and_then(|pose| CropPose::of_similarity(&pose, &rounds.search.frame));
+    let pose = hypothesis.and_then(|pose| CropPose::of_similarity(&pose, &rounds.search.mesh.frame));
     pose.into_iter().for_each(|pose| rounds.join(pose));
-    while !rounds.is_refinement() {
-        step(&mut rounds, stages);
-    }
-    stages.enter(Stage::Refine);
-    while rounds.tasks() > 0 {
-        step(&mut rounds, stages);
+    while let Some(round) = rounds.round() {
+        if round.task == Task::Refine && stages.running() != Some(Stage::Refine) {
+            stages.enter(Stage::Refine);
+        }
+        rounds.run(&mut || false);
+        stages.reach(round.done, rounds.best());
     }
     conclude(&rounds, mesh, options)
-}
-
-/// Does a round, and tells of it.
-#[inline(never)]
-fn step(rounds: &mut Rounds, stages: &mut Stopwatch<'_>) {
-    let done = DONE[rounds.round.min(DONE.len() - 1)];
-    rounds.step();
-    stages.reach(done, rounds.best());
 }
 
 /// A search that is about to begin.
@@ -96,9 +90,10 @@ pub(super) fn prepare(
     options: &AlignOptions,
     settings: &SearchSettings,
 ) -> Result<Rounds> {
-    let mut search = Search::new(observation, mesh, *settings).ok_or_else(no_candidate)?;
-    search.assume(prior(options, mesh, &search.frame));
-    let initial = options.initial.map(|pose| seen_from(&pose, &search.frame)).transpose()?;
+    let pyramid = MeshPyramid::new(mesh, &settings.grids).ok_or_else(no_candidate)?;
+    let mut search = Search::new(observation, Rc::new(pyramid), *settings);
+    search.assume(prior(options, mesh, &search.mesh.frame));
+    let initial = options.initial.map(|pose| seen_from(&pose, &search.mesh.frame)).transpose()?;
     Ok(Rounds::new(search, initial, options.search == SearchScope::Global))
 }
 
@@ -121,7 +116,7 @@ pub(super) fn conclude(rounds: &Rounds, mesh: &Mesh, options: &AlignOptions) -> 
     let alternatives = alternatives(found, search, mesh, &options.symmetry)?;
     let (conditioning, residual_m) = search.conditioning(&best.pose);
     Ok(Estimated {
-        camera_from_mesh: best.pose.similarity(&search.frame),
+        camera_from_mesh: best.pose.similarity(&search.mesh.frame),
         clamped: search.is_held(&best.pose),
         converged: best.converged,
         residual_m,

@@ -1,54 +1,45 @@
 //! Rounds: a search as lists of tasks that do not depend on one another.
 //!
-//! What comes of a round's tasks, put in their order, determines the next round; equal scores are told apart by that
-//! order. So a round can be done in parts, by anyone and in any order, and no bit of the result tells who did what.
-
-use glam::Vec3;
+//! The outcomes of a round's tasks, in their order, determine the next round; ties are broken by that order. So a search
+//! can pause after any task without changing a bit of its result.
 
 use super::anchors::{Anchor, anchors};
-use super::coarse::{Coarse, outermost};
+use super::coarse::Coarse;
 use super::grid::CropGrid;
 use super::pose::CropPose;
 use super::ranking::{best_of, distinct};
+use super::recipe::{COARSE, FINE, FIRST_REFINEMENT, RANKING, Round, Task};
 use super::refine::Refiner;
 use super::render::Canvas;
 use super::search::{Found, Search};
-use super::settings::{COARSE, FINE, FINEST, MIDDLE, SIEVE};
 use crate::geometry::rotations::super_fibonacci;
 use crate::geometry::similarity::Similarity;
-
-/// Rotations nearer than this are one candidate, on the coarse grid and on the middle one; radians.
-const DISTINCT: [f64; 2] = [0.21, 0.105];
-
-/// The grid of each round: every rotation, the promising ones, the four refinements.
-const LEVEL: [usize; 6] = [SIEVE, COARSE, MIDDLE, MIDDLE, FINE, FINEST];
-/// The first round of the refinement.
-const FIRST_REFINEMENT: usize = 2;
-/// The round whose scores poses are compared by in the end.
-const COMPARED: usize = 4;
 
 /// A search under way.
 pub struct Rounds {
     /// What is searched.
     pub search: Search,
-    /// The present round, from 0.
-    pub round: usize,
-    grid: CropGrid,
-    /// Sizes and places tried for each rotation, and what the mesh's boxes touch.
-    anchors: Vec<Anchor>,
-    outermost: Vec<Vec3>,
-    /// Where the round's tasks begin; of the first round, whose rotations need no list, nowhere.
-    poses: Vec<CropPose>,
-    /// Candidates that the grid of rotations did not find: before its own, and after.
-    others: [Vec<CropPose>; 2],
-    /// What was found, best first, once no task is left.
+    /// Candidates of the ranking round, best first; empty before it has ended.
     pub found: Vec<Found>,
+    /// Index of the present round.
+    index: usize,
+    /// The grid of the present round, unless that is the search's own fine grid.
+    grid: CropGrid,
+    /// Sizes and places that are tried for each rotation.
+    anchors: Vec<Anchor>,
+    /// Poses that the round's tasks begin at; the rotations of the first round need no list.
+    poses: Vec<CropPose>,
+    /// Outcomes of the round's tasks that are done, in their order, and how many tasks those are.
+    outcomes: Vec<Found>,
+    tasks_done: usize,
+    /// Candidates that the grid of rotations did not find: one list goes before its own, the other after.
+    others: [Vec<CropPose>; 2],
     /// The best of the last round, if it found any.
     best: Vec<Found>,
 }
 
 impl Rounds {
-    /// Begins at the grid of rotations, or, where the search is not `global`, with the surroundings of `initial` alone.
+    /// Begins at the grid of rotations or, where the search is not `global`, with the surroundings of `initial` alone.
     pub fn new(mut search: Search, initial: Option<CropPose>, global: bool) -> Self {
         let around = initial.map_or_else(Vec::new, |pose| search.around(pose));
         let anchors = if global && search.settings.anchors {
@@ -56,114 +47,114 @@ impl Rounds {
         } else {
             vec![Anchor::AS_IT_IS]
         };
-        let round = if global { 0 } else { FIRST_REFINEMENT };
+        let index = if global { 0 } else { FIRST_REFINEMENT };
         Self {
-            round,
-            grid: search.grid(LEVEL[round]),
-            anchors,
-            outermost: outermost(&search.models[FINE]),
-            poses: if global { Vec::new() } else { around.clone() },
-            others: [around, Vec::new()],
             found: Vec::new(),
+            index,
+            grid: search.grid(search.settings.rounds[index].grid),
+            anchors,
+            poses: if global { Vec::new() } else { around.clone() },
+            outcomes: Vec::new(),
+            tasks_done: 0,
+            others: [around, Vec::new()],
             best: Vec::new(),
             search,
         }
     }
 
-    /// A pose found otherwise, whose surroundings join the candidates of the grid.
+    /// Adds the surroundings of a pose that was found otherwise to the candidates of the grid.
     pub fn join(&mut self, pose: CropPose) {
         self.others[1] = self.search.around(pose);
     }
 
-    /// Whether all that is left is refinement.
-    pub fn is_refinement(&self) -> bool {
-        self.round >= FIRST_REFINEMENT
+    /// The present round; `None` when the search is over.
+    pub fn round(&self) -> Option<Round> {
+        let round = self.search.settings.rounds.get(self.index).copied();
+        // Poses that were found otherwise join after the rounds on the grid of rotations, which may find none.
+        round.filter(|_| self.index < FIRST_REFINEMENT || self.tasks() > 0)
     }
 
-    /// How many tasks this round has; 0 when there is nothing left to do.
-    pub fn tasks(&self) -> usize {
-        if self.round == 0 { self.search.settings.rotations } else { self.poses.len() }
+    /// Number of tasks of the present round.
+    fn tasks(&self) -> usize {
+        if self.index == 0 { self.search.settings.rotations() } else { self.poses.len() }
     }
 
-    /// Does a part of this round's tasks: every `parts`-th, the first of them being `part`.
-    pub fn run(&self, part: usize, parts: usize) -> Vec<Found> {
+    /// Does tasks of the present round until all are done, or until `pause` returns true, which is asked after each; then
+    /// begins the next round. Returns whether the round has ended.
+    pub fn run(&mut self, pause: &mut dyn FnMut() -> bool) -> bool {
+        let Some(round) = self.round() else { return true };
+        let search = &self.search;
+        let grid = if round.grid == FINE { &search.fine } else { &self.grid };
+        let objective = search.objective(round.grid, grid);
+        let coarse = Coarse { objective, median_m: search.observation.median_m };
+        let refiner = Refiner { objective, lock_scale: search.settings.lock_scale };
         let mut canvas = Canvas::default();
-        let level = LEVEL[self.round.min(LEVEL.len() - 1)];
-        let grid = if level == FINE { &self.search.fine } else { &self.grid };
-        let objective = self.search.objective(level, grid);
-        let stage = Coarse { objective, median_m: self.search.observation.median_m };
-        let refiner = Refiner { objective, lock_scale: self.search.settings.lock_scale };
-        let count = self.search.settings.rotations;
-        let (mut tried, mut found) = (Vec::new(), Vec::new());
-        for task in (part..self.tasks()).step_by(parts.max(1)) {
-            let pose = || self.poses[task];
-            match self.round {
-                0 => {
-                    let rotation = super_fibonacci(task, count);
-                    stage.try_anchors(&mut canvas, &self.outermost, rotation, &self.anchors, &mut tried);
-                    found.extend(tried.drain(..).map(Found::from));
+        let mut tried = Vec::new();
+        while self.tasks_done < self.tasks() {
+            let task = self.tasks_done;
+            match round.task {
+                Task::Rotate => {
+                    let rotation = super_fibonacci(task, round.work);
+                    coarse.try_anchors(&mut canvas, &search.mesh.outermost, rotation, &self.anchors, &mut tried);
+                    self.outcomes.extend(tried.drain(..).map(Found::from));
                 }
-                1 => found.push(stage.at_its_distance(&mut canvas, pose()).into()),
-                round => {
-                    let iterations = self.search.settings.iterations[(round - FIRST_REFINEMENT).min(3)];
-                    found.push(refiner.refine(&mut canvas, pose(), iterations).into());
-                }
+                Task::Place => self.outcomes.push(coarse.at_its_distance(&mut canvas, self.poses[task]).into()),
+                Task::Refine => self.outcomes.push(refiner.refine(&mut canvas, self.poses[task], round.work).into()),
+            }
+            self.tasks_done += 1;
+            if pause() && self.tasks_done < self.tasks() {
+                return false;
             }
         }
-        found
+        self.end_round(round);
+        true
     }
 
-    /// Does all of this round's tasks, and begins the next one.
-    pub fn step(&mut self) {
-        let found = self.run(0, 1);
-        self.advance(found);
-    }
-
-    /// Takes what came of all tasks, in their order, and begins the next round.
-    pub fn advance(&mut self, found: Vec<Found>) {
-        self.search.renders += found.iter().map(|f| f.renders).sum::<usize>();
-        let best = best_of(&found, 1);
-        let keep = self.search.settings.keep;
-        self.poses = match self.round {
-            0 => poses_of(&best_of(&found, keep[0])),
-            1 => {
-                let [before, after] = core::mem::take(&mut self.others);
-                [before, poses_of(&distinct(found, keep[1], DISTINCT[0])), after].concat()
+    /// Chooses the poses of the next round.
+    fn end_round(&mut self, round: Round) {
+        let outcomes = core::mem::take(&mut self.outcomes);
+        self.tasks_done = 0;
+        self.search.renders += outcomes.iter().map(|f| f.renders).sum::<usize>();
+        self.best = best_of(&outcomes, 1);
+        match self.index {
+            RANKING => {
+                self.found = distinct(outcomes, usize::MAX, round.apart);
+                self.poses = poses_of(&self.found[..round.keep.min(self.found.len())]);
             }
-            2 => poses_of(&distinct(found, keep[2], DISTINCT[1])),
-            3 => poses_of(&distinct(found, keep[3], DISTINCT[1])),
-            COMPARED => {
-                self.found = distinct(found, usize::MAX, DISTINCT[1]);
-                poses_of(&self.found[..keep[4].min(self.found.len())])
-            }
-            _ => {
-                // The scores stay those of the fine grid: scores of different grids do not compare.
-                for (best, polished) in self.found.iter_mut().zip(found) {
+            index if index > RANKING => {
+                // The scores stay those of the ranking: scores of different grids do not compare.
+                for (best, polished) in self.found.iter_mut().zip(outcomes) {
                     best.pose = polished.pose;
                 }
-                Vec::new()
+                self.poses = Vec::new();
             }
-        };
-        self.best = best;
-        self.round += 1;
-        // The middle grid serves two rounds, and the fine one is the search's own.
-        if let Some(level @ (&COARSE | &MIDDLE | &FINEST)) = LEVEL.get(self.round).filter(|_| self.round != 3) {
-            self.grid = self.search.grid(*level);
+            _ => {
+                let kept = if round.apart > 0.0 {
+                    distinct(outcomes, round.keep, round.apart)
+                } else {
+                    best_of(&outcomes, round.keep)
+                };
+                self.poses = poses_of(&kept);
+            }
+        }
+        self.index += 1;
+        if self.index == FIRST_REFINEMENT {
+            let [before, after] = core::mem::take(&mut self.others);
+            self.poses = [before, core::mem::take(&mut self.poses), after].concat();
+        }
+        if let Some(next) = self.search.settings.rounds.get(self.index)
+            && next.grid != round.grid
+            && next.grid != FINE
+        {
+            self.grid = self.search.grid(next.grid);
         }
     }
 
     /// The best pose so far, and its score on the grid of its round: scores of different grids do not compare.
     pub fn best(&self) -> Option<(Similarity, f64)> {
-        // Once there is an order for good, its first.
+        // After the ranking, the order is final.
         let best = self.found.first().or(self.best.first())?;
-        Some((best.pose.similarity(&self.search.frame), f64::from(best.score.total)))
-    }
-
-    /// Draws what was found once more, for all terms of its scores; to be called after every round.
-    pub fn complete_scores(&mut self) {
-        if self.round == COMPARED + 1 {
-            self.found.iter_mut().for_each(|found| found.score = self.search.score(&found.pose));
-        }
+        Some((best.pose.similarity(&self.search.mesh.frame), f64::from(best.score.total)))
     }
 }
 

@@ -1,21 +1,22 @@
 //! A search: the observation and the mesh, prepared for drawing on every grid.
 
 use crate::evidence::observation::Observation;
-use crate::geometry::decimate::decimate;
-use crate::geometry::mesh::Mesh;
+
+use std::rc::Rc;
 
 use super::clean::CleanObservation;
 use super::coarse::{Candidate, Coarse};
 use super::conditioning::Conditioning;
 use super::grid::CropGrid;
+use super::mesh_pyramid::MeshPyramid;
 use super::objective::Objective;
-use super::pose::{CropPose, MeshFrame};
+use super::pose::CropPose;
 use super::prior::Prior;
 use super::ranking::distinct;
+use super::recipe::{COARSE, FINE, SearchSettings};
 use super::refine::{Refined, Refiner};
-use super::render::{Canvas, Model};
+use super::render::Canvas;
 use super::score::Score;
-use super::settings::{COARSE, FINE, FINEST, LEVELS, MIDDLE, SIEVE, SearchSettings};
 
 /// Turns tried around a given pose, radians, and how many of them are refined.
 const NEIGHBORHOOD: [f64; 2] = [0.17, 0.4];
@@ -23,18 +24,14 @@ const NEIGHBORS: usize = 7;
 
 /// A search: the observation and the mesh, prepared.
 pub struct Search {
-    /// The frame that the poses are from.
-    pub frame: MeshFrame,
-    /// The mesh in that frame, as the fine grid sees it.
-    pub mesh: Mesh,
+    /// The mesh, decimated for every grid.
+    pub mesh: Rc<MeshPyramid>,
     /// The cleaned observation.
     pub observation: CleanObservation,
     /// Images drawn so far.
     pub renders: usize,
     pub(super) settings: SearchSettings,
     prior: Prior,
-    /// The mesh on each grid.
-    pub(super) models: [Model; LEVELS],
     /// The fine grid, on which poses are compared in the end.
     pub(super) fine: CropGrid,
 }
@@ -65,25 +62,17 @@ impl From<Refined> for Found {
 }
 
 impl Search {
-    /// Cleans the observation and decimates the mesh. `None` where decimation leaves no triangle.
-    pub fn new(observation: &Observation, mesh: &Mesh, settings: SearchSettings) -> Option<Self> {
-        let frame = MeshFrame::of(mesh);
-        let finest = frame.normalized(&decimate(mesh, settings.triangles[FINEST]))?;
-        let fine = decimate(&finest, settings.triangles[FINE]);
-        let middle = decimate(&fine, settings.triangles[MIDDLE]);
-        let coarse = decimate(&middle, settings.triangles[COARSE]);
-        let sieve = decimate(&coarse, settings.triangles[SIEVE]);
+    /// Cleans the observation, and prepares its fine grid.
+    pub fn new(observation: &Observation, mesh: Rc<MeshPyramid>, settings: SearchSettings) -> Self {
         let observation = CleanObservation::new(observation);
-        Some(Self {
-            frame,
-            fine: CropGrid::new(&observation, settings.cells[FINE]),
+        Self {
+            mesh,
+            fine: CropGrid::new(&observation, settings.grids[FINE].cells),
             observation,
             renders: 0,
             settings,
             prior: Prior::default(),
-            models: [&sieve, &coarse, &middle, &fine, &finest].map(Model::new),
-            mesh: fine,
-        })
+        }
     }
 
     /// Takes what is known beforehand into account from now on.
@@ -111,13 +100,14 @@ impl Search {
     }
 
     /// The evidence on one of the grids; see also `fine`.
-    pub(super) fn grid(&self, level: usize) -> CropGrid {
-        CropGrid::new(&self.observation, self.settings.cells[level])
+    pub(super) fn grid(&self, grid: usize) -> CropGrid {
+        CropGrid::new(&self.observation, self.settings.grids[grid].cells)
     }
 
-    pub(super) fn objective<'a>(&'a self, level: usize, grid: &'a CropGrid) -> Objective<'a> {
-        let scoring = self.settings.scoring(&self.observation, level);
-        Objective { model: &self.models[level], grid, scoring, prior: self.prior }
+    /// What poses are compared by on the grid of this index.
+    pub(super) fn objective<'a>(&'a self, index: usize, grid: &'a CropGrid) -> Objective<'a> {
+        let scoring = self.settings.scoring(&self.observation, index);
+        Objective { model: &self.mesh.models[index], grid, scoring, prior: self.prior }
     }
 
     /// Whether a pose stands at a bound of the scale that leaves a choice.

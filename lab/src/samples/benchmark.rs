@@ -1,6 +1,7 @@
 //! Runs methods over cases and keeps all that tables are made of.
 
 use std::path::Path;
+use std::rc::Rc;
 use std::time::Instant;
 
 use serde::Serialize;
@@ -17,7 +18,9 @@ use sim3align::evidence::observation::Observation;
 use sim3align::metrics::Metrics;
 use sim3align::metrics::pose_error::{PoseErrors, pose_errors};
 use sim3align::metrics::symmetry::{Symmetry, SymmetryAxis};
+use sim3align::precise::mesh_pyramid::MeshPyramid;
 use sim3align::precise::pose::CropPose;
+use sim3align::precise::recipe::FIRST_REFINEMENT;
 use sim3align::precise::search_settings;
 use sim3align::precise::{Search, SearchSettings};
 use sim3align::progress::{Host, Stage};
@@ -206,8 +209,9 @@ pub fn run_case(case: &BenchCase, options: &AlignOptions, overrides: &[(String, 
     let mut record =
         run_method(case, |observation, mesh, host| align_with(observation, mesh, options, &settings, host));
     record.truth_score = case.truth.as_ref().and_then(|truth| {
-        let search = Search::new(&case.observation, &case.mesh, settings)?;
-        let pose = CropPose::of_similarity(&truth.camera_from_mesh, &search.frame)?;
+        let mesh = MeshPyramid::new(&case.mesh, &settings.grids)?;
+        let search = Search::new(&case.observation, Rc::new(mesh), settings);
+        let pose = CropPose::of_similarity(&truth.camera_from_mesh, &search.mesh.frame)?;
         Some(f64::from(search.score(&pose).total))
     });
     record
@@ -217,12 +221,15 @@ pub fn run_case(case: &BenchCase, options: &AlignOptions, overrides: &[(String, 
 pub fn override_setting(settings: &mut SearchSettings, name: &str, value: f64) -> bool {
     let count = value as usize;
     match name {
-        "rotations" => settings.rotations = count,
-        name if indexed(name, "keep", &mut settings.keep, count) => {}
-        name if indexed(name, "cells", &mut settings.cells, count) => {}
-        name if indexed(name, "triangles", &mut settings.triangles, count) => {}
-        name if indexed(name, "iterations", &mut settings.iterations, count) => {}
-        name if indexed(name, "depthError", &mut settings.depth_error, value) => {}
+        "rotations" => settings.rounds[0].work = count,
+        name if let Some(round) = element(name, "keep", &mut settings.rounds) => round.keep = count,
+        // Of the refinements, counted from 0.
+        name if let Some(round) = element(name, "iterations", &mut settings.rounds[FIRST_REFINEMENT..]) => {
+            round.work = count;
+        }
+        name if let Some(grid) = element(name, "cells", &mut settings.grids) => grid.cells = count,
+        name if let Some(grid) = element(name, "triangles", &mut settings.grids) => grid.triangles = count,
+        name if let Some(grid) = element(name, "depthError", &mut settings.grids) => grid.depth_error = value,
         "overlap" => settings.weights.overlap = value as f32,
         "depth" => settings.weights.depth = value as f32,
         "normals" => settings.weights.normals = value as f32,
@@ -236,10 +243,10 @@ pub fn override_setting(settings: &mut SearchSettings, name: &str, value: f64) -
     true
 }
 
-/// Sets the element of `values` that `name` is the `stem` and index of.
-fn indexed<T>(name: &str, stem: &str, values: &mut [T], value: T) -> bool {
-    let index = name.strip_prefix(stem).and_then(|index| index.parse::<usize>().ok());
-    index.and_then(|index| values.get_mut(index)).map(|slot| *slot = value).is_some()
+/// The element that `name` is the `stem` and index of.
+fn element<'a, T>(name: &str, stem: &str, values: &'a mut [T]) -> Option<&'a mut T> {
+    let index = name.strip_prefix(stem)?.parse::<usize>().ok()?;
+    values.get_mut(index)
 }
 
 /// [`run_case`] with any method.

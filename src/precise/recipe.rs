@@ -1,0 +1,186 @@
+//! The recipe of the search: its grids and its rounds, for each quality.
+
+use super::clean::CleanObservation;
+use super::score::{Scoring, Weights};
+
+/// Grids of the search, coarse to fine.
+pub const GRIDS: usize = 5;
+/// The grid on which every rotation is drawn.
+pub const SIEVE: usize = 0;
+/// The grid on which promising poses are drawn again, and the surroundings of a given pose.
+pub const COARSE: usize = 1;
+/// The grid of the first refinements.
+pub const MIDDLE: usize = 2;
+/// The grid whose scores rank the poses in the end.
+pub const FINE: usize = 3;
+/// The grid that polishes the best poses.
+pub const FINEST: usize = 4;
+
+/// Rounds of the search.
+pub const ROUNDS: usize = 6;
+/// The first round that refines.
+pub const FIRST_REFINEMENT: usize = 2;
+/// The round that ranks: its scores are those of the result.
+pub const RANKING: usize = 4;
+
+/// A grid of cells that an image is drawn on, and the mesh that is drawn there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Grid {
+    /// Cells that the mask covers, about; never more than its pixels.
+    pub cells: usize,
+    /// Triangles that the mesh is decimated to.
+    pub triangles: usize,
+    /// Depth error that halves a cell's credit, as a share of the observed diagonal.
+    pub depth_error: f64,
+    /// Factor of the outline's weight: outlines mean little on cells as wide as the errors of the rotation grid.
+    pub outline: f32,
+}
+
+/// What a round does with each of its poses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Task {
+    /// Draws a rotation of an even grid, at the size and place of the mask's box and of every other anchor.
+    Rotate,
+    /// Draws the pose, and moves it to the distance that the depths ask for.
+    Place,
+    /// Refines all seven parameters.
+    Refine,
+}
+
+/// A round: the same task for many poses, of which the best go on to the next round.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Round {
+    /// What is done.
+    pub task: Task,
+    /// Index of the grid.
+    pub grid: usize,
+    /// Rotations of [`Task::Rotate`], most steps of [`Task::Refine`].
+    pub work: usize,
+    /// Poses that go on.
+    pub keep: usize,
+    /// Of poses whose rotations are nearer than this, in radians, the best alone goes on; 0 lets all go on.
+    pub apart: f64,
+    /// Share of the alignment that is done after the round; from profiles of real cases.
+    pub done: f64,
+}
+
+/// Column of the tables for each quality.
+const FAST: usize = 0;
+const BALANCED: usize = 1;
+const BEST: usize = 2;
+
+/// The grids at a quality.
+#[rustfmt::skip]
+const fn grids(quality: usize) -> [Grid; GRIDS] {
+    let q = quality;
+    //     mask cells: fast, balanced, best      triangles: fast, balanced, best           depth error        outline
+    [
+        Grid { cells: [ 120,  150,  150][q], triangles: [ 150,    200,    200][q], depth_error: 0.12, outline: 0.0 },
+        Grid { cells: [ 400,  500,  500][q], triangles: [ 500,    700,    700][q], depth_error: 0.12, outline: 0.0 },
+        Grid { cells: [ 700,  900,  900][q], triangles: [1000,   1500,   1500][q], depth_error: 0.06, outline: 0.5 },
+        Grid { cells: [2000, 3000, 3000][q], triangles: [3000,   5000,   5000][q], depth_error: 0.03, outline: 1.0 },
+        Grid { cells: [4000, 7000, 7000][q], triangles: [5000, 10_000, 10_000][q], depth_error: 0.03, outline: 1.0 },
+    ]
+}
+
+/// The rounds at a quality.
+#[rustfmt::skip]
+const fn rounds(quality: usize) -> [Round; ROUNDS] {
+    use Task::{Place, Refine, Rotate};
+    let q = quality;
+    //       task          grid          work: fast, balanced, best   keep: fast, balanced, best  apart         done
+    [
+        Round { task: Rotate, grid: SIEVE,  work: [600, 1500, 4000][q], keep: [120, 500, 1600][q], apart: 0.0,   done: 0.53 },
+        Round { task: Place,  grid: COARSE, work: 1,                    keep: [ 20,  64,  160][q], apart: 0.21,  done: 0.60 },
+        Round { task: Refine, grid: MIDDLE, work: [  4,    4,    5][q], keep: [  6,  20,   40][q], apart: 0.105, done: 0.71 },
+        Round { task: Refine, grid: MIDDLE, work: [  5,    8,   15][q], keep: [  3,   6,   10][q], apart: 0.105, done: 0.78 },
+        Round { task: Refine, grid: FINE,   work: [  8,   12,   20][q], keep: [  1,   1,    2][q], apart: 0.105, done: 0.83 },
+        Round { task: Refine, grid: FINEST, work: [  4,    6,   12][q], keep: 0,                   apart: 0.0,   done: 0.85 },
+    ]
+}
+
+/// Cost of a rotation, of a step on the middle grid and of one on the fine grid, in units of the work budget: about
+/// milliseconds of WebAssembly on a laptop of 2020.
+const COST: [f64; 3] = [0.06, 0.12, 0.4];
+
+/// Work and objective of a search.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SearchSettings {
+    /// The rounds, in order.
+    pub rounds: [Round; ROUNDS],
+    /// The grids, coarse to fine.
+    pub grids: [Grid; GRIDS],
+    /// Weights of the score's terms.
+    pub weights: Weights,
+    /// Whether occluders hide the mesh, and cut-off masks let it stick out.
+    pub occlusion: bool,
+    /// Whether sizes and places other than those of the mask's box are tried.
+    pub anchors: bool,
+    /// Whether the scale stays as the grid of rotations found it.
+    pub lock_scale: bool,
+}
+
+impl Default for SearchSettings {
+    fn default() -> Self {
+        Self::of(BALANCED)
+    }
+}
+
+impl SearchSettings {
+    fn of(quality: usize) -> Self {
+        Self {
+            rounds: rounds(quality),
+            grids: grids(quality),
+            weights: Weights::default(),
+            occlusion: true,
+            anchors: true,
+            lock_scale: false,
+        }
+    }
+
+    /// Less of everything.
+    pub fn fast() -> Self {
+        Self::of(FAST)
+    }
+
+    /// More of everything.
+    pub fn best() -> Self {
+        Self::of(BEST)
+    }
+
+    /// Rotations of the grid.
+    pub fn rotations(&self) -> usize {
+        self.rounds[0].work
+    }
+
+    /// The settings with rotations and candidates scaled to a budget of work. Work is counted, not timed, so that results
+    /// do not depend on the machine.
+    pub fn within(self, budget: f64) -> Self {
+        let [rotate, place, first, second, fine, _] = self.rounds;
+        let cost = COST[0] * rotate.work as f64
+            + COST[1] * (place.keep * first.work + first.keep * second.work) as f64
+            + COST[2] * (second.keep * fine.work) as f64;
+        let share = (budget / cost).clamp(0.02, 20.0);
+        let scaled = |count: usize, least: usize| ((count as f64 * share) as usize).max(least);
+        let mut within = self;
+        within.rounds[0].work = scaled(rotate.work, 60);
+        for (round, least) in within.rounds.iter_mut().zip([30, 6, 3, 2]) {
+            round.keep = scaled(round.keep, least);
+        }
+        within
+    }
+
+    /// The objective on one of the grids.
+    pub fn scoring(&self, clean: &CleanObservation, grid: usize) -> Scoring {
+        let Grid { depth_error, outline, .. } = self.grids[grid];
+        let mut weights = self.weights;
+        weights.outline *= outline;
+        let occluder_m = 0.02 * clean.diagonal_m + 0.005 * clean.median_m;
+        Scoring {
+            weights,
+            depth_m: (depth_error * clean.diagonal_m) as f32,
+            occluder_m: if self.occlusion { occluder_m as f32 } else { f32::INFINITY },
+            outline_cells: 2.0,
+        }
+    }
+}
