@@ -3,7 +3,8 @@
 use sim3align::align::align;
 use sim3align::align::field::Options;
 use sim3align::align::options::{
-    AlignOptions, EstimateOptions, ExtentAxis, GuardMode, Icp, Preset, Quality, RegisterOptions, ScaleOption, SearchScope,
+    AlignOptions, EstimateOptions, ExtentAxis, GuardMode, Icp, Preset, Quality, RegisterOptions, ScaleOption,
+    SearchScope,
 };
 use sim3align::align::report::{Alignment, Registration};
 use sim3align::geometry::cloud::Bounds;
@@ -53,10 +54,12 @@ const PRECISE: &[Effect<AlignOptions, Alignment>] = &[
     }),
     ("knownExtentAxis", |base, _, solve| {
         let extent = Bounds::of(precise::body().positions()).unwrap().extent();
-        [(ExtentAxis::X, extent.x), (ExtentAxis::Y, extent.y), (ExtentAxis::Z, extent.z)].into_iter().all(|(axis, side)| {
-            let known = AlignOptions { known_extent_m: Some(0.1), known_extent_axis: axis, ..base.clone() };
-            (scale(&solve(&known)) * f64::from(side) - 0.1).abs() < 1e-7
-        })
+        [(ExtentAxis::X, extent.x), (ExtentAxis::Y, extent.y), (ExtentAxis::Z, extent.z)].into_iter().all(
+            |(axis, side)| {
+                let known = AlignOptions { known_extent_m: Some(0.1), known_extent_axis: axis, ..base.clone() };
+                (scale(&solve(&known)) * f64::from(side) - 0.1).abs() < 1e-7
+            },
+        )
     }),
     ("cameraUp", |base, usual, solve| costs_a_lean(base, usual, solve, [1.0, 1.0], [-1.0, 1.0])),
     ("meshUp", |base, usual, solve| costs_a_lean(base, usual, solve, [-1.0, -1.0], [-1.0, 1.0])),
@@ -110,8 +113,7 @@ fn costs_a_lean(
 ) -> bool {
     let score = |[camera, mesh]: [f64; 2]| {
         let up = precise::truth().rotation * nalgebra::Vector3::y() * camera;
-        let options =
-            AlignOptions { camera_up: Some(up.into()), mesh_up: Some([0.0, mesh, 0.0]), ..base.clone() };
+        let options = AlignOptions { camera_up: Some(up.into()), mesh_up: Some([0.0, mesh, 0.0]), ..base.clone() };
         solve(&options).score.unwrap()
     };
     (score(agree) - usual.score.unwrap()).abs() < 0.01 && score(contradict) < usual.score.unwrap() - 0.2
@@ -131,7 +133,8 @@ const PAPER: &[Effect<AlignOptions, Alignment>] = &[
         let coarse = solve(&AlignOptions { voxel_divisions: 20.0, ..base.clone() }).counts;
         // Surfaces: voxels are as many as the square of the divisions.
         let share = |few: usize, many: usize| (0.3..0.65).contains(&(few as f64 / many as f64));
-        share(coarse.source_voxels, usual.counts.source_voxels) && share(coarse.target_voxels, usual.counts.target_voxels)
+        share(coarse.source_voxels, usual.counts.source_voxels)
+            && share(coarse.target_voxels, usual.counts.target_voxels)
     }),
     ("fpfhRadiusVoxels", |base, usual, solve| {
         let near = solve(&AlignOptions { fpfh_radius_voxels: 2.5, ..base.clone() }).counts;
@@ -181,11 +184,9 @@ const PAPER: &[Effect<AlignOptions, Alignment>] = &[
         points.camera_from_mesh != usual.camera_from_mesh && none.counts.icp_iterations == 0
     }),
     ("lockScale", |base, usual, solve| {
-        let [unrefined, free] = [
-            AlignOptions { icp: Icp::None, ..base.clone() },
-            AlignOptions { lock_scale: Some(false), ..base.clone() },
-        ]
-        .map(|options| scale(&solve(&options)));
+        let [unrefined, free] =
+            [AlignOptions { icp: Icp::None, ..base.clone() }, AlignOptions { lock_scale: Some(false), ..base.clone() }]
+                .map(|options| scale(&solve(&options)));
         (unrefined / scale(usual) - 1.0).abs() < 1e-12 && (free / scale(usual) - 1.0).abs() > 1e-4
     }),
     ("icpIterations", |base, usual, solve| {

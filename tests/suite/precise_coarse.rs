@@ -10,9 +10,9 @@ use sim3align::precise::objective::Objective;
 use sim3align::precise::pose::{CropPose, MeshFrame};
 use sim3align::precise::prior::Prior;
 use sim3align::precise::ranking::{best_of, distinct};
+use sim3align::precise::recipe::{COARSE, SearchSettings};
 use sim3align::precise::render::{Canvas, Model};
 use sim3align::precise::score::Score;
-use sim3align::precise::settings::{COARSE, SearchSettings};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::precise::{body, observe, truth};
@@ -100,7 +100,8 @@ fn what_is_behind_or_beside_or_small_cuts_nothing() {
         }
     };
     // Half a metre less a hundredth of it, and less 4 % of the object's 31 cells' width: 1.53 cm.
-    for (scene, half, cuts) in [(0.48, 5.0, true), (0.49, 5.0, false), (0.6, 5.0, false), (0.0, 5.0, false), (0.3, 1.0, false)]
+    for (scene, half, cuts) in
+        [(0.48, 5.0, true), (0.49, 5.0, false), (0.6, 5.0, false), (0.0, 5.0, false), (0.3, 1.0, false)]
     {
         let mut grid = square();
         board(&mut grid, scene, half);
@@ -143,7 +144,8 @@ fn sides_are_cut_where_enough_of_the_ring_is() {
             let i = v * width + u;
             if !grid.mask[i] && grid.outline[i] <= 2.0 {
                 ring += 1;
-                let near = (0..grid.depth.len()).filter(|j| (j % width).abs_diff(u) <= 2 && (j / width).abs_diff(v) <= 2);
+                let near =
+                    (0..grid.depth.len()).filter(|j| (j % width).abs_diff(u) <= 2 && (j / width).abs_diff(v) <= 2);
                 let deepest = near.map(|j| f64::from(grid.depth[j])).fold(0.0, f64::max);
                 if deepest > 0.0 && f64::from(grid.scene[i]) < deepest - tolerance {
                     // Relative to half the box, and half a cell of the ring's two.
@@ -203,10 +205,12 @@ fn the_box_of_the_projected_mesh_is_that_of_the_mask() {
                 let x = rotation * p.as_dvec3() * scale + translation;
                 x.truncate() / x.z * scene.grid.focal + DVec2::from(scene.grid.center)
             };
-            let (low, high) = scene.model.positions.iter().map(project).fold(
-                (DVec2::INFINITY, DVec2::NEG_INFINITY),
-                |(low, high), at| (low.min(at), high.max(at)),
-            );
+            let (low, high) = scene
+                .model
+                .positions
+                .iter()
+                .map(project)
+                .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)));
             let off = (0.5 * (low + high) - middle) / sides.max_element();
             assert!(off.length() < tolerance, "rotation {k}: the middle is off by {off}");
             let (found, wanted) = (high - low, sides);

@@ -11,10 +11,10 @@ use sim3align::precise::grid::CropGrid;
 use sim3align::precise::objective::Objective;
 use sim3align::precise::pose::{CropPose, MeshFrame, Step};
 use sim3align::precise::prior::Prior;
+use sim3align::precise::recipe::{FINE, SearchSettings};
 use sim3align::precise::refine::Refiner;
 use sim3align::precise::render::{Canvas, Model};
 use sim3align::precise::score::{Score, Scoring, Weights};
-use sim3align::precise::settings::{FINE, SearchSettings};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::precise::{body, observe, truth};
@@ -47,9 +47,8 @@ fn moved(pose: &CropPose, k: usize, x: f64, lock_scale: bool) -> CropPose {
 /// A residual as a function of the pose, at the pose and by central differences.
 fn differences(pose: &CropPose, lock_scale: bool, residual: impl Fn(&CropPose) -> f64) -> (Vector, f64) {
     const H: f64 = 1e-6;
-    let slope = |k: usize| {
-        (residual(&moved(pose, k, H, lock_scale)) - residual(&moved(pose, k, -H, lock_scale))) / (2.0 * H)
-    };
+    let slope =
+        |k: usize| (residual(&moved(pose, k, H, lock_scale)) - residual(&moved(pose, k, -H, lock_scale))) / (2.0 * H);
     (Vector::from_fn(|k, _| slope(k)), residual(pose))
 }
 
@@ -91,7 +90,8 @@ impl Scene {
     /// The same by its definition: every residual is a function of the pose, its derivatives are differences.
     fn by_differences(&self, scoring: &Scoring, score: &Score, lock_scale: bool) -> (Matrix, Vector) {
         let Self { model, grid, pose, canvas } = self;
-        let (weights, share) = (&scoring.weights, |k: usize| f64::from(score.overlap) / f64::from(score.counts[k].max(1)));
+        let (weights, share) =
+            (&scoring.weights, |k: usize| f64::from(score.overlap) / f64::from(score.counts[k].max(1)));
         let (mut matrix, mut gradient) = (Matrix::zeros(), Vector::zeros());
         let mut add = |(jacobian, residual): (Vector, f64), weight: f64| {
             matrix += jacobian * jacobian.transpose() * weight;
@@ -145,7 +145,8 @@ impl Scene {
                 };
                 let outline = |q: &CropPose| {
                     let x = place(q);
-                    let to = x.truncate() / x.z * grid.focal + DVec2::from(grid.center) - DVec2::new(u as f64, v as f64);
+                    let to =
+                        x.truncate() / x.z * grid.focal + DVec2::from(grid.center) - DVec2::new(u as f64, v as f64);
                     at(0, 0) + 0.5 * (at(1, 0) - at(-1, 0)) * to.x + 0.5 * (at(0, 1) - at(0, -1)) * to.y
                 };
                 let distance = at(0, 0).abs();
@@ -332,7 +333,10 @@ fn one_standard_deviation_lowers_the_quadratic_by_a_hundredth() {
             let turn = Vector::from_fn(|k, _| if k < 3 { axis[k] } else { 0.0 });
             (turn.transpose() * covariance * turn)[0].sqrt()
         };
-        assert!((axis.length() - 1.0).abs() < 1e-9 && (about(axis) / angle - 1.0).abs() < 1e-6, "seed {seed}: {found:?}");
+        assert!(
+            (axis.length() - 1.0).abs() < 1e-9 && (about(axis) / angle - 1.0).abs() < 1e-6,
+            "seed {seed}: {found:?}"
+        );
         for _ in 0..200 {
             let other = DVec3::from(<[f64; 3]>::from(draw.direction()));
             assert!(about(other) <= angle * (1.0 + 1e-9), "seed {seed}: held less about {other}");

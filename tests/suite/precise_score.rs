@@ -59,7 +59,8 @@ fn by_definition(
     let union = masked + extra + f64::from(occluded) * hidden + lost / (1.05 - lost) * drawn;
     let mean = |values: &[f64]| if values.is_empty() { 0.0 } else { values.iter().sum::<f64>() / values.len() as f64 };
     let terms = [mean(&depths), mean(&alike), mean(&edges)];
-    let agreement: f64 = [depth, normals, outline].iter().zip(terms).map(|(weight, term)| f64::from(*weight) * term).sum();
+    let agreement: f64 =
+        [depth, normals, outline].iter().zip(terms).map(|(weight, term)| f64::from(*weight) * term).sum();
     let iou = both / union;
     let total = iou * (f64::from(overlap) + agreement);
     let values = [total, iou, both / masked, terms[0], terms[1], terms[2], hidden / drawn.max(1.0), union];
@@ -134,7 +135,8 @@ fn an_infinite_distance_to_occluders_hides_nothing() {
     let scoring = Scoring { occluder_m: f32::INFINITY, ..scoring() };
     assert!(!scoring.hides(0.01, 100.0));
     let scoring = Scoring { occluder_m: 0.1, ..scoring };
-    for (scene, z, hides) in [(0.0, 1.0, false), (0.5, 1.0, true), (0.89, 1.0, true), (0.91, 1.0, false), (2.0, 1.0, false)]
+    for (scene, z, hides) in
+        [(0.0, 1.0, false), (0.5, 1.0, true), (0.89, 1.0, true), (0.91, 1.0, false), (2.0, 1.0, false)]
     {
         assert_eq!(scoring.hides(scene, z), hides, "{scene} before {z}");
     }
