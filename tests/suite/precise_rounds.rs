@@ -5,7 +5,7 @@ use std::rc::Rc;
 use sim3align::geometry::rotations::angle_between;
 use sim3align::precise::mesh_pyramid::MeshPyramid;
 use sim3align::precise::pose::{CropPose, MeshFrame};
-use sim3align::precise::recipe::{FIRST_REFINEMENT, RANKING, SearchSettings};
+use sim3align::precise::recipe::{FIRST_REFINEMENT, RANKING, SearchSettings, Task};
 use sim3align::precise::rounds::Rounds;
 use sim3align::precise::search::{Found, Search};
 use wasm_bindgen_test::wasm_bindgen_test;
@@ -101,6 +101,49 @@ fn every_round_takes_what_the_one_before_it_keeps() {
             assert!(index != FIRST_REFINEMENT || count > joining || !global, "{what}: round {index}");
         }
     }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn every_image_that_is_drawn_counts() {
+    for (initial, global) in [(false, true), (true, true), (true, false)] {
+        let mut rounds = rounds(initial, global);
+        // The given pose and its turns about every axis were drawn before the first round.
+        let mut before = if initial { 18 } else { 0 };
+        assert_eq!(rounds.search.renders, before);
+        while let Some(round) = rounds.round() {
+            let mut tasks = 0;
+            rounds.run(&mut || {
+                tasks += 1;
+                false
+            });
+            let drawn = rounds.search.renders - before;
+            let what = format!("initial {initial}, global {global}, {round:?}: {drawn} images of {tasks} tasks");
+            match round.task {
+                // As it is, and somewhat larger: nothing cuts this mask.
+                Task::Rotate => assert_eq!(drawn, 2 * tasks, "{what}"),
+                Task::Place => assert_eq!(drawn, tasks, "{what}"),
+                Task::Refine => assert!(drawn > tasks && drawn <= tasks * (1 + round.work), "{what}"),
+            }
+            before = rounds.search.renders;
+        }
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_pose_that_joins_is_refined_with_those_of_the_grid() {
+    let mesh = body();
+    let count = |joins: bool| {
+        let mut rounds = rounds(false, true);
+        if joins {
+            rounds.join(CropPose::of_similarity(&truth(), &MeshFrame::of(&mesh)).unwrap());
+        }
+        let tasks = run(&mut rounds, &mut || false).0;
+        (tasks, rounds.found[0].score.total)
+    };
+    let ((without, low), (with, high)) = (count(false), count(true));
+    assert_eq!(with[..2], without[..2]);
+    assert_eq!(with[FIRST_REFINEMENT], without[FIRST_REFINEMENT] + 8, "the pose and seven around it");
+    assert!(high >= low - 1e-3, "the truth joined: {high}, and {low} without it");
 }
 
 #[wasm_bindgen_test(unsupported = test)]
