@@ -1,39 +1,26 @@
-/** `npm run picture`: the README's picture, `docs/picture.png`, drawn by Chromium from the generated sample. */
-import { statSync } from "node:fs";
-import { chromium as browserType } from "playwright-core";
-import { chromium, chromiumRemedy } from "./lib/chromium.mjs";
-import { buildPackage } from "./lib/package.mjs";
+/** `npm run picture`: draws the README's picture, `docs/picture.png`, from the first sample. */
+
 import { at, repository } from "./lib/paths.mjs";
-import { makeSample } from "./lib/sample.mjs";
-import { setUp } from "./lib/setup.mjs";
+import { launchChromium } from "./lib/programs.mjs";
+import { copySample } from "./lib/sample.mjs";
 import { serve } from "./lib/static-server.mjs";
 import { script, step } from "./lib/step.mjs";
 
-const file = at("docs", "picture.png");
-
+/** The picture is a page of its own, which uses the built package. */
 async function draw() {
-  const executablePath = await chromium();
-  if (executablePath === undefined) throw new Error(`No Chromium. Remedy: ${chromiumRemedy}.`);
-  const server = await serve(repository);
-  const browser = await browserType.launch({ executablePath, args: ["--no-sandbox"] });
+  const [browser, server] = await Promise.all([launchChromium(), serve(repository)]);
   try {
     const page = await browser.newPage({ viewport: { width: 1000, height: 400 } });
     page.on("pageerror", (error) => console.error(error.message));
     await page.goto(`${server.url}scripts/picture/`);
     await page.waitForSelector('body[data-state="done"]');
-    await page.locator("#picture").screenshot({ path: file });
+    await page.locator("#picture").screenshot({ path: at("docs", "picture.png") });
   } finally {
-    await browser.close();
-    await server.close();
+    await Promise.all([browser.close(), server.close()]);
   }
 }
 
 await script(async () => {
-  await setUp();
-  await buildPackage();
-  await makeSample();
-  await step("picture", async (say) => {
-    await draw();
-    say(`docs/picture.png, ${Math.round(statSync(file).size / 1000)} kB`);
-  });
+  await copySample();
+  await step("docs/picture.png", draw);
 });

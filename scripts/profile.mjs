@@ -7,12 +7,10 @@ import { readdirSync } from "node:fs";
 import { basename, join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { parseArgs } from "node:util";
-import { median } from "./bench/statistics.mjs";
-import { buildPackage } from "./lib/package.mjs";
-import { packageDir } from "./lib/paths.mjs";
-import { run } from "./lib/run.mjs";
-import { makeSample, sampleDir } from "./lib/sample.mjs";
-import { setUp } from "./lib/setup.mjs";
+import { median } from "./bench/table.mjs";
+import { runLab } from "./lib/lab.mjs";
+import { packageDir, sampleDir } from "./lib/paths.mjs";
+import { copySample } from "./lib/sample.mjs";
 import { script } from "./lib/step.mjs";
 
 const qualities = ["fast", "balanced", "best"];
@@ -37,9 +35,7 @@ function medians(results) {
  * @returns {Promise<Result[]>}
  */
 async function native(folder, quality, runs) {
-  const binary = ["run", "--quiet", "--profile", "native", "--package", "sim3align-lab", "--", "profile"];
-  const output = await run("cargo", [...binary, "--quality", quality, String(runs), folder]);
-  return JSON.parse(output.slice(output.indexOf("{")))[folder];
+  return JSON.parse(await runLab(["profile", "--quality", quality, `${runs}`, folder]))[folder];
 }
 
 /**
@@ -89,9 +85,7 @@ await script(async () => {
   const chosen = values.quality?.split(",") ?? qualities;
   const unknown = chosen.filter((quality) => !qualities.includes(quality));
   if (unknown.length > 0) throw new Error(`--quality: found ${unknown.join()}, expected ${qualities.join(", ")}.`);
-  await setUp();
-  await buildPackage();
-  if (positionals.length === 0) await makeSample();
+  await copySample();
   const folders = positionals.length > 0 ? positionals.map((folder) => resolve(folder)) : [sampleDir];
   for (const folder of folders.filter((candidate) => readdirSync(candidate).includes("camera.json"))) {
     for (const quality of chosen) await profile(folder, quality, runs);

@@ -4,25 +4,16 @@
  */
 import { spawn } from "node:child_process";
 import { parseArgs } from "node:util";
-import { chromium, chromiumRemedy } from "./lib/chromium.mjs";
-import { buildPackage } from "./lib/package.mjs";
-import { setUp } from "./lib/setup.mjs";
-import { buildSite, siteDir } from "./lib/site.mjs";
+import { siteDir } from "./lib/paths.mjs";
+import { launchChromium } from "./lib/programs.mjs";
+import { buildSite } from "./lib/site.mjs";
 import { serve } from "./lib/static-server.mjs";
 import { script } from "./lib/step.mjs";
 
-/** The same one every time, so that the browser knows the page again. */
+/** The same port every time, so that the browser knows the page again. */
 const PORT = 4173;
-
-/** Serves the site; on any free port, where somebody else has ours. */
-async function serveSite() {
-  try {
-    return await serve(siteDir, PORT);
-  } catch (error) {
-    if (/** @type {NodeJS.ErrnoException} */ (error).code !== "EADDRINUSE") throw error;
-    return serve(siteDir);
-  }
-}
+/** How long a slow machine may take for the first result, in milliseconds. */
+const LIMIT_MS = 120_000;
 
 /**
  * Opens an address in the default browser, where somebody would see it.
@@ -39,27 +30,32 @@ function openInBrowser(url) {
   child.unref();
 }
 
-/** @param {string} url */
+/**
+ * Prints what the page says of its first sample, and the time from the beginning of the navigation to that.
+ * @param {string} url
+ */
 async function check(url) {
-  const executable = await chromium();
-  if (executable === undefined) throw new Error(`No Chromium. Remedy: ${chromiumRemedy}.`);
-  // It needs Playwright, which the set-up has installed by now.
-  const { firstResult } = await import("./lib/first-result.mjs");
-  const { status, dimensions, confidence, milliseconds } = await firstResult(executable, url);
-  console.log(`\n${status}\nSize: ${dimensions}\nConfidence: ${confidence}\nAfter ${Math.round(milliseconds)} ms`);
+  const browser = await launchChromium();
+  try {
+    const page = await browser.newPage();
+    await page.goto(url);
+    const status = page.locator('#status:is([data-state="done"], [data-state="failed"]):not(.behind)');
+    await status.filter({ hasText: /Aligned|:/ }).waitFor({ timeout: LIMIT_MS });
+    await page.locator("#dimensions").waitFor({ timeout: LIMIT_MS });
+    const ms = await page.evaluate(() => performance.getEntriesByName("aligned")[0]?.startTime ?? 0);
+    const text = async (/** @type {string} */ selector) => (await page.textContent(selector))?.trim();
+    console.log(`\n${await text("#status")}\nSize: ${await text("#dimensions")}`);
+    console.log(`Confidence: ${await text("#confidence")}\nAfter ${Math.round(ms)} ms`);
+  } finally {
+    await browser.close();
+  }
 }
 
 await script(async () => {
   const { values } = parseArgs({ options: { check: { type: "boolean" }, "no-open": { type: "boolean" } } });
-  await setUp();
-  await buildPackage();
   await buildSite();
-  const server = await serveSite();
-  if (values.check) {
-    await check(server.url).finally(server.close);
-    return;
-  }
+  const server = await serve(siteDir, PORT);
+  if (values.check) return check(server.url).finally(server.close);
   console.log(`\n  The page:  ${server.url}\n  Ctrl-C ends it.\n`);
   if (!values["no-open"]) openInBrowser(server.url);
-  for (const signal of ["SIGINT", "SIGTERM"]) process.once(signal, () => server.close().then(() => process.exit(0)));
 });

@@ -1,104 +1,120 @@
 /**
  * `npm test`: every test. `npm test -- --only native,js` runs some suites.
  *
- * A failing suite does not stop the others, except that without a build there is nothing to try. The last line is the
- * sum over all suites.
+ * Two suites run at a time; their output comes when they end. A failing suite does not stop the others, except that
+ * without the package there is nothing to try. The last line is the sum over all suites.
  */
 import { parseArgs } from "node:util";
 import { noTests, sum } from "./lib/counts.mjs";
+import { collect, print } from "./lib/output.mjs";
 import { buildPackage } from "./lib/package.mjs";
-import { setUp } from "./lib/setup.mjs";
-import { duration, explain, script } from "./lib/step.mjs";
-import { examples } from "./suites/examples.mjs";
+import { duration, explain, runChecks, script } from "./lib/step.mjs";
+import { bundlers, runtimes } from "./suites/hosts.mjs";
+import { browser, examples, javaScript } from "./suites/installed.mjs";
 import { lint, types } from "./suites/lint.mjs";
-import { browser, bundlers, javaScript, lintPackage } from "./suites/package.mjs";
-import { runtimes } from "./suites/runtimes.mjs";
-import { native, wasm } from "./suites/rust.mjs";
-import { checkSizes } from "./suites/size.mjs";
+import { checkPackage, checkSizes } from "./suites/package.mjs";
+import { native, samples, wasm } from "./suites/rust.mjs";
 
 /**
  * @typedef {object} Suite
- * @property {string} name
  * @property {string} title
  * @property {() => Promise<import("./lib/counts.mjs").Counts>} run
- * @property {boolean} [usesPackage] whether it needs the built package
+ * @property {string} [after] the suite that has to have passed: `build` where the built package is used
  */
 
-/** @type {readonly Suite[]} */
-const suites = [
-  { name: "lint", title: "Formatters and linters", run: lint },
-  { name: "native", title: "Rust tests, native", run: native },
-  { name: "wasm", title: "Rust tests, WebAssembly in Node", run: wasm },
-  { name: "build", title: "Build of the package", run: build },
-  { name: "types", title: "Type checks", run: types, usesPackage: true },
-  { name: "size", title: "Size budgets", run: checkSizes, usesPackage: true },
-  { name: "package", title: "Package checks", run: lintPackage, usesPackage: true },
-  { name: "js", title: "JavaScript tests on the installed package", run: javaScript, usesPackage: true },
-  { name: "browser", title: "Browser tests", run: browser, usesPackage: true },
-  { name: "bundlers", title: "The package in bundlers' apps", run: bundlers, usesPackage: true },
-  { name: "runtimes", title: "The package in other runtimes", run: runtimes, usesPackage: true },
-  { name: "examples", title: "Examples", run: examples, usesPackage: true },
-];
+/** In the order in which they begin: those that use the package begin while cargo has other work. @type {Record<string, Suite>} */
+const suites = {
+  build: { title: "Build of the package", run: () => runChecks([["package", buildPackage]]) },
+  native: { title: "Rust tests, native", run: native },
+  js: { title: "JavaScript tests on the installed package", run: javaScript, after: "build" },
+  wasm: { title: "Rust tests, WebAssembly in Node", run: wasm },
+  browser: { title: "Browser tests", run: browser, after: "build" },
+  lint: { title: "Formatters and linters", run: lint },
+  samples: { title: "Reproduction of the samples", run: samples },
+  bundlers: { title: "The package in bundlers' apps", run: bundlers, after: "build" },
+  examples: { title: "Examples", run: examples, after: "build" },
+  runtimes: { title: "The package in other runtimes", run: runtimes, after: "build" },
+  package: { title: "Package checks", run: checkPackage, after: "build" },
+  types: { title: "Type checks", run: types, after: "build" },
+  size: { title: "Size budgets", run: checkSizes, after: "build" },
+};
 
-async function build() {
-  await buildPackage();
-  return { passed: 1, failed: 0, skipped: 0 };
-}
+const LANES = 2;
 
-/** @returns {Suite[]} those that the command line selects, and the build that they need */
+/** The suites that the command line selects, and the build that they need. */
 function selected() {
   const { values } = parseArgs({ options: { only: { type: "string" } } });
-  if (values.only === undefined) return [...suites];
-  const names = values.only.split(",");
-  const unknown = names.filter((name) => !suites.some((suite) => suite.name === name));
+  const names = values.only?.split(",") ?? Object.keys(suites);
+  const unknown = names.filter((name) => !(name in suites));
   if (unknown.length > 0) {
-    throw new Error(`--only: no suite ${unknown.join(", ")}. There are ${suites.map(({ name }) => name).join(", ")}.`);
+    throw new Error(`--only: no suite ${unknown.join(", ")}. There are ${Object.keys(suites).join(", ")}.`);
   }
-  const chosen = suites.filter(({ name }) => names.includes(name));
-  const needsBuild = chosen.some(({ usesPackage }) => usesPackage);
-  return suites.filter((suite) => chosen.includes(suite) || (needsBuild && suite.name === "build"));
+  const needed = new Set([...names, ...names.flatMap((name) => suites[name]?.after ?? [])]);
+  return Object.entries(suites).filter(([name]) => needed.has(name));
 }
 
-/**
- * @param {Suite} suite
- * @param {boolean} isBuilt
- */
-async function outcome(suite, isBuilt) {
-  console.log(`\n━━ ${suite.title} (${suite.name}) ${"━".repeat(Math.max(0, 70 - suite.title.length))}`);
-  if (suite.usesPackage && !isBuilt) {
-    console.log("Not run: the build failed.");
-    return { ...noTests(), skipped: 1 };
-  }
+/** @param {Suite} suite */
+async function outcome({ title, run }) {
+  print(`\n━━ ${title} ${"━".repeat(Math.max(0, 76 - title.length))}\n`);
   try {
-    const counts = await suite.run();
+    const counts = await run();
     if (counts.passed + counts.failed + counts.skipped > 0) return counts;
-    console.error("No test ran, which counts as a failure.");
+    print("No test ran, which counts as a failure.\n");
   } catch (error) {
     explain(error);
   }
   return { ...noTests(), failed: 1 };
 }
 
-await script(async () => {
-  const chosen = selected();
-  await setUp();
-  let total = noTests();
-  let isBuilt = true;
-  const rows = [];
-  for (const suite of chosen) {
+/**
+ * Runs suites, {@link LANES} at a time, each after the one that it needs.
+ * @param {readonly (readonly [name: string, suite: Suite])[]} chosen
+ */
+async function runAll(chosen) {
+  /** @type {Map<string, { counts: import("./lib/counts.mjs").Counts, ms: number }>} */
+  const done = new Map();
+  const waiting = [...chosen];
+  /** @type {Set<Promise<void>>} */
+  const running = new Set();
+  const start = (/** @type {string} */ name, /** @type {Suite} */ suite) => {
     const started = performance.now();
-    const counts = await outcome(suite, isBuilt);
-    if (suite.name === "build") isBuilt = counts.failed === 0;
-    total = sum(total, counts);
-    const { passed, failed, skipped } = counts;
-    rows.push({ suite: suite.name, passed, failed, skipped, time: duration(performance.now() - started) });
+    const needed = suite.after === undefined ? undefined : done.get(suite.after)?.counts;
+    const ended = (async () => {
+      if (needed && needed.failed > 0) {
+        print(`\n${suite.title}: not run, for the build failed.\n`);
+        done.set(name, { counts: { ...noTests(), skipped: 1 }, ms: 0 });
+      } else if (chosen.length === 1) done.set(name, { counts: await outcome(suite), ms: performance.now() - started });
+      else {
+        print(`${name} … (${chosen.length - waiting.length} of ${chosen.length})\n`);
+        const { result: counts, output } = await collect(() => outcome(suite));
+        print(output);
+        done.set(name, { counts, ms: performance.now() - started });
+      }
+    })();
+    const tracked = ended.finally(() => running.delete(tracked));
+    running.add(tracked);
+  };
+  while (waiting.length + running.size > 0) {
+    const ready = waiting.findIndex(([, { after }]) => after === undefined || done.has(after));
+    if (ready >= 0 && running.size < LANES) {
+      for (const [name, suite] of waiting.splice(ready, 1)) start(name, suite);
+    } else await Promise.race(running);
   }
-  console.log();
-  const widths = [10, 8, 8, 8, 14];
+  return chosen.map(([name]) => ({ name, ...(done.get(name) ?? { counts: noTests(), ms: 0 }) }));
+}
+
+await script(async () => {
+  const started = performance.now();
+  const results = await runAll(selected());
   const line = (/** @type {readonly unknown[]} */ cells) =>
-    console.log(cells.map((cell, i) => (i ? `${cell}`.padStart(widths[i] ?? 0) : `${cell}`.padEnd(10))).join(""));
+    print(`${cells.map((cell, i) => (i > 0 ? `${cell}`.padStart(i < 4 ? 8 : 14) : `${cell}`.padEnd(10))).join("")}\n`);
+  print("\n");
   line(["suite", "passed", "failed", "skipped", "time"]);
-  for (const row of rows) line(Object.values(row));
-  console.log(`\n${total.passed} passed, ${total.failed} failed, ${total.skipped} skipped`);
+  for (const { name, counts, ms } of results) {
+    line([name, counts.passed, counts.failed, counts.skipped, duration(ms)]);
+  }
+  const total = sum(results.map(({ counts }) => counts));
+  print(`\nAll took ${duration(performance.now() - started)}.\n`);
+  print(`${total.passed} passed, ${total.failed} failed, ${total.skipped} skipped\n`);
   if (total.failed > 0) process.exitCode = 1;
 });

@@ -8,10 +8,12 @@ pub mod align;
 pub mod bindings;
 pub mod evidence;
 pub mod metrics;
+pub mod options;
 pub mod paper;
 pub mod precise;
 pub mod progress;
 pub mod register;
+pub mod report;
 
 pub use sim3align_geometry as geometry;
 pub use sim3align_geometry::{error, number};

@@ -68,6 +68,20 @@ pub trait Host {
     fn best(&mut self, _camera_from_mesh: &Similarity, _score: f64) {}
 }
 
+impl<H: Host + ?Sized> Host for &mut H {
+    fn now_ms(&mut self) -> f64 {
+        (**self).now_ms()
+    }
+
+    fn progress(&mut self, stage: Stage, fraction: f64) {
+        (**self).progress(stage, fraction);
+    }
+
+    fn best(&mut self, camera_from_mesh: &Similarity, score: f64) {
+        (**self).best(camera_from_mesh, score);
+    }
+}
+
 /// A host without clock or ears: all times are 0.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Silent;
@@ -109,7 +123,7 @@ impl Serialize for Timings {
 
 /// Times the stages of one run and reports them to the host.
 pub struct Stopwatch<'a> {
-    host: &'a mut dyn Host,
+    host: Box<dyn Host + 'a>,
     plan: &'static [(Stage, f64)],
     timings: Timings,
     running: Option<Stage>,
@@ -119,8 +133,8 @@ pub struct Stopwatch<'a> {
 
 impl<'a> Stopwatch<'a> {
     /// A stopwatch for the stages in `plan`, each with the share of the whole that is done when it begins.
-    pub fn new(host: &'a mut dyn Host, plan: &'static [(Stage, f64)]) -> Self {
-        Self { host, plan, timings: Timings::default(), running: None, fraction: 0.0, begun_ms: 0.0 }
+    pub fn new(host: impl Host + 'a, plan: &'static [(Stage, f64)]) -> Self {
+        Self { host: Box::new(host), plan, timings: Timings::default(), running: None, fraction: 0.0, begun_ms: 0.0 }
     }
 
     /// The next stage begins; the one before it, if any, has ended. A stage that runs again adds to its time.

@@ -1,27 +1,27 @@
-/** Many alignments, one after the other as they are ready, with few of them under way. */
+/** Many alignments, yielded as they are ready, with a bounded number of them running. */
 import type { Sim3AlignError } from "./error.js";
 import type { AlignInput } from "./input/types.js";
 import { onAbort } from "./on-abort.js";
-import type { AlignAllResult, Alignment } from "./results.js";
+import type { AlignAllResult } from "./results.js";
 
-/** How `alignAll` goes about it. */
-export interface Conveyor {
-  /** Inputs that are pulled, and whose results the caller has not got yet, at most. */
+/** Options of a batch. */
+export interface BatchOptions<A> {
+  /** How many inputs may have been pulled whose results have not been yielded. */
   limit: number;
   ordered: boolean;
   signal: AbortSignal | undefined;
-  align(input: AlignInput, index: number, signal: AbortSignal): Promise<Alignment>;
-  /** Whether an error is about one input, and others may go on. */
+  align(input: AlignInput, index: number, signal: AbortSignal): Promise<A>;
+  /** Whether an error is about one input only, so that the others continue. */
   isOwn(error: unknown): error is Sim3AlignError;
 }
 
-type Settled = { result: AlignAllResult } | { failure: unknown };
+type Settled<A> = { result: AlignAllResult<A> } | { failure: unknown };
 
-/** Aligns the inputs; what ends the loop early, ends what is under way. */
-export async function* alignAll(
+/** Aligns the inputs. Leaving the loop early ends the alignments that are running. */
+export async function* alignAll<A extends { input?: AlignInput }>(
   inputs: Iterable<AlignInput> | AsyncIterable<AlignInput>,
-  { limit, ordered, signal, align, isOwn }: Conveyor,
-): AsyncGenerator<AlignAllResult, void, undefined> {
+  { limit, ordered, signal, align, isOwn }: BatchOptions<A>,
+): AsyncGenerator<AlignAllResult<A>, void, undefined> {
   signal?.throwIfAborted();
   const stopped = new AbortController();
   let unfollow = () => {};
@@ -32,11 +32,11 @@ export async function* alignAll(
       reject(reason);
     });
   });
-  // Nobody may be waiting just then.
+  // It may reject while nobody waits for it.
   aborted.catch(() => {});
   const iterator = Symbol.asyncIterator in inputs ? inputs[Symbol.asyncIterator]() : inputs[Symbol.iterator]();
   const running = new Map<number, Promise<number>>();
-  const settled = new Map<number, Settled>();
+  const settled = new Map<number, Settled<A>>();
   let pull: Promise<"pulled"> | undefined;
   let pulled = 0;
   let hasEnded = false;
@@ -63,7 +63,7 @@ export async function* alignAll(
         pull = undefined;
         continue;
       }
-      const ready = settled.get(first) as Settled;
+      const ready = settled.get(first) as Settled<A>;
       if ("failure" in ready) throw ready.failure;
       yield ready.result;
       settled.delete(first);
@@ -74,15 +74,21 @@ export async function* alignAll(
   } finally {
     unfollow();
     stopped.abort();
-    // Whoever makes the inputs may be at it: nobody waits for that.
+    // The source may be busy making an input: do not wait for it.
     if (!isWhole) Promise.allSettled([pull, iterator.return?.()]);
   }
 }
 
-async function outcome(alignment: Promise<Alignment>, index: number, isOwn: Conveyor["isOwn"]): Promise<Settled> {
+async function outcome<A extends { input?: AlignInput }>(
+  aligned: Promise<A>,
+  index: number,
+  isOwn: BatchOptions<A>["isOwn"],
+): Promise<Settled<A>> {
   try {
-    const { input, ...rest } = await alignment;
-    return { result: { index, alignment: rest, ...(input === undefined ? {} : { input }) } };
+    const alignment = await aligned;
+    const { input } = alignment;
+    delete alignment.input;
+    return { result: { index, alignment, ...(input === undefined ? {} : { input }) } };
   } catch (error) {
     if (!isOwn(error)) return { failure: error };
     const { input } = error;

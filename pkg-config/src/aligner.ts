@@ -1,70 +1,73 @@
 /// <reference lib="esnext.disposable" preserve="true" />
-/** The package's one class. */
+/** The aligner: the package's main class. */
 import { alignAll } from "./align-all.js";
-import type { Core } from "./core.js";
-import { type Engine, HereEngine } from "./engine.js";
+import { type Core, coreModule } from "./core.js";
+import { type Engine, MainThreadEngine } from "./engine.js";
 import { disposed, invalidArgument, Sim3AlignError } from "./error.js";
+import { formatsModule } from "./formats-module.js";
+import type { Preset } from "./generated/types.js";
 import type { AlignInput } from "./input/types.js";
 import type { Job, Results } from "./jobs.js";
-import { coreModule, formatsModule } from "./modules.js";
 import type {
   AlignAllOptions,
-  AlignOptions,
   CallOptions,
-  Defaults,
-  EstimateOptions,
+  EstimateSim3Options,
   EvaluateOptions,
+  OptionsOf,
   Progress,
   RegisterOptions,
 } from "./options.js";
+import type { CreateWorker, LazySource, WasmSource } from "./platform.js";
 import { WorkerPool } from "./pool/pool.js";
-import { type CreateWorker, workshop } from "./pool/port.js";
+import { workerFactory } from "./pool/port.js";
 import { ProgressListener } from "./progress.js";
-import type { AlignAllResult, Alignment, Evaluation, Registration } from "./results.js";
+import type { AlignAllResult, AlignResult, Evaluation, Registration } from "./results.js";
 import { coreSim3, type Sim3Like } from "./sim3.js";
 import { isKind, isRecord, withoutUndefined } from "./values.js";
-import type { LazySource, LoadedModule, WasmSource } from "./wasm-module.js";
+import type { LoadedModule } from "./wasm-module.js";
 
-/** What `createAligner` can be told. */
+/** Options of `createAligner`. */
 export interface AlignerOptions {
-  /** Where the core module comes from. By default `wasm/core_bg.wasm` beside this script. */
+  /** The core module. Default: `wasm/core_bg.wasm` beside this script. */
   wasm?: WasmSource | undefined;
-  /** Where the file readers come from, once a file is passed. By default `wasm/formats_bg.wasm` beside this script. */
+  /** The module that reads files, loaded with the first file. Default: `wasm/formats_bg.wasm` beside this script. */
   formatsWasm?: WasmSource | undefined;
   /**
-   * How many workers do the work: 0 (the default) does it on the calling thread; `"auto"` is one less than the machine
-   * has cores, 1 to 8. The workers are this package's `worker.js`, run as module `Worker`s, or by Node as
-   * `node:worker_threads`; they need neither shared memory nor special headers. Node's process does not wait for idle
-   * ones.
+   * The number of workers: 0 (the default) works on the calling thread; `"auto"` is one less than the number of cores, 1
+   * to 8. Workers run this package's `worker.js` as module `Worker`s, or as `node:worker_threads`. They need neither shared
+   * memory nor special headers. Idle workers do not keep a Node process alive.
    */
   workers?: number | "auto" | undefined;
-  /** Makes a worker that runs this package's `worker.js`, where that can't be found beside this script. */
+  /** Creates a worker that runs this package's `worker.js`, for bundlers that do not find it beside this script. */
   createWorker?: CreateWorker | undefined;
 }
 
-/** What `sim3align/inline` knows beforehand. */
-export interface Surroundings {
+/**
+ * The files that `sim3align/inline` brings along.
+ * @internal
+ */
+export interface BundledAssets {
   wasm?: LazySource;
   formatsWasm?: LazySource;
   workerScript?: string;
 }
 
-/** Workers that "auto" starts at most: each has a copy of its input. */
+/** Upper bound on the workers of "auto": each holds a copy of its input. */
 const MAX_AUTO = 8;
 
 /**
- * Loads the core module and makes an aligner. The module is loaded once and shared by all aligners, whose state is
- * their own, so this can be called anywhere, any number of times; only the first call's `wasm` counts.
- * @throws {@link Sim3AlignError} `NOT_INITIALISED` where the module can't be loaded; the next call tries again
+ * Loads the core module and creates an aligner. The module is loaded once and shared by all aligners; only the first
+ * call's `wasm` counts. Each aligner has its own state.
+ * @throws {@link Sim3AlignError} `NOT_INITIALISED` if the module can't be loaded; the next call tries again
  */
 export async function createAligner(options: AlignerOptions = {}): Promise<Aligner> {
   return Aligner.create(options);
 }
 
 /**
- * Finds similarity transforms. Every method rejects with {@link Sim3AlignError}, after which the aligner works on; none
- * changes its arguments or keeps them. With workers, the arguments are copied to them when their turn comes: leave them
- * as they are until the call is over.
+ * Finds similarity transforms. Methods reject with {@link Sim3AlignError}, after which the aligner is still usable. They
+ * neither change nor keep their arguments. With workers, arguments are copied when a worker is free: leave them unchanged
+ * until the call ends.
  */
 export class Aligner {
   readonly #core: LoadedModule<Core>;
@@ -77,68 +80,75 @@ export class Aligner {
   }
 
   /** @internal */
-  static async create(options: AlignerOptions, surroundings: Surroundings = {}): Promise<Aligner> {
-    const { wasm = surroundings.wasm, formatsWasm = surroundings.formatsWasm } = options;
+  static async create(options: AlignerOptions, assets: BundledAssets = {}): Promise<Aligner> {
+    const { wasm = assets.wasm, formatsWasm = assets.formatsWasm } = options;
     const workers = checkedWorkers(options.workers);
     const core = await coreModule.load(wasm);
-    const here = new HereEngine(core, () => formatsModule.load(formatsWasm));
-    if (workers === 0) return new Aligner(core, here);
+    const mainThread = new MainThreadEngine(core, () => formatsModule.load(formatsWasm));
+    if (workers === 0) return new Aligner(core, mainThread);
     const { createWorker } = options;
-    const found = await workshop(surroundings.workerScript, createWorker);
-    const width = workers === "auto" ? Math.min(Math.max(found.cores - 1, 1), MAX_AUTO) : workers;
-    const supplies = {
-      create: found.create,
+    const factory = await workerFactory(assets.workerScript, createWorker);
+    const size = workers === "auto" ? Math.min(Math.max(factory.cores - 1, 1), MAX_AUTO) : workers;
+    const setup = {
+      create: factory.create,
       core: await coreModule.compile(),
       formats: () => formatsModule.compile(formatsWasm),
     };
-    return new Aligner(core, new WorkerPool(width, supplies, here));
+    return new Aligner(core, new WorkerPool(size, setup, mainThread));
   }
 
   /**
-   * Puts a mesh where a depth map shows it, at its real size: x_cam = s·R·p_mesh + t, OpenCV camera frame (x right, y
-   * down, z forward), metres. The same input, options and seed give the same bits, with any number of workers.
+   * Aligns a mesh to the object in a depth map: x_cam = s·R·p_mesh + t, OpenCV camera frame (x right, y down, z forward),
+   * metres. The same input, options and seed give the same bits, with any number of workers.
    *
-   * The result says how sure it is (`confidence`), which other poses explain the same picture (`alternatives`), and
-   * which parts of the pose the view leaves open (`uncertainty`).
-   * @throws {@link Sim3AlignError} for bad input, `INVALID_OPTION` for options that contradict each other, and `NO_CONSENSUS` where nothing that the data support was found
+   * The result has a `confidence`, the other poses that explain the observation (`alternatives`), and how well the
+   * observation determines each part of the pose (`uncertainty`). With `preset: "paper"` it has none of these; with
+   * `metrics: false` it has no `metrics`.
+   * @throws {@link Sim3AlignError} for bad input, `INVALID_OPTION` for options that contradict each other, `UNKNOWN_OPTION`
+   * for options of the other preset, and `NO_CONSENSUS` where no pose has support in the data
    */
-  async align(input: AlignInput, options: AlignOptions = {}): Promise<Alignment> {
-    const { initial, onProgress, splitSearch, ...rest } = checkedOptions(options);
+  async align<P extends Preset = "precise", M extends boolean = true>(
+    input: AlignInput,
+    options?: OptionsOf<P, M>,
+  ): Promise<AlignResult<P, M>> {
+    const given: { initial?: unknown; onProgress?: unknown } = checkedOptions(options ?? {});
+    const { initial, onProgress, ...rest } = given;
     const coreOptions = initial === undefined ? rest : { ...rest, initial: coreSim3(initial) };
-    return this.#run("align", input, coreOptions, { onProgress, splitSearch });
+    const result: AlignResult = await this.#run("align", input, coreOptions, { onProgress });
+    return result as AlignResult<P, M>;
   }
 
   /**
-   * Aligns many inputs, and yields each result as it is ready: `{ index, alignment }`, or `{ index, error }` where
-   * an input is at fault, after which the others go on. Inputs are pulled as there is room: at most twice as many as
-   * there are workers (one, without workers) have been pulled and not been yielded, so that inputs that are read on
-   * demand never fill the memory. Leaving the loop ends what is under way.
+   * Aligns many inputs, and yields each result as it is ready: `{ index, alignment }`, or `{ index, error }` for an input
+   * at fault, after which the others continue. Inputs are pulled as needed: at most twice as many as there are workers
+   * (one, without workers) are in memory at a time. Leaving the loop ends the running alignments.
    * @example
    * ```ts
    * for await (const { index, alignment, error } of aligner.alignAll(inputs)) console.log(index, alignment ?? error);
    * ```
    * @throws what `inputs` throws, the reason of an aborted signal, and {@link Sim3AlignError} `DISPOSED`
    */
-  async *alignAll(
+  async *alignAll<P extends Preset = "precise", M extends boolean = true>(
     inputs: Iterable<AlignInput> | AsyncIterable<AlignInput>,
-    options: AlignAllOptions = {},
-  ): AsyncGenerator<AlignAllResult, void, undefined> {
+    options?: AlignAllOptions<P, M>,
+  ): AsyncGenerator<AlignAllResult<AlignResult<P, M>>, void, undefined> {
     this.#checkUsable();
-    const { ordered = false, onProgress, signal, ...rest } = checkedOptions(options);
+    const given: AlignAllOptions<Preset> = checkedOptions(options ?? {});
+    const { ordered = false, onProgress, signal, ...rest } = given;
     yield* alignAll(inputs, {
       limit: this.#engine.capacity,
       ordered: checkedFlag("ordered", ordered),
       signal: checkedSignal(signal),
       align: (input, index, signal) => {
         const own = onProgress && { onProgress: (progress: Progress) => onProgress({ ...progress, index }) };
-        return this.align(input, { ...rest, ...own, signal });
+        return this.align<P, M>(input, { ...rest, ...own, signal } as OptionsOf<P, M>);
       },
       isOwn: (error): error is Sim3AlignError => error instanceof Sim3AlignError && error.code !== "DISPOSED",
     });
   }
 
   /**
-   * Scores a transform on an input with the metrics of `align`, and against the truth where `options` has it.
+   * Scores a transform on an input with the metrics of `align`, and compares it with `options.truth`.
    * @param transform camera from mesh, metres
    * @throws {@link Sim3AlignError} for bad input, `INVALID_TRANSFORM` for what is no similarity
    */
@@ -149,10 +159,10 @@ export class Aligner {
   }
 
   /**
-   * Aligns a point cloud to another, which may overlap in part only: y = s·R·x + t.
+   * Aligns a point cloud to another that it overlaps, at least in part: y = s·R·x + t.
    * @param source x, y, z one after the other, in any unit
    * @param target x, y, z one after the other, in any unit
-   * @throws {@link Sim3AlignError} for bad input, and `NO_CONSENSUS` where nothing that the data support was found
+   * @throws {@link Sim3AlignError} for bad input, and `NO_CONSENSUS` where no transform has support in the data
    */
   async register(
     source: Float32Array | Float64Array,
@@ -163,7 +173,7 @@ export class Aligner {
   }
 
   /**
-   * Finds the transform that the most correspondences agree on, whatever matched the points: y = s·R·x + t.
+   * Estimates the transform that most correspondences agree on: y = s·R·x + t.
    * @param source x, y, z one after the other, in any unit
    * @param target x, y, z one after the other, in any unit
    * @param correspondences index of a source point, index of its target point, one pair after the other
@@ -173,26 +183,20 @@ export class Aligner {
     source: Float32Array | Float64Array,
     target: Float32Array | Float64Array,
     correspondences: Uint32Array,
-    options: EstimateOptions = {},
+    options: EstimateSim3Options = {},
   ): Promise<Registration> {
     return this.#run("estimateSim3", { source, target, correspondences }, checkedOptions(options));
   }
 
-  /** The values that options take where they are left out. */
-  async defaults(): Promise<Defaults> {
-    this.#checkUsable();
-    return this.#core.call((core) => core.defaults());
-  }
-
-  /** Which build the core is. */
+  /** The version of the core module. */
   async buildInfo(): Promise<{ version: string }> {
     this.#checkUsable();
     return this.#core.call((core) => ({ version: core.version() }));
   }
 
   /**
-   * Ends the aligner and its workers: calls that are under way, and later ones, reject with `DISPOSED`. The modules stay
-   * loaded for others.
+   * Ends the aligner and its workers. Running and later calls reject with `DISPOSED`. The modules stay loaded for other
+   * aligners.
    */
   dispose(): void {
     if (this.#isDisposed) return;
@@ -200,7 +204,7 @@ export class Aligner {
     this.#engine.dispose();
   }
 
-  /** The same, for `using`. */
+  /** Disposes the aligner at the end of a `using` declaration's scope. */
   [Symbol.dispose](): void {
     this.dispose();
   }
@@ -209,21 +213,12 @@ export class Aligner {
     method: M,
     data: (Job & { method: M })["data"],
     { signal, transfer = false, ...options }: CallOptions,
-    {
-      onProgress,
-      splitSearch = false,
-      ...more
-    }: { onProgress?: unknown; splitSearch?: unknown; transform?: unknown } = {},
+    { onProgress, ...more }: { onProgress?: unknown; transform?: unknown } = {},
   ): Promise<Results[M]> {
     this.#checkUsable();
     const job = { method, data, options, ...more } as unknown as Job & { method: M };
     const progress = new ProgressListener(onProgress);
-    const call = {
-      signal: checkedSignal(signal),
-      progress,
-      transfer: checkedFlag("transfer", transfer),
-      splitSearch: checkedFlag("splitSearch", splitSearch),
-    };
+    const call = { signal: checkedSignal(signal), progress, transfer: checkedFlag("transfer", transfer) };
     const outcome = await this.#engine.run(job, call);
     const result = outcome.result as Results[M];
     return transfer ? { ...result, input: outcome.data } : result;
@@ -234,7 +229,7 @@ export class Aligner {
   }
 }
 
-/** Options without those that are left undefined; the core checks names and values. */
+/** Options without undefined properties. The core checks names and values. */
 function checkedOptions<T extends object>(options: T) {
   if (isRecord(options)) return withoutUndefined(options as T);
   throw invalidArgument("options", options, "an object", "Pass { name: value }, or leave it out.");

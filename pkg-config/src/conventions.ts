@@ -6,7 +6,6 @@
  * @packageDocumentation
  */
 export { type BopExport, type BopPose, fromBop, toBop } from "./conventions/bop.js";
-export { fromCocoRle, toCocoRle } from "./conventions/coco-rle.js";
 export { type Cuboid, type CuboidOptions, type MeshAxis, toCuboid } from "./conventions/cuboid.js";
 export { type CvatMaskElement, fromCvatRle } from "./conventions/cvat-rle.js";
 export { depthFromDisparity } from "./conventions/disparity.js";
@@ -24,10 +23,7 @@ export { exportGlb, type GlbOptions, placeGlb } from "./conventions/glb.js";
 export { type GltfNode, type GltfNodeOptions, toGltfNode } from "./conventions/gltf-node.js";
 export { fromLabelStudioRle } from "./conventions/label-studio-rle.js";
 export { type MogeOutput, pointMapFromMoge } from "./conventions/moge.js";
-export type { Quaternion, Vector3 } from "./conventions/numbers.js";
 export { type DimensionOptions, type ObjectBox, objectDimensions } from "./conventions/object-box.js";
-export type { StatedCamera } from "./conventions/pinhole.js";
-export type { DepthPixels, ImageSize, MaskPixels } from "./conventions/pixels.js";
 export { exportPly } from "./conventions/ply.js";
 export {
   type CropInput,
@@ -43,5 +39,9 @@ export { fromSam3d, type Nested, type Sam3dLayout, type Sam3dVertices, toSam3d }
 export { applyToPoints, compose, invert, toRowMajor, toSim3 } from "./conventions/similarity.js";
 export { depthFromTensor, type MaskChoice, maskFromTensor, type TensorLike } from "./conventions/tensor.js";
 export { type ErrorCode, type ErrorParts, Sim3AlignError } from "./error.js";
+export { fromCocoRle, toCocoRle } from "./formats/coco-rle.js";
+export type { StatedCamera } from "./formats/pinhole.js";
+export type { DepthPixels, ImageSize, MaskPixels } from "./formats/pixels.js";
 export type { CocoRle, MeshArrays, PinholeCamera, PixelArray } from "./input/types.js";
 export type { Sim3, Sim3Like } from "./sim3.js";
+export type { Quaternion, Vector3 } from "./values.js";

@@ -1,32 +1,62 @@
-/** What the two WebAssembly modules export. */
+/** The core WebAssembly module: what it takes and returns. */
+import type { Pinhole } from "./formats/pinhole.js";
 import type * as Results from "./generated/types.js";
-import type { CoreInput } from "./input/resolve.js";
-import type { Defaults } from "./options.js";
-import type { Glue } from "./wasm-module.js";
+import * as glue from "./wasm/core.js";
+import { type Glue, WasmModule } from "./wasm-module.js";
+
+/** An input as the core takes it; the core checks lengths and values. */
+export interface CoreInput {
+  depth?: Float32Array | Uint16Array;
+  depthScale?: unknown;
+  pointMap?: Float32Array;
+  width?: unknown;
+  height?: unknown;
+  mask: Uint8Array | Uint8ClampedArray;
+  maskWidth?: number;
+  maskHeight?: number;
+  resizeMask?: unknown;
+  camera?: Pinhole;
+  mesh: CoreMesh;
+}
+
+/** A mesh as the core takes it. */
+export interface CoreMesh {
+  positions: Float32Array;
+  indices?: Uint32Array | Uint16Array;
+}
+
+/** The result of either preset. */
+export type CoreAlignment = Results.Alignment | Results.PaperAlignment;
 
 /** Points, x, y, z one after the other. */
 export type Cloud = Float32Array | Float64Array;
 
 /**
- * Called as a stage begins, and after each round of a search: with the best pose, 16 numbers, and its score, once there is
- * one. What it throws ends the call.
+ * Called as a stage begins, and after each round of a search: with the best pose, 16 numbers, and its score, once there
+ * is one. An exception ends the call.
  */
 export type CoreListener = (stage: Results.Stage, fraction: number, best?: Float64Array) => void;
 
-/** The core's functions: they check what they are given, and throw coded errors. */
+/** An alignment that is computed in steps, so that the thread can do other work between them. */
+export interface AlignTask {
+  /** Works for about this long; returns the result once it is there. */
+  step(sliceMs: number): CoreAlignment | undefined;
+  free(): void;
+}
+
+/** The functions of the core: they check their arguments, and throw coded errors. */
 export interface Core extends Glue {
-  align(input: CoreInput, options: object, onProgress: CoreListener | undefined): Results.Alignment;
+  align(input: CoreInput, options: object, onProgress: CoreListener | undefined): CoreAlignment;
+  beginAlign?(input: CoreInput, options: object, onProgress: CoreListener | undefined): AlignTask;
   evaluate(input: CoreInput, transform: unknown, options: object): Results.Evaluation;
   register(source: Cloud, target: Cloud, options: object): Results.Registration;
   estimateSim3(source: Cloud, target: Cloud, correspondences: Uint32Array, options: object): Results.Registration;
-  defaults(): Defaults;
   version(): string;
-  beginShare(input: CoreInput, options: object): void;
-  /** See {@link ShareStep}; without parts, ends the share. */
-  stepShare(found: Float64Array | undefined, part: number, parts: number): Float64Array;
-  /** Ends the share. */
-  finishShare(onProgress: CoreListener | undefined): Results.Alignment;
 }
 
-/** The file readers' functions. */
-export type Formats = typeof import("./wasm/formats.js");
+/** The core, shared by all aligners of this realm. */
+export const coreModule = new WasmModule<Core>(
+  "core",
+  () => new URL("./wasm/core_bg.wasm", import.meta.url),
+  () => glue as unknown as Core,
+);

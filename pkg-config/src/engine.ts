@@ -1,42 +1,44 @@
-/** Who does the jobs: this thread, or workers. */
-import type { Core, CoreListener, Formats } from "./core.js";
+/** Engines run jobs: on this thread, or in workers. */
+import type { Core, CoreAlignment, CoreInput, CoreListener } from "./core.js";
 import { disposed } from "./error.js";
-import { type Job, perform, type Results } from "./jobs.js";
+import type { LoadFormats } from "./formats-module.js";
+import { type Job, perform, type Results, withoutInput } from "./jobs.js";
 import type { ProgressListener } from "./progress.js";
 import { type LoadedModule, Stopped } from "./wasm-module.js";
 
-/** How a job is to be done. */
+/** Options of a call that are about how it runs. */
 export interface Call {
   signal: AbortSignal | undefined;
   progress: ProgressListener;
-  /** Whether the job's arrays may be moved to where it is done. */
+  /** Whether the arrays of the job may be moved to the worker. */
   transfer: boolean;
-  /** Whether several may share an alignment's search. */
-  splitSearch: boolean;
 }
 
-/** What came of a job, and its data as they are now. */
+/** The result of a job, and its data as they are now. */
 export interface Outcome<J extends Job> {
   result: Results[J["method"]];
   data: J["data"];
 }
 
-/** Does jobs. */
+/** Runs jobs. */
 export interface Engine {
-  /** How many jobs it can be given at once without any of them waiting long. */
+  /** How many jobs to hand over at once to keep it busy. */
   readonly capacity: number;
   run<J extends Job>(job: J, call: Call): Promise<Outcome<J>>;
   dispose(): void;
 }
 
-/** Does jobs here, one after the other: the thread is busy meanwhile. */
-export class HereEngine implements Engine {
+/** How long an alignment may keep this thread busy without a break. */
+const SLICE_MS = 40;
+
+/** Runs jobs on this thread. */
+export class MainThreadEngine implements Engine {
   readonly capacity = 1;
   readonly #core: LoadedModule<Core>;
-  readonly #formats: () => Promise<LoadedModule<Formats>>;
+  readonly #formats: LoadFormats;
   #isDisposed = false;
 
-  constructor(core: LoadedModule<Core>, formats: () => Promise<LoadedModule<Formats>>) {
+  constructor(core: LoadedModule<Core>, formats: LoadFormats) {
     this.#core = core;
     this.#formats = formats;
   }
@@ -48,8 +50,8 @@ export class HereEngine implements Engine {
     };
     check();
     if (signal !== undefined) {
-      // This thread is about to be busy: whoever wants to abort gets a turn.
-      await new Promise((resolve) => setTimeout(resolve));
+      // Callers who want to abort get their turn before this thread is busy.
+      await turn();
       check();
     }
     const listener: CoreListener = (stage, fraction, best) => {
@@ -66,12 +68,40 @@ export class HereEngine implements Engine {
       check();
       return module;
     };
+    const align = (input: CoreInput, options: object, onProgress?: CoreListener) =>
+      alignInSteps(this.#core, [input, options, onProgress], check);
     const isFollowed = progress.isWanted || signal !== undefined;
-    const tools = { core: this.#core, formats };
-    return { result: await perform(job, tools, isFollowed ? listener : undefined), data: job.data };
+    const modules = { core: this.#core, formats, align };
+    return { result: await perform(job, modules, isFollowed ? listener : undefined), data: job.data };
   }
 
   dispose(): void {
     this.#isDisposed = true;
+  }
+}
+
+/** Lets timers, events and rendering have their turn. */
+const turn = () => new Promise<void>((resolve) => setTimeout(resolve));
+
+/** Aligns in slices, between which `check` may throw and other work gets its turn. */
+async function alignInSteps(
+  core: LoadedModule<Core>,
+  args: Parameters<Core["align"]>,
+  check: () => void,
+): Promise<CoreAlignment> {
+  const task = core.call((c) => c.beginAlign?.(...args), withoutInput);
+  if (task === undefined) return core.call((c) => c.align(...args), withoutInput);
+  const { instance } = core;
+  try {
+    for (;;) {
+      const result = core.call(() => task.step(SLICE_MS), withoutInput);
+      if (result !== undefined) return result;
+      await turn();
+      check();
+      // Another call has trapped, and the task has gone with its instance.
+      if (core.instance !== instance) return await alignInSteps(core, args, check);
+    }
+  } finally {
+    if (core.instance === instance) task.free();
   }
 }

@@ -1,19 +1,19 @@
-/** The one error type, and how what the WebAssembly modules throw becomes it. */
+/** The package's error type, and conversions to it. */
 import type { ErrorCode as CoreErrorCode } from "./generated/types.js";
 
 /**
- * What went wrong, as a name that stays the same from release to release. The guide on troubleshooting has a section for
- * each: cause, example and fix.
+ * What went wrong, as a name that stays the same in all releases. The troubleshooting guide explains each: cause, example
+ * and fix.
  */
 export type ErrorCode =
   | CoreErrorCode
   /** A WebAssembly module could not be loaded. The next call tries again. */
   | "NOT_INITIALISED"
-  /** The aligner was disposed of. Create a new one. */
+  /** The aligner has been disposed. Create another one. */
   | "DISPOSED"
-  /** A worker could not be started, or ended twice under the same call. Other calls go on, with new workers. */
+  /** A worker could not be started, or ended twice during the same call. Other calls continue with new workers. */
   | "WORKER_FAILED"
-  /** A file that the command line looked for is not there. */
+  /** A file of a case, or one that the command line was given, is not there. */
   | "FILE_NOT_FOUND";
 
 /** The parts of a {@link Sim3AlignError}. */
@@ -25,13 +25,13 @@ export interface ErrorParts {
   found: string;
   /** What was expected. */
   expected: string;
-  /** What to do about it. */
+  /** How to fix it. */
   remedy: string;
 }
 
 /**
- * Every error of this package. The message says which argument is at fault, what was found, what was expected and
- * what to do; `code` is for programs. After it, the aligner that threw it works on.
+ * The error that all functions of this package throw. The message names the argument, what was found, what was expected,
+ * and the remedy; `code` is for programs. The aligner that threw it can still be used.
  */
 export class Sim3AlignError extends Error implements ErrorParts {
   override readonly name = "Sim3AlignError";
@@ -40,10 +40,10 @@ export class Sim3AlignError extends Error implements ErrorParts {
   readonly found: string;
   readonly expected: string;
   readonly remedy: string;
-  /** With `transfer: true`: the input, handed back, where the worker could do so. */
+  /** With `transfer: true`: the input, where the worker could return it. */
   input?: unknown;
 
-  /** The message is made of the parts; `options` may hold a `cause`. */
+  /** @param options may hold a `cause` */
   constructor({ code, argument, found, expected, remedy }: ErrorParts, options?: ErrorOptions) {
     super(`${argument}: found ${found}, expected ${expected}. ${remedy}`, options);
     this.code = code;
@@ -59,7 +59,7 @@ export function invalidArgument(argument: string, value: unknown, expected: stri
   return new Sim3AlignError({ code: "INVALID_ARGUMENT", argument, found: describe(value), expected, remedy });
 }
 
-/** A value's kind, for people. */
+/** The kind of a value, for messages. */
 export function describe(value: unknown): string {
   if (value === undefined) return "nothing";
   if (value === null) return "null";
@@ -74,12 +74,14 @@ export function describe(value: unknown): string {
   return names.length === 0 ? "an empty object" : `an object with ${names.slice(0, 8).join(", ")}`;
 }
 
-/** Whether a module threw this about its caller's input; anything else that it throws is a trap. */
-export function isCoded(error: unknown): error is Error & ErrorParts {
-  return error instanceof Error && error.name === "Sim3AlignError" && "code" in error;
+/** Whether a module threw this about its arguments: a plain object. Anything else that it throws is a trap. */
+export function isCoded(error: unknown): error is ErrorParts {
+  if (typeof error !== "object" || error === null) return false;
+  const parts: Partial<Record<keyof ErrorParts, unknown>> = error;
+  return typeof parts.code === "string" && typeof parts.argument === "string" && typeof parts.remedy === "string";
 }
 
-/** A trap inside WebAssembly, which no input should be able to cause. */
+/** The error for a trap inside WebAssembly, which no input should be able to cause. */
 export function internalError(cause: unknown): Sim3AlignError {
   return new Sim3AlignError(
     {
@@ -87,24 +89,24 @@ export function internalError(cause: unknown): Sim3AlignError {
       argument: "sim3align",
       found: cause instanceof Error ? `${cause.name}: ${cause.message}` : String(cause),
       expected: "a result",
-      remedy: "This is a fault of the package: please report it with the input. The next call starts afresh.",
+      remedy: "This is a bug in sim3align: please report it with the input. The next call uses a new instance.",
     },
     { cause },
   );
 }
 
-/** The parts alone, which go from one thread to another. */
+/** The parts of an error, which can be posted to another thread. */
 export function partsOf({ code, argument, found, expected, remedy }: Sim3AlignError): ErrorParts {
   return { code, argument, found, expected, remedy };
 }
 
-/** What calls of an aligner get that is no more. */
+/** The error for calls on a disposed aligner. */
 export function disposed(): Sim3AlignError {
   return new Sim3AlignError({
     code: "DISPOSED",
     argument: "aligner",
-    found: "an aligner that was disposed of",
-    expected: "one in use",
-    remedy: "Create a new one with createAligner(), or dispose of it later.",
+    found: "a disposed aligner",
+    expected: "an aligner in use",
+    remedy: "Create another one with createAligner().",
   });
 }

@@ -1,8 +1,13 @@
-/** The file readers' WebAssembly module. */
-import type { Formats } from "./core.js";
-import { WasmModule } from "./wasm-module.js";
+/** The second WebAssembly module: the readers of mesh files, PNG and NPY. */
+import { type LoadedModule, WasmModule } from "./wasm-module.js";
 
-/** The file readers, shared by all of this realm. */
+/** The functions of the file readers. */
+export type Formats = typeof import("./wasm/formats.js");
+
+/** Loads the file readers, once a file is passed. */
+export type LoadFormats = () => Promise<LoadedModule<Formats>>;
+
+/** The file readers, shared by all aligners of this realm. */
 export const formatsModule = new WasmModule<Formats>(
   "formats",
   () => new URL("./wasm/formats_bg.wasm", import.meta.url),

@@ -1,24 +1,44 @@
 /**
- * The file readers alone: depth maps, masks, meshes and cameras, without the aligner. `Aligner.align` takes the same files as they
- * are; these are for those who want to look at what is in them.
+ * The file readers alone: depth maps, masks, meshes, cameras, poses and case folders, without the aligner. `Aligner.align`
+ * takes the same files; use these functions to look into them.
  * @packageDocumentation
  */
-import { invalidArgument } from "./error.js";
+import { type Case, type CaseFiles, type CaseSettings, caseFrom } from "./case-files.js";
+import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
+import { type CameraFile, type CameraFileOptions, parseCameraFile } from "./formats/camera-file.js";
+import { fromCocoRle, readRleFile } from "./formats/coco-rle.js";
+import type { JsonFile } from "./formats/json.js";
 import { formatsModule } from "./formats-module.js";
-import { fileBytes } from "./input/bytes.js";
-import type { CocoRle, EncodedBytes, MeshFormat } from "./input/types.js";
+import { beginsLikeJson, requiredBytes } from "./input/bytes.js";
+import type { CameraFileInput, CocoRle, EncodedBytes, MeshFormat, PixelArray } from "./input/types.js";
+import type { WasmSource } from "./platform.js";
 import { isRecord, withoutUndefined } from "./values.js";
-import type { CameraFile, DepthImage, MaskImage, MeshArrays } from "./wasm/formats.js";
-import type { WasmSource } from "./wasm-module.js";
 
+export type { Case, CaseFiles, CaseSettings } from "./case-files.js";
+export type { KnownPose } from "./conventions/pose-file.js";
 export { type ErrorCode, type ErrorParts, Sim3AlignError } from "./error.js";
-export type { CocoRle, EncodedBytes, MeshFormat } from "./input/types.js";
-export type { CameraFile, DepthImage, MaskImage, MeshArrays } from "./wasm/formats.js";
-export type { WasmSource } from "./wasm-module.js";
+export type { CameraFile, CameraFileOptions } from "./formats/camera-file.js";
+export type { AlignInput, CameraFileInput, CocoRle, EncodedBytes, MeshFormat, PixelArray } from "./input/types.js";
+export type { WasmSource } from "./platform.js";
+export type { Sim3 } from "./sim3.js";
+
+/** A depth map from a file: metres along the optical axis, row by row; 0 is no reading. */
+export type DepthImage = PixelArray<Float32Array>;
+
+/** A mask from a file: row by row, 1 is the object. */
+export type MaskImage = PixelArray<Uint8Array>;
+
+/** A mesh from a file, in the file's unit and axes. */
+export interface MeshFromFile {
+  /** x, y, z per vertex. */
+  positions: Float32Array;
+  /** Three vertex indices per triangle. */
+  indices: Uint32Array;
+}
 
 /**
- * Loads the readers' WebAssembly module. Only needed where it comes from elsewhere than `wasm/formats_bg.wasm` beside
- * this script; the first call counts.
+ * Loads the WebAssembly module of the readers. Only needed where it is not at `wasm/formats_bg.wasm` beside this script;
+ * only the first successful call's `wasm` counts.
  * @throws {@link Sim3AlignError} `NOT_INITIALISED`; the next call tries again
  */
 export async function loadFormats(wasm?: WasmSource): Promise<void> {
@@ -26,37 +46,35 @@ export async function loadFormats(wasm?: WasmSource): Promise<void> {
 }
 
 /**
- * Reads a 16-bit grey PNG or a `.npy` array: metres along the optical axis, row by row; 0 is no reading.
+ * Reads a 16-bit grey PNG or a `.npy` array as a depth map.
  * @param options.depthScale metres per unit, above 0; by default whole numbers are millimetres, and floats metres
- * @param options.integerDepthScale the same, for whole numbers alone: what a camera file says
- * @throws {@link Sim3AlignError} for what is no such file
+ * @param options.integerDepthScale the same for whole numbers only: the `depthScale` of a camera file
+ * @throws {@link Sim3AlignError} for any other file
  */
 export async function readDepth(
   file: EncodedBytes,
   options: { depthScale?: number | undefined; integerDepthScale?: number | undefined } = {},
 ): Promise<DepthImage> {
-  const bytes = await bytesOf(file);
+  const bytes = await requiredBytes("file", file);
   return (await formatsModule.load()).call((readers) => readers.readDepth(bytes, withoutUndefined(options)));
 }
 
 /**
- * Reads a PNG, a `.npy` array, or COCO RLE (as an object, or a file of JSON): row by row, 1 is the object.
- * @throws {@link Sim3AlignError} for what is no such file
+ * Reads a mask from a PNG, a `.npy` array, or COCO RLE (as an object, or the bytes of a JSON file).
+ * @throws {@link Sim3AlignError} for any other file
  */
 export async function readMask(file: EncodedBytes | CocoRle): Promise<MaskImage> {
-  if (isRecord(file)) {
-    const { size, counts } = file as { size: [number, number]; counts: string | number[] };
-    return (await formatsModule.load()).call((readers) => readers.decodeCocoRle({ size, counts }));
-  }
-  const bytes = await bytesOf(file);
+  if (isRecord(file)) return fromCocoRle(file as unknown as CocoRle);
+  const bytes = await requiredBytes("file", file);
+  if (beginsLikeJson(bytes)) return readRleFile("mask", bytes);
   return (await formatsModule.load()).call((readers) => readers.readMask(bytes));
 }
 
 /**
- * Reads GLB, glTF, OBJ, PLY or STL, all parts merged and node transforms applied, in the file's unit and axes.
- * @param options.format told from the content by default
- * @param options.resources the buffers of a `.gltf`, by the URIs that it names them with
- * @throws {@link Sim3AlignError} for what is no such file
+ * Reads a GLB, glTF, OBJ, PLY or STL file: all parts merged, and node transforms applied.
+ * @param options.format by default it is recognised by the content
+ * @param options.resources the buffers of a `.gltf`, by the URIs in it: see {@link externalResources}
+ * @throws {@link Sim3AlignError} for any other file
  */
 export async function readMesh(
   file: EncodedBytes,
@@ -64,28 +82,52 @@ export async function readMesh(
     format?: MeshFormat | undefined;
     resources?: Readonly<Record<string, Uint8Array | ArrayBuffer>> | undefined;
   } = {},
-): Promise<MeshArrays> {
-  const bytes = await bytesOf(file);
+): Promise<MeshFromFile> {
+  const bytes = await requiredBytes("file", file);
   return (await formatsModule.load()).call((readers) => readers.readMesh(bytes, withoutUndefined(options)));
 }
 
 /**
- * Reads a camera file: our own `camera.json`, BOP's `scene_camera.json`, ROS CameraInfo, Open3D's intrinsics; bytes, text
- * or parsed JSON. Pixel centres are at whole numbers.
- * @param options.width the image's size, to which stated intrinsics have to belong
- * @param options.imageId which entry of a `scene_camera.json`
- * @throws {@link Sim3AlignError} for what is no such file
+ * The URIs of the files that a `.gltf` keeps its geometry in, as they stand in it.
+ * @throws {@link Sim3AlignError} for a file that is not glTF
  */
-export async function readCamera(
-  file: EncodedBytes | string | Readonly<Record<string, unknown>>,
-  options: { width?: number | undefined; height?: number | undefined; imageId?: string | number | undefined } = {},
-): Promise<CameraFile> {
-  const content = isRecord(file) || typeof file === "string" ? file : await bytesOf(file);
-  return (await formatsModule.load()).call((readers) => readers.readCamera(content, withoutUndefined(options)));
+export async function externalResources(file: EncodedBytes): Promise<string[]> {
+  const bytes = await requiredBytes("file", file);
+  return (await formatsModule.load()).call((readers) => readers.externalResources(bytes));
 }
 
-async function bytesOf(file: unknown): Promise<Uint8Array> {
-  const bytes = await fileBytes(file);
-  if (bytes !== null) return bytes;
-  throw invalidArgument("file", file, "a file's bytes", "Pass a Uint8Array, an ArrayBuffer or a Blob.");
+/**
+ * Reads a camera file: our own `camera.json`, BOP's `scene_camera.json`, ROS CameraInfo, or the intrinsics of Open3D and
+ * RealSense; bytes, text or parsed JSON. It needs no WebAssembly.
+ * @throws {@link Sim3AlignError} for any other file, and `SIZE_MISMATCH` for intrinsics of another image size
+ */
+export async function readCamera(file: CameraFileInput, options: CameraFileOptions = {}): Promise<CameraFile> {
+  return parseCameraFile(await jsonOf(file), options);
 }
+
+/**
+ * Reads a pose file: `{ scale, rotation, translation }`, `{ matrix }` (column by column), or an entry of BOP's
+ * `scene_gt.json`; bytes, text or parsed JSON. It needs no WebAssembly.
+ * @returns `null` where the file says that no pose is known
+ * @throws {@link Sim3AlignError} for any other file
+ */
+export async function readPose(file: EncodedBytes | string | object): Promise<KnownPose | null> {
+  return parsePoseFile("pose", await jsonOf(file));
+}
+
+/**
+ * Reads a case folder: `depth.npy|png`, `mask.png|npy|json`, `mesh.glb|gltf|obj|ply|stl`, `camera.json` or
+ * `scene_camera.json`, and `gt.json` where there is one.
+ * @param files by their names, relative to the folder
+ *
+ * @example
+ * const { input, truth } = await readCase({ "depth.png": depth, "mask.png": mask, "mesh.glb": mesh, "camera.json": camera });
+ * const result = await aligner.align(input);
+ * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the names that were looked for
+ */
+export async function readCase(files: CaseFiles, settings: CaseSettings = {}): Promise<Case> {
+  return caseFrom(files, settings, () => formatsModule.load());
+}
+
+const jsonOf = async (file: EncodedBytes | string | object): Promise<JsonFile> =>
+  typeof file === "string" || isRecord(file) || Array.isArray(file) ? file : requiredBytes("file", file);

@@ -7,22 +7,39 @@
  */
 export { Aligner, type AlignerOptions, createAligner } from "./aligner.js";
 export { type ErrorCode, type ErrorParts, Sim3AlignError } from "./error.js";
+export {
+  ALIGN_DEFAULTS,
+  ESTIMATE_SIM3_DEFAULTS,
+  EVALUATE_DEFAULTS,
+  OPTIONS,
+  PAPER_DEFAULTS,
+  REGISTER_DEFAULTS,
+} from "./generated/options.js";
 export type {
+  Alternative,
   Counts,
+  Diagnostics,
+  EvaluationDiagnostics,
   ExtentAxis,
   GuardMode,
   Icp,
   Metrics,
   PoseErrors,
+  PreciseDiagnostics,
   Preset,
   Quality,
+  RegistrationDiagnostics,
   ScoreTerms,
   SearchScope,
   Stage,
+  Timings,
   Uncertainty,
+  Warning,
+  WarningCode,
 } from "./generated/types.js";
 export type {
   AlignInput,
+  CameraFileInput,
   CameraInput,
   CocoRle,
   DepthAlignInput,
@@ -44,27 +61,29 @@ export type {
   AlignOptions,
   BestSoFar,
   CallOptions,
-  Defaults,
   Direction,
-  EstimateOptions,
+  EstimateSim3Options,
   EvaluateOptions,
+  OptionRow,
+  OptionsByPreset,
+  OptionsOf,
+  PaperOptions,
   Progress,
   RegisterOptions,
-  ScaleBounds,
   ScaleOption,
   SymmetryAxis,
   SymmetryOption,
 } from "./options.js";
-export type { CreateWorker, WorkerLike } from "./pool/port.js";
+export type { CreateWorker, WasmSource, WorkerLike } from "./platform.js";
 export type {
   AlignAllResult,
   Alignment,
-  Alternative,
+  AlignmentByPreset,
+  AlignResult,
   Clouds,
   Evaluation,
+  PaperAlignment,
   Registration,
-  Warning,
-  WarningCode,
+  WithoutMetrics,
 } from "./results.js";
 export type { Sim3, Sim3Like } from "./sim3.js";
-export type { WasmSource } from "./wasm-module.js";

@@ -1,8 +1,8 @@
 /// <reference path="./inlined.d.ts" />
 /**
  * The package in one piece: the same as `sim3align`, with the WebAssembly and the worker's script inside the JavaScript,
- * for sandboxes, and for bundlers that copy no other files. The file readers are in a script that is imported once a file
- * is passed. Workers need `worker-src blob:` where a content security policy names any.
+ * for sandboxes, bundled servers, and bundlers that copy no other files. The file readers are in a second script, which is
+ * imported when the first file is passed. A content security policy has to allow `worker-src blob:` for workers.
  * @packageDocumentation
  */
 import core from "inlined:core";
@@ -11,7 +11,7 @@ import { Aligner, type AlignerOptions } from "./aligner.js";
 
 export * from "./index.js";
 
-/** As `createAligner` of `sim3align`; nothing is fetched. */
+/** The same as `createAligner` of `sim3align`, but fetches nothing. */
 export async function createAligner(options: AlignerOptions = {}): Promise<Aligner> {
   return Aligner.create(options, {
     wasm: () => bytesOf(core),

@@ -1,4 +1,4 @@
-/** What the build puts into `inline.js`: see `scripts/lib/inline.mjs`. */
+/** Modules that the build puts into `inline.js`: see `scripts/lib/inline.mjs`. */
 
 declare module "inlined:core" {
   /** The core module, base64. */

@@ -1,53 +1,54 @@
-/** The calls that do the work, as data: so that they can be done here or in a worker, by the same code. */
-import type { Core, CoreListener, Formats } from "./core.js";
+/** Calls as data, which the same code runs on this thread or in a worker. */
+import type { Core, CoreAlignment, CoreInput, CoreListener } from "./core.js";
+import type { LoadFormats } from "./formats-module.js";
 import { resolveInput } from "./input/resolve.js";
 import type { AlignInput } from "./input/types.js";
-import {
-  type Alignment,
-  alignmentOf,
-  type Clouds,
-  type Evaluation,
-  type Registration,
-  withWarnings,
-} from "./results.js";
-import { withTypedMatrix } from "./sim3.js";
+import { type AlignResult, type Clouds, type Evaluation, type Registration, withWarnings } from "./results.js";
 import { isTypedArray, wrongKind } from "./values.js";
 import type { LoadedModule } from "./wasm-module.js";
 
-/** A call. `data` holds all its large arrays; options are in the core's form. */
+/** A call. `data` holds all its large arrays; `options` are in the core's form. */
 export type Job =
   | { method: "align"; data: AlignInput; options: object }
   | { method: "evaluate"; data: AlignInput; options: object; transform: unknown }
   | { method: "register"; data: Clouds; options: object }
   | { method: "estimateSim3"; data: Clouds; options: object };
 
-/** What each call returns. */
+/** The result of each call. */
 export interface Results {
-  align: Alignment;
+  align: AlignResult;
   evaluate: Evaluation;
   register: Registration;
   estimateSim3: Registration;
 }
 
-/** The modules that do it. */
-export interface Tools {
+/** The modules that run a job. */
+export interface JobModules {
   core: LoadedModule<Core>;
-  formats(): Promise<LoadedModule<Formats>>;
+  formats: LoadFormats;
+  /** Aligns in another way than by one call of the core. */
+  align?: (input: CoreInput, options: object, listener?: CoreListener) => Promise<CoreAlignment>;
 }
 
-/** Does a job. `listener` is called as its stages begin; what it throws ends the job. */
+/** Runs a job. `listener` is called as its stages begin; an exception that it throws ends the job. */
 export async function perform<J extends Job>(
   job: J,
-  { core, formats }: Tools,
+  modules: JobModules,
   listener?: CoreListener,
 ): Promise<Results[J["method"]]>;
-export async function perform(job: Job, { core, formats }: Tools, listener?: CoreListener): Promise<unknown> {
+export async function perform(
+  job: Job,
+  { core, formats, align }: JobModules,
+  listener?: CoreListener,
+): Promise<unknown> {
   const { options } = job;
   switch (job.method) {
     case "align": {
       const { core: input, warnings } = await resolveInput(job.data, formats);
-      const result = core.call((c) => c.align(input, options, listener), withoutInput);
-      return withWarnings(alignmentOf(result), warnings);
+      const result = await (align === undefined
+        ? core.call((c) => c.align(input, options, listener), withoutInput)
+        : align(input, options, listener));
+      return withWarnings(result, warnings);
     }
     case "evaluate": {
       const { core: input, warnings } = await resolveInput(job.data, formats);
@@ -58,19 +59,19 @@ export async function perform(job: Job, { core, formats }: Tools, listener?: Cor
     }
     case "register": {
       const { source, target } = checkedClouds(job.data);
-      return withTypedMatrix(core.call((c) => c.register(source, target, options)));
+      return core.call((c) => c.register(source, target, options));
     }
     case "estimateSim3": {
       const { source, target, correspondences } = checkedClouds(job.data);
       if (!isTypedArray<Uint32Array>(correspondences, "Uint32Array")) {
         throw wrongKind("correspondences", correspondences, "a Uint32Array of index pairs", "Uint32Array");
       }
-      return withTypedMatrix(core.call((c) => c.estimateSim3(source, target, correspondences, options)));
+      return core.call((c) => c.estimateSim3(source, target, correspondences, options));
     }
   }
 }
 
-/** Properties of the input are named without it. */
+/** Errors name properties of the input without `input.`. */
 export const withoutInput = (argument: string) => argument.replace(/^input\./, "");
 
 function checkedClouds(clouds: Clouds): Clouds {

@@ -1,4 +1,4 @@
-/** Following abort signals. */
+/** Follows abort signals. */
 
 interface Followers {
   acts: Set<(reason: unknown) => void>;
@@ -8,12 +8,12 @@ interface Followers {
 const followed = new WeakMap<AbortSignal, Followers>();
 
 /**
- * Calls `act` when the signal aborts, until the returned function is called. However many follow a signal, it has one
- * listener: of more than a few, Node thinks that they were forgotten.
+ * Calls `act` when the signal aborts, until the returned function is called. Each signal gets one listener for all of its
+ * followers: Node warns of a leak where a signal has more than a few.
  */
 export function onAbort(signal: AbortSignal, act: (reason: unknown) => void): () => void {
   const { acts, listener } = followed.get(signal) ?? begin(signal);
-  // A function of its own, so that following twice is following twice.
+  // A new function each time, so that the same `act` can follow a signal twice.
   const own = (reason: unknown) => act(reason);
   acts.add(own);
   return () => {

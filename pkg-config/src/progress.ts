@@ -1,11 +1,11 @@
-/** Progress on its way to the caller. */
+/** Reports the core's progress to the caller. */
 import { invalidArgument } from "./error.js";
 import type { BestSoFar, Progress } from "./options.js";
 
-/** Reports a second at most. */
+/** Upper bound on the reports per second. */
 const MAX_PER_SECOND = 20;
 
-/** Hands progress on: never backwards, and not more often than a display can use. */
+/** Calls `onProgress`: never with a smaller fraction, and not more often than a display can show. */
 export class ProgressListener {
   readonly #onProgress: ((progress: Progress) => void) | undefined;
   readonly #times: number[] = [];
@@ -20,22 +20,22 @@ export class ProgressListener {
     this.#onProgress = onProgress as (progress: Progress) => void;
   }
 
-  /** Whether anybody listens. */
+  /** Whether the caller passed `onProgress`. */
   get isWanted(): boolean {
     return this.#onProgress !== undefined;
   }
 
   /**
-   * Calls the caller's function, whose exceptions are the caller's.
-   * @param best the best pose, column by column, and its score, where there is news of it
+   * Calls the caller's function and lets its exceptions through.
+   * @param best the best pose, column by column, and its score, after a round of the search
    */
   report(stage: Progress["stage"], fraction: number, best?: Float64Array): void {
     if (this.#onProgress === undefined) return;
-    if (best !== undefined) this.#best = { matrix: best.slice(0, 16), score: best[16] as number };
+    if (best !== undefined) this.#best = { matrix: Array.from(best.subarray(0, 16)), score: best[16] as number };
     this.#fraction = Math.max(this.#fraction, fraction);
     const now = performance.now();
     while (this.#times[0] !== undefined && this.#times[0] <= now - 1000) this.#times.shift();
-    // The last place is kept for the end.
+    // The last report of a second is reserved for the end.
     const limit = this.#fraction < 1 ? MAX_PER_SECOND - 1 : MAX_PER_SECOND;
     if (this.#times.length >= limit) return;
     this.#times.push(now);

@@ -1,37 +1,15 @@
-/** Similarities: what is taken for one, and how the results carry theirs. */
-import type * as Core from "./generated/types.js";
+/** Similarity transforms as arguments. */
+export type { Sim3Like } from "./argument-types.js";
+
 import { isRecord, plainNumbers } from "./values.js";
 
-/** A similarity y = s·R·x + t in every form that callers ask for. */
-export interface Sim3 extends Omit<Core.Sim3, "matrix"> {
-  /** The 4×4 matrix, **column by column** (three.js `Matrix4.elements`, glTF `node.matrix`, WebGPU). */
-  matrix: Float64Array;
-}
+export type { Sim3 } from "./generated/types.js";
 
-/**
- * A similarity as an argument: anything with a 4×4 `matrix` (column by column) or with `scale`, `rotation` (quaternion
- * x, y, z, w; 9 numbers row by row; or three rows of three) and `translation`; or the 16 numbers alone. So a result
- * of `align` is one.
- */
-export type Sim3Like =
-  | ArrayLike<number>
-  | { readonly matrix: ArrayLike<number> }
-  | {
-      readonly scale: number;
-      readonly rotation: ArrayLike<number> | readonly (readonly number[])[];
-      readonly translation: ArrayLike<number>;
-    };
-
-/** The core's form of a similarity; it checks the numbers. */
+/** The form of a similarity that the core reads. The core checks the numbers. */
 export function coreSim3(transform: unknown): unknown {
   if (!isRecord(transform)) return plainNumbers(transform);
   const { matrix, scale, rotation, rotationMatrix, translation } = transform;
-  // A result has all forms: of these, rows lose nothing.
+  // A result has all forms. Rows are exact.
   if (scale === undefined && matrix !== undefined) return { matrix: plainNumbers(matrix) };
   return { scale, rotation: plainNumbers(rotationMatrix ?? rotation), translation: plainNumbers(translation) };
-}
-
-/** A result with its matrix as a typed array. */
-export function withTypedMatrix<T extends Core.Sim3>(result: T): Omit<T, "matrix"> & { matrix: Float64Array } {
-  return { ...result, matrix: Float64Array.from(result.matrix) };
 }

@@ -1,11 +1,13 @@
 /**
- * Alignments in three.js: objects where they really are, meshes from a scene, and cameras that see what the camera saw.
+ * Alignments in three.js: place objects by a result, take meshes from a scene, and set up cameras like the one that took
+ * the depth map.
  *
- * three.js itself is not imported: its objects are taken by their shape, whatever version they are of.
+ * three.js itself is not imported: any object of the right shape works, of any version of three.js.
  * @packageDocumentation
  */
-export type { StatedCamera } from "./conventions/pinhole.js";
+
 export { type ErrorCode, type ErrorParts, Sim3AlignError } from "./error.js";
+export type { StatedCamera } from "./formats/pinhole.js";
 export type { MeshArrays } from "./input/types.js";
 export type { Sim3, Sim3Like } from "./sim3.js";
 export { applyPinhole, cameraFromPinhole, type LensOptions, type ThreeCamera } from "./three/camera.js";

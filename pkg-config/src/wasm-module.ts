@@ -1,20 +1,15 @@
 /** Loading and calling one WebAssembly module. */
 import { internalError, isCoded, Sim3AlignError } from "./error.js";
+import type { LazySource, WasmSource } from "./platform.js";
 import { isKind } from "./values.js";
 
-/** Where a WebAssembly module comes from: an address, a response, the bytes, or the compiled module. */
-export type WasmSource = URL | string | Response | BufferSource | WebAssembly.Module;
-
-/** The same, or what gets it once it is needed. */
-export type LazySource = WasmSource | (() => WasmSource | Promise<WasmSource>);
-
-/** What wasm-bindgen's glue exports beside the functions themselves. */
+/** The exports of wasm-bindgen's glue beside the module's own functions. */
 export interface Glue {
   default(options: { module_or_path: WebAssembly.Module }): Promise<unknown>;
   __wbg_reset_state(): void;
 }
 
-/** A module that loads once, however many ask for it at once; after a failure the next one tries again. */
+/** A module that is loaded once, however many callers ask at the same time. After a failure the next call tries again. */
 export class WasmModule<G extends Glue> {
   readonly #name: string;
   readonly #source: LazySource;
@@ -28,7 +23,7 @@ export class WasmModule<G extends Glue> {
     this.#importGlue = importGlue;
   }
 
-  /** The compiled module, to be loaded here or elsewhere. `source` counts for the first success only. */
+  /** Compiles the module, to be loaded here or in a worker. Only the first successful call's `source` counts. */
   compile(source: LazySource = this.#source): Promise<WebAssembly.Module> {
     if (this.#compiling === undefined) {
       const compiling = this.#explained(async () => compiled(await given(source)));
@@ -40,7 +35,7 @@ export class WasmModule<G extends Glue> {
     return this.#compiling;
   }
 
-  /** The module, ready to be called. `source` counts for the first success only. */
+  /** Loads the module. Only the first successful call's `source` counts. */
   load(source?: LazySource): Promise<LoadedModule<G>> {
     if (this.#loading === undefined) {
       const loading = this.#instantiate(source);
@@ -65,21 +60,31 @@ export class WasmModule<G extends Glue> {
     try {
       return await work();
     } catch (cause) {
-      throw new Sim3AlignError(
-        {
-          code: "NOT_INITIALISED",
-          argument: this.#name === "core" ? "wasm" : "formatsWasm",
-          found: cause instanceof Error ? cause.message : String(cause),
-          expected: `the WebAssembly module ${this.#name}_bg.wasm of this very version`,
-          remedy: `Serve sim3align/wasm/${this.#name}_bg.wasm beside the script, or pass createAligner its address, bytes or module.`,
-        },
-        { cause },
-      );
+      throw notLoaded(this.#name, cause);
     }
   }
 }
 
-/** Thrown through a module by what it calls back: ends the call, whose caller gets the reason. */
+function notLoaded(name: string, cause: unknown): Sim3AlignError {
+  const file = `${name}_bg.wasm`;
+  // A script that a bundler for servers has moved has no such file beside it, or no address of its own.
+  const isMoved = cause instanceof Error && "code" in cause && ["ENOENT", "ERR_INVALID_URL"].includes(`${cause.code}`);
+  const remedy = isMoved
+    ? `If a bundler has put this script elsewhere, import from "sim3align/inline", which needs no other file, or leave sim3align out of the bundle; or pass createAligner the address, bytes or module of ${file}.`
+    : `Serve sim3align/wasm/${file} beside the script, or pass createAligner its address, bytes or module.`;
+  return new Sim3AlignError(
+    {
+      code: "NOT_INITIALISED",
+      argument: name === "core" ? "wasm" : "formatsWasm",
+      found: cause instanceof Error ? cause.message : String(cause),
+      expected: `the WebAssembly module ${file} of this very version`,
+      remedy,
+    },
+    { cause },
+  );
+}
+
+/** Thrown by a callback to end the call into WebAssembly; the caller gets the reason. */
 export class Stopped {
   readonly reason: unknown;
 
@@ -92,20 +97,27 @@ export class Stopped {
 export class LoadedModule<G extends Glue> {
   readonly #glue: G;
   #isSpent = false;
+  #instance = 0;
 
   constructor(glue: G) {
     this.#glue = glue;
   }
 
+  /** Which instance calls go to: objects of another one are gone. */
+  get instance(): number {
+    return this.#isSpent ? this.#instance + 1 : this.#instance;
+  }
+
   /**
-   * Calls the module. What it says about its input becomes a {@link Sim3AlignError}, whose argument `rename` may
-   * change to what the caller knows it as; after anything else the module's state is unknown, and the next call gets
-   * a new instance.
+   * Calls the module. Its errors about the input become {@link Sim3AlignError}s; `rename` turns the names of their
+   * arguments into those that the caller knows. After any other exception the state of the module is unknown, and the
+   * next call gets a new instance.
    */
   call<T>(work: (glue: G) => T, rename: (argument: string) => string = (argument) => argument): T {
     if (this.#isSpent) {
       this.#glue.__wbg_reset_state();
       this.#isSpent = false;
+      this.#instance += 1;
     }
     try {
       return work(this.#glue);
@@ -128,15 +140,15 @@ async function compiled(source: WasmSource): Promise<WebAssembly.Module> {
   const code = isAddress ? await fetched(String(source)) : source;
   if (!isKind<Response>(code, "Response")) return WebAssembly.compile(code as BufferSource);
   if (!code.ok) throw new Error(`${code.status} ${code.statusText} at ${code.url}`);
-  // Servers that don't know the type are no reason to fail, and none for a warning on the console.
+  // Without the type, streaming would fail, and a fallback would print a warning on the console.
   const isTyped = code.headers.get("content-type")?.startsWith("application/wasm");
   return isTyped ? WebAssembly.compileStreaming(code) : WebAssembly.compile(await code.arrayBuffer());
 }
 
-/** What is at an address; Node fetches no files. */
+/** The content at an address; Node's `fetch` reads no files. */
 async function fetched(address: string): Promise<Response | BufferSource> {
   if (!address.startsWith("file:")) return fetch(address);
-  // A name that bundlers for browsers don't follow: they never come here.
+  // Bundlers for browsers do not follow a name in a variable; browsers never get here.
   const fileSystem = "node:fs/promises";
   const { readFile } = (await import(
     /* webpackIgnore: true */ /* @vite-ignore */ fileSystem

@@ -1,83 +1,73 @@
-/** What runs in a worker: does the jobs that its aligner asks for, one after the other. */
-import type { Core, Formats } from "./core.js";
-import { internalError, partsOf, Sim3AlignError } from "./error.js";
-import { resolveInput } from "./input/resolve.js";
-import { type Job, perform, withoutInput } from "./jobs.js";
-import { type Reply, type Request, SEARCHED, type ShareRequest } from "./pool/protocol.js";
-
-import { alignmentOf, withWarnings } from "./results.js";
-import { buffersOf } from "./transfer.js";
-// As they are: a worker's script is one file to some bundlers, which leaves nothing to be loaded later.
+/** The script of a worker: runs the jobs that its aligner sends, one after the other. */
+import type { Core } from "./core.js";
+import { type ErrorParts, internalError, partsOf, Sim3AlignError } from "./error.js";
+import type { Formats } from "./formats-module.js";
+import { perform } from "./jobs.js";
+import type { Reply, Request } from "./pool/protocol.js";
+import { buffersOf } from "./pool/transfer.js";
+// Imported statically: some bundlers make one file of a worker's script, without anything that could be loaded later.
 import * as coreGlue from "./wasm/core.js";
 import * as formatsGlue from "./wasm/formats.js";
 import { type LoadedModule, WasmModule } from "./wasm-module.js";
 
 type Post = (message: Reply, transfer?: ArrayBuffer[]) => void;
 
-/** One worker's state. */
-class Workplace {
+/** Loads the modules and runs the jobs of one worker. */
+class WorkerHost {
   readonly #post: Post;
   #core: Promise<LoadedModule<Core>> | undefined;
   #formats: Promise<LoadedModule<Formats>> | undefined;
-  #hearFormats: ((message: Request & { type: "formats" }) => void) | undefined;
-  /** Of the input that is shared. */
-  #warnings: string[] = [];
+  /** Takes the answer to `needs-formats`, while the worker waits for it. */
+  #receiveFormats: ((formats: WebAssembly.Module | ErrorParts) => void) | undefined;
 
   constructor(post: Post) {
     this.#post = post;
   }
 
-  async hear(message: Request): Promise<void> {
-    if (message.type === "formats") return this.#hearFormats?.(message);
-    if (message.type === "start") {
-      const core = new WasmModule<Core>("core", message.core, () => coreGlue as unknown as Core).load();
-      // Whoever needs it sees the failure.
-      core.catch(() => {});
-      this.#core = core;
-      return;
-    }
-    const data = message.type === "job" && message.returnData ? message.job.data : undefined;
+  receive(message: Request): void {
+    if (message.type === "formats") this.#receiveFormats?.(message.formats);
+    else if (message.type === "start") this.#core = this.#loadCore(message.core);
+    else this.#run(message);
+  }
+
+  /** Answers a message that arrived without its content, so that the call does not wait for ever. */
+  receiveUnreadable(): void {
+    const error: ErrorParts = {
+      code: "INVALID_ARGUMENT",
+      argument: "input",
+      found: "an array whose buffer is detached: it has been moved to a worker before",
+      expected: "arrays that still have their buffers",
+      remedy: "After a call with transfer: true, use the arrays of the result's (or the error's) `input`.",
+    };
+    if (this.#receiveFormats !== undefined) this.#receiveFormats(error);
+    else this.#post({ type: "done", error });
+  }
+
+  async #run({ job, wantsProgress, returnData }: Request & { type: "job" }): Promise<void> {
+    const data = returnData ? job.data : undefined;
+    const listener = (stage: (Reply & { type: "progress" })["stage"], fraction: number, best?: Float64Array) =>
+      this.#post({ type: "progress", stage, fraction, best });
     try {
-      const result = message.type === "job" ? await this.#perform(message) : await this.#step(message);
-      this.#post({ type: "result", result, data }, [...buffersOf(data), ...foundIn(message, result)]);
+      if (this.#core === undefined) throw new Error("no core");
+      const modules = { core: await this.#core, formats: () => this.#loadFormats() };
+      const result = await perform(job, modules, wantsProgress ? listener : undefined);
+      this.#post({ type: "done", result, data }, buffersOf(data));
     } catch (error) {
       const known = error instanceof Sim3AlignError ? error : internalError(error);
-      this.#post({ type: "error", error: partsOf(known), data }, buffersOf(data));
+      this.#post({ type: "done", error: partsOf(known), data }, buffersOf(data));
     }
   }
 
-  async #perform({ job, wantsProgress }: { job: Job; wantsProgress: boolean }): Promise<unknown> {
-    return perform(job, await this.#tools(), this.#listener(wantsProgress));
-  }
-
-  /** A step of an alignment that several work on. */
-  async #step(request: ShareRequest): Promise<unknown> {
-    const { core, formats } = await this.#tools();
-    switch (request.type) {
-      case "share": {
-        const { data, options } = request.job;
-        const { core: input, warnings } = await resolveInput(data, formats);
-        core.call((c) => c.beginShare(input, options), withoutInput);
-        this.#warnings = warnings;
-        return null;
-      }
-      case "step":
-        return core.call((c) => c.stepShare(request.found, request.part, request.parts));
-      case "finish": {
-        const listener = this.#listener(request.wantsProgress, SEARCHED);
-        return withWarnings(alignmentOf(core.call((c) => c.finishShare(listener), withoutInput)), this.#warnings);
-      }
-    }
-  }
-
-  async #tools() {
-    if (this.#core === undefined) throw new Error("no core");
-    return { core: await this.#core, formats: () => this.#loadFormats() };
+  #loadCore(module: WebAssembly.Module): Promise<LoadedModule<Core>> {
+    const core = new WasmModule<Core>("core", module, () => coreGlue as unknown as Core).load();
+    // The first job reports the failure.
+    core.catch(() => {});
+    return core;
   }
 
   #loadFormats(): Promise<LoadedModule<Formats>> {
     if (this.#formats === undefined) {
-      const loading = this.#askForFormats();
+      const loading = this.#requestFormats();
       this.#formats = loading;
       loading.catch(() => {
         this.#formats = undefined;
@@ -86,41 +76,36 @@ class Workplace {
     return this.#formats;
   }
 
-  async #askForFormats(): Promise<LoadedModule<Formats>> {
-    const answer = await new Promise<Request & { type: "formats" }>((resolve) => {
-      this.#hearFormats = resolve;
+  async #requestFormats(): Promise<LoadedModule<Formats>> {
+    const formats = await new Promise<WebAssembly.Module | ErrorParts>((resolve) => {
+      this.#receiveFormats = resolve;
       this.#post({ type: "needs-formats" });
     });
-    if ("error" in answer) throw new Sim3AlignError(answer.error);
-    return new WasmModule<Formats>("formats", answer.module, () => formatsGlue).load();
-  }
-
-  /** Reports progress, where it is wanted; the first `done` of the whole is done already. */
-  #listener(isWanted: boolean, done = 0) {
-    if (!isWanted) return undefined;
-    return (stage: (Reply & { type: "progress" })["stage"], fraction: number, best?: Float64Array) =>
-      this.#post({ type: "progress", stage, fraction: done + (1 - done) * fraction, best });
+    this.#receiveFormats = undefined;
+    if ("code" in formats) throw new Sim3AlignError(formats);
+    return new WasmModule<Formats>("formats", formats, () => formatsGlue).load();
   }
 }
 
-/** The large array in what came of a step, which is not needed here any more. */
-const foundIn = ({ type }: Request, result: unknown): ArrayBuffer[] => (type === "step" ? buffersOf(result) : []);
-
-/** The part of a browser's worker's global object that is used here; Node's has a module in its place. */
-const scope = globalThis as unknown as { postMessage?: Post; onmessage?: (event: { data: Request }) => void };
+/** The global object of a web worker, as far as it is used here. Workers of Node have a module in its place. */
+const scope = globalThis as unknown as {
+  postMessage?: (message: Reply, transfer: ArrayBuffer[]) => void;
+  onmessage?: (event: { data: Request }) => void;
+  onmessageerror?: () => void;
+};
 
 if (typeof scope.postMessage === "function") {
-  const workplace = new Workplace((message, transfer = []) => {
-    (scope.postMessage as (message: Reply, transfer: ArrayBuffer[]) => void)(message, transfer);
-  });
-  scope.onmessage = ({ data }) => void workplace.hear(data);
+  const host = new WorkerHost((message, transfer = []) => scope.postMessage?.(message, transfer));
+  scope.onmessage = ({ data }) => host.receive(data);
+  scope.onmessageerror = () => host.receiveUnreadable();
 } else {
-  // A name that bundlers for browsers don't follow: they never come here. Messages wait until somebody listens.
+  // Bundlers for browsers do not follow a name in a variable; browsers never get here. Messages wait for a listener.
   const name = "node:worker_threads";
   import(/* webpackIgnore: true */ /* @vite-ignore */ name).then(
     ({ parentPort }: typeof import("node:worker_threads")) => {
-      const workplace = new Workplace((message, transfer = []) => parentPort?.postMessage(message, transfer));
-      parentPort?.on("message", (message: Request) => void workplace.hear(message));
+      const host = new WorkerHost((message, transfer = []) => parentPort?.postMessage(message, transfer));
+      parentPort?.on("message", (message: Request) => host.receive(message));
+      parentPort?.on("messageerror", () => host.receiveUnreadable());
     },
   );
 }

@@ -1,24 +1,20 @@
 /**
  * `npm run bench [-- --quick]`: the whole benchmark: generated scenes (or case folders), every method and ablation, other
- * libraries beside them, general registration; tables and figures of it all. A killed run goes on where it was.
+ * libraries beside them, general registration; tables and figures of it all. An interrupted run is resumed.
  */
 import { mkdirSync, readdirSync } from "node:fs";
 import { join, resolve } from "node:path";
+import { digest } from "../lib/cache.mjs";
+import { buildLab, runLab } from "../lib/lab.mjs";
 import { at } from "../lib/paths.mjs";
-import { run } from "../lib/run.mjs";
-import { digest } from "../lib/stamp.mjs";
 import { duration, step } from "../lib/step.mjs";
 import { command, count } from "./command.mjs";
-import { datasets, generalJobs, generalTable } from "./general.mjs";
-import { importJob, ownJob, peersJob } from "./paper/jobs.mjs";
+import { datasets, generalJobs, generalTable, importJob, ownJob, peersJob } from "./jobs.mjs";
 import { report } from "./paper/report.mjs";
 import { tableSpecs } from "./paper/rows.mjs";
-import { meshMethods, versionsOf } from "./peer-methods.mjs";
-import { installPeers } from "./peers.mjs";
-import { Progress } from "./progress.mjs";
-import { openResults, surroundings } from "./results.mjs";
+import { installPeers, meshMethods, versionsOf } from "./peers.mjs";
+import { environment, openResults } from "./results.mjs";
 
-/** @typedef {import("./paper/jobs.mjs").Job} Job */
 /**
  * @typedef {object} BenchmarkOptions
  * @property {boolean} quick
@@ -39,7 +35,7 @@ const collect = (/** @type {string} */ value, /** @type {string[]} */ all) => [.
 
 await command("bench", (program) =>
   program
-    .description("Runs the benchmark and writes its tables and figures. A killed run goes on where it was.")
+    .description("Runs the benchmark and writes its tables and figures. An interrupted run is resumed.")
     .option("--quick", "a subset that takes about five minutes", false)
     .option("--scenes <n>", "generated scenes: 100 make 338 pairs of object and mesh (12 where --quick)", count)
     .option("--set-seed <s>", "seed of the generated scenes", Number, 0)
@@ -65,13 +61,13 @@ async function benchmark(options) {
   const scenes = options.scenes ?? (options.quick ? 12 : 100);
   const name = options.cases === undefined ? `scenes-${scenes}-seed-${options.setSeed}` : "cases";
   const out = resolve(options.out ?? at("benches", "results", name));
-  await step("Programs", () => buildPrograms());
+  await step("Programs", buildLab);
   if (options.peers) await installPeers(options.python);
   /** @type {Record<string, string>} */
   const folders = options.cases === undefined ? await writeScenes(scenes, options.setSeed) : { given: options.cases };
   const clouds = await datasets(options);
 
-  const code = digest([at("src"), at("Cargo.toml"), at("Cargo.lock")]);
+  const code = digest([at("src"), at("geometry"), at("formats"), at("lab"), at("Cargo.toml"), at("Cargo.lock")]);
   const identity = { code, scenes, setSeed: options.setSeed, cases: options.cases ?? null, clouds };
   openResults(out, identity, options.fresh);
 
@@ -92,27 +88,29 @@ async function benchmark(options) {
   await runAll(jobs);
 
   const software = options.peers ? versionsOf(answers) : {};
-  const run = { ...(await surroundings()), software, setSeed: options.setSeed, scenes };
+  const run = { ...(await environment()), software, setSeed: options.setSeed, scenes };
   const general = clouds.map((set) => generalTable(set, out));
   const markdown = await report({ specs, out, run, folders, general, snapshot: options.snapshot });
   console.log(`\n${markdown}\nTables and figures are in ${out}; all took ${duration(performance.now() - started)}.`);
 }
 
-/** @param {readonly Job[]} jobs */
+/** Runs jobs beneath one bar with the time that is left. @param {readonly import("./jobs.mjs").Job[]} jobs */
 async function runAll(jobs) {
-  const progress = new Progress(
-    await import("cli-progress").then(({ default: library }) => library),
+  const { SingleBar, Presets } = (await import("cli-progress")).default;
+  const format = "{bar} {percentage}% | {eta_formatted} left | {task}";
+  const options = { format, noTTYOutput: true, notTTYSchedule: 30_000, hideCursor: true, linewrap: false };
+  const bar = new SingleBar(options, Presets.shades_classic);
+  bar.start(
     jobs.reduce((sum, { work }) => sum + work, 0),
+    0,
+    { task: "" },
   );
+  const advance = (/** @type {number} */ seconds, task = "") => bar.increment(seconds, { task });
   try {
-    for (const job of jobs) await job.run(progress);
+    for (const job of jobs) await job.run({ advance });
   } finally {
-    progress.stop();
+    bar.stop();
   }
-}
-
-async function buildPrograms() {
-  await run("cargo", ["build", "--quiet", "--profile", "native", "--package", "sim3align-lab"]);
 }
 
 /**
@@ -125,7 +123,7 @@ async function writeScenes(scenes, seed) {
   await step("Scenes", async (say) => {
     mkdirSync(folder, { recursive: true });
     const args = ["scenes", folder, "--scenes", `${scenes}`, "--set-seed", `${seed}`, "--prior", "both"];
-    await run(at("target", "native", "sim3align-lab"), args);
+    await runLab(args);
     say(`${readdirSync(join(folder, "detailed")).length} pairs`);
   });
   return { detailed: join(folder, "detailed"), smooth: join(folder, "smooth") };

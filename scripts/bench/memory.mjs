@@ -4,17 +4,17 @@
  */
 import { readdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
+import { buildPackage } from "../lib/package.mjs";
 import { step } from "../lib/step.mjs";
 import { command, count } from "./command.mjs";
-import { builtPackage, packageModule } from "./package.mjs";
-import { bumpyRing, pictureOf } from "./scene.mjs";
+import { bumpyRing, packageModule, pictureOf } from "./inputs.mjs";
 import { fixed, markdownTable } from "./table.mjs";
 
-/** @typedef {import("./case.mjs").TypedCase} TypedCase */
+/** @typedef {import("./inputs.mjs").TypedCase} TypedCase */
 
-/** What the core's memory may grow to, in bytes: 128 MB. */
+/** Limit of the core's memory, in bytes: 128 MB. */
 const limit = 128_000_000;
-/** What it is measured with. */
+/** The input that the limit holds for. */
 const large = { triangles: 227_000, width: 1920, height: 1080 };
 /** The mixed sizes: triangles, width, height. All have come up within the first alignments that the last are held against. */
 const mixed = [
@@ -43,7 +43,9 @@ const megabytes = (/** @type {number} */ bytes) => fixed(bytes / 1e6, 1);
  * @returns {Promise<{ name: string, mesh: TypedCase["mesh"], off?: number }>}
  */
 async function meshFrom(folder) {
-  const [{ readMesh }, { formatsModule }] = await Promise.all(["input/mesh.js", "modules.js"].map(packageModule));
+  const [{ readMesh }, { formatsModule }] = await Promise.all(
+    ["input/mesh.js", "formats-module.js"].map(packageModule),
+  );
   let best = null;
   for (const name of readdirSync(folder).filter((file) => file.endsWith(".glb"))) {
     const bytes = new Uint8Array(readFileSync(join(folder, name)));
@@ -98,7 +100,7 @@ async function measurePeaks(meshes) {
 }
 
 /**
- * What the memory has grown to after few alignments of mixed sizes, and after many.
+ * Measures the memory after a few alignments of mixed sizes, and after many.
  * @param {number} alignments
  */
 async function measureGrowth(alignments) {
@@ -128,7 +130,7 @@ await command("bench:memory", (program) =>
     )
     .option("--alignments <n>", "how many on one instance", count, 500)
     .action(async ({ meshes, alignments }) => {
-      await builtPackage();
+      await buildPackage();
       const isWithin = await measurePeaks(meshes);
       console.log();
       const isFlat = await measureGrowth(alignments);

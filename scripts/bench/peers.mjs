@@ -1,12 +1,15 @@
 /** Other libraries' registration on our cases, and on pairs of clouds: the Python package `peers`. */
-import { spawn } from "node:child_process";
+import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { availableParallelism } from "node:os";
-import { resolve } from "node:path";
-import { createInterface } from "node:readline";
+import { basename, join, resolve } from "node:path";
+import { cached, digest } from "../lib/cache.mjs";
+import { buildPackage } from "../lib/package.mjs";
 import { at } from "../lib/paths.mjs";
-import { pythonEnvironment, pythonVariables } from "./python.mjs";
+import { run } from "../lib/run.mjs";
+import { step } from "../lib/step.mjs";
+import { readTypedCase } from "./inputs.mjs";
 
-/** @typedef {{ method: string, case: string, seconds: number | null, error?: string }} Progress */
+/** @typedef {{ method: string, case: string, seconds: number | null, error?: string }} Answered */
 
 /**
  * @typedef {object} PeersRun
@@ -14,49 +17,135 @@ import { pythonEnvironment, pythonVariables } from "./python.mjs";
  * @property {string} [pairs] or a list of pairs of clouds, `[{ id, source, target, voxelSizeM }]`
  * @property {string} out answers go to `OUT/METHOD/NAME.json`; those that are there are kept
  * @property {readonly string[]} [methods] all that apply by default
- * @property {number} [jobs] processes, each on one core; as many as there are cores by default
+ * @property {number} [jobs] processes; as many as there are cores by default
+ * @property {number} [threads] of each process, 1 by default
+ * @property {number} [seed]
  * @property {string} [python] the Python, 3.11 or 3.12, that makes the environment
- * @property {(progress: Progress) => void} [onProgress] called once per answer
+ * @property {(answered: Answered) => void} [onAnswer]
  */
 
-/** The environment's Python, installed where it has not been. @param {string} [program] */
-export const installPeers = (program = "python3") =>
-  pythonEnvironment("peers", at("scripts", "bench", "peers", "requirements.txt"), program);
+/** Seconds that one answer is expected to take. @type {Record<string, number>} */
+const quick = {
+  "open3d-fgr": 0.15,
+  "open3d-gicp": 0.2,
+  "open3d-icp-point-to-plane": 0.3,
+  "open3d-icp-point-to-point": 0.3,
+  "open3d-ransac": 0.5,
+  "open3d-ransac-scale": 0.5,
+  "small-gicp": 0.15,
+  "kiss-matcher": 0.1,
+};
+
+/**
+ * Methods that align a mesh in the benchmark.
+ * @param {boolean} isQuick
+ */
+export const meshMethods = (isQuick) => (isQuick ? quick : { ...quick, "probreg-cpd": 4 });
+
+/** Methods that align two clouds. @type {Record<string, number>} */
+export const pairMethods = { "open3d-ransac": 2, "open3d-fgr": 1, "kiss-matcher": 0.5 };
+
+/**
+ * Folders of cases stand for the cases in them.
+ * @param {readonly string[]} folders
+ */
+export function caseFolders(folders) {
+  const isCase = (/** @type {string} */ folder) => existsSync(join(folder, "camera.json"));
+  return folders.flatMap((path) => {
+    const folder = resolve(path);
+    if (isCase(folder)) return [folder];
+    return readdirSync(folder)
+      .sort()
+      .map((name) => join(folder, name))
+      .filter(isCase);
+  });
+}
+
+/**
+ * The Python of an environment with the libraries, below `target/bench`.
+ * @param {string} [program] the Python that makes it
+ */
+export async function installPeers(program = "python3") {
+  const requirements = at("scripts", "bench", "peers", "requirements.txt");
+  const folder = at("target", "bench", "peers");
+  const python = process.platform === "win32" ? join(folder, "Scripts", "python.exe") : join(folder, "bin", "python");
+  await step("Python libraries", () =>
+    cached(join(folder, "installed-from"), digest([requirements]), [python], async () => {
+      rmSync(folder, { recursive: true, force: true });
+      const remedy = "install Python 3.11 or 3.12 with venv, name it with --python, and check that PyPI can be reached";
+      await run(program, ["-m", "venv", folder], { remedy });
+      await run(python, ["-m", "pip", "install", "--quiet", "--requirement", requirements], { remedy });
+    }),
+  );
+  return python;
+}
 
 /**
  * Runs the methods; installs them first where that has not been done.
  * @param {PeersRun} options
  */
-export async function runPeers({ cases, pairs, out, methods, jobs = availableParallelism(), python, onProgress }) {
-  /** @type {string[]} */
-  const input =
-    pairs === undefined ? ["--cases", ...(cases ?? []).map((path) => resolve(path))] : ["--pairs", resolve(pairs)];
-  const some = methods === undefined ? [] : ["--methods", methods.join()];
-  await peers([...input, "--out", resolve(out), "--jobs", `${jobs}`, ...some], python, (line) =>
-    onProgress?.(JSON.parse(line)),
-  );
+export async function runPeers({ cases, pairs, out, methods, python, onAnswer, ...more }) {
+  const { jobs = availableParallelism(), threads = 1, seed = 0 } = more;
+  const args = ["--out", resolve(out), "--jobs", `${jobs}`, "--threads", `${threads}`, "--seed", `${seed}`];
+  if (methods !== undefined) args.push("--methods", methods.join());
+  if (pairs !== undefined) args.push("--pairs", resolve(pairs));
+  const inputs = at("target", "bench", "inputs");
+  if (pairs === undefined) {
+    await writeInputs(caseFolders(cases ?? []), inputs);
+    args.push("--cases", inputs);
+  }
+  await runPython(args, python, (line) => onAnswer?.(JSON.parse(line)));
+  rmSync(inputs, { recursive: true, force: true });
 }
 
 /**
  * Fails where a method does not recover motions that are known.
  * @param {string} [python]
  */
-export const testPeers = (python) => peers(["--self-test"], python, console.log);
+export const testPeers = (python) => runPython(["--self-test"], python, console.log);
 
 /**
  * @param {readonly string[]} args
- * @param {string} [program]
- * @param {(line: string) => void} [onLine]
+ * @param {string | undefined} program
+ * @param {(line: string) => void} onLine
  */
-async function peers(args, program, onLine = () => {}) {
-  const python = await installPeers(program);
-  const child = spawn(python, ["-m", "peers", ...args], {
-    stdio: ["ignore", "pipe", "inherit"],
-    env: { ...process.env, ...pythonVariables },
-  });
-  /** @type {Promise<number | null>} */
-  const ended = new Promise((done, fail) => child.on("error", fail).on("close", done));
-  for await (const line of createInterface({ input: child.stdout })) onLine(line);
-  const status = await ended;
-  if (status !== 0) throw new Error(`python -m peers ${args.join(" ")}: exit status ${status}; see above.`);
+async function runPython(args, program, onLine) {
+  const env = { PYTHONPATH: at("scripts", "bench"), PYTHONDONTWRITEBYTECODE: "1" };
+  await run(await installPeers(program), ["-m", "peers", ...args], { env, onLine, echo: "errors" });
+}
+
+/**
+ * Writes cases as the files of bare numbers that the Python package reads.
+ * @param {readonly string[]} cases
+ * @param {string} folder
+ */
+async function writeInputs(cases, folder) {
+  await buildPackage();
+  rmSync(folder, { recursive: true, force: true });
+  for (const path of cases) {
+    const { input } = await readTypedCase(path);
+    const { depth, mask, camera, width, height, mesh } = input;
+    const made = join(folder, basename(path));
+    mkdirSync(made, { recursive: true });
+    writeFileSync(join(made, "case.json"), JSON.stringify({ camera, width, height }));
+    for (const [name, numbers] of Object.entries({ depth, mask, ...mesh })) writeFileSync(join(made, name), numbers);
+  }
+}
+
+/**
+ * The libraries' names and versions, as their answers have them.
+ * @param {string} answers a folder of methods' folders
+ * @returns {Record<string, string>}
+ */
+export function versionsOf(answers) {
+  /** @type {Record<string, string>} */
+  const versions = {};
+  for (const method of readdirSync(answers)) {
+    const [first] = readdirSync(join(answers, method));
+    if (first === undefined) continue;
+    const { software = "" } = JSON.parse(readFileSync(join(answers, method, first), "utf8"));
+    const [name = "", version = ""] = software.split(" ");
+    if (version !== "") versions[name] = version;
+  }
+  return versions;
 }

@@ -1,17 +1,16 @@
 /**
- * `npm run bench:pool`: what workers bring: alignments a second by their number, one alignment shared by several, how
- * long an abort takes, what a lost worker costs, and what memory a thousand alignments leave.
+ * `npm run bench:pool`: alignments a second by the number of workers, how long an abort takes, what a lost worker costs,
+ * and the memory that a thousand alignments leave.
  */
 import { availableParallelism } from "node:os";
 import { join } from "node:path";
 import { Worker } from "node:worker_threads";
+import { buildPackage } from "../lib/package.mjs";
 import { packageDir } from "../lib/paths.mjs";
 import { step } from "../lib/step.mjs";
 import { command, count } from "./command.mjs";
-import { builtPackage, packageModule } from "./package.mjs";
-import { bumpyRing, pictureOf } from "./scene.mjs";
-import { median } from "./statistics.mjs";
-import { fixed, markdownTable } from "./table.mjs";
+import { bumpyRing, packageModule, pictureOf } from "./inputs.mjs";
+import { fixed, markdownTable, median } from "./table.mjs";
 
 /** The longest that an abort may take, milliseconds. */
 const maxAbortMs = 100;
@@ -31,7 +30,7 @@ const inputs = [
 ].map(([triangles = 0, width = 0, height = 0]) => pictureOf(bumpyRing(triangles), width, height));
 
 /** @param {number} i */
-const inputOf = (i) => /** @type {import("./case.mjs").TypedCase} */ (inputs[i % inputs.length]);
+const inputOf = (i) => /** @type {import("./inputs.mjs").TypedCase} */ (inputs[i % inputs.length]);
 
 /** @param {number} cases */
 function* cycle(cases) {
@@ -49,7 +48,7 @@ async function timed(action) {
 }
 
 /**
- * One row a number of workers, in turn, so that a busy machine is busy for all.
+ * One row for each number of workers. They alternate, so that other load on the machine affects all.
  * @param {typeof import("../../pkg/index.js").createAligner} createAligner
  * @param {number} cases
  * @param {number} repeats
@@ -76,31 +75,6 @@ async function measureThroughput(createAligner, cases, repeats) {
     return [workers, fixed(own / 1000, 2), fixed((1000 * cases) / own, 2), fixed(alone / own, 2)];
   });
   console.log(`\n${markdownTable([`alignAll, ${cases} inputs: workers`, "s", "alignments/s", "times"], rows)}\n`);
-}
-
-/**
- * One alignment, by one worker and shared by two.
- * @param {typeof import("../../pkg/index.js").createAligner} createAligner
- * @param {number} repeats
- */
-async function measureSplit(createAligner, repeats) {
-  const aligner = await createAligner({ workers: 2 });
-  const rows = [];
-  for (const quality of /** @type {const} */ (["fast", "balanced", "best"])) {
-    /** @type {[number[], number[]]} */
-    const times = [[], []];
-    for (let repeat = -1; repeat < repeats * inputs.length; repeat++) {
-      const input = inputOf(Math.max(repeat, 0));
-      for (const i of /** @type {const} */ ([0, 1])) {
-        const ms = await timed(() => aligner.align(input, { quality, splitSearch: i === 1 }));
-        if (repeat >= 0) times[i].push(ms);
-      }
-    }
-    const [one, two] = times.map(median);
-    rows.push([quality, fixed(one), fixed(two), fixed((one ?? 0) / (two ?? 1), 2)]);
-  }
-  aligner.dispose();
-  console.log(`\n${markdownTable(["one alignment, median", "one worker, ms", "shared by two, ms", "times"], rows)}\n`);
 }
 
 /**
@@ -207,17 +181,16 @@ async function measureMemory(createAligner, alignments) {
 
 await command("bench:pool", (program) =>
   program
-    .description("Measures workers: throughput, one alignment shared, aborts (fails beyond 100 ms), losses, memory.")
+    .description("Measures workers: throughput, aborts (fails beyond 100 ms), losses, memory.")
     .option("--cases <n>", "inputs of alignAll", count, 60)
     .option("--repeats <n>", "how often each is measured, in turn", count, 3)
     .option("--aborts <n>", "how many calls are aborted", count, 100)
     .option("--losses <n>", "how many workers are killed under their job", count, 20)
     .option("--alignments <n>", "how many the memory is watched over", count, 1000)
     .action(async ({ cases, repeats, aborts, losses, alignments }) => {
-      await builtPackage();
+      await buildPackage();
       const { createAligner } = await packageModule("index.js");
       await step("throughput", () => measureThroughput(createAligner, cases, repeats));
-      await step("one alignment, shared", () => measureSplit(createAligner, repeats));
       const isQuick = await step("aborts", () => measureAborts(createAligner, aborts));
       await step("lost workers", () => measureLosses(createAligner, losses));
       await step("memory", () => measureMemory(createAligner, alignments));

@@ -1,13 +1,28 @@
-/** What `sim3align-bench` measures: runs it, and reads its JSON. */
-import { mkdirSync, readFileSync } from "node:fs";
+/** Records of `sim3align-lab bench`: what came of each case. */
+import { existsSync, mkdirSync, readFileSync } from "node:fs";
 import { dirname, resolve } from "node:path";
-import { run } from "../lib/run.mjs";
-import { isWithin, strict } from "./tolerance.mjs";
+import { runLab } from "../lib/lab.mjs";
 
-/** @typedef {import("./tolerance.mjs").PoseErrors} PoseErrors */
+/** @typedef {{ scaleError: number, rotationErrorDeg: number, translationErrorRelative: number }} PoseErrors */
+
+/** Scale within 5 %, rotation within 10° up to symmetry, translation within 5 % of the diameter. */
+export const strict = { scale: 0.05, rotationDeg: 10, translation: 0.05 };
+/** Twice as far. */
+export const loose = { scale: 0.1, rotationDeg: 20, translation: 0.1 };
 
 /**
- * What came of a case: `Record` of `src/samples/benchmark.rs`, as far as tables need it.
+ * Whether a pose is near enough; no answer is not.
+ * @param {PoseErrors | null | undefined} errors
+ * @param {typeof strict} tolerance
+ */
+export const isWithin = (errors, tolerance) =>
+  !!errors &&
+  errors.scaleError <= tolerance.scale &&
+  errors.rotationErrorDeg <= tolerance.rotationDeg &&
+  errors.translationErrorRelative <= tolerance.translation;
+
+/**
+ * The outcome of a case: the fields of `Record` in `lab/src/samples/benchmark.rs` that the tables use.
  * @typedef {object} BenchRecord
  * @property {string} name
  * @property {string} tier
@@ -37,16 +52,6 @@ import { isWithin, strict } from "./tolerance.mjs";
 /** @typedef {{ cases: number, setSeed: number, meshes?: string, threads?: number, json: string, from?: string }} BenchOptions */
 
 /**
- * Runs the program, built as what WebAssembly is compared with.
- * @param {readonly string[]} args
- * @param {import("../lib/run.mjs").RunOptions} options
- */
-export async function runBenchmark(args, options) {
-  const binary = ["run", "--quiet", "--profile", "native", "--package", "sim3align-lab", "--", "bench"];
-  await run("cargo", [...binary, ...args], options);
-}
-
-/**
  * The rows that an earlier run kept, or those of a run now.
  * @param {BenchOptions} options
  * @param {readonly string[]} rows of `--row`
@@ -58,7 +63,7 @@ export async function benchmarkRows({ cases, setSeed, meshes, threads, json, fro
     const args = ["--generated", `${cases}`, "--set-seed", `${setSeed}`, "--json", resolve(json)];
     if (meshes !== undefined) args.push("--meshes", resolve(meshes));
     if (threads !== undefined) args.push("--threads", `${threads}`);
-    await runBenchmark([...args, ...rows.flatMap((row) => ["--row", row])], { echo: "errors" });
+    await runLab(["bench", ...args, ...rows.flatMap((row) => ["--row", row])], { echo: "errors" });
   }
   return JSON.parse(readFileSync(from ?? json, "utf8")).rows;
 }
@@ -96,4 +101,25 @@ export function failureCounts(records) {
   const counts = { search: 0, scoring: 0, unanswered: 0, unknown: 0 };
   for (const kind of kinds) if (kind !== null) counts[kind]++;
   return counts;
+}
+
+/**
+ * The records of a file, by row, each row's in the order of the cases' names: the order in which threads were done
+ * says nothing.
+ * @param {string} file
+ * @returns {Map<string, BenchRecord[]>}
+ */
+export function readRecords(file) {
+  /** @type {Map<string, BenchRecord[]>} */
+  const rows = new Map();
+  if (!existsSync(file)) return rows;
+  for (const line of readFileSync(file, "utf8").split("\n")) {
+    if (line === "") continue;
+    const { row, case: name, record } = JSON.parse(line);
+    const records = rows.get(row) ?? [];
+    records.push({ ...record, name });
+    rows.set(row, records);
+  }
+  for (const records of rows.values()) records.sort((a, b) => (a.name < b.name ? -1 : 1));
+  return rows;
 }

@@ -1,13 +1,11 @@
-/** The folder that a benchmark's results are kept in, and that a killed run goes on with. */
+/** The folder of a benchmark's results, from which an interrupted run is resumed. */
 import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { cpus, platform, release, totalmem } from "node:os";
 import { join } from "node:path";
 import { attempt } from "../lib/run.mjs";
 
-/** @typedef {import("./records.mjs").BenchRecord} BenchRecord */
-
 /**
- * Opens a folder for the run that `identity` tells from others: its inputs and the code.
+ * Opens the folder of a run. `identity`, its inputs and the digest of the code, distinguishes it from other runs.
  * @param {string} folder
  * @param {Record<string, unknown>} identity
  * @param {boolean} fresh forget what is there
@@ -24,8 +22,11 @@ export function openResults(folder, identity, fresh) {
   writeFileSync(file, text);
 }
 
+/** The file of the records of a kind of mesh. @param {string} folder @param {string} prior */
+export const recordsFile = (folder, prior) => join(folder, "records", `${prior}.jsonl`);
+
 /** Machine and versions, for people who compare figures. */
-export async function surroundings() {
+export async function environment() {
   const said = async (/** @type {string} */ command, /** @type {string[]} */ args) =>
     (await attempt(command, args)).output.trim();
   const [commit, changes, rustc] = await Promise.all([
@@ -42,25 +43,4 @@ export async function surroundings() {
     node: process.version,
     rustc,
   };
-}
-
-/**
- * The records of a file, by row, each row's in the order of the cases' names: the order in which threads were done
- * says nothing.
- * @param {string} file
- * @returns {Map<string, BenchRecord[]>}
- */
-export function readRecords(file) {
-  /** @type {Map<string, BenchRecord[]>} */
-  const rows = new Map();
-  if (!existsSync(file)) return rows;
-  for (const line of readFileSync(file, "utf8").split("\n")) {
-    if (line === "") continue;
-    const { row, case: name, record } = JSON.parse(line);
-    const records = rows.get(row) ?? [];
-    records.push({ ...record, name });
-    rows.set(row, records);
-  }
-  for (const records of rows.values()) records.sort((a, b) => (a.name < b.name ? -1 : 1));
-  return rows;
 }

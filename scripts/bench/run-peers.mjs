@@ -13,7 +13,7 @@ async function main({ selfTest, ...options }) {
   if (options.out === undefined) throw new Error("Found no --out. Remedy: name the folder that the answers go to.");
   await runPeers({
     ...options,
-    onProgress: ({ method, case: name, seconds, error }) =>
+    onAnswer: ({ method, case: name, seconds, error }) =>
       console.log(`${method} ${name}: ${error ?? `${seconds?.toFixed(2)} s`}`),
   });
 }

@@ -1,29 +1,25 @@
 /** The API reference, written by typedoc from the package's sources. */
 import { cpSync, existsSync, mkdirSync, rmSync } from "node:fs";
 import { basename, join } from "node:path";
-import { at } from "./paths.mjs";
+import { cached, digest } from "./cache.mjs";
+import { at, docsDir } from "./paths.mjs";
 import { run } from "./run.mjs";
-import { digest, Stamp } from "./stamp.mjs";
 
 /** typedoc, and the compiler that it is made for, apart from the repository's own. */
 const tools = at("target", "typedoc");
 const manifests = ["package.json", "package-lock.json"];
 
-/** Where the reference is written. */
-export const docsDir = at("target", "docs");
-
 async function installTools() {
   const sources = [...manifests.map((name) => at("scripts", "docs", name)), at(".npmrc")];
-  const stamp = new Stamp(join(tools, "installed-from"), digest(sources), [join(tools, "node_modules")]);
-  if (stamp.isCurrent) return;
-  rmSync(tools, { recursive: true, force: true });
-  mkdirSync(tools, { recursive: true });
-  for (const source of sources) cpSync(source, join(tools, basename(source)));
-  await run("npm", ["ci", "--prefer-offline"], {
-    cwd: tools,
-    remedy: "check that the npm registry can be reached, and that scripts/docs/package-lock.json is up to date",
+  await cached(join(tools, "installed-from"), digest(sources), [join(tools, "node_modules")], async () => {
+    rmSync(tools, { recursive: true, force: true });
+    mkdirSync(tools, { recursive: true });
+    for (const source of sources) cpSync(source, join(tools, basename(source)));
+    await run("npm", ["ci", "--prefer-offline"], {
+      cwd: tools,
+      remedy: "check that the npm registry can be reached, and that scripts/docs/package-lock.json is up to date",
+    });
   });
-  stamp.write();
 }
 
 /**

@@ -5,37 +5,25 @@
 /** @returns {Counts} */
 export const noTests = () => ({ passed: 0, failed: 0, skipped: 0 });
 
-/**
- * @param {Counts} a
- * @param {Counts} b
- * @returns {Counts}
- */
-export const sum = (a, b) => ({
-  passed: a.passed + b.passed,
-  failed: a.failed + b.failed,
-  skipped: a.skipped + b.skipped,
-});
-
-/** @param {string} output */
-function plain(output) {
-  // biome-ignore lint/suspicious/noControlCharactersInRegex: colours are control characters.
-  return output.replace(/\u001b\[[0-9;]*m/g, "");
+/** @param {readonly Counts[]} counts @returns {Counts} */
+export function sum(counts) {
+  const of = (/** @type {keyof Counts} */ name) => counts.reduce((total, one) => total + one[name], 0);
+  return { passed: of("passed"), failed: of("failed"), skipped: of("skipped") };
 }
 
+/** The output without colours. @param {string} output */
+// biome-ignore lint/suspicious/noControlCharactersInRegex: colours are control characters.
+const plain = (output) => output.replace(/\u001b\[[0-9;]*m/g, "");
+
 /**
- * The sum of the result lines of `cargo test` and wasm-bindgen-test, which are worded alike.
+ * The sum of the result lines of `cargo test` and wasm-bindgen-test, which have the same form.
  * @param {string} output
- * @returns {Counts}
  */
 export function rustCounts(output) {
   const results = plain(output).matchAll(/test result: \w+\. (\d+) passed; (\d+) failed; (\d+) ignored/g);
-  return [...results]
-    .map(([, passed, failed, skipped]) => ({
-      passed: Number(passed),
-      failed: Number(failed),
-      skipped: Number(skipped),
-    }))
-    .reduce(sum, noTests());
+  return sum(
+    Array.from(results, ([, ...n]) => ({ passed: Number(n[0]), failed: Number(n[1]), skipped: Number(n[2]) })),
+  );
 }
 
 /**
@@ -46,11 +34,8 @@ export function rustCounts(output) {
 export function nodeCounts(output) {
   const text = plain(output);
   const number = (/** @type {string} */ name) => Number(new RegExp(`^ℹ ${name} (\\d+)$`, "m").exec(text)?.[1] ?? 0);
-  return {
-    passed: number("pass"),
-    failed: number("fail") + number("cancelled"),
-    skipped: number("skipped") + number("todo"),
-  };
+  const failed = number("fail") + number("cancelled");
+  return { passed: number("pass"), failed, skipped: number("skipped") + number("todo") };
 }
 
 /**

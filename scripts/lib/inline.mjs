@@ -4,7 +4,7 @@ import { join } from "node:path";
 import { packageDir } from "./paths.mjs";
 import { wasmFile, wasmModules } from "./wasm.mjs";
 
-/** What both bundles have in common. Nothing in them is beside anything: addresses have no base. */
+/** Options of both bundles. A bundle has no files next to it, so that `import.meta.url` is of no use. */
 const common = /** @type {const} */ ({
   bundle: true,
   platform: "neutral",
@@ -13,7 +13,7 @@ const common = /** @type {const} */ ({
   logLevel: "warning",
 });
 
-/** Bundles what the compiler has written to pkg/, which keeps everything else as it is. */
+/** Bundles the compiler's output in pkg/. */
 export async function bundleInline() {
   // The set-up installs it first.
   const { build } = await import("esbuild");
@@ -25,7 +25,7 @@ export async function bundleInline() {
     ["core", base64.core],
     ["worker", worker.outputFiles[0]?.text],
   ]);
-  // Most callers never need it: it stays beside.
+  // Few callers need the formats module: it stays a file of its own.
   const formats = "inline/formats.js";
   mkdirSync(join(packageDir, "inline"), { recursive: true });
   writeFileSync(join(packageDir, formats), `${exported(base64.formats)}\n`);

@@ -3,6 +3,7 @@
 import { createHash } from "node:crypto";
 import { chmodSync, copyFileSync, cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
+import { once } from "./cache.mjs";
 import { bundleInline } from "./inline.mjs";
 import { at, glueDir, packageDir, skinDir } from "./paths.mjs";
 import { attempt, nodeProgram, run } from "./run.mjs";
@@ -10,8 +11,8 @@ import { wasmBindgenVersion } from "./setup.mjs";
 import { step } from "./step.mjs";
 import { binaryenVersion, buildWasm, sizes, wasmFile, wasmModules } from "./wasm.mjs";
 
-/** Builds everything; the set-up has to have been done. */
-export async function buildPackage() {
+/** Builds everything, and first installs what that needs. */
+export const buildPackage = once(async () => {
   const version = packageVersion();
   await buildWasm();
   await step("package", async (say) => {
@@ -23,7 +24,7 @@ export async function buildPackage() {
     await writeBuildInfo(version);
     say(`pkg/ holds sim3align ${version}`);
   });
-}
+});
 
 /**
  * The version, which package.json and Cargo.toml have to agree on.
@@ -47,7 +48,7 @@ function copyFiles() {
     copyFileSync(at(name), join(packageDir, name));
   }
   mkdirSync(join(packageDir, "wasm"), { recursive: true });
-  // What a module exports to its glue is nobody else's affair; whoever imports the module itself gets it compiled.
+  // The declarations of a module's raw exports are internal: they would be resolved for imports of the .wasm file.
   const isPublic = (/** @type {string} */ path) => !path.endsWith(".wasm.d.ts");
   cpSync(glueDir, join(packageDir, "wasm"), { recursive: true, filter: isPublic });
   const { bin } = JSON.parse(readFileSync(join(skinDir, "package.json"), "utf8"));

@@ -10,7 +10,7 @@ export const repository = join(dirname(fileURLToPath(import.meta.url)), "..", ".
  */
 export const at = (...parts) => join(repository, ...parts);
 
-/** What `npm run build` writes: the publishable package. */
+/** The publishable package, written by `npm run build`. */
 export const packageDir = at("pkg");
 /** The package's sources: TypeScript, and its package.json. */
 export const skinDir = at("pkg-config");
@@ -20,3 +20,9 @@ export const glueDir = at("pkg-config", "src", "wasm");
 export const toolsDir = at("target", "tools");
 /** The package, installed as its users install it, with the tests that use it. */
 export const installDir = at("target", "install-test");
+/** The static site, written by `npm run build:www`, for any host and path. */
+export const siteDir = at("target", "www");
+/** The API reference, written by `npm run docs`. */
+export const docsDir = at("target", "docs");
+/** A case folder with depth as .npy, copied from the page's samples. */
+export const sampleDir = at("target", "samples", "mug");

@@ -1,9 +1,10 @@
-/** Runs other programs. */
+/** Other programs, run to their end. */
 import { spawn } from "node:child_process";
 import { readFileSync } from "node:fs";
 import { homedir } from "node:os";
 import { delimiter, join } from "node:path";
 import { createInterface } from "node:readline";
+import { print } from "./output.mjs";
 import { at, repository } from "./paths.mjs";
 
 /** A command that failed: what it was, what it said, and what to do about it. */
@@ -24,7 +25,7 @@ export class CommandError extends Error {
 }
 
 /**
- * What every program gets: cargo on the path, and the repository's own target folder.
+ * The environment of every program: cargo on the path, and the repository's target folder.
  * @returns {NodeJS.ProcessEnv}
  */
 function environment() {
@@ -38,7 +39,7 @@ function environment() {
  * @property {string} [remedy] what to do when the command fails
  * @property {string} [cwd] the working directory; the repository by default
  * @property {NodeJS.ProcessEnv} [env] added to the environment
- * @property {boolean | "errors"} [echo] pass the output, or standard error alone, on to the console as it comes, besides
+ * @property {boolean | "errors"} [echo] print the output, or pass on standard error alone, as it comes, besides
  * returning it
  * @property {(line: string) => void} [onLine] gets every line of standard output as it comes
  * @property {boolean} [attach] let the command have the console, and return nothing
@@ -61,25 +62,22 @@ export function attempt(command, args, options = {}) {
       // npm and npx are batch files there, which only the shell starts.
       shell: process.platform === "win32" && /^np[mx]$/.test(command),
     });
-    /** @type {Buffer[]} */
-    const chunks = [];
-    /** @type {Buffer[]} */
-    const stdoutChunks = [];
+    let [output, stdout] = ["", ""];
+    child.stdout?.setEncoding("utf8");
+    child.stderr?.setEncoding("utf8");
     child.stdout?.on("data", (chunk) => {
-      chunks.push(chunk);
-      stdoutChunks.push(chunk);
-      if (options.echo === true) process.stdout.write(chunk);
+      output += chunk;
+      stdout += chunk;
+      if (options.echo === true) print(chunk);
     });
     const { onLine } = options;
     if (child.stdout && onLine) createInterface({ input: child.stdout }).on("line", onLine);
     child.stderr?.on("data", (chunk) => {
-      chunks.push(chunk);
-      if (options.echo) process.stderr.write(chunk);
+      output += chunk;
+      if (options.echo === true) print(chunk);
+      else if (options.echo) process.stderr.write(chunk);
     });
-    const end = (/** @type {string} */ reason) => {
-      const [output = "", stdout = ""] = [chunks, stdoutChunks].map((part) => Buffer.concat(part).toString("utf8"));
-      resolve({ output, stdout, reason });
-    };
+    const end = (/** @type {string} */ reason) => resolve({ output, stdout, reason });
     child.on("error", (error) => end(error.message));
     child.on("close", (code, signal) => {
       end(code === 0 ? "" : signal ? `ended by ${signal}` : `exit status ${code}`);

@@ -1,15 +1,13 @@
-/** The samples: seeded, made by the crate's own generator. */
+/** The page's samples: committed in `www/samples`, written by the lab's generator from seeds. */
 import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { at } from "./paths.mjs";
+import { pathToFileURL } from "node:url";
+import { cached, digest, once } from "./cache.mjs";
+import { buildPackage } from "./package.mjs";
+import { at, packageDir, sampleDir } from "./paths.mjs";
 import { run } from "./run.mjs";
-import { digest, Stamp } from "./stamp.mjs";
-import { step } from "./step.mjs";
 
-/** The sample's case folder. */
-export const sampleDir = at("target", "samples", "mug");
-
-/** The page's samples: a folder each, and `index.json`, which lists them. */
+/** A folder for each sample, and `index.json`, which lists them. */
 export const pageSamplesDir = at("www", "samples");
 
 /**
@@ -22,86 +20,92 @@ export const pageSamplesDir = at("www", "samples");
  * @typedef {{ id: string, title: string, about: string, depth: string, camera: string, objects: SampleObject[] }} Sample
  */
 
-const mug = { id: "mug", seed: 1, title: "Mug", about: "What the generator could not see, it invented." };
-
-/** Samples of one object; the seeds are those of pretty pictures. */
+/** Samples of one object. */
 const kinds = [
-  mug,
-  { id: "hammer", seed: 2, title: "Hammer", about: "Long, and almost the same turned half round." },
+  { id: "mug", seed: 1, title: "Mug", about: "The generator invented what it could not see." },
+  { id: "hammer", seed: 2, title: "Hammer", about: "Long, and nearly symmetric under a half turn." },
   { id: "spoon", seed: 2, title: "Spoon", about: "A few millimetres thin." },
   { id: "occluded", seed: 4, title: "Teapot behind a mug", about: "A third of it is hidden." },
 ];
 
 /** A scene of several objects. */
-const desk = { id: "desk", setSeed: 0, title: "Desk", about: "Three objects that hide one another, one depth map." };
+const desk = { id: "desk", setSeed: 0, title: "Desk", about: "Three objects that occlude one another, one depth map." };
 
-/** Makes the sample and those of the page, and gives the examples a copy of the first. */
-export async function makeSample() {
-  await step("samples", async (say) => {
-    const sources = [at("src"), at("Cargo.toml"), at("Cargo.lock"), at("scripts", "lib", "sample.mjs")];
-    const index = join(pageSamplesDir, "index.json");
-    const copy = at("examples", "sample", "mug");
-    const outputs = [index, join(sampleDir, "mesh.glb"), join(copy, "mesh.glb")];
-    const stamp = new Stamp(at("target", "samples", "made-from"), digest(sources), outputs);
-    if (stamp.isCurrent) return say("up to date");
-    stamp.clear();
-    rmSync(sampleDir, { recursive: true, force: true });
-    rmSync(pageSamplesDir, { recursive: true, force: true });
-    await generateKind(mug, sampleDir, "npy");
-    cpSync(sampleDir, copy, { recursive: true });
-    const samples = [];
-    for (const kind of kinds) samples.push(await makeKind(kind));
-    samples.push(await makeDesk());
-    writeFileSync(index, `${JSON.stringify(samples, null, 2)}\n`);
-    stamp.write();
-    say(samples.map(({ id }) => id).join(", "));
+/** Copies the first sample, with its depth as .npy, to where tests, examples and `npm run profile` look for it. */
+export const copySample = once(async () => {
+  await buildPackage();
+  const copies = [sampleDir, at("examples", "sample", "mug")];
+  const source = join(pageSamplesDir, "mug");
+  const outputs = copies.map((folder) => join(folder, "depth.npy"));
+  await cached(at("target", "samples", "copied-from"), digest([source]), outputs, async () => {
+    const { readDepth } = await import(pathToFileURL(join(packageDir, "formats.js")).href);
+    const { depthScale } = JSON.parse(readFileSync(join(source, "camera.json"), "utf8"));
+    const { data, width, height } = await readDepth(readFileSync(join(source, "depth.png")));
+    const metres = Float32Array.from(data, (value) => value * depthScale);
+    for (const folder of copies) {
+      rmSync(folder, { recursive: true, force: true });
+      cpSync(source, folder, { recursive: true, filter: (path) => !path.endsWith("depth.png") });
+      writeFileSync(join(folder, "depth.npy"), npy(metres, [height, width]));
+    }
   });
+});
+
+/**
+ * A .npy file.
+ * @param {Float32Array} values
+ * @param {readonly number[]} shape
+ */
+function npy(values, shape) {
+  const header = `{'descr': '<f4', 'fortran_order': False, 'shape': (${shape.join(", ")}), }`;
+  const length = Math.ceil((header.length + 11) / 64) * 64 - 10;
+  const start = Buffer.alloc(10 + length, " ");
+  start.write("\x93NUMPY\x01\x00", "latin1");
+  start.writeUInt16LE(length, 8);
+  start.write(header, 10);
+  start.write("\n", 9 + length);
+  return Buffer.concat([start, Buffer.from(values.buffer)]);
 }
 
-/** @param {string[]} args */
-const generate = (args) =>
-  run("cargo", ["run", "--quiet", "--package", "sim3align-lab", "--", "case", ...args]);
+/** In the profile of the tests, which have compiled it. @param {readonly string[]} args */
+const lab = (args) => run("cargo", ["run", "--quiet", "--package", "sim3align-lab", "--", ...args]);
 
 /**
- * @param {typeof mug} kind
- * @param {string} folder
- * @param {"npy" | "png"} depth
+ * Generates all samples.
+ * @param {string} folder as {@link pageSamplesDir}
  */
-const generateKind = ({ id, seed }, folder, depth) =>
-  generate([folder, "--kind", id, "--seed", `${seed}`, "--depth", depth]);
-
-/**
- * @param {typeof mug} kind
- * @returns {Promise<Sample>}
- */
-async function makeKind(kind) {
-  const { id, title, about } = kind;
-  await generateKind(kind, join(pageSamplesDir, id), "png");
-  return { id, title, about, ...sceneFiles(id), objects: [{ id, title, ...objectFiles(id) }] };
+export async function generateSamples(folder) {
+  rmSync(folder, { recursive: true, force: true });
+  /** @type {Sample[]} */
+  const samples = [];
+  for (const { id, seed, title, about } of kinds) {
+    await lab(["case", join(folder, id), "--kind", id, "--seed", `${seed}`, "--depth", "png"]);
+    samples.push({ id, title, about, ...sceneFiles(id), objects: [{ id, title, ...objectFiles(id) }] });
+  }
+  samples.push(await generateDesk(folder));
+  writeFileSync(join(folder, "index.json"), `${JSON.stringify(samples, null, 2)}\n`);
 }
 
 /**
- * The scene's case folders, with what they share in one place.
+ * Generates the case folders of a scene, and moves what they share into one place.
+ * @param {string} samples
  * @returns {Promise<Sample>}
  */
-async function makeDesk() {
+async function generateDesk(samples) {
   const { id, setSeed, title, about } = desk;
   const made = at("target", "samples", "scenes");
   rmSync(made, { recursive: true, force: true });
-  await generate(["scenes", made, "--scenes", "1", "--set-seed", `${setSeed}`, "--prior", "detailed"]);
+  await lab(["scenes", made, "--scenes", "1", "--set-seed", `${setSeed}`, "--prior", "detailed"]);
   const cases = join(made, "detailed");
-  const objects = readdirSync(cases)
-    .sort()
-    .map((name) => {
-      const { family } = JSON.parse(readFileSync(join(cases, name, "meta.json"), "utf8"));
-      const folder = join(pageSamplesDir, id, family);
-      mkdirSync(folder, { recursive: true });
-      for (const file of ["mask.png", "mesh.glb", "gt.json"]) cpSync(join(cases, name, file), join(folder, file));
-      // Depth and camera are the same for all: the last one's stay.
-      for (const file of ["depth.png", "camera.json"]) cpSync(join(cases, name, file), join(folder, "..", file));
-      const capital = `${family[0]?.toUpperCase()}${family.slice(1)}`;
-      return { id: family, title: capital, ...objectFiles(`${id}/${family}`) };
-    });
+  const names = readdirSync(cases).sort();
+  const objects = names.map((name) => {
+    const { family } = JSON.parse(readFileSync(join(cases, name, "meta.json"), "utf8"));
+    const folder = join(samples, id, family);
+    mkdirSync(folder, { recursive: true });
+    for (const file of ["mask.png", "mesh.glb", "gt.json"]) cpSync(join(cases, name, file), join(folder, file));
+    return { id: family, title: `${family[0]?.toUpperCase()}${family.slice(1)}`, ...objectFiles(`${id}/${family}`) };
+  });
+  // Depth and camera are the same for all.
+  for (const file of ["depth.png", "camera.json"]) cpSync(join(cases, names[0] ?? "", file), join(samples, id, file));
   return { id, title, about, ...sceneFiles(id), objects };
 }
 

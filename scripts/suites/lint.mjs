@@ -1,32 +1,47 @@
-/** Formatters and linters, with warnings denied. */
+/** Formatters, linters and type checks, with warnings denied. */
+import { readFileSync } from "node:fs";
+import { dirname, join } from "node:path";
 import { at } from "../lib/paths.mjs";
 import { nodeProgram, run } from "../lib/run.mjs";
-import { wasmTarget } from "../lib/setup.mjs";
-import { staticPackages } from "../lib/static-imports.mjs";
-import { runChecks } from "./checks.mjs";
+import { setUp, wasmTarget } from "../lib/setup.mjs";
+import { runChecks } from "../lib/step.mjs";
+import { wasmModules } from "../lib/wasm.mjs";
 
-export function lint() {
+export async function lint() {
+  await setUp();
   const clippy = (/** @type {readonly string[]} */ args) => () =>
     run("cargo", ["clippy", "--quiet", ...args, "--", "-D", "warnings"], { remedy: "correct what clippy names" });
+  const crates = wasmModules.flatMap(({ crate }) => ["--package", crate]);
   const [node, biome] = nodeProgram("@biomejs/biome", "biome");
   return runChecks([
     ["rustfmt", () => run("cargo", ["fmt", "--all", "--check"], { remedy: "npm run format" })],
     ["clippy, native", clippy(["--workspace", "--all-targets"])],
-    ["clippy, WebAssembly", clippy(["--lib", "--target", wasmTarget])],
+    ["clippy, WebAssembly modules", clippy(["--lib", "--target", wasmTarget, ...crates])],
     ["biome", () => run(node, [biome, "ci", "--error-on-warnings"], { remedy: "npm run format, then what is left" })],
     ["commands start before any package is installed", checkCommands],
   ]);
 }
 
-/** `npm start` and `npm test` install what they need: nothing may be missing before they do. */
+/** `npm start` and `npm test` install what they need: no npm package may be missing before they do. */
 function checkCommands() {
-  const commands = ["start", "test", "build", "build-www", "docs", "format"].map((name) =>
+  const modules = ["start", "test", "build", "build-www", "docs", "format", "samples"].map((name) =>
     at("scripts", `${name}.mjs`),
   );
-  const early = commands.flatMap((command) => staticPackages(command));
-  if (early.length === 0) return;
-  const list = early.map(({ name, importer }) => `${name} in ${importer}`).join(", ");
-  throw new Error(`They import ${list} at once. Remedy: \`await import(…)\` where it is used.`);
+  const early = [];
+  for (const path of modules) {
+    const statements = readFileSync(path, "utf8").matchAll(
+      /^(?:import|export)\b[^;]*?\bfrom "([^"]+)"|^import "([^"]+)"/gm,
+    );
+    for (const [, from, bare] of statements) {
+      const name = from ?? bare ?? "";
+      const file = join(dirname(path), name);
+      if (name.startsWith(".") && !modules.includes(file)) modules.push(file);
+      else if (!/^(\.|node:)/.test(name)) early.push(`${name} in ${path}`);
+    }
+  }
+  if (early.length > 0) {
+    throw new Error(`They import ${early.join(", ")} at once. Remedy: \`await import(…)\` where it is used.`);
+  }
 }
 
 /** Type checks of what the build does not compile; they need the built package's declarations. */

@@ -1,23 +1,17 @@
-/** The package as its users get it: linted, installed from its tarball, and used. */
-import { cpSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { join } from "node:path";
+/** Checks of the package before it is used: its form, its declarations, its sizes. */
+import { existsSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
+import { homedir } from "node:os";
+import { join, sep } from "node:path";
 import { writeApiDocs } from "../lib/api-docs.mjs";
-import { chromium, chromiumRemedy } from "../lib/chromium.mjs";
-import { nodeCounts, noTests, withStatus } from "../lib/counts.mjs";
-import { at, installDir, packageDir, repository } from "../lib/paths.mjs";
-import { attempt, nodeProgram, run } from "../lib/run.mjs";
-import { makeSample, sampleDir } from "../lib/sample.mjs";
+import { at, installDir, packageDir, repository, siteDir } from "../lib/paths.mjs";
+import { nodeProgram, run } from "../lib/run.mjs";
 import { buildSite } from "../lib/site.mjs";
-import { digest, filesBelow, Stamp } from "../lib/stamp.mjs";
-import { step } from "../lib/step.mjs";
-import { kilobytes } from "../lib/wasm.mjs";
-import { runChecks } from "./checks.mjs";
+import { runChecks } from "../lib/step.mjs";
+import { kilobytes, sizes, wasmFile, wasmModules } from "../lib/wasm.mjs";
+import { install, pack } from "./installed.mjs";
 
-/** What the tarball may take, in bytes: the WebAssembly is in it twice, the second time in `inline.js`. */
-const maxPacked = 1_200_000;
-
-/** Tests that use the installed package, and what they share. */
-const testFolders = ["js", "browser", "bundlers", "examples", "support"];
+/** Limits in bytes; the tarball holds the WebAssembly twice, the second time in `inline.js`. */
+const limits = { tarball: 1_200_000, pageScript: 60_000 };
 
 /** How users' compilers find declarations. */
 const resolutions = { node16: { module: "node16" }, bundler: { module: "esnext", moduleResolution: "bundler" } };
@@ -30,7 +24,7 @@ async function compileStrictly(name) {
   await install();
   const project = join(installDir, `tsconfig.${name}.json`);
   const compilerOptions = { ...resolutions[name], strict: true, noEmit: true, target: "es2022", types: [] };
-  // Nothing of the repository's: it looks for packages in the folders above.
+  // Nothing of the repository's: the compiler looks for packages in the folders above.
   const lib = ["es2022", "esnext.disposable", "dom", "dom.iterable"];
   const files = ["types", "conventions"].map((of) => `tests/js/${of}.test-d.ts`);
   writeFileSync(project, JSON.stringify({ compilerOptions: { ...compilerOptions, lib }, files }));
@@ -38,29 +32,33 @@ async function compileStrictly(name) {
   await run(node, [tsc, "--project", project]);
 }
 
-export async function lintPackage() {
+/**
+ * @param {string} what
+ * @param {number} bytes
+ * @param {number} limit
+ * @param {(note: string) => void} say
+ */
+function holdSize(what, bytes, limit, say) {
+  if (bytes > limit) throw new Error(`${what}: ${kilobytes(bytes)}, over ${kilobytes(limit)}. Remedy: find what grew.`);
+  say(`${kilobytes(bytes)} of ${kilobytes(limit)}`);
+}
+
+export async function checkPackage() {
   const [node, publint] = nodeProgram("publint");
   const [, attw] = nodeProgram("@arethetypeswrong/cli", "attw");
   const folder = at("target", "packed");
-  mkdirSync(folder, { recursive: true });
-  const [tarball] = JSON.parse(await run("npm", ["pack", packageDir, "--json", "--pack-destination", folder]));
+  const { filename, size } = await pack(folder);
   return runChecks([
     ["publint", () => run(node, [publint, packageDir, "--strict"])],
     [
       "types, in modules' resolution",
-      () => run(node, [attw, join(folder, tarball.filename), "--profile", "esm-only", "--no-emoji"]),
+      () => run(node, [attw, join(folder, filename), "--profile", "esm-only", "--no-emoji"]),
     ],
     ["tsc --strict, resolution node16", () => compileStrictly("node16")],
     ["tsc --strict, resolution bundler", () => compileStrictly("bundler")],
-    ["every file that package.json names is there", checkNamedFiles],
+    ["package.json names files that exist", checkNamedFiles],
     ["the API reference, without a warning", writeApiDocs],
-    [
-      `the tarball is within ${kilobytes(maxPacked)}`,
-      (say) => {
-        if (tarball.size > maxPacked) throw new Error(`It has ${kilobytes(tarball.size)}. Remedy: find what grew.`);
-        say(`${kilobytes(tarball.size)} packed, ${kilobytes(tarball.unpackedSize)} unpacked`);
-      },
-    ],
+    ["size of the tarball", (say) => holdSize("The tarball", size, limits.tarball, say)],
   ]);
 }
 
@@ -74,81 +72,55 @@ function checkNamedFiles() {
   if (missing.length > 0) throw new Error(`pkg/ lacks ${missing.join(", ")}, which its package.json names.`);
 }
 
-/** Packs pkg/ and installs the tarball into a folder of its own, then compiles the tests there. */
-export async function install() {
-  await step("install the packed package", async (say) => {
-    const stamp = new Stamp(join(installDir, "installed-from"), digest([packageDir]), []);
-    if (stamp.isCurrent) return say("up to date");
-    rmSync(installDir, { recursive: true, force: true });
-    mkdirSync(installDir, { recursive: true });
-    const packed = JSON.parse(await run("npm", ["pack", packageDir, "--json", "--pack-destination", installDir]));
-    const tarball = `./${packed[0].filename}`;
-    const project = { private: true, type: "module", dependencies: { sim3align: `file:${tarball}` } };
-    writeFileSync(join(installDir, "package.json"), JSON.stringify(project, null, 2));
-    await run("npm", ["install", "--prefer-offline", "--no-audit", "--no-fund"], {
-      cwd: installDir,
-      remedy: "check that the npm registry can be reached: the package's own dependencies come from there",
-    });
-    stamp.write();
-  });
-  await step("compile the tests", async () => {
-    rmSync(join(installDir, "tests"), { recursive: true, force: true });
-    for (const folder of testFolders.filter((name) => existsSync(at("tests", name)))) {
-      cpSync(at("tests", folder), join(installDir, "tests", folder), { recursive: true });
-    }
-    const tsconfig = { extends: at("tests", "tsconfig.installed.json"), include: ["tests"] };
-    writeFileSync(join(installDir, "tsconfig.json"), JSON.stringify(tsconfig, null, 2));
-    const [node, tsc] = nodeProgram("typescript", "tsc");
-    await run(node, [tsc, "--project", installDir]);
-  });
+export function checkSizes() {
+  const modules = wasmModules.map((module) => ({ ...module, file: wasmFile(module, join(packageDir, "wasm")) }));
+  return runChecks([
+    ...modules.map(
+      ({ name, budget, file }) =>
+        /** @type {const} */ ([
+          `size of the ${name} module, gzipped`,
+          (/** @type {(note: string) => void} */ say) => holdSize(name, sizes(file).gzip, budget, say),
+        ]),
+    ),
+    ["size of the page's script, gzipped, without the 3D library", checkPage],
+    ["the modules export different functions", () => checkSeparation(modules.map(({ file }) => file))],
+    ["the modules hold no path of the machine that built them", () => checkPaths(modules.map(({ file }) => file))],
+  ]);
 }
 
 /**
- * Runs one folder of tests with the installed package.
- * @param {string} folder
- * @param {NodeJS.ProcessEnv} [env]
+ * All the script that the page loads until its first result is there: its own, and the package's with its worker.
+ * @param {(note: string) => void} say
  */
-async function nodeTest(folder, env = {}) {
-  await makeSample();
-  await install();
-  return runCompiled(folder, env);
-}
-
-/**
- * Runs one folder of tests that {@link install} has compiled.
- * @param {string} folder
- * @param {NodeJS.ProcessEnv} [env]
- */
-export async function runCompiled(folder, env = {}) {
-  const files = filesBelow([join(installDir, "tests", folder)]).filter((file) => file.endsWith(".test.js"));
-  if (files.length === 0) return noTests();
-  const { output, reason } = await attempt(
-    process.execPath,
-    ["--enable-source-maps", "--test", "--test-reporter=spec", ...files],
-    {
-      cwd: installDir,
-      echo: true,
-      env: { SIM3ALIGN_REPOSITORY: repository, SIM3ALIGN_SAMPLE: sampleDir, ...env },
-    },
-  );
-  return withStatus(nodeCounts(output), reason === "");
-}
-
-export const javaScript = () => nodeTest("js");
-
-/** @param {string} folder of tests that show pages */
-async function inBrowser(folder) {
-  const path = await chromium();
-  if (path) return nodeTest(folder, { CHROMIUM_PATH: path });
-  console.log(`No Chromium. Remedy: ${chromiumRemedy}.`);
-  // On a developer's machine that is a gap; in continuous integration it would hide every failure of the page.
-  return { ...noTests(), ...(process.env.CI ? { failed: 1 } : { skipped: 1 }) };
-}
-
-export async function browser() {
+async function checkPage(say) {
   await buildSite();
-  return inBrowser("browser");
+  const assets = join(siteDir, "assets");
+  const html = readFileSync(join(siteDir, "index.html"), "utf8");
+  const first = Array.from(html.matchAll(/(?:src|href)="\.\/assets\/([^"]+\.js)"/g), ([, name = ""]) => name);
+  const later = readdirSync(assets).filter((name) => /^(worker|formats)-.*\.js$/.test(name));
+  if (first.length === 0 || later.length !== 2) throw new Error(`Other scripts than expected: ${first}, ${later}.`);
+  const bytes = [...first, ...later].reduce((total, name) => total + sizes(join(assets, name)).gzip, 0);
+  holdSize("The page's script", bytes, limits.pageScript, say);
 }
 
-/** The package in other people's apps. */
-export const bundlers = () => inBrowser("bundlers");
+/** @param {readonly string[]} files */
+function checkSeparation(files) {
+  const [core = [], formats = []] = files.map((file) =>
+    WebAssembly.Module.exports(new WebAssembly.Module(readFileSync(file)))
+      .map(({ name }) => name)
+      // Without what wasm-bindgen adds for itself.
+      .filter((name) => !name.startsWith("__") && name !== "memory"),
+  );
+  if (core.length === 0 || formats.length === 0) throw new Error("A module exports nothing.");
+  const shared = formats.filter((name) => core.includes(name));
+  if (shared.length > 0) throw new Error(`Both modules export ${shared.join(", ")}. Remedy: export each from one.`);
+}
+
+/** @param {readonly string[]} files */
+function checkPaths(files) {
+  for (const file of files) {
+    const bytes = readFileSync(file);
+    const found = [homedir(), repository].filter((path) => bytes.includes(`${path}${sep}`));
+    if (found.length > 0) throw new Error(`${file} holds ${found}. Remedy: see rustFlags().`);
+  }
+}

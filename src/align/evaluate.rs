@@ -1,55 +1,50 @@
-//! Scores any transform, wherever it came from.
+//! Scores a given transform.
 
 use serde::Serialize;
 
-use super::field::{Field, Options};
-use super::options::AlignOptions;
-use super::report::{Warning, is_collapsed};
 use super::warnings;
 use crate::error::Result;
+use crate::evidence::Evidence;
+use crate::evidence::clouds::Sampling;
 use crate::evidence::extents::{Extents, initial_scale};
 use crate::evidence::observation::Observation;
-use crate::evidence::{Evidence, Sampling};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::Similarity;
 use crate::metrics::pose_error::{PoseErrors, pose_errors};
 use crate::metrics::symmetry::Symmetry;
 use crate::metrics::{self, Metrics};
+use crate::options::{Options, options};
+use crate::report::{Warning, is_collapsed};
 
-/// Options of `evaluate`.
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename_all = "camelCase"))]
-pub struct EvaluateOptions {
-    /// Seed of all random draws, 0 to 2³² − 1. Default 0.
-    pub seed: u32,
-    /// Depth readings inside the mask that are used at most, 32 to 1 000 000. Default 20 000.
-    pub max_observed_points: u32,
-    /// Points sampled from the mesh surface, 100 to 1 000 000. Default 20 000.
-    pub surface_samples: u32,
-}
-
-impl Default for EvaluateOptions {
-    fn default() -> Self {
-        let align = AlignOptions::default();
-        Self {
-            seed: align.seed,
-            max_observed_points: align.max_observed_points,
-            surface_samples: align.surface_samples,
-        }
+options! {
+    /// Options of `evaluate`. All have defaults.
+    pub struct EvaluateOptions {
+        /// The known transform, camera from mesh, that `errors` compares with.
+        truth: Option<Similarity> = None, Transform;
+        /// The object's symmetry: the rotation error is the smallest over it. `"auto"` detects half turns about the mesh's
+        /// principal axes, `"auto-revolution"` also axes of revolution.
+        symmetry: Symmetry = Symmetry::None, Symmetry;
+        /// Seed of all random draws. The same input and seed give the same bits.
+        seed: u32 = 0, Count(0..=u32::MAX);
+        /// Upper bound on the depth readings used. Above it, an even random subset is drawn.
+        max_observed_points: u32 = 20_000, Count(32..=1_000_000);
+        /// Number of points sampled on the mesh surface.
+        surface_samples: u32 = 20_000, Count(100..=1_000_000);
     }
 }
 
-impl Options for EvaluateOptions {
-    fn fields(&mut self) -> Vec<(&'static str, Field<'_>)> {
-        vec![
-            ("seed", Field::count(&mut self.seed, 0, u32::MAX)),
-            ("maxObservedPoints", Field::count(&mut self.max_observed_points, 32, 1_000_000)),
-            ("surfaceSamples", Field::count(&mut self.surface_samples, 100, 1_000_000)),
-        ]
+impl EvaluateOptions {
+    /// The default options with this truth, where there is one.
+    pub fn against(truth: Option<&Truth>) -> Self {
+        truth.map_or_else(Self::default, |truth| Self {
+            truth: Some(truth.camera_from_mesh),
+            symmetry: truth.symmetry.clone(),
+            ..Self::default()
+        })
     }
 }
 
-/// A transform that is known to be right, and the turns under which the object looks the same.
+/// A known transform, and the object's symmetry.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Truth {
     /// The true transform.
@@ -58,26 +53,35 @@ pub struct Truth {
     pub symmetry: Symmetry,
 }
 
-/// What `evaluate` found.
+/// The result of `evaluate`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "camelCase")]
 pub struct Evaluation {
-    /// The eight metrics of the pose.
+    /// Agreement of the posed mesh with the observation.
     pub metrics: Metrics,
-    /// The errors against the truth, where it was given.
+    /// The errors against the truth; `null` where no truth was given.
     pub errors: Option<PoseErrors>,
-    /// s_init: the ratio of the box diagonals of P_obs and P_rec (§3.1).
-    pub initial_scale: f64,
-    /// s / s_init.
-    pub scale_ratio: f64,
-    /// Whether the scale is below 0.3 of the initial one.
-    pub collapsed: bool,
-    /// What the caller should know about the input.
+    /// Conditions that the caller should know about; the result stands.
     pub warnings: Vec<Warning>,
+    /// How the scale compares with the initial one.
+    pub diagnostics: EvaluationDiagnostics,
 }
 
-/// All metrics of a transform, and its errors where the truth is known.
+/// How an evaluated scale compares with the initial one.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "camelCase")]
+pub struct EvaluationDiagnostics {
+    /// s_init: the ratio of the bounding boxes' diagonals, observation to mesh (§3.1).
+    pub initial_scale: f64,
+    /// The scale divided by the initial scale.
+    pub scale_ratio: f64,
+    /// Whether the scale collapsed: `scaleRatio` is below 0.3.
+    pub collapsed: bool,
+}
+
+/// Computes the metrics of a transform, and its errors where the truth is known.
 ///
 /// # Errors
 /// [`ErrorCode::InvalidOption`](crate::error::ErrorCode::InvalidOption), and
@@ -86,7 +90,6 @@ pub fn evaluate(
     observation: &Observation,
     mesh: &Mesh,
     camera_from_mesh: &Similarity,
-    truth: Option<&Truth>,
     options: &EvaluateOptions,
 ) -> Result<Evaluation> {
     options.validate()?;
@@ -104,12 +107,12 @@ pub fn evaluate(
     let reconstructed = Extents::of("mesh", &evidence.reconstructed.points)?;
     let initial_scale = initial_scale(&observed, &reconstructed);
     let scale_ratio = camera_from_mesh.scale / initial_scale;
+    let errors =
+        options.truth.map(|truth| pose_errors(mesh, camera_from_mesh, &truth, &options.symmetry)).transpose()?;
     Ok(Evaluation {
         metrics,
-        errors: truth.map(|t| pose_errors(mesh, camera_from_mesh, &t.camera_from_mesh, &t.symmetry)).transpose()?,
-        initial_scale,
-        scale_ratio,
-        collapsed: is_collapsed(scale_ratio),
+        errors,
         warnings: warnings::about_observation(observation),
+        diagnostics: EvaluationDiagnostics { initial_scale, scale_ratio, collapsed: is_collapsed(scale_ratio) },
     })
 }

@@ -1,12 +1,12 @@
-//! What the caller should know about an input that is valid but suspicious, or a result that is.
+//! Warnings about inputs and results that are valid but suspicious.
 
-use super::options::Preset;
-use super::report::{Warning, WarningCode, is_collapsed};
 use crate::evidence::observation::Observation;
 use crate::geometry::order::median;
 use crate::number::number;
+use crate::report::Preset;
+use crate::report::{Warning, WarningCode, is_collapsed};
 
-/// Metres beyond which no depth of a single object is plausible, but millimetres are.
+/// Median depth in metres above which the depth is probably in millimetres.
 const IMPLAUSIBLE_DEPTH_M: f32 = 100.0;
 
 /// Warnings about depth and mask.
@@ -43,52 +43,51 @@ pub fn about_observation(observation: &Observation) -> Vec<Warning> {
     if touches_border {
         warnings.push(Warning {
             code: WarningCode::MaskTouchesBorder,
-            message: "The mask touches the image border: what lies beyond is unknown, and the box of the visible part underestimates the size.".into(),
+            message: "The mask touches the image border: part of the object may be outside the image, and the initial scale may be too small.".into(),
         });
     }
     if 2 * readings < mask_pixels {
         warnings.push(Warning {
             code: WarningCode::SparseDepth,
             message: format!(
-                "Only {readings} of the mask's {mask_pixels} pixels have a depth reading: the pose rests on these."
+                "Only {readings} of the mask's {mask_pixels} pixels have a depth reading; the pose depends on these alone."
             ),
         });
     }
     warnings
 }
 
-/// Warnings about the scale found. The initial scale is that of every reading in the mask, background by mistake
-/// included: a scale far below it is a collapse for the paper's method, which starts there, not for `precise`.
+/// A warning about the scale. The initial scale includes every reading in the mask, also background by mistake: a scale
+/// far below it is a collapse for the paper's method, which starts there, but not for `precise`.
 pub fn about_scale(scale_ratio: f64, clamped: bool, preset: Preset) -> Option<Warning> {
     let precise = preset == Preset::Precise;
     if is_collapsed(scale_ratio) && !precise {
-        let message =
-            format!("The scale is {} of the initial one: it collapsed. Set options.guard.", number(scale_ratio));
+        let message = format!("The scale collapsed to {} of the initial one. Set options.guard.", number(scale_ratio));
         return Some(Warning { code: WarningCode::ScaleCollapsed, message });
     }
     clamped.then(|| Warning {
         code: WarningCode::ScaleClamped,
         message: if precise {
-            "The scale stands at a bound of options.scale; the picture asks for one beyond it.".into()
+            "The scale was held at a bound of options.scale; the observation fits a scale beyond it better.".into()
         } else {
             format!(
-                "The scale was held at {} of the initial one by options.guard; the matches ask for another.",
+                "The scale was held at {} of the initial one by options.guard; the matches fit another scale better.",
                 number(scale_ratio)
             )
         },
     })
 }
 
-/// A warning about a refinement that did not come to rest; `iterations` of ICP, none of which are `precise`'s.
+/// A warning about a refinement that did not converge; `iterations` are those of ICP.
 pub fn about_convergence(converged: bool, iterations: usize, preset: Preset) -> Option<Warning> {
     (!converged).then(|| Warning {
         code: WarningCode::NotConverged,
         message: match preset {
             Preset::Precise => {
-                "The refinement was still climbing when its steps were used up: options.quality \"best\" has more.".into()
+                "The refinement had not converged when it reached its last step: options.quality \"best\" has more steps.".into()
             }
             Preset::Paper => format!(
-                "The refinement was still moving, or out of support, after {iterations} iterations: look at the metrics before trusting the pose."
+                "The refinement had not converged, or had lost its support, after {iterations} iterations: check the metrics before using the pose."
             ),
         },
     })

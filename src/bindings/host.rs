@@ -47,7 +47,7 @@ impl Host for JsHost {
 }
 
 /// A pose, column by column, and its score.
-pub fn best_numbers(camera_from_mesh: &Similarity, score: f64) -> [f64; 17] {
+fn best_numbers(camera_from_mesh: &Similarity, score: f64) -> [f64; 17] {
     let mut numbers = [score; 17];
     numbers[..16].copy_from_slice(&camera_from_mesh.to_column_major());
     numbers

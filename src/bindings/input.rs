@@ -3,7 +3,7 @@
 use js_sys::Uint16Array;
 use wasm_bindgen::{JsCast, JsValue};
 
-use super::object::{get, number, required_number, size, to_f32s, to_number, to_numbers, to_u8s, to_u32s, wrong_type};
+use super::object::{get, number, required_number, size, to_f32s, to_u8s, to_u32s, wrong_type};
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::observation::{Observation, from_point_map};
 use crate::geometry::image::{DepthMap, Image, Mask, check_size};
@@ -28,11 +28,11 @@ pub fn observation(input: &JsValue) -> Result<Observation> {
         Some(points) => {
             let (depth, fitted) = from_point_map(width, height, &to_f32s(&points, "pointMap")?)?;
             // Intrinsics that the caller knows are better than fitted ones.
-            (depth, get(input, "camera").map_or(Ok(fitted), |c| camera(&c, width, height))?)
+            (depth, get(input, "camera").map_or(Ok(fitted), |c| camera(&c))?)
         }
         None => {
             let given = get(input, "camera").unwrap_or(JsValue::UNDEFINED);
-            (depth(input, width, height)?, camera(&given, width, height)?)
+            (depth(input, width, height)?, camera(&given)?)
         }
     };
     Observation::new(depth, mask(input, width, height)?, camera)
@@ -99,17 +99,11 @@ fn mask(input: &JsValue, width: usize, height: usize) -> Result<Mask> {
     Ok(mask.resize_nearest(width, height))
 }
 
-/// `{ fx, fy, cx, cy }`, `{ K }` or `{ fovYDeg }`.
-fn camera(value: &JsValue, width: usize, height: usize) -> Result<Pinhole> {
-    if let Some(k) = get(value, "K") {
-        return Pinhole::from_matrix(&to_numbers(&k, "camera.K")?);
-    }
-    if let Some(fov) = get(value, "fovYDeg") {
-        return Pinhole::from_vertical_fov(to_number(&fov, "camera.fovYDeg")?, width, height);
-    }
+/// `{ fx, fy, cx, cy }`: other forms of a camera are resolved in TypeScript.
+fn camera(value: &JsValue) -> Result<Pinhole> {
     if !value.is_object() {
         let remedy = "Intrinsics are in pixels of the depth image.";
-        return Err(wrong_type("camera", value, "{ fx, fy, cx, cy }, { K } or { fovYDeg }", remedy));
+        return Err(wrong_type("camera", value, "{ fx, fy, cx, cy }", remedy));
     }
     let of = |key| required_number(value, "camera", key);
     Pinhole::new(of("fx")?, of("fy")?, of("cx")?, of("cy")?)

@@ -7,7 +7,6 @@ mod input;
 mod object;
 mod options;
 mod transform;
-pub mod value;
 
 /// Two-level segregated fit, constant time to get and to give back: a fifth of the standard allocator's bytes.
 #[cfg(target_arch = "wasm32")]

@@ -1,109 +1,125 @@
-//! Options from JavaScript objects: types and names are checked here, ranges where the options live.
+//! Options from JavaScript objects: names and types are checked here, ranges by the options' declarations.
 
 use js_sys::{Array, Object, Reflect};
 use wasm_bindgen::{JsCast, JsValue};
 
-use super::object::{describe, get, number, to_number, to_numbers, wrong_type};
+use super::object::{describe, get, number, to_numbers, wrong_type};
 use super::transform::similarity;
-use crate::align::evaluate::Truth;
-use crate::align::field::{Field, Options, SYMMETRY};
-use crate::align::options::ScaleOption;
+use crate::align::method::Method;
 use crate::error::{Error, ErrorCode, Result};
 use crate::metrics::symmetry::{Symmetry, SymmetryAxis};
 use crate::number::{number as number_text, numbers};
+use crate::options::scale::ScaleOption;
+use crate::options::{Field, Options, SYMMETRY};
+use crate::paper::options::PaperOptions;
+use crate::precise::options::AlignOptions;
+use crate::report::Preset;
 
-/// An options struct from an object; `also` names the keys that are read apart from the struct.
-pub fn options<T: Options>(value: &JsValue, also: &[&str]) -> Result<T> {
+/// The options of `align`: `preset` chooses the method, and with it the options that there are.
+pub fn method(value: &JsValue) -> Result<Method> {
+    let mut preset = Preset::default();
+    if let Some(name) = property(value, "preset") {
+        let mut field = Field::Choice(&mut preset);
+        if !set(&mut field, &name, "preset")? {
+            return Err(field.error("preset", describe(&name)));
+        }
+    }
+    Ok(match preset {
+        Preset::Precise => Method::Precise(read(value, preset)?),
+        Preset::Paper => Method::Paper(read(value, preset)?),
+    })
+}
+
+/// The options of one preset.
+fn read<T: Options>(value: &JsValue, preset: Preset) -> Result<T> {
+    options(value, &["preset"], |name| {
+        let (other, names) = match preset {
+            Preset::Precise => (Preset::Paper, PaperOptions::names()),
+            Preset::Paper => (Preset::Precise, AlignOptions::names()),
+        };
+        names.iter().any(|known| known == name).then(|| of_other_preset(name, preset, other))
+    })
+}
+
+/// The error for an option of the preset that was not chosen.
+fn of_other_preset(name: &str, preset: Preset, other: Preset) -> Error {
+    let remedy = match other {
+        Preset::Paper => format!("Pass `preset: \"paper\"` for the paper's method, or leave `{name}` out."),
+        Preset::Precise => format!("Leave `preset` out for the default method, or leave `{name}` out."),
+    };
+    Error::new(
+        ErrorCode::UnknownOption,
+        format!("options.{name}"),
+        format!("`{name}`, which is an option of preset \"{}\"", other.as_str()),
+        format!("options of preset \"{}\"", preset.as_str()),
+        remedy,
+    )
+}
+
+/// A struct of options from an object. `also` names keys that are read elsewhere; `refuse` may give an unknown option an
+/// error of its own.
+pub fn options<T: Options>(value: &JsValue, also: &[&str], refuse: impl Fn(&str) -> Option<Error>) -> Result<T> {
     let mut options = T::default();
     if !value.is_undefined() && !value.is_null() {
-        set_fields(value, also, &mut options.fields())?;
+        set_fields(value, also, &mut options.named_fields(), &refuse)?;
     }
     Ok(options)
 }
 
-fn set_fields(object: &JsValue, also: &[&str], fields: &mut [(&'static str, Field<'_>)]) -> Result<()> {
+fn set_fields(
+    object: &JsValue,
+    also: &[&str],
+    fields: &mut [(String, Field<'_>)],
+    refuse: &dyn Fn(&str) -> Option<Error>,
+) -> Result<()> {
     if !object.is_object() || Array::is_array(object) {
         return Err(wrong_type("options", object, "an object", "Leave it out to take all defaults."));
     }
     for key in Object::keys(object.unchecked_ref::<Object>()).iter() {
         let name = key.as_string().unwrap_or_default();
-        let value = Reflect::get(object, &key).unwrap_or(JsValue::UNDEFINED);
         // A key that is there but undefined (`{ seed: maybe }`) means the default, as everywhere in JavaScript.
-        if value.is_undefined() || also.contains(&name.as_str()) {
+        let Some(value) = property(object, &name) else { continue };
+        if also.contains(&name.as_str()) {
             continue;
         }
         match fields.iter_mut().find(|(field, _)| *field == name) {
             Some((_, field)) => {
-                if !set(field, &value)? {
+                if !set(field, &value, &name)? {
                     return Err(field.error(&name, describe(&value)));
                 }
                 field.check(&name)?;
             }
             None => {
-                let known: Vec<&str> = fields.iter().map(|(field, _)| *field).chain(also.iter().copied()).collect();
-                return Err(unknown_option(&name, &known));
+                let known: Vec<&str> =
+                    also.iter().copied().chain(fields.iter().map(|(field, _)| field.as_str())).collect();
+                return Err(refuse(&name).unwrap_or_else(|| unknown_option(&name, &known)));
             }
         }
     }
     Ok(())
 }
 
-/// All options of a struct with their defaults.
-pub fn defaults<T: Options>() -> JsValue {
-    let mut options = T::default();
-    object_of(options.fields().iter().map(|(name, field)| (*name, value_of(field))))
+/// A property that is there and not `undefined`.
+fn property(object: &JsValue, name: &str) -> Option<JsValue> {
+    Reflect::get(object, &name.into()).ok().filter(|value| !value.is_undefined())
 }
 
-/// A plain object.
-pub fn object_of<'a>(properties: impl IntoIterator<Item = (&'a str, JsValue)>) -> JsValue {
-    let object = Object::new();
-    for (name, value) in properties {
-        // A fresh object is extensible: setting a property on it can't fail.
-        let _ = Reflect::set(&object, &name.into(), &value);
-    }
-    object.into()
-}
-
-fn value_of(field: &Field<'_>) -> JsValue {
-    match field {
-        Field::Count { value, .. } => f64::from(**value).into(),
-        Field::Number { value, .. } => (**value).into(),
-        Field::Positive(value) => value.map_or(JsValue::NULL, Into::into),
-        Field::Flag(value) => (**value).into(),
-        Field::Switch(value) => value.map_or(JsValue::NULL, Into::into),
-        Field::Bounds(bounds) | Field::Guard(bounds) => bounds.map_or(JsValue::NULL, numbers_of),
-        Field::Direction(direction) => direction.map_or(JsValue::NULL, numbers_of),
-        Field::Symmetry(symmetry) => SYMMETRY_NAMES
-            .iter()
-            .find(|(_, named)| named == *symmetry)
-            .map_or(JsValue::NULL, |(name, _)| (*name).into()),
-        // No struct of options comes with a pose.
-        Field::Transform(_) => JsValue::NULL,
-        Field::Choice(choice) => choice.name().into(),
-    }
-}
-
-fn numbers_of<const N: usize>(numbers: [f64; N]) -> JsValue {
-    numbers.into_iter().map(JsValue::from).collect::<Array>().into()
-}
-
-/// Sets a field from a value of its type; `false` for any other. Ranges are the field's own affair.
-fn set(field: &mut Field<'_>, value: &JsValue) -> Result<bool> {
+/// Sets a field from a value of its type; `false` for any other. Ranges are checked by the field itself.
+fn set(field: &mut Field<'_>, value: &JsValue, name: &str) -> Result<bool> {
     Ok(match field {
-        Field::Count { value: count, .. } => {
+        Field::Count(count, _) => {
             let whole = |x: &f64| x.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(x);
             put(*count, value.as_f64().filter(whole).map(|x| x as u32))
         }
-        Field::Number { value: number, .. } => put(*number, value.as_f64()),
-        Field::Positive(number) => put(*number, or_null(value, value.as_f64())),
+        Field::Number(number, _) => put(*number, value.as_f64()),
+        Field::OptionalNumber(number, _) | Field::Positive(number) => put(*number, or_null(value, value.as_f64())),
         Field::Flag(flag) => put(*flag, value.as_bool()),
-        Field::Switch(flag) => put(*flag, or_null(value, value.as_bool())),
-        Field::Bounds(bounds) => put(*bounds, or_null(value, bounds_of(value))),
+        Field::Scale(scale) => put(*scale, scale_of(value)),
         Field::Direction(direction) => put(*direction, or_null(value, to_numbers(value, "").ok())),
         Field::Guard(guard) => put(*guard, or_null(value, to_numbers(value, "").ok())),
         Field::Symmetry(known) => put(*known, Some(symmetry(value)?)),
         Field::Transform(pose) if value.is_null() => put(*pose, Some(None)),
-        Field::Transform(pose) => put(*pose, Some(Some(similarity(value, "options.initial")?))),
+        Field::Transform(pose) => put(*pose, Some(Some(similarity(value, &format!("options.{name}"))?))),
         Field::Choice(choice) => value.as_string().is_some_and(|name| choice.set(&name)),
     })
 }
@@ -118,77 +134,35 @@ fn or_null<T>(value: &JsValue, read: Option<T>) -> Option<Option<T>> {
     if value.is_null() { Some(None) } else { read.map(Some) }
 }
 
-/// A number for both bounds, `[min, max]` or `{ min, max }`.
-fn bounds_of(value: &JsValue) -> Option<[f64; 2]> {
-    if let Some(x) = value.as_f64() {
-        return Some([x, x]);
+/// `"free"`, a number, or `[min, max]`.
+fn scale_of(value: &JsValue) -> Option<ScaleOption> {
+    if value.as_string().as_deref() == Some("free") {
+        return Some(ScaleOption::Free);
     }
-    let bound = |key| get(value, key).and_then(|x| x.as_f64());
-    bound("min").zip(bound("max")).map(<[f64; 2]>::from).or_else(|| to_numbers(value, "").ok())
+    let fixed = value.as_f64().map(ScaleOption::Fixed);
+    fixed.or_else(|| to_numbers(value, "").ok().map(ScaleOption::Between))
 }
 
+/// Similarity of two names, 0 to 1, from which one is suggested for the other.
+const MISSPELT: f64 = 0.6;
+
 fn unknown_option(name: &str, known: &[&str]) -> Error {
-    let mut nearest = (usize::MAX, "");
-    for known in known {
-        let distance = edit_distance(name, known);
-        if distance < nearest.0 {
-            nearest = (distance, known);
-        }
-    }
-    let (_, nearest) = nearest;
+    let likeness = |known: &&&str| strsim::normalized_levenshtein(name, known);
+    let nearest = known.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
+    let remedy = match nearest {
+        Some(nearest) if likeness(&nearest) >= MISSPELT => format!("Did you mean `{nearest}`?"),
+        _ => "Check the spelling.".to_owned(),
+    };
     Error::new(
         ErrorCode::UnknownOption,
         format!("options.{name}"),
         "an option that does not exist",
         format!("one of {}", known.join(", ")),
-        format!("Did you mean `{nearest}`?"),
+        remedy,
     )
 }
 
-/// Levenshtein's distance, in bytes: the names are ASCII.
-fn edit_distance(a: &str, b: &str) -> usize {
-    let b = b.as_bytes();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.bytes().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, &y) in b.iter().enumerate() {
-            let cost = (diagonal + usize::from(x != y)).min(row[j] + 1).min(row[j + 1] + 1);
-            diagonal = row[j + 1];
-            row[j + 1] = cost;
-        }
-    }
-    row.last().copied().unwrap_or_default()
-}
-
-/// `"free"`, `"fixed"`, a number, or `[min, max]`.
-pub fn scale(options: &JsValue) -> Result<ScaleOption> {
-    let Some(value) = get(options, "scale") else { return Ok(ScaleOption::Free) };
-    let scale = match value.as_string().as_deref() {
-        Some("free") => ScaleOption::Free,
-        Some("fixed") => ScaleOption::Fixed(1.0),
-        None if value.as_f64().is_some() => ScaleOption::Fixed(to_number(&value, "options.scale")?),
-        None if Array::is_array(&value) => ScaleOption::Between(to_numbers(&value, "options.scale")?),
-        _ => {
-            let remedy = "Leave it out to solve for the scale.";
-            let error = wrong_type("options.scale", &value, "\"free\", \"fixed\", a number or [min, max]", remedy);
-            return Err(error.coded(ErrorCode::InvalidOption));
-        }
-    };
-    Ok(scale)
-}
-
-/// The true transform and the symmetry of `evaluate`'s options.
-pub fn truth(options: &JsValue) -> Result<Option<Truth>> {
-    let Some(value) = get(options, "truth") else { return Ok(None) };
-    let camera_from_mesh = similarity(&value, "options.truth")?;
-    Ok(Some(Truth {
-        camera_from_mesh,
-        symmetry: get(options, "symmetry").map_or(Ok(Symmetry::None), |s| symmetry(&s))?,
-    }))
-}
-
-/// The symmetries that a word says.
+/// The symmetries that have a name.
 const SYMMETRY_NAMES: [(&str, Symmetry); 3] =
     [("none", Symmetry::None), ("auto", Symmetry::Auto), ("auto-revolution", Symmetry::AutoRevolution)];
 

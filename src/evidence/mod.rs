@@ -1,5 +1,6 @@
 //! What a pose is scored against: the observed points with their normals, and points on the mesh's surface.
 
+pub mod clouds;
 pub mod extents;
 pub mod normals;
 pub mod observation;
@@ -9,29 +10,13 @@ use crate::error::Result;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::mesh::Mesh;
+use clouds::Sampling;
 use normals::{Neighborhood, Orientation, estimate_normals};
 use observation::Observation;
 use sample::sample_surface;
 
 /// Neighbours from which an observed point's normal is estimated.
 pub const NORMAL_NEIGHBORS: usize = 30;
-
-/// How many points of either cloud are drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Sampling {
-    /// Most observed points used; more are subsampled.
-    pub max_points: usize,
-    /// Points drawn on the mesh's surface.
-    pub surface_samples: usize,
-    /// Seed of both draws.
-    pub seed: u64,
-}
-
-impl Default for Sampling {
-    fn default() -> Self {
-        Self { max_points: 20_000, surface_samples: 20_000, seed: 0 }
-    }
-}
 
 /// Both clouds, made once for however many poses.
 #[derive(Debug, Clone)]

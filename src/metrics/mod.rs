@@ -8,8 +8,9 @@ pub mod symmetry;
 use serde::Serialize;
 
 use crate::error::Result;
+use crate::evidence::Evidence;
+use crate::evidence::clouds::Sampling;
 use crate::evidence::observation::Observation;
-use crate::evidence::{Evidence, Sampling};
 use crate::geometry::image::{DepthMap, Mask};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::rasteriser::Rasteriser;

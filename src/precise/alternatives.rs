@@ -3,13 +3,13 @@
 use glam::DVec3;
 
 use super::search::{Found, Search};
-use crate::align::report::Alternative;
 use crate::error::Result;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::order::quantile;
 use crate::geometry::rotations::angle_between;
 use crate::geometry::triangle_tree::TriangleTree;
 use crate::metrics::symmetry::{AUTO_MEAN, AUTO_TAIL, Symmetry};
+use crate::report::Alternative;
 
 /// How far below the best a score is still within what noise does to it: on generated cases, the truth's is that far
 /// below where a flip won.

@@ -7,7 +7,7 @@
 use super::alternatives::NOISE;
 use super::conditioning::Conditioning;
 use super::search::Found;
-use crate::align::report::Alternative;
+use crate::report::Alternative;
 
 /// Where the regression's line begins, and its slopes: by overlap, depth, outline, the margin as a share of
 /// [`NOISE`], and the logarithms of the standard deviations of scale (relative) and rotation (degrees).

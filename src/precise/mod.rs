@@ -13,7 +13,9 @@ mod confidence;
 pub mod grid;
 pub mod mesh_pyramid;
 pub mod objective;
+pub mod options;
 pub mod pose;
+pub mod prepared_mesh;
 pub mod prior;
 pub mod ranking;
 pub mod recipe;
@@ -24,24 +26,21 @@ pub mod rounds;
 pub mod score;
 pub mod search;
 
-use crate::align::Estimated;
-use crate::align::options::{AlignOptions, ExtentAxis, Quality, SearchScope};
-use crate::align::report::{Counts, Uncertainty};
 use crate::error::{Error, ErrorCode, Result};
-use crate::evidence::Evidence;
-use crate::evidence::extents::Extents;
+use crate::evidence::clouds::Clouds;
 use crate::evidence::observation::Observation;
 use crate::geometry::cloud::Bounds;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::Similarity;
 use crate::paper;
+use crate::paper::options::PaperOptions;
+use crate::precise::options::{AlignOptions, ExtentAxis, Quality, SearchScope};
 use crate::progress::{Stage, Stopwatch};
-use std::rc::Rc;
-
+use crate::report::{Alternative, Counts, ScoreTerms, Solution, Uncertainty};
 use alternatives::alternatives;
 use confidence::confidence;
-use mesh_pyramid::MeshPyramid;
 use pose::{CropPose, MeshFrame};
+use prepared_mesh::PreparedMesh;
 use prior::Prior;
 pub use recipe::SearchSettings;
 use recipe::Task;
@@ -49,7 +48,7 @@ use rounds::Rounds;
 pub use search::Search;
 
 /// When each stage begins, as a share of the whole; from profiles of real cases.
-pub(super) const PLAN: &[(Stage, f64)] = &[
+pub const PLAN: &[(Stage, f64)] = &[
     (Stage::Observe, 0.0),
     (Stage::Sample, 0.01),
     (Stage::Normals, 0.02),
@@ -59,70 +58,90 @@ pub(super) const PLAN: &[(Stage, f64)] = &[
     (Stage::Metrics, 0.85),
 ];
 
-/// Grid of rotations, refinement, choice. A `hypothesis` found otherwise joins the candidates of the grid.
-pub(super) fn estimate(
+/// The search before its first round. A `hypothesis` found otherwise joins the candidates of the grid.
+///
+/// # Errors
+/// [`ErrorCode::NoConsensus`] where decimation leaves no triangle, [`ErrorCode::InvalidOption`] for an initial pose
+/// behind the camera.
+pub fn begin(
     observation: &Observation,
-    mesh: &Mesh,
+    mesh: &PreparedMesh<'_>,
     hypothesis: Option<Similarity>,
     options: &AlignOptions,
     settings: &SearchSettings,
     stages: &mut Stopwatch<'_>,
-) -> Result<Estimated> {
+) -> Result<Rounds> {
     stages.enter(Stage::Prepare);
-    let mut rounds = prepare(observation, mesh, options, settings)?;
+    let pyramid = mesh.pyramid(&settings.grids).ok_or_else(no_candidate)?;
+    let mut search = Search::new(observation, pyramid, *settings);
+    search.assume(prior(options, mesh.mesh(), &search.mesh.frame));
+    let initial = options.initial.map(|pose| seen_from(&pose, &search.mesh.frame)).transpose()?;
+    let mut rounds = Rounds::new(search, initial, options.search == SearchScope::Global);
     stages.enter(Stage::Search);
     let pose = hypothesis.and_then(|pose| CropPose::of_similarity(&pose, &rounds.search.mesh.frame));
     pose.into_iter().for_each(|pose| rounds.join(pose));
+    Ok(rounds)
+}
+
+/// Goes on with the search until it is over or `pause` returns true. Returns whether it is over.
+pub fn run(rounds: &mut Rounds, pause: &mut dyn FnMut() -> bool, stages: &mut Stopwatch<'_>) -> bool {
     while let Some(round) = rounds.round() {
         if round.task == Task::Refine && stages.running() != Some(Stage::Refine) {
             stages.enter(Stage::Refine);
         }
-        rounds.run(&mut || false);
+        if !rounds.run(pause) {
+            return false;
+        }
         stages.reach(round.done, rounds.best());
     }
-    conclude(&rounds, mesh, options)
+    true
 }
 
-/// A search that is about to begin.
-pub(super) fn prepare(
-    observation: &Observation,
-    mesh: &Mesh,
-    options: &AlignOptions,
-    settings: &SearchSettings,
-) -> Result<Rounds> {
-    let pyramid = MeshPyramid::new(mesh, &settings.grids).ok_or_else(no_candidate)?;
-    let mut search = Search::new(observation, Rc::new(pyramid), *settings);
-    search.assume(prior(options, mesh, &search.mesh.frame));
-    let initial = options.initial.map(|pose| seen_from(&pose, &search.mesh.frame)).transpose()?;
-    Ok(Rounds::new(search, initial, options.search == SearchScope::Global))
-}
-
-/// Descriptors are weak evidence, but of another kind: where time is no matter, their pose is a candidate too.
-pub(super) fn hypothesis(
-    evidence: &Evidence,
-    extents: [&Extents; 2],
-    options: &AlignOptions,
-    stages: &mut Stopwatch<'_>,
-) -> Option<Similarity> {
+/// The paper's pose, at the best quality: descriptors are weak evidence, but independent of the search's.
+pub fn hypothesis(clouds: &mut Clouds, options: &AlignOptions, stages: &mut Stopwatch<'_>) -> Option<Similarity> {
     let is_wanted = options.quality == Quality::Best && options.search == SearchScope::Global;
-    let found = is_wanted.then(|| paper::estimate(evidence, extents, options, stages).ok()).flatten()?;
+    let paper = PaperOptions {
+        seed: options.seed,
+        max_observed_points: options.max_observed_points,
+        surface_samples: options.surface_samples,
+        ..PaperOptions::default()
+    };
+    let found = is_wanted.then(|| paper::estimate(clouds, &paper, stages).ok()).flatten()?;
     Some(found.camera_from_mesh)
 }
 
-/// What the search found, and how sure it is.
-pub(super) fn conclude(rounds: &Rounds, mesh: &Mesh, options: &AlignOptions) -> Result<Estimated> {
+/// How certain the search is of its pose.
+pub struct Certainty {
+    /// See [`Alignment::confidence`](crate::report::Alignment::confidence).
+    pub confidence: f64,
+    /// Other poses that explain the observation.
+    pub alternatives: Vec<Alternative>,
+    /// How well each part of the pose is determined.
+    pub uncertainty: Option<Uncertainty>,
+    /// The score of the pose.
+    pub score: f64,
+    /// The terms of the score.
+    pub terms: ScoreTerms,
+}
+
+/// The best pose of the search, and how certain it is.
+///
+/// # Errors
+/// [`ErrorCode::NoConsensus`] where no pose overlaps the mask.
+pub fn conclude(rounds: &Rounds, mesh: &Mesh, options: &AlignOptions) -> Result<(Solution, Certainty)> {
     let (found, search) = (&rounds.found, &rounds.search);
     let best = found.first().ok_or_else(no_candidate)?;
     let alternatives = alternatives(found, search, mesh, &options.symmetry)?;
     let (conditioning, residual_m) = search.conditioning(&best.pose);
-    Ok(Estimated {
+    let solution = Solution {
         camera_from_mesh: best.pose.similarity(&search.mesh.frame),
         clamped: search.is_held(&best.pose),
         converged: best.converged,
         residual_m,
-        confidence: Some(confidence(best, &alternatives, conditioning.as_ref())),
-        score: Some(f64::from(best.score.total)),
-        terms: Some((&best.score).into()),
+        counts: Counts { renders: search.renders, ..Counts::default() },
+    };
+    let certainty = Certainty {
+        confidence: confidence(best, &alternatives, conditioning.as_ref()),
         alternatives,
         uncertainty: conditioning.map(|c| Uncertainty {
             scale: c.scale,
@@ -131,8 +150,10 @@ pub(super) fn conclude(rounds: &Rounds, mesh: &Mesh, options: &AlignOptions) -> 
             lateral_m: c.lateral_m,
             distance_m: c.distance_m,
         }),
-        counts: Counts { renders: search.renders, ..Counts::default() },
-    })
+        score: f64::from(best.score.total),
+        terms: (&best.score).into(),
+    };
+    Ok((solution, certainty))
 }
 
 /// The search that the options ask for.
@@ -142,12 +163,12 @@ pub fn search_settings(options: &AlignOptions) -> SearchSettings {
         Quality::Balanced => SearchSettings::default(),
         Quality::Best => SearchSettings::best(),
     };
-    let fixed = options.scale.is_some_and(|[min, max]| min == max) || options.known_extent_m.is_some();
-    let settings = SearchSettings { lock_scale: fixed || options.lock_scale == Some(true), ..settings };
-    options.budget_ms.map_or(settings, |budget_ms| settings.within(budget_ms))
+    let is_fixed = options.scale.bounds().is_some_and(|[min, max]| min == max) || options.known_extent_m.is_some();
+    let settings = SearchSettings { lock_scale: is_fixed, ..settings };
+    options.work_budget.map_or(settings, |budget| settings.within(budget))
 }
 
-/// What the options say of size and attitude.
+/// The prior on size and attitude.
 fn prior(options: &AlignOptions, mesh: &Mesh, frame: &MeshFrame) -> Prior {
     let extent = Bounds::of(mesh.positions()).map_or(glam::Vec3::ONE, |b| b.extent());
     let side = f64::from(match options.known_extent_axis {
@@ -157,9 +178,7 @@ fn prior(options: &AlignOptions, mesh: &Mesh, frame: &MeshFrame) -> Prior {
         ExtentAxis::Z => extent.z,
     });
     let known = options.known_extent_m.map(|length| [length / side; 2]);
-    // A scale that is locked from the beginning is that of the initial pose.
-    let locked = options.initial.filter(|_| options.lock_scale == Some(true)).map(|pose| [pose.scale; 2]);
-    let bounds = options.scale.or(known).or(locked);
+    let bounds = options.scale.bounds().or(known);
     let direction = |v: [f64; 3]| glam::DVec3::from(v).normalize_or_zero();
     Prior {
         scale: bounds.map(|b| b.map(|s| s * frame.diagonal)),

@@ -2,6 +2,7 @@
 
 use super::grid::CropGrid;
 use super::render::{Canvas, Model};
+use crate::report::ScoreTerms;
 
 /// What counts how much.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,6 +66,19 @@ pub struct Score {
     pub union: f32,
     /// Cells with depth in both, normals in both, and cells of visible outline.
     pub counts: [u32; 3],
+}
+
+impl From<&Score> for ScoreTerms {
+    fn from(score: &Score) -> Self {
+        Self {
+            overlap: score.overlap.into(),
+            coverage: score.coverage.into(),
+            depth: score.depth.into(),
+            normals: score.normals.into(),
+            outline: score.outline.into(),
+            hidden: score.hidden.into(),
+        }
+    }
 }
 
 impl Scoring {

@@ -1,17 +1,18 @@
 //! A similarity from correspondences that were made elsewhere (Predator, GeoTransformer, BUFFER-X, …).
 
-use super::frames::Frames;
+use super::frames::{Fit, Frames};
 use super::judge::about_clouds;
+use super::options::EstimateSim3Options;
 use super::{PLAN, check_cloud};
-use crate::align::field::Options;
-use crate::align::options::{EstimateOptions, ScaleOption};
-use crate::align::report::{Counts, Registration};
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::extents::target_from_source;
 use crate::geometry::similarity::vector3;
+use crate::options::Options;
+use crate::options::scale::ScaleOption;
 use crate::progress::{Host, Stage, Stopwatch};
 use crate::register::matching::Match;
 use crate::register::ransac::{Guard, GuardMode, RansacSettings, ransac, reweighted};
+use crate::report::{Counts, Registration};
 
 /// The similarity that most correspondences agree with; `correspondences` are pairs of indices, source then
 /// target, made by any matcher.
@@ -22,18 +23,16 @@ pub fn estimate_sim3(
     source_xyz: &[f64],
     target_xyz: &[f64],
     correspondences: &[u32],
-    scale: ScaleOption,
-    options: &EstimateOptions,
+    options: &EstimateSim3Options,
     host: &mut dyn Host,
 ) -> Result<Registration> {
     options.validate()?;
-    scale.validate()?;
     check_cloud("source", source_xyz, 3)?;
     check_cloud("target", target_xyz, 3)?;
     let matches = check_correspondences(correspondences, source_xyz.len() / 3, target_xyz.len() / 3)?;
     let mut stages = Stopwatch::new(host, PLAN);
     stages.enter(Stage::Ransac);
-    let frames = Frames::of(source_xyz, target_xyz, scale)?;
+    let frames = Frames::of(source_xyz, target_xyz, options.scale)?;
     let source = frames.source.normalized_flat(source_xyz);
     let target = frames.target.normalized_flat(target_xyz);
     let distance = options.inlier_distance.map_or(0.05, |d| d / frames.target.diagonal());
@@ -44,7 +43,7 @@ pub fn estimate_sim3(
         confidence: options.ransac_confidence,
         scale_mode: frames.scale_mode,
         // Correspondences say more about the scale than boxes do: only bounds that the caller gave are held.
-        guard: match scale {
+        guard: match options.scale {
             ScaleOption::Free => None,
             _ => frames.guard.map(|[min, max]| Guard { min, max, mode: GuardMode::Reject }),
         },
@@ -73,11 +72,14 @@ pub fn estimate_sim3(
         ..Counts::default()
     };
     let count = consensus.inliers.len() as f64;
-    Ok(Registration {
-        residual: (squares / count).sqrt() * frames.target.diagonal(),
+    let fit = Fit {
         fitness: count / matches.len() as f64,
-        ..frames.registration(&target_from_source(&frames.target, &unit, &frames.source), options.seed, counts, stages)
-    })
+        residual: (squares / count).sqrt() * frames.target.diagonal(),
+        converged: true,
+        counts,
+    };
+    let transform = target_from_source(&frames.target, &unit, &frames.source);
+    Ok(frames.registration(&transform, fit, options.seed, stages))
 }
 
 fn check_correspondences(correspondences: &[u32], sources: usize, targets: usize) -> Result<Vec<Match>> {

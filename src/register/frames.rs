@@ -1,12 +1,12 @@
 //! The frames in which two clouds are compared: centred, and of one size as far as that is known beforehand.
 
-use crate::align::options::ScaleOption;
-use crate::align::report::{Counts, Registration};
 use crate::error::Result;
 use crate::evidence::extents::{Extents, initial_scale};
 use crate::geometry::similarity::Similarity;
+use crate::options::scale::ScaleOption;
 use crate::progress::Stopwatch;
 use crate::register::umeyama::ScaleMode;
+use crate::report::{Counts, Registration, RegistrationDiagnostics};
 
 /// How far a free scale may be from the ratio of the boxes. Wide: clutter widens a box at will.
 const FREE_GUARD: [f64; 2] = [0.2, 5.0];
@@ -50,25 +50,36 @@ impl Frames {
         self.target.unit_from_own().compose(target_from_source).compose(&own_from_unit)
     }
 
-    /// The report of a transform between the clouds' own frames; residual and fitness are the caller's to add.
+    /// The report of a transform between the clouds' own frames.
     pub(crate) fn registration(
         &self,
         transform: &Similarity,
+        fit: Fit,
         seed: u32,
-        counts: Counts,
         stages: Stopwatch<'_>,
     ) -> Registration {
+        let Fit { fitness, residual, converged, counts } = fit;
         let initial_scale = initial_scale(&self.target, &self.source);
         Registration {
             target_from_source: transform.into(),
-            seed,
-            initial_scale,
-            scale_ratio: transform.scale / initial_scale,
-            converged: true,
-            residual: 0.0,
-            fitness: 0.0,
-            counts,
-            timings_ms: stages.finish(),
+            fitness,
+            residual,
+            diagnostics: RegistrationDiagnostics {
+                seed,
+                initial_scale,
+                scale_ratio: transform.scale / initial_scale,
+                converged,
+                counts,
+                timings_ms: stages.finish(),
+            },
         }
     }
+}
+
+/// How well a transform fits the clouds, as a [`Registration`] reports it.
+pub(super) struct Fit {
+    pub(super) fitness: f64,
+    pub(super) residual: f64,
+    pub(super) converged: bool,
+    pub(super) counts: Counts,
 }

@@ -1,12 +1,12 @@
 //! From two clouds with normals to a similarity: what `align` and `register` have in common.
 
-use crate::align::options::{AlignOptions, GuardMode, Icp, RegisterOptions};
-use crate::align::report::Counts;
+use super::options::RegisterOptions;
 use crate::error::Result;
 use crate::geometry::angle::sin_cos;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::similarity::{Similarity, vector3};
+use crate::paper::options::{GuardMode, Icp, PaperOptions};
 use crate::progress::{Stage, Stopwatch};
 use crate::register::fpfh::fpfh;
 use crate::register::grid_cloud::GridCloud;
@@ -15,6 +15,7 @@ use crate::register::matching::{Match, enough_matches};
 use crate::register::ransac::{self, Consensus, Guard, RansacSettings, ransac};
 use crate::register::support::{SupportSettings, supported};
 use crate::register::umeyama::{Pair, ScaleMode, umeyama};
+use crate::report::Counts;
 
 /// Points that descriptors are computed for at most; denser clouds get a coarser grid. Matching is quadratic.
 pub const MAX_FEATURES: usize = 8_000;
@@ -39,7 +40,7 @@ pub(crate) struct Settings {
 }
 
 impl Settings {
-    pub(crate) fn of(options: &AlignOptions) -> Self {
+    pub(crate) fn of(options: &PaperOptions) -> Self {
         let voxel_size = 1.0 / options.voxel_divisions;
         let mode = match options.guard_mode {
             GuardMode::Reject => ransac::GuardMode::Reject,
@@ -66,7 +67,7 @@ impl Settings {
                 SupportSettings::EVERYTHING
             },
             icp: icp_metric(options.icp),
-            lock_scale: options.lock_scale.unwrap_or(true),
+            lock_scale: options.lock_scale,
             icp_iterations: options.icp_iterations as usize,
         }
     }
@@ -78,7 +79,7 @@ impl Settings {
         scale_mode: ScaleMode,
         guard: Option<[f64; 2]>,
     ) -> Self {
-        let mut settings = Self::of(&AlignOptions {
+        let mut settings = Self::of(&PaperOptions {
             seed: options.seed,
             voxel_divisions: 1.0 / voxel_size,
             fpfh_radius_voxels: options.fpfh_radius_voxels,
@@ -89,9 +90,9 @@ impl Settings {
             edge_similarity: options.edge_similarity,
             support_angle_deg: 180.0,
             icp: options.icp,
-            lock_scale: Some(matches!(scale_mode, ScaleMode::Fixed(_))),
+            lock_scale: matches!(scale_mode, ScaleMode::Fixed(_)),
             icp_iterations: options.icp_iterations,
-            ..AlignOptions::default()
+            ..PaperOptions::default()
         });
         settings.ransac.scale_mode = scale_mode;
         settings

@@ -2,10 +2,9 @@
 
 use glam::Vec3;
 
-use super::frames::Frames;
+use super::frames::{Fit, Frames};
 use super::global::{Estimate, Problem, Settings};
-use crate::align::options::{RegisterOptions, ScaleOption};
-use crate::align::report::Registration;
+use super::options::RegisterOptions;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::NORMAL_NEIGHBORS;
 use crate::evidence::extents::target_from_source;
@@ -14,6 +13,7 @@ use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::similarity::Similarity;
 use crate::progress::{Stage, Stopwatch};
+use crate::report::Registration;
 
 /// Voxels along the target's box diagonal, where the caller says nothing.
 const DIVISIONS: f64 = 30.0;
@@ -74,14 +74,13 @@ impl Judge {
         &mut self,
         source_xyz: &[f64],
         target_xyz: &[f64],
-        scale: ScaleOption,
         options: &RegisterOptions,
         stages: &mut Stopwatch<'_>,
     ) -> Result<()> {
         if self.is_beyond_doubt() {
             return Ok(());
         }
-        let frames = Frames::of(source_xyz, target_xyz, scale)?;
+        let frames = Frames::of(source_xyz, target_xyz, options.scale)?;
         stages.enter(Stage::Normals);
         let source = with_normals(frames.source.normalized_flat(source_xyz), None);
         let target = with_normals(frames.target.normalized_flat(target_xyz), None);
@@ -133,12 +132,9 @@ impl Judge {
         let Some((agreement, attempt)) = self.best else {
             return Err(self.failure.unwrap_or_else(no_attempt));
         };
-        Ok(Registration {
-            residual: attempt.residual,
-            converged: attempt.estimate.converged,
-            fitness: agreement.fitness,
-            ..self.frames.registration(&attempt.target_from_source, options.seed, attempt.estimate.counts, stages)
-        })
+        let Attempt { target_from_source, estimate, residual } = attempt;
+        let fit = Fit { fitness: agreement.fitness, residual, converged: estimate.converged, counts: estimate.counts };
+        Ok(self.frames.registration(&target_from_source, fit, options.seed, stages))
     }
 }
 

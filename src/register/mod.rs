@@ -11,6 +11,7 @@ pub mod grid_cloud;
 pub mod icp;
 mod judge;
 pub mod matching;
+pub mod options;
 pub mod ransac;
 mod rigid;
 pub mod support;
@@ -22,17 +23,18 @@ pub use estimate_sim3::estimate_sim3;
 
 use nalgebra::Vector3;
 
-use crate::align::field::Options;
-use crate::align::options::{RegisterOptions, ScaleOption};
-use crate::align::report::Registration;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::observation::MIN_POINTS;
 use crate::geometry::random::Random;
 use crate::number::number;
+use crate::options::Options;
+use crate::options::scale::ScaleOption;
 use crate::progress::{Host, Stage, Stopwatch};
 use crate::register::density::dense_points;
+use crate::report::Registration;
 use frames::Frames;
 use judge::Judge;
+use options::RegisterOptions;
 use rigid::register_rigid;
 
 /// The random stream of the subsampling.
@@ -61,12 +63,10 @@ pub(super) const PLAN: &[(Stage, f64)] = &[
 pub fn register(
     source_xyz: &[f64],
     target_xyz: &[f64],
-    scale: ScaleOption,
     options: &RegisterOptions,
     host: &mut dyn Host,
 ) -> Result<Registration> {
     options.validate()?;
-    scale.validate()?;
     check_cloud("source", source_xyz, MIN_POINTS)?;
     check_cloud("target", target_xyz, MIN_POINTS)?;
     let mut stages = Stopwatch::new(host, PLAN);
@@ -76,20 +76,20 @@ pub fn register(
     let mut random = Random::new(u64::from(options.seed), STREAM);
     let source_xyz = subsample(source_xyz, options.max_points as usize, &mut random);
     let target_xyz = subsample(target_xyz, options.max_points as usize, &mut random);
-    let whole = Frames::of(&source_xyz, &target_xyz, scale)?;
+    let whole = Frames::of(&source_xyz, &target_xyz, options.scale)?;
 
     // A known scale says which matches keep their distances. Otherwise, and where clutter defeats that:
     // clutter widens the boxes and drowns the descriptors; but where the density varies by nature (lidar),
     // dropping the sparse points drops the scene. So both are tried, and the points themselves decide.
     let mut judge = Judge::new(&source_xyz, &target_xyz, whole, options);
-    if matches!(scale, ScaleOption::Fixed(_)) {
-        judge.hold(register_rigid(given, scale, options, &mut stages));
+    if matches!(options.scale, ScaleOption::Fixed(_)) {
+        judge.hold(register_rigid(given, options, &mut stages));
     }
     if let Some((source_xyz, target_xyz)) = dense(&source_xyz, &target_xyz, &judge.frames) {
-        judge.attempt(&source_xyz, &target_xyz, scale, options, &mut stages)?;
+        judge.attempt(&source_xyz, &target_xyz, options, &mut stages)?;
     }
     if !judge.holds() {
-        judge.attempt(&source_xyz, &target_xyz, scale, options, &mut stages)?;
+        judge.attempt(&source_xyz, &target_xyz, options, &mut stages)?;
     }
     judge.verdict(options, stages)
 }

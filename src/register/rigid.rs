@@ -6,9 +6,8 @@
 use super::frames::Frames;
 use super::global::{Estimate, Settings, Side, refine_coarse_to_fine};
 use super::judge::{Attempt, about_clouds, with_normals};
+use super::options::RegisterOptions;
 use super::verifier::{Verifier, distinctiveness};
-use crate::align::options::{RegisterOptions, ScaleOption};
-use crate::align::report::Counts;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::extents::target_from_source;
 use crate::geometry::cloud::Cloud;
@@ -20,6 +19,7 @@ use crate::register::fpfh::fpfh;
 use crate::register::free_space::FreeSpace;
 use crate::register::icp::{IcpSettings, movement, refine};
 use crate::register::matching::best_matches;
+use crate::report::Counts;
 
 /// Voxels of the larger cloud, at most, where the caller gives no voxel size: a scene's furniture, and seconds.
 const VOXELS: usize = 5_000;
@@ -40,11 +40,10 @@ const FREE_SLACK_VOXELS: f32 = 2.0;
 /// Aligns clouds whose scale is known, in frames that make it 1.
 pub(super) fn register_rigid(
     [source_xyz, target_xyz]: [&[f64]; 2],
-    scale: ScaleOption,
     options: &RegisterOptions,
     stages: &mut Stopwatch<'_>,
 ) -> Result<Attempt> {
-    let frames = Frames::of(source_xyz, target_xyz, scale)?;
+    let frames = Frames::of(source_xyz, target_xyz, options.scale)?;
     let most = options.max_points as usize;
     let source = thin(frames.source.normalized_flat(source_xyz), most);
     let target = thin(frames.target.normalized_flat(target_xyz), most);

@@ -22,7 +22,7 @@ const sampleFile = (name: string) => Uint8Array.from(readFileSync(join(siteDir, 
 const observation = () => ({
   depth: sampleFile("depth.png"),
   mask: sampleFile("mask.png"),
-  camera: sampleFile("camera.json"),
+  cameraFile: sampleFile("camera.json"),
 });
 
 /** The overlap that the library measures with a mesh at a pose. */

@@ -22,7 +22,7 @@ test("the page aligns its sample, as the library does", async () => {
     depth: sampleFile("mug/depth.png"),
     mask: sampleFile("mug/mask.png"),
     mesh: sampleFile("mug/mesh.glb"),
-    camera: sampleFile("mug/camera.json"),
+    cameraFile: sampleFile("mug/camera.json"),
   };
   const quality = (await page.inputValue("#effort")) as "fast" | "balanced";
   const { metrics, confidence } = await (await createAligner()).align(input, { quality });

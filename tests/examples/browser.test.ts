@@ -33,9 +33,9 @@ test("02-browser-esm aligns the sample to the same bits as Node", { skip }, asyn
   const { page } = await opened(examplesDir, "02-browser-esm/");
   const shown = JSON.parse((await page.textContent("#result")) ?? "");
   const read = (name: string) => readFileSync(join(sampleDir, name));
-  const [depth, mask, camera, mesh] = ["depth.npy", "mask.png", "camera.json", "mesh.glb"].map(read);
-  assert.ok(depth && mask && camera && mesh);
-  const direct = await (await createAligner()).align({ depth, mask, camera, mesh });
+  const [depth, mask, cameraFile, mesh] = ["depth.npy", "mask.png", "camera.json", "mesh.glb"].map(read);
+  assert.ok(depth && mask && cameraFile && mesh);
+  const direct = await (await createAligner()).align({ depth, mask, cameraFile, mesh });
   assert.deepEqual(shown.matrix, [...direct.matrix]);
   assert.equal(shown.confidence, direct.confidence);
   assert.equal(await page.$eval("#progress", (bar: HTMLProgressElement) => bar.value), 1);

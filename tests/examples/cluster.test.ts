@@ -118,7 +118,7 @@ test("07: all results are there once, though a worker is killed in the middle of
       {
         depth: read("depth.npy"),
         mask: read("mask.png"),
-        camera: read("camera.json"),
+        cameraFile: read("camera.json"),
         mesh: read("mesh.obj"),
       },
       OPTIONS,

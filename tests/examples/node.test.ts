@@ -19,8 +19,8 @@ function filesOf(folder: string) {
     const name = names.find((candidate) => existsSync(join(folder, candidate))) ?? "";
     return readFileSync(join(folder, name));
   };
-  const [depth, mask, camera] = [read("depth.npy"), read("mask.png"), read("camera.json")];
-  return { depth, mask, camera, mesh: read("mesh.glb", "mesh.obj") };
+  const [depth, mask, cameraFile] = [read("depth.npy"), read("mask.png"), read("camera.json")];
+  return { depth, mask, cameraFile, mesh: read("mesh.glb", "mesh.obj") };
 }
 
 const sample = filesOf(sampleDir);
@@ -154,7 +154,7 @@ test("06-transformersjs aligns the tensors of a depth pipeline and of SAM", asyn
     return alignTensors(
       aligner,
       { predicted_depth, masks, iou_scores, disparity },
-      JSON.parse(`${sample.camera}`),
+      JSON.parse(`${sample.cameraFile}`),
       sample.mesh,
     );
   };

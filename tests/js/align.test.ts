@@ -1,21 +1,21 @@
 /** `align` as its callers see it: what it returns, determinism, progress, the life of an aligner. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { type Alignment, createAligner, type Progress, type Sim3 } from "sim3align";
+import { ALIGN_DEFAULTS, createAligner, PAPER_DEFAULTS, type Progress, type Sim3 } from "sim3align";
 import { rejectsWith } from "../support/errors.js";
+import { withoutTimes } from "../support/results.js";
 import { brick, input, rotationRows } from "../support/scene.js";
 
 const aligner = await createAligner();
-const { timingsMs: _, ...reference } = await aligner.align(input, { seed: 3 });
+const reference = withoutTimes(await aligner.align(input, { seed: 3 }));
 const paper = { preset: "paper" } as const;
-const withoutTimes = ({ timingsMs: _, ...result }: Alignment) => result;
 
 function assertForms({ scale, rotation, rotationMatrix, translation, matrix }: Sim3): void {
   assert.ok(scale > 0);
   assert.equal(rotation.length, 4);
   assert.ok(Math.abs(Math.hypot(...rotation) - 1) < 1e-12);
   assert.ok(rotation[3] >= 0);
-  assert.ok(matrix instanceof Float64Array && matrix.length === 16);
+  assert.ok(Array.isArray(matrix) && matrix.length === 16);
   const rows = rotationRows(rotation);
   for (const i of [0, 1, 2] as const) {
     for (const j of [0, 1, 2] as const) {
@@ -34,11 +34,12 @@ test("the transform comes in every promised form, all saying the same", async ()
 
 test("the alternatives are transforms too, in the same forms", async () => {
   // A brick looks the same after half a turn, which no symmetry is declared to be.
-  const { alternatives, score, matrix } = await aligner.align(brick, { symmetry: "none" });
+  const { alternatives, matrix, diagnostics } = await aligner.align(brick, { symmetry: "none" });
+  const { score } = diagnostics;
   assert.ok(alternatives.length > 0);
   for (const alternative of alternatives) {
     assertForms(alternative);
-    assert.ok(alternative.score <= (score ?? 0), `${alternative.score} above ${score}`);
+    assert.ok(alternative.score <= score, `${alternative.score} above ${score}`);
     assert.ok(alternative.turnDeg >= 0 && alternative.turnDeg <= 180, `${alternative.turnDeg}`);
     assert.notDeepEqual(alternative.matrix, matrix);
   }
@@ -51,14 +52,16 @@ test("the alternatives are transforms too, in the same forms", async () => {
 });
 
 test("the report is complete", () => {
-  const { metrics, counts, confidence, uncertainty } = reference;
-  assert.equal(reference.preset, "precise");
-  assert.equal(reference.seed, 3);
-  assert.ok(reference.initialScale > 0);
-  assert.ok(Math.abs(reference.scale / reference.initialScale - reference.scaleRatio) < 1e-9);
-  assert.equal(reference.collapsed, false);
-  assert.ok(confidence === null || (confidence >= 0 && confidence <= 1), `confidence ${confidence}`);
-  assert.ok((reference.score ?? 0) > 0);
+  const { metrics, diagnostics, confidence, uncertainty } = reference;
+  const { counts, terms } = diagnostics;
+  assert.equal(diagnostics.preset, "precise");
+  assert.equal(diagnostics.seed, 3);
+  assert.ok(diagnostics.initialScale > 0);
+  assert.ok(Math.abs(reference.scale / diagnostics.initialScale - diagnostics.scaleRatio) < 1e-9);
+  assert.equal(diagnostics.collapsed, false);
+  assert.ok(confidence >= 0 && confidence <= 1, `confidence ${confidence}`);
+  assert.ok(diagnostics.score > 0);
+  assert.deepEqual(Object.keys(terms).sort(), ["coverage", "depth", "hidden", "normals", "outline", "overlap"]);
   assert.ok(Array.isArray(reference.alternatives));
   if (uncertainty !== null) {
     const { rotationAxis, ...deviations } = uncertainty;
@@ -66,11 +69,11 @@ test("the report is complete", () => {
     for (const [name, value] of Object.entries(deviations)) assert.ok(value >= 0, `${name}: ${value}`);
     assert.ok(Math.abs(Math.hypot(...rotationAxis) - 1) < 1e-6, `${rotationAxis}`);
   }
-  assert.equal(typeof reference.clamped, "boolean");
-  assert.equal(typeof reference.converged, "boolean");
-  assert.ok(reference.residualM >= 0);
+  assert.equal(typeof diagnostics.clamped, "boolean");
+  assert.equal(typeof diagnostics.converged, "boolean");
+  assert.ok(diagnostics.residualM >= 0);
   const codes = reference.warnings.map(({ code }) => code);
-  assert.deepEqual(codes, reference.converged ? [] : ["NOT_CONVERGED"]);
+  assert.deepEqual(codes, diagnostics.converged ? [] : ["NOT_CONVERGED"]);
   const names = ["boundaryF", "centerDriftPx", "chamferMm", "depthMaeMm", "fitness", "iou", "normalConsistency"];
   assert.deepEqual(Object.keys(metrics).sort(), [...names, "uniChamferMm"]);
   for (const [name, value] of Object.entries(metrics)) assert.ok(value === null || value >= 0, `${name}: ${value}`);
@@ -82,13 +85,12 @@ test("the report is complete", () => {
 });
 
 test("the paper's method is there by its name", async () => {
-  const { preset, scaleRatio, confidence, score, alternatives, uncertainty, counts, timingsMs } = await aligner.align(
-    input,
-    { preset: "paper" },
-  );
+  const result = await aligner.align(input, { preset: "paper" });
+  const { preset, scaleRatio, counts, timingsMs } = result.diagnostics;
   assert.equal(preset, "paper");
   assert.ok(scaleRatio >= 0.5 && scaleRatio <= 1.5, "the guard holds");
-  assert.deepEqual([confidence, score, alternatives, uncertainty], [null, null, [], null]);
+  for (const name of ["confidence", "alternatives", "uncertainty"]) assert.ok(!(name in result), name);
+  for (const name of ["score", "terms"]) assert.ok(!(name in result.diagnostics), name);
   assert.ok(counts.inliers <= counts.matches && counts.matches > 0);
   assert.equal(counts.renders, 0);
   const names = ["observe", "sample", "normals", "features", "matching", "ransac", "filter", "icp", "metrics", "total"];
@@ -96,7 +98,7 @@ test("the paper's method is there by its name", async () => {
 });
 
 test("the stages are timed, and the total is their sum", async () => {
-  const { total, ...stages } = (await aligner.align(input)).timingsMs;
+  const { total, ...stages } = (await aligner.align(input)).diagnostics.timingsMs;
   for (const name of ["observe", "prepare", "search", "refine", "metrics"]) assert.ok(name in stages, name);
   const sum = Object.values(stages).reduce((a, b) => a + b, 0);
   assert.ok(total > 0 && Math.abs(total - sum) < 1e-6 * total + 1e-9, `${total} against ${sum}`);
@@ -113,7 +115,7 @@ test("calls at once do not disturb each other", async () => {
   const [first, second, third] = results.map(withoutTimes);
   assert.deepEqual(first, reference);
   assert.deepEqual(third, reference);
-  assert.equal(second?.seed, 4);
+  assert.equal(second?.diagnostics.seed, 4);
 });
 
 test("the arguments are left as they were", async () => {
@@ -125,21 +127,37 @@ test("the arguments are left as they were", async () => {
 
 test("the guard rejects or clamps, and counts what it did", async () => {
   const narrow = { ...paper, guard: [0.999, 1.001] as [number, number], ransacIterations: 5000 };
-  const clamping = await aligner.align(input, { ...narrow, guardMode: "clamp" });
+  const { diagnostics: clamping } = await aligner.align(input, { ...narrow, guardMode: "clamp" });
   assert.ok(clamping.counts.clamped > 0);
   assert.equal(clamping.counts.rejected, 0);
   assert.ok(clamping.scaleRatio >= 0.999 - 1e-9 && clamping.scaleRatio <= 1.001 + 1e-9, `${clamping.scaleRatio}`);
-  const unguarded = await aligner.align(input, { ...paper, guard: null });
+  const { diagnostics: unguarded } = await aligner.align(input, { ...paper, guard: null });
   assert.equal(unguarded.counts.rejected + unguarded.counts.clamped, 0);
 });
 
-test("the ablations run", async () => {
-  for (const options of [{ lockScale: false }, { hallucinationFilter: false }, { icp: "point-to-point" }] as const) {
-    const { metrics } = await aligner.align(input, { ...paper, ...options });
-    assert.ok(metrics.iou !== null, JSON.stringify(options));
-  }
+test("the ablations change what they are about", async () => {
+  const whole = await aligner.align(input, paper);
   const unrefined = await aligner.align(input, { ...paper, icp: "none" });
-  assert.equal(unrefined.counts.icpIterations, 0);
+  assert.equal(unrefined.diagnostics.counts.icpIterations, 0);
+  assert.ok(Math.abs(unrefined.scale / whole.scale - 1) < 1e-12, "ICP leaves the scale alone");
+  assert.notDeepEqual(unrefined.translation, whole.translation);
+  const unlocked = await aligner.align(input, { ...paper, lockScale: false });
+  assert.notEqual(unlocked.scale, whole.scale, "unlocked, it does not");
+  const toPoints = await aligner.align(input, { ...paper, icp: "point-to-point" });
+  assert.notDeepEqual(toPoints.translation, whole.translation);
+  const unfiltered = await aligner.align(input, { ...paper, hallucinationFilter: false });
+  assert.ok(unfiltered.diagnostics.counts.supported > whole.diagnostics.counts.supported);
+});
+
+test("metrics are left out on request, and nothing else changes", async () => {
+  const { metrics, ...others } = reference;
+  const without = await aligner.align(input, { seed: 3, metrics: false });
+  assert.ok(metrics.iou !== null && !("metrics" in without));
+  assert.ok(!("metrics" in without.diagnostics.timingsMs) && !("normals" in without.diagnostics.timingsMs));
+  const { timingsMs: _, ...diagnostics } = without.diagnostics;
+  assert.deepEqual({ ...without, diagnostics }, others);
+  const baseline = await aligner.align(input, { preset: "paper", metrics: false });
+  assert.ok(!("metrics" in baseline) && baseline.scale > 0);
 });
 
 test("progress names the stages in order, and never falls", async () => {
@@ -148,6 +166,8 @@ test("progress names the stages in order, and never falls", async () => {
   assert.equal(seen[0]?.stage, "observe");
   assert.equal(seen[0]?.fraction, 0);
   assert.equal(seen.at(-1)?.fraction, 1);
+  const last = seen.at(-1)?.best;
+  assert.ok(Array.isArray(last?.matrix) && last.matrix.length === 16);
   const stages = [...new Set(seen.map(({ stage }) => stage))];
   assert.deepEqual(stages.slice(0, 2), ["observe", "sample"]);
   assert.ok(stages.indexOf("search") > 0 && stages.indexOf("search") < stages.indexOf("refine"), `${stages}`);
@@ -170,24 +190,20 @@ test("what onProgress throws rejects the call, and leaves the aligner usable", a
 });
 
 test("options left undefined take their defaults", async () => {
-  const options = { seed: 3, guard: undefined, onProgress: undefined } as unknown as { seed: number };
+  const options = { seed: 3, quality: undefined, onProgress: undefined };
   assert.deepEqual(withoutTimes(await aligner.align(input, options)), reference);
 });
 
 test("the defaults are those of the documentation, and passing them changes nothing", async () => {
-  const { align } = await aligner.defaults();
-  assert.deepEqual(align.guard, [0.5, 1.5]);
-  assert.equal(align.preset, "precise");
-  assert.equal(align.symmetry, "auto");
-  assert.deepEqual([align.scale, align.knownExtentM, align.initial, align.lockScale], [null, null, null, null]);
-  assert.equal(align.voxelDivisions, 30);
-  assert.deepEqual(withoutTimes(await aligner.align(input, { ...align, seed: 3 })), reference);
+  assert.equal(ALIGN_DEFAULTS.symmetry, "auto");
+  assert.deepEqual(PAPER_DEFAULTS.guard, [0.5, 1.5]);
+  assert.deepEqual(withoutTimes(await aligner.align(input, { ...ALIGN_DEFAULTS, seed: 3 })), reference);
+  const [plain, spelt] = [await aligner.align(input, paper), await aligner.align(input, PAPER_DEFAULTS)];
+  assert.deepEqual([spelt.matrix, spelt.metrics], [plain.matrix, plain.metrics]);
 });
 
 test("the result survives JSON", () => {
-  const { matrix, alternatives: _, ...plain } = reference;
-  assert.deepEqual(JSON.parse(JSON.stringify(plain)), plain);
-  assert.equal(Array.from(matrix).length, 16);
+  assert.deepEqual(JSON.parse(JSON.stringify(reference)), reference);
 });
 
 test("a disposed aligner says so, and others go on", async () => {
@@ -197,7 +213,6 @@ test("a disposed aligner says so, and others go on", async () => {
   await rejectsWith(() => disposed.align(input), expected);
   await rejectsWith(() => disposed.evaluate(input, reference), expected);
   await rejectsWith(() => disposed.register(new Float32Array(99), new Float32Array(99)), expected);
-  await rejectsWith(() => disposed.defaults(), expected);
   disposed.dispose();
   assert.deepEqual(withoutTimes(await aligner.align(input, { seed: 3 })), reference);
 });

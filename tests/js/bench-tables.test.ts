@@ -1,4 +1,4 @@
-/** What the benchmark commands make of their measurements: medians, success, bins of confidence, kinds of failure. */
+/** The benchmark commands' statistics: medians, success, bins of confidence, kinds of failure. */
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { test } from "node:test";
@@ -6,11 +6,9 @@ import { pathToFileURL } from "node:url";
 import { repository } from "../support/environment.js";
 
 const script = (name: string) => import(pathToFileURL(join(repository, "scripts", "bench", name)).href);
-const [{ median, mean, share }, { fixed, markdownTable }, { failure, judged }, { isWithin, loose, strict }] =
-  await Promise.all(["statistics.mjs", "table.mjs", "records.mjs", "tolerance.mjs"].map(script));
-const [{ binOf, failureTable, reliabilityTable }, { ablationTable }] = await Promise.all(
-  ["reliability-table.mjs", "ablation-table.mjs"].map(script),
-);
+const [{ median, mean, share, fixed, markdownTable }, { failure, judged, isWithin, loose, strict }, tables] =
+  await Promise.all(["table.mjs", "records.mjs", "search-tables.mjs"].map(script));
+const { ablationTable, binOf, failureTable, reliabilityTable } = tables;
 
 const right = { scaleError: 0.01, rotationErrorDeg: 2, translationErrorRelative: 0.01 };
 const near = { ...right, rotationErrorDeg: 15 };

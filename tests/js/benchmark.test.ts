@@ -8,10 +8,10 @@ import { pathToFileURL } from "node:url";
 import { repository } from "../support/environment.js";
 
 const script = (name: string) => import(pathToFileURL(join(repository, "scripts", "bench", name)).href);
-const [{ summarise, summariseTruth }, { columns }, { tableSpecs, rowsToRun }, { makeTables, tableMarkdown }] =
-  await Promise.all(["summary", "columns", "rows", "tables"].map((name) => script(`paper/${name}.mjs`)));
-const [{ byDifficulty, byOverlap, figurePage }, { openResults, readRecords }] = await Promise.all(
-  ["paper/figures.mjs", "results.mjs"].map(script),
+const [{ summarise, summariseTruth, columns }, { tableSpecs, rowsToRun }, { makeTables, tableMarkdown }] =
+  await Promise.all(["summary", "rows", "tables"].map((name) => script(`paper/${name}.mjs`)));
+const [{ byDifficulty, byOverlap, figurePage }, { openResults }, { readRecords }] = await Promise.all(
+  ["paper/figures.mjs", "results.mjs", "records.mjs"].map(script),
 );
 
 const metrics = { boundaryF: 0.8, centerDriftPx: 4, iou: 0.6, chamferMm: 10, uniChamferMm: 5 };

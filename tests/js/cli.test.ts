@@ -5,9 +5,10 @@ import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "nod
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, test } from "node:test";
-import { createAligner, type Sim3 } from "sim3align";
+import { createAligner, OPTIONS, type Sim3 } from "sim3align";
 import { commandLine } from "../support/environment.js";
 import { cocoRle, glb, gltfBuffer, gltfJson, npy, obj, png } from "../support/files.js";
+import { withoutTimes } from "../support/results.js";
 import { columnMajor, mesh, rotationRows, truth, view } from "../support/scene.js";
 
 const { width, height, depth, mask, camera } = view;
@@ -91,6 +92,18 @@ test("--help explains the layout, frames, units and exit status", () => {
   assert.match(run("evaluate", "--help").stdout, /transform file/);
 });
 
+test("there is a flag for every option, with its values and default", () => {
+  const { stdout } = run("align", "--help");
+  const help = stdout.replace(/\s+/g, " ");
+  for (const { name, kind, default: value } of [...OPTIONS.align, ...OPTIONS.paper]) {
+    const flag = name.replace(/M$/, "").replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`);
+    assert.ok(stdout.includes(kind === "boolean" && value === true ? `--no-${flag}` : `--${flag}`), name);
+  }
+  assert.match(help, /--quality <name> how much work the search does \(fast, balanced, best; default balanced\)/);
+  assert.match(help, /--ransac-iterations <n> [^(]*\(1 to 10000000; default 100000\)/);
+  assert.match(help, /--known-extent <metres> [^(]*--known-extent-axis[^(]*\(above 0\)/);
+});
+
 test("a single case is shown in detail", () => {
   const { status, stdout, stderr } = run("align", "blob", "--preset", "paper", "--seed", "1");
   assert.equal(stderr, "", "no progress line without a terminal");
@@ -127,9 +140,11 @@ test("--json has everything, as the documentation says", async () => {
   const { errors } = await aligner.evaluate(input, alignment, { truth });
   const { timingsMs, ...rest } = blob;
   assert.ok(timingsMs.total > 0);
-  const { timingsMs: _, ...same } = alignment;
-  const written = <T extends Sim3>({ rotation, rotationMatrix, matrix, ...others }: T) => {
-    return { ...others, rotation: rotationMatrix, matrix: Array.from(matrix), quaternion: rotation };
+  const top = ["scale", "rotation", "translation", "matrix", "quaternion", "confidence", "alternatives", "uncertainty"];
+  assert.deepEqual(Object.keys(blob), [...top, "metrics", "warnings", "timingsMs", "diagnostics", "errors"]);
+  const same = withoutTimes(alignment);
+  const written = <T extends Sim3>({ rotation, rotationMatrix, ...others }: T) => {
+    return { ...others, rotation: rotationMatrix, quaternion: rotation };
   };
   const expected = { ...written(same), alternatives: same.alternatives.map(written), errors };
   // The truth's rotation comes as rows there, as a quaternion here.
@@ -178,10 +193,17 @@ test("files among the folders are passed over, but not files alone", () => {
   assert.equal(run("align", "out.json").status, 2);
 });
 
+test("metrics are left out on request", () => {
+  assert.equal(run("align", "blob", "--no-metrics", "--quality", "fast", "--json", "bare.json").status, 0);
+  assert.equal("metrics" in results("bare.json").blob, false);
+  const { stdout } = run("align", "blob", "--no-metrics", "--quality", "fast");
+  assert.ok(stdout.includes("confidence") && !stdout.includes("silhouette IoU"));
+});
+
 test("two readings of one case agree", () => {
   run("align", "blob", "blob-other-formats", "--json", "two.json");
   const { blob, "blob-other-formats": other } = results("two.json");
-  assert.ok(Math.abs(blob.initialScale / other.initialScale - 1) < 0.01);
+  assert.ok(Math.abs(blob.diagnostics.initialScale / other.diagnostics.initialScale - 1) < 0.01);
 });
 
 test("cases of the same name are told apart by their paths", () => {
@@ -234,10 +256,12 @@ test("flags reach the core", () => {
   ];
   assert.equal(run("align", "blob", ...flags, ...more, "--json", "flags.json").status, 0);
   const { blob } = results("flags.json");
-  assert.equal(blob.seed, 4);
-  assert.equal(blob.counts.icpIterations, 0);
-  assert.ok(blob.counts.iterations <= 500);
-  assert.ok(blob.scaleRatio >= 0.9 - 1e-9 && blob.scaleRatio <= 1.1 + 1e-9);
+  const { seed, counts, scaleRatio } = blob.diagnostics;
+  assert.equal(seed, 4);
+  assert.equal(counts.icpIterations, 0);
+  assert.ok(counts.iterations <= 500);
+  assert.ok(scaleRatio >= 0.9 - 1e-9 && scaleRatio <= 1.1 + 1e-9);
+  assert.deepEqual([blob.confidence, blob.alternatives, blob.uncertainty], [null, [], null]);
   assert.equal(
     run(
       "align",
@@ -254,23 +278,24 @@ test("flags reach the core", () => {
     ).status,
     0,
   );
-  assert.equal(results("f.json").blob.seed, 6, "flags have precedence");
-  assert.equal(results("f.json").blob.counts.rejected, 0);
+  assert.equal(results("f.json").blob.diagnostics.seed, 6, "flags have precedence");
+  assert.equal(results("f.json").blob.diagnostics.counts.rejected, 0);
 });
 
 test("the flags of precise are taken", () => {
   const quick = ["--quality", "fast", "--json", "precise.json"];
   const accepted = [
-    ["--scale", "0.05,0.2", "--budget-ms", "100"],
+    ["--scale", "0.05,0.2", "--work-budget", "100"],
+    ["--scale", "free"],
     ["--known-extent", "0.2", "--known-extent-axis", "longest", "--symmetry", "none"],
     ["--camera-up", "-1,0,0", "--mesh-up", "0,1,0", "--symmetry", '[{"axis": [0, 0, 1], "fold": 2}]'],
-    ["--initial", "blob/gt.json", "--search", "local", "--lock-scale"],
+    ["--initial", "blob/gt.json", "--search", "local", "--no-metrics"],
     ["--initial", "precise.json", "--search", "local"],
   ];
   for (const flags of accepted) {
     const { status, stderr } = run("align", "blob", ...quick, ...flags);
     assert.equal(status, 0, stderr);
-    assert.equal(results("precise.json").blob.preset, "precise");
+    assert.equal(results("precise.json").blob.diagnostics.preset, "precise");
   }
 });
 
@@ -290,6 +315,12 @@ const usage: [name: string, args: string[], message: RegExp][] = [
   ["an unknown flag", ["align", "blob", "--sead", "1"], /unknown option '--sead'.*--seed/s],
   ["an unknown preset", ["align", "blob", "--preset", "fast"], /Allowed choices are precise, paper/],
   ["an unknown quality", ["align", "blob", "--quality", "ultra"], /Allowed choices are fast, balanced, best/],
+  ["an option of the other preset", ["align", "blob", "--guard", "none"], /options\.guard.*option of preset "paper"/],
+  [
+    "the same the other way round",
+    ["align", "blob", "--preset", "paper", "--search", "global"],
+    /options\.search.*"precise"/,
+  ],
   ["a scale that is no number", ["align", "blob", "--scale", "big"], /MIN,MAX/],
   ["bounds that are one too many", ["align", "blob", "--scale", "1,2,3"], /MIN,MAX/],
   ["a scale of zero", ["align", "blob", "--scale", "0"], /options\.scale.*above 0/],
@@ -305,7 +336,7 @@ const usage: [name: string, args: string[], message: RegExp][] = [
   ["options that are no object", ["align", "blob", "--options", "[1]"], /Give an object/],
   [
     "an option out of range",
-    ["align", "blob", "--voxel-divisions", "1"],
+    ["align", "blob", "--preset", "paper", "--voxel-divisions", "1"],
     /options\.voxelDivisions: found 1.*from 5 to 200/,
   ],
   ["an option that does not exist", ["align", "blob", "--options", '{"sead": 1}'], /options\.sead/],

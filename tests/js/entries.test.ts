@@ -7,9 +7,9 @@ import { dirname, join } from "node:path";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 import { createAligner } from "sim3align";
-import { readCamera, readDepth, readMask, readMesh, Sim3AlignError } from "sim3align/formats";
+import { externalResources, readDepth, readMask, readMesh, Sim3AlignError } from "sim3align/formats";
 import * as inline from "sim3align/inline";
-import { cocoRle, npy, obj, png } from "../support/files.js";
+import { cocoRle, gltfJson, npy, obj, png } from "../support/files.js";
 import { input, mesh } from "../support/scene.js";
 import { withoutTimes } from "../support/workers.js";
 
@@ -60,16 +60,14 @@ test("formats: what the files hold", async () => {
   );
   const inTenths = await readDepth(png(Uint16Array.of(0, 1, 2, 3), 2, 2), { integerDepthScale: 0.1 });
   assert.equal(inTenths.data[2], Math.fround(0.2));
-  const intrinsics = { fx: 300, fy: 301, cx: 79.5, cy: 60 };
-  const { fx, fy, cx, cy } = await readCamera(JSON.stringify({ ...intrinsics, width, height }), { width, height });
-  assert.deepEqual({ fx, fy, cx, cy }, intrinsics);
-  await assert.rejects(readCamera({ nothing: 1 }), (error) => error instanceof Sim3AlignError);
   for (const file of [npy(mask, height, width), png(mask, width, height), cocoRle(mask, width, height)]) {
     assert.deepEqual((await readMask(file)).data, mask);
   }
   const { positions, indices } = await readMesh(obj(mesh), { format: "obj" });
   assert.deepEqual(indices, mesh.indices);
   assert.equal(positions.length, mesh.positions.length);
+  const gltf = Buffer.from(JSON.stringify(gltfJson(mesh, {}, { uri: "a%20b.bin" })));
+  assert.deepEqual(await externalResources(gltf), ["a%20b.bin"]);
   await assert.rejects(readMesh(Uint8Array.of(1, 2, 3)), (error) => error instanceof Sim3AlignError);
   await assert.rejects(readDepth("depth.npy" as never), { code: "INVALID_ARGUMENT", argument: "file" });
 });

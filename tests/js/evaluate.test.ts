@@ -1,7 +1,7 @@
 /** `evaluate` on poses whose score is known. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { createAligner, type EvaluateOptions, type Sim3Like } from "sim3align";
+import { createAligner, EVALUATE_DEFAULTS, type EvaluateOptions, type Sim3Like } from "sim3align";
 import { rejectsWith } from "../support/errors.js";
 import { columnMajor, input, rotationRows, truth } from "../support/scene.js";
 
@@ -15,7 +15,8 @@ const turned = (degrees: number): Sim3Like => {
 };
 
 test("the truth scores as a perfect pose", async () => {
-  const { metrics, errors, scaleRatio, collapsed, warnings } = await aligner.evaluate(input, truth, { truth });
+  const { metrics, errors, warnings, diagnostics } = await aligner.evaluate(input, truth, { truth });
+  const { scaleRatio, collapsed } = diagnostics;
   assert.ok((metrics.iou ?? 0) > 0.99, `iou ${metrics.iou}`);
   assert.ok((metrics.boundaryF ?? 0) > 0.99, `boundaryF ${metrics.boundaryF}`);
   assert.ok((metrics.centerDriftPx ?? 9) < 0.1, `centerDriftPx ${metrics.centerDriftPx}`);
@@ -75,6 +76,14 @@ test("an alignment is a transform, and scores as align said", async () => {
   assert.deepEqual((await aligner.evaluate(input, alignment)).metrics, alignment.metrics);
 });
 
+test("the defaults passed as options change nothing", async () => {
+  const [plain, spelt] = [
+    await aligner.evaluate(input, truth),
+    await aligner.evaluate(input, truth, EVALUATE_DEFAULTS),
+  ];
+  assert.deepEqual(spelt, plain);
+});
+
 test("declared symmetries are no errors", async () => {
   const half = turned(180);
   const rotationError = async (options: EvaluateOptions) => {
@@ -101,7 +110,8 @@ test("where nothing overlaps, there is null and no flattering number", async () 
 });
 
 test("a collapsed scale is called so", async () => {
-  const { collapsed, scaleRatio } = await aligner.evaluate(input, { ...truth, scale: 0.01 });
+  const { diagnostics } = await aligner.evaluate(input, { ...truth, scale: 0.01 });
+  const { collapsed, scaleRatio } = diagnostics;
   assert.ok(scaleRatio < 0.3);
   assert.equal(collapsed, true);
 });

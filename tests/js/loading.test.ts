@@ -54,6 +54,17 @@ test("the core loads once, however many ask at once; the file readers only when 
     const aligners = await Promise.all([createAligner(), createAligner(), createAligner()]);
     await Promise.all(aligners.map(check));
     assert.equal(compiled.length, 1);
+    const mask = { size: [2, 2], counts: [0, 4] };
+    const parsed = {
+      depth: { data: Float32Array.of(1, 1.1, 1.2, 1), width: 2, height: 2 },
+      mask: new TextEncoder().encode(JSON.stringify(mask)),
+      cameraFile: '{ "fovYDeg": 50 }',
+      mesh: { positions: Float32Array.of(0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1), indices: Uint32Array.of(0, 1, 2, 0, 1, 3) },
+    };
+    for (const input of [parsed, { ...parsed, mask }]) {
+      await assert.rejects(aligners[0].align(input), { code: "TOO_FEW_POINTS" });
+    }
+    assert.equal(compiled.length, 1, "JSON formats need no file readers");
     const bad = { depth: new Uint8Array(3), mask: new Uint8Array(3), camera: { fovYDeg: 50 }, mesh: new Uint8Array(3) };
     for (const aligner of aligners) await aligner.align(bad).catch((error) => assert.equal(error.code, "UNSUPPORTED_FORMAT"));
     assert.equal(compiled.length, 2);
@@ -113,7 +124,7 @@ test("loading prints nothing", () => {
 test("a trap in WebAssembly costs one call: the next one gets a new instance", async () => {
   const aligner = await createAligner();
   const before = (await aligner.evaluate(input, truth)).metrics;
-  const path = join(installDir, "node_modules", "sim3align", "modules.js");
+  const path = join(installDir, "node_modules", "sim3align", "core.js");
   const { coreModule } = await import(pathToFileURL(path).href);
   const loaded = await coreModule.load();
   const trap = async () =>

@@ -48,7 +48,7 @@ test("the conventions load no WebAssembly, and three.js' no three.js", () => {
   for (const entry of ["sim3align/conventions", "sim3align/three"]) {
     const { own, foreign } = importsOf(entry);
     assert.deepEqual(
-      own.filter((file) => /wasm|aligner|modules/.test(file)),
+      own.filter((file) => /wasm|aligner|core|module/.test(file)),
       [],
     );
     assert.deepEqual(foreign, [], entry);

@@ -1,11 +1,11 @@
 /** Workers: the same bits, whoever does the work; what becomes of a worker that is lost; many inputs, few at a time. */
 import assert from "node:assert/strict";
 import { after, test } from "node:test";
-import { type AlignInput, type AlignOptions, createAligner, Sim3AlignError } from "sim3align";
+import { type AlignInput, type AlignOptions, createAligner, type PaperOptions, Sim3AlignError } from "sim3align";
 import { rejectsWith } from "../support/errors.js";
 import { glb, npy, png } from "../support/files.js";
 import { brick, input, mesh, transformed, truth } from "../support/scene.js";
-import { atAnswer, slowInput, underWay, Workers, withoutTimes } from "../support/workers.js";
+import { Gate, slowInput, Workers, withoutTimes } from "../support/workers.js";
 
 const here = await createAligner();
 const pools = await Promise.all([1, 2, 3].map((workers) => createAligner({ workers })));
@@ -16,22 +16,20 @@ after(() => {
 
 const quick = { quality: "fast" } as const;
 
-test("any number of workers gives the same bits, whether they share a search or not", async () => {
-  const poses: AlignOptions[] = [
+test("any number of workers gives the same bits", async () => {
+  const poses: (AlignOptions | PaperOptions)[] = [
     {},
     { quality: "best" },
     { quality: "fast", seed: 5, scale: [0.05, 0.2], cameraUp: [0, -1, 0.2], meshUp: [0, 1, 0] },
     { quality: "fast", initial: truth },
-    { quality: "fast", initial: truth, search: "local", lockScale: true },
+    { quality: "fast", initial: truth, search: "local", scale: truth.scale },
     { preset: "paper" },
   ];
   for (const options of poses) {
     const expected = withoutTimes(await here.align(brick, options));
     for (const [i, aligner] of pools.entries()) {
-      for (const splitSearch of [false, true]) {
-        const found = withoutTimes(await aligner.align(brick, { ...options, splitSearch }));
-        assert.deepEqual(found, expected, `${i + 1} workers, split: ${splitSearch}, ${JSON.stringify(options)}`);
-      }
+      const found = withoutTimes(await aligner.align(brick, options));
+      assert.deepEqual(found, expected, `${i + 1} workers, ${JSON.stringify(options)}`);
     }
   }
 });
@@ -58,15 +56,6 @@ test("the core is compiled once, however many aligners there are: workers are ha
   assert.equal(compile.mock.callCount(), 0, "the aligners before had it compiled");
 });
 
-test("a shared search has the stages and times of one that is not", async () => {
-  const whole = await pool.align(input, quick);
-  const shared = await pool.align(input, { ...quick, splitSearch: true });
-  assert.deepEqual(Object.keys(shared.timingsMs), Object.keys(whole.timingsMs));
-  const { total, ...stages } = shared.timingsMs;
-  const sum = Object.values(stages).reduce((a, b) => a + b, 0);
-  assert.ok(total > 0 && Math.abs(total - sum) < 1e-6 * total);
-});
-
 test("evaluate, register and estimateSim3 run in workers too", async () => {
   assert.deepEqual(
     (await pool.evaluate(input, truth, { truth })).metrics,
@@ -80,9 +69,10 @@ test("evaluate, register and estimateSim3 run in workers too", async () => {
     assert.ok(Math.abs(found.scale - truth.scale) < 1e-9);
   }
   const settings = { seed: 2, ransacIterations: 2000 };
-  const { timingsMs: _, ...there } = await pool.register(mesh.positions, transformed(mesh.positions, truth), settings);
-  const { timingsMs: __, ...own } = await here.register(mesh.positions, transformed(mesh.positions, truth), settings);
-  assert.deepEqual(there, own);
+  const [there, own] = await Promise.all(
+    [pool, here].map((aligner) => aligner.register(mesh.positions, transformed(mesh.positions, truth), settings)),
+  );
+  assert.deepEqual([there?.matrix, there?.fitness, there?.residual], [own?.matrix, own?.fitness, own?.residual]);
 });
 
 test("files are decoded in the workers", async () => {
@@ -90,12 +80,11 @@ test("files are decoded in the workers", async () => {
   const files: AlignInput = {
     depth: npy(depth, height, width),
     mask: new Blob([png(mask, width, height) as Uint8Array<ArrayBuffer>]),
-    camera: JSON.stringify(camera),
+    cameraFile: JSON.stringify(camera),
     mesh: glb(mesh),
   };
   const expected = withoutTimes(await here.align(files, quick));
-  const both = await Promise.all([pool.align(files, quick), pool.align(files, { ...quick, splitSearch: true })]);
-  for (const found of both) assert.deepEqual(withoutTimes(found), expected);
+  assert.deepEqual(withoutTimes(await pool.align(files, quick)), expected);
 });
 
 test("errors are those of this thread: class, code, argument and message", async () => {
@@ -112,11 +101,7 @@ test("errors are those of this thread: class, code, argument and message", async
     [input, { seed: Symbol("seed") as unknown as number }],
   ];
   for (const [faulty, options] of bad) {
-    const calls = [
-      here.align(faulty, options),
-      pool.align(faulty, options),
-      pool.align(faulty, { ...options, splitSearch: true }),
-    ];
+    const calls = [here.align(faulty, options), pool.align(faulty, options)];
     const outcomes = await Promise.allSettled(calls);
     const [own, ...others] = outcomes.map((call): unknown => (call.status === "rejected" ? call.reason : call.value));
     assert.ok(own instanceof Sim3AlignError, JSON.stringify(own));
@@ -140,8 +125,9 @@ test("the arguments are left as they were, views into larger buffers too", async
 
 test("with transfer the arrays are moved, and handed back", async () => {
   const moved = structuredClone(input);
-  const call = pool.align(moved, { ...quick, transfer: true });
-  await underWay();
+  const begun = new Gate();
+  const call = pool.align(moved, { ...quick, transfer: true, onProgress: begun.open });
+  await begun.opened;
   const { input: back } = await call;
   assert.equal(moved.depth.length, 0, "moved");
   assert.deepEqual(back, input);
@@ -174,66 +160,56 @@ test("what can't be moved is copied: Node's pooled buffers, shared memory, and e
   assert.ok(input.depth.length > 0);
 });
 
-test("a worker that is lost is replaced, and its job done again", async () => {
-  const workers = new Workers();
-  const aligner = await createAligner({ workers: 2, createWorker: workers.create });
-  const expected = withoutTimes(await here.align(slowInput, { quality: "best" }));
-  const calls = [aligner.align(slowInput, { quality: "best" }), aligner.align(input, quick)];
-  await underWay();
-  await Promise.all(workers.made.map((worker) => worker.terminate()));
-  const [slow, fast] = await Promise.all(calls);
-  assert.deepEqual(slow && withoutTimes(slow), expected);
-  assert.ok(fast);
-  assert.ok(workers.made.length > 2, `${workers.made.length} workers`);
-
-  const shared = aligner.align(slowInput, { quality: "best", splitSearch: true });
-  await underWay();
-  await workers.made.at(-1)?.terminate();
-  assert.deepEqual(withoutTimes(await shared), expected);
-  aligner.dispose();
+test("arrays that have been moved before are refused by name, and the worker goes on", async () => {
+  const one = await createAligner({ workers: 1 });
+  const moved = structuredClone(input);
+  const [first, second] = await Promise.allSettled([
+    one.align(moved, { ...quick, transfer: true }),
+    one.align(moved, { ...quick, transfer: true }),
+  ]);
+  assert.ok(first.status === "fulfilled" && second.status === "rejected");
+  const expected = { code: "INVALID_ARGUMENT", argument: "input", message: /detached.*transfer: true/ } as const;
+  await rejectsWith(() => Promise.reject(second.reason), expected);
+  assert.deepEqual(withoutTimes(await one.align(input, quick)), withoutTimes(await here.align(input, quick)));
+  const file = { ...input, mesh: glb(mesh) };
+  assert.ok((await one.align(file, quick)).scale > 0, "the file readers load");
+  one.dispose();
 });
 
-test("a worker that is lost between two rounds of a shared search is missed", async () => {
-  const expected = withoutTimes(await here.align(brick, quick));
-  for (const [lost, other] of [
-    [0, 1],
-    [1, 0],
-  ] as const) {
-    const workers = new Workers();
-    const aligner = await createAligner({ workers: 2, createWorker: workers.create });
-    const [victim, witness] = [workers.made[lost], workers.made[other]];
-    assert.ok(victim && witness);
-    const gone = new Promise((resolve) => victim.once("exit", resolve));
-    // The first answer is to the input, the others are to rounds; the other worker's waits until this one has gone.
-    atAnswer(victim, 3, (deliver) => {
-      deliver();
-      void victim.terminate();
-    });
-    atAnswer(witness, 3, (deliver) => void gone.then(deliver));
-    const found = await aligner.align(brick, { ...quick, splitSearch: true });
-    assert.deepEqual(withoutTimes(found), expected, `worker ${lost} lost`);
-    assert.ok(workers.made.length > 2);
-    aligner.dispose();
-  }
+/** Leaves the calls' reports to {@link Workers}, which sees that a worker is busy by them. */
+const onProgress = () => {};
+
+test("a worker that is lost is replaced, and its job is run again", async () => {
+  const workers = new Workers();
+  const aligner = await createAligner({ workers: 2, createWorker: workers.create });
+  const slow = { quality: "best", onProgress } as const;
+  const expected = withoutTimes(await here.align(slowInput, slow));
+  const calls = [aligner.align(slowInput, slow), aligner.align(slowInput, slow)];
+  const both = [await workers.nth(0), await workers.nth(1)];
+  await Promise.all(both.map(({ isBusy }) => isBusy));
+  await Promise.all(both.map((worker) => worker.terminate()));
+  for (const call of calls) assert.deepEqual(withoutTimes(await call), expected);
+  assert.equal(workers.made.length, 4);
+  aligner.dispose();
 });
 
 test("a job that loses two workers fails, and others go on", async () => {
   const workers = new Workers();
   const aligner = await createAligner({ workers: 1, createWorker: workers.create });
-  const lost = aligner.align(slowInput, { quality: "best" });
+  const lost = aligner.align(slowInput, { quality: "best", onProgress });
   const next = aligner.align(input, quick);
   const failure = rejectsWith(() => lost, { code: "WORKER_FAILED", argument: "workers", message: /exit code/ });
-  for (let i = 0; i < 2; i++) {
-    await underWay();
-    await workers.made.at(-1)?.terminate();
-    await underWay();
+  for (const n of [0, 1]) {
+    const worker = await workers.nth(n);
+    await worker.isBusy;
+    await worker.terminate();
   }
   await failure;
   assert.ok((await next).scale > 0);
   aligner.dispose();
 });
 
-test("workers that never begin are told of, by each call", async () => {
+test("each call reports workers that cannot start", async () => {
   const { Worker } = await import("node:worker_threads");
   const broken = [
     () => new Worker("throw new Error('no such script')", { eval: true }),
@@ -250,7 +226,7 @@ test("workers that never begin are told of, by each call", async () => {
         message: /no such|not allowed/,
       });
     }
-    assert.ok((await aligner.defaults()).align.preset);
+    assert.ok((await aligner.buildInfo()).version);
     aligner.dispose();
   }
 });
@@ -258,14 +234,16 @@ test("workers that never begin are told of, by each call", async () => {
 test("disposing ends the workers, and what waits for them", async () => {
   const workers = new Workers();
   const aligner = await createAligner({ workers: 1, createWorker: workers.create });
-  const calls = [aligner.align(slowInput, { quality: "best" }), aligner.align(input), aligner.evaluate(input, truth)];
-  await underWay();
+  const slow = { quality: "best", onProgress } as const;
+  const calls = [aligner.align(slowInput, slow), aligner.align(input), aligner.evaluate(input, truth)];
+  const worker = await workers.nth(0);
+  await worker.isBusy;
   aligner.dispose();
   const expected = { code: "DISPOSED", argument: "aligner", message: /createAligner\(\)/ } as const;
   for (const call of calls) await rejectsWith(() => call, expected);
   await rejectsWith(() => aligner.align(input), expected);
-  await underWay();
-  for (const worker of workers.made) assert.equal(worker.threadId, -1, "ended");
+  await worker.ended();
+  assert.equal(workers.made.length, 1);
 });
 
 for (const workers of [-1, 1.5, 1000, "many", Number.NaN]) {

@@ -2,11 +2,11 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { type Alignment, type AlignOptions, createAligner, type Sim3Like } from "sim3align";
-import { columnMajor, input, rotationRows, truth } from "../support/scene.js";
+import { withoutTimes } from "../support/results.js";
+import { brick, columnMajor, input, rotationRows, truth } from "../support/scene.js";
 
 const aligner = await createAligner();
 const quick = { quality: "fast" } as const;
-const withoutTimes = ({ timingsMs: _, ...result }: Alignment) => result;
 
 function assertSimilarity({ scale, rotationMatrix, translation, matrix }: Alignment): void {
   assert.ok(scale > 0 && Number.isFinite(scale));
@@ -20,36 +20,76 @@ function assertSimilarity({ scale, rotationMatrix, translation, matrix }: Alignm
   }
 }
 
-const accepted: readonly AlignOptions[] = [
-  { quality: "balanced" },
-  { quality: "best", budgetMs: 100 },
-  { scale: truth.scale },
-  { scale: [0.05, 0.2] },
-  { scale: { min: 0.05, max: 0.2 } },
-  { scale: null, knownExtentM: null, cameraUp: null, meshUp: null, initial: null, budgetMs: null, lockScale: null },
-  { scale: truth.scale, lockScale: true },
-  { knownExtentM: 0.2 },
-  { knownExtentM: 0.2, knownExtentAxis: "z" },
-  { knownExtentM: 0.2, initial: truth },
-  { cameraUp: [0, -1, 0], meshUp: [0, 1, 0] },
-  { cameraUp: [0, -10, 0.5], meshUp: [0, 0, 0.1] },
-  { symmetry: "none" },
-  { symmetry: "auto-revolution" },
-  { symmetry: [{ axis: [0, 0, 2], fold: 2 }, { axis: [1, 0, 0] }] },
-  { symmetry: [] },
-  { initial: truth, scale: [0.05, 0.2] },
-  { initial: truth, search: "local" },
-  { initial: truth, search: "local", lockScale: true },
-  { lockScale: true },
-  { lockScale: false },
-  { budgetMs: 50 },
+/** The blob's extent along its axes, in mesh units. */
+const extent = ([0, 1, 2] as const).map((axis) => {
+  const along = input.mesh.positions.filter((_, i) => i % 3 === axis);
+  return Math.max(...along) - Math.min(...along);
+});
+const plain = await aligner.align(input, quick);
+const worse = { ...truth, scale: 0.9 * truth.scale };
+const near = (a: number, b: number) => Math.abs(a / b - 1) < 1e-6;
+
+type Check = (found: Alignment) => boolean;
+const effects: readonly [options: AlignOptions & { metrics?: true }, check: Check][] = [
+  [{ quality: "balanced" }, (found) => found.diagnostics.counts.renders > plain.diagnostics.counts.renders],
+  [
+    { quality: "best", workBudget: 100 },
+    (found) => found.diagnostics.counts.renders > 0 && "features" in found.diagnostics.timingsMs,
+  ],
+  [{ scale: 0.9 * truth.scale }, (found) => near(found.scale, 0.9 * truth.scale)],
+  [{ scale: [0.05, 0.2] }, (found) => near(found.scale, plain.scale) && !found.diagnostics.clamped],
+  [{ scale: [1.1 * truth.scale, 1] }, (found) => found.scale >= 1.1 * truth.scale - 1e-9 && found.diagnostics.clamped],
+  [{ scale: "free" }, (found) => found.scale === plain.scale],
+  [
+    { scale: "free", knownExtentM: null, cameraUp: null, meshUp: null, initial: null, workBudget: null },
+    (found) => found.scale === plain.scale,
+  ],
+  [{ knownExtentM: 0.2 }, (found) => near(found.scale * Math.max(...extent), 0.2)],
+  [{ knownExtentM: 0.2, knownExtentAxis: "y" }, (found) => near(found.scale * (extent[1] ?? 0), 0.2)],
+  [{ knownExtentM: 0.2, initial: truth }, (found) => near(found.scale * Math.max(...extent), 0.2)],
+  [
+    { initial: truth, scale: [0.05, 0.2] },
+    (found) => found.diagnostics.counts.renders > plain.diagnostics.counts.renders,
+  ],
+  [
+    { initial: truth, search: "local" },
+    (found) => found.diagnostics.counts.renders < 0.5 * plain.diagnostics.counts.renders,
+  ],
+  [{ initial: worse, search: "local", scale: worse.scale }, (found) => near(found.scale, worse.scale)],
+  [{ workBudget: 20 }, (found) => found.diagnostics.counts.renders < plain.diagnostics.counts.renders],
+  [{ metrics: true, surfaceSamples: 300 }, (found) => found.diagnostics.counts.sourcePoints === 300],
+  [{ maxObservedPoints: 400 }, (found) => found.diagnostics.counts.targetPoints === 400],
 ];
 
-for (const options of accepted) {
-  test(`accepted: ${JSON.stringify(options)}`, async () => {
-    assertSimilarity(await aligner.align(input, { ...quick, ...options }));
+for (const [options, check] of effects) {
+  test(`has its effect: ${JSON.stringify(options)}`, async () => {
+    const found = await aligner.align(input, { ...quick, ...options });
+    assertSimilarity(found);
+    assert.ok(check(found), JSON.stringify(found));
   });
 }
+
+test("an up direction chooses among poses that look alike", async () => {
+  const { rotationMatrix } = await aligner.align(brick, { ...quick, symmetry: "none" });
+  const up = rotationMatrix.map((row) => row[2]) as [number, number, number];
+  for (const sign of [1, -1]) {
+    const cameraUp = up.map((x) => 5 * sign * x) as [number, number, number];
+    const found = await aligner.align(brick, { ...quick, cameraUp, meshUp: [0, 0, 0.1] });
+    const turned = found.rotationMatrix.reduce((sum, row, i) => sum + row[2] * sign * (up[i] ?? 0), 0);
+    assert.ok(turned > 0.9, `${turned}`);
+  }
+});
+
+test("alternatives that a symmetry explains are left out", async () => {
+  const listed = async (symmetry: AlignOptions["symmetry"]) =>
+    (await aligner.align(brick, { ...quick, symmetry })).alternatives.filter(({ turnDeg }) => turnDeg > 170).length;
+  assert.ok((await listed("none")) > 0);
+  assert.ok((await listed([])) > 0);
+  assert.equal(await listed("auto"), 0);
+  assert.equal(await listed("auto-revolution"), 0);
+  const half = (axis: readonly [number, number, number]) => ({ axis, fold: 2 });
+  assert.equal(await listed([half([2, 0, 0]), half([0, 1, 0]), half([0, 0, 1])]), 0);
+});
 
 test("an initial pose is taken in every form of a transform", async () => {
   const matrix = columnMajor(truth);

@@ -1,7 +1,7 @@
 /** `register` and `estimateSim3` find similarities that are known. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { createAligner, type Registration } from "sim3align";
+import { createAligner, ESTIMATE_SIM3_DEFAULTS, REGISTER_DEFAULTS, type Registration } from "sim3align";
 import { rejectsWith } from "../support/errors.js";
 import { mesh, type Pose, transformed } from "../support/scene.js";
 
@@ -21,7 +21,7 @@ function* random(seed: number): Generator<number, never> {
 }
 
 function assertPose(
-  { scale, rotation, translation }: Omit<Registration, "timingsMs">,
+  { scale, rotation, translation }: Pick<Registration, "scale" | "rotation" | "translation">,
   tolerance: number,
   expected = pose,
 ): void {
@@ -35,16 +35,18 @@ function assertPose(
 test("register finds scale, rotation and translation of a cloud", async () => {
   const result = await aligner.register(source, target);
   assertPose(result, 1e-4);
-  assert.ok(result.matrix instanceof Float64Array);
+  assert.ok(Array.isArray(result.matrix) && result.matrix.length === 16);
   assert.ok(result.fitness > 0.99, `${result.fitness}`);
-  assert.ok(result.scaleRatio > 0.2 && result.scaleRatio < 5);
-  assert.equal(result.converged, true);
+  const { scaleRatio, converged } = result.diagnostics;
+  assert.ok(scaleRatio > 0.2 && scaleRatio < 5);
+  assert.equal(converged, true);
 });
 
 test("register takes floats of both sizes, and gives the same bits twice", async () => {
   const run = async () => {
-    const { timingsMs: _, ...result } = await aligner.register(mesh.positions, target, { seed: 9 });
-    return result;
+    const { diagnostics, ...result } = await aligner.register(mesh.positions, target, { seed: 9 });
+    const { timingsMs: _, ...others } = diagnostics;
+    return { ...result, ...others };
   };
   const first = await run();
   assertPose(first, 1e-4);
@@ -56,7 +58,7 @@ test("register keeps to a scale that is known, fixed or bounded", async () => {
   const bounded = await aligner.register(source, target, { scale: [2, 3] });
   assertPose(bounded, 1e-4);
   const rigid = transformed(source, { ...pose, scale: 1 });
-  const fixed = await aligner.register(source, rigid, { scale: "fixed" });
+  const fixed = await aligner.register(source, rigid, { scale: 1 });
   assert.equal(fixed.scale, 1);
   assertPose(fixed, 1e-4, { ...pose, scale: 1 });
 });
@@ -73,9 +75,24 @@ test("estimateSim3 finds the transform that correct correspondences agree on, am
   }
   const result = await aligner.estimateSim3(source, target, correspondences, { inlierDistance: 0.01 });
   assertPose(result, 1e-5);
-  assert.equal(result.counts.matches, count);
-  assert.ok(result.counts.inliers >= count / 2, `${result.counts.inliers}`);
-  assert.ok(Math.abs(result.fitness - result.counts.inliers / count) < 1e-9);
+  const { counts } = result.diagnostics;
+  assert.equal(counts.matches, count);
+  assert.ok(counts.inliers >= count / 2, `${counts.inliers}`);
+  assert.ok(Math.abs(result.fitness - counts.inliers / count) < 1e-9);
+});
+
+test("the defaults passed as options change nothing", async () => {
+  const [plain, spelt] = [
+    await aligner.register(source, target),
+    await aligner.register(source, target, REGISTER_DEFAULTS),
+  ];
+  assert.deepEqual(spelt.matrix, plain.matrix);
+  const estimated = await aligner.estimateSim3(source, target, pairs, ESTIMATE_SIM3_DEFAULTS);
+  assert.deepEqual(estimated.matrix, (await aligner.estimateSim3(source, target, pairs)).matrix);
+  const bounded = await aligner.estimateSim3(source, target, pairs, { scale: [2.4, 2.6] });
+  assertPose(bounded, 1e-5);
+  const outside = aligner.estimateSim3(source, target, pairs, { scale: [3, 4] });
+  await assert.rejects(outside, { code: "NO_CONSENSUS" });
 });
 
 const line = Float64Array.from({ length: 300 }, (_, i) => (i % 3 === 0 ? i : 0));
@@ -110,6 +127,20 @@ const bad: [name: string, call: Call, code: string, argument: string, message: R
     "INVALID_OPTION",
     "options.scale",
     /"free"/,
+  ],
+  [
+    "the scale word of earlier versions",
+    () => aligner.register(source, target, { scale: "fixed" as "free" }),
+    "INVALID_OPTION",
+    "options.scale",
+    /"fixed".*"free", a number above 0/,
+  ],
+  [
+    "a voxel grid that is too coarse",
+    () => aligner.register(source, target, { voxelDivisions: 2 }),
+    "INVALID_OPTION",
+    "options.voxelDivisions",
+    /from 5 to 200, or null/,
   ],
   [
     "a bad option",

@@ -1,10 +1,20 @@
 /** What the compiler accepts and refuses. It is compiled with the tests, and never run. */
 import {
+  ALIGN_DEFAULTS,
   type Aligner,
   type AlignInput,
   type Alignment,
+  type AlignOptions,
+  type AlignResult,
   createAligner,
   type ErrorCode,
+  ESTIMATE_SIM3_DEFAULTS,
+  EVALUATE_DEFAULTS,
+  type Metrics,
+  PAPER_DEFAULTS,
+  type PaperAlignment,
+  type PaperOptions,
+  REGISTER_DEFAULTS,
   Sim3AlignError,
 } from "sim3align";
 
@@ -17,25 +27,48 @@ const mesh = { positions: floats };
 /** Never called. */
 export async function accepted(aligner: Aligner): Promise<void> {
   const alignment: Alignment = await aligner.align({ depth: floats, width: 2, height: 2, mask: bytes, camera, mesh });
-  const matrix: Float64Array = alignment.matrix;
+  const matrix: number[] = alignment.matrix;
   const [x, y, z, w]: [number, number, number, number] = alignment.rotation;
   const iou: number | null = alignment.metrics.iou;
-  const total: number = alignment.timingsMs.total;
-  const icp: number | undefined = alignment.timingsMs.icp;
+  const total: number = alignment.diagnostics.timingsMs.total;
+  const icp: number | undefined = alignment.diagnostics.timingsMs.icp;
   void [matrix, x, y, z, w, iou, total, icp];
 
-  await aligner.align({ depth: blob, mask: blob, camera: "{}", mesh: blob }, { preset: "paper", guard: null });
-  const confidence: number | null = alignment.confidence;
-  const others: Float64Array[] = alignment.alternatives.map((alternative) => alternative.matrix);
+  const input: AlignInput = { depth: blob, mask: blob, cameraFile: "{}", mesh: blob };
+  const baseline: PaperAlignment = await aligner.align(input, { preset: "paper", guard: null, lockScale: false });
+  const ratio: number = baseline.diagnostics.scaleRatio;
+  const spelt: Alignment = await aligner.align(input, { preset: "precise", seed: undefined });
+  void [ratio, spelt];
+  const confidence: number = alignment.confidence;
+  const others: number[][] = alignment.alternatives.map((alternative) => alternative.matrix);
   const doubtM: number | undefined = alignment.uncertainty?.distanceM;
   void [confidence, others, doubtM];
   const [seen] = alignment.alternatives;
   await aligner.align({} as AlignInput, { scale: 1, initial: alignment, search: "local" });
   await aligner.align({} as AlignInput, { scale: [0.1, 1], initial: seen ?? null, symmetry: "auto-revolution" });
-  await aligner.align({} as AlignInput, { scale: { min: 0.1, max: 1 }, initial: { matrix }, quality: "best" });
-  await aligner.align({} as AlignInput, { knownExtentM: 0.095, knownExtentAxis: "y", lockScale: null });
+  await aligner.align({} as AlignInput, { scale: "free", initial: { matrix }, quality: "best", workBudget: null });
+  await aligner.align({} as AlignInput, { knownExtentM: 0.095, knownExtentAxis: "y" });
   await aligner.align({} as AlignInput, { cameraUp: [0, -1, 0], meshUp: [0, 1, 0], symmetry: [{ axis: [0, 1, 0] }] });
-  await aligner.align({} as AlignInput, (await aligner.defaults()).align);
+  const byDefault: Alignment = await aligner.align(input, ALIGN_DEFAULTS);
+  const paperByDefault: PaperAlignment = await aligner.align(input, { ...PAPER_DEFAULTS, seed: 1 });
+  await aligner.evaluate(input, byDefault, EVALUATE_DEFAULTS);
+  await aligner.register(floats, floats, REGISTER_DEFAULTS);
+  await aligner.estimateSim3(floats, floats, new Uint32Array(6), { ...ESTIMATE_SIM3_DEFAULTS, scale: 1 });
+  void paperByDefault;
+
+  const bare = await aligner.align(input, { metrics: false, quality: "fast" });
+  const none: undefined = bare.metrics;
+  const chosen: AlignOptions = { seed: 1 };
+  const perhaps: Metrics | undefined = (await aligner.align(input, chosen)).metrics;
+  const either: AlignOptions | PaperOptions = chosen as AlignOptions | PaperOptions;
+  const any: AlignResult = await aligner.align(input, either);
+  void [none, perhaps, any];
+  for await (const { alignment } of aligner.alignAll([input], { ordered: true })) void (alignment?.confidence ?? 0);
+  for await (const { alignment } of aligner.alignAll([input], { preset: "paper", icp: "none" })) {
+    void alignment?.metrics.iou;
+    // @ts-expect-error the paper's method has no confidence
+    void alignment?.confidence;
+  }
   await aligner.align({ pointMap: floats, width: 2, height: 2, mask: bytes, mesh });
   await aligner.align({ depth: bytes, mask: { size: [2, 2], counts: "04" }, camera: { K: [[1]] }, mesh: { bytes } });
   await aligner.align(
@@ -45,7 +78,7 @@ export async function accepted(aligner: Aligner): Promise<void> {
   await aligner.evaluate({} as AlignInput, alignment, { truth: alignment, symmetry: [{ axis: [0, 0, 1] }] });
   await aligner.evaluate({} as AlignInput, { matrix });
   await aligner.register(floats, new Float64Array(9), { scale: [1, 2] });
-  await aligner.estimateSim3(floats, floats, new Uint32Array(6), { scale: "fixed" });
+  await aligner.estimateSim3(floats, floats, new Uint32Array(6), { scale: "free" });
   await createAligner({ wasm: new URL("https://example.org/core_bg.wasm") });
   using scoped = await createAligner();
   void scoped;
@@ -65,8 +98,20 @@ export async function refused(aligner: Aligner, error: unknown): Promise<void> {
   await aligner.align({} as AlignInput, { preset: "best" });
   // @ts-expect-error no such quality
   await aligner.align({} as AlignInput, { quality: "ultra" });
-  // @ts-expect-error align leaves a free scale out
-  await aligner.align({} as AlignInput, { scale: "free" });
+  // @ts-expect-error no such word
+  await aligner.align({} as AlignInput, { scale: "fixed" });
+  // @ts-expect-error bounds are an array
+  await aligner.align({} as AlignInput, { scale: { min: 0.1, max: 1 } });
+  // @ts-expect-error an option of preset "paper"
+  await aligner.align({} as AlignInput, { guard: [0.5, 1.5] });
+  // @ts-expect-error an option of preset "paper"
+  await aligner.align({} as AlignInput, { lockScale: true });
+  // @ts-expect-error an option of preset "precise"
+  await aligner.align({} as AlignInput, { preset: "paper", quality: "best" });
+  // @ts-expect-error the paper's method has no confidence
+  void (await aligner.align({} as AlignInput, { preset: "paper" })).confidence;
+  // @ts-expect-error metrics were not asked for
+  void (await aligner.align({} as AlignInput, { metrics: false })).metrics.iou;
   // @ts-expect-error a direction has three numbers
   await aligner.align({} as AlignInput, { cameraUp: [0, 1] });
   // @ts-expect-error no transform
@@ -74,9 +119,9 @@ export async function refused(aligner: Aligner, error: unknown): Promise<void> {
   // @ts-expect-error an object, not a tuple
   await aligner.align({} as AlignInput, { symmetry: [[0, 1, 0]] });
   // @ts-expect-error no such option
-  await aligner.align({} as AlignInput, { voxelDivision: 30 });
+  await aligner.align({} as AlignInput, { qualty: "best" });
   // @ts-expect-error a guard has two bounds
-  await aligner.align({} as AlignInput, { guard: [0.5] });
+  await aligner.align({} as AlignInput, { preset: "paper", guard: [0.5] });
   // @ts-expect-error correspondences are a Uint32Array
   await aligner.estimateSim3(floats, floats, [0, 0]);
   // @ts-expect-error no such scale

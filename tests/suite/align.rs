@@ -2,67 +2,73 @@
 
 use glam::Vec3;
 use nalgebra::{Matrix3, Rotation3};
-use sim3align::align::align;
 use sim3align::align::evaluate::{EvaluateOptions, Truth, evaluate};
-use sim3align::align::field::Options;
-use sim3align::align::options::{AlignOptions, GuardMode, Icp, Preset, Quality, SearchScope};
-use sim3align::align::report::{Alignment, Sim3, WarningCode};
+use sim3align::align::{align, align_paper};
 use sim3align::error::ErrorCode;
 use sim3align::geometry::similarity::Similarity;
 use sim3align::metrics::symmetry::Symmetry;
+use sim3align::options::Options;
+use sim3align::options::scale::ScaleOption;
+use sim3align::paper::options::{GuardMode, Icp, PaperOptions};
+use sim3align::precise::options::{AlignOptions, Quality, SearchScope};
 use sim3align::progress::{Host, Silent, Stage};
+use sim3align::report::Preset;
+use sim3align::report::{PaperAlignment, Sim3, WarningCode};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::shapes::{body, cuboid, observe, truth};
 
-fn solve(options: &AlignOptions) -> Alignment {
+fn solve(options: &PaperOptions) -> PaperAlignment {
     let mesh = body();
-    align(&observe(&mesh, 1.0), &mesh, options, &mut Silent).unwrap()
+    align_paper(&observe(&mesh, 1.0), &mesh, options, &mut Silent).unwrap()
 }
 
-fn pose(result: &Alignment) -> Similarity {
+fn pose(found: &Sim3) -> Similarity {
     // Bit by bit: the matrix has the scale multiplied in.
-    let found = &result.camera_from_mesh;
     let rotation = Rotation3::from_matrix_unchecked(Matrix3::from_fn(|i, j| found.rotation_matrix[i][j]));
     Similarity { scale: found.scale, rotation, translation: found.translation.into() }
 }
 
-/// The paper's method, which these tests are about; what the entry point itself does is tested with the default.
-fn paper() -> AlignOptions {
-    AlignOptions { preset: Preset::Paper, ..AlignOptions::default() }
+fn paper() -> PaperOptions {
+    PaperOptions::default()
 }
 
 #[wasm_bindgen_test(unsupported = test)]
 fn finds_a_clean_object_near_its_pose_and_reports_how() {
     let mesh = body();
     let observation = observe(&mesh, 1.0);
-    let result = align(&observation, &mesh, &paper(), &mut Silent).unwrap();
+    let result = align_paper(&observation, &mesh, &paper(), &mut Silent).unwrap();
     let truth = Truth { camera_from_mesh: truth(), symmetry: Symmetry::None };
-    let options = EvaluateOptions::default();
-    let scored = evaluate(&observation, &mesh, &pose(&result), Some(&truth), &options).unwrap();
+    let options = EvaluateOptions::against(Some(&truth));
+    let scored = evaluate(&observation, &mesh, &pose(&result.camera_from_mesh), &options).unwrap();
     let errors = scored.errors.unwrap();
     // The scale is RANSAC's, locked: it is as good as a consensus of descriptors, not as a refinement.
     assert!(errors.scale_error < 0.2 && errors.rotation_error_deg < 6.0, "{errors:?}");
-    assert_eq!(scored.metrics, result.metrics);
-    assert_eq!(scored.scale_ratio, result.scale_ratio);
-    assert!(result.metrics.iou.unwrap() > 0.7, "{:?}", result.metrics);
-    let counts = result.counts;
+    assert_eq!(Some(scored.metrics), result.metrics);
+    assert_eq!(scored.diagnostics.scale_ratio, result.diagnostics.scale_ratio);
+    assert!(result.metrics.unwrap().iou.unwrap() > 0.7, "{:?}", result.metrics);
+    let counts = result.diagnostics.counts;
     assert!(counts.inliers >= 3 && counts.inliers <= counts.matches, "{counts:?}");
     assert!(counts.source_voxels < counts.source_points && counts.target_voxels < counts.target_points, "{counts:?}");
-    assert!(!result.collapsed && !result.clamped && result.warnings.is_empty(), "{:?}", result.warnings);
+    assert!(
+        !result.diagnostics.collapsed && !result.diagnostics.clamped && result.warnings.is_empty(),
+        "{:?}",
+        result.warnings
+    );
 }
 
 #[wasm_bindgen_test(unsupported = test)]
 fn the_same_seed_gives_the_same_bits_everywhere() {
-    let bits = |result: &Alignment| {
+    let bits = |result: &PaperAlignment| {
         let matrix = result.camera_from_mesh.matrix.iter().map(|x| x.to_bits());
-        let metrics = [result.metrics.iou, result.metrics.chamfer_mm].map(|m| m.unwrap().to_bits());
+        let metrics = result.metrics.unwrap();
+        let metrics = [metrics.iou, metrics.chamfer_mm].map(|m| m.unwrap().to_bits());
         // FNV-1a over the words.
         matrix.chain(metrics).fold(0xcbf2_9ce4_8422_2325_u64, |hash, word| (hash ^ word).wrapping_mul(0x0100_0000_01b3))
     };
     let first = bits(&solve(&paper()));
     assert_eq!(first, bits(&solve(&paper())));
-    let other_seed = AlignOptions { seed: 1, ..paper() };
+    let other_seed = PaperOptions { seed: 1, ..paper() };
     assert_ne!(first, bits(&solve(&other_seed)), "the seed has no effect");
     // One number for native code and for WebAssembly: after a change of the method, take the new one from
     // the message once both agree on it.
@@ -74,33 +80,50 @@ const EXPECTED: u64 = 0x58be_3d12_8052_539a;
 #[wasm_bindgen_test(unsupported = test)]
 fn every_ablation_runs_and_does_what_it_says() {
     let default = solve(&paper());
-    let narrow = AlignOptions { guard: Some([1.0, 1.0]), guard_mode: GuardMode::Clamp, ..paper() };
+    let narrow = PaperOptions { guard: Some([1.0, 1.0]), guard_mode: GuardMode::Clamp, ..paper() };
     let clamped = solve(&narrow);
-    assert!((clamped.scale_ratio - 1.0).abs() < 1e-9 && clamped.clamped, "{}", clamped.scale_ratio);
-    assert!(clamped.counts.clamped > 0 && clamped.counts.rejected == 0, "{:?}", clamped.counts);
+    assert!(
+        (clamped.diagnostics.scale_ratio - 1.0).abs() < 1e-9 && clamped.diagnostics.clamped,
+        "{}",
+        clamped.diagnostics.scale_ratio
+    );
+    assert!(
+        clamped.diagnostics.counts.clamped > 0 && clamped.diagnostics.counts.rejected == 0,
+        "{:?}",
+        clamped.diagnostics.counts
+    );
     assert!(clamped.warnings.iter().any(|w| w.code == WarningCode::ScaleClamped), "{:?}", clamped.warnings);
 
-    let unguarded = solve(&AlignOptions { guard: None, ..paper() });
-    assert_eq!((unguarded.counts.rejected, unguarded.counts.clamped), (0, 0));
+    let unguarded = solve(&PaperOptions { guard: None, ..paper() });
+    assert_eq!((unguarded.diagnostics.counts.rejected, unguarded.diagnostics.counts.clamped), (0, 0));
 
-    let unlocked = solve(&AlignOptions { lock_scale: Some(false), ..paper() });
+    let unlocked = solve(&PaperOptions { lock_scale: false, ..paper() });
     assert_ne!(unlocked.camera_from_mesh.scale, default.camera_from_mesh.scale, "ICP left an unlocked scale alone");
     // The refinement is stopped at the guard too, and says so.
-    let tight = AlignOptions { lock_scale: Some(false), guard: Some([0.999, 1.001]), ..paper() };
+    let tight = PaperOptions { lock_scale: false, guard: Some([0.999, 1.001]), ..paper() };
     let stopped = solve(&tight);
-    assert!(stopped.clamped && stopped.counts.clamped == 0, "{} {:?}", stopped.scale_ratio, stopped.counts);
+    assert!(
+        stopped.diagnostics.clamped && stopped.diagnostics.counts.clamped == 0,
+        "{} {:?}",
+        stopped.diagnostics.scale_ratio,
+        stopped.diagnostics.counts
+    );
 
-    let unrefined = solve(&AlignOptions { icp: Icp::None, ..paper() });
-    assert_eq!(unrefined.counts.icp_iterations, 0);
+    let unrefined = solve(&PaperOptions { icp: Icp::None, ..paper() });
+    assert_eq!(unrefined.diagnostics.counts.icp_iterations, 0);
     // Scale lock: ICP changes everything but the scale.
     assert!((unrefined.camera_from_mesh.scale / default.camera_from_mesh.scale - 1.0).abs() < 1e-12);
     assert_ne!(unrefined.camera_from_mesh.translation, default.camera_from_mesh.translation);
 
-    let to_points = solve(&AlignOptions { icp: Icp::PointToPoint, ..paper() });
+    let to_points = solve(&PaperOptions { icp: Icp::PointToPoint, ..paper() });
     assert_ne!(to_points.camera_from_mesh.translation, default.camera_from_mesh.translation);
 
-    let unfiltered = solve(&AlignOptions { hallucination_filter: false, ..paper() });
-    assert!(unfiltered.counts.supported > default.counts.supported, "{:?}", unfiltered.counts);
+    let unfiltered = solve(&PaperOptions { hallucination_filter: false, ..paper() });
+    assert!(
+        unfiltered.diagnostics.counts.supported > default.diagnostics.counts.supported,
+        "{:?}",
+        unfiltered.diagnostics.counts
+    );
 }
 
 #[derive(Default)]
@@ -133,7 +156,7 @@ fn progress_brings_the_best_pose_of_every_round_and_in_the_end_the_result() {
     let result = align(&observe(&mesh, 1.0), &mesh, &options, &mut listener).unwrap();
     assert_eq!(listener.best.len(), 6);
     let (pose, score) = listener.best.last().unwrap();
-    assert_eq!((Sim3::from(pose), Some(*score)), (result.camera_from_mesh, result.score));
+    assert_eq!((Sim3::from(pose), *score), (result.camera_from_mesh, result.diagnostics.score));
     assert!(listener.calls.windows(2).all(|w| w[0].1 <= w[1].1), "{:?}", listener.calls);
 }
 
@@ -141,14 +164,14 @@ fn progress_brings_the_best_pose_of_every_round_and_in_the_end_the_result() {
 fn progress_never_falls_and_every_stage_is_timed() {
     let mesh = body();
     let mut listener = Listener::default();
-    let result = align(&observe(&mesh, 1.0), &mesh, &paper(), &mut listener).unwrap();
+    let result = align_paper(&observe(&mesh, 1.0), &mesh, &paper(), &mut listener).unwrap();
     assert!(listener.calls.windows(2).all(|w| w[0].1 <= w[1].1), "{:?}", listener.calls);
     assert_eq!(listener.calls.last().unwrap().1, 1.0);
-    let timed = result.timings_ms.stages();
+    let timed = result.diagnostics.timings_ms.stages();
     let names: Vec<&str> = timed.iter().map(|(stage, _)| stage.as_str()).collect();
     assert_eq!(names, ["observe", "sample", "normals", "features", "matching", "ransac", "filter", "icp", "metrics"]);
     assert!(timed.iter().all(|(_, ms)| *ms == 1.0), "{timed:?}");
-    assert_eq!(result.timings_ms.total_ms(), 9.0);
+    assert_eq!(result.diagnostics.timings_ms.total_ms(), 9.0);
 }
 
 #[wasm_bindgen_test(unsupported = test)]
@@ -163,19 +186,27 @@ fn options_out_of_range_and_flat_meshes_are_refused() {
     let mesh = body();
     let observation = observe(&mesh, 1.0);
     let bad = [
-        AlignOptions { voxel_divisions: f64::NAN, ..AlignOptions::default() },
-        AlignOptions { guard: Some([1.5, 2.0]), ..AlignOptions::default() },
         AlignOptions { max_observed_points: 3, ..AlignOptions::default() },
-        AlignOptions { ransac_confidence: 1.0, ..AlignOptions::default() },
-        AlignOptions { scale: Some([2.0, 1.0]), ..AlignOptions::default() },
-        AlignOptions { scale: Some([0.0, 1.0]), ..AlignOptions::default() },
-        AlignOptions { scale: Some([1.0, f64::INFINITY]), ..AlignOptions::default() },
+        AlignOptions { scale: ScaleOption::Between([2.0, 1.0]), ..AlignOptions::default() },
+        AlignOptions { scale: ScaleOption::Fixed(0.0), ..AlignOptions::default() },
+        AlignOptions { scale: ScaleOption::Between([1.0, f64::INFINITY]), ..AlignOptions::default() },
         AlignOptions { known_extent_m: Some(-0.1), ..AlignOptions::default() },
         AlignOptions { camera_up: Some([0.0; 3]), mesh_up: Some([0.0, 1.0, 0.0]), ..AlignOptions::default() },
-        AlignOptions { budget_ms: Some(f64::NAN), ..AlignOptions::default() },
+        AlignOptions { work_budget: Some(f64::NAN), ..AlignOptions::default() },
     ];
     for options in bad {
         let error = align(&observation, &mesh, &options, &mut Silent).unwrap_err();
+        assert_eq!(error.code, ErrorCode::InvalidOption);
+        assert!(options.validate().is_err() && error.argument.starts_with("options."), "{error}");
+    }
+    let bad = [
+        PaperOptions { voxel_divisions: f64::NAN, ..paper() },
+        PaperOptions { guard: Some([1.5, 2.0]), ..paper() },
+        PaperOptions { surface_samples: 99, ..paper() },
+        PaperOptions { ransac_confidence: 1.0, ..paper() },
+    ];
+    for options in bad {
+        let error = align_paper(&observation, &mesh, &options, &mut Silent).unwrap_err();
         assert_eq!(error.code, ErrorCode::InvalidOption);
         assert!(options.validate().is_err() && error.argument.starts_with("options."), "{error}");
     }
@@ -194,12 +225,12 @@ fn options_that_contradict_each_other_are_refused() {
         base(),
         AlignOptions { search: SearchScope::Local, initial: pose, ..base() },
         AlignOptions { camera_up: Some([0.0, -2.0, 0.1]), mesh_up: up, ..base() },
-        AlignOptions { scale: Some([0.2, 0.2]), lock_scale: Some(true), ..base() },
+        AlignOptions { scale: ScaleOption::Fixed(0.2), ..base() },
         AlignOptions { known_extent_m: Some(0.1), initial: pose, ..base() },
-        AlignOptions { scale: Some([0.1, 0.2]), initial: pose, ..base() },
+        AlignOptions { scale: ScaleOption::Between([0.1, 0.2]), initial: pose, ..base() },
         // What went through 32-bit floats is not outside.
-        AlignOptions { scale: Some([0.17 * (1.0 + 1e-7); 2]), initial: pose, ..base() },
-        AlignOptions { scale: Some([0.17 * (1.0 - 1e-7); 2]), initial: pose, ..base() },
+        AlignOptions { scale: ScaleOption::Fixed(0.17 * (1.0 + 1e-7)), initial: pose, ..base() },
+        AlignOptions { scale: ScaleOption::Fixed(0.17 * (1.0 - 1e-7)), initial: pose, ..base() },
     ];
     for options in good {
         assert_eq!(options.validate(), Ok(()), "{options:?}");
@@ -209,13 +240,17 @@ fn options_that_contradict_each_other_are_refused() {
         (AlignOptions { camera_up: up, ..base() }, "options.meshUp", "`cameraUp` alone"),
         (AlignOptions { mesh_up: up, ..base() }, "options.cameraUp", "`meshUp` alone"),
         (
-            AlignOptions { scale: Some([0.5, 2.0]), known_extent_m: Some(0.095), ..base() },
+            AlignOptions { scale: ScaleOption::Between([0.5, 2.0]), known_extent_m: Some(0.095), ..base() },
             "options.knownExtentM",
             "0.095 m beside a scale of [0.5, 2]",
         ),
-        (AlignOptions { scale: Some([0.2, 0.3]), initial: pose, ..base() }, "options.initial", "[0.2, 0.3]"),
-        (AlignOptions { scale: Some([0.1, 0.16]), initial: pose, ..base() }, "options.initial", "0.17"),
-        (AlignOptions { scale: Some([0.2; 2]), initial: pose, ..base() }, "options.initial", "`scale`: 0.2."),
+        (
+            AlignOptions { scale: ScaleOption::Between([0.2, 0.3]), initial: pose, ..base() },
+            "options.initial",
+            "[0.2, 0.3]",
+        ),
+        (AlignOptions { scale: ScaleOption::Between([0.1, 0.16]), initial: pose, ..base() }, "options.initial", "0.17"),
+        (AlignOptions { scale: ScaleOption::Fixed(0.2), initial: pose, ..base() }, "options.initial", "`scale`: 0.2."),
     ];
     let mesh = body();
     let observation = observe(&mesh, 1.0);
@@ -223,9 +258,7 @@ fn options_that_contradict_each_other_are_refused() {
         let error = align(&observation, &mesh, &options, &mut Silent).unwrap_err();
         assert_eq!((error.code, &*error.argument), (ErrorCode::InvalidOption, argument), "{error}");
         assert!(error.to_string().contains(words), "{error}");
-        // The paper's method has no use for these options, but what is wrong stays wrong.
-        let paper = AlignOptions { preset: Preset::Paper, ..options };
-        assert_eq!(paper.validate(), Err(error));
+        assert_eq!(options.validate(), Err(error));
     }
 }
 
@@ -236,20 +269,28 @@ fn the_default_searches_by_rendering() {
     let observation = observe(&mesh, 1.0);
     let mut listener = Listener::default();
     let result = align(&observation, &mesh, &AlignOptions::default(), &mut listener).unwrap();
-    assert_eq!(result.preset, Preset::Precise);
-    assert!(result.score.is_some() && result.counts.renders > 0, "{:?}", result.counts);
+    assert_eq!(result.diagnostics.common.preset, Preset::Precise);
+    assert!(
+        result.diagnostics.score > 0.0 && result.diagnostics.common.counts.renders > 0,
+        "{:?}",
+        result.diagnostics.common.counts
+    );
     assert!(listener.calls.windows(2).all(|w| w[0].1 <= w[1].1), "{:?}", listener.calls);
     assert_eq!(listener.calls.last().unwrap().1, 1.0);
     for name in ["prepare", "search", "refine"] {
-        assert!(result.timings_ms.stages().iter().any(|(stage, _)| stage.as_str() == name), "no {name}");
+        assert!(
+            result.diagnostics.common.timings_ms.stages().iter().any(|(stage, _)| stage.as_str() == name),
+            "no {name}"
+        );
     }
     let truth = Truth { camera_from_mesh: truth(), symmetry: Symmetry::None };
-    let options = EvaluateOptions::default();
-    let errors = evaluate(&observation, &mesh, &pose(&result), Some(&truth), &options).unwrap().errors.unwrap();
+    let options = EvaluateOptions::against(Some(&truth));
+    let evaluated = evaluate(&observation, &mesh, &pose(&result.camera_from_mesh), &options).unwrap();
+    let errors = evaluated.errors.unwrap();
     assert!(errors.scale_error < 0.05 && errors.rotation_error_deg < 10.0, "{errors:?}");
     for other in &result.alternatives {
         let pose = Similarity::from_column_major(&other.camera_from_mesh.matrix).unwrap();
         assert!((pose.scale / other.camera_from_mesh.scale - 1.0).abs() < 1e-9);
-        assert!(other.score <= result.score.unwrap() && (0.0..=180.0).contains(&other.turn_deg), "{other:?}");
+        assert!(other.score <= result.diagnostics.score && (0.0..=180.0).contains(&other.turn_deg), "{other:?}");
     }
 }

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use nalgebra::{Rotation3, Vector3};
 use sim3align::error::ErrorCode;
-use sim3align::evidence::Sampling;
+use sim3align::evidence::clouds::Sampling;
 use sim3align::evidence::observation::Observation;
 use sim3align::geometry::image::{DepthMap, Mask};
 use sim3align::geometry::mesh::Mesh;

@@ -3,8 +3,6 @@
 use glam::{DVec3, Vec3};
 use nalgebra::{Rotation3, Vector3};
 use sim3align::align::align;
-use sim3align::align::options::{AlignOptions, ExtentAxis, Quality, SearchScope};
-use sim3align::align::report::Alignment;
 use sim3align::error::ErrorCode;
 use sim3align::evidence::observation::Observation;
 use sim3align::geometry::cloud::Bounds;
@@ -15,8 +13,11 @@ use sim3align::geometry::random::Random;
 use sim3align::geometry::rasteriser::Rasteriser;
 use sim3align::geometry::similarity::Similarity;
 use sim3align::metrics::symmetry::{Symmetry, SymmetryAxis};
+use sim3align::options::scale::ScaleOption;
+use sim3align::precise::options::{AlignOptions, ExtentAxis, Quality, SearchScope};
 use sim3align::precise::search_settings;
 use sim3align::progress::Silent;
+use sim3align::report::Alignment;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::shapes::{cuboid, ellipsoid, mapped};
@@ -85,11 +86,15 @@ fn finds_the_pose_and_the_size() {
     assert!((pose.scale / truth().scale - 1.0).abs() < 0.01, "scale {}", pose.scale);
     assert!(turn_deg(&pose, &truth()) < 1.5, "{}°", turn_deg(&pose, &truth()));
     assert!((pose.translation - truth().translation).norm() < 2e-3, "{}", pose.translation);
-    assert!(result.metrics.iou.unwrap() > 0.97);
-    assert!(result.residual_m > 0.0 && result.residual_m < 2e-3, "{}", result.residual_m);
-    assert!(result.counts.renders > 500);
-    assert!(result.converged && result.warnings.is_empty(), "{:?}", result.warnings);
-    let terms = result.terms.unwrap();
+    assert!(result.metrics.unwrap().iou.unwrap() > 0.97);
+    assert!(
+        result.diagnostics.common.residual_m > 0.0 && result.diagnostics.common.residual_m < 2e-3,
+        "{}",
+        result.diagnostics.common.residual_m
+    );
+    assert!(result.diagnostics.common.counts.renders > 500);
+    assert!(result.diagnostics.common.converged && result.warnings.is_empty(), "{:?}", result.warnings);
+    let terms = result.diagnostics.terms;
     assert!(terms.overlap > 0.95 && terms.depth > 0.8 && terms.outline > 0.9, "{terms:?}");
     let uncertainty = result.uncertainty.unwrap();
     assert!(uncertainty.scale > 0.0 && uncertainty.scale < 0.05, "{uncertainty:?}");
@@ -135,14 +140,14 @@ fn the_pose_follows_a_turned_mesh() {
 
 #[wasm_bindgen_test(unsupported = test)]
 fn a_fixed_scale_stays_and_bounds_hold() {
-    let fixed = solve(&AlignOptions { scale: Some([0.16; 2]), ..quick() });
+    let fixed = solve(&AlignOptions { scale: ScaleOption::Fixed(0.16), ..quick() });
     assert!((fixed.camera_from_mesh.scale - 0.16).abs() < 1e-9, "{}", fixed.camera_from_mesh.scale);
-    let bounded = solve(&AlignOptions { scale: Some([0.175, 0.3]), ..quick() });
+    let bounded = solve(&AlignOptions { scale: ScaleOption::Between([0.175, 0.3]), ..quick() });
     assert!(bounded.camera_from_mesh.scale >= 0.175 - 1e-9, "{}", bounded.camera_from_mesh.scale);
-    assert!(bounded.clamped, "the truth is below");
+    assert!(bounded.diagnostics.common.clamped, "the truth is below");
     assert!(bounded.warnings.iter().any(|w| w.message.contains("options.scale")), "{:?}", bounded.warnings);
-    let wide = solve(&AlignOptions { scale: Some([0.01, 3.0]), ..quick() });
-    assert!(!wide.clamped);
+    let wide = solve(&AlignOptions { scale: ScaleOption::Between([0.01, 3.0]), ..quick() });
+    assert!(!wide.diagnostics.common.clamped);
     assert_eq!(wide.camera_from_mesh, solve(&quick()).camera_from_mesh, "bounds that hold nothing change nothing");
 }
 
@@ -169,9 +174,12 @@ fn a_local_search_refines_the_pose_it_is_given() {
     let pose = similarity(&result);
     assert!(turn_deg(&pose, &truth()) < 1.5, "{}°", turn_deg(&pose, &truth()));
     assert!((pose.scale / truth().scale - 1.0).abs() < 0.01);
-    assert!(result.counts.renders < solve(&quick()).counts.renders / 2, "only the neighbourhood is drawn");
+    assert!(
+        result.diagnostics.common.counts.renders < solve(&quick()).diagnostics.common.counts.renders / 2,
+        "only the neighbourhood is drawn"
+    );
 
-    let locked = AlignOptions { lock_scale: Some(true), ..options };
+    let locked = AlignOptions { scale: ScaleOption::Fixed(near.scale), ..options };
     assert!((solve(&locked).camera_from_mesh.scale - near.scale).abs() < 1e-9);
 }
 
@@ -196,7 +204,7 @@ fn an_initial_pose_behind_the_camera_is_refused() {
 #[wasm_bindgen_test(unsupported = test)]
 fn the_best_quality_draws_more_and_is_as_near() {
     let best = solve(&AlignOptions { quality: Quality::Best, ..quick() });
-    assert!(best.counts.renders > 2 * solve(&quick()).counts.renders);
+    assert!(best.diagnostics.common.counts.renders > 2 * solve(&quick()).diagnostics.common.counts.renders);
     assert!(turn_deg(&similarity(&best), &truth()) < 1.0);
 }
 
@@ -225,7 +233,7 @@ fn alternatives_are_told_from_repetitions() {
     let run = |symmetry| align(&observation, &brick, &AlignOptions { symmetry, ..quick() }, &mut Silent).unwrap();
     let all = run(Symmetry::None);
     assert!(!all.alternatives.is_empty(), "a brick has four poses that look alike");
-    assert!(all.alternatives.iter().all(|a| a.score <= all.score.unwrap() && a.turn_deg > 14.0));
+    assert!(all.alternatives.iter().all(|a| a.score <= all.diagnostics.score && a.turn_deg > 14.0));
     let flips = |a: &Alignment| a.alternatives.iter().filter(|a| a.turn_deg > 170.0).count();
     assert!(flips(&all) > 0);
     assert_eq!(flips(&run(Symmetry::Auto)), 0, "the surfaces coincide");
@@ -236,22 +244,22 @@ fn alternatives_are_told_from_repetitions() {
 
 #[wasm_bindgen_test(unsupported = test)]
 fn a_budget_bounds_the_work() {
-    let renders = |budget_ms| solve(&AlignOptions { budget_ms, ..quick() }).counts.renders;
+    let renders = |work_budget| solve(&AlignOptions { work_budget, ..quick() }).diagnostics.common.counts.renders;
     let (small, large) = (renders(Some(15.0)), renders(Some(120.0)));
     assert!(small < large, "{small} and {large}");
     assert!(small < renders(None));
     assert_eq!(small, renders(Some(15.0)), "counted, not timed");
-    let settings = |budget_ms| search_settings(&AlignOptions { budget_ms: Some(budget_ms), ..quick() });
+    let settings = |work_budget| search_settings(&AlignOptions { work_budget: Some(work_budget), ..quick() });
     assert!(settings(1e-9).rotations() >= 60, "the least that is a search");
     assert!(settings(1e300).rotations() < 100_000, "the most");
 }
 
 #[wasm_bindgen_test(unsupported = test)]
 fn confidence_knows_a_mesh_that_does_not_fit() {
-    let fits = solve(&quick()).confidence.unwrap();
+    let fits = solve(&quick()).confidence;
     let other = cuboid(Vec3::new(0.2, 0.3, 1.4));
     let result = align(&observe(&body(), &truth()), &other, &quick(), &mut Silent).unwrap();
-    let misfits = result.confidence.unwrap();
+    let misfits = result.confidence;
     assert!((0.0..=1.0).contains(&fits) && (0.0..=1.0).contains(&misfits));
     assert!(fits > 0.8, "{fits}");
     assert!(misfits < 0.5, "{misfits}");
@@ -278,7 +286,7 @@ fn an_occluder_hides_and_does_not_shrink() {
     let pose = similarity(&result);
     assert!((pose.scale / truth().scale - 1.0).abs() < 0.03, "scale {}", pose.scale);
     assert!(turn_deg(&pose, &truth()) < 4.0, "{}°", turn_deg(&pose, &truth()));
-    assert!(result.terms.unwrap().hidden > 0.1);
+    assert!(result.diagnostics.terms.hidden > 0.1);
 }
 
 #[wasm_bindgen_test(unsupported = test)]
@@ -288,11 +296,34 @@ fn directions_of_any_length_are_up() {
         solve(&AlignOptions { camera_up: Some(camera_up), mesh_up: Some([0.0, 0.0, mesh]), ..quick() })
     };
     let unit = run(1.0, 1.0);
-    assert_ne!(unit.score, solve(&quick()).score, "the directions count");
+    assert_ne!(unit.diagnostics.score, solve(&quick()).diagnostics.score, "the directions count");
     for (camera, mesh) in [(1e-3, 1e6), (1e-100, 1e100)] {
         let other = run(camera, mesh);
-        let off = (other.score.unwrap() - unit.score.unwrap()).abs();
+        let off = (other.diagnostics.score - unit.diagnostics.score).abs();
         assert!(off < 1e-4, "lengths {camera} and {mesh}: the score is {off} off");
         assert!(turn_deg(&similarity(&other), &similarity(&unit)) < 0.1, "lengths {camera} and {mesh}");
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn metrics_are_left_out_on_request_and_nothing_else_changes() {
+    for quality in [Quality::Fast, Quality::Best] {
+        let with = solve(&AlignOptions { quality, ..quick() });
+        let without = solve(&AlignOptions { quality, metrics: false, ..quick() });
+        assert!(with.metrics.is_some() && without.metrics.is_none());
+        let stages = |result: &Alignment| {
+            let timed = result.diagnostics.common.timings_ms.stages().iter().map(|(stage, _)| stage.as_str());
+            timed.collect::<Vec<_>>()
+        };
+        assert!(stages(&with).contains(&"normals") && stages(&with).contains(&"metrics"));
+        assert!(!stages(&without).contains(&"metrics"));
+        // Descriptors need normals; the search itself does not.
+        assert_eq!(stages(&without).contains(&"normals"), quality == Quality::Best);
+        let same = |result: Alignment| {
+            let mut diagnostics = result.diagnostics;
+            diagnostics.common.timings_ms = Default::default();
+            (result.camera_from_mesh, result.confidence, result.alternatives, result.uncertainty, diagnostics)
+        };
+        assert_eq!(same(with), same(without));
     }
 }

@@ -1,12 +1,13 @@
 //! General registration recovers known transforms.
 
 use nalgebra::Vector3;
-use sim3align::align::options::{EstimateOptions, RegisterOptions, ScaleOption};
 use sim3align::error::ErrorCode;
 use sim3align::geometry::cloud::Cloud;
 use sim3align::geometry::similarity::{Similarity, vector3};
+use sim3align::options::scale::ScaleOption;
 use sim3align::progress::Silent;
 use sim3align::register::estimate_sim3;
+use sim3align::register::options::{EstimateSim3Options, RegisterOptions};
 use sim3align::register::register;
 use wasm_bindgen_test::wasm_bindgen_test;
 
@@ -55,10 +56,10 @@ fn recovers_any_similarity_of_a_full_surface_exactly() {
             let target = cluttered(draw, &moved, clutter);
             let what = format!("{shape}, seed {seed}, scale {scale}, clutter {clutter}");
             let options = RegisterOptions::default();
-            let result = register(&flat(&source), &flat(&target), ScaleOption::Free, &options, &mut Silent);
+            let result = register(&flat(&source), &flat(&target), &options, &mut Silent);
             let result = result.unwrap_or_else(|e| panic!("{what}: {e}"));
             assert_recovers(&result.target_from_source.matrix, &truth, &source, 1e-4, &what);
-            assert!(result.converged && result.fitness > 0.99, "{what}: fitness {}", result.fitness);
+            assert!(result.diagnostics.converged && result.fitness > 0.99, "{what}: fitness {}", result.fitness);
         }
     }
 }
@@ -74,11 +75,11 @@ fn a_known_scale_gives_the_pose_exactly_in_clutter_too() {
             let moved: Vec<_> = source.iter().map(|&p| truth.apply(p)).collect();
             let target = cluttered(draw, &moved, clutter);
             let what = format!("{shape}, seed {seed}, scale {scale}, clutter {clutter}");
-            let fixed = ScaleOption::Fixed(truth.scale);
-            let result = register(&flat(&source), &flat(&target), fixed, &RegisterOptions::default(), &mut Silent);
+            let options = RegisterOptions { scale: ScaleOption::Fixed(truth.scale), ..RegisterOptions::default() };
+            let result = register(&flat(&source), &flat(&target), &options, &mut Silent);
             let result = result.unwrap_or_else(|e| panic!("{what}: {e}"));
             assert_recovers(&result.target_from_source.matrix, &truth, &source, 1e-4, &what);
-            assert!(result.converged && result.fitness > 0.99, "{what}: fitness {}", result.fitness);
+            assert!(result.diagnostics.converged && result.fitness > 0.99, "{what}: fitness {}", result.fitness);
         }
     }
 }
@@ -90,8 +91,8 @@ fn a_known_scale_is_kept_and_bounds_are_respected() {
     let truth = draw.similarity([1.0, 1.0], 10.0);
     let target: Vec<_> = source.iter().map(|&p| truth.apply(p)).collect();
     let solve = |scale| {
-        register(&flat(&source), &flat(&target), scale, &RegisterOptions::default(), &mut Silent)
-            .map(|r| r.target_from_source)
+        let options = RegisterOptions { scale, ..RegisterOptions::default() };
+        register(&flat(&source), &flat(&target), &options, &mut Silent).map(|r| r.target_from_source)
     };
     let fixed = solve(ScaleOption::Fixed(1.0)).unwrap();
     assert_eq!(fixed.scale, 1.0);
@@ -116,9 +117,8 @@ fn correspondences_with_many_wrong_ones_give_the_transform() {
     let target: Vec<_> = source.iter().map(|&p| truth.apply(p)).collect();
     // Three in four are wrong.
     let pairs: Vec<u32> = (0..400).flat_map(|i| [i, if i % 4 == 0 { i } else { draw.below(400) as u32 }]).collect();
-    let options = EstimateOptions::default();
-    let result =
-        estimate_sim3(&flat(&source), &flat(&target), &pairs, ScaleOption::Free, &options, &mut Silent).unwrap();
+    let options = EstimateSim3Options::default();
+    let result = estimate_sim3(&flat(&source), &flat(&target), &pairs, &options, &mut Silent).unwrap();
     assert_recovers(&result.target_from_source.matrix, &truth, &source, 1e-3, "three wrong in four, seed 8");
     assert!((0.25..0.35).contains(&result.fitness), "fitness {}", result.fitness);
 
@@ -129,7 +129,7 @@ fn correspondences_with_many_wrong_ones_give_the_transform() {
         (vec![0, 0, 0, 0, 0, 0], ErrorCode::NoConsensus),
     ];
     for (pairs, code) in refused {
-        let result = estimate_sim3(&flat(&source), &flat(&target), &pairs, ScaleOption::Free, &options, &mut Silent);
+        let result = estimate_sim3(&flat(&source), &flat(&target), &pairs, &options, &mut Silent);
         assert_eq!(result.unwrap_err().code, code, "{pairs:?}");
     }
 }
@@ -150,9 +150,9 @@ fn clouds_that_can_not_be_registered_are_refused_by_name() {
     ];
     for (cloud, code) in bad {
         let options = RegisterOptions::default();
-        let error = register(&good, &cloud, ScaleOption::Free, &options, &mut Silent).unwrap_err();
+        let error = register(&good, &cloud, &options, &mut Silent).unwrap_err();
         assert_eq!((error.code, &*error.argument), (code, "target"), "{error}");
-        let error = register(&cloud, &good, ScaleOption::Free, &options, &mut Silent).unwrap_err();
+        let error = register(&cloud, &good, &options, &mut Silent).unwrap_err();
         assert_eq!((error.code, &*error.argument), (code, "source"), "{error}");
     }
 }

@@ -1,4 +1,4 @@
-/** What the test script tells the tests about where things are. */
+/** Paths that the test script passes to the tests in environment variables. */
 import { join } from "node:path";
 
 /** An environment variable that the test script sets. */

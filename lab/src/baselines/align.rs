@@ -3,14 +3,16 @@
 use nalgebra::Vector3;
 
 use super::{Baseline, Clouds, UnitSettings};
-use sim3align::align::options::AlignOptions;
-use sim3align::align::report::{Alignment, Counts};
-use sim3align::align::{Estimated, align_by};
+use sim3align::align::Setup;
+use sim3align::align::align_by;
 use sim3align::evidence::extents::target_from_source;
 use sim3align::evidence::observation::Observation;
+use sim3align::paper::options::PaperOptions;
 use sim3align::progress::{Host, Stage};
 use sim3align::register::global::{MAX_FEATURES, icp_metric};
 use sim3align::register::grid_cloud::GridCloud;
+use sim3align::report::Solution;
+use sim3align::report::{Counts, PaperAlignment};
 use sim3align_geometry::error::Result;
 use sim3align_geometry::mesh::Mesh;
 
@@ -26,14 +28,23 @@ const PLAN: &[(Stage, f64)] = &[
     (Stage::Metrics, 0.7),
 ];
 
+/// Options of a baseline.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct BaselineOptions {
+    /// Clouds, descriptors, RANSAC and ICP, as in the paper's method. `inlier_distance_voxels` is also the noise bound of
+    /// TEASER and Quatro; `support_distance_voxels` bounds the correspondences of local methods and of the refinement.
+    pub paper: PaperOptions,
+    /// Keeps the initial scale under TEASER, which estimates its own otherwise. All other methods always keep it.
+    pub lock_scale: bool,
+    /// The up direction in the frames of mesh and camera, which Quatro needs.
+    pub up: Option<[[f64; 3]; 2]>,
+}
+
 /// Aligns a mesh to an observation by another method: the mask's cloud, centred, the mesh scaled by the ratio of the
-/// boxes' diagonals, both on a grid of `voxelDivisions`.
+/// boxes' diagonals, both on a grid of `voxel_divisions`.
 ///
-/// The scale stays there, but for TEASER, which estimates its own unless `lockScale` is `true`. Local methods begin at
-/// the centred, unrotated pose. RANSAC's pose is refined by plain ICP unless `icp` is `"none"`; the others stand as they
-/// are published. Quatro needs `cameraUp` and `meshUp`. `inlierDistanceVoxels` is RANSAC's, and the noise bound of TEASER
-/// and Quatro; `supportDistanceVoxels` bounds the correspondences of local methods and of the refinement. The options of
-/// RANSAC, descriptors and clouds are as under the preset `paper`; `preset` itself is only repeated in the report.
+/// Local methods begin at the centred, unrotated pose. RANSAC's pose is refined by plain ICP unless `icp` is `None`; the
+/// others stand as they are published.
 ///
 /// # Errors
 /// As [`align`](sim3align::align::align); [`NoConsensus`](sim3align_geometry::error::ErrorCode::NoConsensus) where the method has no answer.
@@ -41,12 +52,14 @@ pub fn align_baseline(
     observation: &Observation,
     mesh: &Mesh,
     baseline: Baseline,
-    options: &AlignOptions,
+    options: &BaselineOptions,
     host: &mut dyn Host,
-) -> Result<Alignment> {
-    align_by(observation, mesh, options, PLAN, host, |evidence, [observed, reconstructed], stages| {
+) -> Result<PaperAlignment> {
+    let paper = &options.paper;
+    let aligned = align_by(observation, mesh, &Setup::of_paper(paper)?, PLAN, host, |clouds, stages| {
+        let (evidence, [observed, reconstructed]) = clouds.evidence(stages);
         let settings = unit_settings(options, baseline);
-        let voxel_size = (1.0 / options.voxel_divisions) as f32;
+        let voxel_size = (1.0 / paper.voxel_divisions) as f32;
         let clouds = Clouds {
             source: GridCloud::of_at_most(MAX_FEATURES, &reconstructed.normalized(&evidence.reconstructed), voxel_size),
             target: GridCloud::of_at_most(MAX_FEATURES, &observed.normalized(&evidence.observed), voxel_size),
@@ -61,7 +74,7 @@ pub fn align_baseline(
         }
         let found = clouds.solve(baseline, &matches, &settings)?;
         let refined = found.refined;
-        Ok(Estimated {
+        let solution = Solution {
             converged: refined.is_none_or(|refined| refined.converged),
             residual_m: refined.map_or(0.0, |refined| refined.rms * observed.diagonal()),
             counts: Counts {
@@ -74,25 +87,28 @@ pub fn align_baseline(
                 icp_iterations: refined.map_or(0, |refined| refined.iterations),
                 ..Counts::default()
             },
-            ..Estimated::of_pose(target_from_source(observed, &found.target_from_source, reconstructed))
-        })
-    })
+            ..Solution::of_pose(target_from_source(observed, &found.target_from_source, reconstructed))
+        };
+        Ok(solution)
+    });
+    aligned
 }
 
-fn unit_settings(options: &AlignOptions, baseline: Baseline) -> UnitSettings {
-    let voxel_size = 1.0 / options.voxel_divisions;
+fn unit_settings(options: &BaselineOptions, baseline: Baseline) -> UnitSettings {
+    let BaselineOptions { paper, lock_scale, up } = options;
+    let voxel_size = 1.0 / paper.voxel_divisions;
     UnitSettings {
-        fpfh_radius: (options.fpfh_radius_voxels * voxel_size) as f32,
+        fpfh_radius: (paper.fpfh_radius_voxels * voxel_size) as f32,
         max_features: MAX_FEATURES,
-        inlier_distance: options.inlier_distance_voxels * voxel_size,
-        edge_similarity: options.edge_similarity,
-        ransac_iterations: options.ransac_iterations as usize,
-        ransac_confidence: options.ransac_confidence,
-        icp: icp_metric(options.icp),
-        max_correspondence_distance: (options.support_distance_voxels * voxel_size) as f32,
-        icp_iterations: options.icp_iterations as usize,
-        estimates_scale: baseline == Baseline::Teaser && options.lock_scale != Some(true),
-        up: options.mesh_up.zip(options.camera_up).map(|(mesh, camera)| [Vector3::from(mesh), Vector3::from(camera)]),
-        seed: u64::from(options.seed),
+        inlier_distance: paper.inlier_distance_voxels * voxel_size,
+        edge_similarity: paper.edge_similarity,
+        ransac_iterations: paper.ransac_iterations as usize,
+        ransac_confidence: paper.ransac_confidence,
+        icp: icp_metric(paper.icp),
+        max_correspondence_distance: (paper.support_distance_voxels * voxel_size) as f32,
+        icp_iterations: paper.icp_iterations as usize,
+        estimates_scale: baseline == Baseline::Teaser && !lock_scale,
+        up: up.map(|up| up.map(Vector3::from)),
+        seed: u64::from(paper.seed),
     }
 }

@@ -10,20 +10,21 @@ use serde_json::Value;
 use super::case::parameters_json;
 use super::evaluation::case::EvaluationCase;
 use crate::case_folder::case::read_case;
-use sim3align::align::align_with;
 use sim3align::align::evaluate::{EvaluateOptions, Truth, evaluate};
-use sim3align::align::options::AlignOptions;
-use sim3align::align::report::Alignment;
+use sim3align::align::method::Method;
+use sim3align::align::{align_paper, align_with};
 use sim3align::evidence::observation::Observation;
 use sim3align::metrics::Metrics;
 use sim3align::metrics::pose_error::{PoseErrors, pose_errors};
 use sim3align::metrics::symmetry::{Symmetry, SymmetryAxis};
 use sim3align::precise::mesh_pyramid::MeshPyramid;
+use sim3align::precise::options::AlignOptions;
 use sim3align::precise::pose::CropPose;
 use sim3align::precise::recipe::FIRST_REFINEMENT;
 use sim3align::precise::search_settings;
 use sim3align::precise::{Search, SearchSettings};
 use sim3align::progress::{Host, Stage};
+use sim3align::report::AnyAlignment;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::similarity::Similarity;
@@ -67,8 +68,8 @@ pub struct Record {
     pub tags: Vec<String>,
     /// See [`BenchCase`].
     pub parameters: Value,
-    /// All that `align` returned.
-    pub alignment: Option<Alignment>,
+    /// The result of `align`.
+    pub alignment: Option<AnyAlignment>,
     /// Or its error.
     pub error: Option<String>,
     /// The errors against the truth, where both are there.
@@ -201,13 +202,18 @@ impl Host for Clock {
 /// Aligns a case and scores what came of it, and the truth beside it.
 ///
 /// `overrides` change single settings of the search (see [`override_setting`]).
-pub fn run_case(case: &BenchCase, options: &AlignOptions, overrides: &[(String, f64)]) -> Record {
-    let mut settings = search_settings(options);
+pub fn run_case(case: &BenchCase, method: &Method, overrides: &[(String, f64)]) -> Record {
+    let mut settings = match method {
+        Method::Precise(options) => search_settings(options),
+        Method::Paper(_) => search_settings(&AlignOptions::default()),
+    };
     for (name, value) in overrides {
         override_setting(&mut settings, name, *value);
     }
-    let mut record =
-        run_method(case, |observation, mesh, host| align_with(observation, mesh, options, &settings, host));
+    let mut record = run_method(case, |observation, mesh, host| match method {
+        Method::Precise(options) => align_with(observation, mesh, options, &settings, host).map(Into::into),
+        Method::Paper(options) => align_paper(observation, mesh, options, host).map(Into::into),
+    });
     record.truth_score = case.truth.as_ref().and_then(|truth| {
         let mesh = MeshPyramid::new(&case.mesh, &settings.grids)?;
         let search = Search::new(&case.observation, Rc::new(mesh), settings);
@@ -252,7 +258,7 @@ fn element<'a, T>(name: &str, stem: &str, values: &'a mut [T]) -> Option<&'a mut
 /// [`run_case`] with any method.
 pub fn run_method(
     case: &BenchCase,
-    method: impl FnOnce(&Observation, &Mesh, &mut dyn Host) -> Result<Alignment>,
+    method: impl FnOnce(&Observation, &Mesh, &mut dyn Host) -> Result<AnyAlignment>,
 ) -> Record {
     let begun = Instant::now();
     let outcome = method(&case.observation, &case.mesh, &mut Clock(begun));
@@ -266,15 +272,14 @@ pub(super) fn described(error: &Error) -> String {
 }
 
 /// The record of a case, of what came of it or of what went wrong, and of what that took.
-pub(super) fn record_of(case: &BenchCase, outcome: core::result::Result<Alignment, String>, seconds: f64) -> Record {
+pub(super) fn record_of(case: &BenchCase, outcome: core::result::Result<AnyAlignment, String>, seconds: f64) -> Record {
     let (alignment, error) = match outcome {
         Ok(alignment) => (Some(alignment), None),
         Err(error) => (None, Some(error)),
     };
     let evaluated = case.truth.as_ref().map(|truth| {
-        let scored =
-            evaluate(&case.observation, &case.mesh, &truth.camera_from_mesh, None, &EvaluateOptions::default());
-        let pose = alignment.as_ref().and_then(|a| Similarity::from_column_major(&a.camera_from_mesh.matrix).ok());
+        let scored = evaluate(&case.observation, &case.mesh, &truth.camera_from_mesh, &EvaluateOptions::default());
+        let pose = alignment.as_ref().and_then(|a| Similarity::from_column_major(&a.camera_from_mesh().matrix).ok());
         let errors =
             pose.and_then(|pose| pose_errors(&case.mesh, &pose, &truth.camera_from_mesh, &truth.symmetry).ok());
         (scored.ok(), errors)
@@ -292,7 +297,7 @@ pub(super) fn record_of(case: &BenchCase, outcome: core::result::Result<Alignmen
         errors,
         truth_metrics: scored.as_ref().map(|scored| scored.metrics),
         truth_score: None,
-        truth_scale_ratio: scored.map(|scored| scored.scale_ratio),
+        truth_scale_ratio: scored.map(|scored| scored.diagnostics.scale_ratio),
         seconds,
     }
 }

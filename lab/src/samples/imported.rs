@@ -7,12 +7,16 @@ use std::path::Path;
 use serde_json::{Map, Value};
 
 use super::benchmark::{BenchCase, Record, described, record_of};
-use sim3align::align::options::{AlignOptions, EstimateOptions, ScaleOption};
-use sim3align::align::report::{Alignment, Counts, Registration};
-use sim3align::align::{Estimated, align_by};
+use sim3align::align::Setup;
+use sim3align::align::align_by;
 use sim3align::evidence::extents::{Extents, initial_scale};
+use sim3align::options::scale::ScaleOption;
+use sim3align::paper::options::PaperOptions;
 use sim3align::progress::{Silent, Stage};
 use sim3align::register::estimate_sim3;
+use sim3align::register::options::EstimateSim3Options;
+use sim3align::report::Solution;
+use sim3align::report::{AnyAlignment, Counts, Registration};
 use sim3align_formats::{json, truth};
 use sim3align_geometry::error::{Error, ErrorCode, Result, Text};
 use sim3align_geometry::similarity::Similarity;
@@ -83,8 +87,9 @@ impl Pairs {
     pub fn estimate(&self, scale: ScaleOption, inlier_distance: f64) -> Result<Registration> {
         let indices: Vec<u32> =
             (0..u32::try_from(self.moved_xyz.len() / 3).unwrap_or(u32::MAX)).flat_map(|i| [i, i]).collect();
-        let options = EstimateOptions { inlier_distance: Some(inlier_distance), ..EstimateOptions::default() };
-        estimate_sim3(&self.moved_xyz, &self.fixed_xyz, &indices, scale, &options, &mut Silent)
+        let options =
+            EstimateSim3Options { scale, inlier_distance: Some(inlier_distance), ..EstimateSim3Options::default() };
+        estimate_sim3(&self.moved_xyz, &self.fixed_xyz, &indices, &options, &mut Silent)
     }
 }
 
@@ -128,34 +133,37 @@ fn unreadable(path: &Path, error: &std::io::Error) -> Error {
 }
 
 /// The report of a pose that is known beforehand, or follows from pairs.
-fn align_as(case: &BenchCase, outcome: Outcome) -> core::result::Result<Alignment, String> {
+fn align_as(case: &BenchCase, outcome: Outcome) -> core::result::Result<AnyAlignment, String> {
     if let Outcome::Failure(message) = outcome {
         return Err(format!("the method's own error: {message}"));
     }
-    let options = AlignOptions::default();
-    let aligned =
-        align_by(&case.observation, &case.mesh, &options, PLAN, &mut Silent, |_, extents, _| match &outcome {
-            Outcome::Pairs(pairs) => estimated(pairs, extents),
-            Outcome::Pose(pose) => Ok(Estimated::of_pose(*pose)),
-            // Taken care of above.
-            Outcome::Failure(_) => Ok(Estimated::of_pose(Similarity::identity())),
-        });
-    aligned.map_err(|error| described(&error))
+    let aligned = Setup::of_paper(&PaperOptions::default()).and_then(|setup| {
+        align_by(&case.observation, &case.mesh, &setup, PLAN, &mut Silent, |clouds, _| {
+            let solution = match &outcome {
+                Outcome::Pairs(pairs) => estimated(pairs, clouds.extents())?,
+                Outcome::Pose(pose) => Solution::of_pose(*pose),
+                // Taken care of above.
+                Outcome::Failure(_) => Solution::of_pose(Similarity::identity()),
+            };
+            Ok(solution)
+        })
+    });
+    aligned.map(Into::into).map_err(|error| described(&error))
 }
 
-fn estimated(pairs: &Pairs, [observed, reconstructed]: [&Extents; 2]) -> Result<Estimated> {
+fn estimated(pairs: &Pairs, [observed, reconstructed]: [&Extents; 2]) -> Result<Solution> {
     let initial = initial_scale(observed, reconstructed);
-    let scale = match (pairs.scale, AlignOptions::default().guard) {
+    let scale = match (pairs.scale, PaperOptions::default().guard) {
         (PairScale::Initial, _) => ScaleOption::Fixed(initial),
         (PairScale::Bounded, Some([min, max])) => ScaleOption::Between([min * initial, max * initial]),
         (PairScale::Bounded, None) | (PairScale::Free, _) => ScaleOption::Free,
     };
     let inlier_distance = pairs.inlier_distance_m.unwrap_or(INLIER_DISTANCE * observed.diagonal());
     let found = pairs.estimate(scale, inlier_distance)?;
-    Ok(Estimated {
+    Ok(Solution {
         residual_m: found.residual,
-        counts: Counts { source_points: 0, target_points: 0, ..found.counts },
-        ..Estimated::of_pose(Similarity::from_column_major(&found.target_from_source.matrix)?)
+        counts: Counts { source_points: 0, target_points: 0, ..found.diagnostics.counts },
+        ..Solution::of_pose(Similarity::from_column_major(&found.target_from_source.matrix)?)
     })
 }
 

@@ -9,6 +9,7 @@ pub mod distortion;
 pub mod evaluation;
 pub mod imported;
 pub mod in_order;
+pub mod option_text;
 pub mod overlay;
 pub mod records;
 pub mod registration;

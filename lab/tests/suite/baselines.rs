@@ -2,15 +2,15 @@
 
 use glam::Vec3;
 use nalgebra::{Rotation3, Vector3};
-use sim3align::align::options::{AlignOptions, Icp};
-use sim3align::align::report::Alignment;
 use sim3align::evidence::sample::sample_surface;
+use sim3align::paper::options::{Icp, PaperOptions};
 use sim3align::progress::Silent;
 use sim3align::register::icp::IcpMetric;
+use sim3align::report::PaperAlignment;
 use sim3align_geometry::cloud::Cloud;
 use sim3align_geometry::error::{ErrorCode, Result};
 use sim3align_geometry::similarity::Similarity;
-use sim3align_lab::baselines::align::align_baseline;
+use sim3align_lab::baselines::align::{BaselineOptions, align_baseline};
 use sim3align_lab::baselines::{Baseline, PairSettings, register_pair};
 
 use crate::shapes::{body, observe};
@@ -138,34 +138,52 @@ fn clouds_without_an_answer_are_errors() {
     }
 }
 
-fn align_by(baseline: Baseline, options: &AlignOptions) -> Result<Alignment> {
+fn align_by(baseline: Baseline, options: &BaselineOptions) -> Result<PaperAlignment> {
     let mesh = body();
     align_baseline(&observe(&mesh, 1.0), &mesh, baseline, options, &mut Silent)
 }
 
-fn upright() -> AlignOptions {
-    AlignOptions { camera_up: Some([0.0, -1.0, 0.0]), mesh_up: Some([0.0, 1.0, 0.0]), ..AlignOptions::default() }
+fn upright() -> BaselineOptions {
+    BaselineOptions { up: Some([[0.0, 1.0, 0.0], [0.0, -1.0, 0.0]]), ..BaselineOptions::default() }
+}
+
+fn with_paper(paper: PaperOptions) -> BaselineOptions {
+    BaselineOptions { paper, ..BaselineOptions::default() }
 }
 
 #[test]
 fn meshes_keep_their_initial_scale_but_for_teaser() {
     for baseline in Baseline::ALL {
         let found = align_by(baseline, &upright()).unwrap();
-        let is_initial = (found.scale_ratio - 1.0).abs() < 1e-9;
-        assert_eq!(is_initial, baseline != Baseline::Teaser, "{baseline:?}: {}", found.scale_ratio);
-        assert!(found.confidence.is_none() && found.alternatives.is_empty(), "{baseline:?}");
-        assert!(found.counts.source_voxels > 0 && found.counts.target_voxels > 0, "{:?}", found.counts);
-        assert_eq!(found.counts.matches > 0, !baseline.is_local(), "{baseline:?}: {:?}", found.counts);
+        let is_initial = (found.diagnostics.scale_ratio - 1.0).abs() < 1e-9;
+        assert_eq!(is_initial, baseline != Baseline::Teaser, "{baseline:?}: {}", found.diagnostics.scale_ratio);
+        assert!(
+            found.diagnostics.counts.source_voxels > 0 && found.diagnostics.counts.target_voxels > 0,
+            "{:?}",
+            found.diagnostics.counts
+        );
+        assert_eq!(
+            found.diagnostics.counts.matches > 0,
+            !baseline.is_local(),
+            "{baseline:?}: {:?}",
+            found.diagnostics.counts
+        );
         let refines = baseline.is_local() || baseline == Baseline::Ransac;
-        assert_eq!(found.counts.icp_iterations > 0, refines, "{baseline:?}: {:?}", found.counts);
-        assert_eq!(found.residual_m > 0.0, refines, "{baseline:?}: {}", found.residual_m);
+        assert_eq!(
+            found.diagnostics.counts.icp_iterations > 0,
+            refines,
+            "{baseline:?}: {:?}",
+            found.diagnostics.counts
+        );
+        assert_eq!(found.diagnostics.residual_m > 0.0, refines, "{baseline:?}: {}", found.diagnostics.residual_m);
     }
     let locked =
-        align_by(Baseline::Teaser, &AlignOptions { lock_scale: Some(true), ..AlignOptions::default() }).unwrap();
-    assert!((locked.scale_ratio - 1.0).abs() < 1e-9, "{}", locked.scale_ratio);
-    let plain = align_by(Baseline::Ransac, &AlignOptions { icp: Icp::None, ..AlignOptions::default() }).unwrap();
-    assert_eq!(plain.counts.icp_iterations, 0);
-    let error = align_by(Baseline::Quatro, &AlignOptions::default()).unwrap_err();
+        align_by(Baseline::Teaser, &BaselineOptions { lock_scale: true, ..BaselineOptions::default() }).unwrap();
+    assert!((locked.diagnostics.scale_ratio - 1.0).abs() < 1e-9, "{}", locked.diagnostics.scale_ratio);
+    let plain =
+        align_by(Baseline::Ransac, &with_paper(PaperOptions { icp: Icp::None, ..PaperOptions::default() })).unwrap();
+    assert_eq!(plain.diagnostics.counts.icp_iterations, 0);
+    let error = align_by(Baseline::Quatro, &BaselineOptions::default()).unwrap_err();
     assert_eq!((error.code, &*error.argument), (ErrorCode::InvalidOption, "options.cameraUp"));
 }
 
@@ -173,11 +191,12 @@ fn meshes_keep_their_initial_scale_but_for_teaser() {
 #[test]
 fn local_methods_begin_unrotated() {
     for baseline in [Baseline::Gicp, Baseline::IcpPointToPlane, Baseline::IcpPointToPoint] {
-        let found = align_by(baseline, &AlignOptions { icp_iterations: 1, ..AlignOptions::default() }).unwrap();
+        let found =
+            align_by(baseline, &with_paper(PaperOptions { icp_iterations: 1, ..PaperOptions::default() })).unwrap();
         let pose = Similarity::from_column_major(&found.camera_from_mesh.matrix).unwrap();
         assert!(pose.rotation.angle() < 0.5, "{baseline:?}: {}", pose.rotation.angle());
         assert!((pose.translation.z - 0.55).abs() < 0.1, "{baseline:?}: {}", pose.translation);
-        assert_eq!(found.counts.icp_iterations, 1);
+        assert_eq!(found.diagnostics.counts.icp_iterations, 1);
     }
 }
 

@@ -1,7 +1,7 @@
 //! Our baselines on the originals' inputs: the same optimum, within stated tolerances.
 //!
 //! The answers of Open3D, small_gicp and KISS-Matcher are files, for these can't be installed here;
-//! `tests/fixtures/make_baselines.py` wrote them, `scripts/bench/agreement.py` writes more and has them read by way of
+//! `tests/fixtures/make_baselines.py` wrote them, with `--problems 20` it writes more and has them read by way of
 //! `SIM3ALIGN_AGREEMENT`.
 
 use glam::Vec3;

@@ -5,13 +5,14 @@ use std::fs;
 use std::path::PathBuf;
 
 use nalgebra::{Rotation3, Unit, Vector3};
-use sim3align::align::options::AlignOptions;
-use sim3align::evidence::Sampling;
+use sim3align::align::method::Method;
+use sim3align::evidence::clouds::Sampling;
 use sim3align::evidence::sample::{SurfaceMoments, check_shape};
 use sim3align::metrics::evaluate;
 use sim3align::metrics::pose_error::{PoseErrors, pose_errors};
 use sim3align::metrics::silhouette::iou;
 use sim3align::metrics::symmetry::Symmetry;
+use sim3align::paper::options::PaperOptions;
 use sim3align_geometry::error::ErrorCode;
 use sim3align_geometry::image::Mask;
 use sim3align_geometry::rasteriser::Rasteriser;
@@ -246,7 +247,7 @@ fn meshes_of_a_folder_are_shown_at_the_size_of_things() {
 #[test]
 fn a_record_holds_what_tables_need() {
     let case = BenchCase::from(EvaluationSet::new(7).case(0).unwrap());
-    let record = run_case(&case, &AlignOptions::default(), &[]);
+    let record = run_case(&case, &Method::default(), &[]);
     assert_eq!(record.alignment.is_some(), record.error.is_none());
     assert_eq!(record.alignment.is_some(), record.errors.is_some());
     assert!(record.truth_metrics.is_some() && record.seconds > 0.0);
@@ -257,10 +258,10 @@ fn a_record_holds_what_tables_need() {
     }
 
     // An error is a failure, and nothing is claimed without a truth.
-    let failed = run_case(&case, &AlignOptions { voxel_divisions: 0.0, ..AlignOptions::default() }, &[]);
+    let failed = run_case(&case, &PaperOptions { voxel_divisions: 0.0, ..PaperOptions::default() }.into(), &[]);
     assert_eq!((failed.success(&LOOSE), failed.errors), (Some(false), None));
     assert!(failed.error.unwrap().starts_with("INVALID_OPTION"));
-    let without = run_case(&BenchCase { truth: None, ..case }, &AlignOptions::default(), &[]);
+    let without = run_case(&BenchCase { truth: None, ..case }, &Method::default(), &[]);
     assert_eq!((without.success(&STRICT), without.truth_metrics), (None, None));
 }
 

@@ -46,7 +46,7 @@ fn pose_json(pose: &Similarity) -> Value {
 
 fn pose_of(record: &Record) -> Similarity {
     let alignment = record.alignment.as_ref().unwrap_or_else(|| panic!("{:?}", record.error));
-    Similarity::from_column_major(&alignment.camera_from_mesh.matrix).unwrap()
+    Similarity::from_column_major(&alignment.camera_from_mesh().matrix).unwrap()
 }
 
 fn assert_near(a: &Similarity, b: &Similarity, tolerance: f64) {
@@ -99,11 +99,11 @@ fn a_pose_is_scored_as_evaluate_scores_it() {
         let Outcome::Pose(read) = read_answer("answer", &CASE, answer.as_bytes()).unwrap().outcome else { panic!() };
         assert_near(&read, &pose, 1e-12);
         let expected =
-            evaluate(&case.observation, &case.mesh, &read, case.truth.as_ref(), &EvaluateOptions::default()).unwrap();
+            evaluate(&case.observation, &case.mesh, &read, &EvaluateOptions::against(case.truth.as_ref())).unwrap();
         let record = import("scored", &case, &answer);
         let alignment = record.alignment.as_ref().unwrap();
-        assert_eq!(alignment.metrics, expected.metrics);
-        assert_eq!(alignment.scale_ratio, expected.scale_ratio);
+        assert_eq!(alignment.metrics(), Some(expected.metrics));
+        assert_eq!(alignment.diagnostics().scale_ratio, expected.diagnostics.scale_ratio);
         let errors = record.errors.unwrap();
         assert!((errors.scale_error - expected.errors.unwrap().scale_error).abs() < 1e-12);
         assert_eq!(record.success(&STRICT), Some(is_right));
@@ -132,7 +132,10 @@ fn a_pose_is_found_among_pairs_of_which_half_are_wrong() {
         }
         for answer in [json!({ "correspondences": pairs }), json!({ "correspondences": pairs, "scale": "initial" })] {
             let record = import("pairs", &case, &answer.to_string());
-            assert!((record.alignment.unwrap().scale_ratio - 1.0).abs() < 1e-9, "the boxes' scale is kept");
+            assert!(
+                (record.alignment.unwrap().diagnostics().scale_ratio - 1.0).abs() < 1e-9,
+                "the boxes' scale is kept"
+            );
         }
     }
 }
@@ -142,11 +145,11 @@ fn the_guard_holds_where_pairs_are_bounded_and_not_where_they_are_free() {
     let case = case();
     let truth = truth(&case);
     let ratio = import("guard", &case, &json!({ "cameraFromMesh": pose_json(&truth) }).to_string());
-    let far = Similarity { scale: truth.scale * 2.0 / ratio.alignment.unwrap().scale_ratio, ..truth };
+    let far = Similarity { scale: truth.scale * 2.0 / ratio.alignment.unwrap().diagnostics().scale_ratio, ..truth };
     let pairs = half_wrong_pairs(&case, &far, 5);
     let ratio_of = |scale: &str| {
         let answer = json!({ "correspondences": pairs, "scale": scale, "inlierDistanceM": 0.01 * far.scale });
-        import("guard", &case, &answer.to_string()).alignment.map(|alignment| alignment.scale_ratio)
+        import("guard", &case, &answer.to_string()).alignment.map(|alignment| alignment.diagnostics().scale_ratio)
     };
     assert!((ratio_of("free").unwrap() - 2.0).abs() < 1e-2);
     assert!(ratio_of("bounded").is_none_or(|ratio| ratio <= 1.5 + 1e-9));

@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use sim3align::align::align;
+use sim3align::align::align_paper;
 use sim3align::align::evaluate::{EvaluateOptions, Truth, evaluate};
-use sim3align::align::options::{AlignOptions, Preset};
 use sim3align::metrics::symmetry::Symmetry;
+use sim3align::paper::options::PaperOptions;
 use sim3align::progress::Silent;
 use sim3align_geometry::similarity::Similarity;
 use sim3align_lab::case_folder::case::{Case, read_case};
@@ -22,24 +22,28 @@ fn cases() -> Vec<Case> {
 #[test]
 #[ignore = "needs SIM3ALIGN_CASES"]
 fn the_paper_preset_runs_on_every_case_and_its_scale_stays_inside_the_guard() {
-    let paper = AlignOptions { preset: Preset::Paper, ..AlignOptions::default() };
     for case in cases() {
-        let result = align(&case.observation, &case.mesh, &paper, &mut Silent).unwrap();
-        assert!((0.5..=1.5).contains(&result.scale_ratio), "{}: scale ratio {}", case.name, result.scale_ratio);
+        let result = align_paper(&case.observation, &case.mesh, &PaperOptions::default(), &mut Silent).unwrap();
+        assert!(
+            (0.5..=1.5).contains(&result.diagnostics.scale_ratio),
+            "{}: scale ratio {}",
+            case.name,
+            result.diagnostics.scale_ratio
+        );
         let camera_from_mesh = Similarity::from_column_major(&result.camera_from_mesh.matrix).unwrap();
         let truth = case.truth.map(|(camera_from_mesh, symmetry)| Truth {
             camera_from_mesh,
             symmetry: Symmetry::from_description(&symmetry),
         });
-        let options = EvaluateOptions::default();
-        let scored = evaluate(&case.observation, &case.mesh, &camera_from_mesh, truth.as_ref(), &options).unwrap();
+        let options = EvaluateOptions::against(truth.as_ref());
+        let scored = evaluate(&case.observation, &case.mesh, &camera_from_mesh, &options).unwrap();
         println!(
             "{}: scale ratio {:.3}, IoU {:.3}, errors {:?}, {:?}",
             case.name,
-            result.scale_ratio,
+            result.diagnostics.scale_ratio,
             scored.metrics.iou.unwrap(),
             scored.errors.map(|e| (e.scale_error, e.rotation_error_deg, e.translation_error_relative)),
-            result.counts
+            result.diagnostics.counts
         );
     }
 }
@@ -51,8 +55,7 @@ fn the_true_pose_scores_as_a_perfect_one() {
     for case in cases() {
         let Some((camera_from_mesh, _)) = case.truth else { continue };
         tried += 1;
-        let scored =
-            evaluate(&case.observation, &case.mesh, &camera_from_mesh, None, &EvaluateOptions::default()).unwrap();
+        let scored = evaluate(&case.observation, &case.mesh, &camera_from_mesh, &EvaluateOptions::default()).unwrap();
         let metrics = scored.metrics;
         println!("{}: {metrics:?}", case.name);
         assert!(metrics.iou.unwrap() >= 0.92, "{}: IoU {:?}", case.name, metrics.iou);

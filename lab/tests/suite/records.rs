@@ -4,7 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use serde::de::IgnoredAny;
-use sim3align::align::options::{AlignOptions, Quality};
+use sim3align::precise::options::{AlignOptions, Quality};
 use sim3align_geometry::error::ErrorCode;
 use sim3align_lab::samples::benchmark::{BenchCase, Record, run_case};
 use sim3align_lab::samples::evaluation::case::EvaluationSet;
@@ -23,7 +23,7 @@ fn key(row: &str, case: &str) -> RecordKey {
 
 fn record() -> Record {
     let case = BenchCase::from(EvaluationSet::new(3).case(0).unwrap());
-    run_case(&case, &AlignOptions { quality: Quality::Fast, ..AlignOptions::default() }, &[])
+    run_case(&case, &AlignOptions { quality: Quality::Fast, ..AlignOptions::default() }.into(), &[])
 }
 
 #[test]

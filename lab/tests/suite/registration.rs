@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use glam::Vec3;
 use nalgebra::{Matrix4, Vector3};
-use sim3align::align::options::{RegisterOptions, ScaleOption};
+use sim3align::options::scale::ScaleOption;
 use sim3align::progress::Silent;
+use sim3align::register::options::RegisterOptions;
 use sim3align::register::register;
 use sim3align_geometry::error::ErrorCode;
 use sim3align_geometry::similarity::{Similarity, vector3};
@@ -249,8 +250,8 @@ fn drives_are_read_as_they_were_generated_and_overlap_less_with_distance() {
 }
 
 fn registered(source: &[Vec3], target: &[Vec3]) -> Similarity {
-    let options = RegisterOptions::default();
-    let found = register(&flat(source), &flat(target), ScaleOption::Fixed(1.0), &options, &mut Silent).unwrap();
+    let options = RegisterOptions { scale: ScaleOption::Fixed(1.0), ..RegisterOptions::default() };
+    let found = register(&flat(source), &flat(target), &options, &mut Silent).unwrap();
     Similarity::from_column_major(&found.target_from_source.matrix).unwrap()
 }
 

@@ -3,11 +3,12 @@
 use std::fs;
 
 use nalgebra::{Rotation3, Vector3};
-use sim3align::align::align;
-use sim3align::align::options::{AlignOptions, Preset, Quality};
-use sim3align::evidence::Sampling;
+use sim3align::align::{align, align_paper};
+use sim3align::evidence::clouds::Sampling;
 use sim3align::evidence::sample::check_shape;
 use sim3align::metrics::evaluate;
+use sim3align::paper::options::PaperOptions;
+use sim3align::precise::options::{AlignOptions, Quality};
 use sim3align::progress::Silent;
 use sim3align_geometry::error::ErrorCode;
 use sim3align_geometry::image::DepthMap;
@@ -174,9 +175,9 @@ fn a_written_case_reads_back_and_the_paper_preset_aligns_it() {
     assert!((camera_from_mesh.scale - sample.camera_from_mesh.scale).abs() < 1e-12);
     assert_eq!(symmetry, "none");
 
-    let paper = AlignOptions { preset: Preset::Paper, ..AlignOptions::default() };
-    let result = align(&case.observation, &case.mesh, &paper, &mut Silent).unwrap();
-    assert!((0.5..=1.5).contains(&result.scale_ratio), "scale ratio {}", result.scale_ratio);
+    let result = align_paper(&case.observation, &case.mesh, &PaperOptions::default(), &mut Silent).unwrap();
+    let ratio = result.diagnostics.scale_ratio;
+    assert!((0.5..=1.5).contains(&ratio), "scale ratio {ratio}");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use sim3align::evidence::Sampling;
+use sim3align::evidence::clouds::Sampling;
 use sim3align::evidence::sample::{SurfaceMoments, check_shape};
 use sim3align::metrics::symmetry::Symmetry;
 use sim3align::metrics::{Metrics, evaluate};

@@ -1,29 +1,153 @@
-//! TypeScript's declarations of options, results and codes are those of the Rust structs.
+//! The TypeScript package's declarations of options, results and codes, its defaults and its table of options are
+//! generated from the Rust declarations.
 //!
-//! `UPDATE=1 cargo test --features types typescript` writes the file after a change.
+//! `UPDATE=1 cargo test --features types typescript` writes the files after a change.
 
+use std::fmt::Write;
 use std::path::Path;
 
-use sim3align::align::evaluate::{EvaluateOptions, Evaluation};
-use sim3align::align::options::{
-    AlignOptions, EstimateOptions, ExtentAxis, GuardMode, Icp, Preset, Quality, RegisterOptions, SearchScope,
-};
-use sim3align::align::report::{
-    Alignment, Alternative, Counts, Registration, ScoreTerms, Sim3, Uncertainty, Warning, WarningCode,
-};
+use serde_json::{Value, json};
+use sim3align::align::evaluate::{EvaluateOptions, Evaluation, EvaluationDiagnostics};
 use sim3align::metrics::Metrics;
 use sim3align::metrics::pose_error::PoseErrors;
+use sim3align::metrics::symmetry::Symmetry;
+use sim3align::options::scale::ScaleOption;
+use sim3align::options::{Field, Options};
+use sim3align::paper::options::{GuardMode, Icp, PaperOptions};
+use sim3align::precise::options::{AlignOptions, ExtentAxis, Quality, SearchScope};
 use sim3align::progress::Stage;
+use sim3align::register::options::{EstimateSim3Options, RegisterOptions};
+use sim3align::report::Preset;
+use sim3align::report::{
+    Alignment, Alternative, Counts, Diagnostics, PaperAlignment, PreciseDiagnostics, Registration,
+    RegistrationDiagnostics, ScoreTerms, Sim3, Uncertainty, Warning, WarningCode,
+};
 use sim3align_geometry::error::ErrorCode;
 use ts_rs::{Config, TS};
+
+const HEADER: &str = "// Generated from the Rust declarations by tests/suite/typescript.rs; do not edit.\n\n";
+
+/// An option, as the tables of both packages have it.
+struct Row {
+    name: String,
+    doc: String,
+    /// The name of the kind in the table of options.
+    kind: &'static str,
+    /// The type in TypeScript.
+    ts: String,
+    /// The range, in words; empty where the type says it all.
+    range: String,
+    /// What else the table says: least and most value, choices.
+    limits: Vec<(&'static str, Value)>,
+    default: Value,
+}
+
+fn rows<T: Options>() -> Vec<Row> {
+    let mut options = T::default();
+    let docs: Vec<String> = T::FIELDS.iter().map(|(_, doc)| text(doc)).collect();
+    options.named_fields().iter().zip(docs).map(|((name, field), doc)| row(name.clone(), doc, field)).collect()
+}
+
+fn row(name: String, doc: String, field: &Field<'_>) -> Row {
+    let between = |min: Value, max: Value| vec![("min", min), ("max", max)];
+    let or_null = |ts: &str| format!("{ts} | null");
+    let (kind, ts, limits, default) = match field {
+        Field::Count(value, range) => {
+            ("integer", "number".into(), between(json!(range.start()), json!(range.end())), json!(value))
+        }
+        Field::Number(value, range) => {
+            ("number", "number".into(), between(plain(*range.start()), plain(*range.end())), plain(**value))
+        }
+        Field::OptionalNumber(value, range) => {
+            let limits = between(plain(*range.start()), plain(*range.end()));
+            ("number", or_null("number"), limits, value.map_or(Value::Null, plain))
+        }
+        Field::Positive(value) => {
+            ("number", or_null("number"), vec![("above", json!(0))], value.map_or(Value::Null, plain))
+        }
+        Field::Flag(value) => ("boolean", "boolean".into(), vec![], json!(value)),
+        Field::Scale(value) => {
+            assert_eq!(**value, ScaleOption::Free);
+            ("scale", "ScaleOption".into(), vec![], json!("free"))
+        }
+        Field::Direction(value) => ("direction", or_null("Direction"), vec![], json!(value)),
+        Field::Symmetry(value) => {
+            let name = if **value == Symmetry::None { "none" } else { "auto" };
+            ("symmetry", "SymmetryOption".into(), vec![], json!(name))
+        }
+        Field::Transform(value) => {
+            assert!(value.is_none());
+            ("transform", or_null("Sim3Like"), vec![], Value::Null)
+        }
+        Field::Guard(value) => {
+            let default = value.map_or(Value::Null, |bounds| json!(bounds.map(plain)));
+            ("guard", "readonly [min: number, max: number] | null".into(), vec![], default)
+        }
+        Field::Choice(choice) => {
+            ("choice", choice.type_name().into(), vec![("choices", json!(choice.names()))], json!(choice.name()))
+        }
+    };
+    let range = match field {
+        Field::Count(..) | Field::Number(..) | Field::OptionalNumber(..) | Field::Positive(_) | Field::Guard(_) => {
+            field.expected()
+        }
+        _ => String::new(),
+    };
+    Row { name, doc, kind, ts, range, limits, default }
+}
+
+/// A number as JavaScript writes it: 5, not 5.0.
+fn plain(x: f64) -> Value {
+    if x.fract() == 0.0 { json!(x as i64) } else { json!(x) }
+}
+
+/// A doc comment as one paragraph.
+fn text(doc: &str) -> String {
+    doc.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// The part up to the first full stop that ends a sentence.
+fn first_sentence(doc: &str) -> &str {
+    doc.split_once(". ").map_or(doc.trim_end_matches('.'), |(first, _)| first)
+}
+
+fn comment(out: &mut String, indent: &str, text: &str) {
+    let _ = writeln!(out, "{indent}/**");
+    let mut line = String::new();
+    for word in text.split(' ') {
+        if !line.is_empty() && line.chars().count() + word.chars().count() + indent.len() + 4 > 118 {
+            let _ = writeln!(out, "{indent} * {line}");
+            line.clear();
+        }
+        if !line.is_empty() {
+            line.push(' ');
+        }
+        line.push_str(word);
+    }
+    let _ = writeln!(out, "{indent} * {line}\n{indent} */");
+}
+
+/// Options as an interface; `preset` is the property that tells the presets apart.
+fn interface<T: Options>(name: &str, preset: &str) -> String {
+    let mut out = String::new();
+    comment(&mut out, "", &text(T::DOC));
+    let _ = writeln!(out, "export interface {name} {{\n{preset}");
+    for Row { name, doc, ts, range, default, .. } in rows::<T>() {
+        let range = if range.is_empty() { range } else { format!(" Takes {range}.") };
+        comment(&mut out, "  ", &format!("{doc}{range} Default `{default}`."));
+        let _ = writeln!(out, "  {name}?: {ts} | undefined;");
+    }
+    out.replace("{\n\n", "{\n") + "}\n"
+}
 
 fn declaration<T: TS>(config: &Config) -> String {
     format!("{}export {}\n", T::docs().unwrap_or_default(), T::decl(config))
 }
 
-#[test]
-fn declarations_are_those_of_the_rust_structs() {
+fn types() -> String {
     let config = Config::default();
+    let precise = "  /** The default method: search by rendering. */\n  preset?: \"precise\" | undefined;\n";
+    let paper = "  /** The paper's method. */\n  preset: \"paper\";\n";
     let declarations = [
         declaration::<Preset>(&config),
         declaration::<Quality>(&config),
@@ -31,11 +155,15 @@ fn declarations_are_those_of_the_rust_structs() {
         declaration::<ExtentAxis>(&config),
         declaration::<GuardMode>(&config),
         declaration::<Icp>(&config),
-        declaration::<AlignOptions>(&config),
-        declaration::<RegisterOptions>(&config),
-        declaration::<EstimateOptions>(&config),
-        declaration::<EvaluateOptions>(&config),
+        interface::<AlignOptions>("AlignOptions", precise),
+        interface::<PaperOptions>("PaperOptions", paper),
+        interface::<EvaluateOptions>("EvaluateOptions", ""),
+        interface::<RegisterOptions>("RegisterOptions", ""),
+        interface::<EstimateSim3Options>("EstimateSim3Options", ""),
         declaration::<Stage>(&config),
+        "/** Milliseconds per stage, in the order in which the stages first ran, and their total. */\n\
+         export type Timings = Partial<Record<Stage, number>> & { total: number };\n"
+            .into(),
         declaration::<ErrorCode>(&config),
         declaration::<WarningCode>(&config),
         declaration::<Warning>(&config),
@@ -46,19 +174,112 @@ fn declarations_are_those_of_the_rust_structs() {
         declaration::<ScoreTerms>(&config),
         declaration::<Alternative>(&config),
         declaration::<Uncertainty>(&config),
+        declaration::<Diagnostics>(&config),
+        declaration::<PreciseDiagnostics>(&config),
         declaration::<Alignment>(&config),
+        declaration::<PaperAlignment>(&config),
+        declaration::<EvaluationDiagnostics>(&config),
         declaration::<Evaluation>(&config),
+        declaration::<RegistrationDiagnostics>(&config),
         declaration::<Registration>(&config),
     ];
-    let header = "// Generated from the Rust structs by tests/suite/typescript.rs; do not edit.\n\n\
-        import type { Direction, ScaleBounds, SymmetryOption } from \"../options.js\";\n\
-        import type { Sim3Like } from \"../sim3.js\";\n\n";
-    let generated = header.to_owned() + &declarations.join("\n");
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../pkg-config/src/generated/types.ts");
-    if std::env::var_os("UPDATE").is_some() {
-        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-        std::fs::write(&path, &generated).unwrap();
+    let imports = "import type { Direction, ScaleOption, Sim3Like, SymmetryOption } from \"../argument-types.js\";\n\n";
+    HEADER.to_owned() + imports + &declarations.join("\n")
+}
+
+fn defaults<T: Options>(name: &str, doc: &str, ts: &str, preset: Option<&str>) -> String {
+    let mut out = format!("/** {doc} */\nexport const {name} = {{\n");
+    if let Some(preset) = preset {
+        let _ = writeln!(out, "  preset: \"{preset}\",");
     }
-    let committed = std::fs::read_to_string(&path).unwrap_or_default();
-    assert!(committed == generated, "{} is out of date: run this test with UPDATE=1", path.display());
+    for Row { name, default, .. } in rows::<T>() {
+        let _ = writeln!(out, "  {name}: {},", spaced(&default));
+    }
+    let _ = writeln!(out, "}} as const satisfies {ts};");
+    out
+}
+
+/// JSON with spaces after its commas.
+fn spaced(value: &Value) -> String {
+    value.to_string().replace(',', ", ")
+}
+
+fn table<T: Options>(name: &str) -> String {
+    let mut out = format!("  {name}: [\n");
+    for Row { name, doc, kind, ts, limits, default, .. } in rows::<T>() {
+        let nullable = ts.ends_with("| null");
+        let _ = write!(out, "    {{\n      name: \"{name}\",\n      kind: \"{kind}\",\n");
+        for (limit, value) in limits {
+            let _ = writeln!(out, "      {limit}: {},", spaced(&value));
+        }
+        let _ = writeln!(out, "      isNullable: {nullable},\n      default: {},", spaced(&default));
+        let _ = writeln!(out, "      summary: {},\n    }},", json!(first_sentence(&doc)));
+    }
+    out + "  ],\n"
+}
+
+fn options() -> String {
+    let imports = "import type { OptionRow } from \"../options.js\";\nimport type {\n  AlignOptions,\n  EstimateSim3Options,\n  \
+        EvaluateOptions,\n  PaperOptions,\n  RegisterOptions,\n} from \"./types.js\";\n\n";
+    let constants = [
+        defaults::<AlignOptions>("ALIGN_DEFAULTS", "Defaults of `align`.", "AlignOptions", Some("precise")),
+        defaults::<PaperOptions>(
+            "PAPER_DEFAULTS",
+            "Defaults of `align` with `preset: \"paper\"`.",
+            "PaperOptions",
+            Some("paper"),
+        ),
+        defaults::<EvaluateOptions>("EVALUATE_DEFAULTS", "Defaults of `evaluate`.", "EvaluateOptions", None),
+        defaults::<RegisterOptions>("REGISTER_DEFAULTS", "Defaults of `register`.", "RegisterOptions", None),
+        defaults::<EstimateSim3Options>(
+            "ESTIMATE_SIM3_DEFAULTS",
+            "Defaults of `estimateSim3`.",
+            "EstimateSim3Options",
+            None,
+        ),
+    ];
+    let tables = [
+        table::<AlignOptions>("align"),
+        table::<PaperOptions>("paper"),
+        table::<EvaluateOptions>("evaluate"),
+        table::<RegisterOptions>("register"),
+        table::<EstimateSim3Options>("estimateSim3"),
+    ];
+    format!(
+        "{HEADER}{imports}{}\n/** Every option with its kind, range, default and a one-line description. */\n\
+         export const OPTIONS = {{\n{}}} as const satisfies Readonly<Record<string, readonly OptionRow[]>>;\n",
+        constants.join("\n"),
+        tables.concat()
+    )
+}
+
+#[test]
+fn generated_files_are_those_of_the_rust_declarations() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../pkg-config/src/generated");
+    for (file, generated) in [("types.ts", types()), ("options.ts", options())] {
+        let path = folder.join(file);
+        if std::env::var_os("UPDATE").is_some() {
+            std::fs::create_dir_all(&folder).unwrap();
+            std::fs::write(&path, &generated).unwrap();
+        }
+        let committed = std::fs::read_to_string(&path).unwrap_or_default();
+        assert!(committed == generated, "{} is out of date: run this test with UPDATE=1", path.display());
+    }
+}
+
+#[test]
+fn every_option_is_described_on_one_line() {
+    fn summaries<T: Options>() -> Vec<String> {
+        rows::<T>().iter().map(|row| first_sentence(&row.doc).to_owned()).collect()
+    }
+    let all = [
+        summaries::<AlignOptions>(),
+        summaries::<PaperOptions>(),
+        summaries::<EvaluateOptions>(),
+        summaries::<RegisterOptions>(),
+        summaries::<EstimateSim3Options>(),
+    ];
+    for summary in all.concat() {
+        assert!((10..=130).contains(&summary.chars().count()), "{summary}");
+    }
 }

@@ -1,7 +1,7 @@
 /** `sim3align evaluate`: scores a transform on a case. */
 import { Command } from "commander";
 import { readCaseFolder } from "../case-folder.js";
-import { createAligner, type Evaluation, Sim3AlignError } from "../index.js";
+import { createAligner, type Evaluation, OPTIONS, type OptionRow, Sim3AlignError } from "../index.js";
 import {
   addCaseOptions,
   type CaseFlags,
@@ -10,17 +10,19 @@ import {
   conventionsHelp,
   statusHelp,
 } from "./case-options.js";
+import { addOptionFlags, givenOptions } from "./option-flags.js";
 import { evaluationJson, type Failure, failure, failureText } from "./outcome.js";
 import { Output } from "./output.js";
-import { number } from "./parse.js";
 import { evaluationDetails } from "./report.js";
 import { readTransform, transformFileHelp } from "./transform-file.js";
 
-interface EvaluateFlags extends CaseFlags {
+interface EvaluateFlags extends CaseFlags, Readonly<Record<string, unknown>> {
   transform: string;
-  seed?: number;
   json?: string;
 }
+
+/** The case itself has the truth and the symmetry. */
+const rows: readonly OptionRow[] = OPTIONS.evaluate.filter(({ name }) => name !== "truth" && name !== "symmetry");
 
 const help = `${caseFolderHelp}
 ${conventionsHelp}
@@ -38,9 +40,9 @@ export function evaluateCommand(): Command {
     .description("Scores a transform with all metrics, and against gt.json where the case has one.")
     .argument("<case>", "case folder")
     .option("--transform <file|gt>", 'a transform file, or "gt" for the case\'s own truth', "gt")
-    .option("--json <file>", 'write the scores as JSON; "-" is stdout')
-    .option("--seed <n>", "seed of all random draws", number);
-  return addCaseOptions(command).addHelpText("after", help).action(run);
+    .option("--json <file>", 'write the scores as JSON; "-" is stdout');
+  addOptionFlags(addCaseOptions(command), rows);
+  return command.addHelpText("after", help).action(run);
 }
 
 async function run(folder: string, flags: EvaluateFlags): Promise<void> {
@@ -62,11 +64,12 @@ async function evaluateCase(folder: string, flags: EvaluateFlags): Promise<[name
     const { input, truth, ...known } = await readCaseFolder(folder, caseSettings(flags));
     ({ name, files } = known);
     if (flags.transform === "gt" && truth === null) throw noTruth(folder);
-    const matrix = flags.transform === "gt" ? truth?.matrix : await readTransform("transform", flags.transform, name);
+    const matrix =
+      flags.transform === "gt" ? truth?.transform.matrix : await readTransform("transform", flags.transform, name);
     const aligner = await createAligner();
-    const seed = flags.seed === undefined ? {} : { seed: flags.seed };
-    const against = truth === null ? {} : { truth: { matrix: truth.matrix }, symmetry: truth.symmetry };
-    return [name, await aligner.evaluate(input, { matrix: matrix ?? [] }, { ...seed, ...against })];
+    const given = givenOptions(flags, rows);
+    const against = truth === null ? {} : { truth: truth.transform, symmetry: truth.symmetry };
+    return [name, await aligner.evaluate(input, { matrix: matrix ?? [] }, { ...given, ...against })];
   } catch (error) {
     return [name, failure(name, error, files)];
   }

@@ -1,12 +1,12 @@
-/** What became of a case, for the table and for JSON. */
+/** The outcome of a case, for the table and for JSON. */
 import { describe, Sim3AlignError } from "../error.js";
-import type { Alignment, Evaluation, PoseErrors, Sim3 } from "../index.js";
+import type { AlignResult, Evaluation, PoseErrors, Sim3 } from "../index.js";
 
 /** A case that was aligned. */
 export interface Success {
   name: string;
-  alignment: Alignment;
-  /** Against the case's truth, where it has one. */
+  alignment: AlignResult;
+  /** The errors against the case's truth, if it has one. */
   errors: PoseErrors | null;
 }
 
@@ -14,13 +14,13 @@ export interface Success {
 export interface Failure {
   name: string;
   error: Sim3AlignError;
-  /** The file at fault, where it is known. */
+  /** The file at fault, if known. */
   file: string | undefined;
 }
 
 export type Outcome = Success | Failure;
 
-/** Whatever was thrown, as the one error type. */
+/** Any exception as a `Sim3AlignError`. */
 export function asSim3AlignError(error: unknown): Sim3AlignError {
   if (error instanceof Sim3AlignError) return error;
   return new Sim3AlignError(
@@ -35,7 +35,7 @@ export function asSim3AlignError(error: unknown): Sim3AlignError {
   );
 }
 
-/** The failure of a case, some of whose files are known. */
+/** The failure of a case; `files` are its files by argument, as far as they are known. */
 export function failure(name: string, thrown: unknown, files: Readonly<Record<string, string>> = {}): Failure {
   const error = asSim3AlignError(thrown);
   return { name, error, file: files[error.argument.split(".")[0] ?? ""] };
@@ -46,16 +46,26 @@ export function failureText({ name, error, file }: Failure): string {
   return `${name}: ${error.code}: ${error.message}${file === undefined ? "" : `\n  in ${file}`}`;
 }
 
-/** A transform and what belongs to it, in JSON. */
+/** A transform and its other properties in JSON. */
 function transformJson<T extends Sim3>({ scale, rotation, rotationMatrix, translation, matrix, ...rest }: T) {
-  return { scale, rotation: rotationMatrix, translation, matrix: Array.from(matrix), quaternion: rotation, ...rest };
+  return { scale, rotation: rotationMatrix, translation, matrix, quaternion: rotation, ...rest };
 }
 
-/** The aligned case in JSON. */
+/** The aligned case in JSON. All cases have the same keys, whatever the preset. */
 function alignmentJson({ alignment, errors }: Success) {
+  const { scale, rotation, rotationMatrix, translation, matrix, metrics, warnings } = alignment;
+  const { timingsMs, ...diagnostics } = alignment.diagnostics;
+  const { confidence, alternatives, uncertainty } =
+    "confidence" in alignment ? alignment : { confidence: null, alternatives: [], uncertainty: null };
   return {
-    ...transformJson(alignment),
-    alternatives: alignment.alternatives.map(transformJson),
+    ...transformJson({ scale, rotation, rotationMatrix, translation, matrix }),
+    confidence,
+    alternatives: alternatives.map(transformJson),
+    uncertainty,
+    ...(metrics === undefined ? {} : { metrics }),
+    warnings,
+    timingsMs,
+    diagnostics,
     ...(errors === null ? {} : { errors }),
   };
 }

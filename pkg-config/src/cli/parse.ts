@@ -1,6 +1,6 @@
-/** Values of flags. What is no value of its kind is a usage error. */
+/** Parses the values of flags. Invalid values are usage errors. */
 import { InvalidArgumentError } from "commander";
-import type { AlignOptions, CameraInput } from "../index.js";
+import type { CameraInput, ScaleOption, SymmetryOption } from "../index.js";
 
 /** A number. */
 export function number(text: string): number {
@@ -23,10 +23,11 @@ export function guard(text: string): [number, number] | "none" {
   return values as [number, number];
 }
 
-/** A, or MIN,MAX. */
-export function scale(text: string): number | [number, number] {
+/** "free", A, or MIN,MAX. */
+export function scale(text: string): ScaleOption {
+  if (text === "free") return text;
   const [value, max] = numbers(text, 1) ?? numbers(text, 2) ?? [];
-  if (value === undefined) throw new InvalidArgumentError("Give a number such as 0.001, or MIN,MAX.");
+  if (value === undefined) throw new InvalidArgumentError('Give "free", a number such as 0.001, or MIN,MAX.');
   return max === undefined ? value : [value, max];
 }
 
@@ -37,8 +38,8 @@ export function direction(text: string): [number, number, number] {
   return values as [number, number, number];
 }
 
-/** A word that the core knows, or an array of axes in JSON. */
-export function symmetry(text: string): NonNullable<AlignOptions["symmetry"]> {
+/** A name, which the core checks, or an array of axes in JSON. */
+export function symmetry(text: string): SymmetryOption {
   if (!text.trimStart().startsWith("[")) return text as "auto";
   try {
     return JSON.parse(text);

@@ -1,5 +1,5 @@
 /** The tables that people read. */
-import type { Alignment, Evaluation, Metrics, PoseErrors, Warning } from "../index.js";
+import type { AlignResult, Evaluation, Metrics, PoseErrors, Warning } from "../index.js";
 import { fixed, significant } from "./number.js";
 import { failureText, type Outcome, type Success } from "./outcome.js";
 import type { Style } from "./style.js";
@@ -39,19 +39,21 @@ export function summary(outcomes: readonly Outcome[], style: Style): string[] {
 }
 
 function row({ name, alignment }: Success): string[] {
-  const { preset, confidence, alternatives, scale, scaleRatio, metrics, timingsMs } = alignment;
+  const { scale, metrics, diagnostics } = alignment;
+  const { scaleRatio, timingsMs } = diagnostics;
+  const certain = "confidence" in alignment ? alignment : null;
   return [
     name,
-    fixed(confidence, 2),
-    preset === "paper" ? "–" : String(alternatives.length),
+    fixed(certain?.confidence, 2),
+    certain === null ? "–" : String(certain.alternatives.length),
     significant(scale, 4),
     fixed(scaleRatio, 3),
-    fixed(metrics.iou, 3),
-    fixed(metrics.boundaryF, 3),
-    fixed(metrics.centerDriftPx, 1),
-    fixed(metrics.chamferMm, 2),
-    fixed(metrics.fitness, 3),
-    fixed(metrics.depthMaeMm, 2),
+    fixed(metrics?.iou, 3),
+    fixed(metrics?.boundaryF, 3),
+    fixed(metrics?.centerDriftPx, 1),
+    fixed(metrics?.chamferMm, 2),
+    fixed(metrics?.fitness, 3),
+    fixed(metrics?.depthMaeMm, 2),
     fixed(timingsMs.total / 1000, 2),
   ];
 }
@@ -68,27 +70,26 @@ function errorCells(errors: PoseErrors | null): string[] {
 
 /** Everything about one aligned case. */
 export function details({ name, alignment, errors }: Success, style: Style): string[] {
-  const { preset, scale, rotation, rotationMatrix, translation, metrics, timingsMs } = alignment;
+  const { scale, rotation, rotationMatrix, translation, metrics, diagnostics } = alignment;
   const matrixRow = (i: 0 | 1 | 2) =>
     [...rotationMatrix[i].map((r) => r * scale), translation[i]].map((x) => fixed(x, 6).padStart(11)).join("");
   return [
     style.bold(`${name}: camera from mesh, x_cam = s·R·p + t`),
     ...pairs([
       ["scale s", `${significant(scale, 6)} m per mesh unit`],
-      ["scale ratio", `${fixed(alignment.scaleRatio, 4)} of the initial ${significant(alignment.initialScale, 6)}`],
+      ["scale ratio", `${fixed(diagnostics.scaleRatio, 4)} of the initial ${significant(diagnostics.initialScale, 6)}`],
       ["translation t", `${translation.map((x) => fixed(x, 6)).join("  ")} m`],
       ["rotation R", `${rotation.map((x) => fixed(x, 6)).join("  ")} (quaternion x y z w)`],
       ["matrix (s·R | t)", matrixRow(0)],
       ["", matrixRow(1)],
       ["", matrixRow(2)],
-      ...(preset === "paper" ? [refinement(alignment)] : certainty(alignment)),
+      ...("confidence" in alignment ? certainty(alignment) : [refinement(alignment)]),
     ]),
-    "",
-    ...metricsSection(metrics, style),
+    ...(metrics === undefined ? [] : ["", ...metricsSection(metrics, style)]),
     ...errorsSection(errors, style),
     "",
     style.bold("Stages"),
-    ...pairs(Object.entries(timingsMs).map(([stage, ms]) => [stage, `${fixed(ms, 1).padStart(8)} ms`])),
+    ...pairs(Object.entries(diagnostics.timingsMs).map(([stage, ms]) => [stage, `${fixed(ms, 1).padStart(8)} ms`])),
     "",
     style.bold("Counts"),
     ...pairs(countRows(alignment)),
@@ -98,15 +99,16 @@ export function details({ name, alignment, errors }: Success, style: Style): str
 
 type Row = readonly [name: string, value: string];
 
-function refinement({ converged, residualM }: Alignment): Row {
+function refinement({ diagnostics: { converged, residualM } }: AlignResult<"paper">): Row {
   return [
     "refinement",
-    `${converged ? "came to rest" : "did not come to rest"}, residual ${significant(1000 * residualM, 3)} mm`,
+    `${converged ? "converged" : "did not converge"}, residual ${significant(1000 * residualM, 3)} mm`,
   ];
 }
 
-/** How sure the pose is, and what else it may be. */
-function certainty({ confidence, score, alternatives, uncertainty }: Alignment): Row[] {
+/** Confidence, alternatives and uncertainty. */
+function certainty({ confidence, alternatives, uncertainty, diagnostics }: AlignResult<"precise">): Row[] {
+  const { score } = diagnostics;
   const others = alternatives.map((other) => `${fixed(other.turnDeg, 0)}° (score ${fixed(other.score, 3)})`);
   const rows: Row[] = [
     ["confidence", `${fixed(confidence, 2)}, score ${fixed(score, 3)}`],
@@ -122,7 +124,7 @@ function certainty({ confidence, score, alternatives, uncertainty }: Alignment):
   ];
 }
 
-function countRows({ preset, counts }: Alignment): Row[] {
+function countRows({ diagnostics: { preset, counts } }: AlignResult): Row[] {
   const points: Row = ["points", `${counts.sourcePoints} on the mesh, ${counts.targetPoints} observed`];
   if (preset !== "paper") return [points, ["renders", String(counts.renders)]];
   return [
@@ -137,7 +139,8 @@ function countRows({ preset, counts }: Alignment): Row[] {
 
 /** Everything about one evaluated case. */
 export function evaluationDetails(name: string, evaluation: Evaluation, style: Style): string[] {
-  const { metrics, errors, scaleRatio, initialScale, collapsed, warnings } = evaluation;
+  const { metrics, errors, warnings, diagnostics } = evaluation;
+  const { scaleRatio, initialScale, collapsed } = diagnostics;
   return [
     style.bold(`${name}: evaluation`),
     ...pairs([

@@ -1,7 +1,7 @@
 /** Transforms from JSON files. */
 import { read } from "../case-folder.js";
+import { parsePoseFile } from "../conventions/pose-file.js";
 import { Sim3AlignError } from "../error.js";
-import { formatsModule } from "../modules.js";
 import { isRecord } from "../values.js";
 
 /** How a transform file is laid out, for --help. */
@@ -20,13 +20,9 @@ export async function readTransform(argument: "transform" | "initial", path: str
   const text = new TextDecoder().decode(await read(argument, path));
   const invalid = (found: string, expected: string) => invalidTransform(argument, found, expected);
   const entry = entryOf(parse(text, argument, path), name, invalid);
-  const module = await formatsModule.load();
-  const transform = module.call(
-    (readers) => readers.readTruth(entry),
-    (found) => found.replace(/^truth/, argument),
-  );
-  if (transform === null) throw invalid("a file that says that no pose is known", "a transform");
-  return Array.from(transform.matrix);
+  const pose = parsePoseFile(argument, entry);
+  if (pose === null) throw invalid("a file that says that no pose is known", "a transform");
+  return Array.from(pose.transform.matrix);
 }
 
 function parse(text: string, argument: string, path: string): unknown {

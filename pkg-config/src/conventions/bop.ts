@@ -1,6 +1,6 @@
 /** Poses as the BOP benchmark writes them. */
 import type { Sim3, Sim3Like } from "../sim3.js";
-import { finiteNumbers, positive, record, vector3, whole } from "./numbers.js";
+import { finiteNumbers, positive, record, vector3, whole } from "../values.js";
 import { type Matrix3, rotationOf } from "./rotation.js";
 import { sim3Of, similarityOf } from "./similarity.js";
 

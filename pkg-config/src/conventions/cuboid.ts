@@ -1,6 +1,7 @@
 /** Cuboids as annotation tools have them. */
+
+import { finiteNumbers, oneOf, positive, type Quaternion, record, type Vector3, vector3 } from "../values.js";
 import { type CameraFrame, turnTo } from "./frames.js";
-import { finiteNumbers, oneOf, positive, type Quaternion, record, type Vector3, vector3 } from "./numbers.js";
 import type { ObjectBox } from "./object-box.js";
 import {
   column,

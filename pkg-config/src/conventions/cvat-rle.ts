@@ -1,10 +1,9 @@
 /** Masks as CVAT writes them: run lengths along the rows of the mask's own box. */
 import { describe } from "../error.js";
+import { type ImageSize, sizeOf } from "../formats/pixels.js";
+import { filledRuns } from "../formats/runs.js";
 import type { PixelArray } from "../input/types.js";
-import { isRecord } from "../values.js";
-import { failure, whole } from "./numbers.js";
-import { type ImageSize, sizeOf } from "./pixels.js";
-import { filledRuns } from "./runs.js";
+import { failure, isRecord, whole } from "../values.js";
 
 /** A `<mask>` of CVAT's XML ("CVAT for images"); its attributes may be texts, as an XML parser gives them. */
 export interface CvatMaskElement {

@@ -1,7 +1,8 @@
 /** Depth from what relative depth models estimate. */
+
+import { pixelsOf, pointKinds } from "../formats/pixels.js";
 import type { PixelArray } from "../input/types.js";
-import { finite } from "./numbers.js";
-import { pixelsOf, pointKinds } from "./pixels.js";
+import { finite } from "../values.js";
 
 /**
  * Depth in metres from relative inverse depth (disparity), such as Depth Anything's and MiDaS' relative models

@@ -1,6 +1,6 @@
 /** The frames that cameras are described in. */
 import type { Sim3, Sim3Like } from "../sim3.js";
-import { oneOf, type Quaternion, type Vector3 } from "./numbers.js";
+import { oneOf, type Quaternion, type Vector3 } from "../values.js";
 import { type Matrix3, transposed } from "./rotation.js";
 import { composed, type Similarity, sim3Of, similarityOf } from "./similarity.js";
 
@@ -76,7 +76,7 @@ export const toOpenGL = (transform: Sim3Like): Sim3 => toFrame(transform, "openg
 /** What an object of three.js is posed with. */
 export interface ThreePose {
   /** For `object.matrix.fromArray(…)`, with `object.matrixAutoUpdate = false`. */
-  matrix: Float64Array;
+  matrix: number[];
   /** For `object.position.set(…)`. */
   position: Vector3;
   /** For `object.quaternion.set(…)`: x, y, z, w. */

@@ -2,11 +2,10 @@
 import { describe } from "../error.js";
 import type { MeshArrays } from "../input/types.js";
 import type { Sim3Like } from "../sim3.js";
-import { isKind, isRecord, isTypedArray, wrongKind } from "../values.js";
+import { failure, isKind, isRecord, isTypedArray, oneOf, wrongKind } from "../values.js";
 import { inFrame } from "./frames.js";
 import { type GltfNode, type GltfNodeOptions, toGltfNode } from "./gltf-node.js";
 import { meshOf } from "./mesh.js";
-import { failure, oneOf } from "./numbers.js";
 import { applyToPoints, sim3Of, similarityOf } from "./similarity.js";
 
 /** What {@link exportGlb} can be told. */

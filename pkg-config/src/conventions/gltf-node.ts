@@ -1,8 +1,8 @@
 /** Transforms as nodes of glTF. */
 import type { Sim3Like } from "../sim3.js";
+import type { Quaternion, Vector3 } from "../values.js";
 import { isRecord } from "../values.js";
 import { type CameraFrame, inFrame } from "./frames.js";
-import type { Quaternion, Vector3 } from "./numbers.js";
 import { sim3Of, similarityOf } from "./similarity.js";
 
 /** What {@link toGltfNode} can be told. */

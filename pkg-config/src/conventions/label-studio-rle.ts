@@ -1,8 +1,8 @@
 /** Brush masks as Label Studio writes them: a stream of bits over the flattened RGBA pixels. */
 import { describe } from "../error.js";
+import { type ImageSize, sizeOf } from "../formats/pixels.js";
 import type { PixelArray } from "../input/types.js";
-import { failure } from "./numbers.js";
-import { type ImageSize, sizeOf } from "./pixels.js";
+import { failure } from "../values.js";
 
 /**
  * The mask of a brush annotation of Label Studio's (`BrushLabels`, `format: "rle"`).

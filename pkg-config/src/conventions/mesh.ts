@@ -1,8 +1,7 @@
 /** Meshes as arrays, checked. */
 import { describe } from "../error.js";
 import type { MeshArrays } from "../input/types.js";
-import { isTypedArray, wrongKind } from "../values.js";
-import { failure, record } from "./numbers.js";
+import { failure, isTypedArray, record, wrongKind } from "../values.js";
 
 /** A triangle mesh whose indices are in range. */
 export interface Mesh {

@@ -1,6 +1,7 @@
 /** The axes of a small box around a mesh. */
+
+import type { Vector3 } from "../values.js";
 import type { Mesh } from "./mesh.js";
-import type { Vector3 } from "./numbers.js";
 import { principalAxes } from "./principal-axes.js";
 import { column, fromColumns, type Matrix3 } from "./rotation.js";
 

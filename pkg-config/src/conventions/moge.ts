@@ -1,9 +1,9 @@
 /** What MoGe returns: a point map, a mask of what is valid, and normalised intrinsics. */
+
+import { pinholeOf } from "../formats/pinhole.js";
+import { checkCount, type ImageSize, pixelsOf, pointKinds, sizeOf } from "../formats/pixels.js";
 import type { PinholeCamera, PixelArray } from "../input/types.js";
-import { isTypedArray } from "../values.js";
-import { finiteNumbers, flattened, record } from "./numbers.js";
-import { pinholeOf } from "./pinhole.js";
-import { checkCount, type ImageSize, pixelsOf, pointKinds, sizeOf } from "./pixels.js";
+import { finiteNumbers, flattened, isTypedArray, record } from "../values.js";
 
 /** MoGe's output, its tensors as arrays. */
 export interface MogeOutput extends ImageSize {

@@ -1,9 +1,9 @@
 /** Boxes around objects: their real dimensions. */
 import type { MeshArrays } from "../input/types.js";
 import type { Sim3Like } from "../sim3.js";
+import { oneOf, type Quaternion, type Vector3 } from "../values.js";
 import { type Mesh, meshOf } from "./mesh.js";
 import { smallestBoxAxes } from "./minimal-box.js";
-import { oneOf, type Quaternion, type Vector3 } from "./numbers.js";
 import { type Matrix3, product, quaternionOf, transposed, turned } from "./rotation.js";
 import { moved, similarityOf } from "./similarity.js";
 

@@ -1,6 +1,7 @@
 /** The principal axes of a mesh's surface. */
+
+import type { Vector3 } from "../values.js";
 import { type Mesh, triangleCount } from "./mesh.js";
-import type { Vector3 } from "./numbers.js";
 import { column, determinant, entry, fromColumns, type Matrix3, product, transposed } from "./rotation.js";
 
 /** The covariance of the surface: every part of it counts by its area, however many vertices it has. */

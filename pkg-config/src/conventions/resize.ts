@@ -1,8 +1,6 @@
 /** Images and their cameras at another size, or in part, with the intrinsics kept right. */
 import { describe } from "../error.js";
-import type { PinholeCamera, PixelArray } from "../input/types.js";
-import { failure, record, whole } from "./numbers.js";
-import { pinholeOf, type StatedCamera } from "./pinhole.js";
+import { pinholeOf, type StatedCamera } from "../formats/pinhole.js";
 import {
   type DepthPixels,
   depthKinds,
@@ -12,7 +10,9 @@ import {
   pixelsOf,
   pointKinds,
   sizeOf,
-} from "./pixels.js";
+} from "../formats/pixels.js";
+import type { PinholeCamera, PixelArray } from "../input/types.js";
+import { failure, record, whole } from "../values.js";
 
 /** Part of an image, in whole pixels. */
 export interface PixelBox extends ImageSize {

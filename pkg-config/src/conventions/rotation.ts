@@ -1,5 +1,5 @@
 /** Rotations as nine numbers row by row, and as quaternions in either order. */
-import { failure, finiteNumbers, type Quaternion, type Vector3 } from "./numbers.js";
+import { failure, finiteNumbers, type Quaternion, type Vector3 } from "../values.js";
 
 /** A 3×3 matrix, row by row. */
 export type Matrix3 = readonly [number, number, number, number, number, number, number, number, number];

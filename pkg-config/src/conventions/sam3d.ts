@@ -1,7 +1,7 @@
 /** The layout of SAM 3D Objects. */
 import type { Sim3, Sim3Like } from "../sim3.js";
+import { failure, finiteNumbers, flattened, oneOf, record, type Vector3, vector3 } from "../values.js";
 import { turnTo } from "./frames.js";
-import { failure, finiteNumbers, flattened, oneOf, record, type Vector3, vector3 } from "./numbers.js";
 import {
   type Matrix3,
   product,

@@ -1,8 +1,7 @@
 /** Similarities from whatever form they come in, and what is computed with them. */
 import { describe } from "../error.js";
 import type { Sim3, Sim3Like } from "../sim3.js";
-import { isRecord, isTypedArray, wrongKind } from "../values.js";
-import { failure, finiteNumbers, type Vector3, vector3 } from "./numbers.js";
+import { failure, finiteNumbers, isRecord, isTypedArray, type Vector3, vector3, wrongKind } from "../values.js";
 import {
   determinant,
   entry,
@@ -76,7 +75,7 @@ export function sim3Of({ scale, rotation, translation }: Similarity): Sim3 {
       [g, h, i],
     ],
     translation: [...translation],
-    matrix: Float64Array.from([...columns, ...translation, 1]),
+    matrix: [...columns, ...translation, 1],
   };
 }
 

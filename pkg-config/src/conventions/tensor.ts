@@ -1,9 +1,8 @@
 /** What transformers.js returns: tensors of masks and of depth. */
 import { describe } from "../error.js";
+import { checkCount } from "../formats/pixels.js";
 import type { PixelArray } from "../input/types.js";
-import { isTypedArray } from "../values.js";
-import { failure, flattened, record, whole } from "./numbers.js";
-import { checkCount } from "./pixels.js";
+import { failure, flattened, isTypedArray, record, whole } from "../values.js";
 
 /** A tensor of transformers.js, or anything else with its data and dimensions. */
 export interface TensorLike {

@@ -1,282 +1,337 @@
-// Generated from the Rust structs by tests/suite/typescript.rs; do not edit.
+// Generated from the Rust declarations by tests/suite/typescript.rs; do not edit.
 
-import type { Direction, ScaleBounds, SymmetryOption } from "../options.js";
-import type { Sim3Like } from "../sim3.js";
+import type { Direction, ScaleOption, Sim3Like, SymmetryOption } from "../argument-types.js";
 
 /**
- * Which method runs.
+ * The method of an alignment.
  */
 export type Preset = "precise" | "paper";
 
 /**
- * How much work `precise` puts in.
+ * How much work the search does.
  */
 export type Quality = "fast" | "balanced" | "best";
 
 /**
- * Where `precise` searches.
+ * Where the search looks for poses.
  */
 export type SearchScope = "global" | "local";
 
 /**
- * Which side of the mesh's box a known length is that of.
+ * A side of the mesh's bounding box.
  */
 export type ExtentAxis = "longest" | "x" | "y" | "z";
 
 /**
- * What RANSAC does with a hypothesis whose scale leaves the guard.
+ * What RANSAC does with a hypothesis whose scale is outside the guard.
  */
 export type GuardMode = "reject" | "clamp";
 
 /**
- * What ICP minimises.
+ * The distance that ICP minimises.
  */
 export type Icp = "point-to-plane" | "point-to-point" | "none";
 
 /**
- * Options of `align`. All have defaults; most callers need none.
- *
- * An option whose documentation begins with the name of a preset has no effect under the other one.
+ * Options of `align` with the default preset, `"precise"`. All have defaults.
  */
-export type AlignOptions = { 
-/**
- * The method. Default `"precise"`.
- */
-preset: Preset, 
-/**
- * `precise`: how much work. Default `"balanced"`.
- */
-quality: Quality, 
-/**
- * `precise`: what is known of the scale, in metres per mesh unit, above 0: a number fixes it (1 for a mesh that
- * is in metres), `[min, max]` or `{ min, max }` bounds it, `null` leaves it free. Not together with
- * `knownExtentM`. Default `null`.
- */
-scale: ScaleBounds | null, 
-/**
- * `precise`: the length of the object along `knownExtentAxis`, in metres, above 0, which fixes the scale: for
- * "this mug is 9.5 cm tall" and a mesh whose y axis is up, `{ knownExtentM: 0.095, knownExtentAxis: "y" }`. `null`
- * where it is not known. Default `null`.
- */
-knownExtentM: number | null, 
-/**
- * `precise`: the side of the mesh's box that `knownExtentM` is the length of. Default `"longest"`.
- */
-knownExtentAxis: ExtentAxis, 
-/**
- * `precise`: the direction that is up, against gravity, in the camera's frame (OpenCV: y is down), of any length
- * above 0: `[0, -1, 0]` for a level camera. Together with `meshUp`, it favours poses in which the object stands
- * upright. Default `null`.
- */
-cameraUp: Direction | null, 
-/**
- * `precise`: the direction that is up in the mesh's frame, of any length above 0: `[0, 1, 0]` for glTF. It belongs
- * to `cameraUp`. Default `null`.
- */
-meshUp: Direction | null, 
-/**
- * `precise`: the turns under which the object looks the same, so that no pose is listed among the alternatives
- * that only repeats another one. `"auto"` finds the half turns about the principal axes that the mesh itself shows,
- * `"auto-revolution"` those axes about which it can be turned by any angle, too; `[{ axis: [0, 1, 0], fold: 4 }]`
- * declares a quarter turn about the mesh's y axis, without `fold` any turn about it. Default `"auto"`.
- */
-symmetry: SymmetryOption, 
-/**
- * `precise`: a pose to start from, camera from mesh, in metres, such as the generator's own or an annotator's:
- * whatever `evaluate` takes as a transform, or `null`. Its scale has to be within `scale`. Default `null`.
- */
-initial: Sim3Like | null, 
-/**
- * `precise`: where to search: everywhere, or around `initial` only, which it then needs. Default `"global"`.
- */
-search: SearchScope, 
-/**
- * `precise`: a bound on the work of the search, above 0, in milliseconds of a machine of 2020; the work is
- * counted, not timed, so that the result does not depend on the machine. `null` leaves it to `quality`. Default
- * `null`.
- */
-budgetMs: number | null, 
-/**
- * Seed of all random draws, 0 to 2³² − 1. The same input and seed give the same bits. Default 0.
- */
-seed: number, 
-/**
- * Depth readings inside the mask that are used at most, 32 to 1 000 000; of more, an even random share is
- * drawn. `precise` uses them for metrics and initial scale alone. Default 20 000.
- */
-maxObservedPoints: number, 
-/**
- * Points sampled from the mesh surface, 100 to 1 000 000. `precise` uses them for metrics and initial scale alone.
- * Default 20 000.
- */
-surfaceSamples: number, 
-/**
- * `paper`: voxels along the observation's box diagonal, 5 to 200: the voxel size is the diagonal divided by this
- * (paper: 20, 30, 50). Default 30.
- */
-voxelDivisions: number, 
-/**
- * `paper`: radius of the FPFH descriptors, in voxels, 1 to 20. Default 5.
- */
-fpfhRadiusVoxels: number, 
-/**
- * `paper`: bounds [λmin, λmax] of the scale relative to the initial scale, 0 < λmin ≤ 1 ≤ λmax; `null` lets the
- * scale go anywhere (the ablation). Default [0.5, 1.5].
- */
-guard: [number, number] | null, 
-/**
- * `paper`: what happens to hypotheses outside the guard. Default `"reject"`.
- */
-guardMode: GuardMode, 
-/**
- * `paper`: minimal sets that RANSAC draws at most, 1 to 10 000 000. Default 100 000.
- */
-ransacIterations: number, 
-/**
- * `paper`: RANSAC stops early at this probability of having missed nothing better, 0 to 0.999999.
- * Default 0.999.
- */
-ransacConfidence: number, 
-/**
- * `paper`: a match within this distance of its counterpart is an inlier, in voxels, 0.1 to 20. Default 1.5.
- */
-inlierDistanceVoxels: number, 
-/**
- * `paper`: how alike the three edges of a minimal set must be stretched: least over most stretched, 0 to 1.
- * Default 0.9.
- */
-edgeSimilarity: number, 
-/**
- * `paper`: whether mesh regions that the observation does not support are left out. Default `true`.
- */
-hallucinationFilter: boolean, 
-/**
- * `paper`: support: largest distance to an observed point, in voxels, 0.1 to 50; ICP tightens it to a third as
- * the pose improves. Default 3.
- */
-supportDistanceVoxels: number, 
-/**
- * `paper`: support: largest angle between the two normals, in degrees, 0 to 180. Default 60.
- */
-supportAngleDeg: number, 
-/**
- * `paper`: the refinement. Default `"point-to-plane"`.
- */
-icp: Icp, 
-/**
- * Whether the refinement leaves the scale alone. Under `paper` it stays as RANSAC found it (§3.3; `false` is the
- * ablation); under `precise` it stays that of `initial` or, without it, as the grid of rotations found it. `null`
- * is `true` for `paper` and `false` for `precise`. Default `null`.
- */
-lockScale: boolean | null, 
-/**
- * `paper`: ICP iterations at most, 1 to 1 000. Default 60.
- */
-icpIterations: number, };
+export interface AlignOptions {
+  /** The default method: search by rendering. */
+  preset?: "precise" | undefined;
+
+  /**
+   * How much work the search does. Default `"balanced"`.
+   */
+  quality?: Quality | undefined;
+  /**
+   * The scale in metres per mesh unit: `"free"`, a known number (1 for a mesh in metres), or bounds `[min, max]`. Not
+   * together with `knownExtentM`. Default `"free"`.
+   */
+  scale?: ScaleOption | undefined;
+  /**
+   * The object's known length along `knownExtentAxis`, in metres. It fixes the scale: for a mug that is 9.5 cm tall
+   * and whose mesh has y up, pass `{ knownExtentM: 0.095, knownExtentAxis: "y" }`. Takes a finite number above 0, or
+   * null. Default `null`.
+   */
+  knownExtentM?: number | null | undefined;
+  /**
+   * The side of the mesh's bounding box that `knownExtentM` measures. Default `"longest"`.
+   */
+  knownExtentAxis?: ExtentAxis | undefined;
+  /**
+   * The up direction in the camera's frame, of any length: `[0, -1, 0]` for a level camera. Together with `meshUp`,
+   * it favours poses in which the object stands upright. Default `null`.
+   */
+  cameraUp?: Direction | null | undefined;
+  /**
+   * The up direction in the mesh's frame, of any length: `[0, 1, 0]` for glTF. It requires `cameraUp`. Default
+   * `null`.
+   */
+  meshUp?: Direction | null | undefined;
+  /**
+   * The object's symmetry, so that `alternatives` does not list equivalent poses. `"auto"` detects half turns about
+   * the mesh's principal axes, `"auto-revolution"` also axes of revolution; `[{ axis: [0, 1, 0], fold: 4 }]` declares
+   * quarter turns about the mesh's y axis, without `fold` any turn about it. Default `"auto"`.
+   */
+  symmetry?: SymmetryOption | undefined;
+  /**
+   * A pose to start from, camera from mesh, in metres: for example an annotator's, or the last frame's. Its scale has
+   * to be within `scale`. Default `null`.
+   */
+  initial?: Sim3Like | null | undefined;
+  /**
+   * Where to search: everywhere, or around `initial` only. Default `"global"`.
+   */
+  search?: SearchScope | undefined;
+  /**
+   * An upper bound on the work of the search, in units of about a millisecond on a 2020 laptop. The work is counted,
+   * not timed, so that the result does not depend on the machine. `null` sets no bound. Takes a finite number above
+   * 0, or null. Default `null`.
+   */
+  workBudget?: number | null | undefined;
+  /**
+   * Whether to compute `metrics`. Without them the call takes less time. Default `true`.
+   */
+  metrics?: boolean | undefined;
+  /**
+   * Seed of all random draws. The same input and seed give the same bits. Takes a whole number from 0 to 4294967295.
+   * Default `0`.
+   */
+  seed?: number | undefined;
+  /**
+   * Upper bound on the depth readings used for metrics and initial scale. Above it, an even random subset is drawn.
+   * Takes a whole number from 32 to 1000000. Default `20000`.
+   */
+  maxObservedPoints?: number | undefined;
+  /**
+   * Number of points sampled on the mesh surface for metrics and initial scale. Takes a whole number from 100 to
+   * 1000000. Default `20000`.
+   */
+  surfaceSamples?: number | undefined;
+}
 
 /**
- * Options of `register`.
+ * Options of `align` with `preset: "paper"`: the method of the paper, for comparison. All others have defaults.
  */
-export type RegisterOptions = { 
-/**
- * Seed of all random draws, 0 to 2³² − 1. Default 0.
- */
-seed: number, 
-/**
- * Points of each cloud that are used at most, 32 to 1 000 000: of more, a random share or, with a fixed scale, the
- * means of small voxels. Default 20 000.
- */
-maxPoints: number, 
-/**
- * Voxel size in target units, above 0; `null` derives it from `voxelDivisions`. Default `null`.
- */
-voxelSize: number | null, 
-/**
- * Voxels along the target's box diagonal, 5 to 200; `null` takes 30 or, with a fixed scale, a voxel that leaves
- * 5000 points of the larger cloud. Default `null`.
- */
-voxelDivisions: number | null, 
-/**
- * Radius of the FPFH descriptors, in voxels, 1 to 20. Default 5.
- */
-fpfhRadiusVoxels: number, 
-/**
- * Minimal sets that RANSAC draws at most, 1 to 10 000 000; with a fixed scale, which needs no draws, at most so
- * many poses are tried, and no more than 100. Default 100 000.
- */
-ransacIterations: number, 
-/**
- * RANSAC stops early at this probability of having missed nothing better, 0 to 0.999999; without effect where the
- * scale is fixed. Default 0.999.
- */
-ransacConfidence: number, 
-/**
- * A match within this distance of its counterpart is an inlier, in voxels, 0.1 to 20. Default 1.5.
- */
-inlierDistanceVoxels: number, 
-/**
- * How alike the three edges of a minimal set must be stretched: least over most stretched, 0 to 1;
- * without effect where the scale is fixed. Default 0.9.
- */
-edgeSimilarity: number, 
-/**
- * The refinement. Default `"point-to-plane"`.
- */
-icp: Icp, 
-/**
- * ICP iterations at most, 1 to 1 000. Default 60.
- */
-icpIterations: number, };
+export interface PaperOptions {
+  /** The paper's method. */
+  preset: "paper";
+
+  /**
+   * Seed of all random draws. The same input and seed give the same bits. Takes a whole number from 0 to 4294967295.
+   * Default `0`.
+   */
+  seed?: number | undefined;
+  /**
+   * Upper bound on the depth readings used. Above it, an even random subset is drawn. Takes a whole number from 32 to
+   * 1000000. Default `20000`.
+   */
+  maxObservedPoints?: number | undefined;
+  /**
+   * Number of points sampled on the mesh surface. Takes a whole number from 100 to 1000000. Default `20000`.
+   */
+  surfaceSamples?: number | undefined;
+  /**
+   * Whether to compute `metrics`. Without them the call takes less time. Default `true`.
+   */
+  metrics?: boolean | undefined;
+  /**
+   * Voxels along the diagonal of the observation's bounding box (the paper compares 20, 30 and 50). Takes a number
+   * from 5 to 200. Default `30`.
+   */
+  voxelDivisions?: number | undefined;
+  /**
+   * Radius of the FPFH descriptors, in voxels. Takes a number from 1 to 20. Default `5`.
+   */
+  fpfhRadiusVoxels?: number | undefined;
+  /**
+   * Bounds [λmin, λmax] of the scale relative to the initial scale. `null` leaves the scale unbounded, which is an
+   * ablation of the paper. Takes [min, max] with 0 < min ≤ 1 ≤ max, or null. Default `[0.5,1.5]`.
+   */
+  guard?: readonly [min: number, max: number] | null | undefined;
+  /**
+   * What RANSAC does with a hypothesis whose scale is outside the guard. Default `"reject"`.
+   */
+  guardMode?: GuardMode | undefined;
+  /**
+   * Upper bound on the minimal sets that RANSAC draws. Takes a whole number from 1 to 10000000. Default `100000`.
+   */
+  ransacIterations?: number | undefined;
+  /**
+   * RANSAC stops once it has found the best consensus with this probability. Takes a number from 0 to 0.999999.
+   * Default `0.999`.
+   */
+  ransacConfidence?: number | undefined;
+  /**
+   * Distance below which a match counts as an inlier, in voxels. Takes a number from 0.1 to 20. Default `1.5`.
+   */
+  inlierDistanceVoxels?: number | undefined;
+  /**
+   * Smallest accepted ratio between the stretches of a minimal set's three edges, least to most stretched. Takes a
+   * number from 0 to 1. Default `0.9`.
+   */
+  edgeSimilarity?: number | undefined;
+  /**
+   * Whether mesh regions without support by the observation are left out. Default `true`.
+   */
+  hallucinationFilter?: boolean | undefined;
+  /**
+   * Largest distance to an observed point that counts as support, in voxels. ICP tightens it to a third as the pose
+   * improves. Takes a number from 0.1 to 50. Default `3`.
+   */
+  supportDistanceVoxels?: number | undefined;
+  /**
+   * Largest angle between the two normals that counts as support, in degrees. Takes a number from 0 to 180. Default
+   * `60`.
+   */
+  supportAngleDeg?: number | undefined;
+  /**
+   * The distance that ICP minimises, or `"none"` for no refinement. Default `"point-to-plane"`.
+   */
+  icp?: Icp | undefined;
+  /**
+   * Whether ICP leaves the scale as RANSAC found it (§3.3). `false` is an ablation of the paper. Default `true`.
+   */
+  lockScale?: boolean | undefined;
+  /**
+   * Upper bound on the ICP iterations. Takes a whole number from 1 to 1000. Default `60`.
+   */
+  icpIterations?: number | undefined;
+}
 
 /**
- * Options of `estimateSim3`.
+ * Options of `evaluate`. All have defaults.
  */
-export type EstimateOptions = { 
-/**
- * Seed of all random draws, 0 to 2³² − 1. Default 0.
- */
-seed: number, 
-/**
- * A correspondence whose source lands within this of its target is an inlier, in target units, above 0;
- * `null` takes a twentieth of the target's box diagonal. Default `null`.
- */
-inlierDistance: number | null, 
-/**
- * Minimal sets that RANSAC draws at most, 1 to 10 000 000. Default 100 000.
- */
-ransacIterations: number, 
-/**
- * RANSAC stops early at this probability of having missed nothing better, 0 to 0.999999.
- * Default 0.999.
- */
-ransacConfidence: number, 
-/**
- * How alike the three edges of a minimal set must be stretched: least over most stretched, 0 to 1.
- * Default 0.9.
- */
-edgeSimilarity: number, };
+export interface EvaluateOptions {
+  /**
+   * The known transform, camera from mesh, that `errors` compares with. Default `null`.
+   */
+  truth?: Sim3Like | null | undefined;
+  /**
+   * The object's symmetry: the rotation error is the smallest over it. `"auto"` detects half turns about the mesh's
+   * principal axes, `"auto-revolution"` also axes of revolution. Default `"none"`.
+   */
+  symmetry?: SymmetryOption | undefined;
+  /**
+   * Seed of all random draws. The same input and seed give the same bits. Takes a whole number from 0 to 4294967295.
+   * Default `0`.
+   */
+  seed?: number | undefined;
+  /**
+   * Upper bound on the depth readings used. Above it, an even random subset is drawn. Takes a whole number from 32 to
+   * 1000000. Default `20000`.
+   */
+  maxObservedPoints?: number | undefined;
+  /**
+   * Number of points sampled on the mesh surface. Takes a whole number from 100 to 1000000. Default `20000`.
+   */
+  surfaceSamples?: number | undefined;
+}
 
 /**
- * Options of `evaluate`.
+ * Options of `register`. All have defaults.
  */
-export type EvaluateOptions = { 
+export interface RegisterOptions {
+  /**
+   * The scale in target units per source unit: `"free"`, a known number (1 for rigid registration), or bounds `[min,
+   * max]`. Default `"free"`.
+   */
+  scale?: ScaleOption | undefined;
+  /**
+   * Seed of all random draws. The same input and seed give the same bits. Takes a whole number from 0 to 4294967295.
+   * Default `0`.
+   */
+  seed?: number | undefined;
+  /**
+   * Upper bound on the points used of each cloud. Above it, a random subset is drawn or, with a known scale, small
+   * voxels are averaged. Takes a whole number from 32 to 1000000. Default `20000`.
+   */
+  maxPoints?: number | undefined;
+  /**
+   * Voxel size in target units. `null` derives it from `voxelDivisions`. Takes a finite number above 0, or null.
+   * Default `null`.
+   */
+  voxelSize?: number | null | undefined;
+  /**
+   * Voxels along the diagonal of the target's bounding box. `null` takes 30 or, with a known scale, the size that
+   * leaves 5000 points of the larger cloud. Takes a number from 5 to 200, or null. Default `null`.
+   */
+  voxelDivisions?: number | null | undefined;
+  /**
+   * Radius of the FPFH descriptors, in voxels. Takes a number from 1 to 20. Default `5`.
+   */
+  fpfhRadiusVoxels?: number | undefined;
+  /**
+   * Upper bound on the minimal sets that RANSAC draws. With a known scale, which needs no draws, it bounds the poses
+   * that are tried, which are 100 at most. Takes a whole number from 1 to 10000000. Default `100000`.
+   */
+  ransacIterations?: number | undefined;
+  /**
+   * RANSAC stops once it has found the best consensus with this probability. Without effect with a known scale. Takes
+   * a number from 0 to 0.999999. Default `0.999`.
+   */
+  ransacConfidence?: number | undefined;
+  /**
+   * Distance below which a match counts as an inlier, in voxels. Takes a number from 0.1 to 20. Default `1.5`.
+   */
+  inlierDistanceVoxels?: number | undefined;
+  /**
+   * Smallest accepted ratio between the stretches of a minimal set's three edges, least to most stretched. Without
+   * effect with a known scale. Takes a number from 0 to 1. Default `0.9`.
+   */
+  edgeSimilarity?: number | undefined;
+  /**
+   * The distance that ICP minimises, or `"none"` for no refinement. Default `"point-to-plane"`.
+   */
+  icp?: Icp | undefined;
+  /**
+   * Upper bound on the ICP iterations. Takes a whole number from 1 to 1000. Default `60`.
+   */
+  icpIterations?: number | undefined;
+}
+
 /**
- * Seed of all random draws, 0 to 2³² − 1. Default 0.
+ * Options of `estimateSim3`. All have defaults.
  */
-seed: number, 
-/**
- * Depth readings inside the mask that are used at most, 32 to 1 000 000. Default 20 000.
- */
-maxObservedPoints: number, 
-/**
- * Points sampled from the mesh surface, 100 to 1 000 000. Default 20 000.
- */
-surfaceSamples: number, };
+export interface EstimateSim3Options {
+  /**
+   * The scale in target units per source unit: `"free"`, a known number (1 for a rigid transform), or bounds `[min,
+   * max]`. Default `"free"`.
+   */
+  scale?: ScaleOption | undefined;
+  /**
+   * Seed of all random draws. The same input and seed give the same bits. Takes a whole number from 0 to 4294967295.
+   * Default `0`.
+   */
+  seed?: number | undefined;
+  /**
+   * Distance below which a correspondence counts as an inlier, in target units. `null` takes a twentieth of the
+   * diagonal of the target's bounding box. Takes a finite number above 0, or null. Default `null`.
+   */
+  inlierDistance?: number | null | undefined;
+  /**
+   * Upper bound on the minimal sets that RANSAC draws. Takes a whole number from 1 to 10000000. Default `100000`.
+   */
+  ransacIterations?: number | undefined;
+  /**
+   * RANSAC stops once it has found the best consensus with this probability. Takes a number from 0 to 0.999999.
+   * Default `0.999`.
+   */
+  ransacConfidence?: number | undefined;
+  /**
+   * Smallest accepted ratio between the stretches of a minimal set's three edges, least to most stretched. Takes a
+   * number from 0 to 1. Default `0.9`.
+   */
+  edgeSimilarity?: number | undefined;
+}
 
 /**
  * A stage of the pipeline.
  */
 export type Stage = "observe" | "sample" | "normals" | "features" | "matching" | "ransac" | "filter" | "icp" | "prepare" | "search" | "refine" | "metrics";
+
+/** Milliseconds per stage, in the order in which the stages first ran, and their total. */
+export type Timings = Partial<Record<Stage, number>> & { total: number };
 
 /**
  * What went wrong, as a name that stays the same from release to release.
@@ -288,23 +343,23 @@ export type ErrorCode = "INVALID_ARGUMENT" | "INVALID_OPTION" | "UNKNOWN_OPTION"
 /**
  * The kinds of warning.
  */
-export type WarningCode = "DEPTH_LOOKS_LIKE_MILLIMETRES" | "MASK_TOUCHES_BORDER" | "SPARSE_DEPTH" | "SCALE_CLAMPED" | "SCALE_COLLAPSED" | "NOT_CONVERGED";
+export type WarningCode = "DEPTH_LOOKS_LIKE_MILLIMETRES" | "MASK_TOUCHES_BORDER" | "SPARSE_DEPTH" | "SCALE_CLAMPED" | "SCALE_COLLAPSED" | "NOT_CONVERGED" | "CAMERA_NOT_PINHOLE";
 
 /**
- * Something about the input that the caller should know; the result stands.
+ * A condition that the caller should know about; the result stands.
  */
 export type Warning = { 
 /**
- * A stable name.
+ * The kind of warning, stable across releases.
  */
 code: WarningCode, 
 /**
- * What was found and what to do about it.
+ * What was found, and what to do about it.
  */
 message: string, };
 
 /**
- * A similarity y = s·R·x + t in every form that callers ask for.
+ * A similarity y = s·R·x + t in the forms that applications use.
  */
 export type Sim3 = { 
 /**
@@ -326,7 +381,7 @@ translation: [number, number, number],
 /**
  * The 4×4 matrix, 16 numbers **column by column** (three.js `Matrix4.elements`, glTF `node.matrix`, WebGPU).
  */
-matrix: [number, number, number, number, number, number, number, number, number, number, number, number, number, number, number, number], };
+matrix: number[], };
 
 /**
  * Agreement of a posed mesh with the observation. `null` is "nothing to measure", never a good number.
@@ -397,8 +452,8 @@ translationErrorRelative: number,
 addSMm: number, };
 
 /**
- * How much went in and how much of it counted. `precise` counts the points of both and the renders, every other method
- * all but the renders; the rest is 0.
+ * Sizes of the problem and events during the run. `precise` counts points and renders, the other methods everything but
+ * renders; what a method does not count is 0.
  */
 export type Counts = { 
 /**
@@ -455,11 +510,11 @@ icpIterations: number,
 renders: number, };
 
 /**
- * What the search's score is made of: agreements from 0 to 1, on the search's own grid of the cleaned observation.
+ * The terms of the search's score: agreements from 0 to 1, measured on the search's own grid of the cleaned observation.
  */
 export type ScoreTerms = { 
 /**
- * Of mask and silhouette; what an occluder or the image border hides hardly counts.
+ * Overlap of mask and silhouette; parts hidden by an occluder or by the image border hardly count.
  */
 overlap: number, 
 /**
@@ -467,15 +522,15 @@ overlap: number,
  */
 coverage: number, 
 /**
- * Of depths, where both have one.
+ * Agreement of the depths, where both have one.
  */
 depth: number, 
 /**
- * Of normals, where both have one.
+ * Agreement of the normals, where both have one.
  */
 normals: number, 
 /**
- * Of outlines.
+ * Agreement of the outlines.
  */
 outline: number, 
 /**
@@ -484,11 +539,11 @@ outline: number,
 hidden: number, };
 
 /**
- * Another pose that explains the observation, as a transform like the alignment's own.
+ * Another pose that explains the observation: a transform like the alignment's own.
  */
 export type Alternative = { 
 /**
- * Its score, to be compared with the alignment's own.
+ * Its score, which compares with the alignment's `diagnostics.score`.
  */
 score: number, 
 /**
@@ -514,38 +569,38 @@ translation: [number, number, number],
 /**
  * The 4×4 matrix, 16 numbers **column by column** (three.js `Matrix4.elements`, glTF `node.matrix`, WebGPU).
  */
-matrix: [number, number, number, number, number, number, number, number, number, number, number, number, number, number, number, number], };
+matrix: number[], };
 
 /**
- * How far the pose could move, to one standard deviation, before the observation would contradict it: what a single
- * view of a symmetric or flat object leaves free is large.
+ * Standard deviations of the pose's parts, as the observation determines them. Parts that a single view leaves open, such
+ * as the turn of a round object about its axis, have large ones.
  */
 export type Uncertainty = { 
 /**
- * Of the scale, as a share of it: 0.01 is one per cent.
+ * Of the scale, relative: 0.01 is one per cent.
  */
 scale: number, 
 /**
- * Of the rotation about the axis that is determined worst, in degrees.
+ * Of the rotation about the least determined axis, in degrees.
  */
 rotationDeg: number, 
 /**
- * That axis: a direction of length 1 in the camera's frame.
+ * That axis: a unit vector in the camera's frame.
  */
 rotationAxis: [number, number, number], 
 /**
- * Of the position of the mesh's middle across the line of sight, in metres.
+ * Of the mesh centre's position across the line of sight, in metres.
  */
 lateralM: number, 
 /**
- * Of its distance from the camera, in metres.
+ * Of the mesh centre's distance from the camera, in metres.
  */
 distanceM: number, };
 
 /**
- * What `align` found: camera from mesh, x_cam = s·R·p + t.
+ * What all presets report of an alignment besides the pose.
  */
-export type Alignment = { 
+export type Diagnostics = { 
 /**
  * The method that ran.
  */
@@ -555,23 +610,23 @@ preset: Preset,
  */
 seed: number, 
 /**
- * s_init: the ratio of the box diagonals of P_obs and P_rec (§3.1).
+ * s_init: the ratio of the bounding boxes' diagonals, observation to mesh (§3.1).
  */
 initialScale: number, 
 /**
- * s / s_init.
+ * The scale divided by the initial scale.
  */
 scaleRatio: number, 
 /**
- * Whether the scale collapsed: scaleRatio below 0.3.
+ * Whether the scale collapsed: `scaleRatio` is below 0.3.
  */
 collapsed: boolean, 
 /**
- * Whether the scale was projected to a bound of the guard.
+ * Whether the scale was held at a bound.
  */
 clamped: boolean, 
 /**
- * Whether the refinement came to rest.
+ * Whether the refinement converged.
  */
 converged: boolean, 
 /**
@@ -579,131 +634,97 @@ converged: boolean,
  */
 residualM: number, 
 /**
- * `precise`: how likely the pose is right (scale within 5 %, rotation within 10° up to symmetry, translation
- * within 5 % of the diameter), 0 to 1, calibrated on generated cases; `null` for `paper`.
- */
-confidence: number | null, 
-/**
- * `precise`: what the search maximised, 0 to about 2, which says how two poses of one input compare and nothing
- * about different inputs. `null` for `paper`.
- */
-score: number | null, 
-/**
- * `precise`: what the score is made of; `null` for `paper`.
- */
-terms: ScoreTerms | null, 
-/**
- * `precise`: other poses that explain the observation nearly as well, best first: flips, and symmetries that the
- * object has and the mesh has not. Empty where none comes near, and for `paper`.
- */
-alternatives: Array<Alternative>, 
-/**
- * `precise`: how well each part of the pose is determined; `null` for `paper`.
- */
-uncertainty: Uncertainty | null, 
-/**
- * The eight metrics of the pose.
- */
-metrics: Metrics, 
-/**
- * The counts.
+ * Sizes of the problem and events during the run.
  */
 counts: Counts, 
 /**
- * Milliseconds by stage, and their total.
+ * Milliseconds per stage, and their total.
  */
-timingsMs: Partial<Record<Stage, number>> & { total: number }, 
-/**
- * What the caller should know about the input.
- */
-warnings: Array<Warning>, 
-/**
- * s, target units per source unit; for `align`, metres per mesh unit.
- */
-scale: number, 
-/**
- * R as a unit quaternion [x, y, z, w], w ≥ 0 (three.js, glTF).
- */
-rotation: [number, number, number, number], 
-/**
- * R as three rows of three.
- */
-rotationMatrix: [[number, number, number], [number, number, number], [number, number, number]], 
-/**
- * t, in target units; for `align`, metres.
- */
-translation: [number, number, number], 
-/**
- * The 4×4 matrix, 16 numbers **column by column** (three.js `Matrix4.elements`, glTF `node.matrix`, WebGPU).
- */
-matrix: [number, number, number, number, number, number, number, number, number, number, number, number, number, number, number, number], };
+timingsMs: Timings, };
 
 /**
- * What `evaluate` found.
+ * Diagnostics of the preset `precise`.
  */
-export type Evaluation = { 
+export type PreciseDiagnostics = { 
 /**
- * The eight metrics of the pose.
+ * The search's objective, 0 to about 2. It compares poses of one input; scores of different inputs do not compare.
  */
-metrics: Metrics, 
+score: number, 
 /**
- * The errors against the truth, where it was given.
+ * The terms of the score.
  */
-errors: PoseErrors | null, 
+terms: ScoreTerms, 
 /**
- * s_init: the ratio of the box diagonals of P_obs and P_rec (§3.1).
+ * The method that ran.
  */
-initialScale: number, 
-/**
- * s / s_init.
- */
-scaleRatio: number, 
-/**
- * Whether the scale is below 0.3 of the initial one.
- */
-collapsed: boolean, 
-/**
- * What the caller should know about the input.
- */
-warnings: Array<Warning>, };
-
-/**
- * What `register` and `estimateSim3` found: target from source, y = s·R·x + t.
- */
-export type Registration = { 
+preset: Preset, 
 /**
  * The seed it ran with.
  */
 seed: number, 
 /**
- * The ratio of the clouds' box diagonals, around which a free scale is sought.
+ * s_init: the ratio of the bounding boxes' diagonals, observation to mesh (§3.1).
  */
 initialScale: number, 
 /**
- * s / s_init.
+ * The scale divided by the initial scale.
  */
 scaleRatio: number, 
 /**
- * Whether the refinement came to rest; `true` where none was asked for.
+ * Whether the scale collapsed: `scaleRatio` is below 0.3.
+ */
+collapsed: boolean, 
+/**
+ * Whether the scale was held at a bound.
+ */
+clamped: boolean, 
+/**
+ * Whether the refinement converged.
  */
 converged: boolean, 
 /**
- * Root mean square distance of the inliers (or of the refinement's residuals), in target units.
+ * Root mean square residual of the refinement, in metres.
  */
-residual: number, 
+residualM: number, 
 /**
- * Share of the source points that land within the inlier distance of a target point, 0 to 1; for
- * `estimateSim3`, share of the correspondences that are inliers.
- */
-fitness: number, 
-/**
- * The counts.
+ * Sizes of the problem and events during the run.
  */
 counts: Counts, 
 /**
- * Milliseconds by stage, and their total.
+ * Milliseconds per stage, and their total.
  */
-timingsMs: Partial<Record<Stage, number>> & { total: number }, 
+timingsMs: Timings, };
+
+/**
+ * The result of `align`: camera from mesh, x_cam = s·R·p_mesh + t (OpenCV camera: x right, y down, z forward; metres).
+ */
+export type Alignment = { 
+/**
+ * Probability that the pose is right (scale within 5 %, rotation within 10° up to symmetry, translation within 5 %
+ * of the diameter), calibrated on generated cases. It assumes that the mesh is the object's.
+ */
+confidence: number, 
+/**
+ * Other poses that explain the observation nearly as well, best first: flips, and turns under which the object looks
+ * alike though the mesh does not.
+ */
+alternatives: Array<Alternative>, 
+/**
+ * How well the observation determines each part of the pose; `null` where the search could not tell.
+ */
+uncertainty: Uncertainty | null, 
+/**
+ * Agreement of the posed mesh with the observation.
+ */
+metrics: Metrics, 
+/**
+ * Conditions that the caller should know about; the result stands.
+ */
+warnings: Array<Warning>, 
+/**
+ * Everything else: initial scale, score, counts, timings.
+ */
+diagnostics: PreciseDiagnostics, 
 /**
  * s, target units per source unit; for `align`, metres per mesh unit.
  */
@@ -723,4 +744,147 @@ translation: [number, number, number],
 /**
  * The 4×4 matrix, 16 numbers **column by column** (three.js `Matrix4.elements`, glTF `node.matrix`, WebGPU).
  */
-matrix: [number, number, number, number, number, number, number, number, number, number, number, number, number, number, number, number], };
+matrix: number[], };
+
+/**
+ * The result of `align` with `preset: "paper"`: camera from mesh, x_cam = s·R·p_mesh + t (OpenCV camera: x right, y
+ * down, z forward; metres).
+ */
+export type PaperAlignment = { 
+/**
+ * Agreement of the posed mesh with the observation.
+ */
+metrics: Metrics, 
+/**
+ * Conditions that the caller should know about; the result stands.
+ */
+warnings: Array<Warning>, 
+/**
+ * Everything else: initial scale, counts, timings.
+ */
+diagnostics: Diagnostics, 
+/**
+ * s, target units per source unit; for `align`, metres per mesh unit.
+ */
+scale: number, 
+/**
+ * R as a unit quaternion [x, y, z, w], w ≥ 0 (three.js, glTF).
+ */
+rotation: [number, number, number, number], 
+/**
+ * R as three rows of three.
+ */
+rotationMatrix: [[number, number, number], [number, number, number], [number, number, number]], 
+/**
+ * t, in target units; for `align`, metres.
+ */
+translation: [number, number, number], 
+/**
+ * The 4×4 matrix, 16 numbers **column by column** (three.js `Matrix4.elements`, glTF `node.matrix`, WebGPU).
+ */
+matrix: number[], };
+
+/**
+ * How an evaluated scale compares with the initial one.
+ */
+export type EvaluationDiagnostics = { 
+/**
+ * s_init: the ratio of the bounding boxes' diagonals, observation to mesh (§3.1).
+ */
+initialScale: number, 
+/**
+ * The scale divided by the initial scale.
+ */
+scaleRatio: number, 
+/**
+ * Whether the scale collapsed: `scaleRatio` is below 0.3.
+ */
+collapsed: boolean, };
+
+/**
+ * The result of `evaluate`.
+ */
+export type Evaluation = { 
+/**
+ * Agreement of the posed mesh with the observation.
+ */
+metrics: Metrics, 
+/**
+ * The errors against the truth; `null` where no truth was given.
+ */
+errors: PoseErrors | null, 
+/**
+ * Conditions that the caller should know about; the result stands.
+ */
+warnings: Array<Warning>, 
+/**
+ * How the scale compares with the initial one.
+ */
+diagnostics: EvaluationDiagnostics, };
+
+/**
+ * What `register` and `estimateSim3` report besides the transform and its fit.
+ */
+export type RegistrationDiagnostics = { 
+/**
+ * The seed it ran with.
+ */
+seed: number, 
+/**
+ * The ratio of the bounding boxes' diagonals, target to source, around which a free scale is sought.
+ */
+initialScale: number, 
+/**
+ * The scale divided by the initial scale.
+ */
+scaleRatio: number, 
+/**
+ * Whether the refinement converged; `true` where there was none.
+ */
+converged: boolean, 
+/**
+ * Sizes of the problem and events during the run.
+ */
+counts: Counts, 
+/**
+ * Milliseconds per stage, and their total.
+ */
+timingsMs: Timings, };
+
+/**
+ * The result of `register` and `estimateSim3`: target from source, y = s·R·x + t.
+ */
+export type Registration = { 
+/**
+ * Share of the source points that land within the inlier distance of a target point, 0 to 1; for `estimateSim3`, the
+ * share of the correspondences that are inliers.
+ */
+fitness: number, 
+/**
+ * Root mean square distance of the inliers (or residual of the refinement), in target units.
+ */
+residual: number, 
+/**
+ * Everything else: initial scale, counts, timings.
+ */
+diagnostics: RegistrationDiagnostics, 
+/**
+ * s, target units per source unit; for `align`, metres per mesh unit.
+ */
+scale: number, 
+/**
+ * R as a unit quaternion [x, y, z, w], w ≥ 0 (three.js, glTF).
+ */
+rotation: [number, number, number, number], 
+/**
+ * R as three rows of three.
+ */
+rotationMatrix: [[number, number, number], [number, number, number], [number, number, number]], 
+/**
+ * t, in target units; for `align`, metres.
+ */
+translation: [number, number, number], 
+/**
+ * The 4×4 matrix, 16 numbers **column by column** (three.js `Matrix4.elements`, glTF `node.matrix`, WebGPU).
+ */
+matrix: number[], };

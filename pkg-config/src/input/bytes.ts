@@ -1,8 +1,8 @@
 /** Files as bytes, and how they begin. */
+import { invalidArgument } from "../error.js";
 import { isKind } from "../values.js";
-import type { EncodedBytes } from "./types.js";
 
-/** The bytes of a file; `null` for what is none. Pixels in a `Uint8Array` look the same: the caller has to know. */
+/** The bytes of a file; `null` for anything else. Pixels in a `Uint8Array` look the same: the caller has to know. */
 export async function fileBytes(value: unknown): Promise<Uint8Array | null> {
   if (isKind<Uint8Array>(value, "Uint8Array")) return value;
   if (isKind<ArrayBuffer>(value, "ArrayBuffer")) return new Uint8Array(value);
@@ -10,9 +10,12 @@ export async function fileBytes(value: unknown): Promise<Uint8Array | null> {
   return null;
 }
 
-/** Whether {@link fileBytes} would give bytes. */
-export const isFile = (value: unknown): value is EncodedBytes =>
-  isKind(value, "Uint8Array", "ArrayBuffer", "Blob", "File");
+/** The bytes of a file; `argument` is its name in errors. */
+export async function requiredBytes(argument: string, file: unknown): Promise<Uint8Array> {
+  const bytes = await fileBytes(file);
+  if (bytes !== null) return bytes;
+  throw invalidArgument(argument, file, "a file's bytes", "Pass a Uint8Array, an ArrayBuffer or a Blob.");
+}
 
 const imageBeginnings = ["\x89PNG\r\n\x1a\n", "\x93NUMPY", "\xff\xd8\xff", "GIF8", "RIFF"];
 
@@ -22,8 +25,11 @@ export function beginsLikeImage(bytes: Uint8Array): boolean {
   return imageBeginnings.some((magic) => beginning.startsWith(magic));
 }
 
-/** Whether the bytes begin as a JSON object does. */
+/** Whether the bytes begin as a JSON object does, after a byte order mark if there is one. */
 export function beginsLikeJson(bytes: Uint8Array): boolean {
   const beginning = String.fromCharCode(...bytes.subarray(0, 64));
-  return beginning.trimStart().startsWith("{");
+  return beginning
+    .replace(/^\xef\xbb\xbf/, "")
+    .trimStart()
+    .startsWith("{");
 }

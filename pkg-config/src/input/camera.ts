@@ -1,85 +1,75 @@
-/** Cameras: intrinsics as they are, or a camera file. */
-
-import type { Formats } from "../core.js";
-import { invalidArgument, Sim3AlignError } from "../error.js";
-import { isRecord, plainNumbers, withoutOptions, withoutUndefined } from "../values.js";
-import type { LoadedModule } from "../wasm-module.js";
+/** The camera of an input: stated intrinsics, or a camera file. */
+import { invalidArgument } from "../error.js";
+import { checkCameraSize, depthScaleIn, parseCameraFile } from "../formats/camera-file.js";
+import { type Pinhole, pinholeOf } from "../formats/pinhole.js";
+import type { ImageSize } from "../formats/pixels.js";
+import { isRecord } from "../values.js";
 import { fileBytes } from "./bytes.js";
 
-/** The core's forms of a camera. */
-export type CoreCamera = { fx: unknown; fy: unknown; cx: unknown; cy: unknown } | { K: unknown } | { fovYDeg: unknown };
-
-const directKeys = new Set(["fx", "fy", "cx", "cy", "K", "fovYDeg", "width", "height"]);
-
-const kinds =
-  "{ fx, fy, cx, cy }, { K }, { fovYDeg }, or the content of a camera file (camera.json, BOP scene_camera.json, ROS CameraInfo)";
-
-/** A camera whose kind is known; the image's size may not be yet. */
+/** A camera that was read; its intrinsics may depend on the image's size. */
 export interface Camera {
-  /** Metres per unit of whole-number depth, where a file says so. */
+  /** Metres per unit of whole-number depth, where the camera file states it. */
   integerDepthScale: number | undefined;
-  /** The intrinsics for an image of this size, where it is known. */
-  resolve(width: number | undefined, height: number | undefined): { camera: CoreCamera; warnings: string[] };
+  /** The intrinsics for an image of this size. */
+  resolve(width: number | undefined, height: number | undefined): ResolvedCamera;
 }
 
-/** Finds out what kind of camera this is, and reads its file. */
-export async function readCamera(
-  camera: unknown,
-  imageId: unknown,
-  formats: () => Promise<LoadedModule<Formats>>,
-): Promise<Camera> {
-  if (isRecord(camera) && isDirect(camera)) {
-    const resolve = (width: number | undefined, height: number | undefined) => {
-      checkSize(camera, width, height);
-      return { camera: intrinsics(camera), warnings: [] };
-    };
-    return { integerDepthScale: undefined, resolve };
+interface ResolvedCamera {
+  /** `undefined` where the image has no valid size, which the core refuses before it looks at the camera. */
+  camera: Pinhole | undefined;
+  warnings: readonly string[];
+}
+
+const forms = "{ fx, fy, cx, cy }, { K } or { fovYDeg }";
+
+/** `warnings` and `depthScale` are what `readCamera` adds to the intrinsics of a camera file. */
+const properties = ["fx", "fy", "cx", "cy", "K", "fovYDeg", "width", "height", "warnings", "depthScale"];
+
+/** The camera of an input, which has either `camera` or `cameraFile`. */
+export async function cameraOf({ camera, cameraFile, imageId }: Record<string, unknown>): Promise<Camera> {
+  if (cameraFile === undefined) return statedCamera(camera);
+  if (camera === undefined) return fileCamera(cameraFile, imageId);
+  const remedy = "Leave one of the two out.";
+  throw invalidArgument("cameraFile", cameraFile, "a camera or a camera file, but not both", remedy);
+}
+
+function statedCamera(camera: unknown): Camera {
+  const other = isRecord(camera) ? Object.keys(camera).find((name) => !properties.includes(name)) : undefined;
+  if (!isRecord(camera) || other !== undefined) {
+    throw invalidArgument("camera", camera, forms, "Pass the content of a camera file as cameraFile.");
   }
-  const content = isRecord(camera) || typeof camera === "string" ? camera : await fileBytes(camera);
-  if (content === null) throw invalidArgument("camera", camera, kinds, "Pass the camera that took the depth map.");
-  const module = await formats();
-  const read = (width?: number, height?: number) => {
-    const options = withoutUndefined({ width, height, imageId: imageId as string | undefined });
-    return module.call((readers) => readers.readCamera(content, options), withoutOptions);
-  };
+  const { width, height, depthScale, warnings } = camera as Partial<ImageSize> & Record<string, unknown>;
   return {
-    integerDepthScale: depthScaleOf(read),
+    integerDepthScale: depthScale as number | undefined,
+    resolve(imageWidth, imageHeight) {
+      const size = sizeOf(imageWidth, imageHeight);
+      if (size === undefined) return { camera: undefined, warnings: [] };
+      checkCameraSize("camera", { width, height }, size);
+      return { camera: pinholeOf("camera", camera, size), warnings: (warnings ?? []) as string[] };
+    },
+  };
+}
+
+async function fileCamera(file: unknown, imageId: unknown): Promise<Camera> {
+  const content = isRecord(file) || Array.isArray(file) || typeof file === "string" ? file : await fileBytes(file);
+  if (content === null) {
+    const expected = "the bytes, the text or the parsed JSON of a camera file";
+    throw invalidArgument("cameraFile", file, expected, "Pass { fx, fy, cx, cy } and the like as camera.");
+  }
+  return {
+    integerDepthScale: depthScaleIn(content, imageId as string | undefined),
     resolve(width, height) {
-      const { fx, fy, cx, cy, warnings } = read(width, height);
+      const size = sizeOf(width, height);
+      if (size === undefined) return { camera: undefined, warnings: [] };
+      const options = { ...size, imageId: imageId as string | undefined };
+      const { fx, fy, cx, cy, warnings } = parseCameraFile(content, options, { file: "cameraFile", options: "" });
       return { camera: { fx, fy, cx, cy }, warnings };
     },
   };
 }
 
-/** Whether the core understands it as it is. */
-const isDirect = (camera: Record<string, unknown>) =>
-  Object.keys(camera).every((key) => directKeys.has(key)) && ("fx" in camera || "K" in camera || "fovYDeg" in camera);
-
-function intrinsics(camera: Record<string, unknown>): CoreCamera {
-  const { fx, fy, cx, cy, K, fovYDeg } = camera;
-  if (K !== undefined) return { K: plainNumbers(K) };
-  return fovYDeg === undefined ? { fx, fy, cx, cy } : { fovYDeg };
-}
-
-function checkSize(camera: Record<string, unknown>, width: number | undefined, height: number | undefined): void {
-  // A size that is none is for the core to refuse.
-  if (!Number.isInteger(width) || !Number.isInteger(height)) return;
-  const { width: cameraWidth = width, height: cameraHeight = height } = camera;
-  if (cameraWidth === width && cameraHeight === height) return;
-  throw new Sim3AlignError({
-    code: "SIZE_MISMATCH",
-    argument: "camera",
-    found: `intrinsics for ${cameraWidth} × ${cameraHeight} pixels beside an image of ${width} × ${height}`,
-    expected: "intrinsics of this very image",
-    remedy: "Scale fx, cx by the ratio of the widths and fy, cy by that of the heights, or pass the full-size depth.",
-  });
-}
-
-/** The first reading is for the scale only; whatever is wrong with the file, the one with the size will say it. */
-function depthScaleOf(read: () => { depthScale?: number }): number | undefined {
-  try {
-    return read().depthScale;
-  } catch {
-    return undefined;
-  }
-}
+/** The image's size, where it is one. */
+const sizeOf = (width: unknown, height: unknown): ImageSize | undefined =>
+  [width, height].every((side) => Number.isSafeInteger(side) && (side as number) > 0)
+    ? { width: width as number, height: height as number }
+    : undefined;

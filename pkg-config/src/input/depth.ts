@@ -1,9 +1,7 @@
 /** Depth maps and point maps, brought to arrays with their size. */
-
-import type { Formats } from "../core.js";
 import { Sim3AlignError } from "../error.js";
-import { isRecord, isTypedArray, withoutOptions, withoutUndefined, wrongKind } from "../values.js";
-import type { LoadedModule } from "../wasm-module.js";
+import type { LoadFormats } from "../formats-module.js";
+import { isRecord, isTypedArray, withoutUndefined, wrongKind } from "../values.js";
 import { fileBytes } from "./bytes.js";
 
 /** The core's form of a depth map or a point map: one of the two. */
@@ -18,7 +16,7 @@ type DepthArray = Float32Array | Uint16Array;
 const depthKinds =
   "a Float32Array (metres), a Uint16Array (with depthScale), { data, width, height } of these, or the bytes of a 16-bit PNG or a .npy file";
 
-/** The image size that the input states. */
+/** The image size that the input states, as far as it does. */
 export interface StatedSize {
   width?: number | undefined;
   height?: number | undefined;
@@ -32,7 +30,7 @@ export async function readDepth(
   depth: unknown,
   size: StatedSize,
   scale: { depthScale: number | undefined; integerDepthScale: number | undefined },
-  formats: () => Promise<LoadedModule<Formats>>,
+  formats: LoadFormats,
 ): Promise<SizedArray<DepthArray>> {
   if (isDepthArray(depth)) return { data: depth, ...required(size) };
   if (isRecord(depth) && "data" in depth) return sized("depth", depth, depthKinds, isDepthArray, size);
@@ -44,11 +42,14 @@ export async function readDepth(
       argument: "depth",
       found: `a Uint8Array of ${size.width} × ${size.height} values`,
       expected: depthKinds,
-      remedy: "256 steps are a picture of the depth, not metres: pass the depth map itself.",
+      remedy: "256 levels are a picture of the depth, not metres: pass the depth map itself.",
     });
   }
   const module = await formats();
-  const file = module.call((readers) => readers.readDepth(bytes, withoutUndefined(scale)), withoutOptions);
+  const file = module.call(
+    (readers) => readers.readDepth(bytes, withoutUndefined(scale)),
+    (argument) => argument.replace(/^options\./, ""),
+  );
   checkStatedSize("depth", file, size);
   return file;
 }

@@ -1,9 +1,8 @@
 /** Masks, brought to bytes with their size. */
-
-import type { Formats } from "../core.js";
 import { invalidArgument } from "../error.js";
+import { decodedRle, readRleFile } from "../formats/coco-rle.js";
+import type { LoadFormats } from "../formats-module.js";
 import { isRecord, isTypedArray, wrongKind } from "../values.js";
-import type { LoadedModule } from "../wasm-module.js";
 import { beginsLikeImage, beginsLikeJson, fileBytes } from "./bytes.js";
 import type { SizedArray } from "./depth.js";
 
@@ -16,20 +15,9 @@ const kinds =
  * A mask's pixels.
  * @param pixels how many the depth map has
  */
-export async function readMask(
-  mask: unknown,
-  pixels: number,
-  formats: () => Promise<LoadedModule<Formats>>,
-): Promise<SizedArray<MaskArray>> {
+export async function readMask(mask: unknown, pixels: number, formats: LoadFormats): Promise<SizedArray<MaskArray>> {
   if (isRecord(mask)) {
-    if ("counts" in mask) {
-      const { size, counts } = mask as { size: [number, number]; counts: string | number[] };
-      const module = await formats();
-      return module.call(
-        (readers) => readers.decodeCocoRle({ size, counts }),
-        (argument) => argument.replace(/^rle/, "mask"),
-      );
-    }
+    if ("counts" in mask) return decodedRle("mask", mask);
     if ("data" in mask) {
       const { data, width, height } = mask as { data: unknown; width: number; height: number };
       if (!isMaskArray(data)) throw wrongKind("mask.data", data, "a Uint8Array", "Uint8Array");
@@ -45,8 +33,9 @@ export async function readMask(
   if (isTypedArray<Uint8ClampedArray>(mask, "Uint8ClampedArray")) return bare(mask);
   const bytes = await fileBytes(mask);
   if (bytes === null) throw wrongKind("mask", mask, kinds, "Uint8Array");
-  const isFile = beginsLikeImage(bytes) || (bytes.length !== pixels && (beginsLikeJson(bytes) || mask !== bytes));
-  if (!isFile) return bare(bytes);
+  const isImage = beginsLikeImage(bytes);
+  if (!isImage && (bytes.length === pixels || (mask === bytes && !beginsLikeJson(bytes)))) return bare(bytes);
+  if (!isImage && beginsLikeJson(bytes)) return readRleFile("mask", bytes);
   return (await formats()).call((readers) => readers.readMask(bytes));
 }
 

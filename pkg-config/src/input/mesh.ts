@@ -1,34 +1,27 @@
 /** Meshes: arrays as they are, or a mesh file. */
-
-import type { Formats } from "../core.js";
+import type { CoreMesh } from "../core.js";
 import { invalidArgument } from "../error.js";
+import type { LoadFormats } from "../formats-module.js";
 import { isRecord, isTypedArray, withoutUndefined, wrongKind } from "../values.js";
-import type { LoadedModule } from "../wasm-module.js";
 import { fileBytes } from "./bytes.js";
 import type { MeshFile } from "./types.js";
-
-/** The core's form of a mesh. */
-export interface CoreMesh {
-  positions: Float32Array;
-  indices?: Uint32Array | Uint16Array;
-}
 
 const kinds =
   "{ positions, indices? }, or the bytes of a GLB, glTF, OBJ, PLY or STL file (also as { bytes, format?, resources? })";
 
 /** A mesh's arrays. */
-export async function readMesh(mesh: unknown, formats: () => Promise<LoadedModule<Formats>>): Promise<CoreMesh> {
+export async function readMesh(mesh: unknown, formats: LoadFormats): Promise<CoreMesh> {
   if (isRecord(mesh) && "positions" in mesh) return arrays(mesh);
   const file: { [K in keyof MeshFile]?: unknown } = isRecord(mesh) ? mesh : { bytes: mesh };
   const bytes = await fileBytes(file.bytes);
   if (bytes === null) throw invalidArgument("mesh", mesh, kinds, "Pass the mesh that is to be aligned.");
   const { format, resources } = file as Omit<MeshFile, "bytes">;
   const options = withoutUndefined({ format, resources });
-  return (await formats()).call((readers) => readers.readMesh(bytes, options), named);
+  return (await formats()).call((readers) => readers.readMesh(bytes, options), ofMesh);
 }
 
-/** What the reader calls options are properties of the mesh here. */
-const named = (argument: string) => argument.replace(/^options\./, "mesh.");
+/** The reader's options are properties of the mesh here. */
+const ofMesh = (argument: string) => argument.replace(/^options\./, "mesh.");
 
 function arrays({ positions, indices }: Record<string, unknown>): CoreMesh {
   if (!isTypedArray<Float32Array>(positions, "Float32Array")) {

@@ -1,52 +1,33 @@
-/** From what callers have to what the core takes: typed arrays and numbers. */
-
-import type { Formats } from "../core.js";
+/** Resolves an input: from arrays and files to the typed arrays and numbers that the core takes. */
+import type { CoreInput } from "../core.js";
 import { invalidArgument, Sim3AlignError } from "../error.js";
+import type { LoadFormats } from "../formats-module.js";
 import { isRecord, isTypedArray, withoutUndefined } from "../values.js";
-import type { LoadedModule } from "../wasm-module.js";
-import { type CoreCamera, readCamera } from "./camera.js";
+import { cameraOf } from "./camera.js";
 import { readDepth, readPointMap } from "./depth.js";
 import { readMask } from "./mask.js";
-import { type CoreMesh, readMesh } from "./mesh.js";
+import { readMesh } from "./mesh.js";
 
-/** The input as the core takes it; it checks lengths and values. */
-export interface CoreInput {
-  depth?: Float32Array | Uint16Array;
-  depthScale?: unknown;
-  pointMap?: Float32Array;
-  width?: unknown;
-  height?: unknown;
-  mask: Uint8Array | Uint8ClampedArray;
-  maskWidth?: number;
-  maskHeight?: number;
-  resizeMask?: unknown;
-  camera?: CoreCamera;
-  mesh: CoreMesh;
-}
-
-/** A resolved input, and what its files warn of. */
+/** A resolved input, and the warnings of its files. */
 export interface ResolvedInput {
   core: CoreInput;
-  warnings: string[];
+  warnings: readonly string[];
 }
 
 const properties = [
-  ...["depth", "depthScale", "pointMap", "width", "height", "camera", "imageId"],
+  ...["depth", "depthScale", "pointMap", "width", "height", "camera", "cameraFile", "imageId"],
   ...["mask", "resizeMask", "mesh"],
 ];
 
 /**
- * Resolves an input. Files are decoded by `formats`, which is asked for only where there is one.
+ * Resolves an input. `formats` is called only where there is a file that needs it.
  * @throws {@link Sim3AlignError} for arguments of the wrong kind, and those of the file readers
  */
-export async function resolveInput(
-  input: unknown,
-  formats: () => Promise<LoadedModule<Formats>>,
-): Promise<ResolvedInput> {
+export async function resolveInput(input: unknown, formats: LoadFormats): Promise<ResolvedInput> {
   checkProperties(input);
   const { resizeMask, pointMap } = input;
   const { warnings, ...image } =
-    pointMap === undefined ? await depthAndCamera(input, formats) : await pointMapAndCamera(input, pointMap, formats);
+    pointMap === undefined ? await depthAndCamera(input, formats) : await pointMapAndCamera(input, pointMap);
   const mask = await readMask(input.mask, Number(image.width) * Number(image.height), formats);
   const core = {
     ...image,
@@ -59,10 +40,10 @@ export async function resolveInput(
   return { core: withoutUndefined(core) as CoreInput, warnings };
 }
 
-async function depthAndCamera(input: Record<string, unknown>, formats: () => Promise<LoadedModule<Formats>>) {
+async function depthAndCamera(input: Record<string, unknown>, formats: LoadFormats) {
   const size = { width: input.width as number | undefined, height: input.height as number | undefined };
   const depthScale = input.depthScale as number | undefined;
-  const camera = await readCamera(input.camera, input.imageId, formats);
+  const camera = await cameraOf(input);
   const { integerDepthScale } = camera;
   const { data, width, height } = await readDepth(input.depth, size, { depthScale, integerDepthScale }, formats);
   const isFile = data !== input.depth && !isRecord(input.depth);
@@ -77,11 +58,7 @@ async function depthAndCamera(input: Record<string, unknown>, formats: () => Pro
   };
 }
 
-async function pointMapAndCamera(
-  input: Record<string, unknown>,
-  pointMap: unknown,
-  formats: () => Promise<LoadedModule<Formats>>,
-) {
+async function pointMapAndCamera(input: Record<string, unknown>, pointMap: unknown) {
   const other = ["depth", "depthScale"].find((name) => input[name] !== undefined);
   if (other !== undefined) {
     const remedy = `Leave ${other} out: the point map has the depth, in metres.`;
@@ -89,12 +66,13 @@ async function pointMapAndCamera(
   }
   const { data, width, height } = readPointMap(pointMap, input as { width?: number; height?: number });
   const image = { pointMap: data, depthScale: undefined, width, height };
-  if (input.camera === undefined) return { ...image, camera: undefined, warnings: [] };
-  const camera = await readCamera(input.camera, input.imageId, formats);
+  if (input.camera === undefined && input.cameraFile === undefined)
+    return { ...image, camera: undefined, warnings: [] };
+  const camera = await cameraOf(input);
   return { ...image, ...camera.resolve(width, height) };
 }
 
-/** A misspelt property would go unnoticed, and its default be used. */
+/** Refuses misspelt properties, which would otherwise be ignored. */
 function checkProperties(input: unknown): asserts input is Record<string, unknown> {
   if (!isRecord(input)) {
     throw invalidArgument("input", input, "{ depth, mask, mesh, camera }", "See AlignInput in the documentation.");
@@ -106,6 +84,6 @@ function checkProperties(input: unknown): asserts input is Record<string, unknow
     argument: `input.${unknown}`,
     found: "a property that does not exist",
     expected: properties.join(", "),
-    remedy: "Check the spelling; options go into the second argument.",
+    remedy: "Check the spelling; options belong into the second argument.",
   });
 }

@@ -1,4 +1,4 @@
-/** What `align` and `evaluate` take. */
+/** The input of `align` and `evaluate`. */
 
 /** An encoded file as it was read or fetched. */
 export type EncodedBytes = Uint8Array | ArrayBuffer | Blob;
@@ -34,8 +34,8 @@ export interface CocoRle {
  *
  * - `Uint8Array` of the depth map's size, one byte per pixel;
  * - `{ data, width, height }`, for one of another size (see `resizeMask`);
- * - the bytes of a PNG or of a `.npy` array, known by how they begin;
- * - COCO RLE.
+ * - the bytes of a PNG or of a `.npy` array, recognised by their first bytes;
+ * - COCO RLE, as an object or as the bytes of a JSON file.
  */
 export type MaskInput =
   | Uint8Array
@@ -45,42 +45,52 @@ export type MaskInput =
   | Blob
   | CocoRle;
 
+/** The image size that intrinsics belong to; compared with the depth map's. */
+interface CameraSize {
+  /** Pixels in a row. */
+  width?: number | undefined;
+  /** Rows. */
+  height?: number | undefined;
+}
+
 /** Pinhole intrinsics in pixels; pixel centres are at whole numbers: x = (u − cx)·z/fx. */
-export interface PinholeCamera {
+export interface PinholeCamera extends CameraSize {
   fx: number;
   fy: number;
   cx: number;
   cy: number;
-  /** The image size that the intrinsics belong to; compared with the depth map's. */
-  width?: number | undefined;
-  height?: number | undefined;
+  K?: undefined;
+  fovYDeg?: undefined;
+}
+
+/** No other form of intrinsics beside a matrix or a field of view. */
+interface NoPinhole {
+  fx?: undefined;
+  fy?: undefined;
+  cx?: undefined;
+  cy?: undefined;
 }
 
 /** Intrinsics as a matrix: 9 numbers row by row, or three rows of three. */
-export interface MatrixCamera {
+export interface MatrixCamera extends CameraSize, NoPinhole {
   K: ArrayLike<number> | readonly (readonly number[])[];
-  width?: number | undefined;
-  height?: number | undefined;
+  fovYDeg?: undefined;
 }
 
 /** A vertical field of view in degrees, for square pixels and a principal point in the middle of the image. */
-export interface FieldOfViewCamera {
+export interface FieldOfViewCamera extends CameraSize, NoPinhole {
   fovYDeg: number;
-  width?: number | undefined;
-  height?: number | undefined;
+  K?: undefined;
 }
 
+/** The intrinsics of the camera that took the depth map. */
+export type CameraInput = PinholeCamera | MatrixCamera | FieldOfViewCamera;
+
 /**
- * The camera that took the depth map: intrinsics, or a camera file, as bytes, text or parsed JSON: our own
- * `camera.json`, BOP's `scene_camera.json` (choose with `imageId`), ROS CameraInfo, Open3D's intrinsics.
+ * A camera file: its bytes, its text, or its parsed JSON. Known are our own `camera.json`, BOP's `scene_camera.json`
+ * (choose the entry with `imageId`), ROS CameraInfo, and the intrinsics of Open3D and RealSense.
  */
-export type CameraInput =
-  | PinholeCamera
-  | MatrixCamera
-  | FieldOfViewCamera
-  | Readonly<Record<string, unknown>>
-  | EncodedBytes
-  | string;
+export type CameraFileInput = EncodedBytes | string | Readonly<Record<string, unknown>>;
 
 /** The mesh formats that are read. */
 export type MeshFormat = "glb" | "gltf" | "obj" | "ply" | "stl";
@@ -96,57 +106,108 @@ export interface MeshArrays {
 /** A mesh file. */
 export interface MeshFile {
   bytes: EncodedBytes;
-  /** Told from the content by default. */
+  /** By default it is recognised by the content. */
   format?: MeshFormat | undefined;
-  /** The buffers of a `.gltf`, by the URIs that it names them with. */
+  /** The buffers of a `.gltf`, by the URIs in it. */
   resources?: Readonly<Record<string, Uint8Array | ArrayBuffer>> | undefined;
 }
 
 /** The object's mesh, in its own frame: arrays, or a GLB, glTF, OBJ, PLY or STL file (node transforms are applied). */
 export type MeshInput = MeshArrays | MeshFile | EncodedBytes;
 
-interface CommonInput {
+/** The mask and the mesh of an input. */
+export interface ObjectInput {
   /** Which pixels show the object. */
   mask: MaskInput;
   /** The mesh to be aligned. */
   mesh: MeshInput;
-  /** Pixels in a row. Needed with a bare typed array, else taken from the depth or the point map. */
-  width?: number | undefined;
-  /** Rows. Needed with a bare typed array, else taken from the depth or the point map. */
-  height?: number | undefined;
-  /** How a mask of another size than the depth map's is brought to it. By default that is an error. */
+  /** How to bring a mask of another size to the depth map's. By default that is an error. */
   resizeMask?: "nearest" | undefined;
 }
 
-/** An object seen in a depth map. */
-export interface DepthAlignInput extends CommonInput {
+/** Intrinsics, stated. */
+export interface StatedCameraInput {
+  /** The intrinsics of the camera that took the depth map. */
+  camera: CameraInput;
+  cameraFile?: undefined;
+  imageId?: undefined;
+}
+
+/** Intrinsics from a file. */
+export interface CameraFromFileInput {
+  camera?: undefined;
+  /** A camera file. Whole-number depth takes its scale from it, unless `depthScale` is given. */
+  cameraFile: CameraFileInput;
+  /** Which entry of a BOP `scene_camera.json`. */
+  imageId?: string | number | undefined;
+}
+
+/** No camera: intrinsics follow from the point map. */
+export interface NoCameraInput {
+  camera?: undefined;
+  cameraFile?: undefined;
+  imageId?: undefined;
+}
+
+/** A depth map that may be a bare array, whose size the input states. */
+export interface SizedDepthInput {
   /** The depth map. */
   depth: DepthInput;
-  /**
-   * Metres per unit of depth, above 0: 0.001 for millimetres. By default whole numbers take it from the camera file, or
-   * else are millimetres, and floats are metres.
-   */
-  depthScale?: number | undefined;
-  /** The camera that took the depth map. */
-  camera: CameraInput;
-  /** Which entry of a BOP `scene_camera.json`. */
-  imageId?: string | number | undefined;
-  pointMap?: undefined;
+  /** Pixels in a row. */
+  width: number;
+  /** Rows. */
+  height: number;
 }
 
-/** An object seen in a point map. */
-export interface PointMapAlignInput extends CommonInput {
-  /**
-   * x, y, z per pixel (height × width × 3), metres, in the OpenCV camera frame: x right, y down, z forward.
-   */
+/** A depth map that brings its size along. */
+export interface OwnSizeDepthInput {
+  /** The depth map. */
+  depth: Exclude<DepthInput, Float32Array | Uint16Array>;
+  /** Pixels in a row; compared with the depth map's. */
+  width?: number | undefined;
+  /** Rows; compared with the depth map's. */
+  height?: number | undefined;
+}
+
+/** A point map that may be a bare array, whose size the input states. */
+export interface SizedPointMapInput {
+  /** x, y, z per pixel (height × width × 3), metres, in the OpenCV camera frame: x right, y down, z forward. */
   pointMap: Float32Array | PixelArray<Float32Array>;
-  /** The camera. By default it follows from the point map. */
-  camera?: CameraInput | undefined;
-  /** Which entry of a BOP `scene_camera.json`. */
-  imageId?: string | number | undefined;
-  depth?: undefined;
-  depthScale?: undefined;
+  /** Pixels in a row. */
+  width: number;
+  /** Rows. */
+  height: number;
 }
 
-/** What `align` and `evaluate` look at: depth with camera, or a point map; the mask; the mesh. */
+/** A point map that brings its size along. */
+export interface OwnSizePointMapInput {
+  /** x, y, z per pixel (height × width × 3), metres, in the OpenCV camera frame: x right, y down, z forward. */
+  pointMap: PixelArray<Float32Array>;
+  /** Pixels in a row; compared with the point map's. */
+  width?: number | undefined;
+  /** Rows; compared with the point map's. */
+  height?: number | undefined;
+}
+
+/** An object seen in a depth map. */
+export type DepthAlignInput = ObjectInput &
+  (SizedDepthInput | OwnSizeDepthInput) &
+  (StatedCameraInput | CameraFromFileInput) & {
+    /**
+     * Metres per unit of depth, above 0: 0.001 for millimetres. By default floats are metres, and whole numbers take
+     * the scale from the camera file, or else are millimetres.
+     */
+    depthScale?: number | undefined;
+    pointMap?: undefined;
+  };
+
+/** An object seen in a point map. Without a camera, the intrinsics follow from the point map. */
+export type PointMapAlignInput = ObjectInput &
+  (SizedPointMapInput | OwnSizePointMapInput) &
+  (StatedCameraInput | CameraFromFileInput | NoCameraInput) & {
+    depth?: undefined;
+    depthScale?: undefined;
+  };
+
+/** The input of `align` and `evaluate`: depth with a camera, or a point map; the mask; the mesh. */
 export type AlignInput = DepthAlignInput | PointMapAlignInput;

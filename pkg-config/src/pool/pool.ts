@@ -1,56 +1,51 @@
-/** A pool of workers that does jobs side by side. */
-
+/** A pool of workers that run jobs side by side. */
 import type { Call, Engine, Outcome } from "../engine.js";
 import { disposed, Sim3AlignError } from "../error.js";
 import type { Job } from "../jobs.js";
 import { onAbort } from "../on-abort.js";
-import { buffersOf, copied } from "../transfer.js";
-import { type Answer, JobFailed, type Supplies, Unsendable, WorkerLost, WorkerSlot } from "./slot.js";
-import { canBeSplit, splitAlign } from "./split.js";
+import { type Answer, JobFailed, Unsendable, WorkerLost, type WorkerSetup, WorkerSlot } from "./slot.js";
+import { buffersOf, copied } from "./transfer.js";
 
-/** How often a job is tried whose worker is lost. */
+/** How often a job is run whose worker is lost. */
 const ATTEMPTS = 2;
 
-/** Workers, and whoever waits for one. */
+/** Workers, and the jobs that wait for one. */
 export class WorkerPool implements Engine {
   readonly capacity: number;
   readonly #slots: readonly WorkerSlot[];
-  readonly #here: Engine;
+  readonly #fallback: Engine;
   readonly #idle: WorkerSlot[];
   readonly #waiting: ((slot: WorkerSlot) => void)[] = [];
   readonly #ended = new AbortController();
 
-  /** @param here does what can't be sent to a worker */
-  constructor(width: number, supplies: Supplies, here: Engine) {
-    // While one is being handed over, the next one is being worked on.
-    this.capacity = 2 * width;
-    this.#here = here;
-    this.#slots = Array.from({ length: width }, () => new WorkerSlot(supplies));
+  /** @param fallback runs jobs that cannot be sent to a worker */
+  constructor(size: number, setup: WorkerSetup, fallback: Engine) {
+    // While one job is being handed over, the next one is running.
+    this.capacity = 2 * size;
+    this.#fallback = fallback;
+    this.#slots = Array.from({ length: size }, () => new WorkerSlot(setup));
     this.#idle = [...this.#slots];
     for (const slot of this.#slots) startEarly(slot);
   }
 
   async run<J extends Job>(job: J, call: Call): Promise<Outcome<J>> {
     const signals = [this.#ended.signal, ...(call.signal === undefined ? [] : [call.signal])];
-    const slots = [await this.#acquire(signals)];
-    if (call.splitSearch && canBeSplit(job)) slots.push(...this.#idle.splice(0));
+    const slot = await this.#acquire(signals);
     const stop = (reason: unknown) => {
-      for (const slot of slots) {
-        slot.end(reason);
-        if (!this.#ended.signal.aborted) startEarly(slot);
-      }
+      slot.end(reason);
+      if (!this.#ended.signal.aborted) startEarly(slot);
     };
-    const endings: (() => void)[] = [];
+    const unfollow: (() => void)[] = [];
     try {
       for (const signal of signals) {
-        // Since the slot was given, a moment has passed.
+        // It may have been aborted since the slot was given.
         signal.throwIfAborted();
-        endings.push(onAbort(signal, stop));
+        unfollow.push(onAbort(signal, stop));
       }
-      return await this.#attempt(job, call, slots);
+      return await this.#runIn(slot, job, call);
     } finally {
-      for (const end of endings) end();
-      for (const slot of slots) this.#release(slot);
+      for (const end of unfollow) end();
+      this.#release(slot);
     }
   }
 
@@ -59,20 +54,17 @@ export class WorkerPool implements Engine {
     for (const slot of this.#slots) slot.end(this.#ended.signal.reason);
   }
 
-  async #attempt<J extends Job>(job: J, call: Call, slots: WorkerSlot[]): Promise<Outcome<J>> {
-    const [slot] = slots as [WorkerSlot];
-    if (slots.length > 1 && canBeSplit(job)) {
-      const result = await splitAlign(slots, job, call);
-      if (result !== null) return { result, data: job.data } as Outcome<J>;
-    }
+  async #runIn<J extends Job>(slot: WorkerSlot, job: J, call: Call): Promise<Outcome<J>> {
     for (let attempt = 1; ; attempt++) {
       try {
         const answer = await send(slot, job, call);
-        if (answer === null) return await this.#here.run(job, call);
+        if (answer === null) return await this.#fallback.run(job, call);
         return { result: answer.result, data: answer.data ?? job.data } as Outcome<J>;
       } catch (error) {
-        if (error instanceof JobFailed)
-          throw withData(error.error, call.transfer ? (error.data ?? job.data) : undefined);
+        if (error instanceof JobFailed) {
+          if (call.transfer) error.error.input = error.data ?? job.data;
+          throw error.error;
+        }
         if (!(error instanceof WorkerLost)) throw error;
         if (attempt === ATTEMPTS || isGone(job, call)) throw workerFailed(error);
       }
@@ -82,18 +74,18 @@ export class WorkerPool implements Engine {
   #acquire(signals: readonly AbortSignal[]): Promise<WorkerSlot> {
     return new Promise((resolve, reject) => {
       for (const signal of signals) if (signal.aborted) return reject(signal.reason);
-      const slot = this.#idle.pop();
-      if (slot !== undefined) return resolve(slot);
-      const take = (freed: WorkerSlot) => {
-        for (const end of endings) end();
-        resolve(freed);
+      const idle = this.#idle.pop();
+      if (idle !== undefined) return resolve(idle);
+      const take = (slot: WorkerSlot) => {
+        for (const end of unfollow) end();
+        resolve(slot);
       };
       const giveUp = (reason: unknown) => {
-        for (const end of endings) end();
+        for (const end of unfollow) end();
         this.#waiting.splice(this.#waiting.indexOf(take), 1);
         reject(reason);
       };
-      const endings = signals.map((signal) => onAbort(signal, giveUp));
+      const unfollow = signals.map((signal) => onAbort(signal, giveUp));
       this.#waiting.push(take);
     });
   }
@@ -105,14 +97,14 @@ export class WorkerPool implements Engine {
   }
 }
 
-/** Saves the first request the time; where it fails, that request says so. */
+/** Starts a worker before it is needed. Where that fails, the first request reports it. */
 function startEarly(slot: WorkerSlot): void {
   try {
     slot.start();
   } catch {}
 }
 
-/** Asks for a job; `null` where it can't be sent: whatever the clone algorithm refuses, the core has words for. */
+/** Sends a job; `null` where it cannot be sent, so that the core can say what is wrong with it. */
 async function send(slot: WorkerSlot, job: Job, { transfer, progress }: Call): Promise<Answer | null> {
   // Buffers of WebAssembly memory and of Node's pool can't be moved: they are copied after all.
   for (const isMoved of transfer ? [true, false] : [false]) {
@@ -127,14 +119,9 @@ async function send(slot: WorkerSlot, job: Job, { transfer, progress }: Call): P
   return null;
 }
 
-/** Whether the job's arrays went with the worker. */
+/** Whether the arrays of the job were lost with the worker. */
 const isGone = ({ data }: Job, { transfer }: Call) =>
   transfer && buffersOf(data).some((buffer) => buffer.byteLength === 0);
-
-function withData(error: Sim3AlignError, data: unknown): Sim3AlignError {
-  if (data !== undefined) error.input = data;
-  return error;
-}
 
 function workerFailed(cause: WorkerLost): Sim3AlignError {
   return new Sim3AlignError(
@@ -143,7 +130,8 @@ function workerFailed(cause: WorkerLost): Sim3AlignError {
       argument: "workers",
       found: `a worker that was lost: ${cause.message}`,
       expected: "a worker that lives until its job is done",
-      remedy: "Check that worker.js can be loaded and that memory suffices, use fewer workers, or none.",
+      remedy:
+        'Check that worker.js can be loaded and that memory suffices; use fewer workers, or none; in a bundle, import from "sim3align/inline".',
     },
     { cause },
   );

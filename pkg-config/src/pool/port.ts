@@ -1,39 +1,31 @@
-/** Workers of browsers and of Node, behind one face. */
+/** Workers of browsers and of Node, behind one interface. */
 import { Sim3AlignError } from "../error.js";
+import type { CreateWorker, WorkerLike } from "../platform.js";
 import type { Reply, Request } from "./protocol.js";
-
-/** A worker: a `Worker` of browsers, Deno and Bun, or one of Node's `worker_threads`. */
-export interface WorkerLike {
-  postMessage(message: unknown, transfer: ArrayBuffer[]): void;
-  terminate(): unknown;
-}
 
 type NodeWorker = import("node:worker_threads").Worker;
 
-/** Makes a worker that runs this package's `worker.js`. */
-export type CreateWorker = () => WorkerLike;
-
-/** A worker as the pool sees it. */
+/** The pool's end of the connection to a worker. */
 export interface Port {
   post(message: Request, transfer?: ArrayBuffer[]): void;
-  /** Whether the process stays alive for it. */
+  /** Whether the process stays alive for the worker. */
   hold(isHeld: boolean): void;
   terminate(): void;
 }
 
-/** What a worker tells the pool. */
-export interface Ears {
+/** The events of a worker. */
+export interface PortEvents {
   onMessage(message: Reply): void;
-  /** It has ended, or never began. */
+  /** The worker has ended, or could not start. */
   onFailure(description: string): void;
 }
 
-/** Listens to a worker. */
-export function portOf(worker: WorkerLike, ears: Ears): Port {
-  return "on" in worker ? portOfNode(worker as NodeWorker, ears) : portOfWeb(worker as Worker, ears);
+/** Connects to a worker. */
+export function portOf(worker: WorkerLike, events: PortEvents): Port {
+  return "on" in worker ? portOfNode(worker as NodeWorker, events) : portOfWeb(worker as Worker, events);
 }
 
-function portOfNode(worker: NodeWorker, { onMessage, onFailure }: Ears): Port {
+function portOfNode(worker: NodeWorker, { onMessage, onFailure }: PortEvents): Port {
   worker.on("message", onMessage);
   worker.on("error", (error: Error) => onFailure(`${error.name}: ${error.message}`));
   worker.on("messageerror", () => onFailure("a message that could not be read"));
@@ -46,10 +38,10 @@ function portOfNode(worker: NodeWorker, { onMessage, onFailure }: Ears): Port {
   };
 }
 
-function portOfWeb(worker: Worker, { onMessage, onFailure }: Ears): Port {
+function portOfWeb(worker: Worker, { onMessage, onFailure }: PortEvents): Port {
   worker.addEventListener("message", ({ data }) => onMessage(data));
   worker.addEventListener("error", (event) => {
-    // Else it goes on to the page's own error handlers, as if nobody had seen it.
+    // Otherwise the page's own error handlers would report it as unhandled.
     event.preventDefault();
     onFailure(event.message || "a script that could not be loaded");
   });
@@ -61,18 +53,19 @@ function portOfWeb(worker: Worker, { onMessage, onFailure }: Ears): Port {
   };
 }
 
-/** What makes workers here by itself, and how many run side by side. */
-export interface Workshop {
+/** Makes workers in this environment. */
+export interface WorkerFactory {
   create: CreateWorker;
+  /** How many threads the machine runs at the same time. */
   cores: number;
 }
 
 /**
- * What this environment has: `Worker`, or Node's module.
- * @param script of the worker, where it is not in a file
- * @param createWorker the caller's way to make one
+ * The factory for this environment, which has `Worker` or `node:worker_threads`.
+ * @param script the source of the worker's script, where it is not in a file
+ * @param createWorker the caller's own way to make a worker
  */
-export async function workshop(script?: string, createWorker?: CreateWorker): Promise<Workshop> {
+export async function workerFactory(script?: string, createWorker?: CreateWorker): Promise<WorkerFactory> {
   if (typeof Worker === "function" || createWorker !== undefined) {
     const cores = globalThis.navigator?.hardwareConcurrency ?? 2;
     return { create: createWorker ?? (script === undefined ? fromFile : fromScript(script)), cores };
@@ -99,11 +92,11 @@ export async function workshop(script?: string, createWorker?: CreateWorker): Pr
   }
 }
 
-/** Bundlers know this form, and no other. */
+/** Bundlers know this form of a worker, and no other. */
 const fromFile = () => new Worker(new URL("../worker.js", import.meta.url), { type: "module" });
 
 function fromScript(script: string): CreateWorker {
-  // One address for all, for as long as the page lives: when a browser has read it, it does not say.
+  // One address for all workers, never revoked: browsers do not say when they have read it.
   let url: string | undefined;
   return () => {
     url ??= URL.createObjectURL(new Blob([script], { type: "text/javascript" }));
@@ -112,5 +105,5 @@ function fromScript(script: string): CreateWorker {
   };
 }
 
-/** A module of Node's, by a name that bundlers for browsers don't follow: they never come here. */
+/** A module of Node's. Bundlers for browsers do not follow a name in a variable; browsers never get here. */
 const nodeModule = (name: string) => import(/* webpackIgnore: true */ /* @vite-ignore */ name);

@@ -1,33 +1,23 @@
-/** What an aligner and its workers tell each other. One request at a time; each ends in a result or an error. */
+/**
+ * The messages between a pool and its workers. A worker is started once, then asked for one job at a time; each job ends
+ * in one `done`.
+ */
 import type { ErrorParts } from "../error.js";
 import type { Stage } from "../generated/types.js";
 import type { Job } from "../jobs.js";
 
 /** To the worker. */
 export type Request =
-  /** The first: the compiled core. */
+  /** The first message: the compiled core. */
   | { type: "start"; core: WebAssembly.Module }
-  /** What the worker asked for: the compiled file readers, or why there are none. */
-  | { type: "formats"; module: WebAssembly.Module }
-  | { type: "formats"; error: ErrorParts }
+  /** `returnData` asks for the job's data back, which have been moved to the worker. */
   | { type: "job"; job: Job; wantsProgress: boolean; returnData: boolean }
-  | ShareRequest;
-
-/** An alignment that several work on, step by step. */
-export type ShareRequest =
-  /** Prepares the search. */
-  | { type: "share"; job: Job & { method: "align" } }
-  /** Takes what came of the last round's tasks, and does a part of the next one's; without parts, forgets the share. */
-  | { type: "step"; found: Float64Array | undefined; part: number; parts: number }
-  | { type: "finish"; wantsProgress: boolean };
+  /** The answer to `needs-formats`: the compiled file readers, or why they could not be loaded. */
+  | { type: "formats"; formats: WebAssembly.Module | ErrorParts };
 
 /** From the worker. */
 export type Reply =
   | { type: "progress"; stage: Stage; fraction: number; best?: Float64Array | undefined }
-  /** The worker needs the file readers. */
   | { type: "needs-formats" }
-  | { type: "result"; result: unknown; data?: unknown }
-  | { type: "error"; error: ErrorParts; data?: unknown };
-
-/** How much of a shared alignment is done when its search is. */
-export const SEARCHED = 0.75;
+  | { type: "done"; result: unknown; data?: unknown; error?: undefined }
+  | { type: "done"; error: ErrorParts; data?: unknown };

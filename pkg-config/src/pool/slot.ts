@@ -1,13 +1,14 @@
-/** A place for a worker, which is replaced when it fails. */
+/** A slot of the pool: a worker, which is replaced when it fails. */
 import { type ErrorParts, partsOf, Sim3AlignError } from "../error.js";
+import type { CreateWorker } from "../platform.js";
 import type { ProgressListener } from "../progress.js";
-import { type CreateWorker, type Port, portOf } from "./port.js";
+import { type Port, portOf } from "./port.js";
 import type { Reply, Request } from "./protocol.js";
 
-/** The worker ended, or trapped: what it had been asked was not answered, and may be asked again. */
+/** The worker ended or trapped before it answered: the job may be run again. */
 export class WorkerLost extends Error {}
 
-/** The message can't be sent: something in it can't be cloned, or moved. */
+/** The message holds something that cannot be cloned or moved. */
 export class Unsendable extends Error {}
 
 /** A job that failed in a worker, with the data that came back. */
@@ -21,14 +22,14 @@ export class JobFailed {
   }
 }
 
-/** What came of a request. */
+/** The result of a job, and its data where they were asked for. */
 export interface Answer {
   result: unknown;
   data?: unknown;
 }
 
-/** What a worker needs. */
-export interface Supplies {
+/** What a slot needs to start a worker. */
+export interface WorkerSetup {
   create: CreateWorker;
   core: WebAssembly.Module;
   formats(): Promise<WebAssembly.Module>;
@@ -37,45 +38,40 @@ export interface Supplies {
 interface Pending {
   resolve(answer: Answer): void;
   reject(reason: unknown): void;
-  progress: ProgressListener | undefined;
+  progress: ProgressListener;
 }
 
-/** A place for a worker. */
+/** A slot for a worker. */
 export class WorkerSlot {
-  readonly #supplies: Supplies;
+  readonly #setup: WorkerSetup;
   #port: Port | undefined;
   #pending: Pending | undefined;
 
-  constructor(supplies: Supplies) {
-    this.#supplies = supplies;
+  constructor(setup: WorkerSetup) {
+    this.#setup = setup;
   }
 
-  /** The worker that is here now: another object once it has been replaced. */
-  get worker(): unknown {
-    return this.#port;
-  }
-
-  /** Starts a worker where there is none. A failure shows at the next request. */
+  /** Starts a worker where there is none. A script that cannot be loaded shows at the next request. */
   start(): Port {
     if (this.#port !== undefined) return this.#port;
     // Messages of a worker that was replaced may still arrive.
     const ifCurrent = (act: () => void) => {
       if (this.#port === port) act();
     };
-    const port = portOf(this.#supplies.create(), {
-      onMessage: (message) => ifCurrent(() => this.#hear(message)),
+    const port = portOf(this.#setup.create(), {
+      onMessage: (message) => ifCurrent(() => this.#receive(message, port)),
       onFailure: (description) => ifCurrent(() => this.end(new WorkerLost(description))),
     });
     this.#port = port;
-    port.post({ type: "start", core: this.#supplies.core });
+    port.post({ type: "start", core: this.#setup.core });
     return port;
   }
 
   /**
-   * Asks the worker for something; one thing at a time.
-   * @throws {@link Unsendable}, {@link WorkerLost}, {@link JobFailed}, what `end` was given
+   * Asks the worker for a job; one at a time.
+   * @throws {@link Unsendable}, {@link WorkerLost}, {@link JobFailed}, and the reason that `end` is given
    */
-  async request(message: Request, transfer: ArrayBuffer[] = [], progress?: ProgressListener): Promise<Answer> {
+  async request(message: Request, transfer: ArrayBuffer[], progress: ProgressListener): Promise<Answer> {
     const port = this.#started();
     try {
       port.post(message, transfer);
@@ -93,7 +89,7 @@ export class WorkerSlot {
     }
   }
 
-  /** Ends the worker, and with it what it is doing. The next request starts another. */
+  /** Ends the worker and its job. The next request starts another worker. */
   end(reason: unknown): void {
     const port = this.#port;
     this.#port = undefined;
@@ -109,35 +105,30 @@ export class WorkerSlot {
     }
   }
 
-  #hear(message: Reply): void {
-    switch (message.type) {
-      case "needs-formats":
-        this.#sendFormats();
-        break;
-      case "progress":
-        try {
-          this.#pending?.progress?.report(message.stage, message.fraction, message.best);
-        } catch (error) {
-          this.end(error);
-        }
-        break;
-      case "result":
-        this.#pending?.resolve(message);
-        break;
-      case "error":
-        // After a trap the module's state is unknown, and its memory may be used up.
-        if (message.error.code === "INTERNAL") this.end(new WorkerLost(message.error.found));
-        else this.#pending?.reject(new JobFailed(message.error, message.data));
+  #receive(message: Reply, port: Port): void {
+    if (message.type === "progress") {
+      try {
+        this.#pending?.progress.report(message.stage, message.fraction, message.best);
+      } catch (error) {
+        this.end(error);
+      }
+    } else if (message.type === "needs-formats") {
+      this.#sendFormats(port).catch((error) => this.end(error));
+    } else if (message.error === undefined) {
+      this.#pending?.resolve(message);
+    } else if (message.error.code === "INTERNAL") {
+      // After a trap the state of the module is unknown, and its memory may be used up.
+      this.end(new WorkerLost(message.error.found));
+    } else {
+      this.#pending?.reject(new JobFailed(message.error, message.data));
     }
   }
 
-  async #sendFormats(): Promise<void> {
-    const port = this.#port;
-    try {
-      port?.post({ type: "formats", module: await this.#supplies.formats() });
-    } catch (error) {
-      if (error instanceof Sim3AlignError) port?.post({ type: "formats", error: partsOf(error) });
-      else this.end(error);
-    }
+  async #sendFormats(port: Port): Promise<void> {
+    const formats = await this.#setup.formats().catch((error) => {
+      if (error instanceof Sim3AlignError) return partsOf(error);
+      throw error;
+    });
+    port.post({ type: "formats", formats });
   }
 }

@@ -1,10 +1,11 @@
-/** Cameras of three.js that see what a pinhole camera saw. */
-import { failure, positive } from "../conventions/numbers.js";
-import { pinholeOf, type StatedCamera } from "../conventions/pinhole.js";
-import { type ImageSize, sizeOf } from "../conventions/pixels.js";
+/** Cameras of three.js that match a pinhole camera. */
+
+import { pinholeOf, type StatedCamera } from "../formats/pinhole.js";
+import { type ImageSize, sizeOf } from "../formats/pixels.js";
+import { failure, positive } from "../values.js";
 import type { PerspectiveCameraLike } from "./types.js";
 
-/** The image's size, and between which distances things are drawn. */
+/** The image's size, and the near and far planes. */
 export interface LensOptions extends ImageSize {
   /** In metres, above 0; 0.01 by default. */
   near?: number | undefined;
@@ -16,21 +17,21 @@ export interface LensOptions extends ImageSize {
 export interface ThreeCamera {
   /** The vertical field of view of an image with the principal point in its middle, in degrees. */
   fov: number;
-  /** Its width by its height, as they would be with square pixels. */
+  /** Width by height, after scaling to square pixels. */
   aspect: number;
   near: number;
   far: number;
-  /** For `camera.setViewOffset`: what moves the principal point to where it is. */
+  /** The arguments of `camera.setViewOffset` that move the principal point. */
   view: { fullWidth: number; fullHeight: number; offsetX: number; offsetY: number; width: number; height: number };
   /** For WebGL: clip space from the OpenGL camera frame, z in [−1, 1], column by column. */
   projectionMatrix: Float64Array;
 }
 
 /**
- * What a camera of three.js needs to see what a pinhole camera saw, with the principal point wherever it is, and pixels
- * that need not be square. For a `PerspectiveCamera`, {@link applyPinhole} sets all of it.
+ * The settings of a three.js camera that match a pinhole camera. The principal point may be anywhere, and pixels need not
+ * be square. {@link applyPinhole} applies them to a `PerspectiveCamera`.
  *
- * The image goes from −0.5 to width − 0.5, as pixel centres are at whole numbers.
+ * The image spans −0.5 to width − 0.5, since pixel centres are at whole numbers.
  *
  * @param camera { fx, fy, cx, cy }, { K } or { fovYDeg }, in pixels
  * @param lens the image's `width` and `height`, and `near` and `far` in metres
@@ -70,9 +71,9 @@ export function cameraFromPinhole(camera: StatedCamera, lens: LensOptions): Thre
 }
 
 /**
- * Makes a `PerspectiveCamera` see what a pinhole camera saw: sets its field of view, aspect, near, far and view offset,
- * all of which `updateProjectionMatrix` keeps, for WebGL and for WebGPU. Draw to a canvas with the image's proportions,
- * and do not set `aspect` when it is resized.
+ * Makes a `PerspectiveCamera` match a pinhole camera: sets its field of view, aspect, near, far and view offset, which
+ * `updateProjectionMatrix` keeps, for WebGL and WebGPU. Draw to a canvas with the image's proportions, and do not set
+ * `aspect` when the canvas is resized.
  *
  * @param target the three.js camera; its pose is left as it is
  * @param camera as for {@link cameraFromPinhole}
@@ -85,7 +86,7 @@ export function applyPinhole(target: PerspectiveCameraLike, camera: StatedCamera
   const { fov, aspect, near, far, view } = cameraFromPinhole(camera, lens);
   Object.assign(target, { fov, near, far, zoom: 1, filmOffset: 0 });
   target.setViewOffset(view.fullWidth, view.fullHeight, view.offsetX, view.offsetY, view.width, view.height);
-  // That has set the aspect for square pixels.
+  // setViewOffset has set the aspect for square pixels.
   target.aspect = aspect;
   target.updateProjectionMatrix();
 }

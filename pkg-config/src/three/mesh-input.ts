@@ -1,7 +1,8 @@
-/** Meshes from three.js' objects. */
-import { failure, finiteNumbers, oneOf } from "../conventions/numbers.js";
+/** Meshes from objects of three.js. */
+
 import { describe } from "../error.js";
 import type { MeshArrays } from "../input/types.js";
+import { failure, finiteNumbers, oneOf } from "../values.js";
 import type { AttributeLike, GeometryLike, MeshTree, PlacedObject } from "./types.js";
 
 /** A 4×4 matrix, column by column. */
@@ -9,18 +10,18 @@ type Matrix4 = readonly number[];
 
 const identity: Matrix4 = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
-/** What {@link meshInputFromThree} can be told. */
+/** Options of {@link meshInputFromThree}. */
 export interface MeshInputOptions {
   /**
-   * The frame of the positions: "object", the default, is the object's own, below its position, quaternion and scale,
-   * which `applyToObject3D` then sets; "world" has these applied too, and those of its parents.
+   * The frame of the positions. "object", the default, is the object's own frame, before its position, quaternion and
+   * scale, which `applyToObject3D` sets. "world" applies these and those of its parents, too.
    */
   frame?: "object" | "world" | undefined;
 }
 
 /**
- * All triangles of a three.js geometry, or of an object and everything below it, as a mesh for `align`. The matrices of
- * the objects below are applied, those of instances too. Bones and morph targets are not: the mesh is at rest.
+ * All triangles of a three.js geometry, or of an object and its descendants, as a mesh for `align`. The matrices of
+ * descendants and instances are applied. Bones and morph targets are not: the mesh is in its rest pose.
  *
  * @param source a `BufferGeometry`, or an `Object3D` such as a `Mesh`, a `Group` or a loaded scene
  * @returns x, y, z per vertex in the object's own frame, and three indices per triangle
@@ -77,21 +78,21 @@ function appendTree(arrays: { positions: number[]; indices: number[] }, tree: Me
   });
 }
 
-/** Adds a geometry's triangles, moved. */
+/** Adds the triangles of a geometry, transformed. */
 function append(arrays: { positions: number[]; indices: number[] }, { attributes, index }: GeometryLike, m: Matrix4) {
   const position = attributes.position as AttributeLike | undefined;
   if (!position || typeof position.getX !== "function") return;
   const first = arrays.positions.length / 3;
   const [a = 0, b = 0, c = 0, , d = 0, e = 0, f = 0, , g = 0, h = 0, k = 0, , tx = 0, ty = 0, tz = 0] = m;
   for (let i = 0; i < position.count; i++) {
-    // By these, which know of normalised and interleaved numbers.
+    // The getters handle normalised and interleaved attributes.
     const [x, y, z] = [position.getX(i), position.getY(i), position.getZ(i)];
     arrays.positions.push(a * x + d * y + g * z + tx, b * x + e * y + h * z + ty, c * x + f * y + k * z + tz);
   }
   const corner = (i: number) => first + (index === null ? i : index.getX(i));
   const count = index === null ? position.count : index.count;
   const isMirrored = a * (e * k - f * h) - d * (b * k - c * h) + g * (b * f - c * e) < 0;
-  // A mirrored triangle has its front where its back was: another order of its corners brings it back.
+  // Mirroring turns triangles inside out: swap two corners.
   for (let i = 0; i + 2 < count; i += 3) {
     arrays.indices.push(corner(i), corner(i + (isMirrored ? 2 : 1)), corner(i + (isMirrored ? 1 : 2)));
   }

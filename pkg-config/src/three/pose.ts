@@ -1,27 +1,27 @@
-/** Poses of three.js' objects. */
+/** Poses of objects of three.js. */
 import { fromFrame, toFrame } from "../conventions/frames.js";
-import { finiteNumbers, oneOf } from "../conventions/numbers.js";
 import { compose, invert, toSim3 } from "../conventions/similarity.js";
 import type { Sim3, Sim3Like } from "../sim3.js";
+import { finiteNumbers, oneOf } from "../values.js";
 import type { PlacedObject, PosableObject } from "./types.js";
 
-/** How an object's scene is laid out. */
+/** The layout of an object's scene. */
 export interface PoseOptions {
   /**
    * The frame of the object's parent (without `camera`): "opengl", the default, for a child of a three.js camera, or of
    * a scene whose camera is at the origin, unturned; "opencv" for a scene that is built in OpenCV's camera frame.
    */
   frame?: "opencv" | "opengl" | undefined;
-  /** The three.js camera that stands for the one that saw the object, wherever it is. */
+  /** The three.js camera that stands for the depth camera. It may be anywhere in the scene. */
   camera?: PlacedObject | undefined;
 }
 
 const framesOfScenes = ["opencv", "opengl"] as const;
 
 /**
- * Puts an object of three.js where the alignment found the mesh: sets `position`, `quaternion`, `scale`.
+ * Places an object of three.js by an alignment: sets its `position`, `quaternion` and `scale`.
  *
- * The mesh has to be the one that {@link meshInputFromThree} gives for that object. Its parent is the three.js camera,
+ * The aligned mesh has to be the one that {@link meshInputFromThree} returns for this object. Its parent is the three.js camera,
  * or a scene whose camera is at the origin; where the camera is elsewhere, pass it as `camera`, and the object's parent
  * may be anything that is not sheared or stretched.
  *
@@ -53,8 +53,8 @@ export function applyToObject3D(
 }
 
 /**
- * Where an object of three.js is, as a transform for `evaluate` or the option `initial`: what {@link applyToObject3D}
- * sets, after somebody has moved the object.
+ * The transform of an object of three.js, for `evaluate` or the option `initial`. It is the inverse of
+ * {@link applyToObject3D}: use it after a user has moved the object.
  *
  * @param object an `Object3D`, scaled alike along all axes
  * @param options as they were for {@link applyToObject3D}

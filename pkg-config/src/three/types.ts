@@ -1,21 +1,21 @@
-/** What is used of three.js' classes: anything of this shape will do, of whatever version or build. */
+/** The parts of three.js' classes that are used here. Any object of these shapes works. */
 
-/** `Vector3`, as far as it is set. */
+/** A `Vector3` that can be set. */
 export interface Vector3Like {
   set(x: number, y: number, z: number): unknown;
 }
 
-/** `Quaternion`, as far as it is set. */
+/** A `Quaternion` that can be set. */
 export interface QuaternionLike {
   set(x: number, y: number, z: number, w: number): unknown;
 }
 
-/** `Matrix4`: 16 numbers, column by column. */
+/** A `Matrix4`: 16 numbers, column by column. */
 export interface Matrix4Like {
   readonly elements: ArrayLike<number>;
 }
 
-/** `Object3D`, as far as it is posed. */
+/** An `Object3D` whose pose can be set. */
 export interface PosableObject {
   readonly position: Vector3Like;
   readonly quaternion: QuaternionLike;
@@ -26,13 +26,13 @@ export interface PosableObject {
   updateWorldMatrix(updateParents: boolean, updateChildren: boolean): void;
 }
 
-/** A camera, or anything else that frames are taken from. */
+/** A camera, or any other object whose world matrix is read. */
 export interface PlacedObject {
   readonly matrixWorld: Matrix4Like;
   updateWorldMatrix(updateParents: boolean, updateChildren: boolean): void;
 }
 
-/** `BufferAttribute` and `InterleavedBufferAttribute`. */
+/** A `BufferAttribute` or an `InterleavedBufferAttribute`. */
 export interface AttributeLike {
   readonly count: number;
   getX(index: number): number;
@@ -40,18 +40,18 @@ export interface AttributeLike {
   getZ(index: number): number;
 }
 
-/** `BufferGeometry`. */
+/** A `BufferGeometry`. */
 export interface GeometryLike {
   readonly attributes: { readonly [name: string]: unknown };
   readonly index: { readonly count: number; getX(index: number): number } | null;
 }
 
-/** `Object3D`, as far as its meshes are read. */
+/** An `Object3D` whose meshes are read. */
 export interface MeshTree extends PlacedObject {
   traverse(callback: (object: PlacedObject) => void): void;
 }
 
-/** `PerspectiveCamera`, as far as its lens is set. */
+/** A `PerspectiveCamera` whose lens can be set. */
 export interface PerspectiveCameraLike {
   fov: number;
   aspect: number;

@@ -1,6 +1,6 @@
 /** The figure page: one SVG with error against difficulty, histograms of IoU, and pictures of poses. */
-import { median, share } from "../statistics.mjs";
-import { isWithin, strict } from "../tolerance.mjs";
+import { isWithin, strict } from "../records.mjs";
+import { median, share } from "../table.mjs";
 
 /** @typedef {import("../records.mjs").BenchRecord} BenchRecord */
 /** @typedef {{ method: string, records: readonly BenchRecord[] }} Series */

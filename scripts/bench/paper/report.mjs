@@ -1,22 +1,22 @@
 /** Tables and figures of a finished run, as files. */
 import { copyFileSync, existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { basename, join } from "node:path";
+import { runLab } from "../../lib/lab.mjs";
 import { at } from "../../lib/paths.mjs";
-import { run as runProgram } from "../../lib/run.mjs";
-import { readRecords } from "../results.mjs";
+import { readRecords } from "../records.mjs";
+import { recordsFile } from "../results.mjs";
 import { figurePage } from "./figures.mjs";
-import { recordsFile } from "./jobs.mjs";
 import { makeTables, secondsOf, tableMarkdown } from "./tables.mjs";
 
 /** @typedef {import("../records.mjs").BenchRecord} BenchRecord */
 /** @typedef {import("./rows.mjs").TableSpec} TableSpec */
 /** @typedef {{ id: string, title: string, markdown: string, data: unknown }} GeneralTable */
-/** @typedef {Awaited<ReturnType<typeof import("../results.mjs").surroundings>>} Surroundings */
+/** @typedef {Awaited<ReturnType<typeof import("../results.mjs").environment>>} Environment */
 /**
  * @typedef {object} Finished
  * @property {readonly TableSpec[]} specs
  * @property {string} out
- * @property {Surroundings & { software: Record<string, string>, setSeed: number, scenes: number }} run
+ * @property {Environment & { software: Record<string, string>, setSeed: number, scenes: number }} run
  * @property {Record<string, string>} folders case folders by prior
  * @property {readonly GeneralTable[]} general
  * @property {boolean} snapshot
@@ -130,7 +130,7 @@ async function pictureOf(title, record, cases, out) {
   const folder = basename(cases) === record.name ? cases : join(cases, record.name);
   const matrix = record.alignment?.matrix.join(",") ?? "";
   const args = ["bench", "--cases", folder, "--picture", file, `--matrix=${matrix}`];
-  await runProgram(at("target", "native", "sim3align-lab"), args);
+  await runLab(args);
   const png = readFileSync(file);
   const name = `${title}: ${record.name}, IoU ${(record.alignment?.metrics.iou ?? 0).toFixed(3)}`;
   // Width and height stand in a PNG's first chunk.

@@ -89,7 +89,7 @@ export function tableSpecs(imported, priors) {
 }
 
 /**
- * What has to be run on a prior's cases: every row of our own once.
+ * The rows to run on a prior's cases: each of our own once.
  * @param {readonly TableSpec[]} specs
  * @param {string} prior
  * @returns {{ name: string, assignments: string }[]}

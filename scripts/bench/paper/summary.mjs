@@ -1,10 +1,37 @@
-/** What a row of a table says of all its cases. */
-import { judged } from "../records.mjs";
-import { mean, median, share } from "../statistics.mjs";
-import { isWithin, loose, strict } from "../tolerance.mjs";
-import { columns, metricValue } from "./columns.mjs";
+/** The columns of the paper's tables, in the paper's order and units, and their values over the cases of a row. */
+import { isWithin, judged, loose, strict } from "../records.mjs";
+import { mean, median, share } from "../table.mjs";
 
 /** @typedef {import("../records.mjs").BenchRecord} BenchRecord */
+/**
+ * @typedef {object} Column
+ * @property {string} key its name in `Metrics` of `src/metrics/mod.rs`
+ * @property {string} title
+ * @property {number} digits after the point
+ * @property {boolean} isShare a share of 1, of which a pose that shows nothing has none; of a distance it has no number
+ */
+
+/** @type {readonly Column[]} */
+export const columns = [
+  { key: "boundaryF", title: "boundary F ↑", digits: 3, isShare: true },
+  { key: "centerDriftPx", title: "drift px ↓", digits: 1, isShare: false },
+  { key: "iou", title: "IoU ↑", digits: 3, isShare: true },
+  { key: "chamferMm", title: "Chamfer mm ↓", digits: 1, isShare: false },
+  { key: "uniChamferMm", title: "UniChamfer mm ↓", digits: 1, isShare: false },
+  { key: "fitness", title: "fitness ↑", digits: 3, isShare: true },
+  { key: "normalConsistency", title: "normals ↑", digits: 3, isShare: true },
+  { key: "depthMaeMm", title: "depth MAE mm ↓", digits: 1, isShare: false },
+];
+
+/**
+ * A pose's value of a column; null where it is a distance that can't be measured.
+ * @param {Record<string, number | null> | null | undefined} metrics
+ * @param {Column} column
+ */
+export function metricValue(metrics, { key, isShare }) {
+  return metrics?.[key] ?? (isShare ? 0 : null);
+}
+
 /** @typedef {{ mean: number | null, median: number | null, n: number }} Statistic */
 
 /**
@@ -53,7 +80,7 @@ export function summarise(records) {
 }
 
 /**
- * What the true pose's own metrics are: no pose can be expected to do better.
+ * The metrics of the true pose: no pose can be expected to do better.
  * @param {readonly BenchRecord[]} records
  * @returns {Pick<Summary, "n" | "answered" | "metrics">}
  */
@@ -64,13 +91,12 @@ export function summariseTruth(records) {
 
 /** @param {readonly (Record<string, number | null> | null | undefined)[]} all */
 function metricsOf(all) {
-  const of = (/** @type {import("./columns.mjs").Column} */ column) =>
-    statistic(all.flatMap((metrics) => metricValue(metrics, column) ?? []));
+  const of = (/** @type {Column} */ column) => statistic(all.flatMap((metrics) => metricValue(metrics, column) ?? []));
   return Object.fromEntries(columns.map((column) => [column.key, of(column)]));
 }
 
 /**
- * What an answer takes, in seconds: the median. Apart from the rest, which does not depend on the machine.
+ * The median time of an answer, in seconds. It is kept apart from the other values, which do not depend on the machine.
  * @param {readonly BenchRecord[]} records
  */
 export const typicalSeconds = (records) => finite(median(records.map(({ seconds }) => seconds)));

@@ -1,7 +1,6 @@
 /** The paper's tables over our records: which rows there are, and how they are printed. */
 import { fixed, markdownTable, percent } from "../table.mjs";
-import { columns } from "./columns.mjs";
-import { summarise, summariseTruth, typicalSeconds } from "./summary.mjs";
+import { columns, summarise, summariseTruth, typicalSeconds } from "./summary.mjs";
 
 /** @typedef {import("../records.mjs").BenchRecord} BenchRecord */
 /** @typedef {import("./summary.mjs").Summary} Summary */

@@ -24,11 +24,6 @@ def point_cloud(points: np.ndarray, normals: np.ndarray | None = None) -> PointC
     return cloud
 
 
-def sample_surface(mesh: o3d.geometry.TriangleMesh, count: int) -> PointCloud:
-    """Points with the triangles' normals: from these the estimated ones get their sides, outwards."""
-    return mesh.sample_points_uniformly(count, use_triangle_normal=True)
-
-
 def estimate_normals(cloud: PointCloud, voxel: float) -> None:
     """Over two voxels; normals that the cloud has already tell the sides of the new ones."""
     cloud.estimate_normals(o3d.geometry.KDTreeSearchParamHybrid(radius=2 * voxel, max_nn=30))

@@ -1,6 +1,6 @@
 """Runs methods over cases or pairs and writes one JSON file per answer.
 
-An answer is written beside its place and renamed, so that a run that was stopped goes on where it ended. A library that
+An answer is written beside its place and renamed, so that an interrupted run can be resumed. A library that
 takes its process down with it leaves the file it had begun: that item is tried once more in a process of its own, and
 what ends that one too counts as the method's error.
 """
@@ -13,7 +13,6 @@ import multiprocessing
 import os
 import sys
 import time
-from collections.abc import Iterable
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
@@ -23,7 +22,8 @@ from typing import Any, TextIO
 import numpy as np
 
 from .frames import Problem, unified
-from .methods import METHODS
+from .inputs import Case, read_case, read_cloud
+from .methods import METHODS, SEED, SEED_VARIABLE
 
 _progress: TextIO = sys.stdout
 
@@ -52,14 +52,15 @@ class Task:
         return Task(**{**self.__dict__, "methods": missing})
 
 
-def run_tasks(tasks: Iterable[Task], jobs: int) -> None:
-    tasks = list(tasks)
+def run_tasks(tasks: list[Task], jobs: int, threads: int, seed: int) -> None:
     for task in tasks:
         for method in task.methods:
             task.begun(method).parent.mkdir(parents=True, exist_ok=True)
             # Of a run that was stopped.
             task.begun(method).unlink(missing_ok=True)
-    os.environ["OMP_NUM_THREADS"] = "1"
+    # The processes inherit them.
+    os.environ["OMP_NUM_THREADS"] = f"{threads}"
+    os.environ[SEED_VARIABLE] = f"{seed}"
     while tasks := [left for task in tasks if (left := task.left()).methods]:
         if _run_all(tasks, jobs):
             continue
@@ -92,10 +93,10 @@ def _run_all(tasks: list[Task], jobs: int) -> bool:
 
 def _begin(cores: Any) -> None:
     """
-    Puts the process on one core: several threads would not find the same twice, and would take more than one core's
-    time. Leaves standard output to the progress: what libraries print goes to standard error.
+    Puts a process of one thread on one core. Leaves standard output to the progress: what libraries print goes to
+    standard error.
     """
-    if hasattr(os, "sched_setaffinity"):
+    if hasattr(os, "sched_setaffinity") and os.environ["OMP_NUM_THREADS"] == "1":
         os.sched_setaffinity(0, {cores.get()})
     global _progress
     _progress = os.fdopen(os.dup(1), "w", buffering=1)
@@ -125,13 +126,9 @@ def _run(task: Task) -> None:
         _write(task, method, answer)
 
 
-def _read(task: Task) -> Any:
+def _read(task: Task) -> Case | tuple[np.ndarray, np.ndarray]:
     if task.folder is None:
-        from .pairs import read_cloud
-
         return read_cloud(task.source), read_cloud(task.target)
-    from .case import read_case
-
     return read_case(task.folder)
 
 
@@ -140,7 +137,7 @@ def _answer(task: Task, case: Any, method: str) -> dict[str, Any]:
     if task.folder is None:
         source, target = case
         return {"targetFromSource": similarity(run(Problem(source, target, task.voxel_m)))}
-    problem, unit_from_mesh, unit_from_camera = unified(case.depth, case.mask, case.camera, case.surface())
+    problem, unit_from_mesh, unit_from_camera = unified(case.depth, case.mask, case.camera, case.surface(SEED))
     camera_from_mesh = np.linalg.inv(unit_from_camera) @ run(problem) @ unit_from_mesh
     return {"cameraFromMesh": similarity(camera_from_mesh)}
 

@@ -3,22 +3,17 @@
 from __future__ import annotations
 
 import json
-import tempfile
-from pathlib import Path
 
 import numpy as np
-import open3d as o3d
 import trimesh
-from PIL import Image
 from scipy.spatial.transform import Rotation
 
-from .case import read_case
-from .frames import Problem, apply, diagonal, unified, unit_from_own
+from .frames import Problem, apply, unit_from_own
 from .methods import METHODS, PAIR_METHODS
 from .runner import similarity
 
 MAX_TURN_DEG = 2.0
-# What is not refined is as exact as its voxels allow, and gets smaller ones.
+# Without refinement, a method is as exact as its voxels: it gets smaller ones.
 MAX_COARSE_TURN_DEG = 4.0
 VOXEL_DIVISIONS, COARSE_VOXEL_DIVISIONS = 30, 60
 # Shares of the diagonal, and of the scale.
@@ -100,49 +95,8 @@ def check(name: str, test: str, truth: np.ndarray, size: float) -> bool:
     return holds
 
 
-def reads_cases() -> bool:
-    """A case drawn by Open3D's ray caster and written as files: the points read from it have to lie on the true surface
-    in the camera's frame, and be taken back to it from the unit frame."""
-    mesh = model()
-    truth = motion(50.0, 0.2, (0.03, -0.02, 0.8))
-    camera = {"fx": 400.0, "fy": 410.0, "cx": 150.0, "cy": 115.0}
-    width, height = 320, 240
-    placed = o3d.geometry.TriangleMesh(
-        o3d.utility.Vector3dVector(apply(truth, mesh.vertices)), o3d.utility.Vector3iVector(mesh.faces)
-    )
-    scene = o3d.t.geometry.RaycastingScene()
-    scene.add_triangles(o3d.t.geometry.TriangleMesh.from_legacy(placed))
-    v, u = np.mgrid[0:height, 0:width].astype(np.float32)
-    directions = [(u - camera["cx"]) / camera["fx"], (v - camera["cy"]) / camera["fy"], np.ones_like(u)]
-    rays = np.stack([*np.zeros((3, height, width), np.float32), *directions], axis=2).astype(np.float32)
-    depth = scene.cast_rays(o3d.core.Tensor(rays))["t_hit"].numpy()
-    hit = np.isfinite(depth)
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        millimetres = np.where(hit, np.round(10_000 * depth), 0).astype(np.uint16)
-        Image.fromarray(millimetres).save(folder / "depth.png")
-        Image.fromarray(np.where(hit, 255, 0).astype(np.uint8)).save(folder / "mask.png")
-        k = [[camera["fx"], 0, camera["cx"]], [0, camera["fy"], camera["cy"]], [0, 0, 1]]
-        (folder / "camera.json").write_text(json.dumps({"K": k, "depth_scale": 0.1}))
-        # The mesh hangs on a node that moves it back to where it is.
-        away = motion(30.0, 2.0, (1.0, 2.0, 3.0))
-        stored = trimesh.Scene()
-        stored.add_geometry(mesh.copy().apply_transform(np.linalg.inv(away)), transform=away)
-        stored.export(folder / "mesh.glb")
-        case = read_case(folder)
-    problem, unit_from_mesh, unit_from_camera = unified(case.depth, case.mask, case.camera, case.surface())
-    target = apply(np.linalg.inv(unit_from_camera), problem.target).astype(np.float32)
-    source = apply(truth @ np.linalg.inv(unit_from_mesh), problem.source).astype(np.float32)
-    size = diagonal(source)
-    off = [float(scene.compute_distance(o3d.core.Tensor(points)).numpy().max()) / size for points in (source, target)]
-    # A tenth of a millimetre of rounding.
-    holds = len(target) > 1000 and max(off) < 1e-3
-    print(json.dumps({"test": "case files", "points": len(target), "off": off, "holds": holds}), flush=True)
-    return holds
-
-
 def self_test(names: list[str]) -> int:
-    holds = [reads_cases()]
+    holds = []
     for name in names:
         if METHODS[name].is_global:
             truth = motion(FAR_DEG, STRETCH.get(name, 1.0), (0.3, -0.2, 0.5))

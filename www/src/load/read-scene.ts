@@ -1,7 +1,7 @@
 /** From files to a scene. */
 import { type MeshArrays, Sim3AlignError } from "sim3align";
-import { fromBop, resizeMask, type Sim3Like } from "sim3align/conventions";
-import { readCamera, readDepth, readMask, readMesh } from "sim3align/formats";
+import { resizeMask } from "sim3align/conventions";
+import { externalResources, readCamera, readDepth, readMask, readMesh, readPose } from "sim3align/formats";
 import { ObjectModel, type ObjectParts } from "../state/object-model.js";
 import type { Scene } from "../state/scene.js";
 import { FieldError, forField } from "./field-error.js";
@@ -72,9 +72,9 @@ async function intrinsicsOf(
   height: number,
 ): Promise<Intrinsics> {
   if (source.kind === "guess") {
-    const f = height / 2 / Math.tan((source.fovYDeg * Math.PI) / 360);
+    const { fx, fy, cx, cy } = await readCamera({ fovYDeg: source.fovYDeg }, { width, height });
     const warning = `The camera is a guess (vertical field of view ${source.fovYDeg}°): the size will be about right at best.`;
-    return { fx: f, fy: f, cx: (width - 1) / 2, cy: (height - 1) / 2, warnings: [warning] };
+    return { fx, fy, cx, cy, warnings: [warning] };
   }
   const { fx, fy, cx, cy, warnings } =
     source.kind === "numbers" ? { ...source, warnings: [] } : await readCamera(bytes as Uint8Array, { width, height });
@@ -130,40 +130,15 @@ async function readMeshSource({ file, beside }: MeshSource): Promise<{ mesh: Mes
   const ending = extension(file.path);
   if (ending !== "gltf") return { mesh: await readMesh(bytes), glb: ending === "glb" ? bytes : null };
   const resources: Record<string, Uint8Array> = {};
-  for (const uri of bufferUris(bytes)) {
+  for (const uri of await externalResources(bytes)) {
     const found = beside.find(({ path }) => path.endsWith(decodeURIComponent(uri)));
     if (found !== undefined) resources[uri] = await found.bytes();
   }
   return { mesh: await readMesh(bytes, { format: "gltf", resources }), glb: null };
 }
 
-/** The files that a glTF file keeps its buffers in. What is wrong with it, its reader says. */
-function bufferUris(bytes: Uint8Array): string[] {
-  try {
-    const { buffers = [] } = JSON.parse(new TextDecoder().decode(bytes)) as { buffers?: { uri?: string }[] };
-    return buffers.flatMap(({ uri }) => (uri === undefined || uri.startsWith("data:") ? [] : [uri]));
-  } catch {
-    return [];
-  }
-}
-
-/** A true pose. It is only there to be compared with: one that cannot be read is none. */
+/** A true pose. It is only compared with: a file that cannot be read is as good as none. */
 async function readTruth(file: NamedFile | undefined): Promise<ObjectParts["truth"]> {
   if (file === undefined) return null;
-  try {
-    const json = JSON.parse(new TextDecoder().decode(await file.bytes())) as Record<string, unknown>;
-    if (json.available === false) return null;
-    const words = String(json.symmetry ?? "")
-      .trim()
-      .toLowerCase();
-    const symmetry = words.startsWith("continuous")
-      ? "auto-revolution"
-      : words.startsWith("discrete")
-        ? "auto"
-        : "none";
-    if ("cam_R_m2c" in json) return { transform: fromBop(json as never), symmetry };
-    return "scale" in json ? { transform: json as unknown as Sim3Like, symmetry } : null;
-  } catch {
-    return null;
-  }
+  return readPose(await file.bytes()).catch(() => null);
 }

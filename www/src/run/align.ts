@@ -89,9 +89,7 @@ async function runAll(
   const [only] = objects;
   if (objects.length === 1 && first !== undefined && only !== undefined) {
     const onProgress = follow(only);
-    // With one object, the other workers may help where there is enough to share.
-    const splitSearch = chosen.quality !== "fast";
-    finish(only, await (await aligner()).align(first, { ...chosen, onProgress, splitSearch }), source);
+    finish(only, await (await aligner()).align(first, { ...chosen, onProgress }), source);
     return;
   }
   const followers = objects.map(follow);

@@ -3,14 +3,19 @@
 use std::path::{Path, PathBuf};
 
 use lexopt::prelude::*;
-use sim3align::align::field::{Field, Options};
-use sim3align::align::options::AlignOptions;
+use sim3align::align::method;
+use sim3align::options::{Choice, Options};
+use sim3align::paper::options::PaperOptions;
 use sim3align::precise::SearchSettings;
+use sim3align::precise::options::AlignOptions;
+use sim3align::report::Preset;
 use sim3align_geometry::error::Error;
 use sim3align_lab::baselines::Baseline;
+use sim3align_lab::baselines::align::BaselineOptions;
 use sim3align_lab::samples::benchmark::override_setting;
 use sim3align_lab::samples::evaluation::case::CASES;
 use sim3align_lab::samples::evaluation::tier::{Class, Tier};
+use sim3align_lab::samples::option_text;
 use sim3align_lab::samples::records::RecordKey;
 use sim3align_lab::samples::scenes::Prior;
 
@@ -58,8 +63,12 @@ Running
 pub struct Row {
     /// Its name in the tables.
     pub name: String,
-    /// The options.
-    pub options: AlignOptions,
+    /// The preset that [`Method::Align`] runs.
+    pub preset: Preset,
+    /// Its options under `precise`.
+    pub precise: AlignOptions,
+    /// Its options under `paper`, and those of baselines.
+    pub paper: PaperOptions,
     pub search: Vec<(String, f64)>,
     pub method: Method,
     /// All assignments, as they were written.
@@ -79,6 +88,21 @@ pub enum Method {
 }
 
 impl Row {
+    /// The preset with its options.
+    pub fn preset_options(&self) -> method::Method {
+        match self.preset {
+            Preset::Precise => self.precise.clone().into(),
+            Preset::Paper => self.paper.clone().into(),
+        }
+    }
+
+    /// The options of a baseline.
+    pub fn baseline_options(&self) -> BaselineOptions {
+        // The paper's method locks the scale by default, TEASER only where it is asked to.
+        let lock_scale = self.assignments.iter().any(|assignment| assignment == "lockScale=true");
+        BaselineOptions { paper: self.paper.clone(), lock_scale, up: None }
+    }
+
     /// What a record of this row is kept under.
     pub fn key(&self, case: String) -> RecordKey {
         RecordKey { row: self.name.clone(), options: self.assignments.join(" "), case }
@@ -180,7 +204,7 @@ impl Arguments {
         if arguments.rows.is_empty() {
             let name = match &base.method {
                 Method::Baseline(baseline) => baseline.as_str().into(),
-                _ => name_of(base.options.preset),
+                _ => base.preset.as_str().into(),
             };
             arguments.rows.push(Row { name, ..base });
         }
@@ -190,17 +214,13 @@ impl Arguments {
     }
 }
 
-fn name_of(preset: impl serde::Serialize) -> String {
-    serde_json::to_value(preset).ok().and_then(|name| Some(name.as_str()?.to_owned())).unwrap_or_default()
-}
-
 fn list<T, E: std::fmt::Display>(text: &str, parse: impl Fn(&str) -> Result<T, E>) -> Result<Vec<T>, String> {
     text.split(',').map(|part| parse(part.trim()).map_err(|error| format!("{part:?}: {error}"))).collect()
 }
 
 /// Sets an option from `name=value`, one of the search's settings from `search.name=number`, or the method.
 fn assign(row: &mut Row, assignment: &str) -> Result<(), String> {
-    let Row { options, search, method, assignments, .. } = row;
+    let Row { preset, precise, paper, search, method, assignments, .. } = row;
     assignments.push(assignment.to_owned());
     let (name, value) = assignment.split_once('=').ok_or_else(|| format!("{assignment:?} is no NAME=VALUE"))?;
     if name == "method" {
@@ -217,57 +237,11 @@ fn assign(row: &mut Row, assignment: &str) -> Result<(), String> {
         search.push((setting.to_owned(), value));
         return Ok(());
     }
-    let mut fields = options.fields();
-    let known = || AlignOptions::default().fields().iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
-    let (_, field) = fields
-        .iter_mut()
-        .find(|(field, _)| *field == name)
-        .ok_or_else(|| format!("no option {name}; there are {}", known()))?;
-    if !set(field, value) {
-        return Err(format!("{name}: found {value:?}, expected {}", field.expected()));
+    if name == "preset" {
+        return if preset.set(value) { Ok(()) } else { Err(format!("no preset {value}; there are precise and paper")) };
     }
-    field.check(name).map_err(|error| error.to_string())
-}
-
-/// Sets a field from text; `false` where that does not fit its type.
-fn set(field: &mut Field<'_>, text: &str) -> bool {
-    fn store<T: std::str::FromStr>(slot: &mut T, text: &str) -> bool {
-        text.parse().map(|value| *slot = value).is_ok()
-    }
-    match field {
-        Field::Count { value, .. } => store(*value, text),
-        Field::Number { value, .. } => store(*value, text),
-        Field::Flag(flag) => store(*flag, text),
-        Field::Choice(choice) => choice.set(text),
-        Field::Positive(number) if text == "null" => {
-            **number = None;
-            true
-        }
-        Field::Positive(number) => text.parse().map(|value| **number = Some(value)).is_ok(),
-        Field::Switch(flag) => {
-            **flag = None;
-            text == "null" || text.parse().map(|value| **flag = Some(value)).is_ok()
-        }
-        Field::Bounds(bounds) => match list(text, str::parse::<f64>).as_deref() {
-            Ok([fixed]) => {
-                **bounds = Some([*fixed, *fixed]);
-                true
-            }
-            Ok([min, max]) => {
-                **bounds = Some([*min, *max]);
-                true
-            }
-            _ => false,
-        },
-        // Differ from case to case.
-        Field::Direction(_) | Field::Symmetry(_) | Field::Transform(_) => false,
-        Field::Guard(guard) if text == "null" => {
-            **guard = None;
-            true
-        }
-        Field::Guard(guard) => {
-            let bounds = list(text, str::parse::<f64>).ok().and_then(|bounds| <[f64; 2]>::try_from(bounds).ok());
-            bounds.map(|bounds| **guard = Some(bounds)).is_some()
-        }
-    }
+    // An option that both presets have is set for both, so that rows of either can build on it.
+    let set = [option_text::assign(precise, name, value), option_text::assign(paper, name, value)];
+    let known = || [AlignOptions::names(), PaperOptions::names()].concat().join(", ");
+    set.into_iter().flatten().reduce(Result::and).ok_or_else(|| format!("no option {name}; there are {}", known()))?
 }

@@ -129,9 +129,12 @@ fn draw(case: &BenchCase, matrix: Option<&[f64]>, path: &Path) -> Result<(), Str
 
 fn run_row(case: &BenchCase, row: &Row) -> Record {
     match &row.method {
-        Method::Align => run_case(case, &row.options, &row.search),
+        Method::Align => run_case(case, &row.preset_options(), &row.search),
         Method::Baseline(baseline) => {
-            run_method(case, |observation, mesh, host| align_baseline(observation, mesh, *baseline, &row.options, host))
+            let options = row.baseline_options();
+            run_method(case, |observation, mesh, host| {
+                align_baseline(observation, mesh, *baseline, &options, host).map(Into::into)
+            })
         }
         Method::Import(folder) => imported(case, folder),
     }

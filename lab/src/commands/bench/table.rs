@@ -92,7 +92,7 @@ fn line(out: &mut String, group: &str, name: &str, records: &[&Record]) {
         error(1, |e| e.rotation_error_deg),
         error(2, |e| 100.0 * e.translation_error_relative),
     );
-    metrics(out, records, |record| record.alignment.as_ref().map(|alignment| alignment.metrics));
+    metrics(out, records, |record| record.alignment.as_ref().and_then(|alignment| alignment.metrics()));
     // Of answers that were imported it may not be known.
     let seconds = records.iter().map(|record| record.seconds).filter(|seconds| seconds.is_finite());
     let _ = writeln!(out, " | {} |", cell(median(seconds.collect()), 2));
@@ -125,7 +125,7 @@ fn list_failures(out: &mut String, name: &str, records: &[&Record], most: usize)
     );
     let _ = writeln!(out, "|---|---|---|---|---|---|---|---|");
     for record in failed.iter().take(most) {
-        let found = record.alignment.as_ref().map(|alignment| alignment.metrics);
+        let found = record.alignment.as_ref().and_then(|alignment| alignment.metrics());
         let both = |digits, of: fn(&Metrics) -> Option<f64>| {
             let [found, truth] = [found, record.truth_metrics].map(|m| cell(m.as_ref().and_then(of), digits));
             format!("{found} ({truth})")
@@ -157,6 +157,6 @@ fn list_failures(out: &mut String, name: &str, records: &[&Record], most: usize)
 
 /// s / s_true − 1.
 fn signed_scale_error(record: &Record) -> f64 {
-    let ratio = record.alignment.as_ref().map(|alignment| alignment.scale_ratio);
+    let ratio = record.alignment.as_ref().map(|alignment| alignment.diagnostics().scale_ratio);
     ratio.zip(record.truth_scale_ratio).map_or(f64::NAN, |(found, truth)| found / truth - 1.0)
 }

@@ -4,15 +4,17 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use glam::Vec3;
-use sim3align::align::field::{Field, Options};
-use sim3align::align::options::{RegisterOptions, ScaleOption};
+use sim3align::options::Options;
+use sim3align::options::scale::ScaleOption;
 use sim3align::progress::Silent;
 use sim3align::register::icp::IcpMetric;
+use sim3align::register::options::RegisterOptions;
 use sim3align::register::register;
 use sim3align_geometry::cloud::Cloud;
 use sim3align_geometry::similarity::Similarity;
 use sim3align_lab::baselines::{Baseline, PairSettings, register_pair};
 use sim3align_lab::samples::imported::{CLOUDS, Outcome, answer_in};
+use sim3align_lab::samples::option_text;
 use sim3align_lab::samples::records::RecordKey;
 use sim3align_lab::samples::registration::cloud_file::flat;
 use sim3align_lab::samples::registration::pair::Pair;
@@ -23,7 +25,7 @@ const INLIER_VOXELS: f64 = 1.5;
 
 /// A registration method. To add one: a variant, its name in [`Method::from_name`], its call in [`Method::run`].
 pub enum Method {
-    /// `register` with the scale fixed at 1.
+    /// `register`, with the scale fixed at 1 by default.
     Register { options: Box<RegisterOptions>, assignments: Vec<String> },
     /// Another method of the crate's, at the pair's voxel size.
     Baseline(Baseline),
@@ -51,10 +53,11 @@ impl Method {
             let unknown = || format!("--method {text}: expected register, {}, or NAME=import:DIR", names());
             return Baseline::from_name(text).map(Self::Baseline).ok_or_else(unknown);
         }
-        let mut options = RegisterOptions::default();
+        let mut options = RegisterOptions { scale: ScaleOption::Fixed(1.0), ..RegisterOptions::default() };
         for assignment in assignments {
             let (name, value) = assignment.split_once('=').ok_or_else(|| format!("--option {assignment}: no ="))?;
-            assign(&mut options, name, value).ok_or_else(|| format!("--option {assignment}: not an option"))?;
+            option_text::assign(&mut options, name, value)
+                .ok_or_else(|| format!("--option {assignment}: not an option"))??;
         }
         options.validate().map_err(|error| error.to_string())?;
         Ok(Self::Register { options: Box::new(options), assignments: assignments.to_vec() })
@@ -89,7 +92,7 @@ impl Method {
             Self::Register { options, .. } => {
                 let (source, target) = (flat(source), flat(target));
                 let begun = Instant::now();
-                let found = register(&source, &target, ScaleOption::Fixed(1.0), options, &mut Silent);
+                let found = register(&source, &target, options, &mut Silent);
                 let seconds = begun.elapsed().as_secs_f64();
                 let pose = found.and_then(|found| Similarity::from_column_major(&found.target_from_source.matrix));
                 Answer { target_from_source: pose.map_err(|error| error.to_string()), seconds }
@@ -107,18 +110,6 @@ impl Method {
             Self::Import { folder, .. } => imported(pair, folder),
         }
     }
-}
-
-fn assign(options: &mut RegisterOptions, name: &str, text: &str) -> Option<()> {
-    let (_, field) = options.fields().into_iter().find(|(own, _)| *own == name)?;
-    match field {
-        Field::Count { value, .. } => *value = text.parse().ok()?,
-        Field::Number { value, .. } => *value = text.parse().ok()?,
-        Field::Positive(value) => *value = if text == "null" { None } else { Some(text.parse().ok()?) },
-        Field::Choice(choice) => return choice.set(text).then_some(()),
-        _ => return None,
-    }
-    Some(())
 }
 
 /// The answer of another program.

@@ -1,0 +1,118 @@
+/** Flags for options, made from the generated tables of options. */
+import { type Command, InvalidArgumentError, Option } from "commander";
+import type { OptionRow } from "../options.js";
+import { direction, guard, number, scale, symmetry } from "./parse.js";
+
+/** Flags that are shorter than their option's name. */
+const FLAG_NAMES: Readonly<Record<string, string>> = { knownExtentM: "known-extent" };
+
+/** `--known-extent-axis` for `knownExtentAxis`, without the dashes. */
+const flagName = ({ name }: OptionRow) =>
+  FLAG_NAMES[name] ?? name.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`);
+
+/** The name under which Commander keeps the flag's value. */
+const valueName = (row: OptionRow) => flagName(row).replace(/-(.)/g, (_, letter: string) => letter.toUpperCase());
+
+/** A flag that turns an option off that is on by default. */
+const isNegated = ({ kind, default: value }: OptionRow) => kind === "boolean" && value === true;
+
+/** Adds a flag for each option. */
+export function addOptionFlags(command: Command, rows: readonly OptionRow[]): void {
+  for (const row of rows) command.addOption(flagOf(row, rows));
+}
+
+/** The options that flags were given for. Transforms are left as the paths of their files. */
+export function givenOptions(
+  flags: Readonly<Record<string, unknown>>,
+  rows: readonly OptionRow[],
+): Record<string, unknown> {
+  const given: Record<string, unknown> = {};
+  for (const row of rows) {
+    const value = flags[valueName(row)];
+    // Commander has `true` for a --no flag that was not given.
+    if (value === undefined || (isNegated(row) && value === true)) continue;
+    given[row.name] = value === "none" && row.isNullable ? null : value;
+  }
+  return given;
+}
+
+function flagOf(row: OptionRow, rows: readonly OptionRow[]): Option {
+  const flag = isNegated(row) ? `--no-${flagName(row)}` : `--${flagName(row)}`;
+  const option = new Option(`${flag}${placeholder(row)}`, description(row, rows));
+  const parse = parserOf(row);
+  if (parse !== undefined) option.argParser(parse);
+  return option;
+}
+
+/** The option's summary, with flags in place of the options that it names, its values and its default. */
+function description(row: OptionRow, rows: readonly OptionRow[]): string {
+  const summary = row.summary.replace(/`(\w+)`/g, (quoted, name: string) => {
+    const named = rows.find((other) => other.name === name);
+    return named === undefined ? quoted : `--${flagName(named)}`;
+  });
+  const facts = [valuesOf(row), defaultOf(row)].filter((fact) => fact !== undefined).join("; ");
+  const text = isNegated(row) ? `not: ${lowered(summary)}` : lowered(summary);
+  return (facts === "" ? text : `${text} (${facts})`).replaceAll("`", "");
+}
+
+const lowered = (text: string) => (/^[A-Z][a-z]/.test(text) ? text.charAt(0).toLowerCase() + text.slice(1) : text);
+
+function valuesOf({ min, max, above, choices }: OptionRow): string | undefined {
+  if (choices !== undefined) return choices.join(", ");
+  if (min !== undefined && max !== undefined) return `${min} to ${max}`;
+  return above === undefined ? undefined : `above ${above}`;
+}
+
+function defaultOf({ kind, default: value }: OptionRow): string | undefined {
+  if (value === null || kind === "boolean") return undefined;
+  return `default ${Array.isArray(value) ? value.join(",") : String(value)}`;
+}
+
+function placeholder({ kind, name }: OptionRow): string {
+  switch (kind) {
+    case "integer":
+      return " <n>";
+    case "number":
+      return name.endsWith("M") ? " <metres>" : name.endsWith("Deg") ? " <degrees>" : " <x>";
+    case "boolean":
+      return "";
+    case "choice":
+      return " <name>";
+    case "scale":
+      return " <free|a|min,max>";
+    case "direction":
+      return " <x,y,z>";
+    case "symmetry":
+      return " <name|json>";
+    case "transform":
+      return " <file>";
+    case "guard":
+      return " <min,max|none>";
+  }
+}
+
+function parserOf(row: OptionRow): ((text: string) => unknown) | undefined {
+  switch (row.kind) {
+    case "integer":
+    case "number":
+      return number;
+    case "choice":
+      return (text) => chosen(text, row.choices ?? []);
+    case "scale":
+      return scale;
+    case "direction":
+      return direction;
+    case "symmetry":
+      return symmetry;
+    case "guard":
+      return guard;
+    case "boolean":
+    case "transform":
+      return undefined;
+  }
+}
+
+function chosen(text: string, choices: readonly string[]): string {
+  if (choices.includes(text)) return text;
+  throw new InvalidArgumentError(`Allowed choices are ${choices.join(", ")}.`);
+}

@@ -1,0 +1,58 @@
+/** Pose files: a case's `gt.json`, an annotation, or a saved result. */
+import { corruptJson, isNumber, type JsonFile, numbersIn, parsedJson, shown } from "../formats/json.js";
+import type { Sim3 } from "../sim3.js";
+import { failure, isRecord } from "../values.js";
+import { fromBop } from "./bop.js";
+import { sim3Of, similarityOf } from "./similarity.js";
+
+/** A known pose, and the symmetry that its file declares. */
+export interface KnownPose {
+  /** OpenCV camera from mesh, metres. */
+  transform: Sim3;
+  /** For the option `symmetry` of `evaluate`. */
+  symmetry: "none" | "auto" | "auto-revolution";
+}
+
+/**
+ * Reads a pose file: `{ scale, rotation, translation }` with the rotation as 3×3 numbers row by row or as a quaternion
+ * x, y, z, w; `{ matrix }`, 16 numbers column by column, or these alone; or an entry of BOP's `scene_gt.json`.
+ * @returns `null` where the file says that no pose is known (`available` is `false`)
+ */
+export function parsePoseFile(argument: string, content: JsonFile): KnownPose | null {
+  const json = parsedJson(argument, content);
+  if (isRecord(json) && json.available === false) return null;
+  const transform = transformIn(argument, Array.isArray(json) ? { matrix: json } : json);
+  return { transform, symmetry: symmetryOf(isRecord(json) ? json.symmetry : undefined) };
+}
+
+function transformIn(argument: string, json: unknown): Sim3 {
+  if (!isRecord(json)) throw corruptJson(argument, "JSON that is not an object", "{ scale, rotation, translation }");
+  if ("cam_R_m2c" in json) return fromBop(json as unknown as Parameters<typeof fromBop>[0]);
+  const invalid = (name: string, expected: string) =>
+    failure(
+      "INVALID_TRANSFORM",
+      `${argument}.${name}`,
+      shown(json[name]),
+      expected,
+      "Write { scale, rotation, translation } or { matrix }; x_cam = scale · R · p_mesh + translation.",
+    );
+  if ("matrix" in json) {
+    const matrix = numbersIn(json.matrix, 16);
+    if (matrix === null) throw invalid("matrix", "16 numbers, column by column");
+    return sim3Of(similarityOf(matrix, argument));
+  }
+  const { scale, rotation, translation } = json;
+  if (!isNumber(scale)) throw invalid("scale", "a number");
+  const place = numbersIn(translation, 3);
+  if (place === null) throw invalid("translation", "3 numbers, metres");
+  const turn = numbersIn(rotation, 9) ?? numbersIn(rotation, 4);
+  if (turn === null) throw invalid("rotation", "3 × 3 numbers row by row, or a quaternion x, y, z, w");
+  return sim3Of(similarityOf({ scale, rotation: turn, translation: place }, argument));
+}
+
+/** A data set's words about symmetry: "discrete", "continuous about z", … */
+function symmetryOf(words: unknown): KnownPose["symmetry"] {
+  const text = typeof words === "string" ? words.trim().toLowerCase() : "";
+  if (text.startsWith("continuous")) return "auto-revolution";
+  return text.startsWith("discrete") ? "auto" : "none";
+}

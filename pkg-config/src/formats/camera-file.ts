@@ -1,0 +1,200 @@
+/** Camera files, as datasets and drivers write them: our own, BOP's, ROS', RealSense's and Open3D's. */
+import { describe, invalidArgument } from "../error.js";
+import { failure, isRecord } from "../values.js";
+import { corruptJson, isNumber, type JsonFile, namesIn, numbersIn, parsedJson } from "./json.js";
+import { checkedPinhole, fromFieldOfView, fromMatrix, type Pinhole } from "./pinhole.js";
+import type { ImageSize } from "./pixels.js";
+
+/** What a camera file says. */
+export interface CameraFile extends Pinhole {
+  /** Pixels in a row of the image that the intrinsics belong to. */
+  width?: number;
+  /** Rows of the image that the intrinsics belong to. */
+  height?: number;
+  /** Metres per unit of whole-number depth. */
+  depthScale?: number;
+  /** What a pinhole camera leaves out: lens distortion. */
+  warnings: string[];
+}
+
+/** How to read a camera file. */
+export interface CameraFileOptions {
+  /** Pixels in a row of the image: needed for a field of view, compared with the file's width. */
+  width?: number | undefined;
+  /** Rows of the image: needed for a field of view, compared with the file's height. */
+  height?: number | undefined;
+  /** Which entry of a BOP `scene_camera.json`. */
+  imageId?: string | number | undefined;
+}
+
+/** An image size, as far as it is stated. */
+interface StatedSize {
+  width?: number | undefined;
+  height?: number | undefined;
+}
+
+/** The names of a camera file and of its options in errors. */
+export interface CameraFileNames {
+  file: string;
+  /** Stands before the name of an option. */
+  options: "" | "options.";
+}
+
+const forms = "{ fx, fy, cx, cy }, { K }, { fovYDeg }, intrinsic_matrix, a BOP scene_camera.json or a ROS CameraInfo";
+
+/**
+ * Reads a camera file. These forms are known, each with or without `width` and `height`:
+ *
+ * - `{ fx, fy, cx, cy }`, with RealSense's `ppx`, `ppy` too; `depthScale` is metres per unit of depth, BOP's
+ *   `depth_scale` millimetres per unit;
+ * - `{ K }`, nine numbers or three rows, row by row; or these alone;
+ * - Open3D's `intrinsic_matrix`, column by column;
+ * - `{ fovYDeg }`, a vertical field of view in degrees, for square pixels;
+ * - BOP's `scene_camera.json`, and one entry of it (`cam_K`);
+ * - ROS' CameraInfo (`K` and `D`, or `k` and `d`).
+ */
+export function parseCameraFile(
+  content: JsonFile,
+  { width, height, imageId }: CameraFileOptions = {},
+  names: CameraFileNames = { file: "camera", options: "options." },
+): CameraFile {
+  const given = { width: side(names, "width", width), height: side(names, "height", height) };
+  const id = idOf(names, imageId);
+  const json = parsedJson(names.file, content);
+  if (numbersIn(json, 9) !== null) return { ...fromMatrix(names.file, json), warnings: [] };
+  if (!isRecord(json)) throw corruptJson(names.file, "JSON that is not an object", forms);
+  const entry = sceneEntry(json, id, names) ?? json;
+  const own = { width: wholeIn(entry.width), height: wholeIn(entry.height) };
+  checkCameraSize(names.file, own, given);
+  const depthScale = depthScaleOf(entry, names);
+  return {
+    ...intrinsicsOf(entry, sizeOf(own) ?? sizeOf(given), names),
+    ...(own.width === undefined ? {} : { width: own.width }),
+    ...(own.height === undefined ? {} : { height: own.height }),
+    ...(depthScale === undefined ? {} : { depthScale }),
+    warnings: isDistorted(entry) ? [distortion] : [],
+  };
+}
+
+/** What a camera file says about whole-number depth, where the image's size is not known yet. */
+export function depthScaleIn(content: JsonFile, imageId?: string | number): number | undefined {
+  try {
+    // Any size will do: only a field of view needs one, and only for the intrinsics.
+    const json = parsedJson("camera", content);
+    if (!isRecord(json)) return undefined;
+    const names: CameraFileNames = { file: "camera", options: "options." };
+    return depthScaleOf(sceneEntry(json, idOf(names, imageId), names) ?? json, names);
+  } catch {
+    // The reading with the image's size reports what is wrong.
+    return undefined;
+  }
+}
+
+/** Refuses intrinsics of another image, as far as both sizes are known. */
+export function checkCameraSize(argument: string, own: StatedSize, image: StatedSize): void {
+  if (image.width === undefined || image.height === undefined) return;
+  const { width = image.width, height = image.height } = own;
+  if (width === image.width && height === image.height) return;
+  throw failure(
+    "SIZE_MISMATCH",
+    argument,
+    `intrinsics for ${width} × ${height} pixels beside an image of ${image.width} × ${image.height}`,
+    "intrinsics of this very image",
+    "Scale fx, cx by the ratio of the widths and fy, cy by that of the heights, or pass the full-size depth.",
+  );
+}
+
+const distortion =
+  "The camera has lens distortion, which is not modelled: pass a rectified depth map and mask, and its K.";
+
+/** The entry of a BOP `scene_camera.json`; `null` for any other object. */
+function sceneEntry(
+  json: Record<string, unknown>,
+  id: string | undefined,
+  names: CameraFileNames,
+): Record<string, unknown> | null {
+  const entries = Object.entries(json).filter((pair): pair is [string, Record<string, unknown>] => isRecord(pair[1]));
+  if (!entries.some(([, entry]) => "cam_K" in entry)) return null;
+  const ids = Object.keys(json);
+  // BOP writes ids plainly, and file names with leading zeros.
+  const short = (text: string) => text.replace(/^0+/, "");
+  const matches = ([key]: [string, unknown]) => key === id || short(key) === short(id ?? "");
+  const found = id === undefined ? (ids.length === 1 ? entries[0] : undefined) : entries.find(matches);
+  if (found !== undefined) return found[1];
+  const sorted = ids.sort((a, b) => a.length - b.length || (a < b ? -1 : 1));
+  const more = sorted.length > 20 ? `, … (${sorted.length} in all)` : "";
+  throw failure(
+    "INVALID_ARGUMENT",
+    `${names.options}imageId`,
+    id === undefined ? "no image id for a file of several images" : JSON.stringify(id),
+    `one of ${sorted.slice(0, 20).join(", ")}${more}`,
+    "Pass the id of the image that the depth map belongs to.",
+  );
+}
+
+function intrinsicsOf(entry: Record<string, unknown>, size: ImageSize | undefined, names: CameraFileNames): Pinhole {
+  const invalid = (found: string) => corruptJson(names.file, found, forms);
+  const matrixName = ["K", "k", "cam_K"].find((name) => name in entry);
+  if (matrixName !== undefined) {
+    const K = numbersIn(entry[matrixName], 9);
+    if (K === null) throw invalid(`${matrixName} that is not 3 × 3 numbers`);
+    return fromMatrix(names.file, K);
+  }
+  if ("intrinsic_matrix" in entry) {
+    const columns = numbersIn(entry.intrinsic_matrix, 9);
+    if (columns === null) throw invalid("intrinsic_matrix that is not 9 numbers");
+    return fromMatrix(
+      names.file,
+      [0, 3, 6, 1, 4, 7, 2, 5, 8].map((i) => columns[i]),
+    );
+  }
+  const number = (...aliases: string[]): number | undefined => {
+    const name = aliases.find((alias) => alias in entry);
+    if (name === undefined) return undefined;
+    const value = entry[name];
+    if (isNumber(value)) return value;
+    throw invalid(`${name} that is not a number`);
+  };
+  const [fx, fy, cx, cy] = [number("fx"), number("fy"), number("cx", "ppx"), number("cy", "ppy")];
+  if (fx !== undefined && fy !== undefined && cx !== undefined && cy !== undefined) {
+    return checkedPinhole(names.file, { fx, fy, cx, cy });
+  }
+  const fovYDeg = number("fovYDeg", "fov_y_deg");
+  if (fovYDeg === undefined) throw invalid(`an object with ${namesIn(entry)}`);
+  if (size !== undefined) return fromFieldOfView(names.file, fovYDeg, size);
+  const remedy = "Pass the depth map's width and height in pixels.";
+  const found = "a field of view without image size";
+  throw failure("INVALID_ARGUMENT", `${names.options}width`, found, "width and height", remedy);
+}
+
+function depthScaleOf({ depthScale, depth_scale }: Record<string, unknown>, names: CameraFileNames) {
+  if (depthScale === undefined && depth_scale === undefined) return undefined;
+  const fromBop = isNumber(depth_scale) ? depth_scale / 1000 : depth_scale;
+  const scale = depthScale === undefined ? fromBop : depthScale;
+  if (isNumber(scale) && scale > 0) return scale;
+  const remedy = "Write metres per unit as depthScale, or BOP's millimetres per unit as depth_scale.";
+  const found = "a depth scale that is not a number above 0";
+  throw failure("INVALID_CAMERA", `${names.file}.depthScale`, found, "a number above 0", remedy);
+}
+
+function isDistorted({ D, d = D }: Record<string, unknown>): boolean {
+  const coefficients = D ?? d;
+  return Array.isArray(coefficients) && coefficients.some((number) => isNumber(number) && number !== 0);
+}
+
+const wholeIn = (value: unknown) =>
+  Number.isSafeInteger(value) && (value as number) >= 0 ? (value as number) : undefined;
+
+const sizeOf = ({ width, height }: StatedSize): ImageSize | undefined =>
+  width === undefined || height === undefined ? undefined : { width, height };
+
+function side({ options }: CameraFileNames, name: string, value: unknown): number | undefined {
+  if (value === undefined || value === null || wholeIn(value) !== undefined) return wholeIn(value);
+  throw failure("INVALID_ARGUMENT", `${options}${name}`, describe(value), "a whole number", "Pass the size in pixels.");
+}
+
+function idOf({ options }: CameraFileNames, imageId: unknown): string | undefined {
+  if (imageId === undefined || imageId === null) return undefined;
+  if (typeof imageId === "number" || typeof imageId === "string") return `${imageId}`;
+  throw invalidArgument(`${options}imageId`, imageId, "a string or a number", "Pass a key of the file.");
+}

@@ -1,0 +1,142 @@
+/** COCO's run-length encoding of masks: down the columns, beginning with background. */
+import { describe } from "../error.js";
+import type { CocoRle, PixelArray } from "../input/types.js";
+import { failure, finiteNumbers, isRecord, record, whole } from "../values.js";
+import { corruptJson, type JsonFile, numbersIn, parsedJson } from "./json.js";
+import { type ImageSize, type MaskPixels, maskKinds, pixelsOf } from "./pixels.js";
+import { filledRuns } from "./runs.js";
+
+/**
+ * A mask as COCO's run-length encoding, as pycocotools writes it.
+ *
+ * @param mask `{ data, width, height }`, row by row; non-zero is the object
+ * @param options `compressed`: whether `counts` is a string, as in COCO's result files (the default), or a list of run
+ * lengths, as in its annotations of crowds
+ * @returns `size` is [height, width]
+ *
+ * @example
+ * toCocoRle({ data: Uint8Array.of(0, 1, 1, 1), width: 2, height: 2 }, { compressed: false }).counts;    // [1, 3]
+ * @throws {@link Sim3AlignError} for a mask of the wrong kind or length
+ */
+export function toCocoRle(mask: PixelArray<MaskPixels>, options?: { compressed?: true }): CocoRle & { counts: string };
+export function toCocoRle(
+  mask: PixelArray<MaskPixels>,
+  options: { compressed: false },
+): CocoRle & { counts: readonly number[] };
+export function toCocoRle(mask: PixelArray<MaskPixels>, { compressed = true }: { compressed?: boolean } = {}): CocoRle {
+  const { data, width, height } = pixelsOf<MaskPixels>("mask", mask, maskKinds);
+  const counts: number[] = [];
+  let run = 0;
+  let isObject = false;
+  for (let place = 0; place < data.length; place++) {
+    const pixel = data[(place % height) * width + Math.floor(place / height)] !== 0;
+    if (pixel !== isObject) {
+      counts.push(run);
+      run = 0;
+      isObject = pixel;
+    }
+    run += 1;
+  }
+  counts.push(run);
+  return { size: [height, width], counts: compressed ? compress(counts) : counts };
+}
+
+/**
+ * The mask of a run-length encoding of COCO's, compressed or not.
+ *
+ * `align` takes these as its `mask` as they are; this is for callers who want the pixels.
+ * @returns 1 is the object
+ *
+ * @example
+ * fromCocoRle({ size: [2, 2], counts: [1, 3] }).data;    // Uint8Array [0, 1, 1, 1]
+ * @throws {@link Sim3AlignError} `CORRUPT_FILE` where the runs are not those of that many pixels
+ */
+export const fromCocoRle = (rle: CocoRle): PixelArray<Uint8Array> => decodedRle("rle", rle);
+
+/** As {@link fromCocoRle}; `argument` is the name of the encoding in errors. */
+export function decodedRle(argument: string, rle: unknown): PixelArray<Uint8Array> {
+  const { size, counts } = record(argument, rle, "{ size: [height, width], counts }");
+  const [height, width] = finiteNumbers(`${argument}.size`, size, 2, "[height, width]") as [number, number];
+  const runs = runsOf(`${argument}.counts`, counts);
+  checkSize(`${argument}.size`, { width, height });
+  const columns = filledRuns(`${argument}.counts`, runs, width * height);
+  const data = new Uint8Array(columns.length);
+  for (let place = 0; place < data.length; place++) {
+    data[(place % height) * width + Math.floor(place / height)] = columns[place] ?? 0;
+  }
+  return { data, width, height };
+}
+
+/** The mask in a JSON file: an encoding, or an annotation that has one as its `segmentation`. */
+export function readRleFile(argument: string, file: JsonFile): PixelArray<Uint8Array> {
+  const json = parsedJson(argument, file);
+  const rle = isRecord(json) && isRecord(json.segmentation) ? json.segmentation : json;
+  if (isRecord(rle) && numbersIn(rle.size, 2) !== null && rle.counts !== undefined) return decodedRle(argument, rle);
+  throw corruptJson(argument, "JSON without a run-length encoding", '{"size": [height, width], "counts": …}');
+}
+
+/** The run lengths, each checked, of a list or a compressed string. */
+function runsOf(argument: string, counts: unknown): number[] {
+  if (typeof counts === "string") return decompressed(argument, counts);
+  if (Array.isArray(counts) || ArrayBuffer.isView(counts)) return Array.from(counts as ArrayLike<number>);
+  const remedy = "Draw polygons first, with pycocotools' annToMask.";
+  throw failure("INVALID_ARGUMENT", argument, describe(counts), "a string, or a list of run lengths", remedy);
+}
+
+/** Pixels of a mask at most, as for image files: 8192 × 8192. */
+const MAX_PIXELS = 1 << 26;
+
+/** Whether an image of this size can be allocated: sizes in files may be made up. */
+function checkSize(argument: string, { width, height }: ImageSize): void {
+  whole(`${argument}.width`, width, 0);
+  whole(`${argument}.height`, height, 0);
+  const found = `${width} × ${height} pixels`;
+  if (width * height === 0) {
+    throw failure("EMPTY_IMAGE", argument, found, "at least one pixel", "Pass [height, width] of the image.");
+  }
+  if (width * height <= MAX_PIXELS) return;
+  const remedy = "Downscale the mask first; a small file that states such a size is broken or hostile.";
+  throw failure("FILE_TOO_LARGE", argument, found, `at most ${MAX_PIXELS} pixels (8192 × 8192)`, remedy);
+}
+
+// Each letter holds five bits, the lowest first, and a sixth bit that is set where more letters follow; the letters
+// start at "0". From the fourth run on, the string holds the difference to the run before the last.
+const firstLetter = 48;
+
+function compress(counts: readonly number[]): string {
+  let text = "";
+  counts.forEach((count, i) => {
+    let rest = count - (i > 2 ? (counts[i - 2] ?? 0) : 0);
+    for (let isLast = false; !isLast; ) {
+      const bits = ((rest % 32) + 32) % 32;
+      rest = (rest - bits) / 32;
+      isLast = rest === (bits < 16 ? 0 : -1);
+      text += String.fromCharCode(firstLetter + bits + (isLast ? 0 : 32));
+    }
+  });
+  return text;
+}
+
+function decompressed(argument: string, text: string): number[] {
+  const broken = (found: string) => {
+    const remedy = "Pass counts as pycocotools writes them, decoded as ASCII.";
+    return failure("CORRUPT_FILE", argument, found, "a string of COCO's run lengths", remedy);
+  };
+  const counts: number[] = [];
+  let value = 0;
+  let factor = 1;
+  for (const letter of text) {
+    const six = (letter.codePointAt(0) ?? 0) - firstLetter;
+    if (six < 0 || six > 63) throw broken(`the letter ${JSON.stringify(letter)}`);
+    if (factor > 2 ** 30) throw broken("a number of more than 35 bits");
+    value += (six & 31) * factor;
+    factor *= 32;
+    if (six >= 32) continue;
+    if (six >= 16) value -= factor;
+    counts.push(value + (counts.length > 2 ? (counts[counts.length - 2] ?? 0) : 0));
+    value = 0;
+    factor = 1;
+  }
+  if (factor !== 1) throw broken("an unfinished number at the end");
+  return counts;
+}

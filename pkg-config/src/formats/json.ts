@@ -1,0 +1,54 @@
+/** JSON files: their text, and the numbers in them. */
+import { failure, isKind, isRecord } from "../values.js";
+
+/** A file of JSON: its bytes, its text, or what `JSON.parse` made of it. */
+export type JsonFile = Uint8Array | string | object;
+
+/** Bytes of a JSON file at most: 16 MiB. */
+const MAX_BYTES = 1 << 24;
+
+/**
+ * The content of a JSON file.
+ * @throws {@link Sim3AlignError} `CORRUPT_FILE` for text that is not JSON, `FILE_TOO_LARGE`
+ */
+export function parsedJson(argument: string, file: JsonFile): unknown {
+  if (typeof file !== "string" && !isKind<Uint8Array>(file, "Uint8Array")) return file;
+  if (file.length > MAX_BYTES) {
+    const remedy = "A camera, a mask or a pose takes far less: check that this is the right file.";
+    throw failure("FILE_TOO_LARGE", argument, `${file.length} bytes of JSON`, `at most ${MAX_BYTES}`, remedy);
+  }
+  try {
+    const text =
+      typeof file === "string" ? file.replace(/^\ufeff/, "") : new TextDecoder("utf-8", { fatal: true }).decode(file);
+    return JSON.parse(text, (_, value) => {
+      if (typeof value === "number" && !Number.isFinite(value)) throw new RangeError("a number out of range");
+      return value;
+    });
+  } catch (cause) {
+    throw corruptJson(argument, `text that is not JSON: ${cause instanceof Error ? cause.message : cause}`, "JSON");
+  }
+}
+
+/** The error for a file that contradicts itself, or holds something else. */
+export const corruptJson = (argument: string, found: string, expected: string) =>
+  failure("CORRUPT_FILE", argument, found, expected, "The file may be cut short: download or export it again.");
+
+/** `count` numbers, from an array of them or of rows of them; `null` for anything else. */
+export function numbersIn(value: unknown, count: number): number[] | null {
+  if (!Array.isArray(value)) return null;
+  const numbers: unknown[] = value.flat();
+  return numbers.length === count && numbers.every(isNumber) ? numbers : null;
+}
+
+/** Whether this is a number that JSON can hold. */
+export const isNumber = (value: unknown): value is number => typeof value === "number" && Number.isFinite(value);
+
+/** The names in a JSON object, for messages. */
+export const namesIn = (object: Record<string, unknown>) => Object.keys(object).slice(0, 12).join(", ") || "nothing";
+
+/** A JSON value, for messages; of long text the beginning. */
+export function shown(value: unknown): string {
+  if (value === undefined) return "nothing";
+  const text = isRecord(value) ? `an object with ${namesIn(value)}` : (JSON.stringify(value) ?? typeof value);
+  return text.length > 60 ? `${text.slice(0, 60)}…` : text;
+}

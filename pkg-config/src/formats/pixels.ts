@@ -1,0 +1,50 @@
+/** Images: pixels with their size. */
+import type { PixelArray } from "../input/types.js";
+import { failure, isTypedArray, record, whole, wrongKind } from "../values.js";
+
+/** An image's size in pixels. */
+export interface ImageSize {
+  /** Pixels in a row. */
+  width: number;
+  /** Rows. */
+  height: number;
+}
+
+/** The pixels of a mask; non-zero is the object. */
+export type MaskPixels = Uint8Array | Uint8ClampedArray;
+
+/** The pixels of a depth map. */
+export type DepthPixels = Float32Array | Uint16Array;
+
+/** An image size of at least one pixel, checked. */
+export function sizeOf(argument: string, size: unknown): ImageSize {
+  const { width, height } = record(argument, size, "{ width, height }");
+  return { width: whole(`${argument}.width`, width, 1), height: whole(`${argument}.height`, height, 1) };
+}
+
+/** An image whose pixels are of one of these kinds, and as many as its size says. */
+export function pixelsOf<T extends ArrayLike<number>>(
+  argument: string,
+  image: unknown,
+  kinds: readonly string[],
+  channels = 1,
+): PixelArray<T> {
+  const { data } = record(argument, image, "{ data, width, height }");
+  const { width, height } = sizeOf(argument, image);
+  if (!isTypedArray<T>(data, ...kinds)) throw wrongKind(`${argument}.data`, data, kinds.join(" or "), kinds[0] ?? "");
+  checkCount(`${argument}.data`, data.length, { width, height }, channels);
+  return { data, width, height };
+}
+
+/** Checks that there is a value for every pixel. */
+export function checkCount(argument: string, count: number, { width, height }: ImageSize, channels = 1): void {
+  if (count === width * height * channels) return;
+  const perPixel = channels === 1 ? "" : ` × ${channels}`;
+  const expected = `${width} × ${height}${perPixel} = ${width * height * channels}`;
+  throw failure("WRONG_LENGTH", argument, `${count} values`, expected, "Pass the size that the pixels belong to.");
+}
+
+/** The kinds of array of a mask, of depth, of points. */
+export const maskKinds = ["Uint8Array", "Uint8ClampedArray"];
+export const depthKinds = ["Float32Array", "Uint16Array"];
+export const pointKinds = ["Float32Array"];

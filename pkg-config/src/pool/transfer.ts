@@ -1,0 +1,37 @@
+/** Copies and lists the arrays that are posted to a worker. */
+import { isKind } from "../values.js";
+
+type View = new (buffer: ArrayBuffer) => ArrayBufferView;
+
+/** The value with its typed arrays and buffers copied, each into a buffer of its own; plain objects are followed. */
+export function copied<T>(value: T): T {
+  const copy = mapped(value, (array) => {
+    if (!ArrayBuffer.isView(array)) return array.slice(0);
+    const Kind = (globalThis as unknown as Record<string, View>)[kindOf(array)] as View;
+    const bytes = new Uint8Array(array.byteLength);
+    // The buffer of an array without bytes may be detached, and cannot be read.
+    if (array.byteLength > 0) bytes.set(new Uint8Array(array.buffer, array.byteOffset, array.byteLength));
+    return new Kind(bytes.buffer);
+  });
+  return copy as T;
+}
+
+/** The buffers behind a value's arrays, each once. */
+export function buffersOf(value: unknown): ArrayBuffer[] {
+  const buffers = new Set<ArrayBuffer>();
+  mapped(value, (array) => {
+    const buffer = ArrayBuffer.isView(array) ? array.buffer : array;
+    // Shared memory does not move.
+    if (isKind<ArrayBuffer>(buffer, "ArrayBuffer")) buffers.add(buffer);
+    return array;
+  });
+  return [...buffers];
+}
+
+function mapped(value: unknown, replace: (array: ArrayBuffer | ArrayBufferView) => unknown): unknown {
+  if (ArrayBuffer.isView(value) || isKind<ArrayBuffer>(value, "ArrayBuffer")) return replace(value);
+  if (!isKind<object>(value, "Object")) return value;
+  return Object.fromEntries(Object.entries(value).map(([name, inner]) => [name, mapped(inner, replace)]));
+}
+
+const kindOf = (value: unknown) => Object.prototype.toString.call(value).slice(8, -1);

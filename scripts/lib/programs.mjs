@@ -1,0 +1,82 @@
+/** Programs of the system that tests need: Chromium and Redis. */
+import { existsSync } from "node:fs";
+import { delimiter, join } from "node:path";
+import { once } from "./cache.mjs";
+import { run } from "./run.mjs";
+import { step } from "./step.mjs";
+
+/**
+ * @typedef {object} SystemProgram
+ * @property {string} variable the environment variable that may name it
+ * @property {readonly string[]} names on the path, in order of preference
+ * @property {readonly string[]} elsewhere files that it may be in
+ * @property {string} debianPackage
+ */
+
+/** @type {SystemProgram} */
+const chromiumProgram = {
+  variable: "CHROMIUM_PATH",
+  names: ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"],
+  elsewhere: [
+    "/Applications/Chromium.app/Contents/MacOS/Chromium",
+    "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
+    "C:\\Program Files\\Google\\Chrome\\Application\\chrome.exe",
+  ],
+  debianPackage: "chromium",
+};
+
+/** @type {SystemProgram} */
+const redisProgram = {
+  variable: "REDIS_SERVER_PATH",
+  names: ["redis-server"],
+  elsewhere: ["/opt/homebrew/bin/redis-server", "/usr/local/bin/redis-server"],
+  debianPackage: "redis-server",
+};
+
+/** @param {SystemProgram} program @returns {string | undefined} its path */
+function find({ variable, names, elsewhere }) {
+  const named = process.env[variable];
+  if (named && !existsSync(named)) throw new Error(`${variable} names ${named}, which does not exist.`);
+  const folders = (process.env.PATH ?? "").split(delimiter);
+  const onPath = folders.flatMap((folder) => names.map((name) => join(folder, name)));
+  return named || [...onPath, ...elsewhere].find((path) => existsSync(path));
+}
+
+/**
+ * Finds a program. Installs it only in continuous integration (`CI` set), on Debian or Ubuntu, as root: on other
+ * machines that is for their owners to do.
+ * @param {SystemProgram} program
+ * @returns {Promise<string | undefined>} its path
+ */
+async function locate(program) {
+  const found = find(program);
+  if (found || !process.env.CI || process.platform !== "linux" || process.getuid?.() !== 0) return found;
+  await step(`apt-get install ${program.debianPackage}`, async () => {
+    // Run level 1 keeps the package's services from being started.
+    const env = { DEBIAN_FRONTEND: "noninteractive", RUNLEVEL: "1" };
+    await run("apt-get", ["update"], { env });
+    await run("apt-get", ["install", "--yes", "--no-install-recommends", program.debianPackage], { env });
+  });
+  return find(program);
+}
+
+/** The remedy for a missing Chromium. */
+export const chromiumRemedy = `install Chromium (Debian and Ubuntu: apt-get install chromium), or name it in ${chromiumProgram.variable}`;
+
+/** Chromium's path, or undefined where there is none. */
+export const chromium = once(() => locate(chromiumProgram));
+
+/** The path of Redis' server, or undefined where there is none. It waits for Chromium: apt-get runs once at a time. */
+export const redisServer = once(async () => {
+  await chromium();
+  return locate(redisProgram);
+});
+
+/** Starts a headless Chromium. @throws where there is none */
+export async function launchChromium() {
+  const executablePath = await chromium();
+  if (executablePath === undefined) throw new Error(`No Chromium. Remedy: ${chromiumRemedy}.`);
+  // The set-up installs it first.
+  const playwright = await import("playwright-core");
+  return playwright.chromium.launch({ executablePath, args: ["--no-sandbox", "--no-first-run"] });
+}

@@ -1,0 +1,126 @@
+/** Tests on the package as its users install it: in Node, in a browser, and by the examples. */
+import { cpSync, mkdirSync, readdirSync, renameSync, rmSync, writeFileSync } from "node:fs";
+import { basename, join } from "node:path";
+import { cached, digest, filesBelow, once } from "../lib/cache.mjs";
+import { nodeCounts, noTests, withStatus } from "../lib/counts.mjs";
+import { print } from "../lib/output.mjs";
+import { at, installDir, packageDir, repository, sampleDir } from "../lib/paths.mjs";
+import { chromium, chromiumRemedy, redisServer } from "../lib/programs.mjs";
+import { attempt, nodeProgram, run } from "../lib/run.mjs";
+import { copySample } from "../lib/sample.mjs";
+import { buildSite } from "../lib/site.mjs";
+import { step } from "../lib/step.mjs";
+
+/** Tests that use the installed package, and what they share. */
+const testFolders = ["js", "browser", "bundlers", "examples", "support"];
+
+/**
+ * Writes the package's tarball.
+ * @param {string} folder
+ * @returns {Promise<{ filename: string, size: number, unpackedSize: number }>}
+ */
+export async function pack(folder) {
+  mkdirSync(folder, { recursive: true });
+  const [packed] = JSON.parse(await run("npm", ["pack", packageDir, "--json", "--pack-destination", folder]));
+  return packed;
+}
+
+/** Packs pkg/, installs the tarball into a folder of its own, and compiles the tests there. */
+export const install = once(async () => {
+  await copySample();
+  await step("install the packed package", async (say) => {
+    const isNew = await cached(join(installDir, "installed-from"), digest([packageDir]), [], async () => {
+      rmSync(installDir, { recursive: true, force: true });
+      const { filename } = await pack(installDir);
+      const project = { private: true, type: "module", dependencies: { sim3align: `file:./${filename}` } };
+      writeFileSync(join(installDir, "package.json"), JSON.stringify(project, null, 2));
+      await run("npm", ["install", "--prefer-offline", "--no-audit", "--no-fund"], {
+        cwd: installDir,
+        remedy: "check that the npm registry can be reached: the package's own dependencies come from there",
+      });
+    });
+    if (!isNew) say("up to date");
+  });
+  await step("compile the tests", async () => {
+    rmSync(join(installDir, "tests"), { recursive: true, force: true });
+    for (const folder of testFolders)
+      cpSync(at("tests", folder), join(installDir, "tests", folder), { recursive: true });
+    const tsconfig = { extends: at("tests", "tsconfig.installed.json"), include: ["tests"] };
+    writeFileSync(join(installDir, "tsconfig.json"), JSON.stringify(tsconfig, null, 2));
+    const [node, tsc] = nodeProgram("typescript", "tsc");
+    await run(node, [tsc, "--project", installDir]);
+  });
+});
+
+/**
+ * Runs one folder of tests with the installed package.
+ * @param {string} folder
+ * @param {NodeJS.ProcessEnv} [env]
+ */
+async function nodeTest(folder, env = {}) {
+  await install();
+  const files = filesBelow([join(installDir, "tests", folder)]).filter((file) => file.endsWith(".test.js"));
+  const args = ["--enable-source-maps", "--test", "--test-reporter=spec", ...files];
+  const { output, reason } = await attempt(process.execPath, args, {
+    cwd: installDir,
+    echo: true,
+    env: { SIM3ALIGN_REPOSITORY: repository, SIM3ALIGN_SAMPLE: sampleDir, ...env },
+  });
+  return withStatus(nodeCounts(output), reason === "");
+}
+
+export const javaScript = () => nodeTest("js");
+
+/** Counts where a program is missing: skipped on a developer's machine, failed in continuous integration. */
+export const missing = () => ({ ...noTests(), ...(process.env.CI ? { failed: 1 } : { skipped: 1 }) });
+
+/** @param {string} folder of tests that show pages */
+export async function inBrowser(folder) {
+  const path = await chromium();
+  if (path) return nodeTest(folder, { CHROMIUM_PATH: path });
+  print(`No Chromium. Remedy: ${chromiumRemedy}.\n`);
+  return missing();
+}
+
+export async function browser() {
+  await buildSite();
+  return inBrowser("browser");
+}
+
+/** A copy of what the examples use: the unpacked tarball as pkg/, and the examples. */
+const copy = at("target", "examples");
+const examplesDir = join(copy, "examples");
+
+/** Files that working in the examples' folder leaves there. */
+const made = new Set(["node_modules", "sample", "dist", "annotation"]);
+const isSource = (/** @type {string} */ path) => !made.has(basename(path));
+
+async function installExamples() {
+  const sources = readdirSync(at("examples")).filter(isSource);
+  const manifests = filesBelow(sources.map((name) => at("examples", name))).filter((path) =>
+    /^(package(-lock)?\.json|\.npmrc)$/.test(basename(path)),
+  );
+  const outputs = [join(examplesDir, "node_modules")];
+  await cached(join(copy, "installed-from"), digest([packageDir, ...manifests]), outputs, async () => {
+    rmSync(copy, { recursive: true, force: true });
+    const { filename } = await pack(copy);
+    await run("tar", ["-xzf", filename], { cwd: copy });
+    renameSync(join(copy, "package"), join(copy, "pkg"));
+    cpSync(at("examples"), examplesDir, { recursive: true, filter: isSource });
+    await run("npm", ["ci", "--prefer-offline"], {
+      cwd: examplesDir,
+      remedy: "check that the npm registry can be reached, and that examples/package-lock.json is up to date",
+    });
+  });
+  cpSync(at("examples"), examplesDir, { recursive: true, filter: isSource });
+  cpSync(sampleDir, join(examplesDir, "sample", "mug"), { recursive: true });
+}
+
+/** The examples, each as its user runs it. */
+export async function examples() {
+  await install();
+  await step("install the examples", installExamples);
+  const [chromiumPath = "", redisPath = ""] = [await chromium(), await redisServer()];
+  const env = { SIM3ALIGN_EXAMPLES: examplesDir, CHROMIUM_PATH: chromiumPath, REDIS_SERVER_PATH: redisPath };
+  return nodeTest("examples", env);
+}

@@ -1,0 +1,125 @@
+//! What all methods share: the preprocessing before them, metrics and warnings after them.
+
+use super::warnings;
+use crate::error::Result;
+use crate::evidence::clouds::{Clouds, Sampling};
+use crate::evidence::observation::Observation;
+use crate::evidence::sample::check_shape;
+use crate::geometry::mesh::Mesh;
+use crate::metrics::{self, Metrics};
+use crate::options::Options;
+use crate::paper::options::PaperOptions;
+use crate::precise::options::AlignOptions;
+use crate::progress::{Host, Stage, Stopwatch};
+use crate::report::{self, Counts, Diagnostics, PaperAlignment, Preset, Solution};
+
+/// The options that all methods share.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Setup {
+    preset: Preset,
+    seed: u32,
+    pub(super) sampling: Sampling,
+    pub(super) metrics: bool,
+}
+
+impl Setup {
+    /// Those of the default method, which it checks.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidOption`](crate::error::ErrorCode::InvalidOption).
+    pub fn of_precise(options: &AlignOptions) -> Result<Self> {
+        options.validate()?;
+        let &AlignOptions { seed, max_observed_points, surface_samples, metrics, .. } = options;
+        Ok(Self::new(Preset::Precise, seed, [max_observed_points, surface_samples], metrics))
+    }
+
+    /// Those of the paper's method, which it checks.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidOption`](crate::error::ErrorCode::InvalidOption).
+    pub fn of_paper(options: &PaperOptions) -> Result<Self> {
+        options.validate()?;
+        let &PaperOptions { seed, max_observed_points, surface_samples, metrics, .. } = options;
+        Ok(Self::new(Preset::Paper, seed, [max_observed_points, surface_samples], metrics))
+    }
+
+    fn new(preset: Preset, seed: u32, points: [u32; 2], metrics: bool) -> Self {
+        let [max_points, surface_samples] = points.map(|count| count as usize);
+        Self { preset, seed, sampling: Sampling { max_points, surface_samples, seed: u64::from(seed) }, metrics }
+    }
+}
+
+/// Aligns by any method: for methods to compare with. `plan` says when each stage begins, as a share of the whole.
+///
+/// # Errors
+/// [`ErrorCode::DegenerateMesh`](crate::error::ErrorCode::DegenerateMesh), and those of the method.
+pub fn align_by(
+    observation: &Observation,
+    mesh: &Mesh,
+    setup: &Setup,
+    plan: &'static [(Stage, f64)],
+    host: &mut dyn Host,
+    method: impl FnOnce(&mut Clouds, &mut Stopwatch<'_>) -> Result<Solution>,
+) -> Result<PaperAlignment> {
+    let mut stages = Stopwatch::new(host, plan);
+    check_shape(mesh)?;
+    let mut clouds = Clouds::new(observation, mesh, &setup.sampling, &mut stages)?;
+    if setup.metrics {
+        clouds.evidence(&mut stages);
+    }
+    let solution = method(&mut clouds, &mut stages)?;
+    let metrics = score(observation, mesh, setup, &mut clouds, &solution, &mut stages)?;
+    Ok(report(observation, setup, &clouds, &solution, metrics, stages))
+}
+
+/// The metrics of a solution, where they are wanted.
+pub(super) fn score(
+    observation: &Observation,
+    mesh: &Mesh,
+    setup: &Setup,
+    clouds: &mut Clouds,
+    solution: &Solution,
+    stages: &mut Stopwatch<'_>,
+) -> Result<Option<Metrics>> {
+    if !setup.metrics {
+        return Ok(None);
+    }
+    let (evidence, _) = clouds.evidence(stages);
+    stages.enter(Stage::Metrics);
+    metrics::score(observation, mesh, &solution.camera_from_mesh, evidence).map(Some)
+}
+
+/// The result of a method.
+pub(super) fn report(
+    observation: &Observation,
+    setup: &Setup,
+    clouds: &Clouds,
+    solution: &Solution,
+    metrics: Option<Metrics>,
+    stages: Stopwatch<'_>,
+) -> PaperAlignment {
+    let &Solution { camera_from_mesh, clamped, converged, residual_m, counts } = solution;
+    let initial_scale = clouds.initial_scale();
+    let scale_ratio = camera_from_mesh.scale / initial_scale;
+    let mut warnings = warnings::about_observation(observation);
+    warnings.extend(warnings::about_scale(scale_ratio, clamped, setup.preset));
+    warnings.extend(warnings::about_convergence(converged, counts.icp_iterations, setup.preset));
+    let [target_points, source_points] = clouds.counts();
+    PaperAlignment {
+        camera_from_mesh: (&camera_from_mesh).into(),
+        metrics,
+        warnings,
+        diagnostics: Diagnostics {
+            preset: setup.preset,
+            seed: setup.seed,
+            initial_scale,
+            scale_ratio,
+            collapsed: report::is_collapsed(scale_ratio),
+            clamped,
+            converged,
+            residual_m,
+            counts: Counts { source_points, target_points, ..counts },
+            timings_ms: stages.finish(),
+        },
+    }
+}

@@ -1,0 +1,158 @@
+//! An alignment as a task that is done in steps, so that a thread can do other work between them.
+//!
+//! A step ends where the caller wants to pause, as soon as the method can: within the search of `precise` after any
+//! drawing or refinement of a pose, everywhere else at the end of a stage. No bit of the result depends on the pauses.
+
+use core::borrow::Borrow;
+use core::mem::replace;
+
+use super::method::Method;
+use super::outcome::{Setup, report, score};
+use crate::error::{Error, ErrorCode, Result};
+use crate::evidence::clouds::Clouds;
+use crate::evidence::observation::Observation;
+use crate::precise::prepared_mesh::PreparedMesh;
+use crate::precise::rounds::Rounds;
+use crate::precise::{Certainty, SearchSettings};
+use crate::progress::{Host, Stopwatch};
+use crate::report::{Alignment, AnyAlignment, PaperAlignment, PreciseDiagnostics, Solution};
+use crate::{paper, precise};
+
+/// An alignment in steps. It owns its observation and mesh, or borrows them.
+pub struct AlignTask<'h, O, M> {
+    observation: O,
+    mesh: M,
+    method: Method,
+    settings: SearchSettings,
+    setup: Setup,
+    stages: Option<Stopwatch<'h>>,
+    state: State,
+}
+
+/// What has been done.
+enum State {
+    /// Nothing.
+    Begun,
+    /// Both clouds are drawn.
+    Drawn(Clouds),
+    /// Their normals are estimated, where they are needed for the metrics.
+    Ready(Clouds),
+    /// The search is under way.
+    Searching(Clouds, Box<Rounds>),
+    /// The method has found a pose.
+    Found(Clouds, Solution, Option<Certainty>),
+    /// The result has been returned, or an error.
+    Over,
+}
+
+impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, O, M> {
+    /// A task that has not begun. It checks the options.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidOption`].
+    pub fn new(observation: O, mesh: M, method: Method, host: impl Host + 'h) -> Result<Self> {
+        let (setup, settings, plan) = match &method {
+            Method::Precise(options) => (Setup::of_precise(options)?, precise::search_settings(options), precise::PLAN),
+            Method::Paper(options) => (Setup::of_paper(options)?, SearchSettings::default(), paper::PLAN),
+        };
+        let stages = Some(Stopwatch::new(host, plan));
+        Ok(Self { observation, mesh, method, settings, setup, stages, state: State::Begun })
+    }
+
+    /// The task with other settings of the search than those that follow from the options, for ablations.
+    pub fn with_settings(self, settings: SearchSettings) -> Self {
+        Self { settings, ..self }
+    }
+
+    /// Does all that is left.
+    ///
+    /// # Errors
+    /// As [`AlignTask::step`].
+    pub fn finish(mut self) -> Result<AnyAlignment> {
+        loop {
+            if let Some(alignment) = self.step(&mut || false)? {
+                return Ok(alignment);
+            }
+        }
+    }
+
+    /// Goes on until the alignment is done, which gives the result, or until `pause` returns true.
+    ///
+    /// # Errors
+    /// [`ErrorCode::DegenerateMesh`], [`ErrorCode::NoConsensus`]; the task is then over.
+    pub fn step(&mut self, pause: &mut dyn FnMut() -> bool) -> Result<Option<AnyAlignment>> {
+        let Some(mut stages) = self.stages.take() else { return Err(over()) };
+        loop {
+            self.state = match replace(&mut self.state, State::Over) {
+                State::Searching(clouds, mut rounds) => {
+                    if !precise::run(&mut rounds, pause, &mut stages) {
+                        self.state = State::Searching(clouds, rounds);
+                        self.stages = Some(stages);
+                        return Ok(None);
+                    }
+                    self.advance(State::Searching(clouds, rounds), &mut stages)?
+                }
+                State::Found(mut clouds, solution, certainty) => {
+                    let (observation, mesh) = (self.observation.borrow(), self.mesh.borrow().mesh());
+                    let metrics = score(observation, mesh, &self.setup, &mut clouds, &solution, &mut stages)?;
+                    let aligned = report(observation, &self.setup, &clouds, &solution, metrics, stages);
+                    return Ok(Some(with_certainty(aligned, certainty)));
+                }
+                state => self.advance(state, &mut stages)?,
+            };
+            if pause() {
+                self.stages = Some(stages);
+                return Ok(None);
+            }
+        }
+    }
+
+    /// Does one stage.
+    fn advance(&self, state: State, stages: &mut Stopwatch<'h>) -> Result<State> {
+        let (observation, mesh) = (self.observation.borrow(), self.mesh.borrow());
+        Ok(match state {
+            State::Begun => {
+                mesh.check()?;
+                State::Drawn(Clouds::new(observation, mesh.mesh(), &self.setup.sampling, stages)?)
+            }
+            State::Drawn(mut clouds) => {
+                if self.setup.metrics {
+                    clouds.evidence(stages);
+                }
+                State::Ready(clouds)
+            }
+            State::Ready(mut clouds) => match &self.method {
+                Method::Precise(options) => {
+                    let hypothesis = precise::hypothesis(&mut clouds, options, stages);
+                    let rounds = precise::begin(observation, mesh, hypothesis, options, &self.settings, stages)?;
+                    State::Searching(clouds, Box::new(rounds))
+                }
+                Method::Paper(options) => {
+                    let solution = paper::estimate(&mut clouds, options, stages)?;
+                    State::Found(clouds, solution, None)
+                }
+            },
+            State::Searching(clouds, rounds) => match &self.method {
+                Method::Precise(options) => {
+                    let (solution, certainty) = precise::conclude(&rounds, mesh.mesh(), options)?;
+                    State::Found(clouds, solution, Some(certainty))
+                }
+                Method::Paper(_) => return Err(over()),
+            },
+            State::Found(..) | State::Over => return Err(over()),
+        })
+    }
+}
+
+fn with_certainty(aligned: PaperAlignment, certainty: Option<Certainty>) -> AnyAlignment {
+    let Some(Certainty { confidence, alternatives, uncertainty, score, terms }) = certainty else {
+        return aligned.into();
+    };
+    let PaperAlignment { camera_from_mesh, metrics, warnings, diagnostics } = aligned;
+    let diagnostics = PreciseDiagnostics { common: diagnostics, score, terms };
+    Alignment { camera_from_mesh, confidence, alternatives, uncertainty, metrics, warnings, diagnostics }.into()
+}
+
+fn over() -> Error {
+    Error::new(ErrorCode::Internal, "task", "a task that is over", "one that is under way", "Begin a new one.")
+}

@@ -1,0 +1,87 @@
+//! The two clouds of an alignment: the observed points and points on the mesh (paper §3.1).
+
+use super::Evidence;
+use super::extents::{Extents, initial_scale};
+use super::observation::Observation;
+use super::sample::sample_surface;
+use crate::error::Result;
+use crate::geometry::cloud::Cloud;
+use crate::geometry::mesh::Mesh;
+use crate::progress::{Stage, Stopwatch};
+
+/// How many points of either cloud are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Sampling {
+    /// Most observed points used; of more, an even random share is drawn.
+    pub max_points: usize,
+    /// Points drawn on the mesh's surface.
+    pub surface_samples: usize,
+    /// Seed of both draws.
+    pub seed: u64,
+}
+
+impl Default for Sampling {
+    fn default() -> Self {
+        Self { max_points: 20_000, surface_samples: 20_000, seed: 0 }
+    }
+}
+
+/// Both clouds and their extents; the normals are estimated when they are first needed.
+pub struct Clouds {
+    clouds: Option<[Cloud; 2]>,
+    extents: [Extents; 2],
+    evidence: Option<Evidence>,
+    counts: [usize; 2],
+}
+
+impl Clouds {
+    /// Draws both clouds: P_obs from depth and mask, P_rec from the mesh.
+    ///
+    /// # Errors
+    /// [`DegenerateMesh`](crate::error::ErrorCode::DegenerateMesh) for a mesh without area, and
+    /// [`DegeneratePoints`](crate::error::ErrorCode::DegeneratePoints) for points without extent.
+    pub fn new(
+        observation: &Observation,
+        mesh: &Mesh,
+        sampling: &Sampling,
+        stages: &mut Stopwatch<'_>,
+    ) -> Result<Self> {
+        stages.enter(Stage::Observe);
+        let observed = observation.cloud(sampling.max_points, sampling.seed);
+        stages.enter(Stage::Sample);
+        let reconstructed = sample_surface(mesh, sampling.surface_samples, sampling.seed)?;
+        Ok(Self {
+            extents: [Extents::of("depth", &observed.points)?, Extents::of("mesh", &reconstructed.points)?],
+            counts: [observed.len(), reconstructed.len()],
+            clouds: Some([observed, reconstructed]),
+            evidence: None,
+        })
+    }
+
+    /// Numbers of observed points and of points on the mesh.
+    pub fn counts(&self) -> [usize; 2] {
+        self.counts
+    }
+
+    /// Extents of the observed and of the reconstructed cloud.
+    pub fn extents(&self) -> [&Extents; 2] {
+        self.extents.each_ref()
+    }
+
+    /// s_init: the ratio of the diagonals of the bounding boxes (§3.1).
+    pub fn initial_scale(&self) -> f64 {
+        let [observed, reconstructed] = self.extents();
+        initial_scale(observed, reconstructed)
+    }
+
+    /// The clouds with their normals, and the extents.
+    pub fn evidence(&mut self, stages: &mut Stopwatch<'_>) -> (&Evidence, [&Extents; 2]) {
+        let Self { clouds, extents, evidence, .. } = self;
+        let evidence = evidence.get_or_insert_with(|| {
+            stages.enter(Stage::Normals);
+            let [observed, reconstructed] = clouds.take().unwrap_or_default();
+            Evidence::new(observed, reconstructed)
+        });
+        (evidence, extents.each_ref())
+    }
+}

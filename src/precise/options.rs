@@ -1,0 +1,129 @@
+//! Options of the default method.
+
+use crate::error::{Error, ErrorCode, Result, Text};
+use crate::geometry::similarity::Similarity;
+use crate::metrics::symmetry::Symmetry;
+use crate::number::number;
+use crate::options::scale::ScaleOption;
+use crate::options::{choices, options};
+
+/// How far, as a share of it, an initial scale may lie outside its bounds: 32-bit floats round.
+const ROUNDING: f64 = 1e-6;
+
+choices! {
+    /// How much work the search does.
+    pub enum Quality {
+        /// Fewer rotations and candidates: about a third of the time of `balanced`.
+        Fast = "fast",
+        /// The default.
+        #[default]
+        Balanced = "balanced",
+        /// More rotations and candidates, among them the pose of the paper's method: about four times the time of
+        /// `balanced`.
+        Best = "best",
+    }
+}
+
+choices! {
+    /// Where the search looks for poses.
+    pub enum SearchScope {
+        /// All rotations; an initial pose is one more candidate.
+        #[default]
+        Global = "global",
+        /// The neighbourhood of the initial pose.
+        Local = "local",
+    }
+}
+
+choices! {
+    /// A side of the mesh's bounding box.
+    pub enum ExtentAxis {
+        /// The longest side.
+        #[default]
+        Longest = "longest",
+        /// The side along the mesh's x axis.
+        X = "x",
+        /// The side along the mesh's y axis.
+        Y = "y",
+        /// The side along the mesh's z axis.
+        Z = "z",
+    }
+}
+
+options! {
+    /// Options of `align` with the default preset, `"precise"`. All have defaults.
+    pub struct AlignOptions {
+        /// How much work the search does.
+        quality: Quality = Quality::Balanced, Choice;
+        /// The scale in metres per mesh unit: `"free"`, a known number (1 for a mesh in metres), or bounds `[min, max]`.
+        /// Not together with `knownExtentM`.
+        scale: ScaleOption = ScaleOption::Free, Scale;
+        /// The object's known length along `knownExtentAxis`, in metres. It fixes the scale: for a mug that is 9.5 cm tall
+        /// and whose mesh has y up, pass `{ knownExtentM: 0.095, knownExtentAxis: "y" }`.
+        known_extent_m: Option<f64> = None, Positive;
+        /// The side of the mesh's bounding box that `knownExtentM` measures.
+        known_extent_axis: ExtentAxis = ExtentAxis::Longest, Choice;
+        /// The up direction in the camera's frame, of any length: `[0, -1, 0]` for a level camera. Together with
+        /// `meshUp`, it favours poses in which the object stands upright.
+        camera_up: Option<[f64; 3]> = None, Direction;
+        /// The up direction in the mesh's frame, of any length: `[0, 1, 0]` for glTF. It requires `cameraUp`.
+        mesh_up: Option<[f64; 3]> = None, Direction;
+        /// The object's symmetry, so that `alternatives` does not list equivalent poses. `"auto"` detects half turns about
+        /// the mesh's principal axes, `"auto-revolution"` also axes of revolution; `[{ axis: [0, 1, 0], fold: 4 }]`
+        /// declares quarter turns about the mesh's y axis, without `fold` any turn about it.
+        symmetry: Symmetry = Symmetry::Auto, Symmetry;
+        /// A pose to start from, camera from mesh, in metres: for example an annotator's, or the last frame's. Its scale
+        /// has to be within `scale`.
+        initial: Option<Similarity> = None, Transform;
+        /// Where to search: everywhere, or around `initial` only.
+        search: SearchScope = SearchScope::Global, Choice;
+        /// An upper bound on the work of the search, in units of about a millisecond on a 2020 laptop. The work is
+        /// counted, not timed, so that the result does not depend on the machine. `null` sets no bound.
+        work_budget: Option<f64> = None, Positive;
+        /// Whether to compute `metrics`. Without them the call takes less time.
+        metrics: bool = true, Flag;
+        /// Seed of all random draws. The same input and seed give the same bits.
+        seed: u32 = 0, Count(0..=u32::MAX);
+        /// Upper bound on the depth readings used for metrics and initial scale. Above it, an even random subset is drawn.
+        max_observed_points: u32 = 20_000, Count(32..=1_000_000);
+        /// Number of points sampled on the mesh surface for metrics and initial scale.
+        surface_samples: u32 = 20_000, Count(100..=1_000_000);
+    }
+    check check_combination;
+}
+
+/// Refuses options that contradict each other, or that mean nothing without each other.
+fn check_combination(options: &AlignOptions) -> Result<()> {
+    let AlignOptions { scale, known_extent_m, camera_up, mesh_up, initial, search, .. } = options;
+    if *search == SearchScope::Local && initial.is_none() {
+        let remedy = "Pass the pose to start from as `initial`, or leave `search` out to search everywhere.";
+        return Err(invalid("options.search", "\"local\" without an initial pose", "\"local\" with `initial`", remedy));
+    }
+    if camera_up.is_some() != mesh_up.is_some() {
+        let (argument, found, expected) = if camera_up.is_some() {
+            ("options.meshUp", "`cameraUp` alone", "`meshUp` as well")
+        } else {
+            ("options.cameraUp", "`meshUp` alone", "`cameraUp` as well")
+        };
+        let remedy = "Pass the up direction in both frames, or in neither.";
+        return Err(invalid(argument, found, expected, remedy));
+    }
+    let Some([min, max]) = scale.bounds() else { return Ok(()) };
+    if let Some(extent_m) = *known_extent_m {
+        let found = format!("a known extent of {} m beside a scale of {}", number(extent_m), scale.describe());
+        let remedy = "A known extent fixes the scale: leave one of the two out.";
+        return Err(invalid("options.knownExtentM", found, "`knownExtentM` or `scale`", remedy));
+    }
+    match initial {
+        Some(pose) if pose.scale < min * (1.0 - ROUNDING) || pose.scale > max * (1.0 + ROUNDING) => {
+            let found = format!("a scale of {}", number(pose.scale));
+            let expected = format!("one within `scale`: {}", scale.describe());
+            Err(invalid("options.initial", found, expected, "Widen `scale`, or pass a pose of a scale inside it."))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn invalid(argument: &'static str, found: impl Into<Text>, expected: impl Into<Text>, remedy: &'static str) -> Error {
+    Error::new(ErrorCode::InvalidOption, argument, found, expected, remedy)
+}

@@ -1,0 +1,67 @@
+//! A mesh that is checked and decimated once, and used for many alignments.
+
+use core::cell::{Cell, RefCell};
+use std::borrow::Cow;
+use std::rc::Rc;
+
+use super::mesh_pyramid::MeshPyramid;
+use super::recipe::{GRIDS, Grid};
+use crate::error::Result;
+use crate::evidence::sample::check_shape;
+use crate::geometry::mesh::Mesh;
+
+/// A mesh with what alignments derive from it: whether it has a shape, and its decimations. Both are found when they are
+/// first needed. Results are those of the mesh itself, to the bit.
+pub struct PreparedMesh<'a> {
+    mesh: Cow<'a, Mesh>,
+    is_checked: Cell<bool>,
+    /// By the numbers of triangles, which differ between qualities.
+    pyramids: RefCell<Vec<([usize; GRIDS], Rc<MeshPyramid>)>>,
+}
+
+impl PreparedMesh<'static> {
+    /// From a mesh that is given away.
+    pub fn new(mesh: Mesh) -> Self {
+        Self::of(Cow::Owned(mesh))
+    }
+}
+
+impl<'a> PreparedMesh<'a> {
+    /// From a mesh that stays where it is.
+    pub fn borrowed(mesh: &'a Mesh) -> Self {
+        Self::of(Cow::Borrowed(mesh))
+    }
+
+    fn of(mesh: Cow<'a, Mesh>) -> Self {
+        Self { mesh, is_checked: Cell::new(false), pyramids: RefCell::default() }
+    }
+
+    /// The mesh.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// Checks that the surface encloses a volume.
+    ///
+    /// # Errors
+    /// [`DegenerateMesh`](crate::error::ErrorCode::DegenerateMesh).
+    pub fn check(&self) -> Result<()> {
+        if !self.is_checked.get() {
+            check_shape(&self.mesh)?;
+            self.is_checked.set(true);
+        }
+        Ok(())
+    }
+
+    /// The decimations for `grids`; `None` where no triangle is left.
+    pub fn pyramid(&self, grids: &[Grid; GRIDS]) -> Option<Rc<MeshPyramid>> {
+        let triangles = grids.map(|grid| grid.triangles);
+        let mut pyramids = self.pyramids.borrow_mut();
+        if let Some((_, known)) = pyramids.iter().find(|(known, _)| *known == triangles) {
+            return Some(known.clone());
+        }
+        let pyramid = Rc::new(MeshPyramid::new(&self.mesh, grids)?);
+        pyramids.push((triangles, pyramid.clone()));
+        Some(pyramid)
+    }
+}
