@@ -1,8 +1,8 @@
-//! Aligns a generated 3D mesh to one masked depth map: the similarity x_cam = s·R·p + t, after "Robust 3D Alignment of
+//! Aligns generated 3D meshes with a masked depth map: the similarity x_cam = s·R·p + t, after "Robust 3D Alignment of
 //! Generative Reconstructions via Partial Monocular Observations".
 //!
 //! Every module imports only from those below it in this list: [`bindings`], [`align`], [`precise`], [`paper`],
-//! [`register`], [`metrics`], [`evidence`], [`progress`], [`geometry`].
+//! [`register`], [`report`], [`options`], [`metrics`], [`evidence`], [`progress`], [`geometry`].
 
 pub mod align;
 pub mod bindings;

@@ -1,4 +1,4 @@
-//! Named stages, their times, and whoever wants to follow them.
+//! Stages of the pipeline, their timings, and progress reports.
 
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
@@ -14,7 +14,7 @@ pub enum Stage {
     Observe,
     /// Sampling of the mesh surface.
     Sample,
-    /// Normals of the observed cloud, and both clouds on their voxel grid.
+    /// Normals of the observed cloud, and voxel grids of both clouds.
     Normals,
     /// FPFH descriptors.
     Features,
@@ -28,16 +28,16 @@ pub enum Stage {
     Icp,
     /// Cleaning of mask and depth, and coarser meshes (`precise`).
     Prepare,
-    /// The grid of rotations (`precise`).
+    /// Search over a grid of rotations (`precise`).
     Search,
-    /// Refinement over all seven parameters, and the choice (`precise`).
+    /// Refinement of all seven parameters, and selection (`precise`).
     Refine,
-    /// The eight metrics.
+    /// Metrics of the result.
     Metrics,
 }
 
 impl Stage {
-    /// The stage's name in JavaScript.
+    /// The name of the stage in JavaScript.
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Observe => "observe",
@@ -56,15 +56,15 @@ impl Stage {
     }
 }
 
-/// What the pipeline asks of its surroundings: a clock, and an ear for progress. Results never depend on either.
+/// Host interface: a clock and a progress listener. Results depend on neither.
 pub trait Host {
-    /// Milliseconds since any fixed moment.
+    /// Milliseconds since a fixed point in time.
     fn now_ms(&mut self) -> f64;
 
-    /// A stage begins, or goes on; `fraction` of the whole, from 0 to 1 and never falling, is done.
+    /// Reports that a stage begins or continues; `fraction` of the total work, 0 to 1 and monotonic, is done.
     fn progress(&mut self, stage: Stage, fraction: f64);
 
-    /// The best pose so far, and its score: it comes before the progress that it is part of.
+    /// Reports the best pose so far and its score, before the progress of the same round.
     fn best(&mut self, _camera_from_mesh: &Similarity, _score: f64) {}
 }
 
@@ -82,7 +82,7 @@ impl<H: Host + ?Sized> Host for &mut H {
     }
 }
 
-/// A host without clock or ears: all times are 0.
+/// A host without clock and listener; all times are 0.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Silent;
 
@@ -94,7 +94,7 @@ impl Host for Silent {
     fn progress(&mut self, _stage: Stage, _fraction: f64) {}
 }
 
-/// Milliseconds by stage, in the order in which the stages first ran. Serialises as an object with a `total`.
+/// Milliseconds per stage, in the order of their first run. Serialises as an object with a `total`.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Timings(Vec<(Stage, f64)>);
 
@@ -132,12 +132,12 @@ pub struct Stopwatch<'a> {
 }
 
 impl<'a> Stopwatch<'a> {
-    /// A stopwatch for the stages in `plan`, each with the share of the whole that is done when it begins.
+    /// A stopwatch; `plan` holds the progress at the start of each stage, 0 to 1.
     pub fn new(host: impl Host + 'a, plan: &'static [(Stage, f64)]) -> Self {
         Self { host: Box::new(host), plan, timings: Timings::default(), running: None, fraction: 0.0, begun_ms: 0.0 }
     }
 
-    /// The next stage begins; the one before it, if any, has ended. A stage that runs again adds to its time.
+    /// Ends the current stage, if any, and begins another. The times of repeated stages add up.
     pub fn enter(&mut self, stage: Stage) {
         self.end_stage();
         let planned = self.plan.iter().find(|(s, _)| *s == stage).map_or(0.0, |(_, fraction)| *fraction);
@@ -146,7 +146,7 @@ impl<'a> Stopwatch<'a> {
         self.running = Some(stage);
     }
 
-    /// The stage goes on: so much of the whole is done, and this is the best pose and its score.
+    /// Reports progress within the current stage, and optionally the best pose and its score.
     pub fn reach(&mut self, fraction: f64, best: Option<(Similarity, f64)>) {
         best.inspect(|(camera_from_mesh, score)| self.host.best(camera_from_mesh, *score));
         self.fraction = fraction;
@@ -158,7 +158,7 @@ impl<'a> Stopwatch<'a> {
         self.running
     }
 
-    /// The last stage has ended.
+    /// Ends the last stage and returns the timings.
     pub fn finish(mut self) -> Timings {
         self.end_stage();
         if let Some((stage, _)) = self.timings.0.last() {

@@ -84,12 +84,13 @@ pub enum WarningCode {
     ScaleCollapsed,
     /// The refinement ended before it converged.
     NotConverged,
-    /// The camera file has lens distortion, which the pinhole model leaves out. The package's camera reader warns of it.
+    /// The camera file has lens distortion, which the pinhole model leaves out. The package's camera reader warns of
+    /// it.
     CameraNotPinhole,
 }
 
-/// Sizes of the problem and events during the run. `precise` counts points and renders, the other methods everything but
-/// renders; what a method does not count is 0.
+/// Sizes of the problem and events during the run. `precise` counts points and renders, the other methods everything
+/// but renders; what a method does not count is 0.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "camelCase")]
@@ -122,7 +123,8 @@ pub struct Counts {
     pub renders: usize,
 }
 
-/// The terms of the search's score: agreements from 0 to 1, measured on the search's own grid of the cleaned observation.
+/// The terms of the search's score: agreements from 0 to 1, measured on the search's own grid of the cleaned
+/// observation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "camelCase")]
@@ -155,8 +157,8 @@ pub struct Alternative {
     pub turn_deg: f64,
 }
 
-/// Standard deviations of the pose's parts, as the observation determines them. Parts that a single view leaves open, such
-/// as the turn of a round object about its axis, have large ones.
+/// Standard deviations of the pose's parts, as the observation determines them. Parts that a single view leaves open,
+/// such as the turn of a round object about its axis, have large ones.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "camelCase")]
@@ -226,8 +228,8 @@ pub struct Alignment {
     /// Probability that the pose is right (scale within 5 %, rotation within 10° up to symmetry, translation within 5 %
     /// of the diameter), calibrated on generated cases. It assumes that the mesh is the object's.
     pub confidence: f64,
-    /// Other poses that explain the observation nearly as well, best first: flips, and turns under which the object looks
-    /// alike though the mesh does not.
+    /// Other poses that explain the observation nearly as well, best first: flips, and turns under which the object
+    /// looks alike though the mesh does not.
     pub alternatives: Vec<Alternative>,
     /// How well the observation determines each part of the pose; `null` where the search could not tell.
     pub uncertainty: Option<Uncertainty>,
@@ -316,8 +318,8 @@ pub struct Registration {
     /// The transform.
     #[serde(flatten)]
     pub target_from_source: Sim3,
-    /// Share of the source points that land within the inlier distance of a target point, 0 to 1; for `estimateSim3`, the
-    /// share of the correspondences that are inliers.
+    /// Share of the source points that land within the inlier distance of a target point, 0 to 1; for `estimateSim3`,
+    /// the share of the correspondences that are inliers.
     pub fitness: f64,
     /// Root mean square distance of the inliers (or residual of the refinement), in target units.
     pub residual: f64,

@@ -1,9 +1,9 @@
-//! Bytes read front to back; past the end is an error, never a panic.
+//! A checked reader of bytes: reading past the end is an error, never a panic.
 
 use crate::guard::corrupt;
 use sim3align_geometry::error::Result;
 
-/// A place in a byte slice.
+/// A position in a byte slice.
 #[derive(Debug, Clone)]
 pub(crate) struct Cursor<'a> {
     bytes: &'a [u8],
@@ -12,12 +12,12 @@ pub(crate) struct Cursor<'a> {
 }
 
 impl<'a> Cursor<'a> {
-    /// The start of `bytes`; `argument` names the file in errors.
+    /// A cursor at the start of `bytes`; `argument` names the file in errors.
     pub fn new(argument: &'static str, bytes: &'a [u8]) -> Self {
         Self { bytes, at: 0, argument }
     }
 
-    /// Bytes not yet read.
+    /// Remaining bytes.
     pub fn remaining(&self) -> &'a [u8] {
         self.bytes.get(self.at..).unwrap_or_default()
     }

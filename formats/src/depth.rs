@@ -1,4 +1,4 @@
-//! Depth maps from files.
+//! Depth map files.
 
 use crate::guard::{beginning, unsupported};
 use crate::npy::{self, Kind, NpyImage};
@@ -6,16 +6,16 @@ use crate::png::{self, PngInfo};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::image::DepthMap;
 
-/// Metres per unit of whole-number depth where nothing else is said: millimetres, as most sensors write them.
+/// Default unit of integer depth in metres: millimetres, as most sensors write them.
 pub const DEFAULT_DEPTH_SCALE: f64 = 0.001;
 
-/// How to read a depth file.
+/// Options of [`read_depth`].
 #[derive(Debug, Clone, Copy, Default)]
 pub struct DepthReadOptions {
-    /// Metres per unit, of whole numbers and of floats; above 0.
+    /// Metres per unit, for integers and floats; above 0.
     pub depth_scale: Option<f64>,
-    /// Metres per unit of whole numbers only, where `depth_scale` is `None`: what a camera file says about its
-    /// sensor. [`DEFAULT_DEPTH_SCALE`] when `None`, too. Floats are metres then.
+    /// Metres per unit of integer depth if `depth_scale` is `None`, for example from a camera file. If both are `None`,
+    /// [`DEFAULT_DEPTH_SCALE`] applies. Floats are then in metres.
     pub integer_depth_scale: Option<f64>,
 }
 
@@ -39,8 +39,8 @@ impl DepthReadOptions {
     }
 }
 
-/// Reads depth in metres: a 16-bit grey PNG, or a `.npy` array (H×W, H×W×1 or 1×H×W) of whole numbers of 16 bits
-/// or more, or floats. Zero, negative, NaN and infinite values become 0, "no reading".
+/// Reads depth in metres: a 16-bit grey PNG, or a `.npy` array (H×W, H×W×1 or 1×H×W) of integers of 16 bits or
+/// more, or floats. Zero, negative, NaN and infinite values become 0, "no reading".
 ///
 /// # Errors
 /// [`ErrorCode::EightBitDepth`], [`ErrorCode::UnsupportedFormat`], [`ErrorCode::CorruptFile`],

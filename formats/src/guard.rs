@@ -1,24 +1,24 @@
-//! What the readers refuse, and in which words.
+//! Size limits of the readers, and their errors.
 
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::image::check_not_empty;
 
-/// Most pixels of an image: 8192 × 8192.
+/// Maximum number of pixels of an image: 8192 × 8192.
 pub const MAX_PIXELS: usize = 1 << 26;
 
-/// Most vertices of a mesh: 16.7 million, some fifty times what generative models write.
+/// Maximum number of vertices of a mesh: 16.7 million, about fifty times the size of generated meshes.
 pub const MAX_VERTICES: usize = 1 << 24;
 
-/// Most triangles of a mesh: 33.5 million.
+/// Maximum number of triangles of a mesh: 33.5 million.
 pub const MAX_TRIANGLES: usize = 1 << 25;
 
-/// Most bytes that a glTF scene may bring along in buffers: 1 GiB.
+/// Maximum total size of the buffers of a glTF scene: 1 GiB.
 pub const MAX_BUFFER_BYTES: usize = 1 << 30;
 
-/// Most bytes of a JSON file other than glTF: 16 MiB.
+/// Maximum size of a JSON file other than glTF: 16 MiB.
 pub const MAX_JSON_BYTES: usize = 1 << 24;
 
-/// A file that ends early or contradicts itself.
+/// The error for a truncated or inconsistent file.
 pub(crate) fn corrupt(
     argument: &str,
     found: impl Into<sim3align_geometry::error::Text>,
@@ -29,11 +29,11 @@ pub(crate) fn corrupt(
         argument.to_owned(),
         found,
         expected,
-        "The file may be cut short: download or export it again.",
+        "The file may be truncated: download or export it again.",
     )
 }
 
-/// A file that asks for more than this package opens.
+/// The error for a file that exceeds a limit.
 pub(crate) fn too_large(
     argument: &str,
     found: impl Into<sim3align_geometry::error::Text>,
@@ -44,11 +44,11 @@ pub(crate) fn too_large(
         argument.to_owned(),
         found,
         expected,
-        "Simplify or downscale it first; a small file that says so is broken or hostile.",
+        "Simplify or downscale it first; if the file is small, it is corrupted or malicious.",
     )
 }
 
-/// A file of a kind that is not read.
+/// The error for an unsupported format.
 pub(crate) fn unsupported(
     argument: &str,
     found: impl Into<sim3align_geometry::error::Text>,
@@ -58,7 +58,7 @@ pub(crate) fn unsupported(
     Error::new(ErrorCode::UnsupportedFormat, argument.to_owned(), found, expected, remedy)
 }
 
-/// The number of pixels, or why there can't be so many.
+/// The number of pixels, or an error if the size is 0 or exceeds the limit.
 pub(crate) fn pixel_count(argument: &str, width: usize, height: usize) -> Result<usize> {
     check_not_empty(argument, width, height)?;
     match width.checked_mul(height) {
@@ -71,7 +71,7 @@ pub(crate) fn pixel_count(argument: &str, width: usize, height: usize) -> Result
     }
 }
 
-/// What a file that no reader recognises begins with, for the message.
+/// Describes the start of an unrecognised file, for the error message.
 pub(crate) fn beginning(bytes: &[u8]) -> String {
     const KNOWN: [(&[u8], &str); 10] = [
         (b"\x89PNG\r\n\x1a\n", "a PNG image"),

@@ -1,7 +1,7 @@
-//! Files in, core types out: meshes, depth maps, masks, cameras, true poses.
+//! File readers: meshes, depth maps, masks, cameras and true poses.
 //!
-//! Every reader takes bytes and is safe on hostile ones: it ends in a value or a typed error, and allocates in
-//! proportion to the bytes it was given or up to a stated limit.
+//! Readers take bytes. For malicious input, they return a value or an error, and allocate memory in proportion to the
+//! input or up to a stated limit.
 
 pub mod bindings;
 pub mod camera;

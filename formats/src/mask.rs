@@ -1,4 +1,4 @@
-//! Masks from files.
+//! Mask files.
 
 use crate::guard::{beginning, unsupported};
 use crate::npy::{self, NpyImage};
@@ -7,17 +7,17 @@ use crate::rle::Rle;
 use sim3align_geometry::error::Result;
 use sim3align_geometry::image::{Image, Mask};
 
-/// Reads a mask whose object pixels become 1, the others 0:
+/// Reads a mask; pixels of the object become 1, the others 0:
 ///
-/// - PNG of any bit depth. Where the alpha channel varies, it is a cut-out: alpha above 0 is the object. Otherwise
-///   a pixel is the object when any colour channel is above 0; of a palette image, when its colour is not that of
-///   index 0.
-/// - `.npy` array (H×W, H×W×1, 1×H×W) of booleans or numbers: everything but 0 and NaN is the object.
-/// - JSON with a COCO run-length encoding, `{"size": [h, w], "counts": …}`, or with such under `segmentation`.
+/// - PNG of any bit depth. If the alpha channel varies, the object has alpha above 0 (a cut-out). Otherwise, the
+///   object has any colour channel above 0; in a palette image, a colour other than that of index 0.
+/// - `.npy` array (H×W, H×W×1, 1×H×W) of booleans or numbers: values other than 0 and NaN are the object.
+/// - JSON with a COCO run-length encoding, `{"size": [h, w], "counts": …}`, or with one under `segmentation`.
 ///
 /// # Errors
 /// [`UnsupportedFormat`](sim3align_geometry::error::ErrorCode::UnsupportedFormat),
-/// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile), [`FileTooLarge`](sim3align_geometry::error::ErrorCode::FileTooLarge),
+/// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile),
+/// [`FileTooLarge`](sim3align_geometry::error::ErrorCode::FileTooLarge),
 /// [`EmptyImage`](sim3align_geometry::error::ErrorCode::EmptyImage).
 pub fn read_mask(bytes: &[u8]) -> Result<Mask> {
     if bytes.starts_with(png::MAGIC) {
@@ -35,7 +35,7 @@ pub fn read_mask(bytes: &[u8]) -> Result<Mask> {
         "mask",
         beginning(bytes),
         "a PNG, a .npy array or COCO RLE in JSON",
-        "Save the mask as PNG: lossy formats smear its edge.",
+        "Save the mask as PNG: lossy formats blur its edge.",
     ))
 }
 

@@ -1,13 +1,14 @@
-//! Mesh files of any supported format.
+//! Mesh files of all supported formats.
 
 use core::fmt;
 
+use crate::gltf::{self, Resources};
 use crate::guard::{beginning, unsupported};
-use crate::{gltf, obj, ply, stl, text};
+use crate::{obj, ply, stl, text};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::mesh::Mesh;
 
-/// The mesh formats that are read.
+/// The supported mesh formats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MeshFormat {
     /// glTF 2.0, binary (`.glb`) or JSON (`.gltf`).
@@ -36,14 +37,14 @@ impl MeshFormat {
                 "options.format",
                 format!("{name:?}"),
                 "\"glb\", \"gltf\", \"obj\", \"ply\" or \"stl\"",
-                "Leave it out to have the format told from the content.",
+                "Omit it to detect the format from the content.",
             )),
         }
     }
 
-    /// The format told from the content, or `None`.
+    /// Detects the format from the content, or returns `None`.
     ///
-    /// A binary STL is known by its length, since its header may begin with "solid" as the text form does.
+    /// Binary STL is detected by its length, because its header may begin with "solid" like the text form.
     pub fn sniff(bytes: &[u8]) -> Option<Self> {
         let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
         if bytes.starts_with(b"glTF") || text.starts_with(b"{") {
@@ -63,13 +64,10 @@ impl MeshFormat {
     }
 }
 
-/// Finds the bytes behind a relative URI in a `.gltf` file.
-pub type Resources<'a> = &'a dyn Fn(&str) -> Option<Vec<u8>>;
-
-/// How to read a mesh file.
+/// Options of [`read_mesh`].
 #[derive(Clone, Copy, Default)]
 pub struct MeshReadOptions<'a> {
-    /// The format; told from the content when `None`.
+    /// The format; detected from the content if `None`.
     pub format: Option<MeshFormat>,
     /// The external buffers of a `.gltf` file, by URI as written in it; see [`gltf::external_resources`].
     pub resources: Option<Resources<'a>>,
@@ -84,8 +82,8 @@ impl fmt::Debug for MeshReadOptions<'_> {
     }
 }
 
-/// Reads a mesh: all its parts merged, node transforms applied, in the file's own unit and axes. Vertices that
-/// no triangle uses are left out; normals, colours and textures are not read.
+/// Reads a mesh: all parts merged, node transforms applied, in the unit and axes of the file. Unused vertices are
+/// removed; normals, colours and textures are not read.
 ///
 /// # Errors
 /// [`ErrorCode::UnsupportedFormat`], [`ErrorCode::CorruptFile`], [`ErrorCode::FileTooLarge`],

@@ -1,4 +1,4 @@
-//! A mesh under construction, within limits.
+//! Builds a mesh within the size limits.
 
 use glam::{DMat4, Vec3};
 
@@ -6,7 +6,7 @@ use crate::guard::{MAX_TRIANGLES, MAX_VERTICES, too_large};
 use sim3align_geometry::error::Result;
 use sim3align_geometry::mesh::Mesh;
 
-/// Vertices and triangles as a reader finds them.
+/// Collects the vertices and triangles of a file.
 #[derive(Debug, Default)]
 pub(crate) struct MeshBuilder {
     positions: Vec<Vec3>,
@@ -14,22 +14,22 @@ pub(crate) struct MeshBuilder {
 }
 
 impl MeshBuilder {
-    /// A builder that begins with these vertices.
+    /// A builder with initial vertices.
     pub fn with_positions(positions: Vec<Vec3>) -> Self {
         Self { positions, triangles: Vec::new() }
     }
 
-    /// Vertices so far.
+    /// Number of vertices.
     pub fn vertex_count(&self) -> usize {
         self.positions.len()
     }
 
-    /// Triangles so far.
+    /// Number of triangles.
     pub fn triangle_count(&self) -> usize {
         self.triangles.len()
     }
 
-    /// Adds a vertex and gives its index.
+    /// Adds a vertex and returns its index.
     pub fn push_vertex(&mut self, position: Vec3) -> Result<u32> {
         let index = self.positions.len();
         if index >= MAX_VERTICES {
@@ -49,14 +49,14 @@ impl MeshBuilder {
         Ok(())
     }
 
-    /// Adds a polygon (or a triangle fan) as the triangles around its first corner: exact where it is convex.
+    /// Adds a polygon (or a triangle fan) as triangles around its first corner: exact for convex polygons.
     pub fn push_fan(&mut self, corners: &[u32]) -> Result<()> {
         let Some((&first, rest)) = corners.split_first() else { return Ok(()) };
         rest.windows(2).try_for_each(|pair| self.push_triangle([first, pair[0], pair[1]]))
     }
 
-    /// Adds a triangle strip: every second triangle turns the other way round. Repeated corners only
-    /// join parts of a strip, they are no triangles.
+    /// Adds a triangle strip, with alternating orientation. Triangles with repeated corners, which only join parts of a
+    /// strip, are skipped.
     pub fn push_strip(&mut self, corners: &[u32]) -> Result<()> {
         for (i, window) in corners.windows(3).enumerate() {
             let [a, b, c] = [window[0], window[1], window[2]];
@@ -67,7 +67,8 @@ impl MeshBuilder {
         Ok(())
     }
 
-    /// Adds a mesh under a transform, in f64. A mirror turns its triangles round, so that they go on facing outward.
+    /// Adds a mesh under a transform (f64). If the transform mirrors, the orientation of the triangles is reversed, so
+    /// that they still face outward.
     pub fn append(&mut self, mesh: &Mesh, transform: &DMat4) -> Result<()> {
         let offset = self.positions.len() as u32;
         for position in mesh.positions() {
@@ -81,8 +82,8 @@ impl MeshBuilder {
         Ok(())
     }
 
-    /// The mesh, without the vertices that no triangle uses: a shared vertex buffer or a stray point
-    /// must not widen the object's box.
+    /// The mesh without unused vertices: a shared vertex buffer or a stray point must not enlarge the bounding box of
+    /// the object.
     ///
     /// # Errors
     /// Those of [`Mesh::new`].

@@ -1,4 +1,4 @@
-//! NumPy's `.npy`, versions 1 to 3: two-dimensional arrays of numbers.
+//! NumPy `.npy` files, versions 1 to 3: two-dimensional arrays of numbers.
 
 use crate::cursor::Cursor;
 use crate::guard::{corrupt, pixel_count, unsupported};
@@ -6,7 +6,7 @@ use sim3align_geometry::error::Result;
 
 pub(crate) const MAGIC: &[u8] = b"\x93NUMPY";
 
-/// What an element is.
+/// The type of an element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
     Bool,
@@ -21,7 +21,7 @@ pub(crate) struct NpyImage<'a> {
     pub width: usize,
     pub height: usize,
     pub kind: Kind,
-    /// Bytes of an element.
+    /// Bytes per element.
     pub size: usize,
     big_endian: bool,
     fortran_order: bool,
@@ -29,8 +29,8 @@ pub(crate) struct NpyImage<'a> {
 }
 
 impl<'a> NpyImage<'a> {
-    /// Reads the header and checks that the data are there. Sizes beyond the limit and shapes that are no image
-    /// are refused.
+    /// Reads the header and checks that the data are complete. Rejects sizes above the limit and shapes other than
+    /// those of an image.
     pub fn read(argument: &'static str, bytes: &'a [u8]) -> Result<Self> {
         let mut cursor = Cursor::new(argument, bytes);
         if cursor.take(MAGIC.len())? != MAGIC {
@@ -70,7 +70,7 @@ impl<'a> NpyImage<'a> {
         Ok(Self { width, height, kind, size, big_endian, fortran_order, data })
     }
 
-    /// The elements row by row, whichever order the file keeps them in.
+    /// The elements, row-major, for both storage orders of the file.
     pub fn values(&self) -> impl Iterator<Item = f64> {
         (0..self.height).flat_map(move |v| {
             (0..self.width).map(move |u| {
@@ -103,14 +103,14 @@ impl<'a> NpyImage<'a> {
     }
 }
 
-/// The text of a value in the header, a Python dictionary of literals.
+/// The text of a value in the header, which is a Python dictionary of literals.
 fn field<'a>(header: &'a str, name: &str) -> Option<&'a str> {
     let quoted = |quote: char| header.split_once(&format!("{quote}{name}{quote}"));
     let (_, after) = quoted('\'').or_else(|| quoted('"'))?;
     Some(after.trim_start().strip_prefix(':')?.trim_start())
 }
 
-/// Byte order, kind and size of `'<f4'` and its like.
+/// Parses byte order, kind and size of a type such as `'<f4'`.
 fn element_type(argument: &str, text: &str) -> Result<(bool, Kind, usize)> {
     let quote = text.chars().next().filter(|quote| matches!(quote, '\'' | '"'));
     let descr = quote.and_then(|quote| text.get(1..)?.split(quote).next()).unwrap_or(text);
@@ -147,12 +147,12 @@ fn size_fits(kind: Kind, size: usize) -> bool {
 fn shape(text: &str) -> Option<Vec<usize>> {
     let (inside, _) = text.strip_prefix('(')?.split_once(')')?;
     let sizes = inside.split(',').map(|size| size.trim().trim_end_matches('L')).filter(|size| !size.is_empty());
-    // Saturated: too large is too large, whatever the platform's word.
+    // Saturates, so that a product that overflows usize still exceeds the limit.
     let size = |size: &str| size.parse::<u64>().ok().map(|size| usize::try_from(size).unwrap_or(usize::MAX));
     sizes.take(8).map(size).collect()
 }
 
-/// IEEE 754 binary16.
+/// Converts IEEE 754 binary16.
 fn half(bits: u16) -> f64 {
     let sign = if bits & 0x8000 == 0 { 1.0 } else { -1.0 };
     let (exponent, fraction) = (i32::from(bits >> 10 & 0x1f), f64::from(bits & 0x3ff));

@@ -1,4 +1,4 @@
-//! Wavefront OBJ: vertices and faces; everything else is passed over.
+//! Wavefront OBJ: vertices and faces; other statements are ignored.
 
 use glam::DVec3;
 
@@ -8,11 +8,11 @@ use crate::text::{lines, number, quoted, words};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::mesh::Mesh;
 
-/// Reads `v` and `f` lines: polygons become fans, negative indices count back from the latest vertex, a
-/// backslash at a line's end joins the next. Vertex colours, weights, normals and free-form surfaces are not read.
+/// Reads `v` and `f` lines: polygons become fans, negative indices count back from the latest vertex, and a
+/// backslash at the end of a line continues it. Vertex colours, weights, normals and free-form surfaces are not read.
 ///
 /// # Errors
-/// [`ErrorCode::CorruptFile`] with the line, [`ErrorCode::IndexOutOfRange`], [`ErrorCode::FileTooLarge`],
+/// [`ErrorCode::CorruptFile`] with the line number, [`ErrorCode::IndexOutOfRange`], [`ErrorCode::FileTooLarge`],
 /// and those of [`Mesh::new`].
 pub fn read_obj(bytes: &[u8]) -> Result<Mesh> {
     let mut builder = MeshBuilder::default();
@@ -64,7 +64,7 @@ fn corner(word: &[u8], vertex_count: usize, line: usize) -> Result<u32> {
     let Some(index) = index else {
         return Err(corrupt("mesh", format!("{} in line {line}", quoted(word)), "f v/vt/vn …: vertex numbers"));
     };
-    // Forward references are legal in OBJ: only the mesh as a whole can tell that a positive index has no vertex.
+    // OBJ allows forward references, so that positive indices can only be checked against the complete mesh.
     let from_zero = if index < 0 { vertex_count as i64 + index } else { index - 1 };
     u32::try_from(from_zero).map_err(|_| {
         Error::new(

@@ -10,8 +10,8 @@ use crate::text::{number, quoted};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::mesh::Mesh;
 
-/// Reads the elements `vertex` (x, y, z of any type, anywhere among the properties), `face` (polygons, as fans)
-/// and `tristrips`; passes over the others.
+/// Reads the elements `vertex` (x, y, z of any type, at any position among the properties), `face` (polygons, as
+/// fans) and `tristrips`; ignores the others.
 ///
 /// # Errors
 /// [`ErrorCode::CorruptFile`], [`ErrorCode::UnsupportedFormat`], [`ErrorCode::FileTooLarge`],
@@ -35,7 +35,7 @@ pub fn read_ply(bytes: &[u8]) -> Result<Mesh> {
     builder.finish()
 }
 
-/// Reads the element `vertex` alone: the points of a cloud, which needs no face.
+/// Reads only the element `vertex`: the points of a cloud without faces.
 ///
 /// # Errors
 /// [`ErrorCode::CorruptFile`], [`ErrorCode::UnsupportedFormat`], [`ErrorCode::FileTooLarge`].
@@ -118,7 +118,7 @@ fn read_faces(element: &Element, body: &mut Body<'_>, push: &mut dyn FnMut(&[u32
     })
 }
 
-/// Calls `visit` with the place of each property and its values (one, or the list), record by record.
+/// Calls `visit` with the position of each property and its values (one, or the list), record by record.
 fn read_records(
     element: &Element,
     body: &mut Body<'_>,
@@ -148,9 +148,9 @@ struct Body<'a> {
 }
 
 impl Body<'_> {
-    /// A count that the rest of the file can't hold is a lie: told before anything is read or allocated.
+    /// Checks a count against the remaining bytes, before anything is read or allocated.
     fn check_count(&self, element: &Element) -> Result<()> {
-        // The last number of an ASCII file needs no space after it, hence the one byte more.
+        // One more byte: the last number of an ASCII file need not be followed by a space.
         let available = self.cursor.remaining().len() + 1;
         match element.count.checked_mul(element.min_bytes(self.encoding)) {
             Some(bytes) if bytes <= available => Ok(()),
@@ -171,7 +171,7 @@ impl Body<'_> {
         Ok(length as usize)
     }
 
-    /// The next number; f64 holds each of the types exactly.
+    /// The next number; f64 represents all types exactly.
     fn next(&mut self, scalar: Scalar) -> Result<f64> {
         if self.encoding == Encoding::Ascii {
             return self.next_word();

@@ -1,10 +1,10 @@
-//! The header of a PLY file: which elements follow, with which properties, in which encoding.
+//! The header of a PLY file: elements, properties and encoding.
 
 use crate::guard::{corrupt, unsupported};
 use crate::text::{quoted, words};
 use sim3align_geometry::error::Result;
 
-/// How the body is written.
+/// The encoding of the body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Encoding {
     Ascii,
@@ -40,7 +40,7 @@ impl Scalar {
         })
     }
 
-    /// Bytes of one number in a binary body.
+    /// Bytes per number in a binary body.
     pub fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -51,16 +51,16 @@ impl Scalar {
     }
 }
 
-/// One property of an element.
+/// A property of an element.
 #[derive(Debug, Clone)]
 pub(crate) struct Property {
     pub name: Vec<u8>,
-    /// The type of the list's length, for a list.
+    /// The type of the length of a list property; `None` for a scalar.
     pub list_length: Option<Scalar>,
     pub scalar: Scalar,
 }
 
-/// A run of records.
+/// An element: a sequence of records.
 #[derive(Debug, Clone)]
 pub(crate) struct Element {
     pub name: Vec<u8>,
@@ -69,7 +69,7 @@ pub(crate) struct Element {
 }
 
 impl Element {
-    /// Fewest bytes that a record can take: what a count is checked against before anything is allocated.
+    /// Minimum size of a record in bytes, used to check a count before allocation.
     pub fn min_bytes(&self, encoding: Encoding) -> usize {
         match encoding {
             Encoding::Ascii => 2 * self.properties.len(),
@@ -86,9 +86,9 @@ pub(crate) struct Header {
 }
 
 impl Header {
-    /// Reads the header; gives it and the body.
+    /// Reads the header; returns it and the body.
     pub fn read(bytes: &[u8]) -> Result<(Self, &[u8])> {
-        // Files that end lines with a bare \r exist, and a binary body may begin with \n: the first line tells.
+        // Some files end lines with a bare \r, and a binary body may begin with \n: the first line decides.
         let end = if bytes.starts_with(b"ply\r") && !bytes.starts_with(b"ply\r\n") { b'\r' } else { b'\n' };
         let mut rest = bytes;
         let mut encoding = None;

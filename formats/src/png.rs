@@ -1,4 +1,4 @@
-//! PNG images: what the header says, checked before a pixel is decoded.
+//! PNG images; the header is checked before pixels are decoded.
 
 use std::io;
 
@@ -11,19 +11,19 @@ use sim3align_geometry::error::Result;
 
 pub(crate) const MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
 
-/// DEFLATE packs at most 1032 to 1; a file that needs more does not hold its pixels.
+/// Maximum compression ratio of DEFLATE, 1032:1; a file that would need more is incomplete.
 const MAX_RATIO: usize = 1032;
 
-/// A PNG's header.
+/// The header of a PNG file.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PngInfo {
     pub width: usize,
     pub height: usize,
-    /// Bits of a sample: 1, 2, 4, 8 or 16.
+    /// Bits per sample: 1, 2, 4, 8 or 16.
     pub bit_depth: u8,
-    /// Whether the samples are grey levels, without colour, palette or alpha channel.
+    /// Whether the image is greyscale without alpha channel.
     pub is_grey: bool,
-    /// For a palette image, the colour of index 0.
+    /// The colour of index 0 of a palette image.
     pub first_palette_colour: Option<[u8; 3]>,
 }
 
@@ -36,7 +36,7 @@ pub(crate) struct PngPixels {
 }
 
 impl PngInfo {
-    /// Walks the chunks, all of them: a file cut short is found out however early its pixels end.
+    /// Reads all chunks, so that truncation is detected even after the pixels.
     pub fn read(argument: &'static str, bytes: &[u8]) -> Result<Self> {
         let mut cursor = Cursor::new(argument, bytes);
         if cursor.take(MAGIC.len())? != MAGIC {
@@ -82,7 +82,7 @@ impl PngInfo {
         Ok(Self { width, height, bit_depth, is_grey: colour == 0, first_palette_colour })
     }
 
-    /// Decodes the pixels of the file that this header is of.
+    /// Decodes the pixels of the file with this header.
     pub fn decode(&self, argument: &'static str, bytes: &[u8]) -> Result<PngPixels> {
         let broken = |error: image::ImageError| {
             corrupt(argument, format!("a PNG that can't be decoded: {error}"), "a PNG image")

@@ -40,8 +40,9 @@ impl Rle {
     /// The mask: 1 is the object.
     ///
     /// # Errors
-    /// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile) where the runs don't sum up to width × height,
-    /// [`FileTooLarge`](sim3align_geometry::error::ErrorCode::FileTooLarge), [`EmptyImage`](sim3align_geometry::error::ErrorCode::EmptyImage).
+    /// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile) where the runs don't sum up to width ×
+    /// height, [`FileTooLarge`](sim3align_geometry::error::ErrorCode::FileTooLarge),
+    /// [`EmptyImage`](sim3align_geometry::error::ErrorCode::EmptyImage).
     pub fn decode(&self) -> Result<Mask> {
         let (width, height) = (self.width, self.height);
         let count = pixel_count("mask", width, height)?;
@@ -69,7 +70,8 @@ impl Rle {
     /// Runs from COCO's compressed string: differences to the run before the last, five bits a letter.
     ///
     /// # Errors
-    /// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile) for letters and lengths that no encoder writes.
+    /// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile) for letters and lengths that no encoder
+    /// writes.
     pub fn from_compressed(width: usize, height: usize, text: &str) -> Result<Self> {
         let mut counts: Vec<u32> = Vec::new();
         let (mut value, mut shift) = (0_i64, 0);
@@ -123,7 +125,8 @@ impl Rle {
     /// Runs from `{"size": [height, width], "counts": "…" or […]}`, or an object that has such as `segmentation`.
     ///
     /// # Errors
-    /// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile), [`FileTooLarge`](sim3align_geometry::error::ErrorCode::FileTooLarge).
+    /// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile),
+    /// [`FileTooLarge`](sim3align_geometry::error::ErrorCode::FileTooLarge).
     pub fn from_json(bytes: &[u8]) -> Result<Self> {
         let value = json::parse("mask", bytes)?;
         let value = value.get("segmentation").unwrap_or(&value);

@@ -1,4 +1,4 @@
-//! STL, ASCII and binary: a triangle soup, welded.
+//! STL, ASCII and binary: a triangle soup, welded to a mesh.
 
 use std::collections::HashMap;
 
@@ -14,18 +14,19 @@ use sim3align_geometry::mesh::Mesh;
 const HEADER_BYTES: usize = 80;
 const TRIANGLE_BYTES: usize = 50;
 
-/// Whether the length is exactly that of a binary STL: what tells it from text, as its header may begin with "solid".
+/// Whether the length is exactly that of a binary STL. The header does not distinguish it from text, because it may
+/// begin with "solid".
 pub(crate) fn has_binary_length(bytes: &[u8]) -> bool {
     let mut cursor = Cursor::new("mesh", bytes);
     let count = cursor.take(HEADER_BYTES).and_then(|_| cursor.u32_le());
     count.is_ok_and(|count| (count as usize).checked_mul(TRIANGLE_BYTES) == Some(cursor.remaining().len()))
 }
 
-/// Reads an STL. Vertices with the same coordinates become one; nothing is rounded.
+/// Reads an STL. Vertices with equal coordinates are merged, without rounding.
 ///
 /// # Errors
-/// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile), [`FileTooLarge`](sim3align_geometry::error::ErrorCode::FileTooLarge)
-/// and those of [`Mesh::new`].
+/// [`CorruptFile`](sim3align_geometry::error::ErrorCode::CorruptFile),
+/// [`FileTooLarge`](sim3align_geometry::error::ErrorCode::FileTooLarge) and those of [`Mesh::new`].
 pub fn read_stl(bytes: &[u8]) -> Result<Mesh> {
     let is_text = !has_binary_length(bytes)
         && bytes.trim_ascii_start().starts_with(b"solid")
@@ -85,7 +86,7 @@ fn read_text(bytes: &[u8]) -> Result<Mesh> {
     welder.builder.finish()
 }
 
-/// Gives equal coordinates one index.
+/// Assigns one index to equal coordinates.
 #[derive(Default)]
 struct Welder {
     builder: MeshBuilder,
@@ -96,7 +97,7 @@ impl Welder {
     fn push(&mut self, corners: [Vec3; 3]) -> Result<()> {
         let mut triangle = [0; 3];
         for (index, corner) in triangle.iter_mut().zip(corners) {
-            // −0 + 0 is +0: the two zeros are one place.
+            // −0 + 0 is +0, so that both zeros are equal.
             let corner = corner + Vec3::ZERO;
             let key = corner.to_array().map(f32::to_bits);
             *index = match self.indices.get(&key) {

@@ -1,6 +1,6 @@
-//! Lines, words and numbers of text formats, from bytes of any encoding.
+//! Lines, words and numbers of text files, from bytes of any encoding.
 
-/// The lines of a file, whichever of \n, \r\n and \r ends them (a trailing \r is white space to [`words`]).
+/// The lines of a file, ended by \n, \r\n or \r (a trailing \r is white space for [`words`]).
 pub fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     let end = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };
     bytes.split(move |&b| b == end)
@@ -16,7 +16,7 @@ pub fn number(word: &[u8]) -> Option<f64> {
     core::str::from_utf8(word).ok()?.parse().ok()
 }
 
-/// A word for a message: short, and without control characters.
+/// A word as quoted in an error message: shortened, without control characters.
 pub fn quoted(word: &[u8]) -> String {
     let head = word.get(..word.len().min(40)).unwrap_or_default();
     format!("\"{}\"", head.escape_ascii())

@@ -1,16 +1,16 @@
-//! Sine and cosine of angles of a few turns.
+//! Sine and cosine for moderate angles, and the exponential map of SO(3).
 //!
-//! libm's reduce any f64, for which they carry five kilobytes of WebAssembly and 2/π to a thousand bits. The
-//! polynomials are theirs (fdlibm's `k_sin.c` and `k_cos.c`), good to one unit in the last place.
+//! `libm::sin` reduces arguments up to the largest f64, which takes five kilobytes of WebAssembly and a table of 2/π.
+//! The polynomials are the same (fdlibm's `k_sin.c` and `k_cos.c`); the error is at most one unit in the last place.
 
 use core::f64::consts::FRAC_2_PI;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-/// π/2 in two parts; the first has 33 bits, so that its multiples by whole numbers of up to 20 bits are exact.
+/// π/2 in two parts. The first has 33 significant bits, so that its product with an integer of up to 20 bits is exact.
 const HALF_PI: [f64; 2] = [1.570_796_326_734_125_6, 6.077_100_506_506_192e-11];
 
-/// Sine and cosine; `angle` in radians, up to a million.
+/// Sine and cosine of `angle`, in radians; |angle| ≤ 10⁶.
 pub fn sin_cos(angle: f64) -> (f64, f64) {
     let quarters = (angle * FRAC_2_PI + 0.5).floor();
     let x = (angle - quarters * HALF_PI[0]) - quarters * HALF_PI[1];
@@ -39,7 +39,7 @@ pub fn sin_cos(angle: f64) -> (f64, f64) {
     );
     let half = 0.5 * z;
     let whole = 1.0 - half;
-    // What 1 − z/2 lost to rounding is given back.
+    // Adds the rounding error of 1 − z/2.
     let (sin, cos) = (x + x * z * sin, whole + ((1.0 - whole - half) + z * z * cos));
     match quarters as i64 & 3 {
         0 => (sin, cos),
@@ -49,8 +49,8 @@ pub fn sin_cos(angle: f64) -> (f64, f64) {
     }
 }
 
-/// The turn by the length of `rotation`, in radians, about its direction: exp(ω).
-pub fn turn(rotation: Vector3<f64>) -> UnitQuaternion<f64> {
+/// exp(ω): the rotation by |ω| radians about the direction of ω.
+pub fn exp_so3(rotation: Vector3<f64>) -> UnitQuaternion<f64> {
     let angle = rotation.norm();
     let (sin, cos) = sin_cos(0.5 * angle);
     let along = if angle > 0.0 { sin / angle } else { 0.5 };

@@ -1,25 +1,25 @@
-//! Clipping triangles in camera space, before they are projected.
+//! Clipping of triangles in camera space, before projection.
 
 use glam::DVec3;
 
 use super::pinhole::Pinhole;
 
-/// Half the width of the guard band, in pixels: how far from the image's origin a projected vertex may lie.
-/// With 8 sub-pixel bits it is 2²⁹ units, and twice the area of any triangle inside fits 61 bits.
+/// Half the width of the guard band, in pixels: the largest distance of a projected vertex from the image origin.
+/// With 8 sub-pixel bits this is 2²⁹ units, and twice the area of any triangle inside fits into 61 bits.
 pub const GUARD_BAND_PX: f64 = (1 << 21) as f64;
 
 /// A triangle cut by five planes has at most eight corners.
 pub const MAX_CORNERS: usize = 8;
 
-/// What may be projected: beyond the near plane and within the guard band.
+/// The region that can be projected: beyond the near plane and within the guard band.
 #[derive(Debug, Clone, Copy)]
 pub struct ClipVolume {
-    /// Inward (unnormalised) normals and offsets: p is inside where n·p ≥ offset.
+    /// Inward (unnormalised) normals and offsets: p is inside if n·p ≥ offset for every plane.
     planes: [(DVec3, f64); 5],
 }
 
 impl ClipVolume {
-    /// The volume of a camera with its near plane at depth `near`.
+    /// The clip volume of a camera whose near plane is at depth `near`.
     pub fn new(camera: &Pinhole, near: f64) -> Self {
         let Pinhole { fx, fy, cx, cy } = *camera;
         let side = |x: f64, y: f64, z: f64| (DVec3::new(x, y, z), 0.0);
@@ -34,11 +34,11 @@ impl ClipVolume {
         }
     }
 
-    /// The part of a triangle inside, a convex polygon: its corners are the first `n` of the array returned.
+    /// The part of a triangle inside the volume, a convex polygon: its corners are the first `n` entries of the array.
     ///
-    /// Cut points are computed from the inside corner to the outside one whichever way the edge runs, so that
-    /// two triangles that share an edge get the same bits for it and no crack opens between them
-    /// (Sutherland and Hodgman 1974).
+    /// Intersections are computed from the inside corner to the outside one, whatever the direction of the edge, so
+    /// that two triangles that share an edge get the same bits for it and no crack opens between them (Sutherland and
+    /// Hodgman 1974).
     pub fn clip(&self, triangle: [DVec3; 3]) -> ([DVec3; MAX_CORNERS], usize) {
         let mut polygon = [DVec3::ZERO; MAX_CORNERS];
         polygon[..3].copy_from_slice(&triangle);
@@ -48,7 +48,7 @@ impl ClipVolume {
             let (before, n) = (polygon, count);
             count = 0;
             let mut push = |p: DVec3| {
-                // Rounding can make a sliver cross a plane more than twice; what exceeds the array is nothing.
+                // Rounding can make a sliver cross a plane more than twice. Such excess corners are dropped.
                 if count < MAX_CORNERS {
                     polygon[count] = p;
                     count += 1;

@@ -1,13 +1,13 @@
-//! Point clouds and their boxes.
+//! Point clouds and axis-aligned bounding boxes.
 
 use glam::Vec3;
 
-/// Points, with a unit normal each or with none.
+/// Points, optionally with unit normals, in any frame and unit.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Cloud {
     /// Positions.
     pub points: Vec<Vec3>,
-    /// One unit normal per point, or empty. A zero vector is a point whose normal is unknown.
+    /// One unit normal per point, or empty. A zero vector marks an unknown normal.
     pub normals: Vec<Vec3>,
 }
 
@@ -17,17 +17,17 @@ impl Cloud {
         Self { points, normals: Vec::new() }
     }
 
-    /// How many points.
+    /// Number of points.
     pub fn len(&self) -> usize {
         self.points.len()
     }
 
-    /// Whether there is no point.
+    /// Whether the cloud has no points.
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
     }
 
-    /// The cloud of the points at `indices`, in that order. Indices that do not exist are passed over.
+    /// The cloud of the points at `indices`, in that order. Indices out of range are ignored.
     pub fn select(&self, indices: impl IntoIterator<Item = usize>) -> Self {
         let mut cloud = Self::default();
         for i in indices {
@@ -40,7 +40,7 @@ impl Cloud {
     }
 }
 
-/// An axis-aligned box.
+/// An axis-aligned bounding box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
     /// The corner with the smallest coordinates.
@@ -56,7 +56,7 @@ impl Bounds {
         Some(rest.iter().fold(Self { min: first, max: first }, |b, &p| Self { min: b.min.min(p), max: b.max.max(p) }))
     }
 
-    /// The box around nothing; the smallest box around it and another is the other.
+    /// The empty box, the identity of [`Bounds::union`].
     pub const NOTHING: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
     /// The smallest box around both.
@@ -64,9 +64,9 @@ impl Bounds {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    /// The squared distance of a point to the box, 0 inside. Never more than that of the point to any point of the
+    /// The squared distance of a point to the box, 0 inside. Never larger than that of the point to any point of the
     /// box as `Vec3::distance_squared` rounds it: both round the same way in every step.
-    // Inlined whatever the compiler thinks it costs: searches do little else. `f32::max` is a call in WebAssembly.
+    // Inlined always: it dominates the run time of searches. `f32::max` is a function call in WebAssembly.
     #[inline(always)]
     pub fn distance_squared(&self, point: Vec3) -> f32 {
         let gap = |min: f32, max: f32, x: f32| {
@@ -86,12 +86,12 @@ impl Bounds {
         Self { min: a.min(*b).min(*c), max: a.max(*b).max(*c) }
     }
 
-    /// The middle of the box.
+    /// The centre of the box.
     pub fn center(&self) -> Vec3 {
         (self.min + self.max) * 0.5
     }
 
-    /// The box's edges.
+    /// The lengths of the edges.
     pub fn extent(&self) -> Vec3 {
         self.max - self.min
     }

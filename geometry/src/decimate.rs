@@ -7,21 +7,22 @@ use super::cloud::Bounds;
 use super::mesh::Mesh;
 use super::symmetric_eigen::SymmetricEigen;
 
-/// Cells along the longest side at most: a table of that many cubed is kept.
+/// Limit on the cells along the longest side; the table has this many cubed.
 const MAX_CELLS: usize = 112;
-/// Passes that look for the cell size.
+/// Passes of the search for the cell size.
 const PASSES: usize = 4;
-/// Eigenvalues below this share of the largest say nothing of where the vertex lies along their direction.
+/// Eigenvalues below this fraction of the largest do not constrain the vertex along their direction.
 const RANK: f64 = 1e-3;
 
-/// The mesh with about `triangles` triangles, at most a quarter more; as it is, where it has no more than that.
+/// The mesh with about `triangles` triangles, at most a quarter more. A mesh that has no more than that is returned
+/// unchanged.
 pub fn decimate(mesh: &Mesh, triangles: usize) -> Mesh {
     if mesh.triangles().len() <= triangles {
         return mesh.clone();
     }
     let Some(bounds) = Bounds::of(mesh.positions()) else { return mesh.clone() };
     let side = bounds.extent().max_element();
-    // A closed surface that fills its box has about 6 n² cells on it, and two triangles a cell.
+    // A closed surface that fills its box occupies about 6 n² cells, with two triangles per cell.
     let mut cells = ((triangles as f64 / 8.0).sqrt()).clamp(2.0, MAX_CELLS as f64);
     let mut best: Option<Clusters> = None;
     for _ in 0..PASSES {
@@ -44,7 +45,7 @@ pub fn decimate(mesh: &Mesh, triangles: usize) -> Mesh {
     best.and_then(|clusters| clusters.into_mesh(mesh)).unwrap_or_else(|| mesh.clone())
 }
 
-/// Which cluster each vertex falls into, and the triangles that have corners in three.
+/// The cluster of each vertex, and the triangles whose corners are in three clusters.
 struct Clusters {
     of_vertex: Vec<u32>,
     count: usize,
@@ -74,8 +75,8 @@ impl Clusters {
         Self { of_vertex, count: count as usize, triangles, cell }
     }
 
-    /// Each cluster's vertex goes where the planes of the triangles around it meet; along directions that they
-    /// leave free, it stays at the mean of the cluster.
+    /// Moves the vertex of each cluster to the intersection of the planes of its triangles. Along directions that these
+    /// do not constrain, it keeps the mean of the cluster.
     fn into_mesh(self, mesh: &Mesh) -> Option<Mesh> {
         let mut quadrics = vec![Quadric::default(); self.count];
         for (&cluster, p) in self.of_vertex.iter().zip(mesh.positions()) {
@@ -89,7 +90,7 @@ impl Clusters {
             let outer = DMat3::from_cols(normal * normal.x, normal * normal.y, normal * normal.z);
             let clusters = triangle.map(|i| self.of_vertex[i as usize]);
             for (i, &cluster) in clusters.iter().enumerate() {
-                // A triangle within one cluster counts once.
+                // A triangle within one cluster contributes once.
                 if !clusters[..i].contains(&cluster) {
                     let quadric = &mut quadrics[cluster as usize];
                     quadric.planes += outer;
@@ -123,7 +124,7 @@ impl Quadric {
                 shift += vector * (vector.dot(residual) / value);
             }
         }
-        // Nearly parallel planes meet far away.
+        // Nearly parallel planes intersect far away.
         let near = shift.is_finite() && shift.length() <= reach;
         (if near { mean + shift } else { mean }).as_vec3()
     }

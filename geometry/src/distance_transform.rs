@@ -1,10 +1,10 @@
 //! The exact Euclidean distance transform of a binary image.
 
-/// Distance where the image has no set pixel at all.
+/// The distance if the image has no set pixel.
 pub const NO_PIXEL: u32 = u32::MAX;
 
-/// Squared distance of every pixel to the nearest set pixel, in pixels², row by row; [`NO_PIXEL`] everywhere
-/// where none is set. `set` holds `width` × `height` values.
+/// Squared distance of every pixel to the nearest set pixel, in pixels², row-major; [`NO_PIXEL`] everywhere if
+/// none is set. `set` holds `width` × `height` values.
 ///
 /// Two scans in integers, linear in the number of pixels (Meijster, Roerdink and Hesselink 2000): down and up
 /// the columns, then along each row the lower envelope of the columns' parabolas.
@@ -14,7 +14,7 @@ pub fn squared_distances(set: &[bool], width: usize, height: usize) -> Vec<u32> 
         return distances;
     }
     let in_column = column_distances(set, width, height);
-    // The parabolas of the envelope, each with the column from which on it is the lowest.
+    // The parabolas of the envelope, each with the first column where it is the lowest.
     let mut envelope: Vec<(i64, i64)> = Vec::with_capacity(width);
     for (row, out) in in_column.chunks_exact(width).zip(distances.chunks_exact_mut(width)) {
         let squared = |x: i64| row[x as usize] * row[x as usize];
@@ -44,7 +44,8 @@ pub fn squared_distances(set: &[bool], width: usize, height: usize) -> Vec<u32> 
     distances
 }
 
-/// Distance to the nearest set pixel of the same column; beyond any distance in the image where there is none.
+/// Distance to the nearest set pixel of the same column. A column without one gets a value larger than any distance in
+/// the image.
 fn column_distances(set: &[bool], width: usize, height: usize) -> Vec<i64> {
     let far = (width + height) as i64;
     let mut distances = vec![far; set.len()];

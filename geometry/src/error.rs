@@ -1,4 +1,4 @@
-//! The one error type: a stable code, the argument, what was found, what was expected, the remedy.
+//! The error type of all crates: a stable code, the argument, the value found, the value expected, and a remedy.
 
 use core::fmt;
 use core::ops::Deref;
@@ -6,7 +6,7 @@ use std::borrow::Cow;
 
 use serde::Serialize;
 
-/// What went wrong, as a name that stays the same from release to release.
+/// Stable error code; does not change between releases.
 ///
 /// In JavaScript it is the `code` of a `Sim3AlignError`, spelled as [`ErrorCode::as_str`] spells it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -14,53 +14,54 @@ use serde::Serialize;
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[non_exhaustive]
 pub enum ErrorCode {
-    /// An argument is missing or of the wrong type. Example: `depth` is a plain array. Pass what the message names.
+    /// An argument is missing or of the wrong type. Example: `depth` is a plain array. Pass the type that the message
+    /// names.
     InvalidArgument,
     /// An option's value is outside its range. Example: `voxelDivisions: 0`. The message gives the range.
     InvalidOption,
-    /// An option that does not exist. Example: `voxelDivision`. The message names the nearest one.
+    /// An option that does not exist. Example: `voxelDivision`. The message suggests the most similar name.
     UnknownOption,
-    /// An array's length does not fit the sizes given with it. Example: 100 depth values for 640 × 480.
+    /// The length of an array does not match the sizes given with it. Example: 100 depth values for 640 × 480.
     WrongLength,
     /// An image without pixels. Example: `width: 0`.
     EmptyImage,
     /// Depth and mask differ in size. Resize one, or ask for `resizeMask: "nearest"`.
     SizeMismatch,
-    /// Intrinsics that no camera has. Example: `fx: 0` or `NaN`.
+    /// Invalid intrinsics. Example: `fx: 0` or `NaN`.
     InvalidCamera,
     /// The mask selects no pixel.
     EmptyMask,
     /// No pixel of the mask has a depth reading.
     NoDepthInMask,
-    /// Every reading in the mask is the same number: a placeholder, not a measurement.
+    /// All readings inside the mask are equal: a placeholder, not a measurement.
     FlatDepth,
     /// Fewer points than the computation needs.
     TooFewPoints,
     /// A mesh without triangles.
     EmptyMesh,
-    /// A triangle names a vertex that does not exist.
+    /// A triangle refers to a vertex that does not exist.
     IndexOutOfRange,
     /// A coordinate is NaN or infinite.
     NonFinite,
-    /// A mesh without area or without volume around it: zero area, a plane, a needle.
+    /// A degenerate mesh: zero area, a plane, or a needle.
     DegenerateMesh,
-    /// Points from which a similarity does not follow: coincident or collinear.
+    /// Points that do not determine a similarity: coincident or collinear.
     DegeneratePoints,
-    /// The search ended without a transform that the data support. No identity is returned in its place.
+    /// The search found no transform that the data support. The identity is never returned instead.
     NoConsensus,
     /// A transform that is not a similarity: scale ≤ 0, a reflection, shear, or not finite.
     InvalidTransform,
-    /// A file whose format is not known or not supported. The message lists those that are.
+    /// A file of an unknown or unsupported format. The message lists the supported ones.
     UnsupportedFormat,
-    /// A file that ends early or contradicts itself.
+    /// A truncated or inconsistent file.
     CorruptFile,
-    /// A file that claims more than it can hold, or more than this package opens.
+    /// A file that declares more data than it contains, or that exceeds the limits of this package.
     FileTooLarge,
-    /// An 8-bit image where depth is expected: 256 steps are a picture of depth, not depth.
+    /// An 8-bit image where depth is expected: 256 levels are a visualisation of depth, not depth.
     EightBitDepth,
-    /// Draco- or meshopt-compressed geometry. The message names the tool that unpacks it.
+    /// Draco- or meshopt-compressed geometry. The message names a tool that decompresses it.
     CompressedMesh,
-    /// A fault of this package, not of its input. Please report it.
+    /// A bug in this package. Please report it.
     Internal,
 }
 
@@ -96,29 +97,29 @@ impl ErrorCode {
     }
 }
 
-/// Text that is most often known beforehand.
+/// Text of an error, mostly static.
 pub type Text = Cow<'static, str>;
 
-/// An error that tells its reader what to do. Its [`ErrorParts`] are its fields.
+/// An error with a remedy for the user. Dereferences to its [`ErrorParts`].
 ///
-/// A pointer: a result is then hardly larger than its value, and handing an error on costs one move instead of
-/// fifteen, at some two hundred places.
+/// Boxed: a `Result` is then hardly larger than its value, and propagating an error moves one word instead of fifteen
+/// at some two hundred places.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(transparent)]
 pub struct Error(Box<ErrorParts>);
 
-/// What an [`Error`] says.
+/// The fields of an [`Error`].
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ErrorParts {
     /// The stable code.
     pub code: ErrorCode,
-    /// The argument or option at fault, spelled as in JavaScript: `depth`, `mesh.indices`, `options.guard`.
+    /// The invalid argument or option, spelled as in JavaScript: `depth`, `mesh.indices`, `options.guard`.
     pub argument: Text,
-    /// What was found.
+    /// The value found.
     pub found: Text,
-    /// What was expected.
+    /// The value expected.
     pub expected: Text,
-    /// What to do about it.
+    /// How to resolve the error.
     pub remedy: Text,
 }
 
@@ -131,7 +132,7 @@ impl Deref for Error {
 }
 
 impl Error {
-    /// An error with all its parts.
+    /// An error from its parts.
     #[cold]
     #[inline(never)]
     pub fn new(
@@ -145,20 +146,19 @@ impl Error {
         Self(Box::new(ErrorParts { code, argument, found, expected, remedy }))
     }
 
-    /// The same error about another argument: what a geometry check calls `positions`, the caller may know
-    /// as `mesh.positions`.
+    /// The same error for another argument: the `positions` of a geometry check may be the caller's `mesh.positions`.
     pub fn about(mut self, argument: impl Into<Text>) -> Self {
         self.0.argument = argument.into();
         self
     }
 
-    /// The same error with other words for what was expected.
+    /// The same error with another expected value.
     pub fn expecting(mut self, expected: impl Into<Text>) -> Self {
         self.0.expected = expected.into();
         self
     }
 
-    /// The same error under another code.
+    /// The same error with another code.
     pub fn coded(mut self, code: ErrorCode) -> Self {
         self.0.code = code;
         self

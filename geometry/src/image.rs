@@ -13,7 +13,7 @@ pub struct Image<T> {
 /// Depth in metres along the optical axis; 0 is "no reading" (see [`DepthMap::from_metres`]).
 pub type DepthMap = Image<f32>;
 
-/// The object's pixels: non-zero is the object.
+/// A mask: non-zero pixels are the object.
 pub type Mask = Image<u8>;
 
 impl<T: Copy> Image<T> {
@@ -23,27 +23,27 @@ impl<T: Copy> Image<T> {
         Ok(Self { width, height, data })
     }
 
-    /// An image of one value everywhere. The sizes must be those of an image already checked.
+    /// An image with the same value in all pixels. The size must be that of a validated image.
     pub fn filled(width: usize, height: usize, value: T) -> Self {
         Self { width, height, data: vec![value; width * height] }
     }
 
-    /// Pixels in a row.
+    /// Width, in pixels.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Rows.
+    /// Height, in pixels.
     pub fn height(&self) -> usize {
         self.height
     }
 
-    /// All pixels, row by row.
+    /// All pixels, row-major.
     pub fn data(&self) -> &[T] {
         &self.data
     }
 
-    /// All pixels, row by row, to write.
+    /// All pixels, row-major, mutable.
     pub fn data_mut(&mut self) -> &mut [T] {
         &mut self.data
     }
@@ -53,10 +53,10 @@ impl<T: Copy> Image<T> {
         if u < self.width && v < self.height { self.data.get(v * self.width + u).copied() } else { None }
     }
 
-    /// Nearest-neighbour resampling: the new pixel takes the old pixel that its centre falls into. The new sizes
-    /// must be those of an image already checked.
+    /// Nearest-neighbour resampling: each new pixel takes the value of the old pixel that contains its centre. The new
+    /// size must be that of a validated image.
     pub fn resize_nearest(&self, width: usize, height: usize) -> Self {
-        // In u64: where usize has 32 bits, the product of two row lengths may not fit.
+        // In u64: the product of two row lengths can overflow a 32-bit usize.
         let source = |i: usize, to: usize, from: usize| ((2 * i as u64 + 1) * from as u64 / (2 * to as u64)) as usize;
         let mut data = Vec::with_capacity(width * height);
         for v in 0..height {
@@ -80,7 +80,7 @@ impl DepthMap {
     }
 }
 
-/// An image has pixels.
+/// Checks that both sizes are above 0.
 pub fn check_not_empty(argument: &str, width: usize, height: usize) -> Result<()> {
     if width > 0 && height > 0 {
         return Ok(());
@@ -90,11 +90,11 @@ pub fn check_not_empty(argument: &str, width: usize, height: usize) -> Result<()
         argument.to_owned(),
         format!("{width} × {height} pixels"),
         "at least 1 × 1",
-        "Check the image's width and height, and that its file was exported whole.",
+        "Check the width and height of the image, and that its file is complete.",
     ))
 }
 
-/// Sizes and length belong together; says which does not.
+/// Checks that sizes are above 0 and that `length` is their product.
 pub fn check_size(argument: &str, width: usize, height: usize, length: usize) -> Result<()> {
     check_not_empty(argument, width, height)?;
     if width.checked_mul(height) != Some(length) {
@@ -103,7 +103,7 @@ pub fn check_size(argument: &str, width: usize, height: usize, length: usize) ->
             argument.to_owned(),
             format!("{length} values"),
             format!("width × height = {width} × {height} = {}", width.saturating_mul(height)),
-            "Pass one value per pixel, row by row, and the sizes of this very array.",
+            "Pass one value per pixel, row-major, and the width and height of the same array.",
         ));
     }
     Ok(())

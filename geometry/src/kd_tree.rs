@@ -1,8 +1,8 @@
 //! A kd-tree over 3D points: nearest, k nearest, within a radius.
 //!
-//! A plain median tree of boxes with leaves of sixteen points, points stored in leaf order. It answers as fast as the
-//! large crates do on surface points and costs a thirtieth of their bytes in WebAssembly. Ties in distance
-//! go to the smaller index, so that an answer never depends on the tree's shape.
+//! A median-split tree of bounding boxes with leaves of sixteen points, stored in leaf order. On surface points it is
+//! as fast as the established crates, at a thirtieth of their WebAssembly size. Ties in distance go to the smaller
+//! index, so that results do not depend on the structure of the tree.
 
 use glam::Vec3;
 
@@ -11,13 +11,13 @@ use super::order::{halve, pack, select_smallest};
 
 const LEAF_SIZE: usize = 16;
 
-/// Points that [`KdTree::neighborhoods`] searches the tree for together.
+/// Points per joint search of [`KdTree::neighborhoods`].
 const GROUP_SIZE: usize = 12;
 
-/// How far a sum of f32 distances may be off, and more.
+/// Safety factor for the rounding of a sum of f32 distances.
 const ROUNDING: f32 = 1e-5;
 
-/// A point found, by its index in the slice the tree was built from.
+/// A result of a search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Neighbor {
     /// Index into the points given to [`KdTree::new`].
@@ -27,7 +27,7 @@ pub struct Neighbor {
 }
 
 impl Neighbor {
-    /// Nearer first; of equally near ones the smaller index first.
+    /// Orders by distance, then by index.
     fn key(&self) -> (f32, u32) {
         (self.distance_squared, self.index)
     }
@@ -44,7 +44,7 @@ pub struct KdTree {
 
 #[derive(Debug, Clone, Copy)]
 struct Node {
-    /// The box around the node's points: tighter than its cell where points are of a surface.
+    /// The box around the points of the node: tighter than its cell if the points sample a surface.
     bounds: Bounds,
     /// The right child; 0 in a leaf.
     right: u32,
@@ -59,12 +59,12 @@ impl KdTree {
         Self { points: order.into_iter().map(|i| (points[i as usize], i)).collect(), nodes }
     }
 
-    /// How many points the tree holds.
+    /// Number of points.
     pub fn len(&self) -> usize {
         self.points.len()
     }
 
-    /// Whether the tree holds no point.
+    /// Whether the tree has no points.
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
     }
@@ -74,14 +74,14 @@ impl KdTree {
         self.nearest_within(query, f32::INFINITY)
     }
 
-    /// The point nearest to `query` among those within `radius`, the boundary included.
+    /// The point nearest to `query` within `radius` (inclusive), or `None`.
     pub fn nearest_within(&self, query: Vec3, radius: f32) -> Option<Neighbor> {
         let mut nearest = Nearest { best: Neighbor { index: u32::MAX, distance_squared: radius * radius } };
         self.visit(query, &mut nearest);
         (nearest.best.index != u32::MAX).then_some(nearest.best)
     }
 
-    /// The `k` points nearest to `query`, nearest first, into `out`. Fewer where the tree holds fewer.
+    /// Replaces `out` with the `k` points nearest to `query`, nearest first; all points if the tree has fewer.
     pub fn k_nearest(&self, query: Vec3, k: usize, out: &mut Vec<Neighbor>) {
         out.clear();
         if k > 0 {
@@ -89,24 +89,24 @@ impl KdTree {
         }
     }
 
-    /// All points within `radius` of `query`, the boundary included, into `out`, in no particular
-    /// (but reproducible) order.
+    /// Replaces `out` with all points within `radius` (inclusive) of `query`, in an unspecified but reproducible
+    /// order.
     pub fn within(&self, query: Vec3, radius: f32, out: &mut Vec<Neighbor>) {
         out.clear();
         self.visit(query, &mut Within { radius_squared: radius * radius, found: out });
     }
 
-    /// The `k` nearest within `radius` of every point of the tree, itself included: `visit` gets its index and its
-    /// neighbours, as the keys that [`pack`] makes of squared distance and index, in no particular (but reproducible)
-    /// order. `points` are those that the tree was built from.
+    /// Calls `visit` for every point of the tree with its index and its `k` nearest neighbours within `radius`, itself
+    /// included. The neighbours are keys of squared distance and index (see [`pack`]), in an unspecified but
+    /// reproducible order. `points` must be the points that the tree was built from.
     ///
-    /// Several times faster than as many [`KdTree::k_nearest`]: points that are near each other share one search.
+    /// Several times faster than one [`KdTree::k_nearest`] per point, because nearby points share a search.
     pub fn neighborhoods(&self, points: &[Vec3], k: usize, radius: f32, mut visit: impl FnMut(u32, &[u64])) {
         let (mut found, mut near, mut keys) = (Vec::new(), Vec::new(), Vec::new());
         let mut groups = vec![self.points.as_slice()];
         while let Some(group) = groups.pop() {
             if group.len() > GROUP_SIZE {
-                // As the tree halves them.
+                // Halved in the same way as the tree.
                 let (left, right) = group.split_at(group.len() / 2);
                 groups.extend([right, left]);
                 continue;
@@ -114,8 +114,8 @@ impl KdTree {
             let members = || group.iter().map(|(point, _)| *point);
             let Some(center) = Bounds::of(&members().collect::<Vec<_>>()).map(|b| b.center()) else { continue };
             let spread = members().map(|q| q.distance(center)).fold(0.0, f32::max);
-            // The centre has k neighbours within its reach, so q has them within that and the way to the centre; and
-            // what is that near to q is another such way further from the centre at most.
+            // The centre has k neighbours within its reach r. By the triangle inequality, a point q at distance d from
+            // the centre has k neighbours within r + d, all of which are within r + 2 d of the centre.
             self.k_nearest(center, k, &mut found);
             let reach = found.last().filter(|_| found.len() == k).map_or(f32::INFINITY, |n| n.distance_squared.sqrt());
             self.within(center, (reach + 2.0 * spread) * (1.0 + ROUNDING), &mut found);
@@ -124,8 +124,8 @@ impl KdTree {
             for &(query, index) in group {
                 let enough = ((reach + query.distance(center)) * (1.0 + ROUNDING)).min(radius);
                 let limit = enough * enough;
-                // Every key is written, and overwritten where it was not wanted: half of them are, at random, which
-                // would mislead a branch.
+                // Writes every key and overwrites the rejected ones: half are rejected at random, so that a branch
+                // would be mispredicted.
                 keys.resize(near.len(), 0);
                 let mut count = 0;
                 for &(point, index) in &near {
@@ -196,7 +196,7 @@ fn build(points: &[Vec3], order: &mut [u32], nodes: &mut Vec<Node>) {
     build(points, right, nodes);
 }
 
-/// What a search keeps of the points it is offered, and how far it still looks.
+/// Candidates that a search keeps, and its current search radius.
 trait Collector {
     fn offer(&mut self, neighbor: Neighbor);
     fn reach_squared(&self) -> f32;

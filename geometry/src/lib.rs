@@ -1,4 +1,10 @@
-//! Shapes and spaces, without any notion of alignment. Depends on nothing above it.
+//! Geometry that the aligner and the file readers share: meshes, clouds, images, cameras, transforms, search trees and
+//! the rasteriser, with the error type of all crates.
+//!
+//! Two linear algebra crates divide the work. glam: f32 and f64 vectors in the hot loops over pixels, points and
+//! triangles, and all stored coordinates. nalgebra: transforms ([`similarity::Similarity`]), and solvers
+//! ([`normal_equations`], [`singular_values`]). Both run without platform mathematics (`libm`), so that native and
+//! WebAssembly results have the same bits.
 
 pub mod angle;
 pub mod clip;

@@ -1,11 +1,11 @@
-//! Triangle meshes, checked once where they enter.
+//! Triangle meshes, validated on construction.
 
 use glam::Vec3;
 
 use crate::error::{Error, ErrorCode, Result};
 use crate::number::numbers;
 
-/// A triangle mesh whose coordinates are finite and whose indices exist.
+/// A triangle mesh with at least one triangle, finite coordinates, and indices in range.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
     positions: Vec<Vec3>,
@@ -51,8 +51,8 @@ impl Mesh {
         Ok(Self { positions, triangles })
     }
 
-    /// A mesh from flat arrays as they come from JavaScript: xyz per vertex and three indices per triangle.
-    /// Without indices, every three vertices are a triangle.
+    /// A mesh from flat arrays: interleaved x, y, z per vertex, and three indices per triangle. Without indices, every
+    /// three vertices form a triangle.
     ///
     /// # Errors
     /// [`ErrorCode::WrongLength`] and those of [`Mesh::new`].
@@ -64,7 +64,7 @@ impl Mesh {
                 "mesh.positions",
                 format!("{} numbers", positions.len()),
                 if multiple == 3 { "a multiple of 3 (x, y, z)" } else { "a multiple of 9 (three vertices a triangle)" },
-                "Pass x, y, z per vertex, and indices unless every three vertices are a triangle.",
+                "Pass x, y, z per vertex, and indices unless every three vertices form a triangle.",
             ));
         }
         if let Some(indices) = indices
@@ -75,7 +75,7 @@ impl Mesh {
                 "mesh.indices",
                 format!("{} indices", indices.len()),
                 "a multiple of 3",
-                "Pass a triangle list; strips and fans need to be unrolled.",
+                "Pass a triangle list; convert strips and fans.",
             ));
         }
         let positions: Vec<Vec3> = positions.chunks_exact(3).map(Vec3::from_slice).collect();
@@ -91,7 +91,7 @@ impl Mesh {
         &self.positions
     }
 
-    /// Three vertex indices a triangle.
+    /// Three vertex indices per triangle.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
@@ -101,8 +101,8 @@ impl Mesh {
         triangle.map(|i| self.positions[i as usize])
     }
 
-    /// Six times the enclosed volume, signed: negative where the triangles face inward. Zero says nothing.
-    /// Taken about the first vertex, so that a mesh far from the origin keeps its digits.
+    /// Six times the signed enclosed volume: negative if the triangles face inward. 0 is inconclusive. Computed
+    /// relative to the first vertex, so that a mesh far from the origin loses no precision.
     pub fn signed_volume6(&self) -> f64 {
         let Some(&origin) = self.positions.first() else { return 0.0 };
         let volume = |t: &[u32; 3]| {

@@ -1,8 +1,8 @@
-//! Numbers in messages.
+//! Formats numbers for error messages.
 
-/// `x` to six significant digits, as a person writes it: `0.05`, `1234.5`, `1.5e-9`, `NaN`.
+/// `x` to six significant digits, in the shortest usual notation: `0.05`, `1234.5`, `1.5e-9`, `NaN`.
 ///
-/// The standard library's float formatting would add a tenth to the size of the WebAssembly module.
+/// The float formatting of the standard library would increase the size of the WebAssembly module by a tenth.
 pub fn number(x: f64) -> String {
     if x.is_nan() {
         return "NaN".into();
@@ -15,7 +15,8 @@ pub fn number(x: f64) -> String {
     if x < 1e15 && x.trunc() == x {
         return format!("{sign}{}", x as u64);
     }
-    // Six digits before the point, by steps of ten: at most some 320, and rounding stays far below the digits.
+    // Scales to six digits before the point in at most about 320 steps of ten; the rounding errors of the steps are
+    // far below the sixth digit.
     let (mut scaled, mut exponent) = (x, 5);
     while scaled >= 1e6 {
         (scaled, exponent) = (scaled / 10.0, exponent + 1);
@@ -52,7 +53,7 @@ pub fn numbers(values: &[f64]) -> String {
     format!("[{}]", parts.join(", "))
 }
 
-/// Without zeros at the end, nor the point before them. No slices of text: their panics print characters.
+/// Removes trailing zeros and a trailing point. Avoids string slices, whose panic messages format characters.
 fn trimmed(mut text: String) -> String {
     while text.ends_with('0') {
         text.pop();

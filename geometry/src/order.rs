@@ -1,8 +1,8 @@
-//! Order statistics of f32 values, all by way of one integer sort.
+//! Sorting and order statistics of f32 values, through one integer sort.
 //!
 //! A value and an index are packed into a u64 that sorts by the value (in `f32::total_cmp`'s order), ties by
-//! the index. Every sort and selection of the crate then shares one instance of the standard library's
-//! routines: each further element type would cost several kilobytes of WebAssembly.
+//! the index. All sorts and selections share one instance for u64: every further element type would add several
+//! kilobytes of WebAssembly.
 
 /// `value` and `index` as one sortable key.
 pub fn pack(value: f32, index: u32) -> u64 {
@@ -12,18 +12,18 @@ pub fn pack(value: f32, index: u32) -> u64 {
     u64::from(ordered) << 32 | u64::from(index)
 }
 
-/// The index in a key.
+/// The index of a key.
 pub fn index_of(key: u64) -> u32 {
     key as u32
 }
 
-/// The value in a key.
+/// The value of a key.
 pub fn value_of(key: u64) -> f32 {
     let ordered = (key >> 32) as u32;
     f32::from_bits(if ordered >> 31 == 1 { ordered & !(1 << 31) } else { !ordered })
 }
 
-/// Sorts keys: a byte at a time, the lowest first (radix sort), so that no input is slow.
+/// Sorts keys by a least-significant-byte radix sort: linear for every input.
 #[inline(never)]
 pub fn sort(keys: &mut [u64]) {
     let mut sorted = vec![0; keys.len()];
@@ -48,18 +48,18 @@ pub fn sort(keys: &mut [u64]) {
     }
 }
 
-/// Keys that are sorted by insertion rather than divided further.
+/// Number of keys below which a partition is sorted by insertion.
 const FEW: usize = 16;
 
-/// Puts the `n` smallest keys in front, and the one that follows them behind them. Does nothing where there are not
-/// more than `n`.
+/// Moves the `n` smallest keys to the front, followed by the next larger one. Does nothing if there are at most `n`
+/// keys.
 #[inline(never)]
 pub fn select_smallest(keys: &mut [u64], n: usize) {
     let (mut low, mut high) = (0, keys.len());
     if n >= high {
         return;
     }
-    // Quickselect; an input made to defeat the medians of three is sorted.
+    // Quickselect; falls back to sorting if the input defeats the median of three.
     for _ in 0..64 {
         let part = &mut keys[low..high];
         if part.len() <= FEW {
@@ -76,7 +76,7 @@ pub fn select_smallest(keys: &mut [u64], n: usize) {
         let pivot = a.min(b).max(c).min(a.max(b));
         let mut below = divide(part, |key| key < pivot);
         if below == 0 {
-            // The pivot is the smallest: with all its equals it is where it belongs.
+            // The pivot is the smallest: it is in place, with all keys equal to it.
             below = divide(part, |key| key == pivot);
             if n < low + below {
                 return;
@@ -91,7 +91,7 @@ pub fn select_smallest(keys: &mut [u64], n: usize) {
     sort(&mut keys[low..high]);
 }
 
-/// Puts the keys that are `first` in front, and counts them.
+/// Moves the keys that satisfy `first` to the front and returns their number.
 fn divide(keys: &mut [u64], first: impl Fn(u64) -> bool) -> usize {
     let mut count = 0;
     for i in 0..keys.len() {
@@ -102,7 +102,7 @@ fn divide(keys: &mut [u64], first: impl Fn(u64) -> bool) -> usize {
     count
 }
 
-/// Puts the smaller half of the indices in front (⌊n/2⌋ of them), by the value of each, ties by the index.
+/// Moves the ⌊n/2⌋ indices with the smallest values to the front; ties go to the smaller index.
 pub fn halve(indices: &mut [u32], value: impl Fn(u32) -> f32) {
     let mut keys: Vec<u64> = indices.iter().map(|&index| pack(value(index), index)).collect();
     select_smallest(&mut keys, indices.len() / 2);
@@ -111,7 +111,7 @@ pub fn halve(indices: &mut [u32], value: impl Fn(u32) -> f32) {
     }
 }
 
-/// The value at `quantile` (0 to 1) of the sorted values: the one at index ⌊quantile · n⌋. `None` for no values.
+/// The quantile (0 to 1): the sorted value at index ⌊quantile · n⌋. `None` without values.
 pub fn quantile(values: impl Iterator<Item = f32>, quantile: f64) -> Option<f32> {
     let mut keys: Vec<u64> = Vec::with_capacity(values.size_hint().1.unwrap_or(0));
     keys.extend(values.map(|value| pack(value, 0)));
@@ -125,7 +125,7 @@ fn at_quantile(keys: &mut [u64], quantile: f64) -> Option<f32> {
     keys.get(at).copied().map(value_of)
 }
 
-/// The median: the upper one of two middle values.
+/// The median; of an even number of values, the upper of the two middle ones. `None` without values.
 pub fn median(values: impl Iterator<Item = f32>) -> Option<f32> {
     quantile(values, 0.5)
 }

@@ -21,7 +21,7 @@ pub struct Pinhole {
 }
 
 impl Pinhole {
-    /// A camera from its four numbers, in pixels.
+    /// A camera from its intrinsics, in pixels.
     ///
     /// # Errors
     /// [`ErrorCode::InvalidCamera`] for focal lengths that are not finite and positive, or a principal point
@@ -52,7 +52,7 @@ impl Pinhole {
     /// A camera from a 3×3 matrix K in row-major order. Skew is refused: no depth camera reports one.
     ///
     /// # Errors
-    /// [`ErrorCode::InvalidCamera`] where K is not [fx 0 cx; 0 fy cy; 0 0 1] up to a common factor.
+    /// [`ErrorCode::InvalidCamera`] if K is not [fx 0 cx; 0 fy cy; 0 0 1] up to a common factor.
     pub fn from_matrix(k: &[f64; 9]) -> Result<Self> {
         let w = k[8];
         let zeros = [k[1], k[3], k[6], k[7]];
@@ -63,13 +63,13 @@ impl Pinhole {
                 "camera.K",
                 numbers(k),
                 "[fx, 0, cx, 0, fy, cy, 0, 0, 1]",
-                "Pass K row by row; a column-major K has cx and cy in its last row: transpose it.",
+                "Pass K row-major; a column-major K has cx and cy in its last row: transpose it.",
             ));
         }
         Self::new(k[0] / w, k[4] / w, k[2] / w, k[5] / w)
     }
 
-    /// A camera from its vertical field of view in degrees: square pixels, principal point in the middle.
+    /// A camera from its vertical field of view in degrees: square pixels, principal point at the image centre.
     ///
     /// # Errors
     /// [`ErrorCode::InvalidCamera`] for an angle outside (0, 180).
@@ -88,12 +88,12 @@ impl Pinhole {
         Self::new(f, f, 0.5 * (width as f64 - 1.0), 0.5 * (height as f64 - 1.0))
     }
 
-    /// The point at depth `z` behind pixel (u, v): D(u,v)·K⁻¹\[u,v,1\]ᵀ (paper §3.1).
+    /// Back-projects pixel (u, v) at z-depth `z` into the camera frame: z·K⁻¹\[u,v,1\]ᵀ (paper §3.1).
     pub fn back_project(&self, u: f64, v: f64, z: f64) -> Vec3 {
         Vec3::new(((u - self.cx) * z / self.fx) as f32, ((v - self.cy) * z / self.fy) as f32, z as f32)
     }
 
-    /// The pixel (u, v) a point in front of the camera falls on.
+    /// Projects a point of the camera frame with z > 0 to pixel coordinates (u, v).
     pub fn project(&self, point: Vec3) -> [f64; 2] {
         let [x, y, z] = point.to_array().map(f64::from);
         [self.fx * x / z + self.cx, self.fy * y / z + self.cy]

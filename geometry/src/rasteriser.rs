@@ -1,9 +1,9 @@
 //! Depth and triangle images of a posed mesh: a small software rasteriser.
 //!
-//! The same image on every machine: vertices are snapped to 1/256 pixel and coverage is decided in integers,
+//! The image is the same on every platform: vertices are snapped to 1/256 pixel and coverage is decided in integers,
 //! by the top-left rule, so that two triangles that share an edge cover every pixel along it exactly once.
-//! Depth does not take part in the snapping: 1/z is evaluated on the triangle's own plane.
-//! Both faces are drawn, because generated meshes do not orient theirs reliably.
+//! Snapping does not affect depth: 1/z is evaluated on the original plane of the triangle.
+//! Both faces are drawn, because the orientation of generated meshes is unreliable.
 
 use glam::{DMat3, DVec3};
 
@@ -12,20 +12,20 @@ use super::mesh::Mesh;
 use super::pinhole::Pinhole;
 use super::similarity::Similarity;
 
-/// The triangle of a pixel where nothing was drawn.
+/// The triangle index of a pixel that no triangle covers.
 pub const NO_TRIANGLE: u32 = u32::MAX;
 
-/// Nearest depth drawn, as a share of the depth of the mesh's farthest vertex. What lies nearer, or behind the
-/// camera, is cut off: for an object 1 m away that is 0.1 mm before the lens.
+/// Depth of the near plane, as a fraction of the depth of the farthest vertex. Geometry nearer or behind the camera is
+/// clipped: for an object at 1 m, the near plane is at 0.1 mm.
 pub const NEAR: f64 = 1e-4;
 
 /// Sub-pixel steps per pixel, 2⁸.
 const SUBPIXEL: i64 = 256;
 
-/// Camera coordinates beyond which products would leave f64; no metre is that long.
+/// Limit on camera coordinates, above which products would overflow f64.
 const MAX_COORDINATE: f64 = 1e60;
 
-/// A rasteriser with its buffers, to be reused: after the first render of a size, a render allocates nothing.
+/// A rasteriser with reusable buffers: only the first render of a size allocates.
 ///
 /// ```
 /// # use sim3align_geometry::{mesh::Mesh, pinhole::Pinhole, rasteriser::Rasteriser, similarity::Similarity};
@@ -42,12 +42,12 @@ pub struct Rasteriser {
     width: usize,
     height: usize,
     vertices: Vec<Vertex>,
-    /// 1/z while drawing, z afterwards.
+    /// 1/z during rendering, z afterwards.
     depth: Vec<f32>,
     triangles: Vec<u32>,
 }
 
-/// A vertex in camera space and, where it can be projected as it is, on the sub-pixel grid.
+/// A vertex in camera space and, if it can be projected without clipping, on the sub-pixel grid.
 #[derive(Debug, Clone, Copy)]
 struct Vertex {
     camera: DVec3,
@@ -59,13 +59,13 @@ struct Vertex {
 enum Placement {
     /// Beyond the near plane and within the guard band.
     Inside,
-    /// Triangles that have it need clipping.
+    /// Triangles with this vertex need clipping.
     Outside,
-    /// Not a finite number; triangles that have it are passed over.
+    /// Not finite; triangles with this vertex are skipped.
     Nowhere,
 }
 
-/// 1/z as a linear function of the pixel, kept within what the triangle's corners have.
+/// 1/z as a linear function of the pixel, clamped to the range of the triangle's corners.
 #[derive(Debug, Clone, Copy)]
 struct InverseDepth {
     origin: f64,
@@ -76,16 +76,16 @@ struct InverseDepth {
 }
 
 impl Rasteriser {
-    /// A rasteriser without buffers yet.
+    /// A rasteriser without allocated buffers.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Draws `mesh`, posed by `camera_from_mesh`, as `camera` sees it on `width` × `height` pixels: depth and
-    /// triangle of the nearest surface at each pixel's centre. Of surfaces equally near (to the last bit of
-    /// 1/z in f32) the triangle that comes first in the mesh is taken.
+    /// Renders `mesh`, posed by `camera_from_mesh`, into an image of `width` × `height` pixels: depth and triangle of
+    /// the nearest surface at each pixel centre. If surfaces are equally near (same 1/z in f32), the first triangle of
+    /// the mesh wins.
     ///
-    /// The sizes must be those of an image that fits the memory; neither may exceed 2²⁰.
+    /// The image must fit into memory; width and height are limited to 2²⁰.
     pub fn render(
         &mut self,
         mesh: &Mesh,
@@ -97,7 +97,7 @@ impl Rasteriser {
         self.draw::<true>(mesh, camera_from_mesh, camera, width, height);
     }
 
-    /// As [`Rasteriser::render`], without the triangle image.
+    /// Like [`Rasteriser::render`], without the triangle image.
     pub fn render_depth(
         &mut self,
         mesh: &Mesh,
@@ -109,23 +109,23 @@ impl Rasteriser {
         self.draw::<false>(mesh, camera_from_mesh, camera, width, height);
     }
 
-    /// z-depth per pixel, row by row, in the unit of the camera frame (metres); 0 where nothing was drawn.
+    /// z-depth per pixel, row-major, in the unit of the camera frame (metres); 0 for uncovered pixels.
     pub fn depth(&self) -> &[f32] {
         &self.depth
     }
 
-    /// Triangle index per pixel, row by row; [`NO_TRIANGLE`] where nothing was drawn.
+    /// Triangle index per pixel, row-major; [`NO_TRIANGLE`] for uncovered pixels.
     /// Empty after [`Rasteriser::render_depth`].
     pub fn triangles(&self) -> &[u32] {
         &self.triangles
     }
 
-    /// Pixels in a row of the last render.
+    /// Width of the last render, in pixels.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Rows of the last render.
+    /// Height of the last render, in pixels.
     pub fn height(&self) -> usize {
         self.height
     }
@@ -168,7 +168,7 @@ impl Rasteriser {
         }
     }
 
-    /// Moves the vertices into the camera frame and returns the near plane's depth.
+    /// Transforms the vertices into the camera frame and returns the depth of the near plane.
     fn transform(&mut self, mesh: &Mesh, camera_from_mesh: &Similarity) -> f64 {
         let linear = camera_from_mesh.rotation.matrix() * camera_from_mesh.scale;
         let linear = DMat3::from_cols_slice(linear.as_slice());
@@ -184,7 +184,7 @@ impl Rasteriser {
             let placement = if finite { Placement::Outside } else { Placement::Nowhere };
             Vertex { camera, fixed: [0; 2], placement }
         }));
-        // 1/z has to fit f32.
+        // 1/z must fit into f32.
         (NEAR * farthest).max(1e-30)
     }
 
@@ -201,7 +201,7 @@ impl Rasteriser {
     /// Fills one triangle on the sub-pixel grid.
     fn fill<const TRIANGLES: bool>(&mut self, id: u32, corners: [[i32; 2]; 3], plane: impl Fn() -> InverseDepth) {
         let [a, mut b, mut c] = corners.map(|p| p.map(i64::from));
-        // Whole pixels whose centres the box of the triangle holds.
+        // Pixels whose centres are inside the bounding box of the triangle.
         let range = |i: usize, size: usize| {
             let (low, high) = (a[i].min(b[i]).min(c[i]), a[i].max(b[i]).max(c[i]));
             let first = (low + SUBPIXEL - 1).div_euclid(SUBPIXEL).max(0);
@@ -227,10 +227,10 @@ impl Rasteriser {
             let w_row = plane.origin + plane.dv * v as f64;
             let mut e = row;
             for u in u0..=u1 {
-                // All three are ≥ 0 where no sign bit is set.
+                // All three are ≥ 0 if no sign bit is set.
                 if (e[0] | e[1] | e[2]) >= 0 {
                     let i = start + u as usize;
-                    // In this order NaN, from a plane seen edge-on, becomes the lower bound.
+                    // In this order, NaN (from a plane seen edge-on) becomes the lower bound.
                     let w = (w_row + plane.du * u as f64).max(plane.low).min(plane.high) as f32;
                     if w > self.depth[i] {
                         self.depth[i] = w;
@@ -250,7 +250,7 @@ impl Rasteriser {
     }
 }
 
-/// A directed edge; the inside of a triangle of positive area is where [`Edge::at`] is positive.
+/// A directed edge; [`Edge::at`] is positive inside a triangle of positive area.
 #[derive(Debug, Clone, Copy)]
 struct Edge {
     from: [i64; 2],
@@ -263,22 +263,22 @@ impl Edge {
         Self { from, dx: to[0] - from[0], dy: to[1] - from[1] }
     }
 
-    /// Twice the signed area of the triangle with `point`. No overflow: the guard band bounds both factors.
+    /// Twice the signed area of the triangle of edge and `point`. Cannot overflow: the guard band bounds both factors.
     fn at(&self, point: [i64; 2]) -> i64 {
         self.dx * (point[1] - self.from[1]) - self.dy * (point[0] - self.from[0])
     }
 
     /// The top-left rule: a pixel centre on a left edge (which runs up) or a top edge (which runs right) is
-    /// inside; on any other edge 1 is taken off, which puts it outside.
+    /// inside. For other edges, 1 is subtracted, which makes it outside.
     fn exclusive(&self) -> i64 {
         i64::from(!(self.dy < 0 || (self.dy == 0 && self.dx > 0)))
     }
 }
 
 impl InverseDepth {
-    /// On the plane through `triangle`: n·p = n·a for p = z·((u − cx)/fx, (v − cy)/fy, 1), so 1/z is linear in
-    /// (u, v). `drawn` is the part of the triangle that is drawn; snapping moves its outline by up to 1/512
-    /// pixel, and within those slivers the plane must not be followed beyond the corners' depths.
+    /// 1/z on the plane through `triangle`: n·p = n·a for p = z·((u − cx)/fx, (v − cy)/fy, 1), so 1/z is linear in
+    /// (u, v). `drawn` is the part of the triangle that is drawn. Snapping moves its outline by up to 1/512 pixel; in
+    /// these slivers, the depth is clamped to that of the corners.
     fn of(triangle: [DVec3; 3], drawn: &[DVec3], camera: &Pinhole) -> Self {
         let [a, b, c] = triangle;
         let normal = (b - a).cross(c - a);
@@ -293,9 +293,9 @@ fn project(p: DVec3, camera: &Pinhole) -> [f64; 2] {
     [camera.fx * p.x / p.z + camera.cx, camera.fy * p.y / p.z + camera.cy]
 }
 
-/// Pixels to sub-pixel steps, rounded to nearest, within the guard band.
+/// Converts pixels to sub-pixel steps, rounded to nearest; valid within the guard band.
 fn fixed(pixel: [f64; 2]) -> [i32; 2] {
-    // Shifted to be positive, so that the truncation of the cast is a floor.
+    // Shifted to be positive, so that the truncating cast is a floor.
     const SHIFT: f64 = (1u64 << 30) as f64;
     pixel.map(|x| {
         let x = x.clamp(-GUARD_BAND_PX, GUARD_BAND_PX);

@@ -1,16 +1,16 @@
-//! Rotations spread evenly over SO(3).
+//! Uniform sampling of SO(3).
 
 use core::f64::consts::{SQRT_2, TAU};
 
 use glam::{DQuat, DVec3};
 
-use super::angle::{sin_cos, turn};
+use super::angle::{exp_so3, sin_cos};
 
 /// ψ of the super-Fibonacci spiral: the root of ψ⁴ = ψ + 4.
 const PSI: f64 = 1.533_751_168_755_204_3;
 
 /// The `i`-th of `n` rotations of a super-Fibonacci spiral (Alexa, "Super-Fibonacci Spirals: Fast, Low-Discrepancy
-/// Sampling of SO(3)", CVPR 2022): nearly as even as the best known coverings, for any `n`, without a table.
+/// Sampling of SO(3)", CVPR 2022): nearly as uniform as the best known coverings, for any `n`, without tables.
 pub fn super_fibonacci(i: usize, n: usize) -> DQuat {
     let s = i as f64 + 0.5;
     let t = s / n as f64;
@@ -22,7 +22,7 @@ pub fn super_fibonacci(i: usize, n: usize) -> DQuat {
 
 /// The angle between two rotations, in radians.
 pub fn angle_between(a: DQuat, b: DQuat) -> f64 {
-    // By the arc tangent: an arc cosine is coarse near 0.
+    // Uses the arc tangent, because the arc cosine is inaccurate near 0.
     let relative = a.conjugate() * b;
     let sine = (relative.x * relative.x + relative.y * relative.y + relative.z * relative.z).sqrt();
     2.0 * libm::atan2(sine, relative.w.abs())
@@ -30,5 +30,5 @@ pub fn angle_between(a: DQuat, b: DQuat) -> f64 {
 
 /// The rotation by |`vector`| radians about `vector`.
 pub fn exp(vector: DVec3) -> DQuat {
-    DQuat::from_array(turn(vector.to_array().into()).coords.into()).normalize()
+    DQuat::from_array(exp_so3(vector.to_array().into()).coords.into()).normalize()
 }

@@ -1,4 +1,4 @@
-//! Similarity transforms: Sim(3) in f64, and their f32 form for hot loops.
+//! Similarity transforms: Sim(3) in f64 (nalgebra), and an f32 form for hot loops (glam).
 
 use glam::{Mat3, Vec3};
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
@@ -6,28 +6,28 @@ use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 use crate::error::{Error, ErrorCode, Result};
 use crate::number::{number, numbers};
 
-/// y = s·R·x + t. Name values by their frames: `camera_from_mesh`.
+/// The similarity y = s·R·x + t. Values are named by their frames: `camera_from_mesh`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Similarity {
     /// s > 0.
     pub scale: f64,
     /// R ∈ SO(3).
     pub rotation: Rotation3<f64>,
-    /// t, in the target frame's unit.
+    /// t, in the unit of the target frame.
     pub translation: Vector3<f64>,
 }
 
 impl Similarity {
-    /// x ↦ x.
+    /// The identity x ↦ x.
     pub fn identity() -> Self {
         Self { scale: 1.0, rotation: Rotation3::identity(), translation: Vector3::zeros() }
     }
 
-    /// A similarity from its parts; the rotation is projected to the nearest one when it is off by rounding.
+    /// A similarity from its parts; `rotation` is projected to the nearest rotation.
     ///
     /// # Errors
-    /// [`ErrorCode::InvalidTransform`] for a scale that is not finite and positive, numbers that are not
-    /// finite, or a matrix further than 1e-3 from a rotation (a reflection, a shear).
+    /// [`ErrorCode::InvalidTransform`] if the scale is not finite and positive, a number is not finite, or an entry of
+    /// RᵀR − 1 exceeds 1e-3 or det R ≤ 0 (a shear, a reflection).
     pub fn from_parts(scale: f64, rotation: Matrix3<f64>, translation: Vector3<f64>) -> Result<Self> {
         let bad = |found: String, expected: &str| {
             Error::new(
@@ -46,20 +46,20 @@ impl Similarity {
         }
         let off = rotation.transpose() * rotation - Matrix3::identity();
         let determinant = rotation.determinant();
-        // Written so that NaN, from numbers whose squares overflow, fails.
+        // The comparison is negated so that NaN, from numbers whose squares overflow, fails.
         if !(off.iter().all(|x| x.abs() <= 1e-3) && determinant > 0.0) {
             let found =
                 format!("a matrix with |RᵀR − 1| up to {} and determinant {}", number(off.amax()), number(determinant));
             return Err(bad(found, "a rotation: orthonormal with determinant +1"));
         }
-        // A few decimals in a JSON file are enough to leave SO(3); the polar decomposition brings them back.
+        // Matrices from JSON files are often rounded; the polar decomposition projects them back to SO(3).
         Ok(Self { scale, rotation: nearest_rotation(rotation), translation })
     }
 
     /// A similarity from a column-major 4×4 matrix (three.js `Matrix4.elements`, glTF `node.matrix`).
     ///
     /// # Errors
-    /// [`ErrorCode::InvalidTransform`] as [`Similarity::from_parts`].
+    /// [`ErrorCode::InvalidTransform`] if the last row is not [0, 0, 0, 1], and as [`Similarity::from_parts`].
     pub fn from_column_major(m: &[f64; 16]) -> Result<Self> {
         let linear = Matrix3::new(m[0], m[4], m[8], m[1], m[5], m[9], m[2], m[6], m[10]);
         let volume = linear.determinant();
@@ -69,11 +69,11 @@ impl Similarity {
                 "transform.matrix",
                 format!("last row {}", numbers(&[m[3], m[7], m[11], m[15]])),
                 "last row [0, 0, 0, 1]",
-                "The 16 numbers are column by column: elements 12 to 14 are the translation. Transpose a row-major matrix.",
+                "The 16 numbers are column-major: elements 12 to 14 are the translation. Transpose a row-major matrix.",
             ));
         }
         let scale = cube_root(volume.abs());
-        // Divided by zero where there is no scale; from_parts refuses that by its first check.
+        // Divides by zero if the scale is 0; `from_parts` checks the scale first.
         Self::from_parts(scale, linear / scale, Vector3::new(m[12], m[13], m[14]))
     }
 
@@ -127,12 +127,12 @@ impl Similarity {
         Ok(*UnitQuaternion::from_quaternion(q).to_rotation_matrix().matrix())
     }
 
-    /// s·R·x + t.
+    /// Applies the transform to a point: s·R·x + t.
     pub fn apply(&self, x: Vector3<f64>) -> Vector3<f64> {
         self.rotation * x * self.scale + self.translation
     }
 
-    /// `self` after `inner`: x ↦ self(inner(x)).
+    /// Composition, `inner` first: x ↦ self(inner(x)).
     pub fn compose(&self, inner: &Self) -> Self {
         Self {
             scale: self.scale * inner.scale,
@@ -141,14 +141,15 @@ impl Similarity {
         }
     }
 
-    /// The transform that undoes this one.
+    /// The inverse transform.
     pub fn inverse(&self) -> Self {
         let rotation = self.rotation.inverse();
         let scale = 1.0 / self.scale;
         Self { scale, rotation, translation: -(rotation * self.translation) * scale }
     }
 
-    /// The angle of the rotation between two transforms, in radians: exact near 0 where an arc cosine is not.
+    /// The angle between the rotations of two transforms, in radians. Accurate near 0, unlike the arc cosine of the
+    /// trace.
     pub fn rotation_angle_to(&self, other: &Self) -> f64 {
         let relative = self.rotation.matrix().transpose() * other.rotation.matrix();
         let sine = Vector3::new(
@@ -160,7 +161,7 @@ impl Similarity {
         libm::atan2(sine, relative.trace() - 1.0)
     }
 
-    /// The f32 form.
+    /// Converts to f32.
     pub fn to_f32(&self) -> SimilarityF32 {
         let linear = self.rotation.matrix() * self.scale;
         SimilarityF32 {
@@ -171,7 +172,7 @@ impl Similarity {
     }
 }
 
-/// A similarity for hot loops.
+/// A similarity in f32, for hot loops.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SimilarityF32 {
     /// s·R.
@@ -196,15 +197,15 @@ impl SimilarityF32 {
     }
 }
 
-/// ∛x for x ≥ 0, by Newton's iteration from a logarithm: libm's own has tables, and is used nowhere else.
+/// ∛x for x ≥ 0: exp(ln x / 3) and one Newton step. `libm::cbrt` would be linked for this use alone.
 fn cube_root(x: f64) -> f64 {
     let root = libm::exp(libm::log(x) / 3.0);
-    // Not of 0 nor of what is not finite.
+    // Not for 0 and non-finite values.
     if root.is_normal() { root - (root - x / (root * root)) / 3.0 } else { root }
 }
 
-/// The rotation nearest to a matrix that is almost one, by Newton's iteration for the polar decomposition: its error
-/// is squared at every step, so that three take 1e-3 below an f64's rounding.
+/// The rotation nearest to an almost orthonormal matrix, by Newton's iteration for the polar decomposition. The error
+/// is squared in each step, so that three steps reduce 1e-3 below the rounding of f64.
 pub fn nearest_rotation(mut m: Matrix3<f64>) -> Rotation3<f64> {
     for _ in 0..3 {
         if let Some(inverse) = m.try_inverse() {
@@ -214,17 +215,17 @@ pub fn nearest_rotation(mut m: Matrix3<f64>) -> Rotation3<f64> {
     Rotation3::from_matrix_unchecked(m)
 }
 
-/// f64 → f32.
+/// Converts an f64 vector (nalgebra) to f32 (glam).
 pub fn vec3(v: &Vector3<f64>) -> Vec3 {
     Vec3::new(v.x as f32, v.y as f32, v.z as f32)
 }
 
-/// f32 → f64.
+/// Converts an f32 vector (glam) to f64 (nalgebra).
 pub fn vector3(v: Vec3) -> Vector3<f64> {
     Vector3::new(f64::from(v.x), f64::from(v.y), f64::from(v.z))
 }
 
-/// f64 → f32.
+/// Converts an f64 matrix (nalgebra) to f32 (glam).
 fn mat3(m: &Matrix3<f64>) -> Mat3 {
     Mat3::from_cols_array(&[
         m[(0, 0)] as f32,

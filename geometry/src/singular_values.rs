@@ -1,16 +1,20 @@
 //! The singular value decomposition of a 3×3 matrix into rotations.
+//!
+//! One-sided Jacobi instead of `nalgebra::SVD` (bidiagonalisation and QR iterations), for three reasons: U and V are
+//! rotations, so that Umeyama's closed form needs no sign matrix; the column rotations take nothing but square roots;
+//! and the bits of published results depend on the algorithm: nalgebra's decomposition differs in the last digits.
 
 use glam::DVec3;
 use nalgebra::{Matrix3, Vector3};
 
-/// Sweeps after which Jacobi's method has long converged; four to six are usual.
+/// Limit on the sweeps; four to six are usual.
 const MAX_SWEEPS: usize = 32;
 
-/// M = U diag(d) Vᵀ with U and V rotations (determinant +1) and d₀ ≥ d₁ ≥ |d₂| (to rounding): the last value carries the sign of
-/// the determinant of M.
+/// M = U diag(d) Vᵀ with rotations U and V (determinant +1) and d₀ ≥ d₁ ≥ |d₂| up to rounding: d₂ has the sign of
+/// det M.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SingularValues {
-    /// U. Its second and third column mean nothing where d₁ is 0.
+    /// U. Its second and third column are undefined if d₁ is 0.
     pub u: Matrix3<f64>,
     /// d.
     pub values: [f64; 3],
@@ -19,10 +23,10 @@ pub struct SingularValues {
 }
 
 impl SingularValues {
-    /// Decomposes a finite matrix by one-sided Jacobi rotations (Hestenes 1958): V turns the columns of M until they
-    /// are at right angles. Small singular values keep their digits, which those of MᵀM would not.
+    /// Decomposes a finite matrix by one-sided Jacobi rotations (Hestenes 1958), which make the columns of M V
+    /// orthogonal. Small singular values keep their relative precision, unlike those computed from MᵀM.
     pub fn of(matrix: &Matrix3<f64>) -> Self {
-        // Squares of the columns must stay inside f64.
+        // Scaled, so that the squared lengths of the columns cannot overflow.
         let size = matrix.amax();
         if size == 0.0 || !size.is_finite() {
             return Self { u: Matrix3::identity(), values: [size; 3], v: Matrix3::identity() };
@@ -31,11 +35,11 @@ impl SingularValues {
         let mut columns = [column(0), column(1), column(2)];
         let mut axes = [DVec3::X, DVec3::Y, DVec3::Z];
         for _ in 0..MAX_SWEEPS {
-            let mut turned = false;
+            let mut rotated = false;
             for (p, q) in [(0, 1), (0, 2), (1, 2)] {
-                turned |= rotate(&mut columns, &mut axes, p, q);
+                rotated |= rotate(&mut columns, &mut axes, p, q);
             }
-            if !turned {
+            if !rotated {
                 break;
             }
         }
@@ -47,7 +51,7 @@ impl SingularValues {
         }
         let (first, second) = (columns[0].normalize_or_zero(), columns[1].normalize_or_zero());
         let (u, v) = (first.cross(second), axes[0].cross(axes[1]));
-        // The third axis is ± the third column of V.
+        // The third axis is the third column of V up to its sign.
         let last = if v.dot(axes[2]) < 0.0 { -columns[2].dot(u) } else { columns[2].dot(u) };
         Self {
             u: of_columns([first, second, u]),
@@ -57,7 +61,7 @@ impl SingularValues {
     }
 }
 
-/// Makes two columns orthogonal; `false` where they are already.
+/// Makes two columns orthogonal; returns `false` if they already are.
 fn rotate(columns: &mut [DVec3; 3], axes: &mut [DVec3; 3], p: usize, q: usize) -> bool {
     let (a, b) = (columns[p], columns[q]);
     let (aa, bb, ab) = (a.length_squared(), b.length_squared(), a.dot(b));
@@ -65,7 +69,7 @@ fn rotate(columns: &mut [DVec3; 3], axes: &mut [DVec3; 3], p: usize, q: usize) -
         return false;
     }
     let theta = (bb - aa) / (2.0 * ab);
-    // The smaller root of t² + 2θt − 1; an infinite θ gives no rotation, which is right.
+    // The smaller root of t² + 2θt − 1; an infinite θ gives t = 0, no rotation.
     let t = 1.0 / (theta.abs() + (theta * theta + 1.0).sqrt()) * if theta < 0.0 { -1.0 } else { 1.0 };
     let c = 1.0 / (t * t + 1.0).sqrt();
     let s = t * c;

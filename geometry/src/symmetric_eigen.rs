@@ -1,8 +1,12 @@
 //! Eigenvalues and eigenvectors of a symmetric 3×3 matrix, in f64.
+//!
+//! Cyclic Jacobi rotations instead of `nalgebra::SymmetricEigen` (tridiagonalisation and QR iterations): this is the
+//! hot loop of normal estimation, and the bits of results depend on it: nalgebra's eigenvectors differ in the last
+//! digits.
 
 use glam::{DMat3, DVec3};
 
-/// Sweeps after which Jacobi's method has long converged; three to five are usual.
+/// Limit on the sweeps; three to five are usual.
 const MAX_SWEEPS: usize = 24;
 
 /// Eigenvalues in ascending order, each with its unit eigenvector.
@@ -10,14 +14,14 @@ const MAX_SWEEPS: usize = 24;
 pub struct SymmetricEigen {
     /// λ₀ ≤ λ₁ ≤ λ₂.
     pub values: [f64; 3],
-    /// Orthonormal, in the order of the values; their signs mean nothing.
+    /// Orthonormal, in the order of the values; the signs are arbitrary.
     pub vectors: [DVec3; 3],
 }
 
 impl SymmetricEigen {
-    /// Diagonalises `matrix` (its upper triangle is read) by cyclic Jacobi rotations: nothing but square roots,
-    /// so the same bits on every platform, and exact where a closed form loses half its digits to near-equal
-    /// eigenvalues.
+    /// Diagonalises `matrix` (its upper triangle is read) by cyclic Jacobi rotations. Uses no function but the square
+    /// root, so that the bits are the same on every platform. For nearly equal eigenvalues, it keeps the precision
+    /// that a closed form loses.
     pub fn of(matrix: DMat3) -> Self {
         let mut a = matrix.transpose().to_cols_array_2d(); // a[row][column]
         let mut vectors = [DVec3::X, DVec3::Y, DVec3::Z];
@@ -42,14 +46,14 @@ impl SymmetricEigen {
     }
 }
 
-/// One Jacobi rotation, which makes a[p][q] zero; p < q, r is the third index.
+/// One Jacobi rotation, which makes a\[p\]\[q\] zero; p < q, and r is the third index.
 fn rotate(a: &mut [[f64; 3]; 3], vectors: &mut [DVec3; 3], p: usize, q: usize, r: usize) {
     let apq = a[p][q];
     if apq == 0.0 {
         return;
     }
     let theta = (a[q][q] - a[p][p]) / (2.0 * apq);
-    // The smaller root of t² + 2θt − 1; an infinite θ gives no rotation, which is right.
+    // The smaller root of t² + 2θt − 1; an infinite θ gives t = 0, no rotation.
     let t = 1.0 / (theta.abs() + (theta * theta + 1.0).sqrt()) * if theta < 0.0 { -1.0 } else { 1.0 };
     let c = 1.0 / (t * t + 1.0).sqrt();
     let s = t * c;

@@ -8,21 +8,22 @@ use super::order::halve;
 
 const LEAF_SIZE: usize = 4;
 
-/// A point on the surface.
+/// The result of a nearest-point query.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfacePoint {
-    /// Index of the triangle it lies on.
+    /// Index of the triangle that contains the point.
     pub triangle: u32,
-    /// Where it is.
+    /// The point on the surface.
     pub point: Vec3,
     /// Squared distance to the query.
     pub distance_squared: f32,
 }
 
-/// A median tree of boxes over the triangles of a mesh. Needles and points among them are surface like any other.
+/// A median-split tree of bounding boxes over the triangles of a mesh. Degenerate triangles (needles, points) are
+/// included.
 ///
-/// Distances to triangles are computed in f64, and of equally near ones (to the last bit of f32) the smaller
-/// index is the answer, so that it does not depend on the tree's shape.
+/// Distances to triangles are computed in f64. Ties (in f32) go to the smaller index, so that results do not depend on
+/// the structure of the tree.
 #[derive(Debug, Clone)]
 pub struct TriangleTree {
     /// Corners in leaf order, with the triangles' own indices.
@@ -42,7 +43,7 @@ impl TriangleTree {
     /// The tree over a mesh's triangles.
     pub fn new(mesh: &Mesh) -> Self {
         let triangles: Vec<[Vec3; 3]> = mesh.triangles().iter().map(|&t| mesh.corners(t)).collect();
-        // A third of each corner, lest the sum leave f32.
+        // A third of each corner, so that the sum cannot overflow f32.
         let centers: Vec<Vec3> = triangles.iter().map(|[a, b, c]| a / 3.0 + b / 3.0 + c / 3.0).collect();
         let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
         let mut nodes = Vec::with_capacity(triangles.len());
@@ -50,13 +51,13 @@ impl TriangleTree {
         Self { triangles: order.into_iter().map(|i| (triangles[i as usize], i)).collect(), nodes }
     }
 
-    /// The point of the surface nearest to `query`. `None` only for a query that is not finite, or so far away
-    /// that its squared distance leaves f32.
+    /// The point of the surface nearest to `query`. `None` only if the query is not finite, or if its squared
+    /// distance overflows f32.
     pub fn nearest(&self, query: Vec3) -> Option<SurfacePoint> {
         self.nearest_from(query, &mut Hint::default())
     }
 
-    /// [`TriangleTree::nearest`], faster for queries that follow each other closely: `hint` is what the last one left.
+    /// Like [`TriangleTree::nearest`], but faster for a sequence of nearby queries, which share a `hint`.
     pub fn nearest_from(&self, query: Vec3, hint: &mut Hint) -> Option<SurfacePoint> {
         let none = SurfacePoint { triangle: u32::MAX, point: query, distance_squared: f32::MAX };
         let mut best = (none, *hint);
@@ -66,7 +67,7 @@ impl TriangleTree {
         (best.0.triangle != u32::MAX).then_some(best.0)
     }
 
-    /// Keeps a triangle that is nearer than the best so far.
+    /// Replaces the best triangle if this one is nearer.
     fn offer(&self, slot: usize, query: Vec3, (best, hint): &mut (SurfacePoint, Hint)) {
         let Some((corners, triangle)) = self.triangles.get(slot) else { return };
         let offset = nearest_offset(corners.map(|p| p.as_dvec3() - query.as_dvec3()));
@@ -103,17 +104,17 @@ impl TriangleTree {
     }
 }
 
-/// Where the last search ended; the next one looks there first.
+/// The leaf of the previous result, which the next search visits first.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Hint(usize);
 
-/// Whether a box at this distance may hold a better answer. The distance is off by a few units in the last place; a
-/// tie must not be lost to that.
+/// Whether a box at this distance may contain a better result. The tolerance covers the rounding of the distance, so
+/// that ties are not lost.
 fn may_hold(distance_squared: f32, best: &SurfacePoint) -> bool {
     distance_squared * (1.0 - 1e-6) <= best.distance_squared
 }
 
-/// Sorts the triangles' indices into leaf order. Halving bounds the depth by the logarithm of their number.
+/// Sorts the triangle indices into leaf order. Halving bounds the depth by the logarithm of their number.
 fn build(triangles: &[[Vec3; 3]], centers: &[Vec3], order: &mut [u32], nodes: &mut Vec<Node>) -> Bounds {
     let node = nodes.len();
     nodes.push(Node { bounds: Bounds::NOTHING, right: 0 });
@@ -141,14 +142,14 @@ fn nearest_offset([a, b, c]: [DVec3; 3]) -> DVec3 {
     let normal = ab.cross(ac);
     let area_squared = normal.length_squared();
     let longest_squared = ab.length_squared().max(ac.length_squared()).max((c - b).length_squared());
-    // The origin's projection, by the signed areas it spans with the edges.
+    // The projection of the origin, by the signed areas that it spans with the edges.
     let weights = [normal.dot(b.cross(c)), normal.dot(c.cross(a)), normal.dot(a.cross(b))];
     let inside = area_squared > 0.0 && weights.iter().all(|w| *w >= 0.0);
     let sum: f64 = weights.iter().sum();
     let mut best = None;
     if inside && sum > 0.0 {
         let point = (a * weights[0] + b * weights[1] + c * weights[2]) / sum;
-        // A needle's normal is rounding; then the point is on the triangle still, but maybe not the nearest.
+        // The normal of a needle is dominated by rounding. The point is then on the triangle, but may not be nearest.
         if area_squared > 1e-16 * longest_squared * longest_squared {
             return point;
         }

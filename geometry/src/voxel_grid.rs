@@ -1,21 +1,21 @@
-//! Voxel downsampling: one point, the mean, per occupied cell.
+//! Voxel downsampling: the mean of the points in each occupied cell.
 
 use glam::Vec3;
 
 use super::cloud::{Bounds, Cloud};
 use super::order::{index_of, sort};
 
-/// Cells along an axis; what lies beyond shares the last one. 2²¹ cells of 1 mm are two kilometres.
+/// Limit on the cells along an axis; points beyond are assigned to the last one. 2²¹ cells of 1 mm span two kilometres.
 const MAX_CELLS: u32 = (1 << 21) - 1;
 
-/// Rounds of [`voxel_size_leaving`], and how much the voxels grow in each at least: a thousandfold in the end.
+/// Rounds of [`voxel_size_leaving`], and the minimum growth of the voxels per round: a thousandfold in total.
 const MAX_ROUNDS: usize = 64;
 const MIN_GROWTH: f32 = 1.03;
 
-/// The mean point (and the normalised mean normal) of every occupied cell of edge `voxel_size`, cell by cell
-/// in ascending x, then y, then z. Cells are counted from the cloud's own smallest corner, so that the result
-/// moves with the cloud. Sorted rather than hashed: the order never depends on the platform. The cloud as it is
-/// where `voxel_size` is not above 0.
+/// The mean point (and the normalised mean normal) of every occupied cell of edge `voxel_size`, ordered by x, then y,
+/// then z of the cell. The grid starts at the smallest corner of the cloud, so that the result moves with the cloud.
+/// Cells are sorted instead of hashed: the order does not depend on the platform. Returns the cloud unchanged if
+/// `voxel_size` is not above 0.
 pub fn voxel_downsample(cloud: &Cloud, voxel_size: f32) -> Cloud {
     let Some(bounds) = Bounds::of(&cloud.points) else { return Cloud::default() };
     if voxel_size.is_nan() || voxel_size <= 0.0 {
@@ -27,7 +27,7 @@ pub fn voxel_downsample(cloud: &Cloud, voxel_size: f32) -> Cloud {
     let mut out = Cloud::default();
     for run in order.chunk_by(|&i, &j| cells[i as usize] == cells[j as usize]) {
         let members = || run.iter().map(|&i| i as usize);
-        // Sums are taken about the first member: a mean of large coordinates keeps its digits.
+        // Sums are relative to the first member, so that the mean of large coordinates loses no precision.
         let first = cloud.points[run[0] as usize];
         let sum: Vec3 = members().map(|i| cloud.points[i] - first).sum();
         out.points.push(first + sum / run.len() as f32);
@@ -38,11 +38,11 @@ pub fn voxel_downsample(cloud: &Cloud, voxel_size: f32) -> Cloud {
     out
 }
 
-/// A voxel size that leaves at most `count` points of a cloud, and not many fewer, where these are of a surface.
+/// A voxel size that leaves at most `count` points of a cloud and, if the points sample a surface, not many fewer.
 pub fn voxel_size_leaving(cloud: &Cloud, count: usize) -> f32 {
     let wanted = count.max(1) as f32;
     let Some(bounds) = Bounds::of(&cloud.points) else { return 0.0 };
-    // Too fine for any surface that fills its box; a surface has a quarter of the cells when they are twice as large.
+    // Starts too fine for any surface that fills its box. Doubling the voxels quarters the cells of a surface.
     let mut size = 0.3 * bounds.diagonal() / wanted.sqrt();
     for _ in 0..MAX_ROUNDS {
         let left = voxel_downsample(cloud, size).len();
@@ -56,12 +56,12 @@ pub fn voxel_size_leaving(cloud: &Cloud, count: usize) -> f32 {
 }
 
 fn cell(p: Vec3, min: Vec3, voxel_size: f32) -> [u32; 3] {
-    // A cast from float saturates: what is beyond the last cell is in it.
+    // Casts from float saturate: points beyond the last cell are assigned to it.
     ((p - min) / voxel_size).to_array().map(|x| (x as u32).min(MAX_CELLS))
 }
 
-/// The indices of the cells by ascending x, y, z, then index: one sort an axis, the least significant first,
-/// each stable because the rank of the one before breaks its ties.
+/// Indices sorted by cell x, y, z, then index: one sort per axis, the least significant first. Each sort is stable,
+/// because the rank in the previous one breaks ties.
 fn in_cell_order(cells: &[[u32; 3]]) -> Vec<u32> {
     let mut order: Vec<u32> = (0..cells.len() as u32).collect();
     let mut keys = Vec::with_capacity(cells.len());

@@ -1,6 +1,13 @@
-//! What the aligner is measured with, and never ships: generated cases with a known truth, readers of case folders, and
-//! other methods for the same task.
+//! Generated cases with a known true pose, readers of case folders, and other methods for comparison. Not part of the
+//! published package.
 
 pub mod baselines;
+pub mod bench;
 pub mod case_folder;
+pub mod cases;
+pub mod clouds;
+mod draws;
+mod files;
+pub mod parallel;
 pub mod samples;
+pub mod scenes;

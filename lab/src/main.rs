@@ -17,7 +17,7 @@ Usage: sim3align-lab COMMAND [arguments]
 
 `sim3align-lab COMMAND --help` lists the command's arguments.";
 
-/// A command: its name, and what runs it.
+/// Name and entry point of a command.
 type Command = (&'static str, fn(lexopt::Parser) -> Result<(), Failure>);
 
 const COMMANDS: [Command; 5] = [

@@ -6,7 +6,7 @@ import { type Engine, MainThreadEngine } from "./engine.js";
 import { disposed, invalidArgument, Sim3AlignError } from "./error.js";
 import { formatsModule } from "./formats-module.js";
 import type { Preset } from "./generated/types.js";
-import type { AlignInput } from "./input/types.js";
+import type { AlignInput, MeshInput } from "./input/types.js";
 import type { Job, Results } from "./jobs.js";
 import type {
   AlignAllOptions,
@@ -20,6 +20,8 @@ import type {
 import type { CreateWorker, LazySource, WasmSource } from "./platform.js";
 import { WorkerPool } from "./pool/pool.js";
 import { workerFactory } from "./pool/port.js";
+import { copied } from "./pool/transfer.js";
+import { keptMesh, nextMeshId, PreparedMesh } from "./prepared-mesh.js";
 import { ProgressListener } from "./progress.js";
 import type { AlignAllResult, AlignResult, Evaluation, Registration } from "./results.js";
 import { coreSim3, type Sim3Like } from "./sim3.js";
@@ -72,6 +74,7 @@ export async function createAligner(options: AlignerOptions = {}): Promise<Align
 export class Aligner {
   readonly #core: LoadedModule<Core>;
   readonly #engine: Engine;
+  readonly #drops = new WeakMap<PreparedMesh, () => void>();
   #isDisposed = false;
 
   private constructor(core: LoadedModule<Core>, engine: Engine) {
@@ -188,6 +191,17 @@ export class Aligner {
     return this.#run("estimateSim3", { source, target, correspondences }, checkedOptions(options));
   }
 
+  /**
+   * Reads, checks and decimates a mesh once for many calls: frames of a video, views, several objects of one kind. Pass the
+   * result as `mesh`.
+   * @throws {@link Sim3AlignError} for what is no mesh, `DEGENERATE_MESH` for one without volume
+   */
+  async prepareMesh(mesh: MeshInput, options: Pick<CallOptions, "signal"> = {}): Promise<PreparedMesh> {
+    const id = nextMeshId();
+    const given = await this.#run("prepareMesh", { mesh }, checkedOptions(options), { meshId: id });
+    return new PreparedMesh({ id, mesh: copied(given) });
+  }
+
   /** The version of the core module. */
   async buildInfo(): Promise<{ version: string }> {
     this.#checkUsable();
@@ -213,15 +227,34 @@ export class Aligner {
     method: M,
     data: (Job & { method: M })["data"],
     { signal, transfer = false, ...options }: CallOptions,
-    { onProgress, ...more }: { onProgress?: unknown; transform?: unknown } = {},
+    { onProgress, ...more }: { onProgress?: unknown; transform?: unknown; meshId?: number } = {},
   ): Promise<Results[M]> {
     this.#checkUsable();
-    const job = { method, data, options, ...more } as unknown as Job & { method: M };
+    const job = { method, ...this.#withMesh(data), options, ...more } as unknown as Job & { method: M };
     const progress = new ProgressListener(onProgress);
     const call = { signal: checkedSignal(signal), progress, transfer: checkedFlag("transfer", transfer) };
     const outcome = await this.#engine.run(job, call);
     const result = outcome.result as Results[M];
-    return transfer ? { ...result, input: outcome.data } : result;
+    const mesh = job.data === data ? undefined : { mesh: (data as AlignInput).mesh };
+    return transfer ? { ...result, input: { ...outcome.data, ...mesh } } : result;
+  }
+
+  /** The data of a job with the arrays of a prepared mesh in place of it. */
+  #withMesh(data: unknown): { data: unknown; meshId?: number } {
+    if (!isRecord(data) || !(data.mesh instanceof PreparedMesh)) return { data };
+    const { id, mesh } = keptMesh(data.mesh, this.#dropMesh(data.mesh));
+    return { data: { ...data, mesh }, meshId: id };
+  }
+
+  /** What frees a prepared mesh in this aligner: the same function however often it is asked for. */
+  #dropMesh(mesh: PreparedMesh): () => void {
+    let drop = this.#drops.get(mesh);
+    if (drop === undefined) {
+      const { id } = keptMesh(mesh);
+      drop = () => this.#engine.dropMesh(id);
+      this.#drops.set(mesh, drop);
+    }
+    return drop;
   }
 
   #checkUsable(): void {

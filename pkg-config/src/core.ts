@@ -23,6 +23,8 @@ export interface CoreInput {
 export interface CoreMesh {
   positions: Float32Array;
   indices?: Uint32Array | Uint16Array;
+  /** The number under which the core keeps the mesh. Where it does already, the arrays are not read. */
+  id?: number;
 }
 
 /** The result of either preset. */
@@ -33,7 +35,7 @@ export type Cloud = Float32Array | Float64Array;
 
 /**
  * Called as a stage begins, and after each round of a search: with the best pose, 16 numbers, and its score, once there
- * is one. An exception ends the call.
+ * is one. It must not throw.
  */
 export type CoreListener = (stage: Results.Stage, fraction: number, best?: Float64Array) => void;
 
@@ -47,10 +49,12 @@ export interface AlignTask {
 /** The functions of the core: they check their arguments, and throw coded errors. */
 export interface Core extends Glue {
   align(input: CoreInput, options: object, onProgress: CoreListener | undefined): CoreAlignment;
-  beginAlign?(input: CoreInput, options: object, onProgress: CoreListener | undefined): AlignTask;
+  beginAlign(input: CoreInput, options: object, onProgress: CoreListener | undefined): AlignTask;
   evaluate(input: CoreInput, transform: unknown, options: object): Results.Evaluation;
   register(source: Cloud, target: Cloud, options: object): Results.Registration;
   estimateSim3(source: Cloud, target: Cloud, correspondences: Uint32Array, options: object): Results.Registration;
+  prepareMesh(mesh: CoreMesh): void;
+  dropMesh(id: number): void;
   version(): string;
 }
 

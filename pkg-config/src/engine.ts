@@ -4,7 +4,7 @@ import { disposed } from "./error.js";
 import type { LoadFormats } from "./formats-module.js";
 import { type Job, perform, type Results, withoutInput } from "./jobs.js";
 import type { ProgressListener } from "./progress.js";
-import { type LoadedModule, Stopped } from "./wasm-module.js";
+import type { LoadedModule } from "./wasm-module.js";
 
 /** Options of a call that are about how it runs. */
 export interface Call {
@@ -25,6 +25,8 @@ export interface Engine {
   /** How many jobs to hand over at once to keep it busy. */
   readonly capacity: number;
   run<J extends Job>(job: J, call: Call): Promise<Outcome<J>>;
+  /** Frees what is kept of a prepared mesh. */
+  dropMesh(id: number): void;
   dispose(): void;
 }
 
@@ -44,7 +46,9 @@ export class MainThreadEngine implements Engine {
   }
 
   async run<J extends Job>(job: J, { signal, progress }: Call): Promise<Outcome<J>> {
+    let failure: { error: unknown } | undefined;
     const check = () => {
+      if (failure !== undefined) throw failure.error;
       if (this.#isDisposed) throw disposed();
       signal?.throwIfAborted();
     };
@@ -54,13 +58,13 @@ export class MainThreadEngine implements Engine {
       await turn();
       check();
     }
+    // An exception must not cross WebAssembly, which would not tidy up: it waits until the step is over.
     const listener: CoreListener = (stage, fraction, best) => {
+      if (failure !== undefined) return;
       try {
-        check();
         progress.report(stage, fraction, best);
-        check();
       } catch (error) {
-        throw new Stopped(error);
+        failure = { error };
       }
     };
     const formats = async () => {
@@ -70,9 +74,12 @@ export class MainThreadEngine implements Engine {
     };
     const align = (input: CoreInput, options: object, onProgress?: CoreListener) =>
       alignInSteps(this.#core, [input, options, onProgress], check);
-    const isFollowed = progress.isWanted || signal !== undefined;
     const modules = { core: this.#core, formats, align };
-    return { result: await perform(job, modules, isFollowed ? listener : undefined), data: job.data };
+    return { result: await perform(job, modules, progress.isWanted ? listener : undefined), data: job.data };
+  }
+
+  dropMesh(id: number): void {
+    this.#core.call((core) => core.dropMesh(id));
   }
 
   dispose(): void {
@@ -89,12 +96,12 @@ async function alignInSteps(
   args: Parameters<Core["align"]>,
   check: () => void,
 ): Promise<CoreAlignment> {
-  const task = core.call((c) => c.beginAlign?.(...args), withoutInput);
-  if (task === undefined) return core.call((c) => c.align(...args), withoutInput);
+  const task = core.call((c) => c.beginAlign(...args), withoutInput);
   const { instance } = core;
   try {
     for (;;) {
       const result = core.call(() => task.step(SLICE_MS), withoutInput);
+      check();
       if (result !== undefined) return result;
       await turn();
       check();

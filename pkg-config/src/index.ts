@@ -86,4 +86,5 @@ export type {
   Registration,
   WithoutMetrics,
 } from "./results.js";
+export { PreparedMesh } from "./prepared-mesh.js";
 export type { Sim3, Sim3Like } from "./sim3.js";

@@ -1,16 +1,18 @@
 /** Calls as data, which the same code runs on this thread or in a worker. */
-import type { Core, CoreAlignment, CoreInput, CoreListener } from "./core.js";
+import type { Core, CoreAlignment, CoreInput, CoreListener, CoreMesh } from "./core.js";
 import type { LoadFormats } from "./formats-module.js";
+import { readMesh } from "./input/mesh.js";
 import { resolveInput } from "./input/resolve.js";
-import type { AlignInput } from "./input/types.js";
+import type { AlignInput, MeshInput } from "./input/types.js";
 import { type AlignResult, type Clouds, type Evaluation, type Registration, withWarnings } from "./results.js";
 import { isTypedArray, wrongKind } from "./values.js";
 import type { LoadedModule } from "./wasm-module.js";
 
 /** A call. `data` holds all its large arrays; `options` are in the core's form. */
 export type Job =
-  | { method: "align"; data: AlignInput; options: object }
-  | { method: "evaluate"; data: AlignInput; options: object; transform: unknown }
+  | { method: "align"; data: AlignInput; options: object; meshId?: number | undefined }
+  | { method: "evaluate"; data: AlignInput; options: object; transform: unknown; meshId?: number | undefined }
+  | { method: "prepareMesh"; data: { mesh: MeshInput }; options: object; meshId: number }
   | { method: "register"; data: Clouds; options: object }
   | { method: "estimateSim3"; data: Clouds; options: object };
 
@@ -18,6 +20,7 @@ export type Job =
 export interface Results {
   align: AlignResult;
   evaluate: Evaluation;
+  prepareMesh: CoreMesh;
   register: Registration;
   estimateSim3: Registration;
 }
@@ -44,18 +47,23 @@ export async function perform(
   const { options } = job;
   switch (job.method) {
     case "align": {
-      const { core: input, warnings } = await resolveInput(job.data, formats);
+      const { core: input, warnings } = await resolveInput(job.data, formats, job.meshId);
       const result = await (align === undefined
         ? core.call((c) => c.align(input, options, listener), withoutInput)
         : align(input, options, listener));
       return withWarnings(result, warnings);
     }
     case "evaluate": {
-      const { core: input, warnings } = await resolveInput(job.data, formats);
+      const { core: input, warnings } = await resolveInput(job.data, formats, job.meshId);
       return withWarnings(
         core.call((c) => c.evaluate(input, job.transform, options), withoutInput),
         warnings,
       );
+    }
+    case "prepareMesh": {
+      const mesh = await readMesh(job.data.mesh, formats);
+      core.call((c) => c.prepareMesh({ ...mesh, id: job.meshId }));
+      return mesh;
     }
     case "register": {
       const { source, target } = checkedClouds(job.data);

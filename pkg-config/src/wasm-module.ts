@@ -84,15 +84,6 @@ function notLoaded(name: string, cause: unknown): Sim3AlignError {
   );
 }
 
-/** Thrown by a callback to end the call into WebAssembly; the caller gets the reason. */
-export class Stopped {
-  readonly reason: unknown;
-
-  constructor(reason: unknown) {
-    this.reason = reason;
-  }
-}
-
 /** A loaded module. */
 export class LoadedModule<G extends Glue> {
   readonly #glue: G;
@@ -127,7 +118,7 @@ export class LoadedModule<G extends Glue> {
         throw new Sim3AlignError({ code, argument: rename(argument), found, expected, remedy });
       }
       this.#isSpent = true;
-      throw error instanceof Stopped ? error.reason : internalError(error);
+      throw internalError(error);
     }
   }
 }

@@ -27,6 +27,7 @@ class WorkerHost {
   receive(message: Request): void {
     if (message.type === "formats") this.#receiveFormats?.(message.formats);
     else if (message.type === "start") this.#core = this.#loadCore(message.core);
+    else if (message.type === "drop-mesh") this.#dropMesh(message.id);
     else this.#run(message);
   }
 
@@ -56,6 +57,10 @@ class WorkerHost {
       const known = error instanceof Sim3AlignError ? error : internalError(error);
       this.#post({ type: "done", error: partsOf(known), data }, buffersOf(data));
     }
+  }
+
+  async #dropMesh(id: number): Promise<void> {
+    (await this.#core)?.call((core) => core.dropMesh(id));
   }
 
   #loadCore(module: WebAssembly.Module): Promise<LoadedModule<Core>> {

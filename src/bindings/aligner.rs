@@ -7,7 +7,8 @@ use wasm_bindgen::prelude::*;
 
 use super::error::to_js;
 use super::host::JsHost;
-use super::{input, object, options, transform};
+use super::{input, mesh, object, options, transform};
+use crate::align::task::AlignTask;
 use crate::error::Result;
 use crate::{align, register};
 
@@ -20,8 +21,8 @@ pub fn align(
 ) -> core::result::Result<JsValue, JsValue> {
     let run = || {
         let method = options::method(options)?;
-        let (observation, mesh) = (input::observation(input)?, input::mesh(input)?);
-        align::align_any(&observation, &mesh, &method, &mut JsHost::new(on_progress))
+        let (observation, mesh) = (input::observation(input)?, mesh::mesh_of(input)?);
+        AlignTask::new(observation, mesh, method, JsHost::new(on_progress))?.finish()
     };
     answer(run())
 }
@@ -32,8 +33,8 @@ pub fn evaluate(input: &JsValue, transform: &JsValue, options: &JsValue) -> core
     let run = || {
         let options = options::options(options, &[], |_| None)?;
         let camera_from_mesh = transform::similarity(transform, "transform")?;
-        let (observation, mesh) = (input::observation(input)?, input::mesh(input)?);
-        align::evaluate::evaluate(&observation, &mesh, &camera_from_mesh, &options)
+        let (observation, mesh) = (input::observation(input)?, mesh::mesh_of(input)?);
+        align::evaluate::evaluate(&observation, mesh.mesh(), &camera_from_mesh, &options)
     };
     answer(run())
 }
@@ -73,7 +74,7 @@ pub fn version() -> String {
 }
 
 /// The result as a plain object, or the error to be thrown.
-fn answer<T: Serialize>(result: Result<T>) -> core::result::Result<JsValue, JsValue> {
+pub(super) fn answer<T: Serialize>(result: Result<T>) -> core::result::Result<JsValue, JsValue> {
     let value = result.map_err(|error| to_js(&error))?;
     value.serialize(&Serializer::json_compatible()).map_err(Into::into)
 }

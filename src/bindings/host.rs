@@ -1,8 +1,8 @@
 //! Clock and progress of a JavaScript host.
 
 use js_sys::{Float64Array, Function};
+use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
-use wasm_bindgen::{JsValue, throw_val};
 use web_sys::Performance;
 
 use crate::geometry::similarity::Similarity;
@@ -13,6 +13,11 @@ extern "C" {
     /// Windows, workers and Node all have it, by this name, on global objects that share no class.
     #[wasm_bindgen(thread_local_v2, js_name = performance)]
     static PERFORMANCE: Option<Performance>;
+}
+
+/// Milliseconds since any fixed moment; 0 where there is no clock.
+pub fn now_ms() -> f64 {
+    PERFORMANCE.with(|performance| performance.as_ref().map_or(0.0, Performance::now))
 }
 
 /// `globalThis.performance` and a callback, either of which may be missing.
@@ -31,16 +36,16 @@ impl JsHost {
 
 impl Host for JsHost {
     fn now_ms(&mut self) -> f64 {
-        PERFORMANCE.with(|performance| performance.as_ref().map_or(0.0, Performance::now))
+        now_ms()
     }
 
     fn progress(&mut self, stage: Stage, fraction: f64) {
         if let Some(callback) = &self.on_progress {
-            let heard = callback.call3(&JsValue::NULL, &stage.as_str().into(), &fraction.into(), &self.best);
-            // It ends the call, and the instance with it: nothing is tidied up on the way.
-            heard.unwrap_or_else(|error| throw_val(error));
+            // The package's callbacks keep their callers' exceptions to themselves until the step is over.
+            let _ = callback.call3(&JsValue::NULL, &stage.as_str().into(), &fraction.into(), &self.best);
         }
     }
+
     fn best(&mut self, camera_from_mesh: &Similarity, score: f64) {
         self.best = Float64Array::from(best_numbers(camera_from_mesh, score).as_slice()).into();
     }

@@ -3,11 +3,10 @@
 use js_sys::Uint16Array;
 use wasm_bindgen::{JsCast, JsValue};
 
-use super::object::{get, number, required_number, size, to_f32s, to_u8s, to_u32s, wrong_type};
+use super::object::{get, number, required_number, size, to_f32s, to_u8s, wrong_type};
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::observation::{Observation, from_point_map};
 use crate::geometry::image::{DepthMap, Image, Mask, check_size};
-use crate::geometry::mesh::Mesh;
 use crate::geometry::pinhole::Pinhole;
 use crate::number::number as number_text;
 
@@ -36,19 +35,6 @@ pub fn observation(input: &JsValue) -> Result<Observation> {
         }
     };
     Observation::new(depth, mask(input, width, height)?, camera)
-}
-
-/// `{ mesh: { positions, indices? } }`.
-#[inline(never)]
-pub fn mesh(input: &JsValue) -> Result<Mesh> {
-    let mesh = get(input, "mesh").unwrap_or(JsValue::UNDEFINED);
-    if !mesh.is_object() {
-        let remedy = "Pass typed arrays, or a file's bytes to the package's align().";
-        return Err(wrong_type("mesh", &mesh, "{ positions, indices }", remedy));
-    }
-    let positions = to_f32s(&get(&mesh, "positions").unwrap_or(JsValue::UNDEFINED), "mesh.positions")?;
-    let indices = get(&mesh, "indices").map(|indices| to_u32s(&indices, "mesh.indices")).transpose()?;
-    Mesh::from_flat(&positions, indices.as_deref())
 }
 
 fn depth(input: &JsValue, width: usize, height: usize) -> Result<DepthMap> {

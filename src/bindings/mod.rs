@@ -4,8 +4,10 @@ pub mod aligner;
 pub mod error;
 mod host;
 mod input;
+pub mod mesh;
 mod object;
 mod options;
+pub mod task;
 mod transform;
 
 /// Two-level segregated fit, constant time to get and to give back: a fifth of the standard allocator's bytes.

@@ -3,28 +3,12 @@
 use super::Evidence;
 use super::extents::{Extents, initial_scale};
 use super::observation::Observation;
+pub use super::sample::Sampling;
 use super::sample::sample_surface;
 use crate::error::Result;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::mesh::Mesh;
 use crate::progress::{Stage, Stopwatch};
-
-/// How many points of either cloud are drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Sampling {
-    /// Most observed points used; of more, an even random share is drawn.
-    pub max_points: usize,
-    /// Points drawn on the mesh's surface.
-    pub surface_samples: usize,
-    /// Seed of both draws.
-    pub seed: u64,
-}
-
-impl Default for Sampling {
-    fn default() -> Self {
-        Self { max_points: 20_000, surface_samples: 20_000, seed: 0 }
-    }
-}
 
 /// Both clouds and their extents; the normals are estimated when they are first needed.
 pub struct Clouds {

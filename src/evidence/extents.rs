@@ -1,7 +1,7 @@
-//! Scale initialisation from the clouds' boxes (paper §3.1), and the frames in which the stages work.
+//! Scale initialisation from bounding boxes (paper §3.1), and the normalised frames of the later stages.
 //!
-//! Every stage after this one sees both clouds centred and with a box diagonal of 1: the mesh is thereby
-//! already scaled by s_init, one support radius fits both, and a hypothesis' scale *is* its ratio to s_init.
+//! In the normalised frames, both clouds are centred with a box diagonal of 1: the mesh is thus scaled by s_init, one
+//! support radius fits both clouds, and the scale of a hypothesis is its ratio to s_init.
 
 use nalgebra::{Rotation3, Vector3};
 
@@ -10,7 +10,7 @@ use crate::geometry::cloud::{Bounds, Cloud};
 use crate::geometry::similarity::{Similarity, vec3, vector3};
 use crate::number::number;
 
-/// The box of a cloud: its middle and the length of its diagonal, in the cloud's own unit.
+/// The bounding box of a cloud: its centre and the length of its diagonal, in the unit of the cloud.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extents {
     center: Vector3<f64>,
@@ -21,14 +21,14 @@ impl Extents {
     /// The extents of points. `argument` names them in errors.
     ///
     /// # Errors
-    /// [`ErrorCode::TooFewPoints`] for no points, [`ErrorCode::DegeneratePoints`] where all coincide.
+    /// [`ErrorCode::TooFewPoints`] for no points, [`ErrorCode::DegeneratePoints`] if all coincide.
     pub fn of(argument: &str, points: &[glam::Vec3]) -> Result<Self> {
         let bounds = Bounds::of(points).ok_or_else(|| no_points(argument))?;
         Self::from_corners(argument, vector3(bounds.min), vector3(bounds.max))
     }
 
-    /// The extents of points in f64, x, y, z one after the other: coordinates far from the origin
-    /// (map frames, UTM) keep their digits.
+    /// The extents of f64 points (interleaved x, y, z): coordinates far from the origin (map frames, UTM) keep their
+    /// precision.
     ///
     /// # Errors
     /// As [`Extents::of`].
@@ -58,25 +58,25 @@ impl Extents {
         self.diagonal
     }
 
-    /// The same middle with another diagonal: where the scale between two clouds is known, their boxes need not say it.
+    /// The same centre with another diagonal, for clouds whose relative scale is known.
     pub fn with_diagonal(self, diagonal: f64) -> Self {
         Self { diagonal, ..self }
     }
 
-    /// The transform from the cloud's own frame to the one with the box centred and its diagonal 1.
+    /// The transform from the frame of the cloud to its normalised frame: box centred, diagonal 1.
     pub fn unit_from_own(&self) -> Similarity {
         let scale = 1.0 / self.diagonal;
         Similarity { scale, rotation: Rotation3::identity(), translation: -self.center * scale }
     }
 
-    /// The cloud, centred and scaled to a diagonal of 1.
+    /// The cloud in its normalised frame; normals are unchanged.
     pub fn normalized(&self, cloud: &Cloud) -> Cloud {
         let unit_from_own = self.unit_from_own();
         let points = cloud.points.iter().map(|&p| vec3(&unit_from_own.apply(vector3(p)))).collect();
         Cloud { points, normals: cloud.normals.clone() }
     }
 
-    /// As [`Extents::normalized`], for f64 points.
+    /// Like [`Extents::normalized`], for f64 points (interleaved x, y, z).
     pub fn normalized_flat(&self, xyz: &[f64]) -> Cloud {
         let unit_from_own = self.unit_from_own();
         let points = xyz.chunks_exact(3).map(|p| vec3(&unit_from_own.apply(Vector3::from_column_slice(p))));
@@ -89,11 +89,11 @@ pub fn initial_scale(observed: &Extents, reconstructed: &Extents) -> f64 {
     observed.diagonal / reconstructed.diagonal
 }
 
-/// A transform between the normalised frames, taken back to the clouds' own frames.
+/// Converts a transform between normalised frames to the frames of the clouds.
 pub fn target_from_source(target: &Extents, unit: &Similarity, source: &Extents) -> Similarity {
     target.unit_from_own().inverse().compose(unit).compose(&source.unit_from_own())
 }
 
 fn no_points(argument: &str) -> Error {
-    Error::new(ErrorCode::TooFewPoints, argument.to_owned(), "no points", "points", "Check how the cloud was made.")
+    Error::new(ErrorCode::TooFewPoints, argument.to_owned(), "no points", "points", "Check the source of the cloud.")
 }

@@ -1,4 +1,4 @@
-//! What a pose is scored against: the observed points with their normals, and points on the mesh's surface.
+//! The evidence for a pose: observed points with normals, and points on the surface of the mesh.
 
 pub mod clouds;
 pub mod extents;
@@ -10,27 +10,26 @@ use crate::error::Result;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::mesh::Mesh;
-use clouds::Sampling;
 use normals::{Neighborhood, Orientation, estimate_normals};
 use observation::Observation;
-use sample::sample_surface;
+use sample::{Sampling, sample_surface};
 
-/// Neighbours from which an observed point's normal is estimated.
+/// Neighbours for the normal estimation of observed points.
 pub const NORMAL_NEIGHBORS: usize = 30;
 
-/// Both clouds, made once for however many poses.
+/// Both clouds; independent of the pose, so that they are computed once.
 #[derive(Debug, Clone)]
 pub struct Evidence {
     /// P_obs (camera frame, metres), with normals towards the camera.
     pub observed: Cloud,
-    /// The tree over P_obs.
+    /// The search tree over P_obs.
     pub tree: KdTree,
-    /// P_rec: points on the mesh's surface (mesh frame), with its normals.
+    /// P_rec: points on the surface of the mesh (mesh frame), with normals.
     pub reconstructed: Cloud,
 }
 
 impl Evidence {
-    /// The evidence of two clouds: adds the observed points' normals, from their [`NORMAL_NEIGHBORS`] nearest.
+    /// The evidence of two clouds. Estimates the normals of the observed points from [`NORMAL_NEIGHBORS`] neighbours.
     pub fn new(mut observed: Cloud, reconstructed: Cloud) -> Self {
         let tree = KdTree::new(&observed.points);
         let neighborhood = Neighborhood::nearest(NORMAL_NEIGHBORS);

@@ -1,4 +1,4 @@
-//! Normals of a cloud: the direction in which a point's neighbourhood is thinnest.
+//! Normal estimation for point clouds by principal component analysis.
 
 use glam::{DMat3, DVec3, Vec3};
 
@@ -6,20 +6,20 @@ use crate::geometry::kd_tree::KdTree;
 use crate::geometry::order::{index_of, median};
 use crate::geometry::symmetric_eigen::SymmetricEigen;
 
-/// Variance across a neighbourhood, as a share of that along it, below which it is a line.
+/// Ratio of the middle to the largest eigenvalue below which a neighbourhood is collinear.
 const COLLINEAR: f64 = 1e-8;
 
-/// Which points are a point's neighbours: the nearest `max_neighbors` that lie within `radius`.
+/// The neighbourhood of a point: the nearest `max_neighbors` points within `radius`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Neighborhood {
-    /// Most neighbours, the point itself included.
+    /// Maximum number of neighbours, including the point itself.
     pub max_neighbors: usize,
-    /// How far they may be, in the points' unit; infinite for no bound.
+    /// Maximum distance, in the unit of the points; may be infinite.
     pub radius: f32,
 }
 
 impl Neighborhood {
-    /// The nearest `max_neighbors`, however far.
+    /// The nearest `max_neighbors`, at any distance.
     pub fn nearest(max_neighbors: usize) -> Self {
         Self { max_neighbors, radius: f32::INFINITY }
     }
@@ -31,19 +31,19 @@ impl From<usize> for Neighborhood {
     }
 }
 
-/// Which of its two directions a normal takes.
+/// The orientation of normals.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Orientation {
-    /// Towards the origin: the side of the surface that a camera there can see.
+    /// Towards the origin, for clouds in the frame of a camera.
     TowardsCamera,
-    /// Away from this point, such as the middle of a closed object.
+    /// Away from this point, such as the centre of a closed object.
     AwayFrom(Vec3),
 }
 
 /// Unit normals of `points` by principal component analysis of their neighbours (Hoppe et al. 1992, §3.2): the
-/// eigenvector of the smallest eigenvalue of the covariance. The zero vector where there are fewer than three
-/// neighbours or all lie on one line. `tree` is the tree over these very points; a plain number is that many
-/// nearest neighbours.
+/// eigenvector of the smallest eigenvalue of the covariance. The zero vector if there are fewer than three
+/// neighbours or all are collinear. `tree` is the search tree over the same points; a number as `neighborhood` means
+/// that many nearest neighbours.
 pub fn estimate_normals(
     points: &[Vec3],
     tree: &KdTree,
@@ -64,15 +64,16 @@ pub fn estimate_normals(
     normals
 }
 
-/// Normals that point away from where the points were seen from or, where that is not known, from their middle: the
-/// median, which clutter moves least. Without a viewpoint that is the orientation that two clouds can agree on.
+/// Normals that point away from the viewpoint `eye` or, if it is unknown, from the median of the points, which is
+/// robust to clutter. Without viewpoints, this orientation is consistent between two clouds.
 pub fn outward_normals(points: &[Vec3], eye: Option<Vec3>, neighbors: usize) -> Vec<Vec3> {
     let middle = |axis: usize| median(points.iter().map(|p| p[axis])).unwrap_or_default();
     let center = eye.unwrap_or_else(|| Vec3::new(middle(0), middle(1), middle(2)));
     estimate_normals(points, &KdTree::new(points), Neighborhood::nearest(neighbors), Orientation::AwayFrom(center))
 }
 
-/// Unit, or zero where the neighbours do not span a plane. Sums are taken about `point`, to keep digits.
+/// The unit eigenvector of the smallest eigenvalue, or zero if the neighbours do not span a plane. Sums are relative to
+/// `point`, to preserve precision.
 fn thinnest_direction(point: Vec3, neighbors: &[u64], points: &[Vec3]) -> Vec3 {
     let (mut sum, mut squares, mut count) = (DVec3::ZERO, DMat3::ZERO, 0.0);
     for p in neighbors.iter().filter_map(|&key| points.get(index_of(key) as usize)) {

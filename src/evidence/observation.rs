@@ -1,4 +1,4 @@
-//! Observe (paper §3.1): depth, mask and camera in, the object's partial cloud out.
+//! Observation (paper §3.1): the partial cloud of an object from depth, mask and camera.
 
 use glam::Vec3;
 
@@ -9,13 +9,13 @@ use crate::geometry::pinhole::Pinhole;
 use crate::geometry::random::Random;
 use crate::number::number;
 
-/// The random stream of the subsampling in [`Observation::cloud`].
+/// Random stream of the subsampling in [`Observation::cloud`].
 const STREAM: u64 = 1;
 
-/// Fewest readings inside the mask from which a shape can be told.
+/// Minimum number of readings inside the mask.
 pub const MIN_POINTS: usize = 32;
 
-/// What the camera saw: depth in metres, the object's mask, the intrinsics. All of one size.
+/// An observation: depth in metres, the mask of the object (same size), and intrinsics.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Observation {
     depth: DepthMap,
@@ -24,7 +24,7 @@ pub struct Observation {
 }
 
 impl Observation {
-    /// An observation, checked.
+    /// A validated observation.
     ///
     /// # Errors
     /// [`ErrorCode::SizeMismatch`], [`ErrorCode::EmptyMask`], [`ErrorCode::NoDepthInMask`],
@@ -35,13 +35,13 @@ impl Observation {
                 ErrorCode::SizeMismatch,
                 "mask",
                 format!(
-                    "{} × {} pixels beside a depth map of {} × {}",
+                    "{} × {} pixels for a depth map of {} × {}",
                     mask.width(),
                     mask.height(),
                     depth.width(),
                     depth.height()
                 ),
-                "depth and mask of one size",
+                "depth and mask of the same size",
                 "Resize the mask to the depth map, or set resizeMask: \"nearest\".",
             ));
         }
@@ -50,12 +50,12 @@ impl Observation {
         Ok(observation)
     }
 
-    /// The depth map, metres; 0 is no reading.
+    /// The depth map in metres; 0 is "no reading".
     pub fn depth(&self) -> &DepthMap {
         &self.depth
     }
 
-    /// The mask; non-zero is the object.
+    /// The mask; non-zero pixels are the object.
     pub fn mask(&self) -> &Mask {
         &self.mask
     }
@@ -65,19 +65,10 @@ impl Observation {
         self.camera
     }
 
-    /// P_obs: x = D(u,v)·K⁻¹\[u,v,1\]ᵀ for every reading in the mask, row by row; where there are more than
-    /// `max_points`, one drawn at random from each of `max_points` equal runs of them (seeded).
+    /// P_obs: x = D(u,v)·K⁻¹\[u,v,1\]ᵀ for every reading in the mask, row-major, in the camera frame (metres).
+    /// More than `max_points` are subsampled: one random reading from each of `max_points` equal intervals.
     pub fn cloud(&self, max_points: usize, seed: u64) -> Cloud {
-        self.back_projected(max_points, seed, true)
-    }
-
-    /// The rest of the readings, outside the mask: the scene around the object, subsampled likewise.
-    pub fn scene_cloud(&self, max_points: usize, seed: u64) -> Cloud {
-        self.back_projected(max_points, seed, false)
-    }
-
-    fn back_projected(&self, max_points: usize, seed: u64, inside: bool) -> Cloud {
-        let readings: Vec<usize> = self.readings(inside).map(|(i, _)| i).collect();
+        let readings: Vec<usize> = self.readings().map(|(i, _)| i).collect();
         let width = self.depth.width();
         let back_project = |i: usize| -> Vec3 {
             self.camera.back_project((i % width) as f64, (i / width) as f64, f64::from(self.depth.data()[i]))
@@ -90,10 +81,10 @@ impl Observation {
         Cloud::from_points(random.one_of_each_run(n, max_points).map(|k| back_project(readings[k])).collect())
     }
 
-    /// Index and depth of each reading inside (or outside) the mask.
-    fn readings(&self, inside: bool) -> impl Iterator<Item = (usize, f32)> {
+    /// Index and depth of each reading inside the mask, row-major.
+    fn readings(&self) -> impl Iterator<Item = (usize, f32)> {
         let pixels = self.depth.data().iter().zip(self.mask.data()).enumerate();
-        pixels.filter(move |&(_, (&z, &m))| z > 0.0 && (m != 0) == inside).map(|(i, (&z, _))| (i, z))
+        pixels.filter(|&(_, (&z, &m))| z > 0.0 && m != 0).map(|(i, (&z, _))| (i, z))
     }
 
     fn check_readings(&self) -> Result<()> {
@@ -103,11 +94,11 @@ impl Observation {
                 ErrorCode::EmptyMask,
                 "mask",
                 "no non-zero pixel",
-                "the object's pixels to be non-zero",
-                "Check the mask's instance or class value, and that it was not inverted or lost in resizing.",
+                "non-zero pixels for the object",
+                "Check the instance or class value of the mask, and that it was not inverted or lost in resizing.",
             ));
         }
-        let count = self.readings(true).count();
+        let count = self.readings().count();
         if count == 0 {
             return Err(Error::new(
                 ErrorCode::NoDepthInMask,
@@ -126,7 +117,7 @@ impl Observation {
                 "Use a larger image of the object, or a depth source with fewer holes.",
             ));
         }
-        let mut depths = self.readings(true).map(|(_, z)| z);
+        let mut depths = self.readings().map(|(_, z)| z);
         let first = depths.next().unwrap_or_default();
         if depths.all(|z| z == first) {
             return Err(Error::new(
@@ -141,14 +132,14 @@ impl Observation {
     }
 }
 
-/// Depth and camera from a point map (H×W×3, camera frame, metres; a point with a coordinate that is not
-/// finite or z ≤ 0 is no reading), as MoGe gives it.
+/// Depth and camera from a point map (H×W×3, camera frame, metres), for example of MoGe. Points with z ≤ 0 or a
+/// non-finite coordinate are no readings.
 ///
 /// The intrinsics are the least-squares fit of u = fx·x/z + cx and v = fy·y/z + cy over the readings.
 ///
 /// # Errors
-/// [`ErrorCode::WrongLength`], [`ErrorCode::EmptyImage`], [`ErrorCode::NoDepthInMask`] where no point is a
-/// reading, and [`ErrorCode::InvalidCamera`] where the points are not those of a pinhole camera looking along z.
+/// [`ErrorCode::WrongLength`], [`ErrorCode::EmptyImage`], [`ErrorCode::NoDepthInMask`] without readings,
+/// and [`ErrorCode::InvalidCamera`] if the points do not fit a pinhole camera that looks along z.
 pub fn from_point_map(width: usize, height: usize, points: &[f32]) -> Result<(DepthMap, Pinhole)> {
     if !points.len().is_multiple_of(3) {
         return Err(Error::new(

@@ -1,4 +1,4 @@
-//! Sample (paper §3.1): the generated mesh's surface as a cloud P_rec, and the check that it has a shape at all.
+//! Sampling (paper §3.1): the surface of the generated mesh as a cloud P_rec, and the check for degenerate meshes.
 
 use glam::{DMat3, DVec3, Vec3};
 
@@ -9,21 +9,38 @@ use crate::geometry::random::Random;
 use crate::geometry::symmetric_eigen::SymmetricEigen;
 use crate::number::number;
 
-/// The random stream of [`sample_surface`].
+/// Random stream of [`sample_surface`].
 const STREAM: u64 = 2;
 
-/// Root-mean-square thickness, as a share of the box diagonal, below which a surface is a plane (or, in its
-/// second direction, a line). A sheet of A4 paper has 1.4e-4, a bank card 4e-3; the rounding of f32 vertices 1e-7.
+/// Root-mean-square thickness, relative to the box diagonal, below which a surface is a plane (or, in its second
+/// direction, a line). A sheet of A4 paper has 1.4e-4, a bank card 4e-3; the rounding of f32 vertices 1e-7.
 pub const MIN_THICKNESS: f64 = 1e-4;
+
+/// Sampling of both clouds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Sampling {
+    /// Maximum number of observed points; more are subsampled evenly at random.
+    pub max_points: usize,
+    /// Number of points on the surface of the mesh.
+    pub surface_samples: usize,
+    /// Seed of both draws.
+    pub seed: u64,
+}
+
+impl Default for Sampling {
+    fn default() -> Self {
+        Self { max_points: 20_000, surface_samples: 20_000, seed: 0 }
+    }
+}
 
 /// `count` points spread evenly by area over the mesh's surface, each with its triangle's unit normal.
 ///
-/// Stratified: the area is laid end to end, triangle after triangle, cut into `count` equal shares, and one
-/// point is drawn in each, so a triangle that holds n shares gets n points, give or take one. Where the mesh
-/// faces inward (negative signed volume) all normals are flipped together.
+/// Stratified: the cumulative area over all triangles is divided into `count` equal intervals with one point each, so
+/// that a triangle with n intervals gets n ± 1 points. If the mesh faces inward (negative signed volume), all normals
+/// are flipped.
 ///
 /// # Errors
-/// [`ErrorCode::DegenerateMesh`] where the surface has no area, or more than f64 can hold.
+/// [`ErrorCode::DegenerateMesh`] if the area is 0 or not finite.
 pub fn sample_surface(mesh: &Mesh, count: usize, seed: u64) -> Result<Cloud> {
     let mut total = 0.0;
     let ends: Vec<f64> = (mesh.triangles().iter())
@@ -33,7 +50,7 @@ pub fn sample_surface(mesh: &Mesh, count: usize, seed: u64) -> Result<Cloud> {
         })
         .collect();
     check_area(total)?;
-    // Past the last triangle that has an area there is none to fall back on.
+    // The last triangle with area; rounding must not select one after it.
     let last = ends.partition_point(|&end| end < total).min(ends.len() - 1);
     let facing = if mesh.signed_volume6() < 0.0 { -1.0 } else { 1.0 };
 
@@ -54,11 +71,10 @@ pub fn sample_surface(mesh: &Mesh, count: usize, seed: u64) -> Result<Cloud> {
     Ok(cloud)
 }
 
-/// Refuses meshes whose pose and size no view could tell: without area, all in one plane, all on one line.
+/// Rejects meshes whose pose or scale cannot be determined from any view: without area, planar, or collinear.
 ///
 /// # Errors
-/// [`ErrorCode::DegenerateMesh`], by the thickness of the surface along its principal axes (see
-/// [`MIN_THICKNESS`]).
+/// [`ErrorCode::DegenerateMesh`], from the thickness along the principal axes (see [`MIN_THICKNESS`]).
 pub fn check_shape(mesh: &Mesh) -> Result<()> {
     let moments = SurfaceMoments::of(mesh);
     check_area(moments.area)?;
@@ -83,12 +99,12 @@ pub fn check_shape(mesh: &Mesh) -> Result<()> {
     Ok(())
 }
 
-/// Area, centroid and covariance of a surface, every point of it weighing the same.
+/// Area, centroid and covariance of a surface with uniform weight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfaceMoments {
     /// Total area.
     pub area: f64,
-    /// Centre of the area.
+    /// Centroid of the surface.
     pub centroid: DVec3,
     /// Mean of (x − centroid)(x − centroid)ᵀ.
     pub covariance: DMat3,
@@ -97,7 +113,7 @@ pub struct SurfaceMoments {
 impl SurfaceMoments {
     /// The moments of a mesh's surface, integrated exactly. All zero for a mesh without area.
     pub fn of(mesh: &Mesh) -> Self {
-        // Taken about a vertex: second moments about a far origin would drown the covariance.
+        // Relative to a vertex: second moments about a distant origin would lose the precision of the covariance.
         let origin = mesh.positions().first().map_or(DVec3::ZERO, |p| p.as_dvec3());
         let (mut area, mut first, mut second) = (0.0, DVec3::ZERO, DMat3::ZERO);
         for &triangle in mesh.triangles() {
@@ -130,12 +146,12 @@ fn corners(mesh: &Mesh, triangle: [u32; 3]) -> [DVec3; 3] {
     mesh.corners(triangle).map(|p| p.as_dvec3())
 }
 
-/// Along the normal, as long as the triangle's area.
+/// The vector along the normal whose length is the area of the triangle.
 fn area_vector([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a) * 0.5
 }
 
-/// The diagonal of the box around the triangles; vertices that no triangle uses do not count.
+/// The diagonal of the bounding box of the triangles; unused vertices are ignored.
 fn diagonal(mesh: &Mesh) -> f64 {
     let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for p in mesh.triangles().iter().flat_map(|&t| mesh.corners(t)) {
@@ -153,6 +169,6 @@ fn check_area(total: f64) -> Result<()> {
         "mesh",
         format!("triangles with a total area of {}", number(total)),
         "a surface with area",
-        "Check that the vertices are x, y, z triples and that the indices do not all name one vertex.",
+        "Check that the vertices are x, y, z triples and that the indices do not all refer to one vertex.",
     ))
 }

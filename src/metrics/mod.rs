@@ -1,4 +1,4 @@
-//! How well a transform fits the observation: the paper's columns, and errors against a known truth.
+//! Metrics: agreement of a transform with the observation (as in the paper), and errors relative to the true pose.
 
 pub mod pose_error;
 pub mod silhouette;
@@ -17,13 +17,13 @@ use crate::geometry::rasteriser::Rasteriser;
 use crate::geometry::similarity::Similarity;
 use surface::{Mean, surface_agreement};
 
-/// Agreement of a posed mesh with the observation. `null` is "nothing to measure", never a good number.
+/// Agreement of a posed mesh with the observation. `null` marks a value that could not be measured.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 pub struct Metrics {
     /// DAVIS boundary F-measure of mask and rendered silhouette at 0.008 × the image diagonal, 0 to 1, higher is
-    /// better; 0 where nothing is rendered.
+    /// better; 0 if nothing is rendered.
     pub boundary_f: Option<f64>,
     /// Distance of the centroids of mask and rendered silhouette, pixels; `null` where nothing is rendered.
     pub center_drift_px: Option<f64>,
@@ -44,7 +44,7 @@ pub struct Metrics {
     pub depth_mae_mm: Option<f64>,
 }
 
-/// Scores a transform on the observation, at the resolution of its depth map.
+/// Computes the metrics of a transform at the resolution of the depth map.
 ///
 /// # Errors
 /// [`crate::error::ErrorCode::InvalidTransform`] for a transform that is no similarity,
@@ -58,7 +58,7 @@ pub fn evaluate(
     score(observation, mesh, camera_from_mesh, &Evidence::of(observation, mesh, options)?)
 }
 
-/// [`evaluate`], for one of several poses: the evidence is that of this observation and mesh.
+/// Like [`evaluate`], with given evidence of the same observation and mesh, for use with several poses.
 ///
 /// # Errors
 /// [`crate::error::ErrorCode::InvalidTransform`] for a transform that is no similarity.
@@ -93,7 +93,7 @@ pub fn score(
     })
 }
 
-/// Mean |rendered − observed| over the pixels of the mask that have both; 0 is "none" in either.
+/// Mean |rendered − observed| over the pixels of the mask with both depths (above 0).
 fn depth_mae(observed: &DepthMap, mask: &Mask, rendered: &[f32]) -> Option<f64> {
     let mut mean = Mean::default();
     for ((&observed, &inside), &rendered) in observed.data().iter().zip(mask.data()).zip(rendered) {
@@ -104,7 +104,7 @@ fn depth_mae(observed: &DepthMap, mask: &Mask, rendered: &[f32]) -> Option<f64> 
     mean.value()
 }
 
-/// Fields of a [`Similarity`] are public; what arithmetic made of them has to be one still.
+/// Checks a [`Similarity`], whose public fields may have any value.
 fn check_transform(transform: &Similarity) -> Result<()> {
     Similarity::from_parts(transform.scale, *transform.rotation.matrix(), transform.translation).map(|_| ())
 }

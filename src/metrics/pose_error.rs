@@ -1,4 +1,4 @@
-//! Errors of an estimated transform against the known truth.
+//! Errors of an estimated transform relative to the true pose.
 
 use nalgebra::UnitQuaternion;
 use serde::Serialize;
@@ -12,46 +12,45 @@ use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::{Similarity, vec3, vector3};
 use crate::geometry::triangle_tree::{Hint, TriangleTree};
 
-/// Surface points over which ADD-S is averaged.
+/// Number of surface samples for ADD-S.
 const SAMPLES: usize = 5000;
 
-/// How far an estimate is from the truth, up to the object's symmetry.
+/// Errors of an estimate relative to the true pose, up to the symmetry of the object.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 pub struct PoseErrors {
     /// |s / s_true − 1|, ≥ 0; 0.05 is 5 %.
     pub scale_error: f64,
-    /// Angle between the rotations, degrees, 0 to 180; the smallest over the object's symmetries.
+    /// Angle between the rotations, degrees, 0 to 180; the smallest over the symmetries of the object.
     pub rotation_error_deg: f64,
-    /// Distance between where the two transforms put the middle of the mesh's box, metres. Not |t − t_true|: t is
-    /// where the mesh's origin goes, which may lie anywhere. Under the symmetry of the rotation error.
+    /// Distance between the centres of the mesh's bounding box under both transforms, metres. Unlike |t − t_true|, it
+    /// does not depend on the origin of the mesh. Uses the symmetry of the rotation error.
     pub translation_error_m: f64,
-    /// The same as a share of the object's diameter: the mesh's box diagonal × the true scale.
+    /// The translation error relative to the diameter of the object: the diagonal of the mesh's bounding box × the true
+    /// scale.
     pub translation_error_relative: f64,
-    /// ADD-S, millimetres: mean distance of the truly posed surface's points to the estimated surface (Hinterstoisser
-    /// et al. 2012, §4.2, with the exact surface in place of its points).
+    /// ADD-S, millimetres: mean distance of surface points under the true pose to the surface under the estimated pose
+    /// (Hinterstoisser et al. 2012, §4.2, with the exact surface instead of its points).
     pub add_s_mm: f64,
 }
 
-/// The errors of `estimate` against `truth`, both camera from mesh.
-///
-/// A truth turned by a symmetry of the object is as true. Of all such, the one nearest to the estimate in rotation
-/// is compared.
+/// The errors of `estimate` relative to the true pose `truth`, both camera from mesh. Among the equivalent true poses
+/// under the symmetries of the object, the one with the nearest rotation is used.
 ///
 /// # Errors
-/// [`ErrorCode::DegenerateMesh`] for a mesh without area, [`ErrorCode::InvalidTransform`] where the two are so far
-/// apart that f32 does not reach, and those of [`Symmetry::group`].
+/// [`ErrorCode::DegenerateMesh`] for a mesh without area, [`ErrorCode::InvalidTransform`] if the distance
+/// between the two overflows f32, and those of [`Symmetry::group`].
 pub fn pose_errors(mesh: &Mesh, estimate: &Similarity, truth: &Similarity, symmetry: &Symmetry) -> Result<PoseErrors> {
     let samples = sample_surface(mesh, SAMPLES, 0)?.points;
     let relative = UnitQuaternion::from_rotation_matrix(&(truth.rotation.inverse() * estimate.rotation));
-    let turn = symmetry.group(mesh)?.nearest(&relative);
+    let rotation = symmetry.group(mesh)?.nearest(&relative);
 
-    // Mesh from mesh: the turn about the surface's centroid.
+    // Mesh from mesh: the symmetry rotation about the centroid of the surface.
     let centroid = nalgebra::Vector3::from(SurfaceMoments::of(mesh).centroid.to_array());
-    let turned =
-        Similarity { scale: 1.0, rotation: turn.to_rotation_matrix(), translation: centroid - turn * centroid };
-    let truth = truth.compose(&turned);
+    let symmetric =
+        Similarity { scale: 1.0, rotation: rotation.to_rotation_matrix(), translation: centroid - rotation * centroid };
+    let truth = truth.compose(&symmetric);
 
     let center = Bounds::of(mesh.positions()).map_or(centroid, |b| vector3(b.min).lerp(&vector3(b.max), 0.5));
     let translation_error_m = (estimate.apply(center) - truth.apply(center)).norm();
@@ -69,8 +68,8 @@ pub fn pose_errors(mesh: &Mesh, estimate: &Similarity, truth: &Similarity, symme
         Error::new(
             ErrorCode::InvalidTransform,
             "transform",
-            "a transform too far from the truth for a distance",
-            "two transforms of one scene",
+            "a transform too far from the true pose to measure the distance",
+            "two transforms in the same scene",
             "Check the units of both: translations are in metres.",
         )
     })?;

@@ -1,12 +1,12 @@
-//! Two masks of one size compared: overlap, outline, centre.
+//! Comparison of two masks of the same size: overlap, boundary, centroid.
 
 use crate::geometry::distance_transform::squared_distances;
 use crate::geometry::image::Mask;
 
-/// How far apart two outlines may run and still match, as a share of the image diagonal (DAVIS).
+/// Maximum distance of matching boundary pixels, relative to the image diagonal (DAVIS).
 pub const BOUNDARY_TOLERANCE: f64 = 0.008;
 
-/// Intersection over union, 0 to 1; 0 where both are empty.
+/// Intersection over union, 0 to 1; 0 if both are empty.
 pub fn iou(a: &Mask, b: &Mask) -> f64 {
     let (mut both, mut either) = (0u64, 0u64);
     for (a, b) in a.data().iter().zip(b.data()) {
@@ -16,7 +16,7 @@ pub fn iou(a: &Mask, b: &Mask) -> f64 {
     if either == 0 { 0.0 } else { both as f64 / either as f64 }
 }
 
-/// Distance of the two masks' centroids in pixels; `None` where either is empty.
+/// Distance of the two masks' centroids in pixels; `None` if either is empty.
 pub fn center_drift_px(a: &Mask, b: &Mask) -> Option<f64> {
     let ([ua, va], [ub, vb]) = (centroid(a)?, centroid(b)?);
     Some(((ua - ub) * (ua - ub) + (va - vb) * (va - vb)).sqrt())
@@ -24,10 +24,10 @@ pub fn center_drift_px(a: &Mask, b: &Mask) -> Option<f64> {
 
 /// Boundary F-measure of DAVIS (Perazzi et al. 2016, §4.1, as the 2017 evaluation code computes it), 0 to 1.
 ///
-/// Outlines are one pixel wide (see [`boundary`]). Precision is the share of b's outline within
-/// ⌈0.008 · image diagonal⌉ pixels of a's, recall the share of a's within as much of b's, and F = 2PR/(P + R).
-/// An empty mask against anything is 0. Two masks without an outline, which both fill the image, are 1,
-/// one without and one with are 0.
+/// Boundaries are one pixel wide (see [`boundary`]). Precision is the fraction of the boundary of b within
+/// ⌈0.008 · image diagonal⌉ pixels of that of a, recall the fraction of the boundary of a within the same distance of
+/// that of b, and F = 2PR/(P + R). The result is 0 if a mask is empty, 1 if both masks fill the image, and 0 if only
+/// one does.
 pub fn boundary_f(a: &Mask, b: &Mask) -> f64 {
     let empty = |mask: &Mask| mask.data().iter().all(|&m| m == 0);
     if empty(a) || empty(b) {
@@ -41,7 +41,7 @@ pub fn boundary_f(a: &Mask, b: &Mask) -> f64 {
     if counts_a == 0 || counts_b == 0 {
         return if counts_a == counts_b { 1.0 } else { 0.0 };
     }
-    // Outside the box around both outlines there is nothing to match.
+    // Crops to the bounding box of both boundaries.
     let (outlines, width, height) = cropped(&outlines, width);
     let matched = |outline: &[bool], other: &[bool]| {
         let distances = squared_distances(other, width, height);
@@ -53,8 +53,8 @@ pub fn boundary_f(a: &Mask, b: &Mask) -> f64 {
     if precision + recall == 0.0 { 0.0 } else { 2.0 * precision * recall / (precision + recall) }
 }
 
-/// The outline of a mask, one pixel wide: pixels that differ from their right, lower or lower right neighbour.
-/// The image's border is no outline: an object that it cuts off has none there.
+/// The boundary of a mask, one pixel wide: pixels that differ from their right, lower or lower right neighbour. The
+/// image border is not part of the boundary.
 pub fn boundary(mask: &Mask) -> Vec<bool> {
     let (width, height, data) = (mask.width(), mask.height(), mask.data());
     let mut outline = Vec::with_capacity(data.len());
@@ -69,7 +69,7 @@ pub fn boundary(mask: &Mask) -> Vec<bool> {
     outline
 }
 
-/// Two images of one size without the rows and columns that both have empty, and their new size.
+/// Crops two images of the same size to the rows and columns that are not empty in both; returns the new size.
 fn cropped(images: &[Vec<bool>; 2], width: usize) -> ([Vec<bool>; 2], usize, usize) {
     let [mut left, mut right, mut top, mut bottom] = [usize::MAX, 0, usize::MAX, 0];
     for (i, _) in images.iter().flat_map(|image| image.iter().enumerate()).filter(|(_, set)| **set) {

@@ -1,4 +1,4 @@
-//! Observed points against the posed surface, and the surface against the points.
+//! Distances between observed points and the posed surface, in both directions.
 
 use glam::Vec3;
 
@@ -9,26 +9,26 @@ use crate::geometry::triangle_tree::{Hint, TriangleTree};
 
 use crate::evidence::Evidence;
 
-/// How near a point must be to the surface to fit, as a share of the points' box diagonal.
+/// Maximum distance of a fitting point to the surface, relative to the box diagonal of the points.
 pub const FITNESS_TOLERANCE: f64 = 0.05;
 
-/// What the surface metrics are made of; each `None` where there is nothing to measure.
+/// Agreement of points and surface; values are `None` if there is nothing to measure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfaceAgreement {
-    /// Mean distance of the observed points to the surface, in the observation's unit.
+    /// Mean distance of the observed points to the surface, in the unit of the observation.
     pub points_to_surface: Option<f64>,
-    /// Mean distance of surface samples to the observed points, in the observation's unit.
+    /// Mean distance of surface samples to the observed points, in the unit of the observation.
     pub surface_to_points: Option<f64>,
-    /// Share of the observed points within [`FITNESS_TOLERANCE`] of the surface.
+    /// Fraction of the observed points within [`FITNESS_TOLERANCE`] of the surface.
     pub fitness: Option<f64>,
-    /// Mean |n·n′| of the observed points' normals and those of the triangles nearest to them.
+    /// Mean |n·n′| of the normals of observed points and of their nearest triangles.
     pub normal_consistency: Option<f64>,
 }
 
 /// Compares the observed points with the surface of `mesh` posed by `camera_from_mesh`.
 ///
-/// Distances from the points are exact point-to-triangle distances. Points and triangles without a normal are left
-/// out of the consistency.
+/// Distances from the points are exact point-to-triangle distances. Points and triangles without a normal are
+/// excluded from the normal consistency.
 pub fn surface_agreement(evidence: &Evidence, mesh: &Mesh, camera_from_mesh: &Similarity) -> SurfaceAgreement {
     let triangle_tree = TriangleTree::new(mesh);
     let (points, normals) = (&evidence.observed.points, &evidence.observed.normals);
@@ -36,10 +36,10 @@ pub fn surface_agreement(evidence: &Evidence, mesh: &Mesh, camera_from_mesh: &Si
 
     let mesh_from_camera = camera_from_mesh.inverse();
     let (mut distance, mut fitting, mut consistency) = (Mean::default(), Mean::default(), Mean::default());
-    // Neighbours in either cloud are near each other mostly: each search starts where the last one ended.
+    // Consecutive points are usually close to each other, so that each search starts at the previous result.
     let mut hint = Hint::default();
     for (point, normal) in points.iter().zip(normals) {
-        // The query is made in the mesh's frame, where the tree is; distances there are 1/s of those here.
+        // The query is in the mesh frame, where distances are 1/s of those in the camera frame.
         let query = vec3(&mesh_from_camera.apply(vector3(*point)));
         let Some(nearest) = triangle_tree.nearest_from(query, &mut hint) else { continue };
         let d = f64::from(nearest.distance_squared).sqrt() * camera_from_mesh.scale;
@@ -70,14 +70,14 @@ pub fn surface_agreement(evidence: &Evidence, mesh: &Mesh, camera_from_mesh: &Si
     }
 }
 
-/// A triangle's unit normal, zero for one without area.
+/// The unit normal of a triangle; zero without area.
 fn facet_normal(mesh: &Mesh, triangle: u32) -> Vec3 {
     let Some(&corners) = mesh.triangles().get(triangle as usize) else { return Vec3::ZERO };
     let [a, b, c] = mesh.corners(corners).map(|p| p.as_dvec3());
     (b - a).cross(c - a).normalize_or_zero().as_vec3()
 }
 
-/// A mean that knows when it is one of nothing.
+/// An arithmetic mean.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Mean {
     sum: f64,
@@ -90,7 +90,7 @@ impl Mean {
         self.count += 1;
     }
 
-    /// `None` without values, or where they left f64.
+    /// The mean; `None` without values, or if the sum overflows.
     pub(super) fn value(&self) -> Option<f64> {
         let mean = self.sum / self.count as f64;
         mean.is_finite().then_some(mean)

@@ -1,16 +1,22 @@
-//! Preset `paper`: the paper's method, faithfully (§3.1 to §3.3).
+//! Preset `paper`: the method of the paper (§3.1 to §3.3): descriptors, guarded RANSAC, hallucination filter,
+//! scale-locked ICP.
 
 pub mod options;
 
 use crate::error::Result;
 use crate::evidence::clouds::Clouds;
 use crate::evidence::extents::target_from_source;
-use crate::paper::options::PaperOptions;
+use crate::geometry::angle::sin_cos;
+use crate::paper::options::{GuardMode, PaperOptions};
 use crate::progress::{Stage, Stopwatch};
-use crate::register::global::{Problem, Settings};
+use crate::register::feature_registration::FeatureRegistration;
+use crate::register::ransac::{self, Guard, RansacSettings};
+use crate::register::settings::{RegistrationSettings, icp_metric};
+use crate::register::support::SupportSettings;
+use crate::register::umeyama::ScaleMode;
 use crate::report::Solution;
 
-/// When each stage begins, as a share of the whole; from profiles of real cases.
+/// Progress at the start of each stage, 0 to 1; from profiles of real cases.
 pub const PLAN: &[(Stage, f64)] = &[
     (Stage::Observe, 0.0),
     (Stage::Sample, 0.02),
@@ -23,14 +29,17 @@ pub const PLAN: &[(Stage, f64)] = &[
     (Stage::Metrics, 0.7),
 ];
 
-/// Descriptors, guarded RANSAC, hallucination filter, scale-locked ICP.
+/// Estimates the pose of the mesh.
+///
+/// # Errors
+/// [`NoConsensus`](crate::error::ErrorCode::NoConsensus).
 pub fn estimate(clouds: &mut Clouds, options: &PaperOptions, stages: &mut Stopwatch<'_>) -> Result<Solution> {
     let (evidence, [observed, reconstructed]) = clouds.evidence(stages);
-    // §3.1: from here both clouds are centred, with a box diagonal of 1.
+    // §3.1: both clouds are centred, and scaled to a box diagonal of 1.
     let target = observed.normalized(&evidence.observed);
     let source = reconstructed.normalized(&evidence.reconstructed);
-    let settings = Settings::of(options);
-    let estimate = Problem::new(&source, &target, &settings, stages).solve(&settings, stages)?;
+    let settings = settings_of(options);
+    let estimate = FeatureRegistration::new(&source, &target, &settings, stages).solve(&settings, stages)?;
     Ok(Solution {
         clamped: estimate.clamped,
         converged: estimate.converged,
@@ -38,4 +47,36 @@ pub fn estimate(clouds: &mut Clouds, options: &PaperOptions, stages: &mut Stopwa
         counts: estimate.counts,
         ..Solution::of_pose(target_from_source(observed, &estimate.target_from_source, reconstructed))
     })
+}
+
+fn settings_of(options: &PaperOptions) -> RegistrationSettings {
+    let voxel_size = 1.0 / options.voxel_divisions;
+    let mode = match options.guard_mode {
+        GuardMode::Reject => ransac::GuardMode::Reject,
+        GuardMode::Clamp => ransac::GuardMode::Clamp,
+    };
+    RegistrationSettings {
+        voxel_size: voxel_size as f32,
+        fpfh_radius_voxels: options.fpfh_radius_voxels as f32,
+        ransac: RansacSettings {
+            inlier_distance: options.inlier_distance_voxels * voxel_size,
+            edge_similarity: options.edge_similarity,
+            max_iterations: options.ransac_iterations as usize,
+            confidence: options.ransac_confidence,
+            scale_mode: ScaleMode::Free,
+            guard: options.guard.map(|[min, max]| Guard { min, max, mode }),
+            seed: u64::from(options.seed),
+        },
+        support: if options.hallucination_filter {
+            SupportSettings {
+                max_distance: (options.support_distance_voxels * voxel_size) as f32,
+                min_cosine: sin_cos(options.support_angle_deg.to_radians()).1 as f32,
+            }
+        } else {
+            SupportSettings::EVERYTHING
+        },
+        icp: icp_metric(options.icp),
+        lock_scale: options.lock_scale,
+        icp_iterations: options.icp_iterations as usize,
+    }
 }

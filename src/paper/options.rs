@@ -1,9 +1,7 @@
 //! Options of the paper's method.
 
 use crate::options::{choices, options};
-
-/// The highest probability that RANSAC can be asked for: at 1 it would never stop early.
-pub const MAX_CONFIDENCE: f64 = 0.999_999;
+use crate::register::options::{Icp, MAX_CONFIDENCE};
 
 choices! {
     /// What RANSAC does with a hypothesis whose scale is outside the guard.
@@ -13,19 +11,6 @@ choices! {
         Reject = "reject",
         /// Moves its scale to the nearer bound, and counts it.
         Clamp = "clamp",
-    }
-}
-
-choices! {
-    /// The distance that ICP minimises.
-    pub enum Icp {
-        /// To the tangent plane at the nearest target point.
-        #[default]
-        PointToPlane = "point-to-plane",
-        /// To the nearest target point.
-        PointToPoint = "point-to-point",
-        /// No refinement: the RANSAC pose is returned.
-        None = "none",
     }
 }
 
@@ -44,8 +29,8 @@ options! {
         voxel_divisions: f64 = 30.0, Number(5.0..=200.0);
         /// Radius of the FPFH descriptors, in voxels.
         fpfh_radius_voxels: f64 = 5.0, Number(1.0..=20.0);
-        /// Bounds [λmin, λmax] of the scale relative to the initial scale. `null` leaves the scale unbounded, which is an
-        /// ablation of the paper.
+        /// Bounds [λmin, λmax] of the scale relative to the initial scale. `null` leaves the scale unbounded, which is
+        /// an ablation of the paper.
         guard: Option<[f64; 2]> = Some([0.5, 1.5]), Guard;
         /// What RANSAC does with a hypothesis whose scale is outside the guard.
         guard_mode: GuardMode = GuardMode::Reject, Choice;
@@ -59,8 +44,8 @@ options! {
         edge_similarity: f64 = 0.9, Number(0.0..=1.0);
         /// Whether mesh regions without support by the observation are left out.
         hallucination_filter: bool = true, Flag;
-        /// Largest distance to an observed point that counts as support, in voxels. ICP tightens it to a third as the pose
-        /// improves.
+        /// Largest distance to an observed point that counts as support, in voxels. ICP tightens it to a third as the
+        /// pose improves.
         support_distance_voxels: f64 = 3.0, Number(0.1..=50.0);
         /// Largest angle between the two normals that counts as support, in degrees.
         support_angle_deg: f64 = 60.0, Number(0.0..=180.0);

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use std::rc::Rc;
 
 use super::mesh_pyramid::MeshPyramid;
-use super::recipe::{GRIDS, Grid};
+use super::recipe::{GRIDS, Grid, SearchSettings};
 use crate::error::Result;
 use crate::evidence::sample::check_shape;
 use crate::geometry::mesh::Mesh;
@@ -50,6 +50,16 @@ impl<'a> PreparedMesh<'a> {
             check_shape(&self.mesh)?;
             self.is_checked.set(true);
         }
+        Ok(())
+    }
+
+    /// Checks the mesh, and decimates it for the default quality.
+    ///
+    /// # Errors
+    /// [`DegenerateMesh`](crate::error::ErrorCode::DegenerateMesh).
+    pub fn prepare(&self) -> Result<()> {
+        self.check()?;
+        self.pyramid(&SearchSettings::default().grids);
         Ok(())
     }
 

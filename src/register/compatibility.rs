@@ -1,6 +1,6 @@
-//! Poses from matches most of which are wrong, where the scale is known: right matches keep the distances between
-//! each other, and so have many such companions in common (second-order spatial compatibility: Chen et al.,
-//! "SC²-PCR", CVPR 2022).
+//! Poses from mostly incorrect matches with a known scale. Correct matches preserve the distances between their points,
+//! so that they have many compatible matches in common (second-order spatial compatibility: Chen et al., "SC²-PCR",
+//! CVPR 2022).
 
 use glam::Vec3;
 
@@ -9,28 +9,28 @@ use super::umeyama::{Pair, ScaleMode, umeyama};
 use crate::geometry::order::{index_of, pack, select_smallest, sort};
 use crate::geometry::similarity::{Similarity, vector3};
 
-/// Companions that a seed's first pose comes from.
-const COMPANIONS: usize = 30;
+/// Number of compatible matches from which the first pose of a seed is computed.
+const SEED_NEIGHBORS: usize = 30;
 
-/// Rounds of the power iteration that weighs them.
+/// Power iterations that compute their weights.
 const POWER_ROUNDS: usize = 10;
 
-/// Closed-form refits on all that agree.
+/// Maximum number of closed-form refits on the inliers.
 const REFITS: usize = 5;
 
-/// A pose, and how well the matches agree with it.
+/// A pose and its consensus.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Hypothesis {
     /// The transform.
     pub target_from_source: Similarity,
-    /// Indices of the matches that agree.
+    /// Indices of the inliers.
     pub inliers: Vec<usize>,
-    /// Σ 1 − r²/d² over these.
+    /// Σ (1 − r²/d²) over the inliers.
     pub score: f64,
 }
 
-/// Up to `count` poses, those with the most companions first, no two from the same matches. A match agrees that lands
-/// within `distance`; the scale is 1.
+/// Up to `count` poses of scale 1 from disjoint seeds, those with the highest compatibility first. A match within
+/// `distance` is an inlier. Empty if a match refers to a point that does not exist.
 pub fn hypotheses(source: &[Vec3], target: &[Vec3], matches: &[Match], distance: f32, count: usize) -> Vec<Hypothesis> {
     let pairs: Vec<Pair> = matches
         .iter()
@@ -65,7 +65,7 @@ pub fn hypotheses(source: &[Vec3], target: &[Vec3], matches: &[Match], distance:
     found
 }
 
-/// Which matches keep their distance: a bit for each two.
+/// The compatibility graph: a bit per pair of matches, set if the pair preserves its distance.
 struct Graph {
     words: usize,
     rows: Vec<u64>,
@@ -80,7 +80,7 @@ impl Graph {
         for (i, (p, q)) in ends.iter().enumerate() {
             for (j, (other_p, other_q)) in ends.iter().enumerate().skip(i + 1) {
                 let (a, b) = (p.distance(*other_p), q.distance(*other_q));
-                // What is close keeps its distance whatever the pose.
+                // Short distances are preserved by any pose.
                 if (a - b).abs() < tolerance && a.min(b) > tolerance {
                     rows[i * words + j / 64] |= 1 << (j % 64);
                     rows[j * words + i / 64] |= 1 << (i % 64);
@@ -105,22 +105,22 @@ impl Graph {
         self.row(i)[j / 64] >> (j % 64) & 1 == 1
     }
 
-    /// Companions that both have.
+    /// Number of matches compatible with both.
     fn common(&self, i: usize, j: usize) -> u32 {
         self.row(i).iter().zip(self.row(j)).map(|(a, b)| (a & b).count_ones()).sum()
     }
 
-    /// Triangles that a match is part of.
+    /// Twice the number of triangles that contain a match.
     fn weight(&self, i: usize) -> f32 {
         self.companions(i).map(|j| self.common(i, j)).sum::<u32>() as f32
     }
 
-    /// The pose of a seed and its best companions, each weighed by how well it goes with the others.
+    /// The pose of a seed and its most compatible matches, weighted by the principal eigenvector of their affinity.
     fn consensus(&self, seed: usize, pairs: &[Pair]) -> Option<Similarity> {
         let mut keys: Vec<u64> =
             self.companions(seed).map(|j| pack(-(self.common(seed, j) as f32), j as u32)).collect();
-        select_smallest(&mut keys, COMPANIONS);
-        keys.truncate(COMPANIONS);
+        select_smallest(&mut keys, SEED_NEIGHBORS);
+        keys.truncate(SEED_NEIGHBORS);
         sort(&mut keys);
         let mut members = vec![seed];
         members.extend(keys.into_iter().map(|key| index_of(key) as usize));
@@ -147,7 +147,7 @@ impl Graph {
     }
 }
 
-/// Refits on all matches that agree, for as long as the score rises.
+/// Refits on the inliers while the score increases.
 fn refit(first: Similarity, pairs: &[Pair], distance: f64) -> Option<Hypothesis> {
     let agree = |pose: Similarity| {
         let (mut inliers, mut score) = (Vec::new(), 0.0);

@@ -1,22 +1,21 @@
-//! Which points of a cloud lie on a surface: dense beside those scattered through the volume.
+//! Separates dense points on surfaces from sparse points scattered through the volume.
 
 use glam::Vec3;
 
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::order::quantile;
 
-/// The neighbour whose distance stands for a point's density.
+/// The neighbour whose distance measures the density at a point.
 const NEIGHBOR: usize = 8;
 
-/// Of the distances to that neighbour, the one that stands for the surface: right while at most three quarters
-/// of the points are clutter.
+/// Quantile of these distances that represents the surface; valid if at most three quarters of the points are clutter.
 const SURFACE_QUANTILE: f64 = 0.25;
 
-/// How many times sparser than that a point may be. On a surface sampled at random the distance to the eighth
-/// neighbour varies by a quarter; through a volume of like count it is about three times larger.
+/// Maximum ratio of the distance at a point to that quantile. On a randomly sampled surface, the distance to the eighth
+/// neighbour varies by a quarter; for as many points in a volume, it is about three times larger.
 const SPARSER: f32 = 1.5;
 
-/// Indices of the points that are about as dense as the densest quarter, in order.
+/// Indices of the points that are about as dense as the densest quarter, in ascending order.
 pub fn dense_points(points: &[Vec3]) -> Vec<usize> {
     let tree = KdTree::new(points);
     let mut found = Vec::new();

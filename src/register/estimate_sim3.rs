@@ -1,11 +1,12 @@
-//! A similarity from correspondences that were made elsewhere (Predator, GeoTransformer, BUFFER-X, …).
+//! Robust estimation of a similarity from given correspondences, for example those of a learned matcher (Predator,
+//! GeoTransformer, BUFFER-X).
 
-use super::frames::{Fit, Frames};
-use super::judge::about_clouds;
+use super::input::check_cloud;
+use super::normalized_pair::{Fit, NormalizedPair};
 use super::options::EstimateSim3Options;
-use super::{PLAN, check_cloud};
+use super::pose_selector::about_clouds;
+use super::registration::PLAN;
 use crate::error::{Error, ErrorCode, Result};
-use crate::evidence::extents::target_from_source;
 use crate::geometry::similarity::vector3;
 use crate::options::Options;
 use crate::options::scale::ScaleOption;
@@ -14,8 +15,8 @@ use crate::register::matching::Match;
 use crate::register::ransac::{Guard, GuardMode, RansacSettings, ransac, reweighted};
 use crate::report::{Counts, Registration};
 
-/// The similarity that most correspondences agree with; `correspondences` are pairs of indices, source then
-/// target, made by any matcher.
+/// Estimates the similarity that most correspondences agree with. Clouds are interleaved x, y, z; `correspondences` are
+/// interleaved pairs of point indices, source then target.
 ///
 /// # Errors
 /// As [`register`](super::register), and [`ErrorCode::IndexOutOfRange`].
@@ -32,7 +33,7 @@ pub fn estimate_sim3(
     let matches = check_correspondences(correspondences, source_xyz.len() / 3, target_xyz.len() / 3)?;
     let mut stages = Stopwatch::new(host, PLAN);
     stages.enter(Stage::Ransac);
-    let frames = Frames::of(source_xyz, target_xyz, options.scale)?;
+    let frames = NormalizedPair::of(source_xyz, target_xyz, options.scale)?;
     let source = frames.source.normalized_flat(source_xyz);
     let target = frames.target.normalized_flat(target_xyz);
     let distance = options.inlier_distance.map_or(0.05, |d| d / frames.target.diagonal());
@@ -42,7 +43,7 @@ pub fn estimate_sim3(
         max_iterations: options.ransac_iterations as usize,
         confidence: options.ransac_confidence,
         scale_mode: frames.scale_mode,
-        // Correspondences say more about the scale than boxes do: only bounds that the caller gave are held.
+        // Correspondences determine the scale better than the boxes, so that only bounds of the caller apply.
         guard: match options.scale {
             ScaleOption::Free => None,
             _ => frames.guard.map(|[min, max]| Guard { min, max, mode: GuardMode::Reject }),
@@ -78,8 +79,7 @@ pub fn estimate_sim3(
         converged: true,
         counts,
     };
-    let transform = target_from_source(&frames.target, &unit, &frames.source);
-    Ok(frames.registration(&transform, fit, options.seed, stages))
+    Ok(frames.registration(&frames.denormalized(&unit), fit, options.seed, stages))
 }
 
 fn check_correspondences(correspondences: &[u32], sources: usize, targets: usize) -> Result<Vec<Match>> {
@@ -89,7 +89,7 @@ fn check_correspondences(correspondences: &[u32], sources: usize, targets: usize
             "correspondences",
             format!("{} indices", correspondences.len()),
             "an even number: source, target, source, target, …",
-            "Flatten the pairs row by row.",
+            "Pass the pairs as one flat array.",
         ));
     }
     if correspondences.len() < 6 {
@@ -109,7 +109,7 @@ fn check_correspondences(correspondences: &[u32], sources: usize, targets: usize
                 "correspondences",
                 format!("({}, {}) as pair {i}", m.source, m.target),
                 format!("source indices below {sources} and target indices below {targets}"),
-                "Indices count points, not numbers, and start at 0.",
+                "Indices refer to points, not numbers, and start at 0.",
             ));
         }
     }

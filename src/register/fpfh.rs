@@ -1,5 +1,5 @@
-//! Fast Point Feature Histograms, 33 bins (Rusu, Blodow, Beetz 2009; paper §3.2): what the surface around a
-//! point looks like, whatever its pose.
+//! Fast Point Feature Histograms, 33 bins (Rusu, Blodow, Beetz 2009; paper §3.2): descriptors of the surface around a
+//! point that do not depend on its pose.
 
 use glam::Vec3;
 
@@ -7,23 +7,23 @@ use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::{KdTree, Neighbor};
 use crate::geometry::order::{index_of, pack, select_smallest, sort, value_of};
 
-/// Bins for each of the three angles.
+/// Bins per angle.
 const BINS: usize = 11;
 
 /// Length of a descriptor.
 pub const DIMENSION: usize = 3 * BINS;
 
-/// A descriptor; each third sums to 1 (or is all 0 for a point without neighbours).
+/// A descriptor: three histograms, each with sum 1 (or all 0 for a point without neighbours).
 pub type Descriptor = [f32; DIMENSION];
 
-/// Neighbours that a histogram counts at most; the nearest count. Bounds the time on uneven clouds.
+/// Maximum number of neighbours in a histogram; the nearest are used. Bounds the time for uneven clouds.
 const MAX_NEIGHBORS: usize = 128;
 
-/// Sine of the angle between a normal and a connecting line below which they are parallel to within rounding.
+/// Sine of the angle between normal and connecting line below which they are parallel up to rounding.
 const PARALLEL: f32 = 1e-5;
 
-/// A descriptor per point of a cloud with normals, from the neighbours within `radius`. `tree` is the tree over
-/// these very points.
+/// The descriptors of a cloud with normals, one per point, from the neighbours within `radius`. `tree` is the search
+/// tree over the same points.
 pub fn fpfh(cloud: &Cloud, tree: &KdTree, radius: f32) -> Vec<Descriptor> {
     let mut found = Vec::new();
     let neighborhoods: Vec<Vec<Neighbor>> = cloud
@@ -36,7 +36,7 @@ pub fn fpfh(cloud: &Cloud, tree: &KdTree, radius: f32) -> Vec<Descriptor> {
             let mut keys: Vec<u64> = found.iter().map(|n| pack(n.distance_squared, n.index)).collect();
             select_smallest(&mut keys, MAX_NEIGHBORS);
             keys.truncate(MAX_NEIGHBORS);
-            // Sums in f32 depend on their order; make it that of the points, by the keys' other half first.
+            // Sorts by index (the low half of the keys), because f32 sums depend on the order.
             keys.iter_mut().for_each(|key| *key = key.rotate_left(32));
             sort(&mut keys);
             let neighbor = |key: u64| Neighbor { index: index_of(key), distance_squared: value_of(key) };
@@ -55,7 +55,7 @@ pub fn fpfh(cloud: &Cloud, tree: &KdTree, radius: f32) -> Vec<Descriptor> {
                 *bin += weight * value;
             }
         }
-        // SPFH(p) and the neighbours' weighted mean count alike, whatever the unit of distance.
+        // SPFH(p) and the weighted mean of the neighbours have equal weight, independent of the unit of distance.
         normalize(&mut sum);
         for (bin, own) in sum.iter_mut().zip(&simplified[i]) {
             *bin += own;
@@ -66,7 +66,7 @@ pub fn fpfh(cloud: &Cloud, tree: &KdTree, radius: f32) -> Vec<Descriptor> {
     combined.collect()
 }
 
-/// SPFH: the histogram of the three angles between a point and its neighbours.
+/// SPFH: histograms of the three angles between a point and its neighbours.
 fn simplified_histogram(cloud: &Cloud, i: usize, near: &[Neighbor]) -> Descriptor {
     let mut histogram = [0.0; DIMENSION];
     for neighbor in near {
@@ -85,10 +85,10 @@ fn simplified_histogram(cloud: &Cloud, i: usize, near: &[Neighbor]) -> Descripto
 }
 
 /// α, φ, θ of the Darboux frame between two oriented points, each mapped to [0, 1].
-/// `None` where a normal is unknown or runs along the connecting line.
+/// `None` if a normal is unknown or parallel to the connecting line.
 fn pair_features((p, p_normal): (Vec3, Vec3), (q, q_normal): (Vec3, Vec3)) -> Option<[f32; 3]> {
     let line = (q - p).try_normalize()?;
-    // The frame stands on the point whose normal is nearer to the line, so that the pair's order is no matter.
+    // The frame is that of the point whose normal is closer to the line, so that the order of the pair has no effect.
     let (u, other, line) = if p_normal.dot(line).abs() >= q_normal.dot(line).abs() {
         (p_normal, q_normal, line)
     } else {
@@ -98,7 +98,7 @@ fn pair_features((p, p_normal): (Vec3, Vec3), (q, q_normal): (Vec3, Vec3)) -> Op
         return None;
     }
     let v = line.cross(u);
-    // A cross product of rounding errors points anywhere.
+    // The direction of a tiny cross product is dominated by rounding.
     if v.length_squared() < PARALLEL * PARALLEL {
         return None;
     }
@@ -110,7 +110,7 @@ fn pair_features((p, p_normal): (Vec3, Vec3), (q, q_normal): (Vec3, Vec3)) -> Op
     Some([0.5 * (alpha + 1.0), 0.5 * (phi + 1.0), 0.5 * (theta / core::f32::consts::PI + 1.0)])
 }
 
-/// Each third of the histogram to sum 1.
+/// Scales each third of the histogram to a sum of 1.
 fn normalize(histogram: &mut Descriptor) {
     for third in histogram.chunks_exact_mut(BINS) {
         let sum: f32 = third.iter().sum();

@@ -1,36 +1,36 @@
-//! What a sensor has looked through: between it and the surfaces that it saw there is nothing.
+//! Free space of a sensor: the volume between the sensor and the surfaces that it observed.
 
 use glam::Vec3;
 
 use crate::geometry::cloud::Bounds;
 
-/// Directions along an edge of the octahedron that they are spread on: bins some 3° wide.
+/// Bins along an edge of the octahedral map of directions, each about 3° wide.
 const BINS: usize = 64;
 
-/// Share of the range within which a surface counts as where it was seen.
+/// Relative tolerance of the range of a surface.
 const SLACK: f32 = 0.1;
 
-/// How far behind the nearest surface of its direction a point may be without counting as hidden by it.
+/// A point is hidden if its range exceeds that of the nearest surface in its direction by more than this factor.
 const HIDDEN: f32 = 1.5;
 
-/// Share of a cloud's points that may be hidden from where it was taken: behind edges, and while the sensor moved.
+/// Maximum fraction of hidden points of a cloud; edges and motion of the sensor cause some.
 const MAX_HIDDEN: f32 = 0.3;
 
-/// How far a sensor may be from the middle of what it saw, in box diagonals.
+/// Maximum distance of the sensor from the centre of its cloud, in box diagonals.
 const MAX_AWAY: f32 = 1.0;
 
-/// The nearest surface in every direction from a point of view.
+/// The range of the nearest surface in every direction from a viewpoint.
 #[derive(Debug, Clone)]
 pub struct FreeSpace {
     eye: Vec3,
-    /// Infinite where nothing was seen.
+    /// Range per bin of directions; infinite if nothing was observed.
     ranges: Vec<f32>,
     slack: f32,
 }
 
 impl FreeSpace {
-    /// What these points say about the space before them, if they can have been seen from `eye`; `None` where too many
-    /// would have been hidden by others. `slack` is how far off they may be.
+    /// The free space of `points` observed from `eye`, with the tolerance `slack`. `None` if the viewpoint is
+    /// implausible: too far away, or with too many points hidden by others.
     pub fn seen_from(eye: Vec3, points: &[Vec3], slack: f32) -> Option<Self> {
         let bounds = Bounds::of(points)?;
         if eye.is_nan() || bounds.center().distance(eye) > MAX_AWAY * bounds.diagonal() {
@@ -49,14 +49,14 @@ impl FreeSpace {
         (count as f32 <= MAX_HIDDEN * points.len() as f32).then_some(free)
     }
 
-    /// Whether the sensor would have seen a surface here, and saw one behind it instead.
+    /// Whether `point` is in free space: the sensor observed a surface behind it.
     pub fn contradicts(&self, point: Vec3) -> bool {
         let (bin, range) = self.bin(point);
         let seen = self.ranges[bin];
         seen.is_finite() && range < (1.0 - SLACK) * seen - self.slack
     }
 
-    /// Direction, on an octahedron unfolded to a square, and distance.
+    /// The bin of the direction (octahedral map) and the range of a point.
     fn bin(&self, point: Vec3) -> (usize, f32) {
         let ray = point - self.eye;
         let sum = ray.abs().element_sum();

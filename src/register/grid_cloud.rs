@@ -1,4 +1,4 @@
-//! A cloud on its voxel grid, with what descriptors need: normals at the grid's own scale, and a tree.
+//! Clouds on a voxel grid, prepared for descriptors: with normals at the scale of the grid, and a search tree.
 
 use glam::Vec3;
 
@@ -7,29 +7,29 @@ use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::voxel_grid::voxel_downsample;
 
-/// Neighbours on the voxel grid from which a normal is estimated: about two voxels around.
+/// Neighbours on the voxel grid for normal estimation: about those within two voxels.
 const NORMAL_NEIGHBORS: usize = 16;
 
-/// The means of a cloud's occupied voxels.
+/// The means of the occupied voxels of a cloud.
 #[derive(Debug, Clone)]
 pub struct GridCloud {
     /// The points, with normals.
     pub cloud: Cloud,
-    /// The tree over these points.
+    /// The search tree over the points.
     pub tree: KdTree,
 }
 
 impl GridCloud {
-    /// A cloud with normals on a grid of `voxel_size`.
+    /// Downsamples a cloud with normals to voxels of edge `voxel_size`.
     pub fn new(full: &Cloud, voxel_size: f32) -> Self {
         Self::with_smooth_normals(voxel_downsample(full, voxel_size))
     }
 
-    /// As [`GridCloud::new`], for a cloud with a box diagonal of 1: on a coarser grid where more than `count` voxels
-    /// are occupied.
+    /// Like [`GridCloud::new`], for a cloud with a box diagonal of 1. If more than `count` voxels are occupied, the
+    /// grid is coarser.
     pub fn of_at_most(count: usize, full: &Cloud, voxel_size: f32) -> Self {
         let mut cloud = voxel_downsample(full, voxel_size);
-        // A surface has a quarter of the cells when they are twice as large: a few rounds at most.
+        // Doubling the voxels quarters the cells of a surface, so that few rounds suffice.
         let mut size = voxel_size;
         while cloud.len() > count && size < 1.0 {
             size *= 1.25;
@@ -38,8 +38,8 @@ impl GridCloud {
         Self::with_smooth_normals(cloud)
     }
 
-    /// Normals for the descriptors, from the grid's own points: both clouds then have them at one scale, whatever
-    /// their density and noise. The mean normals of the cells say which side is outside.
+    /// Estimates normals from the points of the grid, so that both clouds have normals at the same scale, independent
+    /// of density and noise. The mean normals of the cells determine the orientation.
     fn with_smooth_normals(mut cloud: Cloud) -> Self {
         let tree = KdTree::new(&cloud.points);
         let neighborhood = Neighborhood::nearest(NORMAL_NEIGHBORS);

@@ -1,9 +1,9 @@
-//! Scale-locked ICP (paper §3.3): refines R and t, and s only where the caller unlocks it.
+//! Scale-locked ICP (paper §3.3): refines R and t, and s only if it is unlocked.
 //!
 //! Each iteration pairs every supported source point with its nearest target point and takes one weighted
-//! Gauss-Newton step (point-to-plane) or one closed form (point-to-point). Tukey's biweight on the residuals,
-//! with its width from their median, gives the points that do not belong no say. The support distance shrinks
-//! from generous to tight as the pose improves, so the hallucination filter is re-evaluated at every step.
+//! Gauss-Newton step (point-to-plane) or one closed form (point-to-point). Tukey's biweight, with a width from the
+//! median of the residuals, excludes outliers. The support distance decreases as the pose improves, and the
+//! hallucination filter is evaluated in every iteration.
 
 use nalgebra::Vector3;
 
@@ -16,7 +16,7 @@ use crate::geometry::kd_tree::KdTree;
 use crate::geometry::normal_equations::{NormalEquations, PARAMETERS};
 use crate::geometry::similarity::{Similarity, nearest_rotation, vector3};
 
-/// What an iteration minimises.
+/// The distance that an iteration minimises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum IcpMetric {
     /// Distance to the target's tangent plane (Chen & Medioni). Needs target normals.
@@ -28,47 +28,47 @@ pub enum IcpMetric {
 /// Settings of [`refine`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IcpSettings {
-    /// What is minimised.
+    /// The distance to minimise.
     pub metric: IcpMetric,
-    /// Tukey's biweight on the residuals; `false` gives every pair the same say, as classical ICP does.
+    /// Whether residuals have Tukey's biweights; `false` weights all pairs equally, as in classical ICP.
     pub robust: bool,
-    /// ŝ stays as it came in (the paper's lock).
+    /// Whether ŝ is kept (the scale lock of the paper).
     pub lock_scale: bool,
-    /// The scale never leaves this interval when it is not locked.
+    /// Bounds of the scale if it is not locked.
     pub scale_bounds: Option<[f64; 2]>,
-    /// Most iterations.
+    /// Maximum number of iterations.
     pub max_iterations: usize,
-    /// Support at the first iteration.
+    /// Support in the first iteration.
     pub support: SupportSettings,
-    /// The support distance shrinks towards this one, by a quarter an iteration.
+    /// Final support distance; it decreases by a quarter per iteration.
     pub final_distance: f32,
-    /// Converged when no point of a unit box moves further than this in an iteration.
+    /// ICP has converged if no corner of the unit box moves further than this in an iteration.
     pub tolerance: f64,
 }
 
-/// The refined pose and how it came about.
+/// Result of [`refine`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Refined {
     /// The transform.
     pub target_from_source: Similarity,
     /// Iterations taken.
     pub iterations: usize,
-    /// Whether the last iteration moved less than the tolerance.
+    /// Whether the last iteration moved the pose by less than the tolerance.
     pub converged: bool,
-    /// Source points that took part in the last iteration.
+    /// Number of supported source points in the last iteration.
     pub supported: usize,
-    /// Weighted root mean square residual of the last iteration, in the target frame's unit.
+    /// Weighted root mean square residual of the last iteration, in the unit of the target.
     pub rms: f64,
 }
 
-/// What f32 leaves uncertain in a unit box.
+/// Rounding error of f32 coordinates in a unit box.
 const ROUNDING: f64 = 1e-6;
 
-/// Factor of the support distance from one iteration to the next.
+/// Factor of the support distance per iteration.
 const SHRINK: f32 = 0.75;
 
-/// Refines a pose. With too little support for a step (fewer than six points) the pose stays as it is and
-/// `converged` is false.
+/// Refines a pose of `source` relative to `target`; `target_tree` is the search tree over the target. With too little
+/// support for a step (fewer than six points), iteration stops and `converged` is false.
 pub fn refine(
     source: &Cloud,
     target: &Cloud,
@@ -100,7 +100,7 @@ pub fn refine(
     refined
 }
 
-/// One residual of an iteration.
+/// A residual of an iteration.
 struct Residual {
     source: usize,
     landed: Vector3<f64>,
@@ -157,7 +157,7 @@ fn step(source: &Cloud, residuals: &Residuals, pose: &Similarity, settings: &Icp
     };
     match settings.scale_bounds {
         Some([min, max]) if !settings.lock_scale && !(min..=max).contains(&next.scale) => {
-            // The turn and the scale stay about the middle of the points that matter, not about the origin.
+            // The clamped scale is applied about the centre of the weighted points, not about the origin.
             let scale = next.scale.min(max).max(min);
             let center = weighted_center(residuals);
             let local = next.inverse().apply(center);
@@ -181,8 +181,8 @@ fn weighted_center(residuals: &Residuals) -> Vector3<f64> {
     residuals.0.iter().map(|r| r.landed * r.weight).sum::<Vector3<f64>>() / weight
 }
 
-/// One point-to-plane step in (ω, τ, σ): x ↦ c + e^σ exp(ω)(x − c) + τ about the centre c of the weighted
-/// points, which keeps turn and shift apart. A locked scale has no say in any residual, and does not move.
+/// One point-to-plane step in (ω, τ, σ): x ↦ c + e^σ exp(ω)(x − c) + τ about the centre c of the weighted points, which
+/// decouples rotation and translation. With a locked scale, the derivatives by σ are 0, so that σ stays 0.
 fn gauss_newton(residuals: &Residuals, pose: &Similarity, lock_scale: bool) -> Option<Similarity> {
     let center = weighted_center(residuals);
     let mut equations = NormalEquations::new();
@@ -192,31 +192,31 @@ fn gauss_newton(residuals: &Residuals, pose: &Similarity, lock_scale: bool) -> O
         jacobian[6] = if lock_scale { 0.0 } else { arm.dot(&r.normal) };
         equations.add(&jacobian, r.value, r.weight);
     }
-    // Directions that the data leave free (a plane slides on itself) stay where they are.
+    // The damping keeps the pose along unconstrained directions, such as sliding along a plane.
     let delta = equations.solve(1e-9)?;
     moved(pose, center, &delta)
 }
 
-/// The derivatives by (ω, τ, σ) of the distance along `direction` that a point at `arm` from the centre moves.
+/// The derivatives by (ω, τ, σ) of the motion along `direction` of a point at `arm` from the centre; that by σ is 0.
 pub fn rigid_jacobian(arm: Vector3<f64>, direction: Vector3<f64>) -> [f64; PARAMETERS] {
-    let turn = arm.cross(&direction);
-    [turn.x, turn.y, turn.z, direction.x, direction.y, direction.z, 0.0]
+    let moment = arm.cross(&direction);
+    [moment.x, moment.y, moment.z, direction.x, direction.y, direction.z, 0.0]
 }
 
-/// The pose after the step (ω, τ, σ) about `center`; `None` where that is not finite.
+/// The pose after the step (ω, τ, σ) about `center`; `None` if it is not finite.
 pub fn moved(pose: &Similarity, center: Vector3<f64>, delta: &[f64; PARAMETERS]) -> Option<Similarity> {
-    let turn = angle::turn(Vector3::new(delta[0], delta[1], delta[2]));
+    let rotation_step = angle::exp_so3(Vector3::new(delta[0], delta[1], delta[2]));
     let shift = Vector3::new(delta[3], delta[4], delta[5]);
     let growth = libm::exp(delta[6].clamp(-0.5, 0.5));
-    let turn = turn.to_rotation_matrix();
-    // Products of many small turns drift off SO(3) by rounding; the projection keeps R a rotation.
-    let rotation = nearest_rotation((turn * pose.rotation).into_inner());
-    let translation = center + turn * (pose.translation - center) * growth + shift;
+    let rotation_step = rotation_step.to_rotation_matrix();
+    // Rounding in products of many small rotations accumulates; the projection keeps R in SO(3).
+    let rotation = nearest_rotation((rotation_step * pose.rotation).into_inner());
+    let translation = center + rotation_step * (pose.translation - center) * growth + shift;
     let finite = translation.iter().chain(rotation.matrix().iter()).all(|x| x.is_finite());
     finite.then_some(Similarity { scale: pose.scale * growth, rotation, translation })
 }
 
-/// The furthest that a corner of the unit box moves from one pose to the next.
+/// The maximum distance between corresponding corners of the unit box under two poses.
 pub fn movement(from: &Similarity, to: &Similarity) -> f64 {
     let corner = |i: usize| Vector3::new(0.5 - (i & 1) as f64, 0.5 - (i >> 1 & 1) as f64, 0.5 - (i >> 2 & 1) as f64);
     (0..8).map(|i| (from.apply(corner(i)) - to.apply(corner(i))).norm()).fold(0.0, f64::max)

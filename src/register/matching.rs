@@ -1,4 +1,4 @@
-//! Mutual nearest descriptors (paper §3.2): a pair counts when each is the other's best.
+//! Matches of descriptors: mutual nearest neighbours (paper §3.2), supplemented by one-way matches.
 
 use super::fpfh::{DIMENSION, Descriptor};
 
@@ -11,10 +11,10 @@ pub struct Match {
     pub target: u32,
 }
 
-/// All pairs of descriptors that are each other's nearest (Euclidean; ties to the smaller index), in the order
-/// of the source. Descriptors that are all 0 (points without neighbours) match nothing.
+/// All mutual nearest neighbours (Euclidean distance; ties go to the smaller index), in the order of the source.
+/// Descriptors that are all 0 (points without neighbours) have no match.
 ///
-/// Exhaustive, |source| × |target| distances: in 33 dimensions trees visit most of their leaves anyway.
+/// Brute force, |source| × |target| distances: in 33 dimensions, search trees visit most of their leaves.
 pub fn mutual_matches(source: &[Descriptor], target: &[Descriptor]) -> Vec<Match> {
     let forward = nearest_of_each(source, target);
     let backward = nearest_of_each(target, source);
@@ -25,23 +25,24 @@ pub fn mutual_matches(source: &[Descriptor], target: &[Descriptor]) -> Vec<Match
     mutual.collect()
 }
 
-/// Fewer mutual matches than this hold too few right ones among them.
+/// Below this number of mutual matches, too few are correct.
 const MIN_MUTUAL_MATCHES: usize = 50;
 
-/// The mutual matches, or the one-way matches where hardly any is mutual: robust estimators then sift these.
+/// The mutual matches or, if these are too few, the one-way matches, for a robust estimator.
 pub fn enough_matches(source: &[Descriptor], target: &[Descriptor]) -> Vec<Match> {
     let mutual = mutual_matches(source, target);
     if mutual.len() < MIN_MUTUAL_MATCHES { one_way_matches(source, target) } else { mutual }
 }
 
-/// The best source point for every target point: many more pairs than the mutual ones, most of them wrong. For
-/// targets so partial or so noisy that hardly any pair is mutual. In the order of the target.
+/// The nearest source descriptor for each target descriptor, in the order of the target. More pairs than the mutual
+/// ones, most of them incorrect; for targets so partial or noisy that few pairs are mutual.
 pub fn one_way_matches(source: &[Descriptor], target: &[Descriptor]) -> Vec<Match> {
     let nearest = nearest_of_each(target, source);
     nearest.into_iter().zip(0..).filter_map(|(s, t)| Some(Match { source: s?, target: t })).collect()
 }
 
-/// The mutual pairs, then as many of the one-way ones as make `count` together, in turn from both sides.
+/// The mutual matches, followed by an even selection of the one-way matches of both directions, up to about `count` in
+/// total.
 pub fn best_matches(source: &[Descriptor], target: &[Descriptor], count: usize) -> Vec<Match> {
     let forward = nearest_of_each(source, target);
     let backward = nearest_of_each(target, source);
@@ -69,7 +70,7 @@ pub fn best_matches(source: &[Descriptor], target: &[Descriptor], count: usize) 
     mutual
 }
 
-/// Index of the nearest of `among` for each descriptor.
+/// Index of the nearest descriptor of `among` for each descriptor.
 fn nearest_of_each(descriptors: &[Descriptor], among: &[Descriptor]) -> Vec<Option<u32>> {
     let nearest = |descriptor: &Descriptor| {
         if is_empty(descriptor) {
@@ -88,7 +89,7 @@ fn nearest_of_each(descriptors: &[Descriptor], among: &[Descriptor]) -> Vec<Opti
     descriptors.iter().map(nearest).collect()
 }
 
-/// The squared distance where it is below `bound`; most candidates are out after the first third.
+/// The squared distance if it is below `bound`. Most candidates exceed it after the first third.
 fn distance_below(a: &Descriptor, b: &Descriptor, bound: f32) -> Option<f32> {
     let mut sum = 0.0;
     for (a, b) in a.chunks_exact(DIMENSION / 3).zip(b.chunks_exact(DIMENSION / 3)) {

@@ -1,8 +1,23 @@
 //! Options of `register` and `estimateSim3`.
 
-use crate::options::options;
 use crate::options::scale::ScaleOption;
-use crate::paper::options::{Icp, MAX_CONFIDENCE};
+use crate::options::{choices, options};
+
+/// Largest RANSAC confidence: with 1, RANSAC would never stop early.
+pub const MAX_CONFIDENCE: f64 = 0.999_999;
+
+choices! {
+    /// The distance that ICP minimises.
+    pub enum Icp {
+        /// To the tangent plane at the nearest target point.
+        #[default]
+        PointToPlane = "point-to-plane",
+        /// To the nearest target point.
+        PointToPoint = "point-to-point",
+        /// No refinement: the RANSAC pose is returned.
+        None = "none",
+    }
+}
 
 options! {
     /// Options of `register`. All have defaults.
@@ -12,13 +27,13 @@ options! {
         scale: ScaleOption = ScaleOption::Free, Scale;
         /// Seed of all random draws. The same input and seed give the same bits.
         seed: u32 = 0, Count(0..=u32::MAX);
-        /// Upper bound on the points used of each cloud. Above it, a random subset is drawn or, with a known scale, small
-        /// voxels are averaged.
+        /// Upper bound on the points used of each cloud. Above it, a random subset is drawn or, with a known scale,
+        /// small voxels are averaged.
         max_points: u32 = 20_000, Count(32..=1_000_000);
         /// Voxel size in target units. `null` derives it from `voxelDivisions`.
         voxel_size: Option<f64> = None, Positive;
-        /// Voxels along the diagonal of the target's bounding box. `null` takes 30 or, with a known scale, the size that
-        /// leaves 5000 points of the larger cloud.
+        /// Voxels along the diagonal of the target's bounding box. `null` takes 30 or, with a known scale, the size
+        /// that leaves 5000 points of the larger cloud.
         voxel_divisions: Option<f64> = None, OptionalNumber(5.0..=200.0);
         /// Radius of the FPFH descriptors, in voxels.
         fpfh_radius_voxels: f64 = 5.0, Number(1.0..=20.0);
@@ -29,8 +44,8 @@ options! {
         ransac_confidence: f64 = 0.999, Number(0.0..=MAX_CONFIDENCE);
         /// Distance below which a match counts as an inlier, in voxels.
         inlier_distance_voxels: f64 = 1.5, Number(0.1..=20.0);
-        /// Smallest accepted ratio between the stretches of a minimal set's three edges, least to most stretched. Without
-        /// effect with a known scale.
+        /// Smallest accepted ratio between the stretches of a minimal set's three edges, least to most stretched.
+        /// Without effect with a known scale.
         edge_similarity: f64 = 0.9, Number(0.0..=1.0);
         /// The distance that ICP minimises, or `"none"` for no refinement.
         icp: Icp = Icp::PointToPlane, Choice;

@@ -1,8 +1,8 @@
 //! Guarded Sim(3) RANSAC over correspondences (paper §3.2).
 //!
-//! A scale that may go anywhere finds its most inliers by shrinking the mesh into a patch of the observation.
-//! So each hypothesis' scale is held against the initial one, inside the loop: outside [λmin, λmax]·s_init it
-//! is rejected (or, in clamp mode, projected back and counted).
+//! With an unconstrained scale, RANSAC maximises inliers by shrinking the mesh into a patch of the observation. The
+//! loop therefore compares the scale of each hypothesis with the initial one: outside [λmin, λmax]·s_init, the
+//! hypothesis is rejected (or, in clamp mode, its scale is projected back).
 
 use super::matching::Match;
 use super::tukey::biweights;
@@ -13,16 +13,16 @@ use crate::geometry::similarity::{Similarity, vector3};
 
 const STREAM: u64 = 3;
 
-/// Rounds of [`reweighted`]; the weights settle within a few.
+/// Iterations of [`reweighted`]; the weights converge within a few.
 const REWEIGHTINGS: usize = 12;
 
-/// What f32 leaves uncertain in a unit box.
+/// Rounding error of f32 coordinates in a unit box.
 const ROUNDING: f64 = 1e-6;
 
-/// Closed-form refits on the inliers of a new best hypothesis.
+/// Maximum number of closed-form refits of a new best hypothesis.
 const LOCAL_REFITS: usize = 4;
 
-/// What is done with a scale outside the guard.
+/// Treatment of scales outside the guard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GuardMode {
     /// The hypothesis is dropped.
@@ -31,19 +31,19 @@ pub enum GuardMode {
     Clamp,
 }
 
-/// The interval a scale must stay in, in the frames of the clouds that the matches index.
+/// The interval of permitted scales, in the frames of the matched clouds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Guard {
     /// Smallest scale.
     pub min: f64,
     /// Largest scale.
     pub max: f64,
-    /// What is done outside.
+    /// Treatment of scales outside the interval.
     pub mode: GuardMode,
 }
 
 impl Guard {
-    /// Whether a scale stands at a bound.
+    /// Whether a scale is at a bound.
     pub fn is_bound(&self, scale: f64) -> bool {
         scale <= self.min * (1.0 + ROUNDING) || scale >= self.max * (1.0 - ROUNDING)
     }
@@ -52,32 +52,32 @@ impl Guard {
 /// Settings of [`ransac`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RansacSettings {
-    /// A match is an inlier when its source point lands within this of its target point.
+    /// Maximum distance of an inlier, in the target frame.
     pub inlier_distance: f64,
-    /// Smallest ratio of the least to the most stretched edge of a minimal set, in [0, 1].
+    /// Minimum ratio of the smallest to the largest edge scale within a minimal set, in [0, 1].
     pub edge_similarity: f64,
-    /// Most minimal sets drawn.
+    /// Maximum number of minimal sets.
     pub max_iterations: usize,
-    /// Stops early once a better hypothesis is this unlikely to have been missed, in [0, 1).
+    /// RANSAC stops once it has found the best consensus with this probability, in [0, 1).
     pub confidence: f64,
-    /// Free, or fixed.
+    /// Whether the scale is estimated or fixed.
     pub scale_mode: ScaleMode,
-    /// `None` leaves the scale alone (the ablation).
+    /// Bounds of the scale; `None` for an unconstrained scale (ablation).
     pub guard: Option<Guard>,
     /// Seed of the draws.
     pub seed: u64,
 }
 
-/// How often what happened.
+/// Event counts.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct RansacCounts {
     /// Minimal sets drawn.
     pub iterations: usize,
-    /// Minimal sets dropped by the edge-length check.
+    /// Minimal sets rejected by the edge-length check.
     pub inconsistent: usize,
-    /// Minimal sets dropped because the scale of their hypothesis left the guard.
+    /// Minimal sets rejected because their scale was outside the guard.
     pub rejected: usize,
-    /// Minimal sets whose hypothesis had its scale projected back into the guard.
+    /// Minimal sets whose scale was projected into the guard.
     pub clamped: usize,
 }
 
@@ -86,26 +86,25 @@ pub struct RansacCounts {
 pub struct Consensus {
     /// The transform.
     pub target_from_source: Similarity,
-    /// Indices of the matches that agree with it.
+    /// Indices of the inliers.
     pub inliers: Vec<usize>,
-    /// Whether its scale stands at a bound of the guard because it was projected there.
+    /// Whether the scale was projected to a bound of the guard.
     pub clamped: bool,
     /// The counts.
     pub counts: RansacCounts,
 }
 
-/// The similarity that the most matches agree with (M-estimator scoring: near inliers count more).
+/// Estimates the similarity with the highest consensus (MSAC scoring: near inliers count more).
 ///
 /// # Errors
-/// [`ErrorCode::NoConsensus`] for fewer than three matches, or where no minimal set gave a hypothesis inside
-/// the guard that three matches agree with.
+/// [`ErrorCode::NoConsensus`] for fewer than three matches, or if no hypothesis inside the guard has three inliers.
 pub fn ransac(
     source: &[glam::Vec3],
     target: &[glam::Vec3],
     matches: &[Match],
     settings: &RansacSettings,
 ) -> Result<Consensus> {
-    // Matches of points that do not exist are passed over; the others keep their numbers.
+    // Skips matches of points that do not exist; indices of the others are those in `matches`.
     let (numbers, pairs): (Vec<usize>, Vec<Pair>) = matches
         .iter()
         .enumerate()
@@ -147,9 +146,8 @@ pub fn ransac(
     }
 }
 
-/// The consensus, refitted on its inliers with weights that leave out those that only happen to be near
-/// (iteratively reweighted least squares). Keeps what it was given where too few are left for a closed form, or
-/// where the scale would leave the guard.
+/// Refits a consensus on its inliers by iteratively reweighted least squares, which excludes matches that are near by
+/// chance. Keeps the last pose if too few remain for the closed form, or if the scale leaves the guard.
 pub fn reweighted(
     source: &[glam::Vec3],
     target: &[glam::Vec3],
@@ -191,7 +189,7 @@ struct Hypothesis {
 fn draw_three(random: &mut Random, pairs: &[Pair]) -> [Pair; 3] {
     let n = pairs.len();
     let a = random.below(n);
-    // Drawn from the n − 1 (n − 2) others: always three different ones, always three draws.
+    // Draws from the n − 1 (n − 2) others: three distinct pairs in exactly three draws.
     let b = (a + 1 + random.below(n - 1)) % n;
     let (low, high) = (a.min(b), a.max(b));
     let mut c = random.below(n - 2);
@@ -200,16 +198,16 @@ fn draw_three(random: &mut Random, pairs: &[Pair]) -> [Pair; 3] {
     [pairs[a], pairs[b], pairs[c]]
 }
 
-/// Whether the three edges are stretched alike, as any similarity stretches them.
+/// Whether the scales of the three edges agree, as for a similarity.
 fn edges_agree(set: &[Pair; 3], edge_similarity: f64) -> bool {
     let stretch = |i: usize, j: usize| (set[i].target - set[j].target).norm() / (set[i].source - set[j].source).norm();
     let ratios = [stretch(0, 1), stretch(1, 2), stretch(2, 0)];
     let (min, max) = ratios.iter().fold((f64::INFINITY, 0.0_f64), |(min, max), &r| (min.min(r), max.max(r)));
-    // An edge between equal points is stretched by 0, ∞ or not-a-number, and agrees with nothing.
+    // Edges between coincident points have a scale of 0, ∞ or NaN, and agree with nothing.
     ratios.iter().all(|r| r.is_finite()) && min >= edge_similarity * max && min > 0.0
 }
 
-/// The closed form on some pairs, held against the guard.
+/// The closed form on some pairs, subject to the guard.
 fn fit<'a>(
     pairs: impl Iterator<Item = &'a Pair> + Clone,
     settings: &RansacSettings,
@@ -217,7 +215,7 @@ fn fit<'a>(
 ) -> Option<Hypothesis> {
     let transform = umeyama(pairs.clone().copied(), settings.scale_mode).ok()?;
     let Some(guard) = settings.guard else { return Some(Hypothesis { transform, clamped: false, score: 0.0 }) };
-    // Unlike clamp, no panic where a caller swapped the bounds.
+    // Unlike `clamp`, this does not panic if the bounds are swapped.
     let scale = transform.scale.min(guard.max).max(guard.min);
     if scale == transform.scale {
         return Some(Hypothesis { transform, clamped: false, score: 0.0 });
@@ -235,9 +233,9 @@ fn fit<'a>(
     }
 }
 
-/// Refits on the inliers for as long as the score rises.
+/// Refits on the inliers while the score increases.
 fn refit(mut best: Hypothesis, pairs: &[Pair], settings: &RansacSettings) -> Hypothesis {
-    // The counts are of minimal sets; what the guard says to a refit is not among them.
+    // The counts are those of minimal sets; refits are not counted.
     let mut uncounted = RansacCounts::default();
     for _ in 0..LOCAL_REFITS {
         let inliers = inliers(&best.transform, pairs, settings.inlier_distance);
@@ -266,13 +264,13 @@ fn inliers(transform: &Similarity, pairs: &[Pair], distance: f64) -> Vec<usize> 
     pairs.iter().enumerate().filter(|(_, pair)| near(pair)).map(|(i, _)| i).collect()
 }
 
-/// Draws after which a set of three inliers has come up with the given confidence.
+/// Number of draws after which a minimal set of inliers was drawn with the given probability.
 fn iterations_needed(inlier_share: f64, confidence: f64) -> usize {
     let hit = inlier_share * inlier_share * inlier_share;
     if hit >= 1.0 {
         return 1;
     }
-    // Saturates for shares near 0; the caller's limit stands.
+    // Saturates for ratios near 0; `max_iterations` then applies.
     libm::ceil(libm::log(1.0 - confidence) / libm::log1p(-hit)) as usize
 }
 

@@ -1,5 +1,5 @@
-//! Hallucination filtering (paper §3.1): a generator invents the side that the camera did not see. Only
-//! source points that the observation supports under the present pose, in position and in normal, take part.
+//! Hallucination filtering (paper §3.1): generators hallucinate the side that the camera did not see. Only source
+//! points are used that the observation supports under the current pose, by position and normal.
 
 use glam::Vec3;
 
@@ -7,17 +7,17 @@ use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::similarity::Similarity;
 
-/// What counts as support.
+/// Conditions of support.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SupportSettings {
-    /// A source point needs a target point within this distance (target frame); infinite asks for none.
+    /// Maximum distance to the nearest target point, in the target frame; may be infinite.
     pub max_distance: f32,
-    /// Smallest cosine between the two normals; −1 asks for none. Unknown normals (zero) are not held against a point.
+    /// Minimum cosine between the two normals; −1 disables the check. Unknown normals (zero) pass.
     pub min_cosine: f32,
 }
 
 impl SupportSettings {
-    /// No filter: every source point is held to be supported by its nearest target point.
+    /// No filter: every source point is supported by its nearest target point.
     pub const EVERYTHING: Self = Self { max_distance: f32::INFINITY, min_cosine: -1.0 };
 }
 
@@ -28,11 +28,11 @@ pub struct Support {
     pub source: u32,
     /// Index into the target cloud, the nearest to the transformed source point.
     pub target: u32,
-    /// Where the source point lands, in the target frame.
+    /// The transformed source point, in the target frame.
     pub landed: Vec3,
 }
 
-/// The source points that the target supports under the given pose, in the order of the source.
+/// The source points that the target supports under a pose, in the order of the source.
 pub fn supported(
     source: &Cloud,
     target: &Cloud,

@@ -1,15 +1,15 @@
-//! Tukey's biweight: points that do not belong get no say.
+//! Tukey's biweight, which gives outliers a weight of 0.
 
 use crate::geometry::order::median;
 
-/// Tukey's constant: 95 % efficient on Gaussian residuals.
+/// Tukey's constant: 95 % efficiency for Gaussian residuals.
 const TUKEY: f64 = 4.685;
 
-/// From the median of absolute residuals to their standard deviation.
+/// Ratio of the standard deviation to the median absolute residual of a Gaussian.
 const MAD_TO_SIGMA: f64 = 1.4826;
 
-/// A weight from 0 to 1 for each residual, by a biweight as wide as the median residual says. On exact data the
-/// median is 0; `floor`, the rounding of the coordinates, keeps the exact points in.
+/// The weights of residuals, from 0 to 1. The width follows from their median, but is at least `floor`, the rounding
+/// error of the coordinates: for exact data, the median is 0.
 pub fn biweights(residuals: &[f64], floor: f64) -> Vec<f64> {
     let median = median(residuals.iter().map(|r| r.abs() as f32)).unwrap_or_default();
     let width = (TUKEY * MAD_TO_SIGMA * f64::from(median)).max(floor);

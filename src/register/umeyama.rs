@@ -1,8 +1,8 @@
-//! The similarity that best maps points onto their counterparts, in closed form (paper §3.2; Umeyama 1991).
+//! The least-squares similarity between corresponding points, in closed form (paper §3.2; Umeyama 1991).
 //!
 //! With centroids p̄, q̄ and Σ = Σ w (q − q̄)(p − p̄)ᵀ = U D Vᵀ:
 //! R* = U S Vᵀ, s* = tr(D S) / Σ w ‖p − p̄‖² (= tr(RᵀΣ) / …), t* = q̄ − s* R* p̄,
-//! where S = diag(1, 1, det(U) det(V)) keeps R* a rotation when a reflection would fit better.
+//! where S = diag(1, 1, det(U) det(V)) makes R* a rotation if a reflection would fit better.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
@@ -10,11 +10,11 @@ use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::similarity::Similarity;
 use crate::geometry::singular_values::SingularValues;
 
-/// How far a cloud may be from spanning a plane: below this ratio of its second to its first singular value
-/// the points are one line to within rounding, and the turn about that line is free.
+/// Ratio of the second to the first singular value below which points are collinear up to rounding, so that the
+/// rotation about their line is undetermined.
 const COLLINEAR: f64 = 1e-6;
 
-/// Whether the closed form solves for the scale.
+/// Whether the scale is estimated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ScaleMode {
     /// s* from the data.
@@ -38,7 +38,7 @@ pub struct Pair {
 ///
 /// # Errors
 /// [`ErrorCode::TooFewPoints`] for fewer than three pairs of positive weight;
-/// [`ErrorCode::DegeneratePoints`] where either side is coincident, collinear, or not finite.
+/// [`ErrorCode::DegeneratePoints`] if either side is coincident, collinear, or not finite.
 pub fn umeyama(pairs: impl Iterator<Item = Pair>, scale_mode: ScaleMode) -> Result<Similarity> {
     closed_form(&pairs.collect::<Vec<_>>(), scale_mode)
 }
@@ -75,7 +75,7 @@ fn closed_form(pairs: &[Pair], scale_mode: ScaleMode) -> Result<Similarity> {
     if d[1].is_nan() || d[1] <= COLLINEAR * d[0] {
         return Err(degenerate("correspondences"));
     }
-    // U and V are rotations: S is in the sign of the last singular value.
+    // U and V are rotations: the sign of the last singular value contains S.
     let rotation = u * v.transpose();
     let scale = match scale_mode {
         ScaleMode::Free => (d[0] + d[1] + d[2]) / p_spread.trace(),
@@ -88,13 +88,13 @@ fn closed_form(pairs: &[Pair], scale_mode: ScaleMode) -> Result<Similarity> {
     Ok(Similarity { scale, rotation, translation: q_mean - rotation * p_mean * scale })
 }
 
-/// Refuses points that do not span a plane.
+/// Rejects points that do not span a plane.
 fn check_spread(argument: &str, spread: &Matrix3<f64>) -> Result<()> {
     if !spread.iter().all(|x| x.is_finite()) {
         return Err(degenerate(argument));
     }
-    // The middle eigenvalue against the largest, by the invariants: a product of the two largest that
-    // vanishes beside the square of their sum. No decomposition is needed to say no.
+    // Compares the middle eigenvalue with the largest by invariants, without a decomposition: the sum of the principal
+    // minors, about the product of the two largest eigenvalues, relative to the squared trace.
     let trace = spread.trace();
     let minors = 0.5 * (trace * trace - (spread * spread).trace());
     if trace > 0.0 && minors > COLLINEAR * COLLINEAR * trace * trace { Ok(()) } else { Err(degenerate(argument)) }
@@ -105,7 +105,7 @@ fn degenerate(argument: &str) -> Error {
         ErrorCode::DegeneratePoints,
         argument.to_owned(),
         "points that coincide or lie on one line",
-        "points that span a plane at least",
-        "The turn about a line is free: add pairs away from it.",
+        "points that span at least a plane",
+        "The rotation about the line is undetermined. Add pairs that are not on it.",
     )
 }

@@ -126,7 +126,7 @@ const badTransforms: [name: string, transform: unknown, argument: string, messag
     "a row-major matrix",
     [0.1, 0, 0, 1, 0, 0.1, 0, 2, 0, 0, 0.1, 3, 0, 0, 0, 1],
     "transform.matrix",
-    /column by column/,
+    /column-major/,
   ],
 ];
 

@@ -3,7 +3,7 @@
 use core::f64::consts::{FRAC_PI_2, PI};
 
 use nalgebra::{UnitQuaternion, Vector3};
-use sim3align::geometry::angle::{sin_cos, turn};
+use sim3align::geometry::angle::{exp_so3, sin_cos};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::support::Draw;
@@ -42,9 +42,9 @@ fn turns_are_those_of_nalgebra() {
     for size in [0.0, 1e-300, 1e-12, 1e-3, 1.0, 3.0, 7.0] {
         for _ in 0..100 {
             let rotation = draw.direction() * size;
-            let off = (turn(rotation).coords - UnitQuaternion::from_scaled_axis(rotation).coords).amax();
+            let off = (exp_so3(rotation).coords - UnitQuaternion::from_scaled_axis(rotation).coords).amax();
             assert!(off < 4e-16, "seed {seed}, {rotation:?}: off by {off:e}");
         }
     }
-    assert_eq!(turn(Vector3::zeros()), UnitQuaternion::identity());
+    assert_eq!(exp_so3(Vector3::zeros()), UnitQuaternion::identity());
 }

@@ -151,6 +151,7 @@ fn random_damage_never_panics() {
 
 #[wasm_bindgen_test(unsupported = test)]
 fn random_damage_to_a_known_format_never_panics() {
+    let (mut read, mut refused) = (0, 0);
     for (k, (format, bytes)) in MESHES.into_iter().enumerate() {
         let options = MeshReadOptions { format: Some(MeshFormat::from_name(format).unwrap()), resources: None };
         for seed in 0..300_u64 {
@@ -161,9 +162,20 @@ fn random_damage_to_a_known_format_never_panics() {
                 let place = random.below(damaged.len());
                 damaged[place] = damaged[place].wrapping_add(1 + random.below(255) as u8);
             }
-            if let Ok(mesh) = read_mesh(&damaged, &options) {
-                assert!(!mesh.triangles().is_empty(), "fixture {k}, seed {seed}");
+            match read_mesh(&damaged, &options) {
+                Ok(mesh) => {
+                    let corners = mesh.triangles().as_flattened();
+                    assert!(!corners.is_empty(), "fixture {k}, seed {seed}");
+                    assert!(corners.iter().all(|i| (*i as usize) < mesh.positions().len()), "fixture {k}, seed {seed}");
+                    assert!(mesh.positions().iter().all(|p| p.is_finite()), "fixture {k}, seed {seed}");
+                    read += 1;
+                }
+                Err(error) => {
+                    assert!(!error.found.is_empty() && !error.remedy.is_empty(), "fixture {k}, seed {seed}: {error}");
+                    refused += 1;
+                }
             }
         }
     }
+    assert!(read > 100 && refused > 100, "{read} read, {refused} refused");
 }

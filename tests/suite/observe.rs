@@ -51,7 +51,6 @@ fn points_by_hand() {
     assert_eq!(cloud.points[..8], expected);
     assert_eq!(cloud.len(), 3 * height - 2);
     assert!(cloud.normals.is_empty());
-    assert_eq!(observation.scene_cloud(1000, 0).points, [Vec3::new(0.0, 0.0, 5.0)]);
     assert_eq!(observation.camera(), camera());
     assert_eq!((observation.depth().get(1, 2), observation.mask().get(1, 1)), (Some(0.0), Some(0)));
 }
@@ -77,7 +76,6 @@ fn subsampling_takes_one_of_each_run() {
             assert!(place > -1.5 && place < run + 1.5, "seed {seed}: point {k} from pixel {}", index(p));
             assert!(index(p) < n, "seed {seed}: {p} lies outside the mask");
         }
-        assert!(observation.scene_cloud(100, seed).points.iter().all(|p| index(p) + 1 >= n));
     }
     assert!(observation.cloud(0, 0).is_empty());
     assert_eq!(observation.cloud(n, 0).len(), n);

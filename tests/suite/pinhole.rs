@@ -79,16 +79,14 @@ fn cameras_that_are_none_are_refused_by_name() {
             let mut numbers = [500.0, 500.0, 320.0, 240.0];
             numbers[i] = x;
             let [fx, fy, cx, cy] = numbers;
-            match Pinhole::new(fx, fy, cx, cy) {
-                Ok(_) => assert!(i >= 2 && x.is_finite(), "{name} = {x}"),
-                Err(error) => {
-                    assert!(i < 2 || !x.is_finite(), "{name} = {x}");
-                    assert_eq!(
-                        (error.code, error.argument.clone().into_owned()),
-                        (ErrorCode::InvalidCamera, format!("camera.{name}"))
-                    );
-                }
+            let made = Pinhole::new(fx, fy, cx, cy);
+            // A principal point may be anywhere.
+            if i >= 2 && x.is_finite() {
+                assert!(made.is_ok(), "{name} = {x}");
+                continue;
             }
+            let error = made.unwrap_err();
+            assert_eq!((error.code, &*error.argument), (ErrorCode::InvalidCamera, &*format!("camera.{name}")), "{x}");
         }
     }
 }

@@ -56,7 +56,7 @@ pub fn observe(mesh: &Mesh, pose: &Similarity) -> Observation {
 }
 
 /// Few rotations and few candidates: the body is clear.
-fn quick() -> AlignOptions {
+pub fn quick() -> AlignOptions {
     AlignOptions {
         quality: Quality::Fast,
         surface_samples: 500,
@@ -291,9 +291,18 @@ fn an_occluder_hides_and_does_not_shrink() {
 
 #[wasm_bindgen_test(unsupported = test)]
 fn directions_of_any_length_are_up() {
-    let direction = DVec3::new(0.0, -1e-3, 0.0).to_array();
-    let options = AlignOptions { camera_up: Some(direction), mesh_up: Some([0.0, 0.0, 1e6]), ..quick() };
-    assert!(solve(&options).diagnostics.score.is_finite());
+    let run = |camera: f64, mesh: f64| {
+        let camera_up = DVec3::new(0.0, -camera, 0.3 * camera).to_array();
+        solve(&AlignOptions { camera_up: Some(camera_up), mesh_up: Some([0.0, 0.0, mesh]), ..quick() })
+    };
+    let unit = run(1.0, 1.0);
+    assert_ne!(unit.diagnostics.score, solve(&quick()).diagnostics.score, "the directions count");
+    for (camera, mesh) in [(1e-3, 1e6), (1e-100, 1e100)] {
+        let other = run(camera, mesh);
+        let off = (other.diagnostics.score - unit.diagnostics.score).abs();
+        assert!(off < 1e-4, "lengths {camera} and {mesh}: the score is {off} off");
+        assert!(turn_deg(&similarity(&other), &similarity(&unit)) < 0.1, "lengths {camera} and {mesh}");
+    }
 }
 
 #[wasm_bindgen_test(unsupported = test)]

@@ -142,14 +142,20 @@ fn a_scale_outside_the_guard_is_rejected_or_projected() {
 }
 
 #[wasm_bindgen_test(unsupported = test)]
-fn bounds_in_the_wrong_order_are_no_panic() {
+fn bounds_in_the_wrong_order_leave_no_scale() {
     let mut draw = Draw::new(6);
     let truth = draw.similarity([0.9, 1.1], 0.2);
     let scene = Scene::new(&mut draw, truth, 20, 0, 0.0);
     for mode in [GuardMode::Reject, GuardMode::Clamp] {
-        for (min, max) in [(2.0, 0.5), (f64::NAN, 1.5), (f64::NAN, f64::NAN)] {
+        let run = |min, max| {
             let guard = Some(Guard { min, max, mode });
-            let _ = scene.run(&RansacSettings { guard, max_iterations: 20, ..settings(0) });
+            scene.run(&RansacSettings { guard, max_iterations: 20, ..settings(0) })
+        };
+        assert_eq!(run(2.0, 0.5).unwrap_err().code, ErrorCode::NoConsensus, "{mode:?}: no scale is between them");
+        // Options refuse what is no number; here it holds nothing.
+        for (min, max) in [(f64::NAN, 1.5), (f64::NAN, f64::NAN)] {
+            let found = run(min, max).unwrap().target_from_source;
+            assert!((found.scale / truth.scale - 1.0).abs() < 1e-5, "{mode:?}, {min}, {max}: {found:?}");
         }
     }
 }

@@ -115,7 +115,6 @@ fn poses_come_back_from_similarities() {
     }
 }
 
-/// A step's effect is what the refinement's Jacobian says: size, place, distance and turn, by differences.
 #[wasm_bindgen_test(unsupported = test)]
 fn distance_leaves_the_silhouette_as_it_is() {
     let frame = MeshFrame { center: DVec3::ZERO, diagonal: 1.0 };

@@ -1,4 +1,4 @@
-//! Typed views of buffers: every offset is checked before a byte is read.
+//! Accessors: typed views of buffers, with all offsets checked.
 
 use ::gltf::json;
 use ::gltf::json::accessor::{ComponentType, Type};
@@ -10,20 +10,21 @@ use crate::gltf::buffers::Buffers;
 use crate::guard::{MAX_TRIANGLES, MAX_VERTICES, corrupt, too_large};
 use sim3align_geometry::error::Result;
 
-/// Most elements of an accessor without bytes of its own, which are zeros: no file size speaks for their number.
+/// Maximum number of elements of an accessor without a buffer view, which consists of zeros and is not bounded by the
+/// size of the file.
 const MAX_ZEROS: usize = 1 << 20;
 
-/// Most elements read in all, so that many small primitives on one large accessor can't run for hours.
+/// Maximum number of elements read in total, which bounds the time for many primitives on one large accessor.
 const MAX_ELEMENTS_READ: usize = 1 << 28;
 
-/// Reads accessors of a document.
+/// Reads the accessors of a document.
 pub(super) struct AccessorReader<'a> {
     pub document: &'a Document,
     pub buffers: Buffers<'a>,
     pub elements_read: usize,
 }
 
-/// One number as written, and how it is to be read.
+/// A number as stored, and its component type.
 #[derive(Clone, Copy)]
 struct Component {
     kind: ComponentType,
@@ -94,7 +95,7 @@ impl<'a> AccessorReader<'a> {
         Ok(elements)
     }
 
-    /// Replaces the elements that a sparse accessor names.
+    /// Applies the replacements of a sparse accessor.
     fn apply_sparse<T>(
         &mut self,
         sparse: &json::accessor::sparse::Sparse,
@@ -172,7 +173,7 @@ impl<'a> AccessorReader<'a> {
         Ok(in_view.chunks(stride.max(1)).take(count).map(move |chunk| chunk.get(..element_bytes).unwrap_or_default()))
     }
 
-    /// Counts work against [`MAX_ELEMENTS_READ`].
+    /// Counts elements against [`MAX_ELEMENTS_READ`].
     pub fn spend(&mut self, elements: usize) -> Result<()> {
         self.elements_read = self.elements_read.saturating_add(elements);
         if self.elements_read > MAX_ELEMENTS_READ {

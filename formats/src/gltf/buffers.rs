@@ -1,4 +1,4 @@
-//! Where a glTF scene's bytes are: the GLB's own chunk, data URIs, files beside it.
+//! The buffers of a glTF scene: the binary chunk of the GLB, data URIs, and external files.
 
 use std::borrow::Cow;
 
@@ -6,10 +6,12 @@ use ::gltf::json;
 
 use crate::gltf::data_uri;
 use crate::guard::{MAX_BUFFER_BYTES, corrupt, too_large};
-use crate::mesh::Resources;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 
-/// The buffers, each loaded when first read: those of animations and images are never asked for.
+/// Returns the content of a relative URI in a `.gltf` file.
+pub type Resources<'a> = &'a dyn Fn(&str) -> Option<Vec<u8>>;
+
+/// The buffers, each loaded on first use; those of animations and images are never loaded.
 pub(super) struct Buffers<'a> {
     declared: &'a [json::Buffer],
     binary: Option<&'a [u8]>,
@@ -23,7 +25,7 @@ impl<'a> Buffers<'a> {
         Self { declared, binary, resources, loaded: vec![None; declared.len()], loaded_bytes: 0 }
     }
 
-    /// Whether buffer `index` has bytes at all. Compressed files have one that has none.
+    /// Whether buffer `index` has data. Compressed files contain one without.
     pub fn has_source(&self, index: usize) -> bool {
         let has_uri = self.declared.get(index).is_some_and(|buffer| buffer.uri.is_some());
         has_uri || (index == 0 && self.binary.is_some())

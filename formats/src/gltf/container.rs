@@ -1,13 +1,13 @@
-//! The GLB container: a JSON chunk and, mostly, a binary one.
+//! The GLB container: a JSON chunk and an optional binary chunk.
 
 use crate::cursor::Cursor;
 use crate::guard::{corrupt, too_large, unsupported};
 use sim3align_geometry::error::Result;
 
-/// Longest GLB that is opened: 2 GiB.
+/// Maximum size of a GLB: 2 GiB.
 const MAX_GLB_BYTES: u32 = 1 << 31;
 
-/// The parts of a `.glb`; of a `.gltf`, the whole is the JSON.
+/// The chunks of a `.glb`; a `.gltf` is JSON as a whole.
 pub(super) struct Container<'a> {
     pub json: &'a [u8],
     pub binary: Option<&'a [u8]>,
@@ -44,7 +44,7 @@ impl<'a> Container<'a> {
             let found = format!("a first chunk \"{}\"", kind.escape_ascii());
             return Err(corrupt("mesh", found, "\"JSON\""));
         }
-        // Only the second chunk may be the binary one; the format asks to pass over others.
+        // Only the second chunk can be the binary one; the specification requires readers to ignore others.
         let binary = if cursor.remaining().is_empty() {
             None
         } else {

@@ -1,13 +1,13 @@
-//! `data:` URIs, and percent-encoding in the others.
+//! `data:` URIs and percent-encoding.
 
-/// The bytes of a `data:` URI, base64 or percent-encoded; `None` where it is neither.
+/// The bytes of a `data:` URI, base64 or percent-encoded; `None` for any other URI.
 pub(super) fn decode(uri: &str) -> Option<Vec<u8>> {
     let (head, body) = uri.strip_prefix("data:")?.split_once(',')?;
     let body = percent_decode(body.as_bytes());
     if head.trim_end().ends_with(";base64") { base64(&body) } else { Some(body) }
 }
 
-/// `%20` → space, and so on. What is not a pair of hexadecimal digits stays as it is.
+/// Decodes `%20` → space, and so on. A `%` without two hexadecimal digits is kept.
 pub(super) fn percent_decode(text: &[u8]) -> Vec<u8> {
     let digit = |b: Option<&u8>| b.and_then(|&b| char::from(b).to_digit(16)).map(|d| d as u8);
     let mut decoded = Vec::with_capacity(text.len());
@@ -25,7 +25,7 @@ pub(super) fn percent_decode(text: &[u8]) -> Vec<u8> {
     decoded
 }
 
-/// Base64 (RFC 4648, both alphabets); white space is passed over, padding may be missing.
+/// Decodes Base64 (RFC 4648, both alphabets); white space is ignored, padding is optional.
 fn base64(text: &[u8]) -> Option<Vec<u8>> {
     let mut bytes = Vec::with_capacity(text.len() / 4 * 3 + 3);
     let (mut bits, mut bit_count) = (0_u32, 0);
@@ -48,6 +48,6 @@ fn base64(text: &[u8]) -> Option<Vec<u8>> {
             bytes.push((bits >> bit_count) as u8);
         }
     }
-    // Six bits left over: a letter was lost.
+    // Six remaining bits: a character is missing.
     (bit_count < 6).then_some(bytes)
 }

@@ -1,8 +1,8 @@
 //! glTF 2.0: the default scene as one mesh, in the scene's frame.
 //!
-//! The `gltf` crate's types parse the JSON; all that follows an index or an offset is read by our own checked
-//! code, because a hostile file must end in an error. Only the parts that say where the triangles are get parsed, so that
-//! an odd material or texture can't keep a mesh from being read.
+//! The types of the `gltf-json` crate parse the JSON. Indices and offsets are resolved by checked code of this module,
+//! so that a malicious file results in an error. Only the parts that define triangles are parsed, so that an invalid
+//! material or texture does not prevent reading the mesh.
 
 mod accessor;
 mod buffers;
@@ -13,24 +13,24 @@ mod scene;
 use ::gltf::json;
 use serde::Deserialize;
 
+pub use self::buffers::Resources;
 use self::container::Container;
 use crate::guard::{corrupt, too_large, unsupported};
-use crate::mesh::Resources;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::mesh::Mesh;
 
-/// Most objects in a file's JSON: each costs memory far beyond its two letters.
+/// Maximum number of objects in the JSON: each takes much more memory than its two characters.
 const MAX_JSON_OBJECTS: usize = 1 << 20;
 
 const DRACO: &str = "KHR_draco_mesh_compression";
 
 const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 
-/// Extensions that may be required: they are applied, or don't touch the shape.
+/// Supported required extensions: they are applied, or do not affect the shape.
 const SUPPORTED_EXTENSIONS: &str = "KHR_mesh_quantization, KHR_materials_*, KHR_texture_*, EXT_texture_*, \
     MSFT_texture_dds, KHR_lights_punctual, KHR_animation_pointer and KHR_xmp_json_ld";
 
-/// The parts of a glTF file that say where its triangles are.
+/// The parts of a glTF file that define its triangles.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 struct Document {
@@ -73,18 +73,18 @@ impl Document {
         self.extensions_used.iter().chain(&self.extensions_required).any(|name| name == extension)
     }
 
-    /// For geometry that has no bytes to read: whether that is Draco's doing.
+    /// Whether geometry without data is Draco-compressed.
     fn refuse_draco(&self) -> Result<()> {
         if self.uses(DRACO) { Err(compressed(DRACO)) } else { Ok(()) }
     }
 
-    /// The same for meshopt.
+    /// Whether geometry without data is meshopt-compressed.
     fn refuse_meshopt(&self) -> Result<()> {
         MESHOPT.iter().find(|name| self.uses(name)).map_or(Ok(()), |name| Err(compressed(name)))
     }
 
-    /// Refuses required extensions that may change the shape. Compression is left to where its bytes are missed:
-    /// files may carry an uncompressed fallback.
+    /// Rejects required extensions that may change the shape. Compression is checked when data are missing, because
+    /// files may contain an uncompressed fallback.
     fn check_extensions(&self) -> Result<()> {
         let harmless = |name: &str| {
             name.starts_with("KHR_materials_")
@@ -121,13 +121,13 @@ fn compressed(extension: &str) -> Error {
         "mesh",
         format!("geometry compressed with {extension}"),
         "uncompressed or quantised geometry",
-        "Unpack it with glTF-Transform: npx @gltf-transform/cli copy in.glb out.glb.",
+        "Decompress it with glTF-Transform: npx @gltf-transform/cli copy in.glb out.glb.",
     )
 }
 
-/// Reads a `.glb` or `.gltf`: the nodes of the default scene (of the first where none is named; without scenes,
-/// every root node), their transforms applied, all triangles, strips and fans merged. Points and lines are passed
-/// over. Skins and morph targets are not applied.
+/// Reads a `.glb` or `.gltf`: the nodes of the default scene (the first scene if there is no default;
+/// without scenes, all root nodes), with transforms applied and all triangles, strips and fans merged. Points and lines
+/// are ignored. Skins and morph targets are not applied.
 ///
 /// # Errors
 /// [`ErrorCode::CorruptFile`], [`ErrorCode::FileTooLarge`], [`ErrorCode::UnsupportedFormat`] for required
@@ -141,7 +141,7 @@ pub fn read_gltf(bytes: &[u8], resources: Option<Resources<'_>>) -> Result<Mesh>
     scene::read_scene(accessor::AccessorReader { document: &document, buffers, elements_read: 0 })
 }
 
-/// The URIs of the files that a `.gltf` keeps its buffers in, as written, each once: what `resources` has to know.
+/// The distinct URIs of the external buffers of a `.gltf`, as written: the files that `resources` must provide.
 ///
 /// # Errors
 /// [`ErrorCode::CorruptFile`], [`ErrorCode::FileTooLarge`], [`ErrorCode::UnsupportedFormat`].

@@ -1,4 +1,4 @@
-//! The node hierarchy, flattened.
+//! Flattens the node hierarchy.
 
 use ::gltf::json;
 use ::gltf::json::mesh::{Mode, Semantic};
@@ -12,7 +12,7 @@ use crate::mesh_builder::MeshBuilder;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::mesh::Mesh;
 
-/// All triangles of the scene in its frame.
+/// All triangles of the scene, in the frame of the scene.
 pub(super) fn read_scene(mut reader: AccessorReader<'_>) -> Result<Mesh> {
     let document = reader.document;
     let mut parts: Vec<Option<Vec<Mesh>>> = vec![None; document.meshes.len()];
@@ -36,7 +36,7 @@ pub(super) fn read_scene(mut reader: AccessorReader<'_>) -> Result<Mesh> {
                 parts
             }
         };
-        // A mesh of no triangles can be instanced without end at no cost in vertices.
+        // Instances of a mesh without triangles are not bounded by the limit on vertices.
         reader.spend(mesh.primitives.len())?;
         for part in slot.insert(parts) {
             builder.append(part, &transform)?;
@@ -58,7 +58,7 @@ pub(super) fn read_scene(mut reader: AccessorReader<'_>) -> Result<Mesh> {
     builder.finish()
 }
 
-/// The meshes in the scene, each with its transform into the scene.
+/// The meshes of the scene, each with its transform to the scene.
 fn instances(document: &Document) -> Result<Vec<(usize, DMat4)>> {
     let mut stack: Vec<(usize, DMat4)> = roots(document)?.into_iter().map(|node| (node, DMat4::IDENTITY)).collect();
     stack.reverse();
@@ -110,7 +110,7 @@ fn parent_from_node(node: &json::Node) -> DMat4 {
     let vector = |xyz: Option<[f32; 3]>| xyz.map(|xyz| DVec3::from_array(xyz.map(f64::from)));
     let rotation = node.rotation.map_or(DQuat::IDENTITY, |q| {
         let q = DQuat::from_array(q.0.map(f64::from));
-        // A zero quaternion is written by some exporters where they mean none.
+        // Some exporters write a zero quaternion for the identity.
         if q.length_squared() > 0.0 { q.normalize() } else { DQuat::IDENTITY }
     });
     DMat4::from_scale_rotation_translation(

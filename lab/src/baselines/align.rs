@@ -1,22 +1,22 @@
-//! Other methods under the paper's preprocessing: the same clouds, the same initial scale, the same voxel grid.
+//! Other methods with the preprocessing of the paper: the same clouds, initial scale and voxel grid.
 
 use nalgebra::Vector3;
 
-use super::{Baseline, Clouds, UnitSettings};
-use sim3align::align::Setup;
-use sim3align::align::align_by;
+use super::baseline::Baseline;
+use super::clouds::{Clouds, UnitSettings};
+use sim3align::align::{Setup, align_by};
 use sim3align::evidence::extents::target_from_source;
 use sim3align::evidence::observation::Observation;
 use sim3align::paper::options::PaperOptions;
 use sim3align::progress::{Host, Stage};
-use sim3align::register::global::{MAX_FEATURES, icp_metric};
+use sim3align::register::cloud_pair::MAX_FEATURES;
 use sim3align::register::grid_cloud::GridCloud;
-use sim3align::report::Solution;
-use sim3align::report::{Counts, PaperAlignment};
+use sim3align::register::settings::icp_metric;
+use sim3align::report::{Counts, PaperAlignment, Solution};
 use sim3align_geometry::error::Result;
 use sim3align_geometry::mesh::Mesh;
 
-/// When each stage begins, as a share of the whole.
+/// Progress at the start of each stage, 0 to 1.
 const PLAN: &[(Stage, f64)] = &[
     (Stage::Observe, 0.0),
     (Stage::Sample, 0.02),
@@ -31,8 +31,9 @@ const PLAN: &[(Stage, f64)] = &[
 /// Options of a baseline.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct BaselineOptions {
-    /// Clouds, descriptors, RANSAC and ICP, as in the paper's method. `inlier_distance_voxels` is also the noise bound of
-    /// TEASER and Quatro; `support_distance_voxels` bounds the correspondences of local methods and of the refinement.
+    /// Clouds, descriptors, RANSAC and ICP, as in the paper's method. `inlier_distance_voxels` is also the noise bound
+    /// of TEASER and Quatro; `support_distance_voxels` bounds the correspondences of local methods and of the
+    /// refinement.
     pub paper: PaperOptions,
     /// Keeps the initial scale under TEASER, which estimates its own otherwise. All other methods always keep it.
     pub lock_scale: bool,
@@ -43,11 +44,12 @@ pub struct BaselineOptions {
 /// Aligns a mesh to an observation by another method: the mask's cloud, centred, the mesh scaled by the ratio of the
 /// boxes' diagonals, both on a grid of `voxel_divisions`.
 ///
-/// Local methods begin at the centred, unrotated pose. RANSAC's pose is refined by plain ICP unless `icp` is `None`; the
-/// others stand as they are published.
+/// Local methods begin at the centred, unrotated pose. RANSAC's pose is refined by plain ICP unless `icp` is `None`;
+/// the others stand as they are published.
 ///
 /// # Errors
-/// As [`align`](sim3align::align::align); [`NoConsensus`](sim3align_geometry::error::ErrorCode::NoConsensus) where the method has no answer.
+/// As [`align`](sim3align::align::align); [`NoConsensus`](sim3align_geometry::error::ErrorCode::NoConsensus) where the
+/// method has no answer.
 pub fn align_baseline(
     observation: &Observation,
     mesh: &Mesh,

@@ -1,27 +1,27 @@
-//! Graphs as bitsets: their cores and their largest cliques. Matches that agree pairwise on a distance are a clique.
+//! Cores and maximum cliques of graphs stored as bitsets. Matches that pairwise preserve distances form a clique.
 
 /// An undirected graph without loops.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Graph {
     count: usize,
     words: usize,
-    /// The neighbours of each vertex, a bit each.
+    /// Adjacency matrix, one bit per pair of vertices.
     rows: Vec<u64>,
 }
 
-/// The largest clique that was found.
+/// The largest clique found.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Clique {
-    /// Its vertices, in ascending order.
+    /// Vertices, in ascending order.
     pub vertices: Vec<usize>,
-    /// Whether there is certainly no larger one: the search ended before its budget.
+    /// Whether it is proven to be maximum: the search ended within its budget.
     pub is_largest: bool,
 }
 
-/// A vertex' part of the search: what may still be added to the clique so far, and in which order.
+/// A node of the search: the candidates for extending the current clique, and their order.
 struct Level {
     candidates: Vec<u64>,
-    /// Vertices and colours, by ascending colour: with those before it, a vertex adds as many as its colour to a clique
+    /// Vertices and colours, by ascending colour: with those before it, a vertex adds at most its colour to a clique
     /// at most. Without those that so can not make it large enough.
     order: Vec<[u32; 2]>,
 }
@@ -33,12 +33,12 @@ impl Graph {
         Self { count, words, rows: vec![0; count * words] }
     }
 
-    /// How many vertices.
+    /// Number of vertices.
     pub fn len(&self) -> usize {
         self.count
     }
 
-    /// Whether there is no vertex.
+    /// Whether the graph has no vertices.
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
@@ -64,7 +64,7 @@ impl Graph {
         self.row(vertex).iter().map(|word| word.count_ones() as usize).sum()
     }
 
-    /// The graph of some vertices, with the edges between them.
+    /// The subgraph induced by some vertices.
     fn induced(&self, vertices: &[usize]) -> Self {
         let mut graph = Self::new(vertices.len());
         for (i, &a) in vertices.iter().enumerate() {
@@ -77,10 +77,10 @@ impl Graph {
         graph
     }
 
-    /// The core number of each vertex, the largest k such that it belongs to a subgraph in which all have k neighbours,
-    /// and the vertices in the order in which they are taken away, always one with the fewest neighbours left.
+    /// The core number of each vertex (the largest k such that it belongs to a subgraph of minimum degree k), and the
+    /// vertices in degeneracy order (repeatedly removing a vertex of minimum degree).
     pub fn cores(&self) -> (Vec<usize>, Vec<usize>) {
-        // Batagelj & Zaveršnik 2003: the vertices stay sorted by the neighbours they have left.
+        // Batagelj & Zaveršnik 2003: the vertices stay sorted by remaining degree.
         let mut left: Vec<usize> = (0..self.count).map(|v| self.degree(v)).collect();
         let mut begins = vec![0; self.count + 1];
         left.iter().for_each(|&degree| begins[degree + 1] += 1);
@@ -96,7 +96,7 @@ impl Graph {
             let vertex = order[i];
             for near in bits(self.row(vertex)) {
                 if left[near] > left[vertex] {
-                    // To the front of those with as many, which then begin behind it.
+                    // Moves to the front of the vertices of equal degree, which then begin behind it.
                     let (place, front) = (places[near], begins[left[near]]);
                     let other = order[front];
                     order.swap(place, front);
@@ -109,7 +109,8 @@ impl Graph {
         (left, order)
     }
 
-    /// The vertices of the innermost core, in ascending order: a superset of most large cliques, found at once.
+    /// The vertices of the innermost core, in ascending order: it contains most large cliques, and is found in linear
+    /// time.
     pub fn innermost_core(&self) -> Vec<usize> {
         let (cores, _) = self.cores();
         let innermost = cores.iter().copied().max().unwrap_or_default();
@@ -117,14 +118,14 @@ impl Graph {
     }
 
     /// The largest clique, by branch and bound: vertices in the order of their cores, bounds by colouring (San Segundo
-    /// et al. 2011). `budget` bounds the work, in words of bitsets that are looked at.
+    /// et al. 2011). `budget` limits the work, in words of bitsets visited.
     pub fn largest_clique(&self, budget: u64) -> Clique {
         let (cores, order) = self.cores();
         let mut best = self.greedy_clique(&cores, &order);
         let mut left = budget;
         let mut is_largest = true;
         let mut later = vec![0; self.words];
-        // From the innermost core outwards; a clique is found at the first of its vertices in the order of removal.
+        // From the innermost core outwards; a clique is found at its first vertex in degeneracy order.
         for &vertex in order.iter().rev() {
             if cores[vertex] >= best.len() {
                 let near = self.row(vertex).iter().zip(&later).map(|(a, b)| a & b).collect::<Vec<_>>();
@@ -171,7 +172,7 @@ impl Graph {
         best
     }
 
-    /// The largest clique of more than `size` vertices; what was found until then where `left` runs out.
+    /// The largest clique of more than `size` vertices, or the largest found when the budget `left` is exhausted.
     fn clique_above(&self, size: usize, left: &mut u64) -> Option<Vec<usize>> {
         let (mut best, mut best_size) = (None, size);
         let mut everything = vec![0; self.words];
@@ -226,7 +227,7 @@ impl Graph {
     }
 }
 
-/// The set bits, in ascending order.
+/// Indices of the set bits, in ascending order.
 fn bits(words: &[u64]) -> impl Iterator<Item = usize> + '_ {
     words.iter().enumerate().flat_map(|(i, &word)| {
         let mut rest = word;

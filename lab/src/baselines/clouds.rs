@@ -1,9 +1,9 @@
-//! Two clouds on one voxel grid, in frames in which their scale is known to be 1: what every method works on.
+//! Two clouds on a voxel grid in a common scale: the input of every method.
 
 use glam::Vec3;
 use nalgebra::Vector3;
 
-use super::Baseline;
+use super::baseline::Baseline;
 use super::fgr::{self, FgrSettings};
 use super::gicp::{self, GicpSettings};
 use super::icp::{self, classical};
@@ -20,64 +20,64 @@ use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::random::Random;
 use sim3align_geometry::similarity::Similarity;
 
-/// The random stream of the share of points that are matched.
+/// Random stream of the subsampling of descriptors.
 const STREAM: u64 = 8;
 
-/// All that a method can be told, in the clouds' common unit.
+/// Settings of all methods, in the common unit of the clouds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UnitSettings {
     /// Radius of the descriptors.
     pub fpfh_radius: f32,
-    /// Points of each cloud that are matched at most; matching is quadratic.
+    /// Maximum number of matched points per cloud; matching is quadratic.
     pub max_features: usize,
-    /// A match that is off by less is right; β of TEASER and Quatro.
+    /// Maximum distance of an inlier; the noise bound β of TEASER and Quatro.
     pub inlier_distance: f64,
-    /// Smallest ratio of the least to the most stretched edge of RANSAC's minimal sets.
+    /// Minimum ratio of the smallest to the largest edge scale within RANSAC's minimal sets.
     pub edge_similarity: f64,
-    /// Minimal sets that RANSAC draws at most.
+    /// Maximum number of minimal sets of RANSAC.
     pub ransac_iterations: usize,
     /// RANSAC's confidence.
     pub ransac_confidence: f64,
-    /// What refines RANSAC's pose, if anything.
+    /// The ICP metric that refines the pose of RANSAC; `None` for no refinement.
     pub icp: Option<IcpMetric>,
-    /// Within which local methods look for nearest points.
+    /// Maximum correspondence distance of local methods.
     pub max_correspondence_distance: f32,
-    /// Iterations of local methods at most.
+    /// Maximum number of iterations of local methods.
     pub icp_iterations: usize,
     /// Whether TEASER estimates the scale; for all others it is 1.
     pub estimates_scale: bool,
-    /// Up in the source frame and in the target frame, which Quatro needs.
+    /// Up directions in the source and target frames, for Quatro.
     pub up: Option<[Vector3<f64>; 2]>,
-    /// Seed of all draws.
+    /// Seed of all random draws.
     pub seed: u64,
 }
 
-/// What a method found.
+/// Result of a method.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solved {
     /// The transform.
     pub target_from_source: Similarity,
-    /// Matches that took part.
+    /// Number of matches.
     pub matches: usize,
-    /// Matches that agree.
+    /// Number of inliers.
     pub inliers: usize,
-    /// Minimal sets that RANSAC drew.
+    /// Number of minimal sets that RANSAC drew.
     pub ransac_iterations: usize,
-    /// The refinement, where there is one.
+    /// The refinement, if any.
     pub refined: Option<Refined>,
 }
 
-/// Both clouds.
+/// A pair of clouds.
 #[derive(Debug, Clone)]
 pub struct Clouds {
-    /// The one that is moved.
+    /// The cloud that is transformed.
     pub source: GridCloud,
-    /// The one that stays.
+    /// The reference cloud.
     pub target: GridCloud,
 }
 
 impl Clouds {
-    /// Matches of their descriptors.
+    /// Matches of FPFH descriptors.
     pub fn matches(&self, settings: &UnitSettings) -> Vec<Match> {
         let mut random = Random::new(settings.seed, STREAM);
         let mut described = |side: &GridCloud| {
@@ -93,7 +93,7 @@ impl Clouds {
         enough_matches(&source.1, &target.1).into_iter().map(own).collect()
     }
 
-    /// What a method makes of the matches; local ones need none, and begin at the identity.
+    /// Estimates the transform from matches; local methods ignore them and start at the identity.
     ///
     /// # Errors
     /// [`ErrorCode::NoConsensus`]; [`ErrorCode::InvalidOption`] for Quatro without the vertical.
@@ -129,7 +129,7 @@ impl Clouds {
             Baseline::IcpPointToPoint => icp(IcpMetric::PointToPoint, &start).map(local),
             Baseline::Ransac => {
                 let found = self.ransac(matches, settings)?;
-                // Where nothing is within reach, the pose that the matches agree with stands.
+                // Without correspondences for ICP, the pose of RANSAC is the result.
                 let refined = settings.icp.and_then(|metric| icp(metric, &found.target_from_source).ok());
                 let target_from_source = refined.map_or(found.target_from_source, |refined| refined.target_from_source);
                 Ok(Solved { target_from_source, refined, ..found })
@@ -171,17 +171,6 @@ impl Clouds {
             refined: None,
         })
     }
-}
-
-/// What local methods say whose clouds do not touch.
-pub(super) fn no_overlap(pairs: usize) -> Error {
-    Error::new(
-        ErrorCode::NoConsensus,
-        "source",
-        format!("{pairs} points within reach of the target"),
-        "six at least",
-        "Start nearer, or widen the largest distance of correspondences.",
-    )
 }
 
 fn no_vertical() -> Error {

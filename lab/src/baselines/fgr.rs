@@ -2,12 +2,13 @@
 //!
 //! Minimises Σ μ r²/(μ + r²) over the matches' distances r by its line process: weights (μ/(μ + r²))², one
 //! Gauss-Newton step, and so on, while μ falls from the size of the clouds, where the objective is all but quadratic,
-//! to a small one, where wrong matches have no say.
+//! to a small one, where incorrect matches have no influence.
 //!
 //! Options and their defaults are Open3D's, also where it departs from the paper: the clouds are divided by the larger
 //! of both radii, and μ, which is a squared distance, falls until it is below `max_correspondence_distance`, which is
-//! none. On purpose otherwise:
-//! - μ begins at the radius in the frame it is used in, as published: 1 in the normalised one. Open3D 0.20 begins there at
+//! none. Intentional differences:
+//! - μ begins at the radius in the frame it is used in, as published: 1 in the normalised one. Open3D 0.20 begins there
+//!   at
 //!   the radius in the clouds' own unit, so that its answer depends on whether they are in metres or in millimetres
 //!   ([`FgrSettings::initial_mu`] repeats that).
 //! - Too few matches are an error where Open3D returns the identity.
@@ -28,36 +29,36 @@ use sim3align_geometry::similarity::{Similarity, vector3};
 /// The random stream of the tuple test.
 const STREAM: u64 = 6;
 
-/// Matches, after the tuple test, that an answer needs.
+/// Minimum number of matches after the tuple test.
 const MIN_MATCHES: usize = 10;
 
-/// Tuples tried for each match.
+/// Number of tuples drawn per match.
 const TRIALS_PER_MATCH: usize = 100;
 
-/// Matches that are used at most: an even share of more.
+/// Maximum number of matches; more are subsampled evenly.
 const MAX_MATCHES: usize = 100_000;
 
-/// Iterations in which μ does not fall, between two in which it does.
+/// Iterations between two decreases of μ.
 const HOLD: usize = 4;
 
 /// Settings of [`solve`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FgrSettings {
-    /// By what μ is divided every fourth iteration, above 1.
+    /// Divisor of μ in every fourth iteration, above 1.
     pub division_factor: f64,
     /// Leaves the clouds in their own unit: `max_correspondence_distance` is then in it too.
     pub use_absolute_scale: bool,
     /// μ at the beginning, in the normalised frame; `None` is 1, or the larger radius where the scale is absolute.
     pub initial_mu: Option<f64>,
-    /// Whether μ falls at all.
+    /// Whether μ decreases.
     pub decrease_mu: bool,
-    /// μ no longer falls once it is below this, a share of the larger cloud's radius.
+    /// μ stops decreasing below this fraction of the radius of the larger cloud.
     pub max_correspondence_distance: f64,
-    /// Iterations.
+    /// Number of iterations.
     pub iterations: usize,
-    /// How alike the sides of three matches' triangles must be, in (0, 1]; `None` leaves the tuple test out.
+    /// Minimum similarity of the edges of a tuple's triangles, in (0, 1]; `None` disables the tuple test.
     pub tuple_scale: Option<f64>,
-    /// Tuples that are used at most.
+    /// Maximum number of tuples.
     pub max_tuples: usize,
     /// Seed of the tuple test.
     pub seed: u64,
@@ -79,22 +80,22 @@ impl Default for FgrSettings {
     }
 }
 
-/// What [`solve`] found.
+/// Result of [`solve`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fgr {
     /// The rigid transform.
     pub target_from_source: Similarity,
-    /// The matches that were optimised over, by their numbers: those of the tuples one after the other, or all.
+    /// Indices of the matches in the optimisation: those of the tuples in order, or all.
     pub used: Vec<usize>,
-    /// The last μ, in the clouds' unit squared.
+    /// The final μ, in the squared unit of the clouds.
     pub mu: f64,
 }
 
-/// The rigid transform that the matches agree with.
+/// Estimates the rigid transform from matches.
 ///
 /// # Errors
-/// [`NoConsensus`](sim3align_geometry::error::ErrorCode::NoConsensus) for fewer than ten matches, or where fewer than four triples
-/// of them form like triangles; [`NonFinite`](sim3align_geometry::error::ErrorCode::NonFinite),
+/// [`NoConsensus`](sim3align_geometry::error::ErrorCode::NoConsensus) for fewer than ten matches, or where fewer than
+/// four triples of them form like triangles; [`NonFinite`](sim3align_geometry::error::ErrorCode::NonFinite),
 /// [`DegeneratePoints`](sim3align_geometry::error::ErrorCode::DegeneratePoints) where a cloud is one point.
 pub fn solve(source: &[Vec3], target: &[Vec3], matches: &[Match], settings: &FgrSettings) -> Result<Fgr> {
     let matched = Matched::of(source, target, matches)?.thinned(MAX_MATCHES, settings.seed);
@@ -139,14 +140,14 @@ pub fn solve(source: &[Vec3], target: &[Vec3], matches: &[Match], settings: &Fgr
     let own = |center: Vector3<f64>| Similarity { scale: unit, rotation: Rotation3::identity(), translation: center };
     let target_from_source = own(target_center).compose(&pose).compose(&own(source_center).inverse());
     Ok(Fgr {
-        // Divided and multiplied by the unit, the scale may be off by a rounding.
+        // Division and multiplication by the unit may round the scale.
         target_from_source: Similarity { scale: 1.0, ..target_from_source },
         used: used.into_iter().map(|i| matched.numbers[i]).collect(),
         mu: mu * unit * unit,
     })
 }
 
-/// Matches whose triangles have sides alike, three by three, each as often as it was drawn.
+/// Tuples of three matches with similar triangles, as a flat list that may contain repetitions.
 fn tuples(matched: &Matched, scale: f64, settings: &FgrSettings) -> Vec<usize> {
     let n = matched.len();
     let mut random = Random::new(settings.seed, STREAM);
@@ -168,7 +169,7 @@ fn tuples(matched: &Matched, scale: f64, settings: &FgrSettings) -> Vec<usize> {
     used
 }
 
-/// The mean of the points, and how far they are from it at most.
+/// The mean of the points, and their maximum distance from it.
 fn middle_and_radius(points: &[Vec3]) -> (Vector3<f64>, f64) {
     let mean = points.iter().map(|&p| vector3(p)).sum::<Vector3<f64>>() / points.len() as f64;
     (mean, points.iter().map(|&p| (vector3(p) - mean).norm()).fold(0.0, f64::max))

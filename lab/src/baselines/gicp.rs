@@ -1,18 +1,17 @@
 //! Generalized ICP, plane to plane (Segal, Haehnel, Thrun, "Generalized-ICP", RSS 2009).
 //!
-//! Every point stands for a patch of surface: its covariance is 1 along the surface and ε across it. A pair's residual
-//! is weighed by the inverse of both covariances' sum, so that patches may slide on each other but not apart. As in
-//! small_gicp and Open3D: ε = 1e-3, 20 neighbours, nearest neighbours paired anew in every iteration; steps are
-//! Levenberg's, as in small_gicp.
+//! Every point represents a surface patch with covariance 1 along and ε across the surface. The residual of a pair is
+//! weighted by the inverse of the sum of both covariances, so that patches can slide along each other but not apart. As
+//! in small_gicp and Open3D: ε = 1e-3, 20 neighbours, nearest neighbours paired anew in every iteration; steps are
+//! those of Levenberg–Marquardt, as in small_gicp.
 //!
-//! On purpose otherwise: a covariance is kept as its normal, from which it follows; where the neighbours lie on one
-//! line, it is 1 in all directions, as small_gicp has it where there are too few.
+//! Intentional differences: a covariance is stored as its normal; if the neighbours are collinear, it is 1 in all
+//! directions, as in small_gicp for too few neighbours.
 
 use glam::Vec3;
 use nalgebra::{Matrix3, Vector3};
 
-use super::clouds::no_overlap;
-use super::icp::TOLERANCE;
+use super::icp::{TOLERANCE, no_overlap};
 use sim3align::evidence::normals::{Neighborhood, Orientation, estimate_normals};
 use sim3align::register::icp::{Refined, moved, movement, rigid_jacobian};
 use sim3align_geometry::error::Result;
@@ -23,30 +22,30 @@ use sim3align_geometry::similarity::{Similarity, vector3};
 /// Fewer pairs than this do not determine a pose.
 const MIN_PAIRS: usize = 6;
 
-/// Steps tried from one linearisation at most.
+/// Maximum number of steps per linearisation.
 const TRIALS: usize = 10;
 
-/// The first step's damping, as a share of the trace.
+/// Initial damping, relative to the trace.
 const DAMPING: f64 = 1e-6;
 
-/// By how much the damping grows where a step gained nothing, and shrinks where it did.
+/// Factor by which the damping increases after a rejected step, and decreases after an accepted one.
 const DAMPING_FACTOR: f64 = 10.0;
 
 /// Settings of [`solve`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GicpSettings {
-    /// Source points without a target point this near take no part, in the target's unit.
+    /// Maximum correspondence distance, in the unit of the target.
     pub max_correspondence_distance: f32,
-    /// Most iterations.
+    /// Maximum number of iterations.
     pub max_iterations: usize,
-    /// Neighbours from which a point's surface is estimated, itself included.
+    /// Neighbours for surface estimation, including the point itself.
     pub neighbors: usize,
-    /// Variance across a surface, that along it being 1.
+    /// Variance across a surface; that along it is 1.
     pub epsilon: f64,
 }
 
 impl GicpSettings {
-    /// The published ones.
+    /// The published settings.
     pub fn new(max_correspondence_distance: f32, max_iterations: usize) -> Self {
         Self { max_correspondence_distance, max_iterations, neighbors: 20, epsilon: 1e-3 }
     }
@@ -56,7 +55,7 @@ impl GicpSettings {
 struct Patches {
     source: Vector3<f64>,
     target: Vector3<f64>,
-    /// Rows W with WᵀW the inverse of both covariances' sum.
+    /// Rows of W, where WᵀW is the inverse of the sum of both covariances.
     whitening: [Vector3<f64>; 3],
 }
 
@@ -70,8 +69,8 @@ impl Patches {
 /// Rigid GICP, the scale that of `initial`. `target_tree` is the tree over the target.
 ///
 /// # Errors
-/// [`NoConsensus`](sim3align_geometry::error::ErrorCode::NoConsensus) where fewer than six source points have a target point within
-/// reach.
+/// [`NoConsensus`](sim3align_geometry::error::ErrorCode::NoConsensus) where fewer than six source points have a target
+/// point within reach.
 pub fn solve(
     source: &[Vec3],
     target: &[Vec3],
@@ -80,7 +79,7 @@ pub fn solve(
     settings: &GicpSettings,
 ) -> Result<Refined> {
     let normals = |points: &[Vec3], tree: &KdTree| {
-        // To which side a normal points is no matter to a covariance.
+        // The covariance does not depend on the sign of the normal.
         estimate_normals(points, tree, Neighborhood::nearest(settings.neighbors), Orientation::TowardsCamera)
     };
     let (source_normals, target_normals) = (normals(source, &KdTree::new(source)), normals(target, target_tree));
@@ -118,7 +117,7 @@ pub fn solve(
         let before = error(&pose);
         // As a distance across the surfaces, of which both have a variance of ε.
         refined.rms = (2.0 * settings.epsilon * before / pairs.len() as f64).sqrt();
-        // Where no step gains anything the pose is at rest.
+        // If no step decreases the cost, the pose has converged.
         refined.converged = true;
         for _ in 0..TRIALS {
             let next = equations.solve(damping).and_then(|delta| moved(&pose, Vector3::zeros(), &delta));
@@ -130,18 +129,18 @@ pub fn solve(
             }
             damping *= DAMPING_FACTOR;
         }
-        // A damping of 0 would leave directions that the data leave free undetermined.
+        // With a damping of 0, unconstrained directions would be undetermined.
         damping = damping.max(1e-12);
     }
     if refined.iterations == 0 { Err(no_overlap(refined.supported)) } else { Ok(refined) }
 }
 
-/// 1 along the surface, ε across it; 1 everywhere where there is no normal.
+/// The covariance: 1 along the surface, ε across it; the identity without a normal.
 fn covariance(normal: Vector3<f64>, epsilon: f64) -> Matrix3<f64> {
     Matrix3::identity() - normal * normal.transpose() * (1.0 - epsilon)
 }
 
-/// The rows of L⁻¹ with L Lᵀ = `c`, by Cholesky's method; `None` where `c` is not positive definite.
+/// The rows of L⁻¹ with L Lᵀ = `c`, by Cholesky decomposition; `None` if `c` is not positive definite.
 fn whitening(c: &Matrix3<f64>) -> Option<[Vector3<f64>; 3]> {
     let l00 = c[(0, 0)].sqrt();
     let (l10, l20) = (c[(1, 0)] / l00, c[(2, 0)] / l00);

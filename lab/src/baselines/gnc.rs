@@ -1,8 +1,8 @@
-//! Graduated non-convexity with truncated least squares (Yang, Antonante, Tzoumas, Carlone, RA-L 2020): of rotations,
-//! from vectors of which many have a wrong counterpart.
+//! Graduated non-convexity with truncated least squares (Yang, Antonante, Tzoumas, Carlone, RA-L 2020)
+//! for rotations, from vector pairs with many outliers.
 //!
 //! The schedule is TEASER++'s: μ begins where the worst residual is just convex and grows by 1.4 an iteration; weights
-//! follow in closed form. It rests where the cost no longer changes.
+//! follow in closed form. It has converged when the cost no longer changes.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
@@ -11,35 +11,36 @@ use sim3align_geometry::singular_values::SingularValues;
 /// Factor of μ from one iteration to the next.
 const GROWTH: f64 = 1.4;
 
-/// Most iterations.
+/// Maximum number of iterations.
 const MAX_ITERATIONS: usize = 100;
 
-/// At rest when the cost changes by less than this, in noise bounds squared.
+/// Converged if the cost changes by less than this, in squared noise bounds.
 const REST: f64 = 1e-9;
 
-/// Below this ratio of the second to the first singular value vectors are on one line, and the turn about it is free.
+/// Ratio of the second to the first singular value below which vectors are collinear, so that the rotation about their
+/// line is undetermined.
 const COLLINEAR: f64 = 1e-6;
 
 /// A vector in the source frame and its counterpart in the target frame.
 pub type VectorPair = [Vector3<f64>; 2];
 
-/// A rotation, and what agrees with it.
+/// A rotation and the weights of the pairs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Gnc {
     /// R.
     pub rotation: Rotation3<f64>,
-    /// From 0 to 1.
+    /// Weights, 0 to 1.
     pub weights: Vec<f64>,
     /// Iterations taken.
     pub iterations: usize,
 }
 
-/// Which rotations there are.
+/// The set of permitted rotations.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Turns {
-    /// All: the residual of a pair is ‖b − R a‖.
+    /// All rotations: the residual of a pair is ‖b − R a‖.
     All,
-    /// Those about a unit vector: the residual is that across it, as Quatro has it.
+    /// Rotations about a unit vector: the residual is the component perpendicular to it, as in Quatro.
     About(Vector3<f64>),
 }
 
@@ -55,7 +56,7 @@ pub fn gnc_tls(pairs: &[VectorPair], noise_bound: f64, turns: Turns) -> Option<G
         if iterations == 1 {
             let worst = residuals.iter().copied().fold(0.0, f64::max);
             mu = 1.0 / (2.0 * worst / bound - 1.0);
-            // All are within the bound: nothing to leave out.
+            // All pairs are within the bound: no outliers.
             if mu.is_nan() || mu <= 0.0 {
                 return Some(Gnc { rotation, weights, iterations });
             }

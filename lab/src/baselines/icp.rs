@@ -1,15 +1,14 @@
-//! Classical ICP: every pair within reach has the same say, and the reach stays as it is.
+//! Classical ICP: equal weights for all pairs within a constant maximum distance.
 
-use super::clouds::no_overlap;
 use sim3align::register::icp::{IcpMetric, IcpSettings, Refined, refine};
 use sim3align::register::support::SupportSettings;
 use sim3align_geometry::cloud::Cloud;
-use sim3align_geometry::error::Result;
+use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::kd_tree::KdTree;
 use sim3align_geometry::similarity::Similarity;
 
-/// The settings under which [`refine`] is what Besl & McKay and Chen & Medioni published, with a largest distance of
-/// correspondences as Open3D's `registration_icp` has it: no weights, no shrinking reach, no look at the normals' angle.
+/// Settings for which [`refine`] is the ICP of Besl & McKay or Chen & Medioni with a maximum correspondence distance,
+/// like `registration_icp` of Open3D: without weights, decreasing distance, and check of the normals.
 pub fn classical(metric: IcpMetric, max_correspondence_distance: f32, max_iterations: usize) -> IcpSettings {
     IcpSettings {
         metric,
@@ -23,15 +22,15 @@ pub fn classical(metric: IcpMetric, max_correspondence_distance: f32, max_iterat
     }
 }
 
-/// Settled when nothing in the unit box moves further than this in an iteration. Open3D stops where fitness and
-/// residual change by less than a millionth, which on a flat objective is earlier.
+/// Converged if no corner of the unit box moves further than this in an iteration. Open3D stops if fitness and residual
+/// change by less than 10⁻⁶, which is earlier for a flat objective.
 pub(super) const TOLERANCE: f64 = 1e-6;
 
 /// Rigid ICP, the scale that of `initial`.
 ///
 /// # Errors
-/// [`NoConsensus`](sim3align_geometry::error::ErrorCode::NoConsensus) where fewer than six source points have a target point within
-/// reach: `initial` would be no answer.
+/// [`NoConsensus`](sim3align_geometry::error::ErrorCode::NoConsensus) where fewer than six source points have a target
+/// point within reach: `initial` would be no answer.
 pub fn solve(
     source: &Cloud,
     target: &Cloud,
@@ -41,4 +40,15 @@ pub fn solve(
 ) -> Result<Refined> {
     let refined = refine(source, target, target_tree, initial, settings);
     if refined.iterations == 0 { Err(no_overlap(refined.supported)) } else { Ok(refined) }
+}
+
+/// Error of local methods if the clouds do not overlap at the initial pose.
+pub(super) fn no_overlap(pairs: usize) -> Error {
+    Error::new(
+        ErrorCode::NoConsensus,
+        "source",
+        format!("{pairs} points within reach of the target"),
+        "six at least",
+        "Start nearer, or widen the largest distance of correspondences.",
+    )
 }

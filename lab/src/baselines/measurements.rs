@@ -1,4 +1,4 @@
-//! Matched points, and what of them does not change under translation: the vectors between them.
+//! Matched points, and the translation-invariant vectors between them.
 
 use glam::Vec3;
 use nalgebra::Vector3;
@@ -8,25 +8,25 @@ use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::random::Random;
 use sim3align_geometry::similarity::vector3;
 
-/// The random stream of the thinning.
+/// Random stream of the subsampling.
 const STREAM: u64 = 7;
 
-/// The random stream of [`links`].
+/// Random stream of [`links`].
 const LINKS_STREAM: u64 = 9;
 
-/// Points with their counterparts, finite.
+/// Finite corresponding points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Matched {
-    /// In the source frame.
+    /// Points in the source frame.
     pub source: Vec<Vector3<f64>>,
-    /// In the target frame, as many.
+    /// Corresponding points in the target frame.
     pub target: Vec<Vector3<f64>>,
-    /// The number of each in what it was made from.
+    /// Index of each correspondence in the original list.
     pub numbers: Vec<usize>,
 }
 
 impl Matched {
-    /// The points of matches; those of points that do not exist are passed over.
+    /// The points of matches; matches of points that do not exist are skipped.
     ///
     /// # Errors
     /// [`ErrorCode::NonFinite`].
@@ -42,10 +42,10 @@ impl Matched {
         matched.checked()
     }
 
-    /// The points themselves, the first with the first.
+    /// Corresponding points, by position.
     ///
     /// # Errors
-    /// [`ErrorCode::WrongLength`] where they are not as many, [`ErrorCode::NonFinite`].
+    /// [`ErrorCode::WrongLength`] if the lengths differ, [`ErrorCode::NonFinite`].
     pub fn from_points(source: &[Vector3<f64>], target: &[Vector3<f64>]) -> Result<Self> {
         if source.len() != target.len() {
             return Err(Error::new(
@@ -73,17 +73,17 @@ impl Matched {
         ))
     }
 
-    /// How many.
+    /// Number of correspondences.
     pub fn len(&self) -> usize {
         self.numbers.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no correspondences.
     pub fn is_empty(&self) -> bool {
         self.numbers.is_empty()
     }
 
-    /// Those at `indices`.
+    /// The correspondences at `indices`.
     pub fn select(&self, indices: &[usize]) -> Self {
         Self {
             source: indices.iter().map(|&i| self.source[i]).collect(),
@@ -92,7 +92,7 @@ impl Matched {
         }
     }
 
-    /// At most `count` of them, one drawn from each of as many equal runs.
+    /// At most `count` correspondences, one drawn from each of `count` equal intervals.
     pub fn thinned(self, count: usize, seed: u64) -> Self {
         if self.len() <= count {
             return self;
@@ -126,7 +126,7 @@ pub fn links(n: usize, count: usize, seed: u64) -> Vec<[usize; 2]> {
     pairs
 }
 
-/// What every method says that finds nothing.
+/// Error of methods without a result.
 pub(super) fn no_consensus(matches: usize, agreeing: usize, expected: &'static str) -> Error {
     Error::new(
         ErrorCode::NoConsensus,

@@ -1,8 +1,9 @@
-//! General registration: two clouds of one scale, such as scans of a room or of a street.
+//! Registration of two clouds of the same scale, such as scans of a room or a street, by the methods for comparison.
 
 use nalgebra::Vector3;
 
-use super::{Baseline, Clouds, UnitSettings};
+use super::baseline::Baseline;
+use super::clouds::{Clouds, UnitSettings};
 use sim3align::evidence::extents::{Extents, target_from_source};
 use sim3align::evidence::normals::outward_normals;
 use sim3align::evidence::observation::MIN_POINTS;
@@ -13,36 +14,36 @@ use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::number::number;
 use sim3align_geometry::similarity::Similarity;
 
-/// Neighbours from which the normal of a point is estimated that has none.
+/// Neighbours for normal estimation, for clouds without normals.
 const NORMAL_NEIGHBORS: usize = 30;
 
-/// Settings of [`register_pair`], in the clouds' own unit.
+/// Settings of [`register_pair`], in the unit of the clouds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PairSettings {
     /// Edge of the voxels, above 0.
     pub voxel_size: f64,
     /// Radius of the descriptors, in voxels.
     pub fpfh_radius_voxels: f64,
-    /// Points of each cloud that are matched at most, an even share of more. Matching is quadratic.
+    /// Maximum number of matched points per cloud; more are subsampled evenly. Matching is quadratic.
     pub max_features: usize,
-    /// A match that is off by less is right, in voxels; β of TEASER and Quatro.
+    /// Maximum distance of an inlier, in voxels; the noise bound β of TEASER and Quatro.
     pub inlier_distance_voxels: f64,
-    /// Within which local methods look for nearest points, in voxels.
+    /// Maximum correspondence distance of local methods, in voxels.
     pub max_correspondence_distance_voxels: f64,
-    /// Minimal sets that RANSAC draws at most.
+    /// Maximum number of minimal sets of RANSAC.
     pub ransac_iterations: usize,
-    /// What refines RANSAC's pose, if anything.
+    /// The ICP metric that refines the pose of RANSAC; `None` for no refinement.
     pub icp: Option<IcpMetric>,
-    /// Iterations of local methods at most.
+    /// Maximum number of iterations of local methods.
     pub icp_iterations: usize,
-    /// Up in both frames, which Quatro turns about.
+    /// Up direction in both frames, for Quatro.
     pub up: [f64; 3],
-    /// Seed of all draws.
+    /// Seed of all random draws.
     pub seed: u64,
 }
 
 impl PairSettings {
-    /// The usual ones; z is up.
+    /// Default settings; z is up.
     pub fn new(voxel_size: f64) -> Self {
         Self {
             voxel_size,
@@ -59,10 +60,10 @@ impl PairSettings {
     }
 }
 
-/// The rigid transform that takes the source to the target. Local methods begin where the clouds are.
+/// Estimates the rigid transform from source to target. Local methods start at the identity.
 ///
-/// Normals are taken from the clouds, where they have them: for scans, pointing to the scanner. Else they are estimated,
-/// and point away from the middle of each cloud.
+/// Normals of the clouds are used if present (for scans, they point to the scanner). Otherwise they are estimated, and
+/// point away from the centre of each cloud.
 ///
 /// # Errors
 /// [`ErrorCode::TooFewPoints`], [`ErrorCode::NonFinite`], [`ErrorCode::DegeneratePoints`],
@@ -80,7 +81,7 @@ pub fn register_pair(
     }
     check("source", source)?;
     check("target", target)?;
-    // One frame for both, so that where they are is where they stay.
+    // A common frame, so that the relative pose of the clouds is preserved.
     let frame = Extents::of("target", &target.points)?;
     let voxel_size = settings.voxel_size / frame.diagonal();
     let grid = |argument: &str, cloud: &Cloud| {
@@ -110,7 +111,7 @@ pub fn register_pair(
     let matches = if baseline.is_local() { Vec::new() } else { clouds.matches(&unit) };
     let found = clouds.solve(baseline, &matches, &unit)?.target_from_source;
     let own = target_from_source(&frame, &found, &frame);
-    // The frame's scale and its inverse may be a rounding off 1.
+    // The product of the scale of the frame and its inverse may round.
     Ok(Similarity { scale: 1.0, ..own })
 }
 

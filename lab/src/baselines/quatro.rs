@@ -1,8 +1,7 @@
-//! Quatro (Lim et al., "A Single Correspondence Is Enough", ICRA 2022): TEASER++ for things that stand upright in both
-//! clouds. Its rotation is one about the vertical, fitted to the vectors across it, for which fewer right matches are
-//! enough.
+//! Quatro (Lim et al., "A Single Correspondence Is Enough", ICRA 2022): TEASER++ for clouds with a known
+//! vertical. It only estimates the rotation about the vertical, for which fewer correct matches suffice.
 //!
-//! On purpose otherwise: the vertical is any direction, in both frames its own, where the original's is z in both.
+//! Intentional difference: the vertical is any direction per frame, instead of z in both.
 
 use nalgebra::{Rotation3, Vector3};
 
@@ -15,7 +14,7 @@ use sim3align_geometry::similarity::Similarity;
 /// Settings of [`solve`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct QuatroSettings {
-    /// All but the rotation.
+    /// Settings other than the rotation.
     pub teaser: TeaserSettings,
     /// Up in the source frame, of any length above 0.
     pub source_up: Vector3<f64>,
@@ -23,7 +22,7 @@ pub struct QuatroSettings {
     pub target_up: Vector3<f64>,
 }
 
-/// The similarity that takes matched points to each other, the first to the first, and up to up.
+/// Estimates the similarity from corresponding points that maps up to up.
 ///
 /// # Errors
 /// As [`teaser::solve`](super::teaser::solve); [`ErrorCode::InvalidOption`] for an up of length 0.
@@ -46,7 +45,7 @@ fn unit(up: Vector3<f64>) -> Result<Vector3<f64>> {
     Err(Error::new(ErrorCode::InvalidOption, "options.up", "no direction", "a vector of a length above 0", remedy))
 }
 
-/// The smallest rotation that takes one unit vector to another.
+/// The smallest rotation from one unit vector to another.
 fn shortest_turn(from: Vector3<f64>, to: Vector3<f64>) -> Rotation3<f64> {
     let axis = from.cross(&to);
     let (sine, cosine) = (axis.norm(), from.dot(&to));
@@ -56,7 +55,7 @@ fn shortest_turn(from: Vector3<f64>, to: Vector3<f64>) -> Rotation3<f64> {
     if cosine > 0.0 {
         return Rotation3::identity();
     }
-    // Upside down: about any axis across it.
+    // For opposite vectors: a half turn about any perpendicular axis.
     let other = if from.x.abs() < 0.5 { Vector3::x() } else { Vector3::y() };
     about(from.cross(&other).normalize(), 0.0, -1.0)
 }

@@ -1,15 +1,15 @@
 //! TEASER++ (Yang, Shi, Carlone, "TEASER: Fast and Certifiable Point Cloud Registration", T-RO 2021), without its
-//! certificate: scale, then rotation, then translation, each of what does not depend on the next.
+//! certificate: decoupled estimation of scale, rotation and translation.
 //!
 //! 1. Scale by adaptive voting over the ratios of lengths, or known.
-//! 2. Matches that agree pairwise on lengths: the largest clique, found exactly within a budget of work; beyond it the
-//!    innermost core, as KISS-Matcher (Lim et al. 2025) has it always.
-//! 3. Rotation by graduated non-convexity on the vectors between the matches that are left.
-//! 4. Translation by adaptive voting, axis by axis.
+//! 2. Matches that pairwise preserve lengths: the maximum clique, found exactly within a budget of work; beyond it the
+//!    innermost core, which KISS-Matcher (Lim et al. 2025) always uses.
+//! 3. Rotation by graduated non-convexity on the vectors between the remaining matches.
+//! 4. Translation by adaptive voting per axis.
 //!
-//! On purpose otherwise: a rotation is fitted to vectors across the whole set ([`TeaserSettings::links`]), where TEASER++
-//! chains each match to the next, which in the order of a voxel grid is its neighbour: short vectors are mostly noise.
-//! Ratios of lengths are drawn where there are very many of them. What has no answer is an error, not the identity.
+//! Intentional differences: a rotation is fitted to vectors across the whole set ([`TeaserSettings::links`]), where
+//! TEASER++ chains each match to the next, which in the order of a voxel grid is its neighbour: short vectors are
+//! mostly noise. Large sets of length ratios are subsampled. Failure is an error, not the identity.
 
 use nalgebra::{Rotation3, Vector3};
 
@@ -22,19 +22,19 @@ use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::number::number;
 use sim3align_geometry::similarity::Similarity;
 
-/// Matches that an answer needs.
+/// Minimum number of matches.
 const MIN_MATCHES: usize = 3;
 
-/// Ratios of lengths that vote on the scale, about.
+/// Approximate number of length ratios that vote on the scale.
 const MAX_RATIOS: usize = 250_000;
 
-/// Words of bitsets that the search for the largest clique may look at: about half a second.
+/// Budget of the search for the maximum clique, in words of bitsets: about half a second.
 const CLIQUE_BUDGET: u64 = 300_000_000;
 
-/// Which matches rotation and translation are estimated from.
+/// Selection of the matches for rotation and translation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InlierSelection {
-    /// The largest clique of matches that agree pairwise; the innermost core where it is not found within the budget.
+    /// The maximum clique of pairwise compatible matches, or the innermost core if the budget is exceeded.
     LargestClique,
     /// The innermost core.
     InnermostCore,
@@ -45,51 +45,52 @@ pub enum InlierSelection {
 /// Settings of [`solve`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TeaserSettings {
-    /// β: how far a right match may be off, in the target's unit, above 0.
+    /// Noise bound β, in the unit of the target, above 0.
     pub noise_bound: f64,
-    /// Whether the scale is estimated, or known.
+    /// Whether the scale is estimated or fixed.
     pub scale: ScaleMode,
-    /// Which matches are left out.
+    /// Selection of matches.
     pub selection: InlierSelection,
-    /// Vectors for each match that the rotation is fitted to; 1 is TEASER++'s chain.
+    /// Number of vectors per match for the rotation; 1 is the chain of TEASER++.
     pub links: usize,
-    /// Matches that are used at most: an even share of more. 5000 take 3 MB and 12.5 million comparisons.
+    /// Maximum number of matches; more are subsampled evenly. 5000 take 3 MB and 12.5 million comparisons.
     pub max_matches: usize,
-    /// Seed of the share.
+    /// Seed of the subsampling.
     pub seed: u64,
 }
 
 impl TeaserSettings {
-    /// The usual ones.
+    /// Default settings.
     pub fn new(noise_bound: f64, scale: ScaleMode) -> Self {
         let selection = InlierSelection::LargestClique;
         Self { noise_bound, scale, selection, links: 32, max_matches: 5000, seed: 0 }
     }
 }
 
-/// What [`solve`] found.
+/// Result of [`solve`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Teaser {
     /// The transform.
     pub target_from_source: Similarity,
-    /// The matches that rotation and translation were estimated from, by their numbers.
+    /// Indices of the matches selected for rotation and translation.
     pub selected: Vec<usize>,
-    /// Those of them that are within the noise bound along every axis.
+    /// The selected matches within the noise bound along every axis.
     pub inliers: Vec<usize>,
-    /// Whether they are certainly the largest clique.
+    /// Whether the selection is proven to be the maximum clique.
     pub is_largest_clique: bool,
 }
 
-/// The similarity that takes matched points to each other, the first to the first.
+/// Estimates the similarity from corresponding points.
 ///
 /// # Errors
-/// [`ErrorCode::NoConsensus`] where fewer than three matches agree or their rotation is free; [`ErrorCode::WrongLength`],
-/// [`ErrorCode::NonFinite`], [`ErrorCode::InvalidOption`] for a noise bound or a scale that is not above 0.
+/// [`ErrorCode::NoConsensus`] if fewer than three matches agree or their rotation is undetermined;
+/// [`ErrorCode::WrongLength`], [`ErrorCode::NonFinite`], [`ErrorCode::InvalidOption`] for a noise bound or a scale that
+/// is not above 0.
 pub fn solve(source: &[Vector3<f64>], target: &[Vector3<f64>], settings: &TeaserSettings) -> Result<Teaser> {
     solve_with(&Matched::from_points(source, target)?, settings, Turns::All)
 }
 
-/// [`solve`], over some rotations only.
+/// Like [`solve`], for a set of permitted rotations.
 pub(super) fn solve_with(matched: &Matched, settings: &TeaserSettings, turns: Turns) -> Result<Teaser> {
     let beta = positive("options.noiseBound", settings.noise_bound)?;
     let count = matched.len();
@@ -110,7 +111,7 @@ pub(super) fn solve_with(matched: &Matched, settings: &TeaserSettings, turns: Tu
 
     let mut vectors = selected.differences(&links(selected.len(), settings.links.max(1), settings.seed));
     vectors.iter_mut().for_each(|[a, _]| *a *= scale);
-    // The difference of two points is off by twice as much.
+    // The noise bound of the difference of two points is twice that of a point.
     let rotation = gnc_tls(&vectors, 2.0 * beta, turns).ok_or_else(|| too_few(indices.len()))?.rotation;
     let (translation, agrees) = voted_translation(&selected, scale, rotation, beta).ok_or_else(|| too_few(0))?;
     let inliers: Vec<usize> = (0..selected.len()).filter(|&i| agrees[i]).map(|i| selected.numbers[i]).collect();
@@ -129,13 +130,13 @@ fn positive(argument: &'static str, value: f64) -> Result<f64> {
     Err(Error::new(ErrorCode::InvalidOption, argument, number(value), "a number above 0", remedy))
 }
 
-/// The scale that most ratios of lengths agree with. A length of the source is known to within 2β.
+/// The scale with the most votes among the length ratios. A length has a noise bound of 2β.
 fn voted_scale(matched: &Matched, beta: f64, seed: u64) -> Option<f64> {
     let pairs = links(matched.len(), (MAX_RATIOS / matched.len()).max(1), seed);
     let (mut ratios, mut ranges) = (Vec::with_capacity(pairs.len()), Vec::with_capacity(pairs.len()));
     for [a, b] in matched.differences(&pairs) {
         let length = a.norm();
-        // Points that coincide have no ratio.
+        // Coincident points have no ratio.
         if length > 0.0 {
             ratios.push(b.norm() / length);
             ranges.push(2.0 * beta / length);
@@ -144,7 +145,7 @@ fn voted_scale(matched: &Matched, beta: f64, seed: u64) -> Option<f64> {
     vote(&ratios, &ranges).map(|vote| vote.value).filter(|scale| *scale > 0.0)
 }
 
-/// Indices of the matches that agree on lengths, and whether they are certainly the largest clique.
+/// Indices of the selected matches, and whether they are proven to be the maximum clique.
 fn select(matched: &Matched, scale: f64, beta: f64, selection: InlierSelection) -> (Vec<usize>, bool) {
     if selection == InlierSelection::None {
         return ((0..matched.len()).collect(), false);
@@ -167,7 +168,7 @@ fn select(matched: &Matched, scale: f64, beta: f64, selection: InlierSelection) 
     (graph.innermost_core(), false)
 }
 
-/// The translation, and which matches agree with it along every axis.
+/// The translation, and the matches that agree with it along every axis.
 fn voted_translation(
     matched: &Matched,
     scale: f64,

@@ -1,25 +1,25 @@
-//! Adaptive voting: the number that most of many measurements agree with, each known to within a range.
+//! Adaptive voting: the value that most of many scalar measurements with known ranges agree with.
 //!
-//! min over x of Σ min((v − x)²/r², 1), exactly: which measurements agree changes at the ends of their ranges only, and
-//! between two ends the best x is their weighted mean (Yang, Shi, Carlone, "TEASER", T-RO 2021, §V).
+//! Minimises Σ min((v − x)²/r², 1) over x exactly: the consensus set changes only at the ends of ranges, and between
+//! two ends the best x is its weighted mean (Yang, Shi, Carlone, "TEASER", T-RO 2021, §V).
 //!
-//! On purpose otherwise: TEASER++ and KISS-Matcher add squares that are not divided by r² to ranges that are not
+//! Intentional difference: TEASER++ and KISS-Matcher add squares that are not divided by r² to ranges that are not
 //! squared, so that their compromise between near and many depends on the unit of length.
 
 use sim3align_geometry::order::{index_of, pack, sort};
 
-/// The outcome of a vote.
+/// Result of a vote.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Vote {
     /// x.
     pub value: f64,
     /// Σ min((v − x)²/r², 1).
     pub cost: f64,
-    /// Which measurements are within their range of x.
+    /// Whether each measurement is within its range of x.
     pub agreeing: Vec<bool>,
 }
 
-/// Sums over those that agree.
+/// Sums over the consensus set.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sums {
     count: f64,
@@ -29,7 +29,7 @@ struct Sums {
 }
 
 impl Sums {
-    /// A measurement comes (1.0) or goes (-1.0).
+    /// Adds (1.0) or removes (−1.0) a measurement.
     fn add(&mut self, sign: f64, value: f64, range: f64) {
         let weight = sign / (range * range);
         self.count += sign;
@@ -42,13 +42,13 @@ impl Sums {
         self.value / self.weight
     }
 
-    /// What it costs beside agreeing with none: squares for ones.
+    /// Cost relative to an empty consensus set.
     fn gain(&self) -> f64 {
         self.count - (self.square - self.value * self.mean())
     }
 }
 
-/// The vote of `values`, each known to within its `range` above 0; `None` for none, and where a number is not finite.
+/// Votes on `values` with ranges above 0; `None` without values, or if a number is not finite.
 pub fn vote(values: &[f64], ranges: &[f64]) -> Option<Vote> {
     let n = values.len().min(ranges.len());
     let (values, ranges) = (&values[..n], &ranges[..n]);
@@ -56,11 +56,11 @@ pub fn vote(values: &[f64], ranges: &[f64]) -> Option<Vote> {
     if n == 0 || !values.iter().zip(ranges).all(sound) {
         return None;
     }
-    // About one of them: squares of large numbers would drown their differences.
+    // Relative to one value: squares of large numbers would lose the precision of differences.
     let origin = values[0];
     let mut ends = Vec::with_capacity(2 * n);
     for (i, (value, range)) in (0_u32..).zip(values.iter().zip(ranges)) {
-        // Of equal ends those that begin come first.
+        // At equal ends, ranges that begin come first.
         ends.push(pack((value - origin - range) as f32, i));
         ends.push(pack((value - origin + range) as f32, i + n as u32));
     }
@@ -72,13 +72,13 @@ pub fn vote(values: &[f64], ranges: &[f64]) -> Option<Vote> {
         let (i, sign) = if index < n { (index, 1.0) } else { (index - n, -1.0) };
         sums.add(sign, values[i] - origin, ranges[i]);
         if sums.count == 0.0 {
-            // What came and went leaves roundings.
+            // Additions and removals leave rounding errors.
             sums = Sums::default();
         } else if sums.gain() > best.0 {
             best = (sums.gain(), passed);
         }
     }
-    // Once more, without what came and went: sums of those that agree, in their own order.
+    // Recomputes the sums over the consensus set, without these rounding errors.
     let mut agrees = vec![false; n];
     for &end in &ends[..=best.1] {
         let index = index_of(end) as usize;

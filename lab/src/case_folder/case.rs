@@ -1,4 +1,4 @@
-//! A case: a folder with one observation, one mesh and, where it is known, the true pose.
+//! Reads case folders: one observation, one mesh and optionally the true pose.
 
 use std::fs;
 use std::path::{Component, Path, PathBuf};
@@ -13,7 +13,7 @@ use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::similarity::Similarity;
 
-/// The files that may hold each part, in order of preference.
+/// File names of each part, in order of preference.
 const DEPTH_FILES: &[&str] = &["depth.npy", "depth.png"];
 const MASK_FILES: &[&str] = &["mask.png", "mask.npy", "mask.json"];
 const MESH_FILES: &[&str] = &["mesh.glb", "mesh.gltf", "mesh.obj", "mesh.ply", "mesh.stl"];
@@ -22,20 +22,20 @@ const CAMERA_FILES: &[&str] = &["camera.json"];
 /// The content of a case folder.
 #[derive(Debug, Clone)]
 pub struct Case {
-    /// The folder's name.
+    /// Name of the folder.
     pub name: String,
     /// Depth, mask and camera.
     pub observation: Observation,
-    /// The mesh, in its own frame.
+    /// The mesh, in the mesh frame.
     pub mesh: Mesh,
-    /// `camera_from_mesh` and the declared symmetry in words, where `gt.json` has them.
+    /// `camera_from_mesh` and the description of the symmetry, if `gt.json` has them.
     pub truth: Option<(Similarity, String)>,
-    /// What the camera file warns of.
+    /// Warnings of the camera file.
     pub warnings: Vec<String>,
 }
 
 /// Reads a case folder: `depth.npy|png`, `mask.png|npy|json` (COCO RLE), `mesh.glb|gltf|obj|ply|stl`, `camera.json`
-/// and, optionally, `gt.json`. Whole-number depth uses the camera file's depth scale, else millimetres.
+/// and, optionally, `gt.json`. Integer depth has the unit of the camera file, by default millimetres.
 ///
 /// # Errors
 /// [`ErrorCode::InvalidArgument`] for a missing file, and those of the readers and of
@@ -50,7 +50,7 @@ pub fn read_case(folder: &Path) -> Result<Case> {
         let path = path.display().to_string();
         move |error: Error| error.about(path)
     };
-    // The camera may need the image's size, and the depth the camera's scale: the first look is only for the scale.
+    // The camera may need the size of the image, and depth the scale of the camera file, which is therefore read first.
     let depth_scale_m = read_camera(&camera_bytes, None, None).ok().and_then(|camera| camera.depth_scale_m);
     let depth_options = DepthReadOptions { depth_scale: None, integer_depth_scale: depth_scale_m };
     let depth = read_depth(&depth_bytes, &depth_options).map_err(in_file(&depth_path))?;
@@ -73,7 +73,7 @@ pub fn read_case(folder: &Path) -> Result<Case> {
     Ok(Case { name: name.unwrap_or_else(|| folder.display().to_string()), observation, mesh, truth, warnings })
 }
 
-/// The first of `names` in the folder, and its bytes.
+/// The first existing file of `names`, and its content.
 fn find(folder: &Path, names: &[&str]) -> Result<(PathBuf, Vec<u8>)> {
     let missing = |found: String| {
         Error::new(
@@ -91,7 +91,7 @@ fn find(folder: &Path, names: &[&str]) -> Result<(PathBuf, Vec<u8>)> {
     Ok((path, bytes))
 }
 
-/// A file that a `.gltf` names, from below its folder only.
+/// A file referenced by a `.gltf`; only files below its folder are read.
 fn read_beside(folder: &Path, uri: &str) -> Option<Vec<u8>> {
     let is_below = Path::new(uri).components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
     if is_below { fs::read(folder.join(uri)).ok() } else { None }

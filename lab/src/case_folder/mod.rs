@@ -1,4 +1,5 @@
-//! Case folders: one observation, one mesh and, where it is known, the true pose.
+//! Case folders: one observation, one mesh and optionally the true pose.
 
 pub mod case;
+pub(crate) mod contents;
 pub mod write;

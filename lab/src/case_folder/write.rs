@@ -1,4 +1,4 @@
-//! Core types out, as files that other programs read.
+//! Encodes depth maps, masks, images, clouds and meshes as files.
 
 use std::io;
 
@@ -14,7 +14,8 @@ use sim3align_geometry::mesh::Mesh;
 pub fn depth_npy(depth: &DepthMap) -> Vec<u8> {
     let mut header =
         format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, {}), }}", depth.height(), depth.width());
-    // Magic, version and length take 10 bytes; the data begin at a multiple of 64, the header ends in a line feed.
+    // Magic, version and length take 10 bytes; the data begin at a multiple of 64, and the header ends with a line
+    // feed.
     let header_bytes = (10 + header.len() + 1).next_multiple_of(64) - 10;
     header.extend(core::iter::repeat_n(' ', header_bytes - 1 - header.len()));
     header.push('\n');
@@ -40,7 +41,7 @@ pub fn depth_png(depth: &DepthMap, depth_scale: f64) -> Result<Vec<u8>> {
             "Pass metres per unit: 0.001 reaches 65 m.",
         ));
     }
-    // The encoder takes 16-bit samples in the machine's order.
+    // The encoder takes 16-bit samples in native byte order.
     let units = depth.data().iter().map(|&z| (f64::from(z) / depth_scale).round() as u16);
     let bytes: Vec<u8> = units.flat_map(u16::to_ne_bytes).collect();
     png(&bytes, depth.width(), depth.height(), ExtendedColorType::L16)
@@ -49,13 +50,13 @@ pub fn depth_png(depth: &DepthMap, depth_scale: f64) -> Result<Vec<u8>> {
 /// A mask as 8-bit grey PNG: 255 is the object.
 ///
 /// # Errors
-/// [`ErrorCode::Internal`] where the encoder fails.
+/// [`ErrorCode::Internal`] if the encoder fails.
 pub fn mask_png(mask: &Mask) -> Result<Vec<u8>> {
     let bytes: Vec<u8> = mask.data().iter().map(|&m| if m == 0 { 0 } else { 255 }).collect();
     png(&bytes, mask.width(), mask.height(), ExtendedColorType::L8)
 }
 
-/// A picture as 8-bit RGB PNG, rows of red, green and blue.
+/// An image as 8-bit RGB PNG; pixels are row-major.
 ///
 /// # Errors
 /// [`ErrorCode::WrongLength`] and [`ErrorCode::EmptyImage`] for a size that is not the picture's.
@@ -66,7 +67,7 @@ pub fn rgb_png(pixels: &[[u8; 3]], width: usize, height: usize) -> Result<Vec<u8
 
 fn png(bytes: &[u8], width: usize, height: usize, colour: ExtendedColorType) -> Result<Vec<u8>> {
     let mut file = io::Cursor::new(Vec::new());
-    // Of 16-bit depth, half as large as with the encoder's defaults.
+    // Halves the size of 16-bit depth relative to the default settings.
     let encoder = PngEncoder::new_with_quality(&mut file, CompressionType::Best, FilterType::Sub);
     let written = encoder.write_image(bytes, width as u32, height as u32, colour);
     written.map_err(|error| {

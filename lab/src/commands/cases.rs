@@ -1,12 +1,12 @@
-//! Writes one generated case with a known truth.
+//! `case`: writes a generated case folder with the true pose.
 
 use std::path::PathBuf;
 
 use lexopt::prelude::*;
 use sim3align_geometry::error::Error;
 use sim3align_lab::samples::case::SampleCase;
-use sim3align_lab::samples::scenes::DEPTH_SCALE;
 use sim3align_lab::samples::shape::Kind;
+use sim3align_lab::scenes::DEPTH_SCALE;
 
 use super::Failure;
 
@@ -27,7 +27,7 @@ struct Arguments {
     depth_scale: Option<f64>,
 }
 
-/// `None` where help is asked for.
+/// `None` if help is requested.
 fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Error> {
     let (mut folder, mut kind, mut seed, mut depth_scale) = (None, Kind::Mug, 0, None);
     let message = |error: Error| error.to_string();
@@ -46,7 +46,7 @@ fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Error>
     Ok(Some(Arguments { folder, kind, seed, depth_scale }))
 }
 
-/// Metres per unit of a depth map in a format; `None` for floats.
+/// Metres per unit of a depth format; `None` for floats.
 fn depth_format(name: &str) -> Result<Option<f64>, lexopt::Error> {
     match name {
         "npy" => Ok(None),

@@ -6,12 +6,12 @@ pub mod profile;
 pub mod registration;
 pub mod scenes;
 
-/// Why a command did not run to its end.
+/// Reason for which a command ended early.
 pub enum Failure {
-    /// Help was asked for.
+    /// Help was requested.
     Help(&'static str),
-    /// The arguments are wrong; the usage says what is right.
+    /// Invalid arguments, with the usage text.
     Usage(lexopt::Error, &'static str),
-    /// The command failed.
+    /// Failure of the command.
     Failed(String),
 }

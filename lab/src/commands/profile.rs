@@ -1,4 +1,4 @@
-//! Aligns case folders with the natively compiled core: what `npm run profile` compares WebAssembly with.
+//! `profile`: aligns case folders with the native build, which `npm run profile` compares with WebAssembly.
 
 use std::time::Instant;
 
@@ -46,7 +46,7 @@ struct Arguments {
     folders: Vec<String>,
 }
 
-/// `None` where help is asked for.
+/// `None` if help is requested.
 fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Error> {
     let (mut options, mut runs, mut folders) = (AlignOptions::default(), None, Vec::new());
     while let Some(argument) = parser.next()? {

@@ -1,10 +1,10 @@
-//! Writes cluttered scenes as case folders.
+//! `scenes`: writes cluttered scenes as case folders.
 
 use std::path::PathBuf;
 
 use lexopt::prelude::*;
 use sim3align_geometry::error::Error;
-use sim3align_lab::samples::scenes::{Prior, SCENES, SceneSet};
+use sim3align_lab::scenes::{Prior, SCENES, SceneSet};
 
 use super::Failure;
 
@@ -27,7 +27,7 @@ struct Arguments {
     threads: usize,
 }
 
-/// `None` where help is asked for.
+/// `None` if help is requested.
 fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Error> {
     let (mut folder, mut scenes, mut set_seed, mut priors) = (None, SCENES, 0, Prior::ALL.to_vec());
     let mut threads = std::thread::available_parallelism().map_or(1, usize::from);

@@ -1,12 +1,12 @@
-//! What a depth model sees of an object on a table: the true mesh rendered, and the faults of such models.
+//! Renders an object on a table as depth map, with the errors of monocular depth models.
 
 use core::f64::consts::TAU;
 
 use glam::Vec3;
 use nalgebra::{Matrix3, Vector3};
 
-use super::evaluation::scene::{count, hidden, in_front, put_before};
-use super::{DEPTH_STREAM, VIEW_STREAM, between};
+use crate::cases::scene::{count, hidden, in_front, put_before};
+use crate::draws::between;
 use sim3align_geometry::error::Result;
 use sim3align_geometry::image::{DepthMap, Image, Mask};
 use sim3align_geometry::mesh::Mesh;
@@ -15,10 +15,17 @@ use sim3align_geometry::random::Random;
 use sim3align_geometry::rasteriser::Rasteriser;
 use sim3align_geometry::similarity::{Similarity, vec3, vector3};
 
+/// Random stream of the viewpoint.
+const VIEW_STREAM: u64 = 0x7669_6577;
+
+/// Random stream of the errors of the depth map.
+const DEPTH_STREAM: u64 = 0x6465_7074;
+
 const WIDTH: usize = 640;
 const HEIGHT: usize = 480;
 
-/// The largest share of an object that is hidden, and how many half centimetres aside a thing moves at most to hide less.
+/// The largest share of an object that is hidden, and how many half centimetres aside a thing moves at most to hide
+/// less.
 const MOST_HIDDEN: f64 = 0.35;
 const STEPS_ASIDE: u8 = 40;
 /// How far apart they stand, metres.
@@ -36,7 +43,7 @@ const FLYING: [[f64; 2]; 2] = [[0.5, 0.4], [0.25, 0.2]];
 /// Where the camera stands, what it is, and the room about the object.
 #[derive(Debug, Clone, Copy)]
 pub struct View {
-    /// Intrinsics for 640 × 480 pixels.
+    /// Intrinsics for images of 640 × 480 pixels.
     pub camera: Pinhole,
     /// Object frame (metres, z up, the table at z = 0) to camera.
     pub camera_from_object: Similarity,
@@ -47,9 +54,9 @@ pub struct View {
 /// An object as a depth model sees it.
 #[derive(Debug, Clone)]
 pub struct Seen {
-    /// Metres; 0 where there is no reading.
+    /// Depth in metres; 0 is "no reading".
     pub depth: DepthMap,
-    /// The object's pixels.
+    /// Mask of the object.
     pub mask: Mask,
     /// For each vertex of the mesh, whether a triangle of it is visible.
     pub vertices: Vec<bool>,
@@ -59,7 +66,7 @@ impl View {
     /// A view from one side and somewhat above, with what is towards +x (a handle) at the side.
     ///
     /// # Errors
-    /// Those of [`Pinhole::new`] and [`Similarity::from_parts`], which a fault of the generator alone could cause.
+    /// Those of [`Pinhole::new`] and [`Similarity::from_parts`], which only a bug in the generator could cause.
     pub fn new(mesh: &Mesh, seed: u64) -> Result<Self> {
         let random = &mut Random::new(seed, VIEW_STREAM);
         let side = if random.below(2) == 0 { -1.0 } else { 1.0 };
@@ -86,11 +93,11 @@ impl View {
         })
     }
 
-    /// The thing moved to where it hides a good part of the object, if it is of a fitting size: on the table, right before
-    /// the object, and aside as far as it has to be.
+    /// The thing moved to where it hides a good part of the object, if it is of a fitting size: on the table, right
+    /// before the object, and aside as far as it has to be.
     ///
     /// # Errors
-    /// Those of [`Mesh::new`], which a fault of the generator alone could cause.
+    /// Those of [`Mesh::new`], which only a bug in the generator could cause.
     pub fn before(&self, object: &Mesh, thing: &Mesh) -> Result<Mesh> {
         let rendered = |mesh: &Mesh| {
             let mut rasteriser = Rasteriser::new();
@@ -115,11 +122,11 @@ impl View {
         at(STEPS_ASIDE)
     }
 
-    /// Renders the object on its table, with what stands before it, and degrades the depth as a monocular model would. The warp has no part that
-    /// scales the object as a whole: the truth is that of the depth map's own metric.
+    /// Renders the object on its table, with what stands before it, and degrades the depth as a monocular model would.
+    /// The warp has no part that scales the object as a whole: the truth is that of the depth map's own metric.
     ///
     /// # Errors
-    /// Those of [`Image::new`], which a fault of the generator alone could cause.
+    /// Those of [`Image::new`], which only a bug in the generator could cause.
     pub fn see(&self, mesh: &Mesh, occluder: Option<&Mesh>, seed: u64) -> Result<Seen> {
         let mut rasteriser = Rasteriser::new();
         let mut others = vec![0.0; WIDTH * HEIGHT];

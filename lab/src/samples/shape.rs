@@ -5,14 +5,17 @@ use core::f64::consts::{PI, TAU};
 use glam::DVec3;
 use nalgebra::{Rotation3, Vector3};
 
-use super::evaluation::draft::Object;
-use super::evaluation::scene::put_down_turned;
-use super::{SHAPE_STREAM, between};
+use crate::cases::families;
+use crate::cases::scene::put_down_turned;
+use crate::draws::between;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::random::Random;
 
-/// What can be generated.
+/// Random stream of the dimensions.
+const SHAPE_STREAM: u64 = 0x7368_6170;
+
+/// Kinds of generated objects.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// A mug: a hollow cup, some 10 cm tall, with a handle towards +x.
@@ -29,7 +32,7 @@ impl Kind {
     /// All kinds.
     pub const ALL: &[Self] = &[Self::Mug, Self::Hammer, Self::Spoon, Self::Occluded];
 
-    /// The kind's name, as the command line spells it.
+    /// The name on the command line.
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Mug => "mug",
@@ -39,7 +42,7 @@ impl Kind {
         }
     }
 
-    /// The kind of a name.
+    /// The kind with a name.
     ///
     /// # Errors
     /// [`ErrorCode::InvalidOption`] for any other.
@@ -77,7 +80,7 @@ impl Kind {
     /// An object of this kind; the seed varies its dimensions.
     ///
     /// # Errors
-    /// Those of [`Mesh::new`], which a fault of the generator alone could cause.
+    /// Those of [`Mesh::new`], which only a bug in the generator could cause.
     pub fn mesh(self, seed: u64) -> Result<Mesh> {
         let mut random = Random::new(seed, SHAPE_STREAM);
         match self {
@@ -102,7 +105,7 @@ impl Kind {
 
 /// One of the evaluation set's objects as it is made to lie or stand, turned about the vertical, radians.
 fn lying(family: &'static str, heading: f64, random: &mut Random) -> Result<Mesh> {
-    let object = Object::of_family(family, random)?.ok_or_else(|| {
+    let object = families::draw_from(family, random)?.ok_or_else(|| {
         Error::new(ErrorCode::Internal, "family", "none", format!("one named {family}"), "Please report it.")
     })?;
     let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), heading);

@@ -204,13 +204,14 @@ fn baselines_agree_with_the_originals() {
     assert_eq!(check(&kept), 0, "some never come to rest");
 }
 
-/// More of them, where a script has written some.
-#[cfg(not(target_arch = "wasm32"))]
+/// More of them, which a script writes.
 #[test]
+#[ignore = "needs SIM3ALIGN_AGREEMENT"]
 fn baselines_agree_with_the_originals_on_further_problems() {
-    let Some(folder) = std::env::var_os("SIM3ALIGN_AGREEMENT") else { return };
+    let folder = std::env::var_os("SIM3ALIGN_AGREEMENT").expect("SIM3ALIGN_AGREEMENT names no folder of problems");
     let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     files.sort();
+    assert!(!files.is_empty(), "SIM3ALIGN_AGREEMENT names an empty folder");
     let problems: Vec<Value> =
         files.iter().map(|file| serde_json::from_slice(&std::fs::read(file).unwrap()).unwrap()).collect();
     println!("{} never come to rest, and are not compared", check(&problems));

@@ -17,10 +17,10 @@ use sim3align_geometry::error::ErrorCode;
 use sim3align_geometry::image::Mask;
 use sim3align_geometry::rasteriser::Rasteriser;
 use sim3align_geometry::similarity::{Similarity, vector3};
+use sim3align_lab::bench::benchmark::{BenchCase, LOOSE, STRICT, run_case};
 use sim3align_lab::case_folder::write;
-use sim3align_lab::samples::benchmark::{BenchCase, LOOSE, STRICT, run_case};
-use sim3align_lab::samples::evaluation::case::{EvaluationCase, EvaluationSet, MIN_MASK_PX};
-use sim3align_lab::samples::evaluation::tier::{Class, Tier};
+use sim3align_lab::cases::case::{EvaluationCase, EvaluationSet, MIN_MASK_PX};
+use sim3align_lab::cases::tier::{Class, Tier};
 
 /// Cases that the tests look at: every class of every tier at least once.
 const LOOKED_AT: usize = 36;

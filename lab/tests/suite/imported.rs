@@ -9,9 +9,9 @@ use sim3align::align::evaluate::{EvaluateOptions, evaluate};
 use sim3align_geometry::error::ErrorCode;
 use sim3align_geometry::random::Random;
 use sim3align_geometry::similarity::{Similarity, vector3};
-use sim3align_lab::samples::benchmark::{BenchCase, Record, STRICT};
-use sim3align_lab::samples::evaluation::case::EvaluationSet;
-use sim3align_lab::samples::imported::{CASE, Outcome, imported, read_answer};
+use sim3align_lab::bench::benchmark::{BenchCase, Record, STRICT};
+use sim3align_lab::bench::imported::{CASE, Outcome, imported, read_answer};
+use sim3align_lab::cases::case::EvaluationSet;
 
 const DOCUMENTATION: &str = include_str!("../../../docs/importing-results.md");
 

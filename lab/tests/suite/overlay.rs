@@ -8,8 +8,8 @@ use sim3align_geometry::image::{DepthMap, Mask};
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::pinhole::Pinhole;
 use sim3align_geometry::similarity::Similarity;
-use sim3align_lab::samples::benchmark::BenchCase;
-use sim3align_lab::samples::overlay::{MASK_COLOUR, POSE_COLOUR, TRUTH_COLOUR, picture};
+use sim3align_lab::bench::benchmark::BenchCase;
+use sim3align_lab::bench::overlay::{MASK_COLOUR, POSE_COLOUR, TRUTH_COLOUR, picture};
 
 const FOCAL_PX: f64 = 100.0;
 

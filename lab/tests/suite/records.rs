@@ -6,9 +6,9 @@ use std::path::PathBuf;
 use serde::de::IgnoredAny;
 use sim3align::precise::options::{AlignOptions, Quality};
 use sim3align_geometry::error::ErrorCode;
-use sim3align_lab::samples::benchmark::{BenchCase, Record, run_case};
-use sim3align_lab::samples::evaluation::case::EvaluationSet;
-use sim3align_lab::samples::records::{RecordFile, RecordKey};
+use sim3align_lab::bench::benchmark::{BenchCase, Record, run_case};
+use sim3align_lab::bench::records::{RecordFile, RecordKey};
+use sim3align_lab::cases::case::EvaluationSet;
 
 /// A path of its own for each test.
 fn fresh(name: &str) -> PathBuf {

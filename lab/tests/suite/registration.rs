@@ -12,14 +12,14 @@ use sim3align::register::register;
 use sim3align_geometry::error::ErrorCode;
 use sim3align_geometry::similarity::{Similarity, vector3};
 use sim3align_lab::case_folder::write::ply_points;
-use sim3align_lab::samples::registration::cloud_file::{bin, flat, read_cloud};
-use sim3align_lab::samples::registration::information::{information, mean_squared_error};
-use sim3align_lab::samples::registration::lidar_set::{Drive, write_lidar};
-use sim3align_lab::samples::registration::overlap::overlap;
-use sim3align_lab::samples::registration::pair::{Criterion, Pair};
-use sim3align_lab::samples::registration::room_set::{RoomScene, SAME_SURFACE_M, write_rooms};
-use sim3align_lab::samples::registration::trajectory::{Block, read_blocks, text};
-use sim3align_lab::samples::registration::{kitti, three_d_match};
+use sim3align_lab::clouds::cloud_file::{bin, flat, read_cloud};
+use sim3align_lab::clouds::lidar_set::{Drive, write_lidar};
+use sim3align_lab::clouds::overlap::overlap;
+use sim3align_lab::clouds::overlap::{information, mean_squared_error};
+use sim3align_lab::clouds::pair::{Criterion, Pair};
+use sim3align_lab::clouds::room_set::{RoomScene, SAME_SURFACE_M, write_rooms};
+use sim3align_lab::clouds::trajectory::{Block, read_blocks, text};
+use sim3align_lab::clouds::{kitti, three_d_match};
 
 use crate::support::Draw;
 

@@ -8,8 +8,8 @@ use glam::Vec3;
 use serde_json::{Value, json};
 use sim3align_geometry::similarity::{Similarity, vec3, vector3};
 use sim3align_lab::case_folder::write::ply_points;
-use sim3align_lab::samples::registration::information::information;
-use sim3align_lab::samples::registration::trajectory::{Block, text};
+use sim3align_lab::clouds::overlap::information;
+use sim3align_lab::clouds::trajectory::{Block, text};
 
 use crate::support::{Draw, mug};
 

@@ -15,9 +15,9 @@ use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::order::median;
 use sim3align_geometry::rasteriser::Rasteriser;
 use sim3align_geometry::triangle_tree::TriangleTree;
-use sim3align_lab::samples::benchmark::BenchCase;
-use sim3align_lab::samples::evaluation::tier::Tier;
-use sim3align_lab::samples::scenes::{
+use sim3align_lab::bench::benchmark::BenchCase;
+use sim3align_lab::cases::tier::Tier;
+use sim3align_lab::scenes::{
     ClutteredScene, LEAST_VISIBLE, MIN_MASK_PX, Prior, SceneCase, ScenePair, SceneSet, Sight, difficulty, tier,
 };
 

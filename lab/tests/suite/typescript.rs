@@ -13,9 +13,10 @@ use sim3align::metrics::pose_error::PoseErrors;
 use sim3align::metrics::symmetry::Symmetry;
 use sim3align::options::scale::ScaleOption;
 use sim3align::options::{Field, Options};
-use sim3align::paper::options::{GuardMode, Icp, PaperOptions};
+use sim3align::paper::options::{GuardMode, PaperOptions};
 use sim3align::precise::options::{AlignOptions, ExtentAxis, Quality, SearchScope};
 use sim3align::progress::Stage;
+use sim3align::register::options::Icp;
 use sim3align::register::options::{EstimateSim3Options, RegisterOptions};
 use sim3align::report::Preset;
 use sim3align::report::{

@@ -21,9 +21,10 @@ const properties = [
 
 /**
  * Resolves an input. `formats` is called only where there is a file that needs it.
+ * @param meshId the number of a prepared mesh
  * @throws {@link Sim3AlignError} for arguments of the wrong kind, and those of the file readers
  */
-export async function resolveInput(input: unknown, formats: LoadFormats): Promise<ResolvedInput> {
+export async function resolveInput(input: unknown, formats: LoadFormats, meshId?: number): Promise<ResolvedInput> {
   checkProperties(input);
   const { resizeMask, pointMap } = input;
   const { warnings, ...image } =
@@ -35,7 +36,7 @@ export async function resolveInput(input: unknown, formats: LoadFormats): Promis
     mask: mask.data,
     maskWidth: mask.width,
     maskHeight: mask.height,
-    mesh: await readMesh(input.mesh, formats),
+    mesh: withoutUndefined({ ...(await readMesh(input.mesh, formats)), id: meshId }),
   };
   return { core: withoutUndefined(core) as CoreInput, warnings };
 }

@@ -1,4 +1,5 @@
 /** The input of `align` and `evaluate`. */
+import type { PreparedMesh } from "../prepared-mesh.js";
 
 /** An encoded file as it was read or fetched. */
 export type EncodedBytes = Uint8Array | ArrayBuffer | Blob;
@@ -112,8 +113,8 @@ export interface MeshFile {
   resources?: Readonly<Record<string, Uint8Array | ArrayBuffer>> | undefined;
 }
 
-/** The object's mesh, in its own frame: arrays, or a GLB, glTF, OBJ, PLY or STL file (node transforms are applied). */
-export type MeshInput = MeshArrays | MeshFile | EncodedBytes;
+/** The object's mesh, in its own frame: arrays, a GLB, glTF, OBJ, PLY or STL file (node transforms are applied), or a prepared mesh. */
+export type MeshInput = MeshArrays | MeshFile | EncodedBytes | PreparedMesh;
 
 /** The mask and the mesh of an input. */
 export interface ObjectInput {

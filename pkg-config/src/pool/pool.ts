@@ -49,6 +49,11 @@ export class WorkerPool implements Engine {
     }
   }
 
+  dropMesh(id: number): void {
+    for (const slot of this.#slots) slot.dropMesh(id);
+    this.#fallback.dropMesh(id);
+  }
+
   dispose(): void {
     this.#ended.abort(disposed());
     for (const slot of this.#slots) slot.end(this.#ended.signal.reason);
@@ -109,14 +114,26 @@ async function send(slot: WorkerSlot, job: Job, { transfer, progress }: Call): P
   // Buffers of WebAssembly memory and of Node's pool can't be moved: they are copied after all.
   for (const isMoved of transfer ? [true, false] : [false]) {
     try {
-      const sent = isMoved ? job : { ...job, data: copied(job.data) as never };
+      const sent = { ...job, data: sentData(slot, job, isMoved) } as Job;
       const request = { type: "job", job: sent, wantsProgress: progress.isWanted, returnData: isMoved } as const;
-      return await slot.request(request, buffersOf(sent.data), progress);
+      const answer = await slot.request(request, buffersOf(sent.data), progress);
+      if ("meshId" in job && job.meshId !== undefined) slot.addMesh(job.meshId);
+      return answer;
     } catch (error) {
       if (!(error instanceof Unsendable)) throw error;
     }
   }
   return null;
+}
+
+/** The data of a job for a worker. The arrays of a prepared mesh are never moved, and sent once to each worker. */
+function sentData(slot: WorkerSlot, job: Job, isMoved: boolean): unknown {
+  if (job.method === "prepareMesh" || !("meshId" in job) || job.meshId === undefined) {
+    return isMoved ? job.data : copied(job.data);
+  }
+  const { mesh, ...rest } = job.data;
+  const sent = slot.hasMesh(job.meshId) ? { positions: new Float32Array() } : copied(mesh);
+  return { ...(isMoved ? rest : copied(rest)), mesh: sent };
 }
 
 /** Whether the arrays of the job were lost with the worker. */

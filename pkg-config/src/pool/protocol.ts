@@ -12,6 +12,8 @@ export type Request =
   | { type: "start"; core: WebAssembly.Module }
   /** `returnData` asks for the job's data back, which have been moved to the worker. */
   | { type: "job"; job: Job; wantsProgress: boolean; returnData: boolean }
+  /** Frees what the worker keeps of a prepared mesh. */
+  | { type: "drop-mesh"; id: number }
   /** The answer to `needs-formats`: the compiled file readers, or why they could not be loaded. */
   | { type: "formats"; formats: WebAssembly.Module | ErrorParts };
 

@@ -46,6 +46,8 @@ export class WorkerSlot {
   readonly #setup: WorkerSetup;
   #port: Port | undefined;
   #pending: Pending | undefined;
+  /** The prepared meshes that the worker keeps, by number. */
+  readonly #meshes = new Set<number>();
 
   constructor(setup: WorkerSetup) {
     this.#setup = setup;
@@ -63,6 +65,7 @@ export class WorkerSlot {
       onFailure: (description) => ifCurrent(() => this.end(new WorkerLost(description))),
     });
     this.#port = port;
+    this.#meshes.clear();
     port.post({ type: "start", core: this.#setup.core });
     return port;
   }
@@ -87,6 +90,22 @@ export class WorkerSlot {
       this.#pending = undefined;
       port.hold(false);
     }
+  }
+
+  /** Whether the worker keeps this mesh. */
+  hasMesh(id: number): boolean {
+    return this.#port !== undefined && this.#meshes.has(id);
+  }
+
+  /** Notes that the worker has answered a job with this mesh. */
+  addMesh(id: number): void {
+    this.#meshes.add(id);
+  }
+
+  /** Has the worker free this mesh. */
+  dropMesh(id: number): void {
+    if (this.hasMesh(id)) this.#port?.post({ type: "drop-mesh", id });
+    this.#meshes.delete(id);
   }
 
   /** Ends the worker and its job. The next request starts another worker. */

@@ -1,4 +1,4 @@
-//! The command line.
+//! Command line of `bench`.
 
 use std::path::{Path, PathBuf};
 
@@ -12,12 +12,12 @@ use sim3align::report::Preset;
 use sim3align_geometry::error::Error;
 use sim3align_lab::baselines::Baseline;
 use sim3align_lab::baselines::align::BaselineOptions;
-use sim3align_lab::samples::benchmark::override_setting;
-use sim3align_lab::samples::evaluation::case::CASES;
-use sim3align_lab::samples::evaluation::tier::{Class, Tier};
-use sim3align_lab::samples::option_text;
-use sim3align_lab::samples::records::RecordKey;
-use sim3align_lab::samples::scenes::Prior;
+use sim3align_lab::bench::benchmark::override_setting;
+use sim3align_lab::bench::option_text;
+use sim3align_lab::bench::records::RecordKey;
+use sim3align_lab::cases::case::CASES;
+use sim3align_lab::cases::tier::{Class, Tier};
+use sim3align_lab::scenes::Prior;
 
 pub const USAGE: &str = "\
 Usage: sim3align-lab bench [--generated N] [--scenes N] [--cases DIR...] [options]
@@ -71,19 +71,19 @@ pub struct Row {
     pub paper: PaperOptions,
     pub search: Vec<(String, f64)>,
     pub method: Method,
-    /// All assignments, as they were written.
+    /// All assignments, as written.
     pub assignments: Vec<String>,
 }
 
-/// What gives a row's poses.
+/// The method that computes the poses of a row.
 #[derive(Clone, Default)]
 pub enum Method {
     /// `align`.
     #[default]
     Align,
-    /// Another method of the crate's.
+    /// Another method of this crate.
     Baseline(Baseline),
-    /// Another program, which has left its answers in this folder.
+    /// Another program; the folder holds its results.
     Import(PathBuf),
 }
 
@@ -103,13 +103,13 @@ impl Row {
         BaselineOptions { paper: self.paper.clone(), lock_scale, up: None }
     }
 
-    /// What a record of this row is kept under.
+    /// The key of a record of this row.
     pub fn key(&self, case: String) -> RecordKey {
         RecordKey { row: self.name.clone(), options: self.assignments.join(" "), case }
     }
 }
 
-/// What is asked for.
+/// The parsed command line.
 pub struct Arguments {
     pub generated: usize,
     pub scenes: usize,
@@ -131,7 +131,7 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    /// `None` where help is asked for.
+    /// `None` if help is requested.
     pub fn parse(mut parser: lexopt::Parser) -> Result<Option<Self>, lexopt::Error> {
         let mut generated = None;
         let said = |error: Error| error.to_string();

@@ -1,8 +1,7 @@
-//! Runs the aligner over generated cases and case folders, and prints tables of what came of it.
+//! `bench`: runs methods over generated cases and case folders, and prints tables of the results.
 
 mod arguments;
 mod run;
-mod scenes;
 mod table;
 
 use super::Failure;

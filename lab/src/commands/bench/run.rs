@@ -1,26 +1,27 @@
-//! The cases, shared out among threads; what comes back is in their order.
+//! Runs the cases on several threads; results are in the order of the cases.
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use serde::de::IgnoredAny;
 use serde_json::json;
+use sim3align_geometry::error::Result as GeometryResult;
 use sim3align_geometry::similarity::Similarity;
 use sim3align_lab::baselines::align::align_baseline;
-use sim3align_lab::samples::benchmark::{BenchCase, Record, run_case, run_method};
-use sim3align_lab::samples::evaluation::case::EvaluationSet;
-use sim3align_lab::samples::evaluation::tier::{Class, Tier};
-use sim3align_lab::samples::imported::imported;
-use sim3align_lab::samples::in_order;
-use sim3align_lab::samples::overlay::picture;
-use sim3align_lab::samples::records::{RecordFile, RecordKey};
-use sim3align_lab::samples::scenes::{Prior, SceneSet};
+use sim3align_lab::bench::benchmark::{BenchCase, Record, run_case, run_method};
+use sim3align_lab::bench::imported::imported;
+use sim3align_lab::bench::overlay::picture;
+use sim3align_lab::bench::records::{RecordFile, RecordKey};
+use sim3align_lab::cases::case::EvaluationSet;
+use sim3align_lab::cases::tier::{Class, Tier};
+use sim3align_lab::parallel::parallel_map;
+use sim3align_lab::scenes::{ClutteredScene, Prior, SceneSet};
 
 use super::arguments::{Arguments, Method, Row};
-use super::scenes::Scenes;
 use super::table;
 
-/// Where a case comes from.
+/// The source of a case.
 pub enum Source {
     Generated(usize),
     Scene { scene: usize, pair: usize, prior: Prior },
@@ -28,12 +29,48 @@ pub enum Source {
 }
 
 impl Source {
-    /// What tells the case from the others of a run.
+    /// Unique name of the case within a run.
     fn id(&self) -> String {
         match self {
             Self::Generated(index) => format!("generated-{index:04}"),
             Self::Scene { scene, pair, prior } => format!("scene-{scene:03}-{pair}-{}", prior.as_str()),
             Self::Folder(folder) => folder.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+        }
+    }
+}
+
+/// A set of scenes that caches the last scene, because its pairs are consecutive.
+struct Scenes {
+    set: SceneSet,
+    last: Mutex<Option<Arc<ClutteredScene>>>,
+}
+
+impl Scenes {
+    fn new(set: SceneSet) -> Self {
+        Self { set, last: Mutex::new(None) }
+    }
+
+    /// All pairs, ordered by scene.
+    fn sources(&self, priors: &[Prior]) -> Vec<Source> {
+        let mut sources = Vec::new();
+        for scene in 0..self.set.scenes() {
+            for pair in 0..self.set.pairs_of(scene) {
+                sources.extend(priors.iter().map(|&prior| Source::Scene { scene, pair, prior }));
+            }
+        }
+        sources
+    }
+
+    fn case(&self, scene: usize, pair: usize, prior: Prior) -> GeometryResult<BenchCase> {
+        self.scene(scene)?.pairs[pair].case(prior).map(BenchCase::from)
+    }
+
+    /// Holds the lock while drawing: waiting threads usually need the same scene.
+    fn scene(&self, index: usize) -> GeometryResult<Arc<ClutteredScene>> {
+        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        match last.as_ref().filter(|scene| scene.index == index) {
+            Some(scene) => Ok(scene.clone()),
+            None => Ok(last.insert(Arc::new(self.set.scene(index)?)).clone()),
         }
     }
 }
@@ -49,7 +86,7 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
         return Err("no case left to run".into());
     }
     if let Some(folder) = &arguments.write {
-        return in_order(arguments.threads, &sources, |source| match source {
+        return map_with_progress(arguments.threads, &sources, |source| match source {
             Source::Generated(index) => {
                 let case = set.case(*index).map_err(|error| error.to_string())?;
                 case.write(&folder.join(case.name())).map_err(|error| error.to_string())
@@ -66,7 +103,7 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
         return go_on(arguments, &sources, &load, path);
     }
     let begun = std::time::Instant::now();
-    let records: Vec<Vec<Record>> = in_order(arguments.threads, &sources, |source| {
+    let records: Vec<Vec<Record>> = map_with_progress(arguments.threads, &sources, |source| {
         let case = load(source)?;
         Ok(arguments.rows.iter().map(|row| run_row(&case, row)).collect())
     })?;
@@ -83,7 +120,7 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
     Ok(())
 }
 
-/// Adds to a file of records what is not there yet. What is done is told on standard output as JSON, a line each.
+/// Adds missing records to a file, and prints each as a line of JSON on standard output.
 fn go_on(
     arguments: &Arguments,
     sources: &[Source],
@@ -98,7 +135,7 @@ fn go_on(
     let total = sources.len() * arguments.rows.len();
     let left: usize = sources.iter().map(|source| missing(source).len()).sum();
     println!("{}", json!({ "total": total, "done": total - left }));
-    in_order(arguments.threads, sources, |source| {
+    map_with_progress(arguments.threads, sources, |source| {
         let missing = missing(source);
         if missing.is_empty() {
             return Ok(());
@@ -164,7 +201,7 @@ fn sources(arguments: &Arguments, scenes: &Scenes) -> Result<Vec<Source>, String
     Ok(sources)
 }
 
-/// The folder itself where it holds a camera file, else the case folders in it.
+/// The folder itself if it contains a camera file, otherwise the case folders in it.
 fn case_folders(folder: &Path) -> Result<Vec<PathBuf>, String> {
     let is_case = |folder: &Path| folder.join("camera.json").is_file();
     if is_case(folder) {
@@ -177,13 +214,13 @@ fn case_folders(folder: &Path) -> Result<Vec<PathBuf>, String> {
     Ok(folders)
 }
 
-/// What `work` makes of every item; how many are done is told on standard error.
-fn in_order<T: Sync, R: Send>(
+/// Maps items in parallel, and reports progress on standard error.
+fn map_with_progress<T: Sync, R: Send>(
     threads: usize,
     items: &[T],
     work: impl Fn(&T) -> Result<R, String> + Sync,
 ) -> Result<Vec<R>, String> {
-    let result = in_order::in_order(threads, items, work, |done| {
+    let result = parallel_map(threads, items, work, |done| {
         if done.is_multiple_of(10) || done == items.len() {
             eprint!("\r{done} of {} ", items.len());
         }

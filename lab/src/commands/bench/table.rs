@@ -1,13 +1,13 @@
-//! Markdown tables.
+//! Markdown tables of `bench`.
 
 use std::fmt::Write;
 
 use sim3align::metrics::Metrics;
 use sim3align::metrics::pose_error::PoseErrors;
-use sim3align_lab::samples::benchmark::{LOOSE, Record, STRICT};
-use sim3align_lab::samples::table::{cell, mean, median};
+use sim3align_lab::bench::benchmark::{LOOSE, Record, STRICT};
+use sim3align_lab::bench::statistics::{cell, mean, median};
 
-/// A column of a metric.
+/// A column with a metric.
 struct Column {
     name: &'static str,
     digits: usize,
@@ -25,7 +25,7 @@ const METRICS: &[Column] = &[
     Column { name: "depth MAE mm", digits: 1, value: |m| m.depth_mae_mm },
 ];
 
-/// All tables of all rows, a row being a set of options and what came of every case with it.
+/// All tables of all rows; a row is a set of options with the records of all cases.
 pub fn report(rows: &[(String, Vec<&Record>)], failures: usize) -> String {
     let mut out = String::new();
     let Some((_, first)) = rows.first() else { return out };
@@ -49,7 +49,7 @@ pub fn report(rows: &[(String, Vec<&Record>)], failures: usize) -> String {
     out
 }
 
-/// The records' indices by what `key` makes of them, in the order in which the keys first come up.
+/// Groups the indices of records by key, in the order of first occurrence.
 fn grouped(records: &[&Record], key: impl Fn(&Record) -> String) -> Vec<(String, Vec<usize>)> {
     let mut groups: Vec<(String, Vec<usize>)> = Vec::new();
     for (i, key) in records.iter().map(|record| key(record)).enumerate() {
@@ -75,7 +75,7 @@ fn line(out: &mut String, group: &str, name: &str, records: &[&Record]) {
         let hits = known.iter().filter(|hit| **hit).count();
         if known.is_empty() { "–".into() } else { format!("{:.1} %", 100.0 * hits as f64 / known.len() as f64) }
     };
-    // No answer is as wrong as can be.
+    // A missing result counts as an infinite error.
     let known = || records.iter().filter(|record| record.truth_metrics.is_some());
     let error = |digits, of: fn(&PoseErrors) -> f64| {
         cell(median(known().map(|record| record.errors.as_ref().map_or(f64::INFINITY, of)).collect()), digits)
@@ -93,7 +93,7 @@ fn line(out: &mut String, group: &str, name: &str, records: &[&Record]) {
         error(2, |e| 100.0 * e.translation_error_relative),
     );
     metrics(out, records, |record| record.alignment.as_ref().and_then(|alignment| alignment.metrics()));
-    // Of answers that were imported it may not be known.
+    // Unknown for some imported results.
     let seconds = records.iter().map(|record| record.seconds).filter(|seconds| seconds.is_finite());
     let _ = writeln!(out, " | {} |", cell(median(seconds.collect()), 2));
 }
@@ -105,7 +105,7 @@ fn truth_line(out: &mut String, group: &str, records: &[&Record]) {
     let _ = writeln!(out, " | |");
 }
 
-/// Means over the cases that have the metric.
+/// Mean over the cases with the metric.
 fn metrics(out: &mut String, records: &[&Record], of: impl Fn(&Record) -> Option<Metrics>) {
     for Column { digits, value, .. } in METRICS {
         let values: Vec<f64> = records.iter().filter_map(|record| value(&of(record)?)).collect();

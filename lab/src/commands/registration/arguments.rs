@@ -1,4 +1,4 @@
-//! The command line.
+//! Command line of `registration`.
 
 use std::path::PathBuf;
 
@@ -67,7 +67,7 @@ pub struct Run {
 }
 
 impl Command {
-    /// `None` where help is asked for.
+    /// `None` if help is requested.
     pub fn parse(mut parser: lexopt::Parser) -> Result<Option<Self>, lexopt::Error> {
         match parser.next()? {
             Some(Value(word)) if word == "write" => write(parser),

@@ -1,4 +1,4 @@
-//! What registers a pair: the one place where methods are plugged in.
+//! The registration methods of the benchmark.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -13,27 +13,26 @@ use sim3align::register::register;
 use sim3align_geometry::cloud::Cloud;
 use sim3align_geometry::similarity::Similarity;
 use sim3align_lab::baselines::{Baseline, PairSettings, register_pair};
-use sim3align_lab::samples::imported::{CLOUDS, Outcome, answer_in};
-use sim3align_lab::samples::option_text;
-use sim3align_lab::samples::records::RecordKey;
-use sim3align_lab::samples::registration::cloud_file::flat;
-use sim3align_lab::samples::registration::pair::Pair;
+use sim3align_lab::bench::imported::{CLOUDS, Outcome, answer_in};
+use sim3align_lab::bench::option_text;
+use sim3align_lab::bench::records::RecordKey;
+use sim3align_lab::clouds::cloud_file::flat;
+use sim3align_lab::clouds::pair::Pair;
 
-/// Correspondences of another program agree with a pose that leaves them this near, in the pair's voxels, where the
-/// file does not say.
+/// Default inlier distance for imported correspondences, in voxels of the pair.
 const INLIER_VOXELS: f64 = 1.5;
 
 /// A registration method. To add one: a variant, its name in [`Method::from_name`], its call in [`Method::run`].
 pub enum Method {
     /// `register`, with the scale fixed at 1 by default.
     Register { options: Box<RegisterOptions>, assignments: Vec<String> },
-    /// Another method of the crate's, at the pair's voxel size.
+    /// Another method of this crate, with the voxel size of the pair.
     Baseline(Baseline),
-    /// Transforms that another program has written, under a name for the tables.
+    /// Transforms of another program, with a name for the tables.
     Import { name: String, folder: PathBuf },
 }
 
-/// A transform, or why there is none, and what it took.
+/// A transform or an error, and the run time.
 pub struct Answer {
     pub target_from_source: Result<Similarity, String>,
     pub seconds: f64,
@@ -63,7 +62,7 @@ impl Method {
         Ok(Self::Register { options: Box::new(options), assignments: assignments.to_vec() })
     }
 
-    /// Its name in the tables.
+    /// Name in the tables.
     pub fn name(&self) -> &str {
         match self {
             Self::Register { .. } => "register",
@@ -72,7 +71,7 @@ impl Method {
         }
     }
 
-    /// What its record of a pair is kept under; `moved` is the seed of the moves.
+    /// The key of its record of a pair; `moved` is the seed of the random transforms.
     pub fn key(&self, pair: &Pair, moved: u64) -> RecordKey {
         let mut options = vec![format!("moved={moved}")];
         if let Self::Register { assignments, .. } = self {
@@ -81,7 +80,7 @@ impl Method {
         RecordKey { row: self.name().into(), options: options.join(" "), case: pair.id.clone() }
     }
 
-    /// Whether it needs the clouds.
+    /// Whether the method reads the clouds.
     pub fn needs_clouds(&self) -> bool {
         !matches!(self, Self::Import { .. })
     }
@@ -100,7 +99,7 @@ impl Method {
             Self::Baseline(baseline) => {
                 let [source, target] = [source, target].map(|points| Cloud::from_points(points.to_vec()));
                 let begun = Instant::now();
-                // As the tutorials have it, RANSAC's pose is refined.
+                // Refines the pose of RANSAC, as in common tutorials.
                 let settings =
                     PairSettings { icp: Some(IcpMetric::PointToPlane), ..PairSettings::new(pair.voxel_size_m) };
                 let pose = register_pair(&source, &target, *baseline, &settings);
@@ -112,7 +111,7 @@ impl Method {
     }
 }
 
-/// The answer of another program.
+/// The result of another program.
 fn imported(pair: &Pair, folder: &Path) -> Answer {
     let (outcome, seconds) = match answer_in(folder, &pair.id, &CLOUDS) {
         Ok(answer) => (Ok(answer.outcome), answer.seconds),

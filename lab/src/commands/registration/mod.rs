@@ -1,8 +1,7 @@
-//! Writes pairs of clouds with a known transform, and runs registration methods over such pairs.
+//! `registration`: writes pairs of clouds with a known transform, and runs registration methods over them.
 
 mod arguments;
 mod method;
-mod record;
 mod run;
 mod table;
 

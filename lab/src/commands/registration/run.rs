@@ -1,4 +1,4 @@
-//! The pairs, shared out among threads.
+//! Registers the pairs on several threads.
 
 use glam::Vec3;
 use serde_json::json;
@@ -7,21 +7,20 @@ use sim3align_geometry::random::Random;
 use sim3align_geometry::rotations::super_fibonacci;
 use sim3align_geometry::similarity::{Similarity, vec3, vector3};
 use sim3align_geometry::voxel_grid::voxel_downsample;
-use sim3align_lab::samples::in_order::in_order;
-use sim3align_lab::samples::records::RecordFile;
-use sim3align_lab::samples::registration::cloud_file::read_cloud;
-use sim3align_lab::samples::registration::lidar_set::write_lidar;
-use sim3align_lab::samples::registration::overlap::overlap;
-use sim3align_lab::samples::registration::pair::Pair;
-use sim3align_lab::samples::registration::room_set::write_rooms;
-use sim3align_lab::samples::registration::{kitti, three_d_match};
+use sim3align_lab::bench::records::RecordFile;
+use sim3align_lab::clouds::cloud_file::read_cloud;
+use sim3align_lab::clouds::lidar_set::write_lidar;
+use sim3align_lab::clouds::overlap::overlap;
+use sim3align_lab::clouds::pair::Pair;
+use sim3align_lab::clouds::room_set::write_rooms;
+use sim3align_lab::clouds::{kitti, three_d_match};
+use sim3align_lab::parallel::parallel_map;
 
 use super::arguments::{Command, Kind, Protocol, Run};
 use super::method::Method;
-use super::record::Record;
-use super::table;
+use super::table::{self, Record};
 
-/// The random stream of `--moved`.
+/// Random stream of `--moved`.
 const MOVED_STREAM: u64 = 0x6d6f_7665;
 
 pub fn run(command: &Command) -> Result<(), String> {
@@ -51,7 +50,7 @@ fn run_pairs(run: &Run) -> Result<(), String> {
     }
     let records = run.records.as_deref().map(RecordFile::open).transpose().map_err(|error| error.to_string())?;
     let work = |pair: &Pair| run_pair(pair, run, records.as_ref());
-    let made = in_order(run.threads, &pairs, work, |done| eprint!("\r{done} of {} ", pairs.len()));
+    let made = parallel_map(run.threads, &pairs, work, |done| eprint!("\r{done} of {} ", pairs.len()));
     eprintln!();
     let all: Vec<Record> = made?.into_iter().flatten().collect();
     let methods: Vec<&str> = run.methods.iter().map(Method::name).collect();
@@ -88,7 +87,7 @@ fn run_pair(pair: &Pair, run: &Run, records: Option<&RecordFile<Record>>) -> Res
         let (a, b) = (voxels(&source).points, voxels(&target).points);
         measure.then(|| overlap(&a, &b, &pair.target_from_source, 0.75 * pair.voxel_size_m as f32))
     });
-    // Another frame for each cloud; what is found is taken back to their own.
+    // Transforms each cloud randomly, and converts the result back to the original frames.
     let (source_move, target_move) = (moved(run.moved, &pair.id, 0), moved(run.moved, &pair.id, 1));
     let [source, target] = [(source, source_move), (target, target_move)]
         .map(|(points, pose)| points.iter().map(|&p| vec3(&pose.apply(vector3(p)))).collect::<Vec<Vec3>>());

@@ -1,17 +1,16 @@
-//! Markdown tables.
+//! Records of registrations, and Markdown tables of them.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use sim3align_lab::samples::table::{cell, mean, median};
+use serde::{Deserialize, Serialize};
+use sim3align_lab::bench::statistics::{cell, mean, median};
 
-use super::record::Record;
-
-/// Lower ends of the bins of overlap, and their names.
+/// Lower bounds of the overlap bins, with names.
 const OVERLAPS: [(f64, &str); 4] =
     [(0.6, "overlap ≥ 60 %"), (0.3, "overlap 30–60 %"), (0.1, "overlap 10–30 %"), (0.0, "overlap < 10 %")];
 
-/// Upper ends of the bins of distance, which concern lidar alone, and their names.
+/// Upper bounds of the distance bins, with names; for lidar only.
 const DISTANCES_M: [(f64, &str); 5] = [
     (7.5, "about 5 m"),
     (15.0, "about 10 m"),
@@ -20,7 +19,26 @@ const DISTANCES_M: [(f64, &str); 5] = [
     (f64::INFINITY, "about 40 m"),
 ];
 
-/// Recall and errors of every method, over all pairs and by bin.
+/// The result of a method on a pair, as stored in the file of records.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Record {
+    pub id: String,
+    pub group: String,
+    pub method: String,
+    pub overlap: Option<f64>,
+    pub distance_m: f64,
+    pub success: bool,
+    pub rotation_deg: Option<f64>,
+    pub translation_m: Option<f64>,
+    pub rmse_m: Option<f64>,
+    pub error: Option<String>,
+    pub seconds: Option<f64>,
+    /// Target from source, column-major.
+    pub matrix: Option<[f64; 16]>,
+}
+
+/// Table of recall and errors of every method, over all pairs and per bin.
 pub fn report(records: &[Record], methods: &[&str]) -> String {
     let mut out = String::new();
     let _ = writeln!(

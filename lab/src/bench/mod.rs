@@ -1,0 +1,8 @@
+//! The benchmark: runs methods over cases, keeps records of the results, and imports results of other programs.
+
+pub mod benchmark;
+pub mod imported;
+pub mod option_text;
+pub mod overlay;
+pub mod records;
+pub mod statistics;

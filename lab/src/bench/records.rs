@@ -1,0 +1,103 @@
+//! A file of records (JSON lines) to which runs append, and from which an interrupted run resumes.
+
+use std::collections::BTreeMap;
+use std::fs::{File, OpenOptions};
+use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
+use std::path::Path;
+use std::sync::Mutex;
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use sim3align_geometry::error::{Error, ErrorCode, Result};
+
+/// The unique key of a record: the row, its options as written, and the case.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct RecordKey {
+    /// Name of the row.
+    pub row: String,
+    /// Options of the row; rows with the same name and other options are different.
+    pub options: String,
+    /// The case.
+    pub case: String,
+}
+
+/// A line of the file.
+#[derive(Serialize, Deserialize)]
+struct Line<T> {
+    #[serde(flatten)]
+    key: RecordKey,
+    record: T,
+}
+
+/// A file of records, open for appending. `T` is the content kept of existing records; [`serde::de::IgnoredAny`] if
+/// only their existence matters.
+#[derive(Debug)]
+pub struct RecordFile<T> {
+    file: Mutex<File>,
+    path: String,
+    done: BTreeMap<RecordKey, T>,
+}
+
+impl<T: DeserializeOwned> RecordFile<T> {
+    /// Opens a file, and creates it if necessary. A truncated last line is removed.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidArgument`] where the file can't be read or written; [`ErrorCode::CorruptFile`] for a whole
+    /// line that is no record.
+    pub fn open(path: &Path) -> Result<Self> {
+        let name = path.display().to_string();
+        let failed = |error| unusable(&name, &error);
+        let mut options = OpenOptions::new();
+        let mut file = options.read(true).write(true).create(true).truncate(false).open(path).map_err(failed)?;
+        let mut done = BTreeMap::new();
+        let mut whole = 0;
+        let mut reader = BufReader::new(&file);
+        let mut line = Vec::new();
+        while reader.read_until(b'\n', &mut line).map_err(failed)? > 0 && line.ends_with(b"\n") {
+            let Line { key, record } = serde_json::from_slice(&line).map_err(|_| {
+                let found = format!("another line after {} records", done.len());
+                let remedy = "Name another file, or remove this one.";
+                Error::new(ErrorCode::CorruptFile, name.clone(), found, "one record a line", remedy)
+            })?;
+            done.insert(key, record);
+            whole += line.len() as u64;
+            line.clear();
+        }
+        file.set_len(whole).map_err(failed)?;
+        file.seek(SeekFrom::End(0)).map_err(failed)?;
+        Ok(Self { file: Mutex::new(file), path: name, done })
+    }
+
+    /// Whether a record was there when the file was opened.
+    pub fn has(&self, key: &RecordKey) -> bool {
+        self.done.contains_key(key)
+    }
+
+    /// The record, if it was there when the file was opened.
+    pub fn get(&self, key: &RecordKey) -> Option<&T> {
+        self.done.get(key)
+    }
+
+    /// Appends a record and flushes it to the file.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidArgument`] where it can't be written.
+    pub fn add(&self, key: &RecordKey, record: &impl Serialize) -> Result<()> {
+        let line = serde_json::to_string(&Line { key: key.clone(), record }).map_err(|error| unencodable(&error))?;
+        let line = format!("{line}\n");
+        // A thread that panicked wrote all of its line or, at the end of the file, part of one.
+        let mut file = self.file.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        file.write_all(line.as_bytes()).map_err(|error| unusable(&self.path, &error))
+    }
+}
+
+fn unusable(name: &str, error: &std::io::Error) -> Error {
+    let remedy = "Name a file in a folder that exists, on a disk that is not full.";
+    let found = format!("a file system that says: {error}");
+    Error::new(ErrorCode::InvalidArgument, name.to_owned(), found, "a file to read and write", remedy)
+}
+
+fn unencodable(error: &serde_json::Error) -> Error {
+    Error::new(ErrorCode::Internal, "record", error.to_string(), "what JSON can hold", "Please report it.")
+}

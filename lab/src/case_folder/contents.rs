@@ -1,0 +1,67 @@
+//! The files of a generated case folder.
+
+use serde_json::{Value, json};
+
+use super::write;
+use sim3align::evidence::observation::Observation;
+use sim3align::metrics::symmetry::Symmetry;
+use sim3align_geometry::error::Result;
+use sim3align_geometry::mesh::Mesh;
+use sim3align_geometry::similarity::Similarity;
+
+/// Names and contents of the files. `truth` holds the fields of `gt.json` other than the pose. Depth is written as
+/// floats (NPY, metres) or, given `depth_scale` (metres per unit), as integers (16-bit PNG).
+pub(crate) fn case_files(
+    observation: &Observation,
+    mesh: &Mesh,
+    camera_from_mesh: &Similarity,
+    mut truth: Value,
+    depth_scale: Option<f64>,
+) -> Result<Vec<(&'static str, Vec<u8>)>> {
+    let (camera, depth) = (observation.camera(), observation.depth());
+    let mut camera_json = json!({
+        "fx": camera.fx, "fy": camera.fy, "cx": camera.cx, "cy": camera.cy,
+        "width": depth.width(), "height": depth.height(),
+    });
+    let depth_file = match depth_scale {
+        None => ("depth.npy", write::depth_npy(depth)),
+        Some(scale) => {
+            camera_json["depthScale"] = json!(scale);
+            ("depth.png", write::depth_png(depth, scale)?)
+        }
+    };
+    let Similarity { scale, rotation, translation } = camera_from_mesh;
+    let row = |i: usize| [rotation[(i, 0)], rotation[(i, 1)], rotation[(i, 2)]];
+    truth["available"] = json!(true);
+    truth["scale"] = json!(scale);
+    truth["rotation"] = json!([row(0), row(1), row(2)]);
+    truth["translation"] = json!([translation.x, translation.y, translation.z]);
+    Ok(vec![
+        depth_file,
+        ("mask.png", write::mask_png(observation.mask())?),
+        ("camera.json", format!("{camera_json:#}\n").into_bytes()),
+        ("mesh.glb", write::glb(mesh)),
+        ("gt.json", format!("{truth:#}\n").into_bytes()),
+    ])
+}
+
+/// The symmetry in `gt.json`: as a word that all readers understand, and exactly as `symmetryAxes`.
+pub(crate) fn symmetry_json(symmetry: &Symmetry, name: &str) -> Value {
+    let axes = match symmetry {
+        Symmetry::Declared(axes) => axes.as_slice(),
+        _ => &[],
+    };
+    let words = match axes.iter().find(|axis| axis.fold.is_none()) {
+        Some(_) => "continuous",
+        None if axes.is_empty() => "none",
+        None => "discrete",
+    };
+    let axes: Vec<Value> =
+        axes.iter().map(|a| json!({ "axis": [a.axis.x, a.axis.y, a.axis.z], "fold": a.fold })).collect();
+    json!({ "symmetry": words, "symmetryAxes": axes, "note": format!("generated: {name}") })
+}
+
+/// The `parameters` of `meta.json`: numbers by name.
+pub(crate) fn parameters_json(parameters: &[(&'static str, f64)]) -> Value {
+    parameters.iter().map(|(name, value)| ((*name).to_owned(), json!(value))).collect()
+}

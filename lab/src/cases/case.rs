@@ -1,0 +1,262 @@
+//! One case of an evaluation set, and the set.
+
+use std::path::Path;
+
+use glam::DVec3;
+use serde_json::json;
+
+use super::draft::{Axis, Object};
+use super::families;
+use super::generator::generate;
+use super::mask::Segmented;
+use super::readings::Readings;
+use super::scans::Scan;
+use super::scene::{Scene, put_down, turned_axis};
+use super::streams::{GENERATOR_STREAM, MASK_STREAM, OBJECT_STREAM, READINGS_STREAM, SCENE_STREAM};
+use super::tier::{Class, Tier};
+use crate::case_folder::contents::{case_files, parameters_json, symmetry_json};
+use crate::cases::distortion::canonicalise;
+use crate::draws::mixed;
+use crate::files::write_files;
+use sim3align::evidence::observation::Observation;
+use sim3align::evidence::sample::SurfaceMoments;
+use sim3align::metrics::symmetry::{Symmetry, SymmetryAxis};
+use sim3align_geometry::error::{Error, ErrorCode, Result};
+use sim3align_geometry::mesh::Mesh;
+use sim3align_geometry::random::Random;
+use sim3align_geometry::similarity::Similarity;
+
+/// Default number of cases.
+pub const CASES: usize = 240;
+/// Minimum number of pixels in a mask.
+pub const MIN_MASK_PX: usize = 350;
+/// Maximum distance of the object.
+const FARTHEST_M: f32 = 12.0;
+/// Maximum number of draws per case.
+const DRAWS: u64 = 400;
+
+/// A set of cases.
+#[derive(Debug, Clone, Default)]
+pub struct EvaluationSet {
+    seed: u64,
+    scans: Vec<Scan>,
+}
+
+/// A generated case with its truth.
+#[derive(Debug, Clone)]
+pub struct EvaluationCase {
+    /// Index in the set.
+    pub index: usize,
+    /// Difficulty.
+    pub tier: Tier,
+    /// The property that the case tests.
+    pub class: Class,
+    /// What it shows: the family's name, or the mesh file's.
+    pub family: String,
+    /// Names of the simulated errors.
+    pub tags: Vec<&'static str>,
+    /// Magnitudes of the simulated errors.
+    pub parameters: Vec<(&'static str, f64)>,
+    /// Depth, mask and camera.
+    pub observation: Observation,
+    /// The generated mesh, in its canonical frame.
+    pub mesh: Mesh,
+    /// The true pose, in the scale of the depth map.
+    pub camera_from_mesh: Similarity,
+    /// Rotational symmetries of the mesh, in its frame.
+    pub symmetry: Symmetry,
+    /// The true object: metres, z up, on the table.
+    pub object: Mesh,
+    /// Where it is seen, in the depth map's own metric.
+    pub camera_from_object: Similarity,
+}
+
+impl EvaluationSet {
+    /// The set of a seed, of procedural objects.
+    pub fn new(seed: u64) -> Self {
+        Self { seed, scans: Vec::new() }
+    }
+
+    /// The set that shows, in a third of its cases, the GLB files of a folder.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidArgument`] if a folder cannot be read, and those of the readers.
+    pub fn with_meshes(seed: u64, folder: &Path) -> Result<Self> {
+        Ok(Self { seed, scans: Scan::all(folder)? })
+    }
+
+    /// Case `index`. It depends on the set's seed, its meshes and the index alone.
+    ///
+    /// # Errors
+    /// Only in case of a bug in the generator.
+    pub fn case(&self, index: usize) -> Result<EvaluationCase> {
+        for draw in 0..DRAWS {
+            if let Some(case) = self.draw(index, mixed([self.seed, index as u64, draw]))? {
+                return Ok(case);
+            }
+        }
+        Err(Error::new(
+            ErrorCode::Internal,
+            "case",
+            format!("no fitting draw of case {index}"),
+            "one in a few",
+            "Please report the set's seed.",
+        ))
+    }
+
+    /// A draw of a case; `None` if it shows too little of the object, or not the property of its class.
+    fn draw(&self, index: usize, seed: u64) -> Result<Option<EvaluationCase>> {
+        let (tier, class) = (Tier::of(index), Class::of(index));
+        let random = &mut Random::new(seed, OBJECT_STREAM);
+        let object = families::draw(random, tier, class, &self.scans)?;
+        let random = &mut Random::new(seed, SCENE_STREAM);
+        let (placed, symmetry) = put_down(&object, tier, random)?;
+        let scene = Scene::draw(&placed, tier, class, random)?;
+        let Some(mut tags) = shows_enough(&scene, &placed, &object, tier, class) else { return Ok(None) };
+
+        let segmented = Segmented::draw(&scene, (tier, class), &mut Random::new(seed, MASK_STREAM))?;
+        let mask_px = segmented.mask.data().iter().filter(|m| **m != 0).count();
+        if mask_px < MIN_MASK_PX || (class == Class::Tiny && mask_px > 1600) {
+            return Ok(None);
+        }
+        let random = &mut Random::new(seed, READINGS_STREAM);
+        let readings = Readings::draw(&scene, object.diagonal(), (tier, class), random)?;
+        if readings.missing > tier.pick(0.1, 0.25, 0.4) {
+            return Ok(None);
+        }
+        let random = &mut Random::new(seed, GENERATOR_STREAM);
+        let generated = generate(&object, &placed, &symmetry, &scene, (tier, class), random)?;
+        let (mesh, object_from_mesh) = canonicalise(&generated.mesh, seed)?;
+
+        // The scale error of the depth map scales the camera frame.
+        let metric = Similarity { scale: readings.bias, ..Similarity::identity() };
+        let camera_from_object = metric.compose(&scene.camera_from_world);
+        tags.push(readings.kind);
+        tags.extend(segmented.tags);
+        tags.extend(generated.tags);
+        let mut parameters = vec![
+            ("maskPx", mask_px as f64),
+            ("visible", scene.visible_px() as f64 / scene.silhouette_px.max(1) as f64),
+            ("hidden", scene.hidden),
+            ("cut", scene.cut),
+            ("maskOffsetPx", segmented.offset_px),
+            ("depthBias", readings.bias),
+            ("missingDepth", readings.missing),
+            ("diagonalM", object.diagonal()),
+        ];
+        parameters.extend(generated.parameters);
+        Ok(Some(EvaluationCase {
+            index,
+            tier,
+            class,
+            family: object.family,
+            tags,
+            parameters,
+            observation: Observation::new(readings.depth, segmented.mask, scene.camera)?,
+            mesh,
+            camera_from_mesh: camera_from_object.compose(&object_from_mesh),
+            symmetry: declared(&generated.symmetry, &object_from_mesh),
+            object: placed,
+            camera_from_object,
+        }))
+    }
+}
+
+impl EvaluationCase {
+    /// Name of the case and its folder.
+    pub fn name(&self) -> String {
+        format!("{:04}-{}-{}-{}", self.index, self.tier.as_str(), self.class.as_str(), self.family)
+    }
+
+    /// The files of its case folder: name and content. `gt.json` has the symmetry in words, as all readers understand
+    /// them, and, exactly, as `symmetryAxes`.
+    ///
+    /// # Errors
+    /// [`ErrorCode::Internal`] if an encoder fails.
+    pub fn files(&self) -> Result<Vec<(&'static str, Vec<u8>)>> {
+        let truth = symmetry_json(&self.symmetry, &self.name());
+        let parameters = parameters_json(&self.parameters);
+        let meta = json!({
+            "index": self.index,
+            "tier": self.tier.as_str(),
+            "class": self.class.as_str(),
+            "family": self.family,
+            "tags": self.tags,
+            "parameters": parameters,
+        });
+        let mut files = case_files(&self.observation, &self.mesh, &self.camera_from_mesh, truth, None)?;
+        files.push(("meta.json", format!("{meta:#}\n").into_bytes()));
+        Ok(files)
+    }
+
+    /// Writes the case folder, and creates it if necessary.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidArgument`] if the folder or a file cannot be written, and those of
+    /// [`EvaluationCase::files`].
+    pub fn write(&self, folder: &Path) -> Result<()> {
+        write_files(folder, &self.files()?)
+    }
+}
+
+/// Whether a scene shows enough of its object, and what its class is about; if so, what there is to remark.
+fn shows_enough(scene: &Scene, placed: &Mesh, object: &Object, tier: Tier, class: Class) -> Option<Vec<&'static str>> {
+    let pixels = scene.visible_px();
+    let visible = pixels as f64 / scene.silhouette_px.max(1) as f64;
+    let shows_class = match class {
+        Class::Occluded => scene.hidden >= tier.pick(0.0, 0.05, 0.08),
+        Class::BorderCut => (0.04..=0.25).contains(&scene.cut),
+        _ => scene.cut < 1e-9,
+    };
+    if pixels < MIN_MASK_PX || visible < tier.least_visible() || !shows_class || !is_telling(scene, placed, tier) {
+        return None;
+    }
+    let far = scene.object_depth.iter().any(|z| *z > FARTHEST_M);
+    if far {
+        return None;
+    }
+    let mut tags = Vec::new();
+    if !object.keys.is_empty() {
+        let key_px = scene.part_px(&object.keys, &object.parts);
+        if key_px < (pixels / 50).max(25) {
+            // What tells how the object is turned is out of sight: no case to count on, though one that occurs.
+            if tier != Tier::Hard {
+                return None;
+            }
+            tags.push("key-part-hidden");
+        }
+    }
+    if scene.hidden > 0.02 {
+        tags.push("partly-hidden");
+    }
+    if scene.cut > 0.0 {
+        tags.push("cut");
+    }
+    Some(tags)
+}
+
+/// Whether what is flat is not seen on edge, nor what is long from its end: nobody takes such a photo to be measured.
+pub(crate) fn is_telling(scene: &Scene, placed: &Mesh, tier: Tier) -> bool {
+    let moments = SurfaceMoments::of(placed);
+    let axes = moments.principal_axes();
+    let [thin, middle, long] = axes.values.map(|variance| variance.max(0.0).sqrt());
+    let eye = DVec3::from_array(scene.camera_from_world.inverse().translation.into());
+    let view = (eye - moments.centroid).normalize_or_zero();
+    let across = tier.pick(0.5, 0.4, 0.3);
+    let on_edge = thin < 0.35 * middle && axes.vectors[0].dot(view).abs() < across;
+    let from_its_end = middle < 0.5 * long && axes.vectors[2].cross(view).length() < across;
+    !on_edge && !from_its_end
+}
+
+/// The symmetry in the frame of the mesh.
+pub(crate) fn declared(axes: &[Axis], object_from_mesh: &Similarity) -> Symmetry {
+    if axes.is_empty() {
+        return Symmetry::None;
+    }
+    let mesh_from_object = object_from_mesh.rotation.inverse();
+    let axis = |&(axis, fold): &Axis| {
+        let turned = turned_axis(mesh_from_object.matrix(), axis);
+        SymmetryAxis { axis: nalgebra::Vector3::from(turned.to_array()), fold }
+    };
+    Symmetry::Declared(axes.iter().map(axis).collect())
+}

@@ -1,0 +1,89 @@
+//! The families of procedural objects, and random draws of objects from them.
+
+use super::draft::{Draft, Object};
+use super::scans::Scan;
+use super::tier::{Class, Tier};
+use super::{figures, kitchen, tools};
+use crate::draws::chance;
+use sim3align_geometry::error::Result;
+use sim3align_geometry::random::Random;
+
+/// A family: its name, its maker, and whether it is thin, or almost the same turned half round.
+struct Family(&'static str, fn(&mut Random) -> Draft, Kind);
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Common,
+    Thin,
+    Ambiguous,
+}
+
+const FAMILIES: &[Family] = &[
+    Family("mug", kitchen::mug, Kind::Common),
+    Family("bottle", kitchen::bottle, Kind::Common),
+    Family("bowl", kitchen::bowl, Kind::Common),
+    Family("teapot", kitchen::teapot, Kind::Common),
+    Family("pitcher", kitchen::pitcher, Kind::Common),
+    Family("spoon", kitchen::spoon, Kind::Thin),
+    Family("hammer", tools::hammer, Kind::Common),
+    Family("drill", tools::drill, Kind::Common),
+    Family("scissors", tools::scissors, Kind::Thin),
+    Family("wrench", tools::wrench, Kind::Thin),
+    Family("box", tools::carton, Kind::Common),
+    Family("phone", tools::phone, Kind::Ambiguous),
+    Family("camera", tools::camera, Kind::Common),
+    Family("lamp", tools::lamp, Kind::Common),
+    Family("chair", figures::chair, Kind::Common),
+    Family("shoe", figures::shoe, Kind::Common),
+    Family("animal", figures::animal, Kind::Common),
+    Family("car", figures::car, Kind::Ambiguous),
+    Family("banana", figures::banana, Kind::Ambiguous),
+    Family("sofa", figures::sofa, Kind::Common),
+];
+
+/// Families that stand on the floor.
+const FURNITURE: &[&str] = &["chair", "sofa"];
+
+/// Fraction of the eligible cases that show a scan, if scans are available.
+const SCANS: f64 = 0.35;
+
+impl Family {
+    fn object(&self, random: &mut Random) -> Result<Object> {
+        let Self(name, make, _) = self;
+        let Draft { solid, symmetry, keys, losable } = make(random);
+        let (mesh, parts) = solid.finish()?;
+        Ok(Object { family: (*name).into(), mesh, parts, symmetry, keys, losable, any_side_up: false })
+    }
+}
+
+/// Draws an object for a case.
+pub(crate) fn draw(random: &mut Random, tier: Tier, class: Class, scans: &[Scan]) -> Result<Object> {
+    let free = !matches!(class, Class::Thin | Class::Ambiguous | Class::MissingPart);
+    if free && !scans.is_empty() && chance(random, SCANS) {
+        return scans[random.below(scans.len())].object(random);
+    }
+    let fits = |Family(_, make, kind): &&Family| match class {
+        Class::Thin => *kind == Kind::Thin,
+        Class::Ambiguous => *kind == Kind::Ambiguous,
+        // A part that can be lost without losing what tells how the object is turned.
+        Class::MissingPart => !make(&mut Random::new(0, 0)).losable.is_empty(),
+        // What is almost the same turned half round is no easy case.
+        _ => *kind == Kind::Common || (*kind == Kind::Thin && tier != Tier::Easy) || tier == Tier::Hard,
+    };
+    let families: Vec<&Family> = FAMILIES.iter().filter(fits).collect();
+    families[random.below(families.len())].object(random)
+}
+
+/// Draws an object of any family that fits on a desk with others.
+pub(crate) fn draw_for_desk(random: &mut Random) -> Result<Object> {
+    let families: Vec<&Family> = FAMILIES.iter().filter(|Family(name, ..)| !FURNITURE.contains(name)).collect();
+    families[random.below(families.len())].object(random)
+}
+
+/// Draws an object of a family by name; `None` for an unknown family.
+///
+/// # Errors
+/// Those of [`Mesh::new`], which only a bug in the generator could cause.
+pub(crate) fn draw_from(name: &str, random: &mut Random) -> Result<Option<Object>> {
+    FAMILIES.iter().find(|Family(family, ..)| *family == name).map(|family| family.object(random)).transpose()
+}

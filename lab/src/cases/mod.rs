@@ -1,0 +1,23 @@
+//! The evaluation set: cases of many objects, with the errors of segmentation models, depth models and generated
+//! meshes.
+//!
+//! Case i depends on the seed of the set and i alone. i % 3 is its tier, and i / 3 cycles through the classes of the
+//! tier, so that any range of cases contains all of them evenly. A draw that shows too little of the object is repeated
+//! with other random numbers.
+
+pub mod case;
+mod cluster;
+pub(crate) mod distortion;
+pub(crate) mod draft;
+pub(crate) mod families;
+mod figures;
+pub(crate) mod generator;
+mod kitchen;
+pub(crate) mod mask;
+pub(crate) mod readings;
+mod scans;
+pub(crate) mod scene;
+pub(crate) mod solid;
+pub(crate) mod streams;
+pub mod tier;
+mod tools;

@@ -1,0 +1,88 @@
+//! Objects from mesh files.
+
+use std::fs;
+use std::path::Path;
+
+use glam::{DVec3, Vec3};
+
+use super::cluster::cluster;
+use super::draft::{Axis, Object};
+use crate::draws::between;
+use sim3align::metrics::symmetry::principal_symmetry;
+use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, read_mesh};
+use sim3align_geometry::cloud::Bounds;
+use sim3align_geometry::error::{Error, ErrorCode, Result};
+use sim3align_geometry::mesh::Mesh;
+use sim3align_geometry::random::Random;
+
+/// A mesh of more triangles is thinned out.
+const MAX_TRIANGLES: usize = 60_000;
+/// Cells along the box diagonal where it is.
+const CELLS: f64 = 220.0;
+
+/// A mesh file's content.
+#[derive(Debug, Clone)]
+pub struct Scan {
+    name: String,
+    /// Its box's diagonal is 1.
+    mesh: Mesh,
+    symmetry: Vec<Axis>,
+}
+
+impl Scan {
+    /// The GLB files of a folder, by name.
+    pub fn all(folder: &Path) -> Result<Vec<Self>> {
+        let unreadable = |path: &Path, error: std::io::Error| {
+            Error::new(
+                ErrorCode::InvalidArgument,
+                path.display().to_string(),
+                format!("a file system that says: {error}"),
+                "a folder of .glb files",
+                "Name a folder that can be read.",
+            )
+        };
+        let entries = fs::read_dir(folder).map_err(|error| unreadable(folder, error))?;
+        let mut paths: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+        paths.retain(|path| path.extension().is_some_and(|extension| extension == "glb") && path.is_file());
+        paths.sort();
+        paths
+            .iter()
+            .map(|path| {
+                let bytes = fs::read(path).map_err(|error| unreadable(path, error))?;
+                let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+                Self::read(name, &bytes).map_err(|error| error.about(path.display().to_string()))
+            })
+            .collect()
+    }
+
+    fn read(name: String, bytes: &[u8]) -> Result<Self> {
+        let mut mesh = read_mesh(bytes, &MeshReadOptions { format: Some(MeshFormat::Gltf), resources: None })?;
+        if mesh.triangles().len() > MAX_TRIANGLES {
+            let diagonal = Bounds::of(mesh.positions()).map_or(0.0, |b| f64::from(b.diagonal()));
+            let cell = diagonal / CELLS;
+            mesh = cluster(&mesh, cell, DVec3::ZERO)?;
+        }
+        let symmetry = principal_symmetry(&mesh, true)?;
+        let symmetry = symmetry.iter().map(|a| (DVec3::from_array(a.axis.into()), a.fold)).collect();
+        let bounds = Bounds::of(mesh.positions()).unwrap_or(Bounds { min: Vec3::ZERO, max: Vec3::ONE });
+        let unit = |p: &Vec3| (*p - bounds.center()) / bounds.diagonal();
+        let mesh = Mesh::new(mesh.positions().iter().map(unit).collect(), mesh.triangles().to_vec())?;
+        Ok(Self { name, mesh, symmetry })
+    }
+
+    /// The object at a size that things on tables have.
+    pub fn object(&self, random: &mut Random) -> Result<Object> {
+        let diagonal = libm::exp(between(random, libm::log(0.1), libm::log(0.7))) as f32;
+        let mesh =
+            Mesh::new(self.mesh.positions().iter().map(|p| *p * diagonal).collect(), self.mesh.triangles().to_vec())?;
+        Ok(Object {
+            family: self.name.clone(),
+            parts: vec![0; mesh.triangles().len()],
+            mesh,
+            symmetry: self.symmetry.clone(),
+            keys: Vec::new(),
+            losable: Vec::new(),
+            any_side_up: true,
+        })
+    }
+}

@@ -1,0 +1,19 @@
+//! Random streams of the generated cases and scenes: one per part, so that a change to one part leaves the others
+//! unchanged.
+
+/// The object and its dimensions.
+pub(crate) const OBJECT_STREAM: u64 = 1;
+/// Camera and scene.
+pub(crate) const SCENE_STREAM: u64 = 2;
+/// Errors of the generated mesh.
+pub(crate) const GENERATOR_STREAM: u64 = 3;
+/// Errors of the depth map.
+pub(crate) const READINGS_STREAM: u64 = 4;
+/// Errors of the mask.
+pub(crate) const MASK_STREAM: u64 = 5;
+/// Cluttered scenes: positions of objects and clutter, and the viewpoint.
+pub(crate) const LAYOUT_STREAM: u64 = 17;
+/// Cluttered scenes: number of objects per scene.
+pub(crate) const COUNT_STREAM: u64 = 18;
+/// Cluttered scenes: quality of mask, depth and mesh.
+pub(crate) const QUALITY_STREAM: u64 = 19;

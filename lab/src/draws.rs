@@ -1,0 +1,34 @@
+//! Random draws of the generators.
+
+use sim3align_geometry::random::Random;
+
+/// A number in [`low`, `high`).
+pub(crate) fn between(random: &mut Random, low: f64, high: f64) -> f64 {
+    low + (high - low) * random.uniform()
+}
+
+/// A standard normal number (Box–Muller transform).
+pub(crate) fn normal(random: &mut Random) -> f64 {
+    let (u, v) = (1.0 - random.uniform(), random.uniform());
+    (-2.0 * libm::log(u)).sqrt() * libm::cos(core::f64::consts::TAU * v)
+}
+
+/// `true` with the given probability.
+pub(crate) fn chance(random: &mut Random, probability: f64) -> bool {
+    random.uniform() < probability
+}
+
+/// −1 or 1 with equal probability.
+pub(crate) fn sign(random: &mut Random) -> f64 {
+    if chance(random, 0.5) { -1.0 } else { 1.0 }
+}
+
+/// A seed derived from several numbers: SplitMix64 over each in turn.
+pub(crate) fn mixed<const N: usize>(numbers: [u64; N]) -> u64 {
+    numbers.into_iter().fold(0, |state, x| {
+        let mut z = (state ^ x).wrapping_add(0x9e37_79b9_7f4a_7c15);
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    })
+}

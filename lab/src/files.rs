@@ -1,0 +1,60 @@
+//! Reads and writes files; errors name the path.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use sim3align_geometry::error::{Error, ErrorCode, Result, Text};
+
+/// Reads a file.
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
+    fs::read(path).map_err(|error| {
+        Error::new(
+            ErrorCode::InvalidArgument,
+            path.display().to_string(),
+            format!("the file system error: {error}"),
+            "a readable file",
+            "Check the layout of the folder.",
+        )
+    })
+}
+
+/// Writes a file, and creates its parent folders.
+pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<()> {
+    let written = path.parent().map_or(Ok(()), fs::create_dir_all).and_then(|()| fs::write(path, bytes));
+    written.map_err(|error| unwritable(path, error))
+}
+
+/// Writes files to a folder, and creates it if necessary.
+pub(crate) fn write_files(folder: &Path, files: &[(&'static str, Vec<u8>)]) -> Result<()> {
+    fs::create_dir_all(folder).map_err(|error| unwritable(folder, error))?;
+    for (name, bytes) in files {
+        let path = folder.join(name);
+        fs::write(&path, bytes).map_err(|error| unwritable(&path, error))?;
+    }
+    Ok(())
+}
+
+/// Paths of the entries of a folder, sorted by name; empty if the folder cannot be read.
+pub(crate) fn entries(folder: &Path) -> Vec<PathBuf> {
+    let mut entries: Vec<_> =
+        fs::read_dir(folder).into_iter().flatten().filter_map(|entry| Some(entry.ok()?.path())).collect();
+    entries.sort();
+    entries
+}
+
+/// The error for a path that cannot be written.
+pub(crate) fn unwritable(path: &Path, error: std::io::Error) -> Error {
+    Error::new(
+        ErrorCode::InvalidArgument,
+        path.display().to_string(),
+        format!("the file system error: {error}"),
+        "a writable folder",
+        "Name a folder that exists or can be created, on a disk that is not full.",
+    )
+}
+
+/// The error for an inconsistent file.
+pub(crate) fn corrupt(path: &Path, found: impl Into<Text>, expected: impl Into<Text>) -> Error {
+    let remedy = "The file may be truncated: download or export it again.";
+    Error::new(ErrorCode::CorruptFile, path.display().to_string(), found, expected, remedy)
+}

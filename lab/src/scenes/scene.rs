@@ -1,0 +1,248 @@
+//! A cluttered scene and its pairs.
+
+use super::case::{DEPTH_SCALE, SceneCase};
+use super::difficulty::{Sight, difficulty, tier};
+use super::layout::{Layout, Placed};
+use super::prior::Prior;
+use super::view::{Seen, View};
+use crate::cases::case::{declared, is_telling};
+use crate::cases::distortion::canonicalise;
+use crate::cases::mask::Segmented;
+use crate::cases::readings::Readings;
+use crate::cases::scene::Scene;
+use crate::cases::streams::{LAYOUT_STREAM, MASK_STREAM, OBJECT_STREAM, QUALITY_STREAM, READINGS_STREAM, SCENE_STREAM};
+use crate::cases::tier::{Class, Tier};
+use crate::draws::{chance, mixed};
+use sim3align::evidence::observation::Observation;
+use sim3align_geometry::error::{Error, ErrorCode, Result};
+use sim3align_geometry::image::DepthMap;
+use sim3align_geometry::mesh::Mesh;
+use sim3align_geometry::order::median;
+use sim3align_geometry::random::Random;
+use sim3align_geometry::similarity::Similarity;
+
+/// Minimum number of pixels in a mask.
+pub const MIN_MASK_PX: usize = 350;
+
+/// Minimum visible fraction of the silhouette of an object.
+pub const LEAST_VISIBLE: f64 = 0.35;
+
+/// Layouts that are tried, and cameras before each.
+const LAYOUTS: u64 = 400;
+const VIEWS: u64 = 12;
+/// The largest share of an object that the image's border cuts off, where it may.
+const MOST_CUT: f64 = 0.2;
+/// The largest share of a mask without a reading.
+const MOST_MISSING: f64 = 0.45;
+/// The share of the evaluation set's grain that monocular depth has: models' maps are smooth, and files of them small.
+const GRAIN: f64 = 0.1;
+
+/// A cluttered scene.
+#[derive(Debug, Clone)]
+pub struct ClutteredScene {
+    /// Index in the set.
+    pub index: usize,
+    /// One pair per masked object.
+    pub pairs: Vec<ScenePair>,
+    /// What else stands there, in the frame of the objects.
+    pub clutter: Mesh,
+}
+
+/// A masked object of a scene, to be paired with what a prior makes of it.
+#[derive(Debug, Clone)]
+pub struct ScenePair {
+    /// The scene's place in the set, and the object's in the scene.
+    pub scene: usize,
+    /// See `scene`.
+    pub index: usize,
+    /// What the object is.
+    pub family: String,
+    /// The object as it is: metres, z up, resting on z = 0.
+    pub object: Mesh,
+    /// Where it is seen, in the depth map's own metric.
+    pub camera_from_object: Similarity,
+    /// Depth, which all pairs of the scene share, mask and camera.
+    pub observation: Observation,
+    /// How hard it is, see [`difficulty`].
+    pub difficulty: f64,
+    seed: u64,
+    placed: Placed,
+    /// The object before and behind all else.
+    view: Scene,
+    tags: Vec<&'static str>,
+    parameters: Vec<(&'static str, f64)>,
+}
+
+impl ClutteredScene {
+    /// The scene at a place in a set, with this many objects.
+    pub(super) fn draw(set_seed: u64, index: usize, objects: usize) -> Result<Self> {
+        for attempt in 0..LAYOUTS {
+            let seed = mixed([set_seed, index as u64, attempt]);
+            let things = &mut Random::new(seed, OBJECT_STREAM);
+            let layout = Layout::draw(objects, &mut Random::new(seed, LAYOUT_STREAM), things)?;
+            let view_random = &mut Random::new(seed, SCENE_STREAM);
+            // Every tenth scene or so may show an object that the border cuts.
+            let too_near = chance(view_random, 0.1);
+            let cut = if too_near { MOST_CUT } else { 0.0 };
+            for view in 0..VIEWS {
+                let seen = View::draw(&layout, too_near, view_random)?.see(&layout);
+                if seen.shows_enough(&layout, cut, view_random)
+                    && let Some(scene) = Self::read(&layout, &seen, index, mixed([seed, view]))?
+                {
+                    return Ok(scene);
+                }
+            }
+        }
+        let found = format!("no fitting draw of scene {index}");
+        Err(Error::new(ErrorCode::Internal, "scene", found, "one in a few", "Please report the set's seed."))
+    }
+
+    /// Depth and masks of what a camera sees; `None` where they leave too little of an object.
+    fn read(layout: &Layout, seen: &Seen, index: usize, seed: u64) -> Result<Option<Self>> {
+        let quality = &mut Random::new(seed, QUALITY_STREAM);
+        let shown: Vec<&[bool]> = seen.objects.iter().map(|object| object.visible.as_slice()).collect();
+        let diagonals = layout.objects.iter().map(|placed| placed.object.diagonal() as f32);
+        let diagonal = f64::from(median(diagonals).unwrap_or_default());
+        let cell = (drawn_tier(quality), Class::Plain);
+        let random = &mut Random::new(seed, READINGS_STREAM);
+        let readings = Readings::of_several(&seen.together, &shown, (diagonal, GRAIN), cell, random)?;
+        let depth = in_units(&readings.depth)?;
+        let mut pairs = Vec::new();
+        for (k, (placed, view)) in layout.objects.iter().zip(&seen.objects).enumerate() {
+            let tier_of_mask = drawn_tier(quality);
+            let class =
+                if tier_of_mask != Tier::Easy && chance(quality, 0.12) { Class::RaggedMask } else { Class::Plain };
+            let random = &mut Random::new(mixed([seed, k as u64]), MASK_STREAM);
+            let segmented = Segmented::draw(view, (tier_of_mask, class), random)?;
+            let masked = || segmented.mask.data().iter().zip(depth.data()).filter(|(m, _)| **m != 0);
+            let mask_px = masked().count();
+            let missing = masked().filter(|(_, z)| **z == 0.0).count() as f64 / mask_px.max(1) as f64;
+            if mask_px < MIN_MASK_PX || missing > MOST_MISSING {
+                return Ok(None);
+            }
+            let Some(distance_m) = median(view.object_depth.iter().copied().filter(|z| *z > 0.0)) else {
+                return Ok(None);
+            };
+            let sight = Sight {
+                visible: view.visible_px() as f64 / view.silhouette_px.max(1) as f64,
+                mask_px,
+                mask_offset_px: segmented.offset_px,
+                distance_m: f64::from(distance_m),
+            };
+            // A map with a metric of its own, whose warp moves each object by a share of it: along the rays, so that
+            // its picture stays the same.
+            let bias = readings.bias * (1.0 + readings.drifts[k]);
+            let metric = Similarity { scale: bias, ..Similarity::identity() };
+            let difficulty = difficulty(&sight);
+            let mut tags = vec![readings.kind];
+            tags.extend((view.hidden > 0.02).then_some("partly-hidden"));
+            tags.extend((view.cut > 0.0).then_some("cut"));
+            tags.extend((!shows_key(placed, view)).then_some("key-part-hidden"));
+            tags.extend(segmented.tags);
+            pairs.push(ScenePair {
+                scene: index,
+                index: k,
+                family: placed.object.family.clone(),
+                object: placed.mesh.clone(),
+                camera_from_object: metric.compose(&view.camera_from_world),
+                observation: Observation::new(depth.clone(), segmented.mask, view.camera)?,
+                difficulty,
+                seed: mixed([seed, k as u64]),
+                placed: placed.clone(),
+                view: view.clone(),
+                tags,
+                parameters: vec![
+                    ("difficulty", difficulty),
+                    ("visible", sight.visible),
+                    ("maskPx", mask_px as f64),
+                    ("hidden", view.hidden),
+                    ("cut", view.cut),
+                    ("maskOffsetPx", segmented.offset_px),
+                    ("depthBias", bias),
+                    ("missingDepth", missing),
+                    ("distanceM", sight.distance_m),
+                    ("diagonalM", placed.object.diagonal()),
+                    ("objects", layout.objects.len() as f64),
+                    ("scene", index as f64),
+                    ("object", k as f64),
+                ],
+            });
+        }
+        Ok(Some(Self { index, pairs, clutter: layout.clutter.clone() }))
+    }
+}
+
+impl ScenePair {
+    /// The pair with what a prior makes of the object.
+    ///
+    /// # Errors
+    /// Only in case of a bug in the generator.
+    pub fn case(&self, prior: Prior) -> Result<SceneCase> {
+        let seed = mixed([self.seed, prior as u64]);
+        let generated = prior.generate(&self.placed, &self.view, seed)?;
+        let (mesh, object_from_mesh) = canonicalise(&generated.mesh, seed)?;
+        let mut tags = self.tags.clone();
+        tags.extend(generated.tags);
+        let mut parameters = self.parameters.clone();
+        parameters.extend(generated.parameters);
+        Ok(SceneCase {
+            name: self.name(),
+            prior,
+            tier: tier(self.difficulty),
+            family: self.family.clone(),
+            tags,
+            parameters,
+            observation: self.observation.clone(),
+            mesh,
+            camera_from_mesh: self.camera_from_object.compose(&object_from_mesh),
+            symmetry: declared(&generated.symmetry, &object_from_mesh),
+        })
+    }
+
+    /// The pair's name, and that of its folder.
+    pub fn name(&self) -> String {
+        format!("{:03}-{}-{}", self.scene, self.index, self.family)
+    }
+
+    /// Visible share of the object's silhouette.
+    pub fn visible(&self) -> f64 {
+        self.view.visible_px() as f64 / self.view.silhouette_px.max(1) as f64
+    }
+}
+
+impl Seen {
+    /// Whether it shows enough of every object to tell how it lies.
+    fn shows_enough(&self, layout: &Layout, most_cut: f64, random: &mut Random) -> bool {
+        self.objects.iter().zip(&layout.objects).all(|(view, placed)| {
+            let pixels = view.visible_px();
+            pixels >= MIN_MASK_PX
+                && pixels as f64 >= LEAST_VISIBLE * view.silhouette_px as f64
+                && view.cut <= most_cut + 1e-9
+                && is_telling(view, &placed.mesh, Tier::Hard)
+                // A mug whose handle is out of sight: no case to count on, though one that occurs.
+                && (shows_key(placed, view) || chance(random, 0.15))
+        })
+    }
+}
+
+/// Whether a part shows that tells how the object is turned.
+fn shows_key(placed: &Placed, view: &Scene) -> bool {
+    let object = &placed.object;
+    object.keys.is_empty() || view.part_px(&object.keys, &object.parts) >= (view.visible_px() / 50).max(25)
+}
+
+/// How good a model's answer is on this picture.
+fn drawn_tier(random: &mut Random) -> Tier {
+    match random.uniform() {
+        u if u < 0.35 => Tier::Easy,
+        u if u < 0.8 => Tier::Medium,
+        _ => Tier::Hard,
+    }
+}
+
+/// Depth in whole units, as a file holds it; nothing where that is too far for 16 bits.
+fn in_units(depth: &DepthMap) -> Result<DepthMap> {
+    let units = depth.data().iter().map(|&z| (f64::from(z) / DEPTH_SCALE).round());
+    let metres = units.map(|units| if units <= 65535.0 { (units * DEPTH_SCALE) as f32 } else { 0.0 }).collect();
+    DepthMap::from_metres(depth.width(), depth.height(), metres)
+}

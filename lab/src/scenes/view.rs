@@ -1,0 +1,134 @@
+//! The camera, and what it sees of every object.
+
+use nalgebra::{Rotation3, Vector3};
+
+use super::layout::Layout;
+use crate::cases::scene::{Scene, background, count, hidden, in_front, looking, put_before};
+use crate::draws::between;
+use sim3align_geometry::error::Result;
+use sim3align_geometry::mesh::Mesh;
+use sim3align_geometry::pinhole::Pinhole;
+use sim3align_geometry::random::Random;
+use sim3align_geometry::rasteriser::Rasteriser;
+use sim3align_geometry::similarity::{Similarity, vector3};
+
+/// Pixels in a row, and rows.
+pub const WIDTH: usize = 640;
+/// See [`WIDTH`].
+pub const HEIGHT: usize = 480;
+/// How far away, metres, the middle of the objects is.
+const DISTANCE_M: [f64; 2] = [0.5, 1.6];
+/// How much larger the image is made, on each side, to measure what its border cuts off.
+const MARGIN_PX: usize = 320;
+
+/// A camera and where it stands.
+#[derive(Debug)]
+pub struct View {
+    camera: Pinhole,
+    camera_from_world: Similarity,
+    /// Where the wall is: what it faces, and how far behind the origin it is.
+    wall: (Vector3<f64>, f64),
+}
+
+/// What a camera sees.
+#[derive(Debug)]
+pub struct Seen {
+    /// Each object for itself, before and behind the rest.
+    pub objects: Vec<Scene>,
+    /// All objects taken for one.
+    pub together: Scene,
+}
+
+impl View {
+    /// A camera at a desk, that has the objects about in the middle of its picture, or so near that the border may cut
+    /// them.
+    pub fn draw(layout: &Layout, too_near: bool, random: &mut Random) -> Result<Self> {
+        let fov = between(random, 38.0, 60.0);
+        let mut camera = Pinhole::from_vertical_fov(fov, WIDTH, HEIGHT)?;
+        camera.cx += between(random, -6.0, 6.0);
+        camera.cy += between(random, -6.0, 6.0);
+        // The share of the picture's height that the objects would take, were they a ball.
+        let fill = between(random, 0.6, 1.15) * if too_near { 1.4 } else { 1.0 };
+        let distance = 2.0 * layout.reach * camera.fy / (fill * HEIGHT as f64);
+        let distance = distance.clamp(DISTANCE_M[0], DISTANCE_M[1]);
+        let (rise, level) = libm::sincos(between(random, 9.0, 42.0).to_radians());
+        let (sine, cosine) = libm::sincos(layout.front + between(random, -0.5, 0.5));
+        let towards = Vector3::new(cosine * level, sine * level, rise);
+        let mut aside = || between(random, -0.12, 0.12) * layout.reach;
+        let target = vector3(layout.centre) + Vector3::new(aside(), aside(), aside());
+        let eye = vector3(layout.centre) + towards * distance;
+        let forward = (target - eye).normalize();
+        let roll = Rotation3::from_axis_angle(&Vector3::z_axis(), between(random, -4.0, 4.0).to_radians());
+        let rotation = roll.matrix() * looking(&forward);
+        let (sine, cosine) = libm::sincos(layout.front);
+        let faces = Vector3::new(cosine, sine, 0.0);
+        let wall = (faces, layout.wall - faces.dot(&vector3(layout.centre)));
+        Ok(Self { camera, camera_from_world: Similarity::from_parts(1.0, rotation, -(rotation * eye))?, wall })
+    }
+
+    /// What it sees.
+    pub fn see(&self, layout: &Layout) -> Seen {
+        let Self { camera, camera_from_world: pose, wall } = self;
+        let mut rasteriser = Rasteriser::new();
+        rasteriser.render_depth(&layout.clutter, pose, camera, WIDTH, HEIGHT);
+        let clutter = rasteriser.depth().to_vec();
+        let alone: Vec<_> = layout
+            .objects
+            .iter()
+            .map(|placed| {
+                rasteriser.render(&placed.mesh, pose, camera, WIDTH, HEIGHT);
+                (rasteriser.depth().to_vec(), rasteriser.triangles().to_vec())
+            })
+            .collect();
+        let mut depth = background(pose, camera, *wall, WIDTH, HEIGHT);
+        put_before(&mut depth, &clutter);
+        let mut together = vec![0.0; WIDTH * HEIGHT];
+        for (object, _) in &alone {
+            put_before(&mut depth, object);
+            put_before(&mut together, object);
+        }
+        let scene = |object_depth: &[f32], object_triangles: &[u32], others: &[f32], silhouette_px: usize| {
+            let share = |px: usize| px as f64 / silhouette_px.max(1) as f64;
+            Scene {
+                width: WIDTH,
+                height: HEIGHT,
+                camera: *camera,
+                camera_from_world: *pose,
+                object_depth: object_depth.to_vec(),
+                object_triangles: object_triangles.to_vec(),
+                depth: depth.clone(),
+                visible: object_depth.iter().zip(others).map(|(&z, &other)| in_front(z, other)).collect(),
+                silhouette_px,
+                cut: 1.0 - share(count(object_depth)),
+                hidden: share(hidden(object_depth, others)),
+            }
+        };
+        let objects = (0..alone.len())
+            .map(|i| {
+                let mut others = clutter.clone();
+                alone.iter().enumerate().filter(|(k, _)| *k != i).for_each(|(_, (z, _))| put_before(&mut others, z));
+                let (object, triangles) = &alone[i];
+                scene(object, triangles, &others, self.silhouette_px(&layout.objects[i].mesh, object))
+            })
+            .collect();
+        let silhouettes = count(&together);
+        Seen { objects, together: scene(&together, &[], &clutter, silhouettes) }
+    }
+
+    /// Pixels of an object, were the image larger.
+    fn silhouette_px(&self, mesh: &Mesh, depth: &[f32]) -> usize {
+        let is_rim = |i: usize| {
+            let (u, v) = (i % WIDTH, i / WIDTH);
+            u == 0 || v == 0 || u + 1 == WIDTH || v + 1 == HEIGHT
+        };
+        if !depth.iter().enumerate().any(|(i, z)| *z > 0.0 && is_rim(i)) {
+            return count(depth);
+        }
+        let margin = MARGIN_PX as f64;
+        let camera = Pinhole { cx: self.camera.cx + margin, cy: self.camera.cy + margin, ..self.camera };
+        let mut rasteriser = Rasteriser::new();
+        let (width, height) = (WIDTH + 2 * MARGIN_PX, HEIGHT + 2 * MARGIN_PX);
+        rasteriser.render_depth(mesh, &self.camera_from_world, &camera, width, height);
+        count(rasteriser.depth())
+    }
+}

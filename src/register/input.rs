@@ -1,0 +1,63 @@
+//! Validates clouds, and subsamples them.
+
+use nalgebra::Vector3;
+
+use crate::error::{Error, ErrorCode, Result};
+use crate::geometry::random::Random;
+use crate::number::number;
+
+/// Checks for complete, finite, sufficiently many and non-coincident points (interleaved x, y, z).
+pub(super) fn check_cloud(argument: &str, xyz: &[f64], min_points: usize) -> Result<()> {
+    if !xyz.len().is_multiple_of(3) {
+        return Err(Error::new(
+            ErrorCode::WrongLength,
+            argument.to_owned(),
+            format!("{} numbers", xyz.len()),
+            "a multiple of 3",
+            "Pass interleaved x, y, z.",
+        ));
+    }
+    if let Some(i) = xyz.iter().position(|x| !x.is_finite()) {
+        return Err(Error::new(
+            ErrorCode::NonFinite,
+            argument.to_owned(),
+            format!("{} in point {}", number(xyz[i]), i / 3),
+            "finite numbers",
+            "Remove points without a reading from the cloud.",
+        ));
+    }
+    let count = xyz.len() / 3;
+    if count < min_points {
+        return Err(Error::new(
+            ErrorCode::TooFewPoints,
+            argument.to_owned(),
+            format!("{count} points"),
+            format!("at least {min_points}"),
+            "Too few points to determine a shape.",
+        ));
+    }
+    let first = Vector3::from_column_slice(&xyz[..3]);
+    if xyz.chunks_exact(3).all(|p| Vector3::from_column_slice(p) == first) {
+        return Err(Error::new(
+            ErrorCode::DegeneratePoints,
+            argument.to_owned(),
+            "identical points",
+            "points that span at least a plane",
+            "Check the source of the cloud.",
+        ));
+    }
+    Ok(())
+}
+
+/// At most `max_points` points, one drawn from each of `max_points` equal intervals.
+pub(super) fn subsample(xyz: &[f64], max_points: usize, random: &mut Random) -> Vec<f64> {
+    let n = xyz.len() / 3;
+    if n <= max_points {
+        return xyz.to_vec();
+    }
+    let mut drawn = Vec::with_capacity(3 * max_points);
+    for i in random.one_of_each_run(n, max_points) {
+        drawn.extend_from_slice(&xyz[3 * i..3 * i + 3]);
+    }
+    drawn
+}

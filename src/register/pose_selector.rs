@@ -1,0 +1,218 @@
+//! Selects among transforms between two clouds the one under which the complete clouds agree best.
+
+use glam::Vec3;
+
+use super::feature_registration::{Estimate, FeatureRegistration};
+use super::normalized_pair::{Fit, NormalizedPair};
+use super::options::RegisterOptions;
+use super::settings::RegistrationSettings;
+use crate::error::{Error, ErrorCode, Result};
+use crate::evidence::NORMAL_NEIGHBORS;
+use crate::evidence::normals::outward_normals;
+use crate::geometry::cloud::Cloud;
+use crate::geometry::kd_tree::KdTree;
+use crate::geometry::similarity::Similarity;
+use crate::progress::{Stage, Stopwatch};
+use crate::report::Registration;
+
+/// Default number of voxels along the diagonal of the target's bounding box.
+const DIVISIONS: f64 = 30.0;
+
+/// Maximum number of poses tried per pair of clouds.
+const POSES: usize = 6;
+
+/// Limit on minimal sets once a pose exists that only a certain one can replace. It suffices for clouds that differ
+/// only in clutter.
+const ITERATIONS_WITH_PREFERRED: usize = 20_000;
+
+/// Agreement at which a pose is certain and the search stops: about nine of ten points coincide.
+const CERTAIN: f64 = 0.9;
+
+/// Tries poses, and keeps the one under which the complete clouds agree best.
+pub(crate) struct PoseSelector {
+    pub(crate) frames: NormalizedPair,
+    source: Cloud,
+    target: KdTree,
+    inlier_distance: f32,
+    best: Option<(Agreement, Candidate)>,
+    /// If set, only a certain pose replaces the best one.
+    has_preferred: bool,
+    failure: Option<Error>,
+}
+
+impl PoseSelector {
+    pub(crate) fn new(
+        source_xyz: &[f64],
+        target_xyz: &[f64],
+        frames: NormalizedPair,
+        options: &RegisterOptions,
+    ) -> Self {
+        Self {
+            source: frames.source.normalized_flat(source_xyz),
+            target: KdTree::new(&frames.target.normalized_flat(target_xyz).points),
+            inlier_distance: (options.inlier_distance_voxels * unit_voxel_size(options, &frames)) as f32,
+            frames,
+            best: None,
+            has_preferred: false,
+            failure: None,
+        }
+    }
+
+    /// Sets a pose that was selected by evidence from both complete scenes; only a certain pose replaces it. If scenes
+    /// overlap little, more points can agree under a wrong pose.
+    pub(crate) fn prefer(&mut self, candidate: Result<Candidate>) {
+        match candidate {
+            Ok(candidate) => {
+                self.consider(candidate);
+                self.has_preferred = true;
+            }
+            Err(error) => self.failure = Some(error),
+        }
+    }
+
+    pub(crate) fn has_preferred(&self) -> bool {
+        self.has_preferred
+    }
+
+    /// Registers these clouds by features, pose by pose until one is certain.
+    pub(crate) fn try_clouds(
+        &mut self,
+        source_xyz: &[f64],
+        target_xyz: &[f64],
+        options: &RegisterOptions,
+        stages: &mut Stopwatch<'_>,
+    ) -> Result<()> {
+        if self.is_certain() {
+            return Ok(());
+        }
+        let frames = NormalizedPair::of(source_xyz, target_xyz, options.scale)?;
+        stages.enter(Stage::Normals);
+        let source = with_normals(frames.source.normalized_flat(source_xyz), None);
+        let target = with_normals(frames.target.normalized_flat(target_xyz), None);
+        let mut settings =
+            RegistrationSettings::new(options, unit_voxel_size(options, &frames), frames.scale_mode, frames.guard);
+        if self.has_preferred {
+            settings.ransac.max_iterations = settings.ransac.max_iterations.min(ITERATIONS_WITH_PREFERRED);
+        }
+        let mut registration = FeatureRegistration::new(&source, &target, &settings, stages);
+        let poses = if self.has_preferred { 1 } else { POSES };
+        for _ in 0..poses {
+            if self.is_certain() {
+                break;
+            }
+            match registration.solve(&settings, stages) {
+                Ok(estimate) => {
+                    // The inliers would lead to the same pose again.
+                    registration.discard(&estimate.inliers);
+                    self.consider(Candidate::new(&frames, estimate));
+                }
+                Err(error) => {
+                    self.failure.get_or_insert(about_clouds(error, "source"));
+                    break;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn is_certain(&self) -> bool {
+        self.best.as_ref().is_some_and(|(agreement, _)| agreement.score >= CERTAIN)
+    }
+
+    fn consider(&mut self, candidate: Candidate) {
+        let unit = self.frames.normalized(&candidate.target_from_source);
+        let agreement = Agreement::of(&self.source, &self.target, &unit, self.inlier_distance);
+        let is_taken = !self.has_preferred || agreement.score >= CERTAIN;
+        if is_taken && self.best.as_ref().is_none_or(|(best, _)| agreement.score > best.score) {
+            self.best = Some((agreement, candidate));
+        }
+    }
+
+    /// The result for the best pose.
+    ///
+    /// # Errors
+    /// The error of the first failed attempt, if there is no pose.
+    pub(crate) fn finish(self, options: &RegisterOptions, stages: Stopwatch<'_>) -> Result<Registration> {
+        let Some((agreement, candidate)) = self.best else {
+            return Err(self.failure.unwrap_or_else(no_attempt));
+        };
+        let Candidate { target_from_source, estimate, residual } = candidate;
+        let fit = Fit { fitness: agreement.fitness, residual, converged: estimate.converged, counts: estimate.counts };
+        Ok(self.frames.registration(&target_from_source, fit, options.seed, stages))
+    }
+}
+
+/// A candidate transform between the frames of the clouds.
+pub(crate) struct Candidate {
+    target_from_source: Similarity,
+    estimate: Estimate,
+    /// In target units.
+    residual: f64,
+}
+
+impl Candidate {
+    /// The candidate for an estimate in normalised frames.
+    pub(crate) fn new(frames: &NormalizedPair, estimate: Estimate) -> Self {
+        Self {
+            target_from_source: frames.denormalized(&estimate.target_from_source),
+            residual: estimate.rms * frames.target.diagonal(),
+            estimate,
+        }
+    }
+}
+
+/// Agreement of the source points with the target points.
+struct Agreement {
+    /// Fraction of the source points within the inlier distance of a target point.
+    fitness: f64,
+    /// Mean of max(0, 1 − (r/d)²) over the source points; d is a third of the inlier distance. In clutter, every point
+    /// has a near neighbour; only under the correct pose, many have a very near one.
+    score: f64,
+}
+
+impl Agreement {
+    fn of(source: &Cloud, target: &KdTree, unit: &Similarity, distance: f32) -> Self {
+        let transform = unit.to_f32();
+        let (mut near, mut sum) = (0_usize, 0.0);
+        for &point in &source.points {
+            if let Some(neighbor) = target.nearest_within(transform.apply(point), distance) {
+                near += 1;
+                let close = distance / 3.0;
+                sum += (1.0 - f64::from(neighbor.distance_squared) / f64::from(close * close)).max(0.0);
+            }
+        }
+        let count = source.len() as f64;
+        Self { fitness: near as f64 / count, score: sum / count }
+    }
+}
+
+/// The voxel size in the normalised frame of the target.
+fn unit_voxel_size(options: &RegisterOptions, frames: &NormalizedPair) -> f64 {
+    options
+        .voxel_size
+        .map_or(1.0 / options.voxel_divisions.unwrap_or(DIVISIONS), |size| size / frames.target.diagonal())
+}
+
+/// The cloud with [`outward_normals`].
+pub(crate) fn with_normals(mut cloud: Cloud, eye: Option<Vec3>) -> Cloud {
+    cloud.normals = outward_normals(&cloud.points, eye, NORMAL_NEIGHBORS);
+    cloud
+}
+
+/// Rewords errors of RANSAC, which refer to mesh and observation, for two clouds.
+pub(crate) fn about_clouds(error: Error, argument: &str) -> Error {
+    if error.code != ErrorCode::NoConsensus {
+        return error;
+    }
+    Error::new(
+        error.code,
+        argument.to_owned(),
+        error.found.clone(),
+        "at least three matches of source and target that agree on one similarity",
+        "Check that the clouds overlap; widen options.scale, or the distance up to which a match is an inlier.",
+    )
+}
+
+fn no_attempt() -> Error {
+    Error::new(ErrorCode::Internal, "source", "no candidate", "at least one", "Please report this with the two clouds.")
+}

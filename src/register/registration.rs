@@ -1,0 +1,84 @@
+//! Registration of two point clouds of any origin.
+
+use super::density::dense_points;
+use super::input::{check_cloud, subsample};
+use super::normalized_pair::NormalizedPair;
+use super::options::RegisterOptions;
+use super::pose_selector::PoseSelector;
+use super::rigid::register_rigid;
+use crate::error::Result;
+use crate::evidence::observation::MIN_POINTS;
+use crate::geometry::random::Random;
+use crate::options::Options;
+use crate::options::scale::ScaleOption;
+use crate::progress::{Host, Stage, Stopwatch};
+use crate::report::Registration;
+
+/// Random stream of the subsampling.
+const STREAM: u64 = 5;
+
+/// A cloud may be cluttered if its dense points are less than this fraction. Uniform samples keep more than nine of ten
+/// points. A false positive costs little, because the correct pose is then found at once.
+const CLUTTERED: f64 = 0.97;
+
+/// Progress at the start of each stage, 0 to 1.
+pub(super) const PLAN: &[(Stage, f64)] = &[
+    (Stage::Sample, 0.0),
+    (Stage::Normals, 0.05),
+    (Stage::Features, 0.3),
+    (Stage::Matching, 0.4),
+    (Stage::Ransac, 0.6),
+    (Stage::Filter, 0.8),
+    (Stage::Icp, 0.8),
+];
+
+/// Estimates the similarity from a source cloud to a target cloud, both interleaved x, y, z in any unit.
+///
+/// # Errors
+/// [`ErrorCode::WrongLength`], [`ErrorCode::NonFinite`], [`ErrorCode::TooFewPoints`],
+/// [`ErrorCode::DegeneratePoints`], [`ErrorCode::InvalidOption`], [`ErrorCode::NoConsensus`].
+pub fn register(
+    source_xyz: &[f64],
+    target_xyz: &[f64],
+    options: &RegisterOptions,
+    host: &mut dyn Host,
+) -> Result<Registration> {
+    options.validate()?;
+    check_cloud("source", source_xyz, MIN_POINTS)?;
+    check_cloud("target", target_xyz, MIN_POINTS)?;
+    let mut stages = Stopwatch::new(host, PLAN);
+
+    stages.enter(Stage::Sample);
+    let complete = [source_xyz, target_xyz];
+    let mut random = Random::new(u64::from(options.seed), STREAM);
+    let source_xyz = subsample(source_xyz, options.max_points as usize, &mut random);
+    let target_xyz = subsample(target_xyz, options.max_points as usize, &mut random);
+    let frames = NormalizedPair::of(&source_xyz, &target_xyz, options.scale)?;
+
+    // With a known scale, correct matches preserve distances, which rigid registration uses. Otherwise, or if that
+    // fails, clouds are registered by features. Clutter enlarges the boxes and disturbs the descriptors, so that the
+    // dense points are tried first; but if the density varies by nature (lidar), they omit most of the scene, so that
+    // all points are tried as well. The agreement of all points selects the result.
+    let mut selector = PoseSelector::new(&source_xyz, &target_xyz, frames, options);
+    if matches!(options.scale, ScaleOption::Fixed(_)) {
+        selector.prefer(register_rigid(complete, options, &mut stages));
+    }
+    if let Some((source_xyz, target_xyz)) = dense(&source_xyz, &target_xyz, &selector.frames) {
+        selector.try_clouds(&source_xyz, &target_xyz, options, &mut stages)?;
+    }
+    if !selector.has_preferred() {
+        selector.try_clouds(&source_xyz, &target_xyz, options, &mut stages)?;
+    }
+    selector.finish(options, stages)
+}
+
+/// The dense points of both clouds; `None` if they are too few, or almost all.
+fn dense(source_xyz: &[f64], target_xyz: &[f64], frames: &NormalizedPair) -> Option<(Vec<f64>, Vec<f64>)> {
+    let source = dense_points(&frames.source.normalized_flat(source_xyz).points);
+    let target = dense_points(&frames.target.normalized_flat(target_xyz).points);
+    let kept = |dense: &[usize], xyz: &[f64]| dense.len() as f64 / (xyz.len() / 3) as f64;
+    let least = kept(&source, source_xyz).min(kept(&target, target_xyz));
+    let enough = source.len().min(target.len()) >= MIN_POINTS;
+    let pick = |dense: &[usize], xyz: &[f64]| dense.iter().flat_map(|i| &xyz[3 * i..3 * i + 3]).copied().collect();
+    (enough && least < CLUTTERED).then(|| (pick(&source, source_xyz), pick(&target, target_xyz)))
+}

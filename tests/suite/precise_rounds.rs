@@ -1,0 +1,196 @@
+//! The rounds of a search: the recipe that they follow, and that a search may pause after any task.
+
+use std::rc::Rc;
+
+use sim3align::geometry::rotations::angle_between;
+use sim3align::precise::mesh_pyramid::MeshPyramid;
+use sim3align::precise::pose::{CropPose, MeshFrame};
+use sim3align::precise::recipe::{FIRST_REFINEMENT, RANKING, SearchSettings, Task};
+use sim3align::precise::rounds::Rounds;
+use sim3align::precise::search::{Found, Search};
+use wasm_bindgen_test::wasm_bindgen_test;
+
+use crate::precise::{body, observe, truth};
+use crate::support::Draw;
+
+/// Few rotations and candidates, but two that are polished.
+fn settings() -> SearchSettings {
+    let mut settings = SearchSettings::fast();
+    settings.rounds[0].work = 60;
+    for (round, keep) in settings.rounds.iter_mut().zip([30, 8, 5, 3, 2]) {
+        round.keep = keep;
+    }
+    settings
+}
+
+fn rounds(initial: bool, global: bool) -> Rounds {
+    let (mesh, settings) = (body(), settings());
+    let pyramid = Rc::new(MeshPyramid::new(&mesh, &settings.grids).unwrap());
+    let pose = CropPose::of_similarity(&truth(), &MeshFrame::of(&mesh)).unwrap();
+    let near = pose.moved(&[0.1, -0.05, 0.08, 0.04, 0.01, -0.02, 0.05]);
+    Rounds::new(Search::new(&observe(&mesh, &truth()), pyramid, settings), initial.then_some(near), global)
+}
+
+fn assert_same(found: &[Found], expected: &[Found], what: &str) {
+    assert_eq!(found.len(), expected.len(), "{what}");
+    for (a, b) in found.iter().zip(expected) {
+        assert_eq!((a.pose, a.score, a.converged, a.renders), (b.pose, b.score, b.converged, b.renders), "{what}");
+    }
+}
+
+/// Tasks of every round, and number of parts, of a search that pauses where `pause` says so.
+fn run(rounds: &mut Rounds, pause: &mut dyn FnMut() -> bool) -> (Vec<usize>, usize) {
+    let (mut tasks, mut parts) = (Vec::new(), 0);
+    while rounds.round().is_some() {
+        let mut done = 0;
+        let mut counted = || {
+            done += 1;
+            pause()
+        };
+        while !rounds.run(&mut counted) {
+            parts += 1;
+        }
+        parts += 1;
+        tasks.push(done);
+    }
+    (tasks, parts)
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn rounds_done_in_parts_are_rounds_done_whole() {
+    for (initial, global) in [(false, true), (true, true), (true, false)] {
+        let mut whole = rounds(initial, global);
+        let (tasks, parts) = run(&mut whole, &mut || false);
+        assert!(!whole.found.is_empty() && parts == tasks.len(), "{parts} parts, tasks {tasks:?}");
+        for seed in 0..4 {
+            let what = format!("initial {initial}, global {global}, seed {seed}");
+            let draw = &mut Draw::new(seed);
+            // After every task, and after some.
+            let mut divided = rounds(initial, global);
+            let (divided_tasks, parts) = run(&mut divided, &mut || seed == 0 || draw.below(3) == 0);
+            assert!(
+                parts > tasks.len() && (seed != 0 || parts == tasks.iter().sum::<usize>()),
+                "{what}: {parts} parts"
+            );
+            assert_eq!(divided_tasks, tasks, "{what}");
+            assert_same(&divided.found, &whole.found, &what);
+            assert_eq!(divided.search.renders, whole.search.renders, "{what}");
+            assert_eq!(divided.best(), whole.best(), "{what}");
+        }
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn every_round_takes_what_the_one_before_it_keeps() {
+    let recipe = settings().rounds;
+    for (initial, global) in [(false, true), (true, true), (true, false)] {
+        let mut rounds = rounds(initial, global);
+        let (tasks, _) = run(&mut rounds, &mut || false);
+        let what = format!("initial {initial}, global {global}: {tasks:?}");
+        let first = if global { 0 } else { FIRST_REFINEMENT };
+        assert_eq!(tasks.len(), recipe.len() - first, "{what}");
+        if global {
+            assert_eq!(tasks[..2], [recipe[0].work, recipe[0].keep], "{what}");
+        }
+        // The given pose and seven around it join those of the grid.
+        let around = if initial { 8 } else { 0 };
+        for (index, &count) in (first..).zip(&tasks).skip(if global { 2 } else { 0 }) {
+            let most = if index > first { recipe[index - 1].keep } else { 0 };
+            let joining = if index == FIRST_REFINEMENT { around } else { 0 };
+            assert!(count > 0 && count <= most + joining, "{what}: round {index}");
+            assert!(index != FIRST_REFINEMENT || count > joining || !global, "{what}: round {index}");
+        }
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn every_image_that_is_drawn_counts() {
+    for (initial, global) in [(false, true), (true, true), (true, false)] {
+        let mut rounds = rounds(initial, global);
+        // The given pose and its turns about every axis were drawn before the first round.
+        let mut before = if initial { 18 } else { 0 };
+        assert_eq!(rounds.search.renders, before);
+        while let Some(round) = rounds.round() {
+            let mut tasks = 0;
+            rounds.run(&mut || {
+                tasks += 1;
+                false
+            });
+            let drawn = rounds.search.renders - before;
+            let what = format!("initial {initial}, global {global}, {round:?}: {drawn} images of {tasks} tasks");
+            match round.task {
+                // As it is, and somewhat larger: nothing cuts this mask.
+                Task::Rotate => assert_eq!(drawn, 2 * tasks, "{what}"),
+                Task::Place => assert_eq!(drawn, tasks, "{what}"),
+                Task::Refine => assert!(drawn > tasks && drawn <= tasks * (1 + round.work), "{what}"),
+            }
+            before = rounds.search.renders;
+        }
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_pose_that_joins_is_refined_with_those_of_the_grid() {
+    let mesh = body();
+    let count = |joins: bool| {
+        let mut rounds = rounds(false, true);
+        if joins {
+            rounds.join(CropPose::of_similarity(&truth(), &MeshFrame::of(&mesh)).unwrap());
+        }
+        let tasks = run(&mut rounds, &mut || false).0;
+        (tasks, rounds.found[0].score.total)
+    };
+    let ((without, low), (with, high)) = (count(false), count(true));
+    assert_eq!(with[..2], without[..2]);
+    assert_eq!(with[FIRST_REFINEMENT], without[FIRST_REFINEMENT] + 8, "the pose and seven around it");
+    assert!(high >= low - 1e-3, "the truth joined: {high}, and {low} without it");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn what_was_found_is_ranked_by_the_fine_grid_and_distinct() {
+    let mut rounds = rounds(false, true);
+    let mut ranked = Vec::new();
+    while let Some(round) = rounds.round() {
+        assert!(rounds.run(&mut || false));
+        if round == settings().rounds[RANKING] {
+            ranked = rounds.found.clone();
+        }
+    }
+    assert!(ranked.len() > 1, "{ranked:?}");
+    for (k, found) in ranked.iter().enumerate() {
+        assert_eq!(found.score, rounds.search.score(&found.pose), "{k}");
+        let apart = |other: &Found| angle_between(other.pose.rotation, found.pose.rotation) > 0.105;
+        assert!(ranked[..k].iter().all(|other| other.score.total >= found.score.total && apart(other)), "{k}");
+    }
+    // The finest grid moves the best alone, and no score: scores of different grids do not compare.
+    let polished = settings().rounds[RANKING].keep;
+    for (k, (found, ranked)) in rounds.found.iter().zip(&ranked).enumerate() {
+        assert_eq!(found.score, ranked.score, "{k}");
+        assert_eq!(found.pose != ranked.pose, k < polished, "{k}: {found:?}");
+    }
+}
+
+/// The cost of a search in units of the budget: about milliseconds of WebAssembly on a laptop of 2020.
+fn cost(settings: &SearchSettings) -> f64 {
+    let [rotate, place, first, second, fine, _] = settings.rounds;
+    0.06 * rotate.work as f64
+        + 0.12 * (place.keep * first.work + first.keep * second.work) as f64
+        + 0.4 * (second.keep * fine.work) as f64
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_search_within_a_budget_costs_as_much() {
+    for settings in [SearchSettings::fast(), SearchSettings::default(), SearchSettings::best()] {
+        for budget in [150.0, 500.0, 1500.0] {
+            let within = settings.within(budget);
+            // Counts are rounded down, and grow twentyfold at most.
+            let share = cost(&within) / f64::min(budget, 20.0 * cost(&settings));
+            assert!((0.85..=1.0001).contains(&share), "{budget}: {within:?} costs {}", cost(&within));
+            let unchanged = |within: SearchSettings| SearchSettings { rounds: settings.rounds, ..within };
+            assert_eq!(unchanged(within), settings, "{budget}: nothing but the rounds");
+            assert!(within.rounds.iter().skip(1).zip(&settings.rounds[1..]).all(|(a, b)| a.work == b.work), "{budget}");
+        }
+        let least = settings.within(1e-9).rounds;
+        assert!(least[0].work >= 60 && least[..4].iter().zip([30, 6, 3, 2]).all(|(round, keep)| round.keep >= keep));
+    }
+}
