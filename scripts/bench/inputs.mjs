@@ -29,7 +29,7 @@ export const packageModule = (file) => import(pathToFileURL(join(packageDir, fil
  */
 export async function readTypedCase(folder) {
   const [{ readCaseFolder }, { resolveInput }, { formatsModule }] = await Promise.all(
-    ["case-folder.js", "input/resolve.js", "modules.js"].map(packageModule),
+    ["case-folder.js", "input/resolve.js", "formats-module.js"].map(packageModule),
   );
   const { name, input, truth } = await readCaseFolder(folder);
   const { core } = await resolveInput(input, () => formatsModule.load());
