@@ -1,6 +1,7 @@
 /** Calls as data, which the same code runs on this thread or in a worker. */
-import type { Core, CoreAlignment, CoreInput, CoreListener, CoreMesh } from "./core.js";
+import type { Core, CoreAlignment, CoreListener } from "./core.js";
 import type { LoadFormats } from "./formats-module.js";
+import type { CoreInput, CoreMesh } from "./input/core-input.js";
 import { readMesh } from "./input/mesh.js";
 import { resolveInput } from "./input/resolve.js";
 import type { AlignInput, MeshInput } from "./input/types.js";

@@ -1,6 +1,7 @@
 /** Meshes that are read, checked and decimated once, and used in many calls. */
-import type { CoreMesh } from "./core.js";
+
 import { Sim3AlignError } from "./error.js";
+import type { CoreMesh } from "./input/core-input.js";
 
 /** A mesh with the number under which each thread keeps what it has derived from it. */
 export interface KeptMesh {

@@ -1,7 +1,7 @@
 /** Prepared meshes: the same bits, arrays that go to a worker once, and what becomes of them. */
 import assert from "node:assert/strict";
 import { after, test } from "node:test";
-import { type AlignInput, createAligner, type OptionsOf, PreparedMesh } from "sim3align";
+import { type AlignInput, type Alignment, createAligner, type OptionsOf, PreparedMesh } from "sim3align";
 import { rejectsWith } from "../support/errors.js";
 import { glb } from "../support/files.js";
 import { input, mesh, truth } from "../support/scene.js";
@@ -42,17 +42,22 @@ for (const [name, aligner] of [
     await aligner.align({ ...input, mesh: first }, { quality: "fast" });
     first.dispose();
     first.dispose();
-    await rejectsWith(() => aligner.align({ ...input, mesh: first }), { code: "DISPOSED", argument: "mesh" });
+    await rejectsWith(() => aligner.align({ ...input, mesh: first }), {
+      code: "DISPOSED",
+      argument: "mesh",
+      message: /mesh/,
+    });
     assert.ok((await aligner.align({ ...input, mesh: second }, { quality: "fast" })).scale > 0);
     second.dispose();
   });
 
   test(`${name}: a mesh without volume is refused when it is prepared`, async () => {
     const flat = { positions: Float32Array.of(0, 0, 0, 1, 0, 0, 0, 1, 0), indices: Uint32Array.of(0, 1, 2) };
-    await rejectsWith(() => aligner.prepareMesh(flat), { code: "DEGENERATE_MESH", argument: "mesh" });
+    await rejectsWith(() => aligner.prepareMesh(flat), { code: "DEGENERATE_MESH", argument: "mesh", message: /mesh/ });
     await rejectsWith(() => aligner.prepareMesh({ positions: [0, 1] } as never), {
       code: "INVALID_ARGUMENT",
       argument: "mesh.positions",
+      message: /Float32Array/,
     });
   });
 
@@ -68,7 +73,7 @@ for (const [name, aligner] of [
     using prepared = await aligner.prepareMesh(mesh);
     let moved: AlignInput = { ...structuredClone(input), mesh: prepared };
     for (let call = 0; call < 2; call++) {
-      const result = await aligner.align(moved, { quality: "fast", transfer: true });
+      const result: Alignment = await aligner.align(moved, { quality: "fast", transfer: true });
       assert.equal(result.input?.mesh, prepared);
       moved = result.input as AlignInput;
     }
