@@ -15,16 +15,16 @@ import { script } from "./lib/step.mjs";
 
 const qualities = ["fast", "balanced", "best"];
 
-/** @typedef {{ matrix: ArrayLike<number>, timingsMs: Record<string, number> }} Result */
+/** @typedef {{ matrix: number[], diagnostics: { timingsMs: Record<string, number> } }} Result */
 
 /**
  * Median milliseconds by stage.
  * @param {readonly Result[]} results
  */
 function medians(results) {
-  const stages = Object.keys(results[0]?.timingsMs ?? {});
+  const stages = Object.keys(results[0]?.diagnostics.timingsMs ?? {});
   return new Map(
-    stages.map((stage) => [stage, median(results.map((result) => result.timingsMs[stage] ?? Number.NaN))]),
+    stages.map((stage) => [stage, median(results.map((result) => result.diagnostics.timingsMs[stage] ?? Number.NaN))]),
   );
 }
 
@@ -71,7 +71,7 @@ async function profile(folder, quality, runs) {
     const cells = [other.toFixed(1).padStart(12), ms.toFixed(1).padStart(12), (ms / other).toFixed(2).padStart(8)];
     console.log(stage.padEnd(10) + cells.join(""));
   }
-  const [a, b] = [Array.from(there[0]?.matrix ?? []), Array.from(here[0]?.matrix ?? [])];
+  const [a, b] = [there[0]?.matrix ?? [], here[0]?.matrix ?? []];
   const off = Math.max(...a.map((x, i) => Math.abs(x - (b[i] ?? Number.NaN))));
   console.log(off === 0 ? "The matrices are the same to the bit." : `The matrices differ by up to ${off}.`);
 }

@@ -37,14 +37,23 @@ export const isWithin = (errors, tolerance) =>
 /** @typedef {Record<string, number | null>} Metrics by name, as `src/metrics/mod.rs` has them */
 
 /**
- * `Alignment` of `src/align/report.rs`, as far as tables need it.
+ * `Alignment` or `PaperAlignment` of `src/report.rs`, as far as tables need it. What only `precise` reports is missing
+ * from the others.
  * @typedef {object} BenchAlignment
  * @property {number[]} matrix camera from mesh, column by column
- * @property {number | null} score
- * @property {number | null} confidence
+ * @property {number} [confidence]
+ * @property {readonly { score: number }[]} [alternatives]
+ * @property {{ scale: number, rotationDeg: number } | null} [uncertainty]
+ * @property {Metrics} metrics
+ * @property {BenchDiagnostics} diagnostics
+ */
+
+/**
+ * @typedef {object} BenchDiagnostics
  * @property {boolean} collapsed
  * @property {boolean} clamped
- * @property {Metrics} metrics
+ * @property {number} [score]
+ * @property {{ overlap: number, depth: number, outline: number }} [terms]
  */
 
 /** @typedef {{ row: string, records: BenchRecord[] }} BenchRow */
@@ -82,8 +91,9 @@ export const judged = (records) => records.filter(({ truthMetrics }) => truthMet
 export function failure({ alignment, errors, truthScore }) {
   if (isWithin(errors, strict)) return null;
   if (alignment === null) return "unanswered";
-  if (alignment.score === null || truthScore === null) return "unknown";
-  return alignment.score < truthScore ? "search" : "scoring";
+  const { score } = alignment.diagnostics;
+  if (score === undefined || truthScore === null) return "unknown";
+  return score < truthScore ? "search" : "scoring";
 }
 
 /**

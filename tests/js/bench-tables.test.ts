@@ -9,13 +9,14 @@ const script = (name: string) => import(pathToFileURL(join(repository, "scripts"
 const [{ median, mean, share, fixed, markdownTable }, { failure, judged, isWithin, loose, strict }, tables] =
   await Promise.all(["table.mjs", "records.mjs", "search-tables.mjs"].map(script));
 const { ablationTable, binOf, failureTable, reliabilityTable } = tables;
+const { currentModel, featuresOf, fitLogistic, probability } = await script("confidence-model.mjs");
 
 const right = { scaleError: 0.01, rotationErrorDeg: 2, translationErrorRelative: 0.01 };
 const near = { ...right, rotationErrorDeg: 15 };
 const wrong = { ...right, rotationErrorDeg: 180 };
 
 function record(tier: string, errors: object | null, confidence: number, score = 1.2) {
-  const alignment = errors === null ? null : { score, confidence, metrics: { iou: 0.9 } };
+  const alignment = errors === null ? null : { confidence, metrics: { iou: 0.9 }, diagnostics: { score } };
   return { name: "case", tier, alignment, errors, truthMetrics: {}, truthScore: 1, seconds: 0.5 };
 }
 
@@ -86,4 +87,46 @@ test("an ablation shows success by tier, strict and loose", () => {
   const line = cells(ablationTable([{ row: "everything", records }]), "everything");
   assert.deepEqual(line.slice(2, 8), ["33.3 / 66.7", "50.0 / 100.0", "0.0 / 0.0", "1.00", "15.00", "1.00"]);
   assert.deepEqual(line.slice(8, 12), ["0.900", "0.50", "0", "1"]);
+});
+
+test("the features of confidence are those of the core, with its constants", () => {
+  const model = currentModel();
+  assert.equal(model.slopes.length, 6);
+  const terms = { overlap: 0.9, depth: 0.8, outline: 0.7 };
+  const alignment = {
+    alternatives: [{ score: 1.1 }, { score: 1.05 }],
+    uncertainty: { scale: 1e-9, rotationDeg: 5 },
+    diagnostics: { score: 1.2, terms },
+  };
+  const features = featuresOf({ alignment }, model);
+  const expected = [0.9, 0.8, 0.7, 0.1 / model.noise, Math.log(model.scale[0]), Math.log(5)];
+  for (const [i, value] of expected.entries()) assert.ok(Math.abs(features[i] - value) < 1e-12, `feature ${i}`);
+  assert.equal(featuresOf({ alignment: { ...alignment, uncertainty: null } }, model), null);
+  assert.equal(featuresOf({ alignment: null }, model), null);
+});
+
+test("the fit of confidence finds the line that labels were drawn with", () => {
+  const line = { intercept: -1, slopes: [2, -0.5] };
+  // Each point stands for a hundred labels, in the line's own proportion.
+  const rows: number[][] = [];
+  const labels: boolean[] = [];
+  for (const x of [-1, -0.5, 0, 0.5, 1]) {
+    for (const y of [-3, -1, 1, 3]) {
+      const right = Math.round(100 * probability([x, y], line));
+      for (let i = 0; i < 100; i++) {
+        rows.push([x, y]);
+        labels.push(i < right);
+      }
+    }
+  }
+  const { intercept, slopes } = fitLogistic(rows, labels);
+  for (const [found, expected] of [
+    [intercept, -1],
+    [slopes[0], 2],
+    [slopes[1], -0.5],
+  ])
+    assert.ok(Math.abs(found - expected) < 0.02, `${found}, expected ${expected}`);
+  // Labels that a threshold separates still have a finite line.
+  const separated = fitLogistic([[0], [1], [2], [3]], [false, false, true, true]);
+  assert.ok(separated.slopes[0] > 1 && Number.isFinite(separated.slopes[0]));
 });

@@ -17,7 +17,8 @@ const [{ byDifficulty, byOverlap, figurePage }, { openResults }, { readRecords }
 const metrics = { boundaryF: 0.8, centerDriftPx: 4, iou: 0.6, chamferMm: 10, uniChamferMm: 5 };
 const all = { ...metrics, fitness: 0.9, normalConsistency: 0.7, depthMaeMm: 8 };
 const right = { scaleError: 0.01, rotationErrorDeg: 2, translationErrorRelative: 0.01 };
-const alignment = { matrix: [], score: 1, confidence: 1, collapsed: false, clamped: false };
+const diagnostics = { score: 1, collapsed: false, clamped: false };
+const alignment = { matrix: [], confidence: 1, diagnostics };
 
 function record(changes: object = {}) {
   const posed = { ...alignment, metrics: all };
@@ -27,7 +28,11 @@ function record(changes: object = {}) {
 
 const unanswered = record({ alignment: null, errors: null });
 const aside = record({
-  alignment: { ...alignment, metrics: { ...all, iou: 0, depthMaeMm: null, centerDriftPx: null }, collapsed: true },
+  alignment: {
+    ...alignment,
+    metrics: { ...all, iou: 0, depthMaeMm: null, centerDriftPx: null },
+    diagnostics: { ...diagnostics, collapsed: true },
+  },
   errors: { ...right, rotationErrorDeg: 90 },
 });
 

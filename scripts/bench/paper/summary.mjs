@@ -74,8 +74,8 @@ export function summarise(records) {
       rotationDeg: error("rotationErrorDeg"),
       translation: error("translationErrorRelative"),
     },
-    collapsed: finite(share(answers.map(({ collapsed }) => collapsed))),
-    clamped: finite(share(answers.map(({ clamped }) => clamped))),
+    collapsed: finite(share(answers.map(({ diagnostics }) => diagnostics.collapsed))),
+    clamped: finite(share(answers.map(({ diagnostics }) => diagnostics.clamped))),
   };
 }
 
