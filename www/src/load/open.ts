@@ -31,7 +31,9 @@ export async function open(next: Inputs): Promise<boolean> {
     scene.value = opened;
     if (opened.rgba === null && layers.peek().base === "photo") setLayer("base", "depth");
     if (opened.rgba !== null && layers.peek().base === "depth") setLayer("base", "photo");
-    announce(`${opened.name}: ${opened.width} × ${opened.height} pixels, ${countOf(opened.objects.length)}. Ready to align.`);
+    announce(
+      `${opened.name}: ${opened.width} × ${opened.height} pixels, ${countOf(opened.objects.length)}. Ready to align.`,
+    );
     return true;
   } catch (error) {
     if (call !== lastCall) return false;

@@ -43,7 +43,9 @@ export async function readScene(inputs: Inputs): Promise<Scene> {
     height,
     camera: intrinsics,
     rgba,
-    objects: objects.map((parts) => new ObjectModel({ ...parts, visible: visibleExtent(depth, parts.mask, intrinsics) })),
+    objects: objects.map(
+      (parts) => new ObjectModel({ ...parts, visible: visibleExtent(depth, parts.mask, intrinsics) }),
+    ),
     warnings,
   };
 }
@@ -92,7 +94,12 @@ async function readObjects(inputs: Inputs, width: number, height: number): Promi
     inputs.masks.map(async (file, i) => {
       const source = matchingFile(file, inputs.meshes, ({ file }) => file.path);
       if (source === undefined) {
-        throw new FieldError("mesh", new Error(`No mesh matches ${baseName(file.path)}. Give both files the same suffix: mask-cup.png, mesh-cup.glb.`));
+        throw new FieldError(
+          "mesh",
+          new Error(
+            `No mesh matches ${baseName(file.path)}. Give both files the same suffix: mask-cup.png, mesh-cup.glb.`,
+          ),
+        );
       }
       const [mask, mesh, truth] = await Promise.all([
         forField("mask", () => readMaskAt(file, width, height, inputs.resizeMasks)),

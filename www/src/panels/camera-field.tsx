@@ -64,7 +64,9 @@ export function CameraField() {
             <span class="unit">°</span>
           </label>
         </div>
-        <p class="quiet">With an assumed field of view, the size is approximate. Calibrate the camera if the size matters.</p>
+        <p class="quiet">
+          With an assumed field of view, the size is approximate. Calibrate the camera if the size matters.
+        </p>
       </details>
     </FileField>
   );

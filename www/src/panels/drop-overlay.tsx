@@ -30,5 +30,7 @@ export function DropOverlay() {
     addEventListener("drop", drop, { signal });
     return () => listening.abort();
   }, []);
-  return isOver ? <p class="drop-here">Drop depth map, mask, mesh and camera, or a folder or zip archive with them</p> : null;
+  return isOver ? (
+    <p class="drop-here">Drop depth map, mask, mesh and camera, or a folder or zip archive with them</p>
+  ) : null;
 }

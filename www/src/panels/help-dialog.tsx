@@ -27,14 +27,14 @@ export function HelpDialog() {
       </header>
       <p>
         A generated mesh has no metric scale and no pose. A depth map with a mask shows where the visible part of the
-        object is. This page estimates the similarity transform <code>x_cam = s·R·p_mesh + t</code> that aligns the
-        mesh with it.
+        object is. This page estimates the similarity transform <code>x_cam = s·R·p_mesh + t</code> that aligns the mesh
+        with it.
       </p>
       <p>
-        Drop a folder, a zip archive or single files anywhere on the page: <code>depth.png</code> or <code>depth.npy</code>,{" "}
-        <code>mask.png</code>, <code>mesh.glb</code>, <code>camera.json</code>, and optionally a photo. For several objects, use matching names:{" "}
-        <code>mask-cup.png</code> goes with <code>mesh-cup.glb</code>. Everything is computed in
-        this browser; nothing is uploaded.
+        Drop a folder, a zip archive or single files anywhere on the page: <code>depth.png</code> or{" "}
+        <code>depth.npy</code>, <code>mask.png</code>, <code>mesh.glb</code>, <code>camera.json</code>, and optionally a
+        photo. For several objects, use matching names: <code>mask-cup.png</code> goes with <code>mesh-cup.glb</code>.
+        Everything is computed in this browser; nothing is uploaded.
       </p>
       <h3>Keyboard shortcuts</h3>
       <dl class="keys">

@@ -105,7 +105,12 @@ export function OptionsPanel() {
         about="Lower bound of the scale in metres per mesh unit. For a mesh in metres, enter 1 in both fields."
         unit="m"
       />
-      <NumberField name="scaleMax" title="Maximum scale" about="Upper bound of the scale in metres per mesh unit." unit="m" />
+      <NumberField
+        name="scaleMax"
+        title="Maximum scale"
+        about="Upper bound of the scale in metres per mesh unit."
+        unit="m"
+      />
       <Select {...up} />
       <Select {...symmetry} />
       <NumberField

@@ -57,9 +57,7 @@ function Size({ object }: { object: ObjectModel | null }) {
           ))}{" "}
           <span class="unit">cm</span>
         </span>
-        <Tip label="size">
-          Width × height × depth of the object's bounding box, along x, y and z of the mesh.
-        </Tip>
+        <Tip label="size">Width × height × depth of the object's bounding box, along x, y and z of the mesh.</Tip>
       </p>
       <Confidence object={object} />
     </div>

@@ -1,19 +1,16 @@
 /** Aligns objects and reports their progress. */
 import { computed, signal } from "@preact/signals";
-import type { AlignOptions, PaperOptions, Progress } from "sim3align";
+import type { Progress } from "sim3align";
 import { toSim3 } from "sim3align/conventions";
 import { FieldError, fieldOf } from "../load/field-error.js";
 import { fieldErrors } from "../load/open.js";
 import { place } from "../state/history.js";
 import type { AnyAlignment, ObjectModel } from "../state/object-model.js";
-import { alignOptions, refineOptions } from "../state/options.js";
+import { alignOptions, type CallOptions, refineOptions } from "../state/options.js";
 import type { PoseSource } from "../state/pose.js";
 import { type Scene, scene, selected } from "../state/scene.js";
 import { announce, type Status, status } from "../state/status.js";
 import { aligner, inputOf } from "./aligner.js";
-
-/** The options of the call, without those that the page sets itself. */
-type CallOptions = AlignOptions | PaperOptions;
 
 const controller = signal<AbortController | null>(null);
 

@@ -9,7 +9,11 @@ import {
   type PaperOptions,
   type Preset,
   type Quality,
+  type Sim3,
 } from "sim3align";
+
+/** The options of `align` that the page sets. */
+export type CallOptions = Omit<AlignOptions, "metrics"> | Omit<PaperOptions, "metrics">;
 
 /** The state of the form. `null` is an empty field. */
 export interface Options {
@@ -44,16 +48,20 @@ export const defaultOptions: Options = {
 
 /** The library's rows about the options of `align`. */
 type Row = (typeof OPTIONS.align)[number];
-const rowOf = <N extends Row["name"]>(name: N) => OPTIONS.align.find((row) => row.name === name) as Extract<Row, { name: N }>;
+const rowOf = <N extends Row["name"]>(name: N) =>
+  OPTIONS.align.find((row) => row.name === name) as Extract<Row, { name: N }>;
 
-/** The values of the options that are words. */
-export const choices = {
+/** The options that are chosen from a list. */
+type ChoiceName = "preset" | "quality" | "knownExtentAxis" | "up" | "symmetry";
+
+/** The values of these options. */
+export const choices: { readonly [K in ChoiceName]: readonly Options[K][] } = {
   preset: [ALIGN_DEFAULTS.preset, PAPER_DEFAULTS.preset],
   quality: rowOf("quality").choices,
   knownExtentAxis: rowOf("knownExtentAxis").choices,
   up: ["unknown", "y", "z"],
   symmetry: ["auto", "auto-revolution", "none"],
-} as const satisfies { readonly [K in keyof Options]?: readonly Options[K][] };
+};
 
 /** The largest seed. */
 export const MAX_SEED = rowOf("seed").max;
@@ -65,7 +73,7 @@ export function setOption<K extends keyof Options>(name: K, value: Options[K]): 
 }
 
 /** The options of `align` for an alignment from scratch. */
-export function alignOptions(chosen = options.peek()): AlignOptions | PaperOptions {
+export function alignOptions(chosen = options.peek()): CallOptions {
   const { preset, seed } = chosen;
   if (preset === "paper") return { preset, seed };
   const { scaleMin, scaleMax, knownExtentCm, up } = chosen;
@@ -81,7 +89,7 @@ export function alignOptions(chosen = options.peek()): AlignOptions | PaperOptio
 }
 
 /** The options of `align` for a search around a pose only. */
-export function refineOptions(initial: Readonly<{ scale: number }> & NonNullable<AlignOptions["initial"]>): AlignOptions {
+export function refineOptions(initial: Sim3): CallOptions {
   const { quality, seed, symmetry, lockScale } = options.peek();
   return { quality, seed, symmetry, search: "local", initial, ...(lockScale ? { scale: initial.scale } : {}) };
 }

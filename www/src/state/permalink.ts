@@ -12,7 +12,10 @@ export function readAddress(): { sample: string | null } {
 
 const hash = computed(() => {
   const sample = scene.value?.sample ?? null;
-  const parts = [...(sample === null ? [] : [["sample", sample] as [string, string]]), ...changedOptions(options.value)];
+  const parts = [
+    ...(sample === null ? [] : [["sample", sample] as [string, string]]),
+    ...changedOptions(options.value),
+  ];
   return parts.length === 0 ? "" : `#${new URLSearchParams(parts)}`;
 });
 

@@ -58,7 +58,7 @@ export const shortcuts: readonly Shortcut[] = [
   { key: "p", title: "P", about: "Show or hide the points", act: toggle3d("cloud") },
   { key: "m", title: "M", about: "Show or hide the mesh", act: toggle3d("mesh") },
   { key: "d", title: "D", about: "Depth difference", act: () => setLayer("difference", !layers.peek().difference) },
-  { key: "b", title: "B", about: "Show before or after", act: () => setLayer("wipe", layers.peek().wipe < 0.5 ? 1 : 0) },
+  { key: "b", title: "B", about: "Before or after", act: () => setLayer("wipe", layers.peek().wipe < 0.5 ? 1 : 0) },
   { key: "z", title: "Z", about: "Zoom to the objects", act: () => setLayer("zoom", !layers.peek().zoom) },
   { key: "v", title: "V", about: "Swap the views", act: swapViews },
   { key: "0", title: "0 to 9", about: "The result (0) and its alternatives", act: () => {} },
