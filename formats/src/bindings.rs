@@ -1,6 +1,8 @@
 //! The file readers' exports.
 
 use js_sys::{ArrayBuffer, Float32Array, Object, Reflect, Uint8Array, Uint32Array};
+use serde::Serialize;
+use serde_wasm_bindgen::Serializer;
 use wasm_bindgen::prelude::*;
 
 use crate::depth::{DepthReadOptions, read_depth as depth_from_bytes};
@@ -191,23 +193,10 @@ impl<'a> Options<'a> {
     }
 }
 
-/// A JavaScript `Error` named `Sim3AlignError` with the own properties `code`, `argument`, `found`, `expected` and
-/// `remedy`.
+/// A plain object `{ code, argument, found, expected, remedy }`, of which the TypeScript package makes its
+/// `Sim3AlignError`.
 fn to_js(error: &Error) -> JsValue {
-    let js = js_sys::Error::new(&error.to_string());
-    js.set_name("Sim3AlignError");
-    let properties = [
-        ("code", error.code.as_str()),
-        ("argument", &error.argument),
-        ("found", &error.found),
-        ("expected", &error.expected),
-        ("remedy", &error.remedy),
-    ];
-    for (name, value) in properties {
-        // A fresh Error is extensible: setting a property on it can't fail.
-        let _ = Reflect::set(&js, &name.into(), &value.into());
-    }
-    js.into()
+    error.serialize(&Serializer::json_compatible()).unwrap_or_else(Into::into)
 }
 
 /// See the aligner's.

@@ -4,12 +4,10 @@
 //! input or up to a stated limit.
 
 pub mod bindings;
-pub mod camera;
 mod cursor;
 pub mod depth;
 pub mod gltf;
 pub mod guard;
-pub mod json;
 pub mod mask;
 pub mod mesh;
 mod mesh_builder;
@@ -18,7 +16,5 @@ mod obj;
 pub mod ply;
 mod ply_header;
 mod png;
-pub mod rle;
 mod stl;
 pub mod text;
-pub mod truth;

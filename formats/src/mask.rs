@@ -3,7 +3,6 @@
 use crate::guard::{beginning, unsupported};
 use crate::npy::{self, NpyImage};
 use crate::png::{self, PngInfo};
-use crate::rle::Rle;
 use sim3align_geometry::error::Result;
 use sim3align_geometry::image::{Image, Mask};
 
@@ -12,7 +11,6 @@ use sim3align_geometry::image::{Image, Mask};
 /// - PNG of any bit depth. If the alpha channel varies, the object has alpha above 0 (a cut-out). Otherwise, the
 ///   object has any colour channel above 0; in a palette image, a colour other than that of index 0.
 /// - `.npy` array (H×W, H×W×1, 1×H×W) of booleans or numbers: values other than 0 and NaN are the object.
-/// - JSON with a COCO run-length encoding, `{"size": [h, w], "counts": …}`, or with one under `segmentation`.
 ///
 /// # Errors
 /// [`UnsupportedFormat`](sim3align_geometry::error::ErrorCode::UnsupportedFormat),
@@ -27,9 +25,6 @@ pub fn read_mask(bytes: &[u8]) -> Result<Mask> {
         let array = NpyImage::read("mask", bytes)?;
         let object = array.values().map(|value| u8::from(value != 0.0 && !value.is_nan())).collect();
         return Image::new("mask", array.width, array.height, object);
-    }
-    if bytes.trim_ascii_start().starts_with(b"{") {
-        return Rle::from_json(bytes)?.decode();
     }
     Err(unsupported(
         "mask",

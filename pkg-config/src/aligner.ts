@@ -233,10 +233,17 @@ export class Aligner {
     const job = { method, ...this.#withMesh(data), options, ...more } as unknown as Job & { method: M };
     const progress = new ProgressListener(onProgress);
     const call = { signal: checkedSignal(signal), progress, transfer: checkedFlag("transfer", transfer) };
-    const outcome = await this.#engine.run(job, call);
-    const result = outcome.result as Results[M];
-    const mesh = job.data === data ? undefined : { mesh: (data as AlignInput).mesh };
-    return transfer ? { ...result, input: { ...outcome.data, ...mesh } } : result;
+    // What is handed back holds the prepared mesh, not its arrays.
+    const withMesh = (returned: object) =>
+      job.data === data ? returned : { ...returned, mesh: (data as AlignInput).mesh };
+    try {
+      const outcome = await this.#engine.run(job, call);
+      const result = outcome.result as Results[M];
+      return transfer ? { ...result, input: withMesh(outcome.data) } : result;
+    } catch (error) {
+      if (error instanceof Sim3AlignError && isRecord(error.input)) error.input = withMesh(error.input);
+      throw error;
+    }
   }
 
   /** The data of a job with the arrays of a prepared mesh in place of it. */

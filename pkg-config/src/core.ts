@@ -1,31 +1,9 @@
 /** The core WebAssembly module: what it takes and returns. */
-import type { Pinhole } from "./formats/pinhole.js";
 import type * as Results from "./generated/types.js";
+import type { CoreInput } from "./input/core-input.js";
+import type { CoreMesh } from "./prepared-mesh.js";
 import * as glue from "./wasm/core.js";
 import { type Glue, WasmModule } from "./wasm-module.js";
-
-/** An input as the core takes it; the core checks lengths and values. */
-export interface CoreInput {
-  depth?: Float32Array | Uint16Array;
-  depthScale?: unknown;
-  pointMap?: Float32Array;
-  width?: unknown;
-  height?: unknown;
-  mask: Uint8Array | Uint8ClampedArray;
-  maskWidth?: number;
-  maskHeight?: number;
-  resizeMask?: unknown;
-  camera?: Pinhole;
-  mesh: CoreMesh;
-}
-
-/** A mesh as the core takes it. */
-export interface CoreMesh {
-  positions: Float32Array;
-  indices?: Uint32Array | Uint16Array;
-  /** The number under which the core keeps the mesh. Where it does already, the arrays are not read. */
-  id?: number;
-}
 
 /** The result of either preset. */
 export type CoreAlignment = Results.Alignment | Results.PaperAlignment;

@@ -1,7 +1,8 @@
 /** Engines run jobs: on this thread, or in workers. */
-import type { Core, CoreAlignment, CoreInput, CoreListener } from "./core.js";
+import type { Core, CoreAlignment, CoreListener } from "./core.js";
 import { disposed } from "./error.js";
 import type { LoadFormats } from "./formats-module.js";
+import type { CoreInput } from "./input/core-input.js";
 import { type Job, perform, type Results, withoutInput } from "./jobs.js";
 import type { ProgressListener } from "./progress.js";
 import type { LoadedModule } from "./wasm-module.js";

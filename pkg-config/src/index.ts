@@ -75,6 +75,7 @@ export type {
   SymmetryOption,
 } from "./options.js";
 export type { CreateWorker, WasmSource, WorkerLike } from "./platform.js";
+export { PreparedMesh } from "./prepared-mesh.js";
 export type {
   AlignAllResult,
   Alignment,
@@ -86,5 +87,4 @@ export type {
   Registration,
   WithoutMetrics,
 } from "./results.js";
-export { PreparedMesh } from "./prepared-mesh.js";
 export type { Sim3, Sim3Like } from "./sim3.js";

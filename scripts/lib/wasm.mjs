@@ -95,6 +95,12 @@ async function writeModule(module, say) {
   say(`${kilobytes(raw)}, ${kilobytes(gzip)} gzipped${isNew ? "" : ", up to date"}`);
 }
 
+/**
+ * Limits on what LLVM copies for speed's sake: engines compile the module again, and every copy is downloaded. Alone, each
+ * makes the core smaller by more than 3 %, and the search no slower.
+ */
+const llvm = ["-inline-threshold=50", "-disable-lsr"].map((option) => `-Cllvm-args=${option}`);
+
 /** Flags that keep the builder's paths out of the modules: the compiler writes the places of possible panics into them. */
 async function rustFlags() {
   // Unpacks the sources below a folder that cargo names after the registry.
@@ -103,7 +109,7 @@ async function rustFlags() {
   const folders = existsSync(sources) ? readdirSync(sources) : [];
   const mappings = [...folders.map((folder) => `${join(sources, folder)}=crates`), `${repository}=.`];
   const given = process.env.RUSTFLAGS?.split(" ").filter(Boolean) ?? [];
-  return [...given, ...mappings.map((mapping) => `--remap-path-prefix=${mapping}`)].join("\x1f");
+  return [...given, ...llvm, ...mappings.map((mapping) => `--remap-path-prefix=${mapping}`)].join("\x1f");
 }
 
 /** @returns {string} */

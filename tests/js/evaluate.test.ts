@@ -122,12 +122,7 @@ const badTransforms: [name: string, transform: unknown, argument: string, messag
   ["a negative scale", { ...truth, scale: -1 }, "transform", /scale/],
   ["a NaN", { ...truth, translation: [0, Number.NaN, 0] }, "transform", /finite|NaN/],
   ["a reflection", { ...truth, rotation: [1, 0, 0, 0, 1, 0, 0, 0, -1] }, "transform", /reflection|rotation/],
-  [
-    "a row-major matrix",
-    [0.1, 0, 0, 1, 0, 0.1, 0, 2, 0, 0, 0.1, 3, 0, 0, 0, 1],
-    "transform.matrix",
-    /column-major/,
-  ],
+  ["a row-major matrix", [0.1, 0, 0, 1, 0, 0.1, 0, 2, 0, 0, 0.1, 3, 0, 0, 0, 1], "transform.matrix", /column-major/],
 ];
 
 for (const [name, transform, argument, message] of badTransforms) {

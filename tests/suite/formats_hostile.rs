@@ -2,11 +2,9 @@
 
 use sim3align::error::ErrorCode;
 use sim3align::geometry::random::Random;
-use sim3align_formats::camera::read_camera;
 use sim3align_formats::depth::{DepthReadOptions, read_depth};
 use sim3align_formats::mask::read_mask;
 use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, read_mesh};
-use sim3align_formats::truth::read_truth;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::formats_fixtures::{MESHES, fixture};
@@ -26,19 +24,8 @@ fn mask(bytes: &[u8]) -> Result<(), ErrorCode> {
     read_mask(bytes).map(drop).map_err(|error| error.code)
 }
 
-fn camera(bytes: &[u8]) -> Result<(), ErrorCode> {
-    read_camera(bytes, Some((640, 480)), None).map(drop).map_err(|error| error.code)
-}
-
-fn truth(bytes: &[u8]) -> Result<(), ErrorCode> {
-    read_truth(bytes).map(drop).map_err(|error| error.code)
-}
-
-const CAMERA: &[u8] = br#"{"0":{"cam_K":[600,0,319.5,0,610,239.5,0,0,1],"depth_scale":0.1}}"#;
-const TRUTH: &[u8] = br#"{"available":true,"scale":2,"rotation":[[0,-1,0],[1,0,0],[0,0,1]],"translation":[1,2,3]}"#;
-
 /// Every kind of file but the text formats OBJ, PLY and STL: whatever is cut off is missed.
-const MUST_BE_WHOLE: [(&str, &[u8], Reader); 29] = [
+const MUST_BE_WHOLE: [(&str, &[u8], Reader); 24] = [
     ("GLB", fixture!("mesh.glb"), mesh),
     ("GLB scene", fixture!("scene.glb"), mesh),
     ("glTF", fixture!("mesh-data-uri.gltf"), mesh),
@@ -63,11 +50,6 @@ const MUST_BE_WHOLE: [(&str, &[u8], Reader); 29] = [
     ("mask bool", fixture!("mask-bool.npy"), mask),
     ("mask i8", fixture!("mask-i8-fortran.npy"), mask),
     ("mask f4", fixture!("mask-f4.npy"), mask),
-    ("RLE", fixture!("rle-small.json"), mask),
-    ("RLE plain", fixture!("rle-small-plain.json"), mask),
-    ("RLE large", fixture!("rle-blob.json"), mask),
-    ("camera", CAMERA, camera),
-    ("truth", TRUTH, truth),
 ];
 
 #[wasm_bindgen_test(unsupported = test)]

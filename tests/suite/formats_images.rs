@@ -1,11 +1,9 @@
 //! Depth maps and masks from files.
 
 use sim3align::error::ErrorCode;
-use sim3align::geometry::image::{DepthMap, Image, Mask};
-use sim3align::geometry::random::Random;
+use sim3align::geometry::image::DepthMap;
 use sim3align_formats::depth::{DepthReadOptions, read_depth};
 use sim3align_formats::mask::read_mask;
-use sim3align_formats::rle::Rle;
 use sim3align_lab::case_folder::write;
 use wasm_bindgen_test::wasm_bindgen_test;
 
@@ -103,8 +101,6 @@ fn masks_of_every_kind_are_the_same_mask() {
         ("bool", fixture!("mask-bool.npy")),
         ("i8, Fortran order, object is −3", fixture!("mask-i8-fortran.npy")),
         ("f4, object is 0.25", fixture!("mask-f4.npy")),
-        ("compressed COCO RLE", fixture!("rle-small.json")),
-        ("plain COCO RLE", fixture!("rle-small-plain.json")),
     ];
     for (name, bytes) in files {
         let mask = read_mask(bytes).unwrap_or_else(|error| panic!("{name}: {error}"));
@@ -112,67 +108,6 @@ fn masks_of_every_kind_are_the_same_mask() {
         assert_eq!(mask.data(), expected_mask(), "{name}");
     }
     assert_eq!(read_mask(b"GIF89a").unwrap_err().code, ErrorCode::UnsupportedFormat);
-}
-
-#[wasm_bindgen_test(unsupported = test)]
-fn coco_run_lengths_are_those_of_pycocotools() {
-    let text = |bytes: &[u8]| serde_json::from_slice::<serde_json::Value>(bytes).unwrap();
-    for (compressed, plain) in [
-        (fixture!("rle-small.json"), fixture!("rle-small-plain.json")),
-        (fixture!("rle-blob.json"), fixture!("rle-blob-plain.json")),
-    ] {
-        let rle = Rle::from_json(compressed).unwrap();
-        assert_eq!(rle, Rle::from_json(plain).unwrap());
-        let mask = rle.decode().unwrap();
-        assert_eq!(Rle::encode(&mask), rle);
-        assert_eq!(rle.to_compressed(), text(compressed)["counts"].as_str().unwrap());
-    }
-    // The blob's pixels and bounding box (x 61 to 319, y 0 to 239) as pycocotools counts them.
-    let blob = read_mask(fixture!("rle-blob.json")).unwrap();
-    assert_eq!((blob.width(), blob.height()), (320, 240));
-    assert_eq!(blob.data().iter().filter(|&&pixel| pixel == 1).count(), 24117);
-    let mut columns = (0..320).filter(|&u| (0..240).any(|v| blob.get(u, v) == Some(1)));
-    assert_eq!((columns.next(), columns.next_back()), (Some(61), Some(319)));
-    let nested = format!("{{\"segmentation\":{}}}", String::from_utf8_lossy(fixture!("rle-small.json")));
-    assert_eq!(read_mask(nested.as_bytes()).unwrap().data(), expected_mask());
-}
-
-#[wasm_bindgen_test(unsupported = test)]
-fn run_lengths_survive_a_round_trip() {
-    for seed in 0..50 {
-        let mut random = Random::new(seed, 931);
-        let (width, height) = (1 + random.below(40), 1 + random.below(40));
-        let density = random.uniform();
-        let data = (0..width * height).map(|_| u8::from(random.uniform() < density)).collect();
-        let mask: Mask = Image::new("mask", width, height, data).unwrap();
-        let rle = Rle::encode(&mask);
-        assert_eq!(rle.decode().unwrap(), mask, "seed {seed}");
-        assert_eq!(Rle::from_compressed(width, height, &rle.to_compressed()).unwrap(), rle, "seed {seed}");
-    }
-}
-
-#[wasm_bindgen_test(unsupported = test)]
-fn run_lengths_that_do_not_fit_are_refused() {
-    let code = |size: &str, counts: &str| {
-        let json = format!("{{\"size\":{size},\"counts\":{counts}}}");
-        read_mask(json.as_bytes()).unwrap_err().code
-    };
-    assert_eq!(code("[5,7]", "[36]"), ErrorCode::CorruptFile);
-    assert_eq!(code("[5,7]", "[30,4]"), ErrorCode::CorruptFile);
-    assert_eq!(code("[5,7]", "[4294967295,4294967295]"), ErrorCode::CorruptFile);
-    assert_eq!(code("[5,7]", "[4294967296]"), ErrorCode::CorruptFile);
-    assert_eq!(code("[5,7]", "[-1,36]"), ErrorCode::CorruptFile);
-    assert_eq!(code("[5,7]", "[1.5]"), ErrorCode::CorruptFile);
-    assert_eq!(code("[0,7]", "[0]"), ErrorCode::EmptyImage);
-    assert_eq!(code("[100000,100000]", "[10000000000]"), ErrorCode::CorruptFile);
-    assert_eq!(code("[100000,100000]", "[1]"), ErrorCode::FileTooLarge);
-    assert_eq!(code("[18446744073709551615,7]", "[1]"), ErrorCode::FileTooLarge);
-    assert_eq!(code("[5,7,1]", "[35]"), ErrorCode::CorruptFile);
-    assert_eq!(code("[5]", "[5]"), ErrorCode::CorruptFile);
-    assert_eq!(code("[5,7]", "{}"), ErrorCode::CorruptFile);
-    for text in ["ooooooooooooooooooooo0", "o", "~", "é", "J", "S2"] {
-        assert_eq!(code("[5,7]", &format!("{text:?}")), ErrorCode::CorruptFile, "{text}");
-    }
 }
 
 #[wasm_bindgen_test(unsupported = test)]

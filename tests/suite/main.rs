@@ -4,6 +4,7 @@
 #![allow(missing_docs)]
 
 pub mod align;
+pub mod align_task;
 pub mod angle;
 pub mod density;
 pub mod determinism;
@@ -16,7 +17,6 @@ pub mod formats_fixtures;
 pub mod formats_gltf;
 pub mod formats_hostile;
 pub mod formats_images;
-pub mod formats_json;
 pub mod formats_mesh;
 pub mod fpfh;
 pub mod icp;

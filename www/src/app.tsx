@@ -18,7 +18,7 @@ import { SpaceView } from "./views/space-view.js";
 
 export function App() {
   useEffect(listenToKeys, []);
-  // Without 3D the image has the large place.
+  // Without a 3D view, the image view is the large one.
   const large = space.value.kind === "none" ? "image" : largeView.value;
   return (
     <div class="frame">

@@ -1,4 +1,4 @@
-/** The page's beginning: what takes long is begun at once, and side by side. */
+/** Entry point of the page. Downloads start at once and in parallel. */
 import { render } from "preact";
 import { loadFormats } from "sim3align/formats";
 import { App } from "./app.js";
@@ -6,9 +6,9 @@ import { openSample } from "./load/open.js";
 import { sampleOf, samples } from "./load/samples.js";
 import { alignAll } from "./run/align.js";
 import { aligner } from "./run/aligner.js";
-import { followPoses } from "./run/evaluate.js";
-import { say } from "./state/announcement.js";
-import { asked, followAddress } from "./state/permalink.js";
+import { observePoses } from "./run/evaluate.js";
+import { readAddress, updateAddress } from "./state/permalink.js";
+import { announce } from "./state/status.js";
 import { isSettled } from "./views/space.js";
 import "../style/theme.css";
 import "../style/layout.css";
@@ -16,14 +16,14 @@ import "../style/controls.css";
 import "../style/views.css";
 import "../style/panels.css";
 
-const sample = sampleOf(asked().sample) ?? samples[0];
-followAddress();
-followPoses();
-// The sample's files need it as soon as they are there.
+const sample = sampleOf(readAddress().sample) ?? samples[0];
+updateAddress();
+observePoses();
+// Needed when the files of the sample arrive.
 loadFormats().catch(() => {});
 aligner().then(
   () => performance.mark("aligner ready"),
-  (error) => say(String(error), "failed"),
+  (error) => announce(String(error), "failed"),
 );
 const opened = sample === undefined ? Promise.resolve(false) : openSample(sample);
 
@@ -35,10 +35,10 @@ if (await opened) {
   await alignAll();
   performance.mark("aligned");
 }
-if (sample === undefined) say("Choose files to begin.");
+if (sample === undefined) announce("Choose input files.");
 isSettled.value = true;
 
 addEventListener("hashchange", async () => {
-  const next = sampleOf(asked().sample);
+  const next = sampleOf(readAddress().sample);
   if (next !== undefined && (await openSample(next))) await alignAll();
 });

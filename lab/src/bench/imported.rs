@@ -7,6 +7,7 @@ use std::path::Path;
 use serde_json::{Map, Value};
 
 use super::benchmark::{BenchCase, Record, described, record_of};
+use crate::case_folder::{json, pose};
 use sim3align::align::Setup;
 use sim3align::align::align_by;
 use sim3align::evidence::extents::{Extents, initial_scale};
@@ -17,7 +18,6 @@ use sim3align::register::estimate_sim3;
 use sim3align::register::options::EstimateSim3Options;
 use sim3align::report::Solution;
 use sim3align::report::{AnyAlignment, Counts, Registration};
-use sim3align_formats::{json, truth};
 use sim3align_geometry::error::{Error, ErrorCode, Result, Text};
 use sim3align_geometry::similarity::Similarity;
 
@@ -187,7 +187,7 @@ pub fn read_answer(argument: &str, names: &Names, bytes: &[u8]) -> Result<Answer
         .filter_map(|name| Some((name, fields.get(name)?)))
         .collect();
     let outcome = match answers[..] {
-        [(name, value)] if name == names.pose => truth::similarity(name, value).map(Outcome::Pose),
+        [(name, value)] if name == names.pose => pose::similarity(name, value).map(Outcome::Pose),
         [("correspondences", pairs)] => read_pairs(names, pairs, fields).map(Outcome::Pairs),
         [("error", message)] => match message.as_str() {
             Some(message) => Ok(Outcome::Failure(message.to_owned())),

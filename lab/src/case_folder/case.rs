@@ -3,19 +3,19 @@
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
+use super::camera::{depth_scale, read_camera};
+use super::pose::read_truth;
 use sim3align::evidence::observation::Observation;
-use sim3align_formats::camera::{CameraFile, read_camera};
 use sim3align_formats::depth::{DepthReadOptions, read_depth};
 use sim3align_formats::mask::read_mask;
 use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, read_mesh};
-use sim3align_formats::truth::read_truth;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::similarity::Similarity;
 
 /// File names of each part, in order of preference.
 const DEPTH_FILES: &[&str] = &["depth.npy", "depth.png"];
-const MASK_FILES: &[&str] = &["mask.png", "mask.npy", "mask.json"];
+const MASK_FILES: &[&str] = &["mask.png", "mask.npy"];
 const MESH_FILES: &[&str] = &["mesh.glb", "mesh.gltf", "mesh.obj", "mesh.ply", "mesh.stl"];
 const CAMERA_FILES: &[&str] = &["camera.json"];
 
@@ -30,11 +30,9 @@ pub struct Case {
     pub mesh: Mesh,
     /// `camera_from_mesh` and the description of the symmetry, if `gt.json` has them.
     pub truth: Option<(Similarity, String)>,
-    /// Warnings of the camera file.
-    pub warnings: Vec<String>,
 }
 
-/// Reads a case folder: `depth.npy|png`, `mask.png|npy|json` (COCO RLE), `mesh.glb|gltf|obj|ply|stl`, `camera.json`
+/// Reads a case folder: `depth.npy|png`, `mask.png|npy`, `mesh.glb|gltf|obj|ply|stl`, `camera.json`
 /// and, optionally, `gt.json`. Integer depth has the unit of the camera file, by default millimetres.
 ///
 /// # Errors
@@ -50,12 +48,10 @@ pub fn read_case(folder: &Path) -> Result<Case> {
         let path = path.display().to_string();
         move |error: Error| error.about(path)
     };
-    // The camera may need the size of the image, and depth the scale of the camera file, which is therefore read first.
-    let depth_scale_m = read_camera(&camera_bytes, None, None).ok().and_then(|camera| camera.depth_scale_m);
-    let depth_options = DepthReadOptions { depth_scale: None, integer_depth_scale: depth_scale_m };
+    let depth_options = DepthReadOptions { depth_scale: None, integer_depth_scale: depth_scale(&camera_bytes) };
     let depth = read_depth(&depth_bytes, &depth_options).map_err(in_file(&depth_path))?;
-    let size = Some((depth.width(), depth.height()));
-    let CameraFile { camera, warnings, .. } = read_camera(&camera_bytes, size, None).map_err(in_file(&camera_path))?;
+    let size = [depth.width(), depth.height()];
+    let camera = read_camera(&camera_bytes, size).map_err(in_file(&camera_path))?;
     let mask = read_mask(&mask_bytes).map_err(in_file(&mask_path))?;
     let resources = |uri: &str| read_beside(folder, uri);
     let extension = mesh_path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
@@ -70,7 +66,7 @@ pub fn read_case(folder: &Path) -> Result<Case> {
         let argument = format!("{}: {}", folder.display(), error.argument);
         error.about(argument)
     })?;
-    Ok(Case { name: name.unwrap_or_else(|| folder.display().to_string()), observation, mesh, truth, warnings })
+    Ok(Case { name: name.unwrap_or_else(|| folder.display().to_string()), observation, mesh, truth })
 }
 
 /// The first existing file of `names`, and its content.

@@ -1,7 +1,8 @@
 /** Meshes: arrays as they are, or a mesh file. */
-import type { CoreMesh } from "../core.js";
+
 import { invalidArgument } from "../error.js";
 import type { LoadFormats } from "../formats-module.js";
+import type { CoreMesh } from "../prepared-mesh.js";
 import { isRecord, isTypedArray, withoutUndefined, wrongKind } from "../values.js";
 import { fileBytes } from "./bytes.js";
 import type { MeshFile } from "./types.js";

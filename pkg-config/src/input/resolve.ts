@@ -1,9 +1,10 @@
 /** Resolves an input: from arrays and files to the typed arrays and numbers that the core takes. */
-import type { CoreInput } from "../core.js";
+
 import { invalidArgument, Sim3AlignError } from "../error.js";
 import type { LoadFormats } from "../formats-module.js";
 import { isRecord, isTypedArray, withoutUndefined } from "../values.js";
 import { cameraOf } from "./camera.js";
+import type { CoreInput } from "./core-input.js";
 import { readDepth, readPointMap } from "./depth.js";
 import { readMask } from "./mask.js";
 import { readMesh } from "./mesh.js";

@@ -1,34 +1,35 @@
-/** The image view's picture: the photo or the depth map, with masks, silhouettes and differences on it. */
+/** Composes the image of the image view. */
 import type { ImageLayers } from "../state/display.js";
 import type { ObjectModel } from "../state/object-model.js";
 import type { Scene } from "../state/scene.js";
 import { differenceColour, type Rgb, rgbOf } from "./colours.js";
-import { type DepthDrawing, drawDepth } from "./rasteriser.js";
+import { renderDepth } from "./rasteriser.js";
 import type { Zoom } from "./zoom.js";
 
-/** A mesh as it is drawn. */
+/** An object, rendered at a pose. */
 export interface DrawnObject {
   mask: Uint8Array;
   colour: string;
-  drawing: DepthDrawing;
+  /** Metres; 0 outside the silhouette. */
+  depth: Float32Array;
   isSelected: boolean;
-  /** The difference that has the full colour. */
+  /** The depth difference that saturates the colour, metres. */
   limitM: number;
 }
 
-/** Draws an object at a pose, not selected. */
-export function drawn(scene: Scene, object: ObjectModel, matrix: ArrayLike<number>): DrawnObject {
+/** Renders an object at a pose. */
+export function drawObject(scene: Scene, object: ObjectModel, matrix: ArrayLike<number>): DrawnObject {
   const { mask, mesh, colour } = object;
-  return { mask, colour, isSelected: false, drawing: drawDepth(mesh, matrix, scene), limitM: differenceLimit(object) };
+  return { mask, colour, isSelected: false, depth: renderDepth(mesh, matrix, scene), limitM: differenceLimit(object) };
 }
 
-/** A fiftieth of the object, in round millimetres: what an eye would call "off". */
-export function differenceLimit({ seen }: ObjectModel): number {
-  const mm = Math.max(1, Math.round((1000 * seen.sizeM) / 50));
+/** A fiftieth of the object's size, in round millimetres: a difference that is visible to the eye. */
+export function differenceLimit({ visible }: ObjectModel): number {
+  const mm = Math.max(1, Math.round((1000 * visible.sizeM) / 50));
   return (mm > 10 ? 5 * Math.round(mm / 5) : mm) / 1000;
 }
 
-/** Composes the picture: `before` is what is left of the wipe, `after` what is right of it. */
+/** Draws `before` left of the wipe and `after` right of it. */
 export function compose(
   scene: Scene,
   base: Uint8ClampedArray,
@@ -44,7 +45,7 @@ export function compose(
   paint(before, 0, split);
   paint(after, split, width);
   if (split > 0 && split < width) {
-    // As thick on the screen, however large the pixels are.
+    // The line has the same width on the screen at every zoom.
     const line = Math.max(1, Math.round(width / zoom.factor / 200));
     for (let v = 0; v < height; v++) {
       for (let u = split; u < Math.min(split + line, width); u++) mix(image.data, v * width + u, [255, 255, 255], 1);
@@ -53,15 +54,15 @@ export function compose(
   return image;
 
   function paint(objects: readonly DrawnObject[], left: number, right: number): void {
-    for (const { mask, colour, drawing, isSelected, limitM } of objects) {
+    for (const { mask, colour, depth, isSelected, limitM } of objects) {
       const own = rgbOf(colour);
-      const isEdge = edges(drawing, width, height, thickness);
+      const isEdge = edges(depth, width, height, thickness);
       const isBorder = edges(mask, width, height, thickness);
       const fill = isSelected ? 0.45 : 0.3;
       for (let v = 0; v < height; v++) {
         for (let u = left; u < right; u++) {
           const pixel = v * width + u;
-          const [mesh, measured] = [drawing[pixel] as number, depthM[pixel] as number];
+          const [mesh, measured] = [depth[pixel] as number, depthM[pixel] as number];
           if (mesh > 0 && difference && mask[pixel] !== 0 && measured > 0) {
             mix(image.data, pixel, differenceColour(mesh - measured, limitM), 0.92);
           } else if (mesh > 0 && silhouette) mix(image.data, pixel, own, fill);
@@ -73,7 +74,7 @@ export function compose(
   }
 }
 
-/** The column at a share of what the zoom leaves to be seen. */
+/** The column at a share of the visible width. */
 function columnAt(share: number, { factor, x }: Zoom, width: number): number {
   const column = Math.round((x + (share - 0.5) / factor) * width);
   return Math.min(Math.max(column, 0), width);
@@ -86,7 +87,7 @@ function mix(data: Uint8ClampedArray, pixel: number, colour: Rgb, share: number)
   }
 }
 
-/** Whether a pixel of a shape has the outside within so many pixels. */
+/** Tests whether a pixel of a shape is at most `thickness` pixels away from its outside. */
 function edges(shape: ArrayLike<number>, width: number, height: number, thickness: number) {
   const isInside = (u: number, v: number) => u >= 0 && v >= 0 && u < width && v < height && shape[v * width + u] !== 0;
   return (u: number, v: number): boolean => {

@@ -1,14 +1,11 @@
-/** Draws the depth of posed meshes, for the image view. */
+/** Renders depth maps of meshes, for the image view. */
 import type { MeshArrays } from "sim3align";
 import type { Scene } from "../state/scene.js";
 
-/** Nearer than this, a triangle is left out rather than cut: no camera measures there. */
+/** Triangles with a nearer vertex are skipped instead of clipped: no depth camera measures there. */
 const NEAR_M = 1e-3;
 
-/** A drawing: metres along the optical axis, 0 where nothing was drawn. Pixel centres are at whole numbers. */
-export type DepthDrawing = Float32Array;
-
-/** Vertices on the image: u, v in pixels, and 1/z, which is linear there. */
+/** Projects vertices: u and v in pixels, and 1/z, which is linear in the image. 1/z is 0 for skipped vertices. */
 function projected(positions: Float32Array, m: ArrayLike<number>, { fx, fy, cx, cy }: Scene["camera"]): Float64Array {
   const at = (i: number) => m[i] ?? 0;
   const [m0, m1, m2, m4, m5, m6] = [at(0), at(1), at(2), at(4), at(5), at(6)];
@@ -26,14 +23,15 @@ function projected(positions: Float32Array, m: ArrayLike<number>, { fx, fy, cx, 
 }
 
 /**
- * Draws a mesh.
- * @param matrix camera from mesh, 16 numbers column by column
+ * Renders the depth of a mesh.
+ * @param matrix camera from mesh, 16 numbers, column-major
+ * @returns z-depth in metres, 0 for pixels that show no mesh
  */
-export function drawDepth(
+export function renderDepth(
   { positions, indices }: MeshArrays,
   matrix: ArrayLike<number>,
   { width, height, camera }: Pick<Scene, "width" | "height" | "camera">,
-): DepthDrawing {
+): Float32Array {
   const into = new Float32Array(width * height);
   const vertices = projected(positions, matrix, camera);
   const count = indices?.length ?? positions.length / 3;
@@ -53,7 +51,7 @@ function drawTriangle(
   c: number,
   width: number,
   height: number,
-  into: DepthDrawing,
+  into: Float32Array,
 ): void {
   const [ua, va, wa] = [vertices[a] as number, vertices[a + 1] as number, vertices[a + 2] as number];
   const [ub, vb, wb] = [vertices[b] as number, vertices[b + 1] as number, vertices[b + 2] as number];

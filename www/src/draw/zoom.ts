@@ -1,13 +1,13 @@
-/** The part of the image that the objects are in. */
+/** Zooms the image view to the objects. */
 import { maskBox } from "sim3align/conventions";
 import type { Scene } from "../state/scene.js";
 
-/** How much of the view the objects take, at most. */
+/** Share of the view that the objects fill. */
 const SHARE = 0.62;
-/** Beyond this, pixels are all that is seen. */
+/** Larger factors would show single pixels. */
 const MAX_FACTOR = 8;
 
-/** A factor, and the place that comes to the middle, as shares of the image. */
+/** A zoom factor and the centre of the visible part, as shares of the image size. */
 export interface Zoom {
   factor: number;
   x: number;
@@ -16,7 +16,7 @@ export interface Zoom {
 
 export const wholeImage: Zoom = { factor: 1, x: 0.5, y: 0.5 };
 
-/** What brings all objects of the scene into view. */
+/** The zoom that shows all objects of the scene. */
 export function zoomToObjects({ objects, width, height }: Scene): Zoom {
   const union = new Uint8Array(width * height);
   for (const { mask } of objects) {
@@ -29,12 +29,12 @@ export function zoomToObjects({ objects, width, height }: Scene): Zoom {
   const factor = SHARE * Math.min(width / box.width, height / box.height);
   if (factor <= 1) return wholeImage;
   const bounded = Math.min(factor, MAX_FACTOR);
-  // The image's own border is where it ends.
+  // Nothing beyond the border of the image is shown.
   const half = 0.5 / bounded;
-  const inside = (middle: number) => Math.min(Math.max(middle, half), 1 - half);
+  const clamped = (centre: number) => Math.min(Math.max(centre, half), 1 - half);
   return {
     factor: bounded,
-    x: inside((box.left + box.width / 2) / width),
-    y: inside((box.top + box.height / 2) / height),
+    x: clamped((box.left + box.width / 2) / width),
+    y: clamped((box.top + box.height / 2) / height),
   };
 }

@@ -1,15 +1,15 @@
-/** What leaves the page: files, in the forms that other programs read. */
+/** Writers of results, in formats that other programs read. */
 import type { Metrics } from "sim3align";
 import { exportGlb, exportPly, placeGlb, type Sim3, toBop, toRowMajor } from "sim3align/conventions";
 import type { ObjectModel } from "../state/object-model.js";
 import { alignOptions } from "../state/options.js";
 import type { Scene } from "../state/scene.js";
 
-/** A pose as text: 16 numbers, in four lines, as a program would have them. */
+/** The 16 numbers of a pose as a JSON array of four lines. */
 export function matrixText({ pose }: ObjectModel, order: "columns" | "rows"): string {
   const { transform } = pose.value;
   const numbers = order === "columns" ? transform.matrix : toRowMajor(transform);
-  return `[${Array.from({ length: 4 }, (_, i) => Array.from(numbers.slice(4 * i, 4 * i + 4)).join(", ")).join(",\n ")}]`;
+  return `[${Array.from({ length: 4 }, (_, i) => numbers.slice(4 * i, 4 * i + 4).join(", ")).join(",\n ")}]`;
 }
 
 const plain = ({ matrix, scale, rotationMatrix, rotation, translation }: Sim3) => ({
@@ -17,13 +17,13 @@ const plain = ({ matrix, scale, rotationMatrix, rotation, translation }: Sim3) =
   rotation: rotationMatrix,
   quaternion: rotation,
   translation,
-  matrix: Array.from(matrix),
+  matrix,
 });
 
-/** An object's name as a key that no other has. */
+/** A unique key for an object: its name, with a number if several objects have the same name. */
 export function keyOf(scene: Scene, object: ObjectModel): string {
-  const alike = scene.objects.filter(({ name }) => name === object.name);
-  return alike.length === 1 ? object.name : `${object.name} ${Number(object.id) + 1}`;
+  const namesakes = scene.objects.filter(({ name }) => name === object.name);
+  return namesakes.length === 1 ? object.name : `${object.name} ${Number(object.id) + 1}`;
 }
 
 interface JsonEntry extends ReturnType<typeof plain> {
@@ -34,21 +34,20 @@ interface JsonEntry extends ReturnType<typeof plain> {
   alternatives: ReturnType<typeof plain>[];
 }
 
-function jsonEntry({ pose, box, alignment, metrics }: ObjectModel): JsonEntry {
+function jsonEntry({ pose, box, precise, metrics }: ObjectModel): JsonEntry {
   const { transform, source } = pose.value;
-  const found = alignment.value;
   return {
     ...plain(transform),
     source,
     sizeM: [...box.value.sizeM],
-    // It is about the alignment's own pose, and not about what somebody has made of it.
-    confidence: source === "aligned" || source === "refined" ? (found?.confidence ?? null) : null,
+    // The confidence is that of the aligned pose, not of one that was changed by hand.
+    confidence: source === "aligned" || source === "refined" ? (precise?.confidence ?? null) : null,
     metrics: metrics.value,
-    alternatives: found?.alternatives.map(plain) ?? [],
+    alternatives: precise?.alternatives.map(plain) ?? [],
   };
 }
 
-/** Every object's pose, by name: what the command line's `--transform` and `--initial` take. */
+/** The poses of all objects by name. The command line reads it with `--transform` and `--initial`. */
 export function jsonText(scene: Scene): string {
   const entries = scene.objects.map((object) => [keyOf(scene, object), jsonEntry(object)]);
   return JSON.stringify({ ...Object.fromEntries(entries), _about: about(scene) }, null, 2);
@@ -60,7 +59,7 @@ const about = ({ camera, width, height }: Scene) => ({
   options: alignOptions(),
 });
 
-/** BOP's `scene_gt.json`: its models are in millimetres, so that each entry says what the mesh is to be multiplied by. */
+/** BOP's `scene_gt.json`. BOP models are in millimetres, so each entry holds the factor for the mesh. */
 export function bopText({ objects }: Scene): string {
   const entries = objects.map(({ pose, name }, i) => {
     const { entry, scale } = toBop(pose.value.transform, { objId: i + 1 });
@@ -69,11 +68,11 @@ export function bopText({ objects }: Scene): string {
   return JSON.stringify({ 0: entries }, null, 2);
 }
 
-/** The mesh where it is, at its real size; of a GLB with its materials. */
+/** The mesh at its pose and metric scale. A GLB keeps its materials. */
 export function glbBytes({ pose, mesh, glb }: ObjectModel): Uint8Array {
   const { transform } = pose.value;
   return glb === null ? exportGlb(mesh, transform) : placeGlb(glb, transform);
 }
 
-/** The same as PLY, OpenCV camera frame. */
+/** The mesh at its pose and metric scale as PLY, in the OpenCV camera frame. */
 export const plyBytes = ({ pose, mesh }: ObjectModel): Uint8Array => exportPly(mesh, pose.value.transform);

@@ -1,30 +1,26 @@
-/** What is wrong with an input, and which. */
+/** Errors of the input fields. */
 import { Sim3AlignError } from "sim3align";
 import type { Field } from "./inputs.js";
 
-/** An error with the field that it belongs beside. */
+/** An error with the field that shows it. */
 export class FieldError extends Error {
   readonly field: Field;
-  /** What to do about it, where the library says so. */
+  /** How to resolve it; empty if unknown. */
   readonly remedy: string;
   readonly code: string;
 
   constructor(field: Field, cause: unknown) {
-    const own = cause instanceof Sim3AlignError;
-    super(
-      own ? `Found ${cause.found}, expected ${cause.expected}.` : cause instanceof Error ? cause.message : `${cause}`,
-      {
-        cause,
-      },
-    );
+    const error = cause instanceof Sim3AlignError ? cause : null;
+    const message = cause instanceof Error ? cause.message : `${cause}`;
+    super(error === null ? message : `Found ${error.found}, expected ${error.expected}.`, { cause });
     this.name = "FieldError";
     this.field = field;
-    this.remedy = own ? cause.remedy : "";
-    this.code = own ? cause.code : "";
+    this.remedy = error?.remedy ?? "";
+    this.code = error?.code ?? "";
   }
 }
 
-/** Does something for a field, which its failure is about. */
+/** Runs a step of reading a field. Its errors become those of the field. */
 export async function forField<T>(field: Field, work: () => Promise<T> | T): Promise<T> {
   try {
     return await work();
@@ -35,7 +31,7 @@ export async function forField<T>(field: Field, work: () => Promise<T> | T): Pro
 
 const fields: readonly Field[] = ["depth", "mask", "mesh", "camera", "photo"];
 
-/** The field that an error of `align` is about, or null where it is about none. */
+/** The field that an error of `align` concerns, or null. */
 export function fieldOf(error: unknown): Field | null {
   if (!(error instanceof Sim3AlignError)) return null;
   return fields.find((field) => error.argument === field || error.argument.startsWith(`${field}.`)) ?? null;

@@ -1,31 +1,31 @@
-/** Which file is what: the inputs of a scene before they are read. */
-import { baseName, extension, type NamedFile, stem } from "./named-file.js";
+/** The input files of a scene, and which field each belongs to. */
+import { baseName, extension, type NamedFile, stem } from "./files.js";
 
-/** The camera: a file, numbers, or a guess. */
+/** The camera: a file, intrinsics, or an assumed field of view. */
 export type CameraSource =
   | { kind: "file"; file: NamedFile }
   | { kind: "numbers"; fx: number; fy: number; cx: number; cy: number }
-  | { kind: "guess"; fovYDeg: number };
+  | { kind: "assumed"; fovYDeg: number };
 
-/** A mesh file, with the files that it may need beside it. */
+/** A mesh file and the files that it may refer to. */
 export interface MeshSource {
   file: NamedFile;
-  beside: readonly NamedFile[];
+  siblings: readonly NamedFile[];
 }
 
-/** The inputs. */
+/** The inputs. Nothing is read yet. */
 export interface Inputs {
   name: string;
   sample: string | null;
   depth: NamedFile | null;
-  /** Metres per unit of depth; null is the reader's default. */
+  /** Metres per unit of depth; null is the default of the reader. */
   depthScale: number | null;
   photo: NamedFile | null;
   camera: CameraSource | null;
   masks: readonly NamedFile[];
   meshes: readonly MeshSource[];
   truths: readonly NamedFile[];
-  /** Whether masks of another size are brought to the depth map's. */
+  /** Whether masks of another size are resized to the depth map. */
   resizeMasks: boolean;
 }
 
@@ -42,12 +42,12 @@ export const noInputs: Inputs = {
   resizeMasks: false,
 };
 
-/** The fields that files go into. */
+/** The input fields. */
 export type Field = "depth" | "mask" | "mesh" | "camera" | "photo";
 
 const meshExtensions = ["glb", "gltf", "obj", "ply", "stl"];
 
-/** What a file is, by its name; null for what is none of the inputs. */
+/** The kind of a file, by its name; null if it is not an input. */
 export function kindOf(path: string): Field | "truth" | null {
   const name = baseName(path).toLowerCase();
   const ending = extension(name);
@@ -64,12 +64,12 @@ export function kindOf(path: string): Field | "truth" | null {
   return /depth/.test(name) || /^d(epth)?\d*\./.test(name) ? "depth" : "photo";
 }
 
-/** Sorts files to the inputs; what is already there is kept where nothing takes its place. */
-export function assigned(files: readonly NamedFile[], present: Inputs, name?: string): Inputs {
+/** Assigns files to inputs by their names. Inputs without a new file are kept. */
+export function assignFiles(files: readonly NamedFile[], present: Inputs, name?: string): Inputs {
   const of = (kind: Field | "truth") => files.filter(({ path }) => kindOf(path) === kind);
   const [depth, camera, photo] = [of("depth")[0], of("camera")[0], of("photo")[0]];
   const [masks, meshes] = [of("mask"), of("mesh")];
-  // Another depth map is another scene, of which nothing old is true.
+  // A new depth map is a new scene.
   const base = depth === undefined ? present : noInputs;
   const sorted = (list: readonly NamedFile[]) => [...list].sort((a, b) => (a.path < b.path ? -1 : 1));
   return {
@@ -80,7 +80,7 @@ export function assigned(files: readonly NamedFile[], present: Inputs, name?: st
     photo: photo ?? base.photo,
     camera: camera === undefined ? base.camera : { kind: "file", file: camera },
     masks: masks.length > 0 ? sorted(masks) : base.masks,
-    meshes: meshes.length > 0 ? sorted(meshes).map((file) => ({ file, beside: files })) : base.meshes,
+    meshes: meshes.length > 0 ? sorted(meshes).map((file) => ({ file, siblings: files })) : base.meshes,
     truths: meshes.length > 0 || masks.length > 0 ? sorted(of("truth")) : base.truths,
   };
 }
@@ -90,8 +90,8 @@ function folderOf(files: readonly NamedFile[]): string {
   return parts.length > 1 ? (parts.at(-2) ?? "") : "";
 }
 
-/** A file that belongs to a mask: the one whose name ends alike (`mask-cup.png`, `mesh-cup.glb`), or the only one. */
-export function partner<T>(mask: NamedFile, others: readonly T[], pathOf: (other: T) => string): T | undefined {
+/** The file for a mask: the one with the same suffix (`mask-cup.png`, `mesh-cup.glb`), or the only one. */
+export function matchingFile<T>(mask: NamedFile, others: readonly T[], pathOf: (other: T) => string): T | undefined {
   const key = (path: string) => `${path.slice(0, -baseName(path).length)}${stem(path).replace(/^[a-z]+/i, "")}`;
   return others.find((other) => key(pathOf(other)) === key(mask.path)) ?? (others.length === 1 ? others[0] : undefined);
 }

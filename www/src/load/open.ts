@@ -1,47 +1,45 @@
-/** Opens scenes: samples, and a user's own files. */
+/** Opens scenes: samples and the user's own files. */
 import { signal } from "@preact/signals";
-import { say } from "../state/announcement.js";
 import { layers, setLayer } from "../state/display.js";
 import { scene } from "../state/scene.js";
-import { unpacked } from "./archive.js";
+import { announce } from "../state/status.js";
 import { FieldError } from "./field-error.js";
-import { assigned, type Field, type Inputs, kindOf, noInputs } from "./inputs.js";
-import type { NamedFile } from "./named-file.js";
+import { extractArchives, type NamedFile } from "./files.js";
+import { assignFiles, type Field, type Inputs, kindOf, noInputs } from "./inputs.js";
 import { readScene } from "./read-scene.js";
 import { type Sample, sampleInputs } from "./samples.js";
 
-/** The inputs as they were chosen, whether or not they could be read. */
+/** The chosen inputs, readable or not. */
 export const inputs = signal<Inputs>(noInputs);
-/** What is wrong with the inputs, by field. */
+/** Errors of the inputs, by field. */
 export const fieldErrors = signal<{ readonly [F in Field]?: FieldError }>({});
 export const isReading = signal(false);
 
-/** Counts openings: a later one makes an earlier one's result worthless. */
-let opening = 0;
+/** The number of the last call of `open`. The results of earlier calls are discarded. */
+let lastCall = 0;
 
-/** Reads the inputs, and shows what they hold; a field that is wrong says so, and the scene stays as it was. */
+/** Reads the inputs and shows them. On failure, the field shows the error and the scene is unchanged. */
 export async function open(next: Inputs): Promise<boolean> {
-  const turn = ++opening;
+  const call = ++lastCall;
   inputs.value = next;
   fieldErrors.value = {};
   isReading.value = true;
-  say(`Reading ${next.name} …`, "working");
+  announce(`Reading ${next.name} …`, "working");
   try {
-    const read = await readScene(next);
-    if (turn !== opening) return false;
-    scene.value = read;
-    if (read.rgba === null && layers.peek().base === "photo") setLayer("base", "depth");
-    if (read.rgba !== null && layers.peek().base === "depth") setLayer("base", "photo");
-    say(`${read.name}: ${read.width} × ${read.height} pixels, ${countOf(read.objects.length)}. Ready to align.`);
+    const opened = await readScene(next);
+    if (call !== lastCall) return false;
+    scene.value = opened;
+    if (opened.rgba === null && layers.peek().base === "photo") setLayer("base", "depth");
+    if (opened.rgba !== null && layers.peek().base === "depth") setLayer("base", "photo");
+    announce(
+      `${opened.name}: ${opened.width} × ${opened.height} pixels, ${countOf(opened.objects.length)}. Ready to align.`,
+    );
     return true;
   } catch (error) {
-    if (turn !== opening) return false;
-    const found = error instanceof FieldError ? error : new FieldError("depth", error);
-    fieldErrors.value = { [found.field]: found };
-    say(`${found.field}: ${found.message} ${found.remedy}`, "failed");
-    return false;
+    if (call !== lastCall) return false;
+    return fail(error instanceof FieldError ? error : new FieldError("depth", error));
   } finally {
-    if (turn === opening) isReading.value = false;
+    if (call === lastCall) isReading.value = false;
   }
 }
 
@@ -49,30 +47,32 @@ const countOf = (count: number) => (count === 1 ? "one object" : `${count} objec
 
 export const openSample = (sample: Sample): Promise<boolean> => open(sampleInputs(sample));
 
-/** Opens what was dropped or chosen: each file goes where its name says, or into the field that it was chosen for. */
+/** Opens files. Without a field, they are assigned by their names. */
 export async function openFiles(files: readonly NamedFile[], field?: Field): Promise<boolean> {
-  let all: readonly NamedFile[];
+  let extracted: readonly NamedFile[];
   try {
-    all = await unpacked(files);
+    extracted = await extractArchives(files);
   } catch (error) {
-    return fail(field ?? "depth", error);
+    return fail(new FieldError(field ?? "depth", error));
   }
-  if (field !== undefined && all.length === files.length) return open(intoField(field, all, inputs.peek()));
-  if (!all.some(({ path }) => kindOf(path) !== null)) {
-    const names = all.slice(0, 3).map(({ path }) => path);
-    return fail("depth", new Error(`Nothing to align among the files (${names.join(", ") || "none"}).`));
+  const hasArchive = extracted.length !== files.length;
+  if (field !== undefined && !hasArchive) return open(withField(field, extracted, inputs.peek()));
+  if (!extracted.some(({ path }) => kindOf(path) !== null)) {
+    const names = extracted.slice(0, 3).map(({ path }) => path);
+    const error = new Error(`None of the files is an input (${names.join(", ") || "no files"}).`);
+    return fail(new FieldError("depth", error));
   }
-  return open(assigned(all, inputs.peek()));
+  return open(assignFiles(extracted, inputs.peek()));
 }
 
-function fail(field: Field, error: unknown): boolean {
-  const found = new FieldError(field, error);
-  fieldErrors.value = { [field]: found };
-  say(found.message, "failed");
+function fail(error: FieldError): false {
+  fieldErrors.value = { [error.field]: error };
+  announce(`${error.field}: ${error.message} ${error.remedy}`, "failed");
   return false;
 }
 
-function intoField(field: Field, files: readonly NamedFile[], present: Inputs): Inputs {
+/** The inputs with the files of one field replaced. */
+function withField(field: Field, files: readonly NamedFile[], present: Inputs): Inputs {
   const [file] = files;
   if (file === undefined) return present;
   const own = { ...present, sample: null, name: present.sample === null ? present.name : "Own files" };
@@ -83,7 +83,7 @@ function intoField(field: Field, files: readonly NamedFile[], present: Inputs): 
   const meshes = files.filter(({ path }) => kindOf(path) === "mesh");
   return {
     ...own,
-    meshes: (meshes.length > 0 ? meshes : files).map((mesh) => ({ file: mesh, beside: files })),
+    meshes: (meshes.length > 0 ? meshes : files).map((mesh) => ({ file: mesh, siblings: files })),
     truths: [],
   };
 }

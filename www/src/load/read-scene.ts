@@ -1,32 +1,31 @@
-/** From files to a scene. */
+/** Reads the input files of a scene. */
 import { type MeshArrays, Sim3AlignError } from "sim3align";
 import { resizeMask } from "sim3align/conventions";
 import { externalResources, readCamera, readDepth, readMask, readMesh, readPose } from "sim3align/formats";
 import { ObjectModel, type ObjectParts } from "../state/object-model.js";
 import type { Scene } from "../state/scene.js";
 import { FieldError, forField } from "./field-error.js";
-import { readPhoto } from "./image.js";
-import { type CameraSource, type Inputs, type MeshSource, partner } from "./inputs.js";
-import { baseName, extension, type NamedFile, stem } from "./named-file.js";
-import { seenThrough } from "./seen.js";
+import { baseName, extension, type NamedFile, stem } from "./files.js";
+import { type CameraSource, type Inputs, type MeshSource, matchingFile } from "./inputs.js";
+import { visibleExtent } from "./visible-extent.js";
 
-/** Colours of objects, told apart by most people, on light and dark. */
+/** Colours of objects, distinguishable on light and dark backgrounds and with most colour vision deficiencies. */
 const colours = ["#f08a24", "#3c9ee5", "#2fa36b", "#c65fd0", "#d64545", "#a58a00"];
 
 /**
- * Reads everything.
- * @throws {@link FieldError} for the first input that is missing or wrong
+ * Reads all inputs.
+ * @throws {@link FieldError} for the first missing or invalid input
  */
 export async function readScene(inputs: Inputs): Promise<Scene> {
   const { depth: depthFile, camera: cameraSource } = inputs;
-  const depthSource = given("depth", depthFile, "a depth map (PNG with 16 bits, or NPY)");
-  const camera = given("camera", cameraSource, "a camera: a file, numbers, or a guess of its field of view");
-  if (inputs.masks.length === 0) given("mask", null, "a mask (PNG, NPY, or COCO RLE as JSON)");
-  if (inputs.meshes.length === 0) given("mesh", null, "a mesh (GLB, glTF, OBJ, PLY or STL)");
+  const depthSource = required("depth", depthFile, "Choose a 16-bit PNG or an NPY file.");
+  const camera = required("camera", cameraSource, "Choose a file, or enter intrinsics or a field of view.");
+  if (inputs.masks.length === 0) required("mask", null, "Choose a PNG, NPY, or COCO RLE (JSON) file.");
+  if (inputs.meshes.length === 0) required("mesh", null, "Choose a GLB, glTF, OBJ, PLY or STL file.");
 
-  // The camera file may say what whole numbers in the depth map mean.
+  // The camera file may state the unit of an integer depth map.
   const cameraBytes = camera.kind === "file" ? await forField("camera", () => camera.file.bytes()) : null;
-  const integerDepthScale = await statedDepthScale(cameraBytes);
+  const integerDepthScale = await depthScaleOf(cameraBytes);
   const depth = await forField("depth", async () =>
     readDepth(await depthSource.bytes(), { depthScale: inputs.depthScale ?? undefined, integerDepthScale }),
   );
@@ -44,18 +43,20 @@ export async function readScene(inputs: Inputs): Promise<Scene> {
     height,
     camera: intrinsics,
     rgba,
-    objects: objects.map((parts) => new ObjectModel({ ...parts, seen: seenThrough(depth, parts.mask, intrinsics) })),
+    objects: objects.map(
+      (parts) => new ObjectModel({ ...parts, visible: visibleExtent(depth, parts.mask, intrinsics) }),
+    ),
     warnings,
   };
 }
 
-function given<T>(field: FieldError["field"], value: T | null, what: string): T {
+function required<T>(field: FieldError["field"], value: T | null, remedy: string): T {
   if (value !== null) return value;
-  throw new FieldError(field, new Error(`Still to be chosen: ${what}.`));
+  throw new FieldError(field, new Error(`Missing. ${remedy}`));
 }
 
-/** The first reading is for the scale only; what is wrong with the file, the second one says. */
-async function statedDepthScale(camera: Uint8Array | null): Promise<number | undefined> {
+/** The depth scale of a camera file. Errors are left to the reading of the intrinsics, which needs the image size. */
+async function depthScaleOf(camera: Uint8Array | null): Promise<number | undefined> {
   if (camera === null) return undefined;
   return readCamera(camera).then(
     ({ depthScale }) => depthScale,
@@ -71,9 +72,9 @@ async function intrinsicsOf(
   width: number,
   height: number,
 ): Promise<Intrinsics> {
-  if (source.kind === "guess") {
+  if (source.kind === "assumed") {
     const { fx, fy, cx, cy } = await readCamera({ fovYDeg: source.fovYDeg }, { width, height });
-    const warning = `The camera is a guess (vertical field of view ${source.fovYDeg}°): the size will be about right at best.`;
+    const warning = `The camera is assumed (vertical field of view ${source.fovYDeg}°), so the size is approximate.`;
     return { fx, fy, cx, cy, warnings: [warning] };
   }
   const { fx, fy, cx, cy, warnings } =
@@ -81,7 +82,7 @@ async function intrinsicsOf(
   return { fx, fy, cx, cy, warnings };
 }
 
-async function readObjects(inputs: Inputs, width: number, height: number): Promise<Omit<ObjectParts, "seen">[]> {
+async function readObjects(inputs: Inputs, width: number, height: number): Promise<Omit<ObjectParts, "visible">[]> {
   const meshes = new Map<MeshSource, Promise<{ mesh: MeshArrays; glb: Uint8Array | null }>>();
   const meshOf = (source: MeshSource) => {
     const found = meshes.get(source) ?? forField("mesh", () => readMeshSource(source));
@@ -91,14 +92,19 @@ async function readObjects(inputs: Inputs, width: number, height: number): Promi
   const several = inputs.masks.length > 1;
   return Promise.all(
     inputs.masks.map(async (file, i) => {
-      const source = partner(file, inputs.meshes, ({ file }) => file.path);
+      const source = matchingFile(file, inputs.meshes, ({ file }) => file.path);
       if (source === undefined) {
-        throw new FieldError("mesh", new Error(`No mesh belongs to ${baseName(file.path)}: name them alike.`));
+        throw new FieldError(
+          "mesh",
+          new Error(
+            `No mesh matches ${baseName(file.path)}. Give both files the same suffix: mask-cup.png, mesh-cup.glb.`,
+          ),
+        );
       }
       const [mask, mesh, truth] = await Promise.all([
         forField("mask", () => readMaskAt(file, width, height, inputs.resizeMasks)),
         meshOf(source),
-        readTruth(partner(file, inputs.truths, ({ path }) => path)),
+        readTruth(matchingFile(file, inputs.truths, ({ path }) => path)),
       ]);
       const name = file.title ?? nameOf(file.path, several ? `Object ${i + 1}` : inputs.name);
       return { id: `${i}`, name, colour: colours[i % colours.length] ?? "#f08a24", mask, ...mesh, truth };
@@ -106,7 +112,7 @@ async function readObjects(inputs: Inputs, width: number, height: number): Promi
   );
 }
 
-/** A name from a mask's path: `mask-cup.png` and `cup/mask.png` are of a cup. */
+/** The name of an object from the path of its mask: `mask-cup.png` and `cup/mask.png` are both "cup". */
 function nameOf(path: string, otherwise: string): string {
   const own = stem(path).replace(/^masks?[-_ ]*/i, "");
   return own || path.split("/").at(-2) || otherwise;
@@ -120,25 +126,42 @@ async function readMaskAt(file: NamedFile, width: number, height: number, resize
     code: "SIZE_MISMATCH",
     argument: "mask",
     found: `${mask.width} × ${mask.height} pixels`,
-    expected: `the depth map's ${width} × ${height}`,
-    remedy: "Export the mask at the depth map's size, or tick “resize masks”.",
+    expected: `${width} × ${height}, the size of the depth map`,
+    remedy: "Export the mask at the size of the depth map, or select “Resize masks”.",
   });
 }
 
-async function readMeshSource({ file, beside }: MeshSource): Promise<{ mesh: MeshArrays; glb: Uint8Array | null }> {
+async function readMeshSource({ file, siblings }: MeshSource): Promise<{ mesh: MeshArrays; glb: Uint8Array | null }> {
   const bytes = await file.bytes();
   const ending = extension(file.path);
   if (ending !== "gltf") return { mesh: await readMesh(bytes), glb: ending === "glb" ? bytes : null };
   const resources: Record<string, Uint8Array> = {};
   for (const uri of await externalResources(bytes)) {
-    const found = beside.find(({ path }) => path.endsWith(decodeURIComponent(uri)));
+    const found = siblings.find(({ path }) => path.endsWith(decodeURIComponent(uri)));
     if (found !== undefined) resources[uri] = await found.bytes();
   }
   return { mesh: await readMesh(bytes, { format: "gltf", resources }), glb: null };
 }
 
-/** A true pose. It is only compared with: a file that cannot be read is as good as none. */
+/** The true pose. It only serves for comparison, so an unreadable file counts as a missing one. */
 async function readTruth(file: NamedFile | undefined): Promise<ObjectParts["truth"]> {
   if (file === undefined) return null;
   return readPose(await file.bytes()).catch(() => null);
+}
+
+/** The pixels of a photo, decoded by the browser and resized: red, green, blue, alpha. */
+async function readPhoto(file: NamedFile, width: number, height: number): Promise<Uint8ClampedArray> {
+  const blob = new Blob([Uint8Array.from(await file.bytes())]);
+  const bitmap = await createImageBitmap(blob).catch(() => {
+    throw new Error("The browser cannot decode this image. Choose a JPEG, PNG or WebP file.");
+  });
+  const canvas = document.createElement("canvas");
+  canvas.width = width;
+  canvas.height = height;
+  const context = canvas.getContext("2d", { willReadFrequently: true });
+  if (context === null) throw new Error("The browser could not create a canvas for the photo.");
+  context.imageSmoothingQuality = "high";
+  context.drawImage(bitmap, 0, 0, width, height);
+  bitmap.close();
+  return context.getImageData(0, 0, width, height).data;
 }

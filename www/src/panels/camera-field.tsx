@@ -1,20 +1,19 @@
-/** The camera: a file, its numbers, or a guess. */
-import { baseName } from "../load/named-file.js";
+/** The camera: a file, intrinsics, or an assumed field of view. */
+import { baseName } from "../load/files.js";
 import { inputs, open } from "../load/open.js";
 import { scene } from "../state/scene.js";
 import { significant } from "../ui/format.js";
 import { FileField } from "./file-field.js";
 
-const numbers = ["fx", "fy", "cx", "cy"] as const;
+const intrinsics = ["fx", "fy", "cx", "cy"] as const;
 
-/** What most phones and laptops have, vertically. */
-const GUESS_DEG = 50;
+/** A typical vertical field of view of phones and laptops. */
+const ASSUMED_FOV_DEG = 50;
 
-function setNumber(name: (typeof numbers)[number], value: number): void {
-  const present = scene.peek()?.camera;
-  const known = inputs.peek().camera;
-  const before = known?.kind === "numbers" ? known : (present ?? { fx: 500, fy: 500, cx: 320, cy: 240 });
-  const { fx, fy, cx, cy } = before;
+function setIntrinsic(name: (typeof intrinsics)[number], value: number): void {
+  const { camera } = inputs.peek();
+  const present = camera?.kind === "numbers" ? camera : scene.peek()?.camera;
+  const { fx, fy, cx, cy } = present ?? { fx: 500, fy: 500, cx: 320, cy: 240 };
   open({ ...inputs.peek(), camera: { kind: "numbers", ...{ fx, fy, cx, cy }, [name]: value } });
 }
 
@@ -24,17 +23,17 @@ export function CameraField() {
   const chosen =
     camera?.kind === "file"
       ? baseName(camera.file.path)
-      : camera?.kind === "guess"
-        ? `a guess, ${camera.fovYDeg}°`
+      : camera?.kind === "assumed"
+        ? `${camera.fovYDeg}° assumed`
         : camera?.kind === "numbers"
-          ? "as typed"
+          ? "entered"
           : "";
   return (
     <FileField field="camera" title="Camera" chosen={chosen} accept=".json,.yaml,.yml">
       <details class="more sub">
-        <summary>Numbers, or a guess</summary>
+        <summary>Enter or estimate intrinsics</summary>
         <div class="camera-numbers">
-          {numbers.map((name) => (
+          {intrinsics.map((name) => (
             <label key={name} class="field-inline">
               <span>{name}</span>
               <input
@@ -43,12 +42,12 @@ export function CameraField() {
                 step="any"
                 inputMode="decimal"
                 value={shown === undefined ? "" : significant(shown[name], 7)}
-                onChange={({ currentTarget }) => setNumber(name, currentTarget.valueAsNumber)}
+                onChange={({ currentTarget }) => setIntrinsic(name, currentTarget.valueAsNumber)}
               />
             </label>
           ))}
           <label class="field-inline wide">
-            <span>Field of view, vertical</span>
+            <span>Vertical field of view</span>
             <input
               id="camera-fov"
               type="number"
@@ -56,16 +55,18 @@ export function CameraField() {
               max="170"
               step="any"
               inputMode="decimal"
-              placeholder={`${GUESS_DEG}`}
-              value={camera?.kind === "guess" ? camera.fovYDeg : ""}
+              placeholder={`${ASSUMED_FOV_DEG}`}
+              value={camera?.kind === "assumed" ? camera.fovYDeg : ""}
               onChange={({ currentTarget: { valueAsNumber } }) =>
-                open({ ...inputs.peek(), camera: { kind: "guess", fovYDeg: valueAsNumber || GUESS_DEG } })
+                open({ ...inputs.peek(), camera: { kind: "assumed", fovYDeg: valueAsNumber || ASSUMED_FOV_DEG } })
               }
             />
             <span class="unit">°</span>
           </label>
         </div>
-        <p class="quiet">A guessed field of view makes the size a guess: measure the camera where the size matters.</p>
+        <p class="quiet">
+          With an assumed field of view, the size is approximate. Calibrate the camera if the size matters.
+        </p>
       </details>
     </FileField>
   );

@@ -1,6 +1,6 @@
-/** The whole page takes files; while some are held over it, it says which. */
+/** Accepts files dropped anywhere on the page. */
 import { useEffect, useState } from "preact/hooks";
-import { droppedFiles } from "../load/archive.js";
+import { droppedFiles } from "../load/files.js";
 import { openFiles } from "../load/open.js";
 
 const hasFiles = ({ dataTransfer }: DragEvent) => dataTransfer?.types.includes("Files") === true;
@@ -10,7 +10,7 @@ export function DropOverlay() {
   useEffect(() => {
     const listening = new AbortController();
     const { signal } = listening;
-    // Every element that the pointer crosses has an enter and a leave of its own.
+    // Every element that the pointer crosses fires its own enter and leave events.
     let entered = 0;
     const count = (step: number) => (event: DragEvent) => {
       if (!hasFiles(event)) return;
@@ -30,5 +30,7 @@ export function DropOverlay() {
     addEventListener("drop", drop, { signal });
     return () => listening.abort();
   }, []);
-  return isOver ? <p class="drop-here">Drop depth, mask, mesh and camera, or a case folder or zip</p> : null;
+  return isOver ? (
+    <p class="drop-here">Drop depth map, mask, mesh and camera, or a folder or zip archive with them</p>
+  ) : null;
 }

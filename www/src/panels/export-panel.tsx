@@ -1,15 +1,15 @@
-/** What leaves the page. */
-import { exportAs, type Format } from "../export/formats.js";
+/** Buttons that copy or save results. */
+import { exportAs, type Format } from "../export/export.js";
 import { scene, selected } from "../state/scene.js";
 
 const formats: readonly [format: Format, title: string][] = [
-  ["columns", "Matrix, columns"],
-  ["rows", "Matrix, rows"],
+  ["columns", "Matrix, column-major"],
+  ["rows", "Matrix, row-major"],
   ["json", "JSON"],
   ["bop", "BOP JSON"],
   ["glb", "GLB"],
   ["ply", "PLY"],
-  ["png", "PNG of view"],
+  ["png", "PNG of the view"],
   ["link", "Copy link"],
 ];
 
@@ -21,7 +21,7 @@ export function ExportPanel() {
         <h2>Export</h2>
       </summary>
       <fieldset class="exports" disabled={whole === null || !object?.isPlaced}>
-        <legend class="visually-hidden">Poses, files and pictures</legend>
+        <legend class="visually-hidden">Poses, files and images</legend>
         {formats.map(([format, title]) => (
           <button
             key={format}
@@ -33,7 +33,7 @@ export function ExportPanel() {
         ))}
       </fieldset>
       {whole !== null && whole.sample === null && (
-        <p class="quiet">A link holds the options, and not your own files: these stay here.</p>
+        <p class="quiet">The link contains the options but not your files.</p>
       )}
     </details>
   );

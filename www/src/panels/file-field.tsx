@@ -1,13 +1,13 @@
-/** A file's field: which it is, another one, and what is wrong with it. */
+/** An input field for files, with its error. */
 import type { ComponentChildren } from "preact";
+import { filesOf } from "../load/files.js";
 import type { Field } from "../load/inputs.js";
-import { fromFile } from "../load/named-file.js";
 import { fieldErrors, openFiles } from "../load/open.js";
 
 interface FileFieldProps {
   field: Field;
   title: string;
-  /** The chosen files' names. */
+  /** Names of the chosen files. */
   chosen: string;
   accept: string;
   multiple?: boolean;
@@ -38,8 +38,8 @@ export function FileField({ field, title, chosen, accept, multiple = false, chil
           aria-invalid={error !== undefined}
           aria-describedby={error === undefined ? undefined : errorId}
           onChange={({ currentTarget }) => {
-            const files = Array.from(currentTarget.files ?? [], (file) => fromFile(file));
-            // The same file may be chosen again, once it has been corrected.
+            const files = filesOf(currentTarget);
+            // Otherwise choosing the same file again, for example after correcting it, would fire no event.
             currentTarget.value = "";
             if (files.length > 0) openFiles(files, field);
           }}

@@ -1,22 +1,25 @@
-/** By hand: handles, nudges, a known size, refine, undo and redo. */
+/** Adjusting the pose by hand: handles, nudges, known size, refine, undo and redo. */
+import { useState } from "preact/hooks";
 import type { Vector3 } from "sim3align/conventions";
 import { isRunning, refine } from "../run/align.js";
 import { gizmo } from "../state/display.js";
 import { canRedo, canUndo, place, redo, undo } from "../state/history.js";
+import type { ObjectModel } from "../state/object-model.js";
 import { options, setOption } from "../state/options.js";
-import { type Nudge, nudged, turn } from "../state/pose.js";
+import { type Nudge, nudged, rotationAbout } from "../state/pose.js";
 import { selected } from "../state/scene.js";
+import { Choices } from "../ui/controls.js";
+import { centimetres } from "../ui/format.js";
 import { space } from "../views/space.js";
-import { KnownSize } from "./known-size.js";
 
 const modes = [
   ["translate", "Move", "G"],
-  ["rotate", "Turn", "R"],
+  ["rotate", "Rotate", "R"],
   ["scale", "Scale", "S"],
 ] as const;
 
-/** Directions as the camera sees them (OpenCV: y is down, z is away). */
-const moves: readonly [title: string, sign: string, direction: Vector3][] = [
+/** Directions in the camera frame (OpenCV: y down, z forward). */
+const moves: readonly [title: string, symbol: string, direction: Vector3][] = [
   ["left", "←", [-1, 0, 0]],
   ["right", "→", [1, 0, 0]],
   ["up", "↑", [0, -1, 0]],
@@ -25,7 +28,7 @@ const moves: readonly [title: string, sign: string, direction: Vector3][] = [
   ["farther", "⊗", [0, 0, 1]],
 ];
 
-const turns: readonly [title: string, sign: string, axis: Vector3, degrees: number][] = [
+const rotations: readonly [title: string, symbol: string, axis: Vector3, degrees: number][] = [
   ["left", "↶ y", [0, 1, 0], 5],
   ["right", "↷ y", [0, 1, 0], -5],
   ["backwards", "↶ x", [1, 0, 0], 5],
@@ -34,17 +37,17 @@ const turns: readonly [title: string, sign: string, axis: Vector3, degrees: numb
   ["clockwise", "↷ z", [0, 0, 1], 5],
 ];
 
-/** Moves, turns or scales the selected mesh a little. */
-function nudge(how: Nudge): void {
+/** Moves, rotates or scales the selected object. */
+function nudge(change: Nudge): void {
   const object = selected.peek();
   if (object === null) return;
-  place(object, { transform: nudged(object.box.peek().centerM, object.pose.peek().transform, how), source: "hand" });
+  place(object, { transform: nudged(object.box.peek().centreM, object.pose.peek().transform, change), source: "hand" });
 }
 
 function move(direction: Vector3): void {
   const object = selected.peek();
   if (object === null) return;
-  // A fiftieth of the object, which is seen and does not leave the mask.
+  // Visible, but small compared with the mask.
   const step = Math.hypot(...object.box.peek().sizeM) / 50;
   nudge({ moveM: direction.map((x) => x * step) as Vector3 });
 }
@@ -76,10 +79,10 @@ export function HandPanel() {
         ))}
       </fieldset>
       <details class="more">
-        <summary>Small steps</summary>
+        <summary>Nudge</summary>
         <fieldset class="steps" disabled={!isReady}>
-          <legend>Move, as the camera sees it</legend>
-          {moves.map(([title, sign, direction]) => (
+          <legend>Move in the camera view</legend>
+          {moves.map(([title, symbol, direction]) => (
             <button
               key={title}
               type="button"
@@ -87,21 +90,21 @@ export function HandPanel() {
               title={title}
               onClick={() => move(direction)}
             >
-              {sign}
+              {symbol}
             </button>
           ))}
         </fieldset>
         <fieldset class="steps" disabled={!isReady}>
-          <legend>Turn by 5°</legend>
-          {turns.map(([title, sign, axis, degrees]) => (
+          <legend>Rotate by 5°</legend>
+          {rotations.map(([title, symbol, axis, degrees]) => (
             <button
               key={title}
               type="button"
-              aria-label={`Turn ${title}`}
+              aria-label={`Rotate ${title}`}
               title={title}
-              onClick={() => nudge({ rotation: turn(axis, degrees) })}
+              onClick={() => nudge({ rotation: rotationAbout(axis, degrees) })}
             >
-              {sign}
+              {symbol}
             </button>
           ))}
         </fieldset>
@@ -118,7 +121,7 @@ export function HandPanel() {
       <KnownSize object={object} />
       <div class="row">
         <button type="button" id="refine" disabled={!isReady} aria-keyshortcuts="F" onClick={refine}>
-          Refine from here
+          Refine pose
         </button>
         <label class="check">
           <input
@@ -139,5 +142,41 @@ export function HandPanel() {
         </button>
       </div>
     </details>
+  );
+}
+
+const sides = ["Width", "Height", "Depth"] as const;
+const sideChoices = sides.map((title, i) => [`${i}`, title] as const);
+
+/** Scales the mesh so that one side has a known length, and locks the scale. */
+function KnownSize({ object }: { object: ObjectModel | null }) {
+  const [side, setSide] = useState(1);
+  const presentM = object?.box.value.sizeM[side] ?? 0;
+
+  const apply = (field: HTMLInputElement) => {
+    const wantedM = field.valueAsNumber / 100;
+    const isValid = wantedM > 0 && presentM > 0;
+    if (object === null || !isValid || centimetres(wantedM) === centimetres(presentM)) return;
+    const scale = wantedM / presentM;
+    const transform = nudged(object.box.peek().centreM, object.pose.peek().transform, { scale });
+    place(object, { transform, source: "hand" });
+    setOption("lockScale", true);
+  };
+  return (
+    <fieldset class="row known" disabled={object === null}>
+      <legend>Known size</legend>
+      <Choices label="Side" value={`${side}`} choices={sideChoices} onChoose={(value) => setSide(Number(value))} />
+      <input
+        id="known-size"
+        type="number"
+        min="0"
+        step="any"
+        inputMode="decimal"
+        aria-label={`${sides[side]} in centimetres`}
+        value={presentM > 0 ? centimetres(presentM) : ""}
+        onChange={({ currentTarget }) => apply(currentTarget)}
+      />
+      <span class="unit">cm</span>
+    </fieldset>
   );
 }

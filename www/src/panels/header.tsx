@@ -1,11 +1,11 @@
-/** The page's head: what it is, which sample, and the theme. */
+/** The header: title, sample and theme. */
 import { openSample } from "../load/open.js";
 import { sampleOf, samples } from "../load/samples.js";
 import { alignAll } from "../run/align.js";
 import { type Theme, theme } from "../state/display.js";
 import { scene } from "../state/scene.js";
-import { Choices } from "../ui/choices.js";
-import { toggleHelp } from "../ui/help.js";
+import { Choices } from "../ui/controls.js";
+import { toggleHelp } from "../ui/shortcuts.js";
 
 const themes: readonly [Theme, string][] = [
   ["system", "System"],
@@ -24,12 +24,12 @@ export function Header() {
     <header class="head">
       <h1>sim3align</h1>
       <p class="claim">
-        <span>Puts a generated mesh where it really is, at its real size.</span> Nothing leaves this machine.
+        <span>Aligns generated meshes with depth maps, at real size.</span> All data stay on this device.
       </p>
       <label class="field-inline">
         <span>Sample</span>
         <select id="sample" value={shown} onChange={({ currentTarget }) => choose(currentTarget.value)}>
-          {shown === "" && <option value="">own files</option>}
+          {shown === "" && <option value="">Own files</option>}
           {samples.map(({ id, title, about }) => (
             <option key={id} value={id} title={about}>
               {title}

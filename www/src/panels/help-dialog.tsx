@@ -1,6 +1,6 @@
-/** The help: what the page does, and its keys. */
+/** The help dialog. */
 import { useEffect, useRef } from "preact/hooks";
-import { isHelpOpen } from "../ui/help.js";
+import { isHelpOpen } from "../state/display.js";
 import { shortcuts } from "../ui/shortcuts.js";
 
 export function HelpDialog() {
@@ -26,22 +26,22 @@ export function HelpDialog() {
         </form>
       </header>
       <p>
-        A generated mesh has no size and no place. One depth map with a mask says how far away the visible part is. This
-        page finds the one similarity transform between the two, <code>x_cam = s·R·p + t</code>: the mesh where the
-        object is, at its real size.
+        A generated mesh has no metric scale and no pose. A depth map with a mask shows where the visible part of the
+        object is. This page estimates the similarity transform <code>x_cam = s·R·p_mesh + t</code> that aligns the mesh
+        with it.
       </p>
       <p>
-        Drop a folder, a zip archive or single files anywhere: <code>depth.png</code> or <code>depth.npy</code>,{" "}
-        <code>mask.png</code>, <code>mesh.glb</code>, <code>camera.json</code>, and a photo. For several objects,{" "}
-        <code>mask-cup.png</code> goes with <code>mesh-cup.glb</code>. Everything is computed in this browser; nothing
-        is sent anywhere.
+        Drop a folder, a zip archive or single files anywhere on the page: <code>depth.png</code> or{" "}
+        <code>depth.npy</code>, <code>mask.png</code>, <code>mesh.glb</code>, <code>camera.json</code>, and optionally a
+        photo. For several objects, use matching names: <code>mask-cup.png</code> goes with <code>mesh-cup.glb</code>.
+        Everything is computed in this browser; nothing is uploaded.
       </p>
-      <h3>Keys</h3>
+      <h3>Keyboard shortcuts</h3>
       <dl class="keys">
-        {shortcuts.map(({ key, shown, does }) => (
+        {shortcuts.map(({ key, title, about }) => (
           <div key={key}>
-            <dt>{shown.split(" ").map((part) => (part === "to" ? " to " : <kbd key={part}>{part}</kbd>))}</dt>
-            <dd>{does}</dd>
+            <dt>{title.split(" ").map((part) => (part === "to" ? " to " : <kbd key={part}>{part}</kbd>))}</dt>
+            <dd>{about}</dd>
           </div>
         ))}
       </dl>

@@ -1,18 +1,18 @@
-/** The inputs: files by field, or a whole case at once. */
+/** The input files. */
 import { useEffect, useRef } from "preact/hooks";
-import { baseName, fromFile } from "../load/named-file.js";
+import { baseName, filesOf } from "../load/files.js";
 import { fieldErrors, inputs, open, openFiles } from "../load/open.js";
-import { Choices } from "../ui/choices.js";
+import { Choices } from "../ui/controls.js";
 import { CameraField } from "./camera-field.js";
 import { FileField } from "./file-field.js";
 
-/** Metres per unit of depth, as text; none is for the file to say. */
+/** Metres per unit of depth, as text. An empty text is the default of the reader. */
 const depthUnits = [
-  ["", "as the file says"],
+  ["", "Auto"],
   ["1", "metres"],
   ["0.001", "millimetres"],
-  ["0.0001", "tenths of a millimetre"],
-  ["0.00025", "a quarter of a millimetre"],
+  ["0.0001", "0.1 mm"],
+  ["0.00025", "0.25 mm"],
 ] as const;
 
 const names = (files: readonly { path: string }[]) => files.map(({ path }) => baseName(path)).join(", ");
@@ -20,7 +20,7 @@ const names = (files: readonly { path: string }[]) => files.map(({ path }) => ba
 export function InputPanel() {
   const panel = useRef<HTMLDetailsElement>(null);
   const errors = fieldErrors.value;
-  // What is wrong has to be seen, wherever the panel was scrolled to.
+  // Errors must be visible, however far the panel is scrolled.
   useEffect(() => {
     const wrong = panel.current?.querySelector('[data-wrong="true"]');
     if (panel.current === null || wrong === null || wrong === undefined) return;
@@ -33,7 +33,7 @@ export function InputPanel() {
       <summary>
         <h2>Input</h2>
       </summary>
-      <p class="quiet">Drop files anywhere, or a case folder or zip. They stay on this machine.</p>
+      <p class="quiet">Drop files, a folder or a zip archive anywhere. They stay on this device.</p>
       <div class="row">
         <label class="button">
           <span>Open folder</span>
@@ -42,7 +42,7 @@ export function InputPanel() {
             class="visually-hidden"
             type="file"
             {...{ webkitdirectory: true }}
-            onChange={({ currentTarget }) => openFiles(Array.from(currentTarget.files ?? [], (file) => fromFile(file)))}
+            onChange={({ currentTarget }) => openFiles(filesOf(currentTarget))}
           />
         </label>
         <label class="button">
@@ -52,7 +52,7 @@ export function InputPanel() {
             class="visually-hidden"
             type="file"
             multiple
-            onChange={({ currentTarget }) => openFiles(Array.from(currentTarget.files ?? [], (file) => fromFile(file)))}
+            onChange={({ currentTarget }) => openFiles(filesOf(currentTarget))}
           />
         </label>
       </div>
@@ -74,7 +74,7 @@ export function InputPanel() {
             checked={resizeMasks}
             onChange={({ currentTarget }) => open({ ...inputs.peek(), resizeMasks: currentTarget.checked })}
           />
-          <span>Resize masks to the depth map</span>
+          <span>Resize masks</span>
         </label>
       </FileField>
       <FileField

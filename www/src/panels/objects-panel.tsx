@@ -14,7 +14,7 @@ function stateOf(run: Run, object: ObjectModel): string {
 
 export function ObjectsPanel() {
   const objects = scene.value?.objects ?? [];
-  // While a scene is being read, its list has its place already.
+  // While a scene is being read, its objects are listed already, so that the layout does not shift.
   const awaited = isReading.value ? inputs.value.masks.slice(objects.length) : [];
   if (objects.length + awaited.length < 2) return null;
   return (
@@ -39,14 +39,14 @@ export function ObjectsPanel() {
 }
 
 function ObjectButton({ object }: { object: ObjectModel }) {
-  const { id, name, colour, run, alignment } = object;
-  const confidence = alignment.value?.confidence ?? null;
+  const { id, name, colour, run } = object;
+  const confidence = object.precise?.confidence ?? null;
   return (
     <button type="button" aria-pressed={selected.value === object} onClick={() => select(id)}>
       <span class="swatch" style={{ background: colour }} />
       <span class="name">{name}</span>
       <span class="state">{stateOf(run.value, object)}</span>
-      <span class="sure">{confidence === null ? "" : percent(confidence)}</span>
+      <span class="confidence">{confidence === null ? "" : percent(confidence)}</span>
     </button>
   );
 }

@@ -1,57 +1,52 @@
-/** What is known of the object, and how the search goes about it. */
-import { defaultOptions, type Options, options, setOption } from "../state/options.js";
-import { Choices } from "../ui/choices.js";
-import { Tip } from "../ui/tip.js";
+/** Options of the alignment: prior knowledge about the object, and the seed. */
+import { choices, defaultOptions, MAX_SEED, type Options, options, setOption } from "../state/options.js";
+import { Choices, Tip } from "../ui/controls.js";
 
-interface Choice<K extends keyof Options> {
+type ChoiceName = "knownExtentAxis" | "up" | "symmetry";
+
+interface SelectProps<K extends ChoiceName> {
   name: K;
   title: string;
   about: string;
-  choices: readonly [value: Options[K] & string, title: string][];
+  /** Titles of the values. */
+  titles: { readonly [V in Options[K]]: string };
 }
 
-const axisChoice: Choice<"knownExtentAxis"> = {
+const axis: SelectProps<"knownExtentAxis"> = {
   name: "knownExtentAxis",
   title: "Measured along",
-  about: "Which side of the mesh's box the known length is that of, in the mesh's own axes.",
-  choices: [
-    ["longest", "longest side"],
-    ["x", "x (width)"],
-    ["y", "y (height)"],
-    ["z", "z (depth)"],
-  ],
+  about: "The side of the mesh's bounding box that the known length measures.",
+  titles: { longest: "longest side", x: "x (width)", y: "y (height)", z: "z (depth)" },
 };
 
-const upChoice: Choice<"up"> = {
+const up: SelectProps<"up"> = {
   name: "up",
   title: "Stands upright",
   about:
-    "Where the camera was held level and the object stands, poses in which it stands upright are favoured. Say which of the mesh's axes points up: y in glTF, z in many others.",
-  choices: [
-    ["unknown", "not known"],
-    ["y", "mesh y is up"],
-    ["z", "mesh z is up"],
-  ],
+    "Prefers upright poses. Use it if the camera was level and the object stands upright. The mesh's up axis is y in glTF, and z in many other files.",
+  titles: { unknown: "unknown", y: "mesh y is up", z: "mesh z is up" },
 };
 
-const symmetryChoice: Choice<"symmetry"> = {
+const symmetry: SelectProps<"symmetry"> = {
   name: "symmetry",
   title: "Symmetry",
-  about: "Turns under which the object looks the same are not listed as alternatives.",
-  choices: [
-    ["auto", "half turns, as found"],
-    ["auto-revolution", "any turn, as found"],
-    ["none", "none"],
-  ],
+  about: "Poses that differ only by a symmetry of the object are not listed as alternatives.",
+  titles: { auto: "Detect 180° symmetry", "auto-revolution": "Detect revolution too", none: "None" },
 };
 
-function Select<K extends "knownExtentAxis" | "up" | "symmetry">({ name, title, about, choices }: Choice<K>) {
+function Select<K extends ChoiceName>({ name, title, about, titles }: SelectProps<K>) {
   const id = `option-${name}`;
+  const values: readonly Options[K][] = choices[name];
   return (
     <div class="option">
       <label for={id}>{title}</label>
       <Tip label={title.toLowerCase()}>{about}</Tip>
-      <Choices id={id} value={options.value[name]} choices={choices} onChoose={(value) => setOption(name, value)} />
+      <Choices
+        id={id}
+        value={options.value[name]}
+        choices={values.map((value) => [value, titles[value]] as const)}
+        onChoose={(value) => setOption(name, value)}
+      />
     </div>
   );
 }
@@ -74,9 +69,10 @@ function NumberField({ name, title, about, unit = "" }: NumberProps) {
           id={id}
           type="number"
           min="0"
+          max={name === "seed" ? MAX_SEED : undefined}
           step={name === "seed" ? 1 : "any"}
           inputMode="decimal"
-          placeholder="not known"
+          placeholder="unknown"
           value={options.value[name] ?? ""}
           onChange={({ currentTarget: { valueAsNumber } }) =>
             setOption(name, (Number.isNaN(valueAsNumber) ? defaultOptions[name] : valueAsNumber) as never)
@@ -93,29 +89,34 @@ export function OptionsPanel() {
   return (
     <details class="panel options-panel" id="options">
       <summary>
-        <h2>What is known</h2>
+        <h2>Prior knowledge</h2>
       </summary>
-      {isPaper && <p class="quiet">The baseline takes none of these, the seed excepted.</p>}
+      {isPaper && <p class="quiet">The baseline uses only the seed.</p>}
       <NumberField
         name="knownExtentCm"
         title="Real length"
-        about="How long the object is in reality, which fixes the scale."
+        about="The length of the object in reality. It determines the scale."
         unit="cm"
       />
-      <Select {...axisChoice} />
+      <Select {...axis} />
       <NumberField
         name="scaleMin"
-        title="Scale, at least"
-        about="Metres per mesh unit, at least. 1 in both fields: the mesh is in metres."
+        title="Minimum scale"
+        about="Lower bound of the scale in metres per mesh unit. For a mesh in metres, enter 1 in both fields."
         unit="m"
       />
-      <NumberField name="scaleMax" title="Scale, at most" about="Metres per mesh unit, at most." unit="m" />
-      <Select {...upChoice} />
-      <Select {...symmetryChoice} />
+      <NumberField
+        name="scaleMax"
+        title="Maximum scale"
+        about="Upper bound of the scale in metres per mesh unit."
+        unit="m"
+      />
+      <Select {...up} />
+      <Select {...symmetry} />
       <NumberField
         name="seed"
         title="Seed"
-        about="The same input, options and seed give the same bits, on every machine."
+        about="Seed of all random draws. The same input, options and seed give bit-identical results on every machine."
       />
       <button
         type="button"
@@ -123,7 +124,7 @@ export function OptionsPanel() {
           options.value = defaultOptions;
         }}
       >
-        Back to the defaults
+        Reset to defaults
       </button>
     </details>
   );

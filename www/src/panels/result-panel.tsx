@@ -1,16 +1,15 @@
 /**
- * What came of it: size, pose, how sure it is, metrics, other poses. Everything has its place before there is anything to
- * be shown, so that nothing jumps.
+ * The result: size, confidence, alternatives, metrics and pose. Everything takes its space before there is a result, so
+ * that the layout does not shift.
  */
-import type { PoseErrors } from "sim3align";
+import type { PoseErrors, Stage } from "sim3align";
 import { inputs } from "../load/open.js";
 import { applyAlternative, shownAlternative } from "../run/alternatives.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { scene, selected } from "../state/scene.js";
+import { Tip } from "../ui/controls.js";
 import { centimetres, orDash, percent, significant } from "../ui/format.js";
-import { metricTexts } from "../ui/metric-texts.js";
-import { Tip } from "../ui/tip.js";
-import { StageTimes } from "./stage-times.js";
+import { metricTexts, stageTitles } from "../ui/texts.js";
 
 export function ResultPanel() {
   const chosen = selected.value;
@@ -58,9 +57,7 @@ function Size({ object }: { object: ObjectModel | null }) {
           ))}{" "}
           <span class="unit">cm</span>
         </span>
-        <Tip label="the size">
-          Width × height × depth of the box around the object, along the mesh's own x, y and z.
-        </Tip>
+        <Tip label="size">Width × height × depth of the object's bounding box, along x, y and z of the mesh.</Tip>
       </p>
       <Confidence object={object} />
     </div>
@@ -68,62 +65,52 @@ function Size({ object }: { object: ObjectModel | null }) {
 }
 
 function Confidence({ object }: { object: ObjectModel | null }) {
-  if (object === null) {
+  const confidence = object?.precise?.confidence ?? null;
+  const reason = reasonForNoConfidence(object);
+  if (confidence === null || reason !== null) {
     return (
       <p class="badge" data-level="none">
-        No result yet
+        {reason ?? "No confidence"}
       </p>
     );
   }
-  const { source } = object.pose.value;
-  const confidence = object.alignment.value?.confidence ?? null;
-  if (source === "hand")
-    return (
-      <p class="badge" data-level="none">
-        Moved by hand
-      </p>
-    );
-  if (source === "alternative")
-    return (
-      <p class="badge" data-level="none">
-        An alternative
-      </p>
-    );
-  if (confidence === null)
-    return (
-      <p class="badge" data-level="none">
-        No confidence
-      </p>
-    );
-  const level = confidence >= 0.9 ? "high" : confidence >= 0.7 ? "middle" : "low";
+  const level = confidence >= 0.9 ? "high" : confidence >= 0.7 ? "medium" : "low";
   const advice = {
-    high: "Likely right",
-    middle: "Have a look",
-    low: "Unsure",
+    high: "Likely correct",
+    medium: "Check it",
+    low: "Unreliable: fix it",
   }[level];
   return (
     <p class="badge" data-level={level}>
       <span id="confidence">
         {percent(confidence)} · {advice}
       </span>
-      <Tip label="the confidence">
-        How likely the pose is right: scale within 5 %, rotation within 10°, position within 5 % of the object's size.
-        It was calibrated on generated cases. From 90 % on, take it; below 70 %, try the alternatives, or say what is
-        known: a size, what is up, a rough pose.
+      <Tip label="confidence">
+        Probability that the pose is correct: scale within 5 %, rotation within 10°, position within 5 % of the object's
+        size. It is calibrated on generated cases and assumes that the mesh is that of the object. Below 70 %, try the
+        alternatives, enter prior knowledge (size, up axis), or move the mesh roughly into place and refine.
       </Tip>
     </p>
   );
 }
 
+/** The confidence is that of the result's pose only. */
+function reasonForNoConfidence(object: ObjectModel | null): string | null {
+  const source = object?.pose.value.source;
+  if (source === undefined) return "No result yet";
+  return source === "hand" ? "Moved by hand" : source === "alternative" ? "Alternative" : null;
+}
+
 function Alternatives({ object }: { object: ObjectModel | null }) {
   const alignment = object?.alignment.value ?? null;
-  const alternatives = alignment?.alternatives ?? [];
+  const best = object?.precise ?? null;
+  const alternatives = best?.alternatives ?? [];
   const shown = object === null ? null : shownAlternative(object);
-  const put = (index: number) => object !== null && applyAlternative(object, index);
+  const apply = (index: number) => object !== null && applyAlternative(object, index);
   return (
     <fieldset class="alternatives" disabled={alignment === null}>
-      <legend class="visually-hidden">Poses that explain the picture</legend>
-      <button type="button" aria-pressed={shown === -1} onClick={() => put(-1)}>
+      <legend class="visually-hidden">Result and alternatives</legend>
+      <button type="button" aria-pressed={shown === -1} onClick={() => apply(-1)}>
         Best
       </button>
       {alternatives.slice(0, 8).map(({ turnDeg, score }, i) => (
@@ -131,17 +118,17 @@ function Alternatives({ object }: { object: ObjectModel | null }) {
           key={`${turnDeg} ${score}`}
           type="button"
           aria-pressed={shown === i}
-          title={`Turned by ${turnDeg.toFixed(0)}°, score ${score.toFixed(3)} (best: ${alignment?.score?.toFixed(3)})`}
-          onClick={() => put(i)}
+          title={`Rotated by ${turnDeg.toFixed(0)}°, score ${score.toFixed(3)} (best: ${best?.diagnostics.score.toFixed(3)})`}
+          onClick={() => apply(i)}
         >
           {turnDeg.toFixed(0)}°
         </button>
       ))}
       <span class="quiet">
-        {alternatives.length === 0 ? "No other pose comes near." : "Other poses, by their turn."}
-        <Tip label="an alternative">
-          Poses that explain the picture nearly as well, best first: an object that looks alike from several sides has
-          several. Each button turns the mesh to one of them.
+        {alternatives.length === 0 ? "No alternatives." : "Alternatives, by rotation."}
+        <Tip label="alternatives">
+          Other poses that explain the observation nearly as well, best first. Objects that look similar from several
+          sides have several. Each button shows one of them; the angle is its rotation from the result.
         </Tip>
       </span>
     </fieldset>
@@ -157,7 +144,7 @@ function MetricTable({ object }: { object: ObjectModel | null }) {
           <dt>
             {title}
             <Tip label={title}>
-              {about} {better === "high" ? "More is better." : "Less is better."}
+              {about} {better === "higher" ? "Higher is better." : "Lower is better."}
             </Tip>
           </dt>
           <dd data-metric={name} data-value={metrics?.[name] ?? ""}>
@@ -172,8 +159,8 @@ function MetricTable({ object }: { object: ObjectModel | null }) {
 function Pose({ object }: { object: ObjectModel | null }) {
   const source = object?.pose.value.source;
   const isResult = source === "aligned" || source === "refined";
-  const uncertainty = isResult ? object?.alignment.value?.uncertainty : null;
-  // What the view leaves open, to one standard deviation.
+  const uncertainty = isResult ? object?.precise?.uncertainty : null;
+  // One standard deviation.
   const within = (value: number | undefined, unit: string) =>
     value === undefined ? "" : ` ± ${significant(value, 2)}${unit}`;
   const transform = object?.pose.value.transform;
@@ -184,8 +171,8 @@ function Pose({ object }: { object: ObjectModel | null }) {
       `${orDash(transform?.scale, (s) => significant(s, 5))} m per mesh unit${within(uncertainty ? 100 * uncertainty.scale : undefined, " %")}`,
     ],
     [
-      "Middle",
-      `${list(object?.box.value.centerM)} m${within(uncertainty ? 1000 * uncertainty.distanceM : undefined, " mm")}`,
+      "Centre",
+      `${list(object?.box.value.centreM)} m${within(uncertainty ? 1000 * uncertainty.distanceM : undefined, " mm")}`,
     ],
     ["Rotation", `${list(transform?.rotation)}${within(uncertainty?.rotationDeg, "°")}`],
   ];
@@ -201,8 +188,8 @@ function Pose({ object }: { object: ObjectModel | null }) {
       {isKnown && (
         <div id="errors">
           <dt>
-            Truth
-            <Tip label="the truth">How far the pose is from the one that is known to be right.</Tip>
+            Errors
+            <Tip label="errors">Errors of the pose compared with the true pose.</Tip>
           </dt>
           <dd>{orDash(object?.errors.value, errorText)}</dd>
         </div>
@@ -214,8 +201,8 @@ function Pose({ object }: { object: ObjectModel | null }) {
 const errorText = ({ scaleError, rotationErrorDeg, translationErrorM }: PoseErrors) =>
   [
     `scale ${significant(100 * scaleError, 2)} %`,
-    `turned ${significant(rotationErrorDeg, 2)}°`,
-    `moved ${significant(1000 * translationErrorM, 2)} mm`,
+    `rotation ${significant(rotationErrorDeg, 2)}°`,
+    `translation ${significant(1000 * translationErrorM, 2)} mm`,
   ].join(", ");
 
 function Warnings({ object }: { object: ObjectModel | null }) {
@@ -230,5 +217,30 @@ function Warnings({ object }: { object: ObjectModel | null }) {
         <li key={warning}>{warning}</li>
       ))}
     </ul>
+  );
+}
+
+function StageTimes({ object }: { object: ObjectModel }) {
+  const times = object.alignment.value?.diagnostics.timingsMs;
+  if (times === undefined) return null;
+  const stages = (Object.entries(times) as [Stage | "total", number][]).filter(
+    (entry): entry is [Stage, number] => entry[0] !== "total" && entry[1] > 0,
+  );
+  const sum = stages.reduce((total, [, ms]) => total + ms, 0) || 1;
+  return (
+    <details class="stage-times">
+      <summary>Took {Math.round(times.total)} ms</summary>
+      <dl>
+        {stages.map(([stage, ms]) => (
+          <div key={stage}>
+            <dt>{stageTitles[stage]}</dt>
+            <dd>
+              <span class="bar" style={{ inlineSize: `${(100 * ms) / sum}%` }} />
+              <span class="ms">{ms < 10 ? ms.toFixed(1) : Math.round(ms)} ms</span>
+            </dd>
+          </div>
+        ))}
+      </dl>
+    </details>
   );
 }

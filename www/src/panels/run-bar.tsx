@@ -1,51 +1,39 @@
-/** Align, cancel, and how far it has come. */
-import type { Stage } from "sim3align";
+/** Align, cancel and progress. */
 import { inputs, isReading } from "../load/open.js";
 import { alignAll, alignSelected, cancel, fraction, isRunning } from "../run/align.js";
-import { announcement } from "../state/announcement.js";
-import { type Options, options, setOption } from "../state/options.js";
+import { choices, defaultOptions, type Options, options, setOption } from "../state/options.js";
 import { scene, selected } from "../state/scene.js";
-import { Choices } from "../ui/choices.js";
+import { status } from "../state/status.js";
+import { Choices } from "../ui/controls.js";
+import { stageTitles } from "../ui/texts.js";
 
-/** What the stages do, for people. */
-export const stageNames: { readonly [S in Stage]: string } = {
-  observe: "Reading the depth",
-  sample: "Sampling the mesh",
-  normals: "Normals",
-  features: "Descriptors",
-  matching: "Matching",
-  ransac: "Consensus",
-  filter: "Filtering",
-  icp: "Closest points",
-  prepare: "Preparing",
-  search: "Searching all rotations",
-  refine: "Refining",
-  metrics: "Measuring",
+const qualityTitles: { readonly [Q in Options["quality"]]: string } = {
+  fast: "Fast",
+  balanced: "Balanced",
+  best: "Best",
 };
 
-/** The choices of method and effort, as one list. */
-const efforts: readonly [value: string, title: string, chosen: Pick<Options, "preset" | "quality">][] = [
-  ["fast", "Fast", { preset: "precise", quality: "fast" }],
-  ["balanced", "Balanced", { preset: "precise", quality: "balanced" }],
-  ["best", "Best", { preset: "precise", quality: "best" }],
-  ["paper", "Paper (baseline)", { preset: "paper", quality: "balanced" }],
+/** Presets and qualities as one list. */
+const efforts: readonly (readonly [value: string, title: string])[] = [
+  ...choices.quality.map((quality) => [quality, qualityTitles[quality]] as const),
+  ["paper", "Paper (baseline)"],
 ];
 
 function chooseEffort(value: string): void {
-  const found = efforts.find(([name]) => name === value);
-  if (found === undefined) return;
-  setOption("preset", found[2].preset);
-  setOption("quality", found[2].quality);
+  const quality = choices.quality.find((quality) => quality === value);
+  setOption("preset", quality === undefined ? "paper" : "precise");
+  setOption("quality", quality ?? defaultOptions.quality);
 }
 
 export function RunBar() {
   const { preset, quality } = options.value;
   const objects = scene.value?.objects ?? [];
-  const awaited = isReading.value ? inputs.value.masks.length : 0;
+  // While a scene is being read, the buttons are those of its objects already, so that the layout does not shift.
+  const count = Math.max(objects.length, isReading.value ? inputs.value.masks.length : 0);
   const running = isRunning.value;
   const run = selected.value?.run.value;
-  const stage = run?.state === "running" && run.stage !== null ? stageNames[run.stage] : "";
-  const { text, kind } = announcement.value;
+  const stage = run?.state === "running" && run.stage !== null ? stageTitles[run.stage] : "";
+  const { text, kind } = status.value;
   const percent = Math.round(100 * fraction.value);
   return (
     <section class="run" aria-label="Run">
@@ -55,7 +43,7 @@ export function RunBar() {
           <Choices
             id="effort"
             value={preset === "paper" ? "paper" : quality}
-            choices={efforts.map(([value, title]) => [value, title] as const)}
+            choices={efforts}
             onChoose={chooseEffort}
           />
         </label>
@@ -68,9 +56,9 @@ export function RunBar() {
             Align
           </button>
         )}
-        {Math.max(objects.length, awaited) > 1 && (
+        {count > 1 && (
           <button type="button" id="align-all" disabled={running || objects.length === 0} onClick={alignAll}>
-            Align all {Math.max(objects.length, awaited)}
+            Align all {count}
           </button>
         )}
       </div>
@@ -81,8 +69,8 @@ export function RunBar() {
         data-running={running}
         aria-label="Progress of the alignment"
       />
-      <div class="said">
-        {/* Every stage would be too much to listen to: what is said aloud is the line below it. */}
+      <div class="status-lines">
+        {/* Screen readers announce only the status line below; every stage would be too much. */}
         {running && (
           <p class="stage" aria-hidden="true">
             {stage || "Waiting"} … {percent} %

@@ -1,16 +1,28 @@
-/** The page's aligner: workers, so that nothing here has to wait. */
-import { type Aligner, createAligner } from "sim3align";
+/** The page's aligner. */
+import { type Aligner, type AlignInput, createAligner } from "sim3align";
+import type { ObjectModel } from "../state/object-model.js";
+import type { Scene } from "../state/scene.js";
 
-let made: Promise<Aligner> | undefined;
+let created: Promise<Aligner> | undefined;
 
-/** The aligner, made once; after a failure the next call tries again. */
+/** The aligner, created by the first call. After a failure, the next call tries again. */
 export function aligner(): Promise<Aligner> {
-  if (made === undefined) {
-    const making = createAligner({ workers: "auto" });
-    making.catch(() => {
-      made = undefined;
+  if (created === undefined) {
+    const creation = createAligner({ workers: "auto" });
+    creation.catch(() => {
+      created = undefined;
     });
-    made = making;
+    created = creation;
   }
-  return made;
+  return created;
 }
+
+/** The input of `align` and `evaluate` for an object. */
+export const inputOf = ({ depthM, width, height, camera }: Scene, { mask, mesh }: ObjectModel): AlignInput => ({
+  depth: depthM,
+  width,
+  height,
+  camera,
+  mask,
+  mesh,
+});

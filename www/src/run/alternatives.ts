@@ -1,22 +1,22 @@
-/** The other poses that explain the picture. */
+/** Shows the alternatives of an alignment. */
 import { toSim3 } from "sim3align/conventions";
 import { place } from "../state/history.js";
 import type { ObjectModel } from "../state/object-model.js";
 
-/** Puts the mesh at an alternative, or with −1 back to the result. */
+/** Sets the pose to an alternative, or with −1 to the result. */
 export function applyAlternative(object: ObjectModel, index: number): void {
   const alignment = object.alignment.peek();
   if (alignment === null) return;
-  const found = index < 0 ? alignment : alignment.alternatives[index];
-  if (found === undefined) return;
-  const transform = toSim3(found);
+  const chosen = index < 0 ? alignment : object.precise?.alternatives[index];
+  if (chosen === undefined) return;
+  const transform = toSim3(chosen);
   place(
     object,
     index < 0 ? { transform, source: "aligned" } : { transform, source: "alternative", alternative: index },
   );
 }
 
-/** Which of the poses is shown: −1 is the result, null is none of them. */
+/** The index of the alternative that is shown: −1 is the result, null is another pose. */
 export function shownAlternative(object: ObjectModel): number | null {
   const { source, alternative } = object.pose.value;
   if (source === "alternative") return alternative ?? null;

@@ -1,25 +1,24 @@
-/** Keeps the metrics of every object's present pose. */
+/** Computes the metrics of the current poses. */
 import { effect } from "@preact/signals";
 import { toSim3 } from "sim3align/conventions";
 import type { ObjectModel } from "../state/object-model.js";
 import { type Scene, scene } from "../state/scene.js";
-import { aligner } from "./aligner.js";
-import { inputOf } from "./input.js";
+import { aligner, inputOf } from "./aligner.js";
 
-/** A pose that is being dragged changes with every frame. */
-const REST_MS = 120;
+/** A pose is evaluated once it has been unchanged for this time: a drag changes it with every frame. */
+const DEBOUNCE_MS = 120;
 
-/** Follows the objects of every scene; to be called once. */
-export function followPoses(): void {
+/** Observes the poses of all objects of the current scene. */
+export function observePoses(): void {
   let stop: (() => void)[] = [];
   effect(() => {
     const whole = scene.value;
-    for (const end of stop) end();
-    stop = whole === null ? [] : whole.objects.map((object) => follow(whole, object));
+    for (const stopOne of stop) stopOne();
+    stop = whole === null ? [] : whole.objects.map((object) => observe(whole, object));
   });
 }
 
-function follow(whole: Scene, object: ObjectModel): () => void {
+function observe(whole: Scene, object: ObjectModel): () => void {
   let abort = new AbortController();
   let timer: ReturnType<typeof setTimeout> | undefined;
   const stop = effect(() => {
@@ -33,7 +32,7 @@ function follow(whole: Scene, object: ObjectModel): () => void {
     object.metrics.value = isSame ? alignment.metrics : null;
     object.errors.value = null;
     if (pose.source === "start" || (isSame && object.truth === null)) return;
-    timer = setTimeout(() => evaluate(whole, object, abort.signal), REST_MS);
+    timer = setTimeout(() => evaluate(whole, object, abort.signal), DEBOUNCE_MS);
   });
   return () => {
     stop();
@@ -52,6 +51,6 @@ async function evaluate(whole: Scene, object: ObjectModel, signal: AbortSignal):
     object.metrics.value = metrics;
     object.errors.value = errors;
   } catch {
-    // A pose that cannot be scored (behind the camera, say) has no metrics; nothing else depends on them.
+    // Some poses have no metrics, for example behind the camera. They are displayed as missing.
   }
 }

@@ -1,15 +1,15 @@
-/** What is shown, and how. */
+/** Display settings. */
 import { effect, signal } from "@preact/signals";
 
-/** What the image view draws. */
+/** Layers of the image view. */
 export interface ImageLayers {
   base: "photo" | "depth";
   outline: boolean;
   silhouette: boolean;
   difference: boolean;
-  /** Whether the objects fill the view, and not the whole image. */
+  /** Whether the view is zoomed to the objects. */
   zoom: boolean;
-  /** Where before ends and after begins, as a share of what is seen: 0 is all after, 1 all before. */
+  /** The share of the visible width that shows the start poses, from the left: 0 is all after, 1 is all before. */
   wipe: number;
 }
 
@@ -26,7 +26,7 @@ export const setLayer = <K extends keyof ImageLayers>(name: K, value: ImageLayer
   layers.value = { ...layers.peek(), [name]: value };
 };
 
-/** What the 3D view draws. */
+/** Layers of the 3D view. */
 export interface Display3d {
   cloud: boolean;
   mesh: boolean;
@@ -38,27 +38,29 @@ export const display3d = signal<Display3d>({ cloud: true, mesh: true, wireframe:
 
 export const gizmo = signal<"translate" | "rotate" | "scale" | null>(null);
 
-/** Which of the views has the large place. */
+/** The view that has the larger area. */
 export const largeView = signal<"space" | "image">("space");
 
-/** The pixel of the depth map that is pointed at, in either view. */
-export const pointed = signal<{ x: number; y: number } | null>(null);
+/** The pixel of the depth map under the pointer, in either view. */
+export const hoveredPixel = signal<{ x: number; y: number } | null>(null);
+
+export const isHelpOpen = signal(false);
 
 export type Theme = "system" | "light" | "dark";
 
-const kept = "sim3align-theme";
+const THEME_KEY = "sim3align-theme";
 
-function keptTheme(): Theme {
+function storedTheme(): Theme {
   try {
-    const theme = localStorage.getItem(kept);
+    const theme = localStorage.getItem(THEME_KEY);
     return theme === "light" || theme === "dark" ? theme : "system";
   } catch {
-    // Storage may be forbidden.
+    // Storage may be blocked.
     return "system";
   }
 }
 
-export const theme = signal<Theme>(keptTheme());
+export const theme = signal<Theme>(storedTheme());
 
 const darkQuery = matchMedia("(prefers-color-scheme: dark)");
 const systemIsDark = signal(darkQuery.matches);
@@ -66,15 +68,15 @@ darkQuery.addEventListener("change", ({ matches }) => {
   systemIsDark.value = matches;
 });
 
-/** Light or dark, as it is now. */
-export const shownTheme = () => (theme.value === "system" ? (systemIsDark.value ? "dark" : "light") : theme.value);
+/** The theme in effect. */
+export const effectiveTheme = () => (theme.value === "system" ? (systemIsDark.value ? "dark" : "light") : theme.value);
 
 effect(() => {
   document.documentElement.style.colorScheme = theme.value === "system" ? "light dark" : theme.value;
   try {
-    if (theme.value === "system") localStorage.removeItem(kept);
-    else localStorage.setItem(kept, theme.value);
+    if (theme.value === "system") localStorage.removeItem(THEME_KEY);
+    else localStorage.setItem(THEME_KEY, theme.value);
   } catch {
-    // It then lasts as long as the page.
+    // Storage is blocked: the theme is lost when the page closes.
   }
 });

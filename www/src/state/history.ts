@@ -10,35 +10,35 @@ interface Step {
   after: Pose;
 }
 
-/** Steps that are kept at most. */
+/** Older steps are dropped. */
 const MAX_STEPS = 200;
 
-const done = signal<readonly Step[]>([]);
-const undone = signal<readonly Step[]>([]);
+const undoSteps = signal<readonly Step[]>([]);
+const redoSteps = signal<readonly Step[]>([]);
 
-export const canUndo = computed(() => done.value.length > 0);
-export const canRedo = computed(() => undone.value.length > 0);
+export const canUndo = computed(() => undoSteps.value.length > 0);
+export const canRedo = computed(() => redoSteps.value.length > 0);
 
-/** Puts an object somewhere, so that it can be undone. */
+/** Sets the pose of an object, as a step that can be undone. */
 export function place(object: ObjectModel, after: Pose, before = object.pose.peek()): void {
   object.pose.value = after;
-  done.value = [...done.peek().slice(1 - MAX_STEPS), { object, before, after }];
-  undone.value = [];
+  undoSteps.value = [...undoSteps.peek().slice(1 - MAX_STEPS), { object, before, after }];
+  redoSteps.value = [];
 }
 
 export function undo(): void {
-  const step = done.peek().at(-1);
+  const step = undoSteps.peek().at(-1);
   if (step === undefined) return;
-  done.value = done.peek().slice(0, -1);
-  undone.value = [...undone.peek(), step];
+  undoSteps.value = undoSteps.peek().slice(0, -1);
+  redoSteps.value = [...redoSteps.peek(), step];
   show(step.object, step.before);
 }
 
 export function redo(): void {
-  const step = undone.peek().at(-1);
+  const step = redoSteps.peek().at(-1);
   if (step === undefined) return;
-  undone.value = undone.peek().slice(0, -1);
-  done.value = [...done.peek(), step];
+  redoSteps.value = redoSteps.peek().slice(0, -1);
+  undoSteps.value = [...undoSteps.peek(), step];
   show(step.object, step.after);
 }
 
@@ -47,11 +47,11 @@ function show(object: ObjectModel, pose: Pose): void {
   object.pose.value = pose;
 }
 
-/** Steps are about objects: those of another scene are none. */
-let shown = scene.peek();
-scene.subscribe((now) => {
-  if (now === shown) return;
-  shown = now;
-  done.value = [];
-  undone.value = [];
+/** A new scene has new objects, so the steps of the previous one are cleared. */
+let current = scene.peek();
+scene.subscribe((next) => {
+  if (next === current) return;
+  current = next;
+  undoSteps.value = [];
+  redoSteps.value = [];
 });

@@ -1,11 +1,10 @@
-/** One object: its mask, its mesh, and what has become of it. */
+/** An object of a scene: its mask, its mesh, and the state of its alignment. */
 import { computed, type Signal, signal } from "@preact/signals";
-import type { Alignment, MeshArrays, Metrics, PoseErrors, Sim3AlignError, Stage } from "sim3align";
-import type { Sim3Like } from "sim3align/conventions";
-import { type Bounds, boundsOf, type PlacedBox, placed } from "./bounds.js";
-import { type Pose, startPose } from "./pose.js";
+import type { AlignmentByPreset, MeshArrays, Metrics, PoseErrors, Preset, Sim3AlignError, Stage } from "sim3align";
+import type { Sim3Like, Vector3 } from "sim3align/conventions";
+import { type Bounds, boundsOf, type PlacedBox, type Pose, placed, startPose } from "./pose.js";
 
-/** How an alignment goes. */
+/** The state of an alignment. */
 export type Run =
   | { readonly state: "idle" }
   | { readonly state: "waiting" }
@@ -14,23 +13,26 @@ export type Run =
   | { readonly state: "cancelled" }
   | { readonly state: "failed"; readonly error: Sim3AlignError | Error };
 
-/** What an object is made of. */
+/** The result of an alignment, with any preset. */
+export type AnyAlignment = AlignmentByPreset[Preset];
+
+/** The inputs of an object. */
 export interface ObjectParts {
   id: string;
   name: string;
   colour: string;
-  /** Of the depth map's size; 1 is the object. */
+  /** 1 is the object. Has the size of the depth map. */
   mask: Uint8Array;
   mesh: MeshArrays;
-  /** The mesh's file, where it is a GLB. */
+  /** The mesh's file if it is a GLB. */
   glb: Uint8Array | null;
-  /** The true pose, where it is known, and the words about symmetry beside it. */
+  /** The true pose and the symmetry to compare with, if known. */
   truth: { transform: Sim3Like; symmetry: "none" | "auto" | "auto-revolution" } | null;
-  /** The middle and the extent of its readings, metres. */
-  seen: { middleM: [number, number, number]; sizeM: number };
+  /** Centre and extent of the depth readings in the mask, metres. */
+  visible: { centreM: Vector3; sizeM: number };
 }
 
-/** An object of a scene; its parts stay, its state is in signals. */
+/** An object of a scene. The inputs are constant; signals hold the state. */
 export class ObjectModel implements Readonly<ObjectParts> {
   readonly id: string;
   readonly name: string;
@@ -39,21 +41,21 @@ export class ObjectModel implements Readonly<ObjectParts> {
   readonly mesh: MeshArrays;
   readonly glb: Uint8Array | null;
   readonly truth: ObjectParts["truth"];
-  readonly seen: ObjectParts["seen"];
+  readonly visible: ObjectParts["visible"];
   private readonly bounds: Bounds;
-  /** Where the mesh is before anything is aligned. */
+  /** The pose before any alignment. */
   readonly start: Pose;
 
   readonly run = signal<Run>({ state: "idle" });
-  /** The last alignment, whatever has been done to the pose since. */
-  readonly alignment = signal<Alignment | null>(null);
-  /** Where the mesh is now. */
+  /** The last alignment, also after the pose was changed by hand. */
+  readonly alignment = signal<AnyAlignment | null>(null);
+  /** The current pose. */
   readonly pose: Signal<Pose>;
-  /** How well the present pose agrees with the observation; null while that is being found out. */
+  /** Metrics of the current pose; null while they are computed. */
   readonly metrics = signal<Metrics | null>(null);
-  /** How far the present pose is from the truth, where that is known. */
+  /** Errors of the current pose, if the true pose is known. */
   readonly errors = signal<PoseErrors | null>(null);
-  /** The box around the object at the present pose. */
+  /** The bounding box at the current pose. */
   readonly box = computed<PlacedBox>(() => placed(this.bounds, this.pose.value.transform));
 
   constructor(parts: ObjectParts) {
@@ -64,14 +66,20 @@ export class ObjectModel implements Readonly<ObjectParts> {
     this.mesh = parts.mesh;
     this.glb = parts.glb;
     this.truth = parts.truth;
-    this.seen = parts.seen;
+    this.visible = parts.visible;
     this.bounds = boundsOf(parts.mesh);
-    this.start = { transform: startPose(this.bounds, parts.seen.middleM, parts.seen.sizeM), source: "start" };
+    this.start = { transform: startPose(this.bounds, parts.visible), source: "start" };
     this.pose = signal<Pose>(this.start);
   }
 
-  /** Whether it has been put anywhere. */
+  /** Whether the object has a pose other than the start pose. */
   get isPlaced(): boolean {
     return this.pose.value.source !== "start";
+  }
+
+  /** The last alignment, if it is one of the preset `precise`. */
+  get precise(): AlignmentByPreset["precise"] | null {
+    const alignment = this.alignment.value;
+    return alignment !== null && "confidence" in alignment ? alignment : null;
   }
 }

@@ -1,45 +1,70 @@
-/** The options of an alignment, as far as the page offers them. */
+/** Options of an alignment that the page offers. */
 import { signal } from "@preact/signals";
-import type { AlignOptions, ExtentAxis, Preset, Quality } from "sim3align";
+import {
+  ALIGN_DEFAULTS,
+  type AlignOptions,
+  type ExtentAxis,
+  OPTIONS,
+  PAPER_DEFAULTS,
+  type PaperOptions,
+  type Preset,
+  type Quality,
+  type Sim3,
+} from "sim3align";
 
-/** What the form holds; null and "" are "not given". */
+/** The options of `align` that the page sets. */
+export type CallOptions = Omit<AlignOptions, "metrics"> | Omit<PaperOptions, "metrics">;
+
+/** The state of the form. `null` is an empty field. */
 export interface Options {
   preset: Preset;
   quality: Quality;
-  /** The real length of the object, in centimetres. */
+  /** The object's known length in centimetres. */
   knownExtentCm: number | null;
   knownExtentAxis: ExtentAxis;
   /** Bounds of the scale, metres per mesh unit. */
   scaleMin: number | null;
   scaleMax: number | null;
-  /** Whether the camera is level, and which of the mesh's axes is up: the object then stands upright. */
+  /** The mesh axis that points up, for a level camera and an object that stands upright. */
   up: "unknown" | "y" | "z";
   symmetry: "auto" | "auto-revolution" | "none";
+  /** Whether refining and the handles leave the scale unchanged. */
   lockScale: boolean;
   seed: number;
 }
 
 export const defaultOptions: Options = {
-  preset: "precise",
-  quality: "balanced",
-  knownExtentCm: null,
-  knownExtentAxis: "longest",
+  preset: ALIGN_DEFAULTS.preset,
+  quality: ALIGN_DEFAULTS.quality,
+  knownExtentCm: ALIGN_DEFAULTS.knownExtentM,
+  knownExtentAxis: ALIGN_DEFAULTS.knownExtentAxis,
   scaleMin: null,
   scaleMax: null,
   up: "unknown",
-  symmetry: "auto",
+  symmetry: ALIGN_DEFAULTS.symmetry,
   lockScale: false,
-  seed: 0,
+  seed: ALIGN_DEFAULTS.seed,
 };
 
-/** What may stand in a link, where it is a word. */
-const words: { readonly [K in keyof Options]?: readonly string[] } = {
-  preset: ["precise", "paper"],
-  quality: ["fast", "balanced", "best"],
-  knownExtentAxis: ["longest", "x", "y", "z"],
+/** The library's rows about the options of `align`. */
+type Row = (typeof OPTIONS.align)[number];
+const rowOf = <N extends Row["name"]>(name: N) =>
+  OPTIONS.align.find((row) => row.name === name) as Extract<Row, { name: N }>;
+
+/** The options that are chosen from a list. */
+type ChoiceName = "preset" | "quality" | "knownExtentAxis" | "up" | "symmetry";
+
+/** The values of these options. */
+export const choices: { readonly [K in ChoiceName]: readonly Options[K][] } = {
+  preset: [ALIGN_DEFAULTS.preset, PAPER_DEFAULTS.preset],
+  quality: rowOf("quality").choices,
+  knownExtentAxis: rowOf("knownExtentAxis").choices,
   up: ["unknown", "y", "z"],
   symmetry: ["auto", "auto-revolution", "none"],
 };
+
+/** The largest seed. */
+export const MAX_SEED = rowOf("seed").max;
 
 export const options = signal<Options>(defaultOptions);
 
@@ -47,41 +72,24 @@ export function setOption<K extends keyof Options>(name: K, value: Options[K]): 
   options.value = { ...options.peek(), [name]: value };
 }
 
-/** The library's form of the options. */
-export function alignOptions(chosen = options.peek()): AlignOptions {
+/** The options of `align` for an alignment from scratch. */
+export function alignOptions(chosen = options.peek()): CallOptions {
   const { preset, seed } = chosen;
   if (preset === "paper") return { preset, seed };
   const { scaleMin, scaleMax, knownExtentCm, up } = chosen;
   const hasBounds = scaleMin !== null || scaleMax !== null;
   return {
-    preset,
     seed,
     quality: chosen.quality,
     symmetry: chosen.symmetry,
     ...(knownExtentCm === null ? {} : { knownExtentM: knownExtentCm / 100, knownExtentAxis: chosen.knownExtentAxis }),
-    ...(hasBounds ? { scale: { min: scaleMin ?? 1e-9, max: scaleMax ?? 1e9 } } : {}),
+    ...(hasBounds ? { scale: [scaleMin ?? 1e-9, scaleMax ?? 1e9] } : {}),
     ...(up === "unknown" ? {} : { cameraUp: [0, -1, 0], meshUp: up === "y" ? [0, 1, 0] : [0, 0, 1] }),
   };
 }
 
-/** Those of the options that are not the defaults, as a link holds them. */
-export function optionsToLink(chosen: Options): [name: string, value: string][] {
-  return Object.entries(chosen)
-    .filter(([name, value]) => value !== defaultOptions[name as keyof Options])
-    .map(([name, value]) => [name, String(value)]);
-}
-
-/** The options that a link holds; what it cannot hold is left at its default. */
-export function optionsFromLink(parameters: URLSearchParams): Options {
-  const found: Record<string, unknown> = { ...defaultOptions };
-  for (const name of Object.keys(defaultOptions) as (keyof Options)[]) {
-    const text = parameters.get(name);
-    if (text === null) continue;
-    const allowed = words[name];
-    if (allowed !== undefined) {
-      if (allowed.includes(text)) found[name] = text;
-    } else if (name === "lockScale") found[name] = text === "true";
-    else if (text !== "" && Number(text) >= 0 && Number.isFinite(Number(text))) found[name] = Number(text);
-  }
-  return found as unknown as Options;
+/** The options of `align` for a search around a pose only. */
+export function refineOptions(initial: Sim3): CallOptions {
+  const { quality, seed, symmetry, lockScale } = options.peek();
+  return { quality, seed, symmetry, search: "local", initial, ...(lockScale ? { scale: initial.scale } : {}) };
 }

@@ -1,27 +1,61 @@
-/** Poses of a mesh: camera from mesh, OpenCV camera frame, metres. */
+/** Poses of a mesh (camera from mesh, OpenCV camera frame, metres) and the bounding box that they transform. */
+import type { MeshArrays } from "sim3align";
+import { applyToPoints, compose, type Sim3, toSim3, type Vector3 } from "sim3align/conventions";
 
-import { compose, type Sim3, toSim3, type Vector3 } from "sim3align/conventions";
-import { type Bounds, placed } from "./bounds.js";
-
-/** What put the mesh where it is. */
+/** The origin of a pose. */
 export type PoseSource = "start" | "aligned" | "alternative" | "refined" | "hand";
 
-/** A pose, and where it comes from; never changed, only replaced. */
+/** A pose and its origin. Immutable. */
 export interface Pose {
   readonly transform: Sim3;
   readonly source: PoseSource;
-  /** Which of the alternatives it is, from 0 on. */
+  /** The index of the alternative, for poses with that source. */
   readonly alternative?: number;
 }
 
-/** The quaternion of a turn about an axis of the camera's frame. */
-export function turn(axis: Vector3, degrees: number): [number, number, number, number] {
+/** A bounding box along the mesh's axes, in the mesh's frame and unit. */
+export interface Bounds {
+  readonly centre: Vector3;
+  readonly sides: Vector3;
+}
+
+/** The bounding box at a pose: centre in the camera frame; sides along the mesh's x, y and z; metres. */
+export interface PlacedBox {
+  readonly centreM: Vector3;
+  readonly sizeM: Vector3;
+}
+
+/** The bounding box of a mesh's triangles. */
+export function boundsOf({ positions, indices }: MeshArrays): Bounds {
+  const low: Vector3 = [Number.POSITIVE_INFINITY, Number.POSITIVE_INFINITY, Number.POSITIVE_INFINITY];
+  const high: Vector3 = [Number.NEGATIVE_INFINITY, Number.NEGATIVE_INFINITY, Number.NEGATIVE_INFINITY];
+  const count = indices?.length ?? positions.length / 3;
+  for (let i = 0; i < count; i++) {
+    const vertex = 3 * (indices?.[i] ?? i);
+    for (const k of [0, 1, 2] as const) {
+      const x = positions[vertex + k] ?? 0;
+      if (x < low[k]) low[k] = x;
+      if (x > high[k]) high[k] = x;
+    }
+  }
+  const combine = (f: (low: number, high: number) => number) => low.map((x, k) => f(x, high[k] ?? x)) as Vector3;
+  return { centre: combine((a, b) => (a + b) / 2), sides: combine((a, b) => b - a) };
+}
+
+/** The bounding box at a pose. */
+export function placed({ centre, sides }: Bounds, pose: Sim3): PlacedBox {
+  const [x = 0, y = 0, z = 0] = applyToPoints(pose, Float64Array.from(centre));
+  return { centreM: [x, y, z], sizeM: sides.map((side) => pose.scale * side) as Vector3 };
+}
+
+/** The quaternion of a rotation about an axis of the camera frame. */
+export function rotationAbout(axis: Vector3, degrees: number): [number, number, number, number] {
   const half = (degrees * Math.PI) / 360;
   const [x, y, z] = axis;
   return [x * Math.sin(half), y * Math.sin(half), z * Math.sin(half), Math.cos(half)];
 }
 
-/** What a nudge does, about the object's centre. */
+/** A change of a pose, about the object's centre. */
 export interface Nudge {
   moveM?: Vector3;
   rotation?: [number, number, number, number];
@@ -30,24 +64,21 @@ export interface Nudge {
 
 /** The pose after a nudge. */
 export function nudged(
-  centerM: Vector3,
+  centreM: Vector3,
   from: Sim3,
   { moveM = [0, 0, 0], rotation = [0, 0, 0, 1], scale = 1 }: Nudge,
 ): Sim3 {
-  const still = [0, 0, 0, 1];
-  const away = { scale: 1, rotation: still, translation: centerM.map((x) => -x) };
-  const back = { scale: 1, rotation: still, translation: centerM.map((x, k) => x + (moveM[k] ?? 0)) };
-  return compose(back, { scale, rotation, translation: [0, 0, 0] }, away, from);
+  const identity = [0, 0, 0, 1];
+  const toOrigin = { scale: 1, rotation: identity, translation: centreM.map((x) => -x) };
+  const back = { scale: 1, rotation: identity, translation: centreM.map((x, k) => x + (moveM[k] ?? 0)) };
+  return compose(back, { scale, rotation, translation: [0, 0, 0] }, toOrigin, from);
 }
 
-/**
- * Where nobody has aligned anything yet: the mesh upright, as in glTF, in the object's middle, about as large as what is
- * seen of it.
- */
-export function startPose(bounds: Bounds, middleM: Vector3, sizeM: number): Sim3 {
-  const scale = sizeM / (Math.hypot(...bounds.sides) || 1);
+/** The pose before any alignment: upright as in glTF, at the centre and with the size of the visible part. */
+export function startPose(bounds: Bounds, visible: { centreM: Vector3; sizeM: number }): Sim3 {
+  const scale = visible.sizeM / (Math.hypot(...bounds.sides) || 1);
   const upright = toSim3({ scale, rotation: [1, 0, 0, 0], translation: [0, 0, 0] });
-  const { centerM } = placed(bounds, upright);
-  const translation = middleM.map((x, k) => x - (centerM[k] ?? 0)) as Vector3;
+  const { centreM } = placed(bounds, upright);
+  const translation = visible.centreM.map((x, k) => x - (centreM[k] ?? 0)) as Vector3;
   return toSim3({ scale, rotation: [1, 0, 0, 0], translation });
 }

@@ -1,22 +1,21 @@
-/** What is looked at: a depth map with its camera, a photo where there is one, and the objects in it. */
+/** The scene: a depth map with its camera, an optional photo, and the objects in it. */
 import { computed, signal } from "@preact/signals";
 import type { PinholeCamera } from "sim3align";
 import type { ObjectModel } from "./object-model.js";
 
-/** The observation. */
 export interface Scene {
   readonly name: string;
-  /** The sample that it is, or null for a user's own files. */
+  /** The id of the sample, or null for the user's own files. */
   readonly sample: string | null;
-  /** Row by row; 0 is no reading. */
+  /** Row-major; 0 is no reading. */
   readonly depthM: Float32Array;
   readonly width: number;
   readonly height: number;
   readonly camera: Pick<PinholeCamera, "fx" | "fy" | "cx" | "cy">;
-  /** The photo at the depth map's size. */
+  /** The photo, resized to the depth map. */
   readonly rgba: Uint8ClampedArray | null;
   readonly objects: readonly ObjectModel[];
-  /** What the files' readers warned of. */
+  /** Warnings of the file readers. */
   readonly warnings: readonly string[];
 }
 
@@ -24,7 +23,7 @@ export const scene = signal<Scene | null>(null);
 
 const selectedId = signal<string | null>(null);
 
-/** The object that panels and gizmo are about. */
+/** The object that panels and handles apply to. */
 export const selected = computed<ObjectModel | null>(() => {
   const objects = scene.value?.objects ?? [];
   return objects.find(({ id }) => id === selectedId.value) ?? objects[0] ?? null;
@@ -34,9 +33,9 @@ export function select(id: string | null): void {
   if (id !== null) selectedId.value = id;
 }
 
-/** The object whose mask has the pixel. */
+/** The object whose mask contains the pixel. */
 export function objectAt(x: number, y: number): ObjectModel | null {
-  const found = scene.value;
-  if (found === null) return null;
-  return found.objects.find(({ mask }) => mask[y * found.width + x] !== 0) ?? null;
+  const current = scene.value;
+  if (current === null) return null;
+  return current.objects.find(({ mask }) => mask[y * current.width + x] !== 0) ?? null;
 }

@@ -1,37 +1,36 @@
-/** Keyboard shortcuts: one table, which the help shows and the page obeys. */
+/** Keyboard shortcuts. The help lists this table. */
 
 import { alignAll, alignSelected, cancel, isRunning, refine } from "../run/align.js";
 import { applyAlternative } from "../run/alternatives.js";
-import { display3d, gizmo, largeView, layers, setLayer } from "../state/display.js";
+import { display3d, gizmo, isHelpOpen, largeView, layers, setLayer } from "../state/display.js";
 import { redo, undo } from "../state/history.js";
 import { options, setOption } from "../state/options.js";
 import { scene, select, selected } from "../state/scene.js";
 import { space } from "../views/space.js";
-import { toggleHelp } from "./help.js";
 
 interface Shortcut {
-  /** As the browser names it; with "Mod+" for Control or Command. */
+  /** `KeyboardEvent.key`, after "Mod+" if it is pressed with Control or Command. */
   key: string;
-  /** As people read it. */
-  shown: string;
-  does: string;
+  /** The key as the help shows it. */
+  title: string;
+  about: string;
   act(): unknown;
 }
 
-const gizmoMode = (mode: "translate" | "rotate" | "scale") => () => {
+const toggleHandles = (mode: "translate" | "rotate" | "scale") => () => {
   gizmo.value = gizmo.peek() === mode ? null : mode;
 };
 
-const look = (from: "camera" | "orbit" | "top" | "side") => () => {
+const lookFrom = (from: "camera" | "orbit" | "top" | "side") => () => {
   const state = space.peek();
   if (state.kind === "ready") state.view.lookFrom(from);
 };
 
-function neighbour(step: number): void {
+function selectNeighbour(step: number): void {
   const objects = scene.peek()?.objects ?? [];
-  const now = selected.peek();
-  const at = now === null ? 0 : objects.indexOf(now);
-  select(objects[(at + step + objects.length) % objects.length]?.id ?? null);
+  const current = selected.peek();
+  const index = current === null ? 0 : objects.indexOf(current);
+  select(objects[(index + step + objects.length) % objects.length]?.id ?? null);
 }
 
 const toggle3d = (name: "cloud" | "mesh" | "wireframe") => () => {
@@ -39,43 +38,47 @@ const toggle3d = (name: "cloud" | "mesh" | "wireframe") => () => {
 };
 
 export const shortcuts: readonly Shortcut[] = [
-  { key: "a", shown: "A", does: "Align the selected object", act: alignSelected },
-  { key: "A", shown: "Shift A", does: "Align all objects", act: alignAll },
-  { key: "Escape", shown: "Esc", does: "Cancel; put the handles away", act: leave },
-  { key: "f", shown: "F", does: "Refine from here", act: refine },
-  { key: "g", shown: "G", does: "Handles to move", act: gizmoMode("translate") },
-  { key: "r", shown: "R", does: "Handles to turn", act: gizmoMode("rotate") },
-  { key: "s", shown: "S", does: "Handles to scale", act: gizmoMode("scale") },
-  { key: "l", shown: "L", does: "Lock the scale", act: () => setOption("lockScale", !options.peek().lockScale) },
-  { key: "Mod+z", shown: "Ctrl Z", does: "Undo", act: undo },
-  { key: "Mod+Z", shown: "Ctrl Shift Z", does: "Redo", act: redo },
-  { key: "Mod+y", shown: "Ctrl Y", does: "Redo", act: redo },
-  { key: "[", shown: "[", does: "Previous object", act: () => neighbour(-1) },
-  { key: "]", shown: "]", does: "Next object", act: () => neighbour(1) },
-  { key: "c", shown: "C", does: "Look from the camera", act: look("camera") },
-  { key: "o", shown: "O", does: "Look from a little aside", act: look("orbit") },
-  { key: "t", shown: "T", does: "Look from above", act: look("top") },
-  { key: "w", shown: "W", does: "Wireframe", act: toggle3d("wireframe") },
-  { key: "p", shown: "P", does: "Points on or off", act: toggle3d("cloud") },
-  { key: "m", shown: "M", does: "Mesh on or off", act: toggle3d("mesh") },
-  { key: "d", shown: "D", does: "Depth difference", act: () => setLayer("difference", !layers.peek().difference) },
-  { key: "b", shown: "B", does: "Before and after", act: () => setLayer("wipe", layers.peek().wipe < 0.5 ? 1 : 0) },
-  { key: "z", shown: "Z", does: "Zoom to the objects", act: () => setLayer("zoom", !layers.peek().zoom) },
-  { key: "v", shown: "V", does: "Swap the views", act: swapViews },
-  { key: "0", shown: "0 to 9", does: "The result, and its alternatives", act: () => {} },
-  { key: "?", shown: "?", does: "This help", act: toggleHelp },
+  { key: "a", title: "A", about: "Align the selected object", act: alignSelected },
+  { key: "A", title: "Shift A", about: "Align all objects", act: alignAll },
+  { key: "Escape", title: "Esc", about: "Cancel; hide the handles", act: cancelOrHideHandles },
+  { key: "f", title: "F", about: "Refine from the current pose", act: refine },
+  { key: "g", title: "G", about: "Handles to move", act: toggleHandles("translate") },
+  { key: "r", title: "R", about: "Handles to rotate", act: toggleHandles("rotate") },
+  { key: "s", title: "S", about: "Handles to scale", act: toggleHandles("scale") },
+  { key: "l", title: "L", about: "Lock the scale", act: () => setOption("lockScale", !options.peek().lockScale) },
+  { key: "Mod+z", title: "Ctrl Z", about: "Undo", act: undo },
+  { key: "Mod+Z", title: "Ctrl Shift Z", about: "Redo", act: redo },
+  { key: "Mod+y", title: "Ctrl Y", about: "Redo", act: redo },
+  { key: "[", title: "[", about: "Previous object", act: () => selectNeighbour(-1) },
+  { key: "]", title: "]", about: "Next object", act: () => selectNeighbour(1) },
+  { key: "c", title: "C", about: "Camera view", act: lookFrom("camera") },
+  { key: "o", title: "O", about: "Three-quarter view", act: lookFrom("orbit") },
+  { key: "t", title: "T", about: "Top view", act: lookFrom("top") },
+  { key: "w", title: "W", about: "Wireframe", act: toggle3d("wireframe") },
+  { key: "p", title: "P", about: "Show or hide the points", act: toggle3d("cloud") },
+  { key: "m", title: "M", about: "Show or hide the mesh", act: toggle3d("mesh") },
+  { key: "d", title: "D", about: "Depth difference", act: () => setLayer("difference", !layers.peek().difference) },
+  { key: "b", title: "B", about: "Before or after", act: () => setLayer("wipe", layers.peek().wipe < 0.5 ? 1 : 0) },
+  { key: "z", title: "Z", about: "Zoom to the objects", act: () => setLayer("zoom", !layers.peek().zoom) },
+  { key: "v", title: "V", about: "Swap the views", act: swapViews },
+  { key: "0", title: "0 to 9", about: "The result (0) and its alternatives", act: () => {} },
+  { key: "?", title: "?", about: "This help", act: toggleHelp },
 ];
 
-function leave(): void {
+function cancelOrHideHandles(): void {
   if (isRunning.peek()) cancel();
   else gizmo.value = null;
+}
+
+export function toggleHelp(): void {
+  isHelpOpen.value = !isHelpOpen.peek();
 }
 
 function swapViews(): void {
   largeView.value = largeView.peek() === "space" ? "image" : "space";
 }
 
-/** Whether somebody types into a field. */
+/** Whether key events go to a text field. */
 const isTyping = (target: EventTarget | null) =>
   target instanceof HTMLElement &&
   target.matches('input:not([type="checkbox"], [type="radio"], [type="range"]), select, textarea');
@@ -95,14 +98,14 @@ function onKey(event: KeyboardEvent): void {
     if (object !== null) applyAlternative(object, Number(key) - 1);
     return;
   }
-  const found = shortcuts.find((shortcut) => shortcut.key === `${isMod ? "Mod+" : ""}${key}`);
-  if (found === undefined) return;
-  // Escape closes what is open, too.
+  const shortcut = shortcuts.find(({ key: own }) => own === `${isMod ? "Mod+" : ""}${key}`);
+  if (shortcut === undefined) return;
+  // Escape also closes dialogs and popovers.
   if (key !== "Escape") event.preventDefault();
-  found.act();
+  shortcut.act();
 }
 
-/** Listens, until the function that it returns is called. */
+/** Starts listening for keys. Call the returned function to stop. */
 export function listenToKeys(): () => void {
   addEventListener("keydown", onKey);
   return () => removeEventListener("keydown", onKey);

@@ -1,4 +1,4 @@
-/** The cloud: all points of a depth map in one draw call, as squares of a size that can be set. */
+/** The point cloud: all points of a depth map in one draw call, as squares of an adjustable size. */
 import {
   attribute,
   cameraProjectionMatrix,
@@ -24,10 +24,10 @@ import {
 import { type Points, pointsOf, type Rgb, tonesOf } from "./points.js";
 import type { ObjectInput, SceneInput } from "./types.js";
 
-/** How much of the object's colour its points get: when it is selected, and when it is not. */
+/** Share of the object's colour in the colour of its points. */
 const highlight = { selected: 0.55, others: 0.38 };
 
-/** Bytes of a colour as they are in sRGB, from 0 to 1. */
+/** The sRGB components of a colour, 0 to 1. */
 export const rgbOf = (color: Color): Rgb => {
   const { r, g, b } = color.getRGB({ r: 0, g: 0, b: 0 }, SRGBColorSpace);
   return [r, g, b];
@@ -39,8 +39,8 @@ export class Cloud {
   readonly points: Points;
   /** Half a point's width at one metre, in the directions of x and y. */
   private readonly halfWidth = uniform(new Vector2());
-  /** Half a screen pixel at one metre: no point is smaller. */
-  private readonly least = uniform(0);
+  /** Half a screen pixel at one metre, the lower bound. */
+  private readonly minHalfWidth = uniform(0);
   private readonly tones: BufferAttribute;
   private base: Uint8Array;
 
@@ -48,9 +48,9 @@ export class Cloud {
     private readonly scene: SceneInput,
     near: Color,
     far: Color,
-    mostPoints: number,
+    maxPoints: number,
   ) {
-    this.points = pointsOf(scene, mostPoints);
+    this.points = pointsOf(scene, maxPoints);
     this.base = tonesOf(scene, this.points, rgbOf(near), rgbOf(far));
     this.tones = new BufferAttribute(repeated(this.base, 4), 4, true);
     const geometry = new BufferGeometry();
@@ -58,11 +58,11 @@ export class Cloud {
     geometry.setAttribute("tone", this.tones);
     geometry.setIndex(new BufferAttribute(squares(this.points.pixels.length), 1));
     this.object = new Mesh(geometry, this.material());
-    // To know its bounds would cost more than it saves: it is always in view.
+    // Computing its bounds would cost more than culling saves: the cloud is nearly always in view.
     this.object.frustumCulled = false;
   }
 
-  /** Squares that face the screen, in the picture's own colours. */
+  /** Squares that face the screen, unlit. */
   private material(): NodeMaterial {
     const inView = modelViewMatrix.mul(vec4(positionGeometry, 1));
     const corner = vec2(float(vertexIndex.bitAnd(1)), float(vertexIndex.shiftRight(1).bitAnd(1)))
@@ -70,29 +70,29 @@ export class Cloud {
       .sub(1);
     const half = vec2(this.halfWidth)
       .mul(positionGeometry.z)
-      .max(vec2(this.least.mul(inView.z.negate())));
+      .max(vec2(this.minHalfWidth.mul(inView.z.negate())));
     const material = new NodeMaterial();
     material.vertexNode = cameraProjectionMatrix.mul(inView.add(vec4(corner.mul(half), 0, 0)));
-    // Bytes are sRGB, the renderer calculates in linear light.
+    // The bytes are sRGB; the renderer computes in linear light.
     material.colorNode = colorSpaceToWorking(attribute<"vec4">("tone", "vec4"), SRGBColorSpace);
     material.lights = false;
     material.fog = false;
     return material;
   }
 
-  /** A point's width in pixels of the depth map. */
+  /** Sets the width of a point, in pixels of the depth map. */
   setPointSize(size: number): void {
     const { fx, fy } = this.scene.camera;
     const half = 0.5 * Math.max(0, size) * this.points.stride;
     this.halfWidth.value.set(half / fx, half / fy);
   }
 
-  /** Colours of a scene without photo. */
+  /** Sets the colours of a scene without a photo. */
   setTheme(near: Color, far: Color): void {
     if (!this.scene.rgba) this.base = tonesOf(this.scene, this.points, rgbOf(near), rgbOf(far));
   }
 
-  /** Gives the points of masks the colours of their objects. */
+  /** Tints the points of each mask with the colour of its object. */
   highlight(objects: readonly ObjectInput[], selected: string | null): void {
     const tones = this.base.slice();
     const { pixels } = this.points;
@@ -110,10 +110,10 @@ export class Cloud {
     this.tones.needsUpdate = true;
   }
 
-  /** What has to be known of the screen, before each frame. */
+  /** Updates the size of a screen pixel. Call it before each frame. */
   prepare(camera: PerspectiveCamera, heightPx: number): void {
     const scale = camera.projectionMatrix.elements[5] ?? 1;
-    this.least.value = 1 / (scale * Math.max(1, heightPx));
+    this.minHalfWidth.value = 1 / (scale * Math.max(1, heightPx));
   }
 
   dispose(): void {
@@ -123,7 +123,7 @@ export class Cloud {
   }
 }
 
-/** Four corners with the same numbers for every point: instances of four vertices would be slower, in software by far. */
+/** Repeats the numbers of each point for its four corners. Instancing is slower, in software renderers by far. */
 function repeated<T extends Float32Array | Uint8Array>(numbers: T, size: number): T {
   const all = new (numbers.constructor as new (length: number) => T)(4 * numbers.length);
   for (let i = 0, to = 0; i < numbers.length; i += size) {
@@ -134,7 +134,7 @@ function repeated<T extends Float32Array | Uint8Array>(numbers: T, size: number)
   return all;
 }
 
-/** Two triangles per point, of corners in the order of bits: left or right, below or above. */
+/** Two triangles per point. Bit 0 of a corner is right, bit 1 is up. */
 function squares(count: number): Uint32Array {
   const indices = new Uint32Array(6 * count);
   for (let i = 0; i < count; i++) {

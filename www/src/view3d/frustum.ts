@@ -1,8 +1,8 @@
-/** The depth camera as lines: where it stood, and which way it looked. */
+/** The frustum of the depth camera, as lines. */
 import { BufferAttribute, BufferGeometry, type Color, LineBasicMaterial, LineSegments } from "three/webgpu";
 import type { SceneInput } from "./types.js";
 
-/** A pyramid from the camera's centre to the image's corners at a depth, in the OpenCV camera frame. */
+/** A pyramid from the camera centre to the image corners at a depth, in the OpenCV camera frame. */
 export class Frustum {
   readonly object: LineSegments<BufferGeometry, LineBasicMaterial>;
 
@@ -15,7 +15,7 @@ export class Frustum {
     const [left, top, right, bottom] = [-0.5, -0.5, width - 0.5, height - 0.5];
     const corners = [corner(left, top), corner(right, top), corner(right, bottom), corner(left, bottom)];
     const lines = corners.flatMap((point, i) => [0, 0, 0, ...point, ...point, ...(corners[(i + 1) % 4] ?? point)]);
-    // A roof, so that one sees which way is up.
+    // A triangle above the image marks the up direction.
     const apex = corner((left + right) / 2, top - 0.22 * height);
     lines.push(...(corners[0] ?? apex), ...apex, ...apex, ...(corners[1] ?? apex));
     const geometry = new BufferGeometry();

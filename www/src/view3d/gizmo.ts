@@ -1,22 +1,22 @@
-/** The gizmo: moves, turns or scales a model by handles. */
+/** The gizmo: handles that move, rotate or scale a model. */
 import { TransformControls } from "three/addons/controls/TransformControls.js";
 import type { PerspectiveCamera, Scene, Vector3 } from "three/webgpu";
 import type { Model } from "./model.js";
 import type { GizmoMode } from "./types.js";
 
-/** Nothing is scaled by more than this, either way, in one drag: a slip must not lose the mesh. */
-const mostAtOnce = 20;
+/** Largest scale factor of one drag, up or down, so that a slip does not lose the mesh. */
+const maxFactor = 20;
 
-/** What a gizmo tells. */
+/** Events of a gizmo. */
 export interface GizmoEvents {
-  /** Something looks different. */
+  /** The gizmo needs to be drawn again. */
   onChange(): void;
-  /** A handle has been taken, or let go: meanwhile nothing else may follow the pointer. */
+  /** A handle is grabbed or released. In between, other controls must ignore the pointer. */
   onHold(isHeld: boolean): void;
   onPose(model: Model, phase: "drag" | "end"): void;
 }
 
-/** Handles at a model's centre. */
+/** Handles at the centre of a model. */
 export class Gizmo {
   private readonly controls: TransformControls;
   private model: Model | null = null;
@@ -38,24 +38,24 @@ export class Gizmo {
     this.controls.addEventListener("objectChange", () => this.drag());
   }
 
-  /** Whether the pointer is on a handle, or has taken it. */
+  /** Whether the pointer hovers over or holds a handle. */
   get isBusy(): boolean {
     return this.model !== null && (this.controls.dragging || this.controls.axis !== null);
   }
 
-  /** Which model, and what the handles do; null takes them away. */
+  /** Sets the model and the function of the handles. `null` hides them. */
   set(model: Model | null, mode: GizmoMode | null): void {
-    const wanted = mode !== null && model?.pivot.visible ? model : null;
-    if (wanted !== this.model && this.controls.dragging) this.controls.pointerUp(null);
-    this.model = wanted;
+    const next = mode !== null && model?.pivot.visible ? model : null;
+    if (next !== this.model && this.controls.dragging) this.controls.pointerUp(null);
+    this.model = next;
     this.mode = mode;
     if (mode !== null) this.controls.setMode(mode);
-    if (wanted) this.controls.attach(wanted.pivot);
+    if (next) this.controls.attach(next.pivot);
     else this.controls.detach();
     this.events.onChange();
   }
 
-  /** Another canvas, after the graphics device has been lost. */
+  /** Switches to the new canvas after a graphics device was lost. */
   connect(canvas: HTMLCanvasElement): void {
     this.controls.disconnect();
     this.controls.connect(canvas);
@@ -84,9 +84,9 @@ export class Gizmo {
   }
 }
 
-/** A similarity scales alike along all axes: by what the dragged handle says. */
+/** Makes the scale uniform, as a similarity requires: the dragged handle determines it. */
 export function makeUniform(scale: Vector3, start: number): void {
   const ratios = scale.toArray().map((length) => length / start);
-  const farthest = ratios.reduce((far, ratio) => (Math.abs(ratio - 1) > Math.abs(far - 1) ? ratio : far), 1);
-  scale.setScalar(start * Math.min(mostAtOnce, Math.max(1 / mostAtOnce, farthest)));
+  const factor = ratios.reduce((most, ratio) => (Math.abs(ratio - 1) > Math.abs(most - 1) ? ratio : most), 1);
+  scale.setScalar(start * Math.min(maxFactor, Math.max(1 / maxFactor, factor)));
 }

@@ -1,4 +1,4 @@
-/** A mesh in the view: loaded, coloured, and where its pose puts it. */
+/** A mesh in the view, with its materials and its pose. */
 import { applyToObject3D } from "sim3align/three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { normalLocal, positionLocal, uniform } from "three/tsl";
@@ -19,20 +19,19 @@ import {
   type Raycaster,
   Vector3,
 } from "three/webgpu";
-import { matrixOf, moved, type Pose, poseOf } from "./pose.js";
+import { matrixOf, type Pose, poseOf, shifted } from "./pose.js";
 import type { Display, Matrix, ObjectInput } from "./types.js";
 
 const white = new Color(0xffffff);
 /** The outline's width as a share of the mesh's box diagonal. */
 const outlineWidth = 0.006;
 
-/** A mesh. */
 export class Model {
-  /** At the mesh's centre, so that the gizmo is there and scales about it: its child is the mesh, moved back. */
+  /** Its origin is the mesh centre, which the gizmo rotates and scales about; its child shifts the mesh back. */
   readonly pivot = new Group();
-  /** The middle of the mesh's box, in its own frame. */
+  /** The centre of the bounding box, in the frame of the mesh. */
   readonly centre = new Vector3();
-  /** Half the diagonal of that box. */
+  /** Half the diagonal of the bounding box. */
   readonly radius: number;
   private readonly outlines = new Group();
   private readonly materials: Material[] = [];
@@ -55,10 +54,10 @@ export class Model {
     this.prepare();
   }
 
-  /** Reads a mesh; its frame is the glTF scene's, with the transforms of the nodes applied. */
+  /** Loads a mesh. The frame of a GLB is that of its scene, with node transforms applied. */
   static async load({ id, colour, mesh }: ObjectInput): Promise<Model> {
     if ("glb" in mesh) {
-      // The loader keeps views of the buffer.
+      // A copy, because the loader keeps views of the buffer.
       const { scene } = await new GLTFLoader().parseAsync(mesh.glb.slice().buffer, "");
       return new Model(id, new Group().add(scene), new Color(colour));
     }
@@ -77,22 +76,22 @@ export class Model {
     return found;
   }
 
-  /** Where a ray first meets the mesh. */
+  /** The first intersection of a ray with the mesh. */
   intersect(ray: Raycaster): Intersection | undefined {
     return ray.intersectObject(this.content, true)[0];
   }
 
-  /** Normals, materials that can be seen in this light, and outlines. */
+  /** Adds normals, materials for the lights of this view, and outlines. */
   private prepare(): void {
     const width = uniform(2 * this.radius * outlineWidth);
     const outline = new MeshBasicNodeMaterial({ side: BackSide, color: this.colour.clone().lerp(white, 0.7) });
-    // In the mesh's own frame, whose scale is that of the nodes at most.
+    // In the frame of each node's mesh, so the width ignores the scale of nodes.
     outline.positionNode = positionLocal.add(normalLocal.mul(width));
     this.materials.push(outline);
     for (const mesh of this.meshes()) {
       if (!mesh.geometry.attributes.normal) mesh.geometry.computeVertexNormals();
       const given = Array.isArray(mesh.material) ? mesh.material[0] : mesh.material;
-      mesh.material = this.seen(given, mesh.geometry);
+      mesh.material = this.materialFor(given, mesh.geometry);
       const hull = new Mesh(mesh.geometry, outline);
       hull.applyMatrix4(mesh.matrixWorld);
       this.outlines.add(hull);
@@ -100,15 +99,15 @@ export class Model {
     this.outlines.visible = false;
   }
 
-  /** The material, or, of a mesh without colours of its own, one in the object's. */
-  private seen(given: Material | undefined, { attributes }: BufferGeometry): Material {
+  /** The given material or, for a mesh without colours, one in the colour of the object. */
+  private materialFor(given: Material | undefined, { attributes }: BufferGeometry): Material {
     const standard = given as MeshStandardMaterial | undefined;
     const hasColours =
       attributes.color !== undefined ||
       Boolean(standard?.map) ||
       (standard?.color && standard.color.getHex() !== 0xffffff);
     if (standard?.isMeshStandardMaterial && hasColours) {
-      // There is nothing around that metal could mirror: it would be black.
+      // There is no environment map, so metals would be black.
       standard.metalness = 0;
       standard.roughness = Math.max(0.5, standard.roughness);
       this.materials.push(standard);
@@ -124,24 +123,24 @@ export class Model {
     return material;
   }
 
-  /** Where the mesh is: OpenCV camera from mesh. */
+  /** The pose, OpenCV camera from mesh; `null` while it is hidden. */
   get pose(): Float64Array | null {
     if (!this.isPlaced) return null;
     const { position, quaternion, scale } = this.pivot;
     const placed: Pose = { position: position.clone(), quaternion: quaternion.clone(), scale: scale.x };
-    return matrixOf(moved(placed, this.centre.clone().negate()));
+    return matrixOf(shifted(placed, this.centre.clone().negate()));
   }
 
-  /** Puts the mesh somewhere, or hides it. */
+  /** Sets the pose. `null` hides the mesh. */
   set pose(pose: Matrix | null) {
     this.isPlaced = pose !== null;
     this.pivot.visible = this.isPlaced;
     if (pose === null) return;
     // The pivot's parent is in the OpenCV camera frame.
-    applyToObject3D(this.pivot, matrixOf(moved(poseOf(pose), this.centre)), { frame: "opencv" });
+    applyToObject3D(this.pivot, matrixOf(shifted(poseOf(pose), this.centre)), { frame: "opencv" });
   }
 
-  /** Takes over the colour and the highlight. */
+  /** Applies display settings and the highlight. */
   show(display: Display, isSelected: boolean): void {
     const opacity = Math.min(1, Math.max(0, display.meshOpacity ?? 1));
     this.pivot.visible = this.isPlaced && display.mesh;

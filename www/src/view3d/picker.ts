@@ -1,31 +1,29 @@
-/** What of a scene is at a place of the screen. */
+/** Finds the mesh or point under the pointer. */
 import { type Group, Matrix4, type PerspectiveCamera, Raycaster, Vector2, type Vector3 } from "three/webgpu";
 import type { Cloud } from "./cloud.js";
 import type { Model } from "./model.js";
-import { pickPoint, pixelOf } from "./pick.js";
 import type { SceneInput } from "./types.js";
 
-/** How far beside a point, in CSS pixels, it is still meant. */
+/** Radius around the pointer in which points are picked, in CSS pixels. */
 const reachPx = 5;
 
-/** What was found. */
+/** The picked mesh or point. */
 export interface Picked {
-  /** The mesh that it is a point of; undefined for a point of the cloud. */
+  /** The id of the mesh; undefined for a point of the cloud. */
   id?: string;
   /** OpenCV camera frame, metres. */
   point: [number, number, number];
-  /** Where the depth camera has it. */
+  /** The pixel of the depth map. */
   pixel: { x: number; y: number } | null;
 }
 
-/** Finds by rays and projections. */
 export class Picker {
   constructor(
     private readonly camera: PerspectiveCamera,
     private readonly root: Group,
   ) {}
 
-  /** The nearest of meshes and points. */
+  /** The nearest mesh or point. */
   pick(
     place: { x: number; y: number },
     size: { width: number; height: number },
@@ -75,4 +73,65 @@ export class Picker {
     const inView = first.point.clone().applyMatrix4(this.camera.matrixWorldInverse);
     return { ...first, distance: -inView.z };
   }
+}
+
+/** Extra cost of a point at the border of the radius, as a share of its distance. */
+const BORDER_PENALTY = 0.1;
+
+/** A point under the pointer. */
+interface Hit {
+  /** Index of the point. */
+  index: number;
+  /** Distance along the viewing direction, metres (w in clip space). */
+  distance: number;
+}
+
+/**
+ * The nearest point within a radius around a place on the screen.
+ *
+ * @param positions interleaved x, y, z
+ * @param clip clip space from the frame of the points, column-major
+ * @param at pixels from the left and top
+ * @param size of the screen in pixels
+ */
+export function pickPoint(
+  positions: Float32Array,
+  clip: ArrayLike<number>,
+  at: { x: number; y: number },
+  size: { width: number; height: number },
+  radiusPx: number,
+): Hit | null {
+  const row = (i: number) => [clip[i] ?? 0, clip[i + 4] ?? 0, clip[i + 8] ?? 0, clip[i + 12] ?? 0] as const;
+  const [ax, ay, az, aw] = row(0);
+  const [bx, by, bz, bw] = row(1);
+  const [dx, dy, dz, dw] = row(3);
+  const wantedX = (2 * at.x) / size.width - 1;
+  const wantedY = 1 - (2 * at.y) / size.height;
+  const [radiusX, radiusY] = [(2 * radiusPx) / size.width, (2 * radiusPx) / size.height];
+  let best: Hit | null = null;
+  let bestCost = Number.POSITIVE_INFINITY;
+  for (let i = 0; i < positions.length; i += 3) {
+    const [x, y, z] = [positions[i] as number, positions[i + 1] as number, positions[i + 2] as number];
+    const w = dx * x + dy * y + dz * z + dw;
+    if (w <= 0 || w >= bestCost) continue;
+    const [offX, offY] = [(ax * x + ay * y + az * z + aw) / w - wantedX, (bx * x + by * y + bz * z + bw) / w - wantedY];
+    const off = Math.max(Math.abs(offX) / radiusX, Math.abs(offY) / radiusY);
+    // Of the points of one surface, this prefers the one closest to the pointer.
+    const cost = w * (1 + BORDER_PENALTY * off);
+    if (off > 1 || cost >= bestCost) continue;
+    bestCost = cost;
+    best = { index: i / 3, distance: w };
+  }
+  return best;
+}
+
+/** The pixel of a point in the OpenCV camera frame; `null` behind the camera or outside the image. */
+export function pixelOf(
+  [x, y, z]: readonly [number, number, number],
+  { camera, width, height }: Pick<SceneInput, "camera" | "width" | "height">,
+): { x: number; y: number } | null {
+  if (!(z > 0)) return null;
+  // Adding 0 turns −0 into 0.
+  const [u, v] = [Math.round((camera.fx * x) / z + camera.cx) + 0, Math.round((camera.fy * y) / z + camera.cy) + 0];
+  return u >= 0 && v >= 0 && u < width && v < height ? { x: u, y: v } : null;
 }

@@ -1,6 +1,6 @@
-/** The pointer on the canvas: clicks, and what it is over. */
+/** Pointer events of the canvas: clicks, double clicks, hovering. */
 
-/** Farther than this, in CSS pixels, it is no click but a drag. */
+/** A press that moves farther than this, in CSS pixels, is a drag and not a click. */
 const clickPx = 5;
 
 /** A place on the canvas, CSS pixels from the left and top. */
@@ -9,15 +9,15 @@ export interface Place {
   y: number;
 }
 
-/** What a pointer tells. */
+/** Pointer events. */
 export interface PointerEvents {
   onClick(place: Place): void;
   onDoubleClick(place: Place): void;
-  /** At most once a frame, and with no button pressed; null where it has left. */
+  /** At most once per frame, while no button is pressed; `null` when the pointer leaves. */
   onHover(place: Place | null): void;
 }
 
-/** Listens to a canvas until it is disposed of. */
+/** Listens to a canvas until `dispose` is called. */
 export class Pointer {
   private readonly listeners = new AbortController();
   private frame = 0;
@@ -32,7 +32,7 @@ export class Pointer {
     canvas.addEventListener(
       "pointerdown",
       (event) => {
-        // A second finger makes it no click.
+        // A gesture with two fingers is not a click.
         pressed = pressed === null && event.button === 0 ? { ...place(event), id: event.pointerId } : null;
       },
       { signal },

@@ -1,26 +1,26 @@
-/** The points of a depth map, and their colours. No three.js here: numbers only. */
+/** The points of a depth map and their colours. Independent of three.js. */
 import type { SceneInput } from "./types.js";
 
-/** Neighbours whose depths differ by more than this share are no surface. */
-const jump = 0.05;
+/** Neighbours whose depths differ by more than this share are on different surfaces. */
+const discontinuity = 0.05;
 
 /** Points in the OpenCV camera frame. */
 export interface Points {
-  /** x, y, z each, metres. */
+  /** Interleaved x, y, z, metres. */
   positions: Float32Array;
-  /** The pixel that each was seen at, row by row. */
+  /** The pixel of each point, as a row-major index. */
   pixels: Uint32Array;
-  /** One in so many pixels is there, in each direction. */
+  /** Every `stride`-th row and column is used. */
   stride: number;
 }
 
 const isReading = (z: number) => z > 0 && z < Number.POSITIVE_INFINITY;
 
-/** The points of all pixels with a reading, evenly thinned out where there are more than `most`. */
-export function pointsOf({ depthM, width, height, camera }: SceneInput, most: number): Points {
+/** The points of all pixels with a reading, subsampled to about `maxPoints`. */
+export function pointsOf({ depthM, width, height, camera }: SceneInput, maxPoints: number): Points {
   let readings = 0;
   for (let i = 0; i < depthM.length; i++) if (isReading(depthM[i] as number)) readings++;
-  const stride = Math.max(1, Math.ceil(Math.sqrt(readings / most)));
+  const stride = Math.max(1, Math.ceil(Math.sqrt(readings / maxPoints)));
   const positions = new Float32Array(3 * readings);
   const pixels = new Uint32Array(readings);
   let count = 0;
@@ -38,13 +38,12 @@ export function pointsOf({ depthM, width, height, camera }: SceneInput, most: nu
 }
 
 /**
- * The value below which a share of the numbers lies.
- * @param numbers sorted
+ * The quantile of sorted numbers.
  */
 export const quantile = (numbers: ArrayLike<number>, share: number) =>
   numbers[Math.min(numbers.length - 1, Math.floor(share * numbers.length))] ?? 0;
 
-/** Some of the points' depths, sorted. */
+/** A sorted subsample of the depths. */
 export function sortedDepths({ positions }: Points): Float32Array {
   const every = Math.max(1, Math.floor(positions.length / 3 / 20_000));
   const depths = new Float32Array(Math.ceil(positions.length / 3 / every));
@@ -52,13 +51,13 @@ export function sortedDepths({ positions }: Points): Float32Array {
   return depths.sort();
 }
 
-/** The middle of points, and how far nine tenths of them are from it. */
+/** The median of points, and the radius around it that contains 90 % of them. */
 export interface Extent {
   centre: [number, number, number];
   radius: number;
 }
 
-/** Where the points of some pixels are, whatever strays; of all, where no pixel has any. */
+/** The robust extent of the points of some pixels, or of all points if those have none. */
 export function extentOf({ positions, pixels }: Points, isMember: (pixel: number) => boolean): Extent {
   const members: number[] = [];
   pixels.forEach((pixel, i) => {
@@ -68,7 +67,7 @@ export function extentOf({ positions, pixels }: Points, isMember: (pixel: number
   const median = (axis: number) =>
     quantile(Float32Array.from(members, (i) => positions[3 * i + axis] ?? 0).sort(), 0.5);
   const centre: Extent["centre"] = [median(0), median(1), median(2)];
-  const distance = (i: number) => Math.hypot(...centre.map((middle, axis) => (positions[3 * i + axis] ?? 0) - middle));
+  const distance = (i: number) => Math.hypot(...centre.map((median, axis) => (positions[3 * i + axis] ?? 0) - median));
   return { centre, radius: quantile(Float32Array.from(members, distance).sort(), 0.9) };
 }
 
@@ -76,8 +75,8 @@ export function extentOf({ positions, pixels }: Points, isMember: (pixel: number
 export type Rgb = readonly [number, number, number];
 
 /**
- * Four bytes (sRGB, the last is 255) per point: the photo's, or, without one, from `near` to `far` by depth, and brighter
- * where the surface faces up and towards the camera.
+ * The sRGB colours of the points, four bytes each: those of the photo or, without one, from `near` to `far` by depth,
+ * shaded by the surface normal.
  */
 export function tonesOf(scene: SceneInput, points: Points, near: Rgb, far: Rgb): Uint8Array {
   const { pixels, positions } = points;
@@ -102,29 +101,29 @@ export function tonesOf(scene: SceneInput, points: Points, near: Rgb, far: Rgb):
   return tones;
 }
 
-/** How brightly the surface at a pixel is lit, from its neighbours at both sides. */
+/** Brightness of the surface at a pixel. Its normal is estimated from the neighbouring depths. */
 function lightAt(scene: SceneInput, pixel: number): number {
   const { fx, fy } = scene.camera;
   const z = scene.depthM[pixel] as number;
   // The normal of z = z0 + a·u + b·v, up to perspective, with x and y in metres.
   const nx = (slopeAt(scene, pixel, 1, 0) * fx) / z;
   const ny = (slopeAt(scene, pixel, 0, 1) * fy) / z;
-  // Lit from above, from the left, and from the camera; the normal towards the camera is (nx, ny, −1), and y goes down.
+  // Light from above, from the left and from the camera. The normal is (nx, ny, −1), with y down.
   const facing = (0.62 - 0.35 * nx - 0.7 * ny) / Math.sqrt(nx * nx + ny * ny + 1);
   return 0.62 + 0.42 * Math.max(-0.4, Math.min(1, facing));
 }
 
-/** How much the depth grows per pixel in a direction; 0 at jumps and borders on both sides. */
+/** Slope of the depth per pixel in a direction; 0 if both neighbours are missing or on other surfaces. */
 function slopeAt({ depthM, width, height }: SceneInput, pixel: number, du: number, dv: number): number {
   const u = pixel % width;
   const v = (pixel - u) / width;
   const z = depthM[pixel] as number;
-  // Two pixels away: next to each other, their difference is mostly noise.
+  // Two pixels away, because differences of adjacent pixels are mostly noise.
   const isInside = (k: number) => u + k * du >= 0 && u + k * du < width && v + k * dv >= 0 && v + k * dv < height;
   const depthAt = (k: number) => (isInside(k) ? (depthM[pixel + k * (du + dv * width)] as number) : 0);
   const [before, after] = [depthAt(-2), depthAt(2)];
-  const hasBefore = before > 0 && Math.abs(before - z) < jump * z;
-  const hasAfter = after > 0 && Math.abs(after - z) < jump * z;
+  const hasBefore = before > 0 && Math.abs(before - z) < discontinuity * z;
+  const hasAfter = after > 0 && Math.abs(after - z) < discontinuity * z;
   if (!hasBefore && !hasAfter) return 0;
   return ((hasAfter ? after : z) - (hasBefore ? before : z)) / (hasBefore && hasAfter ? 4 : 2);
 }

@@ -1,6 +1,6 @@
-/** Whether WebGPU's pictures reach the screen. */
+/** Tests whether WebGPU can present to a canvas. */
 
-/** As far as is needed here: the compiler's own declarations know nothing of WebGPU yet. */
+/** The used part of `GPUDevice`, which the TypeScript library does not declare yet. */
 interface Device {
   readonly lost: Promise<unknown>;
   readonly queue: { submit(commands: unknown[]): void; onSubmittedWorkDone(): Promise<void> };
@@ -13,20 +13,20 @@ interface CanvasContext {
   getCurrentTexture(): { createView(): unknown };
 }
 
-/** Long enough for a processor that draws. */
-const PATIENCE_MS = 2000;
+/** Time limit, sufficient for software renderers. */
+const TIMEOUT_MS = 2000;
 
 /**
- * Draws one green pixel and looks at it. Some software adapters draw, and take the whole graphics process with them as
- * soon as a canvas is to be shown; WebGL 2 then works all the same.
+ * Draws one green pixel and reads it back. Some software adapters render, but crash the graphics process when a canvas
+ * is presented. WebGL 2 works in that case.
  */
 export async function isPresentable(adapter: { requestDevice?(): Promise<unknown> }): Promise<boolean> {
   const device = (await adapter.requestDevice?.()) as Device | undefined;
   if (device === undefined) return false;
-  const late = new Promise<false>((resolve) => setTimeout(resolve, PATIENCE_MS, false));
+  const timeout = new Promise<false>((resolve) => setTimeout(resolve, TIMEOUT_MS, false));
   const lost = device.lost.then(() => false as const);
   try {
-    return await Promise.race([isGreen(device), lost, late]);
+    return await Promise.race([isGreen(device), lost, timeout]);
   } catch {
     return false;
   } finally {
@@ -44,10 +44,10 @@ async function isGreen(device: Device): Promise<boolean> {
   const attachment = { view, loadOp: "clear", storeOp: "store", clearValue: { r: 0, g: 1, b: 0, a: 1 } };
   commands.beginRenderPass({ colorAttachments: [attachment] }).end();
   device.queue.submit([commands.finish()]);
-  const picture = canvas.transferToImageBitmap();
-  const looking = new OffscreenCanvas(1, 1).getContext("2d");
-  if (looking === null) return false;
-  looking.drawImage(picture, 0, 0);
-  const [red = 0, green = 0] = looking.getImageData(0, 0, 1, 1).data;
+  const image = canvas.transferToImageBitmap();
+  const context2d = new OffscreenCanvas(1, 1).getContext("2d");
+  if (context2d === null) return false;
+  context2d.drawImage(image, 0, 0);
+  const [red = 0, green = 0] = context2d.getImageData(0, 0, 1, 1).data;
   return green > 200 && red < 50;
 }

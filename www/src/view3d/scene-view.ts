@@ -1,11 +1,11 @@
-/** The 3D view: a cloud, meshes, a gizmo, and somebody who looks at them. */
+/** The 3D view: point cloud, meshes, gizmo and viewpoint. */
 import { DirectionalLight, Group, HemisphereLight, Vector3 } from "three/webgpu";
+import { Animations } from "./animations.js";
 import { Cloud } from "./cloud.js";
 import { Frustum } from "./frustum.js";
 import { Gizmo } from "./gizmo.js";
-import { Mark } from "./mark.js";
+import { Marker } from "./marker.js";
 import { Model } from "./model.js";
-import { Movements } from "./movement.js";
 import { Picker } from "./picker.js";
 import { Pointer } from "./pointer.js";
 import { type Extent, extentOf, quantile, sortedDepths } from "./points.js";
@@ -24,19 +24,24 @@ import type {
 } from "./types.js";
 import { Viewpoint } from "./viewpoint.js";
 
-const looks: Record<Look, string> = { camera: "the camera's place", orbit: "beside", top: "above", side: "the side" };
+const lookNames: Record<Look, string> = {
+  camera: "the depth camera",
+  orbit: "three quarters",
+  top: "above",
+  side: "the side",
+};
 
-/** No screen shows more points at once, and no processor that draws them itself draws more in good time. */
-const mostPoints = { hardware: 400_000, software: 80_000 };
+/** Screens resolve no more points, and software renderers draw no more in acceptable time. */
+const maxPoints = { hardware: 400_000, software: 80_000 };
 
-/** A view on a stage. */
+/** The implementation of the view. */
 export class SceneView implements View {
-  /** Its children are in the OpenCV camera frame; three.js' y goes up, its z towards the camera. */
+  /** Its children are in the OpenCV camera frame. In three.js, y is up and z points towards the camera. */
   private readonly root = new Group();
   private readonly viewpoint: Viewpoint;
   private readonly gizmo: Gizmo;
-  private readonly ring = new Mark();
-  private readonly movements = new Movements();
+  private readonly marker = new Marker();
+  private readonly animations = new Animations();
   private readonly models = new Map<string, Model>();
   private readonly poses = new Map<string, Matrix | null>();
   private pointer: Pointer;
@@ -65,8 +70,8 @@ export class SceneView implements View {
       onPose: (model, phase) => this.moved(model, phase),
     });
     this.root.rotation.x = Math.PI;
-    this.root.add(this.ring.object);
-    // From where one looks, a little from above.
+    this.root.add(this.marker.object);
+    // The light moves with the camera.
     const lamp = new DirectionalLight(0xffffff, 2.1);
     lamp.position.set(-0.4, 1, 0.8);
     camera.add(lamp, lamp.target);
@@ -75,10 +80,10 @@ export class SceneView implements View {
     stage.run(camera, {
       onResize: (width, height) => this.viewpoint.resize(width, height),
       onFrame: (_, height) => {
-        const isMoving = this.movements.step();
-        const isTurning = controls.update();
+        const isMoving = this.animations.step();
+        const isDamping = controls.update();
         this.cloud?.prepare(camera, height);
-        return isMoving || isTurning;
+        return isMoving || isDamping;
       },
       onCanvas: (canvas) => {
         this.viewpoint.connect(canvas);
@@ -126,7 +131,7 @@ export class SceneView implements View {
     this.frustum?.dispose();
     const { near, far, frustum } = colours(this.display.theme, this.host);
     this.scene = scene;
-    this.cloud = new Cloud(scene, near, far, this.stage.isSoftware ? mostPoints.software : mostPoints.hardware);
+    this.cloud = new Cloud(scene, near, far, this.stage.isSoftware ? maxPoints.software : maxPoints.hardware);
     const depths = sortedDepths(this.cloud.points);
     const [first, last] = [quantile(depths, 0.01) || 1, quantile(depths, 0.99) || 1];
     this.frustum = new Frustum(scene, 0.22 * first, frustum);
@@ -169,28 +174,28 @@ export class SceneView implements View {
   }
 
   async setPose(id: string, pose: Matrix | null, animate?: Animation): Promise<void> {
-    this.movements.stop(id);
+    this.animations.stop(id);
     this.poses.set(id, pose);
     const model = this.models.get(id);
     if (!model) return;
-    const isStill = matchMedia("(prefers-reduced-motion: reduce)").matches;
-    if (pose !== null && animate && animate.durationMs > 0 && !isStill) {
-      const arrival = this.movements.start(id, animate, pose, model.centre, (at) => {
+    const isReduced = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    if (pose !== null && animate && animate.durationMs > 0 && !isReduced) {
+      const end = this.animations.start(id, animate, pose, model.centre, (at) => {
         model.pose = at;
       });
       this.update();
-      await arrival;
+      await end;
       return;
     }
     model.pose = pose;
     this.update();
   }
 
-  /** The gizmo has moved a model. */
+  /** Handles a drag of the gizmo. */
   private moved(model: Model, phase: "drag" | "end"): void {
     const { pose } = model;
     if (!pose) return;
-    this.movements.stop(model.id);
+    this.animations.stop(model.id);
     this.poses.set(model.id, pose);
     this.stage.invalidate();
     this.events.onPose(model.id, pose, phase);
@@ -231,7 +236,7 @@ export class SceneView implements View {
     this.update();
   }
 
-  /** Where the selected object is, or all objects, or the scene. */
+  /** The extent of the selected object, of all objects, or of the scene. */
   private extent(): Extent {
     const model = this.selected === null ? undefined : this.models.get(this.selected);
     if (model?.pose) {
@@ -248,7 +253,7 @@ export class SceneView implements View {
     this.update();
   }
 
-  /** Brings everything into the state that was asked for. */
+  /** Applies the state to all parts of the view. */
   private update(): void {
     const { display, selected, stage, viewpoint } = this;
     stage.background = colours(display.theme, this.host).background;
@@ -264,18 +269,18 @@ export class SceneView implements View {
     stage.invalidate();
   }
 
-  /** What is seen, in words. */
+  /** A description for screen readers. */
   private label(): string {
     if (!this.cloud) return "3D view, empty";
     const points = this.cloud.points.pixels.length.toLocaleString("en-GB");
     const placed = [...this.models.values()].filter(({ pose }) => pose !== null).map(({ id }) => id);
     const meshes = placed.length === 0 ? "no mesh placed yet" : `placed meshes: ${placed.join(", ")}`;
-    const from = looks[this.viewpoint.isCamera ? "camera" : this.look === "camera" ? "orbit" : this.look];
+    const from = lookNames[this.viewpoint.isCamera ? "camera" : this.look === "camera" ? "orbit" : this.look];
     return `3D view from ${from}: ${points} points of the scene, ${meshes}`;
   }
 
   mark(point: [number, number, number] | null): void {
-    this.ring.point = point;
+    this.marker.point = point;
     this.stage.invalidate();
   }
 
@@ -285,10 +290,10 @@ export class SceneView implements View {
 
   dispose(): void {
     this.loading++;
-    this.movements.stopAll();
+    this.animations.stopAll();
     this.pointer.dispose();
     this.gizmo.dispose();
-    this.ring.dispose();
+    this.marker.dispose();
     this.viewpoint.dispose();
     for (const model of this.models.values()) model.dispose();
     this.models.clear();
@@ -298,5 +303,5 @@ export class SceneView implements View {
   }
 }
 
-/** A point of the OpenCV camera frame in three.js' terms. */
+/** A point of the OpenCV camera frame in the frame of three.js. */
 const toThree = ([x, y, z]: readonly [number, number, number]) => new Vector3(x, -y, -z);

@@ -1,32 +1,32 @@
-/** The stage: a canvas that fills its host, drawn when there is something new to see. */
+/** A canvas that fills its host, and its renderer. It draws on demand. */
 import { type Color, type PerspectiveCamera, Scene, WebGPURenderer } from "three/webgpu";
 import { isPresentable } from "./presentable.js";
 
-/** Sharper than this, no eye can tell, and every frame takes longer. */
-const mostPixelRatio = 2;
+/** Higher ratios take longer without a visible gain. */
+const maxPixelRatio = 2;
 
-/** A device that is lost within this time after another one has something against what is drawn. */
-const SOON_MS = 60_000;
+/** A second loss of the device within this time is taken as caused by the content. */
+const REPEATED_LOSS_MS = 60_000;
 
-/** Neither WebGPU nor WebGL 2 is there. */
+/** Error for browsers with neither WebGPU nor WebGL 2. */
 export class NoGraphics extends Error {
   override name = "NoGraphics";
   constructor(cause?: unknown) {
-    super("This browser offers neither WebGPU nor WebGL 2, so there is no 3D view.", { cause });
+    super("This browser supports neither WebGPU nor WebGL 2, so there is no 3D view.", { cause });
   }
 }
 
-/** What a stage tells, and asks. */
+/** Events of a stage. */
 export interface StageEvents {
-  /** Before each frame; whether another frame has to follow. */
+  /** Called before each frame. Returns whether another frame must follow. */
   onFrame(widthPx: number, heightPx: number): boolean;
-  /** The canvas has another size, in CSS pixels. */
+  /** The canvas was resized, in CSS pixels. */
   onResize(width: number, height: number): void;
-  /** The graphics device was lost, and there is another canvas. */
+  /** A new canvas replaces the old one after the graphics device was lost. */
   onCanvas(canvas: HTMLCanvasElement): void;
 }
 
-/** What there is to draw with; software draws all the same, but slowly. */
+/** The available graphics API, and whether it is rendered in software. */
 interface Graphics {
   isWebGpu: boolean;
   isSoftware: boolean;
@@ -39,7 +39,7 @@ interface Adapter {
 
 const software = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 
-/** Whether there is an adapter: to ask for a device without one would log a warning. */
+/** Checks for an adapter first, because requesting a device without one logs a warning. */
 async function webGpu(): Promise<Graphics | null> {
   try {
     const { gpu } = navigator as { gpu?: { requestAdapter(): Promise<Adapter | null> } };
@@ -59,13 +59,13 @@ function webGl(): Graphics | null {
   if (!context) return null;
   const info = context.getExtension("WEBGL_debug_renderer_info");
   const name = info ? String(context.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "";
-  // Browsers allow few contexts at a time.
+  // Browsers limit the number of contexts.
   context.getExtension("WEBGL_lose_context")?.loseContext();
   return { isWebGpu: false, isSoftware: software.test(name) };
 }
 
-/** Where WebGPU has just failed, the browser may have to start its graphics process anew. */
-async function webGlSoon(): Promise<Graphics | null> {
+/** Retries, because the browser may have to restart its graphics process after WebGPU failed. */
+async function webGlWithRetries(): Promise<Graphics | null> {
   for (let i = 0; i < 8 && "gpu" in navigator; i++) {
     const found = webGl();
     if (found) return found;
@@ -74,7 +74,6 @@ async function webGlSoon(): Promise<Graphics | null> {
   return webGl();
 }
 
-/** A canvas and its renderer. */
 export class Stage {
   readonly scene = new Scene();
   canvas = document.createElement("canvas");
@@ -84,7 +83,7 @@ export class Stage {
   private events: StageEvents | null = null;
   private readonly observer = new ResizeObserver(() => this.fit());
   private frame = 0;
-  /** When a graphics device was lost, in milliseconds since the page began. */
+  /** Time of the last loss of a graphics device (`performance.now`). */
   private lastLoss = Number.NEGATIVE_INFINITY;
   private isDisposed = false;
   private graphics: Graphics | null = null;
@@ -94,7 +93,7 @@ export class Stage {
     private forceWebGL: boolean,
   ) {}
 
-  /** Puts a canvas into the host. */
+  /** Creates the renderer and appends its canvas to the host. */
   static async create(host: HTMLElement, forceWebGL: boolean): Promise<Stage> {
     const stage = new Stage(host, forceWebGL);
     await stage.start();
@@ -105,13 +104,13 @@ export class Stage {
     return this.graphics?.isWebGpu ? "webgpu" : "webgl";
   }
 
-  /** Whether no graphics card draws, but the processor: then less is drawn. */
+  /** Whether rendering is done in software. The view then draws less. */
   get isSoftware(): boolean {
     return this.graphics?.isSoftware === true;
   }
 
   private async start(): Promise<void> {
-    const graphics = (this.forceWebGL ? null : await webGpu()) ?? (await webGlSoon());
+    const graphics = (this.forceWebGL ? null : await webGpu()) ?? (await webGlWithRetries());
     if (!graphics) throw new NoGraphics();
     const { canvas } = this;
     canvas.style.cssText = "display:block;position:absolute;inset:0;width:100%;height:100%;touch-action:none";
@@ -137,7 +136,7 @@ export class Stage {
     this.host.append(canvas);
   }
 
-  /** Begins to draw. */
+  /** Starts drawing. */
   run(camera: PerspectiveCamera, events: StageEvents): void {
     this.camera = camera;
     this.events = events;
@@ -148,14 +147,14 @@ export class Stage {
   private fit(): void {
     const { clientWidth, clientHeight } = this.host;
     if (!this.renderer || clientWidth === 0 || clientHeight === 0) return;
-    this.renderer.setPixelRatio(Math.min(this.isSoftware ? 1 : mostPixelRatio, devicePixelRatio));
+    this.renderer.setPixelRatio(Math.min(this.isSoftware ? 1 : maxPixelRatio, devicePixelRatio));
     this.renderer.setSize(clientWidth, clientHeight, false);
     this.events?.onResize(clientWidth, clientHeight);
-    // At once: a canvas that has been resized is empty.
+    // At once, because resizing clears the canvas.
     this.draw();
   }
 
-  /** Draws soon. */
+  /** Draws in the next frame. */
   invalidate(): void {
     if (this.frame !== 0 || this.isDisposed) return;
     this.frame = requestAnimationFrame(() => {
@@ -170,21 +169,21 @@ export class Stage {
     const isMoving = events.onFrame(this.canvas.width, this.canvas.height);
     if (this.background) renderer.setClearColor(this.background, 1);
     renderer.render(this.scene, camera);
-    // The renderer asks for a frame after every frame, for animations that are not used here; each `render` starts anew.
+    // The renderer requests a frame after every frame, for animations that are not used here. `render` restarts it.
     (renderer as unknown as { _animation?: { stop?(): void } })._animation?.stop?.();
     if (isMoving) this.invalidate();
   }
 
   /** A PNG of the canvas. */
   snapshot(): Promise<Blob> {
-    // What was drawn lasts until the browser has shown it: so in the same task.
+    // In the same task, because the browser clears the drawing buffer after presenting it.
     this.draw();
     return new Promise((resolve, reject) =>
       this.canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new NoGraphics())), "image/png"),
     );
   }
 
-  /** Another device; where that is lost soon too, one of WebGL 2; after that, a message. */
+  /** Replaces a lost device: by one of the same API, then by WebGL 2, then by a message. */
   private async recover(): Promise<void> {
     if (this.isDisposed) return;
     const [lost, label] = [this.renderer, this.canvas.getAttribute("aria-label")];
@@ -211,9 +210,9 @@ export class Stage {
 
   private countLoss(): void {
     const now = performance.now();
-    const isSoon = now - this.lastLoss < SOON_MS;
+    const isRepeated = now - this.lastLoss < REPEATED_LOSS_MS;
     this.lastLoss = now;
-    if (!isSoon) return;
+    if (!isRepeated) return;
     if (this.backend === "webgl") throw new NoGraphics();
     this.forceWebGL = true;
     this.lastLoss = Number.NEGATIVE_INFINITY;

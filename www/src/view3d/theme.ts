@@ -1,10 +1,10 @@
-/** Colours of what is not data. */
+/** Colours of the 3D view. */
 import { Color } from "three/webgpu";
 
 interface Theme {
   background: string;
   frustum: string;
-  /** Points of a scene without photo, from near to far. */
+  /** Colours of the points of a scene without a photo. */
   near: string;
   far: string;
 }
@@ -14,13 +14,13 @@ const themes: Record<"light" | "dark", Theme> = {
   dark: { background: "#14181f", frustum: "#67748a", near: "#d8cdba", far: "#35496b" },
 };
 
-/** A theme's colours; the background is the host's own, where it has one. */
+/** The colours of a theme. The background is that of the host, if it is opaque. */
 export function colours(theme: "light" | "dark", host: HTMLElement) {
   const { background, frustum, near, far } = themes[theme];
-  const own = getComputedStyle(host).backgroundColor;
-  const isOpaque = /^rgb\(/.test(own);
+  const hostColour = getComputedStyle(host).backgroundColor;
+  const isOpaque = /^rgb\(/.test(hostColour);
   return {
-    background: new Color(isOpaque ? own : background),
+    background: new Color(isOpaque ? hostColour : background),
     frustum: new Color(frustum),
     near: new Color(near),
     far: new Color(far),

@@ -1,96 +1,96 @@
-/** The 3D view's interface to the page. */
+/** The interface of the 3D view. */
 
-/** 16 numbers, column by column: the OpenCV camera frame, metres, from the mesh's. */
+/** Camera from mesh, 16 numbers, column-major; OpenCV camera frame, metres. */
 export type Matrix = ArrayLike<number>;
 
-/** What was seen: a depth map, and its camera. */
+/** The observation: a depth map with its camera. */
 export interface SceneInput {
-  /** z-depth per pixel, metres, row by row; 0 or NaN where there is none. */
+  /** z-depth in metres, row-major; 0 or NaN is no reading. */
   depthM: Float32Array;
   width: number;
   height: number;
-  /** In pixels; pixel centres are at whole numbers. */
+  /** In pixels; pixel centres are at integers. */
   camera: { fx: number; fy: number; cx: number; cy: number };
-  /** The photo at the depth's size; without it points are coloured by depth. */
+  /** The photo at the size of the depth map. Without it, points are coloured by depth. */
   rgba?: Uint8ClampedArray | undefined;
 }
 
-/** A masked object, and the mesh that is to be aligned with it. */
+/** An object: its mask and its mesh. */
 export interface ObjectInput {
   id: string;
-  /** A CSS colour: of the mask's points, of a mesh without colours of its own, of the outline. */
+  /** A CSS colour for the points of the mask, the outline, and a mesh without colours. */
   colour: string;
-  /** One number per pixel of the depth map, not 0 where the object is. */
+  /** One number per pixel of the depth map; not 0 is the object. */
   mask: Uint8Array;
-  /** A binary glTF, or arrays, in the mesh's frame. */
+  /** A GLB or arrays, in the frame of the mesh. */
   mesh: { glb: Uint8Array } | { positions: Float32Array; indices: Uint32Array };
 }
 
-/** What is drawn, and how. */
+/** Display settings. */
 export interface Display {
   cloud: boolean;
   mesh: boolean;
   wireframe: boolean;
-  /** A point's width in pixels of the depth map, as far away as the point is: with 1 there are no gaps. */
+  /** The width of a point in pixels of the depth map. At 1, adjacent points touch. */
   pointSize: number;
   theme: "light" | "dark";
-  /** How opaque the meshes are, 0 to 1; 1 by default. */
+  /** Opacity of the meshes, 0 to 1. Default 1. */
   meshOpacity?: number | undefined;
 }
 
-/** Where from: exactly the depth camera, or beside it, above it, at its right. */
+/** Viewpoints: the depth camera, a three-quarter view, from above, from the right. */
 export type Look = "camera" | "orbit" | "top" | "side";
 
-/** What the gizmo changes. */
+/** The function of the gizmo. */
 export type GizmoMode = "translate" | "rotate" | "scale";
 
-/** A pose that another one moves to. */
+/** The start and duration of an animation. */
 export interface Animation {
   from: Matrix;
   durationMs: number;
 }
 
-/** What the page is told. */
+/** Events of the view. */
 export interface ViewEvents {
-  /** The gizmo moves an object, or has been let go. */
+  /** The gizmo moves or has moved an object. */
   onPose(id: string, pose: Float64Array, phase: "drag" | "end"): void;
-  /** A mesh, or the points of a mask, or neither were clicked. */
+  /** A mesh or the points of a mask were clicked; `null` for neither. */
   onSelect(id: string | null): void;
-  /** The depth map's pixel under the pointer. */
+  /** The pixel of the depth map under the pointer. */
   onHover?(pixel: { x: number; y: number } | null): void;
 }
 
-/** How a view is made. */
+/** Options of a view. */
 export interface ViewOptions {
-  /** WebGL 2 even where there is WebGPU. */
+  /** Uses WebGL 2 even if WebGPU is available. */
   forceWebGL?: boolean | undefined;
 }
 
-/** A view of a scene and of meshes in it. */
+/** A view of a scene with meshes. */
 export interface View {
   readonly backend: "webgpu" | "webgl";
-  /** Replaces the cloud, and the objects' highlights with it; looks at it from the camera's place. */
+  /** Replaces the point cloud and resets the viewpoint. */
   setScene(scene: SceneInput): void;
   /**
-   * Replaces all objects; those whose id is known keep their pose. Rejects where a GLB can't be read; the objects are
-   * then as they were.
+   * Replaces all objects. Objects with a known id keep their pose. Rejects if a GLB is not readable; the objects are
+   * then unchanged.
    */
   setObjects(objects: ObjectInput[]): Promise<void>;
   /**
-   * Puts a mesh somewhere, or hides it (null); resolves when it is there. Where the user prefers less motion, there is
-   * no animation.
+   * Sets the pose of a mesh; `null` hides it. Resolves at the end of the animation. There is no animation if the user
+   * prefers reduced motion.
    */
   setPose(id: string, pose: Matrix | null, animate?: Animation): Promise<void>;
   select(id: string | null): void;
-  /** For the selected mesh; null takes the gizmo away. */
+  /** Shows the gizmo at the selected mesh; `null` hides it. */
   setGizmo(mode: GizmoMode | null): void;
   setDisplay(display: Display): void;
   lookFrom(which: Look): void;
-  /** Turns about this point of the camera frame (OpenCV, metres) from now on; the selected object's centre by default. */
+  /** Orbits around a point (OpenCV camera frame, metres), by default the centre of the selected object. */
   focus(point?: [number, number, number]): void;
-  /** A ring about a point of the camera frame (OpenCV, metres), or none. */
+  /** Marks a point (OpenCV camera frame, metres) with a ring; `null` removes it. */
   mark(point: [number, number, number] | null): void;
-  /** A PNG of what is seen. */
+  /** A PNG of the view. */
   snapshot(): Promise<Blob>;
   dispose(): void;
 }

@@ -1,23 +1,23 @@
-/** Where the view is seen from: exactly the depth camera, or anywhere about a target. */
+/** The viewpoint: exactly the depth camera, or an orbit around a target. */
 import { applyPinhole } from "sim3align/three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { PerspectiveCamera, Spherical, type Vector3 } from "three/webgpu";
 import type { Look, SceneInput } from "./types.js";
 
-/** Directions to look from, as angles from the camera's own, in degrees: to the right, and up. */
+/** Viewpoints as angles from the depth camera in degrees: to the right, and up. */
 const directions: Record<Exclude<Look, "camera">, [number, number]> = { orbit: [28, 16], top: [0, 80], side: [82, 8] };
-/** How much of the view's smaller side the target takes, seen from above or from the side. */
+/** Share of the smaller side of the view that the target fills, from above or from the side. */
 const fill = 0.55;
 
-/** The camera, and the controls that move it. In three.js' terms: x right, y up, z towards the camera. */
+/** The camera and its controls, in the frame of three.js: x right, y up, z towards the camera. */
 export class Viewpoint {
   readonly camera = new PerspectiveCamera(45, 1, 0.01, 100);
   readonly controls: OrbitControls;
-  /** Whether the depth camera's picture is what is seen. */
+  /** Whether the view is exactly that of the depth camera. */
   isCamera = false;
-  /** Whether somebody has moved it since the last look. */
+  /** Whether the user moved the camera since the last `lookFrom`. */
   isTouched = false;
-  /** Whether somebody has taken hold of it since the last look. */
+  /** Whether the user started to move the camera since the last `lookFrom`. */
   private isHeld = false;
   private scene: SceneInput | null = null;
   private size = { width: 1, height: 1 };
@@ -31,14 +31,14 @@ export class Viewpoint {
       this.isHeld = true;
     });
     this.controls.addEventListener("change", () => {
-      // A click alone moves nothing; what has been let go may go on turning.
+      // A click alone moves nothing, and damping continues after the release.
       if (this.isHeld) this.isCamera = false;
       this.isTouched ||= this.isHeld;
       onChange();
     });
   }
 
-  /** Another scene, that reaches from `near` to `far`, metres. */
+  /** Sets the scene, whose depths range from `near` to `far`, metres. */
   setScene(scene: SceneInput, near: number, far: number): void {
     this.scene = scene;
     this.lens.near = Math.max(1e-4, 0.02 * near);
@@ -54,8 +54,8 @@ export class Viewpoint {
   }
 
   /**
-   * The depth camera's lens for all looks, so that nothing jumps when somebody turns away from its view. Where the canvas
-   * has other proportions, it shows more than the image at two sides.
+   * Uses the intrinsics of the depth camera for all viewpoints, so that orbiting away from it starts smoothly. If the
+   * aspect ratio of the canvas differs, it shows more than the image on two sides.
    */
   private updateLens(): void {
     const { width, height } = this.size;
@@ -69,26 +69,26 @@ export class Viewpoint {
     const { aspect, view } = this.camera;
     if (!view) return;
     const scale = Math.min(width / image.width, height / image.height);
-    const [seenWidth, seenHeight] = [width / scale, height / scale];
-    const x = view.offsetX - (seenWidth - image.width) / 2;
-    const y = view.offsetY - (seenHeight - image.height) / 2;
-    this.camera.setViewOffset(image.width, image.height, x, y, seenWidth, seenHeight);
-    // That has set the aspect for square pixels.
+    const [visibleWidth, visibleHeight] = [width / scale, height / scale];
+    const x = view.offsetX - (visibleWidth - image.width) / 2;
+    const y = view.offsetY - (visibleHeight - image.height) / 2;
+    this.camera.setViewOffset(image.width, image.height, x, y, visibleWidth, visibleHeight);
+    // setViewOffset resets the aspect to that of square pixels.
     this.camera.aspect = aspect;
     this.camera.updateProjectionMatrix();
   }
 
-  /** Looks at a target of a radius, metres. */
+  /** Looks at a target with a radius, in metres. */
   lookFrom(which: Look, target: Vector3, radius: number): void {
     const { camera, controls } = this;
     camera.up.set(0, 1, 0);
-    // What is left of the last movement must not go on.
+    // Ends the damping of the last movement.
     const isDamped = controls.enableDamping;
     controls.enableDamping = false;
     controls.update();
     if (which === "camera") {
       camera.position.set(0, 0, 0);
-      // On the optical axis: the controls turn the camera towards its target.
+      // On the optical axis, because the controls point the camera at the target.
       controls.target.set(0, 0, Math.min(target.z, -this.lens.near));
     } else {
       const [right, up] = directions[which].map((angle) => (angle * Math.PI) / 180) as [number, number];
@@ -106,7 +106,7 @@ export class Viewpoint {
     this.isCamera = which === "camera";
   }
 
-  /** Turns about another point from now on, which comes to the middle. */
+  /** Centres the view on a point and orbits around it. */
   focus(point: Vector3): void {
     this.isCamera = false;
     this.isTouched = true;
@@ -116,7 +116,7 @@ export class Viewpoint {
     controls.update();
   }
 
-  /** Another canvas, after the graphics device has been lost. */
+  /** Switches to the new canvas after a graphics device was lost. */
   connect(canvas: HTMLCanvasElement): void {
     this.controls.disconnect();
     this.controls.connect(canvas);

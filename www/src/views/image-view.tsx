@@ -1,37 +1,51 @@
-/** The image view: photo or depth, with mask, silhouette and difference on it. */
-import { computed, effect } from "@preact/signals";
+/** The image view: photo or depth map, overlaid with masks, silhouettes and depth differences. */
+import { computed, effect, type ReadonlySignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
-import { depthPicture } from "../draw/colours.js";
-import { compose, differenceLimit, drawn } from "../draw/composition.js";
+import { depthImage } from "../draw/colours.js";
+import { compose, type DrawnObject, differenceLimit, drawObject } from "../draw/composition.js";
 import { wholeImage, zoomToObjects } from "../draw/zoom.js";
-import { layers, pointed, setLayer } from "../state/display.js";
+import { hoveredPixel, layers, setLayer } from "../state/display.js";
+import type { ObjectModel } from "../state/object-model.js";
 import { objectAt, scene, select, selected } from "../state/scene.js";
-import { drawing, drawingsAt } from "./drawings.js";
 import { space } from "./space.js";
 
-/** Of the scene alone: what is shown changes with every step of a slider. */
-const depth = computed(() => (scene.value === null ? null : depthPicture(scene.value.depthM)));
+/** These depend on the scene only, so that they are not computed again when display settings change. */
+const depth = computed(() => (scene.value === null ? null : depthImage(scene.value.depthM)));
 const onObjects = computed(() => (scene.value === null ? wholeImage : zoomToObjects(scene.value)));
 
-/** The picture that everything is drawn on. */
+/** The image below the overlays. */
 const base = computed(() => {
   const rgba = scene.value?.rgba ?? null;
   return layers.value.base === "photo" && rgba !== null ? rgba : depth.value;
 });
 
-/** Every object where nobody had aligned anything. */
+/** The objects at their start poses. */
 const before = computed(() => {
   const whole = scene.value;
-  return whole === null ? [] : whole.objects.map((object) => drawn(whole, object, object.start.transform.matrix));
+  return whole === null ? [] : whole.objects.map((object) => drawObject(whole, object, object.start.transform.matrix));
 });
+
+/** One signal per object, so that a changed pose renders one mesh only. */
+const renderings = computed<readonly ReadonlySignal<{ object: ObjectModel; drawn: DrawnObject }>[]>(() => {
+  const whole = scene.value;
+  if (whole === null) return [];
+  return whole.objects.map((object) =>
+    computed(() => ({ object, drawn: drawObject(whole, object, object.pose.value.transform.matrix) })),
+  );
+});
+
+/** The objects at their current poses. */
+const after = computed<readonly DrawnObject[]>(() =>
+  renderings.value.map(({ value: { object, drawn } }) => ({ ...drawn, isSelected: object === selected.value })),
+);
 
 const zoom = computed(() => (layers.value.zoom ? onObjects.value : wholeImage));
 
-let canvasNow: HTMLCanvasElement | null = null;
+let shownCanvas: HTMLCanvasElement | null = null;
 
 /** The image view as a PNG. */
 export function imageSnapshot(): Promise<Blob | null> {
-  return new Promise((resolve) => (canvasNow === null ? resolve(null) : canvasNow.toBlob(resolve)));
+  return new Promise((resolve) => (shownCanvas === null ? resolve(null) : shownCanvas.toBlob(resolve)));
 }
 
 function draw(canvas: HTMLCanvasElement): void {
@@ -41,9 +55,8 @@ function draw(canvas: HTMLCanvasElement): void {
     canvas.width = whole.width;
     canvas.height = whole.height;
   }
-  const after = drawingsAt.value;
   const shown = layers.value;
-  const image = compose(whole, picture, shown.wipe > 0 ? before.value : [], after, shown, zoom.value);
+  const image = compose(whole, picture, shown.wipe > 0 ? before.value : [], after.value, shown, zoom.value);
   canvas.getContext("2d")?.putImageData(image, 0, 0);
 }
 
@@ -57,22 +70,22 @@ const switches: readonly [name: "outline" | "silhouette" | "difference" | "zoom"
 export function ImageView() {
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => {
-    canvasNow = canvas.current;
+    shownCanvas = canvas.current;
     let frame = 0;
-    // Drawn again where the graphics device was lost, and all pictures with it.
+    // The browser clears the canvas when the graphics device is lost.
     const redraw = () => canvas.current !== null && draw(canvas.current);
     canvas.current?.addEventListener("contextrestored", redraw);
     const stop = effect(() => {
-      // Read here, so that each change asks for one drawing in the next frame.
-      void [scene.value, base.value, layers.value, zoom.value, drawingsAt.value];
+      // Reading these signals subscribes to them. All changes within a frame cause one drawing.
+      void [scene.value, base.value, layers.value, zoom.value, after.value];
       cancelAnimationFrame(frame);
       frame = requestAnimationFrame(redraw);
     });
     return () => {
       stop();
       cancelAnimationFrame(frame);
-      canvasNow?.removeEventListener("contextrestored", redraw);
-      canvasNow = null;
+      shownCanvas?.removeEventListener("contextrestored", redraw);
+      shownCanvas = null;
     };
   }, []);
   const whole = scene.value;
@@ -85,7 +98,7 @@ export function ImageView() {
       <div class="view-head">
         <h2 id="image-title">Image</h2>
         <fieldset>
-          <legend class="visually-hidden">Shown in the image</legend>
+          <legend class="visually-hidden">Layers of the image view</legend>
           <select
             aria-label="Background"
             value={shownBase}
@@ -117,8 +130,8 @@ export function ImageView() {
             aria-label={description()}
             width={whole?.width ?? 640}
             height={whole?.height ?? 480}
-            onPointerMove={(event) => point(pixelOf(event))}
-            onPointerLeave={() => point(null)}
+            onPointerMove={(event) => hover(pixelOf(event))}
+            onPointerLeave={() => hover(null)}
             onClick={focusOn}
           />
           <Cross />
@@ -134,7 +147,7 @@ export function ImageView() {
             max="1"
             step="0.01"
             value={wipe}
-            aria-label="From after to before"
+            aria-label="Share of the view that shows the start poses"
             onInput={({ currentTarget }) => setLayer("wipe", currentTarget.valueAsNumber)}
           />
           <span>Before</span>
@@ -156,8 +169,8 @@ export function ImageView() {
 function description(): string {
   const whole = scene.value;
   if (whole === null) return "No image yet";
-  const names = whole.objects.map((object) => `${object.name}${object.isPlaced ? ", its mesh in place" : ""}`);
-  return `${layers.value.base === "photo" ? "Photo" : "Depth map"} of ${whole.name}, with ${names.join("; ")}`;
+  const names = whole.objects.map((object) => `${object.name}${object.isPlaced ? " (mesh placed)" : ""}`);
+  return `${layers.value.base === "photo" ? "Photo" : "Depth map"} of ${whole.name}, with ${names.join(", ")}`;
 }
 
 type Pixel = { x: number; y: number };
@@ -170,24 +183,24 @@ function pixelOf(event: MouseEvent): Pixel | null {
   return x >= 0 && y >= 0 && x < canvas.width && y < canvas.height ? { x, y } : null;
 }
 
-/** Turns the 3D view about what was clicked on. */
+/** Selects the clicked object, and centres the 3D view on the clicked point. */
 function focusOn(event: MouseEvent): void {
   const [pixel, state] = [pixelOf(event), space.peek()];
   if (pixel === null) return;
   select(objectAt(pixel.x, pixel.y)?.id ?? null);
-  const seen = placeOf(pixel);
-  if (state.kind === "ready" && seen !== null) state.view.focus(seen);
+  const point = pointAt(pixel);
+  if (state.kind === "ready" && point !== null) state.view.focus(point);
 }
 
-/** Tells the depth at a pixel, and shows where it is in 3D. */
-function point(pixel: Pixel | null): void {
-  pointed.value = pixel;
+/** Marks a pixel in both views. */
+function hover(pixel: Pixel | null): void {
+  hoveredPixel.value = pixel;
   const state = space.peek();
-  if (state.kind === "ready") state.view.mark(pixel === null ? null : placeOf(pixel));
+  if (state.kind === "ready") state.view.mark(pixel === null ? null : pointAt(pixel));
 }
 
-/** Where in front of the camera a pixel's reading is, metres. */
-function placeOf({ x, y }: Pixel): [number, number, number] | null {
+/** The back-projected depth reading of a pixel: camera frame, metres. */
+function pointAt({ x, y }: Pixel): [number, number, number] | null {
   const whole = scene.peek();
   const z = whole?.depthM[y * whole.width + x] ?? 0;
   if (whole === null || !(z > 0)) return null;
@@ -195,21 +208,21 @@ function placeOf({ x, y }: Pixel): [number, number, number] | null {
   return [((x - cx) * z) / fx, ((y - cy) * z) / fy, z];
 }
 
-/** Marks the pixel that is pointed at in the other view. */
+/** Marks the hovered pixel. */
 function Cross() {
-  const [pixel, whole] = [pointed.value, scene.value];
+  const [pixel, whole] = [hoveredPixel.value, scene.value];
   if (pixel === null || whole === null) return null;
   const [left, top] = [(100 * (pixel.x + 0.5)) / whole.width, (100 * (pixel.y + 0.5)) / whole.height];
   return <span class="cross" style={{ left: `${left}%`, top: `${top}%` }} />;
 }
 
-/** What is at the pixel that is pointed at. */
+/** Depth of the scene and of the mesh at the hovered pixel. */
 function Readout() {
-  const [pixel, whole] = [pointed.value, scene.value];
-  if (pixel === null || whole === null) return <p class="readout quiet">Point at the image to read its depth.</p>;
+  const [pixel, whole] = [hoveredPixel.value, scene.value];
+  if (pixel === null || whole === null) return <p class="readout quiet">Hover over the image to read its depth.</p>;
   const at = pixel.y * whole.width + pixel.x;
   const measured = whole.depthM[at] ?? 0;
-  const mesh = Math.min(...drawing.value.map((one) => (one[at] || Number.POSITIVE_INFINITY) as number));
+  const mesh = Math.min(...after.value.map(({ depth }) => (depth[at] || Number.POSITIVE_INFINITY) as number));
   const difference = measured > 0 && Number.isFinite(mesh) ? 1000 * (mesh - measured) : null;
   return (
     <p class="readout">

@@ -1,4 +1,4 @@
-/** The 3D view's frame: the place for its canvas, and what can be switched in it. */
+/** The frame of the 3D view: its canvas and its controls. */
 import { useEffect, useRef } from "preact/hooks";
 import { type Display3d, display3d } from "../state/display.js";
 import { isSettled, mountSpace, space } from "./space.js";
@@ -6,12 +6,12 @@ import { isSettled, mountSpace, space } from "./space.js";
 const switches: readonly [name: "cloud" | "mesh" | "wireframe", title: string][] = [
   ["cloud", "Points"],
   ["mesh", "Mesh"],
-  ["wireframe", "Wires"],
+  ["wireframe", "Wireframe"],
 ];
 
-const looks = [
+const viewpoints = [
   ["camera", "Camera"],
-  ["orbit", "Orbit"],
+  ["orbit", "3/4"],
   ["top", "Top"],
   ["side", "Side"],
 ] as const;
@@ -33,7 +33,7 @@ export function SpaceView() {
       <div class="view-head">
         <h2 id="space-title">3D</h2>
         <fieldset disabled={state.kind !== "ready"}>
-          <legend class="visually-hidden">Shown in 3D</legend>
+          <legend class="visually-hidden">Layers of the 3D view</legend>
           {switches.map(([name, title]) => (
             <label key={name} class="check">
               <input
@@ -52,14 +52,14 @@ export function SpaceView() {
               max="3"
               step="0.2"
               value={pointSize}
-              aria-label="Size of the points"
+              aria-label="Point size"
               onInput={({ currentTarget }) => set({ pointSize: currentTarget.valueAsNumber })}
             />
           </label>
         </fieldset>
-        <fieldset class="looks" disabled={state.kind !== "ready"}>
-          <legend class="visually-hidden">Look from</legend>
-          {looks.map(([from, title]) => (
+        <fieldset class="viewpoints" disabled={state.kind !== "ready"}>
+          <legend class="visually-hidden">Viewpoint</legend>
+          {viewpoints.map(([from, title]) => (
             <button key={from} type="button" onClick={() => state.kind === "ready" && state.view.lookFrom(from)}>
               {title}
             </button>
@@ -70,7 +70,7 @@ export function SpaceView() {
         {state.kind === "loading" && <p class="view-note">The 3D view is loading …</p>}
         {state.kind === "none" && (
           <p class="view-note" role="note">
-            No 3D view: {state.reason} The image view shows all there is.
+            {state.reason} All results are shown in the image view.
           </p>
         )}
       </div>

@@ -1,30 +1,30 @@
-/** Keeps the 3D view as the state says. */
+/** Keeps the 3D view in sync with the state of the page. */
 import { effect, signal } from "@preact/signals";
 import { toSim3 } from "sim3align/conventions";
-import { display3d, gizmo, pointed, shownTheme } from "../state/display.js";
+import { display3d, effectiveTheme, gizmo, hoveredPixel } from "../state/display.js";
 import { place } from "../state/history.js";
 import type { ObjectModel } from "../state/object-model.js";
 import type { Pose } from "../state/pose.js";
 import { type Scene, scene, select, selected } from "../state/scene.js";
 import type { ObjectInput, View } from "../view3d/types.js";
 
-/** How the 3D view is. */
+/** The state of the 3D view. */
 export type SpaceState = { kind: "loading" } | { kind: "ready"; view: View } | { kind: "none"; reason: string };
 
 export const space = signal<SpaceState>({ kind: "loading" });
 
-/** Whether the first alignment is over: before, the 3D view would take the processor from it. */
+/** Whether the first alignment has ended. The 3D view loads afterwards, so that it does not slow the alignment down. */
 export const isSettled = signal(false);
 
-/** How long a mesh takes to its place. */
+/** Duration of the animation from one pose to the next. */
 const ANIMATION_MS = 900;
 
-/** Makes the 3D view, and follows the state from then on. */
+/** Creates the 3D view and subscribes it to the state. */
 export async function mountSpace(host: HTMLElement): Promise<void> {
-  /** Where a drag began. */
+  /** The object that is being dragged, with its pose before. */
   let dragged: { object: ObjectModel; from: Pose } | undefined;
   try {
-    // The library for it is larger than all the rest, and comes when the rest is there.
+    // three.js is larger than the rest of the page, so it loads last.
     const { createView } = await import("../view3d/index.js");
     const options = { forceWebGL: new URLSearchParams(location.search).get("graphics") === "webgl" };
     const view = await createView(
@@ -42,13 +42,13 @@ export async function mountSpace(host: HTMLElement): Promise<void> {
         },
         onSelect: select,
         onHover: (pixel) => {
-          pointed.value = pixel;
+          hoveredPixel.value = pixel;
         },
       },
       options,
     );
     space.value = { kind: "ready", view };
-    follow(view, () => dragged !== undefined);
+    subscribe(view, () => dragged !== undefined);
   } catch (error) {
     space.value = { kind: "none", reason: error instanceof Error ? error.message : String(error) };
   }
@@ -72,7 +72,7 @@ const sceneInput = ({ depthM, width, height, camera, rgba }: Scene) => ({
   ...(rgba === null ? {} : { rgba }),
 });
 
-function follow(view: View, isDragging: () => boolean): void {
+function subscribe(view: View, isDragging: () => boolean): void {
   let stopPoses: (() => void)[] = [];
   effect(() => {
     const whole = scene.value;
@@ -84,19 +84,19 @@ function follow(view: View, isDragging: () => boolean): void {
       if (scene.peek() !== whole) return;
       stopPoses = whole.objects.map((object) => followPose(view, object, isDragging));
       view.select(selected.peek()?.id ?? null);
-      // Several are seen together, as they are.
+      // Several objects are all in view already.
       if (whole.objects.length === 1) view.focus();
     }, console.error);
   });
   effect(() => {
-    view.setDisplay({ ...display3d.value, theme: shownTheme() });
+    view.setDisplay({ ...display3d.value, theme: effectiveTheme() });
   });
   effect(() => view.select(selected.value?.id ?? null));
   effect(() => view.setGizmo(gizmo.value));
 }
 
 function followPose(view: View, object: ObjectModel, isDragging: () => boolean): () => void {
-  // A view that comes late still shows where everything began.
+  // If the view loads after the alignment, it still animates from the start pose.
   let shown: Pose = object.start;
   return effect(() => {
     const pose = object.pose.value;

@@ -1,16 +1,16 @@
-/** A ring about a place of the scene, as large on the screen from wherever one looks. */
+/** A ring around a point of the scene, with a constant size on the screen. */
 import { CanvasTexture, Sprite, SpriteMaterial } from "three/webgpu";
 
-/** Its height as a part of the view's, seen through a camera whose field of view is 90°. */
+/** The height of the ring as a share of the view, for a field of view of 90°. */
 const SIZE = 0.045;
 
-/** Where somebody points, in the OpenCV camera frame. */
-export class Mark {
+/** Marks the hovered point, in the OpenCV camera frame. */
+export class Marker {
   readonly object: Sprite;
 
   constructor() {
     const map = new CanvasTexture(ring(64));
-    // Never hidden: it says where something is, also behind a mesh.
+    // Visible through meshes.
     this.object = new Sprite(new SpriteMaterial({ map, sizeAttenuation: false, depthTest: false, depthWrite: false }));
     this.object.scale.setScalar(SIZE);
     this.object.renderOrder = 1;
@@ -29,7 +29,7 @@ export class Mark {
   }
 }
 
-/** Light between two dark circles, so that it is seen on everything. */
+/** A white circle with dark edges, visible on every background. */
 function ring(size: number): HTMLCanvasElement {
   const canvas = document.createElement("canvas");
   canvas.width = size;

@@ -2,17 +2,23 @@
 
 use serde_json::Value;
 
-use crate::guard::{MAX_JSON_BYTES, corrupt, too_large};
-use sim3align_geometry::error::Result;
+use sim3align_geometry::error::{Error, ErrorCode, Result, Text};
 
 /// Parses a JSON file.
 pub fn parse(argument: &str, bytes: &[u8]) -> Result<Value> {
-    if bytes.len() > MAX_JSON_BYTES {
-        let found = format!("{} bytes of JSON", bytes.len());
-        return Err(too_large(argument, found, format!("at most {MAX_JSON_BYTES}")));
-    }
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     serde_json::from_slice(text).map_err(|error| corrupt(argument, format!("text that is no JSON: {error}"), "JSON"))
+}
+
+/// The error for a file that holds something else.
+pub fn corrupt(argument: &str, found: impl Into<Text>, expected: &'static str) -> Error {
+    Error::new(
+        ErrorCode::CorruptFile,
+        argument.to_owned(),
+        found,
+        expected,
+        "Write the file as the guide describes it.",
+    )
 }
 
 /// `N` numbers: an array of them, or of rows of them.

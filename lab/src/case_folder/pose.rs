@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
 
-use crate::json;
+use super::json;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::similarity::Similarity;
 

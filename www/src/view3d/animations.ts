@@ -1,10 +1,10 @@
-/** Poses that move to others. */
+/** Animated changes of poses. */
 import type { Vector3 } from "three/webgpu";
 import { between, eased, matrixOf, poseOf } from "./pose.js";
 import type { Animation, Matrix } from "./types.js";
 
-interface Movement {
-  at(share: number): Float64Array;
+interface Running {
+  poseAt(share: number): Float64Array;
   started: number;
   durationMs: number;
   apply(pose: Matrix): void;
@@ -12,11 +12,11 @@ interface Movement {
   finish(): void;
 }
 
-/** What moves at present, by name; a new movement of the same name ends the one before. */
-export class Movements {
-  private readonly running = new Map<string, Movement>();
+/** The running animations, by name. A new one replaces that of the same name. */
+export class Animations {
+  private readonly running = new Map<string, Running>();
 
-  /** Moves something; resolves when it has arrived, or something else was wanted of it. */
+  /** Starts an animation. The promise resolves when it ends or is replaced. */
   start(
     name: string,
     { from, durationMs }: Animation,
@@ -26,25 +26,25 @@ export class Movements {
   ): Promise<void> {
     this.stop(name);
     const [first, last] = [poseOf(from), poseOf(target)];
-    const at = (share: number) => matrixOf(between(first, last, eased(share), centre));
+    const poseAt = (share: number) => matrixOf(between(first, last, eased(share), centre));
     apply(from);
     return new Promise((finish) => {
-      this.running.set(name, { at, started: performance.now(), durationMs, apply, target, finish });
+      this.running.set(name, { poseAt, started: performance.now(), durationMs, apply, target, finish });
     });
   }
 
-  /** Leaves something where it is. */
+  /** Stops an animation at its current pose. */
   stop(name: string): void {
     this.running.get(name)?.finish();
     this.running.delete(name);
   }
 
-  /** Moves everything to where it is now; whether something goes on moving. */
+  /** Applies the current poses. Returns whether an animation is still running. */
   step(): boolean {
     const now = performance.now();
-    for (const [name, movement] of this.running) {
-      const share = (now - movement.started) / movement.durationMs;
-      movement.apply(share < 1 ? movement.at(Math.max(0, share)) : movement.target);
+    for (const [name, animation] of this.running) {
+      const share = (now - animation.started) / animation.durationMs;
+      animation.apply(share < 1 ? animation.poseAt(Math.max(0, share)) : animation.target);
       if (!(share < 1)) this.stop(name);
     }
     return this.running.size > 0;

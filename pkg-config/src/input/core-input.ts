@@ -1,0 +1,18 @@
+/** The input as the core takes it. */
+import type { Pinhole } from "../formats/pinhole.js";
+import type { CoreMesh } from "../prepared-mesh.js";
+
+/** An input as the core takes it; the core checks lengths and values. */
+export interface CoreInput {
+  depth?: Float32Array | Uint16Array;
+  depthScale?: unknown;
+  pointMap?: Float32Array;
+  width?: unknown;
+  height?: unknown;
+  mask: Uint8Array | Uint8ClampedArray;
+  maskWidth?: number;
+  maskHeight?: number;
+  resizeMask?: unknown;
+  camera?: Pinhole;
+  mesh: CoreMesh;
+}

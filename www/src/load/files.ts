@@ -1,0 +1,73 @@
+/** Files that the user or a sample provides, from disk, folders and zip archives. */
+
+/** A file and its path in the folder or archive that it came from. */
+export interface NamedFile {
+  path: string;
+  /** What the file shows, if known. */
+  title?: string;
+  bytes(): Promise<Uint8Array>;
+}
+
+/** The part of a path after its last slash. */
+export const baseName = (path: string): string => path.slice(path.lastIndexOf("/") + 1);
+
+/** The extension in lower case, without the dot. */
+export const extension = (path: string): string => /\.([^./]+)$/.exec(path)?.[1]?.toLowerCase() ?? "";
+
+/** The base name without its extension. */
+export const stem = (path: string): string => baseName(path).replace(/\.[^.]+$/, "");
+
+export const fromFile = (file: File, path = file.webkitRelativePath || file.name): NamedFile => ({
+  path,
+  bytes: async () => new Uint8Array(await file.arrayBuffer()),
+});
+
+/** The files of a file input. */
+export const filesOf = ({ files }: HTMLInputElement): NamedFile[] => Array.from(files ?? [], (file) => fromFile(file));
+
+/** Replaces zip archives by the files in them. */
+export async function extractArchives(files: readonly NamedFile[]): Promise<NamedFile[]> {
+  const parts = files.map((file) => (extension(file.path) === "zip" ? extracted(file) : [file]));
+  return (await Promise.all(parts)).flat();
+}
+
+/** Not metadata of operating systems and zip programs. */
+const isContent = (path: string) => !path.endsWith("/") && !/(^|\/)(__MACOSX\/|\.)/.test(path);
+
+async function extracted(archive: NamedFile): Promise<NamedFile[]> {
+  const { unzip } = await import("fflate");
+  const bytes = await archive.bytes();
+  const content = await new Promise<Record<string, Uint8Array>>((resolve, reject) => {
+    unzip(bytes, (error, files) => (error ? reject(error) : resolve(files)));
+  }).catch((cause: Error) => {
+    throw new Error(`${baseName(archive.path)} is not a readable zip archive: ${cause.message}`, { cause });
+  });
+  return Object.entries(content).flatMap(([path, file]) =>
+    isContent(path) ? [{ path, bytes: async () => file }] : [],
+  );
+}
+
+/** The files of a drop, with those in folders. */
+export async function droppedFiles(data: DataTransfer): Promise<NamedFile[]> {
+  // The browser clears the list when this function first awaits.
+  const entries = Array.from(data.items).map((item) => item.webkitGetAsEntry());
+  const plain = Array.from(data.files, (file) => fromFile(file));
+  if (entries.every((entry) => entry === null || entry.isFile)) return plain;
+  return (await Promise.all(entries.map((entry) => (entry === null ? [] : filesBelow(entry))))).flat();
+}
+
+async function filesBelow(entry: FileSystemEntry): Promise<NamedFile[]> {
+  if (entry.isFile) {
+    const file = await new Promise<File>((resolve, reject) => (entry as FileSystemFileEntry).file(resolve, reject));
+    return [fromFile(file, entry.fullPath.replace(/^\//, ""))];
+  }
+  const reader = (entry as FileSystemDirectoryEntry).createReader();
+  const children: FileSystemEntry[] = [];
+  for (;;) {
+    // A reader returns at most a hundred entries per call.
+    const batch = await new Promise<FileSystemEntry[]>((resolve, reject) => reader.readEntries(resolve, reject));
+    if (batch.length === 0) break;
+    children.push(...batch);
+  }
+  return (await Promise.all(children.map(filesBelow))).flat().filter(({ path }) => isContent(path));
+}
