@@ -1,13 +1,22 @@
-/** How the site is built from `www/`, the package in `pkg/` and the samples. */
+/** Builds the site from `www/`, the package in `pkg/` and the samples. */
 import { existsSync, readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
-import { fileURLToPath } from "node:url";
+import { fileURLToPath, pathToFileURL } from "node:url";
 import { defineConfig } from "vite";
 
 const www = dirname(fileURLToPath(import.meta.url));
 const repository = dirname(www);
-/** The samples, listed in the script, so that the page need not ask for the list before it asks for them. */
+/** The list of samples. As part of the script, it saves the page a request before those of the samples. */
 const samples = join(www, "samples", "index.json");
+
+/** The option table of the package. The script gets only the rows and fields that the page uses. */
+const { OPTIONS } = await import(pathToFileURL(join(repository, "pkg", "index.js")).href);
+const rowOf = (name) => OPTIONS.align.find((row) => row.name === name);
+const optionTable = {
+  quality: rowOf("quality").choices,
+  knownExtentAxis: rowOf("knownExtentAxis").choices,
+  maxSeed: rowOf("seed").max,
+};
 
 export default defineConfig({
   root: www,
@@ -20,16 +29,21 @@ export default defineConfig({
       { find: /^sim3align\/(.+)$/, replacement: join(repository, "pkg", "$1.js") },
     ],
   },
-  define: { SAMPLES: existsSync(samples) ? readFileSync(samples, "utf8") : "[]" },
+  define: {
+    SAMPLES: existsSync(samples) ? readFileSync(samples, "utf8") : "[]",
+    OPTION_TABLE: JSON.stringify(optionTable),
+  },
   worker: { format: "es" },
   logLevel: "warn",
   build: {
     outDir: join(repository, "target", "www"),
     emptyOutDir: true,
     target: "es2022",
-    // All of these know light-dark(), which the theme's switch needs as it is.
+    // The supported browsers implement modulepreload.
+    modulePreload: { polyfill: false },
+    // These browsers support light-dark(), which the theme switch needs untransformed.
     cssTarget: ["chrome123", "firefox120", "safari17.5"],
-    // three.js is one chunk, which is loaded when everything else is there.
+    // three.js is one chunk, which the page loads last.
     chunkSizeWarningLimit: 1000,
   },
 });

@@ -1,4 +1,4 @@
-/** What leaves the page, read again by the library. */
+/** Exports of the page, read back by the library. */
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -25,7 +25,7 @@ const observation = () => ({
   cameraFile: sampleFile("camera.json"),
 });
 
-/** The overlap that the library measures with a mesh at a pose. */
+/** The IoU that the library measures for a mesh at a pose. */
 async function iouOf(transform: Sim3Like, mesh = sampleFile("mesh.glb")): Promise<number> {
   return (await aligner.evaluate({ ...observation(), mesh }, transform)).metrics.iou ?? -1;
 }
@@ -33,7 +33,7 @@ async function iouOf(transform: Sim3Like, mesh = sampleFile("mesh.glb")): Promis
 const near = (a: number, b: number) => assert.ok(Math.abs(a - b) < 1e-3, `${a} and ${b}`);
 const still = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
-test("JSON and BOP have the pose", async () => {
+test("JSON and BOP contain the pose", async () => {
   const iou = await opened.metric("iou");
   const json = await opened.saved("JSON");
   assert.equal(json.name, "mug.json");
@@ -49,7 +49,7 @@ test("JSON and BOP have the pose", async () => {
   near(await iouOf(fromBop(entry, { scale: perUnit / 1000 })), iou);
 });
 
-test("GLB and PLY have the mesh where it is", async () => {
+test("GLB and PLY contain the mesh at its pose", async () => {
   const iou = await opened.metric("iou");
   const glb = await opened.saved("GLB");
   // GLB files are in OpenGL's camera frame.
@@ -61,28 +61,28 @@ test("GLB and PLY have the mesh where it is", async () => {
   assert.ok(positions.length > 1000);
 });
 
-test("both matrices are the same pose, in their own order", async () => {
+test("both matrices are the same pose", async () => {
   const iou = await opened.metric("iou");
   const copied = async (name: string, says: RegExp) => {
     await opened.page.getByRole("button", { name, exact: true }).click();
     await opened.says(says);
     return JSON.parse(await opened.page.evaluate(() => navigator.clipboard.readText())) as number[];
   };
-  const columns = await copied("Matrix, columns", /column by column/);
+  const columns = await copied("Matrix, column-major", /column-major/);
   assert.equal(await iouOf(columns), iou);
-  const rows = await copied("Matrix, rows", /row by row/);
+  const rows = await copied("Matrix, row-major", /row-major/);
   assert.deepEqual(
     rows,
     columns.map((_, i) => columns[4 * (i % 4) + Math.floor(i / 4)]),
   );
 });
 
-test("the link leads back, and the picture is one", async () => {
+test("the link restores the sample, and the view is saved as PNG", async () => {
   await opened.page.getByRole("button", { name: "Copy link" }).click();
   await opened.says(/^Copied the link/);
   const link = await opened.page.evaluate(() => navigator.clipboard.readText());
   assert.equal(new URL(link).hash, "#sample=mug");
-  const picture = await opened.saved("PNG of view");
+  const picture = await opened.saved("PNG of the view");
   assert.equal(picture.bytes.subarray(0, 8).toString("latin1"), "\x89PNG\r\n\x1a\n");
   assert.ok(picture.bytes.length > 5000);
   await opened.close();

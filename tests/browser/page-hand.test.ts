@@ -1,4 +1,4 @@
-/** By hand: small steps, a known size, refine, undo and redo. */
+/** By hand: nudges, a known size, refine, undo and redo. */
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { type SitePage, SiteTest } from "../support/site.js";
@@ -9,14 +9,14 @@ before(async () => {
 });
 after(() => site?.stop());
 
-const showSteps = ({ page }: SitePage) => page.click(".hand-panel .more summary");
+const showNudges = ({ page }: SitePage) => page.click(".hand-panel .more summary");
 
-test("small steps move the mesh, and undo and redo take them back and forth", async () => {
+test("nudges change the pose, with undo and redo", async () => {
   const opened = await site.open();
   const { page } = opened;
   const iou = await opened.metric("iou");
-  await showSteps(opened);
-  const names = ["Move left", "Move up", "Turn clockwise"];
+  await showNudges(opened);
+  const names = ["Move left", "Move up", "Rotate clockwise"];
   for (const name of names) await page.getByRole("button", { name, exact: true }).click();
   await opened.isNow("hand");
   const moved = await opened.metric("iou");
@@ -33,11 +33,11 @@ test("small steps move the mesh, and undo and redo take them back and forth", as
   await opened.close();
 });
 
-test("refine from here brings back a mesh that was moved", async () => {
+test("refining restores a mesh that was moved", async () => {
   const opened = await site.open();
   const { page } = opened;
   const iou = await opened.metric("iou");
-  await showSteps(opened);
+  await showNudges(opened);
   await page.getByRole("button", { name: "Move right", exact: true }).click();
   await page.getByRole("button", { name: "Larger" }).click();
   await opened.isNow("hand");
@@ -48,7 +48,7 @@ test("refine from here brings back a mesh that was moved", async () => {
   await opened.close();
 });
 
-test("a known size is the mesh's from then on, and stays locked through refine", async () => {
+test("a known size scales the mesh and stays locked while refining", async () => {
   const opened = await site.open();
   const { page } = opened;
   const [, height = 0] = await opened.dimensions();

@@ -1,4 +1,4 @@
-/** A user's own files: chosen, dropped, zipped, wrong. */
+/** The user's own files: chosen, dropped, zipped, invalid. */
 import assert from "node:assert/strict";
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -33,7 +33,7 @@ const files: Files = {
   "mesh.obj": obj(mesh),
 };
 
-/** Drops files on the page, as a browser would. */
+/** Drops files on the page. */
 async function drop({ page }: SitePage, dropped: Files): Promise<void> {
   const encoded = Object.entries(dropped).map(([name, bytes]) => [name, Buffer.from(bytes).toString("base64")]);
   const data = await page.evaluateHandle((parts) => {
@@ -90,7 +90,7 @@ test("a zip of a folder with several masks and meshes makes several objects", as
   await opened.close();
 });
 
-test("a wrong file says what is wrong beside its field, and what to do", async () => {
+test("an invalid file shows an error with a remedy at its field", async () => {
   const opened = await site.open();
   const { page } = opened;
   const choose = (field: string, name: string, bytes: Uint8Array) =>
@@ -106,18 +106,18 @@ test("a wrong file says what is wrong beside its field, and what to do", async (
   // The sample's camera and mask are of another size.
   assert.match(await error("camera"), /160 × 120/);
   await choose("camera", "camera.json", camera);
-  assert.match(await error("mask"), /640 × 480 pixels, expected the depth map's 160 × 120.*resize/);
+  assert.match(await error("mask"), /640 × 480 pixels, expected 160 × 120, the size of the depth map.*Resize/);
   await choose("mask", "mask.png", files["mask.png"] as Uint8Array);
   await choose("mesh", "mesh.glb", Uint8Array.of(103, 108, 84, 70, 1));
   assert.match(await error("mesh"), /expected/);
   await choose("mesh", "mesh.obj", files["mesh.obj"] as Uint8Array);
   await aligns(opened);
   await choose("photo", "photo.jpg", Uint8Array.of(1, 2, 3));
-  assert.match(await error("photo"), /not an image/);
+  assert.match(await error("photo"), /cannot decode/);
   await opened.close();
 });
 
-test("what the library refuses while aligning is shown beside the field, too", async () => {
+test("errors of the alignment are shown at the field that they concern", async () => {
   const opened = await site.open();
   await drop(opened, { ...files, "mask.png": png(new Uint8Array(160 * 120), 160, 120) });
   await opened.says(/Ready to align/);
@@ -127,7 +127,7 @@ test("what the library refuses while aligning is shown beside the field, too", a
   await opened.close();
 });
 
-test("the camera may be typed, or guessed, which warns", async () => {
+test("intrinsics can be entered, or assumed with a warning", async () => {
   const opened = await site.open();
   const { page } = opened;
   await drop(opened, files);
@@ -136,8 +136,8 @@ test("the camera may be typed, or guessed, which warns", async () => {
   await page.fill("#camera-fov", "45");
   await page.press("#camera-fov", "Enter");
   await aligns(opened);
-  assert.match((await page.textContent(".warnings")) ?? "", /guess/);
-  const guessed = await opened.dimensions();
+  assert.match((await page.textContent(".warnings")) ?? "", /assumed/);
+  const assumed = await opened.dimensions();
   for (const [name, value] of Object.entries(pinhole)) {
     await page.fill(`#camera-${name}`, `${value}`);
     await page.press(`#camera-${name}`, "Enter");
@@ -145,7 +145,7 @@ test("the camera may be typed, or guessed, which warns", async () => {
   }
   await aligns(opened);
   assert.equal(await page.locator(".warnings").count(), 0);
-  assert.notDeepEqual(await opened.dimensions(), guessed);
+  assert.notDeepEqual(await opened.dimensions(), assumed);
   await opened.close();
 });
 

@@ -1,4 +1,4 @@
-/** Aligning: cancel, several objects, alternatives, and options that cannot be. */
+/** Aligning: progress, cancelling, several objects, alternatives, invalid options. */
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { PATIENCE, SiteTest } from "../support/site.js";
@@ -9,39 +9,43 @@ before(async () => {
 });
 after(() => site?.stop());
 
-test("an alignment can be cancelled, by button and by key, and begun again", async () => {
-  // Three objects take long enough for a click, however far away the browser is.
-  const opened = await site.open("#sample=desk&quality=best");
+test("an alignment can be cancelled, by button and by key, and started again", async () => {
+  const opened = await site.open("#sample=desk");
   const { page } = opened;
   const before = await opened.dimensions();
+  await opened.closeWorkerGate();
   await page.click("#align-all");
   await page.locator("#cancel").click(PATIENCE);
   await opened.says(/^Cancelled/);
   assert.deepEqual(await opened.dimensions(), before);
   await page.click("#align-all");
+  await page.locator("#cancel").waitFor(PATIENCE);
   await page.keyboard.press("Escape");
   await opened.says(/^Cancelled/);
+  await opened.openWorkerGate();
   await page.keyboard.press("a");
   await opened.aligned();
   await opened.close();
 });
 
-test("the page answers while it aligns, and says how far it has come", async () => {
+test("the page responds during an alignment, and shows its progress", async () => {
   const opened = await site.open("#sample=mug&quality=best");
   const { page } = opened;
   await page.evaluate(() => {
     const seen: number[] = [];
     Object.assign(globalThis, { seen });
-    const look = () => {
-      if (document.querySelector("#cancel") !== null) {
-        seen.push((document.querySelector("#progress") as HTMLProgressElement).value);
-      }
-      requestAnimationFrame(look);
-    };
-    requestAnimationFrame(look);
+    const progress = document.querySelector("#progress") as HTMLProgressElement;
+    new MutationObserver(() => {
+      if (document.querySelector("#cancel") !== null) seen.push(progress.value);
+    }).observe(progress, { attributes: true });
   });
+  await opened.closeWorkerGate();
   await page.click("#align");
   await page.locator("#cancel").waitFor(PATIENCE);
+  await page.keyboard.press("d");
+  await page.locator("#layer-difference:checked").waitFor(PATIENCE);
+  assert.ok(await page.isVisible("#cancel"));
+  await opened.openWorkerGate();
   await opened.aligned();
   const values = (await page.evaluate("seen")) as number[];
   assert.ok(new Set(values).size > 2, `progress: ${[...new Set(values)]}`);
@@ -70,7 +74,7 @@ test("several objects of one scene are aligned, each with its own result", async
   await opened.close();
 });
 
-test("alternatives put the mesh elsewhere, with metrics of their own, and back", async () => {
+test("alternatives change the pose and its metrics, and the result can be restored", async () => {
   const opened = await site.open("#sample=desk&symmetry=none");
   const { page } = opened;
   const buttons = page.locator(".alternatives button:not(.tip)");
@@ -86,7 +90,7 @@ test("alternatives put the mesh elsewhere, with metrics of their own, and back",
   await opened.close();
 });
 
-test("options that contradict each other are the library's error, and the page goes on", async () => {
+test("contradictory options show the error of the library, and the page remains usable", async () => {
   const opened = await site.visit("#knownExtentCm=9&scaleMin=2&scaleMax=3");
   const { page } = opened;
   await opened.says(/knownExtentM/);

@@ -1,4 +1,4 @@
-/** The 3D view: with WebGPU, with WebGL 2, with neither. */
+/** The 3D view in the page: with WebGPU, with WebGL 2, with neither. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { Page } from "playwright-core";
@@ -11,41 +11,39 @@ const backends: readonly ["webgpu" | "webgl", string[]][] = [
 ];
 
 /**
- * What is seen of the 3D view, as soon as it is what is waited for.
+ * Takes screenshots of the 3D view until one meets a condition.
  *
- * How long a picture takes where a processor draws it, nobody knows: so what it shows is asked, not whether it keeps
- * still, which an old picture does too.
- * @param what for the message: what it should be, and how far it is from that
+ * The drawing time of software renderers is unknown, so tests wait for the expected content.
+ * @param describe the state of an image, for the message of a failure
  */
-async function seen(page: Page, what: (picture: Pixels) => string, isIt: (picture: Pixels) => boolean) {
+async function seen(page: Page, describe: (image: Pixels) => string, condition: (image: Pixels) => boolean) {
   const end = Date.now() + PATIENCE.timeout;
   for (;;) {
-    const picture = await glimpse(page);
-    if (isIt(picture)) return picture;
+    const image = await capture(page);
+    if (condition(image)) return image;
     if (Date.now() > end) {
       const state = await page.locator(".space").evaluate((space) => space.querySelector(".view-host")?.outerHTML);
-      assert.fail(`${what(picture)} in ${state}`);
+      assert.fail(`${describe(image)} in ${state}`);
     }
-    await page.waitForTimeout(300);
   }
 }
 
-/** The 3D view once it keeps still. */
+/** The 3D view after two equal screenshots. */
 async function still(page: Page): Promise<Pixels> {
   let last: Pixels | undefined;
   return seen(
     page,
-    () => "the 3D view goes on moving",
-    (now) => {
-      const isStill = last?.data.equals(now.data) === true;
-      last = now;
+    () => "the 3D view keeps changing",
+    (image) => {
+      const isStill = last?.data.equals(image.data) === true;
+      last = image;
       return isStill;
     },
   );
 }
 
-/** What is seen of the 3D view at the moment. */
-async function glimpse(page: Page): Promise<Pixels> {
+/** A screenshot of the 3D view. */
+async function capture(page: Page): Promise<Pixels> {
   const png = await page.locator(".space .view-host").screenshot();
   const decoded = (await page.evaluate(async (base64) => {
     const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
@@ -60,24 +58,24 @@ async function glimpse(page: Page): Promise<Pixels> {
   return { ...decoded, data: Buffer.from(decoded.text, "base64") };
 }
 
-/** The pixels that differ plainly from what they are compared with: another picture's, or a colour. */
+/** The pixels that differ clearly from a reference. */
 function differing({ data }: Pixels, other: (pixel: number, channel: number) => number): number[] {
   return Array.from({ length: data.length / 4 }, (_, pixel) => pixel).filter((pixel) =>
     [0, 1, 2].some((k) => Math.abs((data[4 * pixel + k] ?? 0) - other(pixel, k)) > 24),
   );
 }
 
-/** The pixels that differ plainly between two pictures. */
+/** The pixels that differ clearly between two images. */
 function changed(a: Pixels, b: Pixels): number[] {
   assert.deepEqual([a.width, a.height], [b.width, b.height]);
   return differing(a, (pixel, k) => b.data[4 * pixel + k] ?? 0);
 }
 
-/** The pixels that are not as a corner is, where nothing is. */
-const drawn = (picture: Pixels) => differing(picture, (_, k) => picture.data[k] ?? 0);
+/** The pixels that differ from the top left corner, which is background. */
+const drawn = (image: Pixels) => differing(image, (_, k) => image.data[k] ?? 0);
 
-/** The ratio of the pixels where something is. */
-const ratio = (picture: Pixels) => drawn(picture).length / (picture.width * picture.height);
+/** The share of pixels that are not background. */
+const ratio = (image: Pixels) => drawn(image).length / (image.width * image.height);
 
 const ready = ({ page }: SitePage, backend: string) =>
   page.locator(`.view-host[data-backend="${backend}"] canvas`).waitFor(PATIENCE);
@@ -86,24 +84,24 @@ const show = (page: Page, name: string, isShown: boolean) =>
   page.locator(".space").getByLabel(name, { exact: true }).setChecked(isShown);
 
 for (const [backend, flags] of backends) {
-  test(`${backend} draws the points and the mesh, and handles move it`, async () => {
+  test(`${backend} draws the points and the mesh, and handles move the mesh`, async () => {
     const site = await SiteTest.start(flags);
     try {
       const opened = await site.open();
       const { page } = opened;
       await ready(opened, backend);
-      const told = (picture: Pixels) => `something is at ${ratio(picture)} of the pixels`;
-      await seen(page, told, (picture) => ratio(picture) > 0.01);
+      const describe = (image: Pixels) => `${ratio(image)} of the pixels are drawn`;
+      await seen(page, describe, (image) => ratio(image) > 0.01);
       await page.getByRole("button", { name: "Camera", exact: true }).click();
       await show(page, "Points", false);
       await show(page, "Mesh", false);
-      await seen(page, told, (picture) => ratio(picture) < 0.001);
+      await seen(page, describe, (image) => ratio(image) < 0.001);
       await show(page, "Mesh", true);
-      const mesh = await seen(page, told, (picture) => ratio(picture) > 0.003 && ratio(picture) < 0.4);
+      const mesh = await seen(page, describe, (image) => ratio(image) > 0.003 && ratio(image) < 0.4);
       await show(page, "Mesh", false);
       await show(page, "Points", true);
-      await seen(page, told, (picture) => ratio(picture) > 0.4);
-      // From the camera's place the mesh covers its mask: the middle of the one is within the other.
+      await seen(page, describe, (image) => ratio(image) > 0.4);
+      // In the camera view, the mesh covers its mask, which is at the centre.
       const columns = drawn(mesh)
         .map((pixel) => pixel % mesh.width)
         .sort((a, b) => a - b);
@@ -112,25 +110,25 @@ for (const [backend, flags] of backends) {
 
       await show(page, "Points", false);
       await show(page, "Mesh", true);
-      // As it was, before there are handles too.
+      // Wait for the same image as before, without handles.
       await seen(
         page,
-        (picture) => `another mesh: ${changed(picture, mesh).length} pixels`,
-        (picture) => changed(picture, mesh).length === 0,
+        (image) => `${changed(image, mesh).length} pixels have changed`,
+        (image) => changed(image, mesh).length === 0,
       );
       await page.getByRole("button", { name: "Move", exact: true }).click();
-      const redOf = (picture: Pixels) =>
-        changed(picture, mesh).filter((pixel) => {
-          const [r = 0, g = 0, b = 0] = picture.data.subarray(4 * pixel, 4 * pixel + 3);
+      const redOf = (image: Pixels) =>
+        changed(image, mesh).filter((pixel) => {
+          const [r = 0, g = 0, b = 0] = image.data.subarray(4 * pixel, 4 * pixel + 3);
           return r > 150 && g < 90 && b < 90;
         });
       const handles = await seen(
         page,
-        (picture) => `the red handle has ${redOf(picture).length} pixels`,
-        (picture) => redOf(picture).length > 20,
+        (image) => `the red handle has ${redOf(image).length} pixels`,
+        (image) => redOf(image).length > 20,
       );
       const red = redOf(handles);
-      // Its far end.
+      // The tip of the handle.
       const end = red.reduce((far, pixel) => (pixel % mesh.width > far % mesh.width ? pixel : far), red[0] ?? 0);
       const host = await page.locator(".space .view-host").boundingBox();
       const [x, y] = [(host?.x ?? 0) + (end % mesh.width) - 4, (host?.y ?? 0) + Math.floor(end / mesh.width)];
@@ -141,10 +139,10 @@ for (const [backend, flags] of backends) {
       await page.mouse.move(x + 12, y, { steps: 3 });
       await page.mouse.up();
       await opened.isNow("hand");
-      assert.ok((await opened.metric("iou")) < iou, "it was not moved away");
+      assert.ok((await opened.metric("iou")) < iou, "the mesh was not moved");
       await page.click("#refine");
       await opened.isNow("refined");
-      assert.ok((await opened.metric("iou")) > iou - 0.02, "it was not brought back");
+      assert.ok((await opened.metric("iou")) > iou - 0.02, "the pose was not restored");
       await page.keyboard.press("Control+z");
       await opened.isNow("hand");
       await page.keyboard.press("Control+z");
@@ -160,20 +158,22 @@ for (const [backend, flags] of backends) {
 test("the two views are linked", async () => {
   const site = await SiteTest.start(["!--enable-unsafe-webgpu"]);
   try {
-    const opened = await site.open("#sample=desk");
+    // Without animations, the objects are at their poses as soon as the label names them.
+    const opened = await site.open("#sample=desk", { reducedMotion: "reduce" });
     const { page } = opened;
     await ready(opened, "webgl");
+    await page.locator('.space canvas[aria-label*="placed meshes: 0, 1, 2"]').waitFor(PATIENCE);
     await page.getByRole("button", { name: "Camera", exact: true }).click();
     const before = await still(page);
     await page.hover(".space canvas");
     await page.locator(".image .cross").waitFor();
     assert.match((await page.textContent(".readout")) ?? "", /^\d+, \d+: /);
-    // The image's middle is the 3D view's, from the camera's place.
+    // In the camera view, the centre of the image is the centre of the 3D view.
     await page.hover(".image canvas");
     const marked = await seen(
       page,
-      (picture) => `the mark has ${changed(picture, before).length} pixels`,
-      (picture) => changed(picture, before).length > 30,
+      (image) => `the mark has ${changed(image, before).length} pixels`,
+      (image) => changed(image, before).length > 30,
     );
     const ring = changed(marked, before);
     for (const [size, at] of [
@@ -189,17 +189,17 @@ test("the two views are linked", async () => {
     await page.hover("h1");
     await seen(
       page,
-      (picture) => `the mark stays: ${changed(picture, before).length} pixels`,
-      (picture) => changed(picture, before).length === 0,
+      (image) => `the mark is still there: ${changed(image, before).length} pixels`,
+      (image) => changed(image, before).length === 0,
     );
-    // A click in the image chooses the object, and turns the other view about it.
+    // A click in the image selects the object and centres the 3D view on it.
     await page.locator(".objects button").nth(2).click();
     await page.locator(".image canvas").click();
     await page.getByRole("button", { name: "Top", exact: true }).click();
     await seen(
       page,
-      (picture) => `${changed(picture, before).length} pixels are others from above`,
-      (picture) => changed(picture, before).length > 1000,
+      (image) => `${changed(image, before).length} pixels have changed`,
+      (image) => changed(image, before).length > 1000,
     );
     await opened.close();
   } finally {
@@ -207,13 +207,13 @@ test("the two views are linked", async () => {
   }
 });
 
-test("without any graphics the page says so, and does all the rest", async () => {
+test("without graphics the page says so, and everything else works", async () => {
   const site = await SiteTest.start(["!--enable-unsafe-webgpu", "--disable-3d-apis"]);
   try {
     const opened = await site.open();
     const { page } = opened;
     await page.getByText(/neither WebGPU nor WebGL 2/).waitFor(PATIENCE);
-    assert.ok(await page.isDisabled(".looks button"));
+    assert.ok(await page.isDisabled(".viewpoints button"));
     const { data } = await opened.imagePixels();
     assert.ok(new Set(data).size > 50, "the image is empty");
     await page.click(".hand-panel .more summary");
@@ -221,7 +221,7 @@ test("without any graphics the page says so, and does all the rest", async () =>
     await opened.isNow("hand");
     await page.click("#refine");
     await opened.isNow("refined");
-    assert.ok((await opened.saved("PNG of view")).bytes.length > 5000);
+    assert.ok((await opened.saved("PNG of the view")).bytes.length > 5000);
     await opened.close();
   } finally {
     await site.stop();

@@ -1,4 +1,4 @@
-/** The page as it opens: its sample aligned, by what people see and by the library's own numbers. */
+/** The page after opening: its sample is aligned, and display and numbers agree with the library. */
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -28,17 +28,17 @@ test("the page aligns its sample, as the library does", async () => {
   const { metrics, confidence } = await (await createAligner()).align(input, { quality });
   assert.equal(await opened.metric("iou"), metrics.iou);
   assert.equal(await opened.metric("depthMaeMm"), metrics.depthMaeMm);
-  assert.match((await page.textContent("#confidence")) ?? "", new RegExp(`^${Math.round(100 * (confidence ?? -1))} %`));
+  assert.match((await page.textContent("#confidence")) ?? "", new RegExp(`^${Math.round(100 * confidence)} %`));
   assert.equal((await opened.dimensions()).length, 3);
   assert.match((await page.textContent("#errors")) ?? "", /scale [\d.]+ %/);
   await opened.close();
 });
 
-test("the silhouette that is drawn is the one that is measured", async () => {
+test("the displayed silhouette has the measured IoU", async () => {
   const opened = await site.open();
   const { page } = opened;
   const mask = await readMask(sampleFile("mug/mask.png"));
-  // Without outlines, what differs between the two pictures is the silhouette.
+  // Without outlines, the two images differ by the silhouette only.
   await page.uncheck("#layer-outline");
   const shown = await opened.imagePixels();
   await page.uncheck("#layer-silhouette");
@@ -55,7 +55,7 @@ test("the silhouette that is drawn is the one that is measured", async () => {
   await opened.close();
 });
 
-test("before and after are different pictures, and so is the depth difference", async () => {
+test("before, after and depth difference are different images", async () => {
   const opened = await site.open();
   const { page } = opened;
   const after = await opened.imagePixels();

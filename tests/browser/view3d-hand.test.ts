@@ -11,7 +11,7 @@ import {
   placeOf,
   pose,
   startWithWebGl,
-  type Told,
+  type ViewEvent,
 } from "../support/view3d.js";
 
 let browser: PageTest;
@@ -20,17 +20,17 @@ before(async () => {
 });
 after(() => browser?.stop());
 
-/** Takes a handle at an offset from the cube's centre, drags it, and returns what was told of poses. */
-async function drag(page: Page, from: Place, by: Place): Promise<Extract<Told, { kind: "pose" }>[]> {
+/** Drags a handle and returns the pose events. */
+async function drag(page: Page, from: Place, by: Place): Promise<Extract<ViewEvent, { kind: "pose" }>[]> {
   await page.mouse.move(...from);
   await page.mouse.down();
   for (const share of [0.3, 0.7, 1]) await page.mouse.move(from[0] + share * by[0], from[1] + share * by[1]);
   await page.mouse.up();
-  const told = (await page.evaluate(() => harness.told.splice(0))) as Told[];
+  const told = (await page.evaluate(() => harness.viewEvents.splice(0))) as ViewEvent[];
   return told.filter((one) => one.kind === "pose");
 }
 
-test("the gizmo moves, turns and scales about the mesh's centre, and tells the pose", async () => {
+test("the gizmo moves, rotates and scales about the mesh centre, and reports the pose", async () => {
   const { page, errors, facts } = await openCube(browser, {});
   const [x, y] = placeOf(facts, ...pixelOf(facts, 0, 0, 0.8));
   await page.evaluate(() => harness.view.select("cube"));
@@ -42,7 +42,7 @@ test("the gizmo moves, turns and scales about the mesh's centre, and tells the p
     await page.evaluate(() => harness.colours([]));
   };
   const centreOf = (m: readonly number[]) => [0, 1, 2].map((k) => 3 * (m[k] ?? 0) + (m[12 + k] ?? 0));
-  // Where three.js has its handles, in shares of half the image's height: arrows to the right, the outermost ring.
+  // Positions of the handles of three.js: arrows to the right, the outermost ring.
   const half = (scalePx * facts.height) / 2;
   const unit = (1.9 * 0.9 * half) / 4;
 
@@ -51,7 +51,7 @@ test("the gizmo moves, turns and scales about the mesh's centre, and tells the p
   const moved = moves.at(-1);
   assert.ok(
     moved && moves.length > 1 && moves.slice(0, -1).every(({ phase }) => phase === "drag"),
-    "told while it moves",
+    "no events during the drag",
   );
   assert.equal(moved.phase, "end");
   const expectedM = ((60 / scalePx) * 0.8) / facts.camera.fx;
@@ -74,9 +74,9 @@ test("the gizmo moves, turns and scales about the mesh's centre, and tells the p
   assert.deepEqual(errors, []);
 });
 
-test("clicks select by mesh and by points, and the pointer tells the depth map's pixel", async () => {
+test("clicks on meshes and points select objects, and hovering reports the pixel of the depth map", async () => {
   const { page, errors, facts } = await openCube(browser, {});
-  const told = async () => (await page.evaluate(() => harness.told.splice(0))) as Told[];
+  const told = async () => (await page.evaluate(() => harness.viewEvents.splice(0))) as ViewEvent[];
   const selectedAt = async (u: number, v: number) => {
     await page.mouse.click(...placeOf(facts, u, v));
     return (await told()).filter(({ kind }) => kind === "select");
@@ -86,13 +86,13 @@ test("clicks select by mesh and by points, and the pointer tells the depth map's
   assert.deepEqual(await selectedAt(122, 92), [{ kind: "select", id: "cube" }]);
   await told();
   await page.mouse.move(...placeOf(facts, 20, 100));
-  await page.waitForFunction(() => harness.told.some(({ kind }) => kind === "hover"));
+  await page.waitForFunction(() => harness.viewEvents.some(({ kind }) => kind === "hover"));
   const hover = (await told()).filter((one) => one.kind === "hover").at(-1);
   assert.ok(
     hover?.pixel && Math.abs(hover.pixel.x - 20) <= 3 && Math.abs(hover.pixel.y - 100) <= 3,
     JSON.stringify(hover),
   );
   await page.mouse.move(2, 150);
-  await page.waitForFunction(() => harness.told.some((one) => one.kind === "hover" && one.pixel === null));
+  await page.waitForFunction(() => harness.viewEvents.some((one) => one.kind === "hover" && one.pixel === null));
   assert.deepEqual(errors, []);
 });

@@ -1,4 +1,4 @@
-/** What of the 3D view is numbers only, in Node. */
+/** The parts of the 3D view that need no graphics, in Node. */
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { before, test } from "node:test";
@@ -12,7 +12,7 @@ interface Points {
   pixels: Uint32Array;
   stride: number;
 }
-/** What is bundled below. */
+/** The exports of the bundle below. */
 interface Maths {
   between(from: Numbers, to: Numbers, share: number, centre: readonly number[]): Float64Array;
   pointsOf(scene: object, most: number): Points;
@@ -25,7 +25,7 @@ const entry = `
   import { Vector3 } from "three/webgpu";
   import { between as betweenPoses, matrixOf, poseOf } from "./pose.ts";
   export { extentOf, pointsOf } from "./points.ts";
-  export { pickPoint, pixelOf } from "./pick.ts";
+  export { pickPoint, pixelOf } from "./picker.ts";
   export const between = (from, to, share, centre) =>
     matrixOf(betweenPoses(poseOf(from), poseOf(to), share, new Vector3(...centre)));
 `;
@@ -47,7 +47,7 @@ const scene = (depth: (u: number, v: number) => number, width = 16, height = 12)
   depthM: Float32Array.from({ length: width * height }, (_, i) => depth(i % width, Math.floor(i / width))),
 });
 
-/** Column by column: turned about z, degrees. */
+/** A column-major pose, rotated about z. */
 function pose(scale: number, turnDeg: number, [x, y, z]: readonly [number, number, number]): number[] {
   const [c, s] = [Math.cos((turnDeg * Math.PI) / 180) * scale, Math.sin((turnDeg * Math.PI) / 180) * scale];
   return [c, s, 0, 0, -s, c, 0, 0, 0, 0, scale, 0, x, y, z, 1];
@@ -59,7 +59,7 @@ const isClose = (found: Numbers, wanted: Numbers, within = 1e-9) =>
     `${Array.from(found)} is not ${Array.from(wanted)}`,
   );
 
-test("between two poses: both ends, even ratios, even turns, and the centre on a straight line", () => {
+test("interpolated poses: both ends, geometric scale, constant rotation, centre on a straight line", () => {
   const [from, to] = [pose(0.1, 10, [0.3, 0, 1]), pose(0.4, 130, [-0.2, 0.5, 2])];
   const centre = [4, -1, 2];
   isClose(maths.between(from, to, 0, centre), from);
@@ -76,7 +76,7 @@ test("between two poses: both ends, even ratios, even turns, and the centre on a
   );
 });
 
-test("a depth map's points are seen at their pixels, and what has no depth gives none", () => {
+test("points of a depth map project to their pixels, and pixels without depth give no points", () => {
   const input = scene((u, v) =>
     u === 3 ? 0 : u === 4 ? Number.NaN : u === 5 ? Number.POSITIVE_INFINITY : 1 + 0.1 * v,
   );
@@ -92,7 +92,7 @@ test("a depth map's points are seen at their pixels, and what has no depth gives
   assert.ok(thinned.stride === 2 && thinned.pixels.length <= 50, `${thinned.stride}, ${thinned.pixels.length}`);
 });
 
-test("the middle of a mask's points does not follow what strays", () => {
+test("the centre of the points of a mask is robust against outliers", () => {
   const points = maths.pointsOf(
     scene((u) => (u === 2 ? 9 : 1)),
     1000,
@@ -103,7 +103,7 @@ test("the middle of a mask's points does not follow what strays", () => {
   isClose(all.centre, maths.extentOf(points, () => true).centre);
 });
 
-test("of the points near a place, the one under it is picked, and one clearly before it rather", () => {
+test("picking prefers the point under the pointer, unless another one is clearly nearer", () => {
   // Clip space of a camera that looks along +z of these points, 90° wide: w = z.
   const clip = [1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0];
   const size = { width: 100, height: 100 };

@@ -27,12 +27,12 @@ after(async () => {
 
 const modes: [string, () => PageTest, object, "webgpu" | "webgl"][] = [
   ["WebGPU", () => withWebGpu, {}, "webgpu"],
-  ["WebGL, asked for", () => withWebGpu, { forceWebGL: true }, "webgl"],
-  ["WebGL, as there is no WebGPU", () => withoutWebGpu, {}, "webgl"],
+  ["WebGL, forced", () => withWebGpu, { forceWebGL: true }, "webgl"],
+  ["WebGL, without WebGPU", () => withoutWebGpu, {}, "webgl"],
 ];
 
 for (const [name, browser, options, expected] of modes) {
-  test(`${name}: the cloud and the mesh are drawn where the depth camera sees them`, async () => {
+  test(`${name}: points and mesh are drawn where the depth camera sees them`, async () => {
     const { page, errors, facts, backend, colours } = await openCube(browser(), options);
     assert.equal(backend, expected);
     const at = (u: number, v: number) => placeOf(facts, u, v);
@@ -46,7 +46,7 @@ for (const [name, browser, options, expected] of modes) {
     isNear(fourth, grey ?? []);
     for (const bar of bars) isNear(bar, [250, 251, 252]);
 
-    // The mask's points, beside the cube, have some of its colour, and those beside the mask do not.
+    // Points of the mask next to the cube are tinted, and those outside the mask are not.
     const [masked, beside] = await colours([at(120, 90), at(120, 104)]);
     assert.ok((masked?.[1] ?? 0) > (masked?.[0] ?? 0) + 20, `${masked}`);
     isNear(beside, grey ?? []);
@@ -64,7 +64,7 @@ for (const [name, browser, options, expected] of modes) {
   });
 }
 
-test("a glTF's nodes are applied, and a broken one leaves everything as it was", async () => {
+test("glTF node transforms are applied, and an invalid GLB leaves the view unchanged", async () => {
   const { page, errors, facts, colours } = await openCube(withoutWebGpu, {}, "glb");
   const [u, v] = pixelOf(facts, 0, 0, 0.75);
   const [beside] = [pixelOf(facts, 0.056, 0, 0.75)];
@@ -85,7 +85,7 @@ test("a glTF's nodes are applied, and a broken one leaves everything as it was",
   assert.deepEqual(errors, []);
 });
 
-test("poses are animated, or not where less motion is preferred; then nothing is drawn any more", async () => {
+test("poses are animated, unless reduced motion is preferred; afterwards no frames are drawn", async () => {
   const { page, errors, facts, colours } = await openCube(withoutWebGpu, {});
   const move = ([from, to]: number[][]) => harness.view.setPose("cube", to ?? [], { from, durationMs: 400 });
   const seen = async () => {
@@ -110,14 +110,15 @@ test("poses are animated, or not where less motion is preferred; then nothing is
   assert.deepEqual(errors, []);
 });
 
-test("the view fits its host when that is resized, and takes everything away in the end", async () => {
+test("the view follows the size of its host, and dispose removes everything", async () => {
   const { page, errors, facts } = await openCube(withoutWebGpu, {});
   await page.evaluate(() => {
     const host = document.querySelector("#host") as HTMLElement;
     Object.assign(host.style, { width: "200px", height: "400px" });
-    return new Promise((resolve) => setTimeout(resolve, 300));
+    // Observers are notified in the order of their creation, so the view has been notified before this one.
+    return new Promise((resolve) => new ResizeObserver(() => resolve(undefined)).observe(host));
   });
-  // Now with bars above and below.
+  // The image now has bars above and below.
   const scale = 200 / facts.width;
   const top = (400 - scale * facts.height) / 2;
   const at = (u: number, v: number): Place => [scale * (u + 0.5), top + scale * (v + 0.5)];
@@ -129,14 +130,14 @@ test("the view fits its host when that is resized, and takes everything away in 
   isNear(fourth, facts.quarters[3] ?? []);
   isNear(bar, [250, 251, 252]);
   const label = await page.getAttribute("#host canvas", "aria-label");
-  assert.match(label ?? "", /^3D view from the camera's place: 19,200 points of the scene, placed meshes: cube$/);
+  assert.match(label ?? "", /^3D view from the depth camera: 19,200 points of the scene, placed meshes: cube$/);
   await page.evaluate(() => harness.view.dispose());
   assert.equal(await page.locator("#host *").count(), 0);
   assert.equal(await page.evaluate(() => harness.idleFrames()), 0);
   assert.deepEqual(errors, []);
 });
 
-test("where WebGPU's device is lost twice, WebGL 2 draws", async () => {
+test("after two losses of the WebGPU device, WebGL 2 draws", async () => {
   const { page, errors, facts, backend, colours } = await openCube(withWebGpu, {});
   assert.equal(backend, "webgpu");
   for (const expected of ["webgpu", "webgl"]) {
@@ -154,7 +155,7 @@ test("where WebGPU's device is lost twice, WebGL 2 draws", async () => {
   assert.deepEqual(errors, []);
 });
 
-test("a lost device of WebGL 2 is replaced once; then there is a message", async () => {
+test("a lost WebGL 2 device is replaced once; a second loss shows a message", async () => {
   const { page, errors, facts, colours } = await openCube(withoutWebGpu, {});
   const lose = () =>
     page.evaluate(() => {
@@ -172,7 +173,7 @@ test("a lost device of WebGL 2 is replaced once; then there is a message", async
   assert.deepEqual(errors, []);
 });
 
-test("where there is neither WebGPU nor WebGL 2, NoGraphics says so and leaves nothing behind", async () => {
+test("without WebGPU and WebGL 2, creating a view rejects with NoGraphics and leaves no elements", async () => {
   const { page, errors } = await open(withoutWebGpu);
   const said = await page.evaluate(() => {
     HTMLCanvasElement.prototype.getContext = () => null;

@@ -1,4 +1,4 @@
-/** A browser that shows pages served from the repository. */
+/** A browser and a static server for its pages. */
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 import { type Browser, type BrowserContextOptions, chromium, type Page } from "playwright-core";
@@ -9,14 +9,14 @@ const flags = [
   "--enable-unsafe-webgpu",
   "--disable-background-networking",
   "--disable-component-update",
-  // Where a processor draws, a long frame is no graphics card that hangs.
+  // In software rendering, a long frame does not mean that the graphics card hangs.
   "--disable-gpu-watchdog",
   "--disable-quic",
   "--disable-sync",
   "--no-first-run",
 ];
 
-/** The processor draws, as WebGL 2 has it. */
+/** Software rendering with WebGL 2. */
 export const SOFTWARE = [
   "--use-angle=swiftshader",
   "--enable-unsafe-swiftshader",
@@ -24,7 +24,7 @@ export const SOFTWARE = [
   "--enable-gpu",
 ];
 
-/** The processor draws, as WebGPU has it too. */
+/** Software rendering with WebGPU and WebGL 2. */
 export const SOFTWARE_WEBGPU = [...SOFTWARE, "--enable-features=Vulkan", "--use-vulkan=swiftshader"];
 
 interface Server {
@@ -32,7 +32,7 @@ interface Server {
   close(): Promise<void>;
 }
 
-/** A browser and a server of a folder: the repository's, where none is named. */
+/** A browser and a server of a folder. */
 export class PageTest {
   private constructor(
     private readonly browser: Browser,
@@ -41,8 +41,8 @@ export class PageTest {
 
   /**
    * Starts both.
-   * @param folder what the server serves
-   * @param more flags of Chromium; those that begin with "!" are taken away
+   * @param folder the served folder, by default the repository
+   * @param more flags of Chromium; a "!" removes a default flag
    */
   static async start(folder = repository, more: readonly string[] = []): Promise<PageTest> {
     const executablePath = process.env.CHROMIUM_PATH;
@@ -53,19 +53,25 @@ export class PageTest {
       ...flags.filter((flag) => !more.includes(`!${flag}`)),
       ...more.filter((flag) => !flag.startsWith("!")),
     ];
-    // First what may fail: a server that nobody stops would keep the tests from ending.
+    // The browser first, because it may fail to launch, and a running server would keep the process alive.
     const browser = await chromium.launch({ executablePath, headless: true, args });
     return new PageTest(browser, await serve(folder));
   }
 
   /**
-   * Opens a page of the repository.
-   * @param path its path in the folder, such as `www/index.html`, or a whole address
-   * @param context how the browser is: its window's size, its colours
-   * @returns the page, and what it has logged as errors (a list that goes on growing)
+   * Opens a page.
+   * @param path its path in the folder, such as `www/index.html`, or a URL
+   * @param context settings of the browser context, such as window size and colour scheme
+   * @param script runs in the page before its own scripts
+   * @returns the page and its errors, a list that grows
    */
-  async open(path: string, context: BrowserContextOptions = {}): Promise<{ page: Page; errors: string[] }> {
+  async open(
+    path: string,
+    context: BrowserContextOptions = {},
+    script?: () => void,
+  ): Promise<{ page: Page; errors: string[] }> {
     const page = await this.browser.newPage(context);
+    if (script !== undefined) await page.addInitScript(script);
     const errors: string[] = [];
     page.on("pageerror", (error) => errors.push(error.message));
     page.on("console", (message) => {

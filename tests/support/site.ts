@@ -1,32 +1,71 @@
-/** The built page in a browser. */
+/** Tests of the built page in a browser. */
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import type { BrowserContextOptions, Page } from "playwright-core";
 import { PageTest } from "./browser.js";
 import { repository } from "./environment.js";
 
-/** Where `npm run build:www` puts it. */
+/** Output of `npm run build:www`. */
 export const siteDir = join(repository, "target", "www");
 
-/** How long a busy machine may take for anything. */
+/** Time limit for anything that a busy machine may be slow at. */
 export const PATIENCE = { timeout: 120_000 };
 
-/** The page, in a browser of its own. */
+/** A gate for the messages of workers: while it is closed, they wait. */
+interface WorkerGate {
+  close(): void;
+  open(): void;
+}
+
+declare global {
+  var workerGate: WorkerGate;
+}
+
+/** Runs in the page: replaces `Worker` by one whose messages wait for the gate. */
+function installWorkerGate(): void {
+  let isOpen = true;
+  let waiting: (() => void)[] = [];
+  const Plain = Worker;
+  globalThis.Worker = class extends Plain {
+    constructor(...parameters: ConstructorParameters<typeof Plain>) {
+      super(...parameters);
+      // The first listener of the worker, so that it can hold messages back from all others.
+      this.addEventListener("message", (event) => {
+        if (isOpen) return;
+        event.stopImmediatePropagation();
+        waiting.push(() => this.dispatchEvent(new MessageEvent("message", { data: event.data })));
+      });
+    }
+  };
+  globalThis.workerGate = {
+    close() {
+      isOpen = false;
+    },
+    open() {
+      isOpen = true;
+      const messages = waiting;
+      waiting = [];
+      for (const dispatch of messages) dispatch();
+    },
+  };
+}
+
+/** The built page in a browser. */
 export class SiteTest {
   private constructor(private readonly test: PageTest) {}
 
-  /** Starts a browser, and serves the page below a path, as static hosts do. */
+  /** Starts a browser and serves the page below a path, as many static hosts do. */
   static async start(flags: readonly string[] = []): Promise<SiteTest> {
     return new SiteTest(await PageTest.start(join(repository, "target"), flags));
   }
 
   /** Opens the page. */
   async visit(address = "", context: BrowserContextOptions = {}): Promise<SitePage> {
-    const { page, errors } = await this.test.open(`www/index.html${address}`, context);
+    const { page, errors } = await this.test.open(`www/index.html${address}`, context, installWorkerGate);
     return new SitePage(page, errors);
   }
 
-  /** Opens the page, and waits until it has aligned its sample. */
+  /** Opens the page and waits until its sample is aligned. */
   async open(address = "", context: BrowserContextOptions = {}): Promise<SitePage> {
     const site = await this.visit(address, context);
     await site.aligned();
@@ -38,76 +77,83 @@ export class SiteTest {
   }
 }
 
-/** A picture's pixels: red, green, blue, opacity. */
+/** The pixels of an image: red, green, blue, alpha. */
 export interface Pixels {
   width: number;
   height: number;
   data: Buffer;
 }
 
-/** The page as somebody uses it. */
+/** The page from the point of view of a user. */
 export class SitePage {
   constructor(
     readonly page: Page,
     readonly errors: string[],
   ) {}
 
-  /** Waits for a line that says so. */
+  /** Waits for a text in the status line. */
   async says(text: RegExp): Promise<string> {
     const status = this.page.locator("#status:not(.behind)").filter({ hasText: text });
     await status.waitFor(PATIENCE);
     return (await status.textContent()) ?? "";
   }
 
-  /** Waits until something has been aligned, and scored. */
+  /** Waits until an object is aligned and its metrics are known. */
   async aligned(): Promise<void> {
     await this.says(/^Aligned/);
     await this.metric("iou");
   }
 
-  /** A metric of the present pose, once it is known. */
+  /** Waits for a metric of the current pose. */
   async metric(name: string): Promise<number> {
     const cell = this.page.locator(`[data-metric="${name}"]:not([data-value=""])`);
     await cell.waitFor(PATIENCE);
     return Number(await cell.getAttribute("data-value"));
   }
 
-  /** The sides of the box around the object, in centimetres. */
+  /** The displayed size in centimetres. */
   async dimensions(): Promise<number[]> {
     const text = (await this.page.textContent("#dimensions")) ?? "";
     return Array.from(text.matchAll(/[\d.]+/g), Number);
   }
 
-  /** What put the mesh where it is. */
+  /** The origin of the current pose. */
   source(): Promise<string | null> {
     return this.page.getAttribute(".result", "data-source");
   }
 
-  /** Waits until the mesh is where something has put it. */
+  /** Waits for a pose of this origin. */
   async isNow(source: string): Promise<void> {
     await this.page.locator(`.result[data-source="${source}"]`).waitFor(PATIENCE);
   }
 
+  /** Holds back all messages of workers, so that a running alignment does not end. */
+  async closeWorkerGate(): Promise<void> {
+    await this.page.evaluate(() => workerGate.close());
+  }
+
+  /** Delivers the messages that were held back, and all later ones. */
+  async openWorkerGate(): Promise<void> {
+    await this.page.evaluate(() => workerGate.open());
+  }
+
   /**
-   * The image view's pixels, once it keeps still: red, green, blue, opacity.
+   * The pixels of the image view.
    *
-   * Where a software device goes down under the 3D view, it takes the picture along, which is then drawn again: so the
-   * 3D view comes first, and a picture that is empty is none.
+   * If a software device fails while the 3D view starts, the browser clears the image, and the page draws it again. So
+   * this waits for the 3D view, and for an image that is not empty.
    */
   async imagePixels(): Promise<Pixels> {
     await this.page.locator('.space:not([data-state="loading"])').waitFor(PATIENCE);
-    let last = await this.glimpse();
-    for (let look = 0; look < 40; look++) {
-      await this.page.waitForTimeout(150);
-      const now = await this.glimpse();
-      if (now.data.equals(last.data) && now.data.some((value) => value !== 0)) return now;
-      last = now;
+    for (;;) {
+      const pixels = await this.capture();
+      if (pixels.data.some((value) => value !== 0)) return pixels;
     }
-    return last;
   }
 
-  private async glimpse(): Promise<Pixels> {
-    // As text, which goes between the processes a hundred times faster than numbers.
+  /** The pixels after all changes so far were drawn, which takes the page one frame. */
+  private async capture(): Promise<Pixels> {
+    // As text, which Playwright transfers a hundred times faster than numbers.
     const { width, height, text } = (await this.page.evaluate(`(async () => {
       await new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
       const { width, height } = document.querySelector(".image canvas");
@@ -118,7 +164,7 @@ export class SitePage {
     return { width, height, data: Buffer.from(text, "base64") };
   }
 
-  /** Clicks on what saves a file, and returns it. */
+  /** Clicks a button that saves a file, and returns the file. */
   async saved(button: string): Promise<{ name: string; bytes: Buffer }> {
     const [download] = await Promise.all([
       this.page.waitForEvent("download"),
@@ -129,7 +175,7 @@ export class SitePage {
     return { name: download.suggestedFilename(), bytes: Buffer.concat(parts) };
   }
 
-  /** Closes it; nothing may have gone wrong unnoticed. */
+  /** Closes the page, which must not have logged errors. */
   async close(): Promise<void> {
     assert.deepEqual(this.errors, []);
     await this.page.close();

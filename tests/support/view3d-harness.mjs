@@ -1,20 +1,20 @@
-/** What runs in the page of the 3D view's tests: esbuild bundles it with the view. */
+/** Runs in the page of the tests of the 3D view. esbuild bundles it with the view. */
 import { exportGlb } from "sim3align/conventions";
 import { createView } from "../../www/src/view3d/index.ts";
 
 const [width, height] = [160, 120];
-/** Off-centre, and with pixels that are not square. */
+/** An off-centre principal point, and non-square pixels. */
 const camera = { fx: 190, fy: 170, cx: 70, cy: 66 };
-/** The photo's quarters, from the top left, row by row. */
+/** Colours of the quarters of the photo, row-major from the top left. */
 const quarters = [
   [200, 40, 40],
   [40, 60, 200],
   [220, 200, 30],
   [120, 120, 120],
 ];
-/** Everything is a wall at this distance, metres. */
+/** The scene is a wall at this distance, metres. */
 const wallM = 1;
-/** The object's pixels: from and to, in columns and rows. */
+/** Bounds of the mask: first and last column, first and last row. */
 const maskBox = [90, 130, 70, 100];
 
 const scene = () => ({
@@ -31,7 +31,7 @@ const mask = () =>
     return u >= maskBox[0] && u < maskBox[1] && v >= maskBox[2] && v < maskBox[3] ? 1 : 0;
   });
 
-/** A cube of side 1 about a point. */
+/** A unit cube around a point. */
 function cube([x, y, z]) {
   const corners = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((i) => [
     x + (i & 1) - 0.5,
@@ -52,7 +52,7 @@ function cube([x, y, z]) {
   };
 }
 
-/** A cube about (3, 0, 0): by arrays, or by a glTF node that moves it there and doubles it. */
+/** A cube around (3, 0, 0): as arrays, or as a GLB whose node translates and scales it. */
 function mesh(kind) {
   if (kind === "arrays") return cube([3, 0, 0]);
   if (kind === "broken") return { glb: new TextEncoder().encode("glTF, but not really") };
@@ -67,7 +67,7 @@ function mesh(kind) {
 
 const object = (id, colour, kind = "arrays") => ({ id, colour, mask: mask(), mesh: mesh(kind) });
 
-/** Counts frames that are asked for, by whomever. */
+/** Number of animation frames that anyone requested. */
 let frames = 0;
 const request = requestAnimationFrame;
 window.requestAnimationFrame = (callback) => {
@@ -75,46 +75,46 @@ window.requestAnimationFrame = (callback) => {
   return request(callback);
 };
 
-/** Ends the last of WebGPU's devices, as far as its owner can tell. */
+/** Makes the last WebGPU device look lost. */
 let end = () => {};
 const { prototype } = globalThis.GPUAdapter ?? { prototype: {} };
 const { requestDevice } = prototype;
 prototype.requestDevice = async function (...options) {
   const device = await requestDevice.apply(this, options);
-  const fault = new Promise((resolve) => {
-    end = () => resolve({ reason: "unknown", message: "a fault of the driver" });
+  const failure = new Promise((resolve) => {
+    end = () => resolve({ reason: "unknown", message: "a failure of the driver" });
   });
-  Object.defineProperty(device, "lost", { value: Promise.race([device.lost, fault]) });
+  Object.defineProperty(device, "lost", { value: Promise.race([device.lost, failure]) });
   return device;
 };
 
 globalThis.harness = {
   ...{ camera, width, height, quarters, wallM, object, scene },
-  told: [],
-  /** Makes a view in a host of that size. */
+  viewEvents: [],
+  /** Creates a view in a host of that size. */
   async start(hostWidth, hostHeight, options) {
     const host = document.createElement("div");
     host.id = "host";
     host.style.cssText = `width:${hostWidth}px;height:${hostHeight}px;background:rgb(250, 251, 252)`;
     document.body.style.margin = "0";
     document.body.replaceChildren(host);
-    const { told } = harness;
+    const { viewEvents } = harness;
     const events = {
-      onPose: (id, pose, phase) => told.push({ kind: "pose", id, pose: Array.from(pose), phase }),
-      onSelect: (id) => told.push({ kind: "select", id }),
-      onHover: (pixel) => told.push({ kind: "hover", pixel }),
+      onPose: (id, pose, phase) => viewEvents.push({ kind: "pose", id, pose: Array.from(pose), phase }),
+      onSelect: (id) => viewEvents.push({ kind: "select", id }),
+      onHover: (pixel) => viewEvents.push({ kind: "hover", pixel }),
     };
     harness.view = await createView(host, events, options);
     return harness.view.backend;
   },
-  /** Shows the wall, from the camera. */
+  /** Shows the wall from the camera. */
   show(display = {}) {
     harness.view.setDisplay({ cloud: true, mesh: true, wireframe: false, pointSize: 1, theme: "light", ...display });
     harness.view.setScene(scene());
     harness.view.lookFrom("camera");
   },
   loseWebGpu: () => end(),
-  /** The colours at places of the picture, CSS pixels. */
+  /** The colours at positions in the view, CSS pixels. */
   async colours(places) {
     const bitmap = await createImageBitmap(await harness.view.snapshot());
     const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
@@ -125,15 +125,18 @@ globalThis.harness = {
     ];
     return places.map(at);
   },
-  /** How many frames are asked for while nothing happens. */
+  /** Number of frames that the view requests during 30 frames of the browser, after the first 10 without any. */
   async idleFrames() {
-    const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+    const pass = async (count) => {
+      // By the original function, so that these frames do not count.
+      for (let i = 0; i < count; i++) await new Promise((resolve) => request(resolve));
+    };
     for (let last = -1; last !== frames; ) {
       last = frames;
-      await pause(700);
+      await pass(10);
     }
     const before = frames;
-    await pause(700);
+    await pass(30);
     return frames - before;
   },
 };

@@ -1,4 +1,4 @@
-/** A page with the 3D view alone, and what its tests share. */
+/** A page with the 3D view only, and helpers of its tests. */
 import assert from "node:assert/strict";
 import { mkdirSync, writeFileSync } from "node:fs";
 import { basename, join } from "node:path";
@@ -8,14 +8,14 @@ import { PageTest, SOFTWARE, SOFTWARE_WEBGPU } from "./browser.js";
 import { repository } from "./environment.js";
 
 export type Place = [number, number];
-export type Told =
+export type ViewEvent =
   | { kind: "pose"; id: string; pose: number[]; phase: string }
   | { kind: "select"; id: string | null }
   | { kind: "hover"; pixel: { x: number; y: number } | null };
 
-/** What tests/support/view3d-harness.mjs offers in the page. */
+/** The global that tests/support/view3d-harness.mjs defines in the page. */
 export interface Harness {
-  told: Told[];
+  viewEvents: ViewEvent[];
   camera: { fx: number; fy: number; cx: number; cy: number };
   width: number;
   height: number;
@@ -42,16 +42,16 @@ declare global {
   var harness: Harness;
 }
 
-/** One per test file: they run at the same time. */
+/** One per test file, because they run in parallel. */
 const folder = join(repository, "target", "view3d-test", basename(process.argv[1] ?? ""));
 
-/** A browser in which WebGPU is there, drawn by software. */
+/** A browser with WebGPU in software. */
 export async function startWithWebGpu(): Promise<PageTest> {
   await bundleHarness();
   return PageTest.start(folder, SOFTWARE_WEBGPU);
 }
 
-/** A browser in which there is WebGL 2 only. */
+/** A browser with WebGL 2 only. */
 export async function startWithWebGl(): Promise<PageTest> {
   await bundleHarness();
   return PageTest.start(folder, [...SOFTWARE, "!--enable-unsafe-webgpu", "--disable-blink-features=WebGPU"]);
@@ -72,16 +72,16 @@ async function bundleHarness(): Promise<void> {
   });
 }
 
-/** Wide, so that the image has bars at its sides. */
+/** Wider than the image, which therefore has bars at its sides. */
 export const host = { width: 500, height: 300 };
 
-/** Where on the page a pixel of the depth map is, with the image letterboxed. */
+/** The position of a pixel of the depth map on the page. The image is letterboxed. */
 export function placeOf({ width, height }: Harness, u: number, v: number): Place {
   const scale = Math.min(host.width / width, host.height / height);
   return [(host.width - scale * width) / 2 + scale * (u + 0.5), (host.height - scale * height) / 2 + scale * (v + 0.5)];
 }
 
-/** Side 0.1 m, its centre, which is (3, 0, 0) in the mesh's frame, at (x, y, 0.8) metres: before the wall. */
+/** A cube of 0.1 m with its centre, (3, 0, 0) in the frame of the mesh, at (x, y, 0.8) metres, in front of the wall. */
 export const pose = (x: number, y: number, scale = 0.1) => [
   scale,
   0,
@@ -110,11 +110,11 @@ export const pixelOf = ({ camera }: Harness, x: number, y: number, z: number): P
 export const isNear = (found: readonly number[] | undefined, wanted: readonly number[], within = 4) =>
   assert.ok(
     found && wanted.every((tone, k) => Math.abs((found[k] ?? 999) - tone) <= within),
-    `${found} is not about ${wanted}`,
+    `${found} is not near ${wanted}`,
   );
 export const isGreen = ([r = 0, g = 0, b = 0]: readonly number[] = []) => g > 60 && g > 1.8 * r && g > 1.8 * b;
 
-/** A page with the harness, and its constants. */
+/** Opens a page with the harness, and returns its constants. */
 export async function open(browser: PageTest): Promise<{ page: Page; errors: string[]; facts: Harness }> {
   const { page, errors } = await browser.open("index.html");
   page.setDefaultTimeout(120_000);
@@ -123,7 +123,7 @@ export async function open(browser: PageTest): Promise<{ page: Page; errors: str
   return { page, errors, facts };
 }
 
-/** A view of the wall from the camera, with a green cube. */
+/** Opens a view of the wall from the camera, with a green cube. */
 export async function openCube(browser: PageTest, options: object, kind = "arrays") {
   const opened = await open(browser);
   const start = ([size, options]: [typeof host, object]) => harness.start(size.width, size.height, options);

@@ -4,7 +4,6 @@ import {
   ALIGN_DEFAULTS,
   type AlignOptions,
   type ExtentAxis,
-  OPTIONS,
   PAPER_DEFAULTS,
   type PaperOptions,
   type Preset,
@@ -46,10 +45,12 @@ export const defaultOptions: Options = {
   seed: ALIGN_DEFAULTS.seed,
 };
 
-/** The library's rows about the options of `align`. */
-type Row = (typeof OPTIONS.align)[number];
-const rowOf = <N extends Row["name"]>(name: N) =>
-  OPTIONS.align.find((row) => row.name === name) as Extract<Row, { name: N }>;
+/** Facts of the package's option table, inserted by the build: importing all of it would add 2 kB to the script. */
+declare const OPTION_TABLE: {
+  readonly quality: readonly Quality[];
+  readonly knownExtentAxis: readonly ExtentAxis[];
+  readonly maxSeed: number;
+};
 
 /** The options that are chosen from a list. */
 type ChoiceName = "preset" | "quality" | "knownExtentAxis" | "up" | "symmetry";
@@ -57,14 +58,14 @@ type ChoiceName = "preset" | "quality" | "knownExtentAxis" | "up" | "symmetry";
 /** The values of these options. */
 export const choices: { readonly [K in ChoiceName]: readonly Options[K][] } = {
   preset: [ALIGN_DEFAULTS.preset, PAPER_DEFAULTS.preset],
-  quality: rowOf("quality").choices,
-  knownExtentAxis: rowOf("knownExtentAxis").choices,
+  quality: OPTION_TABLE.quality,
+  knownExtentAxis: OPTION_TABLE.knownExtentAxis,
   up: ["unknown", "y", "z"],
   symmetry: ["auto", "auto-revolution", "none"],
 };
 
 /** The largest seed. */
-export const MAX_SEED = rowOf("seed").max;
+export const MAX_SEED = OPTION_TABLE.maxSeed;
 
 export const options = signal<Options>(defaultOptions);
 
