@@ -198,8 +198,3 @@ impl<'a> Options<'a> {
 fn to_js(error: &Error) -> JsValue {
     error.serialize(&Serializer::json_compatible()).unwrap_or_else(Into::into)
 }
-
-/// See the aligner's.
-#[cfg(target_arch = "wasm32")]
-#[global_allocator]
-static ALLOCATOR: rlsf::SmallGlobalTlsf = rlsf::SmallGlobalTlsf::new();

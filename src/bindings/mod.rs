@@ -9,8 +9,3 @@ mod object;
 mod options;
 pub mod task;
 mod transform;
-
-/// Two-level segregated fit, constant time to get and to give back: a fifth of the standard allocator's bytes.
-#[cfg(target_arch = "wasm32")]
-#[global_allocator]
-static ALLOCATOR: rlsf::SmallGlobalTlsf = rlsf::SmallGlobalTlsf::new();
