@@ -34,13 +34,13 @@ enum State {
     /// Nothing.
     Begun,
     /// Both clouds are drawn.
-    Drawn(Clouds),
+    Drawn(Box<Clouds>),
     /// Their normals are estimated, where they are needed for the metrics.
-    Ready(Clouds),
+    Ready(Box<Clouds>),
     /// The search is under way.
-    Searching(Clouds, Box<Rounds>),
+    Searching(Box<Clouds>, Box<Rounds>),
     /// The method has found a pose.
-    Found(Clouds, Solution, Option<Certainty>),
+    Found(Box<Clouds>, Box<Solution>, Option<Box<Certainty>>),
     /// The result has been returned, or an error.
     Over,
 }
@@ -113,7 +113,7 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
         Ok(match state {
             State::Begun => {
                 mesh.check()?;
-                State::Drawn(Clouds::new(observation, mesh.mesh(), &self.setup.sampling, stages)?)
+                State::Drawn(Box::new(Clouds::new(observation, mesh.mesh(), &self.setup.sampling, stages)?))
             }
             State::Drawn(mut clouds) => {
                 if self.setup.metrics {
@@ -129,13 +129,13 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
                 }
                 Method::Paper(options) => {
                     let solution = paper::estimate(&mut clouds, options, stages)?;
-                    State::Found(clouds, solution, None)
+                    State::Found(clouds, Box::new(solution), None)
                 }
             },
             State::Searching(clouds, rounds) => match &self.method {
                 Method::Precise(options) => {
                     let (solution, certainty) = precise::conclude(&rounds, mesh.mesh(), options)?;
-                    State::Found(clouds, solution, Some(certainty))
+                    State::Found(clouds, Box::new(solution), Some(Box::new(certainty)))
                 }
                 Method::Paper(_) => return Err(over()),
             },
@@ -144,10 +144,9 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
     }
 }
 
-fn with_certainty(aligned: PaperAlignment, certainty: Option<Certainty>) -> AnyAlignment {
-    let Some(Certainty { confidence, alternatives, uncertainty, score, terms }) = certainty else {
-        return aligned.into();
-    };
+fn with_certainty(aligned: PaperAlignment, certainty: Option<Box<Certainty>>) -> AnyAlignment {
+    let Some(certainty) = certainty else { return aligned.into() };
+    let Certainty { confidence, alternatives, uncertainty, score, terms } = *certainty;
     let PaperAlignment { camera_from_mesh, metrics, warnings, diagnostics } = aligned;
     let diagnostics = PreciseDiagnostics { common: diagnostics, score, terms };
     Alignment { camera_from_mesh, confidence, alternatives, uncertainty, metrics, warnings, diagnostics }.into()

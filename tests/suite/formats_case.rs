@@ -75,7 +75,8 @@ fn a_case_names_the_file_at_fault() {
     assert_eq!((failure().code, &*failure().expected), (ErrorCode::InvalidArgument, "depth.npy or depth.png"));
     folder.write("depth.npy", write::depth_npy(&slope()));
     folder.write("camera.json", CAMERA);
-    folder.write("mask.png", b"GIF89a");
+    let empty = Image::new("mask", 16, 12, vec![0; 192]).unwrap();
+    folder.write("mask.png", write::mask_png(&empty).unwrap());
     assert!(failure().expected.starts_with("mesh.glb or mesh.gltf"));
     // A .gltf may name files beside it, not elsewhere.
     let escape = String::from_utf8_lossy(fixture!("mesh-external.gltf")).replace("gltf_buffer_0.bin", "../secret.bin");

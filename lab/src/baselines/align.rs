@@ -58,7 +58,7 @@ pub fn align_baseline(
     host: &mut dyn Host,
 ) -> Result<PaperAlignment> {
     let paper = &options.paper;
-    let aligned = align_by(observation, mesh, &Setup::of_paper(paper)?, PLAN, host, |clouds, stages| {
+    align_by(observation, mesh, &Setup::of_paper(paper)?, PLAN, host, |clouds, stages| {
         let (evidence, [observed, reconstructed]) = clouds.evidence(stages);
         let settings = unit_settings(options, baseline);
         let voxel_size = (1.0 / paper.voxel_divisions) as f32;
@@ -92,8 +92,7 @@ pub fn align_baseline(
             ..Solution::of_pose(target_from_source(observed, &found.target_from_source, reconstructed))
         };
         Ok(solution)
-    });
-    aligned
+    })
 }
 
 fn unit_settings(options: &BaselineOptions, baseline: Baseline) -> UnitSettings {

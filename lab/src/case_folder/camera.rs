@@ -30,7 +30,10 @@ pub fn read_camera(bytes: &[u8], [width, height]: [usize; 2]) -> Result<Pinhole>
     Pinhole::new(fx, fy, cx, cy)
 }
 
-/// Metres per unit of integer depth; `None` where the file does not state it.
+/// Metres per unit of integer depth: `depthScale`, or BOP's `depth_scale`, which is in millimetres. `None` where the file
+/// states neither.
 pub fn depth_scale(bytes: &[u8]) -> Option<f64> {
-    json::parse("camera", bytes).ok()?.get("depthScale")?.as_f64()
+    let value = json::parse("camera", bytes).ok()?;
+    let number = |name: &str| value.get(name).and_then(Value::as_f64);
+    number("depthScale").or_else(|| number("depth_scale").map(|millimetres| millimetres / 1000.0))
 }

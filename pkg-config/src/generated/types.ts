@@ -334,7 +334,7 @@ export type Stage = "observe" | "sample" | "normals" | "features" | "matching" |
 export type Timings = Partial<Record<Stage, number>> & { total: number };
 
 /**
- * What went wrong, as a name that stays the same from release to release.
+ * Stable error code; does not change between releases.
  *
  * In JavaScript it is the `code` of a `Sim3AlignError`, spelled as [`ErrorCode::as_str`] spells it.
  */
@@ -384,12 +384,12 @@ translation: [number, number, number],
 matrix: number[], };
 
 /**
- * Agreement of a posed mesh with the observation. `null` is "nothing to measure", never a good number.
+ * Agreement of a posed mesh with the observation. `null` marks a value that could not be measured.
  */
 export type Metrics = { 
 /**
  * DAVIS boundary F-measure of mask and rendered silhouette at 0.008 × the image diagonal, 0 to 1, higher is
- * better; 0 where nothing is rendered.
+ * better; 0 if nothing is rendered.
  */
 boundaryF: number | null, 
 /**
@@ -425,7 +425,7 @@ normalConsistency: number | null,
 depthMaeMm: number | null, };
 
 /**
- * How far an estimate is from the truth, up to the object's symmetry.
+ * Errors of an estimate relative to the true pose, up to the symmetry of the object.
  */
 export type PoseErrors = { 
 /**
@@ -433,27 +433,28 @@ export type PoseErrors = {
  */
 scaleError: number, 
 /**
- * Angle between the rotations, degrees, 0 to 180; the smallest over the object's symmetries.
+ * Angle between the rotations, degrees, 0 to 180; the smallest over the symmetries of the object.
  */
 rotationErrorDeg: number, 
 /**
- * Distance between where the two transforms put the middle of the mesh's box, metres. Not |t − t_true|: t is
- * where the mesh's origin goes, which may lie anywhere. Under the symmetry of the rotation error.
+ * Distance between the centres of the mesh's bounding box under both transforms, metres. Unlike |t − t_true|, it
+ * does not depend on the origin of the mesh. Uses the symmetry of the rotation error.
  */
 translationErrorM: number, 
 /**
- * The same as a share of the object's diameter: the mesh's box diagonal × the true scale.
+ * The translation error relative to the diameter of the object: the diagonal of the mesh's bounding box × the true
+ * scale.
  */
 translationErrorRelative: number, 
 /**
- * ADD-S, millimetres: mean distance of the truly posed surface's points to the estimated surface (Hinterstoisser
- * et al. 2012, §4.2, with the exact surface in place of its points).
+ * ADD-S, millimetres: mean distance of surface points under the true pose to the surface under the estimated pose
+ * (Hinterstoisser et al. 2012, §4.2, with the exact surface instead of its points).
  */
 addSMm: number, };
 
 /**
- * Sizes of the problem and events during the run. `precise` counts points and renders, the other methods everything but
- * renders; what a method does not count is 0.
+ * Sizes of the problem and events during the run. `precise` counts points and renders, the other methods everything
+ * but renders; what a method does not count is 0.
  */
 export type Counts = { 
 /**
@@ -510,7 +511,8 @@ icpIterations: number,
 renders: number, };
 
 /**
- * The terms of the search's score: agreements from 0 to 1, measured on the search's own grid of the cleaned observation.
+ * The terms of the search's score: agreements from 0 to 1, measured on the search's own grid of the cleaned
+ * observation.
  */
 export type ScoreTerms = { 
 /**
@@ -572,8 +574,8 @@ translation: [number, number, number],
 matrix: number[], };
 
 /**
- * Standard deviations of the pose's parts, as the observation determines them. Parts that a single view leaves open, such
- * as the turn of a round object about its axis, have large ones.
+ * Standard deviations of the pose's parts, as the observation determines them. Parts that a single view leaves open,
+ * such as the turn of a round object about its axis, have large ones.
  */
 export type Uncertainty = { 
 /**
@@ -705,8 +707,8 @@ export type Alignment = {
  */
 confidence: number, 
 /**
- * Other poses that explain the observation nearly as well, best first: flips, and turns under which the object looks
- * alike though the mesh does not.
+ * Other poses that explain the observation nearly as well, best first: flips, and turns under which the object
+ * looks alike though the mesh does not.
  */
 alternatives: Array<Alternative>, 
 /**
@@ -856,8 +858,8 @@ timingsMs: Timings, };
  */
 export type Registration = { 
 /**
- * Share of the source points that land within the inlier distance of a target point, 0 to 1; for `estimateSim3`, the
- * share of the correspondences that are inliers.
+ * Share of the source points that land within the inlier distance of a target point, 0 to 1; for `estimateSim3`,
+ * the share of the correspondences that are inliers.
  */
 fitness: number, 
 /**
