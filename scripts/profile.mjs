@@ -1,19 +1,17 @@
 /**
- * `npm run profile -- [--runs N] [--quality fast,balanced,best] [CASE…]`: the time of each stage natively and in
+ * `npm run profile -- [--runs N] [--quality NAME,…] [CASE…]`: the time of each stage natively and in
  * WebAssembly (Node), in one run, and whether both give the same bits. Without a case, the sample; in all qualities,
  * where none is named.
  */
 import { readdirSync } from "node:fs";
-import { basename, join, resolve } from "node:path";
-import { pathToFileURL } from "node:url";
+import { basename, resolve } from "node:path";
 import { parseArgs } from "node:util";
+import { packageModule, qualities } from "./bench/inputs.mjs";
 import { median } from "./bench/table.mjs";
 import { runLab } from "./lib/lab.mjs";
-import { packageDir, sampleDir } from "./lib/paths.mjs";
+import { sampleDir } from "./lib/paths.mjs";
 import { copySample } from "./lib/sample.mjs";
 import { script } from "./lib/step.mjs";
-
-const qualities = ["fast", "balanced", "best"];
 
 /** @typedef {{ matrix: number[], diagnostics: { timingsMs: Record<string, number> } }} Result */
 
@@ -45,9 +43,7 @@ async function native(folder, quality, runs) {
  * @returns {Promise<Result[]>}
  */
 async function webAssembly(folder, quality, runs) {
-  /** @param {string} file */
-  const load = (file) => import(pathToFileURL(join(packageDir, file)).href);
-  const [{ createAligner }, { readCaseFolder }] = await Promise.all([load("index.js"), load("case-folder.js")]);
+  const [{ createAligner }, { readCaseFolder }] = await Promise.all(["index.js", "case-folder.js"].map(packageModule));
   const aligner = await createAligner();
   const { input } = await readCaseFolder(folder);
   const results = [];
@@ -82,10 +78,11 @@ await script(async () => {
     allowPositionals: true,
   });
   const runs = Number(values.runs ?? 7);
-  const chosen = values.quality?.split(",") ?? qualities;
-  const unknown = chosen.filter((quality) => !qualities.includes(quality));
-  if (unknown.length > 0) throw new Error(`--quality: found ${unknown.join()}, expected ${qualities.join(", ")}.`);
   await copySample();
+  const all = await qualities();
+  const chosen = values.quality?.split(",") ?? all;
+  const unknown = chosen.filter((quality) => !all.includes(quality));
+  if (unknown.length > 0) throw new Error(`--quality: found ${unknown.join()}, expected ${all.join(", ")}.`);
   const folders = positionals.length > 0 ? positionals.map((folder) => resolve(folder)) : [sampleDir];
   for (const folder of folders.filter((candidate) => readdirSync(candidate).includes("camera.json"))) {
     for (const quality of chosen) await profile(folder, quality, runs);

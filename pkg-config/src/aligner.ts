@@ -234,13 +234,14 @@ export class Aligner {
     const progress = new ProgressListener(onProgress);
     const call = { signal: checkedSignal(signal), progress, transfer: checkedFlag("transfer", transfer) };
     // What is handed back holds the prepared mesh, not its arrays.
-    const mesh = job.data === data ? undefined : { mesh: (data as AlignInput).mesh };
+    const withMesh = (returned: object) =>
+      job.data === data ? returned : { ...returned, mesh: (data as AlignInput).mesh };
     try {
       const outcome = await this.#engine.run(job, call);
       const result = outcome.result as Results[M];
-      return transfer ? { ...result, input: { ...outcome.data, ...mesh } } : result;
+      return transfer ? { ...result, input: withMesh(outcome.data) } : result;
     } catch (error) {
-      if (error instanceof Sim3AlignError && isRecord(error.input)) error.input = { ...error.input, ...mesh };
+      if (error instanceof Sim3AlignError && isRecord(error.input)) error.input = withMesh(error.input);
       throw error;
     }
   }

@@ -1,6 +1,7 @@
 /** The core WebAssembly module: what it takes and returns. */
 import type * as Results from "./generated/types.js";
-import type { CoreInput, CoreMesh } from "./input/core-input.js";
+import type { CoreInput } from "./input/core-input.js";
+import type { CoreMesh } from "./prepared-mesh.js";
 import * as glue from "./wasm/core.js";
 import { type Glue, WasmModule } from "./wasm-module.js";
 

@@ -1,10 +1,11 @@
 /** Calls as data, which the same code runs on this thread or in a worker. */
 import type { Core, CoreAlignment, CoreListener } from "./core.js";
 import type { LoadFormats } from "./formats-module.js";
-import type { CoreInput, CoreMesh } from "./input/core-input.js";
+import type { CoreInput } from "./input/core-input.js";
 import { readMesh } from "./input/mesh.js";
 import { resolveInput } from "./input/resolve.js";
 import type { AlignInput, MeshInput } from "./input/types.js";
+import type { CoreMesh } from "./prepared-mesh.js";
 import { type AlignResult, type Clouds, type Evaluation, type Registration, withWarnings } from "./results.js";
 import { isTypedArray, wrongKind } from "./values.js";
 import type { LoadedModule } from "./wasm-module.js";

@@ -1,7 +1,14 @@
 /** Meshes that are read, checked and decimated once, and used in many calls. */
 
 import { Sim3AlignError } from "./error.js";
-import type { CoreMesh } from "./input/core-input.js";
+
+/** A mesh as the core takes it. */
+export interface CoreMesh {
+  positions: Float32Array;
+  indices?: Uint32Array | Uint16Array;
+  /** The number under which the core keeps the mesh. Where it does already, the arrays are not read. */
+  id?: number;
+}
 
 /** A mesh with the number under which each thread keeps what it has derived from it. */
 export interface KeptMesh {

@@ -8,21 +8,18 @@ import { dirname, join, resolve } from "node:path";
 import { buildPackage } from "../lib/package.mjs";
 import { at } from "../lib/paths.mjs";
 import { command, count } from "./command.mjs";
-import { packageModule, readTypedCase } from "./inputs.mjs";
+import { packageModule, qualities, readTypedCase } from "./inputs.mjs";
 import { caseFolders, runPeers } from "./peers.mjs";
 import { isWithin, loose, strict } from "./records.mjs";
 import { fixed, markdownTable, median } from "./table.mjs";
 
-/** Our methods by name, and their options. */
-const presets = {
-  fast: { quality: "fast" },
-  balanced: { quality: "balanced" },
-  best: { quality: "best" },
-  paper: { preset: "paper" },
-};
+/** Our methods by name, and their options. @returns {Promise<[name: string, options: object][]>} */
+const presets = async () => [
+  ...(await qualities()).map((quality) => /** @type {[string, object]} */ ([quality, { quality }])),
+  ["paper", { preset: "paper" }],
+];
 /** Open3D's tutorial; RANSAC estimates the scale too; ICP on thinned clouds. */
 const peers = ["open3d-ransac", "open3d-ransac-scale", "open3d-ransac-thinned"];
-const methods = [...Object.keys(presets), ...peers];
 
 /** @typedef {Awaited<ReturnType<typeof readTypedCase>>} Case */
 /** @typedef {{ method: string, ms: number, errors: any, iou: number }} Measurement without errors where the truth is unknown */
@@ -36,7 +33,7 @@ const methods = [...Object.keys(presets), ...peers];
  */
 async function measureOurs(aligner, { input, truth }) {
   const measurements = [];
-  for (const [method, options] of Object.entries(presets)) {
+  for (const [method, options] of await presets()) {
     const begun = performance.now();
     const pose = await aligner.align(input, options);
     const ms = performance.now() - begun;
@@ -66,7 +63,8 @@ const milliseconds = (all, method) => median(of(all, method).map(({ ms }) => ms)
 
 /** Times, ratios (medians over the cases) and success. @param {readonly CaseResults[]} all @param {boolean} hasTruth */
 function table(all, hasTruth) {
-  const rows = methods.map((method) => {
+  const methods = new Set(all.flatMap(({ measurements }) => measurements.map(({ method }) => method)));
+  const rows = [...methods].map((method) => {
     const measurements = of(all, method);
     const ratios = peers.map((peer) =>
       median(all.map((results) => milliseconds([results], method) / milliseconds([results], peer))),

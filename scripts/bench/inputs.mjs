@@ -10,6 +10,12 @@ import { packageDir } from "../lib/paths.mjs";
  */
 export const packageModule = (file) => import(pathToFileURL(join(packageDir, file)).href);
 
+/** The names of the qualities, from the built package's table of options. @returns {Promise<string[]>} */
+export async function qualities() {
+  const { OPTIONS } = await packageModule("index.js");
+  return OPTIONS.align.find((/** @type {{ name: string }} */ { name }) => name === "quality").choices;
+}
+
 /**
  * @typedef {object} TypedCase
  * @property {Float32Array} depth metres
@@ -29,7 +35,7 @@ export const packageModule = (file) => import(pathToFileURL(join(packageDir, fil
  */
 export async function readTypedCase(folder) {
   const [{ readCaseFolder }, { resolveInput }, { formatsModule }] = await Promise.all(
-    ["case-folder.js", "input/resolve.js", "modules.js"].map(packageModule),
+    ["case-folder.js", "input/resolve.js", "formats-module.js"].map(packageModule),
   );
   const { name, input, truth } = await readCaseFolder(folder);
   const { core } = await resolveInput(input, () => formatsModule.load());

@@ -7,7 +7,7 @@ import { join } from "node:path";
 import { buildPackage } from "../lib/package.mjs";
 import { step } from "../lib/step.mjs";
 import { command, count } from "./command.mjs";
-import { bumpyRing, packageModule, pictureOf } from "./inputs.mjs";
+import { bumpyRing, packageModule, pictureOf, qualities } from "./inputs.mjs";
 import { fixed, markdownTable } from "./table.mjs";
 
 /** @typedef {import("./inputs.mjs").TypedCase} TypedCase */
@@ -85,7 +85,7 @@ async function measurePeaks(meshes) {
     0,
   );
   const peaks = [];
-  for (const options of [{ quality: "fast" }, { quality: "balanced" }, { quality: "best" }, { preset: "paper" }]) {
+  for (const options of [...(await qualities()).map((quality) => ({ quality })), { preset: "paper" }]) {
     const { aligner, memory } = await freshCore();
     const before = memory.buffer.byteLength;
     await aligner.align(input, options);

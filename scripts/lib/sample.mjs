@@ -37,17 +37,22 @@ export const copySample = once(async () => {
   const copies = [sampleDir, at("examples", "sample", "mug")];
   const source = join(pageSamplesDir, "mug");
   const outputs = copies.map((folder) => join(folder, "depth.npy"));
-  await cached(at("target", "samples", "copied-from"), digest([source]), outputs, async () => {
-    const { readDepth } = await import(pathToFileURL(join(packageDir, "formats.js")).href);
-    const { depthScale } = JSON.parse(readFileSync(join(source, "camera.json"), "utf8"));
-    const { data, width, height } = await readDepth(readFileSync(join(source, "depth.png")));
-    const metres = Float32Array.from(data, (value) => value * depthScale);
-    for (const folder of copies) {
-      rmSync(folder, { recursive: true, force: true });
-      cpSync(source, folder, { recursive: true, filter: (path) => !path.endsWith("depth.png") });
-      writeFileSync(join(folder, "depth.npy"), npy(metres, [height, width]));
-    }
-  });
+  await cached(
+    at("target", "samples", "copied-from"),
+    digest([source, at("scripts", "lib", "sample.mjs")]),
+    outputs,
+    async () => {
+      const { readDepth } = await import(pathToFileURL(join(packageDir, "formats.js")).href);
+      const { depthScale, ...camera } = JSON.parse(readFileSync(join(source, "camera.json"), "utf8"));
+      const { data, width, height } = await readDepth(readFileSync(join(source, "depth.png")), { depthScale });
+      for (const folder of copies) {
+        rmSync(folder, { recursive: true, force: true });
+        cpSync(source, folder, { recursive: true, filter: (path) => !path.endsWith("depth.png") });
+        writeFileSync(join(folder, "depth.npy"), npy(data, [height, width]));
+        writeFileSync(join(folder, "camera.json"), `${JSON.stringify(camera, null, 2)}\n`);
+      }
+    },
+  );
 });
 
 /**

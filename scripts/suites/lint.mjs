@@ -1,24 +1,29 @@
 /** Formatters, linters and type checks, with warnings denied. */
 import { readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
+import { filesBelow } from "../lib/cache.mjs";
 import { at } from "../lib/paths.mjs";
 import { nodeProgram, run } from "../lib/run.mjs";
 import { setUp, wasmTarget } from "../lib/setup.mjs";
 import { runChecks } from "../lib/step.mjs";
 import { wasmModules } from "../lib/wasm.mjs";
 
+/** Crates of the workspace besides the aligner. */
+const crates = ["formats", "geometry", "lab"];
+
 export async function lint() {
   await setUp();
   const clippy = (/** @type {readonly string[]} */ args) => () =>
     run("cargo", ["clippy", "--quiet", ...args, "--", "-D", "warnings"], { remedy: "correct what clippy names" });
-  const crates = wasmModules.flatMap(({ crate }) => ["--package", crate]);
+  const packages = wasmModules.flatMap(({ crate }) => ["--package", crate]);
   const [node, biome] = nodeProgram("@biomejs/biome", "biome");
   return runChecks([
     ["rustfmt", () => run("cargo", ["fmt", "--all", "--check"], { remedy: "npm run format" })],
     ["clippy, native", clippy(["--workspace", "--all-targets"])],
-    ["clippy, WebAssembly modules", clippy(["--lib", "--target", wasmTarget, ...crates])],
+    ["clippy, WebAssembly modules", clippy(["--lib", "--target", wasmTarget, ...packages])],
     ["biome", () => run(node, [biome, "ci", "--error-on-warnings"], { remedy: "npm run format, then what is left" })],
     ["commands start before any package is installed", checkCommands],
+    ["all Rust tests are in test programs", checkTests],
   ]);
 }
 
@@ -42,6 +47,13 @@ function checkCommands() {
   if (early.length > 0) {
     throw new Error(`They import ${early.join(", ")} at once. Remedy: \`await import(…)\` where it is used.`);
   }
+}
+
+/** Tests in a library are a second program to compile, and `test = false` leaves them out: none may be there. */
+function checkTests() {
+  const sources = filesBelow(["src", ...crates.map((name) => join(name, "src"))].map((folder) => at(folder)));
+  const found = sources.filter((file) => /^\s*#\[(test|cfg\(test\))\]/m.test(readFileSync(file, "utf8")));
+  if (found.length > 0) throw new Error(`${found.join(", ")}: never run. Remedy: move the tests to tests/suite.`);
 }
 
 /** Type checks of what the build does not compile; they need the built package's declarations. */

@@ -118,7 +118,7 @@ const bad: [name: string, call: Call, code: string, argument: string, message: R
     () => aligner.register(source, new Float64Array(300)),
     "DEGENERATE_POINTS",
     "target",
-    /same point/,
+    /identical points/,
   ],
   ["a bad scale", () => aligner.register(source, target, { scale: -1 }), "INVALID_OPTION", "options.scale", /"free"/],
   [

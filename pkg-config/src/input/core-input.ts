@@ -1,5 +1,6 @@
 /** The input as the core takes it. */
 import type { Pinhole } from "../formats/pinhole.js";
+import type { CoreMesh } from "../prepared-mesh.js";
 
 /** An input as the core takes it; the core checks lengths and values. */
 export interface CoreInput {
@@ -14,12 +15,4 @@ export interface CoreInput {
   resizeMask?: unknown;
   camera?: Pinhole;
   mesh: CoreMesh;
-}
-
-/** A mesh as the core takes it. */
-export interface CoreMesh {
-  positions: Float32Array;
-  indices?: Uint32Array | Uint16Array;
-  /** The number under which the core keeps the mesh. Where it does already, the arrays are not read. */
-  id?: number;
 }

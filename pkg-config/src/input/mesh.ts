@@ -2,9 +2,9 @@
 
 import { invalidArgument } from "../error.js";
 import type { LoadFormats } from "../formats-module.js";
+import type { CoreMesh } from "../prepared-mesh.js";
 import { isRecord, isTypedArray, withoutUndefined, wrongKind } from "../values.js";
 import { fileBytes } from "./bytes.js";
-import type { CoreMesh } from "./core-input.js";
 import type { MeshFile } from "./types.js";
 
 const kinds =
