@@ -103,13 +103,19 @@ test("calls report workers that cannot be loaded or throw; a lost worker is repl
       codes.push(await aligner.align(scene.input).catch((error) => error.code));
       aligner.dispose();
     }
-    // The first of these workers throws when it gets its job.
+    // The first of these workers throws instead of running its job.
     let made = 0;
-    const faulty = `import "${location.origin}/node_modules/sim3align/worker.js"; addEventListener("message", ({ data }) => { if (data.type === "job") throw new Error("lost"); });`;
+    const scriptOf = (code: string) => URL.createObjectURL(new Blob([code], { type: "text/javascript" }));
+    const failing = scriptOf(`addEventListener("message", (event) => {
+      if (event.data.type !== "job") return;
+      event.stopImmediatePropagation();
+      throw new Error("lost");
+    });`);
+    // Imported first, so that its listener precedes that of the package.
+    const faulty = scriptOf(`import "${failing}"; import "${location.origin}/node_modules/sim3align/worker.js";`);
     const createWorker = () => {
       made += 1;
-      const script = made === 1 ? URL.createObjectURL(new Blob([faulty], { type: "text/javascript" })) : null;
-      return new Worker(script ?? "/node_modules/sim3align/worker.js", { type: "module" });
+      return new Worker(made === 1 ? faulty : "/node_modules/sim3align/worker.js", { type: "module" });
     };
     const aligner = await sim3align.createAligner({ workers: 1, createWorker });
     const { scale } = await aligner.align(scene.input, { quality: "best" });

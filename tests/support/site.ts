@@ -24,14 +24,15 @@ declare global {
 /** Runs in the page: replaces `Worker` by one whose messages wait for the gate. */
 function installWorkerGate(): void {
   let isOpen = true;
-  let waiting: (() => void)[] = [];
+  let isPassing = false;
+  const waiting: (() => void)[] = [];
   const Plain = Worker;
   globalThis.Worker = class extends Plain {
     constructor(...parameters: ConstructorParameters<typeof Plain>) {
       super(...parameters);
       // The first listener of the worker, so that it can hold messages back from all others.
       this.addEventListener("message", (event) => {
-        if (isOpen) return;
+        if (isPassing || (isOpen && waiting.length === 0)) return;
         event.stopImmediatePropagation();
         waiting.push(() => this.dispatchEvent(new MessageEvent("message", { data: event.data })));
       });
@@ -43,9 +44,15 @@ function installWorkerGate(): void {
     },
     open() {
       isOpen = true;
-      const messages = waiting;
-      waiting = [];
-      for (const dispatch of messages) dispatch();
+      // Each message in its own task, in order, as without the gate.
+      const next = () => {
+        if (!isOpen || waiting.length === 0) return;
+        isPassing = true;
+        waiting.shift()?.();
+        isPassing = false;
+        setTimeout(next);
+      };
+      next();
     },
   };
 }
