@@ -1,4 +1,4 @@
-/** Many alignments, yielded as they are ready, with a bounded number of them running. */
+/** Aligns many inputs with bounded memory, and yields each result when it is ready. */
 import type { Sim3AlignError } from "./error.js";
 import type { AlignInput } from "./input/types.js";
 import { onAbort } from "./on-abort.js";
@@ -6,18 +6,18 @@ import type { AlignAllResult } from "./results.js";
 
 /** Options of a batch. */
 export interface BatchOptions<A> {
-  /** How many inputs may have been pulled whose results have not been yielded. */
+  /** Maximum number of inputs pulled but not yet yielded. */
   limit: number;
   ordered: boolean;
   signal: AbortSignal | undefined;
   align(input: AlignInput, index: number, signal: AbortSignal): Promise<A>;
-  /** Whether an error is about one input only, so that the others continue. */
+  /** Whether an error concerns one input only; the others then continue. */
   isOwn(error: unknown): error is Sim3AlignError;
 }
 
 type Settled<A> = { result: AlignAllResult<A> } | { failure: unknown };
 
-/** Aligns the inputs. Leaving the loop early ends the alignments that are running. */
+/** Aligns the inputs. Leaving the loop early cancels the running alignments. */
 export async function* alignAll<A extends { input?: AlignInput }>(
   inputs: Iterable<AlignInput> | AsyncIterable<AlignInput>,
   { limit, ordered, signal, align, isOwn }: BatchOptions<A>,
@@ -32,7 +32,7 @@ export async function* alignAll<A extends { input?: AlignInput }>(
       reject(reason);
     });
   });
-  // It may reject while nobody waits for it.
+  // Prevents an unhandled rejection if nothing awaits the promise.
   aborted.catch(() => {});
   const iterator = Symbol.asyncIterator in inputs ? inputs[Symbol.asyncIterator]() : inputs[Symbol.iterator]();
   const running = new Map<number, Promise<number>>();
@@ -74,7 +74,7 @@ export async function* alignAll<A extends { input?: AlignInput }>(
   } finally {
     unfollow();
     stopped.abort();
-    // The source may be busy making an input: do not wait for it.
+    // The iterator may be busy; its `return()` is not awaited.
     if (!isWhole) Promise.allSettled([pull, iterator.return?.()]);
   }
 }

@@ -1,5 +1,5 @@
 /// <reference lib="esnext.disposable" preserve="true" />
-/** The aligner: the package's main class. */
+/** The main class of the package. */
 import { alignAll } from "./align-all.js";
 import { type Core, coreModule } from "./core.js";
 import { type Engine, MainThreadEngine } from "./engine.js";
@@ -30,22 +30,22 @@ import type { LoadedModule } from "./wasm-module.js";
 
 /** Options of `createAligner`. */
 export interface AlignerOptions {
-  /** The core module. Default: `wasm/core_bg.wasm` beside this script. */
+  /** The core module. Default: `wasm/core_bg.wasm` next to this script. */
   wasm?: WasmSource | undefined;
-  /** The module that reads files, loaded with the first file. Default: `wasm/formats_bg.wasm` beside this script. */
+  /** The formats module, loaded when the first file is passed. Default: `wasm/formats_bg.wasm` next to this script. */
   formatsWasm?: WasmSource | undefined;
   /**
-   * The number of workers: 0 (the default) works on the calling thread; `"auto"` is one less than the number of cores, 1
-   * to 8. Workers run this package's `worker.js` as module `Worker`s, or as `node:worker_threads`. They need neither shared
-   * memory nor special headers. Idle workers do not keep a Node process alive.
+   * The number of workers: 0 (the default) runs calls on the calling thread; `"auto"` is one less than the number of
+   * cores, 1 to 8. Workers run this package's `worker.js` as module `Worker`s, or as `node:worker_threads`. They need
+   * neither shared memory nor special headers. Idle workers do not keep a Node process alive.
    */
   workers?: number | "auto" | undefined;
-  /** Creates a worker that runs this package's `worker.js`, for bundlers that do not find it beside this script. */
+  /** Creates a worker that runs `worker.js` of this package. Needed only if that file is not next to this script. */
   createWorker?: CreateWorker | undefined;
 }
 
 /**
- * The files that `sim3align/inline` brings along.
+ * The assets that `sim3align/inline` bundles.
  * @internal
  */
 export interface BundledAssets {
@@ -54,22 +54,22 @@ export interface BundledAssets {
   workerScript?: string;
 }
 
-/** Upper bound on the workers of "auto": each holds a copy of its input. */
+/** Upper limit of "auto", because each worker holds a copy of its input. */
 const MAX_AUTO = 8;
 
 /**
- * Loads the core module and creates an aligner. The module is loaded once and shared by all aligners; only the first
- * call's `wasm` counts. Each aligner has its own state.
- * @throws {@link Sim3AlignError} `NOT_INITIALISED` if the module can't be loaded; the next call tries again
+ * Loads the core module and creates an aligner. The module is loaded once and shared by all aligners; only the `wasm`
+ * of the first call is used. Each aligner has its own state.
+ * @throws {@link Sim3AlignError} `NOT_INITIALISED` if the module cannot be loaded; the next call tries again
  */
 export async function createAligner(options: AlignerOptions = {}): Promise<Aligner> {
   return Aligner.create(options);
 }
 
 /**
- * Finds similarity transforms. Methods reject with {@link Sim3AlignError}, after which the aligner is still usable. They
- * neither change nor keep their arguments. With workers, arguments are copied when a worker is free: leave them unchanged
- * until the call ends.
+ * Estimates similarity transforms. Methods reject with {@link Sim3AlignError}; the aligner remains usable. They neither
+ * modify nor retain their arguments. With workers, arguments are copied when a worker is free: do not modify them
+ * before the call settles.
  */
 export class Aligner {
   readonly #core: LoadedModule<Core>;
@@ -101,14 +101,14 @@ export class Aligner {
   }
 
   /**
-   * Aligns a mesh to the object in a depth map: x_cam = s·R·p_mesh + t, OpenCV camera frame (x right, y down, z forward),
-   * metres. The same input, options and seed give the same bits, with any number of workers.
+   * Aligns a mesh to the object in a depth map: x_cam = s·R·p_mesh + t, OpenCV camera frame (x right, y down, z
+   * forward), metres. The same input, options and seed give bit-identical results with any number of workers.
    *
-   * The result has a `confidence`, the other poses that explain the observation (`alternatives`), and how well the
-   * observation determines each part of the pose (`uncertainty`). With `preset: "paper"` it has none of these; with
-   * `metrics: false` it has no `metrics`.
-   * @throws {@link Sim3AlignError} for bad input, `INVALID_OPTION` for options that contradict each other, `UNKNOWN_OPTION`
-   * for options of the other preset, and `NO_CONSENSUS` where no pose has support in the data
+   * The result includes a calibrated probability (`confidence`), other poses that explain the observation almost as
+   * well (`alternatives`), and the uncertainty of each part of the pose (`uncertainty`). With `preset: "paper"` it has
+   * none of these; with `metrics: false` it has no `metrics`.
+   * @throws {@link Sim3AlignError} for invalid input, `INVALID_OPTION` for contradictory options, `UNKNOWN_OPTION` for
+   * options of the other preset, and `NO_CONSENSUS` if no pose is supported by the data
    */
   async align<P extends Preset = "precise", M extends boolean = true>(
     input: AlignInput,
@@ -122,14 +122,14 @@ export class Aligner {
   }
 
   /**
-   * Aligns many inputs, and yields each result as it is ready: `{ index, alignment }`, or `{ index, error }` for an input
-   * at fault, after which the others continue. Inputs are pulled as needed: at most twice as many as there are workers
-   * (one, without workers) are in memory at a time. Leaving the loop ends the running alignments.
+   * Aligns many inputs, and yields each result when it is ready: `{ index, alignment }`, or `{ index, error }` if an
+   * input is invalid; the other inputs continue. Inputs are pulled on demand: at most twice the number of workers (one,
+   * without workers) are in memory at a time. Leaving the loop cancels the running alignments.
    * @example
    * ```ts
    * for await (const { index, alignment, error } of aligner.alignAll(inputs)) console.log(index, alignment ?? error);
    * ```
-   * @throws what `inputs` throws, the reason of an aborted signal, and {@link Sim3AlignError} `DISPOSED`
+   * @throws the exceptions of `inputs`, the reason of an aborted signal, and {@link Sim3AlignError} `DISPOSED`
    */
   async *alignAll<P extends Preset = "precise", M extends boolean = true>(
     inputs: Iterable<AlignInput> | AsyncIterable<AlignInput>,
@@ -151,9 +151,9 @@ export class Aligner {
   }
 
   /**
-   * Scores a transform on an input with the metrics of `align`, and compares it with `options.truth`.
+   * Computes the metrics of a transform and, if `options.truth` is given, its errors.
    * @param transform camera from mesh, metres
-   * @throws {@link Sim3AlignError} for bad input, `INVALID_TRANSFORM` for what is no similarity
+   * @throws {@link Sim3AlignError} for invalid input, `INVALID_TRANSFORM` if the transform is not a similarity
    */
   async evaluate(input: AlignInput, transform: Sim3Like, options: EvaluateOptions = {}): Promise<Evaluation> {
     const { truth, ...rest } = checkedOptions(options);
@@ -162,10 +162,10 @@ export class Aligner {
   }
 
   /**
-   * Aligns a point cloud to another that it overlaps, at least in part: y = s·R·x + t.
-   * @param source x, y, z one after the other, in any unit
-   * @param target x, y, z one after the other, in any unit
-   * @throws {@link Sim3AlignError} for bad input, and `NO_CONSENSUS` where no transform has support in the data
+   * Aligns a point cloud with another that overlaps it at least partially: y = s·R·x + t.
+   * @param source interleaved x, y, z, in any unit
+   * @param target interleaved x, y, z, in any unit
+   * @throws {@link Sim3AlignError} for invalid input, and `NO_CONSENSUS` if no transform is supported by the data
    */
   async register(
     source: Float32Array | Float64Array,
@@ -176,11 +176,11 @@ export class Aligner {
   }
 
   /**
-   * Estimates the transform that most correspondences agree on: y = s·R·x + t.
-   * @param source x, y, z one after the other, in any unit
-   * @param target x, y, z one after the other, in any unit
-   * @param correspondences index of a source point, index of its target point, one pair after the other
-   * @throws {@link Sim3AlignError} for bad input, and `NO_CONSENSUS` where too few correspondences agree
+   * Estimates the transform that most correspondences agree with: y = s·R·x + t.
+   * @param source interleaved x, y, z, in any unit
+   * @param target interleaved x, y, z, in any unit
+   * @param correspondences interleaved pairs: index of a source point, index of its target point
+   * @throws {@link Sim3AlignError} for invalid input, and `NO_CONSENSUS` if too few correspondences agree
    */
   async estimateSim3(
     source: Float32Array | Float64Array,
@@ -192,9 +192,9 @@ export class Aligner {
   }
 
   /**
-   * Reads, checks and decimates a mesh once for many calls: frames of a video, views, several objects of one kind. Pass the
-   * result as `mesh`.
-   * @throws {@link Sim3AlignError} for what is no mesh, `DEGENERATE_MESH` for one without volume
+   * Reads, validates and decimates a mesh once for many calls: frames of a video, several views, or several instances
+   * of the object. Pass the result as `mesh`.
+   * @throws {@link Sim3AlignError} for an invalid mesh, `DEGENERATE_MESH` for a mesh without volume
    */
   async prepareMesh(mesh: MeshInput, options: Pick<CallOptions, "signal"> = {}): Promise<PreparedMesh> {
     const id = nextMeshId();
@@ -209,8 +209,8 @@ export class Aligner {
   }
 
   /**
-   * Ends the aligner and its workers. Running and later calls reject with `DISPOSED`. The modules stay loaded for other
-   * aligners.
+   * Releases the aligner and terminates its workers. Running and later calls reject with `DISPOSED`. The modules stay
+   * loaded for other aligners.
    */
   dispose(): void {
     if (this.#isDisposed) return;
@@ -218,7 +218,7 @@ export class Aligner {
     this.#engine.dispose();
   }
 
-  /** Disposes the aligner at the end of a `using` declaration's scope. */
+  /** Disposes the aligner at the end of the scope of a `using` declaration. */
   [Symbol.dispose](): void {
     this.dispose();
   }
@@ -233,7 +233,7 @@ export class Aligner {
     const job = { method, ...this.#withMesh(data), options, ...more } as unknown as Job & { method: M };
     const progress = new ProgressListener(onProgress);
     const call = { signal: checkedSignal(signal), progress, transfer: checkedFlag("transfer", transfer) };
-    // What is handed back holds the prepared mesh, not its arrays.
+    // The returned input contains the prepared mesh, not its arrays.
     const withMesh = (returned: object) =>
       job.data === data ? returned : { ...returned, mesh: (data as AlignInput).mesh };
     try {
@@ -246,14 +246,14 @@ export class Aligner {
     }
   }
 
-  /** The data of a job with the arrays of a prepared mesh in place of it. */
+  /** The data of a job, with a prepared mesh replaced by its arrays. */
   #withMesh(data: unknown): { data: unknown; meshId?: number } {
     if (!isRecord(data) || !(data.mesh instanceof PreparedMesh)) return { data };
     const { id, mesh } = keptMesh(data.mesh, this.#dropMesh(data.mesh));
     return { data: { ...data, mesh }, meshId: id };
   }
 
-  /** What frees a prepared mesh in this aligner: the same function however often it is asked for. */
+  /** Returns the function that frees a prepared mesh in this aligner, always the same one. */
   #dropMesh(mesh: PreparedMesh): () => void {
     let drop = this.#drops.get(mesh);
     if (drop === undefined) {
@@ -272,15 +272,15 @@ export class Aligner {
 /** Options without undefined properties. The core checks names and values. */
 function checkedOptions<T extends object>(options: T) {
   if (isRecord(options)) return withoutUndefined(options as T);
-  throw invalidArgument("options", options, "an object", "Pass { name: value }, or leave it out.");
+  throw invalidArgument("options", options, "an object", "Pass { name: value }, or omit it.");
 }
 
 function checkedFlag(name: string, value: unknown): boolean {
   if (typeof value === "boolean") return value;
-  throw invalidArgument(`options.${name}`, value, "true or false", "Leave it out for the default.");
+  throw invalidArgument(`options.${name}`, value, "true or false", "Omit it to use the default.");
 }
 
-/** A signal of this realm or another. */
+/** An abort signal of any realm. */
 function checkedSignal(signal: unknown): AbortSignal | undefined {
   if (signal === undefined || signal === null) return undefined;
   if (isKind<AbortSignal>(signal, "AbortSignal")) return signal;
@@ -291,6 +291,6 @@ function checkedWorkers(workers: unknown = 0): number | "auto" {
   if (workers === "auto" || (Number.isInteger(workers) && (workers as number) >= 0 && (workers as number) <= 64)) {
     return workers as number | "auto";
   }
-  const remedy = "Leave it out to work on the calling thread.";
-  throw invalidArgument("workers", workers, 'a whole number from 0 to 64, or "auto"', remedy);
+  const remedy = "Omit it to run on the calling thread.";
+  throw invalidArgument("workers", workers, 'an integer from 0 to 64, or "auto"', remedy);
 }

@@ -1,11 +1,11 @@
-/** A case: the files of one observation, one mesh and, where it is known, the true pose. */
+/** A case: the files of one observation, one mesh and, if known, the true pose. */
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
 import { Sim3AlignError } from "./error.js";
 import type { LoadFormats } from "./formats-module.js";
 import { requiredBytes } from "./input/bytes.js";
 import type { AlignInput, EncodedBytes, MeshFile, MeshFormat } from "./input/types.js";
 
-/** Files by their names, relative to the case's folder: bytes, or a function that reads them when they are needed. */
+/** Files by name, relative to the folder of the case: bytes, or a function that reads them on demand. */
 export type CaseFiles = Readonly<Record<string, EncodedBytes | (() => Promise<EncodedBytes>)>>;
 
 /** How to read the files of a case. */
@@ -13,15 +13,15 @@ export type CaseSettings = Partial<Pick<AlignInput, "depthScale" | "imageId" | "
 
 /** A case whose files have been read, but not decoded. */
 export interface Case {
-  /** What `align` and `evaluate` take. */
+  /** The input for `align` and `evaluate`. */
   input: AlignInput;
-  /** The name of the file that each part of the input comes from. */
+  /** The name of the file of each part of the input. */
   files: Record<keyof typeof caseFiles, string>;
-  /** The true pose; `null` where the case has none. */
+  /** The true pose; `null` if unknown. */
   truth: KnownPose | null;
 }
 
-/** The names of the files that hold each part of a case, in order of preference. */
+/** File names of each part of a case, in order of preference. */
 export const caseFiles = {
   depth: ["depth.npy", "depth.png"],
   mask: ["mask.png", "mask.npy", "mask.json"],
@@ -32,8 +32,8 @@ export const caseFiles = {
 const meshFormats: readonly string[] = ["glb", "gltf", "obj", "ply", "stl"] satisfies MeshFormat[];
 
 /**
- * Reads a case: depth map, mask, mesh, camera file and `gt.json`, known by their names.
- * @param place of the files, for errors
+ * Reads a case: depth map, mask, mesh, camera file and `gt.json`, identified by name.
+ * @param place location of the files, for errors
  * @internal
  */
 export async function caseFrom(
@@ -65,8 +65,9 @@ export async function caseFrom(
 }
 
 /**
- * A mesh file as an input: its format is that of its name, and the buffers of a `.gltf` come from beside it.
- * @param read gives the bytes of a file by its path, relative to the mesh's folder
+ * Reads a mesh file as an input. The extension determines the format; the buffers of a `.gltf` are read from its
+ * folder.
+ * @param read returns the bytes of a file, by its path relative to the folder of the mesh
  * @internal
  */
 export async function meshFile(
@@ -85,7 +86,7 @@ export async function meshFile(
   return { bytes, format, resources };
 }
 
-/** The path that a URI in a `.gltf` names. A file that names others is not trusted with the whole disk. */
+/** The path of a URI in a `.gltf`. Paths outside its folder are rejected, because the file may be malicious. */
 function pathBelow(uri: string): string {
   const parts = decoded(uri)
     .split(/[/\\]/)
@@ -96,8 +97,8 @@ function pathBelow(uri: string): string {
     code: "CORRUPT_FILE",
     argument: "mesh",
     found: `a buffer at ${JSON.stringify(uri)}`,
-    expected: "one in the folder of the .gltf, or below it",
-    remedy: "Put the buffers beside the .gltf, or pack everything into one .glb.",
+    expected: "a path in the folder of the .gltf, or below it",
+    remedy: "Put the buffers next to the .gltf, or convert it to a single .glb.",
   });
 }
 
@@ -109,7 +110,7 @@ function decoded(uri: string): string {
   }
 }
 
-/** The error for a file of a case that is not there. */
+/** The error for a missing file of a case. */
 export function fileNotFound(argument: string, found: string, expected: string, cause?: unknown): Sim3AlignError {
   const remedy = 'See "sim3align align --help" for the layout of a case folder.';
   return new Sim3AlignError({ code: "FILE_NOT_FOUND", argument, found, expected, remedy }, { cause });

@@ -7,18 +7,18 @@ import type { AlignInput, CameraInput } from "./input/types.js";
 
 export type { CaseSettings } from "./case-files.js";
 
-/** A case from disk. `files` holds paths. */
+/** A case on disk. `files` contains paths. */
 export interface CaseOnDisk extends Omit<Case, "files"> {
   name: string;
   files: Readonly<Record<string, string>>;
 }
 
-/** The files of a case, named one by one. */
+/** The files of a case, given individually. */
 export interface CasePaths {
   depth: string;
   mask: string;
   mesh: string;
-  /** A file, or the camera itself. */
+  /** A camera file, or the camera. */
   camera: string | { value: CameraInput };
 }
 
@@ -26,7 +26,7 @@ const loadFormats = () => formatsModule.load();
 
 /**
  * Reads a case folder.
- * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the names that were looked for
+ * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
  */
 export async function readCaseFolder(folder: string, settings: CaseSettings = {}): Promise<CaseOnDisk> {
   const names = await namesIn(folder);
@@ -36,7 +36,7 @@ export async function readCaseFolder(folder: string, settings: CaseSettings = {}
   return { ...found, name: basename(resolve(folder)), files };
 }
 
-/** Names of the files in a case folder; of those below it only where a `.gltf` may name them. */
+/** Names of the files in a case folder; includes subfolders only if a `.gltf` may refer to them. */
 async function namesIn(folder: string): Promise<string[]> {
   const list = (recursive: boolean) =>
     readdir(folder, { recursive }).catch((cause) => {
@@ -47,7 +47,7 @@ async function namesIn(folder: string): Promise<string[]> {
   return mesh === "mesh.gltf" ? (await list(true)).map((name) => name.replaceAll("\\", "/")) : names;
 }
 
-/** Reads a case from files that are named one by one. */
+/** Reads a case from individual files. */
 export async function readCaseFiles(name: string, paths: CasePaths, settings: CaseSettings = {}): Promise<CaseOnDisk> {
   const { camera, ...files } = paths;
   const beside = (path: string) => read("mesh", join(dirname(paths.mesh), path));
@@ -67,12 +67,12 @@ export async function readCaseFiles(name: string, paths: CasePaths, settings: Ca
   };
 }
 
-/** A file's bytes. */
+/** The bytes of a file. */
 export async function read(argument: string, path: string): Promise<Uint8Array> {
   try {
     return await readFile(path);
   } catch (cause) {
-    throw unreadable(argument, path, "a file that can be read", cause);
+    throw unreadable(argument, path, "a readable file", cause);
   }
 }
 

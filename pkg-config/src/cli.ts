@@ -1,5 +1,5 @@
 #!/usr/bin/env node
-/** `sim3align`: the command line. */
+/** The command line program `sim3align`. */
 import { readFileSync } from "node:fs";
 import { Command, CommanderError } from "commander";
 import { alignCommand } from "./cli/align-command.js";
@@ -12,14 +12,14 @@ const { version } = JSON.parse(readFileSync(new URL("./package.json", import.met
 const help = `
 Examples
   sim3align align cases/mug                      align one case and show everything about it
-  sim3align align cases/* --json results.json    align many, with a table and a file of results
+  sim3align align cases/* --json results.json    align several cases; print a table and write a JSON file
   sim3align evaluate cases/mug --transform results.json
 
-"sim3align align --help" tells what a case folder holds, and in which frames and units the results are.
+See "sim3align align --help" for the layout of a case folder, and for the frames and units of the results.
 ${statusHelp}`;
 
 const program = new Command("sim3align")
-  .description("Puts a generated 3D mesh where it really is, at its real size, from one masked depth map.")
+  .description("Aligns generated 3D meshes with a masked depth map, in pose and metric scale.")
   .version(version)
   .addCommand(alignCommand())
   .addCommand(evaluateCommand())
@@ -29,7 +29,7 @@ for (const command of [program, ...program.commands]) {
   command.exitOverride().showHelpAfterError('(see "--help")').configureHelp({ helpWidth: 110, sortOptions: false });
 }
 
-// "sim3align … | head" closes the pipe early, which is no fault.
+// "sim3align … | head" closes the pipe early, which is not an error.
 process.stdout.on("error", (error: NodeJS.ErrnoException) => {
   if (error.code !== "EPIPE") throw error;
 });
@@ -38,7 +38,7 @@ try {
   await program.parseAsync();
 } catch (error) {
   if (error instanceof CommanderError) {
-    // Commander has said what is wrong, if something is.
+    // Commander has already printed the error, if any.
     process.exitCode = error.exitCode === 0 ? 0 : 2;
   } else if (error instanceof UsageError) {
     console.error(`error: ${error.message}`);

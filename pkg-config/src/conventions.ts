@@ -1,8 +1,9 @@
 /**
- * Other tools' conventions: frames, matrices and quaternions, masks, depth, cameras, and files. It needs no WebAssembly.
+ * Conversions to and from the conventions of other tools: frames, matrices, quaternions, masks, depth, cameras and
+ * files. Needs no WebAssembly.
  *
- * Where nothing else is said, the camera frame is OpenCV's (x right, y down, z forward), lengths are in metres,
- * quaternions are x, y, z, w, matrices are column-major, and pixel centres are at whole numbers.
+ * Unless noted otherwise, the camera frame is OpenCV's (x right, y down, z forward), lengths are in metres,
+ * quaternions are x, y, z, w, matrices are column-major, and pixel centres have integer coordinates.
  * @packageDocumentation
  */
 export { type BopExport, type BopPose, fromBop, toBop } from "./conventions/bop.js";

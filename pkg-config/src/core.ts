@@ -1,4 +1,4 @@
-/** The core WebAssembly module: what it takes and returns. */
+/** The interface of the core WebAssembly module. */
 import type * as Results from "./generated/types.js";
 import type { CoreInput } from "./input/core-input.js";
 import type { CoreMesh } from "./prepared-mesh.js";
@@ -8,23 +8,23 @@ import { type Glue, WasmModule } from "./wasm-module.js";
 /** The result of either preset. */
 export type CoreAlignment = Results.Alignment | Results.PaperAlignment;
 
-/** Points, x, y, z one after the other. */
+/** Points as interleaved x, y, z. */
 export type Cloud = Float32Array | Float64Array;
 
 /**
- * Called as a stage begins, and after each round of a search: with the best pose, 16 numbers, and its score, once there
- * is one. It must not throw.
+ * Called when a stage begins and after each round of a search, with the best pose (16 numbers) and its score, if any.
+ * Must not throw.
  */
 export type CoreListener = (stage: Results.Stage, fraction: number, best?: Float64Array) => void;
 
-/** An alignment that is computed in steps, so that the thread can do other work between them. */
+/** An alignment that runs in steps, so that the thread can do other work between them. */
 export interface AlignTask {
-  /** Works for about this long; returns the result once it is there. */
+  /** Runs for about this long; returns the result when finished. */
   step(sliceMs: number): CoreAlignment | undefined;
   free(): void;
 }
 
-/** The functions of the core: they check their arguments, and throw coded errors. */
+/** The functions of the core. They validate their arguments and throw errors with codes. */
 export interface Core extends Glue {
   align(input: CoreInput, options: object, onProgress: CoreListener | undefined): CoreAlignment;
   beginAlign(input: CoreInput, options: object, onProgress: CoreListener | undefined): AlignTask;

@@ -1,4 +1,4 @@
-/** Engines run jobs: on this thread, or in workers. */
+/** Engines that run jobs: on the calling thread, or in workers. */
 import type { Core, CoreAlignment, CoreListener } from "./core.js";
 import { disposed } from "./error.js";
 import type { LoadFormats } from "./formats-module.js";
@@ -7,7 +7,7 @@ import { type Job, perform, type Results, withoutInput } from "./jobs.js";
 import type { ProgressListener } from "./progress.js";
 import type { LoadedModule } from "./wasm-module.js";
 
-/** Options of a call that are about how it runs. */
+/** Options that control how a call runs. */
 export interface Call {
   signal: AbortSignal | undefined;
   progress: ProgressListener;
@@ -15,7 +15,7 @@ export interface Call {
   transfer: boolean;
 }
 
-/** The result of a job, and its data as they are now. */
+/** The result of a job, and its data after the run. */
 export interface Outcome<J extends Job> {
   result: Results[J["method"]];
   data: J["data"];
@@ -23,18 +23,18 @@ export interface Outcome<J extends Job> {
 
 /** Runs jobs. */
 export interface Engine {
-  /** How many jobs to hand over at once to keep it busy. */
+  /** Number of concurrent jobs that keep the engine busy. */
   readonly capacity: number;
   run<J extends Job>(job: J, call: Call): Promise<Outcome<J>>;
-  /** Frees what is kept of a prepared mesh. */
+  /** Frees the cached data of a prepared mesh. */
   dropMesh(id: number): void;
   dispose(): void;
 }
 
-/** How long an alignment may keep this thread busy without a break. */
+/** Maximum time that an alignment blocks the thread, in milliseconds. */
 const SLICE_MS = 40;
 
-/** Runs jobs on this thread. */
+/** Runs jobs on the calling thread. */
 export class MainThreadEngine implements Engine {
   readonly capacity = 1;
   readonly #core: LoadedModule<Core>;
@@ -55,11 +55,11 @@ export class MainThreadEngine implements Engine {
     };
     check();
     if (signal !== undefined) {
-      // Callers who want to abort get their turn before this thread is busy.
+      // Yields first, so that a pending abort is handled before the thread is busy.
       await turn();
       check();
     }
-    // An exception must not cross WebAssembly, which would not tidy up: it waits until the step is over.
+    // An exception must not unwind through WebAssembly, which would skip its cleanup: it is rethrown after the step.
     const listener: CoreListener = (stage, fraction, best) => {
       if (failure !== undefined) return;
       try {
@@ -88,10 +88,10 @@ export class MainThreadEngine implements Engine {
   }
 }
 
-/** Lets timers, events and rendering have their turn. */
+/** Yields to timers, events and rendering. */
 const turn = () => new Promise<void>((resolve) => setTimeout(resolve));
 
-/** Aligns in slices, between which `check` may throw and other work gets its turn. */
+/** Aligns in time slices. Between them, the thread yields, and `check` may throw. */
 async function alignInSteps(
   core: LoadedModule<Core>,
   args: Parameters<Core["align"]>,
@@ -106,7 +106,7 @@ async function alignInSteps(
       if (result !== undefined) return result;
       await turn();
       check();
-      // Another call has trapped, and the task has gone with its instance.
+      // Another call trapped, and the task was lost with its instance.
       if (core.instance !== instance) return await alignInSteps(core, args, check);
     }
   } finally {

@@ -1,9 +1,9 @@
-/** The package's error type, and conversions to it. */
+/** The error type of the package, and conversions to it. */
 import type { ErrorCode as CoreErrorCode } from "./generated/types.js";
 
 /**
- * What went wrong, as a name that stays the same in all releases. The troubleshooting guide explains each: cause, example
- * and fix.
+ * Stable error code; does not change between releases. The troubleshooting guide describes the cause of each code, with
+ * an example and a fix.
  */
 export type ErrorCode =
   | CoreErrorCode
@@ -11,15 +11,15 @@ export type ErrorCode =
   | "NOT_INITIALISED"
   /** The aligner has been disposed. Create another one. */
   | "DISPOSED"
-  /** A worker could not be started, or ended twice during the same call. Other calls continue with new workers. */
+  /** A worker could not be started, or terminated twice during the same call. Other calls continue with new workers. */
   | "WORKER_FAILED"
-  /** A file of a case, or one that the command line was given, is not there. */
+  /** A file of a case, or a file passed to the command line, does not exist. */
   | "FILE_NOT_FOUND";
 
 /** The parts of a {@link Sim3AlignError}. */
 export interface ErrorParts {
   code: ErrorCode;
-  /** The argument or option at fault: `depth`, `mesh.indices`, `options.guard`. */
+  /** The invalid argument or option: `depth`, `mesh.indices`, `options.guard`. */
   argument: string;
   /** What was found. */
   found: string;
@@ -30,8 +30,8 @@ export interface ErrorParts {
 }
 
 /**
- * The error that all functions of this package throw. The message names the argument, what was found, what was expected,
- * and the remedy; `code` is for programs. The aligner that threw it can still be used.
+ * The error that all functions of this package throw. The message states the argument, what was found, what was
+ * expected, and the remedy; `code` is machine-readable. The aligner remains usable.
  */
 export class Sim3AlignError extends Error implements ErrorParts {
   override readonly name = "Sim3AlignError";
@@ -40,10 +40,10 @@ export class Sim3AlignError extends Error implements ErrorParts {
   readonly found: string;
   readonly expected: string;
   readonly remedy: string;
-  /** With `transfer: true`: the input, where the worker could return it. */
+  /** With `transfer: true`: the input, if the worker could return it. */
   input?: unknown;
 
-  /** @param options may hold a `cause` */
+  /** @param options may contain a `cause` */
   constructor({ code, argument, found, expected, remedy }: ErrorParts, options?: ErrorOptions) {
     super(`${argument}: found ${found}, expected ${expected}. ${remedy}`, options);
     this.code = code;
@@ -54,12 +54,12 @@ export class Sim3AlignError extends Error implements ErrorParts {
   }
 }
 
-/** An error about an argument of the wrong kind. */
+/** The error for an argument of the wrong type. */
 export function invalidArgument(argument: string, value: unknown, expected: string, remedy: string): Sim3AlignError {
   return new Sim3AlignError({ code: "INVALID_ARGUMENT", argument, found: describe(value), expected, remedy });
 }
 
-/** The kind of a value, for messages. */
+/** Describes a value for error messages. */
 export function describe(value: unknown): string {
   if (value === undefined) return "nothing";
   if (value === null) return "null";
@@ -74,14 +74,14 @@ export function describe(value: unknown): string {
   return names.length === 0 ? "an empty object" : `an object with ${names.slice(0, 8).join(", ")}`;
 }
 
-/** Whether a module threw this about its arguments: a plain object. Anything else that it throws is a trap. */
+/** Whether a module threw this error about its arguments: a plain object. Any other exception is a trap. */
 export function isCoded(error: unknown): error is ErrorParts {
   if (typeof error !== "object" || error === null) return false;
   const parts: Partial<Record<keyof ErrorParts, unknown>> = error;
   return typeof parts.code === "string" && typeof parts.argument === "string" && typeof parts.remedy === "string";
 }
 
-/** The error for a trap inside WebAssembly, which no input should be able to cause. */
+/** The error for a trap inside WebAssembly, which no input should cause. */
 export function internalError(cause: unknown): Sim3AlignError {
   return new Sim3AlignError(
     {
@@ -95,7 +95,7 @@ export function internalError(cause: unknown): Sim3AlignError {
   );
 }
 
-/** The parts of an error, which can be posted to another thread. */
+/** The parts of an error, which can be sent to another thread. */
 export function partsOf({ code, argument, found, expected, remedy }: Sim3AlignError): ErrorParts {
   return { code, argument, found, expected, remedy };
 }
@@ -106,7 +106,7 @@ export function disposed(): Sim3AlignError {
     code: "DISPOSED",
     argument: "aligner",
     found: "a disposed aligner",
-    expected: "an aligner in use",
+    expected: "an active aligner",
     remedy: "Create another one with createAligner().",
   });
 }

@@ -1,10 +1,10 @@
-/** The second WebAssembly module: the readers of mesh files, PNG and NPY. */
+/** The formats module: the second WebAssembly module, which reads mesh files, PNG and NPY. */
 import { type LoadedModule, WasmModule } from "./wasm-module.js";
 
 /** The functions of the file readers. */
 export type Formats = typeof import("./wasm/formats.js");
 
-/** Loads the file readers, once a file is passed. */
+/** Loads the file readers when the first file is passed. */
 export type LoadFormats = () => Promise<LoadedModule<Formats>>;
 
 /** The file readers, shared by all aligners of this realm. */

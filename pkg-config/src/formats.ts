@@ -1,6 +1,6 @@
 /**
- * The file readers alone: depth maps, masks, meshes, cameras, poses and case folders, without the aligner. `Aligner.align`
- * takes the same files; use these functions to look into them.
+ * Readers for depth maps, masks, meshes, cameras, poses and case folders, without the aligner. `Aligner.align` accepts
+ * these files directly; use the readers to inspect their content.
  * @packageDocumentation
  */
 import { type Case, type CaseFiles, type CaseSettings, caseFrom } from "./case-files.js";
@@ -22,23 +22,23 @@ export type { AlignInput, CameraFileInput, CocoRle, EncodedBytes, MeshFormat, Pi
 export type { WasmSource } from "./platform.js";
 export type { Sim3 } from "./sim3.js";
 
-/** A depth map from a file: metres along the optical axis, row by row; 0 is no reading. */
+/** A depth map from a file: metres along the optical axis, row-major; 0 is "no reading". */
 export type DepthImage = PixelArray<Float32Array>;
 
-/** A mask from a file: row by row, 1 is the object. */
+/** A mask from a file: row-major, 1 is the object. */
 export type MaskImage = PixelArray<Uint8Array>;
 
-/** A mesh from a file, in the file's unit and axes. */
+/** A mesh from a file, in the unit and axes of the file. */
 export interface MeshFromFile {
-  /** x, y, z per vertex. */
+  /** Interleaved x, y, z. */
   positions: Float32Array;
   /** Three vertex indices per triangle. */
   indices: Uint32Array;
 }
 
 /**
- * Loads the WebAssembly module of the readers. Only needed where it is not at `wasm/formats_bg.wasm` beside this script;
- * only the first successful call's `wasm` counts.
+ * Loads the formats module. Only needed if it is not at `wasm/formats_bg.wasm` next to this script; only the `wasm` of
+ * the first successful call is used.
  * @throws {@link Sim3AlignError} `NOT_INITIALISED`; the next call tries again
  */
 export async function loadFormats(wasm?: WasmSource): Promise<void> {
@@ -47,8 +47,8 @@ export async function loadFormats(wasm?: WasmSource): Promise<void> {
 
 /**
  * Reads a 16-bit grey PNG or a `.npy` array as a depth map.
- * @param options.depthScale metres per unit, above 0; by default whole numbers are millimetres, and floats metres
- * @param options.integerDepthScale the same for whole numbers only: the `depthScale` of a camera file
+ * @param options.depthScale metres per unit, above 0; by default integers are millimetres, and floats metres
+ * @param options.integerDepthScale the same for integers only: the `depthScale` of a camera file
  * @throws {@link Sim3AlignError} for any other file
  */
 export async function readDepth(
@@ -71,9 +71,9 @@ export async function readMask(file: EncodedBytes | CocoRle): Promise<MaskImage>
 }
 
 /**
- * Reads a GLB, glTF, OBJ, PLY or STL file: all parts merged, and node transforms applied.
- * @param options.format by default it is recognised by the content
- * @param options.resources the buffers of a `.gltf`, by the URIs in it: see {@link externalResources}
+ * Reads a GLB, glTF, OBJ, PLY or STL file. Merges all parts, and applies node transforms.
+ * @param options.format by default detected from the content
+ * @param options.resources the buffers of a `.gltf` by URI: see {@link externalResources}
  * @throws {@link Sim3AlignError} for any other file
  */
 export async function readMesh(
@@ -88,7 +88,7 @@ export async function readMesh(
 }
 
 /**
- * The URIs of the files that a `.gltf` keeps its geometry in, as they stand in it.
+ * The URIs of the external files with the geometry of a `.gltf`, unchanged.
  * @throws {@link Sim3AlignError} for a file that is not glTF
  */
 export async function externalResources(file: EncodedBytes): Promise<string[]> {
@@ -97,8 +97,8 @@ export async function externalResources(file: EncodedBytes): Promise<string[]> {
 }
 
 /**
- * Reads a camera file: our own `camera.json`, BOP's `scene_camera.json`, ROS CameraInfo, or the intrinsics of Open3D and
- * RealSense; bytes, text or parsed JSON. It needs no WebAssembly.
+ * Reads a camera file: sim3align's `camera.json`, BOP's `scene_camera.json`, ROS CameraInfo, or the intrinsics of
+ * Open3D and RealSense; bytes, text or parsed JSON. It needs no WebAssembly.
  * @throws {@link Sim3AlignError} for any other file, and `SIZE_MISMATCH` for intrinsics of another image size
  */
 export async function readCamera(file: CameraFileInput, options: CameraFileOptions = {}): Promise<CameraFile> {
@@ -106,9 +106,9 @@ export async function readCamera(file: CameraFileInput, options: CameraFileOptio
 }
 
 /**
- * Reads a pose file: `{ scale, rotation, translation }`, `{ matrix }` (column by column), or an entry of BOP's
+ * Reads a pose file: `{ scale, rotation, translation }`, `{ matrix }` (column-major), or an entry of BOP's
  * `scene_gt.json`; bytes, text or parsed JSON. It needs no WebAssembly.
- * @returns `null` where the file says that no pose is known
+ * @returns `null` if the file declares that no pose is known
  * @throws {@link Sim3AlignError} for any other file
  */
 export async function readPose(file: EncodedBytes | string | object): Promise<KnownPose | null> {
@@ -117,13 +117,13 @@ export async function readPose(file: EncodedBytes | string | object): Promise<Kn
 
 /**
  * Reads a case folder: `depth.npy|png`, `mask.png|npy|json`, `mesh.glb|gltf|obj|ply|stl`, `camera.json` or
- * `scene_camera.json`, and `gt.json` where there is one.
- * @param files by their names, relative to the folder
+ * `scene_camera.json`, and optionally `gt.json`.
+ * @param files by name, relative to the folder
  *
  * @example
  * const { input, truth } = await readCase({ "depth.png": depth, "mask.png": mask, "mesh.glb": mesh, "camera.json": camera });
  * const result = await aligner.align(input);
- * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the names that were looked for
+ * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
  */
 export async function readCase(files: CaseFiles, settings: CaseSettings = {}): Promise<Case> {
   return caseFrom(files, settings, () => formatsModule.load());

@@ -1,5 +1,5 @@
 /**
- * Puts a generated 3D mesh where it really is, at its real size, from one masked depth map.
+ * Aligns generated 3D meshes with a masked depth map, in pose and metric scale.
  *
  * Camera frame: OpenCV (x right, y down, z forward), metres. Transforms: x_cam = s·R·p_mesh + t; matrices are
  * column-major, quaternions x, y, z, w.

@@ -1,8 +1,8 @@
 /// <reference path="./inlined.d.ts" />
 /**
- * The package in one piece: the same as `sim3align`, with the WebAssembly and the worker's script inside the JavaScript,
- * for sandboxes, bundled servers, and bundlers that copy no other files. The file readers are in a second script, which is
- * imported when the first file is passed. A content security policy has to allow `worker-src blob:` for workers.
+ * The package as a single script: the same as `sim3align`, with the WebAssembly module and the worker script embedded,
+ * for sandboxes, bundled servers, and bundlers that copy no assets. The file readers are in a second script, which is
+ * imported when the first file is passed. For workers, a content security policy must allow `worker-src blob:`.
  * @packageDocumentation
  */
 import core from "inlined:core";
@@ -11,7 +11,7 @@ import { Aligner, type AlignerOptions } from "./aligner.js";
 
 export * from "./index.js";
 
-/** The same as `createAligner` of `sim3align`, but fetches nothing. */
+/** Like `createAligner` of `sim3align`, but without fetching files. */
 export async function createAligner(options: AlignerOptions = {}): Promise<Aligner> {
   return Aligner.create(options, {
     wasm: () => bytesOf(core),

@@ -1,4 +1,4 @@
-/** Modules that the build puts into `inline.js`: see `scripts/lib/inline.mjs`. */
+/** Modules that the build embeds in `inline.js`: see `scripts/lib/inline.mjs`. */
 
 declare module "inlined:core" {
   /** The core module, base64. */
@@ -7,13 +7,13 @@ declare module "inlined:core" {
 }
 
 declare module "inlined:formats" {
-  /** The file readers' module, base64. */
+  /** The formats module, base64. */
   const base64: string;
   export default base64;
 }
 
 declare module "inlined:worker" {
-  /** The worker's script, whole. */
+  /** The complete worker script. */
   const script: string;
   export default script;
 }

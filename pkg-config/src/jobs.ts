@@ -1,4 +1,4 @@
-/** Calls as data, which the same code runs on this thread or in a worker. */
+/** Calls as data, so that the same code runs them on the calling thread or in a worker. */
 import type { Core, CoreAlignment, CoreListener } from "./core.js";
 import type { LoadFormats } from "./formats-module.js";
 import type { CoreInput } from "./input/core-input.js";
@@ -10,7 +10,7 @@ import { type AlignResult, type Clouds, type Evaluation, type Registration, with
 import { isTypedArray, wrongKind } from "./values.js";
 import type { LoadedModule } from "./wasm-module.js";
 
-/** A call. `data` holds all its large arrays; `options` are in the core's form. */
+/** A call. `data` contains all large arrays; `options` are in the form of the core. */
 export type Job =
   | { method: "align"; data: AlignInput; options: object; meshId?: number | undefined }
   | { method: "evaluate"; data: AlignInput; options: object; transform: unknown; meshId?: number | undefined }
@@ -31,11 +31,11 @@ export interface Results {
 export interface JobModules {
   core: LoadedModule<Core>;
   formats: LoadFormats;
-  /** Aligns in another way than by one call of the core. */
+  /** Overrides the alignment by a single call of the core. */
   align?: (input: CoreInput, options: object, listener?: CoreListener) => Promise<CoreAlignment>;
 }
 
-/** Runs a job. `listener` is called as its stages begin; an exception that it throws ends the job. */
+/** Runs a job. `listener` is called when stages begin; if it throws, the job fails with that exception. */
 export async function perform<J extends Job>(
   job: J,
   modules: JobModules,
@@ -81,7 +81,7 @@ export async function perform(
   }
 }
 
-/** Errors name properties of the input without `input.`. */
+/** Removes `input.` from argument names in errors. */
 export const withoutInput = (argument: string) => argument.replace(/^input\./, "");
 
 function checkedClouds(clouds: Clouds): Clouds {

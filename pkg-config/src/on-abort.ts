@@ -1,4 +1,4 @@
-/** Follows abort signals. */
+/** Callbacks for abort signals. */
 
 interface Followers {
   acts: Set<(reason: unknown) => void>;
@@ -8,12 +8,12 @@ interface Followers {
 const followed = new WeakMap<AbortSignal, Followers>();
 
 /**
- * Calls `act` when the signal aborts, until the returned function is called. Each signal gets one listener for all of its
- * followers: Node warns of a leak where a signal has more than a few.
+ * Calls `act` when the signal aborts, until the returned function is called. A signal gets one listener regardless of
+ * the number of callbacks, because Node warns of a leak if there are many.
  */
 export function onAbort(signal: AbortSignal, act: (reason: unknown) => void): () => void {
   const { acts, listener } = followed.get(signal) ?? begin(signal);
-  // A new function each time, so that the same `act` can follow a signal twice.
+  // Wraps `act`, so that registering it twice calls it twice.
   const own = (reason: unknown) => act(reason);
   acts.add(own);
   return () => {

@@ -1,49 +1,51 @@
-/** Options of the calls. Ranges and defaults are in each field's documentation. */
+/** Options of the calls. The documentation of each field states its range and default. */
 import type * as Core from "./generated/types.js";
 
 export type { Direction, ScaleOption, SymmetryAxis, SymmetryOption } from "./argument-types.js";
 
 /** The progress of a call. */
 export interface Progress {
-  /** The stage that is running. */
+  /** The current stage. */
   stage: Core.Stage;
-  /** The share of the whole that is done, 0 to 1. It never falls. */
+  /** The fraction of the work that is done, 0 to 1. It never decreases. */
   fraction: number;
-  /** The best pose so far. `precise` has one after each round of its search; the last one is the result. */
+  /** The best pose so far. `precise` reports it after each round of its search; the last one is the result. */
   best?: BestSoFar | undefined;
 }
 
-/** The best pose that a search has found so far. */
+/** The best pose of a search so far. */
 export interface BestSoFar {
-  /** Camera from mesh, 16 numbers column by column, as a result's `matrix`: camera x right, y down, z forward; metres. */
+  /**
+   * Camera from mesh, 16 numbers, column-major, like `matrix` of a result: camera x right, y down, z forward; metres.
+   */
   matrix: number[];
   /**
-   * The search's objective. Higher is better. Early rounds render smaller images, so that scores of different rounds do not
-   * compare; the last one is the result's `diagnostics.score`.
+   * The objective of the search. Higher is better. Scores of different rounds are not comparable, because early rounds
+   * render smaller images. The last one is `diagnostics.score` of the result.
    */
   score: number;
 }
 
-/** Options that all calls have. */
+/** Options of every call. */
 export interface CallOptions {
   /**
-   * Ends the call: it rejects with the signal's reason, by default an `AbortError`. A worker is terminated at once and
-   * replaced. Without workers, the signal is checked before the call and whenever the call yields to other work.
+   * Cancels the call, which rejects with the reason of the signal (by default an `AbortError`). A worker is terminated
+   * at once and replaced. Without workers, the call checks the signal before it starts and each time it yields.
    */
   signal?: AbortSignal | undefined;
   /**
-   * Moves the arrays' buffers to the worker instead of copying them. They are detached here until the call ends; the
-   * result's `input` (or the error's) then holds them again. They are lost with a worker that is terminated meanwhile.
-   * Other arrays in the same buffers move with them. Without workers nothing moves. Default `false`.
+   * Moves the buffers to the worker instead of copying them. The arrays are detached during the call; `input` of the
+   * result, or of the error, returns them. They are lost if their worker is terminated. Other arrays on the same
+   * buffers are detached as well. Has no effect without workers. Default `false`.
    */
   transfer?: boolean | undefined;
 }
 
-/** Options of `align` that are about the call itself. */
+/** Options of calls to `align`. */
 interface AlignCallOptions extends CallOptions {
   /**
-   * Called as each stage begins and after each round of the search, at most 20 times a second. An exception that it throws
-   * ends the call, which rejects with it.
+   * Called when a stage begins and after each round of the search, at most 20 times a second. If it throws, the call
+   * rejects with that exception.
    */
   onProgress?: ((progress: Progress) => void) | undefined;
 }
@@ -58,7 +60,7 @@ interface AlignCallOptions extends CallOptions {
  * ```ts
  * await aligner.align(input, { scale: 1 });
  * ```
- * @example An annotator has moved the object roughly into place:
+ * @example An annotator has placed the object approximately:
  * ```ts
  * await aligner.align(input, { initial: { scale, rotation, translation }, search: "local" });
  * ```
@@ -74,7 +76,7 @@ export interface OptionsByPreset {
   paper: PaperOptions;
 }
 
-/** Options of `Aligner.align`: `preset` and `metrics` decide what the result has. */
+/** Options of `Aligner.align`: `preset` and `metrics` determine the type of the result. */
 export type OptionsOf<P extends Core.Preset, M extends boolean> = OptionsByPreset[P] & {
   preset?: P | undefined;
   metrics?: M | undefined;
@@ -88,9 +90,9 @@ export type AlignAllOptions<P extends Core.Preset = "precise", M extends boolean
   CallOptions & {
     preset?: P | undefined;
     metrics?: M | undefined;
-    /** Whether results come in the order of the inputs instead of as they are ready. Default `false`. */
+    /** Yields results in the order of the inputs instead of the order of completion. Default `false`. */
     ordered?: boolean | undefined;
-    /** As that of `align`, with the input's index. */
+    /** Like `onProgress` of `align`, with the index of the input. */
     onProgress?: ((progress: Progress & { index: number }) => void) | undefined;
   };
 
@@ -103,7 +105,7 @@ export interface RegisterOptions extends Core.RegisterOptions, CallOptions {}
 /** Options of `Aligner.estimateSim3`. */
 export interface EstimateSim3Options extends Core.EstimateSim3Options, CallOptions {}
 
-/** An option as the tables in `OPTIONS` describe it. */
+/** The description of an option in the tables of `OPTIONS`. */
 export interface OptionRow {
   readonly name: string;
   readonly kind:
@@ -116,17 +118,17 @@ export interface OptionRow {
     | "symmetry"
     | "transform"
     | "guard";
-  /** The smallest value, of numbers. */
+  /** The minimum of a number. */
   readonly min?: number;
-  /** The largest value, of numbers. */
+  /** The maximum of a number. */
   readonly max?: number;
-  /** A bound that numbers have to exceed. */
+  /** An exclusive lower bound of a number. */
   readonly above?: number;
-  /** All values of a choice. */
+  /** The values of a choice. */
   readonly choices?: readonly string[];
-  /** Whether `null` is a value. */
+  /** Whether `null` is allowed. */
   readonly isNullable: boolean;
   readonly default: unknown;
-  /** One line about it. */
+  /** A one-line description. */
   readonly summary: string;
 }

@@ -1,6 +1,6 @@
 /**
- * What differs between browsers, Node and other hosts, by its shape: the declarations compile without TypeScript's DOM
- * library.
+ * Structural types of objects that differ between browsers, Node and other hosts, so that the declarations compile
+ * without TypeScript's DOM library.
  */
 
 /** A `Response` of `fetch`. */
@@ -10,15 +10,15 @@ export interface ResponseLike {
   arrayBuffer(): Promise<ArrayBuffer>;
 }
 
-/** A compiled `WebAssembly.Module`, where TypeScript knows it. */
+/** A compiled `WebAssembly.Module`, if its type is declared. */
 export type CompiledModule = typeof globalThis extends { WebAssembly: { Module: { prototype: infer Module } } }
   ? Module
   : object;
 
-/** Where a WebAssembly module comes from: an address, a response, the bytes, or the compiled module. */
+/** The source of a WebAssembly module: a URL, a response, the bytes, or the compiled module. */
 export type WasmSource = URL | string | ResponseLike | ArrayBuffer | ArrayBufferView | CompiledModule;
 
-/** The source of a WebAssembly module, or a function that gets it when it is needed. */
+/** The source of a WebAssembly module, or a function that returns one on demand. */
 export type LazySource = WasmSource | (() => WasmSource | Promise<WasmSource>);
 
 /** A worker: a `Worker` of browsers, Deno and Bun, or one of Node's `worker_threads`. */
@@ -27,5 +27,5 @@ export interface WorkerLike {
   terminate(): unknown;
 }
 
-/** Makes a worker that runs this package's `worker.js`. */
+/** Creates a worker that runs `worker.js` of this package. */
 export type CreateWorker = () => WorkerLike;

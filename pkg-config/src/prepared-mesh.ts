@@ -1,39 +1,39 @@
-/** Meshes that are read, checked and decimated once, and used in many calls. */
+/** Meshes that are read, validated and decimated once for many calls. */
 
 import { Sim3AlignError } from "./error.js";
 
-/** A mesh as the core takes it. */
+/** A mesh for the core. */
 export interface CoreMesh {
   positions: Float32Array;
   indices?: Uint32Array | Uint16Array;
-  /** The number under which the core keeps the mesh. Where it does already, the arrays are not read. */
+  /** The id under which the core caches the mesh. If it is cached, the arrays are not read. */
   id?: number;
 }
 
-/** A mesh with the number under which each thread keeps what it has derived from it. */
+/** A mesh, and the id under which each thread caches the data derived from it. */
 export interface KeptMesh {
   readonly id: number;
   readonly mesh: CoreMesh;
 }
 
 interface State extends KeptMesh {
-  /** What to do when the mesh is disposed. */
+  /** Functions to call when the mesh is disposed. */
   readonly drops: Set<() => void>;
 }
 
 const states = new WeakMap<object, State>();
 let lastId = 0;
 
-/** A new number for a mesh. */
+/** A new mesh id. */
 export function nextMeshId(): number {
   lastId += 1;
   return lastId;
 }
 
 /**
- * A mesh that `Aligner.prepareMesh` has read, checked and decimated. It takes the place of the mesh in the inputs of all
- * aligners on this thread, with or without workers. Results are the same to the bit as with the mesh itself. Each thread
- * that uses it keeps a copy until `dispose()`.
+ * A mesh that `Aligner.prepareMesh` has read, validated and decimated. It replaces the mesh in the inputs of all
+ * aligners on this thread, with or without workers. Results are bit-identical to those with the mesh itself. Each
+ * thread that uses it holds a copy until `dispose()`.
  */
 export class PreparedMesh {
   /** @internal */
@@ -48,15 +48,15 @@ export class PreparedMesh {
     for (const drop of drops) drop();
   }
 
-  /** Disposes the mesh at the end of a `using` declaration's scope. */
+  /** Disposes the mesh at the end of the scope of a `using` declaration. */
   [Symbol.dispose](): void {
     this.dispose();
   }
 }
 
 /**
- * The arrays and the number of a prepared mesh.
- * @param drop called when the mesh is disposed, once however often it is passed
+ * The arrays and the id of a prepared mesh.
+ * @param drop called once when the mesh is disposed, even if it was passed repeatedly
  * @throws {@link Sim3AlignError} `DISPOSED`
  */
 export function keptMesh(mesh: PreparedMesh, drop?: () => void): KeptMesh {
@@ -66,7 +66,7 @@ export function keptMesh(mesh: PreparedMesh, drop?: () => void): KeptMesh {
       code: "DISPOSED",
       argument: "mesh",
       found: "a disposed mesh",
-      expected: "a prepared mesh in use",
+      expected: "an active prepared mesh",
       remedy: "Prepare it again with prepareMesh(), or dispose it later.",
     });
   }

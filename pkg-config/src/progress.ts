@@ -1,11 +1,11 @@
-/** Reports the core's progress to the caller. */
+/** Reports the progress of the core to the caller. */
 import { invalidArgument } from "./error.js";
 import type { BestSoFar, Progress } from "./options.js";
 
-/** Upper bound on the reports per second. */
+/** Maximum number of reports per second. */
 const MAX_PER_SECOND = 20;
 
-/** Calls `onProgress`: never with a smaller fraction, and not more often than a display can show. */
+/** Calls `onProgress` with monotonic fractions and a limited rate. */
 export class ProgressListener {
   readonly #onProgress: ((progress: Progress) => void) | undefined;
   readonly #times: number[] = [];
@@ -26,8 +26,8 @@ export class ProgressListener {
   }
 
   /**
-   * Calls the caller's function and lets its exceptions through.
-   * @param best the best pose, column by column, and its score, after a round of the search
+   * Calls the caller's function. Its exceptions propagate.
+   * @param best the best pose, column-major, and its score, after a round of the search
    */
   report(stage: Progress["stage"], fraction: number, best?: Float64Array): void {
     if (this.#onProgress === undefined) return;
@@ -35,7 +35,7 @@ export class ProgressListener {
     this.#fraction = Math.max(this.#fraction, fraction);
     const now = performance.now();
     while (this.#times[0] !== undefined && this.#times[0] <= now - 1000) this.#times.shift();
-    // The last report of a second is reserved for the end.
+    // One report per second is reserved for the end.
     const limit = this.#fraction < 1 ? MAX_PER_SECOND - 1 : MAX_PER_SECOND;
     if (this.#times.length >= limit) return;
     this.#times.push(now);

@@ -1,17 +1,20 @@
-/** Results of the calls: plain objects, which `JSON.stringify` writes whole. `null` stands for what could not be measured. */
+/**
+ * Results of the calls: plain objects, which `JSON.stringify` writes completely. `null` marks a value that could not be
+ * measured.
+ */
 import type { Sim3AlignError } from "./error.js";
 import type * as Core from "./generated/types.js";
 import type { AlignInput } from "./input/types.js";
 
 /** The result of `align`: camera from mesh, x_cam = s·R·p_mesh + t (OpenCV: x right, y down, z forward; metres). */
 export interface Alignment extends Core.Alignment {
-  /** With `transfer: true`: the input's arrays, handed back. */
+  /** With `transfer: true`: the returned arrays of the input. */
   input?: AlignInput;
 }
 
 /** The result of `align` with `preset: "paper"`. */
 export interface PaperAlignment extends Core.PaperAlignment {
-  /** With `transfer: true`: the input's arrays, handed back. */
+  /** With `transfer: true`: the returned arrays of the input. */
   input?: AlignInput;
 }
 
@@ -33,17 +36,17 @@ export type AlignResult<P extends Core.Preset = Core.Preset, M extends boolean =
 
 /** The result of `evaluate`. */
 export interface Evaluation extends Core.Evaluation {
-  /** With `transfer: true`: the input's arrays, handed back. */
+  /** With `transfer: true`: the returned arrays of the input. */
   input?: AlignInput;
 }
 
 /** The result of `register` and `estimateSim3`: target from source, y = s·R·x + t. */
 export interface Registration extends Core.Registration {
-  /** With `transfer: true`: the arrays, handed back. */
+  /** With `transfer: true`: the returned arrays. */
   input?: Clouds;
 }
 
-/** Two clouds, x, y, z one after the other, and for `estimateSim3` the correspondences between their points. */
+/** Two clouds (interleaved x, y, z) and, for `estimateSim3`, the correspondences between their points. */
 export interface Clouds {
   source: Float32Array | Float64Array;
   target: Float32Array | Float64Array;
@@ -55,7 +58,7 @@ export type AlignAllResult<A = Alignment> =
   | { index: number; alignment: A; input?: AlignInput; error?: undefined }
   | { index: number; alignment?: undefined; input?: AlignInput; error: Sim3AlignError };
 
-/** A result with the warnings of the input's files before those of the core. */
+/** A result whose warnings include those of the input files, before those of the core. */
 export function withWarnings<T extends { warnings: Core.Warning[] }>(result: T, messages: readonly string[]): T {
   const warnings = messages.map((message): Core.Warning => ({ code: "CAMERA_NOT_PINHOLE", message }));
   return { ...result, warnings: [...warnings, ...result.warnings] };

@@ -1,8 +1,7 @@
 /**
- * Alignments in three.js: place objects by a result, take meshes from a scene, and set up cameras like the one that took
- * the depth map.
+ * Alignments in three.js: places objects, extracts meshes from a scene, and sets camera intrinsics.
  *
- * three.js itself is not imported: any object of the right shape works, of any version of three.js.
+ * three.js is not imported: objects of any version of three.js work, and any others of the same shape.
  * @packageDocumentation
  */
 

@@ -1,34 +1,34 @@
-/** Checks of arguments, with errors that name them. Values may come from any realm: window, worker, test runner. */
+/** Validation of arguments, with errors that name them. Values may come from any realm: window, worker, test runner. */
 import { describe, type ErrorCode, invalidArgument, Sim3AlignError } from "./error.js";
 
-/** Whether the value is of one of these built-in kinds. */
+/** Whether the value is of one of these built-in types, of any realm. */
 export function isKind<T>(value: unknown, ...names: string[]): value is T {
   return names.includes(Object.prototype.toString.call(value).slice(8, -1));
 }
 
-/** An object that is no array, no buffer and no file. */
+/** Whether the value is an object other than an array, a buffer or a file. */
 export function isRecord(value: unknown): value is Record<string, unknown> {
   return isKind(value, "Object");
 }
 
-/** Whether this is a typed array, of one of these kinds. */
+/** Whether the value is a typed array of one of these types. */
 export function isTypedArray<T>(value: unknown, ...names: string[]): value is T {
   return ArrayBuffer.isView(value) && isKind(value, ...names);
 }
 
-/** An error that says which typed array belongs in place of a plain one, or of another. */
+/** The error for a plain array, or a typed array of the wrong type. */
 export function wrongKind(argument: string, value: unknown, expected: string, typedArray: string): Sim3AlignError {
   const isArray = Array.isArray(value) || (ArrayBuffer.isView(value) && !isKind(value, "DataView"));
   const remedy = isArray ? `Convert it: ${typedArray}.from(${argument}).` : "Pass one of these.";
   return invalidArgument(argument, value, expected, remedy);
 }
 
-/** Numbers as a plain array, from an array of any kind; anything else as it is, for the core to judge. */
+/** Converts any array to a plain one. Other values are unchanged, for the core to reject. */
 export function plainNumbers(value: unknown): unknown {
   return ArrayBuffer.isView(value) && !isKind(value, "DataView") ? Array.from(value as unknown as number[]) : value;
 }
 
-/** The object without its undefined properties. */
+/** Copies an object without its undefined properties. */
 export function withoutUndefined<T extends object>(object: T): { [K in keyof T]?: Exclude<T[K], undefined> } {
   const entries = Object.entries(object).filter(([, value]) => value !== undefined);
   return Object.fromEntries(entries) as { [K in keyof T]?: Exclude<T[K], undefined> };
@@ -40,7 +40,7 @@ export type Vector3 = [x: number, y: number, z: number];
 /** A unit quaternion, x, y, z, w: the order of three.js, glTF and ROS. */
 export type Quaternion = [x: number, y: number, z: number, w: number];
 
-/** An error from its five parts. */
+/** Creates an error from its five parts. */
 export function failure(
   code: ErrorCode,
   argument: string,
@@ -51,14 +51,14 @@ export function failure(
   return new Sim3AlignError({ code, argument, found, expected, remedy });
 }
 
-/** All elements of an array, of whatever kind and nesting: `[[1, 2]]` and a tensor's data alike. */
+/** Flattens an array of any type and nesting, such as `[[1, 2]]` or the data of a tensor. */
 export function flattened(value: unknown): unknown[] | null {
   if (Array.isArray(value)) return value.flat(Number.POSITIVE_INFINITY);
   if (ArrayBuffer.isView(value) && "length" in value) return Array.from(value as unknown as ArrayLike<unknown>);
   return null;
 }
 
-/** That many finite numbers, from an array of any kind and nesting. */
+/** `count` finite numbers, from an array of any type and nesting. */
 export function finiteNumbers(argument: string, value: unknown, count: number, expected: string): number[] {
   const remedy = "Pass an array or a typed array with these numbers.";
   const numbers = flattened(value);
@@ -87,19 +87,19 @@ export function positive(argument: string, value: unknown): number {
   throw failure("INVALID_ARGUMENT", argument, describe(value), "a finite number above 0", "Check the unit.");
 }
 
-/** A whole number from `least` on. */
+/** An integer of at least `least`. */
 export function whole(argument: string, value: unknown, least: number): number {
   if (Number.isSafeInteger(value) && (value as number) >= least) return value as number;
   throw failure(
     "INVALID_ARGUMENT",
     argument,
     describe(value),
-    `a whole number from ${least} on`,
+    `an integer of at least ${least}`,
     "Pass a number of pixels.",
   );
 }
 
-/** One of several words. */
+/** One of several names. */
 export function oneOf<T extends string>(argument: string, value: unknown, words: readonly T[]): T {
   if (words.includes(value as T)) return value as T;
   const expected = words.map((word) => JSON.stringify(word)).join(" or ");

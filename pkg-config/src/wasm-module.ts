@@ -3,13 +3,13 @@ import { internalError, isCoded, Sim3AlignError } from "./error.js";
 import type { LazySource, WasmSource } from "./platform.js";
 import { isKind } from "./values.js";
 
-/** The exports of wasm-bindgen's glue beside the module's own functions. */
+/** The exports of wasm-bindgen's glue, other than the functions of the module. */
 export interface Glue {
   default(options: { module_or_path: WebAssembly.Module }): Promise<unknown>;
   __wbg_reset_state(): void;
 }
 
-/** A module that is loaded once, however many callers ask at the same time. After a failure the next call tries again. */
+/** A module that is loaded once, also for concurrent callers. After a failure, the next call tries again. */
 export class WasmModule<G extends Glue> {
   readonly #name: string;
   readonly #source: LazySource;
@@ -23,7 +23,7 @@ export class WasmModule<G extends Glue> {
     this.#importGlue = importGlue;
   }
 
-  /** Compiles the module, to be loaded here or in a worker. Only the first successful call's `source` counts. */
+  /** Compiles the module, for this thread or a worker. Only the `source` of the first successful call is used. */
   compile(source: LazySource = this.#source): Promise<WebAssembly.Module> {
     if (this.#compiling === undefined) {
       const compiling = this.#explained(async () => compiled(await given(source)));
@@ -35,7 +35,7 @@ export class WasmModule<G extends Glue> {
     return this.#compiling;
   }
 
-  /** Loads the module. Only the first successful call's `source` counts. */
+  /** Loads the module. Only the `source` of the first successful call is used. */
   load(source?: LazySource): Promise<LoadedModule<G>> {
     if (this.#loading === undefined) {
       const loading = this.#instantiate(source);
@@ -67,17 +67,17 @@ export class WasmModule<G extends Glue> {
 
 function notLoaded(name: string, cause: unknown): Sim3AlignError {
   const file = `${name}_bg.wasm`;
-  // A script that a bundler for servers has moved has no such file beside it, or no address of its own.
+  // If a server bundler has moved this script, the file is not next to it, or the script has no URL.
   const isMoved = cause instanceof Error && "code" in cause && ["ENOENT", "ERR_INVALID_URL"].includes(`${cause.code}`);
   const remedy = isMoved
-    ? `If a bundler has put this script elsewhere, import from "sim3align/inline", which needs no other file, or leave sim3align out of the bundle; or pass createAligner the address, bytes or module of ${file}.`
-    : `Serve sim3align/wasm/${file} beside the script, or pass createAligner its address, bytes or module.`;
+    ? `If a bundler has moved this script, import from "sim3align/inline", which needs no other file, or exclude sim3align from the bundle; or pass createAligner the URL, bytes or module of ${file}.`
+    : `Serve sim3align/wasm/${file} next to the script, or pass createAligner its URL, bytes or module.`;
   return new Sim3AlignError(
     {
       code: "NOT_INITIALISED",
       argument: name === "core" ? "wasm" : "formatsWasm",
       found: cause instanceof Error ? cause.message : String(cause),
-      expected: `the WebAssembly module ${file} of this very version`,
+      expected: `the WebAssembly module ${file} of the same version`,
       remedy,
     },
     { cause },
@@ -94,15 +94,15 @@ export class LoadedModule<G extends Glue> {
     this.#glue = glue;
   }
 
-  /** Which instance calls go to: objects of another one are gone. */
+  /** The number of the current instance; objects of earlier instances are lost. */
   get instance(): number {
     return this.#isSpent ? this.#instance + 1 : this.#instance;
   }
 
   /**
-   * Calls the module. Its errors about the input become {@link Sim3AlignError}s; `rename` turns the names of their
-   * arguments into those that the caller knows. After any other exception the state of the module is unknown, and the
-   * next call gets a new instance.
+   * Calls the module. Its errors about the input become {@link Sim3AlignError}s; `rename` maps their argument names to
+   * those of the caller. After any other exception, the state of the module is unknown, and the next call uses a new
+   * instance.
    */
   call<T>(work: (glue: G) => T, rename: (argument: string) => string = (argument) => argument): T {
     if (this.#isSpent) {
@@ -131,15 +131,15 @@ async function compiled(source: WasmSource): Promise<WebAssembly.Module> {
   const code = isAddress ? await fetched(String(source)) : source;
   if (!isKind<Response>(code, "Response")) return WebAssembly.compile(code as BufferSource);
   if (!code.ok) throw new Error(`${code.status} ${code.statusText} at ${code.url}`);
-  // Without the type, streaming would fail, and a fallback would print a warning on the console.
+  // With a wrong MIME type, streaming would fail, and the fallback would log a console warning.
   const isTyped = code.headers.get("content-type")?.startsWith("application/wasm");
   return isTyped ? WebAssembly.compileStreaming(code) : WebAssembly.compile(await code.arrayBuffer());
 }
 
-/** The content at an address; Node's `fetch` reads no files. */
+/** The content of a URL. Reads `file:` URLs separately, because `fetch` of Node does not support them. */
 async function fetched(address: string): Promise<Response | BufferSource> {
   if (!address.startsWith("file:")) return fetch(address);
-  // Bundlers for browsers do not follow a name in a variable; browsers never get here.
+  // The name is in a variable, so that browser bundlers do not resolve it.
   const fileSystem = "node:fs/promises";
   const { readFile } = (await import(
     /* webpackIgnore: true */ /* @vite-ignore */ fileSystem

@@ -1,11 +1,11 @@
-/** The script of a worker: runs the jobs that its aligner sends, one after the other. */
+/** Worker script: runs the jobs of its aligner one at a time. */
 import type { Core } from "./core.js";
 import { type ErrorParts, internalError, partsOf, Sim3AlignError } from "./error.js";
 import type { Formats } from "./formats-module.js";
 import { perform } from "./jobs.js";
 import type { Reply, Request } from "./pool/protocol.js";
 import { buffersOf } from "./pool/transfer.js";
-// Imported statically: some bundlers make one file of a worker's script, without anything that could be loaded later.
+// Imported statically, because some bundlers put a worker script into a single file without dynamic imports.
 import * as coreGlue from "./wasm/core.js";
 import * as formatsGlue from "./wasm/formats.js";
 import { type LoadedModule, WasmModule } from "./wasm-module.js";
@@ -17,7 +17,7 @@ class WorkerHost {
   readonly #post: Post;
   #core: Promise<LoadedModule<Core>> | undefined;
   #formats: Promise<LoadedModule<Formats>> | undefined;
-  /** Takes the answer to `needs-formats`, while the worker waits for it. */
+  /** Receives the answer to `needs-formats`. */
   #receiveFormats: ((formats: WebAssembly.Module | ErrorParts) => void) | undefined;
 
   constructor(post: Post) {
@@ -31,14 +31,14 @@ class WorkerHost {
     else this.#run(message);
   }
 
-  /** Answers a message that arrived without its content, so that the call does not wait for ever. */
+  /** Answers a message whose content could not be read, so that the call does not wait forever. */
   receiveUnreadable(): void {
     const error: ErrorParts = {
       code: "INVALID_ARGUMENT",
       argument: "input",
-      found: "an array whose buffer is detached: it has been moved to a worker before",
-      expected: "arrays that still have their buffers",
-      remedy: "After a call with transfer: true, use the arrays of the result's (or the error's) `input`.",
+      found: "an array whose buffer is detached: it was moved to a worker",
+      expected: "arrays whose buffers are not detached",
+      remedy: "After a call with transfer: true, use the arrays in `input` of the result or the error.",
     };
     if (this.#receiveFormats !== undefined) this.#receiveFormats(error);
     else this.#post({ type: "done", error });
@@ -65,7 +65,7 @@ class WorkerHost {
 
   #loadCore(module: WebAssembly.Module): Promise<LoadedModule<Core>> {
     const core = new WasmModule<Core>("core", module, () => coreGlue as unknown as Core).load();
-    // The first job reports the failure.
+    // The failure surfaces at the first job.
     core.catch(() => {});
     return core;
   }
@@ -92,7 +92,7 @@ class WorkerHost {
   }
 }
 
-/** The global object of a web worker, as far as it is used here. Workers of Node have a module in its place. */
+/** The parts of a worker's global scope that this script uses. Node worker threads have a module instead. */
 const scope = globalThis as unknown as {
   postMessage?: (message: Reply, transfer: ArrayBuffer[]) => void;
   onmessage?: (event: { data: Request }) => void;
@@ -104,7 +104,8 @@ if (typeof scope.postMessage === "function") {
   scope.onmessage = ({ data }) => host.receive(data);
   scope.onmessageerror = () => host.receiveUnreadable();
 } else {
-  // Bundlers for browsers do not follow a name in a variable; browsers never get here. Messages wait for a listener.
+  // The name is in a variable, so that browser bundlers do not resolve it. Messages are queued until there is a
+  // listener.
   const name = "node:worker_threads";
   import(/* webpackIgnore: true */ /* @vite-ignore */ name).then(
     ({ parentPort }: typeof import("node:worker_threads")) => {

@@ -1,4 +1,4 @@
-/** `sim3align align`: aligns cases and reports how well. */
+/** `sim3align align`: aligns cases and prints the results. */
 import { statSync } from "node:fs";
 import { basename, resolve } from "node:path";
 import { Command, Option } from "commander";
@@ -76,14 +76,14 @@ export function alignCommand(): Command {
     .summary("align the mesh of each case to its depth map")
     .description("Aligns the mesh of each case to its masked depth map.")
     .argument("[case...]", "case folders")
-    .option("--depth <file>", "the depth map (.npy or 16-bit .png), instead of a case folder")
-    .option("--mask <file>", "the mask (.png, .npy, or .json with COCO RLE)")
-    .option("--mesh <file>", "the mesh (.glb, .gltf, .obj, .ply or .stl)")
-    .option("--camera <file|fx,fy,cx,cy|fov:deg>", "the camera: a file, intrinsics or a vertical field of view", camera)
+    .option("--depth <file>", "depth map (.npy or 16-bit .png), instead of a case folder")
+    .option("--mask <file>", "mask (.png, .npy, or .json with COCO RLE)")
+    .option("--mesh <file>", "mesh (.glb, .gltf, .obj, .ply or .stl)")
+    .option("--camera <file|fx,fy,cx,cy|fov:deg>", "camera: a file, intrinsics or a vertical field of view", camera)
     .option("--json <file>", 'write the results as JSON; "-" is stdout')
-    .addOption(new Option("--preset <name>", "the method (default precise)").choices(["precise", "paper"]));
+    .addOption(new Option("--preset <name>", "method (default precise)").choices(["precise", "paper"]));
   addOptionFlags(addCaseOptions(command), shared);
-  command.option("--options <json>", "any options of align() as JSON; flags have precedence", jsonObject);
+  command.option("--options <json>", "further options of align() as JSON; flags take precedence", jsonObject);
   addOptionFlags(command.optionsGroup("Options of --preset precise:"), precise);
   addOptionFlags(command.optionsGroup("Options of --preset paper:"), paper);
   return command.addHelpText("after", help).action(run);
@@ -125,26 +125,25 @@ function jobsOf(folders: readonly string[], flags: AlignFlags): Job[] {
   const { depth, mask, mesh, camera: cameraFlag } = flags;
   const given = [depth, mask, mesh, cameraFlag].filter((flag) => flag !== undefined).length;
   if (given === 0 && folders.length === 0)
-    throw new UsageError("Name at least one case folder, or --depth, --mask, --mesh and --camera.");
+    throw new UsageError("Pass at least one case folder, or --depth, --mask, --mesh and --camera.");
   if (given === 0) return folderJobs(folders, settings);
   if (folders.length > 0)
-    throw new UsageError("Name case folders, or --depth, --mask, --mesh and --camera, but not both.");
+    throw new UsageError("Pass case folders, or --depth, --mask, --mesh and --camera, but not both.");
   if (depth === undefined || mask === undefined || mesh === undefined || cameraFlag === undefined) {
-    throw new UsageError("--depth, --mask, --mesh and --camera belong together: name all four.");
+    throw new UsageError("--depth, --mask, --mesh and --camera belong together: pass all four.");
   }
   const name = basename(mesh).replace(/\.[^.]*$/, "");
   return [{ name, read: () => readCaseFiles(name, { depth, mask, mesh, camera: cameraFlag }, settings) }];
 }
 
 /**
- * Cases are named after their folders, or by their paths where names repeat. Files, which `cases/*` may match, are
- * skipped.
+ * Cases are named by their folders, or by their paths if names repeat. Files, which `cases/*` may match, are skipped.
  */
 function folderJobs(paths: readonly string[], settings: CaseSettings): Job[] {
   const folders = paths.filter((path) => !statSync(path, { throwIfNoEntry: false })?.isFile());
   if (folders.length === 0) throw new UsageError(`No case folder among ${paths.join(", ")}.`);
   if (folders.length < paths.length) {
-    console.error(`skipped, no folder: ${paths.filter((path) => !folders.includes(path)).join(", ")}`);
+    console.error(`skipped, not a folder: ${paths.filter((path) => !folders.includes(path)).join(", ")}`);
   }
   const names = folders.map((folder) => basename(resolve(folder)));
   return folders.map((folder, i) => {
@@ -177,13 +176,13 @@ async function alignCase(
   }
 }
 
-/** Whether every other case would fail in the same way. The initial pose may differ from case to case. */
+/** Whether all cases would fail with this error. The initial pose may differ from case to case. */
 function isAboutOptions(error: unknown): error is Sim3AlignError {
   if (!(error instanceof Sim3AlignError)) return false;
   return error.argument.startsWith("options") && !error.argument.startsWith("options.initial");
 }
 
-/** The options that `--options` and the flags ask for. */
+/** The options set by `--options` and by flags. */
 async function alignOptions(flags: AlignFlags, name: string): Promise<OptionsOf<Preset, boolean>> {
   const given: Record<string, unknown> = {
     ...flags.options,

@@ -1,10 +1,10 @@
-/** Flags about how a case is read, which all commands share. */
+/** Flags of all commands that control how a case is read. */
 import { type Command, Option } from "commander";
 import type { CaseSettings } from "../case-folder.js";
 import { withoutUndefined } from "../values.js";
 import { number } from "./parse.js";
 
-/** The flags' values. */
+/** Values of the flags. */
 export interface CaseFlags {
   depthScale?: number;
   imageId?: string;
@@ -15,15 +15,15 @@ export interface CaseFlags {
 export function addCaseOptions(command: Command): Command {
   return command
     .option("--depth-scale <metres>", "metres per unit of depth, such as 0.001 for millimetres", number)
-    .option("--image-id <id>", "which entry of a BOP scene_camera.json")
-    .addOption(new Option("--resize-mask <how>", "bring a mask of another size to the depth's").choices(["nearest"]));
+    .option("--image-id <id>", "image id in a BOP scene_camera.json")
+    .addOption(new Option("--resize-mask <how>", "resize the mask to the size of the depth map").choices(["nearest"]));
 }
 
-/** The flags as settings of a case. */
+/** Converts the flags to settings of a case. */
 export const caseSettings = ({ depthScale, imageId, resizeMask }: CaseFlags): CaseSettings =>
   withoutUndefined({ depthScale, imageId, resizeMask });
 
-/** What a case folder holds, for --help. */
+/** The layout of a case folder, for --help. */
 export const caseFolderHelp = `
 A case folder holds
   depth.npy or depth.png         z-depth; floats are metres, whole numbers (16-bit PNG) millimetres unless
@@ -33,13 +33,13 @@ A case folder holds
                                  the object in its own frame, in any unit
   camera.json                    {"fx", "fy", "cx", "cy"}, {"K"}, {"fovYDeg"}, or ROS CameraInfo; or BOP's
                                  scene_camera.json
-  gt.json (optional)             {"scale", "rotation": 3×3 row by row, "translation": m, "symmetry"}: the truth`;
+  gt.json (optional)             {"scale", "rotation": 3×3 row-major, "translation": m, "symmetry"}: the true pose`;
 
 /** Frames and units, for --help. */
 export const conventionsHelp = `
 Frames and units
   x_cam = s·R·p_mesh + t. The camera looks along +z, x is right, y is down (OpenCV); metres. Pixel centres are at
-  whole numbers. "matrix" is column by column (three.js, glTF), "rotation" row by row, "quaternion" x, y, z, w.`;
+  whole numbers. "matrix" is column-major (three.js, glTF), "rotation" row-major, "quaternion" x, y, z, w.`;
 
 /** The meaning of the exit status, for --help. */
 export const statusHelp = `

@@ -1,4 +1,4 @@
-/** `sim3align evaluate`: scores a transform on a case. */
+/** `sim3align evaluate`: computes the metrics of a transform on a case. */
 import { Command } from "commander";
 import { readCaseFolder } from "../case-folder.js";
 import { createAligner, type Evaluation, OPTIONS, type OptionRow, Sim3AlignError } from "../index.js";
@@ -21,7 +21,7 @@ interface EvaluateFlags extends CaseFlags, Readonly<Record<string, unknown>> {
   json?: string;
 }
 
-/** The case itself has the truth and the symmetry. */
+// The true pose and the symmetry come from the case.
 const rows: readonly OptionRow[] = OPTIONS.evaluate.filter(({ name }) => name !== "truth" && name !== "symmetry");
 
 const help = `${caseFolderHelp}
@@ -36,11 +36,11 @@ ${statusHelp}`;
 /** The command. */
 export function evaluateCommand(): Command {
   const command = new Command("evaluate")
-    .summary("score a transform on a case")
-    .description("Scores a transform with all metrics, and against gt.json where the case has one.")
+    .summary("compute the metrics of a transform")
+    .description("Computes all metrics of a transform and, if the case has gt.json, its errors.")
     .argument("<case>", "case folder")
-    .option("--transform <file|gt>", 'a transform file, or "gt" for the case\'s own truth', "gt")
-    .option("--json <file>", 'write the scores as JSON; "-" is stdout');
+    .option("--transform <file|gt>", 'transform file, or "gt" for the true pose of the case', "gt")
+    .option("--json <file>", 'write the metrics as JSON; "-" is stdout');
   addOptionFlags(addCaseOptions(command), rows);
   return command.addHelpText("after", help).action(run);
 }
@@ -79,7 +79,7 @@ function noTruth(folder: string): Sim3AlignError {
   return new Sim3AlignError({
     code: "FILE_NOT_FOUND",
     argument: "transform",
-    found: `no known pose in ${folder}`,
+    found: `no true pose in ${folder}`,
     expected: "gt.json with a pose",
     remedy: "Pass --transform FILE.",
   });

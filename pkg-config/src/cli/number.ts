@@ -1,11 +1,11 @@
-/** Numbers for people; what could not be measured is a dash. */
+/** Formats numbers for tables; a missing value is a dash. */
 
-/** With so many digits after the point. */
+/** Formats a number with a fixed number of decimals. */
 export function fixed(value: number | null | undefined, digits: number): string {
   return value === null || value === undefined ? "–" : value.toFixed(digits);
 }
 
-/** With so many significant digits, and no exponent where a few zeros do. */
+/** Formats a number with the given significant digits, without an exponent if a few zeros suffice. */
 export function significant(value: number | null | undefined, digits: number): string {
   if (value === null || value === undefined) return "–";
   if (value === 0 || !Number.isFinite(value)) return String(value);

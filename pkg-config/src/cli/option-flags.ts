@@ -1,4 +1,4 @@
-/** Flags for options, made from the generated tables of options. */
+/** Flags for the options in the generated option tables. */
 import { type Command, InvalidArgumentError, Option } from "commander";
 import type { OptionRow } from "../options.js";
 import { direction, guard, number, scale, symmetry } from "./parse.js";
@@ -6,14 +6,14 @@ import { direction, guard, number, scale, symmetry } from "./parse.js";
 /** Flags that are shorter than their option's name. */
 const FLAG_NAMES: Readonly<Record<string, string>> = { knownExtentM: "known-extent" };
 
-/** `--known-extent-axis` for `knownExtentAxis`, without the dashes. */
+/** The flag of an option, without the dashes: `known-extent-axis` for `knownExtentAxis`. */
 const flagName = ({ name }: OptionRow) =>
   FLAG_NAMES[name] ?? name.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`);
 
-/** The name under which Commander keeps the flag's value. */
+/** The name under which Commander stores the value of a flag. */
 const valueName = (row: OptionRow) => flagName(row).replace(/-(.)/g, (_, letter: string) => letter.toUpperCase());
 
-/** A flag that turns an option off that is on by default. */
+/** Whether the flag disables an option that is on by default. */
 const isNegated = ({ kind, default: value }: OptionRow) => kind === "boolean" && value === true;
 
 /** Adds a flag for each option. */
@@ -21,7 +21,7 @@ export function addOptionFlags(command: Command, rows: readonly OptionRow[]): vo
   for (const row of rows) command.addOption(flagOf(row, rows));
 }
 
-/** The options that flags were given for. Transforms are left as the paths of their files. */
+/** The options whose flags were given. The value of a transform is the path of its file. */
 export function givenOptions(
   flags: Readonly<Record<string, unknown>>,
   rows: readonly OptionRow[],
@@ -29,7 +29,7 @@ export function givenOptions(
   const given: Record<string, unknown> = {};
   for (const row of rows) {
     const value = flags[valueName(row)];
-    // Commander has `true` for a --no flag that was not given.
+    // Commander sets `true` for a --no flag that was not given.
     if (value === undefined || (isNegated(row) && value === true)) continue;
     given[row.name] = value === "none" && row.isNullable ? null : value;
   }
@@ -44,7 +44,7 @@ function flagOf(row: OptionRow, rows: readonly OptionRow[]): Option {
   return option;
 }
 
-/** The option's summary, with flags in place of the options that it names, its values and its default. */
+/** The summary of an option with its values and default. Option names in it are replaced by flags. */
 function description(row: OptionRow, rows: readonly OptionRow[]): string {
   const summary = row.summary.replace(/`(\w+)`/g, (quoted, name: string) => {
     const named = rows.find((other) => other.name === name);

@@ -1,12 +1,12 @@
-/** Where the results go. */
+/** Output of the commands. */
 import { writeFile } from "node:fs/promises";
 import { Style } from "./style.js";
 
-/** Tables for people on stdout; JSON in a file, or on stdout, which then carries nothing else. */
+/** Writes tables to stdout and JSON to a file, or only JSON to stdout. */
 export class Output {
   readonly #jsonPath: string | undefined;
   readonly #tables: NodeJS.WriteStream;
-  /** How to write the tables. */
+  /** Text style of the tables. */
   readonly style: Style;
 
   constructor(jsonPath: string | undefined) {
@@ -15,12 +15,12 @@ export class Output {
     this.style = new Style(this.#tables);
   }
 
-  /** Writes lines for people. */
+  /** Writes human-readable lines. */
   lines(lines: readonly string[]): void {
     this.#tables.write(lines.map((line) => `${line}\n`).join(""));
   }
 
-  /** Writes the results for programs, if they were asked for. */
+  /** Writes the JSON, if requested. */
   async json(text: string): Promise<void> {
     if (this.#jsonPath === undefined) return;
     if (this.#jsonPath === "-") process.stdout.write(text);

@@ -1,21 +1,21 @@
-/** Parses the values of flags. Invalid values are usage errors. */
+/** Parsers for flag values. Invalid values are usage errors. */
 import { InvalidArgumentError } from "commander";
 import type { CameraInput, ScaleOption, SymmetryOption } from "../index.js";
 
-/** A number. */
+/** Parses a number. */
 export function number(text: string): number {
   const value = Number(text);
   if (text.trim() === "" || Number.isNaN(value)) throw new InvalidArgumentError("Not a number.");
   return value;
 }
 
-/** Numbers with commas between them. */
+/** Parses comma-separated numbers. */
 function numbers(text: string, count: number): number[] | null {
   const values = text.split(",").map((part) => (part.trim() === "" ? Number.NaN : Number(part)));
   return values.length === count && !values.some(Number.isNaN) ? values : null;
 }
 
-/** MIN,MAX, or none (Commander takes a null for no value). */
+/** Parses MIN,MAX or `none`. (Commander treats null as a missing value.) */
 export function guard(text: string): [number, number] | "none" {
   if (text === "none") return text;
   const values = numbers(text, 2);
@@ -23,7 +23,7 @@ export function guard(text: string): [number, number] | "none" {
   return values as [number, number];
 }
 
-/** "free", A, or MIN,MAX. */
+/** Parses `free`, a number, or MIN,MAX. */
 export function scale(text: string): ScaleOption {
   if (text === "free") return text;
   const [value, max] = numbers(text, 1) ?? numbers(text, 2) ?? [];
@@ -31,35 +31,35 @@ export function scale(text: string): ScaleOption {
   return max === undefined ? value : [value, max];
 }
 
-/** X,Y,Z. */
+/** Parses X,Y,Z. */
 export function direction(text: string): [number, number, number] {
   const values = numbers(text, 3);
-  if (values === null) throw new InvalidArgumentError("Give X,Y,Z such as 0,-1,0.");
+  if (values === null) throw new InvalidArgumentError("Expected X,Y,Z, such as 0,-1,0.");
   return values as [number, number, number];
 }
 
-/** A name, which the core checks, or an array of axes in JSON. */
+/** Parses a name, which the core checks, or a JSON array of axes. */
 export function symmetry(text: string): SymmetryOption {
   if (!text.trimStart().startsWith("[")) return text as "auto";
   try {
     return JSON.parse(text);
   } catch (error) {
-    throw new InvalidArgumentError(`Not JSON: ${(error as Error).message}.`);
+    throw new InvalidArgumentError(`Invalid JSON: ${(error as Error).message}.`);
   }
 }
 
-/** An object in JSON. */
+/** Parses a JSON object. */
 export function jsonObject(text: string): Record<string, unknown> {
   try {
     const value: unknown = JSON.parse(text);
     if (typeof value === "object" && value !== null && !Array.isArray(value)) return value as Record<string, unknown>;
   } catch (error) {
-    throw new InvalidArgumentError(`Not JSON: ${(error as Error).message}.`);
+    throw new InvalidArgumentError(`Invalid JSON: ${(error as Error).message}.`);
   }
   throw new InvalidArgumentError('Give an object, such as {"ransacIterations": 200000}.');
 }
 
-/** fx,fy,cx,cy; fov:DEGREES; or else a file. */
+/** Parses fx,fy,cx,cy or fov:DEGREES; anything else is a file. */
 export function camera(text: string): string | { value: CameraInput } {
   const intrinsics = numbers(text, 4);
   if (intrinsics !== null) {

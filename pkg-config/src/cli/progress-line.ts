@@ -1,9 +1,9 @@
-/** One line that says how far the work has come: on a terminal only. */
+/** A progress line, on terminals only. */
 import type { Progress } from "../options.js";
 
 const eraseLine = "\r\u001b[2K";
 
-/** The progress of several cases. */
+/** Shows the progress of several cases. */
 export class ProgressLine {
   readonly #stream: NodeJS.WriteStream;
   readonly #total: number;
@@ -15,19 +15,19 @@ export class ProgressLine {
     this.#total = total;
   }
 
-  /** The next case begins. */
+  /** Starts the next case. */
   begin(name: string): void {
     this.#index += 1;
     this.#name = name;
     this.#show("reading");
   }
 
-  /** The case has come so far. */
+  /** Updates the progress of the current case. */
   update({ stage, fraction }: Progress): void {
     this.#show(`${String(Math.floor(100 * fraction)).padStart(3)} %  ${stage}`);
   }
 
-  /** Makes room for other output. */
+  /** Clears the line before other output. */
   clear(): void {
     if (this.#stream.isTTY) this.#stream.write(eraseLine);
   }

@@ -1,4 +1,4 @@
-/** The tables that people read. */
+/** Human-readable tables of results. */
 import type { AlignResult, Evaluation, Metrics, PoseErrors, Warning } from "../index.js";
 import { fixed, significant } from "./number.js";
 import { failureText, type Outcome, type Success } from "./outcome.js";
@@ -26,7 +26,7 @@ const columns: readonly Column[] = [
 
 const errorColumns: readonly Column[] = ["Δscale %", "Δrot °", "Δtrans mm", "Δtrans %"].map(number);
 
-/** One row per case; the errors against the truth where a case has one. */
+/** One row per case, with the errors if the case has a true pose. */
 export function summary(outcomes: readonly Outcome[], style: Style): string[] {
   const hasTruth = outcomes.some((outcome) => "errors" in outcome && outcome.errors !== null);
   const all = hasTruth ? [...columns, ...errorColumns] : columns;
@@ -68,7 +68,7 @@ function errorCells(errors: PoseErrors | null): string[] {
   ];
 }
 
-/** Everything about one aligned case. */
+/** Details of an aligned case. */
 export function details({ name, alignment, errors }: Success, style: Style): string[] {
   const { scale, rotation, rotationMatrix, translation, metrics, diagnostics } = alignment;
   const matrixRow = (i: 0 | 1 | 2) =>
@@ -112,12 +112,12 @@ function certainty({ confidence, alternatives, uncertainty, diagnostics }: Align
   const others = alternatives.map((other) => `${fixed(other.turnDeg, 0)}° (score ${fixed(other.score, 3)})`);
   const rows: Row[] = [
     ["confidence", `${fixed(confidence, 2)}, score ${fixed(score, 3)}`],
-    ["alternatives", others.length === 0 ? "none" : `${others.length}, turned by ${others.join(", ")}`],
+    ["alternatives", others.length === 0 ? "none" : `${others.length}, rotated by ${others.join(", ")}`],
   ];
   if (uncertainty === null) return rows;
   const { scale, rotationDeg, rotationAxis, lateralM, distanceM } = uncertainty;
   const axis = rotationAxis.map((x) => fixed(x, 2)).join(" ");
-  const shift = `${fixed(1000 * lateralM, 1)} mm across, ${fixed(1000 * distanceM, 1)} mm along the view`;
+  const shift = `${fixed(1000 * lateralM, 1)} mm lateral, ${fixed(1000 * distanceM, 1)} mm in distance`;
   return [
     ...rows,
     ["uncertainty", `scale ${fixed(100 * scale, 1)} %, rotation ${fixed(rotationDeg, 1)}° about ${axis}, ${shift}`],
@@ -137,7 +137,7 @@ function countRows({ diagnostics: { preset, counts } }: AlignResult): Row[] {
   ];
 }
 
-/** Everything about one evaluated case. */
+/** Details of an evaluated case. */
 export function evaluationDetails(name: string, evaluation: Evaluation, style: Style): string[] {
   const { metrics, errors, warnings, diagnostics } = evaluation;
   const { scaleRatio, initialScale, collapsed } = diagnostics;
@@ -177,7 +177,7 @@ function errorsSection(errors: PoseErrors | null, style: Style): string[] {
   const { scaleError, rotationErrorDeg, translationErrorM, translationErrorRelative, addSMm } = errors;
   return [
     "",
-    style.bold("Error against the truth"),
+    style.bold("Errors (compared with gt.json)"),
     ...pairs([
       ["scale", `${fixed(100 * scaleError, 2)} %`],
       ["rotation", `${fixed(rotationErrorDeg, 2)}°`],
@@ -197,7 +197,7 @@ function warningsSection(warnings: readonly Warning[], style: Style): string[] {
 
 const warningText = ({ code, message }: Warning, style: Style) => `${style.yellow(code)}: ${message}`;
 
-/** The warnings and failures of several cases. */
+/** Warnings and failures of several cases. */
 export function notes(outcomes: readonly Outcome[], style: Style): string[] {
   return outcomes.flatMap((outcome) =>
     "error" in outcome

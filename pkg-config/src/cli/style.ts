@@ -1,7 +1,7 @@
-/** Bold, dim and colour, where the terminal shows them and NO_COLOR is not set. */
+/** Bold, dim and coloured text, if the terminal supports it and NO_COLOR is not set. */
 import type { WriteStream } from "node:tty";
 
-/** How to write on a stream. */
+/** Text style of a stream. */
 export class Style {
   readonly #isColoured: boolean;
 

@@ -7,7 +7,7 @@ export interface Column {
   isNumber?: boolean;
 }
 
-/** The text's width on a terminal, without colour. */
+/** Width of a text on a terminal, without escape sequences. */
 const width = (text: string) => [...stripVTControlCharacters(text)].length;
 
 function pad(text: string, to: number, isNumber: boolean): string {
@@ -15,7 +15,9 @@ function pad(text: string, to: number, isNumber: boolean): string {
   return isNumber ? space + text : text + space;
 }
 
-/** A table's lines: the heading, then the rows. A row shorter than the table lets its last cell run on. */
+/**
+ * The lines of a table: the headings, then the rows. In a row with fewer cells, the last cell may exceed its column.
+ */
 export function table(columns: readonly Column[], rows: readonly (readonly string[])[]): string[] {
   const widths = columns.map(({ heading }, i) => {
     const cells = rows.filter((row) => row.length === columns.length || i < row.length - 1);

@@ -4,24 +4,24 @@ import { parsePoseFile } from "../conventions/pose-file.js";
 import { Sim3AlignError } from "../error.js";
 import { isRecord } from "../values.js";
 
-/** How a transform file is laid out, for --help. */
+/** The layout of a transform file, for --help. */
 export const transformFileHelp = `
 A transform file is JSON with
-  - { "scale", "rotation", "translation" }, the rotation as 3×3 numbers row by row or as a quaternion x, y, z, w; or
+  - { "scale", "rotation", "translation" }, the rotation as 3×3 numbers, row-major, or as a quaternion x, y, z, w; or
   - { "matrix" }, 16 numbers column by column; or
-  - what "sim3align align --json" wrote: the case's entry is used.`;
+  - the output of "sim3align align --json", from which the entry of the case is read.`;
 
 /**
- * A transform file's 16 numbers, column by column.
- * @param argument what errors call it
- * @param name the case's: which entry of `align --json`'s output is meant
+ * Reads a transform file as 16 numbers, column-major.
+ * @param argument the name of the transform in errors
+ * @param name the case, whose entry is read from the output of `align --json`
  */
 export async function readTransform(argument: "transform" | "initial", path: string, name: string): Promise<number[]> {
   const text = new TextDecoder().decode(await read(argument, path));
   const invalid = (found: string, expected: string) => invalidTransform(argument, found, expected);
   const entry = entryOf(parse(text, argument, path), name, invalid);
   const pose = parsePoseFile(argument, entry);
-  if (pose === null) throw invalid("a file that says that no pose is known", "a transform");
+  if (pose === null) throw invalid("a file without a known pose", "a transform");
   return Array.from(pose.transform.matrix);
 }
 
@@ -48,10 +48,10 @@ function entryOf(json: unknown, name: string, invalid: (found: string, expected:
   if ("matrix" in json || "scale" in json || "available" in json) return json;
   const entry = json[name];
   if (isRecord(entry) && !("error" in entry)) return entry;
-  if (isRecord(entry)) throw invalid(`the failure of ${name}`, "a case that was aligned");
+  if (isRecord(entry)) throw invalid(`the failure of ${name}`, "an aligned case");
   throw invalid(
     `an object with ${Object.keys(json).slice(0, 12).join(", ") || "nothing"}`,
-    `a transform, or ${name}'s`,
+    `a transform, or an entry for ${name}`,
   );
 }
 

@@ -1,2 +1,2 @@
-/** The command line itself is wrong: no case would get further. */
+/** An invalid command line, which ends the program. */
 export class UsageError extends Error {}

@@ -1,4 +1,4 @@
-/** Poses as the BOP benchmark writes them. */
+/** Poses in the format of the BOP benchmark. */
 import type { Sim3, Sim3Like } from "../sim3.js";
 import { finiteNumbers, positive, record, vector3, whole } from "../values.js";
 import { type Matrix3, rotationOf } from "./rotation.js";
@@ -6,34 +6,34 @@ import { sim3Of, similarityOf } from "./similarity.js";
 
 /** One object of BOP's `scene_gt.json`: camera from model, OpenCV camera frame, models in millimetres. */
 export interface BopPose {
-  /** The rotation: nine numbers row by row. */
+  /** The rotation: nine numbers, row-major. */
   cam_R_m2c: readonly number[];
   /** The translation, in millimetres. */
   cam_t_m2c: readonly number[];
-  /** The number of the model. */
+  /** The id of the model. */
   obj_id?: number;
 }
 
-/** A BOP pose, and the scale, which BOP's format has not. */
+/** A BOP pose, and the scale, which is not part of BOP's format. */
 export interface BopExport {
-  /** What belongs into `scene_gt.json`. */
+  /** The entry for `scene_gt.json`. */
   entry: { cam_R_m2c: number[]; cam_t_m2c: number[]; obj_id?: number };
-  /** Metres per mesh unit. The model file that the entry is about has the mesh's vertices times 1000 · scale. */
+  /** Metres per mesh unit. The model file of the entry contains the vertices of the mesh times 1000 · scale. */
   scale: number;
 }
 
 /**
- * A pose for BOP's `scene_gt.json`. BOP's models are in millimetres and its poses have no scale, so that the model has
- * to be written at its real size: the mesh's vertices times `1000 · scale`.
+ * Converts a pose for BOP's `scene_gt.json`. BOP's models are in millimetres and its poses have no scale, so the model
+ * must be written at its real size: the vertices of the mesh times `1000 · scale`.
  *
  * @param transform OpenCV camera from mesh, metres
- * @param options `objId`: the model's number, from 1 on
+ * @param options `objId`: the id of the model, at least 1
  *
  * @example
  * const { entry, scale } = toBop(result, { objId: 3 });
  * const sceneGt = { 0: [entry] };
  * const modelMm = mesh.positions.map((x) => 1000 * scale * x);
- * @throws {@link Sim3AlignError} for what is no similarity
+ * @throws {@link Sim3AlignError} if the transform is not a similarity
  */
 export function toBop(transform: Sim3Like, { objId }: { objId?: number } = {}): BopExport {
   const { scale, rotation, translation } = similarityOf(transform);
@@ -42,20 +42,20 @@ export function toBop(transform: Sim3Like, { objId }: { objId?: number } = {}): 
 }
 
 /**
- * A transform from an entry of BOP's `scene_gt.json`.
+ * Converts an entry of BOP's `scene_gt.json` to a transform.
  *
- * @param entry `cam_R_m2c` (nine numbers row by row) and `cam_t_m2c` (millimetres)
- * @param options `scale`: metres per mesh unit; by default 0.001, for a mesh with BOP's millimetres
+ * @param entry `cam_R_m2c` (nine numbers, row-major) and `cam_t_m2c` (millimetres)
+ * @param options `scale`: metres per mesh unit; by default 0.001, for a mesh in BOP's millimetres
  * @returns OpenCV camera from mesh, metres
  *
  * @example
  * const truth = fromBop(sceneGt["0"][0]);
  * await aligner.evaluate(input, result, { truth });
- * @throws {@link Sim3AlignError} for missing or wrong numbers
+ * @throws {@link Sim3AlignError} for missing or invalid numbers
  */
 export function fromBop(entry: BopPose, { scale = 0.001 }: { scale?: number } = {}): Sim3 {
   const { cam_R_m2c, cam_t_m2c } = record("entry", entry, "an entry of scene_gt.json");
-  const nine = finiteNumbers("entry.cam_R_m2c", cam_R_m2c, 9, "nine finite numbers, row by row");
+  const nine = finiteNumbers("entry.cam_R_m2c", cam_R_m2c, 9, "nine finite numbers, row-major");
   const [x, y, z] = vector3("entry.cam_t_m2c", cam_t_m2c);
   return sim3Of({
     scale: positive("options.scale", scale),

@@ -1,4 +1,4 @@
-/** Cuboids as annotation tools have them. */
+/** Cuboids for annotation tools. */
 
 import { finiteNumbers, oneOf, positive, type Quaternion, record, type Vector3, vector3 } from "../values.js";
 import { type CameraFrame, turnTo } from "./frames.js";
@@ -13,45 +13,45 @@ import {
   turned,
 } from "./rotation.js";
 
-/** A direction along one of a mesh's axes. */
+/** A direction along an axis of a mesh. */
 export type MeshAxis = "x" | "-x" | "y" | "-y" | "z" | "-z";
 
-/** What {@link toCuboid} can be told. */
+/** Options of {@link toCuboid}. */
 export interface CuboidOptions {
-  /** The frame of centre and quaternion: "ros" (x forward, y left, z up) by default. */
+  /** The frame of centre and quaternion. Default: "ros" (x forward, y left, z up). */
   frame?: CameraFrame | undefined;
-  /** Which of the box's axes points to the object's front: "z" by default, as in glTF. */
+  /** The axis of the box that points to the front of the object. Default: "z", as in glTF. */
   front?: MeshAxis | undefined;
-  /** Which of them points up: "y" by default, as in glTF. */
+  /** The axis of the box that points up. Default: "y", as in glTF. */
   up?: MeshAxis | undefined;
 }
 
-/** A cuboid: x along its length to the object's front, y along its width to the left, z along its height. */
+/** A cuboid: x along its length, to the front of the object; y along its width, to the left; z along its height. */
 export interface Cuboid {
   /** In metres. */
   center: Vector3;
-  /** Length, width, height: the sides along the cuboid's own x, y, z, in metres. */
+  /** Length, width and height, along the cuboid's x, y and z, in metres. */
   size: Vector3;
   /** Frame from cuboid: x, y, z, w. */
   quaternion: Quaternion;
   /**
-   * Where the front points, seen from above: 0 is away from the camera, π/2 to its left, −π to π, for formats whose
-   * cuboids turn about the vertical only. "Above" is the camera's: right where it is level.
+   * Heading of the front, seen from above, −π to π: 0 points away from the camera, π/2 to its left. For formats whose
+   * cuboids rotate about the vertical only. "Above" is relative to the camera, so the camera must be level.
    */
   yawRad: number;
-  /** How far the cuboid's up is from the camera's, 0 to π: what a yaw alone leaves out. */
+  /** Angle between the up directions of cuboid and camera, 0 to π; the yaw does not include it. */
   tiltRad: number;
   frame: CameraFrame;
 }
 
 /**
- * A cuboid for annotation tools, from the box around an object.
+ * Converts the box around an object to a cuboid for annotation tools.
  *
  * @param box from {@link objectDimensions}
  *
  * @example
  * const { center, size, yawRad } = toCuboid(objectDimensions(mesh, result));
- * @throws {@link Sim3AlignError} for what is no box, and `INVALID_OPTION` for axes that are not two different ones
+ * @throws {@link Sim3AlignError} for an invalid box, and `INVALID_OPTION` if the axes are not perpendicular
  */
 export function toCuboid(
   box: Pick<ObjectBox, "sizeM" | "centerM" | "rotation">,

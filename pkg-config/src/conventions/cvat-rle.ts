@@ -1,11 +1,11 @@
-/** Masks as CVAT writes them: run lengths along the rows of the mask's own box. */
+/** Masks in CVAT's format: run lengths along the rows of the bounding box of the mask. */
 import { describe } from "../error.js";
 import { type ImageSize, sizeOf } from "../formats/pixels.js";
 import { filledRuns } from "../formats/runs.js";
 import type { PixelArray } from "../input/types.js";
 import { failure, isRecord, whole } from "../values.js";
 
-/** A `<mask>` of CVAT's XML ("CVAT for images"); its attributes may be texts, as an XML parser gives them. */
+/** A `<mask>` element of CVAT's XML ("CVAT for images"); attributes may be strings, as returned by an XML parser. */
 export interface CvatMaskElement {
   /** Run lengths, comma-separated, beginning with background. */
   rle: string;
@@ -16,16 +16,16 @@ export interface CvatMaskElement {
 }
 
 /**
- * The mask of a shape of CVAT's: the `points` of a mask shape from its API or SDK (run lengths, then the box's left,
- * top, right and bottom, all four within the box), or a `<mask>` element of its XML.
+ * Decodes a mask of CVAT: the `points` of a mask shape from its API or SDK (run lengths, then left, top, right and
+ * bottom of the box, all inclusive), or a `<mask>` element of its XML.
  *
- * @param mask the `points`, or the element's attributes
+ * @param mask the `points`, or the attributes of the element
  * @param image the size of the whole image, in pixels
- * @returns the whole image's mask; 1 is the object
+ * @returns the mask of the whole image; 1 is the object
  *
  * @example
  * fromCvatRle([1, 2, 1, 1, 0, 2, 1], { width: 3, height: 2 }).data;    // Uint8Array [0, 0, 1, 0, 1, 0]
- * @throws {@link Sim3AlignError} `CORRUPT_FILE` for runs that do not fill the box, `SIZE_MISMATCH` for a box that leaves
+ * @throws {@link Sim3AlignError} `CORRUPT_FILE` for runs that do not fill the box, `SIZE_MISMATCH` if the box exceeds
  * the image
  */
 export function fromCvatRle(mask: ArrayLike<number> | CvatMaskElement, image: ImageSize): PixelArray<Uint8Array> {
@@ -58,18 +58,18 @@ function fromPoints(points: unknown): BoxRuns {
   }
   const numbers = Array.from(points as unknown as ArrayLike<unknown>);
   if (numbers.length < 5) {
-    const remedy = "Pass the points of a shape of the type mask.";
+    const remedy = "Pass the points of a shape of type mask.";
     throw failure(
       "WRONG_LENGTH",
       "mask",
       `${numbers.length} numbers`,
-      "run lengths and the box's four numbers",
+      "run lengths and the four numbers of the box",
       remedy,
     );
   }
   const [left, top, right, bottom] = numbers.splice(-4);
   const [x, y] = [whole("mask.left", left, 0), whole("mask.top", top, 0)];
-  // Right and bottom are the last column and row of the box, not the first beyond it.
+  // Right and bottom are inclusive.
   const boxWidth = whole("mask.right", right, x) - x + 1;
   return { runs: numbers, left: x, top: y, boxWidth, boxHeight: whole("mask.bottom", bottom, y) - y + 1 };
 }
@@ -77,7 +77,7 @@ function fromPoints(points: unknown): BoxRuns {
 function fromElement({ rle, left, top, width, height }: Record<string, unknown>): BoxRuns {
   if (typeof rle !== "string") {
     const remedy = "Pass the attributes of a mask element.";
-    throw failure("INVALID_ARGUMENT", "mask.rle", describe(rle), "run lengths in a text, separated by commas", remedy);
+    throw failure("INVALID_ARGUMENT", "mask.rle", describe(rle), "a string of comma-separated run lengths", remedy);
   }
   const number = (name: string, value: unknown, least: number) =>
     whole(`mask.${name}`, typeof value === "string" && value.trim() !== "" ? Number(value) : value, least);

@@ -1,23 +1,24 @@
-/** Depth from what relative depth models estimate. */
+/** Depth from the output of relative depth models. */
 
 import { pixelsOf, pointKinds } from "../formats/pixels.js";
 import type { PixelArray } from "../input/types.js";
 import { finite } from "../values.js";
 
 /**
- * Depth in metres from relative inverse depth (disparity), such as Depth Anything's and MiDaS' relative models
- * estimate, whose values are larger where it is nearer: 1 / (scale · d + shift).
+ * Converts relative inverse depth (disparity), the output of the relative models of Depth Anything and MiDaS, to depth
+ * in metres: 1 / (scale · d + shift). Larger disparities are nearer.
  *
- * Scale and shift are not the model's to know: fit them to a few known distances. Without them the depth is bent, and
- * no similarity fits it. For a stereo camera, `scale` is 1 / (focal length in pixels · baseline in metres), `shift` 0.
+ * The model does not determine scale and shift: fit them to a few known distances. Without them, the depth is
+ * distorted, and no similarity fits it. For a stereo camera, `scale` is 1 / (focal length in pixels · baseline in
+ * metres), `shift` 0.
  *
  * @param disparity relative inverse depth, as `{ data, width, height }`
  * @param calibration `scale` and `shift`, both in 1/m
- * @returns depth in metres; 0, "no reading", where the disparity is not finite or the depth not above 0
+ * @returns depth in metres; 0 ("no reading") if the disparity is not finite or the depth is not above 0
  *
  * @example
  * const depth = depthFromDisparity(depthFromTensor(predicted_depth), { scale: 0.12, shift: 0.05 });
- * @throws {@link Sim3AlignError} for arrays of other kinds or lengths, and numbers that are not finite
+ * @throws {@link Sim3AlignError} for arrays of the wrong type or length, and for non-finite numbers
  */
 export function depthFromDisparity(
   disparity: PixelArray<Float32Array>,

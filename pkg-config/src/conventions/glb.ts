@@ -1,4 +1,4 @@
-/** GLB files: a mesh where it really is, or a GLB put there. */
+/** Export of placed meshes, and placement of existing GLB files. */
 import { describe } from "../error.js";
 import type { MeshArrays } from "../input/types.js";
 import type { Sim3Like } from "../sim3.js";
@@ -8,7 +8,7 @@ import { type GltfNode, type GltfNodeOptions, toGltfNode } from "./gltf-node.js"
 import { meshOf } from "./mesh.js";
 import { applyToPoints, sim3Of, similarityOf } from "./similarity.js";
 
-/** What {@link exportGlb} can be told. */
+/** Options of {@link exportGlb}. */
 export interface GlbOptions extends GltfNodeOptions {
   /** "node", the default, keeps the vertices and transforms the node; "baked" transforms the vertices. */
   mode?: "node" | "baked" | undefined;
@@ -19,16 +19,16 @@ const jsonChunk = 0x4e4f534a;
 const binaryChunk = 0x004e4942;
 
 /**
- * A GLB file of a mesh where it really is, at its real size, in metres, seen from a camera at the origin. It has
- * positions and triangles only; for a GLB with its materials, see {@link placeGlb}.
+ * Exports a mesh at its pose relative to a camera at the origin, in metres, as a GLB file. The file contains positions
+ * and triangles only; {@link placeGlb} keeps the materials of a GLB.
  *
- * @param mesh `positions` and `indices`, as they were aligned
+ * @param mesh `positions` and `indices` of the aligned mesh
  * @param transform OpenCV camera from mesh: a result of `align`, whose metrics are kept in the node's extras
  *
  * @example
  * const bytes = exportGlb(mesh, result);
  * await writeFile("placed.glb", bytes);
- * @throws {@link Sim3AlignError} for what is no mesh or no similarity, and `INVALID_OPTION`
+ * @throws {@link Sim3AlignError} for an invalid mesh or transform, and `INVALID_OPTION`
  */
 export function exportGlb(mesh: MeshArrays, transform: Sim3Like, options: GlbOptions = {}): Uint8Array {
   const { positions, indices } = meshOf("mesh", mesh);
@@ -66,15 +66,15 @@ export function exportGlb(mesh: MeshArrays, transform: Sim3Like, options: GlbOpt
 }
 
 /**
- * A GLB file with everything in it put where it really is: its scene hangs below one more node. Materials, textures and
- * animations stay; nothing is decoded.
+ * Places an existing GLB by adding a parent node above its scene. Materials, textures and animations are kept; nothing
+ * is decoded.
  *
- * @param glb the bytes of the file that was aligned
- * @param transform OpenCV camera from mesh: a result of `align` for that very file
+ * @param glb the bytes of the aligned file
+ * @param transform OpenCV camera from mesh: a result of `align` for the same file
  *
  * @example
  * const bytes = placeGlb(generated, await aligner.align({ depth, mask, camera, mesh: generated }));
- * @throws {@link Sim3AlignError} `CORRUPT_FILE` for bytes that are no GLB, `UNSUPPORTED_FORMAT` for glTF 1
+ * @throws {@link Sim3AlignError} `CORRUPT_FILE` if the bytes are not a GLB, `UNSUPPORTED_FORMAT` for glTF 1
  */
 export function placeGlb(
   glb: Uint8Array | ArrayBuffer,
@@ -89,7 +89,7 @@ export function placeGlb(
   const scene = typeof json.scene === "number" ? json.scene : 0;
   const shown = (scenes[scene]?.nodes ?? []) as number[];
   const node: GltfNode & { children?: number[] } = toGltfNode(transform, options);
-  // An empty list of children is against the format.
+  // glTF does not allow an empty list of children.
   if (shown.length > 0) node.children = shown;
   const placed = {
     ...json,
@@ -111,14 +111,14 @@ function bounds(vertices: Float32Array): { min: number[]; max: number[] } {
   return { min, max };
 }
 
-/** The objects in a list that the file's JSON may have. */
+/** The objects of an optional list in the JSON of the file. */
 function objectsOf(json: Record<string, unknown>, name: string): Record<string, unknown>[] {
   const list = json[name] ?? [];
   if (Array.isArray(list) && list.every(isRecord)) return list;
   throw failure("CORRUPT_FILE", "glb", `${describe(list)} as its ${name}`, "a list of objects", "Export it again.");
 }
 
-/** A file of a JSON chunk and others, each filled up to a multiple of four bytes. */
+/** A GLB file of a JSON chunk and other chunks, each padded to a multiple of four bytes. */
 function glbOf(json: object, others: readonly (readonly [type: number, content: Uint8Array])[]): Uint8Array {
   const chunks = [[jsonChunk, new TextEncoder().encode(JSON.stringify(json))] as const, ...others];
   const padded = (content: Uint8Array) => Math.ceil(content.length / 4) * 4;
@@ -132,7 +132,7 @@ function glbOf(json: object, others: readonly (readonly [type: number, content: 
   for (const [type, content] of chunks) {
     view.setUint32(place, padded(content), true);
     view.setUint32(place + 4, type, true);
-    // JSON ends with spaces, everything else with zeros.
+    // JSON is padded with spaces, other chunks with zeros.
     if (type === jsonChunk) file.fill(0x20, place + 8, place + 8 + padded(content));
     file.set(content, place + 8);
     place += 8 + padded(content);
@@ -145,9 +145,9 @@ function chunksOf(glb: unknown): { json: Record<string, unknown>; others: [numbe
   const bytes = isBuffer ? new Uint8Array(glb) : isTypedArray<Uint8Array>(glb, "Uint8Array") ? glb : null;
   if (bytes === null) throw wrongKind("glb", glb, "the bytes of a GLB file", "Uint8Array");
   const corrupt = (found: string) =>
-    failure("CORRUPT_FILE", "glb", found, "a whole GLB file", "Pass the file that was aligned, unchanged.");
+    failure("CORRUPT_FILE", "glb", found, "a complete GLB file", "Pass the aligned file unchanged.");
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-  if (bytes.length < 20 || view.getUint32(0, true) !== magic) throw corrupt(`${bytes.length} bytes without its header`);
+  if (bytes.length < 20 || view.getUint32(0, true) !== magic) throw corrupt(`${bytes.length} bytes without a GLB header`);
   const [version, length] = [view.getUint32(4, true), view.getUint32(8, true)];
   if (version !== 2) {
     throw failure("UNSUPPORTED_FORMAT", "glb", `glTF ${version}`, "glTF 2", "Convert it to glTF 2 first.");
@@ -161,7 +161,7 @@ function chunksOf(glb: unknown): { json: Record<string, unknown>; others: [numbe
     place = end;
   }
   const [first, ...others] = chunks;
-  if (first?.[0] !== jsonChunk) throw corrupt("no JSON at its beginning");
+  if (first?.[0] !== jsonChunk) throw corrupt("no JSON chunk at the beginning");
   return { json: parsed(first[1], corrupt), others };
 }
 
@@ -170,7 +170,7 @@ function parsed(bytes: Uint8Array, corrupt: (found: string) => Error): Record<st
   try {
     json = JSON.parse(new TextDecoder().decode(bytes));
   } catch {
-    throw corrupt("JSON that cannot be read");
+    throw corrupt("invalid JSON");
   }
   if (!isRecord(json)) throw corrupt(`${describe(json)} as its JSON`);
   return json;

@@ -1,24 +1,24 @@
-/** Transforms as nodes of glTF. */
+/** Transforms as glTF nodes. */
 import type { Sim3Like } from "../sim3.js";
 import type { Quaternion, Vector3 } from "../values.js";
 import { isRecord } from "../values.js";
 import { type CameraFrame, inFrame } from "./frames.js";
 import { sim3Of, similarityOf } from "./similarity.js";
 
-/** What {@link toGltfNode} can be told. */
+/** Options of {@link toGltfNode}. */
 export interface GltfNodeOptions {
   /**
-   * The frame that the node leads into: "opengl" by default, which is that of glTF's own cameras; "opencv" for readers
-   * who want the transform as it is.
+   * The parent frame of the node: "opengl", the default, is the frame of glTF cameras; "opencv" keeps the transform
+   * unchanged.
    */
   frame?: "opengl" | "opencv" | undefined;
-  /** Kept in the node's extras; by default the metrics that a result of `align` has. */
+  /** Stored in the extras of the node. Default: the metrics of the result. */
   metrics?: object | null | undefined;
-  /** The node's name. Default "sim3align". */
+  /** The name of the node. Default "sim3align". */
   name?: string | undefined;
 }
 
-/** A node of glTF: translation, rotation, one scale for all axes, and what is known about them. */
+/** A glTF node: translation, rotation, uniform scale, and extras. */
 export interface GltfNode {
   name: string;
   /** Metres. */
@@ -30,14 +30,14 @@ export interface GltfNode {
 }
 
 /**
- * A transform as a node of glTF, under which the mesh is where it really is, at its real size, seen from a camera at the
- * origin. Metrics and confidence, where there are any, are in `extras.sim3align`.
+ * Converts a transform to a glTF node that places the mesh at its pose relative to a camera at the origin. Metrics and
+ * confidence, if present, are in `extras.sim3align`.
  *
  * @param transform OpenCV camera from mesh, metres
  *
  * @example
  * gltf.nodes.push({ ...toGltfNode(result), mesh: 0 });
- * @throws {@link Sim3AlignError} for what is no similarity, and `INVALID_OPTION` for a frame that does not exist
+ * @throws {@link Sim3AlignError} if the transform is not a similarity, and `INVALID_OPTION` for an unknown frame
  */
 export function toGltfNode(
   transform: Sim3Like,
@@ -50,7 +50,7 @@ export function toGltfNode(
   return { name, translation, rotation, scale: [scale, scale, scale], extras };
 }
 
-/** What a result of `align` says about itself. */
+/** Metrics and confidence of an alignment. */
 function factsOf(transform: unknown, metrics: unknown): { metrics?: unknown; confidence?: unknown } {
   if (!isRecord(transform)) return { metrics };
   const { metrics: own, confidence } = transform;

@@ -1,32 +1,33 @@
-/** Brush masks as Label Studio writes them: a stream of bits over the flattened RGBA pixels. */
+/** Brush masks in Label Studio's format: a bit stream of the flattened RGBA pixels. */
 import { describe } from "../error.js";
 import { type ImageSize, sizeOf } from "../formats/pixels.js";
 import type { PixelArray } from "../input/types.js";
 import { failure } from "../values.js";
 
 /**
- * The mask of a brush annotation of Label Studio's (`BrushLabels`, `format: "rle"`).
+ * Decodes a brush annotation of Label Studio (`BrushLabels`, `format: "rle"`).
  *
  * @param rle the bytes in `value.rle`
  * @param image the image's size in pixels: the result's `original_width` and `original_height`
- * @returns 1 is the object: where the brush's layer is not wholly transparent
+ * @returns 1 is the object: pixels whose alpha is not 0
  *
  * @example
  * const { value, original_width: width, original_height: height } = annotation.result[0];
  * const mask = fromLabelStudioRle(value.rle, { width, height });
- * @throws {@link Sim3AlignError} `CORRUPT_FILE` for bytes that end too early, `SIZE_MISMATCH` for those of another image
+ * @throws {@link Sim3AlignError} `CORRUPT_FILE` for truncated data, `SIZE_MISMATCH` for data of an image of another
+ * size
  */
 export function fromLabelStudioRle(rle: ArrayLike<number>, image: ImageSize): PixelArray<Uint8Array> {
   const { width, height } = sizeOf("image", image);
   const bits = new BitReader(bytesOf(rle));
   const count = bits.read(32);
   if (count !== 4 * width * height) {
-    const found = `${count} values, beside an image of ${width} × ${height}`;
+    const found = `${count} values for an image of ${width} × ${height}`;
     const remedy = "Pass the result's original_width and original_height.";
     throw failure("SIZE_MISMATCH", "rle", found, `width × height × 4 = ${4 * width * height}`, remedy);
   }
   const wordBits = bits.read(5) + 1;
-  // How many bits a run's length has, by a number of two bits before it.
+  // Number of bits of a run length, selected by the two bits before it.
   const lengthBits = [bits.read(4) + 1, bits.read(4) + 1, bits.read(4) + 1, bits.read(4) + 1];
   const data = new Uint8Array(width * height);
   for (let place = 0; place < count; ) {
@@ -37,7 +38,7 @@ export function fromLabelStudioRle(rle: ArrayLike<number>, image: ImageSize): Pi
       throw failure("CORRUPT_FILE", "rle", `a run up to ${end}`, `${count} values in all`, "Pass value.rle unchanged.");
     }
     if (isRun) {
-      // Of red, green, blue and alpha, the last is the brush's: pixel i's is value 4·i + 3.
+      // The brush is in the alpha channel: value 4·i + 3 of pixel i.
       if (bits.read(wordBits) !== 0) data.fill(1, Math.floor(place / 4), Math.floor(end / 4));
     } else {
       for (; place < end; place++) {
@@ -54,24 +55,24 @@ function bytesOf(rle: unknown): ArrayLike<number> {
   if (isList && Array.prototype.every.call(rle, (byte) => Number.isInteger(byte) && byte >= 0 && byte < 256)) {
     return rle as ArrayLike<number>;
   }
-  const expected = "bytes: whole numbers from 0 to 255";
+  const expected = "bytes: integers from 0 to 255";
   throw failure("INVALID_ARGUMENT", "rle", describe(rle), expected, "Pass value.rle of a result of type brushlabels.");
 }
 
-/** Bits from bytes, the highest first. */
+/** Reads bits from bytes, the most significant first. */
 class BitReader {
   #place = 0;
 
   constructor(private readonly bytes: ArrayLike<number>) {}
 
-  /** The number in the next bits, 32 at most. */
+  /** Reads an unsigned integer of up to 32 bits. */
   read(count: number): number {
     let value = 0;
     for (let left = count; left > 0; ) {
       const byte = this.bytes[this.#place >> 3];
       if (byte === undefined) {
-        const found = `${this.bytes.length} bytes, which end in the middle`;
-        throw failure("CORRUPT_FILE", "rle", found, "a whole mask", "Pass value.rle unchanged.");
+        const found = `${this.bytes.length} bytes, which are truncated`;
+        throw failure("CORRUPT_FILE", "rle", found, "a complete mask", "Pass value.rle unchanged.");
       }
       const unread = 8 - (this.#place & 7);
       const taken = Math.min(unread, left);

@@ -1,17 +1,17 @@
-/** Meshes as arrays, checked. */
+/** Validation of meshes in arrays. */
 import { describe } from "../error.js";
 import type { MeshArrays } from "../input/types.js";
 import { failure, isTypedArray, record, wrongKind } from "../values.js";
 
 /** A triangle mesh whose indices are in range. */
 export interface Mesh {
-  /** x, y, z per vertex. */
+  /** Interleaved x, y, z. */
   positions: Float32Array;
-  /** Three per triangle; `null` where every three vertices are one. */
+  /** Three per triangle; `null` if every three vertices form a triangle. */
   indices: Uint32Array | Uint16Array | null;
 }
 
-/** A mesh's arrays. */
+/** The arrays of a mesh, validated. */
 export function meshOf(argument: string, mesh: unknown): Mesh {
   const { positions, indices } = record(argument, mesh, "{ positions, indices? }") as {
     [K in keyof MeshArrays]: unknown;
@@ -23,12 +23,12 @@ export function meshOf(argument: string, mesh: unknown): Mesh {
   const count = positions.length / 3;
   if (count === 0) throw failure("EMPTY_MESH", argument, "no vertex", "triangles", "Pass a mesh.");
   if (!Number.isInteger(count)) {
-    throw failure("WRONG_LENGTH", named, `${positions.length} numbers`, "x, y, z per vertex", "Leave nothing out.");
+    throw failure("WRONG_LENGTH", named, `${positions.length} numbers`, "x, y, z per vertex", "Pass three numbers per vertex.");
   }
   const wrong = positions.findIndex((number) => !Number.isFinite(number));
   if (wrong >= 0) {
     const found = `${positions[wrong]} in vertex ${Math.floor(wrong / 3)}`;
-    throw failure("NON_FINITE", named, found, "finite numbers", "Remove the vertices that have no position.");
+    throw failure("NON_FINITE", named, found, "finite numbers", "Remove vertices without a valid position.");
   }
   if (indices === undefined || indices === null) {
     if (count % 3 === 0) return { positions, indices: null };
@@ -50,6 +50,6 @@ export function meshOf(argument: string, mesh: unknown): Mesh {
   return { positions, indices };
 }
 
-/** How many triangles. */
+/** Number of triangles. */
 export const triangleCount = ({ positions, indices }: Mesh): number =>
   (indices ?? { length: positions.length / 3 }).length / 3;

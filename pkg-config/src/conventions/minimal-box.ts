@@ -1,4 +1,4 @@
-/** The axes of a small box around a mesh. */
+/** The axes of a small oriented box around a mesh. */
 
 import type { Vector3 } from "../values.js";
 import type { Mesh } from "./mesh.js";
@@ -9,14 +9,14 @@ const dot = (a: Vector3, b: Vector3) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
 type Point2 = readonly [number, number];
 
-/** Vertices of triangles that lie outermost in some of many directions, or all where they are few. */
+/** The vertices of triangles that are extreme in one of many directions; all vertices if there are few. */
 function outermost({ positions, indices }: Mesh): Vector3[] {
   const used = indices === null ? Array.from({ length: positions.length / 3 }, (_, i) => i) : [...new Set(indices)];
   const vertex = (i: number): Vector3 => [positions[3 * i] ?? 0, positions[3 * i + 1] ?? 0, positions[3 * i + 2] ?? 0];
   const points = used.map(vertex);
   if (points.length <= 2000) return points;
   const kept = new Set<Vector3>();
-  // Directions through a grid on half of a cube's surface; each finds the two ends of the mesh.
+  // Directions through a grid on half of the surface of a cube; each finds two extreme vertices.
   const steps = Array.from({ length: 13 }, (_, i) => (i - 6) / 6);
   const directions = steps.flatMap((a) =>
     steps.flatMap((b): Vector3[] => [
@@ -38,7 +38,7 @@ function outermost({ positions, indices }: Mesh): Vector3[] {
   return [...kept];
 }
 
-/** The corners of the convex hull, counter-clockwise: Andrew's monotone chain. */
+/** The corners of the convex hull, counter-clockwise (Andrew's monotone chain). */
 function hull(points: readonly Point2[]): Point2[] {
   const sorted = [...points].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
   const half = (ordered: readonly Point2[]) => {
@@ -57,7 +57,7 @@ function hull(points: readonly Point2[]): Point2[] {
   return [...half(sorted), ...half(sorted.reverse())];
 }
 
-/** How far points reach along a direction of the plane. */
+/** The extent of points along a direction in the plane. */
 function width(points: readonly Point2[], x: number, y: number): number {
   let [low, high] = [Number.POSITIVE_INFINITY, Number.NEGATIVE_INFINITY];
   for (const [a, b] of points) {
@@ -68,7 +68,7 @@ function width(points: readonly Point2[], x: number, y: number): number {
   return high - low;
 }
 
-/** The smallest rectangle around points has a side along one of their hull's edges: that edge's direction. */
+/** The direction of the smallest rectangle around points. One of its sides lies along an edge of their convex hull. */
 function smallestRectangle(points: readonly Point2[]): { cos: number; sin: number; area: number } {
   const corners = hull(points);
   let best = { cos: 1, sin: 0, area: width(corners, 1, 0) * width(corners, 0, 1) };
@@ -92,7 +92,7 @@ function volume(points: readonly Vector3[], axes: readonly Vector3[]): number {
 
 type Axes = [Vector3, Vector3, Vector3];
 
-/** Turns the axes about each of them to the smallest rectangle, until the volume stays. */
+/** Rotates the axes about each of them to the smallest rectangle, until the volume no longer decreases. */
 function refined(points: readonly Vector3[], start: Axes): { axes: Axes; volume: number } {
   let axes = start;
   let size = volume(points, axes);
@@ -113,8 +113,8 @@ function refined(points: readonly Vector3[], start: Axes): { axes: Axes; volume:
 }
 
 /**
- * The axes with the names and senses that are nearest to the mesh's own: of all ways, the largest trace. That is never a
- * mirror image: these have traces up to 1, while some turn always has more than 1.9.
+ * Permutes and flips the axes so that they are nearest to the axes of the mesh (largest trace). The result is never a
+ * reflection: reflections have a trace of at most 1, and some rotation always has more than 1.9.
  */
 function named(axes: Axes): Matrix3 {
   const orders = [
@@ -136,7 +136,7 @@ function named(axes: Axes): Matrix3 {
   return ways.reduce((best, way) => (trace(way) > trace(best) ? way : best));
 }
 
-/** The axes, as columns in the mesh's frame, of the smallest box that was found. */
+/** The axes of the smallest box found, as columns in the mesh frame. */
 export function smallestBoxAxes(mesh: Mesh): Matrix3 {
   const points = outermost(mesh);
   const own: Axes = [
@@ -148,6 +148,6 @@ export function smallestBoxAxes(mesh: Mesh): Matrix3 {
   const starts: Axes[] = [own, [column(principal, 0), column(principal, 1), column(principal, 2)]];
   const found = starts.map((start) => refined(points, start));
   const [first, second] = found as [(typeof found)[0], (typeof found)[0]];
-  // The mesh's own axes unless the others are better by more than rounding.
+  // Keeps the axes of the mesh unless the others are better by more than rounding errors.
   return named(second.volume < first.volume * (1 - 1e-9) ? second.axes : first.axes);
 }

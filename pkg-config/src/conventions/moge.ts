@@ -1,32 +1,32 @@
-/** What MoGe returns: a point map, a mask of what is valid, and normalised intrinsics. */
+/** The output of MoGe: a point map, a mask of valid points, and normalised intrinsics. */
 
 import { pinholeOf } from "../formats/pinhole.js";
 import { checkCount, type ImageSize, pixelsOf, pointKinds, sizeOf } from "../formats/pixels.js";
 import type { PinholeCamera, PixelArray } from "../input/types.js";
 import { finiteNumbers, flattened, isTypedArray, record } from "../values.js";
 
-/** MoGe's output, its tensors as arrays. */
+/** The output of MoGe, with tensors as arrays. */
 export interface MogeOutput extends ImageSize {
-  /** x, y, z per pixel, in the OpenCV camera frame; infinite where the model sees no surface. */
+  /** x, y, z per pixel, in the OpenCV camera frame; infinite if the model predicts no surface. */
   points: Float32Array;
-  /** Non-zero (or true) where the point is valid. By default every finite point with z above 0 is. */
+  /** Non-zero (or true) for valid points. By default, all finite points with z above 0 are valid. */
   mask?: ArrayLike<number | boolean> | undefined;
-  /** The 3×3 matrix for an image of width and height 1, row by row, nested or not. */
+  /** The 3×3 matrix for an image of width and height 1, row-major, nested or flat. */
   intrinsics?: ArrayLike<number> | readonly (readonly number[])[] | undefined;
 }
 
 /**
- * A point map as `align` takes it, from MoGe's: invalid points become NaN, "no reading", and the intrinsics, which MoGe
- * gives for an image of 1 × 1, become pixels. MoGe's image goes from edge to edge of the outer pixels, while pixel
- * centres are at whole numbers here, so that cx is its cx times the width, minus a half.
+ * Converts a point map of MoGe for `align`: invalid points become NaN ("no reading"), and the intrinsics, which MoGe
+ * returns for an image of 1 × 1, are converted to pixels. In MoGe, the corners of the image are at 0 and 1; in
+ * sim3align, pixel centres have integer coordinates. Therefore cx becomes cx · width − 0.5.
  *
- * @param output MoGe-2's points are metric, MoGe-1's are up to a factor
- * @returns `pointMap`, and `camera` where there were intrinsics
+ * @param output points of MoGe-2 are metric, those of MoGe-1 have an unknown scale
+ * @returns `pointMap`, and `camera` if there are intrinsics
  *
  * @example
  * const { pointMap, camera } = pointMapFromMoge({ points, mask: valid, intrinsics, width, height });
  * await aligner.align({ pointMap, camera, mask, mesh });
- * @throws {@link Sim3AlignError} for arrays of other kinds or lengths
+ * @throws {@link Sim3AlignError} for arrays of the wrong type or length
  */
 export function pointMapFromMoge(output: MogeOutput): {
   pointMap: PixelArray<Float32Array>;
@@ -48,7 +48,7 @@ export function pointMapFromMoge(output: MogeOutput): {
 }
 
 function inPixels(intrinsics: unknown, { width, height }: ImageSize) {
-  const K = finiteNumbers("output.intrinsics", intrinsics, 9, "nine finite numbers, row by row");
+  const K = finiteNumbers("output.intrinsics", intrinsics, 9, "nine finite numbers, row-major");
   const { fx, fy, cx, cy } = pinholeOf("output.intrinsics", { K });
   return { fx: fx * width, fy: fy * height, cx: cx * width - 0.5, cy: cy * height - 0.5 };
 }

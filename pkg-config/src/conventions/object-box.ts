@@ -1,4 +1,4 @@
-/** Boxes around objects: their real dimensions. */
+/** Bounding boxes of aligned objects, and thereby their dimensions. */
 import type { MeshArrays } from "../input/types.js";
 import type { Sim3Like } from "../sim3.js";
 import { oneOf, type Quaternion, type Vector3 } from "../values.js";
@@ -9,38 +9,39 @@ import { moved, similarityOf } from "./similarity.js";
 
 /** An oriented box around an object, in the OpenCV camera frame. */
 export interface ObjectBox {
-  /** Its sides along its own x, y and z, in metres; for a mesh that stands along y: width, height, depth. */
+  /** Side lengths along the box's x, y and z, in metres; for a mesh with y up: width, height, depth. */
   sizeM: Vector3;
-  /** Its centre, in metres. */
+  /** The centre, in metres. */
   centerM: Vector3;
-  /** Camera from box: how its axes lie, as a quaternion x, y, z, w. */
+  /** Rotation from box to camera, as a quaternion x, y, z, w. */
   rotation: Quaternion;
-  /** Its corners, in metres: the lowest x, y, z first, x changing fastest, the highest last. */
+  /** The corners, in metres: from the smallest to the largest x, y, z of the box, with x changing fastest. */
   corners: [Vector3, Vector3, Vector3, Vector3, Vector3, Vector3, Vector3, Vector3];
 }
 
-/** What {@link objectDimensions} can be told. */
+/** Options of {@link objectDimensions}. */
 export interface DimensionOptions {
   /**
-   * "axes", the default, takes the mesh's own axes; "minimal" the smallest box that was found. The latter's axes are
-   * named after those of the mesh that they are nearest to.
+   * "axes", the default, uses the axes of the mesh; "minimal" uses the smallest box found, whose axes are named after
+   * the nearest axes of the mesh.
    */
   box?: "axes" | "minimal" | undefined;
 }
 
 /**
- * The real size of an aligned object, in metres, and the box around it.
+ * The metric size of an aligned object, and the box around it.
  *
- * With `box: "minimal"`, the box is turned to be small: from the mesh's axes and from its surface's principal axes, each
- * pair of axes is turned to the smallest rectangle around the projected vertices until the volume stays. That is exact
- * in each plane and near the smallest in space, though not proven to be. Only vertices of triangles count.
+ * With `box: "minimal"`, the orientation of the box is optimised: starting from the axes of the mesh and from the
+ * principal axes of its surface, each pair of axes is rotated to the smallest rectangle around the projected vertices
+ * until the volume no longer decreases. The result is optimal in each plane, but not guaranteed to be the smallest box
+ * in space. Vertices that belong to no triangle are ignored.
  *
- * @param mesh as it was aligned
+ * @param mesh the aligned mesh
  * @param transform OpenCV camera from mesh: a result of `align`
  *
  * @example
  * const { sizeM: [width, height, depth] } = objectDimensions(mesh, result);
- * @throws {@link Sim3AlignError} for what is no mesh or no similarity, and `INVALID_OPTION`
+ * @throws {@link Sim3AlignError} for an invalid mesh or transform, and `INVALID_OPTION`
  */
 export function objectDimensions(
   mesh: MeshArrays,
@@ -65,7 +66,7 @@ export function objectDimensions(
   };
 }
 
-/** The vertices' bounds along the rows of a matrix. */
+/** The bounds of the vertices along the rows of a matrix. */
 function extent({ positions, indices }: Mesh, rows: Matrix3): { low: Vector3; high: Vector3 } {
   const low: Vector3 = [Number.POSITIVE_INFINITY, Number.POSITIVE_INFINITY, Number.POSITIVE_INFINITY];
   const high: Vector3 = [Number.NEGATIVE_INFINITY, Number.NEGATIVE_INFINITY, Number.NEGATIVE_INFINITY];

@@ -1,20 +1,20 @@
-/** PLY files of meshes. */
+/** Export of meshes as PLY files. */
 import type { MeshArrays } from "../input/types.js";
 import type { Sim3Like } from "../sim3.js";
 import { meshOf, triangleCount } from "./mesh.js";
 import { applyToPoints } from "./similarity.js";
 
 /**
- * A PLY file (binary, little-endian) of a mesh: `float` x, y, z and faces with `int` vertex_indices, which Open3D,
+ * Exports a mesh as a binary little-endian PLY file with `float` x, y, z and `int` vertex_indices, which Open3D,
  * MeshLab, CloudCompare and Blender read.
  *
  * @param mesh `positions` and `indices`
- * @param transform moves the vertices first: a result of `align` for metres in the OpenCV camera frame,
- * `toOpenGL(result)` for another one; by default they stay
+ * @param transform applied to the vertices: a result of `align` for metres in the OpenCV camera frame, or
+ * `toOpenGL(result)`, for example, for another frame; by default, vertices are unchanged
  *
  * @example
  * await writeFile("placed.ply", exportPly(mesh, result));
- * @throws {@link Sim3AlignError} for what is no mesh or no similarity
+ * @throws {@link Sim3AlignError} for an invalid mesh or transform
  */
 export function exportPly(mesh: MeshArrays, transform?: Sim3Like): Uint8Array {
   const checked = meshOf("mesh", mesh);

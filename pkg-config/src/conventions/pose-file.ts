@@ -1,11 +1,11 @@
-/** Pose files: a case's `gt.json`, an annotation, or a saved result. */
+/** Pose files: `gt.json` of a case, an annotation, or a saved result. */
 import { corruptJson, isNumber, type JsonFile, numbersIn, parsedJson, shown } from "../formats/json.js";
 import type { Sim3 } from "../sim3.js";
 import { failure, isRecord } from "../values.js";
 import { fromBop } from "./bop.js";
 import { sim3Of, similarityOf } from "./similarity.js";
 
-/** A known pose, and the symmetry that its file declares. */
+/** A known pose, and the symmetry declared in its file. */
 export interface KnownPose {
   /** OpenCV camera from mesh, metres. */
   transform: Sim3;
@@ -14,9 +14,9 @@ export interface KnownPose {
 }
 
 /**
- * Reads a pose file: `{ scale, rotation, translation }` with the rotation as 3×3 numbers row by row or as a quaternion
- * x, y, z, w; `{ matrix }`, 16 numbers column by column, or these alone; or an entry of BOP's `scene_gt.json`.
- * @returns `null` where the file says that no pose is known (`available` is `false`)
+ * Reads a pose file: `{ scale, rotation, translation }` with the rotation as 3×3 numbers, row-major, or as a quaternion
+ * x, y, z, w; `{ matrix }` or a bare array of 16 numbers, column-major; or an entry of BOP's `scene_gt.json`.
+ * @returns `null` if the file declares that no pose is known (`available` is `false`)
  */
 export function parsePoseFile(argument: string, content: JsonFile): KnownPose | null {
   const json = parsedJson(argument, content);
@@ -38,19 +38,19 @@ function transformIn(argument: string, json: unknown): Sim3 {
     );
   if ("matrix" in json) {
     const matrix = numbersIn(json.matrix, 16);
-    if (matrix === null) throw invalid("matrix", "16 numbers, column by column");
+    if (matrix === null) throw invalid("matrix", "16 numbers, column-major");
     return sim3Of(similarityOf(matrix, argument));
   }
   const { scale, rotation, translation } = json;
   if (!isNumber(scale)) throw invalid("scale", "a number");
   const place = numbersIn(translation, 3);
-  if (place === null) throw invalid("translation", "3 numbers, metres");
+  if (place === null) throw invalid("translation", "3 numbers, in metres");
   const turn = numbersIn(rotation, 9) ?? numbersIn(rotation, 4);
-  if (turn === null) throw invalid("rotation", "3 × 3 numbers row by row, or a quaternion x, y, z, w");
+  if (turn === null) throw invalid("rotation", "3 × 3 numbers, row-major, or a quaternion x, y, z, w");
   return sim3Of(similarityOf({ scale, rotation: turn, translation: place }, argument));
 }
 
-/** A data set's words about symmetry: "discrete", "continuous about z", … */
+/** The symmetry for a description in a data set: "discrete", "continuous about z", … */
 function symmetryOf(words: unknown): KnownPose["symmetry"] {
   const text = typeof words === "string" ? words.trim().toLowerCase() : "";
   if (text.startsWith("continuous")) return "auto-revolution";

@@ -4,7 +4,7 @@ import type { Vector3 } from "../values.js";
 import { type Mesh, triangleCount } from "./mesh.js";
 import { column, determinant, entry, fromColumns, type Matrix3, product, transposed } from "./rotation.js";
 
-/** The covariance of the surface: every part of it counts by its area, however many vertices it has. */
+/** The covariance of the surface, weighted by area, independent of the distribution of vertices. */
 function covariance(mesh: Mesh): Matrix3 {
   const { positions, indices } = mesh;
   const vertex = (corner: number): Vector3 => {
@@ -37,7 +37,7 @@ function covariance(mesh: Mesh): Matrix3 {
   }) as unknown as Matrix3;
 }
 
-/** The axes as columns, by Jacobi's rotations: no two of them are correlated. Right-handed. */
+/** The eigenvectors as columns, by Jacobi rotations; right-handed. */
 export function principalAxes(mesh: Mesh): Matrix3 {
   let matrix = covariance(mesh);
   let axes: Matrix3 = [1, 0, 0, 0, 1, 0, 0, 0, 1];

@@ -1,4 +1,4 @@
-/** Images and their cameras at another size, or in part, with the intrinsics kept right. */
+/** Resizes and crops images together with their intrinsics. */
 import { describe } from "../error.js";
 import { pinholeOf, type StatedCamera } from "../formats/pinhole.js";
 import {
@@ -14,15 +14,15 @@ import {
 import type { PinholeCamera, PixelArray } from "../input/types.js";
 import { failure, record, whole } from "../values.js";
 
-/** Part of an image, in whole pixels. */
+/** A region of an image, in integer pixels. */
 export interface PixelBox extends ImageSize {
-  /** Its first column. */
+  /** The first column. */
   left: number;
-  /** Its first row. */
+  /** The first row. */
   top: number;
 }
 
-/** Takes from each new pixel's place what `source` says, over all channels. */
+/** Samples `source` at the position of each new pixel, for all channels. */
 function sampled<T extends Float32Array | Uint16Array | MaskPixels>(
   { data, width }: PixelArray<T>,
   to: ImageSize,
@@ -42,7 +42,7 @@ function sampled<T extends Float32Array | Uint16Array | MaskPixels>(
   return { data: result, width: to.width, height: to.height };
 }
 
-// The new pixel's centre falls into this old one.
+// The old pixel that contains the centre of the new one.
 const nearest = (i: number, to: number, from: number) => Math.floor(((2 * i + 1) * from) / (2 * to));
 
 function resized<T extends DepthPixels | MaskPixels>(image: PixelArray<T>, to: unknown): PixelArray<T> {
@@ -52,32 +52,32 @@ function resized<T extends DepthPixels | MaskPixels>(image: PixelArray<T>, to: u
 }
 
 /**
- * A depth map at another size, each pixel taken from the nearest old one. Interpolated depth would have points in the
- * air at every edge. The camera has to follow: {@link resizeCamera}.
+ * Resizes a depth map by nearest-neighbour sampling, because interpolation would create flying pixels at every edge.
+ * Resize the camera as well: {@link resizeCamera}.
  *
  * @example
  * const small = resizeDepth(depth, { width: 640, height: 480 });
- * @throws {@link Sim3AlignError} for arrays of other kinds or lengths, and sizes below one pixel
+ * @throws {@link Sim3AlignError} for arrays of the wrong type or length, and for sizes below one pixel
  */
 export const resizeDepth = <T extends DepthPixels>(depth: PixelArray<T>, size: ImageSize): PixelArray<T> =>
   resized(pixelsOf<T>("depth", depth, depthKinds), size);
 
 /**
- * A mask at another size, each pixel taken from the nearest old one.
+ * Resizes a mask by nearest-neighbour sampling.
  *
  * @example
  * const mask = resizeMask(maskFromTensor(masks, { index: 0 }), { width: 640, height: 480 });
- * @throws {@link Sim3AlignError} for arrays of other kinds or lengths, and sizes below one pixel
+ * @throws {@link Sim3AlignError} for arrays of the wrong type or length, and for sizes below one pixel
  */
 export const resizeMask = <T extends MaskPixels>(mask: PixelArray<T>, size: ImageSize): PixelArray<T> =>
   resized(pixelsOf<T>("mask", mask, maskKinds), size);
 
 /**
- * The intrinsics for a resized image. Pixel centres are at whole numbers, so that an image of width w goes from −0.5 to
- * w − 0.5, and cx becomes (cx + 0.5)·s − 0.5, not cx·s.
+ * The intrinsics for a resized image. Pixel centres have integer coordinates, so an image of width w spans −0.5 to w −
+ * 0.5, and cx becomes (cx + 0.5)·s − 0.5, not cx·s.
  *
  * @param camera { fx, fy, cx, cy }, { K } or { fovYDeg }, for the image of `fromWidth` × `fromHeight`
- * @param size from what to what, in pixels
+ * @param size the old and the new size, in pixels
  *
  * @example
  * resizeCamera({ fx: 600, fy: 600, cx: 319.5, cy: 239.5 }, { fromWidth: 640, fromHeight: 480, width: 320, height: 240 });
@@ -99,14 +99,14 @@ export function resizeCamera(
 }
 
 /**
- * The box around a mask's object.
+ * The bounding box of the object in a mask.
  *
  * @param mask non-zero is the object
- * @param options `marginPx`: how many pixels more on every side, as far as the image goes; 0 by default
+ * @param options `marginPx`: pixels to add on every side, clipped to the image; 0 by default
  *
  * @example
  * const box = maskBox(mask, { marginPx: 40 });
- * @throws {@link Sim3AlignError} `EMPTY_MASK` where no pixel is the object
+ * @throws {@link Sim3AlignError} `EMPTY_MASK` if no pixel is the object
  */
 export function maskBox(mask: PixelArray<MaskPixels>, { marginPx = 0 }: { marginPx?: number } = {}): PixelBox {
   const { data, width, height } = pixelsOf<MaskPixels>("mask", mask, maskKinds);
@@ -119,14 +119,14 @@ export function maskBox(mask: PixelArray<MaskPixels>, { marginPx = 0 }: { margin
     [right, bottom] = [Math.max(right, u), Math.max(bottom, v)];
   });
   if (right < 0) {
-    throw failure("EMPTY_MASK", "mask", "no pixel of the object", "non-zero pixels", "Pass the object's mask.");
+    throw failure("EMPTY_MASK", "mask", "no non-zero pixel", "non-zero pixels", "Pass the mask of the object.");
   }
   [left, top] = [Math.max(0, left - margin), Math.max(0, top - margin)];
   [right, bottom] = [Math.min(width - 1, right + margin), Math.min(height - 1, bottom + margin)];
   return { left, top, width: right - left + 1, height: bottom - top + 1 };
 }
 
-/** Images and a camera that belong together; what is left out stays out. */
+/** Images and the camera that belong to them; all are optional. */
 export interface CropInput {
   depth?: PixelArray<DepthPixels> | undefined;
   pointMap?: PixelArray<Float32Array> | undefined;
@@ -135,17 +135,17 @@ export interface CropInput {
 }
 
 /**
- * Part of an input, with the intrinsics for it: cx and cy move by the box's corner. What else the input has stays as it
- * is. A result for the crop is one for the whole image, too: the camera's frame stays the same.
+ * Crops an input, with its intrinsics: cx and cy are shifted by the corner of the box. Other properties are unchanged.
+ * The camera frame is the same, so a result for the crop is also valid for the whole image.
  *
- * Leave a margin around the object: where a mask touches the image's border, the object is taken to go on beyond it.
+ * Leave a margin around the object: if a mask touches the image border, the object is assumed to continue beyond it.
  *
  * @param input `depth`, `mask` and `pointMap` as `{ data, width, height }`, all of one size; `camera` with intrinsics
- * @param box in pixels of the image; {@link maskBox} makes one
+ * @param box in pixels of the image; see {@link maskBox}
  *
  * @example
  * await aligner.align(cropInput({ depth, mask, camera, mesh }, maskBox(mask, { marginPx: 40 })));
- * @throws {@link Sim3AlignError} `SIZE_MISMATCH` for images of different sizes, or a box that leaves them
+ * @throws {@link Sim3AlignError} `SIZE_MISMATCH` for images of different sizes, or a box that exceeds them
  */
 export function cropInput<T extends CropInput>(input: T, box: PixelBox): T {
   const { depth, pointMap, mask, camera } = record("input", input, "{ depth, mask, camera }") as T;
@@ -160,8 +160,8 @@ export function cropInput<T extends CropInput>(input: T, box: PixelBox): T {
   for (const [name, image] of whose) {
     const found = sizeOf(`input.${name}`, image);
     if (found.width === size.width && found.height === size.height) continue;
-    const expected = `${size.width} × ${size.height}, as the input's ${first[0]}`;
-    const remedy = "Bring the images to one size first: resizeMask, resizeDepth.";
+    const expected = `${size.width} × ${size.height}, the size of ${first[0]}`;
+    const remedy = "Resize the images to the same size first: resizeMask, resizeDepth.";
     throw failure("SIZE_MISMATCH", `input.${name}`, `${found.width} × ${found.height} pixels`, expected, remedy);
   }
   if (left + width > size.width || top + height > size.height) {

@@ -1,17 +1,17 @@
-/** Rotations as nine numbers row by row, and as quaternions in either order. */
+/** Rotations as 3×3 matrices and as quaternions in either order. */
 import { failure, finiteNumbers, type Quaternion, type Vector3 } from "../values.js";
 
-/** A 3×3 matrix, row by row. */
+/** A 3×3 matrix, row-major. */
 export type Matrix3 = readonly [number, number, number, number, number, number, number, number, number];
 
-/** A matrix of numbers computed by index. */
+/** A matrix whose entries are computed from row and column. */
 const matrixOf = (entry: (row: 0 | 1 | 2, column: 0 | 1 | 2) => number): Matrix3 => [
   ...([entry(0, 0), entry(0, 1), entry(0, 2)] as const),
   ...([entry(1, 0), entry(1, 1), entry(1, 2)] as const),
   ...([entry(2, 0), entry(2, 1), entry(2, 2)] as const),
 ];
 
-/** One entry. */
+/** An entry. */
 export const entry = (m: Matrix3, row: 0 | 1 | 2, column: 0 | 1 | 2): number => m[(3 * row + column) as 0];
 
 /** a·b. */
@@ -20,7 +20,7 @@ export const product = (a: Matrix3, b: Matrix3): Matrix3 =>
     (i, j) => entry(a, i, 0) * entry(b, 0, j) + entry(a, i, 1) * entry(b, 1, j) + entry(a, i, 2) * entry(b, 2, j),
   );
 
-/** The rows as columns. */
+/** The transpose. */
 export const transposed = (m: Matrix3): Matrix3 => matrixOf((i, j) => entry(m, j, i));
 
 /** m·v. */
@@ -30,7 +30,7 @@ export const turned = (m: Matrix3, [x, y, z]: Readonly<Vector3>): Vector3 => [
   m[6] * x + m[7] * y + m[8] * z,
 ];
 
-/** One column. */
+/** A column. */
 export const column = (m: Matrix3, j: 0 | 1 | 2): Vector3 => [entry(m, 0, j), entry(m, 1, j), entry(m, 2, j)];
 
 /** The matrix with these columns. */
@@ -41,31 +41,31 @@ export const fromColumns = (...columns: readonly [Vector3, Vector3, Vector3]): M
 export const determinant = (m: Matrix3): number =>
   m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) + m[2] * (m[3] * m[7] - m[4] * m[6]);
 
-/** The matrix of signed minors: the inverse's transpose times the determinant. */
+/** The cofactor matrix: the transposed inverse times the determinant. */
 const cofactors = (m: Matrix3): Matrix3 => [
   ...([m[4] * m[8] - m[5] * m[7], m[5] * m[6] - m[3] * m[8], m[3] * m[7] - m[4] * m[6]] as const),
   ...([m[2] * m[7] - m[1] * m[8], m[0] * m[8] - m[2] * m[6], m[1] * m[6] - m[0] * m[7]] as const),
   ...([m[1] * m[5] - m[2] * m[4], m[2] * m[3] - m[0] * m[5], m[0] * m[4] - m[1] * m[3]] as const),
 ];
 
-/** How far a matrix may be from a rotation, as in the core: what a few decimals in a JSON file leave. */
+/** Maximum deviation of a matrix from a rotation, as in the core: the rounding of a few decimals in a JSON file. */
 const tolerance = 1e-3;
 
-/** The rotation nearest to a matrix that is almost one, by the polar decomposition. */
+/** The rotation nearest to an approximate rotation matrix, by polar decomposition. */
 export function rotationOf(argument: string, m: Matrix3): Matrix3 {
   const square = product(transposed(m), m);
   const off = Math.max(...square.map((x, i) => Math.abs(x - (i % 4 === 0 ? 1 : 0))));
   const volume = determinant(m);
-  // Written so that NaN, from numbers whose squares overflow, fails.
+  // Written so that NaN, from squares that overflow, is rejected.
   if (!(off <= tolerance && volume > 0)) {
     const found = `a matrix with |RᵀR − 1| up to ${off} and determinant ${volume}`;
-    const remedy = "A similarity has no shear, no mirror image, and one scale for all axes.";
+    const remedy = "A similarity has no shear, no reflection, and a uniform scale.";
     throw failure("INVALID_TRANSFORM", argument, found, "a rotation: orthonormal with determinant +1", remedy);
   }
-  // A result's own rotation stays as it is, to the bit.
+  // Keeps the rotation of a result bit for bit.
   if (off < 1e-15) return m;
   let rotation = m;
-  // Newton's iteration squares the error at every step.
+  // Newton's iteration, which converges quadratically.
   for (let i = 0; i < 3; i++) {
     const [minors, volume] = [cofactors(rotation), determinant(rotation)];
     rotation = matrixOf((row, col) => (entry(rotation, row, col) + entry(minors, row, col) / volume) / 2);
@@ -73,7 +73,7 @@ export function rotationOf(argument: string, m: Matrix3): Matrix3 {
   return rotation;
 }
 
-/** The rotation of a quaternion x, y, z, w of any length above 0. */
+/** The rotation matrix of a quaternion x, y, z, w of any length above 0. */
 export function rotationFromQuaternion(argument: string, quaternion: unknown): Matrix3 {
   const numbers = finiteNumbers(argument, quaternion, 4, "a quaternion of four finite numbers") as Quaternion;
   const length = Math.hypot(...numbers);
@@ -91,7 +91,7 @@ export function rotationFromQuaternion(argument: string, quaternion: unknown): M
 
 /** A rotation as a unit quaternion x, y, z, w with w ≥ 0. */
 export function quaternionOf(m: Matrix3): Quaternion {
-  // Each component's square, times four; dividing by the largest keeps all of the precision.
+  // Four times the square of each component; division by the largest preserves precision.
   const squares = [
     1 + m[0] - m[4] - m[8],
     1 - m[0] + m[4] - m[8],
@@ -109,16 +109,16 @@ export function quaternionOf(m: Matrix3): Quaternion {
   const largest = squares.indexOf(Math.max(...squares));
   const [x, y, z, w] = products[largest] ?? [0, 0, 0, 1];
   const length = Math.hypot(x, y, z, w) * (w < 0 ? -1 : 1);
-  // Adding 0 turns −0 into 0.
+  // Adding 0 converts −0 to 0.
   return [x / length + 0, y / length + 0, z / length + 0, w / length + 0];
 }
 
 /**
- * A quaternion x, y, z, w (three.js, glTF, ROS, SciPy; this package) from w, x, y, z (PyTorch3D, Blender, Eigen's
- * constructor, SAM 3D Objects, COLMAP).
+ * Converts a quaternion w, x, y, z (PyTorch3D, Blender, Eigen's constructor, SAM 3D Objects, COLMAP) to x, y, z, w
+ * (three.js, glTF, ROS, SciPy, sim3align).
  *
  * @example
- * xyzwFromWxyz([1, 0, 0, 0]);    // [0, 0, 0, 1], no turn
+ * xyzwFromWxyz([1, 0, 0, 0]);    // [0, 0, 0, 1], the identity
  * @throws {@link Sim3AlignError} for anything but four finite numbers
  */
 export function xyzwFromWxyz(quaternion: ArrayLike<number>): Quaternion {
@@ -127,11 +127,11 @@ export function xyzwFromWxyz(quaternion: ArrayLike<number>): Quaternion {
 }
 
 /**
- * A quaternion w, x, y, z (PyTorch3D, Blender, Eigen's constructor, SAM 3D Objects, COLMAP) from x, y, z, w (three.js,
- * glTF, ROS, SciPy; this package).
+ * Converts a quaternion x, y, z, w (three.js, glTF, ROS, SciPy, sim3align) to w, x, y, z (PyTorch3D, Blender, Eigen's
+ * constructor, SAM 3D Objects, COLMAP).
  *
  * @example
- * wxyzFromXyzw([0, 0, 0, 1]);    // [1, 0, 0, 0], no turn
+ * wxyzFromXyzw([0, 0, 0, 1]);    // [1, 0, 0, 0], the identity
  * @throws {@link Sim3AlignError} for anything but four finite numbers
  */
 export function wxyzFromXyzw(quaternion: ArrayLike<number>): [w: number, x: number, y: number, z: number] {

@@ -1,4 +1,4 @@
-/** Similarities from whatever form they come in, and what is computed with them. */
+/** Conversions and operations of similarity transforms. */
 import { describe } from "../error.js";
 import type { Sim3, Sim3Like } from "../sim3.js";
 import { failure, finiteNumbers, isRecord, isTypedArray, type Vector3, vector3, wrongKind } from "../values.js";
@@ -14,14 +14,14 @@ import {
   turned,
 } from "./rotation.js";
 
-/** y = s·R·x + t, checked. */
+/** A validated similarity y = s·R·x + t. */
 export interface Similarity {
   scale: number;
   rotation: Matrix3;
   translation: Vector3;
 }
 
-/** A similarity in any of its forms, checked. */
+/** Validates a similarity in any of its forms. */
 export function similarityOf(transform: unknown, argument = "transform"): Similarity {
   if (!isRecord(transform)) return fromColumnMajor(argument, transform);
   const { matrix, scale, rotation, rotationMatrix, translation } = transform;
@@ -32,20 +32,20 @@ export function similarityOf(transform: unknown, argument = "transform"): Simila
   }
   return {
     scale,
-    // A result has both: the rows lose nothing.
+    // A result has both; the matrix is exact.
     rotation: rotationFrom(`${argument}.rotation`, rotationMatrix ?? rotation),
     translation: vector3(`${argument}.translation`, translation),
   };
 }
 
 function rotationFrom(argument: string, value: unknown): Matrix3 {
-  const expected = "a quaternion x, y, z, w, or nine numbers row by row";
+  const expected = "a quaternion x, y, z, w, or nine numbers, row-major";
   if ((value as ArrayLike<unknown> | undefined)?.length === 4) return rotationFromQuaternion(argument, value);
   return rotationOf(argument, finiteNumbers(argument, value, 9, expected) as unknown as Matrix3);
 }
 
 function fromColumnMajor(argument: string, value: unknown): Similarity {
-  const expected = "{ scale, rotation, translation }, or the 16 numbers of a 4×4 matrix, column by column";
+  const expected = "{ scale, rotation, translation }, or a column-major 4×4 matrix of 16 numbers";
   const m = finiteNumbers(argument, value, 16, expected);
   const [a = 0, b = 0, c = 0, last0, d = 0, e = 0, f = 0, last1, g = 0, h = 0, i = 0, last2, x = 0, y = 0, z = 0] = m;
   const last = [last0, last1, last2, m[15]];
@@ -62,7 +62,7 @@ function fromColumnMajor(argument: string, value: unknown): Similarity {
   return { scale, rotation: rotationOf(argument, rotation), translation: [x, y, z] };
 }
 
-/** All forms of a similarity. */
+/** Converts a similarity to all forms. */
 export function sim3Of({ scale, rotation, translation }: Similarity): Sim3 {
   const [a, b, c, d, e, f, g, h, i] = rotation;
   const columns = [a, d, g, 0, b, e, h, 0, c, f, i, 0].map((number) => scale * number + 0);
@@ -79,7 +79,7 @@ export function sim3Of({ scale, rotation, translation }: Similarity): Sim3 {
   };
 }
 
-/** a after b. */
+/** The composition: b first, then a. */
 export const composed = (a: Similarity, b: Similarity): Similarity => ({
   scale: a.scale * b.scale,
   rotation: product(a.rotation, b.rotation),
@@ -92,7 +92,7 @@ export function moved({ scale, rotation, translation }: Similarity, point: Reado
   return [scale * x + translation[0], scale * y + translation[1], scale * z + translation[2]];
 }
 
-/** The way back. */
+/** The inverse. */
 export function inverted({ scale, rotation, translation }: Similarity): Similarity {
   const back = transposed(rotation);
   const [x, y, z] = turned(back, translation);
@@ -100,19 +100,19 @@ export function inverted({ scale, rotation, translation }: Similarity): Similari
 }
 
 /**
- * A similarity in all the forms that a result of `align` has: `scale`, `rotation` (quaternion x, y, z, w),
- * `rotationMatrix` (rows), `translation`, and `matrix` (4×4, column by column).
+ * Converts a similarity to all the forms in a result of `align`: `scale`, `rotation` (quaternion x, y, z, w),
+ * `rotationMatrix` (rows), `translation`, and `matrix` (4×4, column-major).
  *
  * @example
- * toSim3({ scale: 2, rotation: [0, 0, 0, 1], translation: [0, 0, 1] }).matrix;    // 16 numbers, column by column
- * @throws {@link Sim3AlignError} `INVALID_TRANSFORM`, `WRONG_LENGTH`, `NON_FINITE` or `INVALID_ARGUMENT` for what is no
- * similarity: a mirror image, a shear, a scale that differs by axis
+ * toSim3({ scale: 2, rotation: [0, 0, 0, 1], translation: [0, 0, 1] }).matrix;    // 16 numbers, column-major
+ * @throws {@link Sim3AlignError} `INVALID_TRANSFORM`, `WRONG_LENGTH`, `NON_FINITE` or `INVALID_ARGUMENT` if the
+ * transform is not a similarity: for example for a reflection, a shear, or a non-uniform scale
  */
 export const toSim3 = (transform: Sim3Like): Sim3 => sim3Of(similarityOf(transform));
 
 /**
- * The 4×4 matrix **row by row**: 16 numbers, as NumPy (`np.reshape(m, (4, 4))`), ROS and Open3D have it. Frames stay as
- * they are.
+ * The **row-major** 4×4 matrix: 16 numbers, as in NumPy (`np.reshape(m, (4, 4))`), ROS and Open3D. Frames are
+ * unchanged.
  *
  * @example
  * const rows = toRowMajor(result);    // rows[3], rows[7], rows[11] are the translation
@@ -124,7 +124,7 @@ export function toRowMajor(transform: Sim3Like): Float64Array {
 }
 
 /**
- * One transform after the other, the last one first, as matrices are multiplied: `compose(worldFromCamera,
+ * Composes transforms in the order of matrix multiplication, the last one applied first: `compose(worldFromCamera,
  * cameraFromMesh)` is `worldFromMesh`.
  *
  * @throws {@link Sim3AlignError} as {@link toSim3}
@@ -138,21 +138,21 @@ export function compose(...transforms: readonly [Sim3Like, ...Sim3Like[]]): Sim3
 }
 
 /**
- * The inverse: `meshFromCamera` of `cameraFromMesh`.
+ * Inverts a transform: `cameraFromMesh` becomes `meshFromCamera`.
  *
  * @throws {@link Sim3AlignError} as {@link toSim3}
  */
 export const invert = (transform: Sim3Like): Sim3 => sim3Of(inverted(similarityOf(transform)));
 
 /**
- * Points, moved: s·R·p + t for each.
+ * Applies a transform to points: s·R·p + t for each.
  *
- * @param points x, y, z per point, in the frame that the transform starts from; it is left as it is
- * @returns as many numbers in an array of the same kind, in the frame that the transform leads to
+ * @param points interleaved x, y, z in the source frame of the transform; not modified
+ * @returns a new array of the same type, in the target frame of the transform
  *
  * @example
  * const verticesInCamera = applyToPoints(result, mesh.positions);    // metres, OpenCV camera frame
- * @throws {@link Sim3AlignError} as {@link toSim3}; `WRONG_LENGTH` for points of other than three numbers each
+ * @throws {@link Sim3AlignError} as {@link toSim3}; `WRONG_LENGTH` if the length is not a multiple of 3
  */
 export function applyToPoints<T extends Float32Array | Float64Array>(transform: Sim3Like, points: T): T {
   const similarity = similarityOf(transform);
@@ -160,7 +160,7 @@ export function applyToPoints<T extends Float32Array | Float64Array>(transform: 
     throw wrongKind("points", points, "a Float32Array or a Float64Array, x, y, z per point", "Float32Array");
   }
   if (points.length % 3 !== 0) {
-    throw failure("WRONG_LENGTH", "points", `${points.length} numbers`, "x, y, z per point", "Leave nothing out.");
+    throw failure("WRONG_LENGTH", "points", `${points.length} numbers`, "x, y, z per point", "Pass three numbers per point.");
   }
   const result = points.slice() as T;
   const { scale, rotation, translation } = similarity;

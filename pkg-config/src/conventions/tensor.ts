@@ -1,22 +1,22 @@
-/** What transformers.js returns: tensors of masks and of depth. */
+/** Masks and depth maps from tensors of transformers.js. */
 import { describe } from "../error.js";
 import { checkCount } from "../formats/pixels.js";
 import type { PixelArray } from "../input/types.js";
 import { failure, flattened, isTypedArray, record, whole } from "../values.js";
 
-/** A tensor of transformers.js, or anything else with its data and dimensions. */
+/** A tensor of transformers.js, or any object with `data` and `dims`. */
 export interface TensorLike {
-  /** The values, the last dimension fastest. */
+  /** The values; the last dimension changes fastest. */
   readonly data: unknown;
   /** The dimensions, the last two being height and width. */
   readonly dims: readonly number[];
 }
 
-/** Which mask of several. */
+/** Selects one of several masks. */
 export interface MaskChoice {
-  /** Its number among all that the tensor has. */
+  /** The index of the mask in the tensor. */
   index?: number | undefined;
-  /** The masks' scores, `iou_scores`: the mask with the highest is taken. */
+  /** The scores of the masks, `iou_scores`; the mask with the highest score is selected. */
   scores?: TensorLike | ArrayLike<number> | undefined;
 }
 
@@ -33,23 +33,23 @@ function dimensions(tensor: unknown) {
 }
 
 /**
- * One mask of a tensor of masks, such as SAM's: what transformers.js' `post_process_masks` returns for one image (bool,
- * 1 × 3 × height × width), or any tensor whose last two dimensions are height and width.
+ * Extracts one mask from a tensor of masks, such as SAM's: the result of `post_process_masks` of transformers.js for
+ * one image (bool, 1 × 3 × height × width), or any tensor whose last two dimensions are height and width.
  *
- * @param tensor bool or whole numbers, of which non-zero is the object; floats are logits, above 0 for the object
- * @param choice `index`, or `scores` (`iou_scores`, of which the highest counts); needed where there is more than one
+ * @param tensor bool or integers, where non-zero is the object; or floats, which are logits, above 0 for the object
+ * @param choice `index`, or `scores` (`iou_scores`, which selects the highest); required if there is more than one mask
  * @returns 1 is the object
  *
  * @example
  * const [masks] = await processor.post_process_masks(pred_masks, original_sizes, reshaped_input_sizes);
  * const mask = maskFromTensor(masks, { scores: iou_scores });
- * @throws {@link Sim3AlignError} for tensors of other dimensions than their data, and where no mask is chosen
+ * @throws {@link Sim3AlignError} if dimensions and data do not match, or no mask is selected
  */
 export function maskFromTensor(tensor: TensorLike, { index, scores }: MaskChoice = {}): PixelArray<Uint8Array> {
   const { data, width, height, count } = dimensions(tensor);
   const chosen = index ?? (scores === undefined ? undefined : best(scores, count)) ?? (count === 1 ? 0 : undefined);
   if (chosen === undefined || !Number.isInteger(chosen) || chosen < 0 || chosen >= count) {
-    const found = chosen === undefined ? `nothing, beside ${count} masks` : String(chosen);
+    const found = chosen === undefined ? `no choice among ${count} masks` : String(chosen);
     const remedy = "Pass { scores: iou_scores }, or the index of a mask.";
     throw failure("INVALID_OPTION", "choice", found, `an index below ${count}, or scores`, remedy);
   }
@@ -73,17 +73,17 @@ function best(scores: TensorLike | ArrayLike<number>, count: number): number {
 }
 
 /**
- * A depth map from a tensor: `predicted_depth` of a model whose depth is in metres (Depth Anything's metric
- * checkpoints, Depth Pro, Metric3D, ZoeDepth). For relative models, whose values are larger where it is nearer, pass
- * what this returns to {@link depthFromDisparity}.
+ * Extracts a depth map from a tensor: `predicted_depth` of a model whose depth is in metres (Depth Anything's metric
+ * checkpoints, Depth Pro, Metric3D, ZoeDepth). For relative models, whose values are larger for nearer points, pass the
+ * result to {@link depthFromDisparity}.
  *
  * @param tensor floats, height × width, or with leading dimensions of 1
- * @returns the values as they are
+ * @returns the unchanged values
  *
  * @example
  * const { predicted_depth } = await estimator(image);    // pipeline("depth-estimation", …)
  * const depth = depthFromTensor(predicted_depth);
- * @throws {@link Sim3AlignError} `EIGHT_BIT_DEPTH` for whole numbers: transformers.js' `depth` is a picture
+ * @throws {@link Sim3AlignError} `EIGHT_BIT_DEPTH` for integers: the `depth` of transformers.js is a visualisation
  */
 export function depthFromTensor(tensor: TensorLike): PixelArray<Float32Array> {
   const { data, width, height, count } = dimensions(tensor);
@@ -96,7 +96,7 @@ export function depthFromTensor(tensor: TensorLike): PixelArray<Float32Array> {
     return { data: Float32Array.from(data), width, height };
   }
   const isPicture = isTypedArray(data, "Uint8Array", "Uint8ClampedArray");
-  const remedy = isPicture ? "256 steps are a picture of the depth: pass predicted_depth." : "Pass predicted_depth.";
+  const remedy = isPicture ? "256 levels are a visualisation of depth: pass predicted_depth." : "Pass predicted_depth.";
   const code = isPicture ? "EIGHT_BIT_DEPTH" : "INVALID_ARGUMENT";
   throw failure(code, "tensor.data", describe(data), "a Float32Array", remedy);
 }

@@ -1,54 +1,54 @@
-/** Camera files, as datasets and drivers write them: our own, BOP's, ROS', RealSense's and Open3D's. */
+/** Camera files of data sets and drivers: sim3align, BOP, ROS, RealSense and Open3D. */
 import { describe, invalidArgument } from "../error.js";
 import { failure, isRecord } from "../values.js";
 import { corruptJson, isNumber, type JsonFile, namesIn, numbersIn, parsedJson } from "./json.js";
 import { checkedPinhole, fromFieldOfView, fromMatrix, type Pinhole } from "./pinhole.js";
 import type { ImageSize } from "./pixels.js";
 
-/** What a camera file says. */
+/** The content of a camera file. */
 export interface CameraFile extends Pinhole {
-  /** Pixels in a row of the image that the intrinsics belong to. */
+  /** Width in pixels of the image that the intrinsics belong to. */
   width?: number;
-  /** Rows of the image that the intrinsics belong to. */
+  /** Height in pixels of the image that the intrinsics belong to. */
   height?: number;
-  /** Metres per unit of whole-number depth. */
+  /** Metres per unit of integer depth. */
   depthScale?: number;
-  /** What a pinhole camera leaves out: lens distortion. */
+  /** Warnings about lens distortion, which the pinhole model does not include. */
   warnings: string[];
 }
 
-/** How to read a camera file. */
+/** Options for reading a camera file. */
 export interface CameraFileOptions {
-  /** Pixels in a row of the image: needed for a field of view, compared with the file's width. */
+  /** Image width in pixels: required for a field of view, otherwise compared with the width in the file. */
   width?: number | undefined;
-  /** Rows of the image: needed for a field of view, compared with the file's height. */
+  /** Image height in pixels: required for a field of view, otherwise compared with the height in the file. */
   height?: number | undefined;
-  /** Which entry of a BOP `scene_camera.json`. */
+  /** The image id in a BOP `scene_camera.json`. */
   imageId?: string | number | undefined;
 }
 
-/** An image size, as far as it is stated. */
+/** An image size, possibly incomplete. */
 interface StatedSize {
   width?: number | undefined;
   height?: number | undefined;
 }
 
-/** The names of a camera file and of its options in errors. */
+/** Names of a camera file and of its options, for errors. */
 export interface CameraFileNames {
   file: string;
-  /** Stands before the name of an option. */
+  /** Prefix of the names of options. */
   options: "" | "options.";
 }
 
 const forms = "{ fx, fy, cx, cy }, { K }, { fovYDeg }, intrinsic_matrix, a BOP scene_camera.json or a ROS CameraInfo";
 
 /**
- * Reads a camera file. These forms are known, each with or without `width` and `height`:
+ * Reads a camera file. Supported forms, each with or without `width` and `height`:
  *
  * - `{ fx, fy, cx, cy }`, with RealSense's `ppx`, `ppy` too; `depthScale` is metres per unit of depth, BOP's
  *   `depth_scale` millimetres per unit;
- * - `{ K }`, nine numbers or three rows, row by row; or these alone;
- * - Open3D's `intrinsic_matrix`, column by column;
+ * - `{ K }`, nine numbers (row-major) or three rows; or the bare array;
+ * - Open3D's `intrinsic_matrix`, column-major;
  * - `{ fovYDeg }`, a vertical field of view in degrees, for square pixels;
  * - BOP's `scene_camera.json`, and one entry of it (`cam_K`);
  * - ROS' CameraInfo (`K` and `D`, or `k` and `d`).
@@ -76,21 +76,21 @@ export function parseCameraFile(
   };
 }
 
-/** What a camera file says about whole-number depth, where the image's size is not known yet. */
+/** The scale of integer depth in a camera file, if the image size is still unknown. */
 export function depthScaleIn(content: JsonFile, imageId?: string | number): number | undefined {
   try {
-    // Any size will do: only a field of view needs one, and only for the intrinsics.
+    // Any size is valid here: only a field of view needs it, and only for the intrinsics.
     const json = parsedJson("camera", content);
     if (!isRecord(json)) return undefined;
     const names: CameraFileNames = { file: "camera", options: "options." };
     return depthScaleOf(sceneEntry(json, idOf(names, imageId), names) ?? json, names);
   } catch {
-    // The reading with the image's size reports what is wrong.
+    // The call with the image size reports the error.
     return undefined;
   }
 }
 
-/** Refuses intrinsics of another image, as far as both sizes are known. */
+/** Rejects intrinsics for an image of another size, if both sizes are known. */
 export function checkCameraSize(argument: string, own: StatedSize, image: StatedSize): void {
   if (image.width === undefined || image.height === undefined) return;
   const { width = image.width, height = image.height } = own;
@@ -98,8 +98,8 @@ export function checkCameraSize(argument: string, own: StatedSize, image: Stated
   throw failure(
     "SIZE_MISMATCH",
     argument,
-    `intrinsics for ${width} × ${height} pixels beside an image of ${image.width} × ${image.height}`,
-    "intrinsics of this very image",
+    `intrinsics for ${width} × ${height} pixels, but an image of ${image.width} × ${image.height}`,
+    "intrinsics of the same image",
     "Scale fx, cx by the ratio of the widths and fy, cy by that of the heights, or pass the full-size depth.",
   );
 }
@@ -116,7 +116,7 @@ function sceneEntry(
   const entries = Object.entries(json).filter((pair): pair is [string, Record<string, unknown>] => isRecord(pair[1]));
   if (!entries.some(([, entry]) => "cam_K" in entry)) return null;
   const ids = Object.keys(json);
-  // BOP writes ids plainly, and file names with leading zeros.
+  // In BOP, ids have no leading zeros, unlike file names.
   const short = (text: string) => text.replace(/^0+/, "");
   const matches = ([key]: [string, unknown]) => key === id || short(key) === short(id ?? "");
   const found = id === undefined ? (ids.length === 1 ? entries[0] : undefined) : entries.find(matches);
@@ -128,7 +128,7 @@ function sceneEntry(
     `${names.options}imageId`,
     id === undefined ? "no image id for a file of several images" : JSON.stringify(id),
     `one of ${sorted.slice(0, 20).join(", ")}${more}`,
-    "Pass the id of the image that the depth map belongs to.",
+    "Pass the id of the image of the depth map.",
   );
 }
 
@@ -162,7 +162,7 @@ function intrinsicsOf(entry: Record<string, unknown>, size: ImageSize | undefine
   const fovYDeg = number("fovYDeg", "fov_y_deg");
   if (fovYDeg === undefined) throw invalid(`an object with ${namesIn(entry)}`);
   if (size !== undefined) return fromFieldOfView(names.file, fovYDeg, size);
-  const remedy = "Pass the depth map's width and height in pixels.";
+  const remedy = "Pass the width and height of the depth map in pixels.";
   const found = "a field of view without image size";
   throw failure("INVALID_ARGUMENT", `${names.options}width`, found, "width and height", remedy);
 }
@@ -190,7 +190,7 @@ const sizeOf = ({ width, height }: StatedSize): ImageSize | undefined =>
 
 function side({ options }: CameraFileNames, name: string, value: unknown): number | undefined {
   if (value === undefined || value === null || wholeIn(value) !== undefined) return wholeIn(value);
-  throw failure("INVALID_ARGUMENT", `${options}${name}`, describe(value), "a whole number", "Pass the size in pixels.");
+  throw failure("INVALID_ARGUMENT", `${options}${name}`, describe(value), "an integer", "Pass the size in pixels.");
 }
 
 function idOf({ options }: CameraFileNames, imageId: unknown): string | undefined {

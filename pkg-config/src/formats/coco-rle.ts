@@ -1,4 +1,4 @@
-/** COCO's run-length encoding of masks: down the columns, beginning with background. */
+/** COCO's run-length encoding of masks: column-major runs, starting with background. */
 import { describe } from "../error.js";
 import type { CocoRle, PixelArray } from "../input/types.js";
 import { failure, finiteNumbers, isRecord, record, whole } from "../values.js";
@@ -7,16 +7,16 @@ import { type ImageSize, type MaskPixels, maskKinds, pixelsOf } from "./pixels.j
 import { filledRuns } from "./runs.js";
 
 /**
- * A mask as COCO's run-length encoding, as pycocotools writes it.
+ * Encodes a mask in COCO's run-length encoding, like pycocotools.
  *
- * @param mask `{ data, width, height }`, row by row; non-zero is the object
- * @param options `compressed`: whether `counts` is a string, as in COCO's result files (the default), or a list of run
- * lengths, as in its annotations of crowds
+ * @param mask `{ data, width, height }`, row-major; non-zero is the object
+ * @param options `compressed`: if `true` (the default), `counts` is a string, as in COCO's result files; otherwise, it
+ * is an array of run lengths, as in crowd annotations
  * @returns `size` is [height, width]
  *
  * @example
  * toCocoRle({ data: Uint8Array.of(0, 1, 1, 1), width: 2, height: 2 }, { compressed: false }).counts;    // [1, 3]
- * @throws {@link Sim3AlignError} for a mask of the wrong kind or length
+ * @throws {@link Sim3AlignError} for a mask of the wrong type or length
  */
 export function toCocoRle(mask: PixelArray<MaskPixels>, options?: { compressed?: true }): CocoRle & { counts: string };
 export function toCocoRle(
@@ -42,18 +42,18 @@ export function toCocoRle(mask: PixelArray<MaskPixels>, { compressed = true }: {
 }
 
 /**
- * The mask of a run-length encoding of COCO's, compressed or not.
+ * Decodes a mask in COCO's run-length encoding, compressed or not.
  *
- * `align` takes these as its `mask` as they are; this is for callers who want the pixels.
+ * `align` accepts the encoding as `mask` directly; use this function to get the pixels.
  * @returns 1 is the object
  *
  * @example
  * fromCocoRle({ size: [2, 2], counts: [1, 3] }).data;    // Uint8Array [0, 1, 1, 1]
- * @throws {@link Sim3AlignError} `CORRUPT_FILE` where the runs are not those of that many pixels
+ * @throws {@link Sim3AlignError} `CORRUPT_FILE` if the runs do not add up to the image size
  */
 export const fromCocoRle = (rle: CocoRle): PixelArray<Uint8Array> => decodedRle("rle", rle);
 
-/** As {@link fromCocoRle}; `argument` is the name of the encoding in errors. */
+/** Like {@link fromCocoRle}; `argument` is the name of the encoding in errors. */
 export function decodedRle(argument: string, rle: unknown): PixelArray<Uint8Array> {
   const { size, counts } = record(argument, rle, "{ size: [height, width], counts }");
   const [height, width] = finiteNumbers(`${argument}.size`, size, 2, "[height, width]") as [number, number];
@@ -67,7 +67,7 @@ export function decodedRle(argument: string, rle: unknown): PixelArray<Uint8Arra
   return { data, width, height };
 }
 
-/** The mask in a JSON file: an encoding, or an annotation that has one as its `segmentation`. */
+/** The mask in a JSON file: an encoding, or an annotation whose `segmentation` is one. */
 export function readRleFile(argument: string, file: JsonFile): PixelArray<Uint8Array> {
   const json = parsedJson(argument, file);
   const rle = isRecord(json) && isRecord(json.segmentation) ? json.segmentation : json;
@@ -75,18 +75,18 @@ export function readRleFile(argument: string, file: JsonFile): PixelArray<Uint8A
   throw corruptJson(argument, "JSON without a run-length encoding", '{"size": [height, width], "counts": …}');
 }
 
-/** The run lengths, each checked, of a list or a compressed string. */
+/** The validated run lengths of an array or a compressed string. */
 function runsOf(argument: string, counts: unknown): number[] {
   if (typeof counts === "string") return decompressed(argument, counts);
   if (Array.isArray(counts) || ArrayBuffer.isView(counts)) return Array.from(counts as ArrayLike<number>);
-  const remedy = "Draw polygons first, with pycocotools' annToMask.";
-  throw failure("INVALID_ARGUMENT", argument, describe(counts), "a string, or a list of run lengths", remedy);
+  const remedy = "Rasterise polygons first, for example with pycocotools' annToMask.";
+  throw failure("INVALID_ARGUMENT", argument, describe(counts), "a string, or an array of run lengths", remedy);
 }
 
-/** Pixels of a mask at most, as for image files: 8192 × 8192. */
+/** Maximum number of pixels of a mask, as for image files: 8192 × 8192. */
 const MAX_PIXELS = 1 << 26;
 
-/** Whether an image of this size can be allocated: sizes in files may be made up. */
+/** Checks a size before allocation, because the file may be malicious. */
 function checkSize(argument: string, { width, height }: ImageSize): void {
   whole(`${argument}.width`, width, 0);
   whole(`${argument}.height`, height, 0);
@@ -95,12 +95,12 @@ function checkSize(argument: string, { width, height }: ImageSize): void {
     throw failure("EMPTY_IMAGE", argument, found, "at least one pixel", "Pass [height, width] of the image.");
   }
   if (width * height <= MAX_PIXELS) return;
-  const remedy = "Downscale the mask first; a small file that states such a size is broken or hostile.";
+  const remedy = "Downscale the mask first; if the file is small, it is corrupt or malicious.";
   throw failure("FILE_TOO_LARGE", argument, found, `at most ${MAX_PIXELS} pixels (8192 × 8192)`, remedy);
 }
 
-// Each letter holds five bits, the lowest first, and a sixth bit that is set where more letters follow; the letters
-// start at "0". From the fourth run on, the string holds the difference to the run before the last.
+// Each character encodes five bits, the least significant first, and a sixth bit that is set if more characters follow;
+// character codes start at "0". From the fourth run on, values are differences to the run two before.
 const firstLetter = 48;
 
 function compress(counts: readonly number[]): string {
@@ -127,7 +127,7 @@ function decompressed(argument: string, text: string): number[] {
   let factor = 1;
   for (const letter of text) {
     const six = (letter.codePointAt(0) ?? 0) - firstLetter;
-    if (six < 0 || six > 63) throw broken(`the letter ${JSON.stringify(letter)}`);
+    if (six < 0 || six > 63) throw broken(`the character ${JSON.stringify(letter)}`);
     if (factor > 2 ** 30) throw broken("a number of more than 35 bits");
     value += (six & 31) * factor;
     factor *= 32;

@@ -1,10 +1,10 @@
-/** JSON files: their text, and the numbers in them. */
+/** Parsing of JSON files, and of numbers in them. */
 import { failure, isKind, isRecord } from "../values.js";
 
-/** A file of JSON: its bytes, its text, or what `JSON.parse` made of it. */
+/** A JSON file: its bytes, its text, or its parsed content. */
 export type JsonFile = Uint8Array | string | object;
 
-/** Bytes of a JSON file at most: 16 MiB. */
+/** Maximum size of a JSON file in bytes: 16 MiB. */
 const MAX_BYTES = 1 << 24;
 
 /**
@@ -14,7 +14,7 @@ const MAX_BYTES = 1 << 24;
 export function parsedJson(argument: string, file: JsonFile): unknown {
   if (typeof file !== "string" && !isKind<Uint8Array>(file, "Uint8Array")) return file;
   if (file.length > MAX_BYTES) {
-    const remedy = "A camera, a mask or a pose takes far less: check that this is the right file.";
+    const remedy = "Files of cameras, masks and poses are far smaller: check that this is the right file.";
     throw failure("FILE_TOO_LARGE", argument, `${file.length} bytes of JSON`, `at most ${MAX_BYTES}`, remedy);
   }
   try {
@@ -29,24 +29,24 @@ export function parsedJson(argument: string, file: JsonFile): unknown {
   }
 }
 
-/** The error for a file that contradicts itself, or holds something else. */
+/** The error for an inconsistent or unexpected file. */
 export const corruptJson = (argument: string, found: string, expected: string) =>
-  failure("CORRUPT_FILE", argument, found, expected, "The file may be cut short: download or export it again.");
+  failure("CORRUPT_FILE", argument, found, expected, "The file may be truncated: download or export it again.");
 
-/** `count` numbers, from an array of them or of rows of them; `null` for anything else. */
+/** `count` numbers, from a flat array or an array of rows; `null` for anything else. */
 export function numbersIn(value: unknown, count: number): number[] | null {
   if (!Array.isArray(value)) return null;
   const numbers: unknown[] = value.flat();
   return numbers.length === count && numbers.every(isNumber) ? numbers : null;
 }
 
-/** Whether this is a number that JSON can hold. */
+/** Whether the value is a finite number. */
 export const isNumber = (value: unknown): value is number => typeof value === "number" && Number.isFinite(value);
 
-/** The names in a JSON object, for messages. */
+/** The property names of a JSON object, for error messages. */
 export const namesIn = (object: Record<string, unknown>) => Object.keys(object).slice(0, 12).join(", ") || "nothing";
 
-/** A JSON value, for messages; of long text the beginning. */
+/** Describes a JSON value for error messages; long text is truncated. */
 export function shown(value: unknown): string {
   if (value === undefined) return "nothing";
   const text = isRecord(value) ? `an object with ${namesIn(value)}` : (JSON.stringify(value) ?? typeof value);

@@ -1,13 +1,13 @@
-/** Pinhole cameras from their stated forms: four numbers, a matrix, or a field of view. */
+/** Pinhole intrinsics from four numbers, a matrix, or a field of view. */
 import { describe, invalidArgument } from "../error.js";
 import type { CameraInput } from "../input/types.js";
 import { failure, finiteNumbers, flattened, record } from "../values.js";
 import type { ImageSize } from "./pixels.js";
 
-/** A camera whose intrinsics are stated. */
+/** A camera with given intrinsics. */
 export type StatedCamera = CameraInput;
 
-/** A pinhole camera's intrinsics in pixels; pixel centres are at whole numbers. */
+/** Pinhole intrinsics in pixels; pixel centres have integer coordinates. */
 export interface Pinhole {
   fx: number;
   fy: number;
@@ -19,19 +19,19 @@ const forms = "{ fx, fy, cx, cy }, { K } or { fovYDeg }";
 const pixels = "Intrinsics are in pixels of the depth image: scale them together with the image.";
 
 /**
- * The intrinsics of a camera in any of its stated forms.
+ * The intrinsics of a camera in any of these forms.
  * @param argument the name of the camera in errors
- * @param size of the image; only a field of view needs it
+ * @param size the size of the image; only a field of view needs it
  */
 export function pinholeOf(argument: string, camera: unknown, size?: ImageSize): Pinhole {
   const { K, fovYDeg, fx, fy, cx, cy } = record(argument, camera, forms);
   if (K !== undefined) return fromMatrix(argument, K);
   if (fovYDeg === undefined) return checkedPinhole(argument, { fx, fy, cx, cy });
   if (size !== undefined) return fromFieldOfView(argument, fovYDeg, size);
-  throw invalidArgument(argument, camera, "{ fx, fy, cx, cy } or { K }", "A field of view needs the image's size.");
+  throw invalidArgument(argument, camera, "{ fx, fy, cx, cy } or { K }", "A field of view requires the image size.");
 }
 
-/** Four numbers, checked. */
+/** Validates four numbers. */
 export function checkedPinhole(argument: string, intrinsics: Record<keyof Pinhole, unknown>): Pinhole {
   for (const [name, value] of Object.entries(intrinsics)) {
     if (typeof value !== "number") throw invalidArgument(`${argument}.${name}`, value, "a number", pixels);
@@ -43,27 +43,29 @@ export function checkedPinhole(argument: string, intrinsics: Record<keyof Pinhol
   return intrinsics as Pinhole;
 }
 
-/** Intrinsics from a 3×3 matrix, row by row, up to a common factor. Skew is refused: no depth camera reports one. */
+/**
+ * Intrinsics from a 3×3 matrix, row-major, up to a common factor. Skew is rejected, because depth cameras have none.
+ */
 export function fromMatrix(argument: string, K: unknown): Pinhole {
   const name = `${argument}.K`;
   const numbers = flattened(K) ?? [];
   const isNumeric = numbers.length === 9 && numbers.every((number) => typeof number === "number");
-  // Numbers of another count, or no numbers at all.
-  if (!isNumeric) finiteNumbers(name, K, 9, "9 numbers, row by row");
+  // Reports a wrong length or non-numeric elements.
+  if (!isNumeric) finiteNumbers(name, K, 9, "9 numbers, row-major");
   const [fx = 0, skew, cx = 0, b, fy = 0, cy = 0, c, d, w = 0] = numbers as number[];
   const tolerance = 1e-6 * Math.abs(fx);
   const isUpright = [skew, b, c, d].every((zero) => Math.abs(zero ?? 0) <= tolerance);
   if (isUpright && Number.isFinite(w) && w !== 0) {
     return checkedPinhole(argument, { fx: fx / w, fy: fy / w, cx: cx / w, cy: cy / w });
   }
-  const remedy = "Pass K row by row; a column-major K has cx and cy in its last row: transpose it.";
+  const remedy = "Pass K row-major. A column-major K has cx and cy in its last row: transpose it.";
   throw failure("INVALID_CAMERA", name, `[${numbers.join(", ")}]`, "[fx, 0, cx, 0, fy, cy, 0, 0, 1]", remedy);
 }
 
-/** Intrinsics from a vertical field of view in degrees: square pixels, the principal point in the middle. */
+/** Intrinsics from a vertical field of view in degrees: square pixels, centred principal point. */
 export function fromFieldOfView(argument: string, fovYDeg: unknown, { width, height }: ImageSize): Pinhole {
   const name = `${argument}.fovYDeg`;
-  const remedy = "Pass the vertical field of view in degrees, as three.js' PerspectiveCamera.fov.";
+  const remedy = "Pass the vertical field of view in degrees, like PerspectiveCamera.fov of three.js.";
   if (typeof fovYDeg !== "number") throw invalidArgument(name, fovYDeg, "a number", remedy);
   if (!(fovYDeg > 0 && fovYDeg < 180)) {
     throw failure("INVALID_CAMERA", name, describe(fovYDeg), "an angle above 0 and below 180 degrees", remedy);
@@ -73,10 +75,10 @@ export function fromFieldOfView(argument: string, fovYDeg: unknown, { width, hei
   return { fx: f, fy: f, cx: 0.5 * (width - 1), cy: 0.5 * (height - 1) };
 }
 
-/** π/2 in two parts, of which the first has 33 bits. */
+/** π/2 as the sum of two numbers, the first with 33 bits. */
 const halfPi = [1.5707963267341256, 6.077100506506192e-11] as const;
 
-/** fdlibm's polynomials (`k_sin.c`, `k_cos.c`), highest power first; the core has the same in `geometry/angle.rs`. */
+/** Polynomials of fdlibm (`k_sin.c`, `k_cos.c`), highest power first; the core uses the same in `geometry/angle.rs`. */
 const sinPolynomial = [
   ...[1.58969099521155e-10, -2.5050760253406863e-8, 2.7557313707070068e-6],
   ...[-1.984126982985795e-4, 8.33333333332249e-3, -1.6666666666666632e-1],
@@ -87,8 +89,8 @@ const cosPolynomial = [
 ];
 
 /**
- * Sine and cosine of an angle from 0 to π/2. `Math.sin` differs between engines in the last bits, and the same field of
- * view has to give the same alignment in all of them.
+ * Sine and cosine of an angle from 0 to π/2. The last bits of `Math.sin` differ between engines, but a field of view
+ * must give the same alignment in all of them.
  */
 function sinCos(angle: number): [sin: number, cos: number] {
   const quarters = angle > Math.PI / 4 ? 1 : 0;

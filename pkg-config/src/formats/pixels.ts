@@ -1,12 +1,12 @@
-/** Images: pixels with their size. */
+/** Images: pixels and their size. */
 import type { PixelArray } from "../input/types.js";
 import { failure, isTypedArray, record, whole, wrongKind } from "../values.js";
 
-/** An image's size in pixels. */
+/** The size of an image in pixels. */
 export interface ImageSize {
-  /** Pixels in a row. */
+  /** Width in pixels. */
   width: number;
-  /** Rows. */
+  /** Height in pixels. */
   height: number;
 }
 
@@ -16,13 +16,13 @@ export type MaskPixels = Uint8Array | Uint8ClampedArray;
 /** The pixels of a depth map. */
 export type DepthPixels = Float32Array | Uint16Array;
 
-/** An image size of at least one pixel, checked. */
+/** Validates an image size of at least one pixel. */
 export function sizeOf(argument: string, size: unknown): ImageSize {
   const { width, height } = record(argument, size, "{ width, height }");
   return { width: whole(`${argument}.width`, width, 1), height: whole(`${argument}.height`, height, 1) };
 }
 
-/** An image whose pixels are of one of these kinds, and as many as its size says. */
+/** Validates an image: its array type, and the number of its values. */
 export function pixelsOf<T extends ArrayLike<number>>(
   argument: string,
   image: unknown,
@@ -36,15 +36,15 @@ export function pixelsOf<T extends ArrayLike<number>>(
   return { data, width, height };
 }
 
-/** Checks that there is a value for every pixel. */
+/** Checks that the number of values matches the size. */
 export function checkCount(argument: string, count: number, { width, height }: ImageSize, channels = 1): void {
   if (count === width * height * channels) return;
   const perPixel = channels === 1 ? "" : ` × ${channels}`;
   const expected = `${width} × ${height}${perPixel} = ${width * height * channels}`;
-  throw failure("WRONG_LENGTH", argument, `${count} values`, expected, "Pass the size that the pixels belong to.");
+  throw failure("WRONG_LENGTH", argument, `${count} values`, expected, "Pass the size of the image that the values belong to.");
 }
 
-/** The kinds of array of a mask, of depth, of points. */
+/** The array types of masks and depth maps. */
 export const maskKinds = ["Uint8Array", "Uint8ClampedArray"];
 export const depthKinds = ["Float32Array", "Uint16Array"];
 export const pointKinds = ["Float32Array"];

@@ -3,8 +3,8 @@ import { describe } from "../error.js";
 import { failure } from "../values.js";
 
 /**
- * The pixels of alternating runs: 0 in the first run, 1 in the second, and so on.
- * @param count how many pixels the runs have to sum up to
+ * Decodes alternating runs: 0 in the first run, 1 in the second, and so on.
+ * @param count the required sum of the runs
  */
 export function filledRuns(argument: string, runs: readonly unknown[], count: number): Uint8Array {
   const corrupt = (found: string) =>
@@ -12,16 +12,16 @@ export function filledRuns(argument: string, runs: readonly unknown[], count: nu
       "CORRUPT_FILE",
       argument,
       found,
-      `run lengths that sum up to ${count}`,
-      "Pass the runs and their own size.",
+      `run lengths that add up to ${count}`,
+      "Pass the runs with the size of their image.",
     );
-  // Checked before the pixels are allocated: sizes in files may be made up.
+  // Checked before allocation, because the size may be malicious.
   let total = 0;
   for (const run of runs) {
     if (!Number.isSafeInteger(run) || (run as number) < 0) throw corrupt(`${describe(run)} among the runs`);
     total += run as number;
   }
-  if (total !== count) throw corrupt(`runs of ${total} pixels in all`);
+  if (total !== count) throw corrupt(`runs of ${total} pixels in total`);
   const pixels = new Uint8Array(count);
   let start = 0;
   runs.forEach((run, i) => {

@@ -1,8 +1,8 @@
-/** Files as bytes, and how they begin. */
+/** Files as bytes, and detection of their type. */
 import { invalidArgument } from "../error.js";
 import { isKind } from "../values.js";
 
-/** The bytes of a file; `null` for anything else. Pixels in a `Uint8Array` look the same: the caller has to know. */
+/** The bytes of a file, or `null`. Cannot distinguish a file from pixels in a `Uint8Array`. */
 export async function fileBytes(value: unknown): Promise<Uint8Array | null> {
   if (isKind<Uint8Array>(value, "Uint8Array")) return value;
   if (isKind<ArrayBuffer>(value, "ArrayBuffer")) return new Uint8Array(value);
@@ -14,18 +14,18 @@ export async function fileBytes(value: unknown): Promise<Uint8Array | null> {
 export async function requiredBytes(argument: string, file: unknown): Promise<Uint8Array> {
   const bytes = await fileBytes(file);
   if (bytes !== null) return bytes;
-  throw invalidArgument(argument, file, "a file's bytes", "Pass a Uint8Array, an ArrayBuffer or a Blob.");
+  throw invalidArgument(argument, file, "the bytes of a file", "Pass a Uint8Array, an ArrayBuffer or a Blob.");
 }
 
 const imageBeginnings = ["\x89PNG\r\n\x1a\n", "\x93NUMPY", "\xff\xd8\xff", "GIF8", "RIFF"];
 
-/** Whether the bytes begin as an image file does. No mask's pixels do. */
+/** Whether the bytes start with the signature of an image file, which the pixels of a mask never do. */
 export function beginsLikeImage(bytes: Uint8Array): boolean {
   const beginning = String.fromCharCode(...bytes.subarray(0, 8));
   return imageBeginnings.some((magic) => beginning.startsWith(magic));
 }
 
-/** Whether the bytes begin as a JSON object does, after a byte order mark if there is one. */
+/** Whether the bytes start like a JSON object, after an optional byte order mark. */
 export function beginsLikeJson(bytes: Uint8Array): boolean {
   const beginning = String.fromCharCode(...bytes.subarray(0, 64));
   return beginning

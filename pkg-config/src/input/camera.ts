@@ -1,4 +1,4 @@
-/** The camera of an input: stated intrinsics, or a camera file. */
+/** The camera of an input: intrinsics or a camera file. */
 import { invalidArgument } from "../error.js";
 import { checkCameraSize, depthScaleIn, parseCameraFile } from "../formats/camera-file.js";
 import { type Pinhole, pinholeOf } from "../formats/pinhole.js";
@@ -6,30 +6,30 @@ import type { ImageSize } from "../formats/pixels.js";
 import { isRecord } from "../values.js";
 import { fileBytes } from "./bytes.js";
 
-/** A camera that was read; its intrinsics may depend on the image's size. */
+/** A parsed camera, whose intrinsics may depend on the image size. */
 export interface Camera {
-  /** Metres per unit of whole-number depth, where the camera file states it. */
+  /** Metres per unit of integer depth, if given in the camera file. */
   integerDepthScale: number | undefined;
   /** The intrinsics for an image of this size. */
   resolve(width: number | undefined, height: number | undefined): ResolvedCamera;
 }
 
 interface ResolvedCamera {
-  /** `undefined` where the image has no valid size, which the core refuses before it looks at the camera. */
+  /** `undefined` if the image size is invalid, which the core reports before it reads the camera. */
   camera: Pinhole | undefined;
   warnings: readonly string[];
 }
 
 const forms = "{ fx, fy, cx, cy }, { K } or { fovYDeg }";
 
-/** `warnings` and `depthScale` are what `readCamera` adds to the intrinsics of a camera file. */
+/** `readCamera` adds `warnings` and `depthScale` to the intrinsics of a camera file. */
 const properties = ["fx", "fy", "cx", "cy", "K", "fovYDeg", "width", "height", "warnings", "depthScale"];
 
 /** The camera of an input, which has either `camera` or `cameraFile`. */
 export async function cameraOf({ camera, cameraFile, imageId }: Record<string, unknown>): Promise<Camera> {
   if (cameraFile === undefined) return statedCamera(camera);
   if (camera === undefined) return fileCamera(cameraFile, imageId);
-  const remedy = "Leave one of the two out.";
+  const remedy = "Omit one of the two.";
   throw invalidArgument("cameraFile", cameraFile, "a camera or a camera file, but not both", remedy);
 }
 
@@ -54,7 +54,7 @@ async function fileCamera(file: unknown, imageId: unknown): Promise<Camera> {
   const content = isRecord(file) || Array.isArray(file) || typeof file === "string" ? file : await fileBytes(file);
   if (content === null) {
     const expected = "the bytes, the text or the parsed JSON of a camera file";
-    throw invalidArgument("cameraFile", file, expected, "Pass { fx, fy, cx, cy } and the like as camera.");
+    throw invalidArgument("cameraFile", file, expected, "Pass intrinsics such as { fx, fy, cx, cy } as camera.");
   }
   return {
     integerDepthScale: depthScaleIn(content, imageId as string | undefined),
@@ -68,7 +68,7 @@ async function fileCamera(file: unknown, imageId: unknown): Promise<Camera> {
   };
 }
 
-/** The image's size, where it is one. */
+/** The image size, if it is valid. */
 const sizeOf = (width: unknown, height: unknown): ImageSize | undefined =>
   [width, height].every((side) => Number.isSafeInteger(side) && (side as number) > 0)
     ? { width: width as number, height: height as number }

@@ -1,8 +1,8 @@
-/** The input as the core takes it. */
+/** The input of the core. */
 import type { Pinhole } from "../formats/pinhole.js";
 import type { CoreMesh } from "../prepared-mesh.js";
 
-/** An input as the core takes it; the core checks lengths and values. */
+/** The input of the core, which checks lengths and values. */
 export interface CoreInput {
   depth?: Float32Array | Uint16Array;
   depthScale?: unknown;

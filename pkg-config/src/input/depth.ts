@@ -1,10 +1,10 @@
-/** Depth maps and point maps, brought to arrays with their size. */
+/** Converts depth maps and point maps to arrays with their size. */
 import { Sim3AlignError } from "../error.js";
 import type { LoadFormats } from "../formats-module.js";
 import { isRecord, isTypedArray, withoutUndefined, wrongKind } from "../values.js";
 import { fileBytes } from "./bytes.js";
 
-/** The core's form of a depth map or a point map: one of the two. */
+/** A depth map or a point map for the core. */
 export interface SizedArray<T> {
   data: T;
   width: number | undefined;
@@ -16,15 +16,15 @@ type DepthArray = Float32Array | Uint16Array;
 const depthKinds =
   "a Float32Array (metres), a Uint16Array (with depthScale), { data, width, height } of these, or the bytes of a 16-bit PNG or a .npy file";
 
-/** The image size that the input states, as far as it does. */
+/** The image size in the input, if given. */
 export interface StatedSize {
   width?: number | undefined;
   height?: number | undefined;
 }
 
 /**
- * A depth map's values: metres where it came from a file or as floats, units of `depthScale` else.
- * @param scale the caller's depthScale, or for whole numbers only the camera file's
+ * The values of a depth map: metres for files and floats, units of `depthScale` for integers.
+ * @param scale `depthScale` of the caller or, for integers only, of the camera file
  */
 export async function readDepth(
   depth: unknown,
@@ -42,7 +42,7 @@ export async function readDepth(
       argument: "depth",
       found: `a Uint8Array of ${size.width} × ${size.height} values`,
       expected: depthKinds,
-      remedy: "256 levels are a picture of the depth, not metres: pass the depth map itself.",
+      remedy: "256 levels are a visualisation of depth: pass the depth map itself.",
     });
   }
   const module = await formats();
@@ -54,7 +54,7 @@ export async function readDepth(
   return file;
 }
 
-/** A point map's values, metres. */
+/** The values of a point map, in metres. */
 export function readPointMap(pointMap: unknown, size: StatedSize): SizedArray<Float32Array> {
   const kinds = "a Float32Array of height × width × 3 values (metres), or { data, width, height } with one";
   if (isFloats(pointMap)) return { data: pointMap, ...required(size) };
@@ -87,7 +87,7 @@ function checkStatedSize(argument: string, actual: { width: number; height: numb
     code: "SIZE_MISMATCH",
     argument,
     found: `${actual.width} × ${actual.height} pixels`,
-    expected: `the ${width} × ${height} that the input's width and height say`,
-    remedy: `Leave width and height out: ${argument} brings its own.`,
+    expected: `${width} × ${height}, the width and height of the input`,
+    remedy: `Omit width and height: ${argument} has its own.`,
   });
 }

@@ -1,4 +1,4 @@
-/** Masks, brought to bytes with their size. */
+/** Converts masks to bytes with their size. */
 import { invalidArgument } from "../error.js";
 import { decodedRle, readRleFile } from "../formats/coco-rle.js";
 import type { LoadFormats } from "../formats-module.js";
@@ -11,9 +11,8 @@ type MaskArray = Uint8Array | Uint8ClampedArray;
 const kinds =
   "a Uint8Array (non-zero is the object), { data, width, height } with one, COCO RLE { size, counts }, or the bytes of a PNG or a .npy file";
 
-/**
- * A mask's pixels.
- * @param pixels how many the depth map has
+/** The pixels of a mask.
+ * @param pixels the number of pixels of the depth map
  */
 export async function readMask(mask: unknown, pixels: number, formats: LoadFormats): Promise<SizedArray<MaskArray>> {
   if (isRecord(mask)) {
@@ -26,7 +25,7 @@ export async function readMask(mask: unknown, pixels: number, formats: LoadForma
         "mask",
         mask,
         "data, width and height",
-        "Say how many pixels the mask has in each direction.",
+        "Pass the width and height of the mask in pixels.",
       );
     }
   }

@@ -1,4 +1,4 @@
-/** Meshes: arrays as they are, or a mesh file. */
+/** Meshes from arrays or mesh files. */
 
 import { invalidArgument } from "../error.js";
 import type { LoadFormats } from "../formats-module.js";
@@ -10,18 +10,18 @@ import type { MeshFile } from "./types.js";
 const kinds =
   "{ positions, indices? }, or the bytes of a GLB, glTF, OBJ, PLY or STL file (also as { bytes, format?, resources? })";
 
-/** A mesh's arrays. */
+/** The arrays of a mesh. */
 export async function readMesh(mesh: unknown, formats: LoadFormats): Promise<CoreMesh> {
   if (isRecord(mesh) && "positions" in mesh) return arrays(mesh);
   const file: { [K in keyof MeshFile]?: unknown } = isRecord(mesh) ? mesh : { bytes: mesh };
   const bytes = await fileBytes(file.bytes);
-  if (bytes === null) throw invalidArgument("mesh", mesh, kinds, "Pass the mesh that is to be aligned.");
+  if (bytes === null) throw invalidArgument("mesh", mesh, kinds, "Pass the mesh to align.");
   const { format, resources } = file as Omit<MeshFile, "bytes">;
   const options = withoutUndefined({ format, resources });
   return (await formats()).call((readers) => readers.readMesh(bytes, options), ofMesh);
 }
 
-/** The reader's options are properties of the mesh here. */
+/** The options of the reader are properties of the mesh. */
 const ofMesh = (argument: string) => argument.replace(/^options\./, "mesh.");
 
 function arrays({ positions, indices }: Record<string, unknown>): CoreMesh {

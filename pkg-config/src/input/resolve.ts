@@ -1,4 +1,4 @@
-/** Resolves an input: from arrays and files to the typed arrays and numbers that the core takes. */
+/** Converts inputs to the typed arrays and numbers of the core. */
 
 import { invalidArgument, Sim3AlignError } from "../error.js";
 import type { LoadFormats } from "../formats-module.js";
@@ -21,9 +21,9 @@ const properties = [
 ];
 
 /**
- * Resolves an input. `formats` is called only where there is a file that needs it.
- * @param meshId the number of a prepared mesh
- * @throws {@link Sim3AlignError} for arguments of the wrong kind, and those of the file readers
+ * Resolves an input. `formats` is called only if a file needs it.
+ * @param meshId the id of a prepared mesh
+ * @throws {@link Sim3AlignError} for arguments of the wrong type, and the errors of the file readers
  */
 export async function resolveInput(input: unknown, formats: LoadFormats, meshId?: number): Promise<ResolvedInput> {
   checkProperties(input);
@@ -52,7 +52,7 @@ async function depthAndCamera(input: Record<string, unknown>, formats: LoadForma
   const isFloat = isTypedArray(data, "Float32Array");
   return {
     depth: data,
-    // The readers have applied the scale to a file's values already.
+    // The readers have already scaled the values of a file.
     depthScale: isFile ? undefined : (depthScale ?? (isFloat ? undefined : integerDepthScale)),
     width,
     height,
@@ -63,7 +63,7 @@ async function depthAndCamera(input: Record<string, unknown>, formats: LoadForma
 async function pointMapAndCamera(input: Record<string, unknown>, pointMap: unknown) {
   const other = ["depth", "depthScale"].find((name) => input[name] !== undefined);
   if (other !== undefined) {
-    const remedy = `Leave ${other} out: the point map has the depth, in metres.`;
+    const remedy = `Omit ${other}: the point map contains the depth, in metres.`;
     throw invalidArgument(other, input[other], "a point map or depth, but not both", remedy);
   }
   const { data, width, height } = readPointMap(pointMap, input as { width?: number; height?: number });
@@ -74,7 +74,7 @@ async function pointMapAndCamera(input: Record<string, unknown>, pointMap: unkno
   return { ...image, ...camera.resolve(width, height) };
 }
 
-/** Refuses misspelt properties, which would otherwise be ignored. */
+/** Rejects misspelt properties, which would otherwise be ignored. */
 function checkProperties(input: unknown): asserts input is Record<string, unknown> {
   if (!isRecord(input)) {
     throw invalidArgument("input", input, "{ depth, mask, mesh, camera }", "See AlignInput in the documentation.");
@@ -84,8 +84,8 @@ function checkProperties(input: unknown): asserts input is Record<string, unknow
   throw new Sim3AlignError({
     code: "INVALID_ARGUMENT",
     argument: `input.${unknown}`,
-    found: "a property that does not exist",
+    found: "an unknown property",
     expected: properties.join(", "),
-    remedy: "Check the spelling; options belong into the second argument.",
+    remedy: "Check the spelling. Options belong in the second argument.",
   });
 }

@@ -1,23 +1,23 @@
 /** The input of `align` and `evaluate`. */
 import type { PreparedMesh } from "../prepared-mesh.js";
 
-/** An encoded file as it was read or fetched. */
+/** The content of an encoded file, as read or fetched. */
 export type EncodedBytes = Uint8Array | ArrayBuffer | Blob;
 
-/** Pixels with their size: `data` has width × height values, row by row from the top left. */
+/** Pixels and their size: `data` has width × height values, row-major from the top left. */
 export interface PixelArray<T> {
   data: T;
-  /** Pixels in a row. */
+  /** Width in pixels. */
   width: number;
-  /** Rows. */
+  /** Height in pixels. */
   height: number;
 }
 
 /**
- * A depth map: z-depth (along the optical axis, not along the ray), row by row. 0, negative, NaN and infinite values
- * are "no reading".
+ * A depth map: z-depth (along the optical axis, not along the ray), row-major. 0, negative, NaN and infinite values are
+ * "no reading".
  *
- * - `Float32Array`: metres (times `depthScale`, where that is given); with `width` and `height` in the input;
+ * - `Float32Array`: metres (times `depthScale`, if given); with `width` and `height` in the input;
  * - `Uint16Array`: multiplied by `depthScale`; with `width` and `height` in the input;
  * - either of these as `{ data, width, height }`;
  * - the bytes of a 16-bit grey PNG (multiplied by `depthScale`) or of a `.npy` array.
@@ -31,11 +31,11 @@ export interface CocoRle {
 }
 
 /**
- * Which pixels show the object, row by row; non-zero is the object.
+ * The mask of the object, row-major; non-zero is the object.
  *
  * - `Uint8Array` of the depth map's size, one byte per pixel;
- * - `{ data, width, height }`, for one of another size (see `resizeMask`);
- * - the bytes of a PNG or of a `.npy` array, recognised by their first bytes;
+ * - `{ data, width, height }`, for a mask of another size (see `resizeMask`);
+ * - the bytes of a PNG or of a `.npy` array, detected by their signature;
  * - COCO RLE, as an object or as the bytes of a JSON file.
  */
 export type MaskInput =
@@ -46,15 +46,15 @@ export type MaskInput =
   | Blob
   | CocoRle;
 
-/** The image size that intrinsics belong to; compared with the depth map's. */
+/** The size of the image that the intrinsics belong to. It must match the depth map. */
 interface CameraSize {
-  /** Pixels in a row. */
+  /** Width in pixels. */
   width?: number | undefined;
-  /** Rows. */
+  /** Height in pixels. */
   height?: number | undefined;
 }
 
-/** Pinhole intrinsics in pixels; pixel centres are at whole numbers: x = (u − cx)·z/fx. */
+/** Pinhole intrinsics in pixels; pixel centres have integer coordinates: x = (u − cx)·z/fx. */
 export interface PinholeCamera extends CameraSize {
   fx: number;
   fy: number;
@@ -64,7 +64,7 @@ export interface PinholeCamera extends CameraSize {
   fovYDeg?: undefined;
 }
 
-/** No other form of intrinsics beside a matrix or a field of view. */
+/** Excludes fx, fy, cx and cy next to a matrix or a field of view. */
 interface NoPinhole {
   fx?: undefined;
   fy?: undefined;
@@ -72,13 +72,13 @@ interface NoPinhole {
   cy?: undefined;
 }
 
-/** Intrinsics as a matrix: 9 numbers row by row, or three rows of three. */
+/** Intrinsics as a matrix: 9 numbers, row-major, or three rows of three. */
 export interface MatrixCamera extends CameraSize, NoPinhole {
   K: ArrayLike<number> | readonly (readonly number[])[];
   fovYDeg?: undefined;
 }
 
-/** A vertical field of view in degrees, for square pixels and a principal point in the middle of the image. */
+/** A vertical field of view in degrees, for square pixels and a centred principal point. */
 export interface FieldOfViewCamera extends CameraSize, NoPinhole {
   fovYDeg: number;
   K?: undefined;
@@ -88,28 +88,28 @@ export interface FieldOfViewCamera extends CameraSize, NoPinhole {
 export type CameraInput = PinholeCamera | MatrixCamera | FieldOfViewCamera;
 
 /**
- * A camera file: its bytes, its text, or its parsed JSON. Known are our own `camera.json`, BOP's `scene_camera.json`
- * (choose the entry with `imageId`), ROS CameraInfo, and the intrinsics of Open3D and RealSense.
+ * A camera file: its bytes, its text, or its parsed JSON. Supported are sim3align's `camera.json`, BOP's
+ * `scene_camera.json` (select the entry with `imageId`), ROS CameraInfo, and the intrinsics of Open3D and RealSense.
  */
 export type CameraFileInput = EncodedBytes | string | Readonly<Record<string, unknown>>;
 
-/** The mesh formats that are read. */
+/** The supported mesh formats. */
 export type MeshFormat = "glb" | "gltf" | "obj" | "ply" | "stl";
 
 /** A mesh as arrays. */
 export interface MeshArrays {
-  /** x, y, z per vertex, in any unit. */
+  /** Interleaved x, y, z, in any unit. */
   positions: Float32Array;
-  /** Three vertex indices per triangle; without them every three vertices are a triangle. */
+  /** Three vertex indices per triangle; without them, every three vertices form a triangle. */
   indices?: Uint32Array | Uint16Array | null | undefined;
 }
 
 /** A mesh file. */
 export interface MeshFile {
   bytes: EncodedBytes;
-  /** By default it is recognised by the content. */
+  /** Detected from the content by default. */
   format?: MeshFormat | undefined;
-  /** The buffers of a `.gltf`, by the URIs in it. */
+  /** The buffers of a `.gltf`, by URI. */
   resources?: Readonly<Record<string, Uint8Array | ArrayBuffer>> | undefined;
 }
 
@@ -118,15 +118,15 @@ export type MeshInput = MeshArrays | MeshFile | EncodedBytes | PreparedMesh;
 
 /** The mask and the mesh of an input. */
 export interface ObjectInput {
-  /** Which pixels show the object. */
+  /** The mask of the object. */
   mask: MaskInput;
-  /** The mesh to be aligned. */
+  /** The mesh to align. */
   mesh: MeshInput;
-  /** How to bring a mask of another size to the depth map's. By default that is an error. */
+  /** How to resize a mask whose size differs from that of the depth map. By default, such a mask is an error. */
   resizeMask?: "nearest" | undefined;
 }
 
-/** Intrinsics, stated. */
+/** An input with intrinsics. */
 export interface StatedCameraInput {
   /** The intrinsics of the camera that took the depth map. */
   camera: CameraInput;
@@ -134,59 +134,59 @@ export interface StatedCameraInput {
   imageId?: undefined;
 }
 
-/** Intrinsics from a file. */
+/** An input with a camera file. */
 export interface CameraFromFileInput {
   camera?: undefined;
-  /** A camera file. Whole-number depth takes its scale from it, unless `depthScale` is given. */
+  /** A camera file. It also sets the scale of integer depth, unless `depthScale` is given. */
   cameraFile: CameraFileInput;
-  /** Which entry of a BOP `scene_camera.json`. */
+  /** The image id in a BOP `scene_camera.json`. */
   imageId?: string | number | undefined;
 }
 
-/** No camera: intrinsics follow from the point map. */
+/** An input without camera: the intrinsics are fitted to the point map. */
 export interface NoCameraInput {
   camera?: undefined;
   cameraFile?: undefined;
   imageId?: undefined;
 }
 
-/** A depth map that may be a bare array, whose size the input states. */
+/** A depth map, possibly as a bare array with its size in the input. */
 export interface SizedDepthInput {
   /** The depth map. */
   depth: DepthInput;
-  /** Pixels in a row. */
+  /** Width in pixels. */
   width: number;
-  /** Rows. */
+  /** Height in pixels. */
   height: number;
 }
 
-/** A depth map that brings its size along. */
+/** A depth map with its own size. */
 export interface OwnSizeDepthInput {
   /** The depth map. */
   depth: Exclude<DepthInput, Float32Array | Uint16Array>;
-  /** Pixels in a row; compared with the depth map's. */
+  /** Width in pixels; must match the depth map. */
   width?: number | undefined;
-  /** Rows; compared with the depth map's. */
+  /** Height in pixels; must match the depth map. */
   height?: number | undefined;
 }
 
-/** A point map that may be a bare array, whose size the input states. */
+/** A point map, possibly as a bare array with its size in the input. */
 export interface SizedPointMapInput {
   /** x, y, z per pixel (height × width × 3), metres, in the OpenCV camera frame: x right, y down, z forward. */
   pointMap: Float32Array | PixelArray<Float32Array>;
-  /** Pixels in a row. */
+  /** Width in pixels. */
   width: number;
-  /** Rows. */
+  /** Height in pixels. */
   height: number;
 }
 
-/** A point map that brings its size along. */
+/** A point map with its own size. */
 export interface OwnSizePointMapInput {
   /** x, y, z per pixel (height × width × 3), metres, in the OpenCV camera frame: x right, y down, z forward. */
   pointMap: PixelArray<Float32Array>;
-  /** Pixels in a row; compared with the point map's. */
+  /** Width in pixels; must match the point map. */
   width?: number | undefined;
-  /** Rows; compared with the point map's. */
+  /** Height in pixels; must match the point map. */
   height?: number | undefined;
 }
 
@@ -195,14 +195,14 @@ export type DepthAlignInput = ObjectInput &
   (SizedDepthInput | OwnSizeDepthInput) &
   (StatedCameraInput | CameraFromFileInput) & {
     /**
-     * Metres per unit of depth, above 0: 0.001 for millimetres. By default floats are metres, and whole numbers take
-     * the scale from the camera file, or else are millimetres.
+     * Metres per unit of depth, above 0: 0.001 for millimetres. By default, floats are metres, and integers use the
+     * scale of the camera file or, without one, are millimetres.
      */
     depthScale?: number | undefined;
     pointMap?: undefined;
   };
 
-/** An object seen in a point map. Without a camera, the intrinsics follow from the point map. */
+/** An object seen in a point map. Without a camera, the intrinsics are fitted to the point map. */
 export type PointMapAlignInput = ObjectInput &
   (SizedPointMapInput | OwnSizePointMapInput) &
   (StatedCameraInput | CameraFromFileInput | NoCameraInput) & {

@@ -1,4 +1,4 @@
-/** A pool of workers that run jobs side by side. */
+/** A pool of workers that run jobs in parallel. */
 import type { Call, Engine, Outcome } from "../engine.js";
 import { disposed, Sim3AlignError } from "../error.js";
 import type { Job } from "../jobs.js";
@@ -6,10 +6,10 @@ import { onAbort } from "../on-abort.js";
 import { type Answer, JobFailed, Unsendable, WorkerLost, type WorkerSetup, WorkerSlot } from "./slot.js";
 import { buffersOf, copied } from "./transfer.js";
 
-/** How often a job is run whose worker is lost. */
+/** Attempts per job if its worker is lost. */
 const ATTEMPTS = 2;
 
-/** Workers, and the jobs that wait for one. */
+/** Workers, and a queue of jobs. */
 export class WorkerPool implements Engine {
   readonly capacity: number;
   readonly #slots: readonly WorkerSlot[];
@@ -18,9 +18,9 @@ export class WorkerPool implements Engine {
   readonly #waiting: ((slot: WorkerSlot) => void)[] = [];
   readonly #ended = new AbortController();
 
-  /** @param fallback runs jobs that cannot be sent to a worker */
+  /** @param fallback runs jobs that cannot be cloned */
   constructor(size: number, setup: WorkerSetup, fallback: Engine) {
-    // While one job is being handed over, the next one is running.
+    // Two per worker: the next job is prepared while one runs.
     this.capacity = 2 * size;
     this.#fallback = fallback;
     this.#slots = Array.from({ length: size }, () => new WorkerSlot(setup));
@@ -38,7 +38,7 @@ export class WorkerPool implements Engine {
     const unfollow: (() => void)[] = [];
     try {
       for (const signal of signals) {
-        // It may have been aborted since the slot was given.
+        // The job may have been aborted since the slot was assigned.
         signal.throwIfAborted();
         unfollow.push(onAbort(signal, stop));
       }
@@ -102,16 +102,16 @@ export class WorkerPool implements Engine {
   }
 }
 
-/** Starts a worker before it is needed. Where that fails, the first request reports it. */
+/** Starts a worker in advance. A failure surfaces at the first request. */
 function startEarly(slot: WorkerSlot): void {
   try {
     slot.start();
   } catch {}
 }
 
-/** Sends a job; `null` where it cannot be sent, so that the core can say what is wrong with it. */
+/** Sends a job; `null` if it cannot be cloned, so that the core can report what is wrong with it. */
 async function send(slot: WorkerSlot, job: Job, { transfer, progress }: Call): Promise<Answer | null> {
-  // Buffers of WebAssembly memory and of Node's pool can't be moved: they are copied after all.
+  // Buffers of WebAssembly memory and of Node's pool cannot be transferred: they are copied.
   for (const isMoved of transfer ? [true, false] : [false]) {
     try {
       const sent = { ...job, data: sentData(slot, job, isMoved) } as Job;
@@ -126,7 +126,7 @@ async function send(slot: WorkerSlot, job: Job, { transfer, progress }: Call): P
   return null;
 }
 
-/** The data of a job for a worker. The arrays of a prepared mesh are never moved, and sent once to each worker. */
+/** The data of a job for a worker. The arrays of a prepared mesh are copied, once to each worker. */
 function sentData(slot: WorkerSlot, job: Job, isMoved: boolean): unknown {
   if (job.method === "prepareMesh" || !("meshId" in job) || job.meshId === undefined) {
     return isMoved ? job.data : copied(job.data);
@@ -146,7 +146,7 @@ function workerFailed(cause: WorkerLost): Sim3AlignError {
       code: "WORKER_FAILED",
       argument: "workers",
       found: `a worker that was lost: ${cause.message}`,
-      expected: "a worker that lives until its job is done",
+      expected: "a worker that runs until its job is done",
       remedy:
         'Check that worker.js can be loaded and that memory suffices; use fewer workers, or none; in a bundle, import from "sim3align/inline".',
     },

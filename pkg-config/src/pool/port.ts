@@ -1,4 +1,4 @@
-/** Workers of browsers and of Node, behind one interface. */
+/** One interface for browser workers and Node worker threads. */
 import { Sim3AlignError } from "../error.js";
 import type { CreateWorker, WorkerLike } from "../platform.js";
 import type { Reply, Request } from "./protocol.js";
@@ -8,7 +8,7 @@ type NodeWorker = import("node:worker_threads").Worker;
 /** The pool's end of the connection to a worker. */
 export interface Port {
   post(message: Request, transfer?: ArrayBuffer[]): void;
-  /** Whether the process stays alive for the worker. */
+  /** Sets whether the worker keeps the process alive. */
   hold(isHeld: boolean): void;
   terminate(): void;
 }
@@ -16,7 +16,7 @@ export interface Port {
 /** The events of a worker. */
 export interface PortEvents {
   onMessage(message: Reply): void;
-  /** The worker has ended, or could not start. */
+  /** The worker terminated or failed to start. */
   onFailure(description: string): void;
 }
 
@@ -29,7 +29,7 @@ function portOfNode(worker: NodeWorker, { onMessage, onFailure }: PortEvents): P
   worker.on("message", onMessage);
   worker.on("error", (error: Error) => onFailure(`${error.name}: ${error.message}`));
   worker.on("messageerror", () => onFailure("a message that could not be read"));
-  worker.on("exit", (code) => onFailure(`an end with exit code ${code}`));
+  worker.on("exit", (code) => onFailure(`termination with exit code ${code}`));
   worker.unref();
   return {
     post: (message, transfer = []) => worker.postMessage(message, transfer),
@@ -41,7 +41,7 @@ function portOfNode(worker: NodeWorker, { onMessage, onFailure }: PortEvents): P
 function portOfWeb(worker: Worker, { onMessage, onFailure }: PortEvents): Port {
   worker.addEventListener("message", ({ data }) => onMessage(data));
   worker.addEventListener("error", (event) => {
-    // Otherwise the page's own error handlers would report it as unhandled.
+    // Otherwise, error handlers of the page would report it as unhandled.
     event.preventDefault();
     onFailure(event.message || "a script that could not be loaded");
   });
@@ -53,17 +53,17 @@ function portOfWeb(worker: Worker, { onMessage, onFailure }: PortEvents): Port {
   };
 }
 
-/** Makes workers in this environment. */
+/** Creates workers in this environment. */
 export interface WorkerFactory {
   create: CreateWorker;
-  /** How many threads the machine runs at the same time. */
+  /** The number of logical cores. */
   cores: number;
 }
 
 /**
- * The factory for this environment, which has `Worker` or `node:worker_threads`.
- * @param script the source of the worker's script, where it is not in a file
- * @param createWorker the caller's own way to make a worker
+ * Returns the factory for this environment, based on `Worker` or `node:worker_threads`.
+ * @param script the source of the worker script, if it is not in a file
+ * @param createWorker the caller's function that creates a worker
  */
 export async function workerFactory(script?: string, createWorker?: CreateWorker): Promise<WorkerFactory> {
   if (typeof Worker === "function" || createWorker !== undefined) {
@@ -85,25 +85,26 @@ export async function workerFactory(script?: string, createWorker?: CreateWorker
         argument: "workers",
         found: "an environment without workers",
         expected: "Worker, or node:worker_threads",
-        remedy: "Leave workers out: the calls then run on this thread.",
+        remedy: "Omit workers: calls then run on the calling thread.",
       },
       { cause },
     );
   }
 }
 
-/** Bundlers know this form of a worker, and no other. */
+/** Bundlers only recognise this form. */
 const fromFile = () => new Worker(new URL("../worker.js", import.meta.url), { type: "module" });
 
 function fromScript(script: string): CreateWorker {
-  // One address for all workers, never revoked: browsers do not say when they have read it.
+  // One object URL for all workers, never revoked, because browsers do not report when they have read it.
   let url: string | undefined;
   return () => {
     url ??= URL.createObjectURL(new Blob([script], { type: "text/javascript" }));
-    // In a sandboxed frame module workers have no origin that could load their script; Deno has no other workers.
+    // In a sandboxed frame, module workers cannot load their script, because the origin is opaque. Deno only has module
+    // workers.
     return new Worker(url, { type: "Deno" in globalThis ? "module" : "classic" });
   };
 }
 
-/** A module of Node's. Bundlers for browsers do not follow a name in a variable; browsers never get here. */
+/** Imports a Node module. The name is in a variable, so that browser bundlers do not resolve it. */
 const nodeModule = (name: string) => import(/* webpackIgnore: true */ /* @vite-ignore */ name);

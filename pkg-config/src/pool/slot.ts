@@ -1,17 +1,17 @@
-/** A slot of the pool: a worker, which is replaced when it fails. */
+/** A worker slot of the pool; a failed worker is replaced. */
 import { type ErrorParts, partsOf, Sim3AlignError } from "../error.js";
 import type { CreateWorker } from "../platform.js";
 import type { ProgressListener } from "../progress.js";
 import { type Port, portOf } from "./port.js";
 import type { Reply, Request } from "./protocol.js";
 
-/** The worker ended or trapped before it answered: the job may be run again. */
+/** The worker terminated or trapped before it answered; the job may be retried. */
 export class WorkerLost extends Error {}
 
-/** The message holds something that cannot be cloned or moved. */
+/** The message contains a value that cannot be cloned or transferred. */
 export class Unsendable extends Error {}
 
-/** A job that failed in a worker, with the data that came back. */
+/** A job that failed in a worker, with its returned data. */
 export class JobFailed {
   readonly error: Sim3AlignError;
   readonly data: unknown;
@@ -22,13 +22,13 @@ export class JobFailed {
   }
 }
 
-/** The result of a job, and its data where they were asked for. */
+/** The result of a job, and its data if requested. */
 export interface Answer {
   result: unknown;
   data?: unknown;
 }
 
-/** What a slot needs to start a worker. */
+/** Everything a slot needs to start a worker. */
 export interface WorkerSetup {
   create: CreateWorker;
   core: WebAssembly.Module;
@@ -46,17 +46,17 @@ export class WorkerSlot {
   readonly #setup: WorkerSetup;
   #port: Port | undefined;
   #pending: Pending | undefined;
-  /** The prepared meshes that the worker keeps, by number. */
+  /** The ids of the prepared meshes that the worker holds. */
   readonly #meshes = new Set<number>();
 
   constructor(setup: WorkerSetup) {
     this.#setup = setup;
   }
 
-  /** Starts a worker where there is none. A script that cannot be loaded shows at the next request. */
+  /** Starts a worker if there is none. A failure surfaces at the next request. */
   start(): Port {
     if (this.#port !== undefined) return this.#port;
-    // Messages of a worker that was replaced may still arrive.
+    // Messages of a replaced worker may still arrive.
     const ifCurrent = (act: () => void) => {
       if (this.#port === port) act();
     };
@@ -71,15 +71,15 @@ export class WorkerSlot {
   }
 
   /**
-   * Asks the worker for a job; one at a time.
-   * @throws {@link Unsendable}, {@link WorkerLost}, {@link JobFailed}, and the reason that `end` is given
+   * Runs a job in the worker; one at a time.
+   * @throws {@link Unsendable}, {@link WorkerLost}, {@link JobFailed}, and the reason passed to `end`
    */
   async request(message: Request, transfer: ArrayBuffer[], progress: ProgressListener): Promise<Answer> {
     const port = this.#started();
     try {
       port.post(message, transfer);
     } catch (cause) {
-      throw new Unsendable("a message that can't be sent", { cause });
+      throw new Unsendable("a message that cannot be sent", { cause });
     }
     port.hold(true);
     try {
@@ -92,23 +92,23 @@ export class WorkerSlot {
     }
   }
 
-  /** Whether the worker keeps this mesh. */
+  /** Whether the worker holds this mesh. */
   hasMesh(id: number): boolean {
     return this.#port !== undefined && this.#meshes.has(id);
   }
 
-  /** Notes that the worker has answered a job with this mesh. */
+  /** Records that the worker holds this mesh, after it answered a job with it. */
   addMesh(id: number): void {
     this.#meshes.add(id);
   }
 
-  /** Has the worker free this mesh. */
+  /** Frees this mesh in the worker. */
   dropMesh(id: number): void {
     if (this.hasMesh(id)) this.#port?.post({ type: "drop-mesh", id });
     this.#meshes.delete(id);
   }
 
-  /** Ends the worker and its job. The next request starts another worker. */
+  /** Terminates the worker and its job. The next request starts another worker. */
   end(reason: unknown): void {
     const port = this.#port;
     this.#port = undefined;
@@ -136,7 +136,7 @@ export class WorkerSlot {
     } else if (message.error === undefined) {
       this.#pending?.resolve(message);
     } else if (message.error.code === "INTERNAL") {
-      // After a trap the state of the module is unknown, and its memory may be used up.
+      // After a trap, the state of the module is unknown, and its memory may be exhausted.
       this.end(new WorkerLost(message.error.found));
     } else {
       this.#pending?.reject(new JobFailed(message.error, message.data));

@@ -1,27 +1,27 @@
-/** Copies and lists the arrays that are posted to a worker. */
+/** Copies or lists the arrays that are sent to a worker. */
 import { isKind } from "../values.js";
 
 type View = new (buffer: ArrayBuffer) => ArrayBufferView;
 
-/** The value with its typed arrays and buffers copied, each into a buffer of its own; plain objects are followed. */
+/** Copies the typed arrays and buffers in a value, each into a separate buffer; traverses plain objects. */
 export function copied<T>(value: T): T {
   const copy = mapped(value, (array) => {
     if (!ArrayBuffer.isView(array)) return array.slice(0);
     const Kind = (globalThis as unknown as Record<string, View>)[kindOf(array)] as View;
     const bytes = new Uint8Array(array.byteLength);
-    // The buffer of an array without bytes may be detached, and cannot be read.
+    // The buffer of an empty array may be detached, and then cannot be read.
     if (array.byteLength > 0) bytes.set(new Uint8Array(array.buffer, array.byteOffset, array.byteLength));
     return new Kind(bytes.buffer);
   });
   return copy as T;
 }
 
-/** The buffers behind a value's arrays, each once. */
+/** The distinct buffers of the arrays in a value. */
 export function buffersOf(value: unknown): ArrayBuffer[] {
   const buffers = new Set<ArrayBuffer>();
   mapped(value, (array) => {
     const buffer = ArrayBuffer.isView(array) ? array.buffer : array;
-    // Shared memory does not move.
+    // Shared memory cannot be transferred.
     if (isKind<ArrayBuffer>(buffer, "ArrayBuffer")) buffers.add(buffer);
     return array;
   });

@@ -1,11 +1,11 @@
-/** Cameras of three.js that match a pinhole camera. */
+/** three.js cameras that match a pinhole camera. */
 
 import { pinholeOf, type StatedCamera } from "../formats/pinhole.js";
 import { type ImageSize, sizeOf } from "../formats/pixels.js";
 import { failure, positive } from "../values.js";
 import type { PerspectiveCameraLike } from "./types.js";
 
-/** The image's size, and the near and far planes. */
+/** The image size, and the near and far planes. */
 export interface LensOptions extends ImageSize {
   /** In metres, above 0; 0.01 by default. */
   near?: number | undefined;
@@ -13,17 +13,17 @@ export interface LensOptions extends ImageSize {
   far?: number | undefined;
 }
 
-/** A pinhole camera in three.js' terms. */
+/** The settings of a three.js camera. */
 export interface ThreeCamera {
-  /** The vertical field of view of an image with the principal point in its middle, in degrees. */
+  /** The vertical field of view of an image with a centred principal point, in degrees. */
   fov: number;
-  /** Width by height, after scaling to square pixels. */
+  /** Width / height, after scaling to square pixels. */
   aspect: number;
   near: number;
   far: number;
   /** The arguments of `camera.setViewOffset` that move the principal point. */
   view: { fullWidth: number; fullHeight: number; offsetX: number; offsetY: number; width: number; height: number };
-  /** For WebGL: clip space from the OpenGL camera frame, z in [−1, 1], column by column. */
+  /** For WebGL: clip space from the OpenGL camera frame, z in [−1, 1], column-major. */
   projectionMatrix: Float64Array;
 }
 
@@ -31,7 +31,7 @@ export interface ThreeCamera {
  * The settings of a three.js camera that match a pinhole camera. The principal point may be anywhere, and pixels need not
  * be square. {@link applyPinhole} applies them to a `PerspectiveCamera`.
  *
- * The image spans −0.5 to width − 0.5, since pixel centres are at whole numbers.
+ * The image spans −0.5 to width − 0.5, because pixel centres have integer coordinates.
  *
  * @param camera { fx, fy, cx, cy }, { K } or { fovYDeg }, in pixels
  * @param lens the image's `width` and `height`, and `near` and `far` in metres
@@ -51,7 +51,7 @@ export function cameraFromPinhole(camera: StatedCamera, lens: LensOptions): Thre
   const projectionMatrix = new Float64Array(16);
   projectionMatrix[0] = (2 * fx) / width;
   projectionMatrix[5] = (2 * fy) / height;
-  // From the middle of the image to the principal point; v goes down, y up.
+  // From the centre of the image to the principal point; v points down, y up.
   projectionMatrix[8] = 1 - (2 * cx + 1) / width;
   projectionMatrix[9] = (2 * cy + 1) / height - 1;
   projectionMatrix[10] = (far + near) / (near - far);
@@ -72,10 +72,10 @@ export function cameraFromPinhole(camera: StatedCamera, lens: LensOptions): Thre
 
 /**
  * Makes a `PerspectiveCamera` match a pinhole camera: sets its field of view, aspect, near, far and view offset, which
- * `updateProjectionMatrix` keeps, for WebGL and WebGPU. Draw to a canvas with the image's proportions, and do not set
- * `aspect` when the canvas is resized.
+ * `updateProjectionMatrix` keeps, for WebGL and WebGPU. Draw to a canvas with the aspect ratio of the image, and do not
+ * set `aspect` when the canvas is resized.
  *
- * @param target the three.js camera; its pose is left as it is
+ * @param target the three.js camera; its pose is unchanged
  * @param camera as for {@link cameraFromPinhole}
  *
  * @example

@@ -1,11 +1,11 @@
-/** Meshes from objects of three.js. */
+/** Meshes from three.js objects. */
 
 import { describe } from "../error.js";
 import type { MeshArrays } from "../input/types.js";
 import { failure, finiteNumbers, oneOf } from "../values.js";
 import type { AttributeLike, GeometryLike, MeshTree, PlacedObject } from "./types.js";
 
-/** A 4×4 matrix, column by column. */
+/** A 4×4 matrix, column-major. */
 type Matrix4 = readonly number[];
 
 const identity: Matrix4 = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
@@ -13,22 +13,22 @@ const identity: Matrix4 = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 /** Options of {@link meshInputFromThree}. */
 export interface MeshInputOptions {
   /**
-   * The frame of the positions. "object", the default, is the object's own frame, before its position, quaternion and
-   * scale, which `applyToObject3D` sets. "world" applies these and those of its parents, too.
+   * The frame of the positions. "object", the default, is the local frame of the object, before its position,
+   * quaternion and scale, which `applyToObject3D` sets. "world" applies these and those of its parents.
    */
   frame?: "object" | "world" | undefined;
 }
 
 /**
  * All triangles of a three.js geometry, or of an object and its descendants, as a mesh for `align`. The matrices of
- * descendants and instances are applied. Bones and morph targets are not: the mesh is in its rest pose.
+ * descendants and instances are applied. Bones and morph targets are ignored: the mesh is in its bind pose.
  *
  * @param source a `BufferGeometry`, or an `Object3D` such as a `Mesh`, a `Group` or a loaded scene
- * @returns x, y, z per vertex in the object's own frame, and three indices per triangle
+ * @returns interleaved x, y, z in the chosen frame, and three indices per triangle
  *
  * @example
  * const mesh = meshInputFromThree(gltf.scene);
- * @throws {@link Sim3AlignError} `EMPTY_MESH` where there is no triangle
+ * @throws {@link Sim3AlignError} `EMPTY_MESH` if there is no triangle
  */
 export function meshInputFromThree(
   source: GeometryLike | MeshTree,
@@ -43,7 +43,7 @@ export function meshInputFromThree(
     throw failure("INVALID_ARGUMENT", "source", describe(source), "a BufferGeometry or an Object3D", remedy);
   }
   if (arrays.indices.length === 0) {
-    throw failure("EMPTY_MESH", "source", "no triangle", "a mesh with triangles", "Pass an object that has meshes.");
+    throw failure("EMPTY_MESH", "source", "no triangle", "a mesh with triangles", "Pass an object that contains meshes.");
   }
   return { positions: Float32Array.from(arrays.positions), indices: Uint32Array.from(arrays.indices) };
 }
@@ -59,7 +59,7 @@ function appendTree(arrays: { positions: number[]; indices: number[] }, tree: Me
     const found = object as PlacedObject & Record<string, unknown>;
     if (found.isMesh !== true || !isGeometry(found.geometry)) return;
     if (found.isBatchedMesh === true) {
-      const remedy = "Merge its geometries, or pass them one by one.";
+      const remedy = "Merge its geometries, or pass them individually.";
       throw failure("UNSUPPORTED_FORMAT", "source", "a BatchedMesh", "meshes and instances", remedy);
     }
     const local = product(base, matrixOf(found.matrixWorld.elements));
@@ -92,7 +92,7 @@ function append(arrays: { positions: number[]; indices: number[] }, { attributes
   const corner = (i: number) => first + (index === null ? i : index.getX(i));
   const count = index === null ? position.count : index.count;
   const isMirrored = a * (e * k - f * h) - d * (b * k - c * h) + g * (b * f - c * e) < 0;
-  // Mirroring turns triangles inside out: swap two corners.
+  // Reflections invert the orientation of triangles: swap two corners.
   for (let i = 0; i + 2 < count; i += 3) {
     arrays.indices.push(corner(i), corner(i + (isMirrored ? 2 : 1)), corner(i + (isMirrored ? 1 : 2)));
   }
@@ -108,15 +108,15 @@ function product(a: Matrix4, b: Matrix4): Matrix4 {
   });
 }
 
-/** The inverse of an affine matrix, whatever its axes. */
+/** The inverse of an affine matrix. */
 function inverse(m: Matrix4): Matrix4 {
   const [a = 0, b = 0, c = 0, , d = 0, e = 0, f = 0, , g = 0, h = 0, k = 0, , x = 0, y = 0, z = 0] = m;
   const minors = [e * k - f * h, c * h - b * k, b * f - c * e, f * g - d * k, a * k - c * g, c * d - a * f];
   const all = [...minors, d * h - e * g, b * g - a * h, a * e - b * d];
   const volume = a * (all[0] ?? 0) + d * (all[1] ?? 0) + g * (all[2] ?? 0);
   if (volume === 0 || !Number.isFinite(volume)) {
-    const remedy = "Give the object and its parents scales other than 0.";
-    throw failure("INVALID_TRANSFORM", "source.matrixWorld", "a flat matrix", "one that can be inverted", remedy);
+    const remedy = "Set the scales of the object and its parents to values other than 0.";
+    throw failure("INVALID_TRANSFORM", "source.matrixWorld", "a singular matrix", "an invertible matrix", remedy);
   }
   const [p = 0, q = 0, r = 0, s = 0, t = 0, u = 0, v = 0, w = 0, l = 0] = all.map((minor) => minor / volume);
   const moved = [p * x + s * y + v * z, q * x + t * y + w * z, r * x + u * y + l * z].map((number) => -number);

@@ -1,29 +1,29 @@
-/** Poses of objects of three.js. */
+/** Poses of three.js objects. */
 import { fromFrame, toFrame } from "../conventions/frames.js";
 import { compose, invert, toSim3 } from "../conventions/similarity.js";
 import type { Sim3, Sim3Like } from "../sim3.js";
 import { finiteNumbers, oneOf } from "../values.js";
 import type { PlacedObject, PosableObject } from "./types.js";
 
-/** The layout of an object's scene. */
+/** Options of {@link applyToObject3D} and {@link transformFromObject3D}. */
 export interface PoseOptions {
   /**
    * The frame of the object's parent (without `camera`): "opengl", the default, for a child of a three.js camera, or of
-   * a scene whose camera is at the origin, unturned; "opencv" for a scene that is built in OpenCV's camera frame.
+   * a scene whose camera is at the origin without rotation; "opencv" for a scene in the OpenCV camera frame.
    */
   frame?: "opencv" | "opengl" | undefined;
-  /** The three.js camera that stands for the depth camera. It may be anywhere in the scene. */
+  /** The three.js camera that represents the depth camera, anywhere in the scene. */
   camera?: PlacedObject | undefined;
 }
 
 const framesOfScenes = ["opencv", "opengl"] as const;
 
 /**
- * Places an object of three.js by an alignment: sets its `position`, `quaternion` and `scale`.
+ * Places a three.js object by an alignment: sets its `position`, `quaternion` and `scale`.
  *
- * The aligned mesh has to be the one that {@link meshInputFromThree} returns for this object. Its parent is the three.js camera,
- * or a scene whose camera is at the origin; where the camera is elsewhere, pass it as `camera`, and the object's parent
- * may be anything that is not sheared or stretched.
+ * The aligned mesh must be that of {@link meshInputFromThree} for this object. The parent of the object is the three.js
+ * camera, or a scene whose camera is at the origin. If the camera is elsewhere, pass it as `camera`; the parent may
+ * then be any object without shear and non-uniform scale.
  *
  * @param object an `Object3D`
  * @param transform OpenCV camera from mesh: a result of `align`
@@ -32,7 +32,7 @@ const framesOfScenes = ["opencv", "opengl"] as const;
  * const { scene: object } = await new GLTFLoader().loadAsync("generated.glb");
  * const result = await aligner.align({ depth, mask, camera, mesh: meshInputFromThree(object) });
  * applyToObject3D(object, result);
- * @throws {@link Sim3AlignError} for what is no similarity, and `INVALID_OPTION` for another frame
+ * @throws {@link Sim3AlignError} if the transform is not a similarity, and `INVALID_OPTION` for another frame
  */
 export function applyToObject3D(
   object: PosableObject & { readonly parent?: PlacedObject | null },
@@ -48,22 +48,22 @@ export function applyToObject3D(
   object.position.set(...pose.translation);
   object.quaternion.set(...pose.rotation);
   object.scale.set(pose.scale, pose.scale, pose.scale);
-  // For objects whose matrix is not updated by the renderer.
+  // For objects without `matrixAutoUpdate`.
   object.updateMatrix();
 }
 
 /**
- * The transform of an object of three.js, for `evaluate` or the option `initial`. It is the inverse of
- * {@link applyToObject3D}: use it after a user has moved the object.
+ * The transform of a three.js object, for `evaluate` or the option `initial`. The inverse of {@link applyToObject3D}:
+ * use it after a user has moved the object.
  *
- * @param object an `Object3D`, scaled alike along all axes
- * @param options as they were for {@link applyToObject3D}
+ * @param object an `Object3D` with a uniform scale
+ * @param options those passed to {@link applyToObject3D}
  * @returns OpenCV camera from mesh, metres
  *
  * @example
  * const initial = transformFromObject3D(object);
  * await aligner.align(input, { initial, search: "local" });
- * @throws {@link Sim3AlignError} `INVALID_TRANSFORM` for an object that is stretched or mirrored
+ * @throws {@link Sim3AlignError} `INVALID_TRANSFORM` for an object with a non-uniform scale or a reflection
  */
 export function transformFromObject3D(object: PosableObject, { frame = "opengl", camera }: PoseOptions = {}): Sim3 {
   oneOf("options.frame", frame, framesOfScenes);
@@ -77,7 +77,7 @@ function worldFrom(object: PlacedObject): Sim3 {
   return toSim3(numbersOf(object.matrixWorld.elements));
 }
 
-/** Without the scale that a camera may have from its parents: three.js does not see by it either. */
+/** Removes the scale that a camera inherits from its parents, which three.js ignores when rendering. */
 const worldFromCamera = (camera: PlacedObject): Sim3Like => ({ ...worldFrom(camera), scale: 1 });
 
 const numbersOf = (elements: unknown) => finiteNumbers("matrix.elements", elements, 16, "16 finite numbers");

@@ -1,21 +1,21 @@
-/** The parts of three.js' classes that are used here. Any object of these shapes works. */
+/** The parts of three.js classes that this module uses. Any object of these shapes works. */
 
-/** A `Vector3` that can be set. */
+/** A writable `Vector3`. */
 export interface Vector3Like {
   set(x: number, y: number, z: number): unknown;
 }
 
-/** A `Quaternion` that can be set. */
+/** A writable `Quaternion`. */
 export interface QuaternionLike {
   set(x: number, y: number, z: number, w: number): unknown;
 }
 
-/** A `Matrix4`: 16 numbers, column by column. */
+/** A `Matrix4`: 16 numbers, column-major. */
 export interface Matrix4Like {
   readonly elements: ArrayLike<number>;
 }
 
-/** An `Object3D` whose pose can be set. */
+/** An `Object3D` with a writable pose. */
 export interface PosableObject {
   readonly position: Vector3Like;
   readonly quaternion: QuaternionLike;
@@ -51,7 +51,7 @@ export interface MeshTree extends PlacedObject {
   traverse(callback: (object: PlacedObject) => void): void;
 }
 
-/** A `PerspectiveCamera` whose lens can be set. */
+/** A `PerspectiveCamera` with a writable projection. */
 export interface PerspectiveCameraLike {
   fov: number;
   aspect: number;
