@@ -68,9 +68,9 @@ test("both matrices are the same pose", async () => {
     await opened.says(says);
     return JSON.parse(await opened.page.evaluate(() => navigator.clipboard.readText())) as number[];
   };
-  const columns = await copied("Matrix, column-major", /column-major/);
+  const columns = await copied("Matrix, columns", /column-major/);
   assert.equal(await iouOf(columns), iou);
-  const rows = await copied("Matrix, row-major", /row-major/);
+  const rows = await copied("Matrix, rows", /row-major/);
   assert.deepEqual(
     rows,
     columns.map((_, i) => columns[4 * (i % 4) + Math.floor(i / 4)]),

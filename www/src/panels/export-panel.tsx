@@ -3,8 +3,8 @@ import { exportAs, type Format } from "../export/export.js";
 import { scene, selected } from "../state/scene.js";
 
 const formats: readonly [format: Format, title: string][] = [
-  ["columns", "Matrix, column-major"],
-  ["rows", "Matrix, row-major"],
+  ["columns", "Matrix, columns"],
+  ["rows", "Matrix, rows"],
   ["json", "JSON"],
   ["bop", "BOP JSON"],
   ["glb", "GLB"],
