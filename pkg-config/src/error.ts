@@ -43,7 +43,10 @@ export class Sim3AlignError extends Error implements ErrorParts {
   /** With `transfer: true`: the input, if the worker could return it. */
   input?: unknown;
 
-  /** @param options may contain a `cause` */
+  /**
+   * Creates an error whose message is made of its parts.
+   * @param options may contain a `cause`
+   */
   constructor({ code, argument, found, expected, remedy }: ErrorParts, options?: ErrorOptions) {
     super(`${argument}: found ${found}, expected ${expected}. ${remedy}`, options);
     this.code = code;
