@@ -1,4 +1,4 @@
-//! What JavaScript sees. Converts and checks; holds no logic. The only place that knows `wasm_bindgen`.
+//! Exports to JavaScript: conversion and validation, no logic. Only this module uses `wasm_bindgen`.
 
 pub mod aligner;
 pub mod error;
@@ -10,7 +10,7 @@ mod options;
 pub mod task;
 mod transform;
 
-/// Two-level segregated fit, constant time to get and to give back: a fifth of the standard allocator's bytes.
+/// Two-level segregated fit allocator: constant time, and a fifth of the code size of the standard allocator.
 #[cfg(target_arch = "wasm32")]
 #[global_allocator]
 static ALLOCATOR: rlsf::SmallGlobalTlsf = rlsf::SmallGlobalTlsf::new();
