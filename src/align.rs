@@ -19,7 +19,7 @@ use method::Method;
 pub use outcome::{Setup, align_by};
 use task::AlignTask;
 
-/// Aligns a mesh to an observation by the method that the caller chose.
+/// Aligns a mesh with an observation by the selected method.
 ///
 /// # Errors
 /// As [`align`] and [`align_paper`].
@@ -27,17 +27,17 @@ pub fn align_any(observation: &Observation, mesh: &Mesh, method: &Method, host: 
     AlignTask::new(observation, PreparedMesh::borrowed(mesh), method.clone(), host)?.finish()
 }
 
-/// Aligns a mesh to an observation: search by rendering.
+/// Aligns a mesh with an observation by search by rendering.
 ///
 /// # Errors
 /// [`ErrorCode::InvalidOption`](crate::error::ErrorCode::InvalidOption),
 /// [`ErrorCode::DegenerateMesh`](crate::error::ErrorCode::DegenerateMesh),
-/// [`ErrorCode::NoConsensus`](crate::error::ErrorCode::NoConsensus): never an identity in place of an answer.
+/// [`ErrorCode::NoConsensus`](crate::error::ErrorCode::NoConsensus): the identity is never returned instead.
 pub fn align(observation: &Observation, mesh: &Mesh, options: &AlignOptions, host: &mut dyn Host) -> Result<Alignment> {
     align_with(observation, mesh, options, &crate::precise::search_settings(options), host)
 }
 
-/// [`align`] with the search's own settings in place of those that follow from the options, for ablations.
+/// [`align`] with explicit settings of the search instead of those derived from the options, for ablations.
 ///
 /// # Errors
 /// As [`align`].
@@ -55,7 +55,7 @@ pub fn align_with(
     }
 }
 
-/// Aligns a mesh to an observation by the paper's method.
+/// Aligns a mesh with an observation by the method of the paper.
 ///
 /// # Errors
 /// As [`align`].
@@ -75,8 +75,8 @@ fn other_method() -> Error {
     Error::new(
         ErrorCode::Internal,
         "method",
-        "the result of another",
-        "that of the one asked for",
+        "the result of another method",
+        "the result of the requested method",
         "Please report this.",
     )
 }

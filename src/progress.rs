@@ -153,7 +153,7 @@ impl<'a> Stopwatch<'a> {
         self.running.into_iter().for_each(|stage| self.host.progress(stage, fraction));
     }
 
-    /// The stage that is under way.
+    /// The current stage.
     pub fn running(&self) -> Option<Stage> {
         self.running
     }

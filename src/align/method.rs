@@ -1,15 +1,15 @@
-//! The method of an alignment, with its options.
+//! The method of an alignment and its options.
 
 use crate::paper::options::PaperOptions;
 use crate::precise::options::AlignOptions;
 use crate::report::Preset;
 
-/// A preset with its options.
+/// A preset and its options.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Method {
     /// Search by rendering.
     Precise(AlignOptions),
-    /// The paper's method.
+    /// The method of the paper.
     Paper(PaperOptions),
 }
 

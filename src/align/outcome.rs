@@ -1,4 +1,4 @@
-//! What all methods share: the preprocessing before them, metrics and warnings after them.
+//! Common steps of all methods: preprocessing, metrics and warnings.
 
 use super::warnings;
 use crate::error::Result;
@@ -13,7 +13,7 @@ use crate::precise::options::AlignOptions;
 use crate::progress::{Host, Stage, Stopwatch};
 use crate::report::{self, Counts, Diagnostics, PaperAlignment, Preset, Solution};
 
-/// The options that all methods share.
+/// The common options of all methods.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Setup {
     preset: Preset,
@@ -23,7 +23,7 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// Those of the default method, which it checks.
+    /// The common options of the default method, validated.
     ///
     /// # Errors
     /// [`ErrorCode::InvalidOption`](crate::error::ErrorCode::InvalidOption).
@@ -33,7 +33,7 @@ impl Setup {
         Ok(Self::new(Preset::Precise, seed, [max_observed_points, surface_samples], metrics))
     }
 
-    /// Those of the paper's method, which it checks.
+    /// The common options of the method of the paper, validated.
     ///
     /// # Errors
     /// [`ErrorCode::InvalidOption`](crate::error::ErrorCode::InvalidOption).
@@ -49,7 +49,7 @@ impl Setup {
     }
 }
 
-/// Aligns by any method: for methods to compare with. `plan` says when each stage begins, as a share of the whole.
+/// Aligns by any method, for comparisons. `plan` is the progress at the start of each stage, 0 to 1.
 ///
 /// # Errors
 /// [`ErrorCode::DegenerateMesh`](crate::error::ErrorCode::DegenerateMesh), and those of the method.
@@ -72,7 +72,7 @@ pub fn align_by(
     Ok(report(observation, setup, &clouds, &solution, metrics, stages))
 }
 
-/// The metrics of a solution, where they are wanted.
+/// The metrics of a solution, if requested.
 pub(super) fn score(
     observation: &Observation,
     mesh: &Mesh,

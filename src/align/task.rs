@@ -1,7 +1,7 @@
-//! An alignment as a task that is done in steps, so that a thread can do other work between them.
+//! An alignment that runs in steps, so that a thread can do other work between them.
 //!
-//! A step ends where the caller wants to pause, as soon as the method can: within the search of `precise` after any
-//! drawing or refinement of a pose, everywhere else at the end of a stage. No bit of the result depends on the pauses.
+//! A step ends as soon as possible after the caller requests a pause: in the search of `precise` after any render or
+//! refinement of a pose, elsewhere at the end of a stage. Results are bit-identical regardless of pauses.
 
 use core::borrow::Borrow;
 use core::mem::replace;
@@ -18,7 +18,7 @@ use crate::progress::{Host, Stopwatch};
 use crate::report::{Alignment, AnyAlignment, PaperAlignment, PreciseDiagnostics, Solution};
 use crate::{paper, precise};
 
-/// An alignment in steps. It owns its observation and mesh, or borrows them.
+/// An alignment in steps. It owns or borrows its observation and mesh.
 pub struct AlignTask<'h, O, M> {
     observation: O,
     mesh: M,
@@ -29,15 +29,15 @@ pub struct AlignTask<'h, O, M> {
     state: State,
 }
 
-/// What has been done.
+/// The progress of the task.
 enum State {
     /// Nothing.
     Begun,
-    /// Both clouds are drawn.
+    /// Both clouds are sampled.
     Drawn(Box<Clouds>),
-    /// Their normals are estimated, where they are needed for the metrics.
+    /// Their normals are estimated, if the metrics need them.
     Ready(Box<Clouds>),
-    /// The search is under way.
+    /// The search is running.
     Searching(Box<Clouds>, Box<Rounds>),
     /// The method has found a pose.
     Found(Box<Clouds>, Box<Solution>, Option<Box<Certainty>>),
@@ -46,7 +46,7 @@ enum State {
 }
 
 impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, O, M> {
-    /// A task that has not begun. It checks the options.
+    /// Creates a task. Validates the options.
     ///
     /// # Errors
     /// [`ErrorCode::InvalidOption`].
@@ -59,12 +59,12 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
         Ok(Self { observation, mesh, method, settings, setup, stages, state: State::Begun })
     }
 
-    /// The task with other settings of the search than those that follow from the options, for ablations.
+    /// Overrides the settings of the search that follow from the options, for ablations.
     pub fn with_settings(self, settings: SearchSettings) -> Self {
         Self { settings, ..self }
     }
 
-    /// Does all that is left.
+    /// Runs the task to its end.
     ///
     /// # Errors
     /// As [`AlignTask::step`].
@@ -76,10 +76,10 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
         }
     }
 
-    /// Goes on until the alignment is done, which gives the result, or until `pause` returns true.
+    /// Continues until the alignment is finished, and returns the result, or until `pause` returns true.
     ///
     /// # Errors
-    /// [`ErrorCode::DegenerateMesh`], [`ErrorCode::NoConsensus`]; the task is then over.
+    /// [`ErrorCode::DegenerateMesh`], [`ErrorCode::NoConsensus`]; the task then ends.
     pub fn step(&mut self, pause: &mut dyn FnMut() -> bool) -> Result<Option<AnyAlignment>> {
         let Some(mut stages) = self.stages.take() else { return Err(over()) };
         loop {
@@ -107,7 +107,7 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
         }
     }
 
-    /// Does one stage.
+    /// Runs one stage.
     fn advance(&self, state: State, stages: &mut Stopwatch<'h>) -> Result<State> {
         let (observation, mesh) = (self.observation.borrow(), self.mesh.borrow());
         Ok(match state {
@@ -153,5 +153,5 @@ fn with_certainty(aligned: PaperAlignment, certainty: Option<Box<Certainty>>) ->
 }
 
 fn over() -> Error {
-    Error::new(ErrorCode::Internal, "task", "a task that is over", "one that is under way", "Begin a new one.")
+    Error::new(ErrorCode::Internal, "task", "a finished task", "a running task", "Create another task.")
 }

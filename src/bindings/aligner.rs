@@ -1,4 +1,4 @@
-//! The aligner's exports: each reads its arguments, calls the core, and returns a plain object.
+//! The exports of the aligner. Each reads its arguments, calls the core, and returns a plain object.
 
 use js_sys::Function;
 use serde::Serialize;
@@ -12,7 +12,7 @@ use crate::align::task::AlignTask;
 use crate::error::Result;
 use crate::{align, register};
 
-/// Aligns a mesh to an observation; see `Aligner.align` in the TypeScript package.
+/// Aligns a mesh with an observation; see `Aligner.align` in the TypeScript package.
 #[wasm_bindgen(skip_typescript)]
 pub fn align(
     input: &JsValue,
@@ -27,7 +27,7 @@ pub fn align(
     answer(run())
 }
 
-/// Scores a transform; see `Aligner.evaluate` in the TypeScript package.
+/// Computes the metrics of a transform; see `Aligner.evaluate` in the TypeScript package.
 #[wasm_bindgen(skip_typescript)]
 pub fn evaluate(input: &JsValue, transform: &JsValue, options: &JsValue) -> core::result::Result<JsValue, JsValue> {
     let run = || {
@@ -67,13 +67,13 @@ pub fn estimate_sim3(
     answer(run())
 }
 
-/// The crate's version.
+/// The version of the crate.
 #[wasm_bindgen(skip_typescript)]
 pub fn version() -> String {
     env!("CARGO_PKG_VERSION").into()
 }
 
-/// The result as a plain object, or the error to be thrown.
+/// The result as a plain object, or the error to throw.
 pub(super) fn answer<T: Serialize>(result: Result<T>) -> core::result::Result<JsValue, JsValue> {
     let value = result.map_err(|error| to_js(&error))?;
     value.serialize(&Serializer::json_compatible()).map_err(Into::into)

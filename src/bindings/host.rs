@@ -10,12 +10,12 @@ use crate::progress::{Host, Stage};
 
 #[wasm_bindgen]
 extern "C" {
-    /// Windows, workers and Node all have it, by this name, on global objects that share no class.
+    /// Windows, workers and Node have it under this name, on global objects without a common class.
     #[wasm_bindgen(thread_local_v2, js_name = performance)]
     static PERFORMANCE: Option<Performance>;
 }
 
-/// Milliseconds since any fixed moment; 0 where there is no clock.
+/// Milliseconds since a fixed point in time; 0 without a clock.
 pub fn now_ms() -> f64 {
     PERFORMANCE.with(|performance| performance.as_ref().map_or(0.0, Performance::now))
 }
@@ -27,8 +27,8 @@ pub struct JsHost {
 }
 
 impl JsHost {
-    /// A host that calls `on_progress(stage, fraction, best)`: 16 numbers of a pose, column by column, and its score,
-    /// once there is one.
+    /// A host that calls `on_progress(stage, fraction, best)`: 16 numbers of a pose, column-major, and its score, if
+    /// there is one.
     pub fn new(on_progress: Option<Function>) -> Self {
         Self { on_progress, best: JsValue::UNDEFINED }
     }
@@ -41,7 +41,7 @@ impl Host for JsHost {
 
     fn progress(&mut self, stage: Stage, fraction: f64) {
         if let Some(callback) = &self.on_progress {
-            // The package's callbacks keep their callers' exceptions to themselves until the step is over.
+            // The callbacks of the package hold back exceptions of the caller until the step ends.
             let _ = callback.call3(&JsValue::NULL, &stage.as_str().into(), &fraction.into(), &self.best);
         }
     }
@@ -51,7 +51,7 @@ impl Host for JsHost {
     }
 }
 
-/// A pose, column by column, and its score.
+/// A pose, column-major, and its score.
 fn best_numbers(camera_from_mesh: &Similarity, score: f64) -> [f64; 17] {
     let mut numbers = [score; 17];
     numbers[..16].copy_from_slice(&camera_from_mesh.to_column_major());

@@ -10,7 +10,7 @@ use crate::geometry::image::{DepthMap, Image, Mask, check_size};
 use crate::geometry::pinhole::Pinhole;
 use crate::number::number as number_text;
 
-/// Metres per unit of whole-number depth where the caller does not say: millimetres.
+/// Default metres per unit of integer depth: millimetres.
 const DEFAULT_DEPTH_SCALE: f64 = 0.001;
 
 /// `{ depth | pointMap, depthScale?, width, height, camera, mask, maskWidth?, maskHeight?, resizeMask? }`.
@@ -20,13 +20,13 @@ pub fn observation(input: &JsValue) -> Result<Observation> {
         let remedy = "Pass { depth, width, height, mask, camera, mesh }.";
         return Err(wrong_type("input", input, "an object", remedy));
     }
-    let missing = |name| wrong_type(name, &JsValue::UNDEFINED, "a whole number of pixels", "Pass the image's size.");
+    let missing = |name| wrong_type(name, &JsValue::UNDEFINED, "an integer in pixels", "Pass the image size.");
     let width = size(input, "width")?.ok_or_else(|| missing("width"))?;
     let height = size(input, "height")?.ok_or_else(|| missing("height"))?;
     let (depth, camera) = match get(input, "pointMap") {
         Some(points) => {
             let (depth, fitted) = from_point_map(width, height, &to_f32s(&points, "pointMap")?)?;
-            // Intrinsics that the caller knows are better than fitted ones.
+            // Known intrinsics take precedence over fitted ones.
             (depth, get(input, "camera").map_or(Ok(fitted), |c| camera(&c))?)
         }
         None => {
@@ -76,7 +76,7 @@ fn mask(input: &JsValue, width: usize, height: usize) -> Result<Mask> {
             "resizeMask",
             &resize,
             "\"nearest\"",
-            "Leave it out for masks of the depth map's size.",
+            "Omit it for masks of the size of the depth map.",
         ));
     }
     if width == 0 || height == 0 || (mask_width, mask_height) == (width, height) {

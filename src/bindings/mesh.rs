@@ -1,4 +1,4 @@
-//! Meshes from JavaScript objects, and those that are kept for many calls.
+//! Meshes from JavaScript objects, and the cache of prepared meshes.
 
 use core::cell::RefCell;
 use std::collections::BTreeMap;
@@ -14,16 +14,16 @@ use crate::geometry::mesh::Mesh;
 use crate::precise::prepared_mesh::PreparedMesh;
 
 thread_local! {
-    /// The meshes that are kept, by the number that the caller gave them.
+    /// The cached meshes, by the id of the caller.
     static KEPT: RefCell<BTreeMap<u32, Rc<PreparedMesh<'static>>>> = const { RefCell::new(BTreeMap::new()) };
 }
 
-/// `{ positions, indices? }`; with `id`, the mesh is kept under this number, and the arrays are read only where it is not
-/// there yet.
+/// `{ positions, indices? }`; with `id`, the mesh is cached under this number, and the arrays are only read if it is
+/// not cached yet.
 #[inline(never)]
 pub fn mesh(mesh: &JsValue) -> Result<Rc<PreparedMesh<'static>>> {
     if !mesh.is_object() {
-        let remedy = "Pass typed arrays, or a file's bytes to the package's align().";
+        let remedy = "Pass typed arrays, or the bytes of a file to align() of the package.";
         return Err(wrong_type("mesh", mesh, "{ positions, indices }", remedy));
     }
     let id = get(mesh, "id").and_then(|id| id.as_f64()).map(|id| id as u32);
@@ -45,13 +45,13 @@ pub fn mesh_of(input: &JsValue) -> Result<Rc<PreparedMesh<'static>>> {
     mesh(&get(input, "mesh").unwrap_or(JsValue::UNDEFINED))
 }
 
-/// Checks and decimates a mesh, and keeps it under its `id`; see `Aligner.prepareMesh` in the TypeScript package.
+/// Validates and decimates a mesh, and caches it under its `id`; see `Aligner.prepareMesh` in the TypeScript package.
 #[wasm_bindgen(js_name = prepareMesh, skip_typescript)]
 pub fn prepare_mesh(given: &JsValue) -> core::result::Result<(), JsValue> {
     mesh(given).and_then(|mesh| mesh.prepare()).map_err(|error| to_js(&error))
 }
 
-/// Drops the mesh that is kept under this number, if there is one.
+/// Removes the mesh with this id from the cache, if present.
 #[wasm_bindgen(js_name = dropMesh, skip_typescript)]
 pub fn drop_mesh(id: u32) {
     KEPT.with_borrow_mut(|kept| kept.remove(&id));

@@ -1,4 +1,4 @@
-//! What JavaScript sees. Converts and checks; holds no logic. The only place that knows `wasm_bindgen`.
+//! Exports to JavaScript: conversion and validation, no logic. Only this module uses `wasm_bindgen`.
 
 pub mod aligner;
 pub mod error;

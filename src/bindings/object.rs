@@ -8,9 +8,9 @@ use wasm_bindgen::{JsCast, JsValue};
 use crate::error::{Error, ErrorCode, Result};
 use crate::number::number as number_text;
 
-/// The property `key`, or `None` where it is missing, `undefined` or `null`.
+/// The property `key`, or `None` if it is missing, `undefined` or `null`.
 pub fn get(object: &JsValue, key: &str) -> Option<JsValue> {
-    // Reflect.get throws on primitives; they have no properties of ours.
+    // Reflect.get throws on primitives, which have none of the properties.
     Reflect::get(object, &key.into()).ok().filter(|value| !value.is_undefined() && !value.is_null())
 }
 
@@ -19,7 +19,7 @@ pub fn number(object: &JsValue, argument: &str, key: &str) -> Result<Option<f64>
     get(object, key).map(|value| to_number(&value, &format!("{argument}.{key}"))).transpose()
 }
 
-/// The property `key` as a number that has to be there.
+/// The required property `key` as a number.
 pub fn required_number(object: &JsValue, argument: &str, key: &str) -> Result<f64> {
     number(object, argument, key)?
         .ok_or_else(|| wrong_type(&format!("{argument}.{key}"), &JsValue::UNDEFINED, "a number", "Pass it."))
@@ -29,11 +29,11 @@ pub fn required_number(object: &JsValue, argument: &str, key: &str) -> Result<f6
 pub fn size(object: &JsValue, key: &str) -> Result<Option<usize>> {
     let Some(value) = get(object, key) else { return Ok(None) };
     let number = to_number(&value, key)?;
-    // Anything that is a whole number and fits 2³¹; the product of two sizes is checked against array lengths.
+    // Any integer below 2³¹; the product of two sizes is compared with array lengths.
     if (0.0..=2_147_483_647.0).contains(&number) && number.fract() == 0.0 {
         return Ok(Some(number as usize));
     }
-    Err(wrong_type(key, &value, "a whole number of pixels", "Pass the image's size in pixels."))
+    Err(wrong_type(key, &value, "an integer in pixels", "Pass the image size in pixels."))
 }
 
 /// A JavaScript number.
@@ -48,7 +48,7 @@ pub fn to_numbers<const N: usize>(value: &JsValue, argument: &str) -> Result<[f6
     Ok(numbers)
 }
 
-/// One function for every length.
+/// The same for every length, to keep the code small.
 fn read_numbers(value: &JsValue, argument: &str, numbers: &mut [f64]) -> Result<()> {
     let expected = || format!("{} numbers", numbers.len());
     let wrong = || wrong_type(argument, value, &expected(), "Pass an array of numbers.");
@@ -62,7 +62,7 @@ fn read_numbers(value: &JsValue, argument: &str, numbers: &mut [f64]) -> Result<
     Ok(())
 }
 
-/// An array or typed array as an `Array`; nested rows are put one after the other.
+/// An array or typed array as an `Array`; nested rows are flattened.
 fn flat_array(value: &JsValue) -> Option<Array> {
     if Array::is_array(value) {
         let array = Array::from(value);
@@ -123,10 +123,10 @@ pub fn wrong_type(argument: &str, value: &JsValue, expected: &str, remedy: &str)
 }
 
 fn not_typed_array(argument: &str, value: &JsValue, expected: &str) -> Error {
-    wrong_type(argument, value, expected, "Convert it first: `new Float32Array(values)` and its kin copy any array.")
+    wrong_type(argument, value, expected, "Convert it first, for example with `new Float32Array(values)`.")
 }
 
-/// What a value is, in the words of the one who passed it.
+/// Describes a JavaScript value for error messages.
 pub fn describe(value: &JsValue) -> String {
     if value.is_undefined() {
         return "nothing".into();

@@ -1,4 +1,4 @@
-//! Options from JavaScript objects: names and types are checked here, ranges by the options' declarations.
+//! Options from JavaScript objects: names and types are checked here, ranges by the declarations of the options.
 
 use js_sys::{Array, Object, Reflect};
 use wasm_bindgen::{JsCast, JsValue};
@@ -15,7 +15,7 @@ use crate::paper::options::PaperOptions;
 use crate::precise::options::AlignOptions;
 use crate::report::Preset;
 
-/// The options of `align`: `preset` chooses the method, and with it the options that there are.
+/// The options of `align`: `preset` selects the method and its set of options.
 pub fn method(value: &JsValue) -> Result<Method> {
     let mut preset = Preset::default();
     if let Some(name) = property(value, "preset") {
@@ -41,11 +41,11 @@ fn read<T: Options>(value: &JsValue, preset: Preset) -> Result<T> {
     })
 }
 
-/// The error for an option of the preset that was not chosen.
+/// The error for an option of the other preset.
 fn of_other_preset(name: &str, preset: Preset, other: Preset) -> Error {
     let remedy = match other {
-        Preset::Paper => format!("Pass `preset: \"paper\"` for the paper's method, or leave `{name}` out."),
-        Preset::Precise => format!("Leave `preset` out for the default method, or leave `{name}` out."),
+        Preset::Paper => format!("Pass `preset: \"paper\"` for the method of the paper, or omit `{name}`."),
+        Preset::Precise => format!("Omit `preset` for the default method, or omit `{name}`."),
     };
     Error::new(
         ErrorCode::UnknownOption,
@@ -56,8 +56,8 @@ fn of_other_preset(name: &str, preset: Preset, other: Preset) -> Error {
     )
 }
 
-/// A struct of options from an object. `also` names keys that are read elsewhere; `refuse` may give an unknown option an
-/// error of its own.
+/// Reads a struct of options from an object. `also` lists keys that are read elsewhere; `refuse` may return a specific
+/// error for an unknown option.
 pub fn options<T: Options>(value: &JsValue, also: &[&str], refuse: impl Fn(&str) -> Option<Error>) -> Result<T> {
     let mut options = T::default();
     if !value.is_undefined() && !value.is_null() {
@@ -73,11 +73,11 @@ fn set_fields(
     refuse: &dyn Fn(&str) -> Option<Error>,
 ) -> Result<()> {
     if !object.is_object() || Array::is_array(object) {
-        return Err(wrong_type("options", object, "an object", "Leave it out to take all defaults."));
+        return Err(wrong_type("options", object, "an object", "Omit it to use all defaults."));
     }
     for key in Object::keys(object.unchecked_ref::<Object>()).iter() {
         let name = key.as_string().unwrap_or_default();
-        // A key that is there but undefined (`{ seed: maybe }`) means the default, as everywhere in JavaScript.
+        // An undefined value (`{ seed: maybe }`) means the default, as usual in JavaScript.
         let Some(value) = property(object, &name) else { continue };
         if also.contains(&name.as_str()) {
             continue;
@@ -99,12 +99,12 @@ fn set_fields(
     Ok(())
 }
 
-/// A property that is there and not `undefined`.
+/// A property that exists and is not `undefined`.
 fn property(object: &JsValue, name: &str) -> Option<JsValue> {
     Reflect::get(object, &name.into()).ok().filter(|value| !value.is_undefined())
 }
 
-/// Sets a field from a value of its type; `false` for any other. Ranges are checked by the field itself.
+/// Sets a field from a value of its type; `false` for other types. The field checks its range.
 fn set(field: &mut Field<'_>, value: &JsValue, name: &str) -> Result<bool> {
     Ok(match field {
         Field::Count(count, _) => {
@@ -124,12 +124,12 @@ fn set(field: &mut Field<'_>, value: &JsValue, name: &str) -> Result<bool> {
     })
 }
 
-/// Sets an option to what was read, if anything was.
+/// Sets an option to the value, if one was read.
 fn put<T>(option: &mut T, read: Option<T>) -> bool {
     read.map(|value| *option = value).is_some()
 }
 
-/// What was read of an option that may be `null`.
+/// Reads an option that may be `null`.
 fn or_null<T>(value: &JsValue, read: Option<T>) -> Option<Option<T>> {
     if value.is_null() { Some(None) } else { read.map(Some) }
 }
@@ -143,7 +143,7 @@ fn scale_of(value: &JsValue) -> Option<ScaleOption> {
     fixed.or_else(|| to_numbers(value, "").ok().map(ScaleOption::Between))
 }
 
-/// Similarity of two names, 0 to 1, from which one is suggested for the other.
+/// Minimum similarity of a name, 0 to 1, for it to be suggested.
 const MISSPELT: f64 = 0.6;
 
 fn unknown_option(name: &str, known: &[&str]) -> Error {
@@ -156,13 +156,13 @@ fn unknown_option(name: &str, known: &[&str]) -> Error {
     Error::new(
         ErrorCode::UnknownOption,
         format!("options.{name}"),
-        "an option that does not exist",
+        "an unknown option",
         format!("one of {}", known.join(", ")),
         remedy,
     )
 }
 
-/// The symmetries that have a name.
+/// The named symmetries.
 const SYMMETRY_NAMES: [(&str, Symmetry); 3] =
     [("none", Symmetry::None), ("auto", Symmetry::Auto), ("auto-revolution", Symmetry::AutoRevolution)];
 
@@ -192,7 +192,7 @@ fn symmetry_axis(axis: [f64; 3], fold: Option<f64>) -> Result<SymmetryAxis> {
             argument.to_owned(),
             found,
             expected.to_owned(),
-            "The axis is a direction in the mesh's frame.",
+            "The axis is a direction in the mesh frame.",
         )
     };
     let axis = nalgebra::Vector3::from(axis);
@@ -202,7 +202,7 @@ fn symmetry_axis(axis: [f64; 3], fold: Option<f64>) -> Result<SymmetryAxis> {
     let fold = match fold {
         None => None,
         Some(fold) if (2.0..=360.0).contains(&fold) && fold.fract() == 0.0 => Some(fold as u32),
-        Some(fold) => return Err(invalid("options.symmetry.fold", number_text(fold), "a whole number from 2 to 360")),
+        Some(fold) => return Err(invalid("options.symmetry.fold", number_text(fold), "an integer from 2 to 360")),
     };
     Ok(SymmetryAxis { axis, fold })
 }

@@ -1,4 +1,4 @@
-//! An alignment in steps, for threads that have other work between them.
+//! An alignment in steps, between which the thread can do other work.
 
 use core::cell::RefCell;
 use std::rc::Rc;
@@ -15,11 +15,11 @@ use crate::align::task::AlignTask as Task;
 use crate::evidence::observation::Observation;
 use crate::precise::prepared_mesh::PreparedMesh;
 
-/// An alignment that is under way.
+/// A running alignment.
 #[wasm_bindgen(skip_typescript)]
 pub struct AlignTask(RefCell<Task<'static, Observation, Rc<PreparedMesh<'static>>>>);
 
-/// Begins an alignment; see `Aligner.align` in the TypeScript package.
+/// Starts an alignment; see `Aligner.align` in the TypeScript package.
 #[wasm_bindgen(js_name = beginAlign, skip_typescript)]
 pub fn begin_align(input: &JsValue, options: &JsValue, on_progress: Option<Function>) -> Result<AlignTask, JsValue> {
     let begin = || {
@@ -32,7 +32,7 @@ pub fn begin_align(input: &JsValue, options: &JsValue, on_progress: Option<Funct
 
 #[wasm_bindgen]
 impl AlignTask {
-    /// Goes on for about `slice_ms` milliseconds. Returns the alignment once it is done, `undefined` before.
+    /// Runs for about `slice_ms` milliseconds. Returns the alignment when finished, otherwise `undefined`.
     #[wasm_bindgen(skip_typescript)]
     pub fn step(&self, slice_ms: f64) -> Result<JsValue, JsValue> {
         let end = now_ms() + slice_ms;

@@ -8,10 +8,10 @@ use super::object::{get, required_number, to_numbers, wrong_type};
 use crate::error::Result;
 use crate::geometry::similarity::Similarity;
 
-/// `{ scale, rotation, translation }` with a quaternion x, y, z, w or nine numbers row by row;
-/// `{ matrix }`, or 16 numbers as they are: column-major.
+/// `{ scale, rotation, translation }` with a quaternion x, y, z, w or nine numbers, row-major; `{ matrix }` or a bare
+/// array of 16 numbers, column-major.
 pub fn similarity(value: &JsValue, argument: &str) -> Result<Similarity> {
-    // The core speaks of "transform"; the caller may know it as "options.truth".
+    // The core names it "transform"; for the caller, it may be "options.truth".
     parse(value, argument).map_err(|e| {
         let renamed = e.argument.strip_prefix("transform").map(|rest| format!("{argument}{rest}"));
         let argument = renamed.map_or_else(|| e.argument.clone(), Into::into);
@@ -35,7 +35,7 @@ fn parse(value: &JsValue, argument: &str) -> Result<Similarity> {
     } else if let Some(matrix) = get(value, "matrix") {
         Similarity::from_column_major(&to_numbers(&matrix, &named("matrix"))?)
     } else {
-        let remedy = "Pass what align() returned, or 16 numbers column by column.";
+        let remedy = "Pass a result of align(), or 16 numbers, column-major.";
         Err(wrong_type(argument, value, "{ scale, rotation, translation } or { matrix }", remedy))
     }
 }
@@ -44,7 +44,7 @@ fn rotation_matrix(value: &JsValue, argument: &str) -> Result<Matrix3<f64>> {
     match to_numbers::<4>(value, argument) {
         Ok(quaternion) => Similarity::rotation_from_xyzw(&quaternion),
         Err(_) => {
-            let expected = "a quaternion [x, y, z, w] or a 3 × 3 matrix row by row";
+            let expected = "a quaternion [x, y, z, w] or a row-major 3 × 3 matrix";
             let rows = to_numbers::<9>(value, argument);
             rows.map(|rows| Matrix3::from_row_slice(&rows)).map_err(|e| e.expecting(expected))
         }

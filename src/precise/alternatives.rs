@@ -1,4 +1,4 @@
-//! Other poses that explain an observation as well: flips and mirror turns, told from repetitions of one placement.
+//! Alternative poses that explain an observation as well, such as flips, without equivalent placements.
 
 use glam::DVec3;
 
@@ -11,18 +11,18 @@ use crate::geometry::triangle_tree::TriangleTree;
 use crate::metrics::symmetry::{AUTO_MEAN, AUTO_TAIL, Symmetry};
 use crate::report::Alternative;
 
-/// How far below the best a score is still within what noise does to it: on generated cases, the truth's is that far
-/// below where a flip won.
+/// Score difference attributed to noise. In generated cases won by a flip, the true pose scores lower by about this
+/// much.
 pub(super) const NOISE: f32 = 0.15;
-/// Smallest turn that makes another pose, radians.
+/// Minimum rotation between different poses, radians.
 const MIN_TURN: f64 = 0.26;
-/// Vertices that are compared to tell whether two poses place the mesh alike.
+/// Number of vertices compared to decide whether two placements of the mesh coincide.
 const SAMPLES: usize = 300;
-/// A turn this near to a declared symmetry is one, radians.
+/// Maximum deviation of a rotation from a declared symmetry, radians.
 const SAME_TURN: f64 = 0.17;
 
-/// The poses after the first that are within noise of it, and neither near it, nor near one another, nor placements
-/// that the object's symmetry makes the same.
+/// The poses after the first whose scores are within noise of it. Poses near it or near each other, and placements
+/// equivalent under the symmetry of the object, are excluded.
 pub(super) fn alternatives(
     found: &[Found],
     search: &Search,
@@ -51,13 +51,13 @@ pub(super) fn alternatives(
     Ok(kept.iter().skip(1).map(report).collect())
 }
 
-/// What tells whether two poses place the mesh alike.
+/// The criterion for equivalent placements of the mesh.
 enum Likeness {
-    /// They never do.
+    /// No two are equivalent.
     Never,
-    /// Where the turn between them is one of these.
+    /// Equivalent if the rotation between them is one of these.
     Turns(Box<crate::metrics::symmetry::SymmetryGroup>),
-    /// Where the surfaces coincide.
+    /// Equivalent if the surfaces coincide.
     Surfaces(Box<TriangleTree>, Vec<DVec3>),
 }
 
@@ -88,7 +88,7 @@ impl Likeness {
     }
 }
 
-/// Whether the mesh under one pose lies on itself under the other, within the tolerance of automatic symmetry.
+/// Whether the mesh coincides with itself under both poses, within the tolerance of automatic symmetry.
 fn coincide(tree: &TriangleTree, samples: &[DVec3], a: &Found, b: &Found) -> bool {
     let (scale_b, origin_b) = b.pose.scale_translation();
     let (scale, origin) = a.pose.scale_translation();
@@ -100,6 +100,6 @@ fn coincide(tree: &TriangleTree, samples: &[DVec3], a: &Found, b: &Found) -> boo
     let distances: Vec<f32> = samples.iter().map(distance).collect();
     let mean = distances.iter().map(|d| f64::from(*d)).sum::<f64>() / distances.len().max(1) as f64;
     let tail = quantile(distances.iter().copied(), 0.95).map_or(f64::INFINITY, f64::from);
-    // Two refinements end somewhat apart: twice the tolerance of one turn.
+    // Twice the tolerance of a single rotation, because two refinements end slightly apart.
     mean <= 2.0 * AUTO_MEAN && tail <= 2.0 * AUTO_TAIL
 }

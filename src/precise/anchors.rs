@@ -1,18 +1,18 @@
-//! Anchors: where the mesh may stick out of the mask, because something nearer, or the image border, cuts it off.
+//! Anchors: where an occluder or the image border cuts the mask, so that the mesh may extend beyond it.
 
 use super::grid::CropGrid;
 use crate::geometry::order::median;
 
-/// Share of the mask's surroundings that has to be cut off before larger sizes are tried.
+/// Minimum share of the mask's outline that is cut before larger sizes are tried.
 const MIN_CUT: f64 = 0.05;
-/// Share of the cut that a side has to have for the mesh to stick out there.
+/// Minimum share of the cut on a side for the mesh to extend beyond it.
 const MIN_SIDE: f64 = 0.2;
-/// Nearer the middle than this share of half the box, a cut is on no side.
+/// A cut closer to the centre than this fraction of half the box belongs to no side.
 const SIDE: f64 = 0.45;
-/// The sizes tried where the mask is cut.
+/// Relative sizes tried if the mask is cut.
 const ZOOMS: [f64; 2] = [1.25, 1.6];
 
-/// A size relative to that of the mask's box, and the directions, −1 to 1, towards which the mesh sticks out of it.
+/// A size relative to the box of the mask, and the direction, −1 to 1, in which the mesh extends beyond it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Anchor {
     /// Relative size.
@@ -22,11 +22,12 @@ pub struct Anchor {
 }
 
 impl Anchor {
-    /// The mask's box as it is.
+    /// The unchanged box of the mask.
     pub const AS_IT_IS: Self = Self { zoom: 1.0, towards: [0.0; 2] };
 }
 
-/// The hypotheses for a grid: the box as it is, somewhat larger, and, where it is cut, larger towards the cut.
+/// The hypotheses for a grid: the unchanged box, a slightly larger one and, if it is cut, boxes extended towards the
+/// cut.
 pub fn anchors(grid: &CropGrid, occlusion: bool) -> Vec<Anchor> {
     let plain = |zoom| Anchor { zoom, towards: [0.0; 2] };
     let mut anchors = vec![plain(1.0), plain(1.12)];
@@ -48,7 +49,7 @@ pub fn anchors(grid: &CropGrid, occlusion: bool) -> Vec<Anchor> {
     anchors
 }
 
-/// The sides of the mask's box on which it is cut; none where too little of it is.
+/// The sides of the mask's box on which it is cut; none if the cut is too small.
 fn cut_sides(grid: &CropGrid) -> Vec<[f64; 2]> {
     let depths = grid.depth.iter().copied().filter(|z| *z > 0.0);
     let Some(depth) = median(depths).map(f64::from) else { return Vec::new() };
@@ -83,7 +84,7 @@ fn cut_sides(grid: &CropGrid) -> Vec<[f64; 2]> {
     directions.into_iter().zip(counts).filter(|(_, count)| large(*count)).map(|(direction, _)| direction).collect()
 }
 
-/// The object's largest depth within two cells; 0 where it has none there.
+/// The largest depth of the object within two cells; 0 if there is none.
 fn deepest_around(grid: &CropGrid, u: usize, v: usize) -> f32 {
     let rows = v.saturating_sub(2)..=(v + 2).min(grid.height - 1);
     let columns = u.saturating_sub(2)..=(u + 2).min(grid.width - 1);

@@ -1,7 +1,7 @@
-//! Clean: which pixels of the observation can be trusted to be the object, and which depths to be its own.
+//! Clean: selects the pixels of the observation, and the depths, that reliably belong to the object.
 //!
-//! Masks come with pin-holes and stray islands, depth maps with flying pixels along every jump and with background
-//! that the mask holds by mistake. What is doubtful is left out of the evidence rather than judged.
+//! Masks have pinholes and stray islands, depth maps have flying pixels at discontinuities, and masks include
+//! background by mistake. Doubtful pixels are excluded from the evidence.
 
 use super::rim::rim_offset;
 use crate::evidence::observation::Observation;
@@ -9,55 +9,55 @@ use crate::geometry::distance_transform::squared_distances;
 use crate::geometry::order::{self, quantile};
 use crate::geometry::pinhole::Pinhole;
 
-/// Image around the mask that takes part, as a share of the mask's longer side.
+/// Margin around the mask, relative to its longer side.
 const MARGIN: f64 = 0.45;
-/// A hole smaller than this share of the mask is a fault of the mask, not of the object.
+/// Holes smaller than this fraction of the mask are errors of the mask and are filled.
 const PIN_HOLE: f64 = 0.01;
-/// Components at least this share of the largest belong to the object, split by an occluder; smaller ones, down to
-/// the second share, only where they are near.
+/// Components of at least this size relative to the largest belong to the object, split by an occluder; smaller ones,
+/// down to the second value, only if they are near.
 const COMPONENT: f64 = 0.2;
 const ISLAND: f64 = 0.04;
-/// How far a small component may be, as a share of the mask's longer side.
+/// Maximum distance of a small component, relative to the longer side of the mask.
 const ISLAND_REACH: f64 = 0.25;
-/// How far behind the object something has to be for the depth map to show the outline: a share of the object's
-/// width, which leaves out the slope of a round limb, and one of its depth.
+/// Minimum depth step behind the object for the depth map to show the outline: relative to the width of the object,
+/// which excludes the slope of rounded edges, and relative to its depth.
 const RIM_JUMP: [f64; 2] = [0.15, 0.01];
-/// Depths looked at to find the densest window.
+/// Number of depths used to find the densest window.
 const WINDOW_SAMPLES: usize = 4096;
 
-/// The observation around its mask, with what is doubtful taken out.
+/// The observation around its mask, without doubtful pixels.
 #[derive(Debug, Clone)]
 pub struct CleanObservation {
-    /// The whole image's camera.
+    /// The camera of the whole image.
     pub camera: Pinhole,
-    /// Where the crop's first pixel is in the image.
+    /// Position of the first pixel of the crop in the image.
     pub origin: [usize; 2],
-    /// Pixels in a row of the crop.
+    /// Width of the crop in pixels.
     pub width: usize,
-    /// Rows of the crop.
+    /// Height of the crop in pixels.
     pub height: usize,
     /// Size of the whole image.
     pub image: [usize; 2],
-    /// Signed distance to the object's outline, pixels, negative inside.
+    /// Signed distance to the outline of the object, pixels, negative inside.
     pub outline: Vec<f32>,
-    /// By how much the mask's own outline was moved outwards, pixels (see [`rim_offset`]).
+    /// Outward shift of the outline of the mask, pixels (see [`rim_offset`]).
     pub rim_offset: f64,
-    /// Depth that is the object's own, metres; 0 elsewhere.
+    /// Depth of the object, metres; 0 elsewhere.
     pub depth: Vec<f32>,
-    /// Every reading, metres; 0 where there is none.
+    /// All readings, metres; 0 without a reading.
     pub scene: Vec<f32>,
     /// Box of the mask in the image: first and last column, first and last row.
     pub bounds: [[f64; 2]; 2],
-    /// Pixels of the mask.
+    /// Number of mask pixels.
     pub pixels: usize,
-    /// Median of the object's depths, metres.
+    /// Median depth of the object, metres.
     pub median_m: f64,
-    /// Diagonal of the box around the object's points, metres, without the outermost ones.
+    /// Diagonal of the bounding box of the object's points without outliers, metres.
     pub diagonal_m: f64,
 }
 
 impl CleanObservation {
-    /// Cleans mask and depth.
+    /// Cleans the mask and the depth map.
     pub fn new(observation: &Observation) -> Self {
         let mut crop = Crop::new(observation);
         crop.close_pin_holes();
@@ -129,7 +129,7 @@ impl Crop {
         }
     }
 
-    /// Keeps the components that can be parts of one object.
+    /// Keeps the components that may belong to one object.
     fn drop_islands(&mut self) {
         let components = components(&self.mask, self.width, self.height);
         if components.len() < 2 {
@@ -158,7 +158,7 @@ impl Crop {
         self.mask = self.mask_of(kept);
     }
 
-    /// The mask that holds these components alone.
+    /// The mask of only these components.
     fn mask_of<'a>(&self, components: impl Iterator<Item = &'a Component>) -> Vec<bool> {
         let mut mask = vec![false; self.mask.len()];
         components.flat_map(|c| &c.pixels).for_each(|&i| mask[i as usize] = true);
@@ -201,10 +201,10 @@ impl Crop {
         }
     }
 
-    /// Readings in the mask, away from its rim as far as that leaves enough of them.
+    /// Readings in the mask, excluding its rim if enough remain.
     fn inner_readings(&self, outline: &[f32]) -> Vec<bool> {
         let pixels = self.count();
-        // Two pixels, and more where the image is larger than what depth networks see.
+        // Two pixels, and more for images larger than the input of depth networks.
         let two = (0.011 * (pixels as f64).sqrt()).clamp(2.0, 4.0);
         for (rim, share) in [(two, 0.3), (1.0, 0.2), (0.0, 0.0)] {
             let inside = |(i, set): (usize, &bool)| *set && 0.5 - f64::from(outline[i]) > rim;
@@ -218,8 +218,8 @@ impl Crop {
         Vec::new()
     }
 
-    /// Median depth, and its median absolute deviation, within the window of depths, as deep as the object is wide,
-    /// that holds most readings: never a plain median, which background inside the mask draws away.
+    /// Median depth and median absolute deviation within the depth window with the most readings, which is as deep as
+    /// the object is wide. A plain median would be biased by background inside the mask.
     fn densest_window(&self, inner: &[bool], extent_px: f64) -> (f64, f64) {
         let readings: Vec<f32> = inner.iter().zip(&self.scene).filter(|(i, _)| **i).map(|(_, &z)| z).collect();
         let step = readings.len().div_ceil(WINDOW_SAMPLES).max(1);
@@ -242,7 +242,7 @@ impl Crop {
         (f64::from(median), 1.4826 * f64::from(spread))
     }
 
-    /// Largest less smallest depth of a pixel and its eight neighbours.
+    /// Range of the depths of a pixel and its eight neighbours.
     fn range_around(&self, i: usize) -> f32 {
         let (u, v) = (i % self.width, i / self.width);
         let (mut low, mut high) = (f32::INFINITY, 0.0f32);
@@ -257,7 +257,7 @@ impl Crop {
         high - low
     }
 
-    /// Diagonal of the box that holds all but half a percent of the points at either end of each axis.
+    /// Diagonal of the box that excludes half a percent of the points at either end of each axis.
     fn diagonal(&self, depth: &[f32]) -> f64 {
         let readings = depth.iter().filter(|z| **z > 0.0).count();
         let step = readings.div_ceil(WINDOW_SAMPLES).max(1);
@@ -275,7 +275,7 @@ impl Crop {
     }
 }
 
-/// Distance of each pixel's centre to the mask's outline, pixels, negative inside.
+/// Signed distance of each pixel centre to the outline of the mask, pixels, negative inside.
 fn signed_distance(mask: &[bool], width: usize, height: usize) -> Vec<f32> {
     let outside: Vec<bool> = mask.iter().map(|set| !set).collect();
     let to_mask = squared_distances(mask, width, height);
@@ -301,13 +301,13 @@ fn longer_side(bounds: &[[usize; 2]; 2]) -> f64 {
     bounds.iter().map(|[low, high]| high - low).max().unwrap_or(0) as f64
 }
 
-/// A connected set of pixels (four neighbours).
+/// A connected component (four neighbours).
 struct Component {
     pixels: Vec<u32>,
     touches_border: bool,
 }
 
-/// The connected sets of an image's set pixels.
+/// The connected components of the set pixels of an image.
 fn components(set: &[bool], width: usize, height: usize) -> Vec<Component> {
     let mut seen = vec![false; set.len()];
     let mut list = Vec::new();

@@ -1,4 +1,4 @@
-//! Coarse: every rotation of the grid, with size, place and distance in closed form.
+//! Coarse search: every rotation of the grid, with size, position and distance in closed form.
 
 use glam::{DMat3, DQuat, DVec2, DVec3, Vec3};
 
@@ -10,9 +10,9 @@ use super::score::Score;
 use crate::geometry::angle::sin_cos;
 use crate::geometry::order::median;
 
-/// Directions along which the mesh's outermost vertices are kept, for boxes.
+/// Number of directions along which extreme vertices of the mesh are kept, for bounding boxes.
 const DIRECTIONS: usize = 128;
-/// Rounds of the fit of a perspective box, which converges by an order of magnitude each.
+/// Iterations of the fit of a perspective box; each gains an order of magnitude.
 const BOX_ROUNDS: usize = 3;
 
 /// A pose and its score.
@@ -20,20 +20,20 @@ const BOX_ROUNDS: usize = 3;
 pub struct Candidate {
     /// The pose.
     pub pose: CropPose,
-    /// Its score on the grid where it was found.
+    /// Its score on the grid on which it was found.
     pub score: Score,
 }
 
 /// The search over rotations on one grid.
 pub struct Coarse<'a> {
-    /// What candidates are compared by.
+    /// The objective.
     pub objective: Objective<'a>,
-    /// The object's median depth, metres.
+    /// Median depth of the object, metres.
     pub median_m: f64,
 }
 
 impl Coarse<'_> {
-    /// Every anchor for a rotation.
+    /// All poses of a rotation, one per anchor.
     pub fn try_anchors(
         &self,
         canvas: &mut Canvas,
@@ -55,7 +55,7 @@ impl Coarse<'_> {
         }
     }
 
-    /// Draws a pose once, and moves it to the distance that the depths ask for: the silhouette stays.
+    /// Renders a pose once, and moves it to the distance that fits the depths; the silhouette does not change.
     pub fn at_its_distance(&self, canvas: &mut Canvas, pose: CropPose) -> Candidate {
         let Objective { model, grid, scoring, prior } = &self.objective;
         canvas.draw(model, &pose, grid);
@@ -71,8 +71,8 @@ impl Coarse<'_> {
         Candidate { pose, score }
     }
 
-    /// Size and place at which the perspective box of the rotated mesh is the mask's: equal middles, equal
-    /// geometric means of their sides.
+    /// Size and position at which the perspective box of the rotated mesh matches that of the mask: equal centres,
+    /// equal geometric means of the sides.
     fn fit_box(&self, outermost: &[Vec3], rotation: DQuat) -> CropPose {
         let turn = DMat3::from_quat(rotation).as_mat3();
         let turned: Vec<Vec3> = outermost.iter().map(|p| turn * *p).collect();
@@ -99,7 +99,7 @@ impl Coarse<'_> {
     }
 }
 
-/// The vertices that are outermost along evenly spread directions: all that a box can touch, or nearly.
+/// The extreme vertices along evenly spread directions: almost all that a bounding box can touch.
 pub fn outermost(model: &Model) -> Vec<Vec3> {
     let mut kept: Vec<u32> = (0..DIRECTIONS)
         .filter_map(|k| {
@@ -122,7 +122,7 @@ pub fn outermost(model: &Model) -> Vec<Vec3> {
 
 /// The `k`-th of [`DIRECTIONS`] points of a Fibonacci spiral on the sphere.
 fn direction(k: usize) -> DVec3 {
-    /// Radians between one point and the next: the golden angle.
+    /// Angle between consecutive points, radians: the golden angle.
     const GOLDEN: f64 = 2.399_963_229_728_653;
     let z = 1.0 - (2.0 * k as f64 + 1.0) / DIRECTIONS as f64;
     let (sin, cos) = sin_cos(GOLDEN * k as f64);

@@ -1,24 +1,24 @@
-//! Confidence: how likely a pose is right, from how it fits, how firmly it is held, and what else fits.
+//! Confidence: the probability that a pose is correct, from its fit, its conditioning and its alternatives.
 //!
-//! A logistic regression on 720 generated cases (`npm run bench:reliability` prints how it does on others). The
-//! score alone does not tell: poses of half-hidden objects are right with low ones. What tells is the margin to the
-//! next best placement, the agreement of independent terms, and how sharply the score falls around the pose.
+//! A logistic regression on 720 generated cases (`npm run bench:reliability` prints its calibration on others). The
+//! score alone is not informative: correct poses of half-hidden objects have low scores. Informative are the margin to
+//! the next best placement, the agreement of independent terms, and how sharply the score falls around the pose.
 
 use super::alternatives::NOISE;
 use super::conditioning::Conditioning;
 use super::search::Found;
 use crate::report::Alternative;
 
-/// Where the regression's line begins, and its slopes: by overlap, depth, outline, the margin as a share of
-/// [`NOISE`], and the logarithms of the standard deviations of scale (relative) and rotation (degrees).
+/// Intercept and coefficients of the regression: overlap, depth, outline, the margin relative to [`NOISE`], and the
+/// logarithms of the standard deviations of scale (relative) and rotation (degrees).
 const INTERCEPT: f64 = -25.771;
 const SLOPES: [f64; 6] = [1.274, 5.087, 2.222, 2.691, -4.095, -1.157];
 
-/// The standard deviations that the cases had; what lies beyond is no surer, or less sure, than these.
+/// The range of standard deviations in these cases. Values outside are clamped, because the fit has no data there.
 const SCALE: [f64; 2] = [1e-3, 1.0];
 const ROTATION_DEG: [f64; 2] = [0.03, 90.0];
 
-/// The probability that a pose is right, 0 to 1.
+/// The probability that a pose is correct, 0 to 1.
 pub(super) fn confidence(best: &Found, alternatives: &[Alternative], conditioning: Option<&Conditioning>) -> f64 {
     let Some(held) = conditioning else { return 0.0 };
     let score = f64::from(best.score.total);

@@ -1,53 +1,53 @@
-//! The crop grid: the cleaned observation on cells that are square in ray space, at any resolution.
+//! The crop grid: the cleaned observation at any resolution, on cells that are square in ray space.
 
 use glam::Vec3;
 
 use super::clean::CleanObservation;
 
-/// Room around the mask's box, as a share of its longer side, for silhouettes that are too large.
+/// Margin around the box of the mask for silhouettes that are too large, relative to its longer side.
 const MARGIN: f64 = 0.35;
-/// Samples along a cell's side at most.
+/// Maximum number of samples along a side of a cell.
 const MAX_SAMPLES: usize = 4;
-/// Share of a cell's samples that must have the object's depth for the cell to have it.
+/// Minimum fraction of the samples of a cell with depth of the object, for the cell to have a depth.
 const MIN_READINGS: f32 = 0.34;
-/// Readings in a cell's window, of nine, from which a normal is fitted.
+/// Minimum number of readings, of nine in the window of a cell, to fit a normal.
 const MIN_NORMAL_CELLS: u32 = 5;
-/// Depth of a cell outside the image: nearer than anything, so that nothing there is contradicted.
+/// Depth of a cell outside the image: nearer than anything, so that it occludes any mesh there.
 const OUTSIDE_M: f32 = 1e-6;
 
-/// Evidence on `width` × `height` cells, row by row.
+/// Evidence on `width` × `height` cells, row-major.
 #[derive(Debug, Clone)]
 pub struct CropGrid {
-    /// Cells in a row.
+    /// Width in cells.
     pub width: usize,
-    /// Rows.
+    /// Height in cells.
     pub height: usize,
     /// Focal length, cells.
     pub focal: f64,
-    /// Principal point, cells; cell centres are at whole numbers.
+    /// Principal point, cells; cell centres have integer coordinates.
     pub center: [f64; 2],
     /// Size of a cell, pixels.
     pub cell: [f64; 2],
-    /// Image position of the grid's corner, pixels.
+    /// Image position of the corner of the grid, pixels.
     pub corner: [f64; 2],
-    /// Whether a cell is the object's.
+    /// Whether a cell belongs to the object.
     pub mask: Vec<bool>,
-    /// How many are.
+    /// Number of cells of the object.
     pub mask_cells: usize,
-    /// The object's depth, metres; 0 where unknown.
+    /// Depth of the object, metres; 0 if unknown.
     pub depth: Vec<f32>,
-    /// Its normal, towards the camera; zero where unknown.
+    /// Normal of the object, towards the camera; zero if unknown.
     pub normals: Vec<Vec3>,
-    /// Any depth, metres; 0 where there is no reading, next to nothing outside the image.
+    /// Depth of the scene, metres; 0 without a reading, almost 0 outside the image.
     pub scene: Vec<f32>,
-    /// Signed distance to the mask's own outermost cells, cells: 0 on them on average, negative inside.
+    /// Signed distance to the outermost cells of the mask, in cells: 0 on average on these, negative inside.
     pub outline: Vec<f32>,
-    /// The mask's box: [[left, right], [top, bottom]], outer edges, cells.
+    /// The box of the mask: [[left, right], [top, bottom]], outer edges, in cells.
     pub bounds: [[f64; 2]; 2],
 }
 
 impl CropGrid {
-    /// The observation at about `cells` cells of mask.
+    /// The observation at a resolution at which the mask has about `cells` cells.
     pub fn new(observation: &CleanObservation, cells: usize) -> Self {
         let camera = observation.camera;
         let pitch = (observation.pixels as f64 / cells as f64).sqrt().max(1.0);
@@ -91,7 +91,7 @@ impl CropGrid {
         let offset = |k: usize, axis: usize| ((k as f64 + 0.5) / samples as f64 - 0.5) * self.cell[axis];
         let at = |i: usize, k: usize, axis: usize| {
             let x = self.corner[axis] - 0.5 + (i as f64 + 0.5) * self.cell[axis] + offset(k, axis);
-            // Shifted, so that the cast is a floor on either side of 0.
+            // Shifted, so that the cast rounds down also for negative values.
             (x + 0.5 + 1_048_576.0) as i64 - 1_048_576
         };
         let columns: Vec<i64> = (0..self.width * samples).map(|i| at(i / samples, i % samples, 0)).collect();
@@ -182,7 +182,7 @@ impl CropGrid {
     }
 }
 
-/// Samples of one cell.
+/// The samples of a cell.
 #[derive(Default)]
 struct Sum {
     outline: f32,
@@ -198,7 +198,7 @@ impl Sum {
         let inside_image =
             (0..observation.image[0] as i64).contains(&u) && (0..observation.image[1] as i64).contains(&v);
         self.outside += f32::from(u8::from(!inside_image));
-        // Beyond the crop, the distance to the outline is that of the crop's nearest pixel and the way there.
+        // Outside the crop: the distance at the nearest pixel of the crop, plus the distance to that pixel.
         let (u, v) = (u - observation.origin[0] as i64, v - observation.origin[1] as i64);
         let near_u = u.max(0).min(observation.width as i64 - 1);
         let near_v = v.max(0).min(observation.height as i64 - 1);

@@ -1,4 +1,4 @@
-//! The mesh as the search draws it: decimated for every grid.
+//! The mesh at several resolutions: decimated for every grid of the search.
 
 use glam::Vec3;
 
@@ -9,20 +9,20 @@ use super::render::Model;
 use crate::geometry::decimate::decimate;
 use crate::geometry::mesh::Mesh;
 
-/// A mesh in its own normalised frame, decimated for every grid of the search.
+/// A mesh in its normalised frame, decimated for every grid of the search.
 pub struct MeshPyramid {
-    /// The frame, from which poses are counted.
+    /// The normalised frame, to which poses refer.
     pub frame: MeshFrame,
     /// The mesh of the fine grid.
     pub fine: Mesh,
-    /// The model that is drawn on each grid.
+    /// The model rendered on each grid.
     pub models: [Model; GRIDS],
-    /// Vertices of the fine mesh that its boxes touch; see [`outermost`].
+    /// Extreme vertices of the fine mesh; see [`outermost`].
     pub outermost: Vec<Vec3>,
 }
 
 impl MeshPyramid {
-    /// Decimates a mesh for `grids`, each from the next finer one. `None` where no triangle is left.
+    /// Decimates a mesh for `grids`, each from the next finer one. `None` if no triangle remains.
     pub fn new(mesh: &Mesh, grids: &[Grid; GRIDS]) -> Option<Self> {
         let frame = MeshFrame::of(mesh);
         let finest = frame.normalized(&decimate(mesh, grids[FINEST].triangles))?;

@@ -1,8 +1,8 @@
-//! Preset `precise`: search by rendering. The pose whose picture explains mask, free space and depth best.
+//! Preset `precise`: search by rendering for the pose whose image best explains mask, free space and depth.
 //!
-//! Coarse to fine on a crop around the mask. A grid of rotations, each with size, place and distance in closed form;
-//! the best distinct ones refined over all seven parameters; the best of those refined again where every pixel
-//! counts.
+//! The search runs coarse to fine on a crop around the mask: a grid of rotations, each with size, position and distance
+//! in closed form; refinement of the best distinct ones over all seven parameters; and another refinement of the best
+//! of these at full resolution.
 
 mod alternatives;
 pub mod anchors;
@@ -47,7 +47,7 @@ use recipe::Task;
 use rounds::Rounds;
 pub use search::Search;
 
-/// When each stage begins, as a share of the whole; from profiles of real cases.
+/// Progress at the start of each stage, 0 to 1; from profiles of real cases.
 pub const PLAN: &[(Stage, f64)] = &[
     (Stage::Observe, 0.0),
     (Stage::Sample, 0.01),
@@ -58,10 +58,10 @@ pub const PLAN: &[(Stage, f64)] = &[
     (Stage::Metrics, 0.85),
 ];
 
-/// The search before its first round. A `hypothesis` found otherwise joins the candidates of the grid.
+/// The search before its first round. A `hypothesis` from another source is added to the candidates of the grid.
 ///
 /// # Errors
-/// [`ErrorCode::NoConsensus`] where decimation leaves no triangle, [`ErrorCode::InvalidOption`] for an initial pose
+/// [`ErrorCode::NoConsensus`] if decimation leaves no triangle, [`ErrorCode::InvalidOption`] for an initial pose
 /// behind the camera.
 pub fn begin(
     observation: &Observation,
@@ -83,7 +83,7 @@ pub fn begin(
     Ok(rounds)
 }
 
-/// Goes on with the search until it is over or `pause` returns true. Returns whether it is over.
+/// Continues the search until it ends or `pause` returns true. Returns whether it has ended.
 pub fn run(rounds: &mut Rounds, pause: &mut dyn FnMut() -> bool, stages: &mut Stopwatch<'_>) -> bool {
     while let Some(round) = rounds.round() {
         if round.task == Task::Refine && stages.running() != Some(Stage::Refine) {
@@ -97,7 +97,8 @@ pub fn run(rounds: &mut Rounds, pause: &mut dyn FnMut() -> bool, stages: &mut St
     true
 }
 
-/// The paper's pose, at the best quality: descriptors are weak evidence, but independent of the search's.
+/// The pose of the method of the paper, at the best quality. Descriptors are weak evidence, but independent of the
+/// search.
 pub fn hypothesis(clouds: &mut Clouds, options: &AlignOptions, stages: &mut Stopwatch<'_>) -> Option<Similarity> {
     let is_wanted = options.quality == Quality::Best && options.search == SearchScope::Global;
     let paper = PaperOptions {
@@ -110,11 +111,11 @@ pub fn hypothesis(clouds: &mut Clouds, options: &AlignOptions, stages: &mut Stop
     Some(found.camera_from_mesh)
 }
 
-/// How certain the search is of its pose.
+/// The reliability of the pose.
 pub struct Certainty {
     /// See [`Alignment::confidence`](crate::report::Alignment::confidence).
     pub confidence: f64,
-    /// Other poses that explain the observation.
+    /// Alternative poses.
     pub alternatives: Vec<Alternative>,
     /// How well each part of the pose is determined.
     pub uncertainty: Option<Uncertainty>,
@@ -124,10 +125,10 @@ pub struct Certainty {
     pub terms: ScoreTerms,
 }
 
-/// The best pose of the search, and how certain it is.
+/// The best pose of the search, and its reliability.
 ///
 /// # Errors
-/// [`ErrorCode::NoConsensus`] where no pose overlaps the mask.
+/// [`ErrorCode::NoConsensus`] if no pose overlaps the mask.
 pub fn conclude(rounds: &Rounds, mesh: &Mesh, options: &AlignOptions) -> Result<(Solution, Certainty)> {
     let (found, search) = (&rounds.found, &rounds.search);
     let best = found.first().ok_or_else(no_candidate)?;
@@ -156,7 +157,7 @@ pub fn conclude(rounds: &Rounds, mesh: &Mesh, options: &AlignOptions) -> Result<
     Ok((solution, certainty))
 }
 
-/// The search that the options ask for.
+/// The search for these options.
 pub fn search_settings(options: &AlignOptions) -> SearchSettings {
     let settings = match options.quality {
         Quality::Fast => SearchSettings::fast(),
@@ -168,7 +169,7 @@ pub fn search_settings(options: &AlignOptions) -> SearchSettings {
     options.work_budget.map_or(settings, |budget| settings.within(budget))
 }
 
-/// The prior on size and attitude.
+/// The prior on scale and orientation.
 fn prior(options: &AlignOptions, mesh: &Mesh, frame: &MeshFrame) -> Prior {
     let extent = Bounds::of(mesh.positions()).map_or(glam::Vec3::ONE, |b| b.extent());
     let side = f64::from(match options.known_extent_axis {
@@ -186,14 +187,14 @@ fn prior(options: &AlignOptions, mesh: &Mesh, frame: &MeshFrame) -> Prior {
     }
 }
 
-/// The caller's pose.
+/// The initial pose of the caller.
 fn seen_from(pose: &Similarity, frame: &MeshFrame) -> Result<CropPose> {
     CropPose::of_similarity(pose, frame).ok_or_else(|| {
         Error::new(
             ErrorCode::InvalidOption,
             "options.initial",
-            "a pose that puts the middle of the mesh behind the camera",
-            "a pose in front of it: z forward",
+            "a pose with the centre of the mesh behind the camera",
+            "a pose in front of the camera: z forward",
             "Convert the pose from its own camera frame (OpenGL: negate y and z; PyTorch3D: negate x and y).",
         )
     })
@@ -203,8 +204,8 @@ fn no_candidate() -> Error {
     Error::new(
         ErrorCode::NoConsensus,
         "mesh",
-        "no pose whose picture overlaps the mask",
-        "a mesh and a mask of one object",
+        "no pose whose silhouette overlaps the mask",
+        "a mesh and a mask of the same object",
         "Check that mesh and mask show the same object, and that the camera belongs to the depth map.",
     )
 }

@@ -1,4 +1,4 @@
-//! Objective: what a pose is worth, on one grid.
+//! The objective: scores poses on one grid.
 
 use super::grid::CropGrid;
 use super::pose::CropPose;
@@ -6,21 +6,21 @@ use super::prior::Prior;
 use super::render::{Canvas, Model};
 use super::score::{Score, Scoring};
 
-/// What the candidates of one grid are compared by.
+/// The objective on one grid.
 #[derive(Clone, Copy)]
 pub struct Objective<'a> {
     /// The mesh.
     pub model: &'a Model,
     /// The evidence.
     pub grid: &'a CropGrid,
-    /// What counts how much.
+    /// The weights of the terms.
     pub scoring: Scoring,
-    /// What is known beforehand.
+    /// The prior.
     pub prior: Prior,
 }
 
 impl Objective<'_> {
-    /// Draws a pose and scores it.
+    /// Renders a pose and scores it.
     pub fn score(&self, canvas: &mut Canvas, pose: &CropPose) -> Score {
         canvas.draw(self.model, pose, self.grid);
         let mut score = self.scoring.score(canvas, self.model, self.grid, 1.0);

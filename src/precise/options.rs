@@ -7,7 +7,7 @@ use crate::number::number;
 use crate::options::scale::ScaleOption;
 use crate::options::{choices, options};
 
-/// How far, as a share of it, an initial scale may lie outside its bounds: 32-bit floats round.
+/// Relative tolerance of the bounds for an initial scale, because 32-bit floats are rounded.
 const ROUNDING: f64 = 1e-6;
 
 choices! {
@@ -92,11 +92,11 @@ options! {
     check check_combination;
 }
 
-/// Refuses options that contradict each other, or that mean nothing without each other.
+/// Rejects options that contradict or require each other.
 fn check_combination(options: &AlignOptions) -> Result<()> {
     let AlignOptions { scale, known_extent_m, camera_up, mesh_up, initial, search, .. } = options;
     if *search == SearchScope::Local && initial.is_none() {
-        let remedy = "Pass the pose to start from as `initial`, or leave `search` out to search everywhere.";
+        let remedy = "Pass the initial pose as `initial`, or omit `search` to search all rotations.";
         return Err(invalid("options.search", "\"local\" without an initial pose", "\"local\" with `initial`", remedy));
     }
     if camera_up.is_some() != mesh_up.is_some() {
@@ -110,15 +110,15 @@ fn check_combination(options: &AlignOptions) -> Result<()> {
     }
     let Some([min, max]) = scale.bounds() else { return Ok(()) };
     if let Some(extent_m) = *known_extent_m {
-        let found = format!("a known extent of {} m beside a scale of {}", number(extent_m), scale.describe());
-        let remedy = "A known extent fixes the scale: leave one of the two out.";
+        let found = format!("a known extent of {} m and a scale of {}", number(extent_m), scale.describe());
+        let remedy = "A known extent fixes the scale: omit one of the two.";
         return Err(invalid("options.knownExtentM", found, "`knownExtentM` or `scale`", remedy));
     }
     match initial {
         Some(pose) if pose.scale < min * (1.0 - ROUNDING) || pose.scale > max * (1.0 + ROUNDING) => {
             let found = format!("a scale of {}", number(pose.scale));
-            let expected = format!("one within `scale`: {}", scale.describe());
-            Err(invalid("options.initial", found, expected, "Widen `scale`, or pass a pose of a scale inside it."))
+            let expected = format!("a scale within `scale`: {}", scale.describe());
+            Err(invalid("options.initial", found, expected, "Widen `scale`, or pass a pose with a scale inside it."))
         }
         _ => Ok(()),
     }

@@ -1,4 +1,5 @@
-//! A pose by what the image fixes: apparent size and place of the mesh, and, apart from these, its distance.
+//! Poses parametrised by what the image determines: apparent size and position of the mesh, and separately its
+//! distance.
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 use nalgebra::{Matrix3, Rotation3, Vector3};
@@ -8,10 +9,10 @@ use crate::geometry::mesh::Mesh;
 use crate::geometry::rotations::exp;
 use crate::geometry::similarity::Similarity;
 
-/// The mesh's own frame: its box's middle is the origin and its box's diagonal is 1.
+/// The normalised frame of a mesh: the centre of its box is the origin, and the diagonal is 1.
 #[derive(Debug, Clone, Copy)]
 pub struct MeshFrame {
-    /// Middle of the box, mesh units.
+    /// Centre of the box, mesh units.
     pub center: DVec3,
     /// Diagonal of the box, mesh units.
     pub diagonal: f64,
@@ -34,22 +35,24 @@ impl MeshFrame {
 
 /// x = s·R·p + t for p in the [`MeshFrame`], with s = e^size·z, t = z·(place, 1), z = e^distance.
 ///
-/// The mask fixes size and place, which thereby keep apart from distance, which the depth fixes: a change of
-/// distance alone leaves the silhouette exactly as it is.
+/// The mask determines size and place, the depth determines the distance. A change of the distance alone does not
+/// change the silhouette.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CropPose {
     /// R.
     pub rotation: DQuat,
-    /// log(s/z): the logarithm of the size in the image, as the tangent of the angle that the box's diagonal fills.
+    /// log(s/z): the logarithm of the size in the image, the tangent of the angle that the diagonal of the box
+    /// subtends.
     pub size: f64,
-    /// Where the middle of the mesh is in the image: x/z and y/z.
+    /// Position of the centre of the mesh in the image: x/z and y/z.
     pub place: DVec2,
     /// log z, z in metres.
     pub distance: f64,
 }
 
-/// What refinement moves: turn (3, radians, about the middle of the mesh), size, place (2, in units of the size in
-/// the image), distance (in units of the size over the distance, so that a unit of each moves the surface alike).
+/// The parameters of the refinement: rotation (3, radians, about the centre of the mesh), size, place (2, in units of
+/// the size in the image), and distance (in units of the size over the distance, so that a unit of each moves the
+/// surface by about the same amount).
 pub type Step = [f64; 7];
 
 impl CropPose {
@@ -59,7 +62,7 @@ impl CropPose {
         (libm::exp(self.size) * z, self.place.extend(1.0) * z)
     }
 
-    /// The pose as the caller gets it.
+    /// Converts the pose to a similarity.
     pub fn similarity(&self, frame: &MeshFrame) -> Similarity {
         let (scale, translation) = self.scale_translation();
         let scale = scale / frame.diagonal;
@@ -72,7 +75,7 @@ impl CropPose {
         }
     }
 
-    /// The other way; `None` where the middle of the mesh is not before the camera.
+    /// The inverse conversion; `None` if the centre of the mesh is not in front of the camera.
     pub fn of_similarity(similarity: &Similarity, frame: &MeshFrame) -> Option<Self> {
         let rotation = DQuat::from_array(similarity.quaternion_xyzw()).normalize();
         let t = DVec3::from_slice(similarity.translation.as_slice());

@@ -1,4 +1,4 @@
-//! A mesh that is checked and decimated once, and used for many alignments.
+//! A mesh that is validated and decimated once for many alignments.
 
 use core::cell::{Cell, RefCell};
 use std::borrow::Cow;
@@ -10,24 +10,24 @@ use crate::error::Result;
 use crate::evidence::sample::check_shape;
 use crate::geometry::mesh::Mesh;
 
-/// A mesh with what alignments derive from it: whether it has a shape, and its decimations. Both are found when they are
-/// first needed. Results are those of the mesh itself, to the bit.
+/// A mesh with cached derived data: the result of its validation, and its decimations. Both are computed on first use.
+/// Results are bit-identical to those of the mesh itself.
 pub struct PreparedMesh<'a> {
     mesh: Cow<'a, Mesh>,
     is_checked: Cell<bool>,
-    /// By the numbers of triangles, which differ between qualities.
+    /// By number of triangles, which depends on the quality.
     pyramids: RefCell<Vec<([usize; GRIDS], Rc<MeshPyramid>)>>,
 }
 
 impl PreparedMesh<'static> {
-    /// From a mesh that is given away.
+    /// Takes ownership of a mesh.
     pub fn new(mesh: Mesh) -> Self {
         Self::of(Cow::Owned(mesh))
     }
 }
 
 impl<'a> PreparedMesh<'a> {
-    /// From a mesh that stays where it is.
+    /// Borrows a mesh.
     pub fn borrowed(mesh: &'a Mesh) -> Self {
         Self::of(Cow::Borrowed(mesh))
     }
@@ -53,7 +53,7 @@ impl<'a> PreparedMesh<'a> {
         Ok(())
     }
 
-    /// Checks the mesh, and decimates it for the default quality.
+    /// Validates the mesh, and decimates it for the default quality.
     ///
     /// # Errors
     /// [`DegenerateMesh`](crate::error::ErrorCode::DegenerateMesh).
@@ -63,7 +63,7 @@ impl<'a> PreparedMesh<'a> {
         Ok(())
     }
 
-    /// The decimations for `grids`; `None` where no triangle is left.
+    /// The decimations for `grids`; `None` if no triangle remains.
     pub fn pyramid(&self, grids: &[Grid; GRIDS]) -> Option<Rc<MeshPyramid>> {
         let triangles = grids.map(|grid| grid.triangles);
         let mut pyramids = self.pyramids.borrow_mut();

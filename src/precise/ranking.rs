@@ -1,4 +1,4 @@
-//! Ranking: the best of many candidates, and the best that differ.
+//! Ranking: the best candidates, and the best distinct ones.
 
 use glam::DQuat;
 
@@ -44,7 +44,7 @@ pub fn best_of<T: Scored>(candidates: &[T], count: usize) -> Vec<T> {
     keys.into_iter().map(|key| candidates[order::index_of(key) as usize]).collect()
 }
 
-/// The best `count` candidates of which no two rotations are nearer than `angle`, best first.
+/// The best `count` candidates whose rotations differ by at least `angle`, best first.
 pub fn distinct<T: Scored>(candidates: Vec<T>, count: usize, angle: f64) -> Vec<T> {
     let mut kept: Vec<T> = Vec::new();
     for candidate in best_of(&candidates, candidates.len()) {

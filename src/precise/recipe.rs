@@ -1,66 +1,67 @@
-//! The recipe of the search: its grids and its rounds, for each quality.
+//! The recipe of the search: grids and rounds for each quality.
 
 use super::clean::CleanObservation;
 use super::score::{Scoring, Weights};
 
 /// Grids of the search, coarse to fine.
 pub const GRIDS: usize = 5;
-/// The grid on which every rotation is drawn.
+/// The grid on which every rotation is rendered.
 pub const SIEVE: usize = 0;
-/// The grid on which promising poses are drawn again, and the surroundings of a given pose.
+/// The grid on which promising poses, and the neighbourhood of a given pose, are rendered.
 pub const COARSE: usize = 1;
 /// The grid of the first refinements.
 pub const MIDDLE: usize = 2;
-/// The grid whose scores rank the poses in the end.
+/// The grid of the final ranking.
 pub const FINE: usize = 3;
-/// The grid that polishes the best poses.
+/// The grid of the final refinement.
 pub const FINEST: usize = 4;
 
 /// Rounds of the search.
 pub const ROUNDS: usize = 6;
 /// The first round that refines.
 pub const FIRST_REFINEMENT: usize = 2;
-/// The round that ranks: its scores are those of the result.
+/// The ranking round, whose scores are those of the result.
 pub const RANKING: usize = 4;
 
-/// A grid of cells that an image is drawn on, and the mesh that is drawn there.
+/// The resolution of a grid and of the mesh rendered on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grid {
-    /// Cells that the mask covers, about; never more than its pixels.
+    /// Approximate number of cells of the mask, at most its number of pixels.
     pub cells: usize,
-    /// Triangles that the mesh is decimated to.
+    /// Number of triangles of the decimated mesh.
     pub triangles: usize,
-    /// Depth error that halves a cell's credit, as a share of the observed diagonal.
+    /// Depth error that halves the credit of a cell, relative to the observed diagonal.
     pub depth_error: f64,
-    /// Factor of the outline's weight: outlines mean little on cells as wide as the errors of the rotation grid.
+    /// Factor of the weight of the outline, which is not informative on cells as wide as the errors of the rotation
+    /// grid.
     pub outline: f32,
 }
 
-/// What a round does with each of its poses.
+/// The task of a round for each of its poses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Task {
-    /// Draws a rotation of an even grid, at the size and place of the mask's box and of every other anchor.
+    /// Renders a rotation of an even grid, at the size and position of the mask's box and of every other anchor.
     Rotate,
-    /// Draws the pose, and moves it to the distance that the depths ask for.
+    /// Renders the pose, and moves it to the distance that fits the depths.
     Place,
     /// Refines all seven parameters.
     Refine,
 }
 
-/// A round: the same task for many poses, of which the best go on to the next round.
+/// A round: the same task for many poses, of which the best are kept for the next round.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Round {
-    /// What is done.
+    /// The task.
     pub task: Task,
     /// Index of the grid.
     pub grid: usize,
-    /// Rotations of [`Task::Rotate`], most steps of [`Task::Refine`].
+    /// Number of rotations of [`Task::Rotate`], maximum number of steps of [`Task::Refine`].
     pub work: usize,
-    /// Poses that go on.
+    /// Number of poses kept for the next round.
     pub keep: usize,
-    /// Of poses whose rotations are nearer than this, in radians, the best alone goes on; 0 lets all go on.
+    /// Of poses whose rotations are closer than this, in radians, only the best is kept; 0 keeps all.
     pub apart: f64,
-    /// Share of the alignment that is done after the round; from profiles of real cases.
+    /// Progress after the round, 0 to 1; from profiles of real cases.
     pub done: f64,
 }
 
@@ -99,8 +100,8 @@ const fn rounds(quality: usize) -> [Round; ROUNDS] {
     ]
 }
 
-/// Cost of a rotation, of a step on the middle grid and of one on the fine grid, in units of the work budget: about
-/// milliseconds of WebAssembly on a laptop of 2020.
+/// Cost of a rotation, of a step on the middle grid and of one on the fine grid, in units of the work budget: about a
+/// millisecond of WebAssembly each on a 2020 laptop.
 const COST: [f64; 3] = [0.06, 0.12, 0.4];
 
 /// Work and objective of a search.
@@ -112,11 +113,11 @@ pub struct SearchSettings {
     pub grids: [Grid; GRIDS],
     /// Weights of the score's terms.
     pub weights: Weights,
-    /// Whether occluders hide the mesh, and cut-off masks let it stick out.
+    /// Whether occluders hide the mesh, and the mesh may extend beyond cut masks.
     pub occlusion: bool,
-    /// Whether sizes and places other than those of the mask's box are tried.
+    /// Whether sizes and positions other than those of the mask's box are tried.
     pub anchors: bool,
-    /// Whether the scale stays as the grid of rotations found it.
+    /// Whether refinement keeps the scale of the rotation grid.
     pub lock_scale: bool,
 }
 
@@ -138,17 +139,17 @@ impl SearchSettings {
         }
     }
 
-    /// Less of everything.
+    /// Fewer rotations, candidates and steps.
     pub fn fast() -> Self {
         Self::of(FAST)
     }
 
-    /// More of everything.
+    /// More rotations, candidates and steps.
     pub fn best() -> Self {
         Self::of(BEST)
     }
 
-    /// Rotations of the grid.
+    /// Number of rotations of the grid.
     pub fn rotations(&self) -> usize {
         self.rounds[0].work
     }

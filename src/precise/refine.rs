@@ -1,8 +1,8 @@
-//! Refine: Levenberg-Marquardt over all seven parameters, on a quadratic that touches the score's own terms.
+//! Refinement: Levenberg-Marquardt over all seven parameters, on quadratic bounds of the terms of the score.
 //!
 //! Every term of the score is a sum of robust losses ρ(e) of a residual e; at the present residuals each is bounded
-//! from above by a quadratic with curvature ρ′(e)/e (iteratively reweighted least squares), so that a Gauss-Newton
-//! step on these quadratics climbs the score itself. Steps are taken or refused by the score.
+//! from above by a quadratic with curvature ρ′(e)/e (iteratively reweighted least squares), so that a Gauss-Newton step
+//! on these quadratics increases the score. The score decides whether a step is accepted.
 
 use glam::Vec3;
 
@@ -12,45 +12,46 @@ use super::render::Canvas;
 use super::score::{Score, is_outline};
 use crate::geometry::normal_equations::NormalEquations;
 
-/// What a refinement works on.
+/// The problem of a refinement.
 pub struct Refiner<'a> {
-    /// What is climbed.
+    /// The objective to maximise.
     pub objective: Objective<'a>,
-    /// The size of the object does not change: distance and size in the image move together.
+    /// Whether the size of the object is fixed, which couples the distance and the size in the image.
     pub lock_scale: bool,
 }
 
-/// Where a refinement ended.
+/// The result of a refinement.
 #[derive(Debug, Clone, Copy)]
 pub struct Refined {
     /// The pose.
     pub pose: CropPose,
     /// Its score.
     pub score: Score,
-    /// Images drawn.
+    /// Number of renders.
     pub renders: usize,
-    /// Whether the last step hardly raised the score, or none was left that would have.
+    /// Whether the refinement converged: the last step hardly increased the score, or no step would.
     pub converged: bool,
 }
 
-/// Damping at first, and its factors after a step that was taken and after one that was refused.
+/// Initial damping, and its factors after an accepted and after a rejected step.
 const DAMPING: [f64; 3] = [1e-3, 0.25, 6.0];
-/// Damping at which the steps that are left are too short to matter.
+/// Damping at which steps become negligible.
 const MAX_DAMPING: f64 = 10.0;
-/// A smaller gain is no progress; a last one smaller than the other is rest, as far as the result goes.
+/// Smaller gains than the first threshold are no progress; if the last gain is below the second, the refinement has
+/// converged.
 const MIN_GAIN: f32 = 1e-5;
 const SMALL_GAIN: f32 = 2e-3;
-/// Most that a step may turn, in radians, and stretch.
+/// Maximum rotation, in radians, and maximum relative change of size of a step.
 const MAX_TURN: f64 = 0.35;
 const MAX_STRETCH: f64 = 0.25;
-/// Residuals nearer than this count as this, in units of their scale: a loss like |e| has no curvature at 0.
+/// Minimum magnitude of residuals, in units of their scale, because a loss like |e| has no finite curvature at 0.
 const MIN_DEPTH_ERROR: f32 = 0.1;
 const MIN_OUTLINE_CELLS: f32 = 0.5;
-/// One over the square of the distance, cells, beyond which the nearest outline hardly is the right one.
+/// 1/d², where d is the distance in cells beyond which the nearest outline is rarely the correct one.
 const FAR_OUTLINE: f32 = 1.0 / 9.0;
 
 impl Refiner<'_> {
-    /// Climbs from `pose` for at most `iterations` steps.
+    /// Refines `pose` in at most `iterations` steps.
     pub fn refine(&self, canvas: &mut Canvas, pose: CropPose, iterations: usize) -> Refined {
         let pose = self.objective.prior.held(pose);
         let score = self.objective.score(canvas, &pose);
@@ -85,7 +86,7 @@ impl Refiner<'_> {
         best
     }
 
-    /// The damped step from `pose`, held to a length that the quadratic can be believed for.
+    /// The damped step from `pose`, limited to the range in which the quadratic is valid.
     fn step(&self, equations: &NormalEquations, pose: &CropPose, damping: f64) -> Option<Step> {
         let mut step = equations.solve(damping)?;
         if self.lock_scale {
@@ -99,7 +100,7 @@ impl Refiner<'_> {
         step.iter().all(|x| x.is_finite()).then_some(step)
     }
 
-    /// The quadratic at what was drawn last.
+    /// The quadratic at the last render.
     pub fn equations(&self, canvas: &Canvas, score: &Score) -> NormalEquations {
         let mut equations = NormalEquations::new();
         let mut turns = Turns::default();
@@ -109,7 +110,7 @@ impl Refiner<'_> {
         let depth_weight = per_cell(weights.depth, depth_cells);
         let normal_weight = per_cell(weights.normals, normal_cells);
         let outline_weight = per_cell(weights.outline, outline_cells);
-        // The score is a product: a cell of overlap is worth all that it is multiplied by.
+        // The score is a product, so the weight of a cell of overlap includes the other factor.
         let overlap_weight = weights.agreement(score) / score.union.max(1.0);
         let per_depth = 1.0 / self.objective.scoring.depth_m;
         let half = self.objective.scoring.outline_cells;
@@ -132,7 +133,7 @@ impl Refiner<'_> {
                     let error = (z - observed) * per_depth;
                     let size = error.abs().max(MIN_DEPTH_ERROR);
                     let curvature = 1.0 / (size * (1.0 + error.abs()) * (1.0 + error.abs()));
-                    // Along the mesh's normal: distance to the tangent plane, as the point moves.
+                    // Along the normal of the mesh: distance to the tangent plane.
                     let gradient = normal * per_depth;
                     let residual = normal.dot(point) * w * error;
                     self.add(&mut equations, canvas, point, gradient, residual, depth_weight * curvature);
@@ -164,7 +165,7 @@ impl Refiner<'_> {
         equations
     }
 
-    /// Root mean square of the depth residuals at what was drawn last, without those beyond three of their scales.
+    /// Root mean square of the depth residuals of the last render, without those beyond three times their scale.
     pub fn depth_rms(&self, canvas: &Canvas) -> f64 {
         let (mut sum, mut count) = (0.0f64, 0u32);
         for (w, observed) in canvas.inverse_depth.iter().zip(&self.objective.grid.depth) {
@@ -202,7 +203,7 @@ impl Refiner<'_> {
     }
 }
 
-/// Σ ½|n − n′|² over pairs of normals, as a quadratic in the turn of n alone.
+/// Σ ½|n − n′|² over pairs of normals, as a quadratic in the rotation of n only.
 #[derive(Default)]
 struct Turns {
     outer: [[f32; 3]; 3],

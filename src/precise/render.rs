@@ -1,7 +1,7 @@
-//! The search's own rasteriser: for thousands of small images a second.
+//! The rasteriser of the search: thousands of small images per second.
 //!
-//! Where the metrics' [`Rasteriser`](crate::geometry::rasteriser::Rasteriser) clips and works in f64, this one works in
-//! f32, and leaves out what comes close to the camera. Coverage is decided in integers in both.
+//! Unlike the [`Rasteriser`](crate::geometry::rasteriser::Rasteriser) of the metrics, which clips and uses f64, this
+//! one uses f32 and skips triangles close to the camera. Both decide coverage in integers.
 
 use glam::{Mat3, Vec3};
 
@@ -9,15 +9,15 @@ use super::grid::CropGrid;
 use super::pose::CropPose;
 use crate::geometry::mesh::Mesh;
 
-/// Depth before which a vertex is not drawn, as a share of the middle of the mesh's.
+/// Minimum depth of a rendered vertex, relative to the depth of the centre of the mesh.
 const NEAR: f32 = 0.05;
-/// Steps per cell to which vertices are snapped, 2⁶.
+/// Subpixel steps per cell to which vertices are snapped, 2⁶.
 const STEPS: i32 = 64;
 const SHIFT: u32 = 6;
-/// Vertices further out than this, in steps, are moved here.
+/// Maximum coordinate of a vertex, in steps; larger ones are clamped.
 const FARTHEST: f32 = 1_000_000.0;
 
-/// A mesh prepared for drawing.
+/// A mesh prepared for rendering.
 #[derive(Debug, Clone)]
 pub struct Model {
     /// In the mesh frame.
@@ -43,10 +43,10 @@ impl Model {
     }
 }
 
-/// What was drawn last, with buffers to be reused.
+/// The last render, with reusable buffers.
 #[derive(Debug, Clone, Default)]
 pub struct Canvas {
-    /// 1/z per cell; 0 where nothing is.
+    /// 1/z per cell; 0 if empty.
     pub inverse_depth: Vec<f32>,
     /// Triangle per cell.
     pub triangle: Vec<u32>,
@@ -61,7 +61,7 @@ pub struct Canvas {
     vertices: Vec<Vertex>,
 }
 
-/// A vertex on the grid, in steps, and its 1/z; 0 where it can't be drawn.
+/// A vertex on the grid, in steps, and its 1/z; 0 if it cannot be rendered.
 #[derive(Debug, Clone, Copy)]
 struct Vertex {
     u: i32,
@@ -69,7 +69,7 @@ struct Vertex {
     w: f32,
 }
 
-/// A vertex as the products of coverage need it.
+/// A vertex for the coverage test.
 #[derive(Clone, Copy)]
 struct Corner {
     u: i64,
@@ -78,7 +78,7 @@ struct Corner {
 }
 
 impl Canvas {
-    /// Draws the model on the grid's cells.
+    /// Renders the model on the cells of the grid.
     pub fn draw(&mut self, model: &Model, pose: &CropPose, grid: &CropGrid) {
         let (scale, translation) = pose.scale_translation();
         self.rotation = glam::DMat3::from_quat(pose.rotation).as_mat3();
@@ -94,7 +94,7 @@ impl Canvas {
         }
     }
 
-    /// Moves the vertices into the camera frame and onto the grid.
+    /// Transforms the vertices to the camera frame and projects them onto the grid.
     fn project(&mut self, model: &Model, grid: &CropGrid) {
         let linear = self.rotation * self.scale;
         let near = NEAR * self.translation.z;
@@ -117,10 +117,10 @@ impl Canvas {
     }
 }
 
-/// Draws a triangle. Slices rather than the canvas: their addresses stay in registers.
+/// Renders a triangle. Takes slices instead of the canvas, so that their addresses stay in registers.
 #[inline]
 fn fill(inverse_depth: &mut [f32], drawn: &mut [u32], [width, height]: [usize; 2], id: u32, [a, b, c]: [Vertex; 3]) {
-    // The first and last cell whose centre the triangle's box holds.
+    // The first and last cell whose centre is in the box of the triangle.
     let first = |low: i32| (low.max(0) + STEPS - 1) >> SHIFT;
     let last = |high: i32, size: usize| (high >> SHIFT).min(size as i32 - 1);
     let (u0, u1) = (first(a.u.min(b.u).min(c.u)), last(a.u.max(b.u).max(c.u), width));
@@ -137,7 +137,7 @@ fn fill(inverse_depth: &mut [f32], drawn: &mut [u32], [width, height]: [usize; 2
         area = -area;
         core::mem::swap(&mut b, &mut c);
     }
-    // Twice the areas that a cell's centre spans with two edges; the third is what is left of the whole.
+    // Twice the areas that a cell centre spans with two edges; the third follows from the total.
     let (b_du, b_dv) = (c.v - a.v, a.u - c.u);
     let (c_du, c_dv) = (a.v - b.v, b.u - a.u);
     let steps = i64::from(STEPS);
@@ -170,10 +170,10 @@ fn fill(inverse_depth: &mut [f32], drawn: &mut [u32], [width, height]: [usize; 2
     }
 }
 
-/// Cells to steps, rounded to nearest; a number that is none becomes 0.
+/// Converts cells to steps, rounded to nearest; NaN becomes 0.
 #[inline]
 fn snap(cells: f32) -> i32 {
-    // Shifted to be positive, so that the truncation of the cast is a floor.
+    // Shifted to positive values, so that the cast rounds down.
     const OFFSET: i32 = 1 << 20;
     let steps = (cells * STEPS as f32).clamp(-FARTHEST, FARTHEST);
     (steps + (OFFSET as f32 + 0.5)) as i32 - OFFSET

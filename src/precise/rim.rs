@@ -1,38 +1,38 @@
-//! Rim: how far the mask's outline is from where the depth map has the object end.
+//! Rim: the offset between the outline of the mask and that in the depth map.
 //!
-//! Masks are commonly a pixel or two too large or too small all around, which is read as so much scale. Where the
-//! object stands before something farther, the depth map shows its outline too: the offset between the two, measured
-//! along many rays across the rim, corrects the whole mask.
+//! Masks are commonly a pixel or two too large or too small all around, which would bias the scale. If the background
+//! is farther away than the object, the depth map shows the outline as well. The offset between the two, measured along
+//! many rays across the rim, corrects the whole mask.
 
 use super::clean::CleanObservation;
 use crate::geometry::order::median;
 
 /// Steps of a ray across the rim, pixels, inwards (negative) to outwards.
 const STEP: f64 = 0.5;
-/// Where along a ray the object's own depth is read, and where that behind it.
+/// The parts of a ray where the depths of the object and of the background are read.
 const INSIDE: [f64; 2] = [-9.0, -3.0];
 const OUTSIDE: [f64; 2] = [4.0, 9.0];
-/// How far inside the outline a depth is surely the object's, pixels.
+/// Distance inside the outline at which depths certainly belong to the object, pixels.
 const DEEP: f32 = 2.0;
-/// A gap without reading, pixels, beyond which the outline could be anywhere.
+/// Maximum gap without readings, pixels; in larger gaps, the position of the outline is unknown.
 const MAX_GAP: f64 = 2.0;
-/// Rays that have to show an outline: as many, and as large a share of the rim.
+/// Minimum number of rays with an outline, and their minimum share of the rim.
 const MIN_RAYS: usize = 24;
 const MIN_SHARE: f64 = 0.12;
-/// The largest offset believed, pixels.
+/// Maximum plausible offset, pixels.
 const MAX_OFFSET: f64 = 6.0;
-/// The median absolute deviation of the rays, pixels, beyond which they do not agree on any.
+/// Maximum median absolute deviation of the rays, pixels; beyond it, they do not agree.
 const MAX_SPREAD: f64 = 0.8;
 
-/// The offset of the depth map's outline from the mask's, pixels: positive where the mask is too small; 0 where the
-/// depth map does not tell.
+/// The offset of the depth map's outline from the mask's, pixels: positive if the mask is too small; 0 if the depth map
+/// does not determine it.
 pub fn rim_offset(observation: &CleanObservation, jump_m: f64) -> f64 {
     let (width, height, signed) = (observation.width, observation.height, &observation.outline);
     let (mut rim, mut offsets) = (0usize, Vec::new());
     for v in 2..height.saturating_sub(2) {
         for u in 2..width.saturating_sub(2) {
             let i = v * width + u;
-            // The mask's outermost pixels.
+            // The outermost pixels of the mask.
             if signed[i] >= 0.0 || signed[i] < -0.5 {
                 continue;
             }
@@ -53,7 +53,7 @@ pub fn rim_offset(observation: &CleanObservation, jump_m: f64) -> f64 {
     }
     let middle = median(offsets.iter().copied()).unwrap_or(0.0);
     let spread = median(offsets.iter().map(|t| (t - middle).abs())).unwrap_or(0.0);
-    // The mean of what is near the median: rays step by half a pixel.
+    // The mean of the values near the median, because rays step by half a pixel.
     let near = || offsets.iter().filter(|t| (**t - middle).abs() <= 1.0);
     let offset = near().map(|t| f64::from(*t)).sum::<f64>() / near().count().max(1) as f64;
     if f64::from(spread) <= MAX_SPREAD && offset.abs() <= MAX_OFFSET { offset } else { 0.0 }
@@ -67,7 +67,7 @@ struct Ray<'a> {
 }
 
 impl Ray<'_> {
-    /// The reading at `t` pixels outwards of the start; `None` where there is none.
+    /// The reading `t` pixels outwards from the start; `None` if there is none.
     fn depth(&self, t: f64) -> Option<f64> {
         let z = self.observation.scene[self.pixel(t)?];
         (z > 0.0).then_some(f64::from(z))
@@ -80,11 +80,11 @@ impl Ray<'_> {
         inside.then(|| at[1] as usize * width + at[0] as usize)
     }
 
-    /// The median reading of a stretch of the ray, of pixels at least `inside` from the mask's outline.
+    /// The median reading of a segment of the ray, over pixels at least `inside` from the outline of the mask.
     fn median(&self, [from, to]: [f64; 2], inside: f32) -> Option<f64> {
         let steps = (to - from) as usize;
         let stretch = (0..=steps).map(|k| from + k as f64);
-        // A thin object's ray leaves it on the other side.
+        // In a thin object, the ray leaves on the other side.
         let depths = stretch.filter(|t| self.outline(*t) <= -inside).filter_map(|t| self.depth(t));
         median(depths.map(|z| z as f32)).map(f64::from)
     }
@@ -93,7 +93,7 @@ impl Ray<'_> {
         self.pixel(t).map_or(f32::INFINITY, |i| self.observation.outline[i])
     }
 
-    /// Where the depth leaves the object for what is at least `jump_m` behind it.
+    /// The position where the depth steps from the object to at least `jump_m` behind it.
     fn crossing(&self, jump_m: f64) -> Option<f64> {
         let (inside, outside) = (self.median(INSIDE, DEEP)?, self.median(OUTSIDE, f32::NEG_INFINITY)?);
         if outside - inside < jump_m {

@@ -1,7 +1,7 @@
-//! Rounds: a search as lists of tasks that do not depend on one another.
+//! Rounds: a search as lists of independent tasks.
 //!
-//! The outcomes of a round's tasks, in their order, determine the next round; ties are broken by that order. So a search
-//! can pause after any task without changing a bit of its result.
+//! The results of a round, in the order of its tasks, determine the next round; ties are broken by that order. A search
+//! can therefore pause after any task, with bit-identical results.
 
 use super::anchors::{Anchor, anchors};
 use super::coarse::Coarse;
@@ -15,31 +15,31 @@ use super::search::{Found, Search};
 use crate::geometry::rotations::super_fibonacci;
 use crate::geometry::similarity::Similarity;
 
-/// A search under way.
+/// A running search.
 pub struct Rounds {
-    /// What is searched.
+    /// The search.
     pub search: Search,
-    /// Candidates of the ranking round, best first; empty before it has ended.
+    /// Candidates of the ranking round, best first; empty until it has ended.
     pub found: Vec<Found>,
-    /// Index of the present round.
+    /// Index of the current round.
     index: usize,
-    /// The grid of the present round, unless that is the search's own fine grid.
+    /// The grid of the current round, unless it is the fine grid of the search.
     grid: CropGrid,
-    /// Sizes and places that are tried for each rotation.
+    /// Sizes and positions tried for each rotation.
     anchors: Vec<Anchor>,
-    /// Poses that the round's tasks begin at; the rotations of the first round need no list.
+    /// Initial poses of the tasks of the round; the rotations of the first round need no list.
     poses: Vec<CropPose>,
-    /// Outcomes of the round's tasks that are done, in their order, and how many tasks those are.
+    /// Results of the finished tasks of the round, in order, and the number of these tasks.
     outcomes: Vec<Found>,
     tasks_done: usize,
-    /// Candidates that the grid of rotations did not find: one list goes before its own, the other after.
+    /// Candidates from other sources than the rotation grid: one list precedes those of the grid, the other follows.
     others: [Vec<CropPose>; 2],
-    /// The best of the last round, if it found any.
+    /// The best candidate of the last round, if any.
     best: Vec<Found>,
 }
 
 impl Rounds {
-    /// Begins at the grid of rotations or, where the search is not `global`, with the surroundings of `initial` alone.
+    /// Starts with the rotation grid or, if the search is not `global`, only with the neighbourhood of `initial`.
     pub fn new(mut search: Search, initial: Option<CropPose>, global: bool) -> Self {
         let around = initial.map_or_else(Vec::new, |pose| search.around(pose));
         let anchors = if global && search.settings.anchors {
@@ -62,25 +62,25 @@ impl Rounds {
         }
     }
 
-    /// Adds the surroundings of a pose that was found otherwise to the candidates of the grid.
+    /// Adds the neighbourhood of a pose from another source to the candidates of the grid.
     pub fn join(&mut self, pose: CropPose) {
         self.others[1] = self.search.around(pose);
     }
 
-    /// The present round; `None` when the search is over.
+    /// The current round; `None` after the end of the search.
     pub fn round(&self) -> Option<Round> {
         let round = self.search.settings.rounds.get(self.index).copied();
-        // Poses that were found otherwise join after the rounds on the grid of rotations, which may find none.
+        // Poses from other sources are added after the rounds on the rotation grid, which may find none.
         round.filter(|_| self.index < FIRST_REFINEMENT || self.tasks() > 0)
     }
 
-    /// Number of tasks of the present round.
+    /// Number of tasks of the current round.
     fn tasks(&self) -> usize {
         if self.index == 0 { self.search.settings.rotations() } else { self.poses.len() }
     }
 
-    /// Does tasks of the present round until all are done, or until `pause` returns true, which is asked after each; then
-    /// begins the next round. Returns whether the round has ended.
+    /// Runs tasks of the current round until `pause`, which is called after each, returns true. After the last task,
+    /// starts the next round. Returns whether the round has ended.
     pub fn run(&mut self, pause: &mut dyn FnMut() -> bool) -> bool {
         let Some(round) = self.round() else { return true };
         let search = &self.search;
@@ -110,7 +110,7 @@ impl Rounds {
         true
     }
 
-    /// Chooses the poses of the next round.
+    /// Selects the poses of the next round.
     fn end_round(&mut self, round: Round) {
         let outcomes = core::mem::take(&mut self.outcomes);
         self.tasks_done = 0;
@@ -122,7 +122,7 @@ impl Rounds {
                 self.poses = poses_of(&self.found[..round.keep.min(self.found.len())]);
             }
             index if index > RANKING => {
-                // The scores stay those of the ranking: scores of different grids do not compare.
+                // Keeps the scores of the ranking, because scores of different grids are not comparable.
                 for (best, polished) in self.found.iter_mut().zip(outcomes) {
                     best.pose = polished.pose;
                 }
@@ -150,9 +150,9 @@ impl Rounds {
         }
     }
 
-    /// The best pose so far, and its score on the grid of its round: scores of different grids do not compare.
+    /// The best pose so far, and its score on the grid of its round: scores of different grids are not comparable.
     pub fn best(&self) -> Option<(Similarity, f64)> {
-        // After the ranking, the order is final.
+        // The order is final after the ranking.
         let best = self.found.first().or(self.best.first())?;
         Some((best.pose.similarity(&self.search.mesh.frame), f64::from(best.score.total)))
     }

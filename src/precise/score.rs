@@ -1,10 +1,10 @@
-//! Score: how well a drawn pose explains mask, free space and depth.
+//! Score: how well a rendered pose explains mask, free space and depth.
 
 use super::grid::CropGrid;
 use super::render::{Canvas, Model};
 use crate::report::ScoreTerms;
 
-/// What counts how much.
+/// Weights of the terms.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Weights {
     /// Overlap of mask and silhouette.
@@ -15,7 +15,7 @@ pub struct Weights {
     pub normals: f32,
     /// Outlines.
     pub outline: f32,
-    /// A cell of silhouette behind an occluder, in the union: 0 is no cost, 1 that of free space.
+    /// Weight in the union of a silhouette cell behind an occluder: 0 is no cost, 1 the cost of free space.
     pub occluded: f32,
 }
 
@@ -26,45 +26,45 @@ impl Default for Weights {
 }
 
 impl Weights {
-    /// What a score's overlap is multiplied by.
+    /// The factor of the overlap in a score.
     pub fn agreement(&self, score: &Score) -> f32 {
         self.overlap + self.depth * score.depth + self.normals * score.normals + self.outline * score.outline
     }
 }
 
-/// The score's settings at one resolution.
+/// Settings of the score at one resolution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scoring {
     /// Weights of the terms.
     pub weights: Weights,
-    /// Depth error that halves a cell's credit, metres.
+    /// Depth error that halves the credit of a cell, metres.
     pub depth_m: f32,
-    /// Scene this much nearer than the mesh occludes it, metres.
+    /// Depth margin at which the scene occludes the mesh, metres.
     pub occluder_m: f32,
-    /// Outline distance that halves a cell's credit, cells.
+    /// Outline distance that halves the credit of a cell, cells.
     pub outline_cells: f32,
 }
 
-/// A score and what it is made of; all terms from 0 to 1.
+/// A score and its terms, each from 0 to 1.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Score {
     /// The weighted sum.
     pub total: f32,
-    /// Intersection over union, with what is hidden and what is lost accounted for.
+    /// Intersection over union, adjusted for occlusion and for parts outside the grid.
     pub overlap: f32,
-    /// Share of the mask that the mesh covers.
+    /// Fraction of the mask that the mesh covers.
     pub coverage: f32,
-    /// Agreement of depth where both have it.
+    /// Agreement of the depths, where both are known.
     pub depth: f32,
-    /// Agreement of normals where both have them.
+    /// Agreement of the normals, where both are known.
     pub normals: f32,
     /// Agreement of the outlines.
     pub outline: f32,
-    /// Share of the silhouette that an occluder hides.
+    /// Fraction of the silhouette that is occluded.
     pub hidden: f32,
-    /// Cells of the union.
+    /// Number of cells of the union.
     pub union: f32,
-    /// Cells with depth in both, normals in both, and cells of visible outline.
+    /// Numbers of cells with depth in both, with normals in both, and of visible outline.
     pub counts: [u32; 3],
 }
 
@@ -82,13 +82,13 @@ impl From<&Score> for ScoreTerms {
 }
 
 impl Scoring {
-    /// Whether a reading of the scene, metres, hides a mesh at `z`; none hides nothing.
+    /// Whether a reading of the scene, metres, occludes a mesh at `z`; 0 (no reading) does not.
     #[inline]
     pub fn hides(&self, scene: f32, z: f32) -> bool {
         scene > 0.0 && scene < z - self.occluder_m
     }
 
-    /// Scores what was drawn last. `stretch` multiplies the drawn depths: the silhouette does not depend on it.
+    /// Scores the last render. `stretch` multiplies the rendered depths; the silhouette does not depend on it.
     pub fn score(&self, canvas: &Canvas, model: &Model, grid: &CropGrid, stretch: f32) -> Score {
         let (mut both, mut extra, mut hidden) = (0u32, 0u32, 0u32);
         let (mut depth_cells, mut depth_error) = (0u32, 0.0f32);
@@ -100,7 +100,7 @@ impl Scoring {
         let to_mesh = canvas.rotation.transpose();
         let wants_outline = self.weights.outline > 0.0;
         for v in 0..grid.height {
-            // Row by row: a row's length is checked once, not each of its cells.
+            // By rows, so that bounds are checked once per row instead of once per cell.
             let row = v * width..(v + 1) * width;
             let (drawn, mask) = (&canvas.inverse_depth[row.clone()], &grid.mask[row.clone()]);
             let (depth, scene) = (&grid.depth[row.clone()], &grid.scene[row]);
@@ -140,7 +140,7 @@ impl Scoring {
         let mask_cells = grid.mask_cells as f32;
         let [both, extra, hidden] = [both, extra, hidden].map(|cells| cells as f32);
         let drawn = both + extra + hidden;
-        // Silhouette that leaves the grid has to cost, or the scale runs away.
+        // Silhouette outside the grid must have a cost; otherwise, the scale would grow without limit.
         let lost = canvas.lost / (1.05 - canvas.lost) * drawn;
         let union = mask_cells + extra + self.weights.occluded * hidden + lost;
         let coverage = both / mask_cells.max(1.0);
@@ -159,13 +159,13 @@ impl Scoring {
             union,
             counts: [depth_cells, normal_cells, outline_cells],
         };
-        // Agreement counts by the share of the union that it speaks for: multiplied by the coverage alone, which free
-        // space does not lower, it would favour a mesh that is too large.
+        // Agreement is weighted by the fraction of the union that it covers. Weighted by the coverage alone, which free
+        // space does not reduce, it would favour a mesh that is too large.
         Score { total: overlap * self.weights.agreement(&score), ..score }
     }
 }
 
-/// Whether a drawn cell has a neighbour that is not drawn. The grid's own border is no outline.
+/// Whether a rendered cell has an empty neighbour. The border of the grid is not an outline.
 #[inline]
 pub fn is_outline(canvas: &Canvas, width: usize, height: usize, u: usize, v: usize) -> bool {
     if u == 0 || v == 0 || u + 1 >= width || v + 1 >= height {

@@ -1,4 +1,4 @@
-//! A search: the observation and the mesh, prepared for drawing on every grid.
+//! A search: the observation and the mesh, prepared for rendering on every grid.
 
 use crate::evidence::observation::Observation;
 
@@ -18,7 +18,7 @@ use super::refine::{Refined, Refiner};
 use super::render::Canvas;
 use super::score::Score;
 
-/// Turns tried around a given pose, radians, and how many of them are refined.
+/// Rotations tried around a given pose, radians, and the number that are refined.
 const NEIGHBORHOOD: [f64; 2] = [0.17, 0.4];
 const NEIGHBORS: usize = 7;
 
@@ -28,24 +28,24 @@ pub struct Search {
     pub mesh: Rc<MeshPyramid>,
     /// The cleaned observation.
     pub observation: CleanObservation,
-    /// Images drawn so far.
+    /// Number of renders so far.
     pub renders: usize,
     pub(super) settings: SearchSettings,
     prior: Prior,
-    /// The fine grid, on which poses are compared in the end.
+    /// The fine grid, on which the final poses are compared.
     pub(super) fine: CropGrid,
 }
 
-/// A candidate, as far as it has come.
+/// A candidate in its current state.
 #[derive(Debug, Clone, Copy)]
 pub struct Found {
     /// The pose.
     pub pose: CropPose,
-    /// Its score, in the end on the fine grid.
+    /// Its score, finally on the fine grid.
     pub score: Score,
-    /// Whether its refinement came to rest.
+    /// Whether its refinement converged.
     pub converged: bool,
-    /// Images drawn for it.
+    /// Number of renders for it.
     pub renders: usize,
 }
 
@@ -62,7 +62,7 @@ impl From<Refined> for Found {
 }
 
 impl Search {
-    /// Cleans the observation, and prepares its fine grid.
+    /// Cleans the observation, and prepares the fine grid.
     pub fn new(observation: &Observation, mesh: Rc<MeshPyramid>, settings: SearchSettings) -> Self {
         let observation = CleanObservation::new(observation);
         Self {
@@ -75,12 +75,12 @@ impl Search {
         }
     }
 
-    /// Takes what is known beforehand into account from now on.
+    /// Sets the prior.
     pub fn assume(&mut self, prior: Prior) {
         self.prior = prior;
     }
 
-    /// A pose and its neighbourhood: turned about every axis, at its own distance and at that of the depths.
+    /// A pose and its neighbourhood: rotated about every axis, at its own distance and at that of the depths.
     pub(super) fn around(&mut self, pose: CropPose) -> Vec<CropPose> {
         let grid = self.grid(COARSE);
         let stage = Coarse { objective: self.objective(COARSE, &grid), median_m: self.observation.median_m };
@@ -104,13 +104,13 @@ impl Search {
         CropGrid::new(&self.observation, self.settings.grids[grid].cells)
     }
 
-    /// What poses are compared by on the grid of this index.
+    /// The objective on the grid with this index.
     pub(super) fn objective<'a>(&'a self, index: usize, grid: &'a CropGrid) -> Objective<'a> {
         let scoring = self.settings.scoring(&self.observation, index);
         Objective { model: &self.mesh.models[index], grid, scoring, prior: self.prior }
     }
 
-    /// Whether a pose stands at a bound of the scale that leaves a choice.
+    /// Whether a pose is at a bound of a scale that is not fixed.
     pub fn is_held(&self, pose: &CropPose) -> bool {
         self.prior.holds(pose)
     }
@@ -120,7 +120,7 @@ impl Search {
         self.objective(FINE, &self.fine).score(&mut Canvas::default(), pose)
     }
 
-    /// How firmly the observation holds a pose, and the root mean square of its depth residuals, metres.
+    /// The conditioning of a pose, and the root mean square of its depth residuals, metres.
     pub fn conditioning(&self, pose: &CropPose) -> (Option<Conditioning>, f64) {
         let refiner = Refiner { objective: self.objective(FINE, &self.fine), lock_scale: false };
         let mut canvas = Canvas::default();

@@ -310,7 +310,7 @@ const options: [name: string, options: unknown, code: ErrorCode, argument: strin
     { preset: "paper", quality: "best" },
     "UNKNOWN_OPTION",
     "options.quality",
-    /`quality`, which is an option of preset "precise".*Leave `preset` out/,
+    /`quality`, which is an option of preset "precise".*Omit `preset`/,
   ],
   [
     "lockScale without the paper's method",
@@ -379,7 +379,7 @@ const options: [name: string, options: unknown, code: ErrorCode, argument: strin
     { scale: 1, knownExtentM: 1 },
     "INVALID_OPTION",
     "options.knownExtentM",
-    /leave one of the two out/,
+    /omit one of the two/,
   ],
   ["up as zero", { cameraUp: [0, 0, 0], meshUp: [0, 1, 0] }, "INVALID_OPTION", "options.cameraUp", /not all 0/],
   ["up of two numbers", { cameraUp: [0, 1] }, "INVALID_OPTION", "options.cameraUp", /Array of 2.*three/],

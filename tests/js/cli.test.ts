@@ -114,7 +114,7 @@ test("a single case is shown in detail", () => {
     "silhouette IoU",
     "ransac",
     "hypotheses",
-    "Error against the truth",
+    "Errors (compared with gt.json)",
   ]) {
     assert.ok(stdout.includes(word), word);
   }
@@ -126,7 +126,7 @@ test("the default shows how sure it is, and what else the pose may be", () => {
   const { status, stdout, stderr } = run("align", "blob");
   assert.equal(status, 0, stderr);
   assert.match(stdout, /confidence +(\d\.\d\d|–), score \d\.\d{3}\n/);
-  assert.match(stdout, /alternatives +(none|\d+, turned by \d+° \(score \d\.\d{3}\))/);
+  assert.match(stdout, /alternatives +(none|\d+, rotated by \d+° \(score \d\.\d{3}\))/);
   assert.match(stdout, /renders +\d+/);
   assert.ok(!stdout.includes("hypotheses"), "the paper's method has these");
 });
@@ -188,7 +188,7 @@ test("bad cases are reported, the good ones aligned, and the exit status tells",
 test("files among the folders are passed over, but not files alone", () => {
   const { status, stderr } = run("align", "blob", "out.json", "--json", "among.json");
   assert.equal(status, 0, stderr);
-  assert.match(stderr, /no folder: out\.json/);
+  assert.match(stderr, /not a folder: out\.json/);
   assert.deepEqual(Object.keys(results("among.json")), ["blob"]);
   assert.equal(run("align", "out.json").status, 2);
 });
@@ -329,11 +329,11 @@ const usage: [name: string, args: string[], message: RegExp][] = [
   ["a known extent and a scale", ["align", "blob", "--known-extent", "0.1", "--scale", "1"], /options\.knownExtentM/],
   ["a local search from nowhere", ["align", "blob", "--search", "local"], /options\.search.*initial/],
   ["an unknown symmetry", ["align", "blob", "--symmetry", "round"], /options\.symmetry/],
-  ["a symmetry that is no JSON", ["align", "blob", "--symmetry", "[{axis}]"], /Not JSON/],
+  ["a symmetry that is no JSON", ["align", "blob", "--symmetry", "[{axis}]"], /Invalid JSON/],
   ["a seed that is no number", ["align", "blob", "--seed", "one"], /Not a number/],
   ["a guard of one number", ["align", "blob", "--guard", "0.5"], /MIN,MAX/],
-  ["options that are no JSON", ["align", "blob", "--options", "{seed:1}"], /Not JSON/],
-  ["options that are no object", ["align", "blob", "--options", "[1]"], /Give an object/],
+  ["options that are no JSON", ["align", "blob", "--options", "{seed:1}"], /Invalid JSON/],
+  ["options that are no object", ["align", "blob", "--options", "[1]"], /Expected an object/],
   [
     "an option out of range",
     ["align", "blob", "--preset", "paper", "--voxel-divisions", "1"],
@@ -357,7 +357,7 @@ for (const [name, args, message] of usage) {
 test("evaluate scores the truth, a file, and what align wrote", () => {
   const { status, stdout } = run("evaluate", "blob", "--json", "truth.json");
   assert.equal(status, 0);
-  assert.match(stdout, /silhouette IoU.*Error against the truth.*rotation +0\.00°/s);
+  assert.match(stdout, /silhouette IoU.*Errors \(compared with gt\.json\).*rotation +0\.00°/s);
   const { blob } = results("truth.json");
   assert.ok(blob.metrics.iou > 0.99);
   assert.ok(blob.errors.scaleError < 1e-6);
@@ -375,7 +375,7 @@ test("evaluate scores the truth, a file, and what align wrote", () => {
 test("evaluate reports what it can't do", () => {
   const failing: [args: string[], code: string, message: RegExp][] = [
     [["nowhere"], "FILE_NOT_FOUND", /nowhere/],
-    [["blob-other-formats"], "FILE_NOT_FOUND", /no known pose/],
+    [["blob-other-formats"], "FILE_NOT_FOUND", /no true pose/],
     [["blob", "--transform", "missing.json"], "FILE_NOT_FOUND", /missing\.json/],
     [["blob", "--transform", "blob/mask.png"], "CORRUPT_FILE", /JSON/],
     [["empty-mask", "--transform", "aligned.json"], "INVALID_TRANSFORM", /the failure of empty-mask/],

@@ -208,7 +208,7 @@ test("sizes that do not go together are refused", async () => {
   await rejectsWith(async () => maskBox({ data: new Uint8Array(4), width: 2, height: 2 }), {
     code: "EMPTY_MASK",
     argument: "mask",
-    message: /no pixel/,
+    message: /no non-zero pixel/,
   });
   await rejectsWith(
     async () => resizeCamera({ ...camera, fx: 0 }, { fromWidth: 1, fromHeight: 1, width: 2, height: 2 }),

@@ -58,7 +58,7 @@ test("broken encodings are refused", async () => {
   const counts = first.coco;
   const coco = (broken: string | number[]) => async () =>
     fromCocoRle({ size: [first.height, first.width], counts: broken });
-  await rejectsWith(coco(counts.slice(0, -2)), corrupt("rle.counts", /sum up to/));
+  await rejectsWith(coco(counts.slice(0, -2)), corrupt("rle.counts", /add up to/));
   await rejectsWith(coco(`${counts}é`), corrupt("rle.counts", /letter "é"/));
   await rejectsWith(coco(`${counts}P`), corrupt("rle.counts", /unfinished/));
   await rejectsWith(coco("ooooooooo0"), corrupt("rle.counts", /35 bits/));
@@ -90,7 +90,7 @@ test("encodings of other images are refused", async () => {
   await rejectsWith(async () => fromCvatRle([1, 2], size), {
     code: "WRONG_LENGTH",
     argument: "mask",
-    message: /box's four numbers/,
+    message: /four numbers of the box/,
   });
   await rejectsWith(async () => fromLabelStudioRle([1, 256], size), {
     code: "INVALID_ARGUMENT",
@@ -105,6 +105,6 @@ test("encodings of other images are refused", async () => {
   await rejectsWith(async () => toCocoRle({ data: new Uint8Array(0), width: 0, height: 2 }), {
     code: "INVALID_ARGUMENT",
     argument: "mask.width",
-    message: /from 1 on/,
+    message: /at least 1/,
   });
 });

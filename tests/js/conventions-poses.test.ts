@@ -307,7 +307,7 @@ test("other wrong arguments are named", async () => {
   await rejectsWith(async () => fromSam3d({ scale: [1, 2, 1], rotation: [1, 0, 0, 0], translation: [0, 0, 1] }), {
     code: "INVALID_TRANSFORM",
     argument: "layout.scale",
-    message: /one scale/,
+    message: /uniform scale/,
   });
   await rejectsWith(async () => fromBop({ cam_R_m2c: [1, 0, 0], cam_t_m2c: [0, 0, 1] }), {
     code: "WRONG_LENGTH",

@@ -132,8 +132,8 @@ const refusedCameras: [unknown, CameraFileOptions, Expected][] = [
   [{ ...intrinsics, fx: 0 }, {}, { code: "INVALID_CAMERA", argument: "camera.fx", message: /found 0/ }],
   // A column-major K, as of MATLAB.
   [[600, 0, 0, 0, 610, 0, 319.5, 239.5, 1], {}, { code: "INVALID_CAMERA", argument: "camera.K", message: /transpose/ }],
-  [{ K: withNumber(K, 8, 0) }, {}, { code: "INVALID_CAMERA", argument: "camera.K", message: /row by row/ }],
-  [{ K: withNumber(K, 1, 1) }, {}, { code: "INVALID_CAMERA", argument: "camera.K", message: /row by row/ }],
+  [{ K: withNumber(K, 8, 0) }, {}, { code: "INVALID_CAMERA", argument: "camera.K", message: /row-major/ }],
+  [{ K: withNumber(K, 1, 1) }, {}, { code: "INVALID_CAMERA", argument: "camera.K", message: /row-major/ }],
   [`{${" ".repeat(1 << 24)}}`, {}, { code: "FILE_TOO_LARGE", argument: "camera", message: /16777216/ }],
   [7, {}, { code: "INVALID_ARGUMENT", argument: "file", message: /number 7/ }],
   [intrinsics, { width: 1.5 }, { code: "INVALID_ARGUMENT", argument: "options.width", message: /1\.5/ }],

@@ -197,7 +197,7 @@ test("wrong objects and cameras are refused", async () => {
   await rejectsWith(async () => transformFromObject3D(stretched), {
     code: "INVALID_TRANSFORM",
     argument: "transform",
-    message: /one scale for all axes/,
+    message: /uniform scale/,
   });
   const pose = { scale: 1, rotation: new Quaternion().toArray(), translation: [0, 0, 1] };
   await rejectsWith(async () => applyToObject3D(new Group(), pose, { frame: "ros" as never }), {

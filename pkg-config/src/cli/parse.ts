@@ -19,7 +19,7 @@ function numbers(text: string, count: number): number[] | null {
 export function guard(text: string): [number, number] | "none" {
   if (text === "none") return text;
   const values = numbers(text, 2);
-  if (values === null) throw new InvalidArgumentError('Give MIN,MAX such as 0.5,1.5, or "none".');
+  if (values === null) throw new InvalidArgumentError('Expected MIN,MAX, such as 0.5,1.5, or "none".');
   return values as [number, number];
 }
 
@@ -27,7 +27,7 @@ export function guard(text: string): [number, number] | "none" {
 export function scale(text: string): ScaleOption {
   if (text === "free") return text;
   const [value, max] = numbers(text, 1) ?? numbers(text, 2) ?? [];
-  if (value === undefined) throw new InvalidArgumentError('Give "free", a number such as 0.001, or MIN,MAX.');
+  if (value === undefined) throw new InvalidArgumentError('Expected "free", a number, such as 0.001, or MIN,MAX.');
   return max === undefined ? value : [value, max];
 }
 
@@ -56,7 +56,7 @@ export function jsonObject(text: string): Record<string, unknown> {
   } catch (error) {
     throw new InvalidArgumentError(`Invalid JSON: ${(error as Error).message}.`);
   }
-  throw new InvalidArgumentError('Give an object, such as {"ransacIterations": 200000}.');
+  throw new InvalidArgumentError('Expected an object, such as {"ransacIterations": 200000}.');
 }
 
 /** Parses fx,fy,cx,cy or fov:DEGREES; anything else is a file. */

@@ -147,7 +147,8 @@ function chunksOf(glb: unknown): { json: Record<string, unknown>; others: [numbe
   const corrupt = (found: string) =>
     failure("CORRUPT_FILE", "glb", found, "a complete GLB file", "Pass the aligned file unchanged.");
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-  if (bytes.length < 20 || view.getUint32(0, true) !== magic) throw corrupt(`${bytes.length} bytes without a GLB header`);
+  if (bytes.length < 20 || view.getUint32(0, true) !== magic)
+    throw corrupt(`${bytes.length} bytes without a GLB header`);
   const [version, length] = [view.getUint32(4, true), view.getUint32(8, true)];
   if (version !== 2) {
     throw failure("UNSUPPORTED_FORMAT", "glb", `glTF ${version}`, "glTF 2", "Convert it to glTF 2 first.");

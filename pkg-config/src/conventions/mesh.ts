@@ -23,7 +23,13 @@ export function meshOf(argument: string, mesh: unknown): Mesh {
   const count = positions.length / 3;
   if (count === 0) throw failure("EMPTY_MESH", argument, "no vertex", "triangles", "Pass a mesh.");
   if (!Number.isInteger(count)) {
-    throw failure("WRONG_LENGTH", named, `${positions.length} numbers`, "x, y, z per vertex", "Pass three numbers per vertex.");
+    throw failure(
+      "WRONG_LENGTH",
+      named,
+      `${positions.length} numbers`,
+      "x, y, z per vertex",
+      "Pass three numbers per vertex.",
+    );
   }
   const wrong = positions.findIndex((number) => !Number.isFinite(number));
   if (wrong >= 0) {

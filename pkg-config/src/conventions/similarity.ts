@@ -160,7 +160,13 @@ export function applyToPoints<T extends Float32Array | Float64Array>(transform: 
     throw wrongKind("points", points, "a Float32Array or a Float64Array, x, y, z per point", "Float32Array");
   }
   if (points.length % 3 !== 0) {
-    throw failure("WRONG_LENGTH", "points", `${points.length} numbers`, "x, y, z per point", "Pass three numbers per point.");
+    throw failure(
+      "WRONG_LENGTH",
+      "points",
+      `${points.length} numbers`,
+      "x, y, z per point",
+      "Pass three numbers per point.",
+    );
   }
   const result = points.slice() as T;
   const { scale, rotation, translation } = similarity;

@@ -41,7 +41,13 @@ export function checkCount(argument: string, count: number, { width, height }: I
   if (count === width * height * channels) return;
   const perPixel = channels === 1 ? "" : ` × ${channels}`;
   const expected = `${width} × ${height}${perPixel} = ${width * height * channels}`;
-  throw failure("WRONG_LENGTH", argument, `${count} values`, expected, "Pass the size of the image that the values belong to.");
+  throw failure(
+    "WRONG_LENGTH",
+    argument,
+    `${count} values`,
+    expected,
+    "Pass the size of the image that the values belong to.",
+  );
 }
 
 /** The array types of masks and depth maps. */

@@ -21,12 +21,7 @@ export async function readMask(mask: unknown, pixels: number, formats: LoadForma
       const { data, width, height } = mask as { data: unknown; width: number; height: number };
       if (!isMaskArray(data)) throw wrongKind("mask.data", data, "a Uint8Array", "Uint8Array");
       if (typeof width === "number" && typeof height === "number") return { data, width, height };
-      throw invalidArgument(
-        "mask",
-        mask,
-        "data, width and height",
-        "Pass the width and height of the mask in pixels.",
-      );
+      throw invalidArgument("mask", mask, "data, width and height", "Pass the width and height of the mask in pixels.");
     }
   }
   if (isTypedArray<Uint8ClampedArray>(mask, "Uint8ClampedArray")) return bare(mask);

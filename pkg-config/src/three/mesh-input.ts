@@ -43,7 +43,13 @@ export function meshInputFromThree(
     throw failure("INVALID_ARGUMENT", "source", describe(source), "a BufferGeometry or an Object3D", remedy);
   }
   if (arrays.indices.length === 0) {
-    throw failure("EMPTY_MESH", "source", "no triangle", "a mesh with triangles", "Pass an object that contains meshes.");
+    throw failure(
+      "EMPTY_MESH",
+      "source",
+      "no triangle",
+      "a mesh with triangles",
+      "Pass an object that contains meshes.",
+    );
   }
   return { positions: Float32Array.from(arrays.positions), indices: Uint32Array.from(arrays.indices) };
 }
