@@ -3,7 +3,7 @@
 //! Masks have pinholes and stray islands, depth maps have flying pixels at discontinuities, and masks include
 //! background by mistake. Doubtful pixels are excluded from the evidence.
 
-use super::rim::rim_offset;
+use super::rim::{RimImages, rim_offset};
 use crate::evidence::observation::Observation;
 use crate::geometry::distance_transform::squared_distances;
 use crate::geometry::order::{self, quantile};
@@ -66,7 +66,9 @@ impl CleanObservation {
         let extent_m = (0..2).map(|axis| clean.bounds[axis][1] - clean.bounds[axis][0]).fold(0.0, f64::max)
             / clean.camera.fx
             * clean.median_m;
-        let offset = rim_offset(&clean, RIM_JUMP[0] * extent_m + RIM_JUMP[1] * clean.median_m);
+        let CleanObservation { width, height, outline, scene, .. } = &clean;
+        let images = RimImages { width: *width, height: *height, outline, scene };
+        let offset = rim_offset(images, RIM_JUMP[0] * extent_m + RIM_JUMP[1] * clean.median_m);
         clean.move_rim(offset);
         clean
     }

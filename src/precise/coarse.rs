@@ -5,6 +5,7 @@ use glam::{DMat3, DQuat, DVec2, DVec3, Vec3};
 use super::anchors::Anchor;
 use super::objective::Objective;
 use super::pose::CropPose;
+use super::ranking::Scored;
 use super::render::{Canvas, Model};
 use super::score::Score;
 use crate::geometry::angle::sin_cos;
@@ -22,6 +23,16 @@ pub struct Candidate {
     pub pose: CropPose,
     /// Its score on the grid on which it was found.
     pub score: Score,
+}
+
+impl Scored for Candidate {
+    fn rotation(&self) -> DQuat {
+        self.pose.rotation
+    }
+
+    fn total(&self) -> f32 {
+        self.score.total
+    }
 }
 
 /// The search over rotations on one grid.

@@ -2,8 +2,6 @@
 
 use glam::DQuat;
 
-use super::coarse::Candidate;
-use super::search::Found;
 use crate::geometry::order;
 use crate::geometry::rotations::angle_between;
 
@@ -13,26 +11,6 @@ pub trait Scored: Copy {
     fn rotation(&self) -> DQuat;
     /// The score.
     fn total(&self) -> f32;
-}
-
-impl Scored for Candidate {
-    fn rotation(&self) -> DQuat {
-        self.pose.rotation
-    }
-
-    fn total(&self) -> f32 {
-        self.score.total
-    }
-}
-
-impl Scored for Found {
-    fn rotation(&self) -> DQuat {
-        self.pose.rotation
-    }
-
-    fn total(&self) -> f32 {
-        self.score.total
-    }
 }
 
 /// The best `count` candidates, best first.

@@ -4,7 +4,6 @@
 //! is farther away than the object, the depth map shows the outline as well. The offset between the two, measured along
 //! many rays across the rim, corrects the whole mask.
 
-use super::clean::CleanObservation;
 use crate::geometry::order::median;
 
 /// Steps of a ray across the rim, pixels, inwards (negative) to outwards.
@@ -24,10 +23,23 @@ const MAX_OFFSET: f64 = 6.0;
 /// Maximum median absolute deviation of the rays, pixels; beyond it, they do not agree.
 const MAX_SPREAD: f64 = 0.8;
 
+/// The images that the rim is found in, row by row.
+#[derive(Clone, Copy)]
+pub struct RimImages<'a> {
+    /// Pixels in a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Signed distance to the outline of the mask, pixels, negative inside.
+    pub outline: &'a [f32],
+    /// Every reading, metres; 0 for none.
+    pub scene: &'a [f32],
+}
+
 /// The offset of the depth map's outline from the mask's, pixels: positive if the mask is too small; 0 if the depth map
 /// does not determine it.
-pub fn rim_offset(observation: &CleanObservation, jump_m: f64) -> f64 {
-    let (width, height, signed) = (observation.width, observation.height, &observation.outline);
+pub fn rim_offset(images: RimImages<'_>, jump_m: f64) -> f64 {
+    let RimImages { width, height, outline: signed, .. } = images;
     let (mut rim, mut offsets) = (0usize, Vec::new());
     for v in 2..height.saturating_sub(2) {
         for u in 2..width.saturating_sub(2) {
@@ -43,8 +55,7 @@ pub fn rim_offset(observation: &CleanObservation, jump_m: f64) -> f64 {
             if length < 1.0 {
                 continue;
             }
-            let ray =
-                Ray { observation, start: [u as f64, v as f64], direction: [slope[0] / length, slope[1] / length] };
+            let ray = Ray { images, start: [u as f64, v as f64], direction: [slope[0] / length, slope[1] / length] };
             offsets.extend(ray.crossing(jump_m).map(|t| (t - 0.5) as f32));
         }
     }
@@ -61,7 +72,7 @@ pub fn rim_offset(observation: &CleanObservation, jump_m: f64) -> f64 {
 
 /// A line across the rim.
 struct Ray<'a> {
-    observation: &'a CleanObservation,
+    images: RimImages<'a>,
     start: [f64; 2],
     direction: [f64; 2],
 }
@@ -69,13 +80,13 @@ struct Ray<'a> {
 impl Ray<'_> {
     /// The reading `t` pixels outwards from the start; `None` if there is none.
     fn depth(&self, t: f64) -> Option<f64> {
-        let z = self.observation.scene[self.pixel(t)?];
+        let z = self.images.scene[self.pixel(t)?];
         (z > 0.0).then_some(f64::from(z))
     }
 
     fn pixel(&self, t: f64) -> Option<usize> {
         let at = [0, 1].map(|axis| self.start[axis] + t * self.direction[axis] + 0.5);
-        let (width, height) = (self.observation.width, self.observation.height);
+        let (width, height) = (self.images.width, self.images.height);
         let inside = at[0] >= 0.0 && at[1] >= 0.0 && at[0] < width as f64 && at[1] < height as f64;
         inside.then(|| at[1] as usize * width + at[0] as usize)
     }
@@ -90,7 +101,7 @@ impl Ray<'_> {
     }
 
     fn outline(&self, t: f64) -> f32 {
-        self.pixel(t).map_or(f32::INFINITY, |i| self.observation.outline[i])
+        self.pixel(t).map_or(f32::INFINITY, |i| self.images.outline[i])
     }
 
     /// The position where the depth steps from the object to at least `jump_m` behind it.

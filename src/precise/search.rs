@@ -12,11 +12,12 @@ use super::mesh_pyramid::MeshPyramid;
 use super::objective::Objective;
 use super::pose::CropPose;
 use super::prior::Prior;
-use super::ranking::distinct;
+use super::ranking::{Scored, distinct};
 use super::recipe::{COARSE, FINE, SearchSettings};
 use super::refine::{Refined, Refiner};
 use super::render::Canvas;
 use super::score::Score;
+use glam::DQuat;
 
 /// Rotations tried around a given pose, radians, and the number that are refined.
 const NEIGHBORHOOD: [f64; 2] = [0.17, 0.4];
@@ -47,6 +48,16 @@ pub struct Found {
     pub converged: bool,
     /// Number of renders for it.
     pub renders: usize,
+}
+
+impl Scored for Found {
+    fn rotation(&self) -> DQuat {
+        self.pose.rotation
+    }
+
+    fn total(&self) -> f32 {
+        self.score.total
+    }
 }
 
 impl From<Candidate> for Found {
