@@ -53,7 +53,7 @@ options! {
         icp: Icp = Icp::PointToPlane, Choice;
         /// Whether ICP leaves the scale as RANSAC found it (§3.3). `false` is an ablation of the paper.
         lock_scale: bool = true, Flag;
-        /// Upper bound on the ICP iterations.
+        /// Upper bound on the iterations of each of ICP's two passes: on the voxel grid, then on the points.
         icp_iterations: u32 = 60, Count(1..=1_000);
     }
 }

@@ -49,7 +49,7 @@ options! {
         edge_similarity: f64 = 0.9, Number(0.0..=1.0);
         /// The distance that ICP minimises, or `"none"` for no refinement.
         icp: Icp = Icp::PointToPlane, Choice;
-        /// Upper bound on the ICP iterations.
+        /// Upper bound on the iterations of each of ICP's two passes: on the voxel grid, then on the points.
         icp_iterations: u32 = 60, Count(1..=1_000);
     }
 }

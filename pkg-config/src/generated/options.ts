@@ -350,7 +350,7 @@ export const OPTIONS = {
       max: 1000,
       isNullable: false,
       default: 60,
-      summary: "Upper bound on the ICP iterations",
+      summary: "Upper bound on the iterations of each of ICP's two passes: on the voxel grid, then on the points",
     },
   ],
   evaluate: [
@@ -499,7 +499,7 @@ export const OPTIONS = {
       max: 1000,
       isNullable: false,
       default: 60,
-      summary: "Upper bound on the ICP iterations",
+      summary: "Upper bound on the iterations of each of ICP's two passes: on the voxel grid, then on the points",
     },
   ],
   estimateSim3: [

@@ -194,7 +194,8 @@ export interface PaperOptions {
    */
   lockScale?: boolean | undefined;
   /**
-   * Upper bound on the ICP iterations. Takes a whole number from 1 to 1000. Default `60`.
+   * Upper bound on the iterations of each of ICP's two passes: on the voxel grid, then on the points. Takes a whole
+   * number from 1 to 1000. Default `60`.
    */
   icpIterations?: number | undefined;
 }
@@ -285,7 +286,8 @@ export interface RegisterOptions {
    */
   icp?: Icp | undefined;
   /**
-   * Upper bound on the ICP iterations. Takes a whole number from 1 to 1000. Default `60`.
+   * Upper bound on the iterations of each of ICP's two passes: on the voxel grid, then on the points. Takes a whole
+   * number from 1 to 1000. Default `60`.
    */
   icpIterations?: number | undefined;
 }
