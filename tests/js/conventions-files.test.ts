@@ -165,7 +165,7 @@ test("what is no mesh is refused", async () => {
 test("what is no GLB is refused, whatever its bytes", async () => {
   const corrupt = (message: RegExp) => ({ code: "CORRUPT_FILE", argument: "glb", message }) as const;
   const good = Uint8Array.from(exportGlb(soup, truth));
-  await rejectsWith(async () => placeGlb(new Uint8Array(7), truth), corrupt(/without its header/));
+  await rejectsWith(async () => placeGlb(new Uint8Array(7), truth), corrupt(/without a GLB header/));
   await rejectsWith(async () => placeGlb(good.slice(0, -1), truth), corrupt(/bytes of/));
   const broken = good.slice();
   broken[20] = 0x78;

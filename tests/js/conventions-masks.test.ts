@@ -59,7 +59,7 @@ test("broken encodings are refused", async () => {
   const coco = (broken: string | number[]) => async () =>
     fromCocoRle({ size: [first.height, first.width], counts: broken });
   await rejectsWith(coco(counts.slice(0, -2)), corrupt("rle.counts", /add up to/));
-  await rejectsWith(coco(`${counts}é`), corrupt("rle.counts", /letter "é"/));
+  await rejectsWith(coco(`${counts}é`), corrupt("rle.counts", /character "é"/));
   await rejectsWith(coco(`${counts}P`), corrupt("rle.counts", /unfinished/));
   await rejectsWith(coco("ooooooooo0"), corrupt("rle.counts", /35 bits/));
   await rejectsWith(coco([1.5, 3]), corrupt("rle.counts", /1\.5/));
