@@ -17,7 +17,7 @@ export async function work(
     const aligner = await createAligner({ workers });
     found[`arrays, ${workers}`] = Array.from((await aligner.align(input, quick)).matrix);
     found[`file, ${workers}`] = Array.from((await aligner.align(file, quick)).matrix);
-    for await (const { index, alignment } of aligner.alignAll([input, input], quick)) {
+    for await (const { index, alignment } of aligner.alignAll([input, input], { ...quick, ordered: true })) {
       found[`all, ${workers}, ${index}`] = Array.from(alignment?.matrix ?? []);
     }
     aligner.dispose();

@@ -69,7 +69,7 @@ test("broken encodings are refused", async () => {
     argument: "rle.size",
     message: /8192 × 8192/,
   });
-  await rejectsWith(async () => fromLabelStudioRle(cut(first.labelStudio), size), corrupt("rle", /end in the middle/));
+  await rejectsWith(async () => fromLabelStudioRle(cut(first.labelStudio), size), corrupt("rle", /truncated/));
   await rejectsWith(async () => fromLabelStudioRle([], size), corrupt("rle", /0 bytes/));
   await rejectsWith(async () => fromCvatRle([1, 2, ...first.cvatPoints.slice(2)], size), corrupt("mask", /runs of/));
   await rejectsWith(async () => fromCvatRle({ ...first.cvatElement, rle: "1, x" }, size), corrupt("mask", /NaN among/));
