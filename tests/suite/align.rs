@@ -243,7 +243,7 @@ fn options_that_contradict_each_other_are_refused() {
         (
             AlignOptions { scale: ScaleOption::Between([0.5, 2.0]), known_extent_m: Some(0.095), ..base() },
             "options.knownExtentM",
-            "0.095 m beside a scale of [0.5, 2]",
+            "0.095 m and a scale of [0.5, 2]",
         ),
         (
             AlignOptions { scale: ScaleOption::Between([0.2, 0.3]), initial: pose, ..base() },
