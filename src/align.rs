@@ -15,17 +15,8 @@ use crate::precise::options::AlignOptions;
 use crate::precise::prepared_mesh::PreparedMesh;
 use crate::progress::Host;
 use crate::report::{Alignment, AnyAlignment, PaperAlignment};
-use method::Method;
 pub use outcome::{Setup, align_by};
 use task::AlignTask;
-
-/// Aligns a mesh with an observation by the selected method.
-///
-/// # Errors
-/// As [`align`] and [`align_paper`].
-pub fn align_any(observation: &Observation, mesh: &Mesh, method: &Method, host: &mut dyn Host) -> Result<AnyAlignment> {
-    AlignTask::new(observation, PreparedMesh::borrowed(mesh), method.clone(), host)?.finish()
-}
 
 /// Aligns a mesh with an observation by search by rendering.
 ///

@@ -1,8 +1,8 @@
 //! A search: the observation and the mesh, prepared for rendering on every grid.
 
-use crate::evidence::observation::Observation;
-
 use std::rc::Rc;
+
+use glam::DQuat;
 
 use super::clean::CleanObservation;
 use super::coarse::{Candidate, Coarse};
@@ -17,7 +17,7 @@ use super::recipe::{COARSE, FINE, SearchSettings};
 use super::refine::{Refined, Refiner};
 use super::render::Canvas;
 use super::score::Score;
-use glam::DQuat;
+use crate::evidence::observation::Observation;
 
 /// Rotations tried around a given pose, radians, and the number that are refined.
 const NEIGHBORHOOD: [f64; 2] = [0.17, 0.4];
