@@ -74,7 +74,6 @@ export async function createAligner(options: AlignerOptions = {}): Promise<Align
 export class Aligner {
   readonly #core: LoadedModule<Core>;
   readonly #engine: Engine;
-  readonly #drops = new WeakMap<PreparedMesh, () => void>();
   #isDisposed = false;
 
   private constructor(core: LoadedModule<Core>, engine: Engine) {
@@ -199,7 +198,7 @@ export class Aligner {
   async prepareMesh(mesh: MeshInput, options: Pick<CallOptions, "signal"> = {}): Promise<PreparedMesh> {
     const id = nextMeshId();
     const given = await this.#run("prepareMesh", { mesh }, checkedOptions(options), { meshId: id });
-    return new PreparedMesh({ id, mesh: copied(given) });
+    return new PreparedMesh({ id, mesh: copied(given) }, this.#engine);
   }
 
   /** The version of the core module. */
@@ -249,19 +248,8 @@ export class Aligner {
   /** The data of a job, with a prepared mesh replaced by its arrays. */
   #withMesh(data: unknown): { data: unknown; meshId?: number } {
     if (!isRecord(data) || !(data.mesh instanceof PreparedMesh)) return { data };
-    const { id, mesh } = keptMesh(data.mesh, this.#dropMesh(data.mesh));
+    const { id, mesh } = keptMesh(data.mesh, this.#engine);
     return { data: { ...data, mesh }, meshId: id };
-  }
-
-  /** Returns the function that frees a prepared mesh in this aligner, always the same one. */
-  #dropMesh(mesh: PreparedMesh): () => void {
-    let drop = this.#drops.get(mesh);
-    if (drop === undefined) {
-      const { id } = keptMesh(mesh);
-      drop = () => this.#engine.dropMesh(id);
-      this.#drops.set(mesh, drop);
-    }
-    return drop;
   }
 
   #checkUsable(): void {

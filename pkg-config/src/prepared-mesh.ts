@@ -16,9 +16,14 @@ export interface KeptMesh {
   readonly mesh: CoreMesh;
 }
 
+/** Holds what threads derive from prepared meshes, by id. */
+export interface MeshHolder {
+  dropMesh(id: number): void;
+}
+
 interface State extends KeptMesh {
-  /** Functions to call when the mesh is disposed. */
-  readonly drops: Set<() => void>;
+  /** Everything that may hold data of the mesh. */
+  readonly holders: Set<MeshHolder>;
 }
 
 const states = new WeakMap<object, State>();
@@ -37,15 +42,15 @@ export function nextMeshId(): number {
  */
 export class PreparedMesh {
   /** @internal */
-  constructor(kept: KeptMesh) {
-    states.set(this, { ...kept, drops: new Set() });
+  constructor(kept: KeptMesh, holder: MeshHolder) {
+    states.set(this, { ...kept, holders: new Set([holder]) });
   }
 
   /** Frees the mesh on this thread and in all workers. Later calls with it reject with `DISPOSED`. */
   dispose(): void {
-    const drops = states.get(this)?.drops ?? [];
+    const state = states.get(this);
     states.delete(this);
-    for (const drop of drops) drop();
+    for (const holder of state?.holders ?? []) holder.dropMesh((state as State).id);
   }
 
   /** Disposes the mesh at the end of the scope of a `using` declaration. */
@@ -56,10 +61,10 @@ export class PreparedMesh {
 
 /**
  * The arrays and the id of a prepared mesh.
- * @param drop called once when the mesh is disposed, even if it was passed repeatedly
+ * @param holder drops its data when the mesh is disposed
  * @throws {@link Sim3AlignError} `DISPOSED`
  */
-export function keptMesh(mesh: PreparedMesh, drop?: () => void): KeptMesh {
+export function keptMesh(mesh: PreparedMesh, holder: MeshHolder): KeptMesh {
   const state = states.get(mesh);
   if (state === undefined) {
     throw new Sim3AlignError({
@@ -70,6 +75,6 @@ export function keptMesh(mesh: PreparedMesh, drop?: () => void): KeptMesh {
       remedy: "Prepare it again with prepareMesh(), or dispose it later.",
     });
   }
-  if (drop !== undefined) state.drops.add(drop);
+  state.holders.add(holder);
   return state;
 }
