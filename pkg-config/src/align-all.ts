@@ -1,7 +1,7 @@
 /** Aligns many inputs with bounded memory, and yields each result when it is ready. */
-import type { Sim3AlignError } from "./error.js";
+import { invalidArgument, type Sim3AlignError } from "./error.js";
 import type { AlignInput } from "./input/types.js";
-import { onAbort } from "./on-abort.js";
+import { checkSignals, onAbort } from "./on-abort.js";
 import type { AlignAllResult } from "./results.js";
 
 /** Options of a batch. */
@@ -19,10 +19,10 @@ type Settled<A> = { result: AlignAllResult<A> } | { failure: unknown };
 
 /** Aligns the inputs. Leaving the loop early cancels the running alignments. */
 export async function* alignAll<A extends { input?: AlignInput }>(
-  inputs: Iterable<AlignInput> | AsyncIterable<AlignInput>,
+  inputs: Inputs,
   { limit, ordered, signal, align, isOwn }: BatchOptions<A>,
 ): AsyncGenerator<AlignAllResult<A>, void, undefined> {
-  signal?.throwIfAborted();
+  if (signal !== undefined) checkSignals([signal]);
   const stopped = new AbortController();
   let unfollow = () => {};
   const aborted = new Promise<never>((_, reject) => {
@@ -34,7 +34,7 @@ export async function* alignAll<A extends { input?: AlignInput }>(
   });
   // Prevents an unhandled rejection if nothing awaits the promise.
   aborted.catch(() => {});
-  const iterator = Symbol.asyncIterator in inputs ? inputs[Symbol.asyncIterator]() : inputs[Symbol.iterator]();
+  const iterator = iteratorOf(inputs);
   const running = new Map<number, Promise<number>>();
   const settled = new Map<number, Settled<A>>();
   let pull: Promise<"pulled"> | undefined;
@@ -47,6 +47,9 @@ export async function* alignAll<A extends { input?: AlignInput }>(
   };
   const pullOne = async (): Promise<"pulled"> => {
     const next = await iterator.next();
+    if (typeof next !== "object" || next === null) {
+      throw invalidArgument("inputs", next, "an iterator whose next() returns { value, done }", "Use a generator.");
+    }
     if (next.done === true) hasEnded = true;
     else running.set(pulled, one(next.value, pulled++));
     return "pulled";
@@ -77,6 +80,18 @@ export async function* alignAll<A extends { input?: AlignInput }>(
     // The iterator may be busy; its `return()` is not awaited.
     if (!isWhole) Promise.allSettled([pull, iterator.return?.()]);
   }
+}
+
+type Inputs = Iterable<AlignInput> | AsyncIterable<AlignInput>;
+
+function iteratorOf(inputs: Inputs): Iterator<AlignInput> | AsyncIterator<AlignInput> {
+  if (typeof inputs === "object" && inputs !== null) {
+    const own = inputs as Partial<Iterable<AlignInput> & AsyncIterable<AlignInput>>;
+    const iterator = own[Symbol.asyncIterator]?.() ?? own[Symbol.iterator]?.();
+    if (typeof iterator?.next === "function") return iterator;
+  }
+  const remedy = "Pass an array or a generator of inputs. For a single input, use align().";
+  throw invalidArgument("inputs", inputs, "an iterable or an async iterable of inputs", remedy);
 }
 
 async function outcome<A extends { input?: AlignInput }>(

@@ -1,13 +1,16 @@
 /// <reference lib="esnext.disposable" preserve="true" />
 /** The main class of the package. */
 import { alignAll } from "./align-all.js";
+import { checkAttached } from "./attached.js";
 import { type Core, coreModule } from "./core.js";
 import { type Engine, MainThreadEngine } from "./engine.js";
-import { disposed, invalidArgument, Sim3AlignError } from "./error.js";
+import { disposed, internalError, invalidArgument, Sim3AlignError } from "./error.js";
 import { formatsModule } from "./formats-module.js";
 import type { Preset } from "./generated/types.js";
+import { classNames } from "./input/resolve.js";
 import type { AlignInput, MeshInput } from "./input/types.js";
 import type { Job, Results } from "./jobs.js";
+import { onAbort, reasonOf } from "./on-abort.js";
 import type {
   AlignAllOptions,
   CallOptions,
@@ -21,10 +24,11 @@ import type { CreateWorker, LazySource, WasmSource } from "./platform.js";
 import { WorkerPool } from "./pool/pool.js";
 import { workerFactory } from "./pool/port.js";
 import { copied } from "./pool/transfer.js";
-import { keptMesh, nextMeshId, PreparedMesh } from "./prepared-mesh.js";
-import { ProgressListener } from "./progress.js";
+import { isDisposedMesh, keptMesh, nextMeshId, PreparedMesh } from "./prepared-mesh.js";
+import { checkedListener, ProgressListener } from "./progress.js";
 import type { AlignAllResult, AlignResult, Evaluation, Registration } from "./results.js";
 import { coreSim3, type Sim3Like } from "./sim3.js";
+import { snapshot } from "./snapshot.js";
 import { isKind, isRecord, withoutUndefined } from "./values.js";
 import type { LoadedModule } from "./wasm-module.js";
 
@@ -83,13 +87,12 @@ export class Aligner {
 
   /** @internal */
   static async create(options: AlignerOptions, assets: BundledAssets = {}): Promise<Aligner> {
-    const { wasm = assets.wasm, formatsWasm = assets.formatsWasm } = options;
-    const workers = checkedWorkers(options.workers);
+    const { wasm = assets.wasm, formatsWasm = assets.formatsWasm, ...given } = checkedAlignerOptions(options);
+    const workers = checkedWorkers(given.workers);
     const core = await coreModule.load(wasm);
     const mainThread = new MainThreadEngine(core, () => formatsModule.load(formatsWasm));
     if (workers === 0) return new Aligner(core, mainThread);
-    const { createWorker } = options;
-    const factory = await workerFactory(assets.workerScript, createWorker);
+    const factory = await workerFactory(assets.workerScript, checkedFactory(given.createWorker));
     const size = workers === "auto" ? Math.min(Math.max(factory.cores - 1, 1), MAX_AUTO) : workers;
     const setup = {
       create: factory.create,
@@ -113,7 +116,7 @@ export class Aligner {
     input: AlignInput,
     options?: OptionsOf<P, M>,
   ): Promise<AlignResult<P, M>> {
-    const given: { initial?: unknown; onProgress?: unknown } = checkedOptions(options ?? {});
+    const given: { initial?: unknown; onProgress?: unknown } = checkedOptions(options);
     const { initial, onProgress, ...rest } = given;
     const coreOptions = initial === undefined ? rest : { ...rest, initial: coreSim3(initial) };
     const result: AlignResult = await this.#run("align", input, coreOptions, { onProgress });
@@ -135,8 +138,9 @@ export class Aligner {
     options?: AlignAllOptions<P, M>,
   ): AsyncGenerator<AlignAllResult<AlignResult<P, M>>, void, undefined> {
     this.#checkUsable();
-    const given: AlignAllOptions<Preset> = checkedOptions(options ?? {});
+    const given = checkedOptions(options) as AlignAllOptions<Preset>;
     const { ordered = false, onProgress, signal, ...rest } = given;
+    if (onProgress !== undefined) checkedListener(onProgress);
     yield* alignAll(inputs, {
       limit: this.#engine.capacity,
       ordered: checkedFlag("ordered", ordered),
@@ -157,7 +161,9 @@ export class Aligner {
   async evaluate(input: AlignInput, transform: Sim3Like, options: EvaluateOptions = {}): Promise<Evaluation> {
     const { truth, ...rest } = checkedOptions(options);
     const coreOptions = truth === undefined ? rest : { ...rest, truth: coreSim3(truth) };
-    return this.#run("evaluate", input, coreOptions, { transform: coreSim3(transform) });
+    const own = snapshot("transform", transform);
+    checkAttached("transform", own);
+    return this.#run("evaluate", input, coreOptions, { transform: coreSim3(own) });
   }
 
   /**
@@ -197,8 +203,16 @@ export class Aligner {
    */
   async prepareMesh(mesh: MeshInput, options: Pick<CallOptions, "signal"> = {}): Promise<PreparedMesh> {
     const id = nextMeshId();
-    const given = await this.#run("prepareMesh", { mesh }, checkedOptions(options), { meshId: id });
-    return new PreparedMesh({ id, mesh: copied(given) }, this.#engine);
+    try {
+      const given = await this.#run("prepareMesh", { mesh }, checkedOptions(options), { meshId: id });
+      // Without workers, these are the caller's arrays.
+      checkAttached("mesh", given);
+      return new PreparedMesh({ id, mesh: copied(given) }, this.#engine);
+    } catch (error) {
+      // Nothing refers to what the call has left there.
+      this.#engine.dropMesh(id);
+      throw error;
+    }
   }
 
   /** The version of the core module. */
@@ -229,24 +243,34 @@ export class Aligner {
     { onProgress, ...more }: { onProgress?: unknown; transform?: unknown; meshId?: number } = {},
   ): Promise<Results[M]> {
     this.#checkUsable();
-    const job = { method, ...this.#withMesh(data), options, ...more } as unknown as Job & { method: M };
+    const own = snapshot("input", data, classNames);
+    const prepared: unknown = isRecord(own) ? own.mesh : undefined;
+    const job = { method, ...this.#withArrays(own), options, ...more } as unknown as Job & { method: M };
     const progress = new ProgressListener(onProgress);
     const call = { signal: checkedSignal(signal), progress, transfer: checkedFlag("transfer", transfer) };
-    // The returned input contains the prepared mesh, not its arrays.
-    const withMesh = (returned: object) =>
-      job.data === data ? returned : { ...returned, mesh: (data as AlignInput).mesh };
+    // Arrays that were not moved are returned in the object that the caller passed; a prepared mesh replaces its arrays.
+    const returned = (arrays: unknown) => {
+      if (arrays === job.data) return data;
+      return prepared instanceof PreparedMesh ? { ...(arrays as object), mesh: prepared } : arrays;
+    };
     try {
       const outcome = await this.#engine.run(job, call);
+      if (progress.failed.aborted) throw reasonOf(progress.failed);
       const result = outcome.result as Results[M];
-      return transfer ? { ...result, input: withMesh(outcome.data) } : result;
+      return transfer ? { ...result, input: returned(outcome.data) } : result;
     } catch (error) {
-      if (error instanceof Sim3AlignError && isRecord(error.input)) error.input = withMesh(error.input);
+      const isOfCaller = [call.signal, progress.failed].some((each) => each?.aborted && reasonOf(each) === error);
+      if (isOfCaller) throw error;
+      if (!(error instanceof Sim3AlignError)) throw internalError(error);
+      if (isRecord(error.input)) error.input = returned(error.input);
       throw error;
+    } finally {
+      if (prepared instanceof PreparedMesh && isDisposedMesh(prepared)) this.#engine.dropMesh((job as MeshJob).meshId);
     }
   }
 
   /** The data of a job, with a prepared mesh replaced by its arrays. */
-  #withMesh(data: unknown): { data: unknown; meshId?: number } {
+  #withArrays(data: unknown): { data: unknown; meshId?: number } {
     if (!isRecord(data) || !(data.mesh instanceof PreparedMesh)) return { data };
     const { id, mesh } = keptMesh(data.mesh, this.#engine);
     return { data: { ...data, mesh }, meshId: id };
@@ -257,10 +281,53 @@ export class Aligner {
   }
 }
 
+type MeshJob = Job & { meshId: number };
+
 /** Options without undefined properties. The core checks names and values. */
-function checkedOptions<T extends object>(options: T) {
-  if (isRecord(options)) return withoutUndefined(options as T);
-  throw invalidArgument("options", options, "an object", "Pass { name: value }, or omit it.");
+function checkedOptions<T extends object>(options: T | undefined) {
+  if (options !== undefined && !isRecord(options)) {
+    throw invalidArgument("options", options, "an object", "Pass { name: value }, or omit it.");
+  }
+  const own = snapshot("options", options ?? ({} as T));
+  checkAttached("options", own);
+  const misplaced = Object.keys(own).find((name) => alignerOptions.includes(name));
+  if (misplaced === undefined) return withoutUndefined(own);
+  throw new Sim3AlignError({
+    code: "UNKNOWN_OPTION",
+    argument: `options.${misplaced}`,
+    found: `\`${misplaced}\`, which is an option of createAligner`,
+    expected: "options of this call",
+    remedy: `Pass it once, when the aligner is created: createAligner({ ${misplaced} }).`,
+  });
+}
+
+const alignerOptions: readonly string[] = [
+  "wasm",
+  "formatsWasm",
+  "workers",
+  "createWorker",
+] satisfies (keyof AlignerOptions)[];
+
+/** The options of `createAligner`. Each is checked where it is used. */
+function checkedAlignerOptions(options: AlignerOptions): AlignerOptions {
+  if (!isRecord(options)) {
+    throw invalidArgument("options", options, "an object", "Pass { workers }, or omit it.");
+  }
+  const own: AlignerOptions = { ...options };
+  const unknown = Object.keys(own).find((name) => !alignerOptions.includes(name));
+  if (unknown === undefined) return own;
+  throw new Sim3AlignError({
+    code: "UNKNOWN_OPTION",
+    argument: unknown,
+    found: "an unknown option",
+    expected: `one of ${alignerOptions.join(", ")}`,
+    remedy: "Check the spelling. Options of a call, such as `quality`, belong to the call.",
+  });
+}
+
+function checkedFactory(createWorker: unknown): CreateWorker | undefined {
+  if (createWorker === undefined || typeof createWorker === "function") return createWorker as CreateWorker | undefined;
+  throw invalidArgument("createWorker", createWorker, "a function that returns a worker", "Pass () => new Worker(…).");
 }
 
 function checkedFlag(name: string, value: unknown): boolean {
@@ -271,7 +338,13 @@ function checkedFlag(name: string, value: unknown): boolean {
 /** An abort signal of any realm. */
 function checkedSignal(signal: unknown): AbortSignal | undefined {
   if (signal === undefined || signal === null) return undefined;
-  if (isKind<AbortSignal>(signal, "AbortSignal")) return signal;
+  try {
+    if (isKind<AbortSignal>(signal, "AbortSignal") && typeof signal.aborted === "boolean") {
+      // A proxy of a signal throws.
+      onAbort(signal, () => {})();
+      return signal;
+    }
+  } catch {}
   throw invalidArgument("options.signal", signal, "an AbortSignal", "Pass the signal of an AbortController.");
 }
 

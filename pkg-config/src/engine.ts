@@ -1,9 +1,12 @@
 /** Engines that run jobs: on the calling thread, or in workers. */
+
+import { checkAttached } from "./attached.js";
 import type { Core, CoreAlignment, CoreListener } from "./core.js";
-import { disposed } from "./error.js";
+import { disposed, withoutInput } from "./error.js";
 import type { LoadFormats } from "./formats-module.js";
 import type { CoreInput } from "./input/core-input.js";
-import { type Job, perform, type Results, withoutInput } from "./jobs.js";
+import { type Job, perform, type Results } from "./jobs.js";
+import { checkSignals } from "./on-abort.js";
 import type { ProgressListener } from "./progress.js";
 import type { LoadedModule } from "./wasm-module.js";
 
@@ -14,6 +17,10 @@ export interface Call {
   /** Whether the arrays of the job may be moved to the worker. */
   transfer: boolean;
 }
+
+/** The signals that end a call. */
+export const signalsOf = ({ signal, progress }: Call): AbortSignal[] =>
+  signal === undefined ? [progress.failed] : [signal, progress.failed];
 
 /** The result of a job, and its data after the run. */
 export interface Outcome<J extends Job> {
@@ -46,12 +53,12 @@ export class MainThreadEngine implements Engine {
     this.#formats = formats;
   }
 
-  async run<J extends Job>(job: J, { signal, progress }: Call): Promise<Outcome<J>> {
-    let failure: { error: unknown } | undefined;
+  async run<J extends Job>(job: J, call: Call): Promise<Outcome<J>> {
+    const { signal, progress } = call;
+    const signals = signalsOf(call);
     const check = () => {
-      if (failure !== undefined) throw failure.error;
       if (this.#isDisposed) throw disposed();
-      signal?.throwIfAborted();
+      checkSignals(signals);
     };
     check();
     if (signal !== undefined) {
@@ -59,15 +66,7 @@ export class MainThreadEngine implements Engine {
       await turn();
       check();
     }
-    // An exception must not unwind through WebAssembly, which would skip its cleanup: it is rethrown after the step.
-    const listener: CoreListener = (stage, fraction, best) => {
-      if (failure !== undefined) return;
-      try {
-        progress.report(stage, fraction, best);
-      } catch (error) {
-        failure = { error };
-      }
-    };
+    const listener: CoreListener = (stage, fraction, best) => progress.report(stage, fraction, best);
     const formats = async () => {
       const module = await this.#formats();
       check();
@@ -97,6 +96,8 @@ async function alignInSteps(
   args: Parameters<Core["align"]>,
   check: () => void,
 ): Promise<CoreAlignment> {
+  // The thread may have been elsewhere since the input was read.
+  checkAttached("", args[0]);
   const task = core.call((c) => c.beginAlign(...args), withoutInput);
   const { instance } = core;
   try {

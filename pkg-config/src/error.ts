@@ -1,5 +1,6 @@
 /** The error type of the package, and conversions to it. */
 import type { ErrorCode as CoreErrorCode } from "./generated/types.js";
+import { proxiedKind, typedArrayKind } from "./kinds.js";
 
 /**
  * Stable error code; does not change between releases. The troubleshooting guide describes the cause of each code, with
@@ -66,15 +67,36 @@ export function invalidArgument(argument: string, value: unknown, expected: stri
 export function describe(value: unknown): string {
   if (value === undefined) return "nothing";
   if (value === null) return "null";
-  if (Array.isArray(value)) return `a plain array of ${value.length}`;
   if (typeof value === "string") return `the string ${JSON.stringify(value.slice(0, 40))}`;
-  if (typeof value !== "object") return typeof value === "function" ? "a function" : `${typeof value} ${String(value)}`;
-  const kind = Object.prototype.toString.call(value).slice(8, -1);
-  const { length } = value as { length?: unknown };
-  if (ArrayBuffer.isView(value)) return typeof length === "number" ? `${kind} of ${length}` : kind;
+  if (typeof value === "function") return "a function";
+  if (typeof value !== "object") return `${typeof value} ${String(value)}`;
+  try {
+    return describeObject(value);
+  } catch {
+    return "an object that throws when it is read";
+  }
+}
+
+function describeObject(value: object): string {
+  if (Array.isArray(value)) return `a plain array of ${value.length}`;
+  const proxied = proxiedKind(value);
+  if (proxied !== undefined) return `a proxy of ${proxied}`;
+  const kind = typedArrayKind(value) ?? Object.prototype.toString.call(value).slice(8, -1);
+  if (ArrayBuffer.isView(value)) {
+    return typedArrayKind(value) === undefined ? kind : `${kind} of ${(value as Uint8Array).length}`;
+  }
   if (kind !== "Object") return kind;
   const names = Object.keys(value);
   return names.length === 0 ? "an empty object" : `an object with ${names.slice(0, 8).join(", ")}`;
+}
+
+/** The message of anything that was thrown. */
+export function messageOf(thrown: unknown): string {
+  try {
+    return thrown instanceof Error ? `${thrown.name}: ${thrown.message}` : String(thrown);
+  } catch {
+    return describe(thrown);
+  }
 }
 
 /** Whether a module threw this error about its arguments: a plain object. Any other exception is a trap. */
@@ -84,13 +106,16 @@ export function isCoded(error: unknown): error is ErrorParts {
   return typeof parts.code === "string" && typeof parts.argument === "string" && typeof parts.remedy === "string";
 }
 
+/** Removes `input.` from the name of an argument: errors name the properties of the input. */
+export const withoutInput = (argument: string) => argument.replace(/^input\./, "");
+
 /** The error for a trap inside WebAssembly, which no input should cause. */
 export function internalError(cause: unknown): Sim3AlignError {
   return new Sim3AlignError(
     {
       code: "INTERNAL",
       argument: "sim3align",
-      found: cause instanceof Error ? `${cause.name}: ${cause.message}` : String(cause),
+      found: messageOf(cause),
       expected: "a result",
       remedy: "This is a bug in sim3align: please report it with the input. The next call uses a new instance.",
     },

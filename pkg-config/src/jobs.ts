@@ -1,5 +1,7 @@
 /** Calls as data, so that the same code runs them on the calling thread or in a worker. */
+import { checkAttached } from "./attached.js";
 import type { Core, CoreAlignment, CoreListener } from "./core.js";
+import { withoutInput } from "./error.js";
 import type { LoadFormats } from "./formats-module.js";
 import type { CoreInput } from "./input/core-input.js";
 import { readMesh } from "./input/mesh.js";
@@ -47,6 +49,7 @@ export async function perform(
   listener?: CoreListener,
 ): Promise<unknown> {
   const { options } = job;
+  checkAttached("", job.data);
   switch (job.method) {
     case "align": {
       const { core: input, warnings } = await resolveInput(job.data, formats, job.meshId);
@@ -57,6 +60,8 @@ export async function perform(
     }
     case "evaluate": {
       const { core: input, warnings } = await resolveInput(job.data, formats, job.meshId);
+      // Files are read while the thread does other work, which may take the memory away.
+      checkAttached("", input);
       return withWarnings(
         core.call((c) => c.evaluate(input, job.transform, options), withoutInput),
         warnings,
@@ -64,6 +69,7 @@ export async function perform(
     }
     case "prepareMesh": {
       const mesh = await readMesh(job.data.mesh, formats);
+      checkAttached("mesh", mesh);
       core.call((c) => c.prepareMesh({ ...mesh, id: job.meshId }));
       return mesh;
     }
@@ -80,9 +86,6 @@ export async function perform(
     }
   }
 }
-
-/** Removes `input.` from argument names in errors. */
-export const withoutInput = (argument: string) => argument.replace(/^input\./, "");
 
 function checkedClouds(clouds: Clouds): Clouds {
   for (const argument of ["source", "target"] as const) {

@@ -1,4 +1,4 @@
-/** Callbacks for abort signals. */
+/** Abort signals: callbacks, and checks. */
 
 interface Followers {
   acts: Set<(reason: unknown) => void>;
@@ -27,10 +27,25 @@ export function onAbort(signal: AbortSignal, act: (reason: unknown) => void): ()
 function begin(signal: AbortSignal): Followers {
   const acts: Followers["acts"] = new Set();
   const listener = () => {
-    for (const act of [...acts]) act(signal.reason);
+    for (const act of [...acts]) act(reasonOf(signal));
   };
   signal.addEventListener("abort", listener);
   const followers = { acts, listener };
   followed.set(signal, followers);
   return followers;
+}
+
+/** Throws the reason of an aborted signal. Not `throwIfAborted`, which older implementations lack. */
+export function checkSignals(signals: readonly AbortSignal[]): void {
+  for (const signal of signals) if (signal.aborted) throw reasonOf(signal);
+}
+
+const missingReasons = new WeakMap<AbortSignal, DOMException>();
+
+/** The reason of an aborted signal. Signals of older implementations have none: they get one, always the same. */
+export function reasonOf(signal: AbortSignal): unknown {
+  if (signal.reason !== undefined) return signal.reason;
+  const reason = missingReasons.get(signal) ?? new DOMException("This operation was aborted", "AbortError");
+  missingReasons.set(signal, reason);
+  return reason;
 }

@@ -1,6 +1,6 @@
 /** Meshes that are read, validated and decimated once for many calls. */
 
-import { Sim3AlignError } from "./error.js";
+import { invalidArgument, Sim3AlignError } from "./error.js";
 
 /** A mesh for the core. */
 export interface CoreMesh {
@@ -26,7 +26,7 @@ interface State extends KeptMesh {
   readonly holders: Set<MeshHolder>;
 }
 
-const states = new WeakMap<object, State>();
+const states = new WeakMap<object, State | "disposed">();
 let lastId = 0;
 
 /** A new mesh id. */
@@ -49,8 +49,9 @@ export class PreparedMesh {
   /** Frees the mesh on this thread and in all workers. Later calls with it reject with `DISPOSED`. */
   dispose(): void {
     const state = states.get(this);
-    states.delete(this);
-    for (const holder of state?.holders ?? []) holder.dropMesh((state as State).id);
+    if (state === undefined || state === "disposed") return;
+    states.set(this, "disposed");
+    for (const holder of state.holders) holder.dropMesh(state.id);
   }
 
   /** Disposes the mesh at the end of the scope of a `using` declaration. */
@@ -67,6 +68,10 @@ export class PreparedMesh {
 export function keptMesh(mesh: PreparedMesh, holder: MeshHolder): KeptMesh {
   const state = states.get(mesh);
   if (state === undefined) {
+    const remedy = "Pass the mesh itself: libraries that wrap objects in proxies have a function that unwraps them.";
+    throw invalidArgument("mesh", mesh, "a prepared mesh that is no proxy", remedy);
+  }
+  if (state === "disposed") {
     throw new Sim3AlignError({
       code: "DISPOSED",
       argument: "mesh",
@@ -78,3 +83,6 @@ export function keptMesh(mesh: PreparedMesh, holder: MeshHolder): KeptMesh {
   state.holders.add(holder);
   return state;
 }
+
+/** Whether a prepared mesh has been disposed: a call that began before may have left data of it behind. */
+export const isDisposedMesh = (mesh: PreparedMesh) => states.get(mesh) === "disposed";

@@ -7,17 +7,14 @@ const MAX_PER_SECOND = 20;
 
 /** Calls `onProgress` with monotonic fractions and a limited rate. */
 export class ProgressListener {
-  readonly #onProgress: ((progress: Progress) => void) | undefined;
+  readonly #onProgress: ((progress: Progress) => unknown) | undefined;
+  readonly #failed = new AbortController();
   readonly #times: number[] = [];
   #fraction = 0;
   #best: BestSoFar | undefined;
 
   constructor(onProgress: unknown) {
-    if (onProgress === undefined) return;
-    if (typeof onProgress !== "function") {
-      throw invalidArgument("options.onProgress", onProgress, "a function", "Pass ({ stage, fraction }) => void.");
-    }
-    this.#onProgress = onProgress as (progress: Progress) => void;
+    if (onProgress !== undefined) this.#onProgress = checkedListener(onProgress);
   }
 
   /** Whether the caller passed `onProgress`. */
@@ -25,12 +22,17 @@ export class ProgressListener {
     return this.#onProgress !== undefined;
   }
 
+  /** Aborts when the caller's function throws, or when a promise that it returned rejects. */
+  get failed(): AbortSignal {
+    return this.#failed.signal;
+  }
+
   /**
-   * Calls the caller's function. Its exceptions propagate.
+   * Calls the caller's function, unless it has failed. Does not throw: see {@link failed}.
    * @param best the best pose, column-major, and its score, after a round of the search
    */
   report(stage: Progress["stage"], fraction: number, best?: Float64Array): void {
-    if (this.#onProgress === undefined) return;
+    if (this.#onProgress === undefined || this.failed.aborted) return;
     if (best !== undefined) this.#best = { matrix: Array.from(best.subarray(0, 16)), score: best[16] as number };
     this.#fraction = Math.max(this.#fraction, fraction);
     const now = performance.now();
@@ -39,6 +41,19 @@ export class ProgressListener {
     const limit = this.#fraction < 1 ? MAX_PER_SECOND - 1 : MAX_PER_SECOND;
     if (this.#times.length >= limit) return;
     this.#times.push(now);
-    this.#onProgress({ stage, fraction: this.#fraction, best: this.#best });
+    const fail = (error: unknown) => this.#failed.abort(error);
+    try {
+      const returned = this.#onProgress({ stage, fraction: this.#fraction, best: this.#best });
+      // Otherwise, the rejection of an async function would be unhandled, which ends a Node process.
+      Promise.resolve(returned).catch(fail);
+    } catch (error) {
+      fail(error);
+    }
   }
+}
+
+/** A function that may be called with progress. */
+export function checkedListener<F extends (progress: never) => unknown>(onProgress: unknown): F {
+  if (typeof onProgress === "function") return onProgress as F;
+  throw invalidArgument("options.onProgress", onProgress, "a function", "Pass ({ stage, fraction }) => void.");
 }

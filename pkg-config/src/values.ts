@@ -1,20 +1,8 @@
 /** Validation of arguments, with errors that name them. Values may come from any realm: window, worker, test runner. */
 import { describe, type ErrorCode, invalidArgument, Sim3AlignError } from "./error.js";
+import { isKind, isRecord, isTypedArray } from "./kinds.js";
 
-/** Whether the value is of one of these built-in types, of any realm. */
-export function isKind<T>(value: unknown, ...names: string[]): value is T {
-  return names.includes(Object.prototype.toString.call(value).slice(8, -1));
-}
-
-/** Whether the value is an object other than an array, a buffer or a file. */
-export function isRecord(value: unknown): value is Record<string, unknown> {
-  return isKind(value, "Object");
-}
-
-/** Whether the value is a typed array of one of these types. */
-export function isTypedArray<T>(value: unknown, ...names: string[]): value is T {
-  return ArrayBuffer.isView(value) && isKind(value, ...names);
-}
+export { isKind, isRecord, isTypedArray };
 
 /** The error for a plain array, or a typed array of the wrong type. */
 export function wrongKind(argument: string, value: unknown, expected: string, typedArray: string): Sim3AlignError {

@@ -31,36 +31,40 @@ class WorkerHost {
     else this.#run(message);
   }
 
-  /** Answers a message whose content could not be read, so that the call does not wait forever. */
+  /** Reports a message whose content could not be read, so that its call does not wait forever. */
   receiveUnreadable(): void {
-    const error: ErrorParts = {
-      code: "INVALID_ARGUMENT",
-      argument: "input",
-      found: "an array whose buffer is detached: it was moved to a worker",
-      expected: "arrays whose buffers are not detached",
-      remedy: "After a call with transfer: true, use the arrays in `input` of the result or the error.",
-    };
-    if (this.#receiveFormats !== undefined) this.#receiveFormats(error);
-    else this.#post({ type: "done", error });
+    this.#post({ type: "unreadable" });
   }
 
-  async #run({ job, wantsProgress, returnData }: Request & { type: "job" }): Promise<void> {
-    const data = returnData ? job.data : undefined;
+  async #run(request: Request & { type: "job" }): Promise<void> {
+    const data = request.returnData ? request.job.data : undefined;
+    const answer = await this.#answer(request);
+    try {
+      this.#post({ ...answer, data }, buffersOf(data));
+    } catch (error) {
+      this.#post({ type: "done", error: partsOf(internalError(error)) });
+    }
+  }
+
+  async #answer({ job, wantsProgress }: Request & { type: "job" }): Promise<Reply & { type: "done" }> {
     const listener = (stage: (Reply & { type: "progress" })["stage"], fraction: number, best?: Float64Array) =>
       this.#post({ type: "progress", stage, fraction, best });
     try {
-      if (this.#core === undefined) throw new Error("no core");
-      const modules = { core: await this.#core, formats: () => this.#loadFormats() };
-      const result = await perform(job, modules, wantsProgress ? listener : undefined);
-      this.#post({ type: "done", result, data }, buffersOf(data));
+      const core = await this.#core?.catch((error) => {
+        // The pool replaces a worker with an internal error; this one would fail forever.
+        throw internalError(error);
+      });
+      if (core === undefined) throw new Error("no core");
+      const modules = { core, formats: () => this.#loadFormats() };
+      return { type: "done", result: await perform(job, modules, wantsProgress ? listener : undefined) };
     } catch (error) {
-      const known = error instanceof Sim3AlignError ? error : internalError(error);
-      this.#post({ type: "done", error: partsOf(known), data }, buffersOf(data));
+      return { type: "done", error: partsOf(error instanceof Sim3AlignError ? error : internalError(error)) };
     }
   }
 
   async #dropMesh(id: number): Promise<void> {
-    (await this.#core)?.call((core) => core.dropMesh(id));
+    // If the core could not be loaded, the next job fails.
+    (await this.#core?.catch(() => undefined))?.call((core) => core.dropMesh(id));
   }
 
   #loadCore(module: WebAssembly.Module): Promise<LoadedModule<Core>> {

@@ -168,7 +168,7 @@ test("arrays that have been moved before are refused by name, and the worker goe
     one.align(moved, { ...quick, transfer: true }),
   ]);
   assert.ok(first.status === "fulfilled" && second.status === "rejected");
-  const expected = { code: "INVALID_ARGUMENT", argument: "input", message: /detached.*transfer: true/ } as const;
+  const expected = { code: "INVALID_ARGUMENT", argument: "depth", message: /detached.*transfer: true/ } as const;
   await rejectsWith(() => Promise.reject(second.reason), expected);
   assert.deepEqual(withoutTimes(await one.align(input, quick)), withoutTimes(await here.align(input, quick)));
   const file = { ...input, mesh: glb(mesh) };

@@ -1,18 +1,30 @@
 /** Files as bytes, and detection of their type. */
-import { invalidArgument } from "../error.js";
-import { isKind } from "../values.js";
+import { describe, invalidArgument, messageOf, Sim3AlignError } from "../error.js";
+import { isBuffer, isKind, isTypedArray } from "../kinds.js";
 
-/** The bytes of a file, or `null`. Cannot distinguish a file from pixels in a `Uint8Array`. */
-export async function fileBytes(value: unknown): Promise<Uint8Array | null> {
-  if (isKind<Uint8Array>(value, "Uint8Array")) return value;
-  if (isKind<ArrayBuffer>(value, "ArrayBuffer")) return new Uint8Array(value);
-  if (isKind<Blob>(value, "Blob", "File")) return new Uint8Array(await value.arrayBuffer());
-  return null;
+/**
+ * The bytes of a file, or `null`. Cannot distinguish a file from pixels in a `Uint8Array`.
+ * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` if a `Blob` or a `File` cannot be read
+ */
+export async function fileBytes(argument: string, value: unknown): Promise<Uint8Array | null> {
+  if (isTypedArray<Uint8Array>(value, "Uint8Array")) return value;
+  if (isBuffer(value)) return new Uint8Array(value);
+  if (!isKind<Blob>(value, "Blob", "File")) return null;
+  try {
+    return new Uint8Array(await value.arrayBuffer());
+  } catch (cause) {
+    const found = `a ${describe(value)} that cannot be read: ${messageOf(cause)}`;
+    const remedy = "The file may have been changed or removed: select it again.";
+    throw new Sim3AlignError(
+      { code: "FILE_NOT_FOUND", argument, found, expected: "a file that can be read", remedy },
+      { cause },
+    );
+  }
 }
 
 /** The bytes of a file; `argument` is its name in errors. */
 export async function requiredBytes(argument: string, file: unknown): Promise<Uint8Array> {
-  const bytes = await fileBytes(file);
+  const bytes = await fileBytes(argument, file);
   if (bytes !== null) return bytes;
   throw invalidArgument(argument, file, "the bytes of a file", "Pass a Uint8Array, an ArrayBuffer or a Blob.");
 }

@@ -5,6 +5,7 @@ import { type Pinhole, pinholeOf } from "../formats/pinhole.js";
 import type { ImageSize } from "../formats/pixels.js";
 import { isRecord } from "../values.js";
 import { fileBytes } from "./bytes.js";
+import { checkSides } from "./depth.js";
 
 /** A parsed camera, whose intrinsics may depend on the image size. */
 export interface Camera {
@@ -21,9 +22,13 @@ interface ResolvedCamera {
 }
 
 const forms = "{ fx, fy, cx, cy }, { K } or { fovYDeg }";
+const fileRemedy = "Pass the content of a camera file as cameraFile.";
+
+/** Names that only camera files use. */
+const fileProperties = ["cam_K", "k", "d", "D", "intrinsic_matrix", "ppx", "ppy", "fov_y_deg", "depth_scale"];
 
 /** `readCamera` adds `warnings` and `depthScale` to the intrinsics of a camera file. */
-const properties = ["fx", "fy", "cx", "cy", "K", "fovYDeg", "width", "height", "warnings", "depthScale"];
+export const cameraProperties = ["fx", "fy", "cx", "cy", "K", "fovYDeg", "width", "height", "warnings", "depthScale"];
 
 /** The camera of an input, which has either `camera` or `cameraFile`. */
 export async function cameraOf({ camera, cameraFile, imageId }: Record<string, unknown>): Promise<Camera> {
@@ -34,24 +39,36 @@ export async function cameraOf({ camera, cameraFile, imageId }: Record<string, u
 }
 
 function statedCamera(camera: unknown): Camera {
-  const other = isRecord(camera) ? Object.keys(camera).find((name) => !properties.includes(name)) : undefined;
-  if (!isRecord(camera) || other !== undefined) {
-    throw invalidArgument("camera", camera, forms, "Pass the content of a camera file as cameraFile.");
+  if (!isRecord(camera)) throw invalidArgument("camera", camera, forms, fileRemedy);
+  const other = Object.keys(camera).find((name) => !cameraProperties.includes(name));
+  if (other !== undefined) {
+    const isFile = isRecord(camera[other]) || fileProperties.includes(other);
+    throw invalidArgument(
+      "camera",
+      camera,
+      forms,
+      isFile ? fileRemedy : `Rename or omit \`${other}\`; lengths are in pixels.`,
+    );
   }
   const { width, height, depthScale, warnings } = camera as Partial<ImageSize> & Record<string, unknown>;
+  checkSides("camera.", { width, height });
   return {
     integerDepthScale: depthScale as number | undefined,
     resolve(imageWidth, imageHeight) {
       const size = sizeOf(imageWidth, imageHeight);
       if (size === undefined) return { camera: undefined, warnings: [] };
       checkCameraSize("camera", { width, height }, size);
-      return { camera: pinholeOf("camera", camera, size), warnings: (warnings ?? []) as string[] };
+      return { camera: pinholeOf("camera", camera, size), warnings: warningsIn(warnings) };
     },
   };
 }
 
+/** The warnings of `readCamera`. */
+const warningsIn = (value: unknown) => (Array.isArray(value) ? value.filter((text) => typeof text === "string") : []);
+
 async function fileCamera(file: unknown, imageId: unknown): Promise<Camera> {
-  const content = isRecord(file) || Array.isArray(file) || typeof file === "string" ? file : await fileBytes(file);
+  const content =
+    isRecord(file) || Array.isArray(file) || typeof file === "string" ? file : await fileBytes("cameraFile", file);
   if (content === null) {
     const expected = "the bytes, the text or the parsed JSON of a camera file";
     throw invalidArgument("cameraFile", file, expected, "Pass intrinsics such as { fx, fy, cx, cy } as camera.");

@@ -1,5 +1,6 @@
 /** Converts depth maps and point maps to arrays with their size. */
-import { Sim3AlignError } from "../error.js";
+import { checkAttached } from "../attached.js";
+import { invalidArgument, Sim3AlignError } from "../error.js";
 import type { LoadFormats } from "../formats-module.js";
 import { isRecord, isTypedArray, withoutUndefined, wrongKind } from "../values.js";
 import { fileBytes } from "./bytes.js";
@@ -34,7 +35,7 @@ export async function readDepth(
 ): Promise<SizedArray<DepthArray>> {
   if (isDepthArray(depth)) return { data: depth, ...required(size) };
   if (isRecord(depth) && "data" in depth) return sized("depth", depth, depthKinds, isDepthArray, size);
-  const bytes = await fileBytes(depth);
+  const bytes = await fileBytes("depth", depth);
   if (bytes === null) throw wrongKind("depth", depth, depthKinds, "Float32Array");
   if (bytes === depth && bytes.length === (size.width ?? 0) * (size.height ?? 0) && bytes.length > 0) {
     throw new Sim3AlignError({
@@ -46,6 +47,7 @@ export async function readDepth(
     });
   }
   const module = await formats();
+  checkAttached("depth", bytes);
   const file = module.call(
     (readers) => readers.readDepth(bytes, withoutUndefined(scale)),
     (argument) => argument.replace(/^options\./, ""),
@@ -74,10 +76,20 @@ function sized<T>(
   isData: (value: unknown) => value is T,
   stated: StatedSize,
 ): SizedArray<T> {
+  checkSides(`${argument}.`, image);
   const { data, width, height } = image as { data: unknown; width: number; height: number };
   if (!isData(data)) throw wrongKind(`${argument}.data`, data, kinds, "Float32Array");
   checkStatedSize(argument, { width, height }, stated);
   return { data, width, height };
+}
+
+/** Checks the types of a size. The core checks the numbers. */
+export function checkSides(prefix: string, size: { width?: unknown; height?: unknown }): void {
+  for (const name of ["width", "height"] as const) {
+    const side = size[name];
+    if (side === undefined || side === null || typeof side === "number") continue;
+    throw invalidArgument(`${prefix}${name}`, side, "an integer in pixels", "Pass the image size in pixels.");
+  }
 }
 
 function checkStatedSize(argument: string, actual: { width: number; height: number }, stated: StatedSize): void {

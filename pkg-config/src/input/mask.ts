@@ -1,4 +1,5 @@
 /** Converts masks to bytes with their size. */
+import { checkAttached } from "../attached.js";
 import { invalidArgument } from "../error.js";
 import { decodedRle, readRleFile } from "../formats/coco-rle.js";
 import type { LoadFormats } from "../formats-module.js";
@@ -25,12 +26,14 @@ export async function readMask(mask: unknown, pixels: number, formats: LoadForma
     }
   }
   if (isTypedArray<Uint8ClampedArray>(mask, "Uint8ClampedArray")) return bare(mask);
-  const bytes = await fileBytes(mask);
+  const bytes = await fileBytes("mask", mask);
   if (bytes === null) throw wrongKind("mask", mask, kinds, "Uint8Array");
   const isImage = beginsLikeImage(bytes);
   if (!isImage && (bytes.length === pixels || (mask === bytes && !beginsLikeJson(bytes)))) return bare(bytes);
   if (!isImage && beginsLikeJson(bytes)) return readRleFile("mask", bytes);
-  return (await formats()).call((readers) => readers.readMask(bytes));
+  const module = await formats();
+  checkAttached("mask", bytes);
+  return module.call((readers) => readers.readMask(bytes));
 }
 
 const bare = (data: MaskArray): SizedArray<MaskArray> => ({ data, width: undefined, height: undefined });

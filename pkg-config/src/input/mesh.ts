@@ -1,5 +1,6 @@
 /** Meshes from arrays or mesh files. */
 
+import { checkAttached } from "../attached.js";
 import { invalidArgument } from "../error.js";
 import type { LoadFormats } from "../formats-module.js";
 import type { CoreMesh } from "../prepared-mesh.js";
@@ -14,11 +15,13 @@ const kinds =
 export async function readMesh(mesh: unknown, formats: LoadFormats): Promise<CoreMesh> {
   if (isRecord(mesh) && "positions" in mesh) return arrays(mesh);
   const file: { [K in keyof MeshFile]?: unknown } = isRecord(mesh) ? mesh : { bytes: mesh };
-  const bytes = await fileBytes(file.bytes);
+  const bytes = await fileBytes("mesh", file.bytes);
   if (bytes === null) throw invalidArgument("mesh", mesh, kinds, "Pass the mesh to align.");
   const { format, resources } = file as Omit<MeshFile, "bytes">;
   const options = withoutUndefined({ format, resources });
-  return (await formats()).call((readers) => readers.readMesh(bytes, options), ofMesh);
+  const module = await formats();
+  checkAttached("mesh", bytes);
+  return module.call((readers) => readers.readMesh(bytes, options), ofMesh);
 }
 
 /** The options of the reader are properties of the mesh. */

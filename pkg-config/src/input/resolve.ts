@@ -2,10 +2,11 @@
 
 import { invalidArgument, Sim3AlignError } from "../error.js";
 import type { LoadFormats } from "../formats-module.js";
+import type { ClassNames } from "../snapshot.js";
 import { isRecord, isTypedArray, withoutUndefined } from "../values.js";
-import { cameraOf } from "./camera.js";
+import { cameraOf, cameraProperties } from "./camera.js";
 import type { CoreInput } from "./core-input.js";
-import { readDepth, readPointMap } from "./depth.js";
+import { checkSides, readDepth, readPointMap } from "./depth.js";
 import { readMask } from "./mask.js";
 import { readMesh } from "./mesh.js";
 
@@ -20,6 +21,9 @@ const properties = [
   ...["mask", "resizeMask", "mesh"],
 ];
 
+/** The properties that an input and its camera may inherit from a class; others of the class are not arguments. */
+export const classNames: ClassNames = { input: properties, "input.camera": cameraProperties };
+
 /**
  * Resolves an input. `formats` is called only if a file needs it.
  * @param meshId the id of a prepared mesh
@@ -27,6 +31,7 @@ const properties = [
  */
 export async function resolveInput(input: unknown, formats: LoadFormats, meshId?: number): Promise<ResolvedInput> {
   checkProperties(input);
+  checkSides("", input);
   const { resizeMask, pointMap } = input;
   const { warnings, ...image } =
     pointMap === undefined ? await depthAndCamera(input, formats) : await pointMapAndCamera(input, pointMap);

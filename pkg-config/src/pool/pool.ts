@@ -1,8 +1,10 @@
 /** A pool of workers that run jobs in parallel. */
-import type { Call, Engine, Outcome } from "../engine.js";
+import { checkAttached } from "../attached.js";
+import { type Call, type Engine, type Outcome, signalsOf } from "../engine.js";
 import { disposed, Sim3AlignError } from "../error.js";
 import type { Job } from "../jobs.js";
-import { onAbort } from "../on-abort.js";
+import { isAttached } from "../kinds.js";
+import { checkSignals, onAbort, reasonOf } from "../on-abort.js";
 import { type Answer, JobFailed, Unsendable, WorkerLost, type WorkerSetup, WorkerSlot } from "./slot.js";
 import { buffersOf, copied } from "./transfer.js";
 
@@ -29,7 +31,7 @@ export class WorkerPool implements Engine {
   }
 
   async run<J extends Job>(job: J, call: Call): Promise<Outcome<J>> {
-    const signals = [this.#ended.signal, ...(call.signal === undefined ? [] : [call.signal])];
+    const signals = [this.#ended.signal, ...signalsOf(call)];
     const slot = await this.#acquire(signals);
     const stop = (reason: unknown) => {
       slot.end(reason);
@@ -37,12 +39,8 @@ export class WorkerPool implements Engine {
     };
     const unfollow: (() => void)[] = [];
     try {
-      for (const signal of signals) {
-        // The job may have been aborted since the slot was assigned.
-        signal.throwIfAborted();
-        unfollow.push(onAbort(signal, stop));
-      }
-      return await this.#runIn(slot, job, call);
+      for (const signal of signals) unfollow.push(onAbort(signal, stop));
+      return await this.#runIn(slot, job, call, signals);
     } finally {
       for (const end of unfollow) end();
       this.#release(slot);
@@ -57,12 +55,18 @@ export class WorkerPool implements Engine {
   dispose(): void {
     this.#ended.abort(disposed());
     for (const slot of this.#slots) slot.end(this.#ended.signal.reason);
+    this.#fallback.dispose();
   }
 
-  async #runIn<J extends Job>(slot: WorkerSlot, job: J, call: Call): Promise<Outcome<J>> {
+  async #runIn<J extends Job>(
+    slot: WorkerSlot,
+    job: J,
+    call: Call,
+    signals: readonly AbortSignal[],
+  ): Promise<Outcome<J>> {
     for (let attempt = 1; ; attempt++) {
       try {
-        const answer = await send(slot, job, call);
+        const answer = await send(slot, job, call, signals);
         if (answer === null) return await this.#fallback.run(job, call);
         return { result: answer.result, data: answer.data ?? job.data } as Outcome<J>;
       } catch (error) {
@@ -78,7 +82,7 @@ export class WorkerPool implements Engine {
 
   #acquire(signals: readonly AbortSignal[]): Promise<WorkerSlot> {
     return new Promise((resolve, reject) => {
-      for (const signal of signals) if (signal.aborted) return reject(signal.reason);
+      for (const signal of signals) if (signal.aborted) return reject(reasonOf(signal));
       const idle = this.#idle.pop();
       if (idle !== undefined) return resolve(idle);
       const take = (slot: WorkerSlot) => {
@@ -110,15 +114,23 @@ function startEarly(slot: WorkerSlot): void {
 }
 
 /** Sends a job; `null` if it cannot be cloned, so that the core can report what is wrong with it. */
-async function send(slot: WorkerSlot, job: Job, { transfer, progress }: Call): Promise<Answer | null> {
+async function send(
+  slot: WorkerSlot,
+  job: Job,
+  { transfer, progress }: Call,
+  signals: readonly AbortSignal[],
+): Promise<Answer | null> {
+  const meshId = "meshId" in job ? job.meshId : undefined;
   // Buffers of WebAssembly memory and of Node's pool cannot be transferred: they are copied.
   for (const isMoved of transfer ? [true, false] : [false]) {
+    // While the job waited for the slot, for a new worker or for the first attempt, it may have been aborted, and its
+    // arrays may have been moved to another thread.
+    checkSignals(signals);
+    checkAttached("", job.data);
     try {
       const sent = { ...job, data: sentData(slot, job, isMoved) } as Job;
       const request = { type: "job", job: sent, wantsProgress: progress.isWanted, returnData: isMoved } as const;
-      const answer = await slot.request(request, buffersOf(sent.data), progress);
-      if ("meshId" in job && job.meshId !== undefined) slot.addMesh(job.meshId);
-      return answer;
+      return await slot.request(request, buffersOf(sent.data), progress, meshId);
     } catch (error) {
       if (!(error instanceof Unsendable)) throw error;
     }
@@ -137,8 +149,7 @@ function sentData(slot: WorkerSlot, job: Job, isMoved: boolean): unknown {
 }
 
 /** Whether the arrays of the job were lost with the worker. */
-const isGone = ({ data }: Job, { transfer }: Call) =>
-  transfer && buffersOf(data).some((buffer) => buffer.byteLength === 0);
+const isGone = ({ data }: Job, { transfer }: Call) => transfer && buffersOf(data).some((buffer) => !isAttached(buffer));
 
 function workerFailed(cause: WorkerLost): Sim3AlignError {
   return new Sim3AlignError(

@@ -30,10 +30,10 @@ function portOfNode(worker: NodeWorker, { onMessage, onFailure }: PortEvents): P
   worker.on("error", (error: Error) => onFailure(`${error.name}: ${error.message}`));
   worker.on("messageerror", () => onFailure("a message that could not be read"));
   worker.on("exit", (code) => onFailure(`termination with exit code ${code}`));
-  worker.unref();
+  worker.unref?.();
   return {
     post: (message, transfer = []) => worker.postMessage(message, transfer),
-    hold: (isHeld) => (isHeld ? worker.ref() : worker.unref()),
+    hold: (isHeld) => (isHeld ? worker.ref?.() : worker.unref?.()),
     terminate: () => void worker.terminate(),
   };
 }

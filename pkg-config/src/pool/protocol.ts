@@ -21,5 +21,7 @@ export type Request =
 export type Reply =
   | { type: "progress"; stage: Stage; fraction: number; best?: Float64Array | undefined }
   | { type: "needs-formats" }
+  /** A message to the worker could not be read: its content is lost. */
+  | { type: "unreadable" }
   | { type: "done"; result: unknown; data?: unknown; error?: undefined }
   | { type: "done"; error: ErrorParts; data?: unknown };

@@ -1,5 +1,5 @@
 /** A worker slot of the pool; a failed worker is replaced. */
-import { type ErrorParts, partsOf, Sim3AlignError } from "../error.js";
+import { type ErrorParts, messageOf, partsOf, Sim3AlignError } from "../error.js";
 import type { CreateWorker } from "../platform.js";
 import type { ProgressListener } from "../progress.js";
 import { type Port, portOf } from "./port.js";
@@ -46,8 +46,13 @@ export class WorkerSlot {
   readonly #setup: WorkerSetup;
   #port: Port | undefined;
   #pending: Pending | undefined;
-  /** The ids of the prepared meshes that the worker holds. */
-  readonly #meshes = new Set<number>();
+  /**
+   * The ids of the prepared meshes that were sent to the worker, and whether it is known to hold them: it may also hold
+   * one of a job that failed.
+   */
+  readonly #meshes = new Map<number, boolean>();
+  /** The ids of meshes to free when the running job is done. */
+  readonly #dropped: number[] = [];
 
   constructor(setup: WorkerSetup) {
     this.#setup = setup;
@@ -56,56 +61,69 @@ export class WorkerSlot {
   /** Starts a worker if there is none. A failure surfaces at the next request. */
   start(): Port {
     if (this.#port !== undefined) return this.#port;
-    // Messages of a replaced worker may still arrive.
-    const ifCurrent = (act: () => void) => {
-      if (this.#port === port) act();
-    };
     const port = portOf(this.#setup.create(), {
-      onMessage: (message) => ifCurrent(() => this.#receive(message, port)),
-      onFailure: (description) => ifCurrent(() => this.end(new WorkerLost(description))),
+      // Messages of a replaced worker may still arrive.
+      onMessage: (message) => this.#isCurrent(port) && this.#receive(message, port),
+      onFailure: (description) => this.#isCurrent(port) && this.end(new WorkerLost(description)),
     });
     this.#port = port;
     this.#meshes.clear();
-    port.post({ type: "start", core: this.#setup.core });
+    try {
+      port.post({ type: "start", core: this.#setup.core });
+    } catch (error) {
+      // A worker without core could not run any job.
+      this.end(error);
+      throw error;
+    }
     return port;
   }
 
   /**
    * Runs a job in the worker; one at a time.
+   * @param meshId the prepared mesh of the job
    * @throws {@link Unsendable}, {@link WorkerLost}, {@link JobFailed}, and the reason passed to `end`
    */
-  async request(message: Request, transfer: ArrayBuffer[], progress: ProgressListener): Promise<Answer> {
+  async request(
+    message: Request & { type: "job" },
+    transfer: ArrayBuffer[],
+    progress: ProgressListener,
+    meshId?: number,
+  ): Promise<Answer> {
     const port = this.#started();
     try {
-      port.post(message, transfer);
-    } catch (cause) {
-      throw new Unsendable("a message that cannot be sent", { cause });
-    }
-    port.hold(true);
-    try {
-      return await new Promise<Answer>((resolve, reject) => {
+      const answer = await new Promise<Answer>((resolve, reject) => {
+        // Before the message is sent: its answer, or the end of the worker, may come at once.
         this.#pending = { resolve, reject, progress };
+        try {
+          port.post(message, transfer);
+        } catch (cause) {
+          throw new Unsendable("a message that cannot be sent", { cause });
+        }
+        port.hold(true);
+        if (meshId !== undefined && !this.#meshes.has(meshId)) this.#meshes.set(meshId, false);
       });
+      if (meshId !== undefined && this.#isCurrent(port)) this.#meshes.set(meshId, true);
+      return answer;
     } finally {
       this.#pending = undefined;
       port.hold(false);
+      for (const id of this.#dropped.splice(0)) this.dropMesh(id);
     }
   }
 
-  /** Whether the worker holds this mesh. */
+  /** Whether the worker holds this mesh: its arrays need not be sent. */
   hasMesh(id: number): boolean {
-    return this.#port !== undefined && this.#meshes.has(id);
-  }
-
-  /** Records that the worker holds this mesh, after it answered a job with it. */
-  addMesh(id: number): void {
-    this.#meshes.add(id);
+    return this.#port !== undefined && this.#meshes.get(id) === true;
   }
 
   /** Frees this mesh in the worker. */
   dropMesh(id: number): void {
-    if (this.hasMesh(id)) this.#port?.post({ type: "drop-mesh", id });
-    this.#meshes.delete(id);
+    // The running job may need the mesh.
+    if (this.#pending !== undefined) {
+      this.#dropped.push(id);
+      return;
+    }
+    if (this.#meshes.delete(id)) this.#port?.post({ type: "drop-mesh", id });
   }
 
   /** Terminates the worker and its job. The next request starts another worker. */
@@ -116,23 +134,24 @@ export class WorkerSlot {
     this.#pending?.reject(reason);
   }
 
+  #isCurrent = (port: Port) => this.#port === port;
+
   #started(): Port {
     try {
       return this.start();
     } catch (error) {
-      throw new WorkerLost(error instanceof Error ? error.message : String(error), { cause: error });
+      throw new WorkerLost(messageOf(error), { cause: error });
     }
   }
 
   #receive(message: Reply, port: Port): void {
     if (message.type === "progress") {
-      try {
-        this.#pending?.progress.report(message.stage, message.fraction, message.best);
-      } catch (error) {
-        this.end(error);
-      }
+      this.#pending?.progress.report(message.stage, message.fraction, message.best);
     } else if (message.type === "needs-formats") {
-      this.#sendFormats(port).catch((error) => this.end(error));
+      const lost = (error: unknown) => this.#isCurrent(port) && this.end(new WorkerLost(messageOf(error)));
+      this.#sendFormats(port).catch(lost);
+    } else if (message.type === "unreadable") {
+      this.end(new WorkerLost("a message that the worker could not read"));
     } else if (message.error === undefined) {
       this.#pending?.resolve(message);
     } else if (message.error.code === "INTERNAL") {

@@ -1,5 +1,5 @@
 /** Copies or lists the arrays that are sent to a worker. */
-import { isKind } from "../values.js";
+import { isBuffer, isRecord, typedArrayKind } from "../kinds.js";
 
 type View = new (buffer: ArrayBuffer) => ArrayBufferView;
 
@@ -7,10 +7,9 @@ type View = new (buffer: ArrayBuffer) => ArrayBufferView;
 export function copied<T>(value: T): T {
   const copy = mapped(value, (array) => {
     if (!ArrayBuffer.isView(array)) return array.slice(0);
-    const Kind = (globalThis as unknown as Record<string, View>)[kindOf(array)] as View;
+    const Kind = (globalThis as unknown as Record<string, View>)[typedArrayKind(array) ?? "DataView"] as View;
     const bytes = new Uint8Array(array.byteLength);
-    // The buffer of an empty array may be detached, and then cannot be read.
-    if (array.byteLength > 0) bytes.set(new Uint8Array(array.buffer, array.byteOffset, array.byteLength));
+    bytes.set(new Uint8Array(array.buffer, array.byteOffset, array.byteLength));
     return new Kind(bytes.buffer);
   });
   return copy as T;
@@ -22,16 +21,14 @@ export function buffersOf(value: unknown): ArrayBuffer[] {
   mapped(value, (array) => {
     const buffer = ArrayBuffer.isView(array) ? array.buffer : array;
     // Shared memory cannot be transferred.
-    if (isKind<ArrayBuffer>(buffer, "ArrayBuffer")) buffers.add(buffer);
+    if (isBuffer(buffer)) buffers.add(buffer);
     return array;
   });
   return [...buffers];
 }
 
 function mapped(value: unknown, replace: (array: ArrayBuffer | ArrayBufferView) => unknown): unknown {
-  if (ArrayBuffer.isView(value) || isKind<ArrayBuffer>(value, "ArrayBuffer")) return replace(value);
-  if (!isKind<object>(value, "Object")) return value;
+  if (ArrayBuffer.isView(value) || isBuffer(value)) return replace(value);
+  if (!isRecord(value)) return value;
   return Object.fromEntries(Object.entries(value).map(([name, inner]) => [name, mapped(inner, replace)]));
 }
-
-const kindOf = (value: unknown) => Object.prototype.toString.call(value).slice(8, -1);

@@ -1,0 +1,88 @@
+/** Bad files: a typed error that says what to do. */
+import { type Bad, refuses } from "../support/bad-input.js";
+import { glb, glbOf, gltfBuffer, gltfJson, npy, png } from "../support/files.js";
+import { mesh, view } from "../support/scene.js";
+
+const { width, height, depth, mask } = view;
+const hostile = Buffer.alloc(100);
+hostile.write("glTF", "latin1");
+hostile.writeUInt32LE(2, 4);
+hostile.writeUInt32LE(0xffffffff, 8);
+hostile.writeUInt32LE(0xfffffff0, 12);
+hostile.write("JSON", 16, "latin1");
+/** A GLB whose geometry is there in compressed form only. */
+function compressedBy(extension: string): Uint8Array {
+  const plain = gltfJson(mesh);
+  const isDraco = extension.startsWith("KHR");
+  const primitive = {
+    ...plain.meshes[0]?.primitives[0],
+    extensions: { [extension]: { bufferView: 0, attributes: {} } },
+  };
+  const bufferViews = plain.bufferViews.map((view) => ({
+    ...view,
+    buffer: 1,
+    extensions: { [extension]: { ...view, buffer: 0, mode: "ATTRIBUTES", count: 1, byteStride: 12 } },
+  }));
+  const changes = isDraco
+    ? { meshes: [{ primitives: [primitive] }], accessors: plain.accessors.map(({ bufferView: _, ...rest }) => rest) }
+    : {
+        bufferViews,
+        buffers: [...plain.buffers, { byteLength: 1e6, extensions: { [extension]: { fallback: true } } }],
+      };
+  const names = { extensionsUsed: [extension], extensionsRequired: [extension] };
+  return glbOf({ ...plain, ...changes, ...names }, gltfBuffer(mesh));
+}
+const draco = compressedBy("KHR_draco_mesh_compression");
+const meshopt = compressedBy("EXT_meshopt_compression");
+const external = Buffer.from(JSON.stringify(gltfJson(mesh, {}, { uri: "mesh.bin" })));
+const claims = { ...gltfJson(mesh), accessors: gltfJson(mesh).accessors.map((a) => ({ ...a, count: 2 ** 31 })) };
+const bytes = new Uint8Array(width * height).fill(80);
+const sized = { width: undefined, height: undefined };
+
+const files: Bad[] = [
+  ["8-bit PNG depth", { ...sized, depth: png(bytes, width, height) }, "EIGHT_BIT_DEPTH", "depth", /8-bit PNG/],
+  ["8-bit NPY depth", { ...sized, depth: npy(bytes, height, width) }, "EIGHT_BIT_DEPTH", "depth", /8-bit/],
+  [
+    "depth of no known format",
+    { ...sized, depth: Buffer.from("II*\0 a TIFF") },
+    "UNSUPPORTED_FORMAT",
+    "depth",
+    /16-bit grey PNG or a \.npy/,
+  ],
+  ["empty depth file", { ...sized, depth: new Uint8Array(0) }, "UNSUPPORTED_FORMAT", "depth", /./],
+  ["truncated depth", { ...sized, depth: npy(depth, height, width).slice(0, 5000) }, "CORRUPT_FILE", "depth", /./],
+  [
+    "a depth file of another size than stated",
+    { depth: npy(depth, height, width), width: 1, height: 2 },
+    "SIZE_MISMATCH",
+    "depth",
+    /160 × 120.*1 × 2/,
+  ],
+  ["truncated mask", { mask: png(mask, width, height).slice(0, 60) }, "CORRUPT_FILE", "mask", /./],
+  [
+    "a mask file of another size",
+    { mask: png(new Uint8Array(6).fill(1), 3, 2) },
+    "SIZE_MISMATCH",
+    "mask",
+    /3 × 2 pixels/,
+  ],
+  [
+    "RLE that does not fill its size",
+    { mask: { size: [120, 160], counts: [5, 5] } },
+    "CORRUPT_FILE",
+    "mask.counts",
+    /./,
+  ],
+  ["a JPEG mask", { mask: Buffer.from("\xff\xd8\xff\xe0 JFIF", "latin1") }, "UNSUPPORTED_FORMAT", "mask", /PNG/],
+  ["a GLB that claims 4 GB", { mesh: hostile }, "FILE_TOO_LARGE", "mesh", /claims 4294967295 bytes; the file has 100/],
+  ["truncated GLB", { mesh: glb(mesh).slice(0, 5000) }, "CORRUPT_FILE", "mesh", /./],
+  ["accessors that claim too much", { mesh: glbOf(claims, gltfBuffer(mesh)) }, "FILE_TOO_LARGE", "mesh", /./],
+  ["a Draco-compressed GLB", { mesh: draco }, "COMPRESSED_MESH", "mesh", /KHR_draco_mesh_compression.*gltf-transform/],
+  ["a meshopt-compressed GLB", { mesh: meshopt }, "COMPRESSED_MESH", "mesh", /EXT_meshopt_compression.*gltf-transform/],
+  ["a .gltf without its buffer", { mesh: external }, "INVALID_ARGUMENT", "mesh.resources", /mesh\.bin/],
+  ["a mesh of no known format", { mesh: Buffer.from("hello, world") }, "UNSUPPORTED_FORMAT", "mesh", /./],
+  ["an unknown mesh format", { mesh: { bytes: glb(mesh), format: "fbx" } }, "INVALID_OPTION", "mesh.format", /fbx/],
+  ["an empty mesh file", { mesh: new Uint8Array(0) }, "UNSUPPORTED_FORMAT", "mesh", /./],
+];
+
+refuses(files);
