@@ -57,6 +57,27 @@ const images: Bad[] = [
   ["mask as floats", { mask: Float32Array.from(mask) }, "INVALID_ARGUMENT", "mask", /Uint8Array\.from\(mask\)/],
   ["mask too short", { mask: mask.slice(1) }, "WRONG_LENGTH", "mask", /19199 values.*160 × 120/],
   [
+    "an RGBA mask",
+    { mask: new Uint8ClampedArray(4 * pixels) },
+    "WRONG_LENGTH",
+    "mask",
+    /76800 values, 4 per pixel.*19200 values, one.*one channel of the RGBA image/,
+  ],
+  [
+    "an RGB mask in an object",
+    { mask: { data: new Uint8Array(3 * pixels), width, height } },
+    "WRONG_LENGTH",
+    "mask.data",
+    /3 per pixel.*i % 3 === 0/,
+  ],
+  [
+    "a mask as ImageData",
+    { mask: { [Symbol.toStringTag]: "ImageData" } },
+    "INVALID_ARGUMENT",
+    "mask",
+    /found ImageData.*one channel/,
+  ],
+  [
     "mask of another size",
     { mask: { data: new Uint8Array(80 * 60), width: 80, height: 60 } },
     "SIZE_MISMATCH",
@@ -104,6 +125,13 @@ const images: Bad[] = [
     /640 × 480.*160 × 120/,
   ],
   ["a camera file as camera", { camera: { cam_K: [] } }, "INVALID_ARGUMENT", "camera", /cameraFile/],
+  [
+    "a camera with other names",
+    { camera: { focal: 600 } },
+    "INVALID_ARGUMENT",
+    "camera",
+    /found an object with focal, expected \{ fx, fy, cx, cy \}.* Rename or omit `focal`/,
+  ],
   ["camera text", { camera: "{}" }, "INVALID_ARGUMENT", "camera", /cameraFile/],
   ["camera and camera file", { cameraFile: "{}" }, "INVALID_ARGUMENT", "cameraFile", /not both/],
   [

@@ -111,24 +111,44 @@ test("camera: lens distortion is warned of, and another image's size is refused"
   });
 });
 
+/** Files that may be damaged: text that is no JSON. */
 const corrupt: unknown[] = [
-  ...["", "nonsense", "1", "[]", "[1,2,3]", "{}", Buffer.of(0x7b, 0xff, 0x7d), `{"fx":1e999}`],
+  ...["", "nonsense", Buffer.of(0x7b, 0xff, 0x7d), `{"fx":1e999}`],
+  ...["[".repeat(100_000), `${"[".repeat(100_000)}${"]".repeat(100_000)}`],
+];
+
+/** Other files. */
+const others: unknown[] = [
+  ...["1", "[]", "[1,2,3]", "{}"],
   ...[
     { fx: 600, fy: 610, cx: 319.5 },
     { ...intrinsics, fx: "600" },
     { ...intrinsics, fx: Number.NaN },
   ],
   ...[{ K: [1, 2, 3] }, { K: [first, second, third, third] }, { K: "eye" }, { K: null }, { intrinsic_matrix: 7 }],
-  ...[{ "0": { cam_R_m2c: [] } }, "[".repeat(100_000), `${"[".repeat(100_000)}${"]".repeat(100_000)}`],
+  { "0": { cam_R_m2c: [] } },
 ];
 
 const refusedCameras: [unknown, CameraFileOptions, Expected][] = [
   ...corrupt.map((file): [unknown, CameraFileOptions, Expected] => [
     file,
     {},
-    { code: "CORRUPT_FILE", argument: "camera", message: /./ },
+    { code: "CORRUPT_FILE", argument: "camera", message: /JSON.* download or export/ },
   ]),
-  [{ focal: 1, center: 2 }, {}, { code: "CORRUPT_FILE", argument: "camera", message: /focal, center/ }],
+  ...others.map((file): [unknown, CameraFileOptions, Expected] => [
+    file,
+    {},
+    { code: "INVALID_CAMERA", argument: "camera", message: /fx, fy, cx and cy/ },
+  ]),
+  [
+    { focal: 1, center: 2 },
+    {},
+    {
+      code: "INVALID_CAMERA",
+      argument: "camera",
+      message: /found an object with focal, center.* Write .* fx, fy, cx and cy/,
+    },
+  ],
   [{ ...intrinsics, fx: 0 }, {}, { code: "INVALID_CAMERA", argument: "camera.fx", message: /found 0/ }],
   // A column-major K, as of MATLAB.
   [[600, 0, 0, 0, 610, 0, 319.5, 239.5, 1], {}, { code: "INVALID_CAMERA", argument: "camera.K", message: /transpose/ }],
@@ -195,7 +215,8 @@ test("poses: other content is refused", async () => {
   for (const [file, argument] of invalid) {
     await rejectsWith(() => readPose(file as object), { code: "INVALID_TRANSFORM", argument, message: /./ });
   }
-  for (const file of ["{", "7", `{"scale":1,"rotation":[1],"translation":[0,0,1e999]}`]) {
+  await rejectsWith(() => readPose("7"), { code: "INVALID_TRANSFORM", argument: "pose", message: /not an object/ });
+  for (const file of ["{", `{"scale":1,"rotation":[1],"translation":[0,0,1e999]}`]) {
     await rejectsWith(() => readPose(file), { code: "CORRUPT_FILE", argument: "pose", message: /./ });
   }
 });
@@ -230,16 +251,16 @@ test("masks: run lengths that do not fit are refused", async () => {
     ["[5,7]", "{}", "INVALID_ARGUMENT", "mask.counts"],
     ["[0,7]", "[0]", "EMPTY_IMAGE", "mask.size"],
     ["[100000,100000]", "[1]", "FILE_TOO_LARGE", "mask.size"],
-    ["[5,7,1]", "[35]", "CORRUPT_FILE", "mask"],
-    ["[5]", "[35]", "CORRUPT_FILE", "mask"],
-    ["7", "[35]", "CORRUPT_FILE", "mask"],
+    ["[5,7,1]", "[35]", "UNSUPPORTED_FORMAT", "mask"],
+    ["[5]", "[35]", "UNSUPPORTED_FORMAT", "mask"],
+    ["7", "[35]", "UNSUPPORTED_FORMAT", "mask"],
   ];
   for (const [rle, counts, code, argument] of refused) {
     const file = Buffer.from(`{"size":${rle},"counts":${counts}}`);
     await rejectsWith(() => readMask(file), { code, argument, message: /./ });
   }
   await rejectsWith(() => readMask(Buffer.from("{}")), {
-    code: "CORRUPT_FILE",
+    code: "UNSUPPORTED_FORMAT",
     argument: "mask",
     message: /run-length/,
   });

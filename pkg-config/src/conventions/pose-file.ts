@@ -1,5 +1,5 @@
 /** Pose files: `gt.json` of a case, an annotation, or a saved result. */
-import { corruptJson, isNumber, type JsonFile, numbersIn, parsedJson, shown } from "../formats/json.js";
+import { isNumber, type JsonFile, numbersIn, parsedJson, shown } from "../formats/json.js";
 import type { Sim3 } from "../sim3.js";
 import { failure, isRecord } from "../values.js";
 import { fromBop } from "./bop.js";
@@ -26,16 +26,14 @@ export function parsePoseFile(argument: string, content: JsonFile): KnownPose | 
 }
 
 function transformIn(argument: string, json: unknown): Sim3 {
-  if (!isRecord(json)) throw corruptJson(argument, "JSON that is not an object", "{ scale, rotation, translation }");
+  const remedy = "Write { scale, rotation, translation } or { matrix }; x_cam = scale · R · p_mesh + translation.";
+  if (!isRecord(json)) {
+    const expected = "{ scale, rotation, translation }";
+    throw failure("INVALID_TRANSFORM", argument, "JSON that is not an object", expected, remedy);
+  }
   if ("cam_R_m2c" in json) return fromBop(json as unknown as Parameters<typeof fromBop>[0]);
   const invalid = (name: string, expected: string) =>
-    failure(
-      "INVALID_TRANSFORM",
-      `${argument}.${name}`,
-      shown(json[name]),
-      expected,
-      "Write { scale, rotation, translation } or { matrix }; x_cam = scale · R · p_mesh + translation.",
-    );
+    failure("INVALID_TRANSFORM", `${argument}.${name}`, shown(json[name]), expected, remedy);
   if ("matrix" in json) {
     const matrix = numbersIn(json.matrix, 16);
     if (matrix === null) throw invalid("matrix", "16 numbers, column-major");

@@ -1,7 +1,7 @@
 /** Camera files of data sets and drivers: sim3align, BOP, ROS, RealSense and Open3D. */
 import { describe, invalidArgument } from "../error.js";
 import { failure, isRecord } from "../values.js";
-import { corruptJson, isNumber, type JsonFile, namesIn, numbersIn, parsedJson } from "./json.js";
+import { isNumber, type JsonFile, namesIn, numbersIn, parsedJson } from "./json.js";
 import { checkedPinhole, fromFieldOfView, fromMatrix, type Pinhole } from "./pinhole.js";
 import type { ImageSize } from "./pixels.js";
 
@@ -62,7 +62,7 @@ export function parseCameraFile(
   const id = idOf(names, imageId);
   const json = parsedJson(names.file, content);
   if (numbersIn(json, 9) !== null) return { ...fromMatrix(names.file, json), warnings: [] };
-  if (!isRecord(json)) throw corruptJson(names.file, "JSON that is not an object", forms);
+  if (!isRecord(json)) throw noCamera(names, "JSON that is not an object");
   const entry = sceneEntry(json, id, names) ?? json;
   const own = { width: wholeIn(entry.width), height: wholeIn(entry.height) };
   checkCameraSize(names.file, own, given);
@@ -133,7 +133,7 @@ function sceneEntry(
 }
 
 function intrinsicsOf(entry: Record<string, unknown>, size: ImageSize | undefined, names: CameraFileNames): Pinhole {
-  const invalid = (found: string) => corruptJson(names.file, found, forms);
+  const invalid = (found: string) => noCamera(names, found);
   const matrixName = ["K", "k", "cam_K"].find((name) => name in entry);
   if (matrixName !== undefined) {
     const K = numbersIn(entry[matrixName], 9);
@@ -165,6 +165,12 @@ function intrinsicsOf(entry: Record<string, unknown>, size: ImageSize | undefine
   const remedy = "Pass the width and height of the depth map in pixels.";
   const found = "a field of view without image size";
   throw failure("INVALID_ARGUMENT", `${names.options}width`, found, "width and height", remedy);
+}
+
+/** The error for JSON that is not the content of a camera file. */
+function noCamera({ file }: CameraFileNames, found: string) {
+  const remedy = "Write the focal lengths and the principal point as fx, fy, cx and cy, in pixels of the depth map.";
+  return failure("INVALID_CAMERA", file, found, forms, remedy);
 }
 
 function depthScaleOf({ depthScale, depth_scale }: Record<string, unknown>, names: CameraFileNames) {

@@ -2,7 +2,7 @@
 import { describe } from "../error.js";
 import type { CocoRle, PixelArray } from "../input/types.js";
 import { failure, finiteNumbers, isRecord, record, whole } from "../values.js";
-import { corruptJson, type JsonFile, numbersIn, parsedJson } from "./json.js";
+import { type JsonFile, numbersIn, parsedJson } from "./json.js";
 import { type ImageSize, type MaskPixels, maskKinds, pixelsOf } from "./pixels.js";
 import { filledRuns } from "./runs.js";
 
@@ -72,7 +72,9 @@ export function readRleFile(argument: string, file: JsonFile): PixelArray<Uint8A
   const json = parsedJson(argument, file);
   const rle = isRecord(json) && isRecord(json.segmentation) ? json.segmentation : json;
   if (isRecord(rle) && numbersIn(rle.size, 2) !== null && rle.counts !== undefined) return decodedRle(argument, rle);
-  throw corruptJson(argument, "JSON without a run-length encoding", '{"size": [height, width], "counts": …}');
+  const expected = '{"size": [height, width], "counts": …}';
+  const remedy = "Encode the mask as COCO RLE, for example with pycocotools, or pass a PNG.";
+  throw failure("UNSUPPORTED_FORMAT", argument, "JSON without a run-length encoding", expected, remedy);
 }
 
 /** The validated run lengths of an array or a compressed string. */

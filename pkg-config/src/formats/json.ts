@@ -25,13 +25,10 @@ export function parsedJson(argument: string, file: JsonFile): unknown {
       return value;
     });
   } catch (cause) {
-    throw corruptJson(argument, `text that is not JSON: ${cause instanceof Error ? cause.message : cause}`, "JSON");
+    const found = `text that is not JSON: ${cause instanceof Error ? cause.message : cause}`;
+    throw failure("CORRUPT_FILE", argument, found, "JSON", "The file may be truncated: download or export it again.");
   }
 }
-
-/** The error for an inconsistent or unexpected file. */
-export const corruptJson = (argument: string, found: string, expected: string) =>
-  failure("CORRUPT_FILE", argument, found, expected, "The file may be truncated: download or export it again.");
 
 /** `count` numbers, from a flat array or an array of rows; `null` for anything else. */
 export function numbersIn(value: unknown, count: number): number[] | null {

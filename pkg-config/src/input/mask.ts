@@ -3,7 +3,7 @@ import { checkAttached } from "../attached.js";
 import { invalidArgument } from "../error.js";
 import { decodedRle, readRleFile } from "../formats/coco-rle.js";
 import type { LoadFormats } from "../formats-module.js";
-import { isRecord, isTypedArray, wrongKind } from "../values.js";
+import { failure, isKind, isRecord, isTypedArray, wrongKind } from "../values.js";
 import { beginsLikeImage, beginsLikeJson, fileBytes } from "./bytes.js";
 import type { SizedArray } from "./depth.js";
 
@@ -21,19 +21,42 @@ export async function readMask(mask: unknown, pixels: number, formats: LoadForma
     if ("data" in mask) {
       const { data, width, height } = mask as { data: unknown; width: number; height: number };
       if (!isMaskArray(data)) throw wrongKind("mask.data", data, "a Uint8Array", "Uint8Array");
-      if (typeof width === "number" && typeof height === "number") return { data, width, height };
-      throw invalidArgument("mask", mask, "data, width and height", "Pass the width and height of the mask in pixels.");
+      if (typeof width !== "number" || typeof height !== "number") {
+        const remedy = "Pass the width and height of the mask in pixels.";
+        throw invalidArgument("mask", mask, "data, width and height", remedy);
+      }
+      checkChannels("mask.data", data, width * height);
+      return { data, width, height };
     }
   }
-  if (isTypedArray<Uint8ClampedArray>(mask, "Uint8ClampedArray")) return bare(mask);
+  if (isTypedArray<Uint8ClampedArray>(mask, "Uint8ClampedArray")) {
+    checkChannels("mask", mask, pixels);
+    return bare(mask);
+  }
+  if (isKind(mask, "ImageData")) throw invalidArgument("mask", mask, kinds, "Pass one channel of its data.");
   const bytes = await fileBytes("mask", mask);
   if (bytes === null) throw wrongKind("mask", mask, kinds, "Uint8Array");
   const isImage = beginsLikeImage(bytes);
-  if (!isImage && (bytes.length === pixels || (mask === bytes && !beginsLikeJson(bytes)))) return bare(bytes);
+  if (!isImage && (bytes.length === pixels || (mask === bytes && !beginsLikeJson(bytes)))) {
+    checkChannels("mask", bytes, pixels);
+    return bare(bytes);
+  }
   if (!isImage && beginsLikeJson(bytes)) return readRleFile("mask", bytes);
   const module = await formats();
   checkAttached("mask", bytes);
   return module.call((readers) => readers.readMask(bytes));
+}
+
+/** Explains the length of an image with several values per pixel. The core checks every other length. */
+function checkChannels(argument: string, { length }: MaskArray, pixels: number): void {
+  const channels = length / pixels;
+  if (![2, 3, 4].includes(channels)) return;
+  const found = `${length} values, ${channels} per pixel`;
+  const remedy =
+    channels === 4
+      ? `Pass one channel of the RGBA image: ${argument}.filter((_, i) => i % 4 === 0) is red, i % 4 === 3 the opacity.`
+      : `Pass one channel of the image, such as ${argument}.filter((_, i) => i % ${channels} === 0).`;
+  throw failure("WRONG_LENGTH", argument, found, `${pixels} values, one per pixel`, remedy);
 }
 
 const bare = (data: MaskArray): SizedArray<MaskArray> => ({ data, width: undefined, height: undefined });
