@@ -1,55 +1,21 @@
 /** The command line, run as its users run it. */
 import assert from "node:assert/strict";
-import { spawnSync } from "node:child_process";
-import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { after, test } from "node:test";
+import { test } from "node:test";
 import { createAligner, OPTIONS, type Sim3 } from "sim3align";
-import { commandLine } from "../support/environment.js";
-import { cocoRle, glb, gltfBuffer, gltfJson, npy, obj, png } from "../support/files.js";
+import { files, folder, pixels, results, run, writeCase } from "../support/command-line.js";
+import { cocoRle, gltfBuffer, gltfJson, obj, png } from "../support/files.js";
 import { withoutTimes } from "../support/results.js";
 import { columnMajor, mesh, rotationRows, truth, view } from "../support/scene.js";
 
 const { width, height, depth, mask, camera } = view;
-const folder = mkdtempSync(join(tmpdir(), "sim3align-cli-"));
-after(() => rmSync(folder, { recursive: true, force: true }));
-
-/** Runs the command line in the folder of the cases. */
-function run(...args: string[]): { status: number | null; stdout: string; stderr: string } {
-  const { status, stdout, stderr } = spawnSync(process.execPath, [commandLine, ...args], {
-    cwd: folder,
-    encoding: "utf8",
-  });
-  return { status, stdout, stderr };
-}
-
-function writeCase(name: string, files: Record<string, Uint8Array | object>): string {
-  mkdirSync(join(folder, name), { recursive: true });
-  for (const [file, content] of Object.entries(files)) {
-    const text = content instanceof Uint8Array ? content : JSON.stringify(content);
-    writeFileSync(join(folder, name, file), text);
-  }
-  return name;
-}
-
-const pixels = png(
-  mask.map((m) => 255 * m),
-  width,
-  height,
-);
 const gt = {
   available: true,
   scale: truth.scale,
   rotation: rotationRows(truth.rotation),
   translation: truth.translation,
   symmetry: "none",
-};
-const files = {
-  "depth.npy": npy(depth, height, width),
-  "mask.png": pixels,
-  "mesh.glb": glb(mesh),
-  "camera.json": camera,
 };
 const millimetres = Uint16Array.from(depth, (z) => Math.round(1000 * z));
 
@@ -66,9 +32,6 @@ writeCase("no-mask", { "depth.npy": files["depth.npy"], "mesh.glb": files["mesh.
 writeCase("empty-mask", { ...files, "mask.png": png(new Uint8Array(mask.length), width, height) });
 writeCase("outside", { ...files, "mesh.gltf": gltfJson(mesh, {}, { uri: "../blob/mesh.glb" }) });
 rmSync(join(folder, "outside", "mesh.glb"));
-
-/** The results that --json wrote. */
-const results = (path: string) => JSON.parse(readFileSync(join(folder, path), "utf8"));
 
 test("--help explains the layout, frames, units and exit status", () => {
   const top = run("--help");
@@ -283,6 +246,7 @@ test("flags reach the core", () => {
 });
 
 test("the flags of precise are taken", () => {
+  // The last one reads the file that it writes.
   const quick = ["--quality", "fast", "--json", "precise.json"];
   const accepted = [
     ["--scale", "0.05,0.2", "--work-budget", "100"],
@@ -341,6 +305,14 @@ const usage: [name: string, args: string[], message: RegExp][] = [
   ],
   ["an option that does not exist", ["align", "blob", "--options", '{"sead": 1}'], /options\.sead/],
   ["half of the files", ["align", "--depth", "blob/depth.npy"], /belong together/],
+  [
+    "intrinsics that are one too few",
+    ["align", "blob", "--camera", "1066,1067,312"],
+    /Found 3 values, expected four numbers: fx,fy,cx,cy/,
+  ],
+  ["intrinsics with a letter", ["align", "blob", "--camera", "600,600,320,24O"], /expected four numbers/],
+  ["a focal length of zero", ["align", "blob", "--camera", "0,600,320,240"], /focal lengths above 0/],
+  ["a field of view of 500°", ["align", "blob", "--camera", "fov:500"], /above 0 and below 180/],
   ["a folder and files", ["align", "blob", "--depth", "blob/depth.npy"], /but not both/],
   ["evaluate without a case", ["evaluate"], /missing required argument/],
 ];
@@ -389,10 +361,4 @@ test("evaluate reports what it can't do", () => {
     assert.match(error.message, message);
     assert.match(stdout, message);
   }
-});
-
-test("a result that can't be written is an error", () => {
-  const { status, stderr } = run("align", "blob", "--json", join("nowhere", "out.json"));
-  assert.equal(status, 1);
-  assert.match(stderr, /error: .*nowhere/);
 });

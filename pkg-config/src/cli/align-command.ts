@@ -1,8 +1,6 @@
 /** `sim3align align`: aligns cases and prints the results. */
-import { statSync } from "node:fs";
-import { basename, resolve } from "node:path";
 import { Command, Option } from "commander";
-import { type CaseOnDisk, type CasePaths, type CaseSettings, readCaseFiles, readCaseFolder } from "../case-folder.js";
+import type { CaseOnDisk } from "../case-folder.js";
 import {
   type Aligner,
   createAligner,
@@ -21,20 +19,18 @@ import {
   conventionsHelp,
   statusHelp,
 } from "./case-options.js";
+import { type CaseToDo, casesOf, type FileFlags } from "./cases.js";
+import { onInterruption } from "./interruption.js";
 import { addOptionFlags, givenOptions } from "./option-flags.js";
-import { failure, type Outcome, outcomesJson, type Success } from "./outcome.js";
+import { failure, type Outcome, outcomeJson, type Success } from "./outcome.js";
 import { Output } from "./output.js";
 import { camera, jsonObject } from "./parse.js";
 import { ProgressLine } from "./progress-line.js";
-import { details, notes, summary } from "./report.js";
+import { details, notes, Summary } from "./report.js";
 import { readTransform, transformFileHelp } from "./transform-file.js";
 import { UsageError } from "./usage-error.js";
 
-interface AlignFlags extends CaseFlags, Readonly<Record<string, unknown>> {
-  depth?: string;
-  mask?: string;
-  mesh?: string;
-  camera?: CasePaths["camera"];
+interface AlignFlags extends CaseFlags, FileFlags, Readonly<Record<string, unknown>> {
   json?: string;
   options?: Record<string, unknown>;
   preset?: Preset;
@@ -54,6 +50,8 @@ Output
   IoU, boundary F, centre drift, Chamfer distance, fitness, depth error and time; with gt.json also the errors against
   it. A single case is shown in detail. The confidence is the probability that the pose is right, 0 to 1. An alternative
   is another pose that explains the observation nearly as well.
+  The row of a case, and its entry in the file of --json, are written when the case is done: an interruption loses
+  nothing.
   --json writes { "<case>": { scale, rotation, translation, matrix, quaternion, confidence, alternatives, uncertainty,
   metrics, warnings, timingsMs, diagnostics } }; a case that failed has { error: { code, argument, found, expected,
   remedy, message } }. With --preset paper, confidence and uncertainty are null and alternatives is empty.
@@ -90,72 +88,47 @@ export function alignCommand(): Command {
 }
 
 async function run(folders: string[], flags: AlignFlags): Promise<void> {
-  const jobs = jobsOf(folders, flags);
+  const cases = casesOf(folders, flags, caseSettings(flags));
   const output = new Output(flags.json);
   const aligner = await createAligner();
-  const progress = new ProgressLine(process.stderr, jobs.length);
+  const progress = new ProgressLine(process.stderr, cases.length);
+  const summary = cases.length === 1 ? undefined : new Summary(cases, output.style);
   const outcomes: Outcome[] = [];
-  for (const job of jobs) {
-    progress.begin(job.name);
-    outcomes.push(await alignCase(aligner, job, flags, progress));
+  const end = () => {
+    progress.clear();
+    output.results?.end();
+    output.lines(remarks(outcomes, output));
+  };
+  const stop = onInterruption(() => {
+    end();
+    const place = flags.json === undefined || flags.json === "-" ? "" : `; they are in ${flags.json}`;
+    console.error(`interrupted: ${outcomes.length} of ${cases.length} cases are done${place}`);
+  });
+  for (const each of cases) {
+    progress.begin(each.name);
+    const outcome = await alignCase(aligner, each, flags, progress);
+    progress.clear();
+    outcomes.push(outcome);
+    output.results?.add(outcome.name, outcomeJson(outcome));
+    if (summary !== undefined) output.lines(summary.lines(outcome));
+    if (output.isClosed) break;
   }
-  progress.clear();
-  await output.json(outcomesJson(outcomes));
-  output.lines(report(outcomes, output));
+  stop();
+  end();
   if (outcomes.some((outcome) => "error" in outcome)) process.exitCode = 1;
 }
 
-function report(outcomes: readonly Outcome[], { style }: Output): string[] {
+/** What follows the table: details of a single case, or the warnings and failures of all. */
+function remarks(outcomes: readonly Outcome[], { style }: Output): string[] {
   const [only] = outcomes;
   if (outcomes.length === 1 && only !== undefined && !("error" in only)) return details(only, style);
-  const remarks = notes(outcomes, style);
-  return outcomes.length === 1
-    ? remarks
-    : [...summary(outcomes, style), ...(remarks.length > 0 ? ["", ...remarks] : [])];
-}
-
-/** A case to read and align. */
-interface Job {
-  name: string;
-  read(): Promise<CaseOnDisk>;
-}
-
-function jobsOf(folders: readonly string[], flags: AlignFlags): Job[] {
-  const settings = caseSettings(flags);
-  const { depth, mask, mesh, camera: cameraFlag } = flags;
-  const given = [depth, mask, mesh, cameraFlag].filter((flag) => flag !== undefined).length;
-  if (given === 0 && folders.length === 0)
-    throw new UsageError("Pass at least one case folder, or --depth, --mask, --mesh and --camera.");
-  if (given === 0) return folderJobs(folders, settings);
-  if (folders.length > 0)
-    throw new UsageError("Pass case folders, or --depth, --mask, --mesh and --camera, but not both.");
-  if (depth === undefined || mask === undefined || mesh === undefined || cameraFlag === undefined) {
-    throw new UsageError("--depth, --mask, --mesh and --camera belong together: pass all four.");
-  }
-  const name = basename(mesh).replace(/\.[^.]*$/, "");
-  return [{ name, read: () => readCaseFiles(name, { depth, mask, mesh, camera: cameraFlag }, settings) }];
-}
-
-/**
- * Cases are named by their folders, or by their paths if names repeat. Files, which `cases/*` may match, are skipped.
- */
-function folderJobs(paths: readonly string[], settings: CaseSettings): Job[] {
-  const folders = paths.filter((path) => !statSync(path, { throwIfNoEntry: false })?.isFile());
-  if (folders.length === 0) throw new UsageError(`No case folder among ${paths.join(", ")}.`);
-  if (folders.length < paths.length) {
-    console.error(`skipped, not a folder: ${paths.filter((path) => !folders.includes(path)).join(", ")}`);
-  }
-  const names = folders.map((folder) => basename(resolve(folder)));
-  return folders.map((folder, i) => {
-    const name = names[i] ?? folder;
-    const isUnique = names.indexOf(name) === names.lastIndexOf(name);
-    return { name: isUnique ? name : folder, read: () => readCaseFolder(folder, settings) };
-  });
+  const lines = notes(outcomes, style);
+  return outcomes.length === 1 || lines.length === 0 ? lines : ["", ...lines];
 }
 
 async function alignCase(
   aligner: Aligner,
-  { name, read }: Job,
+  { name, read }: CaseToDo,
   flags: AlignFlags,
   progress: ProgressLine,
 ): Promise<Outcome> {

@@ -48,7 +48,8 @@ export function evaluateCommand(): Command {
 async function run(folder: string, flags: EvaluateFlags): Promise<void> {
   const output = new Output(flags.json);
   const [name, result] = await evaluateCase(folder, flags);
-  await output.json(evaluationJson(name, result));
+  output.results?.add(name, evaluationJson(result));
+  output.results?.end();
   if ("error" in result) {
     output.lines([output.style.red("failed ") + failureText(result)]);
     process.exitCode = 1;

@@ -75,17 +75,10 @@ function failureJson({ error, file }: Failure) {
   return { error: { code, argument, found, expected, remedy, message, ...(file === undefined ? {} : { file }) } };
 }
 
-/** JSON text of all cases, by name. */
-export function outcomesJson(outcomes: readonly Outcome[]): string {
-  const entries = outcomes.map((outcome) => [
-    outcome.name,
-    "error" in outcome ? failureJson(outcome) : alignmentJson(outcome),
-  ]);
-  return `${JSON.stringify(Object.fromEntries(entries), null, 2)}\n`;
-}
+/** The JSON entry of a case. */
+export const outcomeJson = (outcome: Outcome): object =>
+  "error" in outcome ? failureJson(outcome) : alignmentJson(outcome);
 
-/** JSON text of an evaluated case. */
-export function evaluationJson(name: string, evaluation: Evaluation | Failure): string {
-  const entry = "error" in evaluation ? failureJson(evaluation) : evaluation;
-  return `${JSON.stringify({ [name]: entry }, null, 2)}\n`;
-}
+/** The JSON entry of an evaluated case. */
+export const evaluationJson = (evaluation: Evaluation | Failure): object =>
+  "error" in evaluation ? failureJson(evaluation) : evaluation;

@@ -64,8 +64,23 @@ export function camera(text: string): string | { value: CameraInput } {
   const intrinsics = numbers(text, 4);
   if (intrinsics !== null) {
     const [fx = 0, fy = 0, cx = 0, cy = 0] = intrinsics;
-    return { value: { fx, fy, cx, cy } };
+    if (fx > 0 && fy > 0) return { value: { fx, fy, cx, cy } };
+    throw new InvalidArgumentError("Expected focal lengths above 0: fx,fy,cx,cy in pixels.");
+  }
+  if (looksLikeNumbers(text)) {
+    const found = text.split(",").length;
+    throw new InvalidArgumentError(
+      `Found ${found} values, expected four numbers: fx,fy,cx,cy in pixels, such as 600,600,319.5,239.5.`,
+    );
   }
   if (!text.startsWith("fov:")) return text;
-  return { value: { fovYDeg: number(text.slice("fov:".length)) } };
+  const fovYDeg = number(text.slice("fov:".length));
+  if (fovYDeg > 0 && fovYDeg < 180) return { value: { fovYDeg } };
+  throw new InvalidArgumentError("Expected a vertical field of view above 0 and below 180 degrees.");
+}
+
+/** Whether the text is a list with two numbers or more, which is no name of a file. */
+function looksLikeNumbers(text: string): boolean {
+  const isNumber = (part: string) => part.trim() !== "" && !Number.isNaN(Number(part));
+  return text.split(",").filter(isNumber).length >= 2;
 }

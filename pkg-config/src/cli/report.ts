@@ -3,39 +3,46 @@ import type { AlignResult, Evaluation, Metrics, PoseErrors, Warning } from "../i
 import { fixed, significant } from "./number.js";
 import { failureText, type Outcome, type Success } from "./outcome.js";
 import type { Style } from "./style.js";
-import { type Column, pairs, table } from "./table.js";
+import { type Column, headings, pairs, tableLine, textWidth } from "./table.js";
 
-const number = (heading: string): Column => ({ heading, isNumber: true });
+const number = (heading: string): Column => ({ heading, isNumber: true, width: 6 });
 
 const columns: readonly Column[] = [
   { heading: "case" },
-  ...[
-    "conf.",
-    "alt.",
-    "scale",
-    "s/s_init",
-    "IoU",
-    "bound. F",
-    "drift px",
-    "Chamfer mm",
-    "fitness",
-    "MAE mm",
-    "time s",
-  ].map(number),
+  ...["conf.", "alt."].map(number),
+  { ...number("scale"), width: 9 },
+  ...["s/s_init", "IoU", "bound. F", "drift px", "Chamfer mm", "fitness", "MAE mm", "time s"].map(number),
 ];
 
 const errorColumns: readonly Column[] = ["Δscale %", "Δrot °", "Δtrans mm", "Δtrans %"].map(number);
 
-/** One row per case, with the errors if the case has a true pose. */
-export function summary(outcomes: readonly Outcome[], style: Style): string[] {
-  const hasTruth = outcomes.some((outcome) => "errors" in outcome && outcome.errors !== null);
-  const all = hasTruth ? [...columns, ...errorColumns] : columns;
-  const rows = outcomes.map((outcome) => {
-    if ("error" in outcome) return [outcome.name, style.red(outcome.error.code)];
-    return [...row(outcome), ...(hasTruth ? errorCells(outcome.errors) : [])];
-  });
-  const [heading = "", ...lines] = table(all, rows);
-  return [style.bold(heading), ...lines];
+/** The table of several cases, one row per case, whose columns do not depend on the results. */
+export class Summary {
+  readonly #columns: readonly Column[];
+  readonly #hasTruth: boolean;
+  readonly #style: Style;
+  #isEmpty = true;
+
+  /** @param cases all cases of the table; the errors have columns if a case has a true pose */
+  constructor(cases: readonly { name: string; hasTruth: boolean }[], style: Style) {
+    this.#hasTruth = cases.some(({ hasTruth }) => hasTruth);
+    const width = Math.max(...cases.map(({ name }) => textWidth(name)));
+    const all = this.#hasTruth ? [...columns, ...errorColumns] : columns;
+    this.#columns = all.map((column, i) => (i === 0 ? { ...column, width } : column));
+    this.#style = style;
+  }
+
+  /** The row of a case; the first one is preceded by the headings. */
+  lines(outcome: Outcome): string[] {
+    const cells =
+      "error" in outcome
+        ? [outcome.name, this.#style.red(outcome.error.code)]
+        : [...row(outcome), ...(this.#hasTruth ? errorCells(outcome.errors) : [])];
+    const lines = [tableLine(this.#columns, cells)];
+    if (this.#isEmpty) lines.unshift(this.#style.bold(headings(this.#columns)));
+    this.#isEmpty = false;
+    return lines;
+  }
 }
 
 function row({ name, alignment }: Success): string[] {

@@ -1,38 +1,42 @@
 /** Aligned columns of text. */
 import { stripVTControlCharacters } from "node:util";
 
-/** A column: its heading, and whether its cells are numbers. */
+/** A column. Longer cells shift the rest of their row. */
 export interface Column {
   heading: string;
   isNumber?: boolean;
+  /** Minimum width in characters; the heading may be longer. */
+  width?: number;
 }
 
 /** Width of a text on a terminal, without escape sequences. */
-const width = (text: string) => [...stripVTControlCharacters(text)].length;
+export const textWidth = (text: string) => [...stripVTControlCharacters(text)].length;
 
 function pad(text: string, to: number, isNumber: boolean): string {
-  const space = " ".repeat(Math.max(0, to - width(text)));
+  const space = " ".repeat(Math.max(0, to - textWidth(text)));
   return isNumber ? space + text : text + space;
 }
 
-/**
- * The lines of a table: the headings, then the rows. In a row with fewer cells, the last cell may exceed its column.
- */
-export function table(columns: readonly Column[], rows: readonly (readonly string[])[]): string[] {
-  const widths = columns.map(({ heading }, i) => {
-    const cells = rows.filter((row) => row.length === columns.length || i < row.length - 1);
-    return Math.max(width(heading), ...cells.map((row) => width(row[i] ?? "")));
-  });
-  const line = (cells: readonly string[]) =>
-    cells
-      .map((cell, i) => pad(cell, widths[i] ?? 0, columns[i]?.isNumber === true && cells.length === columns.length))
-      .join("  ")
-      .trimEnd();
-  return [columns.map(({ heading }) => heading), ...rows].map(line);
+/** A row of a table. In a row with fewer cells than columns, all cells are text. */
+export function tableLine(columns: readonly Column[], cells: readonly string[]): string {
+  return columns
+    .slice(0, cells.length)
+    .map(({ heading, isNumber = false, width = 0 }, i) =>
+      pad(cells[i] ?? "", Math.max(width, textWidth(heading)), isNumber && cells.length === columns.length),
+    )
+    .join("  ")
+    .trimEnd();
 }
+
+/** The headings of a table. */
+export const headings = (columns: readonly Column[]) =>
+  tableLine(
+    columns,
+    columns.map(({ heading }) => heading),
+  );
 
 /** Names and values in two columns, indented. */
 export function pairs(entries: readonly (readonly [name: string, value: string])[]): string[] {
-  const longest = Math.max(...entries.map(([name]) => width(name)));
+  const longest = Math.max(...entries.map(([name]) => textWidth(name)));
   return entries.map(([name, value]) => `  ${pad(name, longest, false)}  ${value}`);
 }

@@ -11,13 +11,21 @@ A transform file is JSON with
   - { "matrix" }, 16 numbers column by column; or
   - the output of "sim3align align --json", from which the entry of the case is read.`;
 
+/** Each file is read once, for all cases: --json may overwrite it when the first one is done. */
+const texts = new Map<string, Promise<string>>();
+
 /**
  * Reads a transform file as 16 numbers, column-major.
  * @param argument the name of the transform in errors
  * @param name the case, whose entry is read from the output of `align --json`
  */
 export async function readTransform(argument: "transform" | "initial", path: string, name: string): Promise<number[]> {
-  const text = new TextDecoder().decode(await read(argument, path));
+  let reading = texts.get(path);
+  if (reading === undefined) {
+    reading = read(argument, path).then((bytes) => new TextDecoder().decode(bytes));
+    texts.set(path, reading);
+  }
+  const text = await reading;
   const invalid = (found: string, expected: string) => invalidTransform(argument, found, expected);
   const entry = entryOf(parse(text, argument, path), name, invalid);
   const pose = parsePoseFile(argument, entry);

@@ -1,0 +1,96 @@
+/** The cases of a command line. */
+import { readFileSync, realpathSync, statSync } from "node:fs";
+import { basename, join, resolve } from "node:path";
+import { type CaseOnDisk, type CasePaths, type CaseSettings, readCaseFiles, readCaseFolder } from "../case-folder.js";
+import { parsePoseFile } from "../conventions/pose-file.js";
+import { UsageError } from "./usage-error.js";
+
+/** A case to read and align. */
+export interface CaseToDo {
+  name: string;
+  /** Whether its true pose is known. */
+  hasTruth: boolean;
+  read(): Promise<CaseOnDisk>;
+}
+
+/** The flags that name the files of a case. */
+export interface FileFlags {
+  depth?: string;
+  mask?: string;
+  mesh?: string;
+  camera?: CasePaths["camera"];
+}
+
+/**
+ * The cases of these folders, or of these files.
+ * @throws {@link UsageError}
+ */
+export function casesOf(folders: readonly string[], flags: FileFlags, settings: CaseSettings): CaseToDo[] {
+  const { depth, mask, mesh, camera } = flags;
+  const given = [depth, mask, mesh, camera].filter((flag) => flag !== undefined).length;
+  if (given === 0 && folders.length === 0)
+    throw new UsageError("Pass at least one case folder, or --depth, --mask, --mesh and --camera.");
+  if (given === 0) return casesIn(folders, settings);
+  if (folders.length > 0)
+    throw new UsageError("Pass case folders, or --depth, --mask, --mesh and --camera, but not both.");
+  if (depth === undefined || mask === undefined || mesh === undefined || camera === undefined) {
+    throw new UsageError("--depth, --mask, --mesh and --camera belong together: pass all four.");
+  }
+  const name = basename(mesh).replace(/\.[^.]*$/, "");
+  return [{ name, hasTruth: false, read: () => readCaseFiles(name, { depth, mask, mesh, camera }, settings) }];
+}
+
+/**
+ * Cases are named by their folders, or by their paths if names repeat. Files, which `cases/*` may match, are skipped,
+ * and so are folders that were given before.
+ */
+function casesIn(paths: readonly string[], settings: CaseSettings): CaseToDo[] {
+  const isFile = (path: string) => statSync(path, { throwIfNoEntry: false })?.isFile() === true;
+  const folders = unique(paths.filter((path) => !isFile(path)));
+  if (folders.length === 0) throw new UsageError(`No case folder among ${paths.join(", ")}.`);
+  const files = paths.filter(isFile);
+  if (files.length > 0) console.error(`skipped, not a folder: ${files.join(", ")}`);
+  const names = folders.map((folder) => basename(resolve(folder)));
+  return folders.map((folder, i) => {
+    const name = names[i] ?? folder;
+    const isUnique = names.indexOf(name) === names.lastIndexOf(name);
+    return {
+      name: isUnique ? name : folder,
+      hasTruth: hasTruth(folder),
+      read: () => readCaseFolder(folder, settings),
+    };
+  });
+}
+
+/** The first path of each folder. */
+function unique(paths: readonly string[]): string[] {
+  const seen = new Set<string>();
+  const repeated: string[] = [];
+  const first = paths.filter((path) => {
+    const real = realPath(path);
+    if (seen.has(real)) repeated.push(path);
+    const isFirst = !seen.has(real);
+    seen.add(real);
+    return isFirst;
+  });
+  if (repeated.length > 0) console.error(`skipped, given twice: ${repeated.join(", ")}`);
+  return first;
+}
+
+function realPath(path: string): string {
+  try {
+    return realpathSync(path);
+  } catch {
+    // It does not exist, which is reported for its case.
+    return resolve(path);
+  }
+}
+
+function hasTruth(folder: string): boolean {
+  try {
+    return parsePoseFile("truth", readFileSync(join(folder, "gt.json"))) !== null;
+  } catch {
+    // A file that cannot be read is reported for its case.
+    return false;
+  }
+}

@@ -1,0 +1,123 @@
+/** Many cases on the command line: results that come as cases finish, and what is refused before the first one. */
+import assert from "node:assert/strict";
+import { spawn, spawnSync } from "node:child_process";
+import { existsSync, mkdirSync, readFileSync, symlinkSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+import { files, folder, results, run, writeCase } from "../support/command-line.js";
+import { commandLine } from "../support/environment.js";
+import { rotationRows, truth } from "../support/scene.js";
+
+const gt = { ...truth, available: true, rotation: rotationRows(truth.rotation), symmetry: "none" };
+for (const name of ["one", "two", "three"]) writeCase(name, { ...files, "gt.json": gt });
+writeCase("empty", {});
+
+const quick = ["--quality", "fast"];
+
+/** Runs the command line until it has written some text to stdout, and then interrupts it. */
+function interrupted(text: RegExp, signal: NodeJS.Signals, ...args: string[]) {
+  const child = spawn(process.execPath, [commandLine, ...args], { cwd: folder });
+  let [stdout, stderr] = ["", ""];
+  child.stdout.on("data", (chunk) => {
+    stdout += chunk;
+    if (text.test(stdout)) child.kill(signal);
+  });
+  child.stderr.on("data", (chunk) => {
+    stderr += chunk;
+  });
+  return new Promise<{ signal: string | null; stdout: string; stderr: string }>((resolve) => {
+    child.on("close", (_, ended) => resolve({ signal: ended, stdout, stderr }));
+  });
+}
+
+/** A case that never ends: nobody writes to its depth map. */
+function endless(name: string): string {
+  writeCase(name, {
+    "mask.png": files["mask.png"],
+    "mesh.glb": files["mesh.glb"],
+    "camera.json": files["camera.json"],
+  });
+  assert.equal(spawnSync("mkfifo", [join(folder, name, "depth.npy")]).status, 0);
+  return name;
+}
+
+for (const signal of ["SIGINT", "SIGTERM"] as const) {
+  test(`${signal} after two of four cases: their rows and their JSON are there`, async () => {
+    const names = ["one", "two", endless(`endless-${signal}`), "three"];
+    writeFileSync(join(folder, "part.json"), "what was there before");
+    const ended = await interrupted(/^two .*\n/m, signal, "align", ...names, ...quick, "--json", "part.json");
+    assert.equal(ended.signal, signal, ended.stderr);
+    assert.deepEqual(Object.keys(results("part.json")), ["one", "two"]);
+    assert.ok(results("part.json").two.errors.scaleError < 0.05);
+    assert.match(ended.stderr, /interrupted: 2 of 4 cases are done; they are in part\.json/);
+    assert.match(ended.stdout, /^case .*Δrot °.*\none .*\ntwo .*\n/);
+    const stdout = await interrupted(/never/, signal, "align", "one", "--json", "-", ...quick);
+    assert.equal(stdout.signal, null, "nothing interrupts a run that ends");
+  });
+}
+
+test("an interruption before the first result leaves the file as it was", async () => {
+  writeFileSync(join(folder, "old.json"), "old");
+  const child = spawn(process.execPath, [commandLine, "align", endless("never"), "--json", "old.json"], {
+    cwd: folder,
+  });
+  // The signal ends the program at any time.
+  const ended = new Promise((resolve) => child.on("close", (_, signal) => resolve(signal)));
+  child.on("spawn", () => child.kill("SIGINT"));
+  assert.equal(await ended, "SIGINT");
+  assert.equal(readFileSync(join(folder, "old.json"), "utf8"), "old");
+});
+
+test("the JSON of many cases is the text that JSON.stringify writes", () => {
+  const { status } = run("align", "one", "empty", "two", ...quick, "--json", "many.json");
+  assert.equal(status, 1);
+  const text = readFileSync(join(folder, "many.json"), "utf8");
+  assert.equal(text, `${JSON.stringify(JSON.parse(text), null, 2)}\n`);
+  const { stdout } = run("align", "one", "empty", "two", ...quick, "--json", "-");
+  assert.deepEqual(Object.keys(JSON.parse(stdout)), ["one", "empty", "two"]);
+});
+
+test("the JSON is written to pipes, too", () => {
+  const command = `"${process.execPath}" "${commandLine}" align one two --quality fast --json /dev/fd/3 3>&1 >/dev/null | cat`;
+  const { stdout, stderr } = spawnSync("sh", ["-c", command], { cwd: folder, encoding: "utf8" });
+  assert.deepEqual(Object.keys(JSON.parse(stdout)), ["one", "two"], stderr);
+});
+
+for (const command of [
+  ["align", "one", "two"],
+  ["evaluate", "one"],
+]) {
+  test(`${command[0]}: a file that cannot be written is noticed before the first case`, () => {
+    mkdirSync(join(folder, "folder"), { recursive: true });
+    const refused: [path: string, message: RegExp][] = [
+      [join("nowhere", "out.json"), /--json nowhere.out\.json: the file cannot be written: .*no such/],
+      ["folder", /--json folder: this is a folder/],
+      [join("one", "mask.png", "out.json"), /cannot be written/],
+    ];
+    for (const [path, message] of refused) {
+      const { status, stdout, stderr } = run(...command, "--json", path);
+      assert.equal(status, 2, stderr);
+      assert.match(stderr, message);
+      assert.equal(stdout, "");
+    }
+    assert.ok(!existsSync(join(folder, "nowhere")));
+  });
+}
+
+test("a case that is given twice is aligned once, with a message", () => {
+  symlinkSync("one", join(folder, "link"));
+  const given = ["one", "./one/", "two", "link", join(folder, "two")];
+  const { status, stdout, stderr } = run("align", ...given, ...quick, "--json", "twice.json");
+  assert.equal(status, 0, stderr);
+  assert.deepEqual(Object.keys(results("twice.json")), ["one", "two"]);
+  assert.match(stderr, /skipped, given twice: \.\/one\/, link, .*two/);
+  assert.equal(stdout.trimEnd().split("\n").length, 3, "the headings and two rows");
+});
+
+test("a reader that closes stdout ends the run, unless there is JSON to write", () => {
+  const sh = (command: string) => spawnSync("sh", ["-c", command], { cwd: folder, encoding: "utf8" });
+  const program = `"${process.execPath}" "${commandLine}" align one two three empty --quality fast`;
+  assert.match(sh(`${program} | head -n 1`).stdout, /^case .*\n$/);
+  sh(`${program} --json closed.json | head -n 1`);
+  assert.deepEqual(Object.keys(results("closed.json")), ["one", "two", "three", "empty"]);
+});
