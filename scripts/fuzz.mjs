@@ -4,6 +4,7 @@
  */
 import { parseArgs } from "node:util";
 import { fuzzCore } from "./fuzz/core.mjs";
+import { fuzzJavaScript } from "./fuzz/javascript.mjs";
 import { explain, script } from "./lib/step.mjs";
 
 /**
@@ -17,6 +18,7 @@ import { explain, script } from "./lib/step.mjs";
  * @type {Record<string, { title: string, run: (budget: Budget) => Promise<void> }>}
  */
 const fuzzers = {
+  javascript: { title: "Arguments and pools of the package", run: fuzzJavaScript },
   core: { title: "Readers, align, evaluate and register, native", run: fuzzCore },
 };
 

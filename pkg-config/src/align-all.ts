@@ -85,7 +85,7 @@ export async function* alignAll<A extends { input?: AlignInput }>(
 type Inputs = Iterable<AlignInput> | AsyncIterable<AlignInput>;
 
 function iteratorOf(inputs: Inputs): Iterator<AlignInput> | AsyncIterator<AlignInput> {
-  if (typeof inputs === "object" && inputs !== null) {
+  if (typeof inputs === "object" && inputs !== null && !ArrayBuffer.isView(inputs)) {
     const own = inputs as Partial<Iterable<AlignInput> & AsyncIterable<AlignInput>>;
     const iterator = own[Symbol.asyncIterator]?.() ?? own[Symbol.iterator]?.();
     if (typeof iterator?.next === "function") return iterator;

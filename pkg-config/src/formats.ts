@@ -3,15 +3,18 @@
  * these files directly; use the readers to inspect their content.
  * @packageDocumentation
  */
+import { checkAttached } from "./attached.js";
 import { type Case, type CaseFiles, type CaseSettings, caseFrom } from "./case-files.js";
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
+import { invalidArgument } from "./error.js";
 import { type CameraFile, type CameraFileOptions, parseCameraFile } from "./formats/camera-file.js";
 import { fromCocoRle, readRleFile } from "./formats/coco-rle.js";
 import type { JsonFile } from "./formats/json.js";
-import { formatsModule } from "./formats-module.js";
+import { type Formats, formatsModule } from "./formats-module.js";
 import { beginsLikeJson, requiredBytes } from "./input/bytes.js";
 import type { CameraFileInput, CocoRle, EncodedBytes, MeshFormat, PixelArray } from "./input/types.js";
 import type { WasmSource } from "./platform.js";
+import { snapshot } from "./snapshot.js";
 import { isRecord, withoutUndefined } from "./values.js";
 
 export type { Case, CaseFiles, CaseSettings } from "./case-files.js";
@@ -55,8 +58,9 @@ export async function readDepth(
   file: EncodedBytes,
   options: { depthScale?: number | undefined; integerDepthScale?: number | undefined } = {},
 ): Promise<DepthImage> {
+  const given = optionsOf(options);
   const bytes = await requiredBytes("file", file);
-  return (await formatsModule.load()).call((readers) => readers.readDepth(bytes, withoutUndefined(options)));
+  return call(bytes, (readers) => readers.readDepth(bytes, given));
 }
 
 /**
@@ -64,10 +68,10 @@ export async function readDepth(
  * @throws {@link Sim3AlignError} for any other file
  */
 export async function readMask(file: EncodedBytes | CocoRle): Promise<MaskImage> {
-  if (isRecord(file)) return fromCocoRle(file as unknown as CocoRle);
+  if (isRecord(file)) return fromCocoRle(own("rle", file as unknown as CocoRle));
   const bytes = await requiredBytes("file", file);
   if (beginsLikeJson(bytes)) return readRleFile("mask", bytes);
-  return (await formatsModule.load()).call((readers) => readers.readMask(bytes));
+  return call(bytes, (readers) => readers.readMask(bytes));
 }
 
 /**
@@ -83,8 +87,9 @@ export async function readMesh(
     resources?: Readonly<Record<string, Uint8Array | ArrayBuffer>> | undefined;
   } = {},
 ): Promise<MeshFromFile> {
+  const given = optionsOf(options);
   const bytes = await requiredBytes("file", file);
-  return (await formatsModule.load()).call((readers) => readers.readMesh(bytes, withoutUndefined(options)));
+  return call(bytes, (readers) => readers.readMesh(bytes, given));
 }
 
 /**
@@ -93,7 +98,7 @@ export async function readMesh(
  */
 export async function externalResources(file: EncodedBytes): Promise<string[]> {
   const bytes = await requiredBytes("file", file);
-  return (await formatsModule.load()).call((readers) => readers.externalResources(bytes));
+  return call(bytes, (readers) => readers.externalResources(bytes));
 }
 
 /**
@@ -102,7 +107,8 @@ export async function externalResources(file: EncodedBytes): Promise<string[]> {
  * @throws {@link Sim3AlignError} for any other file, and `SIZE_MISMATCH` for intrinsics of another image size
  */
 export async function readCamera(file: CameraFileInput, options: CameraFileOptions = {}): Promise<CameraFile> {
-  return parseCameraFile(await jsonOf(file), options);
+  const given: CameraFileOptions = optionsOf(options);
+  return parseCameraFile(await jsonOf("camera", file), given);
 }
 
 /**
@@ -112,7 +118,7 @@ export async function readCamera(file: CameraFileInput, options: CameraFileOptio
  * @throws {@link Sim3AlignError} for any other file
  */
 export async function readPose(file: EncodedBytes | string | object): Promise<KnownPose | null> {
-  return parsePoseFile("pose", await jsonOf(file));
+  return parsePoseFile("pose", await jsonOf("pose", file));
 }
 
 /**
@@ -126,8 +132,30 @@ export async function readPose(file: EncodedBytes | string | object): Promise<Kn
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
  */
 export async function readCase(files: CaseFiles, settings: CaseSettings = {}): Promise<Case> {
-  return caseFrom(files, settings, () => formatsModule.load());
+  if (!isRecord(files)) {
+    throw invalidArgument("files", files, "an object of files by name", 'Pass { "depth.png": bytes, … }.');
+  }
+  return caseFrom(own("files", files), optionsOf(settings), () => formatsModule.load());
 }
 
-const jsonOf = async (file: EncodedBytes | string | object): Promise<JsonFile> =>
-  typeof file === "string" || isRecord(file) || Array.isArray(file) ? file : requiredBytes("file", file);
+const jsonOf = async (argument: string, file: EncodedBytes | string | object): Promise<JsonFile> =>
+  typeof file === "string" || isRecord(file) || Array.isArray(file) ? own(argument, file) : requiredBytes("file", file);
+
+/** An argument, read once. */
+function own<T>(argument: string, value: T): T {
+  const copy = snapshot(argument, value);
+  checkAttached(argument, copy);
+  return copy;
+}
+
+function optionsOf<T extends object>(options: T) {
+  if (isRecord(options)) return withoutUndefined(own("options", options as T));
+  throw invalidArgument("options", options, "an object", "Pass { name: value }, or omit it.");
+}
+
+/** Calls a reader, unless the bytes were moved to another thread while the readers were loaded. */
+async function call<T>(bytes: Uint8Array, read: (readers: Formats) => T): Promise<T> {
+  const module = await formatsModule.load();
+  checkAttached("file", bytes);
+  return module.call(read);
+}

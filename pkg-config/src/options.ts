@@ -45,7 +45,8 @@ export interface CallOptions {
 interface AlignCallOptions extends CallOptions {
   /**
    * Called when a stage begins and after each round of the search, at most 20 times a second. If it throws, the call
-   * rejects with that exception.
+   * rejects with that exception. An async function is not awaited: if a promise that it returned rejects, the call
+   * rejects with that reason; if the call has already settled, the rejection is ignored.
    */
   onProgress?: ((progress: Progress) => void) | undefined;
 }

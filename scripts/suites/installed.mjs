@@ -11,6 +11,9 @@ import { copySample } from "../lib/sample.mjs";
 import { buildSite } from "../lib/site.mjs";
 import { step } from "../lib/step.mjs";
 
+/** What the tests expect in their environment. */
+export const testEnvironment = { SIM3ALIGN_REPOSITORY: repository, SIM3ALIGN_SAMPLE: sampleDir };
+
 /** Tests that use the installed package, and what they share. */
 const testFolders = ["js", "browser", "bundlers", "examples", "support"];
 
@@ -64,7 +67,7 @@ async function nodeTest(folder, env = {}) {
   const { output, reason } = await attempt(process.execPath, args, {
     cwd: installDir,
     echo: true,
-    env: { SIM3ALIGN_REPOSITORY: repository, SIM3ALIGN_SAMPLE: sampleDir, ...env },
+    env: { ...testEnvironment, ...env },
   });
   return withStatus(nodeCounts(output), reason === "");
 }

@@ -31,7 +31,7 @@ pub fn align(
 #[wasm_bindgen(skip_typescript)]
 pub fn evaluate(input: &JsValue, transform: &JsValue, options: &JsValue) -> core::result::Result<JsValue, JsValue> {
     let run = || {
-        let options = options::options(options, &[], |_| None)?;
+        let options = options::options(options, &options::OF_CALLS, |_| None)?;
         let camera_from_mesh = transform::similarity(transform, "transform")?;
         let (observation, mesh) = (input::observation(input)?, mesh::mesh_of(input)?);
         align::evaluate::evaluate(&observation, mesh.mesh(), &camera_from_mesh, &options)
@@ -43,7 +43,7 @@ pub fn evaluate(input: &JsValue, transform: &JsValue, options: &JsValue) -> core
 #[wasm_bindgen(skip_typescript)]
 pub fn register(source: &JsValue, target: &JsValue, options: &JsValue) -> core::result::Result<JsValue, JsValue> {
     let run = || {
-        let options = options::options(options, &[], |_| None)?;
+        let options = options::options(options, &options::OF_CALLS, |_| None)?;
         let (source, target) = (object::to_f64s(source, "source")?, object::to_f64s(target, "target")?);
         register::register(&source, &target, &options, &mut JsHost::new(None))
     };
@@ -59,7 +59,7 @@ pub fn estimate_sim3(
     options: &JsValue,
 ) -> core::result::Result<JsValue, JsValue> {
     let run = || {
-        let options = options::options(options, &[], |_| None)?;
+        let options = options::options(options, &options::OF_CALLS, |_| None)?;
         let (source, target) = (object::to_f64s(source, "source")?, object::to_f64s(target, "target")?);
         let correspondences = object::to_u32s(correspondences, "correspondences")?;
         register::estimate_sim3(&source, &target, &correspondences, &options, &mut JsHost::new(None))

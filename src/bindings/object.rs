@@ -1,7 +1,7 @@
 //! Reads properties of JavaScript objects, with errors that name them.
 
 use js_sys::{
-    Array, Float32Array, Float64Array, Object, Reflect, Uint8Array, Uint8ClampedArray, Uint16Array, Uint32Array,
+    Array, Float32Array, Float64Array, Reflect, Uint8Array, Uint8ClampedArray, Uint16Array, Uint32Array,
 };
 use wasm_bindgen::{JsCast, JsValue};
 
@@ -147,8 +147,10 @@ pub fn describe(value: &JsValue) -> String {
     if value.is_function() {
         return "a function".into();
     }
-    match value.dyn_ref::<Object>() {
-        Some(object) => format!("a value of type {}", String::from(object.constructor().name())),
-        None => value.js_typeof().as_string().unwrap_or_default(),
+    if !value.is_object() {
+        return value.js_typeof().as_string().unwrap_or_default();
     }
+    // An object need not have a constructor, nor the constructor a name.
+    let name = get(value, "constructor").and_then(|class| get(&class, "name")).and_then(|name| name.as_string());
+    name.map_or_else(|| "an object".into(), |name| format!("a value of type {name}"))
 }

@@ -15,6 +15,12 @@ use crate::paper::options::PaperOptions;
 use crate::precise::options::AlignOptions;
 use crate::report::Preset;
 
+/// Options of every call that the TypeScript package handles itself. Lists of options in errors contain them.
+pub const OF_CALLS: [&str; 2] = ["signal", "transfer"];
+
+/// The same for `align`, whose method `preset` selects.
+const OF_ALIGN: [&str; 4] = ["preset", OF_CALLS[0], OF_CALLS[1], "onProgress"];
+
 /// The options of `align`: `preset` selects the method and its set of options.
 pub fn method(value: &JsValue) -> Result<Method> {
     let mut preset = Preset::default();
@@ -32,7 +38,7 @@ pub fn method(value: &JsValue) -> Result<Method> {
 
 /// The options of one preset.
 fn read<T: Options>(value: &JsValue, preset: Preset) -> Result<T> {
-    options(value, &["preset"], |name| {
+    options(value, &OF_ALIGN, |name| {
         let (other, names) = match preset {
             Preset::Precise => (Preset::Paper, PaperOptions::names()),
             Preset::Paper => (Preset::Precise, AlignOptions::names()),

@@ -8,7 +8,29 @@ import { input, truth } from "../support/scene.js";
 const options: [name: string, options: unknown, code: ErrorCode, argument: string, message: RegExp][] = [
   ["options as text", "paper", "INVALID_ARGUMENT", "options", /string "paper"/],
   ["an unknown option", { qualty: "best" }, "UNKNOWN_OPTION", "options.qualty", /Did you mean `quality`/],
-  ["an option that is like no other", { zebra: 1 }, "UNKNOWN_OPTION", "options.zebra", /one of preset, quality.*Check/],
+  [
+    "a misspelt listener",
+    { onprogress: () => {} },
+    "UNKNOWN_OPTION",
+    "options.onprogress",
+    /Did you mean `onProgress`/,
+  ],
+  [
+    "an option of createAligner",
+    { workers: 4 },
+    "UNKNOWN_OPTION",
+    "options.workers",
+    /`workers`, which is an option of createAligner.*createAligner\(\{ workers \}\)/,
+  ],
+  ["a seed without constructor", { seed: Object.create(null) }, "INVALID_OPTION", "options.seed", /an object|Object/],
+  ["a seed without class", { seed: { constructor: null } }, "INVALID_OPTION", "options.seed", /an object/],
+  [
+    "an option that is like no other",
+    { zebra: 1 },
+    "UNKNOWN_OPTION",
+    "options.zebra",
+    /one of preset, signal, transfer, onProgress, quality.*Check/,
+  ],
   [
     "an option of the other preset",
     { guard: null },

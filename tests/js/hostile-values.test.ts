@@ -81,6 +81,12 @@ const hostile: Hostile[] = [
   ["a proxy of the mask", { mask: proxied(input.mask) }, "mask", /a proxy of Uint8Array/],
   ["a proxy of a buffer", { mesh: plainProxy(new ArrayBuffer(9)) }, "mesh", /a proxy of ArrayBuffer/],
   ["depth that is called a file", { mesh: { [Symbol.toStringTag]: "Uint8Array" } }, "mesh", /proxy|object/],
+  [
+    "a camera that is called something else",
+    { camera: { [Symbol.toStringTag]: "AbortSignal", ...view.camera } },
+    "camera",
+    /found AbortSignal/,
+  ],
   ["a revoked proxy", { mesh: revoked }, "mesh", /throws/],
   ["a getter that throws", throwing(input, "mask"), "mask", /throws RangeError: not loaded yet/],
   ["a getter of the mesh that throws", { mesh: throwing(mesh, "indices") }, "mesh.indices", /not loaded yet/],
@@ -219,7 +225,15 @@ for (const [name, aligner] of aligners) {
     const drain = async (inputs: unknown, options = {}) => {
       for await (const _ of aligner.alignAll(inputs as AlignInput[], options)) assert.fail("no input");
     };
-    for (const inputs of [5, null, undefined, input, () => input, { [Symbol.iterator]: () => 5 }]) {
+    for (const inputs of [
+      5,
+      detached(new Uint8Array(8)),
+      null,
+      undefined,
+      input,
+      () => input,
+      { [Symbol.iterator]: () => 5 },
+    ]) {
       await rejectsWith(() => drain(inputs), { code: "INVALID_ARGUMENT", argument: "inputs", message: /iterable/ });
     }
     const silent = { [Symbol.iterator]: () => ({ next: () => 5 }) };

@@ -1,4 +1,5 @@
 /** Files as bytes, and detection of their type. */
+import { checkAttached } from "../attached.js";
 import { describe, invalidArgument, messageOf, Sim3AlignError } from "../error.js";
 import { isBuffer, isKind, isTypedArray } from "../kinds.js";
 
@@ -8,7 +9,10 @@ import { isBuffer, isKind, isTypedArray } from "../kinds.js";
  */
 export async function fileBytes(argument: string, value: unknown): Promise<Uint8Array | null> {
   if (isTypedArray<Uint8Array>(value, "Uint8Array")) return value;
-  if (isBuffer(value)) return new Uint8Array(value);
+  if (isBuffer(value)) {
+    checkAttached(argument, value);
+    return new Uint8Array(value);
+  }
   if (!isKind<Blob>(value, "Blob", "File")) return null;
   try {
     return new Uint8Array(await value.arrayBuffer());
@@ -25,7 +29,10 @@ export async function fileBytes(argument: string, value: unknown): Promise<Uint8
 /** The bytes of a file; `argument` is its name in errors. */
 export async function requiredBytes(argument: string, file: unknown): Promise<Uint8Array> {
   const bytes = await fileBytes(argument, file);
-  if (bytes !== null) return bytes;
+  if (bytes !== null) {
+    checkAttached(argument, bytes);
+    return bytes;
+  }
   throw invalidArgument(argument, file, "the bytes of a file", "Pass a Uint8Array, an ArrayBuffer or a Blob.");
 }
 

@@ -6,7 +6,7 @@ import type { Job } from "../jobs.js";
 import { isAttached } from "../kinds.js";
 import { checkSignals, onAbort, reasonOf } from "../on-abort.js";
 import { type Answer, JobFailed, Unsendable, WorkerLost, type WorkerSetup, WorkerSlot } from "./slot.js";
-import { buffersOf, copied } from "./transfer.js";
+import { buffersOf, copied, isSendable } from "./transfer.js";
 
 /** Attempts per job if its worker is lost. */
 const ATTEMPTS = 2;
@@ -113,7 +113,7 @@ function startEarly(slot: WorkerSlot): void {
   } catch {}
 }
 
-/** Sends a job; `null` if it cannot be cloned, so that the core can report what is wrong with it. */
+/** Sends a job; `null` if it cannot be sent, so that the core can report what is wrong with it. */
 async function send(
   slot: WorkerSlot,
   job: Job,
@@ -127,6 +127,7 @@ async function send(
     // arrays may have been moved to another thread.
     checkSignals(signals);
     checkAttached("", job.data);
+    if (!isSendable(job)) return null;
     try {
       const sent = { ...job, data: sentData(slot, job, isMoved) } as Job;
       const request = { type: "job", job: sent, wantsProgress: progress.isWanted, returnData: isMoved } as const;

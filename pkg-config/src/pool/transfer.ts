@@ -1,5 +1,5 @@
 /** Copies or lists the arrays that are sent to a worker. */
-import { isBuffer, isRecord, typedArrayKind } from "../kinds.js";
+import { isBuffer, isKind, isRecord, typedArrayKind } from "../kinds.js";
 
 type View = new (buffer: ArrayBuffer) => ArrayBufferView;
 
@@ -13,6 +13,17 @@ export function copied<T>(value: T): T {
     return new Kind(bytes.buffer);
   });
   return copy as T;
+}
+
+/**
+ * Whether a worker receives the value as it is. Others cannot be sent, or arrive as something else, which would change
+ * the error.
+ */
+export function isSendable(value: unknown): boolean {
+  if (typeof value !== "object" || value === null) return typeof value !== "function" && typeof value !== "symbol";
+  if (ArrayBuffer.isView(value) || isBuffer(value) || isKind(value, "SharedArrayBuffer")) return true;
+  if (isKind<Blob>(value, "Blob", "File")) return typeof value.arrayBuffer === "function";
+  return Array.isArray(value) ? value.every(isSendable) : isRecord(value) && Object.values(value).every(isSendable);
 }
 
 /** The distinct buffers of the arrays in a value. */

@@ -1,0 +1,36 @@
+/** `npm run fuzz` runs this: program.js MINUTES SEED. It prints what it tried, and every finding with its seed. */
+import { type Target, targets } from "./fuzzer.js";
+
+/** Findings of the same words are one; after so many, the search ends. */
+const MAX_FINDINGS = 20;
+
+const [minutes = 1, first = 0] = process.argv.slice(2).map(Number);
+const { calls, storms, end } = await targets();
+const findings = new Map<string, string>();
+const counts = { executions: 0, calls: 0 };
+// A rejection that nobody handles is a finding of the target that runs.
+const until = performance.now() + 60_000 * minutes;
+
+async function run(target: Target, seed: number): Promise<void> {
+  counts.executions += 1;
+  try {
+    counts.calls += await target(seed);
+  } catch (error) {
+    const { message, cause } = error as Error;
+    const words = message.replace(/\d+/g, "N");
+    if (!findings.has(words)) console.log(error);
+    findings.set(words, `${message}${cause instanceof Error && cause.cause ? ` (${cause.cause})` : ""}`);
+  }
+}
+
+for (let seed = first + 1; performance.now() < until && findings.size < MAX_FINDINGS; seed++) {
+  await run(calls, seed);
+  // A storm takes as long as many calls.
+  if (seed % 50 === 0) await run(storms, seed);
+}
+await end();
+console.log(
+  `${counts.executions} executions, ${counts.calls} calls, ${findings.size} findings; seeds from ${first + 1}`,
+);
+for (const finding of findings.values()) console.log(`- ${finding}`);
+if (findings.size > 0) process.exitCode = 1;
