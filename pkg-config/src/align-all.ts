@@ -1,6 +1,7 @@
 /** Aligns many inputs with bounded memory, and yields each result when it is ready. */
 import { invalidArgument, type Sim3AlignError } from "./error.js";
 import type { AlignInput } from "./input/types.js";
+import { proxiedKind } from "./kinds.js";
 import { checkSignals, onAbort } from "./on-abort.js";
 import type { AlignAllResult } from "./results.js";
 
@@ -85,13 +86,27 @@ export async function* alignAll<A extends { input?: AlignInput }>(
 type Inputs = Iterable<AlignInput> | AsyncIterable<AlignInput>;
 
 function iteratorOf(inputs: Inputs): Iterator<AlignInput> | AsyncIterator<AlignInput> {
-  if (typeof inputs === "object" && inputs !== null && !ArrayBuffer.isView(inputs)) {
-    const own = inputs as Partial<Iterable<AlignInput> & AsyncIterable<AlignInput>>;
-    const iterator = own[Symbol.asyncIterator]?.() ?? own[Symbol.iterator]?.();
-    if (typeof iterator?.next === "function") return iterator;
-  }
+  const iterator = methodOf(inputs)?.call(inputs);
+  if (typeof iterator?.next === "function") return iterator;
   const remedy = "Pass an array or a generator of inputs. For a single input, use align().";
   throw invalidArgument("inputs", inputs, "an iterable or an async iterable of inputs", remedy);
+}
+
+type IteratorMethod = (this: Inputs) => Iterator<AlignInput> | AsyncIterator<AlignInput>;
+
+/** The method that begins an iteration; none for typed arrays, which contain no inputs. */
+function methodOf(inputs: Inputs): IteratorMethod | undefined {
+  try {
+    if (typeof inputs !== "object" || ArrayBuffer.isView(inputs) || proxiedKind(inputs) !== undefined) return undefined;
+    const { [Symbol.asyncIterator]: iterateLater, [Symbol.iterator]: iterate } = inputs as Partial<
+      Iterable<AlignInput> & AsyncIterable<AlignInput>
+    >;
+    const method: unknown = iterateLater ?? iterate;
+    return typeof method === "function" ? (method as IteratorMethod) : undefined;
+  } catch {
+    // A hostile proxy, or null.
+    return undefined;
+  }
 }
 
 async function outcome<A extends { input?: AlignInput }>(

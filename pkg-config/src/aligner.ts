@@ -10,7 +10,7 @@ import type { Preset } from "./generated/types.js";
 import { classNames } from "./input/resolve.js";
 import type { AlignInput, MeshInput } from "./input/types.js";
 import type { Job, Results } from "./jobs.js";
-import { onAbort, reasonOf } from "./on-abort.js";
+import { checkSignals, onAbort, reasonOf } from "./on-abort.js";
 import type {
   AlignAllOptions,
   CallOptions,
@@ -255,12 +255,13 @@ export class Aligner {
     };
     try {
       const outcome = await this.#engine.run(job, call);
-      if (progress.failed.aborted) throw reasonOf(progress.failed);
+      checkSignals([progress.failed]);
       const result = outcome.result as Results[M];
       return transfer ? { ...result, input: returned(outcome.data) } : result;
     } catch (error) {
-      const isOfCaller = [call.signal, progress.failed].some((each) => each?.aborted && reasonOf(each) === error);
-      if (isOfCaller) throw error;
+      if (call.signal?.aborted && reasonOf(call.signal) === error) throw error;
+      // It came first: the error may be that of the last piece of work.
+      checkSignals([progress.failed]);
       if (!(error instanceof Sim3AlignError)) throw internalError(error);
       if (isRecord(error.input)) error.input = returned(error.input);
       throw error;

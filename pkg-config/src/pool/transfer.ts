@@ -21,7 +21,8 @@ export function copied<T>(value: T): T {
  */
 export function isSendable(value: unknown): boolean {
   if (typeof value !== "object" || value === null) return typeof value !== "function" && typeof value !== "symbol";
-  if (ArrayBuffer.isView(value) || isBuffer(value) || isKind<SharedArrayBuffer>(value, "SharedArrayBuffer")) return true;
+  if (ArrayBuffer.isView(value) || isBuffer(value) || isKind<SharedArrayBuffer>(value, "SharedArrayBuffer"))
+    return true;
   if (isKind<Blob>(value, "Blob", "File")) return typeof value.arrayBuffer === "function";
   return Array.isArray(value) ? value.every(isSendable) : isRecord(value) && Object.values(value).every(isSendable);
 }

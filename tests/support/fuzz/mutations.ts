@@ -57,7 +57,7 @@ export function mutate(random: Random, input: object): void {
     () => typeof value === "object" && value !== null && set(place, proxied(random, value)),
     () => ArrayBuffer.isView(value) && detach(value),
     () => ArrayBuffer.isView(value) && set(place, onSharedMemory(value)),
-    () => ArrayBuffer.isView(value) && set(place, value.buffer),
+    () => ArrayBuffer.isView(value) && set(place, ownBuffer(value)),
     () => ArrayBuffer.isView(value) && set(place, Array.from(value as Uint8Array).slice(0, 300)),
     () => getter(place, random, value),
   ];
@@ -81,6 +81,10 @@ function getter(place: Place, random: Random, value: unknown): void {
   };
   Object.defineProperty(place.owner, place.name, { get, enumerable: true, configurable: true });
 }
+
+/** The bytes of an array alone: the memory of small buffers of Node contains others. */
+const ownBuffer = ({ buffer, byteOffset, byteLength }: ArrayBufferView) =>
+  buffer.slice(byteOffset, byteOffset + byteLength);
 
 function onSharedMemory(array: ArrayBufferView): unknown {
   const shared = new SharedArrayBuffer(array.byteLength);
