@@ -1,5 +1,5 @@
 /** Checks that the memory of arrays is there. */
-import { describe, Sim3AlignError } from "./error.js";
+import { describe, Sim3AlignError, withoutInput } from "./error.js";
 import { isAttached, isBuffer, isRecord } from "./kinds.js";
 
 /**
@@ -13,7 +13,7 @@ export function checkAttached(argument: string, value: unknown): void {
     if (!isAttached(value)) throw detached(argument, value);
   } else if (isRecord(value) || Array.isArray(value)) {
     for (const [name, inner] of Object.entries(value)) {
-      if (typeof inner === "object") checkAttached(argument === "" ? name : `${argument}.${name}`, inner);
+      if (typeof inner === "object") checkAttached(`${argument}.${name}`, inner);
     }
   }
 }
@@ -27,7 +27,7 @@ export function attached<T extends ArrayBufferView>(argument: string, array: T):
 function detached(argument: string, value: unknown): Sim3AlignError {
   return new Sim3AlignError({
     code: "INVALID_ARGUMENT",
-    argument,
+    argument: withoutInput(argument),
     found: `${describe(value).replace(/ of 0$/, "")} whose memory is detached: it was moved to another thread, or shrunk`,
     expected: "an array with its memory",
     remedy: "After a call with transfer: true, use the arrays in `input` of the result or of the error.",

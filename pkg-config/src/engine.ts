@@ -97,7 +97,7 @@ async function alignInSteps(
   check: () => void,
 ): Promise<CoreAlignment> {
   // The thread may have been elsewhere since the input was read.
-  checkAttached("", args[0]);
+  checkAttached("input", args[0]);
   const task = core.call((c) => c.beginAlign(...args), withoutInput);
   const { instance } = core;
   try {

@@ -49,7 +49,7 @@ export async function perform(
   listener?: CoreListener,
 ): Promise<unknown> {
   const { options } = job;
-  checkAttached("", job.data);
+  checkAttached("input", job.data);
   switch (job.method) {
     case "align": {
       const { core: input, warnings } = await resolveInput(job.data, formats, job.meshId);
@@ -61,7 +61,7 @@ export async function perform(
     case "evaluate": {
       const { core: input, warnings } = await resolveInput(job.data, formats, job.meshId);
       // Files are read while the thread does other work, which may take the memory away.
-      checkAttached("", input);
+      checkAttached("input", input);
       return withWarnings(
         core.call((c) => c.evaluate(input, job.transform, options), withoutInput),
         warnings,

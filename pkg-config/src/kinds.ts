@@ -52,11 +52,19 @@ export function proxiedKind(value: unknown): string | undefined {
     const isReal = ArrayBuffer.isView(value) || isBuffer(value) || tag === "SharedArrayBuffer";
     return isReal ? undefined : tag;
   }
+  if (ArrayBuffer.isView(value) || !isInstance(value, typedArrayPrototype.constructor)) return undefined;
   try {
-    const isArray = !ArrayBuffer.isView(value) && value instanceof typedArrayPrototype.constructor;
-    return isArray ? (value as object).constructor.name : undefined;
+    return String((value as object).constructor.name);
   } catch {
-    return undefined;
+    return "typed array";
+  }
+}
+
+function isInstance(value: unknown, type: new () => unknown): boolean {
+  try {
+    return value instanceof type;
+  } catch {
+    return false;
   }
 }
 

@@ -54,6 +54,12 @@ const throwing = <T extends object>(object: T, name: string): T =>
 const proxied = <T extends object>(object: T): T =>
   new Proxy(object, { get: (target, name) => Reflect.get(target, name) });
 const plainProxy = <T extends object>(object: T): T => new Proxy(object, {});
+const hostileProxy = (object: object) =>
+  new Proxy(object, {
+    get: () => {
+      throw failure;
+    },
+  });
 const { proxy: revoked, revoke } = Proxy.revocable({}, {});
 revoke();
 const nested: unknown[] = [];
@@ -78,6 +84,7 @@ const hostile: Hostile[] = [
   ["detached depth in shrunk memory", { depth: shrunk(input.depth) }, "depth", /detached.*or shrunk/],
   ["a proxy of depth", { depth: proxied(input.depth) }, "depth", /a proxy of Float32Array.*itself/],
   ["a plain proxy of depth", { depth: plainProxy(input.depth) }, "depth", /a proxy of Float32Array/],
+  ["a proxy of depth that throws", { depth: hostileProxy(input.depth) }, "depth", /a proxy of/],
   ["a proxy of the mask", { mask: proxied(input.mask) }, "mask", /a proxy of Uint8Array/],
   ["a proxy of a buffer", { mesh: plainProxy(new ArrayBuffer(9)) }, "mesh", /a proxy of ArrayBuffer/],
   ["depth that is called a file", { mesh: { [Symbol.toStringTag]: "Uint8Array" } }, "mesh", /proxy|object/],
@@ -139,6 +146,7 @@ for (const [name, aligner] of aligners) {
       ...refused,
       argument: "mesh.positions",
     });
+    await rejectsWith(() => aligner.align(detached(new Uint8Array(8)) as never), { ...refused, argument: "input" });
     const matrix = detached(new Float64Array(16));
     await rejectsWith(() => aligner.evaluate(input, { matrix }), { ...refused, argument: "transform.matrix" });
     await rejectsWith(() => aligner.evaluate(input, truth, { truth: matrix }), {

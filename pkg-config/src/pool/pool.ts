@@ -126,7 +126,7 @@ async function send(
     // While the job waited for the slot, for a new worker or for the first attempt, it may have been aborted, and its
     // arrays may have been moved to another thread.
     checkSignals(signals);
-    checkAttached("", job.data);
+    checkAttached("input", job.data);
     if (!isSendable(job)) return null;
     try {
       const sent = { ...job, data: sentData(slot, job, isMoved) } as Job;

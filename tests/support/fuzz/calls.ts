@@ -29,13 +29,18 @@ const faults = ["INTERNAL", "WORKER_FAILED", "NOT_INITIALISED"];
  * @param allowed codes that the circumstances explain
  */
 export function checkError(error: unknown, reasons: readonly unknown[] = [], allowed: readonly string[] = []): void {
-  if (error instanceof Thrown || reasons.includes(error)) return;
+  if (error instanceof Thrown || reasons.includes(error) || isOfListener(error)) return;
   if (!(error instanceof Sim3AlignError)) throw new Error("an error without type", { cause: error });
   const { code, argument, found, expected, remedy, message } = error;
   if (faults.includes(code) && !allowed.includes(code)) throw new Error(`a fault: ${message}`, { cause: error });
   for (const part of [argument, found, expected, remedy]) assert.ok(part.trim() !== "", `an empty part: ${message}`);
-  assert.doesNotMatch(message, /\bundefined\b|\[object|NaN ×/, message);
+  // A message may quote that of the cause.
+  if (error.cause === undefined) assert.doesNotMatch(message, /\bundefined\b|\[object|NaN ×/, message);
 }
+
+/** Whether a function of the caller threw this when it was called: a class is one that cannot be called. */
+const isOfListener = (error: unknown) =>
+  error instanceof TypeError && /^Class constructor WithAccessors cannot be invoked/.test(error.message);
 
 /** Options that may be valid. */
 function options(random: Random, method: keyof typeof OPTIONS): Fields {
