@@ -53,11 +53,13 @@ export function proxiedKind(value: unknown): string | undefined {
     return isReal ? undefined : tag;
   }
   if (ArrayBuffer.isView(value) || !isInstance(value, typedArrayPrototype.constructor)) return undefined;
+  let name: unknown;
   try {
-    return String((value as object).constructor.name);
+    name = (value as object).constructor.name;
   } catch {
-    return "typed array";
+    // Its proxy throws.
   }
+  return typeof name === "string" ? name : "typed array";
 }
 
 function isInstance(value: unknown, type: new () => unknown): boolean {

@@ -84,6 +84,12 @@ const hostile: Hostile[] = [
   ["detached depth in shrunk memory", { depth: shrunk(input.depth) }, "depth", /detached.*or shrunk/],
   ["a proxy of depth", { depth: proxied(input.depth) }, "depth", /a proxy of Float32Array.*itself/],
   ["a plain proxy of depth", { depth: plainProxy(input.depth) }, "depth", /a proxy of Float32Array/],
+  [
+    "a proxy of depth that says nothing",
+    { depth: new Proxy(input.depth, { get: () => undefined }) },
+    "depth",
+    /found a proxy of typed array/,
+  ],
   ["a proxy of depth that throws", { depth: hostileProxy(input.depth) }, "depth", /a proxy of/],
   ["a proxy of the mask", { mask: proxied(input.mask) }, "mask", /a proxy of Uint8Array/],
   ["a proxy of a buffer", { mesh: plainProxy(new ArrayBuffer(9)) }, "mesh", /a proxy of ArrayBuffer/],

@@ -48,7 +48,7 @@ class Storm {
       () => this.#align(),
       () => this.#align(),
       () => this.#align(),
-      () => this.#call(randomCall(this.#aligner, random)),
+      () => this.#call(randomCall(this.#aligner, random, ["WORKER_FAILED"])),
       () => this.#call(() => this.#aligner.evaluate(this.#input() as never, truth, { ...this.#callOptions() })),
       () => this.#prepare(),
       () => this.#meshes.length > 0 && pick(random, this.#meshes).dispose(),
