@@ -1,16 +1,26 @@
 /// <reference lib="esnext.disposable" preserve="true" />
 /** The main class of the package. */
 import { alignAll } from "./align-all.js";
+import {
+  type AlignerOptions,
+  type BundledAssets,
+  checkedAlignerOptions,
+  checkedFactory,
+  checkedFlag,
+  checkedOptions,
+  checkedSignal,
+  checkedWorkers,
+} from "./aligner-options.js";
 import { checkAttached } from "./attached.js";
 import { type Core, coreModule } from "./core.js";
 import { type Engine, MainThreadEngine } from "./engine.js";
-import { disposed, internalError, invalidArgument, Sim3AlignError } from "./error.js";
+import { disposed, internalError, Sim3AlignError } from "./error.js";
 import { formatsModule } from "./formats-module.js";
 import type { Preset } from "./generated/types.js";
 import { classNames } from "./input/resolve.js";
 import type { AlignInput, MeshInput } from "./input/types.js";
 import type { Job, Results } from "./jobs.js";
-import { checkSignals, onAbort, reasonOf } from "./on-abort.js";
+import { checkSignals, reasonOf } from "./on-abort.js";
 import type {
   AlignAllOptions,
   CallOptions,
@@ -20,7 +30,6 @@ import type {
   Progress,
   RegisterOptions,
 } from "./options.js";
-import type { CreateWorker, LazySource, WasmSource } from "./platform.js";
 import { WorkerPool } from "./pool/pool.js";
 import { workerFactory } from "./pool/port.js";
 import { copied } from "./pool/transfer.js";
@@ -29,34 +38,8 @@ import { checkedListener, ProgressListener } from "./progress.js";
 import type { AlignAllResult, AlignResult, Evaluation, Registration } from "./results.js";
 import { coreSim3, type Sim3Like } from "./sim3.js";
 import { snapshot } from "./snapshot.js";
-import { isKind, isRecord, withoutUndefined } from "./values.js";
+import { isRecord } from "./values.js";
 import type { LoadedModule } from "./wasm-module.js";
-
-/** Options of `createAligner`. */
-export interface AlignerOptions {
-  /** The core module. Default: `wasm/core_bg.wasm` next to this script. */
-  wasm?: WasmSource | undefined;
-  /** The formats module, loaded when the first file is passed. Default: `wasm/formats_bg.wasm` next to this script. */
-  formatsWasm?: WasmSource | undefined;
-  /**
-   * The number of workers: 0 (the default) runs calls on the calling thread; `"auto"` is one less than the number of
-   * cores, 1 to 8. Workers run this package's `worker.js` as module `Worker`s, or as `node:worker_threads`. They need
-   * neither shared memory nor special headers. Idle workers do not keep a Node process alive.
-   */
-  workers?: number | "auto" | undefined;
-  /** Creates a worker that runs `worker.js` of this package. Needed only if that file is not next to this script. */
-  createWorker?: CreateWorker | undefined;
-}
-
-/**
- * The assets that `sim3align/inline` bundles.
- * @internal
- */
-export interface BundledAssets {
-  wasm?: LazySource;
-  formatsWasm?: LazySource;
-  workerScript?: string;
-}
 
 /** Upper limit of "auto", because each worker holds a copy of its input. */
 const MAX_AUTO = 8;
@@ -283,76 +266,3 @@ export class Aligner {
 }
 
 type MeshJob = Job & { meshId: number };
-
-/** Options without undefined properties. The core checks names and values. */
-function checkedOptions<T extends object>(options: T | undefined) {
-  if (options !== undefined && !isRecord(options)) {
-    throw invalidArgument("options", options, "an object", "Pass { name: value }, or omit it.");
-  }
-  const own = snapshot("options", options ?? ({} as T));
-  checkAttached("options", own);
-  const misplaced = Object.keys(own).find((name) => alignerOptions.includes(name));
-  if (misplaced === undefined) return withoutUndefined(own);
-  throw new Sim3AlignError({
-    code: "UNKNOWN_OPTION",
-    argument: `options.${misplaced}`,
-    found: `\`${misplaced}\`, which is an option of createAligner`,
-    expected: "options of this call",
-    remedy: `Pass it once, when the aligner is created: createAligner({ ${misplaced} }).`,
-  });
-}
-
-const alignerOptions: readonly string[] = [
-  "wasm",
-  "formatsWasm",
-  "workers",
-  "createWorker",
-] satisfies (keyof AlignerOptions)[];
-
-/** The options of `createAligner`. Each is checked where it is used. */
-function checkedAlignerOptions(options: AlignerOptions): AlignerOptions {
-  if (!isRecord(options)) {
-    throw invalidArgument("options", options, "an object", "Pass { workers }, or omit it.");
-  }
-  const own: AlignerOptions = { ...options };
-  const unknown = Object.keys(own).find((name) => !alignerOptions.includes(name));
-  if (unknown === undefined) return own;
-  throw new Sim3AlignError({
-    code: "UNKNOWN_OPTION",
-    argument: unknown,
-    found: "an unknown option",
-    expected: `one of ${alignerOptions.join(", ")}`,
-    remedy: "Check the spelling. Options of a call, such as `quality`, belong to the call.",
-  });
-}
-
-function checkedFactory(createWorker: unknown): CreateWorker | undefined {
-  if (createWorker === undefined || typeof createWorker === "function") return createWorker as CreateWorker | undefined;
-  throw invalidArgument("createWorker", createWorker, "a function that returns a worker", "Pass () => new Worker(…).");
-}
-
-function checkedFlag(name: string, value: unknown): boolean {
-  if (typeof value === "boolean") return value;
-  throw invalidArgument(`options.${name}`, value, "true or false", "Omit it to use the default.");
-}
-
-/** An abort signal of any realm. */
-function checkedSignal(signal: unknown): AbortSignal | undefined {
-  if (signal === undefined || signal === null) return undefined;
-  try {
-    if (isKind<AbortSignal>(signal, "AbortSignal") && typeof signal.aborted === "boolean") {
-      // A proxy of a signal throws.
-      onAbort(signal, () => {})();
-      return signal;
-    }
-  } catch {}
-  throw invalidArgument("options.signal", signal, "an AbortSignal", "Pass the signal of an AbortController.");
-}
-
-function checkedWorkers(workers: unknown = 0): number | "auto" {
-  if (workers === "auto" || (Number.isInteger(workers) && (workers as number) >= 0 && (workers as number) <= 64)) {
-    return workers as number | "auto";
-  }
-  const remedy = "Omit it to run on the calling thread.";
-  throw invalidArgument("workers", workers, 'an integer from 0 to 64, or "auto"', remedy);
-}

@@ -138,8 +138,10 @@ export async function readCase(files: CaseFiles, settings: CaseSettings = {}): P
   return caseFrom(own("files", files), optionsOf(settings), () => formatsModule.load());
 }
 
-const jsonOf = async (argument: string, file: EncodedBytes | string | object): Promise<JsonFile> =>
-  typeof file === "string" || isRecord(file) || Array.isArray(file) ? own(argument, file) : requiredBytes("file", file);
+async function jsonOf(argument: string, file: EncodedBytes | string | object): Promise<JsonFile> {
+  const given = own(argument, file);
+  return typeof given === "string" || isRecord(given) || Array.isArray(given) ? given : requiredBytes("file", given);
+}
 
 /** An argument, read once. */
 function own<T>(argument: string, value: T): T {

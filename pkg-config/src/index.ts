@@ -5,7 +5,8 @@
  * column-major, quaternions x, y, z, w.
  * @packageDocumentation
  */
-export { Aligner, type AlignerOptions, createAligner } from "./aligner.js";
+export { Aligner, createAligner } from "./aligner.js";
+export type { AlignerOptions } from "./aligner-options.js";
 export { type ErrorCode, type ErrorParts, Sim3AlignError } from "./error.js";
 export {
   ALIGN_DEFAULTS,

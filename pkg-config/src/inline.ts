@@ -7,7 +7,8 @@
  */
 import core from "inlined:core";
 import workerScript from "inlined:worker";
-import { Aligner, type AlignerOptions } from "./aligner.js";
+import { Aligner } from "./aligner.js";
+import type { AlignerOptions } from "./aligner-options.js";
 
 export * from "./index.js";
 

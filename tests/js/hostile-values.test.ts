@@ -5,6 +5,7 @@
 import assert from "node:assert/strict";
 import { after, test } from "node:test";
 import { type AlignInput, type AlignOptions, createAligner, type ErrorCode, type Progress } from "sim3align";
+import { readCamera, readCase, readDepth, readMask, readMesh, readPose } from "sim3align/formats";
 import { rejectsWith } from "../support/errors.js";
 import { glb, npy } from "../support/files.js";
 import { input, mesh, truth, view } from "../support/scene.js";
@@ -319,4 +320,16 @@ test("createAligner refuses options that are none", async () => {
     argument: "options.workers",
     message: /option of createAligner.*createAligner\(\{ workers \}\)/,
   });
+});
+
+test("the readers of files refuse them, too", async () => {
+  const refused: [call: () => Promise<unknown>, argument: string][] = [
+    [() => readPose(revoked), "pose"],
+    [() => readCamera(throwing({ ...view.camera }, "fx")), "camera.fx"],
+    [() => readMask(detached(new Uint8Array(8))), "file"],
+    [() => readDepth(plainProxy(new Uint8Array(8))), "file"],
+    [() => readMesh(glb(mesh), null as never), "options"],
+    [() => readCase(5 as never), "files"],
+  ];
+  for (const [call, argument] of refused) await rejectsWith(call, { code: "INVALID_ARGUMENT", argument, message: /./ });
 });

@@ -105,6 +105,19 @@ for (const type of ["start", "job"]) {
   });
 }
 
+test("a worker that cannot be told that a mesh is freed is replaced", async () => {
+  let isBroken = false;
+  const { aligner, workers } = await poolWith((message, transfer, post) => {
+    if (isBroken && message.type === "drop-mesh") throw new Error("out of memory");
+    post(message, transfer);
+  });
+  const prepared = await aligner.prepareMesh(mesh);
+  isBroken = true;
+  prepared.dispose();
+  await works(aligner);
+  assert.equal(workers.made.length, 2);
+});
+
 test("a worker that ends when a job comes: the job is run again", async () => {
   const { aligner, workers } = await poolWith((message, transfer, post, worker) => {
     if (message.type === "job" && workers.made.length === 1) worker.terminate();

@@ -123,7 +123,13 @@ export class WorkerSlot {
       this.#dropped.push(id);
       return;
     }
-    if (this.#meshes.delete(id)) this.#port?.post({ type: "drop-mesh", id });
+    if (!this.#meshes.delete(id)) return;
+    try {
+      this.#port?.post({ type: "drop-mesh", id });
+    } catch (error) {
+      // The mesh ends with its worker.
+      this.end(error);
+    }
   }
 
   /** Terminates the worker and its job. The next request starts another worker. */

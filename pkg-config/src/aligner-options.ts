@@ -1,0 +1,109 @@
+/** The options of `createAligner`, and the options of calls that the core does not check. */
+import { checkAttached } from "./attached.js";
+import { invalidArgument, Sim3AlignError } from "./error.js";
+import { onAbort } from "./on-abort.js";
+import type { CreateWorker, LazySource, WasmSource } from "./platform.js";
+import { snapshot } from "./snapshot.js";
+import { isKind, isRecord, withoutUndefined } from "./values.js";
+
+/** Options of `createAligner`. */
+export interface AlignerOptions {
+  /** The core module. Default: `wasm/core_bg.wasm` next to this script. */
+  wasm?: WasmSource | undefined;
+  /** The formats module, loaded when the first file is passed. Default: `wasm/formats_bg.wasm` next to this script. */
+  formatsWasm?: WasmSource | undefined;
+  /**
+   * The number of workers: 0 (the default) runs calls on the calling thread; `"auto"` is one less than the number of
+   * cores, 1 to 8. Workers run this package's `worker.js` as module `Worker`s, or as `node:worker_threads`. They need
+   * neither shared memory nor special headers. Idle workers do not keep a Node process alive.
+   */
+  workers?: number | "auto" | undefined;
+  /** Creates a worker that runs `worker.js` of this package. Needed only if that file is not next to this script. */
+  createWorker?: CreateWorker | undefined;
+}
+
+/**
+ * The assets that `sim3align/inline` bundles.
+ * @internal
+ */
+export interface BundledAssets {
+  wasm?: LazySource;
+  formatsWasm?: LazySource;
+  workerScript?: string;
+}
+
+/** Options without undefined properties. The core checks names and values. */
+export function checkedOptions<T extends object>(options: T | undefined) {
+  if (options !== undefined && !isRecord(options)) {
+    throw invalidArgument("options", options, "an object", "Pass { name: value }, or omit it.");
+  }
+  const own = snapshot("options", options ?? ({} as T));
+  checkAttached("options", own);
+  const misplaced = Object.keys(own).find((name) => alignerOptions.includes(name));
+  if (misplaced === undefined) return withoutUndefined(own);
+  throw new Sim3AlignError({
+    code: "UNKNOWN_OPTION",
+    argument: `options.${misplaced}`,
+    found: `\`${misplaced}\`, which is an option of createAligner`,
+    expected: "options of this call",
+    remedy: `Pass it once, when the aligner is created: createAligner({ ${misplaced} }).`,
+  });
+}
+
+const alignerOptions: readonly string[] = [
+  "wasm",
+  "formatsWasm",
+  "workers",
+  "createWorker",
+] satisfies (keyof AlignerOptions)[];
+
+/** The options of `createAligner`. Each is checked where it is used. */
+export function checkedAlignerOptions(options: AlignerOptions): AlignerOptions {
+  if (!isRecord(options)) {
+    throw invalidArgument("options", options, "an object", "Pass { workers }, or omit it.");
+  }
+  const own: AlignerOptions = { ...options };
+  const unknown = Object.keys(own).find((name) => !alignerOptions.includes(name));
+  if (unknown === undefined) return own;
+  throw new Sim3AlignError({
+    code: "UNKNOWN_OPTION",
+    argument: unknown,
+    found: "an unknown option",
+    expected: `one of ${alignerOptions.join(", ")}`,
+    remedy: "Check the spelling. Options of a call, such as `quality`, belong to the call.",
+  });
+}
+
+/** The function of the caller that creates workers. */
+export function checkedFactory(createWorker: unknown): CreateWorker | undefined {
+  if (createWorker === undefined || typeof createWorker === "function") return createWorker as CreateWorker | undefined;
+  throw invalidArgument("createWorker", createWorker, "a function that returns a worker", "Pass () => new Worker(…).");
+}
+
+/** An option that is true or false. */
+export function checkedFlag(name: string, value: unknown): boolean {
+  if (typeof value === "boolean") return value;
+  throw invalidArgument(`options.${name}`, value, "true or false", "Omit it to use the default.");
+}
+
+/** An abort signal of any realm. */
+export function checkedSignal(signal: unknown): AbortSignal | undefined {
+  if (signal === undefined || signal === null) return undefined;
+  try {
+    if (isKind<AbortSignal>(signal, "AbortSignal") && typeof signal.aborted === "boolean") {
+      // A proxy of a signal throws.
+      onAbort(signal, () => {})();
+      return signal;
+    }
+  } catch {}
+  throw invalidArgument("options.signal", signal, "an AbortSignal", "Pass the signal of an AbortController.");
+}
+
+/** The number of workers. */
+export function checkedWorkers(workers: unknown = 0): number | "auto" {
+  if (workers === "auto" || (Number.isInteger(workers) && (workers as number) >= 0 && (workers as number) <= 64)) {
+    return workers as number | "auto";
+  }
+  const remedy = "Omit it to run on the calling thread.";
+  throw invalidArgument("workers", workers, 'an integer from 0 to 64, or "auto"', remedy);
+}
