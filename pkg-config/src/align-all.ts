@@ -98,6 +98,8 @@ type IteratorMethod = (this: Inputs) => Iterator<AlignInput> | AsyncIterator<Ali
 function methodOf(inputs: Inputs): IteratorMethod | undefined {
   try {
     if (typeof inputs !== "object" || ArrayBuffer.isView(inputs) || proxiedKind(inputs) !== undefined) return undefined;
+    // Throws for proxies of which this cannot be told.
+    Object.getPrototypeOf(inputs);
     const { [Symbol.asyncIterator]: iterateLater, [Symbol.iterator]: iterate } = inputs as Partial<
       Iterable<AlignInput> & AsyncIterable<AlignInput>
     >;

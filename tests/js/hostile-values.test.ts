@@ -61,6 +61,12 @@ const hostileProxy = (object: object) =>
       throw failure;
     },
   });
+/** A proxy of an array whose prototype cannot be read. */
+const hidden = new Proxy(new Uint8Array(8), {
+  getPrototypeOf: () => {
+    throw failure;
+  },
+});
 const { proxy: revoked, revoke } = Proxy.revocable({}, {});
 revoke();
 const nested: unknown[] = [];
@@ -324,7 +330,7 @@ test("createAligner refuses options that are none", async () => {
 
 test("the readers of files refuse them, too", async () => {
   const refused: [call: () => Promise<unknown>, argument: string][] = [
-    [() => readPose(revoked), "pose"],
+    [() => readPose(hidden, revoked), "pose"],
     [() => readCamera(throwing({ ...view.camera }, "fx")), "camera.fx"],
     [() => readMask(detached(new Uint8Array(8))), "file"],
     [() => readDepth(plainProxy(new Uint8Array(8))), "file"],
