@@ -15,6 +15,12 @@ const STREAM: u64 = 1;
 /// Minimum number of readings inside the mask.
 pub const MIN_POINTS: usize = 32;
 
+/// Minimum width and height of the mask, in pixels.
+const MIN_SIDE: usize = 3;
+
+/// Maximum number of pixels: those of 4096 × 4096, twice those of a 4K image. No answer needs as many.
+pub const MAX_PIXELS: usize = 1 << 24;
+
 /// An observation: depth in metres, the mask of the object (same size), and intrinsics.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Observation {
@@ -27,8 +33,9 @@ impl Observation {
     /// A validated observation.
     ///
     /// # Errors
-    /// [`ErrorCode::SizeMismatch`], [`ErrorCode::EmptyMask`], [`ErrorCode::NoDepthInMask`],
-    /// [`ErrorCode::TooFewPoints`], [`ErrorCode::FlatDepth`].
+    /// [`ErrorCode::SizeMismatch`], [`ErrorCode::FileTooLarge`], [`ErrorCode::InvalidCamera`], [`ErrorCode::EmptyMask`],
+    /// [`ErrorCode::NoDepthInMask`], [`ErrorCode::TooFewPoints`], [`ErrorCode::DegenerateMask`],
+    /// [`ErrorCode::FlatDepth`].
     pub fn new(depth: DepthMap, mask: Mask, camera: Pinhole) -> Result<Self> {
         if (depth.width(), depth.height()) != (mask.width(), mask.height()) {
             return Err(Error::new(
@@ -45,6 +52,8 @@ impl Observation {
                 "Resize the mask to the depth map, or set resizeMask: \"nearest\".",
             ));
         }
+        check_pixels(&depth)?;
+        camera.check_field_of_view(depth.width(), depth.height())?;
         let observation = Self { depth, mask, camera };
         observation.check_readings()?;
         Ok(observation)
@@ -87,6 +96,18 @@ impl Observation {
         pixels.filter(|&(_, (&z, &m))| z > 0.0 && m != 0).map(|(i, (&z, _))| (i, z))
     }
 
+    /// Width and height of the mask's bounding box, pixels.
+    fn mask_sides(&self) -> [usize; 2] {
+        let mut bounds = [[usize::MAX, 0]; 2];
+        for (v, row) in self.mask.data().chunks_exact(self.mask.width()).enumerate() {
+            let Some(first) = row.iter().position(|&m| m != 0) else { continue };
+            let last = row.iter().rposition(|&m| m != 0).unwrap_or(first);
+            bounds[0] = [bounds[0][0].min(first), bounds[0][1].max(last)];
+            bounds[1] = [bounds[1][0].min(v), bounds[1][1].max(v)];
+        }
+        bounds.map(|[low, high]| (high + 1).saturating_sub(low))
+    }
+
     fn check_readings(&self) -> Result<()> {
         let mask_pixels = self.mask.data().iter().filter(|&&m| m != 0).count();
         if mask_pixels == 0 {
@@ -117,6 +138,10 @@ impl Observation {
                 "Use a larger image of the object, or a depth source with fewer holes.",
             ));
         }
+        let sides = self.mask_sides();
+        if sides[0].min(sides[1]) < MIN_SIDE {
+            return Err(degenerate_mask(format!("a line of {} × {} pixels", sides[0], sides[1])));
+        }
         let mut depths = self.readings().map(|(_, z)| z);
         let first = depths.next().unwrap_or_default();
         if depths.all(|z| z == first) {
@@ -130,6 +155,31 @@ impl Observation {
         }
         Ok(())
     }
+}
+
+/// The error for a mask that shows no shape.
+pub fn degenerate_mask(found: impl Into<crate::error::Text>) -> Error {
+    Error::new(
+        ErrorCode::DegenerateMask,
+        "mask",
+        found,
+        "the area that the object covers in the image",
+        "Pass the object's whole mask. An object that is this thin in the image needs a larger image.",
+    )
+}
+
+fn check_pixels(depth: &DepthMap) -> Result<()> {
+    let (width, height) = (depth.width(), depth.height());
+    if depth.data().len() <= MAX_PIXELS {
+        return Ok(());
+    }
+    Err(Error::new(
+        ErrorCode::FileTooLarge,
+        "depth",
+        format!("{width} × {height} pixels"),
+        format!("at most {MAX_PIXELS} pixels, those of 4096 × 4096"),
+        "Downscale depth, mask and camera, or crop them to the object.",
+    ))
 }
 
 /// Depth and camera from a point map (H×W×3, camera frame, metres), for example of MoGe. Points with z ≤ 0 or a
