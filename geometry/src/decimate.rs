@@ -125,7 +125,10 @@ impl Clusters {
         }
         let reach = f64::from(self.cell);
         let positions = quadrics.iter().map(|q| q.vertex(reach)).collect();
-        Mesh::new(positions, self.triangles).ok()
+        let mesh = Mesh::new(positions, self.triangles).ok()?;
+        // Clusters of unconnected triangles may have lost all of theirs.
+        let is_sparse = mesh.positions().len() > 3 * mesh.triangles().len();
+        is_sparse.then(|| mesh.without_unused_vertices()).flatten().or(Some(mesh))
     }
 }
 

@@ -19,7 +19,8 @@ const WHOLE_IMAGE: f64 = 0.99;
 pub fn about_observation(observation: &Observation) -> Vec<Warning> {
     let (width, height) = (observation.mask().width(), observation.mask().height());
     let mut mask_pixels = 0_usize;
-    let mut depths = Vec::new();
+    // Allocated once: it may be a large image.
+    let mut depths = Vec::with_capacity(observation.mask().data().iter().filter(|&&m| m != 0).count());
     let mut touches_border = false;
     for (i, (&m, &z)) in observation.mask().data().iter().zip(observation.depth().data()).enumerate() {
         if m == 0 {

@@ -18,6 +18,9 @@ pub const MIN_POINTS: usize = 32;
 /// Minimum width and height of the mask, in pixels.
 const MIN_SIDE: usize = 3;
 
+/// Depths of which at least one reading of the mask must be, in metres: the squares of others leave the range of f32.
+const DEPTHS_M: [f32; 2] = [1e-12, 1e12];
+
 /// Maximum number of pixels: those of 4096 × 4096, twice those of a 4K image. No answer needs as many.
 pub const MAX_PIXELS: usize = 1 << 24;
 
@@ -72,6 +75,27 @@ impl Observation {
     /// The intrinsics.
     pub fn camera(&self) -> Pinhole {
         self.camera
+    }
+
+    /// The observation at every second (third, …) pixel along both sides, with at most `pixels` pixels; `None` if it has
+    /// no more than that.
+    pub fn reduced(&self, pixels: usize) -> Option<Self> {
+        if self.depth.data().len() <= pixels {
+            return None;
+        }
+        let size = [self.depth.width(), self.depth.height()];
+        let step = (2..).find(|step| size.map(|side| side.div_ceil(*step)).iter().product::<usize>() <= pixels)?;
+        let [width, height] = size.map(|side| side.div_ceil(step));
+        let at = |i: usize| i / width * step * size[0] + i % width * step;
+        let depths = (0..width * height).map(|i| self.depth.data()[at(i)]).collect();
+        let mask = (0..width * height).map(|i| self.mask.data()[at(i)]).collect();
+        let Pinhole { fx, fy, cx, cy } = self.camera;
+        let [fx, fy, cx, cy] = [fx, fy, cx, cy].map(|x| x / step as f64);
+        Some(Self {
+            depth: Image::new("depth", width, height, depths).ok()?,
+            mask: Image::new("mask", width, height, mask).ok()?,
+            camera: Pinhole { fx, fy, cx, cy },
+        })
     }
 
     /// P_obs: x = D(u,v)·K⁻¹\[u,v,1\]ᵀ for every reading in the mask, row-major, in the camera frame (metres).
@@ -136,6 +160,16 @@ impl Observation {
                 format!("{count} readings in the {mask_pixels} pixels of the mask"),
                 format!("at least {MIN_POINTS}"),
                 "Use a larger image of the object, or a depth source with fewer holes.",
+            ));
+        }
+        let (nearest, farthest) = self.readings().fold((f32::MAX, 0.0_f32), |(n, f), (_, z)| (n.min(z), f.max(z)));
+        if farthest < DEPTHS_M[0] || nearest > DEPTHS_M[1] {
+            return Err(Error::new(
+                ErrorCode::NoDepthInMask,
+                "depth",
+                format!("readings from {} to {} m in the mask", number(nearest.into()), number(farthest.into())),
+                format!("depths in metres, from {} to {}", number(DEPTHS_M[0].into()), number(DEPTHS_M[1].into())),
+                "Check the unit of the depth, and that it was read with the right byte order.",
             ));
         }
         let sides = self.mask_sides();

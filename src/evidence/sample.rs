@@ -18,7 +18,7 @@ pub const MIN_THICKNESS: f64 = 1e-4;
 
 /// Smallest and largest diagonal of a mesh's bounding box, mesh units. Beyond, squares of distances on the surface leave
 /// the range of f32. An object of a metre has 1e9 in nanometres.
-pub const DIAGONALS: [f64; 2] = [1e-12, 1e12];
+pub const DIAGONALS: [f64; 2] = [1e-15, 1e15];
 
 /// Sampling of both clouds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

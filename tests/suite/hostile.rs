@@ -204,7 +204,7 @@ fn a_render_visits_a_bounded_number_of_cells() {
     let work = cost(&large);
     assert!(work > 20 * cells, "the triangles overlap: {work}");
     assert!(work < 40 * cells + 80_000, "{work} for {cells} cells");
-    assert!(cost(&body()) < 4 * cells + 20_000);
+    assert!(cost(&body()) < 10 * cells + 20_000);
 }
 
 #[wasm_bindgen_test(unsupported = test)]
@@ -224,6 +224,28 @@ fn a_bound_on_work_bounds_renders_of_costly_inputs() {
         align_with(&ordinary, &body(), &quick(), &settings, &mut Silent).unwrap().diagnostics.common.counts.renders
     };
     assert_eq!(of_body(12), of_body(u64::from(u32::MAX)), "an ordinary input is within every bound");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn depths_beyond_the_numbers_are_refused() {
+    let ordinary = observe(&body(), &truth());
+    let (width, height) = (ordinary.depth().width(), ordinary.depth().height());
+    let scaled = |unit: f32| {
+        let depths = ordinary.depth().data().iter().map(|z| z * unit).collect();
+        Observation::new(
+            DepthMap::from_metres(width, height, depths).unwrap(),
+            ordinary.mask().clone(),
+            ordinary.camera(),
+        )
+    };
+    for unit in [1e-40, 1e-20, 1e20, 1e37] {
+        let error = scaled(unit).unwrap_err();
+        assert_eq!((error.code, &*error.argument), (ErrorCode::NoDepthInMask, "depth"), "{unit}: {error}");
+    }
+    for unit in [1e-9, 1e9] {
+        let alignment = align(&scaled(unit).unwrap(), &body(), &quick(), &mut Silent).unwrap();
+        assert!((alignment.camera_from_mesh.scale / f64::from(unit) / truth().scale - 1.0).abs() < 0.05, "{unit}");
+    }
 }
 
 #[wasm_bindgen_test(unsupported = test)]

@@ -38,7 +38,8 @@ fn cloud(c: &mut Choices, most: usize) -> (String, Vec<f64>) {
         15 => drop(points.pop()),
         _ => {}
     }
-    let name = ["bumpy surface", "random", "plane", "line", "one point", "grid", "clusters", "two points", "helix"][kind];
+    let name =
+        ["bumpy surface", "random", "plane", "line", "one point", "grid", "clusters", "two points", "helix"][kind];
     (format!("{name} of {count} points × {unit:e} from {far}"), points)
 }
 

@@ -84,10 +84,7 @@ pub fn mesh(c: &mut Choices, most: usize) -> (String, Result<Mesh>) {
 }
 
 /// A sphere of latitudes and longitudes, deformed.
-fn grid_sphere(
-    [longitudes, latitudes]: [usize; 2],
-    deform: impl Fn(DVec3) -> DVec3,
-) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+fn grid_sphere([longitudes, latitudes]: [usize; 2], deform: impl Fn(DVec3) -> DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let [n, m] = [longitudes.max(3), latitudes.max(2)];
     let mut positions = Vec::with_capacity(n * (m + 1));
     for row in 0..=m {

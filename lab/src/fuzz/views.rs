@@ -137,5 +137,8 @@ fn depth(c: &mut Choices, [width, height]: [usize; 2]) -> (String, Vec<f32>) {
         let hostile = c.pick(&[f32::NAN, f32::INFINITY, -1.0, f32::MAX, f32::MIN_POSITIVE, 1e-45]);
         depths.iter_mut().step_by(3).for_each(|z| *z = hostile);
     }
-    (format!("{} × {unit:e}", ["dome", "dome", "ramp", "noise", "constant", "plane", "stripes", "decades"][kind]), depths)
+    (
+        format!("{} × {unit:e}", ["dome", "dome", "ramp", "noise", "constant", "plane", "stripes", "decades"][kind]),
+        depths,
+    )
 }

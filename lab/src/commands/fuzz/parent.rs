@@ -135,11 +135,7 @@ fn run_batch<'a>(
 }
 
 /// Makes a range of calls in a process; the number it was at, and how it ended.
-fn calls(
-    target: Target,
-    range: std::ops::Range<u64>,
-    arguments: &Arguments,
-) -> Result<(u64, Option<End>), Failure> {
+fn calls(target: Target, range: std::ops::Range<u64>, arguments: &Arguments) -> Result<(u64, Option<End>), Failure> {
     let mut command = program(arguments)?;
     command.args(["--target", target.name, "--range", &format!("{}..{}", range.start, range.end)]);
     let mut at = range.start;

@@ -51,20 +51,62 @@ const FILES: [(&str, &[u8]); 31] = files![
 
 /// Numbers that replace numbers in text.
 const NUMBERS: [&str; 24] = [
-    "0", "1", "-1", "2", "3", "4", "255", "256", "65535", "65536", "2147483647", "2147483648", "4294967295",
-    "4294967296", "9007199254740993", "18446744073709551616", "1e400", "-1e400", "1e-400", "nan", "inf", "0.5",
-    "99999999999999999999999999999999999999", "",
+    "0",
+    "1",
+    "-1",
+    "2",
+    "3",
+    "4",
+    "255",
+    "256",
+    "65535",
+    "65536",
+    "2147483647",
+    "2147483648",
+    "4294967295",
+    "4294967296",
+    "9007199254740993",
+    "18446744073709551616",
+    "1e400",
+    "-1e400",
+    "1e-400",
+    "nan",
+    "inf",
+    "0.5",
+    "99999999999999999999999999999999999999",
+    "",
 ];
 
 /// Words that replace words in text.
 const WORDS: [&str; 24] = [
-    "5120", "5121", "5123", "5125", "5126", "SCALAR", "VEC2", "VEC3", "MAT4", "sparse", "matrix", "translation", "children",
-    "float", "double", "uchar", "list", "face", "vertex", "<f8", ">u2", "|b1", "True", "f 1 2 3 4 5 -1",
+    "5120",
+    "5121",
+    "5123",
+    "5125",
+    "5126",
+    "SCALAR",
+    "VEC2",
+    "VEC3",
+    "MAT4",
+    "sparse",
+    "matrix",
+    "translation",
+    "children",
+    "float",
+    "double",
+    "uchar",
+    "list",
+    "face",
+    "vertex",
+    "<f8",
+    ">u2",
+    "|b1",
+    "True",
+    "f 1 2 3 4 5 -1",
 ];
 
 /// A whole number that a binary field may hold.
-const WORDS_32: [u32; 12] =
-    [0, 1, 2, 3, 4, 255, 65_535, 65_536, 0x7fff_ffff, 0x8000_0000, 0xffff_fffe, 0xffff_ffff];
+const WORDS_32: [u32; 12] = [0, 1, 2, 3, 4, 255, 65_535, 65_536, 0x7fff_ffff, 0x8000_0000, 0xffff_fffe, 0xffff_ffff];
 
 /// Any damage to any file, read as anything.
 pub fn call(c: &mut Choices) -> Call {
@@ -79,7 +121,8 @@ pub fn call(c: &mut Choices) -> Call {
     if bytes.starts_with(PNG) && !c.once_in(8) {
         repair_png(&mut bytes);
     }
-    let format = c.pick(&[None, None, None, None, None, None, None, None, Some("glb"), Some("obj"), Some("ply"), Some("stl")]);
+    let format =
+        c.pick(&[None, None, None, None, None, None, None, None, Some("glb"), Some("obj"), Some("ply"), Some("stl")]);
     let scale = c.pick(&[None, None, Some(0.001), Some(0.0), Some(f64::NAN), Some(1e300), Some(1e-300)]);
     Call {
         description: format!("{name}, damaged: {} bytes", bytes.len()),
@@ -114,7 +157,9 @@ fn read(bytes: &[u8], format: Option<&str>, scale: Option<f64>) -> Result<Answer
         Err(error) => drop(typed(&error, false)?),
     }
     match read_mask(bytes) {
-        Ok(mask) if mask.width() * mask.height() != mask.data().len() => return Err("result: a mask of other size".into()),
+        Ok(mask) if mask.width() * mask.height() != mask.data().len() => {
+            return Err("result: a mask of other size".into());
+        }
         Ok(_) => {}
         Err(error) => drop(typed(&error, false)?),
     }
