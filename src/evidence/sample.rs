@@ -20,6 +20,10 @@ pub const MIN_THICKNESS: f64 = 1e-4;
 /// the range of f32. An object of a metre has 1e9 in nanometres.
 pub const DIAGONALS: [f64; 2] = [1e-15, 1e15];
 
+/// Maximum number of triangles of a mesh: ten times those of generated meshes. With more, copies of the mesh alone would
+/// take the memory that an alignment may.
+pub const MAX_TRIANGLES: usize = 1 << 22;
+
 /// Sampling of both clouds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sampling {
@@ -44,8 +48,10 @@ impl Default for Sampling {
 /// are flipped.
 ///
 /// # Errors
-/// [`ErrorCode::DegenerateMesh`] if the area is 0 or not finite, or the diagonal beyond [`DIAGONALS`].
+/// [`ErrorCode::DegenerateMesh`] if the area is 0 or not finite, or the diagonal beyond [`DIAGONALS`];
+/// [`ErrorCode::FileTooLarge`] above [`MAX_TRIANGLES`].
 pub fn sample_surface(mesh: &Mesh, count: usize, seed: u64) -> Result<Cloud> {
+    check_triangles(mesh.triangles().len())?;
     let mut total = 0.0;
     let ends: Vec<f64> = (mesh.triangles().iter())
         .map(|&t| {
@@ -79,8 +85,10 @@ pub fn sample_surface(mesh: &Mesh, count: usize, seed: u64) -> Result<Cloud> {
 /// Rejects meshes whose pose or scale cannot be determined from any view: without area, planar, or collinear.
 ///
 /// # Errors
-/// [`ErrorCode::DegenerateMesh`], from the thickness along the principal axes (see [`MIN_THICKNESS`]).
+/// [`ErrorCode::DegenerateMesh`], from the thickness along the principal axes (see [`MIN_THICKNESS`]), and those of
+/// [`sample_surface`].
 pub fn check_shape(mesh: &Mesh) -> Result<()> {
+    check_triangles(mesh.triangles().len())?;
     let moments = SurfaceMoments::of(mesh);
     check_area(moments.area)?;
     let eigen = moments.principal_axes();
@@ -172,6 +180,23 @@ fn check_diagonal(mesh: &Mesh) -> Result<f64> {
         format!("a bounding box with a diagonal of {}", number(diagonal)),
         format!("a diagonal from {} to {}", number(DIAGONALS[0]), number(DIAGONALS[1])),
         "Scale the mesh to any usual unit, such as metres or millimetres.",
+    ))
+}
+
+/// Checks the number of a mesh's triangles.
+///
+/// # Errors
+/// [`ErrorCode::FileTooLarge`] above [`MAX_TRIANGLES`].
+pub fn check_triangles(count: usize) -> Result<()> {
+    if count <= MAX_TRIANGLES {
+        return Ok(());
+    }
+    Err(Error::new(
+        ErrorCode::FileTooLarge,
+        "mesh",
+        format!("{count} triangles"),
+        format!("at most {MAX_TRIANGLES}"),
+        "Simplify the mesh: the search uses ten thousand triangles at most.",
     ))
 }
 

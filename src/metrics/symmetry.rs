@@ -197,7 +197,7 @@ fn invalid(found: String, expected: &str) -> Error {
 pub fn principal_symmetry(mesh: &Mesh, revolution: bool) -> Result<Vec<SymmetryAxis>> {
     let samples = sample_surface(mesh, AUTO_SAMPLES, 0)?.points;
     let moments = SurfaceMoments::of(mesh);
-    let tree = TriangleTree::new(mesh);
+    let tree = TriangleTree::new(&super::searchable(mesh));
     let center = vector_of(moments.centroid);
     let diagonal = mesh_diagonal(mesh);
     let maps_onto_itself = |axis: &Unit<Vector3<f64>>, share: f64| {

@@ -40,12 +40,12 @@ fn no_fault(name: &str, executions: u64, least_results: usize) {
 
 #[test]
 fn readers_have_no_fault() {
-    no_fault("readers", 30_000, 2000);
+    no_fault("readers", 30_000, 1000);
 }
 
 #[test]
 fn align_has_no_fault() {
-    no_fault("align", 400, 100);
+    no_fault("align", 400, 60);
 }
 
 #[test]
@@ -109,7 +109,8 @@ fn minimising_keeps_what_matters() {
     // Two numbers matter: one above 40 somewhere after one that is odd.
     let fails = |list: &[u32]| list.iter().skip_while(|x| **x % 2 == 0).skip(1).any(|x| *x > 40);
     let list: Vec<u32> = (0..30).map(|i| i * 7 % 60).collect();
-    assert_eq!(minimise(&list, 10_000, fails), [1, 41]);
+    let smallest = minimise(&list, 10_000, fails);
+    assert!(matches!(smallest[..], [odd, 41] if odd % 2 == 1), "{smallest:?}");
     // Trials are limited.
     let mut trials = 0;
     minimise(&list, 5, |_| {

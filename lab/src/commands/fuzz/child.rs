@@ -18,7 +18,7 @@ use sim3align_lab::fuzz::cpu::CpuTimer;
 /// Exit status after a fault that was printed.
 pub const FAULT: i32 = 3;
 /// Times the ceiling after which a call is given up.
-const PATIENCE: f64 = 10.0;
+const PATIENCE: f64 = 4.0;
 /// Milliseconds between looks at the current call.
 const LOOK_MS: u64 = 100;
 

@@ -15,8 +15,8 @@ use super::super::Failure;
 use super::arguments::Arguments;
 use super::child::seed_of;
 
-/// Trials of the minimisation of one fault.
-const TRIALS: usize = 300;
+/// Trials of the minimisation of one fault, and of one that takes long.
+const TRIALS: [usize; 2] = [300, 20];
 /// Readers are called so many times as often as `--executions` says.
 const READER_CALLS: u64 = 1000;
 /// Faults after which a target is left alone.
@@ -205,7 +205,7 @@ fn keep(target: Target, number: u64, words: &str, arguments: &Arguments) -> Resu
     let trial = path.with_extension("trial.txt");
     let kind = kind_of(words);
     let mut failure = None;
-    let smallest = minimise(choices.taken(), TRIALS, |list| {
+    let smallest = minimise(choices.taken(), TRIALS[usize::from(kind == "slow")], |list| {
         let same = write(&trial, list, words).map_err(failed).and_then(|()| replayed(&trial, arguments));
         match same {
             Ok(found) => kind_of(&found) == kind,
@@ -231,6 +231,9 @@ fn write(path: &PathBuf, list: &[u32], words: &str) -> std::io::Result<()> {
 
 /// What makes two faults the same: the place of a panic, otherwise the first word.
 fn kind_of(words: &str) -> String {
+    if words.starts_with("slow") || words.starts_with("hang") {
+        return "slow".into();
+    }
     let count = if words.starts_with("panic") { 3 } else { 1 };
     words.split(' ').take(count).collect::<Vec<_>>().join(" ")
 }
