@@ -65,9 +65,14 @@ fn largest(mesh: &Mesh, count: usize) -> Option<Mesh> {
     keys.truncate(count);
     let mut kept: Vec<u64> = keys.into_iter().map(|key| index_of(key).into()).collect();
     sort(&mut kept);
-    let triangles = kept.into_iter().filter_map(|i| mesh.triangles().get(i as usize).copied()).collect();
-    let largest = Mesh::new(mesh.positions().to_vec(), triangles).ok()?;
-    Some(largest.without_unused_vertices().unwrap_or(largest))
+    let triangles = || kept.iter().filter_map(|&i| mesh.triangles().get(i as usize));
+    // Only the vertices of the kept triangles are copied, because there may be millions of others.
+    let mut vertices: Vec<u64> = triangles().flatten().map(|&i| i.into()).collect();
+    sort(&mut vertices);
+    vertices.dedup();
+    let number = |i: u32| vertices.partition_point(|&vertex| vertex < i.into()) as u32;
+    let positions = vertices.iter().map(|&i| mesh.positions()[i as usize]).collect();
+    Mesh::new(positions, triangles().map(|triangle| triangle.map(number)).collect()).ok()
 }
 
 /// The cluster of each vertex, and the triangles whose corners are in three clusters.

@@ -1,8 +1,6 @@
 //! Reads properties of JavaScript objects, with errors that name them.
 
-use js_sys::{
-    Array, Float32Array, Float64Array, Reflect, Uint8Array, Uint8ClampedArray, Uint16Array, Uint32Array,
-};
+use js_sys::{Array, Float32Array, Float64Array, Reflect, Uint8Array, Uint8ClampedArray, Uint16Array, Uint32Array};
 use wasm_bindgen::{JsCast, JsValue};
 
 use crate::error::{Error, ErrorCode, Result};

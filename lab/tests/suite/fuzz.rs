@@ -115,7 +115,7 @@ fn minimising_keeps_what_matters() {
     let mut trials = 0;
     minimise(&list, 5, |_| {
         trials += 1;
-        true
+        false
     });
     assert_eq!(trials, 5);
 }
