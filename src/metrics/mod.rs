@@ -75,7 +75,8 @@ pub fn score(
     evidence: &Evidence,
 ) -> Result<Metrics> {
     check_transform(camera_from_mesh)?;
-    let agreement = surface_agreement(evidence, &searchable(mesh), camera_from_mesh);
+    let mesh = &*searchable(mesh);
+    let agreement = surface_agreement(evidence, mesh, camera_from_mesh);
 
     let (depth, mask) = (observation.depth(), observation.mask());
     let (width, height) = (depth.width(), depth.height());
@@ -99,8 +100,8 @@ pub fn score(
     })
 }
 
-/// The mesh whose surface is searched for nearest points: a search tree over millions of triangles would take more memory
-/// than all else, and distances to the decimated mesh differ by a fraction of its cells, which are a hundredth of its size.
+/// The mesh that is rendered and searched for nearest points: buffers for millions of triangles would take more memory than
+/// all else, and the decimated mesh differs by a fraction of its cells, which are a hundredth of its size.
 fn searchable(mesh: &Mesh) -> Cow<'_, Mesh> {
     if mesh.triangles().len() <= MAX_SEARCHED_TRIANGLES {
         return Cow::Borrowed(mesh);
