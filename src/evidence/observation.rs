@@ -18,8 +18,11 @@ pub const MIN_POINTS: usize = 32;
 /// Minimum width and height of the mask, in pixels.
 const MIN_SIDE: usize = 3;
 
-/// Depths of which at least one reading of the mask must be, in metres: the squares of others leave the range of f32.
-const DEPTHS_M: [f32; 2] = [1e-12, 1e12];
+/// The smallest depth that counts as a reading, metres: the squares of smaller ones leave the range of f32.
+const NEAREST_M: f32 = 1e-12;
+
+/// Depth that at least one reading of the mask must not exceed, metres: the squares of larger ones leave the range of f32.
+const FARTHEST_M: f32 = 1e12;
 
 /// Maximum number of pixels: those of 4096 × 4096, twice those of a 4K image. No answer needs as many.
 pub const MAX_PIXELS: usize = 1 << 24;
@@ -33,13 +36,13 @@ pub struct Observation {
 }
 
 impl Observation {
-    /// A validated observation.
+    /// A validated observation. Depths below 1e-12 m are no readings.
     ///
     /// # Errors
     /// [`ErrorCode::SizeMismatch`], [`ErrorCode::FileTooLarge`], [`ErrorCode::InvalidCamera`], [`ErrorCode::EmptyMask`],
     /// [`ErrorCode::NoDepthInMask`], [`ErrorCode::TooFewPoints`], [`ErrorCode::DegenerateMask`],
     /// [`ErrorCode::FlatDepth`].
-    pub fn new(depth: DepthMap, mask: Mask, camera: Pinhole) -> Result<Self> {
+    pub fn new(mut depth: DepthMap, mask: Mask, camera: Pinhole) -> Result<Self> {
         if (depth.width(), depth.height()) != (mask.width(), mask.height()) {
             return Err(Error::new(
                 ErrorCode::SizeMismatch,
@@ -57,6 +60,7 @@ impl Observation {
         }
         check_pixels(&depth)?;
         camera.check_field_of_view(depth.width(), depth.height())?;
+        depth.data_mut().iter_mut().filter(|z| **z < NEAREST_M).for_each(|z| *z = 0.0);
         let observation = Self { depth, mask, camera };
         observation.check_readings()?;
         Ok(observation)
@@ -162,13 +166,13 @@ impl Observation {
                 "Use a larger image of the object, or a depth source with fewer holes.",
             ));
         }
-        let (nearest, farthest) = self.readings().fold((f32::MAX, 0.0_f32), |(n, f), (_, z)| (n.min(z), f.max(z)));
-        if farthest < DEPTHS_M[0] || nearest > DEPTHS_M[1] {
+        let nearest = self.readings().fold(f32::MAX, |nearest, (_, z)| nearest.min(z));
+        if nearest > FARTHEST_M {
             return Err(Error::new(
                 ErrorCode::NoDepthInMask,
                 "depth",
-                format!("readings from {} to {} m in the mask", number(nearest.into()), number(farthest.into())),
-                format!("depths in metres, from {} to {}", number(DEPTHS_M[0].into()), number(DEPTHS_M[1].into())),
+                format!("readings of {} m and more in the mask", number(nearest.into())),
+                format!("depths in metres, up to {}", number(FARTHEST_M.into())),
                 "Check the unit of the depth, and that it was read with the right byte order.",
             ));
         }

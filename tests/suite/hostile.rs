@@ -242,6 +242,13 @@ fn depths_beyond_the_numbers_are_refused() {
         let error = scaled(unit).unwrap_err();
         assert_eq!((error.code, &*error.argument), (ErrorCode::NoDepthInMask, "depth"), "{unit}: {error}");
     }
+    // Some of the readings: they count as none.
+    let mixed = ordinary.depth().data().iter().enumerate();
+    let mixed = mixed.map(|(i, z)| if i % 3 == 0 { f32::MIN_POSITIVE } else { *z }).collect();
+    let mixed = DepthMap::from_metres(width, height, mixed).unwrap();
+    let mixed = Observation::new(mixed, ordinary.mask().clone(), ordinary.camera()).unwrap();
+    let alignment = align(&mixed, &body(), &quick(), &mut Silent).unwrap();
+    assert!(alignment.diagnostics.score.is_finite() && alignment.confidence > 0.0);
     for unit in [1e-9, 1e9] {
         let alignment = align(&scaled(unit).unwrap(), &body(), &quick(), &mut Silent).unwrap();
         assert!((alignment.camera_from_mesh.scale / f64::from(unit) / truth().scale - 1.0).abs() < 0.05, "{unit}");
