@@ -74,6 +74,10 @@ pub struct Warning {
 pub enum WarningCode {
     /// Depths so large that they look like millimetres passed as metres.
     DepthLooksLikeMillimetres,
+    /// Depths so small that they look like metres taken as millimetres.
+    DepthLooksTooSmall,
+    /// The mask covers the whole image: it is probably inverted, or no mask.
+    MaskCoversImage,
     /// The mask touches the image border: part of the object is outside the view.
     MaskTouchesBorder,
     /// Less than half of the mask has a depth reading.

@@ -5,6 +5,7 @@ use glam::{DMat3, DVec3, Vec3};
 
 use super::cloud::Bounds;
 use super::mesh::Mesh;
+use super::order::{index_of, pack, select_smallest, sort};
 use super::symmetric_eigen::SymmetricEigen;
 
 /// Limit on the cells along the longest side; the table has this many cubed.
@@ -14,8 +15,12 @@ const PASSES: usize = 4;
 /// Eigenvalues below this fraction of the largest do not constrain the vertex along their direction.
 const RANK: f64 = 1e-3;
 
-/// The mesh with about `triangles` triangles, at most a quarter more. A mesh that has no more than that is returned
-/// unchanged.
+/// Clusters cannot thin out triangles that all span many cells, or that each lie within one. Where such a mesh has more
+/// than this many times the triangles wanted, only its largest are kept.
+const MAX_EXCESS: usize = 4;
+
+/// The mesh with about `triangles` triangles, at most a quarter more, or [`MAX_EXCESS`] times as many if they are
+/// unconnected. A mesh that has no more than that is returned unchanged.
 pub fn decimate(mesh: &Mesh, triangles: usize) -> Mesh {
     if mesh.triangles().len() <= triangles {
         return mesh.clone();
@@ -42,7 +47,32 @@ pub fn decimate(mesh: &Mesh, triangles: usize) -> Mesh {
         }
         cells = next;
     }
-    best.and_then(|clusters| clusters.into_mesh(mesh)).unwrap_or_else(|| mesh.clone())
+    let clustered = best.and_then(|clusters| clusters.into_mesh(mesh));
+    clustered.or_else(|| largest(mesh, triangles)).unwrap_or_else(|| mesh.clone())
+}
+
+/// The `count` triangles with the largest area, in their order; `None` for a mesh with few more than that.
+fn largest(mesh: &Mesh, count: usize) -> Option<Mesh> {
+    if mesh.triangles().len() <= MAX_EXCESS * count {
+        return None;
+    }
+    let area = |triangle: [u32; 3]| {
+        let [a, b, c] = mesh.corners(triangle).map(|p| p.as_dvec3());
+        (b - a).cross(c - a).length() as f32
+    };
+    let mut keys: Vec<u64> = (0..).zip(mesh.triangles()).map(|(i, &triangle)| pack(-area(triangle), i)).collect();
+    select_smallest(&mut keys, count);
+    keys.truncate(count);
+    let mut kept: Vec<u64> = keys.into_iter().map(|key| index_of(key).into()).collect();
+    sort(&mut kept);
+    let triangles = || kept.iter().filter_map(|&i| mesh.triangles().get(i as usize));
+    // Only the vertices of the kept triangles are copied, because there may be millions of others.
+    let mut vertices: Vec<u64> = triangles().flatten().map(|&i| i.into()).collect();
+    sort(&mut vertices);
+    vertices.dedup();
+    let number = |i: u32| vertices.partition_point(|&vertex| vertex < i.into()) as u32;
+    let positions = vertices.iter().map(|&i| mesh.positions()[i as usize]).collect();
+    Mesh::new(positions, triangles().map(|triangle| triangle.map(number)).collect()).ok()
 }
 
 /// The cluster of each vertex, and the triangles whose corners are in three clusters.
@@ -100,7 +130,10 @@ impl Clusters {
         }
         let reach = f64::from(self.cell);
         let positions = quadrics.iter().map(|q| q.vertex(reach)).collect();
-        Mesh::new(positions, self.triangles).ok()
+        let mesh = Mesh::new(positions, self.triangles).ok()?;
+        // Clusters of unconnected triangles may have lost all of theirs.
+        let is_sparse = mesh.positions().len() > 3 * mesh.triangles().len();
+        is_sparse.then(|| mesh.without_unused_vertices()).flatten().or(Some(mesh))
     }
 }
 

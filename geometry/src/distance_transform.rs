@@ -17,7 +17,7 @@ pub fn squared_distances(set: &[bool], width: usize, height: usize) -> Vec<u32> 
     // The parabolas of the envelope, each with the first column where it is the lowest.
     let mut envelope: Vec<(i64, i64)> = Vec::with_capacity(width);
     for (row, out) in in_column.chunks_exact(width).zip(distances.chunks_exact_mut(width)) {
-        let squared = |x: i64| row[x as usize] * row[x as usize];
+        let squared = |x: i64| i64::from(row[x as usize]) * i64::from(row[x as usize]);
         let value = |x: i64, from: i64| (x - from) * (x - from) + squared(from);
         envelope.clear();
         for x in 0..width as i64 {
@@ -46,8 +46,8 @@ pub fn squared_distances(set: &[bool], width: usize, height: usize) -> Vec<u32> 
 
 /// Distance to the nearest set pixel of the same column. A column without one gets a value larger than any distance in
 /// the image.
-fn column_distances(set: &[bool], width: usize, height: usize) -> Vec<i64> {
-    let far = (width + height) as i64;
+fn column_distances(set: &[bool], width: usize, height: usize) -> Vec<u32> {
+    let far = (width + height) as u32;
     let mut distances = vec![far; set.len()];
     let mut scan = |rows: &mut dyn Iterator<Item = usize>| {
         let mut above: Option<usize> = None;

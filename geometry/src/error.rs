@@ -31,6 +31,8 @@ pub enum ErrorCode {
     InvalidCamera,
     /// The mask selects no pixel.
     EmptyMask,
+    /// A mask that is a line or single pixels: it shows no shape.
+    DegenerateMask,
     /// No pixel of the mask has a depth reading.
     NoDepthInMask,
     /// All readings inside the mask are equal: a placeholder, not a measurement.
@@ -43,7 +45,7 @@ pub enum ErrorCode {
     IndexOutOfRange,
     /// A coordinate is NaN or infinite.
     NonFinite,
-    /// A degenerate mesh: zero area, a plane, or a needle.
+    /// A degenerate mesh: zero area, a plane, a needle, or a size beyond what numbers resolve.
     DegenerateMesh,
     /// Points that do not determine a similarity: coincident or collinear.
     DegeneratePoints,
@@ -55,7 +57,7 @@ pub enum ErrorCode {
     UnsupportedFormat,
     /// A truncated or inconsistent file.
     CorruptFile,
-    /// A file that declares more data than it contains, or that exceeds the limits of this package.
+    /// A file that declares more data than it contains, or data that exceed the limits of this package.
     FileTooLarge,
     /// An 8-bit image where depth is expected: 256 levels are a visualisation of depth, not depth.
     EightBitDepth,
@@ -77,6 +79,7 @@ impl ErrorCode {
             Self::SizeMismatch => "SIZE_MISMATCH",
             Self::InvalidCamera => "INVALID_CAMERA",
             Self::EmptyMask => "EMPTY_MASK",
+            Self::DegenerateMask => "DEGENERATE_MASK",
             Self::NoDepthInMask => "NO_DEPTH_IN_MASK",
             Self::FlatDepth => "FLAT_DEPTH",
             Self::TooFewPoints => "TOO_FEW_POINTS",

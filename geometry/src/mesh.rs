@@ -101,6 +101,26 @@ impl Mesh {
         triangle.map(|i| self.positions[i as usize])
     }
 
+    /// The mesh without the vertices that no triangle uses; `None` if there are none.
+    pub fn without_unused_vertices(&self) -> Option<Self> {
+        let mut used = vec![false; self.positions.len()];
+        self.triangles.as_flattened().iter().for_each(|&i| used[i as usize] = true);
+        if used.iter().all(|&used| used) {
+            return None;
+        }
+        let mut count = 0;
+        let mut number = |used: &bool| {
+            let index = count;
+            count += u32::from(*used);
+            index
+        };
+        let numbers: Vec<u32> = used.iter().map(&mut number).collect();
+        let kept = self.positions.iter().zip(&used).filter(|(_, used)| **used);
+        let positions = kept.map(|(position, _)| *position).collect();
+        let triangles = self.triangles.iter().map(|triangle| triangle.map(|i| numbers[i as usize])).collect();
+        Some(Self { positions, triangles })
+    }
+
     /// Six times the signed enclosed volume: negative if the triangles face inward. 0 is inconclusive. Computed
     /// relative to the first vertex, so that a mesh far from the origin loses no precision.
     pub fn signed_volume6(&self) -> f64 {

@@ -6,6 +6,12 @@ use super::angle::sin_cos;
 use crate::error::{Error, ErrorCode, Result};
 use crate::number::{number, numbers};
 
+/// Largest ratio of the two focal lengths: pixels of cameras are nearly square, also after a resize that is not uniform.
+const MAX_FOCAL_RATIO: f64 = 20.0;
+
+/// Tangents of half the narrowest field of view, 0.01°, and of half the widest, 179°.
+const HALF_VIEW: [f64; 2] = [8.7e-5, 114.6];
+
 /// A pinhole camera: x right, y down, z forward; pixel centres at integer indices,
 /// so that u = fx·x/z + cx is the centre of column u for whole u.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,8 +30,8 @@ impl Pinhole {
     /// A camera from its intrinsics, in pixels.
     ///
     /// # Errors
-    /// [`ErrorCode::InvalidCamera`] for focal lengths that are not finite and positive, or a principal point
-    /// that is not finite.
+    /// [`ErrorCode::InvalidCamera`] for focal lengths that are not finite and positive or that differ by more than a
+    /// factor of 20, or a principal point that is not finite.
     pub fn new(fx: f64, fy: f64, cx: f64, cy: f64) -> Result<Self> {
         let bad = |name: &str, value: f64, expected: &str| {
             Error::new(
@@ -46,7 +52,46 @@ impl Pinhole {
                 return Err(bad(name, value, "a finite number"));
             }
         }
+        if fx.max(fy) > MAX_FOCAL_RATIO * fx.min(fy) {
+            return Err(Error::new(
+                ErrorCode::InvalidCamera,
+                "camera",
+                format!("fx {} and fy {}", number(fx), number(fy)),
+                "focal lengths within a factor of 20 of each other",
+                "Both are in pixels of the depth image, and about equal for square pixels.",
+            ));
+        }
         Ok(Self { fx, fy, cx, cy })
+    }
+
+    /// Checks that an image of this size and camera is one that a pinhole camera can take.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidCamera`] for a field of view below 0.01° or above 179°, and for a principal point so far
+    /// outside the image that all its rays are perpendicular to the optical axis.
+    pub fn check_field_of_view(&self, width: usize, height: usize) -> Result<()> {
+        let invalid = |found: String, expected: &str| {
+            let remedy = "Intrinsics are in pixels of the depth image: scale them together with the image.";
+            Err(Error::new(ErrorCode::InvalidCamera, "camera", found, expected.to_owned(), remedy))
+        };
+        let size = [width as f64, height as f64];
+        let (focal, center) = ([self.fx, self.fy], [self.cx, self.cy]);
+        let half = (0.5 * size[0] / focal[0]).max(0.5 * size[1] / focal[1]);
+        if !(HALF_VIEW[0]..=HALF_VIEW[1]).contains(&half) {
+            let degrees = number(2.0 * libm::atan2(half, 1.0).to_degrees());
+            let found = format!(
+                "fx {} and fy {} for {width} × {height} pixels, a field of view of {degrees}°",
+                number(focal[0]),
+                number(focal[1])
+            );
+            return invalid(found, "a field of view from 0.01 to 179°");
+        }
+        let beyond = |axis: usize| (-0.5 - center[axis]).max(center[axis] - (size[axis] - 0.5)) / focal[axis];
+        if beyond(0).max(beyond(1)) > HALF_VIEW[1] {
+            let found = format!("cx {} and cy {} for {width} × {height} pixels", number(center[0]), number(center[1]));
+            return invalid(found, "a principal point in the image or, for a crop, near it");
+        }
+        Ok(())
     }
 
     /// A camera from a 3×3 matrix K in row-major order. Skew is refused: no depth camera reports one.

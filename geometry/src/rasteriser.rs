@@ -19,6 +19,13 @@ pub const NO_TRIANGLE: u32 = u32::MAX;
 /// clipped: for an object at 1 m, the near plane is at 0.1 mm.
 pub const NEAR: f64 = 1e-4;
 
+/// Maximum number of pixels that the triangles of a render visit, per pixel of the image: dozens of layers over all of
+/// it. The triangles after that are left out.
+const MAX_LAYERS: usize = 64;
+
+/// Boxes of triangles at least this many pixels wide are filled from the first to the last pixel of each row.
+const WIDE: i64 = 32;
+
 /// Sub-pixel steps per pixel, 2⁸.
 const SUBPIXEL: i64 = 256;
 
@@ -45,6 +52,8 @@ pub struct Rasteriser {
     /// 1/z during rendering, z afterwards.
     depth: Vec<f32>,
     triangles: Vec<u32>,
+    /// Pixels visited by the triangles of the render.
+    visited: usize,
 }
 
 /// A vertex in camera space and, if it can be projected without clipping, on the sub-pixel grid.
@@ -147,7 +156,11 @@ impl Rasteriser {
         let near = self.transform(mesh, camera_from_mesh);
         self.project(camera, near);
         let volume = ClipVolume::new(camera, near);
+        self.visited = 0;
         for (id, triangle) in (0..).zip(mesh.triangles()) {
+            if self.visited > MAX_LAYERS * self.depth.len() {
+                break;
+            }
             let corners = triangle.map(|i| self.vertices[i as usize]);
             let points = corners.map(|v| v.camera);
             if corners.iter().all(|v| v.placement == Placement::Inside) {
@@ -225,8 +238,16 @@ impl Rasteriser {
         for v in v0..=v1 {
             let start = v as usize * self.width;
             let w_row = plane.origin + plane.dv * v as f64;
-            let mut e = row;
-            for u in u0..=u1 {
+            let (mut e, mut range) = (row, (u0, u1));
+            if u1 - u0 >= WIDE {
+                // A long thin triangle fills little of its box.
+                range = span(range, &row, &edges);
+                for k in 0..3 {
+                    e[k] -= edges[k].dy * SUBPIXEL * (range.0 - u0);
+                }
+            }
+            self.visited += 1 + (range.1 - range.0 + 1).max(0) as usize;
+            for u in range.0..=range.1 {
                 // All three are ≥ 0 if no sign bit is set.
                 if (e[0] | e[1] | e[2]) >= 0 {
                     let i = start + u as usize;
@@ -248,6 +269,23 @@ impl Rasteriser {
             }
         }
     }
+}
+
+/// The part of a row, first to last pixel, in which all edges are ≥ 0; `values` are theirs at the first one.
+fn span((first, last): (i64, i64), values: &[i64; 3], edges: &[Edge; 3]) -> (i64, i64) {
+    let (mut low, mut high) = (0, last - first);
+    for (value, edge) in values.iter().zip(edges) {
+        let growth = -edge.dy * SUBPIXEL;
+        if growth > 0 {
+            low = low.max((growth - 1 - value).div_euclid(growth));
+        } else if growth < 0 {
+            high = high.min(value.div_euclid(-growth));
+        } else if *value < 0 {
+            high = -1;
+        }
+    }
+    // Empty ranges are kept near the row, so that nothing overflows.
+    (first + low.min(last - first + 1), first + high.max(-1))
 }
 
 /// A directed edge; [`Edge::at`] is positive inside a triangle of positive area.

@@ -8,6 +8,13 @@ use super::order::halve;
 
 const LEAF_SIZE: usize = 4;
 
+/// Average number of triangles and nodes that [`TriangleTree::nearest_of_each`] visits per point at most. Surfaces of
+/// objects take about forty; triangles that all overlap take as many as there are.
+const MAX_VISITS: usize = 2000;
+
+/// Fewest points that it visits, whatever they cost.
+const MIN_POINTS: usize = 64;
+
 /// The result of a nearest-point query.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfacePoint {
@@ -61,10 +68,30 @@ impl TriangleTree {
     pub fn nearest_from(&self, query: Vec3, hint: &mut Hint) -> Option<SurfacePoint> {
         let none = SurfacePoint { triangle: u32::MAX, point: query, distance_squared: f32::MAX };
         let mut best = (none, *hint);
-        self.offer(hint.0, query, &mut best);
+        self.offer(hint.slot, query, &mut best);
         self.descend(0, 0, self.triangles.len(), query, &mut best);
         *hint = best.1;
         (best.0.triangle != u32::MAX).then_some(best.0)
+    }
+
+    /// Calls `visit` with the index of each of `count` points and the nearest point of the surface to it. Where searches
+    /// are costly, because most triangles overlap, it leaves points out, evenly over the list.
+    pub fn nearest_of_each(
+        &self,
+        count: usize,
+        point: impl Fn(usize) -> Vec3,
+        mut visit: impl FnMut(usize, Option<SurfacePoint>),
+    ) {
+        // Consecutive points are usually close to each other, so that each search starts at the previous result.
+        let mut hint = Hint::default();
+        let (mut index, mut step) = (0, 1);
+        while index < count {
+            visit(index, self.nearest_from(point(index), &mut hint));
+            if hint.visits > MAX_VISITS * (index + count / 16) && MIN_POINTS * step < count {
+                step *= 2;
+            }
+            index += step;
+        }
     }
 
     /// Replaces the best triangle if this one is nearer.
@@ -75,13 +102,15 @@ impl TriangleTree {
         if (distance_squared, *triangle) < (best.distance_squared, best.triangle) {
             let point = (query.as_dvec3() + offset).as_vec3();
             *best = SurfacePoint { triangle: *triangle, point, distance_squared };
-            *hint = Hint(slot);
+            hint.slot = slot;
         }
     }
 
     fn descend(&self, node: usize, low: usize, high: usize, query: Vec3, best: &mut (SurfacePoint, Hint)) {
         let right = self.nodes[node].right as usize;
+        best.1.visits += 1;
         if right == 0 {
+            best.1.visits += high - low;
             for slot in low..high {
                 let bounds = Bounds::of_triangle(&self.triangles[slot].0);
                 if may_hold(bounds.distance_squared(query), &best.0) {
@@ -106,7 +135,11 @@ impl TriangleTree {
 
 /// The leaf of the previous result, which the next search visits first.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Hint(usize);
+pub struct Hint {
+    slot: usize,
+    /// Triangles and nodes visited by all searches so far.
+    visits: usize,
+}
 
 /// Whether a box at this distance may contain a better result. The tolerance covers the rounding of the distance, so
 /// that ties are not lost.

@@ -8,6 +8,7 @@ pub mod cases;
 pub mod clouds;
 mod draws;
 mod files;
+pub mod fuzz;
 pub mod parallel;
 pub mod samples;
 pub mod scenes;

@@ -4,7 +4,12 @@ mod commands;
 
 use std::process::ExitCode;
 
-use commands::{Failure, bench, cases, profile, registration, scenes};
+use commands::{Failure, bench, cases, fuzz, profile, registration, scenes};
+use sim3align_lab::fuzz::memory::CountingAllocator;
+
+/// For the memory of `fuzz`.
+#[global_allocator]
+static ALLOCATOR: CountingAllocator = CountingAllocator;
 
 const USAGE: &str = "\
 Usage: sim3align-lab COMMAND [arguments]
@@ -14,18 +19,20 @@ Usage: sim3align-lab COMMAND [arguments]
   bench         aligns cases with a known truth, and prints tables
   registration  writes pairs of clouds, and registers them
   profile       aligns case folders natively, and prints times as JSON
+  fuzz          searches for inputs on which the package fails
 
 `sim3align-lab COMMAND --help` lists the command's arguments.";
 
 /// Name and entry point of a command.
 type Command = (&'static str, fn(lexopt::Parser) -> Result<(), Failure>);
 
-const COMMANDS: [Command; 5] = [
+const COMMANDS: [Command; 6] = [
     ("case", cases::main),
     ("scenes", scenes::main),
     ("bench", bench::main),
     ("registration", registration::main),
     ("profile", profile::main),
+    ("fuzz", fuzz::main),
 ];
 
 fn main() -> ExitCode {

@@ -9,11 +9,18 @@ use crate::report::{Warning, WarningCode, is_collapsed};
 /// Median depth in metres above which the depth is probably in millimetres.
 const IMPLAUSIBLE_DEPTH_M: f32 = 100.0;
 
+/// Median depth in metres below which the depth was probably converted from millimetres twice.
+const IMPLAUSIBLY_NEAR_M: f32 = 0.01;
+
+/// Share of the image beyond which a mask probably selects everything instead of an object.
+const WHOLE_IMAGE: f64 = 0.99;
+
 /// Warnings about depth and mask.
 pub fn about_observation(observation: &Observation) -> Vec<Warning> {
     let (width, height) = (observation.mask().width(), observation.mask().height());
     let mut mask_pixels = 0_usize;
-    let mut depths = Vec::new();
+    // Allocated once: it may be a large image.
+    let mut depths = Vec::with_capacity(observation.mask().data().iter().filter(|&&m| m != 0).count());
     let mut touches_border = false;
     for (i, (&m, &z)) in observation.mask().data().iter().zip(observation.depth().data()).enumerate() {
         if m == 0 {
@@ -39,6 +46,24 @@ pub fn about_observation(observation: &Observation) -> Vec<Warning> {
                 ),
             });
         }
+        if median < IMPLAUSIBLY_NEAR_M {
+            warnings.push(Warning {
+                code: WarningCode::DepthLooksTooSmall,
+                message: format!(
+                    "The object's median depth is {} m. Integers are taken as millimetres: for integers in metres pass depthScale 1. Floats are in metres.",
+                    number(f64::from(median))
+                ),
+            });
+        }
+    }
+    let all_pixels = observation.mask().data().len();
+    if mask_pixels as f64 >= WHOLE_IMAGE * all_pixels as f64 {
+        warnings.push(Warning {
+            code: WarningCode::MaskCoversImage,
+            message: format!(
+                "The mask covers {mask_pixels} of the image's {all_pixels} pixels: it selects everything, not an object. It may be inverted, or not a mask."
+            ),
+        });
     }
     if touches_border {
         warnings.push(Warning {

@@ -10,6 +10,7 @@ use wasm_bindgen::prelude::wasm_bindgen;
 use super::error::to_js;
 use super::object::{get, to_f32s, to_u32s, wrong_type};
 use crate::error::Result;
+use crate::evidence::sample::check_triangles;
 use crate::geometry::mesh::Mesh;
 use crate::precise::prepared_mesh::PreparedMesh;
 
@@ -31,8 +32,13 @@ pub fn mesh(mesh: &JsValue) -> Result<Rc<PreparedMesh<'static>>> {
     if let Some(kept) = kept {
         return Ok(kept);
     }
-    let positions = to_f32s(&get(mesh, "positions").unwrap_or(JsValue::UNDEFINED), "mesh.positions")?;
-    let indices = get(mesh, "indices").map(|indices| to_u32s(&indices, "mesh.indices")).transpose()?;
+    let positions = get(mesh, "positions").unwrap_or(JsValue::UNDEFINED);
+    let indices = get(mesh, "indices");
+    // Before the arrays are copied.
+    let length = |array: &JsValue| get(array, "length").and_then(|length| length.as_f64()).unwrap_or_default() as usize;
+    check_triangles(indices.as_ref().map_or(0, |indices| length(indices) / 3).max(length(&positions) / 9))?;
+    let positions = to_f32s(&positions, "mesh.positions")?;
+    let indices = indices.map(|indices| to_u32s(&indices, "mesh.indices")).transpose()?;
     let mesh = Rc::new(PreparedMesh::new(Mesh::from_flat(&positions, indices.as_deref())?));
     if let Some(id) = id {
         KEPT.with_borrow_mut(|kept| kept.insert(id, mesh.clone()));

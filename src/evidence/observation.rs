@@ -15,6 +15,18 @@ const STREAM: u64 = 1;
 /// Minimum number of readings inside the mask.
 pub const MIN_POINTS: usize = 32;
 
+/// Minimum width and height of the mask, in pixels.
+const MIN_SIDE: usize = 3;
+
+/// The smallest depth that counts as a reading, metres: the squares of smaller ones leave the range of f32.
+const NEAREST_M: f32 = 1e-12;
+
+/// Depth that at least one reading of the mask must not exceed, metres: the squares of larger ones leave the range of f32.
+const FARTHEST_M: f32 = 1e12;
+
+/// Maximum number of pixels: those of 4096 × 4096, twice those of a 4K image. No answer needs as many.
+pub const MAX_PIXELS: usize = 1 << 24;
+
 /// An observation: depth in metres, the mask of the object (same size), and intrinsics.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Observation {
@@ -24,12 +36,13 @@ pub struct Observation {
 }
 
 impl Observation {
-    /// A validated observation.
+    /// A validated observation. Depths below 1e-12 m are no readings.
     ///
     /// # Errors
-    /// [`ErrorCode::SizeMismatch`], [`ErrorCode::EmptyMask`], [`ErrorCode::NoDepthInMask`],
-    /// [`ErrorCode::TooFewPoints`], [`ErrorCode::FlatDepth`].
-    pub fn new(depth: DepthMap, mask: Mask, camera: Pinhole) -> Result<Self> {
+    /// [`ErrorCode::SizeMismatch`], [`ErrorCode::FileTooLarge`], [`ErrorCode::InvalidCamera`], [`ErrorCode::EmptyMask`],
+    /// [`ErrorCode::NoDepthInMask`], [`ErrorCode::TooFewPoints`], [`ErrorCode::DegenerateMask`],
+    /// [`ErrorCode::FlatDepth`].
+    pub fn new(mut depth: DepthMap, mask: Mask, camera: Pinhole) -> Result<Self> {
         if (depth.width(), depth.height()) != (mask.width(), mask.height()) {
             return Err(Error::new(
                 ErrorCode::SizeMismatch,
@@ -45,6 +58,9 @@ impl Observation {
                 "Resize the mask to the depth map, or set resizeMask: \"nearest\".",
             ));
         }
+        check_pixels(&depth)?;
+        camera.check_field_of_view(depth.width(), depth.height())?;
+        depth.data_mut().iter_mut().filter(|z| **z < NEAREST_M).for_each(|z| *z = 0.0);
         let observation = Self { depth, mask, camera };
         observation.check_readings()?;
         Ok(observation)
@@ -63,6 +79,27 @@ impl Observation {
     /// The intrinsics.
     pub fn camera(&self) -> Pinhole {
         self.camera
+    }
+
+    /// The observation at every second (third, …) pixel along both sides, with at most `pixels` pixels; `None` if it has
+    /// no more than that.
+    pub fn reduced(&self, pixels: usize) -> Option<Self> {
+        if self.depth.data().len() <= pixels {
+            return None;
+        }
+        let size = [self.depth.width(), self.depth.height()];
+        let step = (2..).find(|step| size.map(|side| side.div_ceil(*step)).iter().product::<usize>() <= pixels)?;
+        let [width, height] = size.map(|side| side.div_ceil(step));
+        let at = |i: usize| i / width * step * size[0] + i % width * step;
+        let depths = (0..width * height).map(|i| self.depth.data()[at(i)]).collect();
+        let mask = (0..width * height).map(|i| self.mask.data()[at(i)]).collect();
+        let Pinhole { fx, fy, cx, cy } = self.camera;
+        let [fx, fy, cx, cy] = [fx, fy, cx, cy].map(|x| x / step as f64);
+        Some(Self {
+            depth: Image::new("depth", width, height, depths).ok()?,
+            mask: Image::new("mask", width, height, mask).ok()?,
+            camera: Pinhole { fx, fy, cx, cy },
+        })
     }
 
     /// P_obs: x = D(u,v)·K⁻¹\[u,v,1\]ᵀ for every reading in the mask, row-major, in the camera frame (metres).
@@ -85,6 +122,18 @@ impl Observation {
     fn readings(&self) -> impl Iterator<Item = (usize, f32)> {
         let pixels = self.depth.data().iter().zip(self.mask.data()).enumerate();
         pixels.filter(|&(_, (&z, &m))| z > 0.0 && m != 0).map(|(i, (&z, _))| (i, z))
+    }
+
+    /// Width and height of the mask's bounding box, pixels.
+    fn mask_sides(&self) -> [usize; 2] {
+        let mut bounds = [[usize::MAX, 0]; 2];
+        for (v, row) in self.mask.data().chunks_exact(self.mask.width()).enumerate() {
+            let Some(first) = row.iter().position(|&m| m != 0) else { continue };
+            let last = row.iter().rposition(|&m| m != 0).unwrap_or(first);
+            bounds[0] = [bounds[0][0].min(first), bounds[0][1].max(last)];
+            bounds[1] = [bounds[1][0].min(v), bounds[1][1].max(v)];
+        }
+        bounds.map(|[low, high]| (high + 1).saturating_sub(low))
     }
 
     fn check_readings(&self) -> Result<()> {
@@ -117,6 +166,20 @@ impl Observation {
                 "Use a larger image of the object, or a depth source with fewer holes.",
             ));
         }
+        let nearest = self.readings().fold(f32::MAX, |nearest, (_, z)| nearest.min(z));
+        if nearest > FARTHEST_M {
+            return Err(Error::new(
+                ErrorCode::NoDepthInMask,
+                "depth",
+                format!("readings of {} m and more in the mask", number(nearest.into())),
+                format!("depths in metres, up to {}", number(FARTHEST_M.into())),
+                "Check the unit of the depth, and that it was read with the right byte order.",
+            ));
+        }
+        let sides = self.mask_sides();
+        if sides[0].min(sides[1]) < MIN_SIDE {
+            return Err(degenerate_mask(format!("a line of {} × {} pixels", sides[0], sides[1])));
+        }
         let mut depths = self.readings().map(|(_, z)| z);
         let first = depths.next().unwrap_or_default();
         if depths.all(|z| z == first) {
@@ -130,6 +193,31 @@ impl Observation {
         }
         Ok(())
     }
+}
+
+/// The error for a mask that shows no shape.
+pub fn degenerate_mask(found: impl Into<crate::error::Text>) -> Error {
+    Error::new(
+        ErrorCode::DegenerateMask,
+        "mask",
+        found,
+        "the area that the object covers in the image",
+        "Pass the object's whole mask. An object that is this thin in the image needs a larger image.",
+    )
+}
+
+fn check_pixels(depth: &DepthMap) -> Result<()> {
+    let (width, height) = (depth.width(), depth.height());
+    if depth.data().len() <= MAX_PIXELS {
+        return Ok(());
+    }
+    Err(Error::new(
+        ErrorCode::FileTooLarge,
+        "depth",
+        format!("{width} × {height} pixels"),
+        format!("at most {MAX_PIXELS} pixels, those of 4096 × 4096"),
+        "Downscale depth, mask and camera, or crop them to the object.",
+    ))
 }
 
 /// Depth and camera from a point map (H×W×3, camera frame, metres), for example of MoGe. Points with z ≤ 0 or a

@@ -16,6 +16,14 @@ const STREAM: u64 = 2;
 /// direction, a line). A sheet of A4 paper has 1.4e-4, a bank card 4e-3; the rounding of f32 vertices 1e-7.
 pub const MIN_THICKNESS: f64 = 1e-4;
 
+/// Smallest and largest diagonal of a mesh's bounding box, mesh units. Beyond, squares of distances on the surface leave
+/// the range of f32. An object of a metre has 1e9 in nanometres.
+pub const DIAGONALS: [f64; 2] = [1e-15, 1e15];
+
+/// Maximum number of triangles of a mesh: ten times those of generated meshes. With more, copies of the mesh alone would
+/// take the memory that an alignment may.
+pub const MAX_TRIANGLES: usize = 1 << 22;
+
 /// Sampling of both clouds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sampling {
@@ -40,8 +48,10 @@ impl Default for Sampling {
 /// are flipped.
 ///
 /// # Errors
-/// [`ErrorCode::DegenerateMesh`] if the area is 0 or not finite.
+/// [`ErrorCode::DegenerateMesh`] if the area is 0 or not finite, or the diagonal beyond [`DIAGONALS`];
+/// [`ErrorCode::FileTooLarge`] above [`MAX_TRIANGLES`].
 pub fn sample_surface(mesh: &Mesh, count: usize, seed: u64) -> Result<Cloud> {
+    check_triangles(mesh.triangles().len())?;
     let mut total = 0.0;
     let ends: Vec<f64> = (mesh.triangles().iter())
         .map(|&t| {
@@ -50,6 +60,7 @@ pub fn sample_surface(mesh: &Mesh, count: usize, seed: u64) -> Result<Cloud> {
         })
         .collect();
     check_area(total)?;
+    check_diagonal(mesh)?;
     // The last triangle with area; rounding must not select one after it.
     let last = ends.partition_point(|&end| end < total).min(ends.len() - 1);
     let facing = if mesh.signed_volume6() < 0.0 { -1.0 } else { 1.0 };
@@ -74,12 +85,14 @@ pub fn sample_surface(mesh: &Mesh, count: usize, seed: u64) -> Result<Cloud> {
 /// Rejects meshes whose pose or scale cannot be determined from any view: without area, planar, or collinear.
 ///
 /// # Errors
-/// [`ErrorCode::DegenerateMesh`], from the thickness along the principal axes (see [`MIN_THICKNESS`]).
+/// [`ErrorCode::DegenerateMesh`], from the thickness along the principal axes (see [`MIN_THICKNESS`]), and those of
+/// [`sample_surface`].
 pub fn check_shape(mesh: &Mesh) -> Result<()> {
+    check_triangles(mesh.triangles().len())?;
     let moments = SurfaceMoments::of(mesh);
     check_area(moments.area)?;
     let eigen = moments.principal_axes();
-    let diagonal = diagonal(mesh);
+    let diagonal = check_diagonal(mesh)?;
     let [thin, middle, _] = eigen.values.map(|v| v.max(0.0).sqrt() / diagonal);
     let degenerate = |found: String, remedy: &str| {
         Err(Error::new(ErrorCode::DegenerateMesh, "mesh", found, "a surface around a volume", remedy.to_owned()))
@@ -151,13 +164,40 @@ fn area_vector([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a) * 0.5
 }
 
-/// The diagonal of the bounding box of the triangles; unused vertices are ignored.
-fn diagonal(mesh: &Mesh) -> f64 {
+/// The diagonal of the bounding box of the triangles, if it is within [`DIAGONALS`]; unused vertices are ignored.
+fn check_diagonal(mesh: &Mesh) -> Result<f64> {
     let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for p in mesh.triangles().iter().flat_map(|&t| mesh.corners(t)) {
         (min, max) = (min.min(p), max.max(p));
     }
-    (max.as_dvec3() - min.as_dvec3()).length()
+    let diagonal = (max.as_dvec3() - min.as_dvec3()).length();
+    if (DIAGONALS[0]..=DIAGONALS[1]).contains(&diagonal) {
+        return Ok(diagonal);
+    }
+    Err(Error::new(
+        ErrorCode::DegenerateMesh,
+        "mesh",
+        format!("a bounding box with a diagonal of {}", number(diagonal)),
+        format!("a diagonal from {} to {}", number(DIAGONALS[0]), number(DIAGONALS[1])),
+        "Scale the mesh to any usual unit, such as metres or millimetres.",
+    ))
+}
+
+/// Checks the number of a mesh's triangles.
+///
+/// # Errors
+/// [`ErrorCode::FileTooLarge`] above [`MAX_TRIANGLES`].
+pub fn check_triangles(count: usize) -> Result<()> {
+    if count <= MAX_TRIANGLES {
+        return Ok(());
+    }
+    Err(Error::new(
+        ErrorCode::FileTooLarge,
+        "mesh",
+        format!("{count} triangles"),
+        format!("at most {MAX_TRIANGLES}"),
+        "Simplify the mesh: the search uses ten thousand triangles at most.",
+    ))
 }
 
 fn check_area(total: f64) -> Result<()> {

@@ -5,17 +5,23 @@ pub mod silhouette;
 pub mod surface;
 pub mod symmetry;
 
+use std::borrow::Cow;
+
 use serde::Serialize;
 
 use crate::error::Result;
 use crate::evidence::Evidence;
 use crate::evidence::clouds::Sampling;
 use crate::evidence::observation::Observation;
+use crate::geometry::decimate::decimate;
 use crate::geometry::image::{DepthMap, Mask};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::rasteriser::Rasteriser;
 use crate::geometry::similarity::Similarity;
 use surface::{Mean, surface_agreement};
+
+/// Triangles above which surfaces are searched on a decimated mesh.
+const MAX_SEARCHED_TRIANGLES: usize = 1 << 21;
 
 /// Agreement of a posed mesh with the observation. `null` marks a value that could not be measured.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -69,6 +75,7 @@ pub fn score(
     evidence: &Evidence,
 ) -> Result<Metrics> {
     check_transform(camera_from_mesh)?;
+    let mesh = &*searchable(mesh);
     let agreement = surface_agreement(evidence, mesh, camera_from_mesh);
 
     let (depth, mask) = (observation.depth(), observation.mask());
@@ -91,6 +98,15 @@ pub fn score(
         normal_consistency: agreement.normal_consistency,
         depth_mae_mm: millimetres(depth_mae(depth, mask, rasteriser.depth())),
     })
+}
+
+/// The mesh that is rendered and searched for nearest points: buffers for millions of triangles would take more memory than
+/// all else, and the decimated mesh differs by a fraction of its cells, which are a hundredth of its size.
+fn searchable(mesh: &Mesh) -> Cow<'_, Mesh> {
+    if mesh.triangles().len() <= MAX_SEARCHED_TRIANGLES {
+        return Cow::Borrowed(mesh);
+    }
+    Cow::Owned(decimate(mesh, MAX_SEARCHED_TRIANGLES / 16))
 }
 
 /// Mean |rendered − observed| over the pixels of the mask with both depths (above 0).

@@ -3,6 +3,7 @@
 use nalgebra::UnitQuaternion;
 use serde::Serialize;
 
+use super::searchable;
 use super::surface::Mean;
 use super::symmetry::{Symmetry, mesh_diagonal};
 use crate::error::{Error, ErrorCode, Result};
@@ -10,7 +11,7 @@ use crate::evidence::sample::{SurfaceMoments, sample_surface};
 use crate::geometry::cloud::Bounds;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::{Similarity, vec3, vector3};
-use crate::geometry::triangle_tree::{Hint, TriangleTree};
+use crate::geometry::triangle_tree::TriangleTree;
 
 /// Number of surface samples for ADD-S.
 const SAMPLES: usize = 5000;
@@ -55,15 +56,13 @@ pub fn pose_errors(mesh: &Mesh, estimate: &Similarity, truth: &Similarity, symme
     let center = Bounds::of(mesh.positions()).map_or(centroid, |b| vector3(b.min).lerp(&vector3(b.max), 0.5));
     let translation_error_m = (estimate.apply(center) - truth.apply(center)).norm();
 
-    let tree = TriangleTree::new(mesh);
+    let tree = TriangleTree::new(&searchable(mesh));
     let mesh_from_camera = estimate.inverse();
     let mut distance = Mean::default();
-    let mut hint = Hint::default();
-    for sample in &samples {
-        let query = mesh_from_camera.apply(truth.apply(vector3(*sample)));
-        let nearest = tree.nearest_from(vec3(&query), &mut hint);
+    let query = |i: usize| vec3(&mesh_from_camera.apply(truth.apply(vector3(samples[i]))));
+    tree.nearest_of_each(samples.len(), query, |_, nearest| {
         distance.add(nearest.map_or(f64::INFINITY, |s| f64::from(s.distance_squared).sqrt() * estimate.scale));
-    }
+    });
     let add_s = distance.value().ok_or_else(|| {
         Error::new(
             ErrorCode::InvalidTransform,

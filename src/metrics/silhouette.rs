@@ -34,7 +34,9 @@ pub fn boundary_f(a: &Mask, b: &Mask) -> f64 {
         return 0.0;
     }
     let (width, height) = (a.width(), a.height());
-    let diagonal = ((width * width + height * height) as f64).sqrt();
+    // In u64: the square of a long side overflows a 32-bit usize.
+    let [w, h] = [width, height].map(|side| side as u64);
+    let diagonal = ((w * w + h * h) as f64).sqrt();
     let radius = (BOUNDARY_TOLERANCE * diagonal).ceil() as u32;
     let outlines = [boundary(a), boundary(b)];
     let [counts_a, counts_b] = outlines.each_ref().map(|o| o.iter().filter(|set| **set).count());

@@ -5,7 +5,7 @@ use glam::Vec3;
 use crate::geometry::cloud::Bounds;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::{Similarity, vec3, vector3};
-use crate::geometry::triangle_tree::{Hint, TriangleTree};
+use crate::geometry::triangle_tree::TriangleTree;
 
 use crate::evidence::Evidence;
 
@@ -36,21 +36,19 @@ pub fn surface_agreement(evidence: &Evidence, mesh: &Mesh, camera_from_mesh: &Si
 
     let mesh_from_camera = camera_from_mesh.inverse();
     let (mut distance, mut fitting, mut consistency) = (Mean::default(), Mean::default(), Mean::default());
-    // Consecutive points are usually close to each other, so that each search starts at the previous result.
-    let mut hint = Hint::default();
-    for (point, normal) in points.iter().zip(normals) {
-        // The query is in the mesh frame, where distances are 1/s of those in the camera frame.
-        let query = vec3(&mesh_from_camera.apply(vector3(*point)));
-        let Some(nearest) = triangle_tree.nearest_from(query, &mut hint) else { continue };
+    // The query is in the mesh frame, where distances are 1/s of those in the camera frame.
+    let query = |i: usize| vec3(&mesh_from_camera.apply(vector3(points[i])));
+    triangle_tree.nearest_of_each(points.len().min(normals.len()), query, |i, nearest| {
+        let Some(nearest) = nearest else { return };
         let d = f64::from(nearest.distance_squared).sqrt() * camera_from_mesh.scale;
         distance.add(d);
         fitting.add(if d <= tolerance { 1.0 } else { 0.0 });
         let facet = camera_from_mesh.rotation * vector3(facet_normal(mesh, nearest.triangle));
-        let cosine = facet.dot(&vector3(*normal)).abs();
-        if facet.norm_squared() > 0.0 && *normal != Vec3::ZERO {
+        let cosine = facet.dot(&vector3(normals[i])).abs();
+        if facet.norm_squared() > 0.0 && normals[i] != Vec3::ZERO {
             consistency.add(cosine.min(1.0));
         }
-    }
+    });
     let mut back = Mean::default();
     let mut last = 0;
     for sample in &evidence.reconstructed.points {

@@ -197,17 +197,17 @@ fn invalid(found: String, expected: &str) -> Error {
 pub fn principal_symmetry(mesh: &Mesh, revolution: bool) -> Result<Vec<SymmetryAxis>> {
     let samples = sample_surface(mesh, AUTO_SAMPLES, 0)?.points;
     let moments = SurfaceMoments::of(mesh);
-    let tree = TriangleTree::new(mesh);
+    let tree = TriangleTree::new(&super::searchable(mesh));
     let center = vector_of(moments.centroid);
     let diagonal = mesh_diagonal(mesh);
     let maps_onto_itself = |axis: &Unit<Vector3<f64>>, share: f64| {
         let (sin, cos) = sin_cos(core::f64::consts::PI * share);
         let turn = UnitQuaternion::new_normalize(nalgebra::Quaternion::from_parts(cos, axis.into_inner() * sin));
-        let distance = |p: &glam::Vec3| {
-            let turned = turn * (vector3(*p) - center) + center;
-            tree.nearest(vec3(&turned)).map_or(f64::INFINITY, |s| f64::from(s.distance_squared).sqrt())
-        };
-        let distances: Vec<f64> = samples.iter().map(distance).collect();
+        let turned = |i: usize| vec3(&(turn * (vector3(samples[i]) - center) + center));
+        let mut distances: Vec<f64> = Vec::with_capacity(samples.len());
+        tree.nearest_of_each(samples.len(), turned, |_, nearest| {
+            distances.push(nearest.map_or(f64::INFINITY, |s| f64::from(s.distance_squared).sqrt()));
+        });
         let tail = quantile(distances.iter().map(|&d| d as f32), 0.95).map_or(f64::INFINITY, f64::from);
         let mean = distances.iter().sum::<f64>() / distances.len() as f64;
         mean <= AUTO_MEAN * diagonal && tail <= AUTO_TAIL * diagonal

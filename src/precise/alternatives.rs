@@ -93,11 +93,11 @@ fn coincide(tree: &TriangleTree, samples: &[DVec3], a: &Found, b: &Found) -> boo
     let (scale_b, origin_b) = b.pose.scale_translation();
     let (scale, origin) = a.pose.scale_translation();
     let back = a.pose.rotation.conjugate();
-    let distance = |p: &DVec3| {
-        let point = back * (b.pose.rotation * *p * scale_b + origin_b - origin) / scale;
-        tree.nearest(point.as_vec3()).map_or(f32::INFINITY, |s| s.distance_squared.sqrt())
-    };
-    let distances: Vec<f32> = samples.iter().map(distance).collect();
+    let point = |i: usize| (back * (b.pose.rotation * samples[i] * scale_b + origin_b - origin) / scale).as_vec3();
+    let mut distances: Vec<f32> = Vec::with_capacity(samples.len());
+    tree.nearest_of_each(samples.len(), point, |_, nearest| {
+        distances.push(nearest.map_or(f32::INFINITY, |s| s.distance_squared.sqrt()));
+    });
     let mean = distances.iter().map(|d| f64::from(*d)).sum::<f64>() / distances.len().max(1) as f64;
     let tail = quantile(distances.iter().copied(), 0.95).map_or(f64::INFINITY, f64::from);
     // Twice the tolerance of a single rotation, because two refinements end slightly apart.

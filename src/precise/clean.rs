@@ -9,6 +9,9 @@ use crate::geometry::distance_transform::squared_distances;
 use crate::geometry::order::{self, quantile};
 use crate::geometry::pinhole::Pinhole;
 
+/// Maximum number of pixels, a little more than those of a 4K image. Larger ones are thinned out: the finest grid has
+/// some thousand cells in the mask.
+const MAX_PIXELS: usize = 1 << 23;
 /// Margin around the mask, relative to its longer side.
 const MARGIN: f64 = 0.45;
 /// Holes smaller than this fraction of the mask are errors of the mask and are filled.
@@ -59,6 +62,8 @@ pub struct CleanObservation {
 impl CleanObservation {
     /// Cleans the mask and the depth map.
     pub fn new(observation: &Observation) -> Self {
+        let reduced = observation.reduced(MAX_PIXELS);
+        let observation = reduced.as_ref().unwrap_or(observation);
         let mut crop = Crop::new(observation);
         crop.close_pin_holes();
         crop.drop_islands();

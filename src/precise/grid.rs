@@ -6,6 +6,9 @@ use super::clean::CleanObservation;
 
 /// Margin around the box of the mask for silhouettes that are too large, relative to its longer side.
 const MARGIN: f64 = 0.35;
+/// Maximum number of cells of a grid, relative to the number that the mask should have. A mask that fills its box has a
+/// grid of four to six times its cells, a long thin one up to a hundred.
+const MAX_CELLS: f64 = 192.0;
 /// Maximum number of samples along a side of a cell.
 const MAX_SAMPLES: usize = 4;
 /// Minimum fraction of the samples of a cell with depth of the object, for the cell to have a depth.
@@ -50,10 +53,11 @@ impl CropGrid {
     /// The observation at a resolution at which the mask has about `cells` cells.
     pub fn new(observation: &CleanObservation, cells: usize) -> Self {
         let camera = observation.camera;
-        let pitch = (observation.pixels as f64 / cells as f64).sqrt().max(1.0);
-        let cell = [pitch, pitch * camera.fy / camera.fx];
         let sides = observation.bounds.map(|[low, high]| high - low);
+        let pitch = (observation.pixels as f64 / cells as f64).sqrt().max(1.0);
         let margin = MARGIN * sides[0].max(sides[1]) + 3.0;
+        let (pitch, margin) = bounded(pitch, margin, sides, camera.fy / camera.fx, MAX_CELLS * cells as f64);
+        let cell = [pitch, pitch * camera.fy / camera.fx];
         let corner = observation.bounds.map(|[low, _]| low - margin);
         let count = |axis: usize| ((sides[axis] + 2.0 * margin) / cell[axis]).ceil() as usize + 1;
         let (width, height) = (count(0), count(1));
@@ -180,6 +184,23 @@ impl CropGrid {
         }
         self.bounds = bounds;
     }
+}
+
+/// Pitch and margin at which a grid around a box of these sides has at most `most` cells: the ordinary ones, or else a
+/// smaller margin, and coarser cells where that is not enough (a line across the image).
+fn bounded(mut pitch: f64, mut margin: f64, sides: [f64; 2], aspect: f64, most: f64) -> (f64, f64) {
+    let cells = |pitch: f64, margin: f64| {
+        let [width, height] = sides.map(|side| side + 2.0 * margin);
+        width * height / (pitch * pitch * aspect)
+    };
+    let least = (0.05 * margin).max(3.0);
+    while cells(pitch, margin) > most && margin > least {
+        margin = (0.75 * margin).max(least);
+    }
+    if cells(pitch, margin) > most {
+        pitch *= (cells(pitch, margin) / most).sqrt();
+    }
+    (pitch, margin)
 }
 
 /// The samples of a cell.

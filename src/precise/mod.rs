@@ -28,7 +28,7 @@ pub mod search;
 
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::clouds::Clouds;
-use crate::evidence::observation::Observation;
+use crate::evidence::observation::{Observation, degenerate_mask};
 use crate::geometry::cloud::Bounds;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::Similarity;
@@ -62,7 +62,7 @@ pub const PLAN: &[(Stage, f64)] = &[
 ///
 /// # Errors
 /// [`ErrorCode::NoConsensus`] if decimation leaves no triangle, [`ErrorCode::InvalidOption`] for an initial pose
-/// behind the camera.
+/// behind the camera, [`ErrorCode::DegenerateMask`] for a mask thinner than the cells of the search.
 pub fn begin(
     observation: &Observation,
     mesh: &PreparedMesh<'_>,
@@ -77,6 +77,9 @@ pub fn begin(
     search.assume(prior(options, mesh.mesh(), &search.mesh.frame));
     let initial = options.initial.map(|pose| seen_from(&pose, &search.mesh.frame)).transpose()?;
     let mut rounds = Rounds::new(search, initial, options.search == SearchScope::Global);
+    if rounds.shows_no_mask() {
+        return Err(degenerate_mask(format!("{} pixels in a line, or apart", rounds.search.observation.pixels)));
+    }
     stages.enter(Stage::Search);
     let pose = hypothesis.and_then(|pose| CropPose::of_similarity(&pose, &rounds.search.mesh.frame));
     pose.into_iter().for_each(|pose| rounds.join(pose));
@@ -131,7 +134,7 @@ pub struct Certainty {
 /// [`ErrorCode::NoConsensus`] if no pose overlaps the mask.
 pub fn conclude(rounds: &Rounds, mesh: &Mesh, options: &AlignOptions) -> Result<(Solution, Certainty)> {
     let (found, search) = (&rounds.found, &rounds.search);
-    let best = found.first().ok_or_else(no_candidate)?;
+    let best = found.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
     let alternatives = alternatives(found, search, mesh, &options.symmetry)?;
     let (conditioning, residual_m) = search.conditioning(&best.pose);
     let solution = Solution {

@@ -11,7 +11,8 @@ use crate::evidence::sample::check_shape;
 use crate::geometry::mesh::Mesh;
 
 /// A mesh with cached derived data: the result of its validation, and its decimations. Both are computed on first use.
-/// Results are bit-identical to those of the mesh itself.
+/// Results are bit-identical to those of the mesh itself. Vertices that no triangle uses are removed: they are no part
+/// of the object, and every render would transform them.
 pub struct PreparedMesh<'a> {
     mesh: Cow<'a, Mesh>,
     is_checked: Cell<bool>,
@@ -33,6 +34,7 @@ impl<'a> PreparedMesh<'a> {
     }
 
     fn of(mesh: Cow<'a, Mesh>) -> Self {
+        let mesh = mesh.without_unused_vertices().map_or(mesh, Cow::Owned);
         Self { mesh, is_checked: Cell::new(false), pyramids: RefCell::default() }
     }
 

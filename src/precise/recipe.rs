@@ -104,6 +104,9 @@ const fn rounds(quality: usize) -> [Round; ROUNDS] {
 /// millisecond of WebAssembly each on a 2020 laptop.
 const COST: [f64; 3] = [0.06, 0.12, 0.4];
 
+/// [`SearchSettings::max_load`], and the one with a bound on the work of the search.
+const MAX_LOAD: [u64; 2] = [64, 12];
+
 /// Work and objective of a search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchSettings {
@@ -119,6 +122,9 @@ pub struct SearchSettings {
     pub anchors: bool,
     /// Whether refinement keeps the scale of the rotation grid.
     pub lock_scale: bool,
+    /// Maximum work of a round, relative to the cells of the mask and the triangles of all its renders. Ordinary inputs
+    /// take about five times as much, a thin diagonal object fifty times.
+    pub max_load: u64,
 }
 
 impl Default for SearchSettings {
@@ -136,6 +142,7 @@ impl SearchSettings {
             occlusion: true,
             anchors: true,
             lock_scale: false,
+            max_load: MAX_LOAD[0],
         }
     }
 
@@ -163,7 +170,7 @@ impl SearchSettings {
             + COST[2] * (second.keep * fine.work) as f64;
         let share = (budget / cost).clamp(0.02, 20.0);
         let scaled = |count: usize, least: usize| ((count as f64 * share) as usize).max(least);
-        let mut within = self;
+        let mut within = Self { max_load: MAX_LOAD[1], ..self };
         within.rounds[0].work = scaled(rotate.work, 60);
         for (round, least) in within.rounds.iter_mut().zip([30, 6, 3, 2]) {
             round.keep = scaled(round.keep, least);

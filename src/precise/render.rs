@@ -14,6 +14,11 @@ const NEAR: f32 = 0.05;
 /// Subpixel steps per cell to which vertices are snapped, 2⁶.
 const STEPS: i32 = 64;
 const SHIFT: u32 = 6;
+/// Boxes of triangles at least this many cells wide are drawn row by row from where the triangle begins.
+const WIDE: i64 = 32;
+/// Maximum number of cells that the triangles of a render visit, per cell of the grid: dozens of layers of the object,
+/// whose image is a quarter of the grid. The triangles after that are left out.
+const MAX_LAYERS: usize = 32;
 /// Maximum coordinate of a vertex, in steps; larger ones are clamped.
 const FARTHEST: f32 = 1_000_000.0;
 
@@ -58,6 +63,8 @@ pub struct Canvas {
     pub scale: f32,
     /// Share of the vertices outside the grid, 0 to 1.
     pub lost: f32,
+    /// Cells, vertices and triangles visited by all renders so far: what they cost.
+    pub work: u64,
     vertices: Vec<Vertex>,
 }
 
@@ -88,10 +95,16 @@ impl Canvas {
         self.triangle.resize(grid.mask.len(), 0);
         self.project(model, grid);
         let (inverse_depth, drawn) = (self.inverse_depth.as_mut_slice(), self.triangle.as_mut_slice());
+        let most = MAX_LAYERS * inverse_depth.len();
+        let mut visited = 0;
         for (id, triangle) in (0..).zip(&model.triangles) {
             let corners = triangle.map(|i| self.vertices[i as usize]);
-            fill(inverse_depth, drawn, [grid.width, grid.height], id, corners);
+            visited += fill(inverse_depth, drawn, [grid.width, grid.height], id, corners);
+            if visited > most {
+                break;
+            }
         }
+        self.work += (grid.mask.len() + visited + model.positions.len() + model.triangles.len()) as u64;
     }
 
     /// Transforms the vertices to the camera frame and projects them onto the grid.
@@ -117,21 +130,28 @@ impl Canvas {
     }
 }
 
-/// Renders a triangle. Takes slices instead of the canvas, so that their addresses stay in registers.
+/// Renders a triangle and returns about the number of cells that it visits. Takes slices instead of the canvas, so that
+/// their addresses stay in registers.
 #[inline]
-fn fill(inverse_depth: &mut [f32], drawn: &mut [u32], [width, height]: [usize; 2], id: u32, [a, b, c]: [Vertex; 3]) {
+fn fill(
+    inverse_depth: &mut [f32],
+    drawn: &mut [u32],
+    [width, height]: [usize; 2],
+    id: u32,
+    [a, b, c]: [Vertex; 3],
+) -> usize {
     // The first and last cell whose centre is in the box of the triangle.
     let first = |low: i32| (low.max(0) + STEPS - 1) >> SHIFT;
     let last = |high: i32, size: usize| (high >> SHIFT).min(size as i32 - 1);
     let (u0, u1) = (first(a.u.min(b.u).min(c.u)), last(a.u.max(b.u).max(c.u), width));
     let (v0, v1) = (first(a.v.min(b.v).min(c.v)), last(a.v.max(b.v).max(c.v), height));
     if u0 > u1 || v0 > v1 || a.w * b.w * c.w == 0.0 {
-        return;
+        return 0;
     }
     let [a, mut b, mut c] = [a, b, c].map(|p| Corner { u: p.u.into(), v: p.v.into(), w: p.w });
     let mut area = (b.u - a.u) * (c.v - a.v) - (c.u - a.u) * (b.v - a.v);
     if area == 0 {
-        return;
+        return 0;
     }
     if area < 0 {
         area = -area;
@@ -147,10 +167,19 @@ fn fill(inverse_depth: &mut [f32], drawn: &mut [u32], [width, height]: [usize; 2
     let inverse = 1.0 / area as f32;
     let (wb, wc) = ((b.w - a.w) * inverse, (c.w - a.w) * inverse);
     let cells = (u1 - u0) as usize + 1;
+    let is_wide = cells as i64 >= WIDE;
+    let rows = (v1 - v0) as usize + 1;
+    // Twice the area in steps² is 2¹³ times that in cells.
+    let visited = if is_wide { (cells * rows).min((area >> 13) as usize + 2 * rows) } else { cells * rows };
     for v in v0..=v1 {
         let start = v as usize * width + u0 as usize;
         let (mut eb, mut ec, mut entered) = (b_row, c_row, false);
-        let row = inverse_depth[start..start + cells].iter_mut().zip(&mut drawn[start..start + cells]);
+        // A long thin triangle fills little of its box.
+        let skipped = if is_wide { first_inside([(eb, b_du), (ec, c_du), (area - eb - ec, -b_du - c_du)]) } else { 0 };
+        let skipped = skipped.min(cells as i64);
+        (eb, ec) = (eb + b_du * skipped, ec + c_du * skipped);
+        let (from, to) = (start + skipped as usize, start + cells);
+        let row = inverse_depth[from..to].iter_mut().zip(&mut drawn[from..to]);
         for (cell, drawn) in row {
             if (eb | ec | (area - eb - ec)) >= 0 {
                 entered = true;
@@ -168,6 +197,22 @@ fn fill(inverse_depth: &mut [f32], drawn: &mut [u32], [width, height]: [usize; 2
         b_row += b_dv;
         c_row += c_dv;
     }
+    visited
+}
+
+/// The first cell of a row in which no edge is negative, `i64::MAX` if there is none: each edge is its value at the first
+/// cell and its growth per cell.
+#[inline]
+fn first_inside(edges: [(i64, i64); 3]) -> i64 {
+    edges.into_iter().fold(0, |first, (value, growth)| {
+        if value >= 0 {
+            first
+        } else if growth <= 0 {
+            i64::MAX
+        } else {
+            first.max((growth - 1 - value) / growth)
+        }
+    })
 }
 
 /// Converts cells to steps, rounded to nearest; NaN becomes 0.

@@ -15,6 +15,10 @@ use super::search::{Found, Search};
 use crate::geometry::rotations::super_fibonacci;
 use crate::geometry::similarity::Similarity;
 
+/// Rotations after which the work of a round on the rotation grid is known, and the fewest rotations of such a round.
+const PROBED_ROTATIONS: usize = 16;
+const MIN_ROTATIONS: usize = 60;
+
 /// A running search.
 pub struct Rounds {
     /// The search.
@@ -32,6 +36,9 @@ pub struct Rounds {
     /// Results of the finished tasks of the round, in order, and the number of these tasks.
     outcomes: Vec<Found>,
     tasks_done: usize,
+    /// Work of the round so far, and the work after which it ends; see [`Canvas::work`].
+    work: u64,
+    allowance: u64,
     /// Candidates from other sources than the rotation grid: one list precedes those of the grid, the other follows.
     others: [Vec<CropPose>; 2],
     /// The best candidate of the last round, if any.
@@ -56,10 +63,29 @@ impl Rounds {
             poses: if global { Vec::new() } else { around.clone() },
             outcomes: Vec::new(),
             tasks_done: 0,
+            work: 0,
+            allowance: 0,
             others: [around, Vec::new()],
             best: Vec::new(),
             search,
         }
+    }
+
+    /// The work of the current round that its inputs may ask for.
+    fn allowed(&self, round: Round) -> u64 {
+        let settings = &self.search.settings;
+        let per_task = match round.task {
+            Task::Rotate => self.anchors.len(),
+            Task::Place => 1,
+            Task::Refine => round.work + 1,
+        };
+        let grid = settings.grids[round.grid];
+        settings.max_load * (self.tasks() * per_task * (grid.cells + grid.triangles)) as u64
+    }
+
+    /// Whether the mask has no cell on the grid of the first round or on the fine one.
+    pub fn shows_no_mask(&self) -> bool {
+        self.grid.mask_cells == 0 || self.search.fine.mask_cells == 0
     }
 
     /// Adds the neighbourhood of a pose from another source to the candidates of the grid.
@@ -83,6 +109,9 @@ impl Rounds {
     /// starts the next round. Returns whether the round has ended.
     pub fn run(&mut self, pause: &mut dyn FnMut() -> bool) -> bool {
         let Some(round) = self.round() else { return true };
+        if self.tasks_done == 0 && self.allowance == 0 {
+            self.allowance = self.allowed(round);
+        }
         let search = &self.search;
         let grid = if round.grid == FINE { &search.fine } else { &self.grid };
         let objective = search.objective(round.grid, grid);
@@ -102,6 +131,17 @@ impl Rounds {
                 Task::Refine => self.outcomes.push(refiner.refine(&mut canvas, self.poses[task], round.work).into()),
             }
             self.tasks_done += 1;
+            self.work += core::mem::take(&mut canvas.work);
+            if round.task == Task::Rotate {
+                let all = self.work * self.tasks() as u64 / self.tasks_done as u64;
+                if self.tasks_done == PROBED_ROTATIONS && all > self.allowance && self.tasks() > MIN_ROTATIONS {
+                    self.rotate_less(all);
+                    return self.run(pause);
+                }
+            } else if self.work > self.allowance {
+                // The poses are sorted, so that the best ones have had their turn.
+                break;
+            }
             if pause() && self.tasks_done < self.tasks() {
                 return false;
             }
@@ -110,10 +150,19 @@ impl Rounds {
         true
     }
 
+    /// Begins the rotation grid again, with as many rotations as are allowed if all of them take this much `work`. The
+    /// first rotations of a grid are close to one another, so that the round cannot just end early.
+    fn rotate_less(&mut self, work: u64) {
+        let rotations = self.tasks() as u64 * self.allowance / work.max(1);
+        self.search.settings.rounds[0].work = (rotations as usize).max(MIN_ROTATIONS);
+        self.outcomes.clear();
+        (self.tasks_done, self.work) = (0, 0);
+    }
+
     /// Selects the poses of the next round.
     fn end_round(&mut self, round: Round) {
         let outcomes = core::mem::take(&mut self.outcomes);
-        self.tasks_done = 0;
+        (self.tasks_done, self.work, self.allowance) = (0, 0, 0);
         self.search.renders += outcomes.iter().map(|f| f.renders).sum::<usize>();
         self.best = best_of(&outcomes, 1);
         match self.index {

@@ -19,6 +19,7 @@ pub mod formats_hostile;
 pub mod formats_images;
 pub mod formats_mesh;
 pub mod fpfh;
+pub mod hostile;
 pub mod icp;
 pub mod image;
 pub mod kd_tree;

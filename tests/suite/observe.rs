@@ -62,7 +62,9 @@ fn subsampling_takes_one_of_each_run() {
     let n = width * (height - 1);
     let depth: Vec<f32> = (0..width * height).map(|i| 1.0 + i as f32 * 1e-6).collect();
     let mask: Vec<u8> = (0..width * height).map(|i| u8::from(i < n)).collect();
-    let observation = observe(depth, mask, height).unwrap();
+    let depth = DepthMap::from_metres(width, height, depth).unwrap();
+    let mask = Mask::new("mask", width, height, mask).unwrap();
+    let observation = Observation::new(depth, mask, Pinhole::new(500.0, 500.0, 319.5, 239.5).unwrap()).unwrap();
     let index = |p: &Vec3| ((p.z - 1.0) * 1e6).round() as usize;
     for seed in [0, 1, 77] {
         let cloud = observation.cloud(max_points, seed);

@@ -186,8 +186,10 @@ fn a_search_within_a_budget_costs_as_much() {
             // Counts are rounded down, and grow twentyfold at most.
             let share = cost(&within) / f64::min(budget, 20.0 * cost(&settings));
             assert!((0.85..=1.0001).contains(&share), "{budget}: {within:?} costs {}", cost(&within));
-            let unchanged = |within: SearchSettings| SearchSettings { rounds: settings.rounds, ..within };
-            assert_eq!(unchanged(within), settings, "{budget}: nothing but the rounds");
+            let SearchSettings { rounds, max_load, .. } = settings;
+            let unchanged = SearchSettings { rounds, max_load, ..within };
+            assert_eq!(unchanged, settings, "{budget}: nothing but the rounds and the bound on their work");
+            assert!(within.max_load < settings.max_load);
             assert!(within.rounds.iter().skip(1).zip(&settings.rounds[1..]).all(|(a, b)| a.work == b.work), "{budget}");
         }
         let least = settings.within(1e-9).rounds;

@@ -6,7 +6,8 @@ use sim3align::geometry::random::Random;
 use sim3align::geometry::triangle_tree::{Hint, TriangleTree};
 use wasm_bindgen_test::wasm_bindgen_test;
 
-use crate::shapes::cuboid;
+use crate::shapes::{cuboid, mapped, sphere};
+use crate::support::Draw;
 
 /// Distance to the segments a + s(b − a) … a + s(c − a), minimised over s by trisection: the function is convex,
 /// whatever the triangle's shape.
@@ -109,4 +110,33 @@ fn hints_change_nothing() {
         let small = TriangleTree::new(&triangles(&mut random, 6));
         assert_eq!(small.nearest_from(Vec3::ONE, &mut hint), small.nearest(Vec3::ONE), "seed {seed}");
     }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn points_are_left_out_only_where_all_triangles_overlap() {
+    let visited = |mesh: &Mesh, count: usize| {
+        let mut draw = Draw::new(5);
+        let points = draw.points(count, 0.6);
+        let tree = TriangleTree::new(mesh);
+        let mut indices = Vec::new();
+        tree.nearest_of_each(
+            count,
+            |i| points[i],
+            |i, nearest| {
+                assert_eq!(nearest, tree.nearest(points[i]), "point {i}");
+                indices.push(i);
+            },
+        );
+        indices
+    };
+    assert_eq!(visited(&sphere(0.5, 40), 3000), (0..3000).collect::<Vec<_>>());
+    // Every triangle contains the point that is nearest to all.
+    let mut draw = Draw::new(6);
+    let positions: Vec<Vec3> = (0..12_000).map(|_| draw.points(1, 0.5)[0] * 100.0).collect();
+    let triangles = (0..4000).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    let overlapping = Mesh::new(positions, triangles).unwrap();
+    let far = |count: usize| visited(&mapped(&overlapping, |p| p + Vec3::splat(1e9)), count);
+    let some = far(3000);
+    assert!(some.len() >= 64 && some.len() < 2000, "{} points", some.len());
+    assert!(some.last().is_some_and(|last| *last > 2800), "to the end of the list");
 }

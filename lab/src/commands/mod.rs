@@ -2,6 +2,7 @@
 
 pub mod bench;
 pub mod cases;
+pub mod fuzz;
 pub mod profile;
 pub mod registration;
 pub mod scenes;

@@ -5,6 +5,7 @@ mod baselines;
 mod baselines_agreement;
 mod baselines_solvers;
 mod evaluation;
+mod fuzz;
 mod imported;
 mod overlay;
 mod real_cases;

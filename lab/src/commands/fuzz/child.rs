@@ -1,0 +1,113 @@
+//! The process that makes the calls: it ends at the first fault.
+
+use std::io::{Write, stdout};
+use std::ops::Range;
+use std::panic;
+use std::path::Path;
+use std::process::exit;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+use sim3align_lab::fuzz::choices::Choices;
+use sim3align_lab::fuzz::target::{Answer, Ceilings, Execution, Target};
+
+use super::super::Failure;
+use super::arguments::Arguments;
+use sim3align_lab::fuzz::cpu::CpuTimer;
+
+/// Exit status after a fault that was printed.
+pub const FAULT: i32 = 3;
+/// Times the ceiling after which a call is given up.
+const PATIENCE: f64 = 4.0;
+/// Milliseconds between looks at the current call.
+const LOOK_MS: u64 = 100;
+
+/// The number of the current call, for the watchdog and for panics.
+static CURRENT: AtomicU64 = AtomicU64::new(0);
+
+/// Makes the calls of a range of seeds, and prints `at N` now and then, `fault N words` for a fault, and `done` with
+/// sums in the end.
+pub fn run(target: Target, range: Range<u64>, arguments: &Arguments) -> Result<(), Failure> {
+    CURRENT.store(range.start, Ordering::Relaxed);
+    watch(arguments.ceilings);
+    let (mut results, mut slowest, mut largest) = (0_u64, (0.0_f64, range.start), (0_usize, range.start));
+    let timer = CpuTimer::start();
+    let count = range.end.saturating_sub(range.start);
+    for number in range {
+        CURRENT.store(number, Ordering::Relaxed);
+        let mut choices = Choices::random(seed_of(arguments.seed, number));
+        let Execution { outcome, seconds, bytes, .. } = target.execute(&mut choices, &arguments.ceilings);
+        match outcome {
+            Ok(Answer::Result) => results += 1,
+            Ok(Answer::Error(_)) => {}
+            Err(words) => fault(&words),
+        }
+        if seconds > slowest.0 {
+            slowest = (seconds, number);
+        }
+        if bytes > largest.0 {
+            largest = (bytes, number);
+        }
+    }
+    println!(
+        "done {count} {results} {} {} {} {} {}",
+        timer.seconds(),
+        slowest.0,
+        slowest.1,
+        largest.0 as f64 / 1e6,
+        largest.1
+    );
+    Ok(())
+}
+
+/// The seed of a call.
+pub fn seed_of(seed: u32, number: u64) -> u64 {
+    u64::from(seed) << 32 ^ number
+}
+
+/// Makes the call of a file of choices under the same watch; prints what is passed and what comes back.
+pub fn replay(target: Target, path: &Path, ceilings: &Ceilings) -> Result<(), Failure> {
+    let failed = |words: String| Failure::Failed(format!("{}: {words}", path.display()));
+    let text = std::fs::read_to_string(path).map_err(|error| failed(error.to_string()))?;
+    let choices = Choices::read(&text).map_err(|word| failed(format!("{word} is no number")))?;
+    println!("{}", target.describe(&mut choices.clone()));
+    watch(*ceilings);
+    let Execution { outcome, seconds, bytes, .. } = target.execute(&mut choices.clone(), ceilings);
+    println!("{seconds:.2} s, {} MB", bytes >> 20);
+    match outcome {
+        Ok(Answer::Result) => println!("a result"),
+        Ok(Answer::Error(code)) => println!("the error {}", code.as_str()),
+        Err(words) => fault(&words),
+    }
+    Ok(())
+}
+
+/// Reports panics and calls that do not end, and ends the process.
+fn watch(ceilings: Ceilings) {
+    panic::set_hook(Box::new(|info| {
+        let place = info.location().map(|l| format!("{}:{}", l.file(), l.line())).unwrap_or_default();
+        let words = info.payload().downcast_ref::<&str>().map(|s| (*s).to_owned());
+        let words = words.or_else(|| info.payload().downcast_ref::<String>().cloned()).unwrap_or_default();
+        fault(&format!("panic at {place}: {words}"));
+    }));
+    std::thread::spawn(move || {
+        let (mut last, mut looks) = (u64::MAX, 0);
+        loop {
+            let current = CURRENT.load(Ordering::Relaxed);
+            looks = if current == last { looks + 1 } else { 0 };
+            last = current;
+            if looks as f64 * LOOK_MS as f64 > 1000.0 * PATIENCE * ceilings.seconds {
+                fault("hang: no end in sight");
+            }
+            println!("at {current}");
+            std::thread::sleep(Duration::from_millis(LOOK_MS));
+        }
+    });
+}
+
+fn fault(words: &str) -> ! {
+    println!("fault {} {}", CURRENT.load(Ordering::Relaxed), words.replace('\n', " "));
+    // Nothing is left to do where standard output is gone.
+    let _ = stdout().flush();
+    exit(FAULT)
+}

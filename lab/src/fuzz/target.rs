@@ -1,0 +1,128 @@
+//! What is fuzzed, and what counts as a fault.
+
+use sim3align_geometry::error::{Error, ErrorCode};
+
+use super::choices::Choices;
+use super::cpu::CpuTimer;
+use super::memory::{peak_bytes, reset_peak};
+use super::targets::{align, evaluate, readers, register};
+
+/// Time and memory that a call with default options may take.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ceilings {
+    /// Seconds of computing.
+    pub seconds: f64,
+    /// Bytes allocated at once, with the input.
+    pub bytes: usize,
+}
+
+impl Default for Ceilings {
+    fn default() -> Self {
+        // WebAssembly takes about half as long again as native code.
+        Self { seconds: 6.0, bytes: 512 << 20 }
+    }
+}
+
+/// A call prepared by a generator.
+pub struct Call {
+    /// The call. A fault is described by the error.
+    pub run: Box<dyn FnOnce() -> Result<Answer, String>>,
+    /// What is passed, in a few words.
+    pub description: String,
+    /// Whether the ceilings apply: not to options that ask for more work than the defaults.
+    pub is_bounded: bool,
+}
+
+/// The kind of answer to a call without fault.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Answer {
+    /// A result.
+    Result,
+    /// A typed error.
+    Error(ErrorCode),
+}
+
+/// A call that has returned.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Execution {
+    /// What was passed.
+    pub description: String,
+    /// The answer, or the fault.
+    pub outcome: Result<Answer, String>,
+    /// Seconds of computing.
+    pub seconds: f64,
+    /// Bytes allocated at once.
+    pub bytes: usize,
+}
+
+/// Something to fuzz.
+#[derive(Debug, Clone, Copy)]
+pub struct Target {
+    /// Its name on the command line, and of its folder of regression cases.
+    pub name: &'static str,
+    /// Share of the time, relative to the others.
+    pub weight: usize,
+    /// Number of executions per process.
+    pub batch: u64,
+    generate: fn(&mut Choices) -> Call,
+}
+
+/// Everything that is fuzzed.
+pub const TARGETS: [Target; 6] = [
+    Target { name: "readers", weight: 2, batch: 200_000, generate: readers::call },
+    Target { name: "align", weight: 4, batch: 200, generate: align::small },
+    Target { name: "align-large", weight: 2, batch: 5, generate: align::large },
+    Target { name: "evaluate", weight: 1, batch: 300, generate: evaluate::call },
+    Target { name: "register", weight: 1, batch: 50, generate: register::call },
+    Target { name: "estimate-sim3", weight: 1, batch: 2_000, generate: register::estimate },
+];
+
+impl Target {
+    /// The target of this name.
+    pub fn of_name(name: &str) -> Option<Self> {
+        TARGETS.into_iter().find(|target| target.name == name)
+    }
+
+    /// Makes the call that the choices describe.
+    pub fn execute(&self, choices: &mut Choices, ceilings: &Ceilings) -> Execution {
+        let Call { run, description, is_bounded } = (self.generate)(choices);
+        reset_peak();
+        let timer = CpuTimer::start();
+        let outcome = run();
+        let (seconds, bytes) = (timer.seconds(), peak_bytes());
+        let outcome = outcome.and_then(|answer| {
+            if is_bounded && seconds > ceilings.seconds {
+                return Err(format!("slow: {seconds:.1} s"));
+            }
+            if is_bounded && bytes > ceilings.bytes {
+                return Err(format!("memory: {} MB", bytes >> 20));
+            }
+            Ok(answer)
+        });
+        Execution { description, outcome, seconds, bytes }
+    }
+
+    /// What the choices describe, in a few words.
+    pub fn describe(&self, choices: &mut Choices) -> String {
+        (self.generate)(choices).description
+    }
+}
+
+/// The answer for an error, or its fault: an error of the package itself, one without words, or one about an argument
+/// that the call does not take.
+pub(super) fn typed(error: &Error, takes_transform: bool) -> Result<Answer, String> {
+    let empty = error.argument.is_empty() || error.found.is_empty() || error.expected.is_empty();
+    let foreign = error.code == ErrorCode::InvalidTransform && !takes_transform;
+    if empty || foreign || error.code == ErrorCode::Internal || error.remedy.is_empty() {
+        return Err(format!("untyped: {} {error}", error.code.as_str()));
+    }
+    Ok(Answer::Error(error.code))
+}
+
+/// A fault for a number that no result may contain.
+pub(super) fn finite(name: &str, numbers: &[f64]) -> Result<(), String> {
+    if numbers.iter().all(|x| x.is_finite()) {
+        return Ok(());
+    }
+    Err(format!("result: {name} is {numbers:?}"))
+}

@@ -1,0 +1,6 @@
+//! The generators of calls.
+
+pub mod align;
+pub mod evaluate;
+pub mod readers;
+pub mod register;
