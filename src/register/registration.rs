@@ -1,6 +1,7 @@
 //! Registration of two point clouds of any origin.
 
 use super::density::dense_points;
+use super::free_scale::register_free;
 use super::input::{check_cloud, subsample};
 use super::normalized_pair::NormalizedPair;
 use super::options::RegisterOptions;
@@ -58,15 +59,24 @@ pub fn register(
     // With a known scale, correct matches preserve distances, which rigid registration uses. Otherwise, or if that
     // fails, clouds are registered by features. Clutter enlarges the boxes and disturbs the descriptors, so that the
     // dense points are tried first; but if the density varies by nature (lidar), they omit most of the scene, so that
-    // all points are tried as well. The agreement of all points selects the result.
+    // all points are tried as well. The agreement of all points selects the result. Without a known scale, features
+    // suffice for clouds that show the same surface; for others, matches vote for the scale.
     let mut selector = PoseSelector::new(&source_xyz, &target_xyz, frames, options);
-    if matches!(options.scale, ScaleOption::Fixed(_)) {
+    let is_fixed = matches!(options.scale, ScaleOption::Fixed(_));
+    if is_fixed {
         selector.prefer(register_rigid(complete, options, &mut stages));
     }
-    if let Some((source_xyz, target_xyz)) = dense(&source_xyz, &target_xyz, &selector.frames) {
+    let dense = dense(&source_xyz, &target_xyz, &selector.frames);
+    if let Some((source_xyz, target_xyz)) = &dense {
+        selector.try_clouds(source_xyz, target_xyz, options, &mut stages)?;
+    }
+    if !selector.has_preferred() && (is_fixed || dense.is_none()) {
         selector.try_clouds(&source_xyz, &target_xyz, options, &mut stages)?;
     }
-    if !selector.has_preferred() {
+    if !is_fixed && !selector.is_mutual() {
+        selector.prefer(register_free(complete, options, &mut stages));
+    }
+    if !selector.has_pose() {
         selector.try_clouds(&source_xyz, &target_xyz, options, &mut stages)?;
     }
     selector.finish(options, stages)
