@@ -2,7 +2,7 @@
 
 use super::density::dense_points;
 use super::free_scale::register_free;
-use super::input::{check_cloud, subsample};
+use super::input::{check_cloud, finite_points, subsample};
 use super::normalized_pair::NormalizedPair;
 use super::options::RegisterOptions;
 use super::pose_selector::PoseSelector;
@@ -33,10 +33,11 @@ pub(super) const PLAN: &[(Stage, f64)] = &[
     (Stage::Icp, 0.8),
 ];
 
-/// Estimates the similarity from a source cloud to a target cloud, both interleaved x, y, z in any unit.
+/// Estimates the similarity from a source cloud to a target cloud, both interleaved x, y, z in any unit. Points with NaN
+/// or infinite coordinates are skipped.
 ///
 /// # Errors
-/// [`ErrorCode::WrongLength`], [`ErrorCode::NonFinite`], [`ErrorCode::TooFewPoints`],
+/// [`ErrorCode::WrongLength`], [`ErrorCode::TooFewPoints`],
 /// [`ErrorCode::DegeneratePoints`], [`ErrorCode::InvalidOption`], [`ErrorCode::NoConsensus`].
 pub fn register(
     source_xyz: &[f64],
@@ -45,12 +46,15 @@ pub fn register(
     host: &mut dyn Host,
 ) -> Result<Registration> {
     options.validate()?;
+    let (source_xyz, skipped_source) = finite_points(source_xyz);
+    let (target_xyz, skipped_target) = finite_points(target_xyz);
+    let complete: [&[f64]; 2] = [&source_xyz, &target_xyz];
+    let [source_xyz, target_xyz] = complete;
     check_cloud("source", source_xyz, MIN_POINTS)?;
     check_cloud("target", target_xyz, MIN_POINTS)?;
     let mut stages = Stopwatch::new(host, PLAN);
 
     stages.enter(Stage::Sample);
-    let complete = [source_xyz, target_xyz];
     let mut random = Random::new(u64::from(options.seed), STREAM);
     let source_xyz = subsample(source_xyz, options.max_points as usize, &mut random);
     let target_xyz = subsample(target_xyz, options.max_points as usize, &mut random);
@@ -79,7 +83,10 @@ pub fn register(
     if !selector.has_pose() {
         selector.try_clouds(&source_xyz, &target_xyz, options, &mut stages)?;
     }
-    selector.finish(options, stages)
+    let mut found = selector.finish(options, stages)?;
+    found.diagnostics.skipped_source_points = skipped_source;
+    found.diagnostics.skipped_target_points = skipped_target;
+    Ok(found)
 }
 
 /// The dense points of both clouds; `None` if they are too few, or almost all.
