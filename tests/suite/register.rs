@@ -201,3 +201,26 @@ fn a_free_scale_of_partial_clouds_does_not_collapse() {
         }
     }
 }
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_scale_at_a_bound_of_the_searched_range_is_no_answer() {
+    let mut refused = 0;
+    for seed in 500..504 {
+        let draw = &mut Draw::new(seed);
+        let source: Vec<_> = blob(draw, 1500).points.into_iter().map(vector3).collect();
+        // A stray point makes the box of the target twenty times as large, so that the true scale is out of range.
+        let mut target: Vec<_> = mug(draw, 1500).points.into_iter().map(vector3).collect();
+        target.push(draw.direction() * 40.0);
+        match register(&flat(&source), &flat(&target), &RegisterOptions::default(), &mut Silent) {
+            Ok(found) => {
+                let ratio = found.diagnostics.scale_ratio;
+                assert!(ratio > 0.2 * (1.0 + 1e-6) && ratio < 5.0 * (1.0 - 1e-6), "seed {seed}: {ratio}");
+            }
+            Err(error) => {
+                assert_eq!(error.code, ErrorCode::NoConsensus, "seed {seed}: {error}");
+                refused += 1;
+            }
+        }
+    }
+    assert!(refused > 0);
+}

@@ -38,6 +38,7 @@ const SAME_SURFACE: f32 = 0.08;
 const NUMBERS_PER_PAIR: u32 = 3;
 
 /// Writes `scenes` scenes, each with a pair of clouds for each of its objects without symmetry:
+/// `scene-<n>/cloud_bin_<i>.ply`, `scene-<n>-evaluation/gt.log` and `gt.info`, `pairs.json`.
 ///
 /// # Errors
 /// [`InvalidArgument`](sim3align_geometry::error::ErrorCode::InvalidArgument) if a file cannot be written.
