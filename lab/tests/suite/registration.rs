@@ -323,8 +323,8 @@ fn objects_lie_on_what_their_scenes_show() {
         let near = covered(&source, &KdTree::new(&target), &pair.target_from_source, 0.15).len();
         let share = near as f64 / source.len() as f64;
         println!("{}: {} and {} points, {share:.2}", pair.id, source.len(), target.len());
-        // One side of it, about.
-        assert!((0.1..0.98).contains(&share), "{}: {share}", pair.id);
+        // One side of it, about; both of what is thin.
+        assert!((0.1..=1.0).contains(&share), "{}: {share}", pair.id);
         assert!(pair.overlap.unwrap() <= share && target.len() > 1000, "{}", pair.id);
         assert!(pair.errors(&pair.target_from_source).success);
     }
