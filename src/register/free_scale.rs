@@ -22,6 +22,7 @@ use super::settings::RegistrationSettings;
 use super::umeyama::ScaleMode;
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::cloud::Cloud;
+use crate::geometry::order::{index_of, pack, sort};
 use crate::geometry::similarity::{Similarity, vec3};
 use crate::geometry::voxel_grid::voxel_size_leaving;
 use crate::options::scale::ScaleOption;
@@ -50,6 +51,9 @@ const POSE: Round = Round { voxels: 5_000, matches: 3_000, hypotheses: 80, fine_
 
 /// Ratio of successive scales of the series.
 const COARSE_STEP: f64 = 1.35;
+
+/// Widest range of scales that bounds can ask for, relative to the ratio of the boxes.
+const WIDEST: [f64; 2] = [0.02, 50.0];
 
 /// A second scale is tried if its best score in the vote is at least this fraction of the best one, and if it differs by
 /// this ratio.
@@ -84,16 +88,17 @@ pub(super) fn register_free(
     stages.enter(Stage::Normals);
     let scans = Scans::new(&frames, [source_xyz, target_xyz], options);
 
-    let count = (libm::log(guard[1] / guard[0]) / libm::log(COARSE_STEP)).ceil().max(1.0);
+    let [least, most] = [guard[0].max(WIDEST[0]), guard[1].min(WIDEST[1])];
     let mut voted: Vec<Hypothesis> = Vec::new();
-    for i in 0..count as usize {
-        let scale = guard[0] * libm::pow(guard[1] / guard[0], (i as f64 + 0.5) / count);
+    let mut scale = least * COARSE_STEP.min(most / least).sqrt();
+    while scale <= most {
         let scaled = scans.scaled(scale, &VOTE, guard, options);
         let clouds = CloudPair::new(&scaled.source, scaled.target, scaled.settings.voxel_size);
         voted.extend(Level::new(&scaled, &clouds, &VOTE, stages).hypotheses(&VOTE));
+        scale *= COARSE_STEP;
     }
-    voted.sort_by(|a, b| b.score.total_cmp(&a.score));
-    voted.truncate(VOTED.max(1));
+    let mut voted = best_first(&voted);
+    voted.truncate(VOTED);
 
     let Some(first) = voted.first() else { return Err(no_consensus("no three matches that preserve distances")) };
     let (scale, least) = (first.pose.scale, SECOND * first.score);
@@ -180,11 +185,11 @@ impl Scaled<'_> {
     fn solve(&self, voted: &[Hypothesis], guard: [f64; 2], stages: &mut Stopwatch<'_>) -> Option<(f64, Estimate)> {
         let clouds = CloudPair::new(&self.source, self.target, self.settings.voxel_size);
         let level = Level::new(self, &clouds, &POSE, stages);
-        let found = level.hypotheses(&POSE);
+        let mut found = level.hypotheses(&POSE);
         let iterations = found.len();
         stages.enter(Stage::Filter);
-        let voted = voted.iter().map(|vote| level.judged(vote.pose, vote.inliers));
-        let chosen = self.distinct(found.into_iter().chain(voted).collect(), level.scorer.distance);
+        found.extend(voted.iter().map(|vote| level.judged(vote.pose, vote.inliers)));
+        let chosen = self.distinct(&found, level.scorer.distance);
 
         stages.enter(Stage::Icp);
         let refined = chosen.into_iter().map(|candidate| {
@@ -213,11 +218,10 @@ impl Scaled<'_> {
     }
 
     /// The best candidates without near duplicates, best first.
-    fn distinct(&self, mut candidates: Vec<Hypothesis>, distance: f32) -> Vec<Hypothesis> {
-        candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
+    fn distinct(&self, candidates: &[Hypothesis], distance: f32) -> Vec<Hypothesis> {
         let apart = f64::from(2.0 * distance).max(APART * self.scale.min(1.0));
         let mut chosen: Vec<Hypothesis> = Vec::new();
-        for candidate in candidates {
+        for candidate in best_first(candidates) {
             let pose = self.own(&candidate.pose);
             let is_new = |other: &Hypothesis| movement(&self.own(&other.pose), &pose) > apart;
             if chosen.len() < REFINED && chosen.iter().all(is_new) {
@@ -256,6 +260,13 @@ struct Hypothesis {
     score: f64,
     /// Number of matches that agree.
     inliers: usize,
+}
+
+/// Hypotheses by falling score.
+fn best_first(hypotheses: &[Hypothesis]) -> Vec<Hypothesis> {
+    let mut keys: Vec<u64> = hypotheses.iter().zip(0..).map(|(h, i)| pack(-h.score as f32, i)).collect();
+    sort(&mut keys);
+    keys.into_iter().map(|key| hypotheses[index_of(key) as usize]).collect()
 }
 
 /// The matches of both clouds at a scale, and what scores poses.
