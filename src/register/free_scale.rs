@@ -235,7 +235,8 @@ impl Scaled<'_> {
     fn near(&self, scale: f64) -> RegistrationSettings {
         let mut settings = self.settings;
         if let Some(guard) = &mut settings.ransac.guard {
-            let within = |bound: f64| bound.clamp(guard.min, guard.max);
+            // Not `clamp`, whose panic formats numbers: 10 kB of the module.
+            let within = |bound: f64| bound.max(guard.min).min(guard.max);
             let [min, max] = SCALE_SLACK.map(|factor| within(factor * scale));
             (guard.min, guard.max) = (min, max);
         }
