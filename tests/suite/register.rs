@@ -208,9 +208,11 @@ fn a_scale_at_a_bound_of_the_searched_range_is_no_answer() {
     for seed in 500..504 {
         let draw = &mut Draw::new(seed);
         let source: Vec<_> = blob(draw, 1500).points.into_iter().map(vector3).collect();
-        // A stray point makes the box of the target twenty times as large, so that the true scale is out of range.
-        let mut target: Vec<_> = mug(draw, 1500).points.into_iter().map(vector3).collect();
-        target.push(draw.direction() * 40.0);
+        // The target stands twice in its cloud, so far apart that the true scale is slightly below a fifth of the ratio
+        // of the boxes.
+        let (low, high) = source.iter().fold((source[0], source[0]), |(a, b), p| (a.inf(p), b.sup(p)));
+        let away = (high - low) * (1.0 / 0.19 - 1.0);
+        let target: Vec<_> = source.iter().flat_map(|&p| [p, p + away]).collect();
         match register(&flat(&source), &flat(&target), &RegisterOptions::default(), &mut Silent) {
             Ok(found) => {
                 let ratio = found.diagnostics.scale_ratio;
