@@ -344,6 +344,10 @@ pub struct RegistrationDiagnostics {
     pub scale_ratio: f64,
     /// Whether the refinement converged; `true` where there was none.
     pub converged: bool,
+    /// Number of source points that `register` skipped, because a coordinate is NaN or infinite.
+    pub skipped_source_points: usize,
+    /// Number of target points that `register` skipped.
+    pub skipped_target_points: usize,
     /// Sizes of the problem and events during the run.
     pub counts: Counts,
     /// Milliseconds per stage, and their total.

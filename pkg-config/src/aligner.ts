@@ -151,9 +151,12 @@ export class Aligner {
 
   /**
    * Aligns a point cloud with another that overlaps it at least partially: y = s·R·x + t.
+   * Points with NaN or infinite coordinates, as organised clouds of depth cameras have them, are skipped and counted in
+   * `diagnostics`.
    * @param source interleaved x, y, z, in any unit
    * @param target interleaved x, y, z, in any unit
-   * @throws {@link Sim3AlignError} for invalid input, and `NO_CONSENSUS` if no transform is supported by the data
+   * @throws {@link Sim3AlignError} for invalid input, and `NO_CONSENSUS` if no transform is supported by the data. A free
+   * scale is searched from a fifth to five times the ratio of the bounding boxes; pass bounds for another range.
    */
   async register(
     source: Float32Array | Float64Array,

@@ -1,5 +1,7 @@
 //! Validates clouds, and subsamples them.
 
+use std::borrow::Cow;
+
 use nalgebra::Vector3;
 
 use crate::error::{Error, ErrorCode, Result};
@@ -47,6 +49,19 @@ pub(super) fn check_cloud(argument: &str, xyz: &[f64], min_points: usize) -> Res
         ));
     }
     Ok(())
+}
+
+/// The points without NaN and infinite coordinates, which organised clouds have at pixels without a reading, and how
+/// many were skipped.
+pub(super) fn finite_points(xyz: &[f64]) -> (Cow<'_, [f64]>, usize) {
+    let is_finite = |point: &&[f64]| point.iter().all(|x| x.is_finite());
+    let points = || xyz.chunks_exact(3);
+    let skipped = points().len() - points().filter(is_finite).count();
+    // A broken triple is left to the check of the length.
+    if skipped == 0 || !xyz.len().is_multiple_of(3) {
+        return (Cow::Borrowed(xyz), 0);
+    }
+    (points().filter(is_finite).flatten().copied().collect(), skipped)
 }
 
 /// At most `max_points` points, one drawn from each of `max_points` equal intervals.

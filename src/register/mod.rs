@@ -6,6 +6,7 @@ pub mod density;
 mod estimate_sim3;
 pub(crate) mod feature_registration;
 pub mod fpfh;
+mod free_scale;
 pub mod free_space;
 pub mod grid_cloud;
 pub mod icp;

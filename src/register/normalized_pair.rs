@@ -75,6 +75,8 @@ impl NormalizedPair {
                 initial_scale,
                 scale_ratio: transform.scale / initial_scale,
                 converged,
+                skipped_source_points: 0,
+                skipped_target_points: 0,
                 counts,
                 timings_ms: stages.finish(),
             },

@@ -34,6 +34,19 @@ impl PoseScorer<'_> {
             + self.one_way([target, source], &self.weights[1], source_free, &pose.inverse())
     }
 
+    /// Like [`PoseScorer::score`], comparable between scales: the area on which both grids agree, relative to the
+    /// geometric mean of their areas. A source that shrinks agrees everywhere, but with ever less of the target.
+    pub fn balanced(&self, pose: &Similarity) -> f64 {
+        let [source_free, target_free] = self.free.each_ref().map(Option::as_ref);
+        let CloudPair { source, target } = self.clouds;
+        let there = self.one_way([source, target], &self.weights[0], target_free, pose);
+        let back = self.one_way([target, source], &self.weights[1], source_free, &pose.inverse());
+        let [n, m] = [source, target].map(|side| side.grid.cloud.len().max(1) as f64);
+        // Linear size of the source relative to the target, by the areas that their voxels cover.
+        let size = pose.scale * (n / m).sqrt();
+        there / n * size + back / m / size
+    }
+
     fn one_way(
         &self,
         [from, to]: [&CloudPyramid<'_>; 2],

@@ -12,6 +12,8 @@ use crate::evidence::normals::outward_normals;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::similarity::Similarity;
+use crate::geometry::voxel_grid::voxel_size_leaving;
+use crate::options::scale::ScaleOption;
 use crate::progress::{Stage, Stopwatch};
 use crate::report::Registration;
 
@@ -28,12 +30,20 @@ const ITERATIONS_WITH_PREFERRED: usize = 20_000;
 /// Agreement at which a pose is certain and the search stops: about nine of ten points coincide.
 const CERTAIN: f64 = 0.9;
 
+/// Fitness in both directions from which the clouds show the same surface.
+const MUTUAL: f64 = 0.9;
+
+/// Fitness in the worse direction below which clouds have only a part in common, or one is cluttered.
+const PARTIAL: f64 = 0.5;
+
 /// Tries poses, and keeps the one under which the complete clouds agree best.
 pub(crate) struct PoseSelector {
     pub(crate) frames: NormalizedPair,
     source: Cloud,
     target: KdTree,
     inlier_distance: f32,
+    /// The other direction, unless the scale is fixed.
+    reverse: Option<Reverse>,
     best: Option<(Agreement, Candidate)>,
     /// If set, only a certain pose replaces the best one.
     has_preferred: bool,
@@ -47,9 +57,14 @@ impl PoseSelector {
         frames: NormalizedPair,
         options: &RegisterOptions,
     ) -> Self {
+        let source = frames.source.normalized_flat(source_xyz);
+        let target = frames.target.normalized_flat(target_xyz);
+        let is_fixed = matches!(options.scale, ScaleOption::Fixed(_));
+        let tree = KdTree::new(&target.points);
         Self {
-            source: frames.source.normalized_flat(source_xyz),
-            target: KdTree::new(&frames.target.normalized_flat(target_xyz).points),
+            reverse: (!is_fixed).then(|| Reverse::new(&source, target)),
+            source,
+            target: tree,
             inlier_distance: (options.inlier_distance_voxels * unit_voxel_size(options, &frames)) as f32,
             frames,
             best: None,
@@ -63,8 +78,12 @@ impl PoseSelector {
     pub(crate) fn prefer(&mut self, candidate: Result<Candidate>) {
         match candidate {
             Ok(candidate) => {
+                let other = self.best.take();
                 self.consider(candidate);
                 self.has_preferred = true;
+                if let Some((_, other)) = other {
+                    self.consider(other);
+                }
             }
             Err(error) => self.failure = Some(error),
         }
@@ -86,24 +105,32 @@ impl PoseSelector {
             return Ok(());
         }
         let frames = NormalizedPair::of(source_xyz, target_xyz, options.scale)?;
+        // Without a known scale, clutter misleads the preferred pose as well.
+        let is_brief = self.has_preferred && self.reverse.is_none();
         stages.enter(Stage::Normals);
         let source = with_normals(frames.source.normalized_flat(source_xyz), None);
         let target = with_normals(frames.target.normalized_flat(target_xyz), None);
         let mut settings =
             RegistrationSettings::new(options, unit_voxel_size(options, &frames), frames.scale_mode, frames.guard);
-        if self.has_preferred {
+        if is_brief {
             settings.ransac.max_iterations = settings.ransac.max_iterations.min(ITERATIONS_WITH_PREFERRED);
         }
         let mut registration = FeatureRegistration::new(&source, &target, &settings, stages);
-        let poses = if self.has_preferred { 1 } else { POSES };
+        let poses = if is_brief { 1 } else { POSES };
         for _ in 0..poses {
-            if self.is_certain() {
+            if self.is_certain() || self.is_partial(source_xyz) {
                 break;
             }
             match registration.solve(&settings, stages) {
                 Ok(estimate) => {
+                    // Bounds that are given hold a scale; the default ones only limit the search.
+                    let is_none = estimate.clamped && matches!(options.scale, ScaleOption::Free);
                     // The inliers would lead to the same pose again.
                     registration.discard(&estimate.inliers);
+                    if is_none {
+                        self.failure.get_or_insert_with(at_bound);
+                        continue;
+                    }
                     self.consider(Candidate::new(&frames, estimate));
                 }
                 Err(error) => {
@@ -115,15 +142,34 @@ impl PoseSelector {
         Ok(())
     }
 
+    /// Whether almost all points of both clouds coincide under the best pose: no cloud is partial, and no scale too small.
+    pub(crate) fn is_mutual(&self) -> bool {
+        self.best.as_ref().is_some_and(|(agreement, _)| agreement.mutual >= MUTUAL)
+    }
+
+    /// Whether the first pose of all points with a free scale shows that they have only a part in common. Of dense
+    /// points, clutter is left out, which says as much of the others.
+    fn is_partial(&self, source_xyz: &[f64]) -> bool {
+        let is_free = self.reverse.is_some() && source_xyz.len() == 3 * self.source.len();
+        is_free && self.best.as_ref().is_some_and(|(agreement, _)| agreement.mutual < PARTIAL)
+    }
+
+    pub(crate) fn has_pose(&self) -> bool {
+        self.best.is_some()
+    }
+
     fn is_certain(&self) -> bool {
         self.best.as_ref().is_some_and(|(agreement, _)| agreement.score >= CERTAIN)
     }
 
     fn consider(&mut self, candidate: Candidate) {
         let unit = self.frames.normalized(&candidate.target_from_source);
-        let agreement = Agreement::of(&self.source, &self.target, &unit, self.inlier_distance);
+        let mut agreement = Agreement::of(&self.source, &self.target, &unit, self.inlier_distance);
+        if let Some(reverse) = &self.reverse {
+            reverse.complete(&mut agreement, &unit, self.inlier_distance);
+        }
         let is_taken = !self.has_preferred || agreement.score >= CERTAIN;
-        if is_taken && self.best.as_ref().is_none_or(|(best, _)| agreement.score > best.score) {
+        if is_taken && self.best.as_ref().is_none_or(|(best, _)| agreement.rank > best.rank) {
             self.best = Some((agreement, candidate));
         }
     }
@@ -168,6 +214,37 @@ struct Agreement {
     /// Mean of max(0, 1 − (r/d)²) over the source points; d is a third of the inlier distance. In clutter, every point
     /// has a near neighbour; only under the correct pose, many have a very near one.
     score: f64,
+    /// What poses are ranked by: the score or, with a free scale, that of both directions.
+    rank: f64,
+    /// The lower fitness of both directions, if both are known.
+    mutual: f64,
+}
+
+/// What compares poses of different scales: a source that shrinks agrees everywhere, but with ever less of the target.
+struct Reverse {
+    source: KdTree,
+    target: Cloud,
+    /// Linear size of the source relative to the target, at scale 1, by the area that their points cover.
+    size: f64,
+}
+
+/// Number of voxels that compare the areas of two clouds.
+const AREA_VOXELS: usize = 1_500;
+
+impl Reverse {
+    fn new(source: &Cloud, target: Cloud) -> Self {
+        let [a, b] = [source, &target].map(|cloud| voxel_size_leaving(cloud, AREA_VOXELS.min(cloud.len() / 2)));
+        Self { source: KdTree::new(&source.points), target, size: f64::from(a / b) }
+    }
+
+    /// Adds the other direction: the rank becomes the area on which both clouds agree, relative to the geometric mean of
+    /// their areas.
+    fn complete(&self, agreement: &mut Agreement, unit: &Similarity, distance: f32) {
+        let back = Agreement::of(&self.target, &self.source, &unit.inverse(), distance / unit.scale as f32);
+        let size = unit.scale * self.size;
+        agreement.rank = agreement.score * size + back.score / size;
+        agreement.mutual = agreement.fitness.min(back.fitness);
+    }
 }
 
 impl Agreement {
@@ -182,7 +259,8 @@ impl Agreement {
             }
         }
         let count = source.len() as f64;
-        Self { fitness: near as f64 / count, score: sum / count }
+        let score = sum / count;
+        Self { fitness: near as f64 / count, score, rank: score, mutual: 0.0 }
     }
 }
 
@@ -211,6 +289,12 @@ pub(crate) fn about_clouds(error: Error, argument: &str) -> Error {
         "at least three matches of source and target that agree on one similarity",
         "Check that the clouds overlap; widen options.scale, or the distance up to which a match is an inlier.",
     )
+}
+
+/// The error of a free scale that ends at a bound.
+pub(super) fn at_bound() -> Error {
+    let found = "a scale at a bound of the range that was searched";
+    about_clouds(Error::new(ErrorCode::NoConsensus, "source", found, "", ""), "source")
 }
 
 fn no_attempt() -> Error {

@@ -1,7 +1,8 @@
 //! Registration of two point clouds of any origin.
 
 use super::density::dense_points;
-use super::input::{check_cloud, subsample};
+use super::free_scale::register_free;
+use super::input::{check_cloud, finite_points, subsample};
 use super::normalized_pair::NormalizedPair;
 use super::options::RegisterOptions;
 use super::pose_selector::PoseSelector;
@@ -32,10 +33,11 @@ pub(super) const PLAN: &[(Stage, f64)] = &[
     (Stage::Icp, 0.8),
 ];
 
-/// Estimates the similarity from a source cloud to a target cloud, both interleaved x, y, z in any unit.
+/// Estimates the similarity from a source cloud to a target cloud, both interleaved x, y, z in any unit. Points with NaN
+/// or infinite coordinates are skipped.
 ///
 /// # Errors
-/// [`ErrorCode::WrongLength`], [`ErrorCode::NonFinite`], [`ErrorCode::TooFewPoints`],
+/// [`ErrorCode::WrongLength`], [`ErrorCode::TooFewPoints`],
 /// [`ErrorCode::DegeneratePoints`], [`ErrorCode::InvalidOption`], [`ErrorCode::NoConsensus`].
 pub fn register(
     source_xyz: &[f64],
@@ -44,12 +46,15 @@ pub fn register(
     host: &mut dyn Host,
 ) -> Result<Registration> {
     options.validate()?;
+    let (source_xyz, skipped_source) = finite_points(source_xyz);
+    let (target_xyz, skipped_target) = finite_points(target_xyz);
+    let complete: [&[f64]; 2] = [&source_xyz, &target_xyz];
+    let [source_xyz, target_xyz] = complete;
     check_cloud("source", source_xyz, MIN_POINTS)?;
     check_cloud("target", target_xyz, MIN_POINTS)?;
     let mut stages = Stopwatch::new(host, PLAN);
 
     stages.enter(Stage::Sample);
-    let complete = [source_xyz, target_xyz];
     let mut random = Random::new(u64::from(options.seed), STREAM);
     let source_xyz = subsample(source_xyz, options.max_points as usize, &mut random);
     let target_xyz = subsample(target_xyz, options.max_points as usize, &mut random);
@@ -58,18 +63,30 @@ pub fn register(
     // With a known scale, correct matches preserve distances, which rigid registration uses. Otherwise, or if that
     // fails, clouds are registered by features. Clutter enlarges the boxes and disturbs the descriptors, so that the
     // dense points are tried first; but if the density varies by nature (lidar), they omit most of the scene, so that
-    // all points are tried as well. The agreement of all points selects the result.
+    // all points are tried as well. The agreement of all points selects the result. Without a known scale, features
+    // suffice for clouds that show the same surface; for others, matches vote for the scale.
     let mut selector = PoseSelector::new(&source_xyz, &target_xyz, frames, options);
-    if matches!(options.scale, ScaleOption::Fixed(_)) {
+    let is_fixed = matches!(options.scale, ScaleOption::Fixed(_));
+    if is_fixed {
         selector.prefer(register_rigid(complete, options, &mut stages));
     }
-    if let Some((source_xyz, target_xyz)) = dense(&source_xyz, &target_xyz, &selector.frames) {
+    let dense = dense(&source_xyz, &target_xyz, &selector.frames);
+    if let Some((source_xyz, target_xyz)) = &dense {
+        selector.try_clouds(source_xyz, target_xyz, options, &mut stages)?;
+    }
+    if !selector.has_preferred() && (is_fixed || dense.is_none()) {
         selector.try_clouds(&source_xyz, &target_xyz, options, &mut stages)?;
     }
-    if !selector.has_preferred() {
+    if !is_fixed && !selector.is_mutual() {
+        selector.prefer(register_free(complete, options, &mut stages));
+    }
+    if !selector.has_pose() {
         selector.try_clouds(&source_xyz, &target_xyz, options, &mut stages)?;
     }
-    selector.finish(options, stages)
+    let mut found = selector.finish(options, stages)?;
+    found.diagnostics.skipped_source_points = skipped_source;
+    found.diagnostics.skipped_target_points = skipped_target;
+    Ok(found)
 }
 
 /// The dense points of both clouds; `None` if they are too few, or almost all.

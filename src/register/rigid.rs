@@ -35,7 +35,7 @@ const REFINED: usize = 5;
 const ITERATIONS: usize = 15;
 
 /// Tolerance of the points that bound free space, in voxels.
-const FREE_SLACK_VOXELS: f32 = 2.0;
+pub(super) const FREE_SLACK_VOXELS: f32 = 2.0;
 
 /// Registers clouds with a known scale (`options.scale` is fixed).
 ///
@@ -114,7 +114,7 @@ pub(super) fn register_rigid(
 }
 
 /// The cloud if it has at most `most` points; otherwise the means of the smallest voxels that leave that many.
-fn limit_points(cloud: Cloud, most: usize) -> Cloud {
+pub(super) fn limit_points(cloud: Cloud, most: usize) -> Cloud {
     if cloud.len() <= most { cloud } else { voxel_downsample(&cloud, voxel_size_leaving(&cloud, most)) }
 }
 

@@ -111,7 +111,7 @@ const bad: [name: string, call: Call, code: string, argument: string, message: R
   ],
   ["no array", () => aligner.register(source, "x" as unknown as Float64Array), "INVALID_ARGUMENT", "target", /string/],
   ["a broken triple", () => aligner.register(source.slice(1), target), "WRONG_LENGTH", "source", /multiple of 3/],
-  ["a NaN", () => aligner.register(withNaN, target), "NON_FINITE", "source", /NaN in point 1/],
+  ["a NaN", () => aligner.estimateSim3(withNaN, target, pairs), "NON_FINITE", "source", /NaN in point 1/],
   ["too few points", () => aligner.register(source.slice(0, 30), target), "TOO_FEW_POINTS", "source", /10 points/],
   [
     "one point only",

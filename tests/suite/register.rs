@@ -9,6 +9,7 @@ use sim3align::progress::Silent;
 use sim3align::register::estimate_sim3;
 use sim3align::register::options::{EstimateSim3Options, RegisterOptions};
 use sim3align::register::register;
+use sim3align::report::Registration;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::support::{Draw, blob, mug};
@@ -137,15 +138,10 @@ fn correspondences_with_many_wrong_ones_give_the_transform() {
 #[wasm_bindgen_test(unsupported = test)]
 fn clouds_that_can_not_be_registered_are_refused_by_name() {
     let good: Vec<f64> = (0..300).map(|i| f64::from(i * 7919 % 101)).collect();
-    let with = |i: usize, x: f64| {
-        let mut cloud = good.clone();
-        cloud[i] = x;
-        cloud
-    };
     let bad = [
         (good[..100].to_vec(), ErrorCode::WrongLength),
         (good[..30].to_vec(), ErrorCode::TooFewPoints),
-        (with(5, f64::NAN), ErrorCode::NonFinite),
+        (vec![f64::NAN; 300], ErrorCode::TooFewPoints),
         (vec![1.0; 300], ErrorCode::DegeneratePoints),
     ];
     for (cloud, code) in bad {
@@ -155,4 +151,78 @@ fn clouds_that_can_not_be_registered_are_refused_by_name() {
         let error = register(&cloud, &good, &options, &mut Silent).unwrap_err();
         assert_eq!((error.code, &*error.argument), (code, "source"), "{error}");
     }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn points_without_a_reading_are_skipped_and_counted() {
+    let draw = &mut Draw::new(9);
+    let source: Vec<_> = mug(draw, 2000).points.into_iter().map(vector3).collect();
+    let truth = draw.similarity([2.0, 3.0], 5.0);
+    let target: Vec<_> = source.iter().map(|&p| truth.apply(p)).collect();
+    let (source, target) = (flat(&source), flat(&target));
+    // Every third point of an organised cloud has none, be it all three coordinates or one.
+    let organised = |xyz: &[f64], empty: [f64; 3]| -> Vec<f64> {
+        xyz.chunks(6).flat_map(|points| points.iter().copied().chain(empty)).collect()
+    };
+    let options = RegisterOptions::default();
+    let plain = register(&source, &target, &options, &mut Silent).unwrap();
+    let with_nan = organised(&source, [f64::NAN; 3]);
+    let with_infinity = organised(&target, [0.0, f64::INFINITY, 0.0]);
+    let skipping = register(&with_nan, &with_infinity, &options, &mut Silent).unwrap();
+    assert_eq!(skipping.target_from_source, plain.target_from_source);
+    let skipped =
+        |found: &Registration| [found.diagnostics.skipped_source_points, found.diagnostics.skipped_target_points];
+    assert_eq!((skipped(&plain), skipped(&skipping)), ([0, 0], [1000, 1000]));
+}
+
+/// The part of a cloud on one side of a plane through its middle, by share.
+fn part(points: &[Vector3<f64>], direction: Vector3<f64>, share: f64) -> Vec<Vector3<f64>> {
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    order.sort_by(|&a, &b| points[a].dot(&direction).total_cmp(&points[b].dot(&direction)));
+    order[..(share * points.len() as f64) as usize].iter().map(|&i| points[i]).collect()
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_free_scale_of_partial_clouds_does_not_collapse() {
+    for (shape, surface, share) in [("blob", blob as fn(&mut Draw, usize) -> Cloud, 0.65), ("mug", mug, 0.75)] {
+        for seed in 400..403 {
+            let draw = &mut Draw::new(seed);
+            let whole = surface(draw, 6000).points;
+            let direction = draw.direction();
+            // Two samples of noisy parts, which have a half or two thirds of their points in common.
+            let [source, target] = [direction, -direction].map(|direction| {
+                let noisy: Vec<_> = draw.noisy(&whole, 0.004).into_iter().map(vector3).collect();
+                part(&noisy, direction, share)
+            });
+            let truth = draw.similarity([0.2, 5.0], 10.0);
+            let target: Vec<_> = target.iter().map(|&p| truth.apply(p)).collect();
+            let found = register(&flat(&source), &flat(&target), &RegisterOptions::default(), &mut Silent).unwrap();
+            assert_recovers(&found.target_from_source.matrix, &truth, &source, 0.05, &format!("{shape}, seed {seed}"));
+        }
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_scale_at_a_bound_of_the_searched_range_is_no_answer() {
+    let mut refused = 0;
+    for seed in 500..504 {
+        let draw = &mut Draw::new(seed);
+        let source: Vec<_> = blob(draw, 1500).points.into_iter().map(vector3).collect();
+        // The target stands twice in its cloud, so far apart that the true scale is slightly below a fifth of the ratio
+        // of the boxes.
+        let (low, high) = source.iter().fold((source[0], source[0]), |(a, b), p| (a.inf(p), b.sup(p)));
+        let away = (high - low) * (1.0 / 0.19 - 1.0);
+        let target: Vec<_> = source.iter().flat_map(|&p| [p, p + away]).collect();
+        match register(&flat(&source), &flat(&target), &RegisterOptions::default(), &mut Silent) {
+            Ok(found) => {
+                let ratio = found.diagnostics.scale_ratio;
+                assert!(ratio > 0.2 * (1.0 + 1e-6) && ratio < 5.0 * (1.0 - 1e-6), "seed {seed}: {ratio}");
+            }
+            Err(error) => {
+                assert_eq!(error.code, ErrorCode::NoConsensus, "seed {seed}: {error}");
+                refused += 1;
+            }
+        }
+    }
+    assert!(refused > 0);
 }

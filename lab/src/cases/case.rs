@@ -8,12 +8,15 @@ use serde_json::json;
 use super::draft::{Axis, Object};
 use super::families;
 use super::generator::generate;
+use super::holes::Shown;
 use super::mask::Segmented;
 use super::readings::Readings;
 use super::scans::Scan;
 use super::scene::{Scene, put_down, turned_axis};
-use super::streams::{GENERATOR_STREAM, MASK_STREAM, OBJECT_STREAM, READINGS_STREAM, SCENE_STREAM};
-use super::tier::{Class, Tier};
+use super::sensor;
+use super::split::in_two;
+use super::streams::{GENERATOR_STREAM, MASK_STREAM, OBJECT_STREAM, READINGS_STREAM, SCENE_STREAM, SENSOR_STREAM};
+use super::tier::{CaseSet, Class, Tier};
 use crate::case_folder::contents::{case_files, parameters_json, symmetry_json};
 use crate::cases::distortion::canonicalise;
 use crate::draws::mixed;
@@ -39,6 +42,7 @@ const DRAWS: u64 = 400;
 #[derive(Debug, Clone, Default)]
 pub struct EvaluationSet {
     seed: u64,
+    classes: CaseSet,
     scans: Vec<Scan>,
 }
 
@@ -72,9 +76,14 @@ pub struct EvaluationCase {
 }
 
 impl EvaluationSet {
-    /// The set of a seed, of procedural objects.
+    /// The general set of a seed, of procedural objects.
     pub fn new(seed: u64) -> Self {
-        Self { seed, scans: Vec::new() }
+        Self { seed, ..Self::default() }
+    }
+
+    /// The set of the same seed with the classes of `classes`.
+    pub fn of(self, classes: CaseSet) -> Self {
+        Self { classes, ..self }
     }
 
     /// The set that shows, in a third of its cases, the GLB files of a folder.
@@ -82,7 +91,7 @@ impl EvaluationSet {
     /// # Errors
     /// [`ErrorCode::InvalidArgument`] if a folder cannot be read, and those of the readers.
     pub fn with_meshes(seed: u64, folder: &Path) -> Result<Self> {
-        Ok(Self { seed, scans: Scan::all(folder)? })
+        Ok(Self { scans: Scan::all(folder)?, ..Self::new(seed) })
     }
 
     /// Case `index`. It depends on the set's seed, its meshes and the index alone.
@@ -91,7 +100,12 @@ impl EvaluationSet {
     /// Only in case of a bug in the generator.
     pub fn case(&self, index: usize) -> Result<EvaluationCase> {
         for draw in 0..DRAWS {
-            if let Some(case) = self.draw(index, mixed([self.seed, index as u64, draw]))? {
+            let seed = mixed([self.seed, index as u64, draw]);
+            let seed = match self.classes {
+                CaseSet::General => seed,
+                CaseSet::Sensors => mixed([seed, SENSOR_STREAM]),
+            };
+            if let Some(case) = self.draw(index, seed)? {
                 return Ok(case);
             }
         }
@@ -106,7 +120,7 @@ impl EvaluationSet {
 
     /// A draw of a case; `None` if it shows too little of the object, or not the property of its class.
     fn draw(&self, index: usize, seed: u64) -> Result<Option<EvaluationCase>> {
-        let (tier, class) = (Tier::of(index), Class::of(index));
+        let (tier, class) = (Tier::of(index), self.classes.class(index));
         let random = &mut Random::new(seed, OBJECT_STREAM);
         let object = families::draw(random, tier, class, &self.scans)?;
         let random = &mut Random::new(seed, SCENE_STREAM);
@@ -114,14 +128,20 @@ impl EvaluationSet {
         let scene = Scene::draw(&placed, tier, class, random)?;
         let Some(mut tags) = shows_enough(&scene, &placed, &object, tier, class) else { return Ok(None) };
 
-        let segmented = Segmented::draw(&scene, (tier, class), &mut Random::new(seed, MASK_STREAM))?;
-        let mask_px = segmented.mask.data().iter().filter(|m| **m != 0).count();
-        if mask_px < MIN_MASK_PX || (class == Class::Tiny && mask_px > 1600) {
+        let mut segmented = Segmented::draw(&scene, (tier, class), &mut Random::new(seed, MASK_STREAM))?;
+        let random = &mut Random::new(seed, READINGS_STREAM);
+        let mut readings = Readings::draw(&scene, object.diagonal(), (tier, class), random)?;
+        if readings.missing > tier.pick(0.1, 0.25, 0.4) {
             return Ok(None);
         }
-        let random = &mut Random::new(seed, READINGS_STREAM);
-        let readings = Readings::draw(&scene, object.diagonal(), (tier, class), random)?;
-        if readings.missing > tier.pick(0.1, 0.25, 0.4) {
+        let shown = Shown { mesh: &placed, parts: &object.parts, keys: &object.keys };
+        let random = &mut Random::new(seed, SENSOR_STREAM);
+        let (cell, observed) = ((tier, class), (&mut readings, &mut segmented));
+        let Some(effects) = sensor::apply(&scene, &shown, object.diagonal(), cell, observed, random)? else {
+            return Ok(None);
+        };
+        let mask_px = segmented.mask.data().iter().filter(|m| **m != 0).count();
+        if mask_px < MIN_MASK_PX || (class == Class::Tiny && mask_px > 1600) {
             return Ok(None);
         }
         let random = &mut Random::new(seed, GENERATOR_STREAM);
@@ -144,6 +164,7 @@ impl EvaluationSet {
             ("missingDepth", readings.missing),
             ("diagonalM", object.diagonal()),
         ];
+        parameters.extend(effects);
         parameters.extend(generated.parameters);
         Ok(Some(EvaluationCase {
             index,
@@ -206,9 +227,10 @@ fn shows_enough(scene: &Scene, placed: &Mesh, object: &Object, tier: Tier, class
     let shows_class = match class {
         Class::Occluded => scene.hidden >= tier.pick(0.0, 0.05, 0.08),
         Class::BorderCut => (0.04..=0.25).contains(&scene.cut),
+        Class::SplitMask => scene.cut < 1e-9 && in_two(&scene.visible, scene.width),
         _ => scene.cut < 1e-9,
     };
-    if pixels < MIN_MASK_PX || visible < tier.least_visible() || !shows_class || !is_telling(scene, placed, tier) {
+    if pixels < MIN_MASK_PX || visible < tier.least_visible(class) || !shows_class || !is_telling(scene, placed, tier) {
         return None;
     }
     let far = scene.object_depth.iter().any(|z| *z > FARTHEST_M);

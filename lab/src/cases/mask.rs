@@ -96,7 +96,7 @@ impl Segmented {
 }
 
 /// Distance to the outline of what is visible, pixels: negative inside, ±0.5 along it, large far away.
-fn signed_distances(scene: &Scene) -> Vec<f32> {
+pub(super) fn signed_distances(scene: &Scene) -> Vec<f32> {
     let (width, height) = (scene.width, scene.height);
     let mut signed = vec![f32::MAX; width * height];
     // Only around the object: the transform costs more than anything else here.
@@ -125,19 +125,19 @@ fn signed_distances(scene: &Scene) -> Vec<f32> {
 }
 
 /// Smooth noise from −1 to 1: a lattice of random values, blended between.
-struct Noise {
+pub(super) struct Noise {
     cell: f64,
     columns: usize,
     values: Vec<f64>,
 }
 
 impl Noise {
-    fn new(scene: &Scene, cell: f64, random: &mut Random) -> Self {
+    pub(super) fn new(scene: &Scene, cell: f64, random: &mut Random) -> Self {
         let [columns, rows] = [scene.width, scene.height].map(|n| (n as f64 / cell) as usize + 2);
         Self { cell, columns, values: (0..columns * rows).map(|_| between(random, -1.0, 1.0)).collect() }
     }
 
-    fn at(&self, u: usize, v: usize) -> f64 {
+    pub(super) fn at(&self, u: usize, v: usize) -> f64 {
         let [x, y] = [u, v].map(|x| x as f64 / self.cell);
         let (i, j) = (x as usize, y as usize);
         let (s, t) = (x - i as f64, y - j as f64);

@@ -2,7 +2,8 @@
 //! meshes.
 //!
 //! Case i depends on the seed of the set and i alone. i % 3 is its tier, and i / 3 cycles through the classes of the
-//! tier, so that any range of cases contains all of them evenly. A draw that shows too little of the object is repeated
+//! tier, so that any range of cases contains all of them evenly. The sets of a seed ([`tier::CaseSet`]) have no case in
+//! common. A draw that shows too little of the object is repeated
 //! with other random numbers.
 
 pub mod case;
@@ -12,12 +13,17 @@ pub(crate) mod draft;
 pub(crate) mod families;
 mod figures;
 pub(crate) mod generator;
+mod holes;
 mod kitchen;
 pub(crate) mod mask;
+mod predicted_mask;
 pub(crate) mod readings;
 mod scans;
 pub(crate) mod scene;
+mod sensor;
+mod shadow;
 pub(crate) mod solid;
+mod split;
 pub(crate) mod streams;
 pub mod tier;
 mod tools;

@@ -39,7 +39,7 @@ impl Readings {
         (tier, class): (Tier, Class),
         random: &mut Random,
     ) -> Result<Self> {
-        let sensor = chance(random, tier.pick(0.3, 0.35, 0.3)) || class == Class::SparseSensor;
+        let sensor = chance(random, tier.pick(0.3, 0.35, 0.3)) || class == Class::SparseSensor || class.needs_sensor();
         let (mut depth, drifts, bias) = if sensor {
             (sensed(scene, diagonal, (tier, class), random), vec![0.0; things.len()], 1.0)
         } else {
@@ -47,11 +47,16 @@ impl Readings {
             (depth, drifts, libm::exp(between(random, libm::log(0.8), libm::log(1.25))))
         };
         depth.iter_mut().for_each(|z| *z *= bias as f32);
-        let shown = || depth.iter().zip(&scene.visible).filter(|(_, visible)| **visible);
-        let missing = shown().filter(|(z, _)| **z == 0.0).count() as f64 / shown().count().max(1) as f64;
+        let missing = missing(scene, &depth);
         let kind = if sensor { "sensor" } else { "monocular" };
         Ok(Self { depth: DepthMap::from_metres(scene.width, scene.height, depth)?, bias, kind, missing, drifts })
     }
+}
+
+/// Fraction of the visible pixels of the object without a reading.
+pub fn missing(scene: &Scene, depth: &[f32]) -> f64 {
+    let shown = || depth.iter().zip(&scene.visible).filter(|(_, visible)| **visible);
+    shown().filter(|(z, _)| **z == 0.0).count() as f64 / shown().count().max(1) as f64
 }
 
 /// Monocular: blurred over edges, warped by long waves, hardly any noise. The warp has no part that moves the object

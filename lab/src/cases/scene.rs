@@ -7,6 +7,7 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::draft::{Axis, Object};
 use super::solid::Solid;
+use super::split;
 use super::tier::{Class, Tier};
 use crate::cases::distortion::random_rotation;
 use crate::draws::{between, chance, sign};
@@ -158,6 +159,7 @@ impl Scene {
         let wanted = match (tier, class) {
             (Tier::Medium, Class::Occluded) => Some([0.06, 0.22]),
             (Tier::Hard, Class::Occluded) => Some([0.1, 0.4]),
+            (_, Class::SplitMask) => None,
             (Tier::Medium, _) if chance(random, 0.15) => Some([0.0, 0.1]),
             (Tier::Hard, _) if chance(random, 0.25) => Some([0.0, 0.15]),
             _ => None,
@@ -174,8 +176,19 @@ impl Scene {
                 }
             }
         }
+        if class == Class::SplitMask {
+            for _ in 0..OCCLUDERS {
+                let mut candidate = solid.clone();
+                split::bar(&object_depth, width, (&camera, &pose), random, &mut candidate);
+                let with = rendered(&candidate, &pose, &plan)?;
+                if split::in_two(&shown(&object_depth, &with), width) {
+                    (solid, others) = (candidate, with);
+                    break;
+                }
+            }
+        }
         let hidden_px = hidden(&object_depth, &others);
-        let visible = object_depth.iter().zip(&others).map(|(&z, &other)| in_front(z, other)).collect();
+        let visible = shown(&object_depth, &others);
         drop(solid);
         let mut depth = background(&pose, &camera, wall, width, height);
         put_before(&mut depth, &object_depth);
@@ -324,6 +337,11 @@ pub fn count(depth: &[f32]) -> usize {
 /// Whether depth `z` is in front of the other; 0 is empty.
 pub fn in_front(z: f32, other: f32) -> bool {
     z > 0.0 && (other == 0.0 || z <= other)
+}
+
+/// Pixels that show the object, before and behind the others.
+fn shown(object: &[f32], others: &[f32]) -> Vec<bool> {
+    object.iter().zip(others).map(|(&z, &other)| in_front(z, other)).collect()
 }
 
 /// Number of occluded pixels of the object.

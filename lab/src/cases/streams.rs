@@ -11,6 +11,8 @@ pub(crate) const GENERATOR_STREAM: u64 = 3;
 pub(crate) const READINGS_STREAM: u64 = 4;
 /// Errors of the mask.
 pub(crate) const MASK_STREAM: u64 = 5;
+/// Effects of sensors.
+pub(crate) const SENSOR_STREAM: u64 = 6;
 /// Cluttered scenes: positions of objects and clutter, and the viewpoint.
 pub(crate) const LAYOUT_STREAM: u64 = 17;
 /// Cluttered scenes: number of objects per scene.

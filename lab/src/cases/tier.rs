@@ -1,6 +1,16 @@
-//! Tiers of difficulty, and classes of cases.
+//! Sets of cases, tiers of difficulty, and classes of cases.
 
 use sim3align_geometry::error::{Error, ErrorCode, Result};
+
+/// A set of classes that are generated together. The sets share no random numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub enum CaseSet {
+    /// Errors of segmentation models, depth models and generated meshes.
+    #[default]
+    General,
+    /// Effects of depth sensors and predicted masks.
+    Sensors,
+}
 
 /// Tier of difficulty of a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -38,6 +48,19 @@ pub enum Class {
     SparseSensor,
     /// An object that looks almost the same after a half turn: phone, toy car, banana.
     Ambiguous,
+    /// Depth from a sensor whose projector stands beside the camera: beside the object, a band of the background that
+    /// the camera sees and the projector does not has no reading.
+    WideShadow,
+    /// No readings where the object is dark, reflects, or is seen at a grazing angle.
+    Holes,
+    /// The holes of [`Class::Holes`], which the mask does not contain either.
+    MaskOfReadings,
+    /// A bar before the object cuts the mask in two; in half of the cases, one part has no reading.
+    SplitMask,
+    /// Depth in steps of millimetres that grow with its square, as disparities in steps give it.
+    Quantised,
+    /// A mask with smooth errors of its outline and small islands, as a segmentation network predicts it.
+    PredictedMask,
 }
 
 const EASY: &[Class] = &[Class::Plain];
@@ -67,6 +90,39 @@ const HARD: &[Class] = &[
     Class::Occluded,
     Class::ExtraPart,
 ];
+/// Of every tier.
+const SENSORS: &[Class] =
+    &[Class::WideShadow, Class::Holes, Class::MaskOfReadings, Class::SplitMask, Class::Quantised, Class::PredictedMask];
+
+impl CaseSet {
+    /// All sets.
+    pub const ALL: &[Self] = &[Self::General, Self::Sensors];
+
+    /// The set's name.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::General => "general",
+            Self::Sensors => "sensors",
+        }
+    }
+
+    /// The set of a name.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidOption`] for any other.
+    pub fn from_name(name: &str) -> Result<Self> {
+        named(Self::ALL, Self::as_str, "set", name)
+    }
+
+    /// The class of a case of this set.
+    pub fn class(self, index: usize) -> Class {
+        let classes = match self {
+            Self::General => Tier::of(index).pick(EASY, MEDIUM, HARD),
+            Self::Sensors => SENSORS,
+        };
+        classes[index / 3 % classes.len()]
+    }
+}
 
 impl Tier {
     /// All tiers.
@@ -104,8 +160,9 @@ impl Tier {
     }
 
     /// The share of the object's silhouette that is visible at least.
-    pub fn least_visible(self) -> f64 {
-        self.pick(0.95, 0.75, 0.55)
+    pub fn least_visible(self, class: Class) -> f64 {
+        let easy = if class == Class::SplitMask { 0.8 } else { 0.95 };
+        self.pick(easy, 0.75, 0.55)
     }
 }
 
@@ -123,13 +180,13 @@ impl Class {
         Self::Warped,
         Self::SparseSensor,
         Self::Ambiguous,
+        Self::WideShadow,
+        Self::Holes,
+        Self::MaskOfReadings,
+        Self::SplitMask,
+        Self::Quantised,
+        Self::PredictedMask,
     ];
-
-    /// The class of a case.
-    pub fn of(index: usize) -> Self {
-        let classes = Tier::of(index).pick(EASY, MEDIUM, HARD);
-        classes[index / 3 % classes.len()]
-    }
 
     /// The class's name.
     pub fn as_str(self) -> &'static str {
@@ -145,7 +202,18 @@ impl Class {
             Self::Warped => "warped",
             Self::SparseSensor => "sparse-sensor",
             Self::Ambiguous => "ambiguous",
+            Self::WideShadow => "wide-shadow",
+            Self::Holes => "holes",
+            Self::MaskOfReadings => "mask-of-readings",
+            Self::SplitMask => "split-mask",
+            Self::Quantised => "quantised",
+            Self::PredictedMask => "predicted-mask",
         }
+    }
+
+    /// Whether a sensor measured the depth, and no model estimated it.
+    pub(super) fn needs_sensor(self) -> bool {
+        SENSORS.contains(&self) && self != Self::PredictedMask
     }
 
     /// The class of a name.

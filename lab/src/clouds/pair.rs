@@ -13,6 +13,9 @@ use sim3align_geometry::similarity::Similarity;
 /// Largest root mean squared error of a success on 3DMatch and 3DLoMatch, in metres.
 pub const RMSE_M: f64 = 0.2;
 
+/// Largest error of a free scale, relative: at 4 m, the range of a depth camera, as far as [`RMSE_M`].
+pub const SCALE: f64 = 0.05;
+
 /// Largest rotation error of a success on KITTI, in degrees.
 pub const ROTATION_DEG: f64 = 5.0;
 
@@ -55,6 +58,8 @@ pub struct Pair {
 pub struct Errors {
     /// Angle of the rotation error (RRE).
     pub rotation_deg: f64,
+    /// |s / s_true − 1|.
+    pub scale: f64,
     /// Length of the translation error (RTE).
     pub translation_m: f64,
     /// Root mean squared distance of corresponding points; `None` where no information matrix is known.
@@ -69,6 +74,7 @@ impl Pair {
         let truth = &self.target_from_source;
         let rotation_deg = truth.rotation_angle_to(estimate).to_degrees();
         let translation_m = (truth.translation - estimate.translation).norm();
+        let scale = (estimate.scale / truth.scale - 1.0).abs();
         let (rmse_m, success) = match &self.criterion {
             Criterion::Rmse(information) => {
                 let squared = mean_squared_error(estimate, truth, information);
@@ -76,7 +82,7 @@ impl Pair {
             }
             Criterion::Errors => (None, rotation_deg < ROTATION_DEG && translation_m < TRANSLATION_M),
         };
-        Errors { rotation_deg, translation_m, rmse_m, success }
+        Errors { rotation_deg, scale, translation_m, rmse_m, success: success && scale <= SCALE }
     }
 
     /// Distance of the origins of the clouds, in metres: the motion of the sensor.

@@ -173,6 +173,11 @@ impl ClutteredScene {
 }
 
 impl ScenePair {
+    /// Whether the object looks the same after some turn.
+    pub fn is_symmetric(&self) -> bool {
+        !self.placed.symmetry.is_empty()
+    }
+
     /// The pair with what a prior makes of the object.
     ///
     /// # Errors

@@ -14,6 +14,7 @@ mod registration;
 mod registration_program;
 mod samples;
 mod scenes;
+mod sensors;
 // Some of it serves the core's tests alone.
 #[allow(dead_code)]
 #[path = "../../../tests/suite/shapes.rs"]

@@ -11,12 +11,14 @@ use sim3align::progress::Silent;
 use sim3align::register::options::RegisterOptions;
 use sim3align::register::register;
 use sim3align_geometry::error::ErrorCode;
+use sim3align_geometry::kd_tree::KdTree;
 use sim3align_geometry::similarity::{Similarity, vector3};
 use sim3align_lab::case_folder::write::ply_points;
 use sim3align_lab::clouds::cloud_file::{bin, flat, read_cloud};
 use sim3align_lab::clouds::lidar_set::{Drive, write_lidar};
+use sim3align_lab::clouds::object_set::write_objects;
 use sim3align_lab::clouds::overlap::overlap;
-use sim3align_lab::clouds::overlap::{information, mean_squared_error};
+use sim3align_lab::clouds::overlap::{covered, information, mean_squared_error};
 use sim3align_lab::clouds::pair::{Criterion, Pair};
 use sim3align_lab::clouds::room_set::{RoomScene, SAME_SURFACE_M, write_rooms};
 use sim3align_lab::clouds::trajectory::{Block, read_blocks, text};
@@ -277,6 +279,55 @@ fn rooms_with_a_third_in_common_are_registered() {
     };
     let right = chosen.iter().filter(is_right).count();
     assert!(right >= 4, "{right} of 5");
+}
+
+#[test]
+fn rooms_of_another_unit_are_registered() {
+    let pairs = three_d_match::pairs(&ROOMS, None).unwrap();
+    let chosen: Vec<&Pair> = with_overlap(&pairs, 0.4, 1.0).into_iter().take(4).collect();
+    let is_right = |pair: &&&Pair| {
+        let (source, target) = (read_cloud(&pair.source).unwrap(), read_cloud(&pair.target).unwrap());
+        let scaled: Vec<Vec3> = source.iter().map(|&p| 0.3 * p).collect();
+        let found = register(&flat(&scaled), &flat(&target), &RegisterOptions::default(), &mut Silent).unwrap();
+        let pose = Similarity::from_column_major(&found.target_from_source.matrix).unwrap();
+        let errors = pair.errors(&pose.compose(&Similarity { scale: 0.3, ..Similarity::identity() }));
+        println!("{}: {errors:?}", pair.id);
+        errors.success
+    };
+    let right = chosen.iter().filter(is_right).count();
+    assert!(right >= 3, "{right} of 4");
+}
+
+#[test]
+fn a_wrong_scale_is_no_success() {
+    let pair = three_d_match::pairs(&ROOMS, None).unwrap().swap_remove(0);
+    for (scale, success) in [(1.04, true), (1.06, false), (0.3, false)] {
+        let estimate = Similarity { scale, ..pair.target_from_source };
+        let errors = pair.errors(&estimate);
+        assert_eq!(
+            (errors.success, (errors.scale - (scale - 1.0_f64).abs()).abs() < 1e-12),
+            (success, true),
+            "{scale}"
+        );
+    }
+}
+
+#[test]
+fn objects_lie_on_what_their_scenes_show() {
+    let root = folder("objects");
+    write_objects(&root, 3, 2).unwrap();
+    let pairs = three_d_match::pairs(&root, None).unwrap();
+    assert!(pairs.len() >= 2, "{} pairs", pairs.len());
+    for pair in pairs {
+        let (source, target) = (read_cloud(&pair.source).unwrap(), read_cloud(&pair.target).unwrap());
+        let near = covered(&source, &KdTree::new(&target), &pair.target_from_source, 0.15).len();
+        let share = near as f64 / source.len() as f64;
+        println!("{}: {} and {} points, {share:.2}", pair.id, source.len(), target.len());
+        // One side of it, about; both of what is thin.
+        assert!((0.1..=1.0).contains(&share), "{}: {share}", pair.id);
+        assert!(pair.overlap.unwrap() <= share && target.len() > 1000, "{}", pair.id);
+        assert!(pair.errors(&pair.target_from_source).success);
+    }
 }
 
 #[test]

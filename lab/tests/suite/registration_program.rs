@@ -92,6 +92,16 @@ fn a_run_goes_on_where_it_was_stopped_and_keeps_what_other_options_found() {
 }
 
 #[test]
+fn a_scaled_source_is_registered_with_a_free_scale_only() {
+    let scene = Scene::new("scaled");
+    let free = scene.run(&["--scaled", "1", "--option", "scale=free"]);
+    assert_eq!(free[0]["success"], true, "{free:?}");
+    assert!(free[0]["scale"].as_f64().unwrap() < 1e-3);
+    let fixed = scene.run(&["--scaled", "1"]);
+    assert_eq!(fixed[0]["success"], false);
+}
+
+#[test]
 fn every_third_pair_is_what_it_says() {
     let scene = Scene::new("every");
     let identity = nalgebra::Matrix4::identity();

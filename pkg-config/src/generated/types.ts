@@ -847,6 +847,14 @@ scaleRatio: number,
  */
 converged: boolean, 
 /**
+ * Number of source points that `register` skipped, because a coordinate is NaN or infinite.
+ */
+skippedSourcePoints: number, 
+/**
+ * Number of target points that `register` skipped.
+ */
+skippedTargetPoints: number, 
+/**
  * Sizes of the problem and events during the run.
  */
 counts: Counts, 

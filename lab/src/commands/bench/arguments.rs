@@ -16,7 +16,7 @@ use sim3align_lab::bench::benchmark::override_setting;
 use sim3align_lab::bench::option_text;
 use sim3align_lab::bench::records::RecordKey;
 use sim3align_lab::cases::case::CASES;
-use sim3align_lab::cases::tier::{Class, Tier};
+use sim3align_lab::cases::tier::{CaseSet, Class, Tier};
 use sim3align_lab::scenes::Prior;
 
 pub const USAGE: &str = "\
@@ -28,12 +28,14 @@ Cases
   --generated N      cases 0 to N − 1 of the generated set; 240 where no --cases or --scenes is given either
   --scenes N         all pairs of a set of N cluttered scenes; 100 scenes are 338 pairs
   --prior P          what made the meshes of the scenes: detailed (default), smooth or both
+  --set SET          the generated set: general (default), or sensors, with effects of depth sensors and predicted masks
   --set-seed S       seed of the generated set and of the scenes, default 0
   --meshes DIR       show the GLB files of a folder in a third of the generated cases
   --cases DIR...     case folders, or folders of case folders
   --tier T,…         only these: easy, medium, hard
   --class C,…        only these: plain, occluded, border-cut, tiny, thin, missing-part, extra-part, ragged-mask,
-                     warped, sparse-sensor, ambiguous
+                     warped, sparse-sensor, ambiguous; of the set sensors: wide-shadow, holes, mask-of-readings,
+                     split-mask, quantised, predicted-mask
   --only I,…         only these indices of the generated set (--generated is not needed)
 
 Method
@@ -114,6 +116,7 @@ pub struct Arguments {
     pub generated: usize,
     pub scenes: usize,
     pub priors: Vec<Prior>,
+    pub set: CaseSet,
     pub set_seed: u64,
     pub meshes: Option<PathBuf>,
     pub cases: Vec<PathBuf>,
@@ -140,6 +143,7 @@ impl Arguments {
             generated: 0,
             scenes: 0,
             priors: vec![Prior::Detailed],
+            set: CaseSet::General,
             set_seed: 0,
             meshes: None,
             cases: Vec::new(),
@@ -160,6 +164,7 @@ impl Arguments {
                 Long("generated") => generated = Some(parser.value()?.parse()?),
                 Long("scenes") => arguments.scenes = parser.value()?.parse()?,
                 Long("prior") => arguments.priors = Prior::several(&parser.value()?.string()?).map_err(said)?,
+                Long("set") => arguments.set = CaseSet::from_name(&parser.value()?.string()?).map_err(said)?,
                 Long("set-seed") => arguments.set_seed = parser.value()?.parse()?,
                 Long("meshes") => arguments.meshes = Some(parser.value()?.into()),
                 Long("cases") => arguments.cases.extend(parser.values()?.map(PathBuf::from)),

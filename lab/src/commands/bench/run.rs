@@ -14,7 +14,7 @@ use sim3align_lab::bench::imported::imported;
 use sim3align_lab::bench::overlay::picture;
 use sim3align_lab::bench::records::{RecordFile, RecordKey};
 use sim3align_lab::cases::case::EvaluationSet;
-use sim3align_lab::cases::tier::{Class, Tier};
+use sim3align_lab::cases::tier::{CaseSet, Tier};
 use sim3align_lab::parallel::parallel_map;
 use sim3align_lab::scenes::{ClutteredScene, Prior, SceneSet};
 
@@ -23,7 +23,7 @@ use super::table;
 
 /// The source of a case.
 pub enum Source {
-    Generated(usize),
+    Generated(CaseSet, usize),
     Scene { scene: usize, pair: usize, prior: Prior },
     Folder(PathBuf),
 }
@@ -32,7 +32,8 @@ impl Source {
     /// Unique name of the case within a run.
     fn id(&self) -> String {
         match self {
-            Self::Generated(index) => format!("generated-{index:04}"),
+            Self::Generated(CaseSet::General, index) => format!("generated-{index:04}"),
+            Self::Generated(set, index) => format!("{}-{index:04}", set.as_str()),
             Self::Scene { scene, pair, prior } => format!("scene-{scene:03}-{pair}-{}", prior.as_str()),
             Self::Folder(folder) => folder.file_name().unwrap_or_default().to_string_lossy().into_owned(),
         }
@@ -80,6 +81,7 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
         Some(folder) => EvaluationSet::with_meshes(arguments.set_seed, folder).map_err(|error| error.to_string())?,
         None => EvaluationSet::new(arguments.set_seed),
     };
+    let set = set.of(arguments.set);
     let scenes = Scenes::new(SceneSet::new(arguments.set_seed, arguments.scenes));
     let sources = sources(arguments, &scenes)?;
     if sources.is_empty() {
@@ -87,7 +89,7 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
     }
     if let Some(folder) = &arguments.write {
         return map_with_progress(arguments.threads, &sources, |source| match source {
-            Source::Generated(index) => {
+            Source::Generated(_, index) => {
                 let case = set.case(*index).map_err(|error| error.to_string())?;
                 case.write(&folder.join(case.name())).map_err(|error| error.to_string())
             }
@@ -114,7 +116,7 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
     print!("{}", table::report(&rows, arguments.failures));
     if let Some(path) = &arguments.json {
         let rows: Vec<_> = rows.iter().map(|(name, records)| json!({ "row": name, "records": records })).collect();
-        let all = json!({ "setSeed": arguments.set_seed, "rows": rows });
+        let all = json!({ "set": arguments.set.as_str(), "setSeed": arguments.set_seed, "rows": rows });
         fs::write(path, format!("{all}\n")).map_err(|error| format!("{}: {error}", path.display()))?;
     }
     Ok(())
@@ -179,7 +181,7 @@ fn run_row(case: &BenchCase, row: &Row) -> Record {
 
 fn load(source: &Source, set: &EvaluationSet, scenes: &Scenes) -> Result<BenchCase, String> {
     let case = match source {
-        Source::Generated(index) => set.case(*index).map(BenchCase::from),
+        Source::Generated(_, index) => set.case(*index).map(BenchCase::from),
         Source::Scene { scene, pair, prior } => scenes.case(*scene, *pair, *prior),
         Source::Folder(folder) => BenchCase::read(folder),
     };
@@ -187,13 +189,15 @@ fn load(source: &Source, set: &EvaluationSet, scenes: &Scenes) -> Result<BenchCa
 }
 
 fn sources(arguments: &Arguments, scenes: &Scenes) -> Result<Vec<Source>, String> {
-    let fits =
-        |&index: &usize| arguments.tiers.contains(&Tier::of(index)) && arguments.classes.contains(&Class::of(index));
+    let fits = |&index: &usize| {
+        arguments.tiers.contains(&Tier::of(index)) && arguments.classes.contains(&arguments.set.class(index))
+    };
     let generated: Vec<usize> = match &arguments.only {
         Some(only) => only.clone(),
         None => (0..arguments.generated).filter(fits).collect(),
     };
-    let mut sources: Vec<Source> = generated.into_iter().map(Source::Generated).collect();
+    let of_set = |index| Source::Generated(arguments.set, index);
+    let mut sources: Vec<Source> = generated.into_iter().map(of_set).collect();
     sources.extend(scenes.sources(&arguments.priors));
     for folder in &arguments.cases {
         sources.extend(case_folders(folder)?.into_iter().map(Source::Folder));

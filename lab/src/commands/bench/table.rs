@@ -31,6 +31,7 @@ pub fn report(rows: &[(String, Vec<&Record>)], failures: usize) -> String {
     let Some((_, first)) = rows.first() else { return out };
     let mut groups: Vec<(String, Vec<usize>)> = vec![("all".into(), (0..first.len()).collect())];
     groups.extend(grouped(first, |record| record.tier.clone()));
+    groups.extend(grouped(first, |record| record.class.clone()));
     groups.extend(grouped(first, |record| format!("{}, {}", record.tier, record.class)));
     header(&mut out, "cases", &["row", "n", "strict", "loose", "scale %", "rotation °", "translation %"]);
     for (group, members) in &groups {

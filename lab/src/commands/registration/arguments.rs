@@ -7,12 +7,13 @@ use lexopt::prelude::*;
 use super::method::Method;
 
 pub const USAGE: &str = "\
-Usage: sim3align-lab registration write rooms|lidar OUT [--seed S] [--scenes N]
+Usage: sim3align-lab registration write rooms|lidar|objects OUT [--seed S] [--scenes N]
        sim3align-lab registration run --data PATH [options]
 
-write: pairs of decreasing overlap with a known transform: rooms in 3DMatch's layout, streets in KITTI's
+write: pairs of decreasing overlap with a known transform: rooms in 3DMatch's layout, streets in KITTI's,
+       objects and cluttered scenes that contain them in 3DMatch's, in decimetres
   --seed S           default 0
-  --scenes N         rooms or drives, default 4
+  --scenes N         rooms, drives or cluttered scenes, default 4
 
 run: registers pairs and prints a Markdown table of recall and errors
   --data PATH        3DMatch: <scene>/cloud_bin_<i>.ply with <scene>-evaluation/gt.log, <scene>/gt.log or
@@ -27,6 +28,8 @@ run: registers pairs and prints a Markdown table of recall and errors
   --measure-overlap  measures the overlap where it is not listed, for the table's bins
   --moved SEED       moves each source by a random rigid transform first, each target by another, so that no method
                      can use where the sensor stood; 0 (default) moves nothing
+  --scaled SEED      scales each source by a random factor from 0.1 to 10 first; needs --option scale=free for register.
+                     0 (default) scales nothing
   --records FILE     one JSON line for each pair and method; those that are there are not run again
   --json FILE        everything about every pair
   --pairs-json FILE  writes [{ id, source, target, voxelSizeM }] for other programs, and runs nothing
@@ -42,6 +45,7 @@ pub enum Command {
 pub enum Kind {
     Rooms,
     Lidar,
+    Objects,
 }
 
 #[derive(Clone, Copy)]
@@ -60,6 +64,7 @@ pub struct Run {
     pub every: usize,
     pub measure_overlap: bool,
     pub moved: u64,
+    pub scaled: u64,
     pub records: Option<PathBuf>,
     pub json: Option<PathBuf>,
     pub pairs_json: Option<PathBuf>,
@@ -89,11 +94,12 @@ fn write(mut parser: lexopt::Parser) -> Result<Option<Command>, lexopt::Error> {
             other => return Err(other.unexpected()),
         }
     }
-    let [kind, out] = words.as_slice() else { return Err("write needs rooms or lidar, and a folder".into()) };
+    let [kind, out] = words.as_slice() else { return Err("write needs rooms, lidar or objects, and a folder".into()) };
     let kind = match kind.to_str() {
         Some("rooms") => Kind::Rooms,
         Some("lidar") => Kind::Lidar,
-        _ => return Err("write knows rooms and lidar".into()),
+        Some("objects") => Kind::Objects,
+        _ => return Err("write knows rooms, lidar and objects".into()),
     };
     Ok(Some(Command::Write { kind, out: out.into(), seed, scenes }))
 }
@@ -109,6 +115,7 @@ fn run(mut parser: lexopt::Parser) -> Result<Option<Command>, lexopt::Error> {
         every: 1,
         measure_overlap: false,
         moved: 0,
+        scaled: 0,
         records: None,
         json: None,
         pairs_json: None,
@@ -132,6 +139,7 @@ fn run(mut parser: lexopt::Parser) -> Result<Option<Command>, lexopt::Error> {
             Long("every") => run.every = parser.value()?.parse::<usize>()?.max(1),
             Long("measure-overlap") => run.measure_overlap = true,
             Long("moved") => run.moved = parser.value()?.parse()?,
+            Long("scaled") => run.scaled = parser.value()?.parse()?,
             Long("records") => run.records = Some(parser.value()?.into()),
             Long("json") => run.json = Some(parser.value()?.into()),
             Long("pairs-json") => run.pairs_json = Some(parser.value()?.into()),

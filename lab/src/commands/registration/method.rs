@@ -71,9 +71,10 @@ impl Method {
         }
     }
 
-    /// The key of its record of a pair; `moved` is the seed of the random transforms.
-    pub fn key(&self, pair: &Pair, moved: u64) -> RecordKey {
+    /// The key of its record of a pair; `moved` and `scaled` are the seeds of the random transforms.
+    pub fn key(&self, pair: &Pair, moved: u64, scaled: u64) -> RecordKey {
         let mut options = vec![format!("moved={moved}")];
+        options.extend((scaled != 0).then(|| format!("scaled={scaled}")));
         if let Self::Register { assignments, .. } = self {
             options.extend_from_slice(assignments);
         }

@@ -10,6 +10,7 @@ use sim3align_geometry::voxel_grid::voxel_downsample;
 use sim3align_lab::bench::records::RecordFile;
 use sim3align_lab::clouds::cloud_file::read_cloud;
 use sim3align_lab::clouds::lidar_set::write_lidar;
+use sim3align_lab::clouds::object_set::write_objects;
 use sim3align_lab::clouds::overlap::overlap;
 use sim3align_lab::clouds::pair::Pair;
 use sim3align_lab::clouds::room_set::write_rooms;
@@ -22,11 +23,14 @@ use super::table::{self, Record};
 
 /// Random stream of `--moved`.
 const MOVED_STREAM: u64 = 0x6d6f_7665;
+/// Random stream of `--scaled`.
+const SCALED_STREAM: u64 = 0x7363_616c;
 
 pub fn run(command: &Command) -> Result<(), String> {
     match command {
         Command::Write { kind: Kind::Rooms, out, seed, scenes } => write_rooms(out, *seed, *scenes),
         Command::Write { kind: Kind::Lidar, out, seed, scenes } => write_lidar(out, *seed, *scenes),
+        Command::Write { kind: Kind::Objects, out, seed, scenes } => write_objects(out, *seed, *scenes),
         Command::Run(run) => return run_pairs(run),
     }
     .map_err(|error| error.to_string())
@@ -73,7 +77,9 @@ fn pairs(run: &Run) -> Result<Vec<Pair>, String> {
 }
 
 fn run_pair(pair: &Pair, run: &Run, records: Option<&RecordFile<Record>>) -> Result<Vec<Record>, String> {
-    let known = |method: &Method| records?.get(&method.key(pair, run.moved)).filter(|_| method.needs_clouds()).cloned();
+    let known = |method: &Method| {
+        records?.get(&method.key(pair, run.moved, run.scaled)).filter(|_| method.needs_clouds()).cloned()
+    };
     let missing = run.methods.iter().any(|method| method.needs_clouds() && known(method).is_none());
     let overlap_of = |method| known(method)?.overlap;
     let measured = pair.overlap.or_else(|| run.methods.iter().find_map(overlap_of));
@@ -89,6 +95,7 @@ fn run_pair(pair: &Pair, run: &Run, records: Option<&RecordFile<Record>>) -> Res
     });
     // Transforms each cloud randomly, and converts the result back to the original frames.
     let (source_move, target_move) = (moved(run.moved, &pair.id, 0), moved(run.moved, &pair.id, 1));
+    let source_move = scaled(run.scaled, &pair.id).compose(&source_move);
     let [source, target] = [(source, source_move), (target, target_move)]
         .map(|(points, pose)| points.iter().map(|&p| vec3(&pose.apply(vector3(p)))).collect::<Vec<Vec3>>());
     let mut made = Vec::new();
@@ -111,6 +118,7 @@ fn run_pair(pair: &Pair, run: &Run, records: Option<&RecordFile<Record>>) -> Res
             distance_m: pair.distance_m(),
             success: errors.is_some_and(|errors| errors.success),
             rotation_deg: errors.map(|errors| errors.rotation_deg),
+            scale: errors.map(|errors| errors.scale),
             translation_m: errors.map(|errors| errors.translation_m),
             rmse_m: errors.and_then(|errors| errors.rmse_m),
             error: answer.target_from_source.as_ref().err().cloned(),
@@ -118,11 +126,22 @@ fn run_pair(pair: &Pair, run: &Run, records: Option<&RecordFile<Record>>) -> Res
             matrix: answer.target_from_source.as_ref().ok().map(Similarity::to_column_major),
         };
         if let (true, Some(file)) = (method.needs_clouds(), records) {
-            file.add(&method.key(pair, run.moved), &record).map_err(|error| error.to_string())?;
+            file.add(&method.key(pair, run.moved, run.scaled), &record).map_err(|error| error.to_string())?;
         }
         made.push(record);
     }
     Ok(made)
+}
+
+/// A random scaling for a pair; the identity for seed 0.
+fn scaled(seed: u64, id: &str) -> Similarity {
+    let mut random = Random::new(seed ^ hash(id, 0) << 8, SCALED_STREAM);
+    let scale = if seed == 0 { 1.0 } else { libm::pow(10.0, 2.0 * random.uniform() - 1.0) };
+    Similarity { scale, ..Similarity::identity() }
+}
+
+fn hash(id: &str, start: u64) -> u64 {
+    id.bytes().fold(start, |sum, byte| sum.wrapping_mul(31).wrapping_add(u64::from(byte)))
 }
 
 /// A random rigid transform for a pair; the identity for seed 0.
@@ -130,8 +149,7 @@ fn moved(seed: u64, id: &str, side: u64) -> Similarity {
     if seed == 0 {
         return Similarity::identity();
     }
-    let of_id = id.bytes().fold(side, |sum, byte| sum.wrapping_mul(31).wrapping_add(u64::from(byte)));
-    let mut random = Random::new(seed ^ of_id << 8, MOVED_STREAM);
+    let mut random = Random::new(seed ^ hash(id, side) << 8, MOVED_STREAM);
     const ROTATIONS: usize = 1 << 20;
     let [x, y, z, w] = super_fibonacci(random.below(ROTATIONS), ROTATIONS).to_array();
     let matrix = Similarity::rotation_from_xyzw(&[x, y, z, w]);

@@ -30,6 +30,9 @@ pub struct Record {
     pub distance_m: f64,
     pub success: bool,
     pub rotation_deg: Option<f64>,
+    /// Relative. Absent in older files.
+    #[serde(default)]
+    pub scale: Option<f64>,
     pub translation_m: Option<f64>,
     pub rmse_m: Option<f64>,
     pub error: Option<String>,
@@ -43,9 +46,9 @@ pub fn report(records: &[Record], methods: &[&str]) -> String {
     let mut out = String::new();
     let _ = writeln!(
         out,
-        "| pairs | method | n | recall | by scene | RRE ° | RTE m | RRE ° (median) | RTE m (median) | RMSE m | s |"
+        "| pairs | method | n | recall | by scene | RRE ° | RTE m | RRE ° (median) | RTE m (median) | RMSE m | scale % | s |"
     );
-    let _ = writeln!(out, "|---|---|---|---|---|---|---|---|---|---|---|");
+    let _ = writeln!(out, "|---|---|---|---|---|---|---|---|---|---|---|---|");
     let mut group = |name: &str, belongs: &dyn Fn(&Record) -> bool| {
         for method in methods {
             let members: Vec<&Record> = records.iter().filter(|r| r.method == *method && belongs(r)).collect();
@@ -69,7 +72,7 @@ pub fn report(records: &[Record], methods: &[&str]) -> String {
     }
     let _ = writeln!(
         out,
-        "\nRecall over pairs, and its mean over scenes. Success: RMSE by gt.info within 0.2 m (3DMatch), or rotation within 5° and translation within 2 m (KITTI). RRE, RTE and RMSE are of the successes, means unless said otherwise; seconds are means."
+        "\nRecall over pairs, and its mean over scenes. Success: RMSE by gt.info within 0.2 m (3DMatch), or rotation within 5° and translation within 2 m (KITTI); scale within 5 %. RRE, RTE, RMSE and scale are of the successes, means unless said otherwise; seconds are means."
     );
     out
 }
@@ -90,7 +93,7 @@ fn line(out: &mut String, group: &str, method: &str, records: &[&Record]) {
     let seconds: Vec<f64> = records.iter().filter_map(|record| record.seconds).collect();
     let _ = writeln!(
         out,
-        "| {group} | {method} | {} | {:.1} % | {} % | {} | {} | {} | {} | {} | {} |",
+        "| {group} | {method} | {} | {:.1} % | {} % | {} | {} | {} | {} | {} | {} | {} |",
         records.len(),
         recall(records),
         cell(mean(&by_scene), 1),
@@ -99,6 +102,7 @@ fn line(out: &mut String, group: &str, method: &str, records: &[&Record]) {
         cell(median(rotation.clone()), 2),
         cell(median(translation.clone()), 3),
         cell(mean(&successes(|r| r.rmse_m)), 3),
+        cell(mean(&successes(|r| r.scale.map(|scale| 100.0 * scale))), 2),
         cell(mean(&seconds), 2),
     );
 }

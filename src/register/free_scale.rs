@@ -1,0 +1,314 @@
+//! Registration with an unknown scale, for partial scans.
+//!
+//! A small scale makes a source fit anywhere, and the boxes of clouds that overlap in part say little about it. Matches
+//! therefore vote for the scale: at each of a series of scales, poses come from matches that preserve distances, as with
+//! a known scale. Poses of different scales are compared by the area on which both scenes agree, relative to the sizes
+//! of both (see [`PoseScorer::balanced`]).
+
+use glam::Vec3;
+
+use super::cloud_pair::CloudPair;
+use super::compatibility::hypotheses;
+use super::feature_registration::Estimate;
+use super::icp::{IcpSettings, movement};
+use super::matching::{Match, best_matches};
+use super::normalized_pair::NormalizedPair;
+use super::options::RegisterOptions;
+use super::pose_scorer::{PoseScorer, distinctiveness};
+use super::pose_selector::{Candidate, about_clouds, at_bound, with_normals};
+use super::ransac::{Guard, GuardMode};
+use super::rigid::{FREE_SLACK_VOXELS, limit_points};
+use super::settings::RegistrationSettings;
+use super::umeyama::ScaleMode;
+use crate::error::{Error, ErrorCode, Result};
+use crate::geometry::cloud::Cloud;
+use crate::geometry::order::{index_of, pack, sort};
+use crate::geometry::similarity::{Similarity, vec3};
+use crate::geometry::voxel_grid::voxel_size_leaving;
+use crate::options::scale::ScaleOption;
+use crate::progress::{Stage, Stopwatch};
+use crate::register::free_space::FreeSpace;
+use crate::report::Counts;
+
+/// How matches are made at a scale, and poses from matches.
+struct Round {
+    /// Voxels of the larger cloud.
+    voxels: usize,
+    /// Maximum number of matches.
+    matches: usize,
+    /// Maximum number of poses from the matches at each fine step.
+    hypotheses: usize,
+    /// Matches are tested at the scale, and at this ratio above and below: descriptors tolerate other scales better
+    /// than distances do.
+    fine_step: f64,
+}
+
+/// Finds the scale.
+const VOTE: Round = Round { voxels: 1_500, matches: 1_000, hypotheses: 8, fine_step: 1.1 };
+
+/// Finds the pose.
+const POSE: Round = Round { voxels: 5_000, matches: 3_000, hypotheses: 80, fine_step: 1.05 };
+
+/// Ratio of successive scales of the series.
+const COARSE_STEP: f64 = 1.35;
+
+/// Widest range of scales that bounds can ask for, relative to the ratio of the boxes.
+const WIDEST: [f64; 2] = [0.02, 50.0];
+
+/// A second scale is tried if its best score in the vote is at least this fraction of the best one, and if it differs by
+/// this ratio.
+const SECOND: f64 = 0.7;
+const SECOND_RATIO: f64 = 1.3;
+
+/// Number of poses of the vote that are candidates at the scale in question.
+const VOTED: usize = 20;
+
+/// Number of candidates that are refined, and ICP iterations of that refinement.
+const REFINED: usize = 8;
+const ITERATIONS: usize = 20;
+
+/// Distance of two candidates that are both refined, relative to the size of the smaller cloud: about 10°.
+const APART: f64 = 0.15;
+
+/// Bounds of the scale in the refinement of a pose, relative to its scale. With few points in common, ICP shrinks the
+/// source otherwise.
+const SCALE_SLACK: [f64; 2] = [0.87, 1.15];
+
+/// Registers clouds whose scale is unknown, or known to be within bounds.
+///
+/// # Errors
+/// [`ErrorCode::NoConsensus`], also if a scale without given bounds ends at a bound of the default range.
+pub(super) fn register_free(
+    [source_xyz, target_xyz]: [&[f64]; 2],
+    options: &RegisterOptions,
+    stages: &mut Stopwatch<'_>,
+) -> Result<Candidate> {
+    let frames = NormalizedPair::of(source_xyz, target_xyz, options.scale)?;
+    let guard = frames.guard.unwrap_or([1.0; 2]);
+    stages.enter(Stage::Normals);
+    let scans = Scans::new(&frames, [source_xyz, target_xyz], options);
+
+    let [least, most] = [guard[0].max(WIDEST[0]), guard[1].min(WIDEST[1])];
+    let mut voted: Vec<Hypothesis> = Vec::new();
+    let mut scale = least * COARSE_STEP.min(most / least).sqrt();
+    while scale <= most {
+        let scaled = scans.scaled(scale, &VOTE, guard, options);
+        let clouds = CloudPair::new(&scaled.source, scaled.target, scaled.settings.voxel_size);
+        voted.extend(Level::new(&scaled, &clouds, &VOTE, stages).hypotheses(&VOTE));
+        scale *= COARSE_STEP;
+    }
+    let mut voted = best_first(&voted);
+    voted.truncate(VOTED);
+
+    let Some(first) = voted.first() else { return Err(no_consensus("no three matches that preserve distances")) };
+    let (scale, least) = (first.pose.scale, SECOND * first.score);
+    let differs = |other: &f64| (other / scale).max(scale / other) >= SECOND_RATIO;
+    let second = voted.iter().take_while(|vote| vote.score >= least).map(|vote| vote.pose.scale).find(differs);
+    let mut best: Option<(f64, Estimate)> = None;
+    for scale in core::iter::once(scale).chain(second) {
+        let mut scaled = scans.scaled(scale, &POSE, guard, options);
+        if let Some(voxel_size) = given_voxel_size(&frames, options) {
+            let guard = guard.map(|bound| bound / scale);
+            scaled.settings = RegistrationSettings::new(options, voxel_size, ScaleMode::Free, Some(guard));
+        }
+        if let Some((score, estimate)) = scaled.solve(&voted, guard, stages)
+            && best.as_ref().is_none_or(|(highest, _)| score > *highest)
+        {
+            best = Some((score, estimate));
+        }
+    }
+    let Some((_, estimate)) = best else { return Err(no_consensus("no pose")) };
+    // Bounds that are given hold a scale; the default ones only limit the search.
+    if matches!(options.scale, ScaleOption::Free) && estimate.clamped {
+        return Err(at_bound());
+    }
+    Ok(Candidate::new(&frames, estimate))
+}
+
+/// The voxel size of the options in the normalised frame of the target.
+fn given_voxel_size(frames: &NormalizedPair, options: &RegisterOptions) -> Option<f64> {
+    let of_size = options.voxel_size.map(|size| size / frames.target.diagonal());
+    of_size.or(options.voxel_divisions.map(|divisions| 1.0 / divisions))
+}
+
+/// Both clouds in their normalised frames, with normals.
+struct Scans {
+    source: Cloud,
+    target: Cloud,
+    /// Positions of the sensors, if they are plausible.
+    eyes: [Option<Vec3>; 2],
+}
+
+impl Scans {
+    fn new(frames: &NormalizedPair, xyz: [&[f64]; 2], options: &RegisterOptions) -> Self {
+        let [(source, source_eye), (target, target_eye)] =
+            [(&frames.source, xyz[0]), (&frames.target, xyz[1])].map(|(extents, xyz)| {
+                let cloud = limit_points(extents.normalized_flat(xyz), options.max_points as usize);
+                // Scans are usually in the frame of their sensor; the points show whether that is plausible.
+                let eye = vec3(&extents.unit_from_own().translation);
+                let slack = FREE_SLACK_VOXELS * voxel_size_leaving(&cloud, POSE.voxels);
+                let eye = FreeSpace::seen_from(eye, &cloud.points, slack).map(|_| eye);
+                (with_normals(cloud, eye), eye)
+            });
+        Self { source, target, eyes: [source_eye, target_eye] }
+    }
+
+    /// Both clouds, the source scaled.
+    fn scaled(&self, scale: f64, round: &Round, guard: [f64; 2], options: &RegisterOptions) -> Scaled<'_> {
+        let factor = scale as f32;
+        let points = self.source.points.iter().map(|&p| factor * p).collect();
+        let source = Cloud { points, normals: self.source.normals.clone() };
+        let leaving = |cloud: &Cloud| voxel_size_leaving(cloud, round.voxels);
+        let voxel_size = leaving(&source).max(leaving(&self.target));
+        let slack = FREE_SLACK_VOXELS * voxel_size;
+        let free = [
+            self.eyes[0].and_then(|eye| FreeSpace::seen_from(factor * eye, &source.points, slack)),
+            self.eyes[1].and_then(|eye| FreeSpace::seen_from(eye, &self.target.points, slack)),
+        ];
+        let guard = guard.map(|bound| bound / scale);
+        let settings = RegistrationSettings::new(options, f64::from(voxel_size), ScaleMode::Free, Some(guard));
+        Scaled { scale, source, target: &self.target, free, settings }
+    }
+}
+
+/// Both clouds at a relative scale, at which that of a pose is about 1.
+struct Scaled<'a> {
+    scale: f64,
+    source: Cloud,
+    target: &'a Cloud,
+    free: [Option<FreeSpace>; 2],
+    settings: RegistrationSettings,
+}
+
+impl Scaled<'_> {
+    /// The best pose at about this scale, between the normalised frames, and its score.
+    fn solve(&self, voted: &[Hypothesis], guard: [f64; 2], stages: &mut Stopwatch<'_>) -> Option<(f64, Estimate)> {
+        let clouds = CloudPair::new(&self.source, self.target, self.settings.voxel_size);
+        let level = Level::new(self, &clouds, &POSE, stages);
+        let mut found = level.hypotheses(&POSE);
+        let iterations = found.len();
+        stages.enter(Stage::Filter);
+        found.extend(voted.iter().map(|vote| level.judged(vote.pose, vote.inliers)));
+        let chosen = self.distinct(&found, level.scorer.distance);
+
+        stages.enter(Stage::Icp);
+        let refined = chosen.into_iter().map(|candidate| {
+            let own = self.own(&candidate.pose);
+            let settings = self.near(own.scale);
+            let icp = settings.icp_on_grid();
+            let icp = icp.map(|icp| IcpSettings { max_iterations: ITERATIONS.min(icp.max_iterations), ..icp });
+            let own = icp.map_or(own, |icp| clouds.refine_on_grid(&own, &icp).target_from_source);
+            level.judged(self.unscaled(own), candidate.inliers)
+        });
+        let best = refined.reduce(|a, b| if b.score > a.score { b } else { a })?;
+        let own = self.own(&best.pose);
+        let refined = clouds.refine(&own, &self.near(own.scale));
+        let pose = self.unscaled(refined.target_from_source);
+        let bounds = Guard { min: guard[0], max: guard[1], mode: GuardMode::Reject };
+        let matches = level.matches.len();
+        let estimate = Estimate {
+            target_from_source: pose,
+            clamped: bounds.is_bound(pose.scale),
+            converged: refined.converged,
+            rms: refined.rms,
+            counts: Counts { matches, inliers: best.inliers, iterations, ..clouds.counts(&refined) },
+            inliers: Vec::new(),
+        };
+        Some((best.score, estimate))
+    }
+
+    /// The best candidates without near duplicates, best first.
+    fn distinct(&self, candidates: &[Hypothesis], distance: f32) -> Vec<Hypothesis> {
+        let apart = f64::from(2.0 * distance).max(APART * self.scale.min(1.0));
+        let mut chosen: Vec<Hypothesis> = Vec::new();
+        for candidate in best_first(candidates) {
+            let pose = self.own(&candidate.pose);
+            let is_new = |other: &Hypothesis| movement(&self.own(&other.pose), &pose) > apart;
+            if chosen.len() < REFINED && chosen.iter().all(is_new) {
+                chosen.push(candidate);
+            }
+        }
+        chosen
+    }
+
+    /// Settings whose bounds of the scale are about that of a pose.
+    fn near(&self, scale: f64) -> RegistrationSettings {
+        let mut settings = self.settings;
+        if let Some(guard) = &mut settings.ransac.guard {
+            // Not `clamp`, whose panic formats numbers: 10 kB of the module.
+            let within = |bound: f64| bound.max(guard.min).min(guard.max);
+            let [min, max] = SCALE_SLACK.map(|factor| within(factor * scale));
+            (guard.min, guard.max) = (min, max);
+        }
+        settings
+    }
+
+    /// A pose between the normalised frames as one from the scaled source, and back.
+    fn own(&self, pose: &Similarity) -> Similarity {
+        Similarity { scale: pose.scale / self.scale, ..*pose }
+    }
+
+    fn unscaled(&self, own: Similarity) -> Similarity {
+        Similarity { scale: own.scale * self.scale, ..own }
+    }
+}
+
+/// A pose between the normalised frames.
+#[derive(Clone, Copy)]
+struct Hypothesis {
+    pose: Similarity,
+    /// See [`PoseScorer::balanced`].
+    score: f64,
+    /// Number of matches that agree.
+    inliers: usize,
+}
+
+/// Hypotheses by falling score.
+fn best_first(hypotheses: &[Hypothesis]) -> Vec<Hypothesis> {
+    let mut keys: Vec<u64> = hypotheses.iter().zip(0..).map(|(h, i)| pack(-h.score as f32, i)).collect();
+    sort(&mut keys);
+    keys.into_iter().map(|key| hypotheses[index_of(key) as usize]).collect()
+}
+
+/// The matches of both clouds at a scale, and what scores poses.
+struct Level<'a> {
+    scaled: &'a Scaled<'a>,
+    scorer: PoseScorer<'a>,
+    matches: Vec<Match>,
+}
+
+impl<'a> Level<'a> {
+    fn new(scaled: &'a Scaled<'a>, clouds: &'a CloudPair<'a>, round: &Round, stages: &mut Stopwatch<'_>) -> Self {
+        let settings = &scaled.settings;
+        let [source, target] = clouds.descriptors(settings, stages);
+        stages.enter(Stage::Matching);
+        let matches = best_matches(&source, &target, round.matches);
+        let weights = [distinctiveness(&source), distinctiveness(&target)];
+        stages.enter(Stage::Ransac);
+        let distance = settings.ransac.inlier_distance as f32;
+        Self { scaled, scorer: PoseScorer { clouds, weights, free: scaled.free.clone(), distance }, matches }
+    }
+
+    fn judged(&self, pose: Similarity, inliers: usize) -> Hypothesis {
+        Hypothesis { pose, score: self.scorer.balanced(&self.scaled.own(&pose)), inliers }
+    }
+
+    /// Poses from matches.
+    fn hypotheses(&self, round: &Round) -> Vec<Hypothesis> {
+        let [source, target] = [&self.scorer.clouds.source, &self.scorer.clouds.target].map(|side| &side.grid.cloud);
+        let mut found = Vec::new();
+        for scale in [1.0 / round.fine_step, 1.0, round.fine_step] {
+            let points: Vec<Vec3> = source.points.iter().map(|&p| scale as f32 * p).collect();
+            let distance = self.scorer.distance;
+            for rigid in hypotheses(&points, &target.points, &self.matches, distance, round.hypotheses) {
+                let own = Similarity { scale, ..rigid.target_from_source };
+                found.push(self.judged(self.scaled.unscaled(own), rigid.inliers.len()));
+            }
+        }
+        found
+    }
+}
+
+fn no_consensus(found: &'static str) -> Error {
+    about_clouds(Error::new(ErrorCode::NoConsensus, "source", found, "", ""), "source")
+}
