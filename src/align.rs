@@ -25,10 +25,10 @@ use task::AlignTask;
 /// [`ErrorCode::DegenerateMesh`](crate::error::ErrorCode::DegenerateMesh),
 /// [`ErrorCode::NoConsensus`](crate::error::ErrorCode::NoConsensus): the identity is never returned instead.
 pub fn align(observation: &Observation, mesh: &Mesh, options: &AlignOptions, host: &mut dyn Host) -> Result<Alignment> {
-    align_with(observation, mesh, options, &crate::precise::search_settings(options), host)
+    align_with(observation, mesh, options, crate::precise::efforts(options), host)
 }
 
-/// [`align`] with explicit settings of the search instead of those derived from the options, for ablations.
+/// [`align`] with explicit settings of the searches instead of those derived from the options, for ablations.
 ///
 /// # Errors
 /// As [`align`].
@@ -36,11 +36,11 @@ pub fn align_with(
     observation: &Observation,
     mesh: &Mesh,
     options: &AlignOptions,
-    search: &SearchSettings,
+    efforts: Vec<SearchSettings>,
     host: &mut dyn Host,
 ) -> Result<Alignment> {
     let task = AlignTask::new(observation, PreparedMesh::borrowed(mesh), options.clone().into(), host)?;
-    match task.with_settings(*search).finish()? {
+    match task.with_efforts(efforts).finish()? {
         AnyAlignment::Precise(alignment) => Ok(*alignment),
         AnyAlignment::Paper(_) => Err(other_method()),
     }

@@ -18,6 +18,19 @@ choices! {
     }
 }
 
+choices! {
+    /// The work of one search.
+    pub enum Effort {
+        /// Few rotations and candidates.
+        Fast = "fast",
+        /// Between the others.
+        #[default]
+        Balanced = "balanced",
+        /// Many rotations and candidates.
+        Best = "best",
+    }
+}
+
 impl Preset {
     /// The name in JavaScript.
     pub fn as_str(self) -> &'static str {
@@ -88,6 +101,8 @@ pub enum WarningCode {
     ScaleCollapsed,
     /// The refinement ended before it converged.
     NotConverged,
+    /// Even the best pose explains the observation poorly: the mesh may be of another object.
+    MeshDoubtful,
     /// The camera file has lens distortion, which the pinhole model leaves out. The package's camera reader warns of
     /// it.
     CameraNotPinhole,
@@ -215,6 +230,8 @@ pub struct PreciseDiagnostics {
     /// What all presets report.
     #[serde(flatten)]
     pub common: Diagnostics,
+    /// The effort of the search that found the pose; it follows from `quality`.
+    pub effort: Effort,
     /// The search's objective, 0 to about 2. It compares poses of one input; scores of different inputs do not compare.
     pub score: f64,
     /// The terms of the score.
@@ -282,6 +299,14 @@ impl AnyAlignment {
         match self {
             Self::Precise(found) => &found.camera_from_mesh,
             Self::Paper(found) => &found.camera_from_mesh,
+        }
+    }
+
+    /// Alternative poses; only `precise` has them.
+    pub fn alternatives(&self) -> &[Alternative] {
+        match self {
+            Self::Precise(found) => &found.alternatives,
+            Self::Paper(_) => &[],
         }
     }
 

@@ -101,14 +101,31 @@ impl KdTree {
     /// reproducible order. `points` must be the points that the tree was built from.
     ///
     /// Several times faster than one [`KdTree::k_nearest`] per point, because nearby points share a search.
-    pub fn neighborhoods(&self, points: &[Vec3], k: usize, radius: f32, mut visit: impl FnMut(u32, &[u64])) {
+    pub fn neighborhoods(&self, points: &[Vec3], k: usize, radius: f32, visit: impl FnMut(u32, &[u64])) {
+        self.some_neighborhoods(points, k, radius, 1, visit);
+    }
+
+    /// Like [`KdTree::neighborhoods`], of about one in `stride` points, in small groups evenly over the cloud.
+    pub fn some_neighborhoods(
+        &self,
+        points: &[Vec3],
+        k: usize,
+        radius: f32,
+        stride: usize,
+        mut visit: impl FnMut(u32, &[u64]),
+    ) {
         let (mut found, mut near, mut keys) = (Vec::new(), Vec::new(), Vec::new());
         let mut groups = vec![self.points.as_slice()];
+        let mut number = 0;
         while let Some(group) = groups.pop() {
             if group.len() > GROUP_SIZE {
                 // Halved in the same way as the tree.
                 let (left, right) = group.split_at(group.len() / 2);
                 groups.extend([right, left]);
+                continue;
+            }
+            number += 1;
+            if number % stride != 0 {
                 continue;
             }
             let members = || group.iter().map(|(point, _)| *point);

@@ -29,7 +29,7 @@ options! {
         /// Upper bound on the depth readings used. Above it, an even random subset is drawn.
         max_observed_points: u32 = 20_000, Count(32..=1_000_000);
         /// Number of points sampled on the mesh surface.
-        surface_samples: u32 = 20_000, Count(100..=1_000_000);
+        surface_samples: u32 = 10_000, Count(100..=1_000_000);
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::warnings;
 use crate::error::Result;
+use crate::evidence::Normals;
 use crate::evidence::clouds::{Clouds, Sampling};
 use crate::evidence::observation::Observation;
 use crate::evidence::sample::check_shape;
@@ -65,7 +66,7 @@ pub fn align_by(
     check_shape(mesh)?;
     let mut clouds = Clouds::new(observation, mesh, &setup.sampling, &mut stages)?;
     if setup.metrics {
-        clouds.evidence(&mut stages);
+        clouds.evidence(Normals::All, &mut stages);
     }
     let solution = method(&mut clouds, &mut stages)?;
     let metrics = score(observation, mesh, setup, &mut clouds, &solution, &mut stages)?;
@@ -84,7 +85,7 @@ pub(super) fn score(
     if !setup.metrics {
         return Ok(None);
     }
-    let (evidence, _) = clouds.evidence(stages);
+    let (evidence, _) = clouds.evidence(Normals::Some, stages);
     stages.enter(Stage::Metrics);
     metrics::score(observation, mesh, &solution.camera_from_mesh, evidence).map(Some)
 }

@@ -8,10 +8,14 @@ use core::mem::replace;
 
 use super::method::Method;
 use super::outcome::{Setup, report, score};
+use super::warnings::about_fit;
 use crate::error::{Error, ErrorCode, Result};
+use crate::evidence::Normals;
 use crate::evidence::clouds::Clouds;
 use crate::evidence::observation::Observation;
+use crate::precise::options::AlignOptions;
 use crate::precise::prepared_mesh::PreparedMesh;
+use crate::precise::recipe::SURE;
 use crate::precise::rounds::Rounds;
 use crate::precise::{Certainty, SearchSettings};
 use crate::progress::{Host, Stopwatch};
@@ -23,7 +27,7 @@ pub struct AlignTask<'h, O, M> {
     observation: O,
     mesh: M,
     method: Method,
-    settings: SearchSettings,
+    efforts: Vec<SearchSettings>,
     setup: Setup,
     stages: Option<Stopwatch<'h>>,
     state: State,
@@ -37,8 +41,8 @@ enum State {
     Drawn(Box<Clouds>),
     /// Their normals are estimated, if the metrics need them.
     Ready(Box<Clouds>),
-    /// The search is running.
-    Searching(Box<Clouds>, Box<Rounds>),
+    /// The search with the effort of this index is running.
+    Searching(Box<Clouds>, Box<Rounds>, usize),
     /// The method has found a pose.
     Found(Box<Clouds>, Box<Solution>, Option<Box<Certainty>>),
     /// The result has been returned, or an error.
@@ -51,17 +55,17 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
     /// # Errors
     /// [`ErrorCode::InvalidOption`].
     pub fn new(observation: O, mesh: M, method: Method, host: impl Host + 'h) -> Result<Self> {
-        let (setup, settings, plan) = match &method {
-            Method::Precise(options) => (Setup::of_precise(options)?, precise::search_settings(options), precise::PLAN),
-            Method::Paper(options) => (Setup::of_paper(options)?, SearchSettings::default(), paper::PLAN),
+        let (setup, efforts, plan) = match &method {
+            Method::Precise(options) => (Setup::of_precise(options)?, precise::efforts(options), precise::PLAN),
+            Method::Paper(options) => (Setup::of_paper(options)?, Vec::new(), paper::PLAN),
         };
         let stages = Some(Stopwatch::new(host, plan));
-        Ok(Self { observation, mesh, method, settings, setup, stages, state: State::Begun })
+        Ok(Self { observation, mesh, method, efforts, setup, stages, state: State::Begun })
     }
 
-    /// Overrides the settings of the search that follow from the options, for ablations.
-    pub fn with_settings(self, settings: SearchSettings) -> Self {
-        Self { settings, ..self }
+    /// Overrides the settings of the searches that follow from the options, for ablations.
+    pub fn with_efforts(self, efforts: Vec<SearchSettings>) -> Self {
+        Self { efforts, ..self }
     }
 
     /// Runs the task to its end.
@@ -84,13 +88,14 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
         let Some(mut stages) = self.stages.take() else { return Err(over()) };
         loop {
             self.state = match replace(&mut self.state, State::Over) {
-                State::Searching(clouds, mut rounds) => {
-                    if !precise::run(&mut rounds, pause, &mut stages) {
-                        self.state = State::Searching(clouds, rounds);
+                State::Searching(clouds, mut rounds, effort) => {
+                    let share = precise::share(effort, self.efforts.len());
+                    if !precise::run(&mut rounds, &share, pause, &mut stages) {
+                        self.state = State::Searching(clouds, rounds, effort);
                         self.stages = Some(stages);
                         return Ok(None);
                     }
-                    self.advance(State::Searching(clouds, rounds), &mut stages)?
+                    self.advance(State::Searching(clouds, rounds, effort), &mut stages)?
                 }
                 State::Found(mut clouds, solution, certainty) => {
                     let (observation, mesh) = (self.observation.borrow(), self.mesh.borrow().mesh());
@@ -117,24 +122,29 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
             }
             State::Drawn(mut clouds) => {
                 if self.setup.metrics {
-                    clouds.evidence(stages);
+                    let normals = match &self.method {
+                        Method::Precise(_) => Normals::Some,
+                        Method::Paper(_) => Normals::All,
+                    };
+                    clouds.evidence(normals, stages);
                 }
                 State::Ready(clouds)
             }
             State::Ready(mut clouds) => match &self.method {
-                Method::Precise(options) => {
-                    let hypothesis = precise::hypothesis(&mut clouds, options, stages);
-                    let rounds = precise::begin(observation, mesh, hypothesis, options, &self.settings, stages)?;
-                    State::Searching(clouds, Box::new(rounds))
-                }
+                Method::Precise(options) => self.search(clouds, options, None, stages)?,
                 Method::Paper(options) => {
                     let solution = paper::estimate(&mut clouds, options, stages)?;
                     State::Found(clouds, Box::new(solution), None)
                 }
             },
-            State::Searching(clouds, rounds) => match &self.method {
+            State::Searching(clouds, rounds, effort) => match &self.method {
                 Method::Precise(options) => {
-                    let (solution, certainty) = precise::conclude(&rounds, mesh.mesh(), options)?;
+                    let concluded = precise::conclude(&rounds, mesh.mesh(), options);
+                    let is_sure = matches!(&concluded, Ok((_, certainty)) if certainty.confidence >= SURE);
+                    if !is_sure && effort + 1 < self.efforts.len() {
+                        return self.search(clouds, options, Some((effort, &rounds)), stages);
+                    }
+                    let (solution, certainty) = concluded?;
                     State::Found(clouds, Box::new(solution), Some(Box::new(certainty)))
                 }
                 Method::Paper(_) => return Err(over()),
@@ -142,13 +152,31 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
             State::Found(..) | State::Over => return Err(over()),
         })
     }
+
+    /// Begins the first search, or the one after `previous`.
+    fn search(
+        &self,
+        mut clouds: Box<Clouds>,
+        options: &AlignOptions,
+        previous: Option<(usize, &Rounds)>,
+        stages: &mut Stopwatch<'h>,
+    ) -> Result<State> {
+        let effort = previous.map_or(0, |(effort, _)| effort + 1);
+        let settings = self.efforts.get(effort).ok_or_else(over)?;
+        let hypothesis = precise::hypothesis(&mut clouds, options, settings, stages);
+        let sources = (hypothesis, previous.map(|(_, rounds)| rounds));
+        let (observation, mesh) = (self.observation.borrow(), self.mesh.borrow());
+        let rounds = precise::begin(observation, mesh, sources, options, settings, stages)?;
+        Ok(State::Searching(clouds, Box::new(rounds), effort))
+    }
 }
 
 fn with_certainty(aligned: PaperAlignment, certainty: Option<Box<Certainty>>) -> AnyAlignment {
     let Some(certainty) = certainty else { return aligned.into() };
-    let Certainty { confidence, alternatives, uncertainty, score, terms } = *certainty;
-    let PaperAlignment { camera_from_mesh, metrics, warnings, diagnostics } = aligned;
-    let diagnostics = PreciseDiagnostics { common: diagnostics, score, terms };
+    let Certainty { confidence, alternatives, uncertainty, score, terms, effort } = *certainty;
+    let PaperAlignment { camera_from_mesh, metrics, mut warnings, diagnostics } = aligned;
+    warnings.extend(about_fit(&terms));
+    let diagnostics = PreciseDiagnostics { common: diagnostics, effort, score, terms };
     Alignment { camera_from_mesh, confidence, alternatives, uncertainty, metrics, warnings, diagnostics }.into()
 }
 

@@ -1,10 +1,10 @@
 //! The two clouds of an alignment: the observed points and points on the mesh (paper §3.1).
 
-use super::Evidence;
 use super::extents::{Extents, initial_scale};
 use super::observation::Observation;
 pub use super::sample::Sampling;
 use super::sample::sample_surface;
+use super::{Evidence, Normals};
 use crate::error::Result;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::mesh::Mesh;
@@ -58,14 +58,23 @@ impl Clouds {
         initial_scale(observed, reconstructed)
     }
 
-    /// The clouds with their normals, and the extents.
-    pub fn evidence(&mut self, stages: &mut Stopwatch<'_>) -> (&Evidence, [&Extents; 2]) {
+    /// The clouds with at least these normals, and the extents.
+    pub fn evidence(&mut self, normals: Normals, stages: &mut Stopwatch<'_>) -> (&Evidence, [&Extents; 2]) {
         let Self { clouds, extents, evidence, .. } = self;
-        let evidence = evidence.get_or_insert_with(|| {
-            stages.enter(Stage::Normals);
-            let [observed, reconstructed] = clouds.take().unwrap_or_default();
-            Evidence::new(observed, reconstructed)
-        });
-        (evidence, extents.each_ref())
+        let has_enough = |known: &Evidence| known.normals == Normals::All || normals == Normals::Some;
+        let known = match evidence.take() {
+            Some(known) if has_enough(&known) => known,
+            known => {
+                stages.enter(Stage::Normals);
+                match known {
+                    Some(known) => known.with_normals(normals),
+                    None => {
+                        let [observed, reconstructed] = clouds.take().unwrap_or_default();
+                        Evidence::new(observed, reconstructed, normals)
+                    }
+                }
+            }
+        };
+        (evidence.insert(known), extents.each_ref())
     }
 }

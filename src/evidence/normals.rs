@@ -50,9 +50,20 @@ pub fn estimate_normals(
     neighborhood: impl Into<Neighborhood>,
     orientation: Orientation,
 ) -> Vec<Vec3> {
+    estimate_some_normals(points, tree, neighborhood, orientation, 1)
+}
+
+/// Like [`estimate_normals`], for about one in `stride` points; the other normals are zero.
+pub fn estimate_some_normals(
+    points: &[Vec3],
+    tree: &KdTree,
+    neighborhood: impl Into<Neighborhood>,
+    orientation: Orientation,
+    stride: usize,
+) -> Vec<Vec3> {
     let neighborhood = neighborhood.into();
     let mut normals = vec![Vec3::ZERO; points.len()];
-    tree.neighborhoods(points, neighborhood.max_neighbors, neighborhood.radius, |index, neighbors| {
+    tree.some_neighborhoods(points, neighborhood.max_neighbors, neighborhood.radius, stride, |index, neighbors| {
         let Some((&point, slot)) = points.get(index as usize).zip(normals.get_mut(index as usize)) else { return };
         let normal = thinnest_direction(point, neighbors, points);
         let outward = match orientation {

@@ -4,6 +4,7 @@
 pub mod options;
 
 use crate::error::Result;
+use crate::evidence::Normals;
 use crate::evidence::clouds::Clouds;
 use crate::evidence::extents::target_from_source;
 use crate::geometry::angle::sin_cos;
@@ -34,7 +35,7 @@ pub const PLAN: &[(Stage, f64)] = &[
 /// # Errors
 /// [`NoConsensus`](crate::error::ErrorCode::NoConsensus).
 pub fn estimate(clouds: &mut Clouds, options: &PaperOptions, stages: &mut Stopwatch<'_>) -> Result<Solution> {
-    let (evidence, [observed, reconstructed]) = clouds.evidence(stages);
+    let (evidence, [observed, reconstructed]) = clouds.evidence(Normals::All, stages);
     // §3.1: both clouds are centred, and scaled to a box diagonal of 1.
     let target = observed.normalized(&evidence.observed);
     let source = reconstructed.normalized(&evidence.reconstructed);

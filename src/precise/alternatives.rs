@@ -101,5 +101,5 @@ fn coincide(tree: &TriangleTree, samples: &[DVec3], a: &Found, b: &Found) -> boo
     let mean = distances.iter().map(|d| f64::from(*d)).sum::<f64>() / distances.len().max(1) as f64;
     let tail = quantile(distances.iter().copied(), 0.95).map_or(f64::INFINITY, f64::from);
     // Twice the tolerance of a single rotation, because two refinements end slightly apart.
-    mean <= 2.0 * AUTO_MEAN && tail <= 2.0 * AUTO_TAIL
+    mean <= 0.7 * AUTO_MEAN && tail <= 0.7 * AUTO_TAIL
 }

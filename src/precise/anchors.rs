@@ -4,7 +4,7 @@ use super::grid::CropGrid;
 use crate::geometry::order::median;
 
 /// Minimum share of the mask's outline that is cut before larger sizes are tried.
-const MIN_CUT: f64 = 0.05;
+const MIN_CUT: f64 = 0.025;
 /// Minimum share of the cut on a side for the mesh to extend beyond it.
 const MIN_SIDE: f64 = 0.2;
 /// A cut closer to the centre than this fraction of half the box belongs to no side.
@@ -15,6 +15,8 @@ const ZOOMS: [f64; 2] = [1.25, 1.6];
 /// A size relative to the box of the mask, and the direction, −1 to 1, in which the mesh extends beyond it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Anchor {
+    /// The axis whose side of the box determines the size: 0 for columns, 1 for rows, `None` for both.
+    pub along: Option<usize>,
     /// Relative size.
     pub zoom: f64,
     /// Direction, along columns and rows.
@@ -23,13 +25,13 @@ pub struct Anchor {
 
 impl Anchor {
     /// The unchanged box of the mask.
-    pub const AS_IT_IS: Self = Self { zoom: 1.0, towards: [0.0; 2] };
+    pub const AS_IT_IS: Self = Self { along: None, zoom: 1.0, towards: [0.0; 2] };
 }
 
 /// The hypotheses for a grid: the unchanged box, a slightly larger one and, if it is cut, boxes extended towards the
 /// cut.
 pub fn anchors(grid: &CropGrid, occlusion: bool) -> Vec<Anchor> {
-    let plain = |zoom| Anchor { zoom, towards: [0.0; 2] };
+    let plain = |zoom| Anchor { zoom, ..Anchor::AS_IT_IS };
     let mut anchors = vec![plain(1.0), plain(1.12)];
     if !occlusion {
         return anchors;
@@ -38,12 +40,18 @@ pub fn anchors(grid: &CropGrid, occlusion: bool) -> Vec<Anchor> {
     if sides.is_empty() {
         return anchors;
     }
+    // A cut along one axis leaves both sides along the other axis.
+    for axis in [0, 1] {
+        if sides.iter().all(|side| side[axis] == 0.0) {
+            anchors.extend(sides.iter().map(|&towards| Anchor { along: Some(axis), towards, ..Anchor::AS_IT_IS }));
+        }
+    }
     for zoom in ZOOMS {
         anchors.push(plain(zoom));
-        anchors.extend(sides.iter().map(|&towards| Anchor { zoom, towards }));
+        anchors.extend(sides.iter().map(|&towards| Anchor { zoom, towards, ..Anchor::AS_IT_IS }));
         let (across, along): (Vec<[f64; 2]>, Vec<_>) = sides.iter().partition(|s| s[0] != 0.0);
         for a in &across {
-            anchors.extend(along.iter().map(|b| Anchor { zoom, towards: [a[0], b[1]] }));
+            anchors.extend(along.iter().map(|b| Anchor { zoom, towards: [a[0], b[1]], ..Anchor::AS_IT_IS }));
         }
     }
     anchors
@@ -65,7 +73,9 @@ fn cut_sides(grid: &CropGrid) -> Vec<[f64; 2]> {
             }
             ring += 1;
             let object = deepest_around(grid, u, v);
-            if !(grid.scene[i] > 0.0 && object > 0.0 && grid.scene[i] < object - tolerance) {
+            // Depth maps often have a gap in front of an occluder's edge.
+            let scene = if grid.scene[i] > 0.0 { grid.scene[i] } else { nearest_around(grid, u, v) };
+            if !(scene > 0.0 && object > 0.0 && scene < object - tolerance) {
                 continue;
             }
             cut += 1;
@@ -86,7 +96,18 @@ fn cut_sides(grid: &CropGrid) -> Vec<[f64; 2]> {
 
 /// The largest depth of the object within two cells; 0 if there is none.
 fn deepest_around(grid: &CropGrid, u: usize, v: usize) -> f32 {
-    let rows = v.saturating_sub(2)..=(v + 2).min(grid.height - 1);
-    let columns = u.saturating_sub(2)..=(u + 2).min(grid.width - 1);
-    rows.flat_map(|y| columns.clone().map(move |x| grid.depth[y * grid.width + x])).fold(0.0, f32::max)
+    cells_around(grid, u, v, 2).map(|i| grid.depth[i]).fold(0.0, f32::max)
+}
+
+/// The smallest depth outside the mask within three cells; 0 if there is none.
+fn nearest_around(grid: &CropGrid, u: usize, v: usize) -> f32 {
+    let outside = cells_around(grid, u, v, 3).filter(|&i| !grid.mask[i] && grid.scene[i] > 0.0);
+    outside.map(|i| grid.scene[i]).reduce(f32::min).unwrap_or(0.0)
+}
+
+fn cells_around(grid: &CropGrid, u: usize, v: usize, reach: usize) -> impl Iterator<Item = usize> {
+    let rows = v.saturating_sub(reach)..=(v + reach).min(grid.height - 1);
+    let columns = u.saturating_sub(reach)..=(u + reach).min(grid.width - 1);
+    let width = grid.width;
+    rows.flat_map(move |y| columns.clone().map(move |x| y * width + x))
 }

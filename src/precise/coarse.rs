@@ -53,12 +53,15 @@ impl Coarse<'_> {
         anchors: &[Anchor],
         candidates: &mut Vec<Candidate>,
     ) {
-        let fitted = self.fit_box(outermost, rotation);
+        let (fitted, sides) = self.fit_box(outermost, rotation);
         let [[left, right], [top, bottom]] = self.objective.grid.bounds;
+        let seen = DVec2::new(right - left, bottom - top) / self.objective.grid.focal;
         for anchor in anchors {
-            let room = DVec2::new(right - left, bottom - top) * (0.5 * (anchor.zoom - 1.0) / self.objective.grid.focal);
+            let zoom = anchor.zoom * anchor.along.map_or(1.0, |axis| seen[axis] / sides[axis]);
+            // The side of the box opposite to the cut is where that of the mask is.
+            let room = (0.5 * (sides * zoom - seen)).max(DVec2::ZERO);
             let pose = CropPose {
-                size: fitted.size + libm::log(anchor.zoom),
+                size: fitted.size + libm::log(zoom),
                 place: fitted.place + room * DVec2::from(anchor.towards),
                 ..fitted
             };
@@ -83,8 +86,8 @@ impl Coarse<'_> {
     }
 
     /// Size and position at which the perspective box of the rotated mesh matches that of the mask: equal centres,
-    /// equal geometric means of the sides.
-    fn fit_box(&self, outermost: &[Vec3], rotation: DQuat) -> CropPose {
+    /// equal geometric means of the sides; and the sides of the box of the mesh, as tangents of the angle.
+    fn fit_box(&self, outermost: &[Vec3], rotation: DQuat) -> (CropPose, DVec2) {
         let turn = DMat3::from_quat(rotation).as_mat3();
         let turned: Vec<Vec3> = outermost.iter().map(|p| turn * *p).collect();
         let [[left, right], [top, bottom]] = self.objective.grid.bounds;
@@ -92,7 +95,7 @@ impl Coarse<'_> {
             |u: f64, v: f64| (DVec2::new(u, v) - DVec2::from(self.objective.grid.center)) / self.objective.grid.focal;
         let (low, high) = (to_ray(left, top), to_ray(right, bottom));
         let (wanted_middle, wanted) = (0.5 * (low + high), high - low);
-        let (mut size, mut place) = (wanted.max_element(), wanted_middle);
+        let (mut size, mut place, mut sides) = (wanted.max_element(), wanted_middle, wanted);
         for _ in 0..BOX_ROUNDS {
             let (scale, offset) = (size as f32, place.as_vec2());
             let (mut low, mut high) = (glam::Vec2::INFINITY, glam::Vec2::NEG_INFINITY);
@@ -102,11 +105,14 @@ impl Coarse<'_> {
                 (low, high) = (low.min(at), high.max(at));
             }
             let (low, high) = (low.as_dvec2(), high.as_dvec2());
-            let ratio = wanted / (high - low).max(DVec2::splat(1e-9));
-            size *= (ratio.x * ratio.y).sqrt();
+            let drawn = (high - low).max(DVec2::splat(1e-9));
+            let ratio = wanted / drawn;
+            let growth = (ratio.x * ratio.y).sqrt();
+            size *= growth;
+            sides = drawn * growth;
             place += wanted_middle - 0.5 * (low + high);
         }
-        CropPose { rotation, size: libm::log(size), place, distance: libm::log(self.median_m) }
+        (CropPose { rotation, size: libm::log(size), place, distance: libm::log(self.median_m) }, sides)
     }
 }
 

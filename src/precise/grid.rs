@@ -15,6 +15,8 @@ const MAX_SAMPLES: usize = 4;
 const MIN_READINGS: f32 = 0.34;
 /// Minimum number of readings, of nine in the window of a cell, to fit a normal.
 const MIN_NORMAL_CELLS: u32 = 5;
+/// Fraction of the cells around the mask with a reading, from which on a depth map has a background.
+const COMPLETE: f32 = 0.3;
 /// Depth of a cell outside the image: nearer than anything, so that it occludes any mesh there.
 const OUTSIDE_M: f32 = 1e-6;
 
@@ -43,6 +45,8 @@ pub struct CropGrid {
     pub normals: Vec<Vec3>,
     /// Depth of the scene, metres; 0 without a reading, almost 0 outside the image.
     pub scene: Vec<f32>,
+    /// Fraction of the cells around the mask that have a reading, 0 to 1; see [`CropGrid::unknown_weight`].
+    pub known: f32,
     /// Signed distance to the outermost cells of the mask, in cells: 0 on average on these, negative inside.
     pub outline: Vec<f32>,
     /// The box of the mask: [[left, right], [top, bottom]], outer edges, in cells.
@@ -74,11 +78,13 @@ impl CropGrid {
             depth: Vec::with_capacity(width * height),
             normals: Vec::new(),
             scene: Vec::with_capacity(width * height),
+            known: 0.0,
             outline: Vec::with_capacity(width * height),
             bounds: [[0.0; 2]; 2],
         };
         grid.sample(observation);
         grid.mask_cells = grid.mask.iter().filter(|m| **m).count();
+        grid.known = grid.known_share();
         grid.fit_normals();
         grid.measure_bounds();
         grid
@@ -88,6 +94,26 @@ impl CropGrid {
     pub fn ray(&self, u: f32, v: f32) -> Vec3 {
         let focal = self.focal as f32;
         Vec3::new((u - self.center[0] as f32) / focal, (v - self.center[1] as f32) / focal, 1.0)
+    }
+
+    /// The weight in the union of a silhouette cell without a reading, given that in a complete depth map.
+    ///
+    /// In a depth map without background, or almost, missing readings are not informative: the mask is the only evidence
+    /// of free space, and such cells cost as much as free space.
+    pub fn unknown_weight(&self, complete: f32) -> f32 {
+        1.0 - (1.0 - complete) * (self.known / COMPLETE).min(1.0)
+    }
+
+    /// The fraction of the cells around the mask, but in the image, that have a reading.
+    fn known_share(&self) -> f32 {
+        let (mut cells, mut known) = (0u32, 0u32);
+        for (mask, scene) in self.mask.iter().zip(&self.scene) {
+            if !mask && *scene != OUTSIDE_M {
+                cells += 1;
+                known += u32::from(*scene > 0.0);
+            }
+        }
+        known as f32 / cells.max(1) as f32
     }
 
     fn sample(&mut self, observation: &CleanObservation) {

@@ -6,6 +6,7 @@ use super::coarse::outermost;
 use super::pose::MeshFrame;
 use super::recipe::{FINE, FINEST, GRIDS, Grid};
 use super::render::Model;
+use super::turns::Turns;
 use crate::geometry::decimate::decimate;
 use crate::geometry::mesh::Mesh;
 
@@ -19,6 +20,8 @@ pub struct MeshPyramid {
     pub models: [Model; GRIDS],
     /// Extreme vertices of the fine mesh; see [`outermost`].
     pub outermost: Vec<Vec3>,
+    /// The turns in which the object may look alike.
+    pub turns: Turns,
 }
 
 impl MeshPyramid {
@@ -32,6 +35,6 @@ impl MeshPyramid {
             meshes[grid] = decimate(&meshes[grid + 1], grids[grid].triangles);
         }
         let models = meshes.each_ref().map(Model::new);
-        Some(Self { frame, outermost: outermost(&models[FINE]), models, fine })
+        Some(Self { frame, outermost: outermost(&models[FINE]), turns: Turns::new(&fine), models, fine })
     }
 }

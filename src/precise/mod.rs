@@ -25,6 +25,9 @@ pub mod rim;
 pub mod rounds;
 pub mod score;
 pub mod search;
+pub mod turns;
+
+use core::ops::Range;
 
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::clouds::Clouds;
@@ -34,9 +37,9 @@ use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::Similarity;
 use crate::paper;
 use crate::paper::options::PaperOptions;
-use crate::precise::options::{AlignOptions, ExtentAxis, Quality, SearchScope};
+use crate::precise::options::{AlignOptions, ExtentAxis, SearchScope};
 use crate::progress::{Stage, Stopwatch};
-use crate::report::{Alternative, Counts, ScoreTerms, Solution, Uncertainty};
+use crate::report::{Alternative, Counts, Effort, ScoreTerms, Solution, Uncertainty};
 use alternatives::alternatives;
 use confidence::confidence;
 use pose::{CropPose, MeshFrame};
@@ -54,11 +57,11 @@ pub const PLAN: &[(Stage, f64)] = &[
     (Stage::Normals, 0.02),
     (Stage::Prepare, 0.15),
     (Stage::Search, 0.2),
-    (Stage::Refine, 0.6),
     (Stage::Metrics, 0.85),
 ];
 
-/// The search before its first round. A `hypothesis` from another source is added to the candidates of the grid.
+/// A search before its first round. A `hypothesis` from another source, and what `previous` searches have found, is
+/// added to the candidates of the grid.
 ///
 /// # Errors
 /// [`ErrorCode::NoConsensus`] if decimation leaves no triangle, [`ErrorCode::InvalidOption`] for an initial pose
@@ -66,7 +69,7 @@ pub const PLAN: &[(Stage, f64)] = &[
 pub fn begin(
     observation: &Observation,
     mesh: &PreparedMesh<'_>,
-    hypothesis: Option<Similarity>,
+    (hypothesis, previous): (Option<Similarity>, Option<&Rounds>),
     options: &AlignOptions,
     settings: &SearchSettings,
     stages: &mut Stopwatch<'_>,
@@ -80,30 +83,46 @@ pub fn begin(
     if rounds.shows_no_mask() {
         return Err(degenerate_mask(format!("{} pixels in a line, or apart", rounds.search.observation.pixels)));
     }
+    if let Some(previous) = previous {
+        rounds.search.renders += previous.search.renders;
+        rounds.resume(&previous.found);
+    }
     stages.enter(Stage::Search);
     let pose = hypothesis.and_then(|pose| CropPose::of_similarity(&pose, &rounds.search.mesh.frame));
     pose.into_iter().for_each(|pose| rounds.join(pose));
     Ok(rounds)
 }
 
-/// Continues the search until it ends or `pause` returns true. Returns whether it has ended.
-pub fn run(rounds: &mut Rounds, pause: &mut dyn FnMut() -> bool, stages: &mut Stopwatch<'_>) -> bool {
+/// Continues a search until it ends or `pause` returns true. Returns whether it has ended. `share` is the progress at its
+/// start and end, 0 to 1.
+pub fn run(
+    rounds: &mut Rounds,
+    share: &Range<f64>,
+    pause: &mut dyn FnMut() -> bool,
+    stages: &mut Stopwatch<'_>,
+) -> bool {
     while let Some(round) = rounds.round() {
-        if round.task == Task::Refine && stages.running() != Some(Stage::Refine) {
+        let is_refinement = matches!(round.task, Task::Refine | Task::Turn);
+        if is_refinement && stages.running() != Some(Stage::Refine) {
             stages.enter(Stage::Refine);
         }
         if !rounds.run(pause) {
             return false;
         }
-        stages.reach(round.done, rounds.best());
+        stages.reach(share.start + (share.end - share.start) * round.done, rounds.best());
     }
     true
 }
 
 /// The pose of the method of the paper, at the best quality. Descriptors are weak evidence, but independent of the
 /// search.
-pub fn hypothesis(clouds: &mut Clouds, options: &AlignOptions, stages: &mut Stopwatch<'_>) -> Option<Similarity> {
-    let is_wanted = options.quality == Quality::Best && options.search == SearchScope::Global;
+pub fn hypothesis(
+    clouds: &mut Clouds,
+    options: &AlignOptions,
+    settings: &SearchSettings,
+    stages: &mut Stopwatch<'_>,
+) -> Option<Similarity> {
+    let is_wanted = settings.effort == Effort::Best && options.search == SearchScope::Global;
     let paper = PaperOptions {
         seed: options.seed,
         max_observed_points: options.max_observed_points,
@@ -126,6 +145,8 @@ pub struct Certainty {
     pub score: f64,
     /// The terms of the score.
     pub terms: ScoreTerms,
+    /// The effort of the search that found the pose.
+    pub effort: Effort,
 }
 
 /// The best pose of the search, and its reliability.
@@ -156,20 +177,47 @@ pub fn conclude(rounds: &Rounds, mesh: &Mesh, options: &AlignOptions) -> Result<
         }),
         score: f64::from(best.score.total),
         terms: (&best.score).into(),
+        effort: search.settings.effort,
     };
     Ok((solution, certainty))
 }
 
-/// The search for these options.
-pub fn search_settings(options: &AlignOptions) -> SearchSettings {
-    let settings = match options.quality {
-        Quality::Fast => SearchSettings::fast(),
-        Quality::Balanced => SearchSettings::default(),
-        Quality::Best => SearchSettings::best(),
-    };
+/// The searches for these options, with increasing effort.
+pub fn efforts(options: &AlignOptions) -> Vec<SearchSettings> {
     let is_fixed = options.scale.bounds().is_some_and(|[min, max]| min == max) || options.known_extent_m.is_some();
-    let settings = SearchSettings { lock_scale: is_fixed, ..settings };
-    options.work_budget.map_or(settings, |budget| settings.within(budget))
+    let efforts = options.quality.efforts().iter();
+    let efforts = efforts.map(|&effort| SearchSettings { lock_scale: is_fixed, ..effort.into() });
+    match options.work_budget {
+        Some(budget) => within(efforts, budget),
+        None => efforts.collect(),
+    }
+}
+
+/// Progress of an alignment at the start and the end of one of `efforts` searches, 0 to 1. Most time is the last one's,
+/// if it is reached.
+pub fn share(effort: usize, efforts: usize) -> Range<f64> {
+    const SEARCH: [f64; 2] = [0.2, 0.85];
+    const BEFORE: f64 = 0.15;
+    let start = SEARCH[0] + BEFORE * effort as f64;
+    start..if effort + 1 < efforts { start + BEFORE } else { SEARCH[1] }
+}
+
+/// Searches that together stay within a budget: the last one is scaled to what the others leave.
+fn within(efforts: impl Iterator<Item = SearchSettings>, budget: f64) -> Vec<SearchSettings> {
+    let mut left = budget;
+    let mut list: Vec<SearchSettings> = Vec::new();
+    for settings in efforts {
+        // A remainder that is small relative to the work before it is not worth another search.
+        if list.last().is_some_and(|before| left < before.cost()) {
+            break;
+        }
+        list.push(settings);
+        left -= settings.cost();
+    }
+    if let Some(last) = list.last_mut() {
+        *last = last.within(left + last.cost());
+    }
+    list
 }
 
 /// The prior on scale and orientation.

@@ -6,6 +6,7 @@ use crate::metrics::symmetry::Symmetry;
 use crate::number::number;
 use crate::options::scale::ScaleOption;
 use crate::options::{choices, options};
+use crate::report::Effort;
 
 /// Relative tolerance of the bounds for an initial scale, because 32-bit floats are rounded.
 const ROUNDING: f64 = 1e-6;
@@ -13,14 +14,28 @@ const ROUNDING: f64 = 1e-6;
 choices! {
     /// How much work the search does.
     pub enum Quality {
+        /// The default: a `fast` search, and the `best` one if the result of the first is not certain.
+        #[default]
+        Auto = "auto",
         /// Fewer rotations and candidates: about a third of the time of `balanced`.
         Fast = "fast",
-        /// The default.
-        #[default]
+        /// The same work for every input.
         Balanced = "balanced",
         /// More rotations and candidates, among them the pose of the paper's method: about four times the time of
         /// `balanced`.
         Best = "best",
+    }
+}
+
+impl Quality {
+    /// The searches of this quality. Each follows the one before if the result of that is not certain.
+    pub fn efforts(self) -> &'static [Effort] {
+        match self {
+            Self::Auto => &[Effort::Fast, Effort::Best],
+            Self::Fast => &[Effort::Fast],
+            Self::Balanced => &[Effort::Balanced],
+            Self::Best => &[Effort::Best],
+        }
     }
 }
 
@@ -54,7 +69,7 @@ options! {
     /// Options of `align` with the default preset, `"precise"`. All have defaults.
     pub struct AlignOptions {
         /// How much work the search does.
-        quality: Quality = Quality::Balanced, Choice;
+        quality: Quality = Quality::Auto, Choice;
         /// The scale in metres per mesh unit: `"free"`, a known number (1 for a mesh in metres), or bounds `[min, max]`.
         /// Not together with `knownExtentM`.
         scale: ScaleOption = ScaleOption::Free, Scale;
@@ -87,7 +102,7 @@ options! {
         /// Upper bound on the depth readings used for metrics and initial scale. Above it, an even random subset is drawn.
         max_observed_points: u32 = 20_000, Count(32..=1_000_000);
         /// Number of points sampled on the mesh surface for metrics and initial scale.
-        surface_samples: u32 = 20_000, Count(100..=1_000_000);
+        surface_samples: u32 = 10_000, Count(100..=1_000_000);
     }
     check check_combination;
 }

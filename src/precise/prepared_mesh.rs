@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use std::rc::Rc;
 
 use super::mesh_pyramid::MeshPyramid;
+use super::options::Quality;
 use super::recipe::{GRIDS, Grid, SearchSettings};
 use crate::error::Result;
 use crate::evidence::sample::check_shape;
@@ -55,13 +56,14 @@ impl<'a> PreparedMesh<'a> {
         Ok(())
     }
 
-    /// Validates the mesh, and decimates it for the default quality.
+    /// Validates the mesh, and decimates it for the first search of the default quality.
     ///
     /// # Errors
     /// [`DegenerateMesh`](crate::error::ErrorCode::DegenerateMesh).
     pub fn prepare(&self) -> Result<()> {
         self.check()?;
-        self.pyramid(&SearchSettings::default().grids);
+        let first = Quality::default().efforts().first();
+        first.into_iter().for_each(|&effort| drop(self.pyramid(&SearchSettings::from(effort).grids)));
         Ok(())
     }
 

@@ -1,7 +1,9 @@
-//! The recipe of the search: grids and rounds for each quality.
+//! The recipe of the search: grids and rounds for each effort.
 
 use super::clean::CleanObservation;
 use super::score::{Scoring, Weights};
+use super::turns::TURNS;
+use crate::report::Effort;
 
 /// Grids of the search, coarse to fine.
 pub const GRIDS: usize = 5;
@@ -17,11 +19,13 @@ pub const FINE: usize = 3;
 pub const FINEST: usize = 4;
 
 /// Rounds of the search.
-pub const ROUNDS: usize = 6;
+pub const ROUNDS: usize = 7;
 /// The first round that refines.
 pub const FIRST_REFINEMENT: usize = 2;
+/// The round that turns the best pose.
+pub const TURNING: usize = 4;
 /// The ranking round, whose scores are those of the result.
-pub const RANKING: usize = 4;
+pub const RANKING: usize = 5;
 
 /// The resolution of a grid and of the mesh rendered on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,6 +50,8 @@ pub enum Task {
     Place,
     /// Refines all seven parameters.
     Refine,
+    /// Refines a half or quarter turn of the best pose.
+    Turn,
 }
 
 /// A round: the same task for many poses, of which the best are kept for the next round.
@@ -55,25 +61,20 @@ pub struct Round {
     pub task: Task,
     /// Index of the grid.
     pub grid: usize,
-    /// Number of rotations of [`Task::Rotate`], maximum number of steps of [`Task::Refine`].
+    /// Number of rotations of [`Task::Rotate`], maximum number of steps of [`Task::Refine`] and [`Task::Turn`].
     pub work: usize,
     /// Number of poses kept for the next round.
     pub keep: usize,
     /// Of poses whose rotations are closer than this, in radians, only the best is kept; 0 keeps all.
     pub apart: f64,
-    /// Progress after the round, 0 to 1; from profiles of real cases.
+    /// Progress of the search after the round, 0 to 1; from profiles of real cases.
     pub done: f64,
 }
 
-/// Column of the tables for each quality.
-const FAST: usize = 0;
-const BALANCED: usize = 1;
-const BEST: usize = 2;
-
-/// The grids at a quality.
+/// The grids of an effort.
 #[rustfmt::skip]
-const fn grids(quality: usize) -> [Grid; GRIDS] {
-    let q = quality;
+const fn grids(effort: Effort) -> [Grid; GRIDS] {
+    let q = effort as usize;
     //     mask cells: fast, balanced, best      triangles: fast, balanced, best           depth error        outline
     [
         Grid { cells: [ 120,  150,  150][q], triangles: [ 150,    200,    200][q], depth_error: 0.12, outline: 0.0 },
@@ -84,21 +85,25 @@ const fn grids(quality: usize) -> [Grid; GRIDS] {
     ]
 }
 
-/// The rounds at a quality.
+/// The rounds of an effort.
 #[rustfmt::skip]
-const fn rounds(quality: usize) -> [Round; ROUNDS] {
-    use Task::{Place, Refine, Rotate};
-    let q = quality;
+const fn rounds(effort: Effort) -> [Round; ROUNDS] {
+    use Task::{Place, Refine, Rotate, Turn};
+    let q = effort as usize;
     //       task          grid          work: fast, balanced, best   keep: fast, balanced, best  apart         done
     [
-        Round { task: Rotate, grid: SIEVE,  work: [600, 1500, 4000][q], keep: [120, 500, 1600][q], apart: 0.0,   done: 0.53 },
-        Round { task: Place,  grid: COARSE, work: 1,                    keep: [ 20,  64,  160][q], apart: 0.21,  done: 0.60 },
-        Round { task: Refine, grid: MIDDLE, work: [  4,    4,    5][q], keep: [  6,  20,   40][q], apart: 0.105, done: 0.71 },
-        Round { task: Refine, grid: MIDDLE, work: [  5,    8,   15][q], keep: [  3,   6,   10][q], apart: 0.105, done: 0.78 },
-        Round { task: Refine, grid: FINE,   work: [  8,   12,   20][q], keep: [  1,   1,    2][q], apart: 0.105, done: 0.83 },
-        Round { task: Refine, grid: FINEST, work: [  4,    6,   12][q], keep: 0,                   apart: 0.0,   done: 0.85 },
+        Round { task: Rotate, grid: SIEVE,  work: [600, 1500, 4000][q], keep: [120, 500, 1600][q], apart: 0.0,   done: 0.51 },
+        Round { task: Place,  grid: COARSE, work: 1,                    keep: [ 20,  64,  160][q], apart: 0.21,  done: 0.62 },
+        Round { task: Refine, grid: MIDDLE, work: [  4,    4,    5][q], keep: [  6,  20,   40][q], apart: 0.105, done: 0.78 },
+        Round { task: Refine, grid: MIDDLE, work: [  5,    8,   15][q], keep: [  3,   6,   10][q], apart: 0.105, done: 0.89 },
+        Round { task: Turn,   grid: MIDDLE, work: [  4,    5,    6][q], keep: [  3,   3,    6][q], apart: 0.21,  done: 0.92 },
+        Round { task: Refine, grid: FINE,   work: [  8,   12,   20][q], keep: [  1,   1,    2][q], apart: 0.105, done: 0.97 },
+        Round { task: Refine, grid: FINEST, work: [  4,    6,   12][q], keep: 0,                   apart: 0.0,   done: 1.0 },
     ]
 }
+
+/// Confidence from which on a search with little effort is not followed by one with more.
+pub const SURE: f64 = 0.9;
 
 /// Cost of a rotation, of a step on the middle grid and of one on the fine grid, in units of the work budget: about a
 /// millisecond of WebAssembly each on a 2020 laptop.
@@ -110,6 +115,8 @@ const MAX_LOAD: [u64; 2] = [64, 12];
 /// Work and objective of a search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchSettings {
+    /// The column of the tables.
+    pub effort: Effort,
     /// The rounds, in order.
     pub rounds: [Round; ROUNDS],
     /// The grids, coarse to fine.
@@ -127,17 +134,12 @@ pub struct SearchSettings {
     pub max_load: u64,
 }
 
-impl Default for SearchSettings {
-    fn default() -> Self {
-        Self::of(BALANCED)
-    }
-}
-
-impl SearchSettings {
-    fn of(quality: usize) -> Self {
+impl From<Effort> for SearchSettings {
+    fn from(effort: Effort) -> Self {
         Self {
-            rounds: rounds(quality),
-            grids: grids(quality),
+            effort,
+            rounds: rounds(effort),
+            grids: grids(effort),
             weights: Weights::default(),
             occlusion: true,
             anchors: true,
@@ -145,33 +147,37 @@ impl SearchSettings {
             max_load: MAX_LOAD[0],
         }
     }
+}
 
-    /// Fewer rotations, candidates and steps.
-    pub fn fast() -> Self {
-        Self::of(FAST)
-    }
-
-    /// More rotations, candidates and steps.
-    pub fn best() -> Self {
-        Self::of(BEST)
-    }
-
+impl SearchSettings {
     /// Number of rotations of the grid.
     pub fn rotations(&self) -> usize {
         self.rounds[0].work
     }
 
+    /// The work of the search, in units of the work budget.
+    pub fn cost(&self) -> f64 {
+        let [rotate, place, first, second, _, fine, _] = self.rounds;
+        self.cost_of_turns()
+            + COST[0] * rotate.work as f64
+            + COST[1] * (place.keep * first.work + first.keep * second.work) as f64
+            + COST[2] * (second.keep * fine.work) as f64
+    }
+
+    /// The part of the work that a budget does not scale.
+    fn cost_of_turns(&self) -> f64 {
+        let [.., turn, fine, _] = self.rounds;
+        COST[1] * (TURNS * turn.work) as f64 + COST[2] * (turn.keep * fine.work) as f64
+    }
+
     /// The settings with rotations and candidates scaled to a budget of work. Work is counted, not timed, so that results
     /// do not depend on the machine.
     pub fn within(self, budget: f64) -> Self {
-        let [rotate, place, first, second, fine, _] = self.rounds;
-        let cost = COST[0] * rotate.work as f64
-            + COST[1] * (place.keep * first.work + first.keep * second.work) as f64
-            + COST[2] * (second.keep * fine.work) as f64;
-        let share = (budget / cost).clamp(0.02, 20.0);
+        let turns = self.cost_of_turns();
+        let share = ((budget - turns) / (self.cost() - turns)).clamp(0.02, 20.0);
         let scaled = |count: usize, least: usize| ((count as f64 * share) as usize).max(least);
         let mut within = Self { max_load: MAX_LOAD[1], ..self };
-        within.rounds[0].work = scaled(rotate.work, 60);
+        within.rounds[0].work = scaled(self.rotations(), 60);
         for (round, least) in within.rounds.iter_mut().zip([30, 6, 3, 2]) {
             round.keep = scaled(round.keep, least);
         }

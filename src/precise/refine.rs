@@ -9,7 +9,7 @@ use glam::Vec3;
 use super::objective::Objective;
 use super::pose::{CropPose, Step};
 use super::render::Canvas;
-use super::score::{Score, is_outline};
+use super::score::{Background, Score, is_outline};
 use crate::geometry::normal_equations::NormalEquations;
 
 /// The problem of a refinement.
@@ -105,7 +105,7 @@ impl Refiner<'_> {
         let mut equations = NormalEquations::new();
         let mut turns = Turns::default();
         let (grid, weights) = (self.objective.grid, &self.objective.scoring.weights);
-        let per_cell = |weight: f32, cells: u32| weight * score.overlap / cells.max(1) as f32;
+        let per_cell = |weight: f32, cells: f32| weight * score.overlap / cells.max(1.0);
         let [depth_cells, normal_cells, outline_cells] = score.counts;
         let depth_weight = per_cell(weights.depth, depth_cells);
         let normal_weight = per_cell(weights.normals, normal_cells);
@@ -115,6 +115,7 @@ impl Refiner<'_> {
         let per_depth = 1.0 / self.objective.scoring.depth_m;
         let half = self.objective.scoring.outline_cells;
         let wants_outline = outline_weight > 0.0 || overlap_weight > 0.0;
+        let unknown_weight = grid.unknown_weight(weights.unknown);
         for v in 0..grid.height {
             for u in 0..grid.width {
                 let i = v * grid.width + u;
@@ -143,8 +144,13 @@ impl Refiner<'_> {
                     }
                 }
                 if wants_outline && is_outline(canvas, grid.width, grid.height, u, v) {
-                    if !grid.mask[i] && self.objective.scoring.hides(grid.scene[i], z) {
-                        continue;
+                    let mut visible = 1.0;
+                    if !grid.mask[i] {
+                        match self.objective.scoring.background(grid.scene[i], z) {
+                            Background::FreeSpace => {}
+                            Background::Occluder => continue,
+                            Background::Unknown => visible = unknown_weight,
+                        }
                     }
                     let d = grid.outline[i];
                     let slope_u = 0.5 * (grid.outline[i + 1] - grid.outline[i - 1]);
@@ -157,7 +163,7 @@ impl Refiner<'_> {
                     let scale = grid.focal as f32 * w;
                     let along = -(slope_u * point.x + slope_v * point.y) * w;
                     let gradient = Vec3::new(slope_u, slope_v, along) * scale;
-                    self.add(&mut equations, canvas, point, gradient, d, weight);
+                    self.add(&mut equations, canvas, point, gradient, d, visible * weight);
                 }
             }
         }

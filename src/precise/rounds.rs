@@ -8,13 +8,16 @@ use super::coarse::Coarse;
 use super::grid::CropGrid;
 use super::pose::CropPose;
 use super::ranking::{best_of, distinct};
-use super::recipe::{COARSE, FINE, FIRST_REFINEMENT, RANKING, Round, Task};
+use super::recipe::{COARSE, FINE, FIRST_REFINEMENT, RANKING, Round, TURNING, Task};
 use super::refine::Refiner;
 use super::render::Canvas;
 use super::search::{Found, Search};
 use crate::geometry::rotations::super_fibonacci;
 use crate::geometry::similarity::Similarity;
 
+/// Score below the best pose at which a turn of it is not refined, and at which a refined one is not ranked.
+const FAR: f32 = 0.8;
+const NEAR: f32 = 0.3;
 /// Rotations after which the work of a round on the rotation grid is known, and the fewest rotations of such a round.
 const PROBED_ROTATIONS: usize = 16;
 const MIN_ROTATIONS: usize = 60;
@@ -43,6 +46,8 @@ pub struct Rounds {
     others: [Vec<CropPose>; 2],
     /// The best candidate of the last round, if any.
     best: Vec<Found>,
+    /// Candidates of the ranking round other than turns of the best one.
+    unturned: Vec<CropPose>,
 }
 
 impl Rounds {
@@ -67,8 +72,15 @@ impl Rounds {
             allowance: 0,
             others: [around, Vec::new()],
             best: Vec::new(),
+            unturned: Vec::new(),
             search,
         }
+    }
+
+    /// Adds poses that another search has refined to the candidates of the grid.
+    pub fn resume(&mut self, found: &[Found]) {
+        let list = if self.index < FIRST_REFINEMENT { &mut self.others[0] } else { &mut self.poses };
+        list.extend(poses_of(found));
     }
 
     /// The work of the current round that its inputs may ask for.
@@ -78,6 +90,7 @@ impl Rounds {
             Task::Rotate => self.anchors.len(),
             Task::Place => 1,
             Task::Refine => round.work + 1,
+            Task::Turn => round.work + 2,
         };
         let grid = settings.grids[round.grid];
         settings.max_load * (self.tasks() * per_task * (grid.cells + grid.triangles)) as u64
@@ -90,7 +103,8 @@ impl Rounds {
 
     /// Adds the neighbourhood of a pose from another source to the candidates of the grid.
     pub fn join(&mut self, pose: CropPose) {
-        self.others[1] = self.search.around(pose);
+        let around = self.search.around(pose);
+        self.others[1].extend(around);
     }
 
     /// The current round; `None` after the end of the search.
@@ -128,7 +142,17 @@ impl Rounds {
                     self.outcomes.extend(tried.drain(..).map(Found::from));
                 }
                 Task::Place => self.outcomes.push(coarse.at_its_distance(&mut canvas, self.poses[task]).into()),
-                Task::Refine => self.outcomes.push(refiner.refine(&mut canvas, self.poses[task], round.work).into()),
+                Task::Turn | Task::Refine => {
+                    let (mut pose, mut steps) = (self.poses[task], round.work);
+                    if round.task == Task::Turn {
+                        let turned = coarse.at_its_distance(&mut canvas, pose);
+                        pose = turned.pose;
+                        if self.best.first().is_some_and(|best| turned.score.total < best.score.total - FAR) {
+                            steps = 0;
+                        }
+                    }
+                    self.outcomes.push(refiner.refine(&mut canvas, pose, steps).into());
+                }
             }
             self.tasks_done += 1;
             self.work += core::mem::take(&mut canvas.work);
@@ -164,8 +188,16 @@ impl Rounds {
         let outcomes = core::mem::take(&mut self.outcomes);
         (self.tasks_done, self.work, self.allowance) = (0, 0, 0);
         self.search.renders += outcomes.iter().map(|f| f.renders).sum::<usize>();
-        self.best = best_of(&outcomes, 1);
+        let best = core::mem::replace(&mut self.best, best_of(&outcomes, 1));
         match self.index {
+            TURNING => {
+                // Of the same grid, so that their scores are comparable.
+                self.best = best_of(&[best.as_slice(), self.best.as_slice()].concat(), 1);
+                let least = best.first().map_or(0.0, |best| best.score.total) - NEAR;
+                let alike = outcomes.into_iter().filter(|turned| turned.score.total > least).collect();
+                self.poses = core::mem::take(&mut self.unturned);
+                self.poses.extend(poses_of(&distinct(alike, round.keep, round.apart)));
+            }
             RANKING => {
                 self.found = distinct(outcomes, usize::MAX, round.apart);
                 self.poses = poses_of(&self.found[..round.keep.min(self.found.len())]);
@@ -187,6 +219,10 @@ impl Rounds {
             }
         }
         self.index += 1;
+        if self.index == TURNING {
+            let turned = self.poses.first().map_or_else(Vec::new, |best| self.search.mesh.turns.of(best));
+            self.unturned = core::mem::replace(&mut self.poses, turned);
+        }
         if self.index == FIRST_REFINEMENT {
             let [before, after] = core::mem::take(&mut self.others);
             self.poses = [before, core::mem::take(&mut self.poses), after].concat();

@@ -17,11 +17,13 @@ pub struct Weights {
     pub outline: f32,
     /// Weight in the union of a silhouette cell behind an occluder: 0 is no cost, 1 the cost of free space.
     pub occluded: f32,
+    /// Weight in the union of a silhouette cell where the depth map has no reading; see [`CropGrid::known`].
+    pub unknown: f32,
 }
 
 impl Default for Weights {
     fn default() -> Self {
-        Self { overlap: 0.2, depth: 1.0, normals: 0.25, outline: 0.6, occluded: 0.15 }
+        Self { overlap: 0.2, depth: 1.0, normals: 0.25, outline: 0.6, occluded: 0.15, unknown: 0.07 }
     }
 }
 
@@ -45,6 +47,17 @@ pub struct Scoring {
     pub outline_cells: f32,
 }
 
+/// What the depth map shows outside the mask, where the mesh is rendered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Background {
+    /// The camera sees through the mesh: evidence against the pose.
+    FreeSpace,
+    /// A nearer surface, which hides the mesh.
+    Occluder,
+    /// No reading: a shadow of the sensor, a dark or shiny surface, or the object itself.
+    Unknown,
+}
+
 /// A score and its terms, each from 0 to 1.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Score {
@@ -64,8 +77,9 @@ pub struct Score {
     pub hidden: f32,
     /// Number of cells of the union.
     pub union: f32,
-    /// Numbers of cells with depth in both, with normals in both, and of visible outline.
-    pub counts: [u32; 3],
+    /// Numbers of cells with depth in both, with normals in both, and of visible outline, where cells without a reading
+    /// count less than one.
+    pub counts: [f32; 3],
 }
 
 impl From<&Score> for ScoreTerms {
@@ -82,23 +96,30 @@ impl From<&Score> for ScoreTerms {
 }
 
 impl Scoring {
-    /// Whether a reading of the scene, metres, occludes a mesh at `z`; 0 (no reading) does not.
+    /// Evidence of a cell outside the mask, with the depth `scene`, against a mesh at the depth `z`, metres.
     #[inline]
-    pub fn hides(&self, scene: f32, z: f32) -> bool {
-        scene > 0.0 && scene < z - self.occluder_m
+    pub fn background(&self, scene: f32, z: f32) -> Background {
+        if scene <= 0.0 {
+            Background::Unknown
+        } else if scene < z - self.occluder_m {
+            Background::Occluder
+        } else {
+            Background::FreeSpace
+        }
     }
 
     /// Scores the last render. `stretch` multiplies the rendered depths; the silhouette does not depend on it.
     pub fn score(&self, canvas: &Canvas, model: &Model, grid: &CropGrid, stretch: f32) -> Score {
-        let (mut both, mut extra, mut hidden) = (0u32, 0u32, 0u32);
+        let (mut both, mut extra, mut hidden, mut unknown) = (0u32, 0u32, 0u32, 0u32);
         let (mut depth_cells, mut depth_error) = (0u32, 0.0f32);
         let (mut normal_cells, mut normal_sum) = (0u32, 0.0f32);
-        let (mut outline_cells, mut outline_sum) = (0u32, 0.0f32);
+        let (mut outline_cells, mut outline_sum) = (0.0f32, 0.0f32);
         let width = grid.width;
         let per_depth = 1.0 / self.depth_m;
         let per_outline = 1.0 / (self.outline_cells * self.outline_cells);
         let to_mesh = canvas.rotation.transpose();
         let wants_outline = self.weights.outline > 0.0;
+        let unknown_weight = grid.unknown_weight(self.weights.unknown);
         for v in 0..grid.height {
             // By rows, so that bounds are checked once per row instead of once per cell.
             let row = v * width..(v + 1) * width;
@@ -111,7 +132,7 @@ impl Scoring {
                 }
                 let i = v * width + u;
                 let z = stretch / w;
-                let mut visible = true;
+                let mut visible = 1.0;
                 if mask {
                     both += 1;
                     if observed > 0.0 {
@@ -124,28 +145,37 @@ impl Scoring {
                             normal_cells += 1;
                         }
                     }
-                } else if self.hides(scene, z) {
-                    hidden += 1;
-                    visible = false;
                 } else {
-                    extra += 1;
+                    match self.background(scene, z) {
+                        Background::FreeSpace => extra += 1,
+                        Background::Occluder => {
+                            hidden += 1;
+                            visible = 0.0;
+                        }
+                        Background::Unknown => {
+                            unknown += 1;
+                            visible = unknown_weight;
+                        }
+                    }
                 }
-                if wants_outline && visible && is_outline(canvas, width, grid.height, u, v) {
+                if wants_outline && visible > 0.0 && is_outline(canvas, width, grid.height, u, v) {
                     let d = grid.outline[i];
-                    outline_sum += 1.0 / (1.0 + d * d * per_outline);
-                    outline_cells += 1;
+                    outline_sum += visible / (1.0 + d * d * per_outline);
+                    outline_cells += visible;
                 }
             }
         }
         let mask_cells = grid.mask_cells as f32;
-        let [both, extra, hidden] = [both, extra, hidden].map(|cells| cells as f32);
-        let drawn = both + extra + hidden;
+        let [both, extra, hidden, unknown] = [both, extra, hidden, unknown].map(|cells| cells as f32);
+        let drawn = both + extra + hidden + unknown;
         // Silhouette outside the grid must have a cost; otherwise, the scale would grow without limit.
         let lost = canvas.lost / (1.05 - canvas.lost) * drawn;
-        let union = mask_cells + extra + self.weights.occluded * hidden + lost;
+        let unseen = self.weights.occluded * hidden + unknown_weight * unknown;
+        let union = mask_cells + extra + unseen + lost;
         let coverage = both / mask_cells.max(1.0);
-        let mean = |sum: f32, cells: u32| if cells > 0 { sum / cells as f32 } else { 0.0 };
-        let depth = if depth_cells > 0 { 1.0 - mean(depth_error, depth_cells) } else { 0.0 };
+        let [depth_cells, normal_cells] = [depth_cells, normal_cells].map(|cells| cells as f32);
+        let mean = |sum: f32, cells: f32| if cells > 0.0 { sum / cells } else { 0.0 };
+        let depth = if depth_cells > 0.0 { 1.0 - mean(depth_error, depth_cells) } else { 0.0 };
         let (normals, outline) = (mean(normal_sum, normal_cells), mean(outline_sum, outline_cells));
         let overlap = both / union.max(1.0);
         let score = Score {

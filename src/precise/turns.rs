@@ -1,0 +1,50 @@
+//! Turns: the half and quarter turns of a pose, in which many objects look alike.
+
+use core::f64::consts::{FRAC_PI_2, PI};
+
+use glam::{DQuat, DVec3};
+
+use super::pose::CropPose;
+use crate::evidence::sample::SurfaceMoments;
+use crate::geometry::mesh::Mesh;
+use crate::geometry::rotations::exp;
+
+/// Number of [`Turns::of`] a pose.
+pub const TURNS: usize = 12;
+/// Angles of the turns about an axis, radians.
+const ANGLES: [f64; 3] = [PI, FRAC_PI_2, -FRAC_PI_2];
+
+/// The centre and the axes of turns of a mesh, in its normalised frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Turns {
+    /// Centroid of the surface.
+    center: DVec3,
+    /// Principal axes of the surface.
+    axes: [DVec3; 3],
+}
+
+impl Turns {
+    /// The turns of a mesh.
+    pub fn new(mesh: &Mesh) -> Self {
+        let moments = SurfaceMoments::of(mesh);
+        Self { center: moments.centroid, axes: moments.principal_axes().vectors }
+    }
+
+    /// A pose turned about the principal axes of the mesh, and about the line of sight to its centre.
+    pub fn of(&self, pose: &CropPose) -> Vec<CropPose> {
+        let (scale, translation) = pose.scale_translation();
+        let sight = (pose.rotation * self.center * scale + translation).normalize_or(DVec3::Z);
+        let about_axes = self.axes.iter().flat_map(|axis| ANGLES.map(|angle| pose.rotation * exp(*axis * angle)));
+        let about_sight = ANGLES.map(|angle| exp(sight * angle) * pose.rotation);
+        about_axes.chain(about_sight).map(|rotation| self.turned(pose, rotation)).collect()
+    }
+
+    /// The pose with another rotation, and the centre where it was.
+    fn turned(&self, pose: &CropPose, rotation: DQuat) -> CropPose {
+        let rotation = rotation.normalize();
+        let (scale, translation) = pose.scale_translation();
+        let moved = translation + (pose.rotation * self.center - rotation * self.center) * scale;
+        let z = moved.z.max(0.1 * translation.z);
+        CropPose { rotation, size: libm::log(scale / z), place: moved.truncate() / z, distance: libm::log(z) }
+    }
+}
