@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use super::baseline::Baseline;
 use super::clouds::{Clouds, UnitSettings};
 use sim3align::align::{Setup, align_by};
+use sim3align::evidence::Normals;
 use sim3align::evidence::extents::target_from_source;
 use sim3align::evidence::observation::Observation;
 use sim3align::paper::options::PaperOptions;
@@ -59,7 +60,7 @@ pub fn align_baseline(
 ) -> Result<PaperAlignment> {
     let paper = &options.paper;
     align_by(observation, mesh, &Setup::of_paper(paper)?, PLAN, host, |clouds, stages| {
-        let (evidence, [observed, reconstructed]) = clouds.evidence(stages);
+        let (evidence, [observed, reconstructed]) = clouds.evidence(Normals::All, stages);
         let settings = unit_settings(options, baseline);
         let voxel_size = (1.0 / paper.voxel_divisions) as f32;
         let clouds = Clouds {

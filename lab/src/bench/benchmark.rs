@@ -17,14 +17,14 @@ use sim3align::evidence::observation::Observation;
 use sim3align::metrics::Metrics;
 use sim3align::metrics::pose_error::{PoseErrors, pose_errors};
 use sim3align::metrics::symmetry::{Symmetry, SymmetryAxis};
+use sim3align::precise::efforts;
 use sim3align::precise::mesh_pyramid::MeshPyramid;
 use sim3align::precise::options::AlignOptions;
 use sim3align::precise::pose::CropPose;
 use sim3align::precise::recipe::FIRST_REFINEMENT;
-use sim3align::precise::search_settings;
 use sim3align::precise::{Search, SearchSettings};
 use sim3align::progress::{Host, Stage};
-use sim3align::report::AnyAlignment;
+use sim3align::report::{Alternative, AnyAlignment, Sim3};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::similarity::Similarity;
@@ -74,6 +74,8 @@ pub struct Record {
     pub error: Option<String>,
     /// Errors relative to the true pose, if available.
     pub errors: Option<PoseErrors>,
+    /// Index of the first alternative within [`STRICT`], if any.
+    pub right_alternative: Option<usize>,
     /// Metrics of the true pose.
     pub truth_metrics: Option<Metrics>,
     /// Score of the true pose by the objective of the search.
@@ -203,20 +205,28 @@ impl Host for Clock {
 ///
 /// `overrides` change single settings of the search (see [`override_setting`]).
 pub fn run_case(case: &BenchCase, method: &Method, overrides: &[(String, f64)]) -> Record {
-    let mut settings = match method {
-        Method::Precise(options) => search_settings(options),
-        Method::Paper(_) => search_settings(&AlignOptions::default()),
+    let mut searches = match method {
+        Method::Precise(options) => efforts(options),
+        Method::Paper(_) => efforts(&AlignOptions::default()),
     };
     for (name, value) in overrides {
-        override_setting(&mut settings, name, *value);
+        searches.iter_mut().for_each(|settings| {
+            override_setting(settings, name, *value);
+        });
     }
     let mut record = run_method(case, |observation, mesh, host| match method {
-        Method::Precise(options) => align_with(observation, mesh, options, &settings, host).map(Into::into),
+        Method::Precise(options) => align_with(observation, mesh, options, searches.clone(), host).map(Into::into),
         Method::Paper(options) => align_paper(observation, mesh, options, host).map(Into::into),
     });
     record.truth_score = case.truth.as_ref().and_then(|truth| {
+        // By the objective of the search that found the pose: scores of others are not comparable.
+        let effort = record.alignment.as_ref().and_then(|alignment| match alignment {
+            AnyAlignment::Precise(alignment) => Some(alignment.diagnostics.effort),
+            AnyAlignment::Paper(_) => None,
+        });
+        let settings = searches.iter().find(|s| Some(s.effort) == effort).or(searches.last())?;
         let mesh = MeshPyramid::new(&case.mesh, &settings.grids)?;
-        let search = Search::new(&case.observation, Rc::new(mesh), settings);
+        let search = Search::new(&case.observation, Rc::new(mesh), *settings);
         let pose = CropPose::of_similarity(&truth.camera_from_mesh, &search.mesh.frame)?;
         Some(f64::from(search.score(&pose).total))
     });
@@ -241,6 +251,7 @@ pub fn override_setting(settings: &mut SearchSettings, name: &str, value: f64) -
         "normals" => settings.weights.normals = value as f32,
         "outline" => settings.weights.outline = value as f32,
         "occluded" => settings.weights.occluded = value as f32,
+        "unknown" => settings.weights.unknown = value as f32,
         "occlusion" => settings.occlusion = value != 0.0,
         "anchors" => settings.anchors = value != 0.0,
         "lockScale" => settings.lock_scale = value != 0.0,
@@ -279,12 +290,16 @@ pub(super) fn record_of(case: &BenchCase, outcome: core::result::Result<AnyAlign
     };
     let evaluated = case.truth.as_ref().map(|truth| {
         let scored = evaluate(&case.observation, &case.mesh, &truth.camera_from_mesh, &EvaluateOptions::default());
-        let pose = alignment.as_ref().and_then(|a| Similarity::from_column_major(&a.camera_from_mesh().matrix).ok());
-        let errors =
-            pose.and_then(|pose| pose_errors(&case.mesh, &pose, &truth.camera_from_mesh, &truth.symmetry).ok());
-        (scored.ok(), errors)
+        let errors = |pose: &Sim3| {
+            let pose = Similarity::from_column_major(&pose.matrix).ok()?;
+            pose_errors(&case.mesh, &pose, &truth.camera_from_mesh, &truth.symmetry).ok()
+        };
+        let is_right = |other: &Alternative| errors(&other.camera_from_mesh).is_some_and(|e| STRICT.holds(&e));
+        let alternatives = alignment.as_ref().map_or(&[][..], AnyAlignment::alternatives);
+        let right_alternative = alternatives.iter().position(is_right);
+        (scored.ok(), alignment.as_ref().and_then(|a| errors(a.camera_from_mesh())), right_alternative)
     });
-    let (scored, errors) = evaluated.unwrap_or_default();
+    let (scored, errors, right_alternative) = evaluated.unwrap_or_default();
     Record {
         name: case.name.clone(),
         tier: case.tier.clone(),
@@ -295,6 +310,7 @@ pub(super) fn record_of(case: &BenchCase, outcome: core::result::Result<AnyAlign
         alignment,
         error,
         errors,
+        right_alternative,
         truth_metrics: scored.as_ref().map(|scored| scored.metrics),
         truth_score: None,
         truth_scale_ratio: scored.map(|scored| scored.diagnostics.scale_ratio),

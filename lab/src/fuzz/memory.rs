@@ -5,7 +5,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Bytes beyond which allocations fail: WebAssembly's own limit.
-const LIMIT: usize = 1 << 32;
+const LIMIT: u64 = 1 << 32;
 
 static CURRENT: AtomicUsize = AtomicUsize::new(0);
 static PEAK: AtomicUsize = AtomicUsize::new(0);
@@ -50,7 +50,7 @@ unsafe impl GlobalAlloc for CountingAllocator {
 /// Counts an allocation, unless it would exceed the limit.
 fn has_room(bytes: usize) -> bool {
     let current = CURRENT.fetch_add(bytes, Ordering::Relaxed).saturating_add(bytes);
-    if current > LIMIT {
+    if current as u64 > LIMIT {
         CURRENT.fetch_sub(bytes, Ordering::Relaxed);
         return false;
     }

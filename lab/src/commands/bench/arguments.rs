@@ -8,7 +8,7 @@ use sim3align::options::{Choice, Options};
 use sim3align::paper::options::PaperOptions;
 use sim3align::precise::SearchSettings;
 use sim3align::precise::options::AlignOptions;
-use sim3align::report::Preset;
+use sim3align::report::{Effort, Preset};
 use sim3align_geometry::error::Error;
 use sim3align_lab::baselines::Baseline;
 use sim3align_lab::baselines::align::BaselineOptions;
@@ -26,6 +26,7 @@ Aligns cases with a known truth and prints Markdown tables: success, errors, met
 
 Cases
   --generated N      cases 0 to N − 1 of the generated set; 240 where no --cases or --scenes is given either
+  --misfits N        cases 0 to N − 1 with the mesh of the next case: no pose is right
   --scenes N         all pairs of a set of N cluttered scenes; 100 scenes are 338 pairs
   --prior P          what made the meshes of the scenes: detailed (default), smooth or both
   --set SET          the generated set: general (default), or sensors, with effects of depth sensors and predicted masks
@@ -114,6 +115,7 @@ impl Row {
 /// The parsed command line.
 pub struct Arguments {
     pub generated: usize,
+    pub misfits: usize,
     pub scenes: usize,
     pub priors: Vec<Prior>,
     pub set: CaseSet,
@@ -141,6 +143,7 @@ impl Arguments {
         let (mut options, mut rows, mut imports) = (Vec::new(), Vec::new(), Vec::new());
         let mut arguments = Self {
             generated: 0,
+            misfits: 0,
             scenes: 0,
             priors: vec![Prior::Detailed],
             set: CaseSet::General,
@@ -162,6 +165,7 @@ impl Arguments {
         while let Some(argument) = parser.next()? {
             match argument {
                 Long("generated") => generated = Some(parser.value()?.parse()?),
+                Long("misfits") => arguments.misfits = parser.value()?.parse()?,
                 Long("scenes") => arguments.scenes = parser.value()?.parse()?,
                 Long("prior") => arguments.priors = Prior::several(&parser.value()?.string()?).map_err(said)?,
                 Long("set") => arguments.set = CaseSet::from_name(&parser.value()?.string()?).map_err(said)?,
@@ -213,7 +217,8 @@ impl Arguments {
             };
             arguments.rows.push(Row { name, ..base });
         }
-        let anything_else = !arguments.cases.is_empty() || arguments.only.is_some() || arguments.scenes > 0;
+        let anything_else =
+            !arguments.cases.is_empty() || arguments.only.is_some() || arguments.scenes + arguments.misfits > 0;
         arguments.generated = generated.unwrap_or(if anything_else { 0 } else { CASES });
         Ok(Some(arguments))
     }
@@ -236,7 +241,7 @@ fn assign(row: &mut Row, assignment: &str) -> Result<(), String> {
     }
     if let Some(setting) = name.strip_prefix("search.") {
         let value = value.parse().map_err(|_| format!("{name}: found {value:?}, expected a number"))?;
-        if !override_setting(&mut SearchSettings::default(), setting, value) {
+        if !override_setting(&mut SearchSettings::from(Effort::default()), setting, value) {
             return Err(format!("the search has no setting {setting}"));
         }
         search.push((setting.to_owned(), value));
