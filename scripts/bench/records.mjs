@@ -26,6 +26,7 @@ export const isWithin = (errors, tolerance) =>
  * @typedef {object} BenchRecord
  * @property {string} name
  * @property {string} tier
+ * @property {string} class
  * @property {Record<string, number>} parameters
  * @property {BenchAlignment | null} alignment
  * @property {PoseErrors | null} errors
@@ -58,7 +59,17 @@ export const isWithin = (errors, tolerance) =>
 
 /** @typedef {{ row: string, records: BenchRecord[] }} BenchRow */
 
-/** @typedef {{ cases: number, setSeed: number, meshes?: string, threads?: number, json: string, from?: string }} BenchOptions */
+/**
+ * @typedef {object} BenchOptions
+ * @property {number} cases of the generated set
+ * @property {number} [misfits] cases of it with the mesh of another
+ * @property {string} [set] name of the generated set
+ * @property {number} setSeed
+ * @property {string} [meshes]
+ * @property {number} [threads]
+ * @property {string} json
+ * @property {string} [from]
+ */
 
 /**
  * The rows that an earlier run kept, or those of a run now.
@@ -66,10 +77,12 @@ export const isWithin = (errors, tolerance) =>
  * @param {readonly string[]} rows of `--row`
  * @returns {Promise<BenchRow[]>}
  */
-export async function benchmarkRows({ cases, setSeed, meshes, threads, json, from }, rows) {
+export async function benchmarkRows({ cases, misfits, set, setSeed, meshes, threads, json, from }, rows) {
   if (from === undefined) {
     mkdirSync(dirname(resolve(json)), { recursive: true });
     const args = ["--generated", `${cases}`, "--set-seed", `${setSeed}`, "--json", resolve(json)];
+    if (misfits !== undefined) args.push("--misfits", `${misfits}`);
+    if (set !== undefined) args.push("--set", set);
     if (meshes !== undefined) args.push("--meshes", resolve(meshes));
     if (threads !== undefined) args.push("--threads", `${threads}`);
     await runLab(["bench", ...args, ...rows.flatMap((row) => ["--row", row])], { echo: "errors" });
