@@ -20,6 +20,7 @@ export type {
   Alternative,
   Counts,
   Diagnostics,
+  Effort,
   EvaluationDiagnostics,
   ExtentAxis,
   GuardMode,

@@ -12,7 +12,7 @@ import type {
 /** Defaults of `align`. */
 export const ALIGN_DEFAULTS = {
   preset: "precise",
-  quality: "balanced",
+  quality: "auto",
   scale: "free",
   knownExtentM: null,
   knownExtentAxis: "longest",
@@ -25,7 +25,7 @@ export const ALIGN_DEFAULTS = {
   metrics: true,
   seed: 0,
   maxObservedPoints: 20000,
-  surfaceSamples: 20000,
+  surfaceSamples: 10000,
 } as const satisfies AlignOptions;
 
 /** Defaults of `align` with `preset: "paper"`. */
@@ -57,7 +57,7 @@ export const EVALUATE_DEFAULTS = {
   symmetry: "none",
   seed: 0,
   maxObservedPoints: 20000,
-  surfaceSamples: 20000,
+  surfaceSamples: 10000,
 } as const satisfies EvaluateOptions;
 
 /** Defaults of `register`. */
@@ -92,9 +92,9 @@ export const OPTIONS = {
     {
       name: "quality",
       kind: "choice",
-      choices: ["fast", "balanced", "best"],
+      choices: ["auto", "fast", "balanced", "best"],
       isNullable: false,
-      default: "balanced",
+      default: "auto",
       summary: "How much work the search does",
     },
     {
@@ -195,7 +195,7 @@ export const OPTIONS = {
       min: 100,
       max: 1000000,
       isNullable: false,
-      default: 20000,
+      default: 10000,
       summary: "Number of points sampled on the mesh surface for metrics and initial scale",
     },
   ],
@@ -392,7 +392,7 @@ export const OPTIONS = {
       min: 100,
       max: 1000000,
       isNullable: false,
-      default: 20000,
+      default: 10000,
       summary: "Number of points sampled on the mesh surface",
     },
   ],

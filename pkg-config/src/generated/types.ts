@@ -10,7 +10,12 @@ export type Preset = "precise" | "paper";
 /**
  * How much work the search does.
  */
-export type Quality = "fast" | "balanced" | "best";
+export type Quality = "auto" | "fast" | "balanced" | "best";
+
+/**
+ * The work of one search.
+ */
+export type Effort = "fast" | "balanced" | "best";
 
 /**
  * Where the search looks for poses.
@@ -40,7 +45,7 @@ export interface AlignOptions {
   preset?: "precise" | undefined;
 
   /**
-   * How much work the search does. Default `"balanced"`.
+   * How much work the search does. Default `"auto"`.
    */
   quality?: Quality | undefined;
   /**
@@ -105,7 +110,7 @@ export interface AlignOptions {
   maxObservedPoints?: number | undefined;
   /**
    * Number of points sampled on the mesh surface for metrics and initial scale. Takes a whole number from 100 to
-   * 1000000. Default `20000`.
+   * 1000000. Default `10000`.
    */
   surfaceSamples?: number | undefined;
 }
@@ -224,7 +229,7 @@ export interface EvaluateOptions {
    */
   maxObservedPoints?: number | undefined;
   /**
-   * Number of points sampled on the mesh surface. Takes a whole number from 100 to 1000000. Default `20000`.
+   * Number of points sampled on the mesh surface. Takes a whole number from 100 to 1000000. Default `10000`.
    */
   surfaceSamples?: number | undefined;
 }
@@ -345,7 +350,7 @@ export type ErrorCode = "INVALID_ARGUMENT" | "INVALID_OPTION" | "UNKNOWN_OPTION"
 /**
  * The kinds of warning.
  */
-export type WarningCode = "DEPTH_LOOKS_LIKE_MILLIMETRES" | "DEPTH_LOOKS_TOO_SMALL" | "MASK_COVERS_IMAGE" | "MASK_TOUCHES_BORDER" | "SPARSE_DEPTH" | "SCALE_CLAMPED" | "SCALE_COLLAPSED" | "NOT_CONVERGED" | "CAMERA_NOT_PINHOLE";
+export type WarningCode = "DEPTH_LOOKS_LIKE_MILLIMETRES" | "DEPTH_LOOKS_TOO_SMALL" | "MASK_COVERS_IMAGE" | "MASK_TOUCHES_BORDER" | "SPARSE_DEPTH" | "SCALE_CLAMPED" | "SCALE_COLLAPSED" | "NOT_CONVERGED" | "MESH_DOUBTFUL" | "CAMERA_NOT_PINHOLE";
 
 /**
  * A condition that the caller should know about; the result stands.
@@ -650,6 +655,10 @@ timingsMs: Timings, };
  * Diagnostics of the preset `precise`.
  */
 export type PreciseDiagnostics = { 
+/**
+ * The effort of the search that found the pose; it follows from `quality`.
+ */
+effort: Effort, 
 /**
  * The search's objective, 0 to about 2. It compares poses of one input; scores of different inputs do not compare.
  */

@@ -8,6 +8,7 @@ import { Choices } from "../ui/controls.js";
 import { stageTitles } from "../ui/texts.js";
 
 const qualityTitles: { readonly [Q in Options["quality"]]: string } = {
+  auto: "Automatic",
   fast: "Fast",
   balanced: "Balanced",
   best: "Best",
