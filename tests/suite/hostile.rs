@@ -21,7 +21,7 @@ use sim3align::precise::pose::CropPose;
 use sim3align::precise::prepared_mesh::PreparedMesh;
 use sim3align::precise::render::{Canvas, Model};
 use sim3align::progress::Silent;
-use sim3align::report::WarningCode;
+use sim3align::report::{Effort, WarningCode};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::precise::{body, observe, truth};
@@ -212,16 +212,16 @@ fn a_bound_on_work_bounds_renders_of_costly_inputs() {
     let observation = view(VGA, [500.0; 2], blob).unwrap();
     let mesh = soup(3000, 1.0);
     let renders = |max_load: u64| {
-        let settings = SearchSettings { max_load, ..SearchSettings::fast() };
-        let alignment = align_with(&observation, &mesh, &quick(), &settings, &mut Silent).unwrap();
+        let settings = SearchSettings { max_load, ..SearchSettings::from(Effort::Fast) };
+        let alignment = align_with(&observation, &mesh, &quick(), vec![settings], &mut Silent).unwrap();
         alignment.diagnostics.common.counts.renders
     };
     let [unbounded, bounded] = [u64::from(u32::MAX), 4].map(renders);
     assert!(4 * bounded < unbounded, "{bounded} renders instead of {unbounded}");
     let ordinary = observe(&body(), &truth());
     let of_body = |max_load: u64| {
-        let settings = SearchSettings { max_load, ..SearchSettings::fast() };
-        align_with(&ordinary, &body(), &quick(), &settings, &mut Silent).unwrap().diagnostics.common.counts.renders
+        let settings = SearchSettings { max_load, ..SearchSettings::from(Effort::Fast) };
+        align_with(&ordinary, &body(), &quick(), vec![settings], &mut Silent).unwrap().diagnostics.common.counts.renders
     };
     assert_eq!(of_body(12), of_body(u64::from(u32::MAX)), "an ordinary input is within every bound");
 }

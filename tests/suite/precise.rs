@@ -14,10 +14,10 @@ use sim3align::geometry::rasteriser::Rasteriser;
 use sim3align::geometry::similarity::Similarity;
 use sim3align::metrics::symmetry::{Symmetry, SymmetryAxis};
 use sim3align::options::scale::ScaleOption;
+use sim3align::precise::efforts;
 use sim3align::precise::options::{AlignOptions, ExtentAxis, Quality, SearchScope};
-use sim3align::precise::search_settings;
 use sim3align::progress::Silent;
-use sim3align::report::Alignment;
+use sim3align::report::{Alignment, Effort, WarningCode};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::shapes::{cuboid, ellipsoid, mapped};
@@ -249,20 +249,33 @@ fn a_budget_bounds_the_work() {
     assert!(small < large, "{small} and {large}");
     assert!(small < renders(None));
     assert_eq!(small, renders(Some(15.0)), "counted, not timed");
-    let settings = |work_budget| search_settings(&AlignOptions { work_budget: Some(work_budget), ..quick() });
-    assert!(settings(1e-9).rotations() >= 60, "the least that is a search");
-    assert!(settings(1e300).rotations() < 100_000, "the most");
+    let settings = |work_budget| efforts(&AlignOptions { work_budget: Some(work_budget), ..quick() });
+    assert!(settings(1e-9)[0].rotations() >= 60, "the least that is a search");
+    assert!(settings(1e300)[0].rotations() < 100_000, "the most");
+    // Two searches share a budget: as little as one takes is for one, and what it leaves for the other.
+    let both = |work_budget| efforts(&AlignOptions { work_budget: Some(work_budget), ..AlignOptions::default() });
+    let [fast, best] = both(1e9)[..] else { panic!("two searches") };
+    assert_eq!((fast.effort, best.effort), (Effort::Fast, Effort::Best));
+    assert_eq!(both(0.5 * fast.cost()).len(), 1);
+    assert_eq!(both(1.9 * fast.cost()).len(), 1);
+    let [first, second] = both(5.0 * fast.cost())[..] else { panic!("two searches") };
+    assert_eq!(first, fast);
+    let share = (first.cost() + second.cost()) / (5.0 * fast.cost());
+    assert!((0.8..=1.0001).contains(&share), "{share} of the budget");
 }
 
 #[wasm_bindgen_test(unsupported = test)]
 fn confidence_knows_a_mesh_that_does_not_fit() {
-    let fits = solve(&quick()).confidence;
+    let right = solve(&quick());
+    let fits = right.confidence;
     let other = cuboid(Vec3::new(0.2, 0.3, 1.4));
     let result = align(&observe(&body(), &truth()), &other, &quick(), &mut Silent).unwrap();
     let misfits = result.confidence;
     assert!((0.0..=1.0).contains(&fits) && (0.0..=1.0).contains(&misfits));
     assert!(fits > 0.8, "{fits}");
     assert!(misfits < 0.5, "{misfits}");
+    let is_doubtful = |found: &Alignment| found.warnings.iter().any(|w| w.code == WarningCode::MeshDoubtful);
+    assert!(is_doubtful(&result) && !is_doubtful(&right), "{:?}, {:?}", result.warnings, right.warnings);
 }
 
 #[wasm_bindgen_test(unsupported = test)]

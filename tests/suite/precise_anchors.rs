@@ -31,14 +31,19 @@ fn square() -> CropGrid {
 
 /// The hypotheses that sides ask for, in any order.
 fn expected_anchors(sides: &[[f64; 2]]) -> Vec<Anchor> {
-    let mut expected: Vec<Anchor> = [1.0, 1.12].iter().map(|&zoom| Anchor { zoom, towards: [0.0; 2] }).collect();
+    let mut expected: Vec<Anchor> = [1.0, 1.12].iter().map(|&zoom| Anchor { zoom, ..Anchor::AS_IT_IS }).collect();
+    // Sizes of the sides along the other axis, where nothing cuts.
+    for axis in [0, 1] {
+        let others = sides.iter().filter(|_| sides.iter().all(|side| side[axis] == 0.0));
+        expected.extend(others.map(|&towards| Anchor { along: Some(axis), zoom: 1.0, towards }));
+    }
     for zoom in [1.25, 1.6] {
         let mut directions = vec![[0.0; 2]];
         directions.extend(sides);
         for a in sides.iter().filter(|side| side[0] != 0.0) {
             directions.extend(sides.iter().filter(|side| side[1] != 0.0).map(|b| [a[0], b[1]]));
         }
-        expected.extend(directions.iter().map(|&towards| Anchor { zoom, towards }));
+        expected.extend(directions.iter().map(|&towards| Anchor { zoom, towards, ..Anchor::AS_IT_IS }));
     }
     if sides.is_empty() { expected[..2].to_vec() } else { expected }
 }
@@ -144,7 +149,7 @@ fn sides_are_cut_where_enough_of_the_ring_is() {
         }
         let is_cut = |side: &&[f64; 2]| {
             let there = cut.iter().filter(|at| at[0] * side[0] + at[1] * side[1] > 0.45).count();
-            20 * cut.len() >= ring && 5 * there > cut.len()
+            40 * cut.len() >= ring && 5 * there > cut.len()
         };
         let sides: Vec<[f64; 2]> = SIDES.iter().filter(is_cut).copied().collect();
         found_sides[sides.len()] += 1;

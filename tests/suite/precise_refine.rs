@@ -15,6 +15,7 @@ use sim3align::precise::recipe::{FINE, SearchSettings};
 use sim3align::precise::refine::Refiner;
 use sim3align::precise::render::{Canvas, Model};
 use sim3align::precise::score::{Score, Scoring, Weights};
+use sim3align::report::Effort;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::precise::{body, observe, truth};
@@ -91,7 +92,7 @@ impl Scene {
     fn by_differences(&self, scoring: &Scoring, score: &Score, lock_scale: bool) -> (Matrix, Vector) {
         let Self { model, grid, pose, canvas } = self;
         let (weights, share) =
-            (&scoring.weights, |k: usize| f64::from(score.overlap) / f64::from(score.counts[k].max(1)));
+            (&scoring.weights, |k: usize| f64::from(score.overlap) / f64::from(score.counts[k].max(1.0)));
         let (mut matrix, mut gradient) = (Matrix::zeros(), Vector::zeros());
         let mut add = |(jacobian, residual): (Vector, f64), weight: f64| {
             matrix += jacobian * jacobian.transpose() * weight;
@@ -137,6 +138,8 @@ impl Scene {
                 && [i - 1, i + 1, i - WIDTH, i + WIDTH].iter().any(|&j| canvas.inverse_depth[j] == 0.0);
             let scene = f64::from(grid.scene[i]);
             let is_hidden = !grid.mask[i] && scene > 0.0 && scene < z - f64::from(scoring.occluder_m);
+            // Without a reading, little is known.
+            let seen = if !grid.mask[i] && scene == 0.0 { grid.unknown_weight(weights.unknown).into() } else { 1.0 };
             if is_edge && !is_hidden {
                 // The quadratic over the grid, from the cell's neighbours, at the place of the point.
                 let at = |du: i32, dv: i32| {
@@ -157,7 +160,7 @@ impl Scene {
                 let step = 1.0 / (distance.max(0.5) * (1.0 + distance * distance / 9.0));
                 let per_cell = f64::from(weights.agreement(score)) / f64::from(score.union);
                 let weight = f64::from(weights.outline) * share(2) * curvature + per_cell * step;
-                add(differences(pose, lock_scale, outline), weight);
+                add(differences(pose, lock_scale, outline), seen * weight);
             }
         }
         (matrix, gradient)
@@ -166,7 +169,7 @@ impl Scene {
 
 #[wasm_bindgen_test(unsupported = test)]
 fn the_quadratic_is_that_of_finite_differences() {
-    let none = Weights { overlap: 0.0, depth: 0.0, normals: 0.0, outline: 0.0, occluded: 0.2 };
+    let none = Weights { overlap: 0.0, depth: 0.0, normals: 0.0, outline: 0.0, occluded: 0.2, unknown: 0.1 };
     // A union without end makes the overlap's own term vanish.
     let terms = [
         ("depth", Weights { depth: 1.3, ..none }, f32::INFINITY),
@@ -180,7 +183,7 @@ fn the_quadratic_is_that_of_finite_differences() {
         for (term, weights, union) in terms {
             let scoring = Scoring { weights, ..scoring() };
             let score = Score { union, ..scene.score(&crate::precise_scene::scoring()) };
-            assert!(score.counts.iter().all(|&cells| cells > 30), "seed {seed}: {score:?}");
+            assert!(score.counts.iter().all(|&cells| cells > 30.0), "seed {seed}: {score:?}");
             for lock_scale in [false, true] {
                 let what = format!("seed {seed}, {term}, scale {}", if lock_scale { "locked" } else { "free" });
                 let (matrix, gradient) = unpacked(&scene.equations(scoring, &score, lock_scale));
@@ -238,7 +241,7 @@ fn observed() -> (Model, CropGrid, Scoring, CropPose) {
     let frame = MeshFrame::of(&mesh);
     let clean = CleanObservation::new(&observe(&mesh, &truth()));
     let grid = CropGrid::new(&clean, 3000);
-    let scoring = SearchSettings::default().scoring(&clean, FINE);
+    let scoring = SearchSettings::from(Effort::Balanced).scoring(&clean, FINE);
     (Model::new(&frame.normalized(&mesh).unwrap()), grid, scoring, CropPose::of_similarity(&truth(), &frame).unwrap())
 }
 

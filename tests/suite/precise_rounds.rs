@@ -5,9 +5,11 @@ use std::rc::Rc;
 use sim3align::geometry::rotations::angle_between;
 use sim3align::precise::mesh_pyramid::MeshPyramid;
 use sim3align::precise::pose::{CropPose, MeshFrame};
-use sim3align::precise::recipe::{FIRST_REFINEMENT, RANKING, SearchSettings, Task};
+use sim3align::precise::recipe::{FIRST_REFINEMENT, RANKING, SearchSettings, TURNING, Task};
 use sim3align::precise::rounds::Rounds;
 use sim3align::precise::search::{Found, Search};
+use sim3align::precise::turns::TURNS;
+use sim3align::report::Effort;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::precise::{body, observe, truth};
@@ -15,9 +17,9 @@ use crate::support::Draw;
 
 /// Few rotations and candidates, but two that are polished.
 fn settings() -> SearchSettings {
-    let mut settings = SearchSettings::fast();
+    let mut settings = SearchSettings::from(Effort::Fast);
     settings.rounds[0].work = 60;
-    for (round, keep) in settings.rounds.iter_mut().zip([30, 8, 5, 3, 2]) {
+    for (round, keep) in settings.rounds.iter_mut().zip([30, 8, 5, 3, 2, 2]) {
         round.keep = keep;
     }
     settings
@@ -97,6 +99,12 @@ fn every_round_takes_what_the_one_before_it_keeps() {
         for (index, &count) in (first..).zip(&tasks).skip(if global { 2 } else { 0 }) {
             let most = if index > first { recipe[index - 1].keep } else { 0 };
             let joining = if index == FIRST_REFINEMENT { around } else { 0 };
+            if index == TURNING {
+                assert_eq!(count, TURNS, "{what}");
+                continue;
+            }
+            // Turns join the poses that the round before them has kept.
+            let most = most + if index == RANKING { recipe[TURNING - 1].keep } else { 0 };
             assert!(count > 0 && count <= most + joining, "{what}: round {index}");
             assert!(index != FIRST_REFINEMENT || count > joining || !global, "{what}: round {index}");
         }
@@ -123,6 +131,7 @@ fn every_image_that_is_drawn_counts() {
                 Task::Rotate => assert_eq!(drawn, 2 * tasks, "{what}"),
                 Task::Place => assert_eq!(drawn, tasks, "{what}"),
                 Task::Refine => assert!(drawn > tasks && drawn <= tasks * (1 + round.work), "{what}"),
+                Task::Turn => assert!(drawn >= 2 * tasks && drawn <= tasks * (2 + round.work), "{what}"),
             }
             before = rounds.search.renders;
         }
@@ -172,19 +181,25 @@ fn what_was_found_is_ranked_by_the_fine_grid_and_distinct() {
 
 /// The cost of a search in units of the budget: about milliseconds of WebAssembly on a laptop of 2020.
 fn cost(settings: &SearchSettings) -> f64 {
-    let [rotate, place, first, second, fine, _] = settings.rounds;
+    let [rotate, place, first, second, turn, fine, _] = settings.rounds;
     0.06 * rotate.work as f64
-        + 0.12 * (place.keep * first.work + first.keep * second.work) as f64
-        + 0.4 * (second.keep * fine.work) as f64
+        + 0.12 * (place.keep * first.work + first.keep * second.work + TURNS * turn.work) as f64
+        + 0.4 * ((second.keep + turn.keep) * fine.work) as f64
 }
 
 #[wasm_bindgen_test(unsupported = test)]
 fn a_search_within_a_budget_costs_as_much() {
-    for settings in [SearchSettings::fast(), SearchSettings::default(), SearchSettings::best()] {
+    for settings in
+        [SearchSettings::from(Effort::Fast), SearchSettings::from(Effort::Balanced), SearchSettings::from(Effort::Best)]
+    {
         for budget in [150.0, 500.0, 1500.0] {
             let within = settings.within(budget);
             // Counts are rounded down, and grow twentyfold at most.
-            let share = cost(&within) / f64::min(budget, 20.0 * cost(&settings));
+            // Turns are always tried.
+            let turns = 0.12 * (TURNS * settings.rounds[TURNING].work) as f64
+                + 0.4 * (settings.rounds[TURNING].keep * settings.rounds[RANKING].work) as f64;
+            let most = 20.0 * (cost(&settings) - turns) + turns;
+            let share = cost(&within) / f64::min(budget, most);
             assert!((0.85..=1.0001).contains(&share), "{budget}: {within:?} costs {}", cost(&within));
             let SearchSettings { rounds, max_load, .. } = settings;
             let unchanged = SearchSettings { rounds, max_load, ..within };

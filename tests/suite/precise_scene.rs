@@ -57,6 +57,7 @@ pub fn empty_grid(width: usize, height: usize) -> CropGrid {
         depth: vec![0.0; cells],
         normals: vec![Vec3::ZERO; cells],
         scene: vec![0.0; cells],
+        known: 0.0,
         outline: vec![0.0; cells],
         bounds: [[0.0, width as f64], [0.0, height as f64]],
     }
@@ -98,6 +99,8 @@ pub fn noisy_grid(draw: &mut Draw, model: &Model, pose: &CropPose, scoring: &Sco
             grid.outline[i] = (3.0 * terms.iter().zip(coefficients).map(|(t, c)| t * c).sum::<f64>()) as f32;
         }
     }
+    // Between a depth map without background and a complete one.
+    grid.known = draw.between(0.0, 0.5) as f32;
     grid.mask_cells = grid.mask.iter().filter(|set| **set).count();
     grid
 }
@@ -109,6 +112,6 @@ pub fn facing(canvas: &Canvas, model: &Model, grid: &CropGrid, u: usize, v: usiz
 }
 
 pub fn scoring() -> Scoring {
-    let weights = Weights { overlap: 0.3, depth: 1.1, normals: 0.4, outline: 0.7, occluded: 0.2 };
+    let weights = Weights { overlap: 0.3, depth: 1.1, normals: 0.4, outline: 0.7, occluded: 0.2, unknown: 0.1 };
     Scoring { weights, depth_m: 0.03, occluder_m: 0.04, outline_cells: 1.7 }
 }

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use nalgebra::{Rotation3, Vector3};
-use sim3align::evidence::Evidence;
+use sim3align::evidence::{Evidence, Normals};
 use sim3align::geometry::cloud::Cloud;
 use sim3align::geometry::mesh::Mesh;
 use sim3align::geometry::similarity::{Similarity, vec3, vector3};
@@ -26,7 +26,7 @@ fn close(found: Option<f64>, expected: f64) -> bool {
 }
 
 fn agreement_of(points: &[Vec3], mesh: &Mesh, samples: &Cloud, camera_from_mesh: &Similarity) -> SurfaceAgreement {
-    let evidence = Evidence::new(Cloud::from_points(points.to_vec()), samples.clone());
+    let evidence = Evidence::new(Cloud::from_points(points.to_vec()), samples.clone(), Normals::All);
     surface_agreement(&evidence, mesh, camera_from_mesh)
 }
 

@@ -18,11 +18,11 @@ use sim3align::precise::options::{AlignOptions, ExtentAxis, Quality, SearchScope
 use sim3align::progress::Stage;
 use sim3align::register::options::Icp;
 use sim3align::register::options::{EstimateSim3Options, RegisterOptions};
-use sim3align::report::Preset;
 use sim3align::report::{
     Alignment, Alternative, Counts, Diagnostics, PaperAlignment, PreciseDiagnostics, Registration,
     RegistrationDiagnostics, ScoreTerms, Sim3, Uncertainty, Warning, WarningCode,
 };
+use sim3align::report::{Effort, Preset};
 use sim3align_geometry::error::ErrorCode;
 use ts_rs::{Config, TS};
 
@@ -152,6 +152,7 @@ fn types() -> String {
     let declarations = [
         declaration::<Preset>(&config),
         declaration::<Quality>(&config),
+        declaration::<Effort>(&config),
         declaration::<SearchScope>(&config),
         declaration::<ExtentAxis>(&config),
         declaration::<GuardMode>(&config),
