@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3, Vec3};
 
 use super::cloud::Bounds;
 use super::mesh::Mesh;
-use super::order::{index_of, pack, select_smallest, sort};
+use super::order;
 use super::symmetric_eigen::SymmetricEigen;
 
 /// Limit on the cells along the longest side; the table has this many cubed.
@@ -48,11 +48,11 @@ pub fn decimate(mesh: &Mesh, triangles: usize) -> Mesh {
         cells = next;
     }
     let clustered = best.and_then(|clusters| clusters.into_mesh(mesh));
-    clustered.or_else(|| largest(mesh, triangles)).unwrap_or_else(|| mesh.clone())
+    clustered.or_else(|| largest_triangles(mesh, triangles)).unwrap_or_else(|| mesh.clone())
 }
 
 /// The `count` triangles with the largest area, in their order; `None` for a mesh with few more than that.
-fn largest(mesh: &Mesh, count: usize) -> Option<Mesh> {
+fn largest_triangles(mesh: &Mesh, count: usize) -> Option<Mesh> {
     if mesh.triangles().len() <= MAX_EXCESS * count {
         return None;
     }
@@ -60,19 +60,11 @@ fn largest(mesh: &Mesh, count: usize) -> Option<Mesh> {
         let [a, b, c] = mesh.corners(triangle).map(|p| p.as_dvec3());
         (b - a).cross(c - a).length() as f32
     };
-    let mut keys: Vec<u64> = (0..).zip(mesh.triangles()).map(|(i, &triangle)| pack(-area(triangle), i)).collect();
-    select_smallest(&mut keys, count);
-    keys.truncate(count);
-    let mut kept: Vec<u64> = keys.into_iter().map(|key| index_of(key).into()).collect();
-    sort(&mut kept);
-    let triangles = || kept.iter().filter_map(|&i| mesh.triangles().get(i as usize));
-    // Only the vertices of the kept triangles are copied, because there may be millions of others.
-    let mut vertices: Vec<u64> = triangles().flatten().map(|&i| i.into()).collect();
-    sort(&mut vertices);
-    vertices.dedup();
-    let number = |i: u32| vertices.partition_point(|&vertex| vertex < i.into()) as u32;
-    let positions = vertices.iter().map(|&i| mesh.positions()[i as usize]).collect();
-    Mesh::new(positions, triangles().map(|triangle| triangle.map(number)).collect()).ok()
+    let largest = order::largest(mesh.triangles().iter().map(|&triangle| area(triangle)), count);
+    let mut kept: Vec<u64> = largest.into_iter().map(u64::from).collect();
+    order::sort(&mut kept);
+    let triangles: Vec<[u32; 3]> = kept.into_iter().map(|i| mesh.triangles()[i as usize]).collect();
+    Some(mesh.of_triangles(&triangles))
 }
 
 /// The cluster of each vertex, and the triangles whose corners are in three clusters.

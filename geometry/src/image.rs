@@ -80,6 +80,19 @@ impl DepthMap {
     }
 }
 
+/// The bounding box of the set pixels of a row-major image: first and last column, first and last row; all 0 if no pixel
+/// is set.
+pub fn bounds_of<T>(pixels: &[T], width: usize, is_set: impl Fn(&T) -> bool) -> [[usize; 2]; 2] {
+    let mut bounds = [[usize::MAX, 0]; 2];
+    for (v, row) in pixels.chunks_exact(width).enumerate() {
+        let Some(first) = row.iter().position(&is_set) else { continue };
+        let last = row.iter().rposition(&is_set).unwrap_or(first);
+        bounds[0] = [bounds[0][0].min(first), bounds[0][1].max(last)];
+        bounds[1] = [bounds[1][0].min(v), bounds[1][1].max(v)];
+    }
+    bounds.map(|[low, high]| [low.min(high), high])
+}
+
 /// Checks that both sizes are above 0.
 pub fn check_not_empty(argument: &str, width: usize, height: usize) -> Result<()> {
     if width > 0 && height > 0 {

@@ -101,12 +101,9 @@ impl KdTree {
     /// reproducible order. `points` must be the points that the tree was built from.
     ///
     /// Several times faster than one [`KdTree::k_nearest`] per point, because nearby points share a search.
-    pub fn neighborhoods(&self, points: &[Vec3], k: usize, radius: f32, visit: impl FnMut(u32, &[u64])) {
-        self.some_neighborhoods(points, k, radius, 1, visit);
-    }
-
-    /// Like [`KdTree::neighborhoods`], of about one in `stride` points, in small groups evenly over the cloud.
-    pub fn some_neighborhoods(
+    ///
+    /// A `stride` above 1 visits about one in `stride` points only, in small groups evenly over the cloud.
+    pub fn neighborhoods(
         &self,
         points: &[Vec3],
         k: usize,

@@ -9,6 +9,7 @@
 pub mod angle;
 pub mod clip;
 pub mod cloud;
+pub mod components;
 pub mod decimate;
 pub mod distance_transform;
 pub mod error;

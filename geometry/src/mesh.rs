@@ -103,11 +103,23 @@ impl Mesh {
 
     /// The mesh without the vertices that no triangle uses; `None` if there are none.
     pub fn without_unused_vertices(&self) -> Option<Self> {
+        let used = self.used_by(&self.triangles);
+        if used.iter().all(|&used| used) { None } else { Some(self.part(&self.triangles, &used)) }
+    }
+
+    /// The mesh of only these of its triangles, and the vertices that they use.
+    pub fn of_triangles(&self, triangles: &[[u32; 3]]) -> Self {
+        self.part(triangles, &self.used_by(triangles))
+    }
+
+    /// Whether each vertex is one of a triangle.
+    fn used_by(&self, triangles: &[[u32; 3]]) -> Vec<bool> {
         let mut used = vec![false; self.positions.len()];
-        self.triangles.as_flattened().iter().for_each(|&i| used[i as usize] = true);
-        if used.iter().all(|&used| used) {
-            return None;
-        }
+        triangles.as_flattened().iter().for_each(|&i| used[i as usize] = true);
+        used
+    }
+
+    fn part(&self, triangles: &[[u32; 3]], used: &[bool]) -> Self {
         let mut count = 0;
         let mut number = |used: &bool| {
             let index = count;
@@ -115,10 +127,10 @@ impl Mesh {
             index
         };
         let numbers: Vec<u32> = used.iter().map(&mut number).collect();
-        let kept = self.positions.iter().zip(&used).filter(|(_, used)| **used);
+        let kept = self.positions.iter().zip(used).filter(|(_, used)| **used);
         let positions = kept.map(|(position, _)| *position).collect();
-        let triangles = self.triangles.iter().map(|triangle| triangle.map(|i| numbers[i as usize])).collect();
-        Some(Self { positions, triangles })
+        let triangles = triangles.iter().map(|triangle| triangle.map(|i| numbers[i as usize])).collect();
+        Self { positions, triangles }
     }
 
     /// Six times the signed enclosed volume: negative if the triangles face inward. 0 is inconclusive. Computed

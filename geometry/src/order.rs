@@ -102,6 +102,15 @@ fn divide(keys: &mut [u64], first: impl Fn(u64) -> bool) -> usize {
     count
 }
 
+/// The indices of the `count` largest values, the largest first; ties go to the smaller index.
+pub fn largest(values: impl Iterator<Item = f32>, count: usize) -> Vec<u32> {
+    let mut keys: Vec<u64> = (0..).zip(values).map(|(i, value)| pack(-value, i)).collect();
+    select_smallest(&mut keys, count);
+    keys.truncate(count);
+    sort(&mut keys);
+    keys.into_iter().map(index_of).collect()
+}
+
 /// Moves the ⌊n/2⌋ indices with the smallest values to the front; ties go to the smaller index.
 pub fn halve(indices: &mut [u32], value: impl Fn(u32) -> f32) {
     let mut keys: Vec<u64> = indices.iter().map(|&index| pack(value(index), index)).collect();

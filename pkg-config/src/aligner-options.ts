@@ -1,9 +1,8 @@
 /** The options of `createAligner`, and the options of calls that the core does not check. */
-import { checkAttached } from "./attached.js";
 import { invalidArgument, Sim3AlignError } from "./error.js";
 import { onAbort } from "./on-abort.js";
 import type { CreateWorker, LazySource, WasmSource } from "./platform.js";
-import { snapshot } from "./snapshot.js";
+import { ownOptions } from "./snapshot.js";
 import { isKind, isRecord, withoutUndefined } from "./values.js";
 
 /** Options of `createAligner`. */
@@ -34,11 +33,7 @@ export interface BundledAssets {
 
 /** Options without undefined properties. The core checks names and values. */
 export function checkedOptions<T extends object>(options: T | undefined) {
-  if (options !== undefined && !isRecord(options)) {
-    throw invalidArgument("options", options, "an object", "Pass { name: value }, or omit it.");
-  }
-  const own = snapshot("options", options ?? ({} as T));
-  checkAttached("options", own);
+  const own = options === undefined ? ({} as T) : ownOptions(options);
   const misplaced = Object.keys(own).find((name) => alignerOptions.includes(name));
   if (misplaced === undefined) return withoutUndefined(own);
   throw new Sim3AlignError({

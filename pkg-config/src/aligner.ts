@@ -37,7 +37,7 @@ import { isDisposedMesh, keptMesh, nextMeshId, PreparedMesh } from "./prepared-m
 import { checkedListener, ProgressListener } from "./progress.js";
 import type { AlignAllResult, AlignResult, Evaluation, Registration } from "./results.js";
 import { coreSim3, type Sim3Like } from "./sim3.js";
-import { snapshot } from "./snapshot.js";
+import { ownArgument, snapshot } from "./snapshot.js";
 import { isRecord } from "./values.js";
 import type { LoadedModule } from "./wasm-module.js";
 
@@ -144,9 +144,7 @@ export class Aligner {
   async evaluate(input: AlignInput, transform: Sim3Like, options: EvaluateOptions = {}): Promise<Evaluation> {
     const { truth, ...rest } = checkedOptions(options);
     const coreOptions = truth === undefined ? rest : { ...rest, truth: coreSim3(truth) };
-    const own = snapshot("transform", transform);
-    checkAttached("transform", own);
-    return this.#run("evaluate", input, coreOptions, { transform: coreSim3(own) });
+    return this.#run("evaluate", input, coreOptions, { transform: coreSim3(ownArgument("transform", transform)) });
   }
 
   /**

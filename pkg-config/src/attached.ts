@@ -3,8 +3,8 @@ import { describe, Sim3AlignError, withoutInput } from "./error.js";
 import { isAttached, isBuffer, isRecord } from "./kinds.js";
 
 /**
- * Checks all typed arrays and buffers in an argument, which consists of plain objects and arrays. Detached memory must neither reach the
- * modules, which would trap, nor a worker of Node, which would get no message.
+ * Checks all typed arrays and buffers in an argument, which consists of plain objects and arrays. Detached memory must
+ * neither reach the modules, which would trap, nor a worker of Node, which would get no message.
  * @param argument its name in errors
  * @throws {@link Sim3AlignError} `INVALID_ARGUMENT`
  */

@@ -3,7 +3,6 @@
  * these files directly; use the readers to inspect their content.
  * @packageDocumentation
  */
-import { checkAttached } from "./attached.js";
 import { type Case, type CaseFiles, type CaseSettings, caseFrom } from "./case-files.js";
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
 import { invalidArgument } from "./error.js";
@@ -11,10 +10,10 @@ import { type CameraFile, type CameraFileOptions, parseCameraFile } from "./form
 import { fromCocoRle, readRleFile } from "./formats/coco-rle.js";
 import type { JsonFile } from "./formats/json.js";
 import { type Formats, formatsModule } from "./formats-module.js";
-import { beginsLikeJson, requiredBytes } from "./input/bytes.js";
+import { beginsLikeJson, callReader, requiredBytes } from "./input/bytes.js";
 import type { CameraFileInput, CocoRle, EncodedBytes, MeshFormat, PixelArray } from "./input/types.js";
 import type { WasmSource } from "./platform.js";
-import { snapshot } from "./snapshot.js";
+import { ownArgument, ownOptions } from "./snapshot.js";
 import { isRecord, withoutUndefined } from "./values.js";
 
 export type { Case, CaseFiles, CaseSettings } from "./case-files.js";
@@ -68,7 +67,7 @@ export async function readDepth(
  * @throws {@link Sim3AlignError} for any other file
  */
 export async function readMask(file: EncodedBytes | CocoRle): Promise<MaskImage> {
-  if (isRecord(file)) return fromCocoRle(own("rle", file as unknown as CocoRle));
+  if (isRecord(file)) return fromCocoRle(ownArgument("rle", file as unknown as CocoRle));
   const bytes = await requiredBytes("file", file);
   if (beginsLikeJson(bytes)) return readRleFile("mask", bytes);
   return call(bytes, (readers) => readers.readMask(bytes));
@@ -135,29 +134,15 @@ export async function readCase(files: CaseFiles, settings: CaseSettings = {}): P
   if (!isRecord(files)) {
     throw invalidArgument("files", files, "an object of files by name", 'Pass { "depth.png": bytes, … }.');
   }
-  return caseFrom(own("files", files), optionsOf(settings), () => formatsModule.load());
+  return caseFrom(ownArgument("files", files), optionsOf(settings), () => formatsModule.load());
 }
 
 async function jsonOf(argument: string, file: EncodedBytes | string | object): Promise<JsonFile> {
-  const given = own(argument, file);
+  const given = ownArgument(argument, file);
   return typeof given === "string" || isRecord(given) || Array.isArray(given) ? given : requiredBytes("file", given);
 }
 
-/** An argument, read once. */
-function own<T>(argument: string, value: T): T {
-  const copy = snapshot(argument, value);
-  checkAttached(argument, copy);
-  return copy;
-}
+const optionsOf = <T extends object>(options: T) => withoutUndefined(ownOptions(options));
 
-function optionsOf<T extends object>(options: T) {
-  if (isRecord(options)) return withoutUndefined(own("options", options as T));
-  throw invalidArgument("options", options, "an object", "Pass { name: value }, or omit it.");
-}
-
-/** Calls a reader, unless the bytes were moved to another thread while the readers were loaded. */
-async function call<T>(bytes: Uint8Array, read: (readers: Formats) => T): Promise<T> {
-  const module = await formatsModule.load();
-  checkAttached("file", bytes);
-  return module.call(read);
-}
+const call = <T>(bytes: Uint8Array, read: (readers: Formats) => T): Promise<T> =>
+  callReader(() => formatsModule.load(), "file", bytes, read);

@@ -2,6 +2,7 @@
  * Reads arguments once, before anything else looks at them: getters and proxies may throw, or return something else the
  * next time. What is read afterwards are plain objects and arrays.
  */
+import { checkAttached } from "./attached.js";
 import { invalidArgument, messageOf, Sim3AlignError, withoutInput } from "./error.js";
 import { isRecord, proxiedKind } from "./kinds.js";
 import { PreparedMesh } from "./prepared-mesh.js";
@@ -23,6 +24,22 @@ export type ClassNames = Readonly<Record<string, readonly string[]>>;
  */
 export function snapshot<T>(argument: string, value: T, classNames: ClassNames = {}): T {
   return new Reader(classNames).read(argument, value, 0) as T;
+}
+
+/**
+ * An argument, read once, whose arrays have their memory.
+ * @throws {@link Sim3AlignError} `INVALID_ARGUMENT`, as {@link snapshot} and {@link checkAttached}
+ */
+export function ownArgument<T>(argument: string, value: T): T {
+  const own = snapshot(argument, value);
+  checkAttached(argument, own);
+  return own;
+}
+
+/** The options of a call, read once. */
+export function ownOptions<T extends object>(options: T): T {
+  if (isRecord(options)) return ownArgument("options", options as T);
+  throw invalidArgument("options", options, "an object", "Pass { name: value }, or omit it.");
 }
 
 class Reader {

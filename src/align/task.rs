@@ -131,7 +131,7 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
                 State::Ready(clouds)
             }
             State::Ready(mut clouds) => match &self.method {
-                Method::Precise(options) => self.search(clouds, options, None, stages)?,
+                Method::Precise(options) => self.search(clouds, options, 0, None, stages)?,
                 Method::Paper(options) => {
                     let solution = paper::estimate(&mut clouds, options, stages)?;
                     State::Found(clouds, Box::new(solution), None)
@@ -142,7 +142,7 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
                     let concluded = precise::conclude(&rounds, mesh.mesh(), options);
                     let is_sure = matches!(&concluded, Ok((_, certainty)) if certainty.confidence >= SURE);
                     if !is_sure && effort + 1 < self.efforts.len() {
-                        return self.search(clouds, options, Some((effort, &rounds)), stages);
+                        return self.search(clouds, options, effort + 1, Some(&rounds), stages);
                     }
                     let (solution, certainty) = concluded?;
                     State::Found(clouds, Box::new(solution), Some(Box::new(certainty)))
@@ -153,20 +153,19 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
         })
     }
 
-    /// Begins the first search, or the one after `previous`.
+    /// Begins the search with the effort of this index, after the `previous` one, if any.
     fn search(
         &self,
         mut clouds: Box<Clouds>,
         options: &AlignOptions,
-        previous: Option<(usize, &Rounds)>,
+        effort: usize,
+        previous: Option<&Rounds>,
         stages: &mut Stopwatch<'h>,
     ) -> Result<State> {
-        let effort = previous.map_or(0, |(effort, _)| effort + 1);
         let settings = self.efforts.get(effort).ok_or_else(over)?;
         let hypothesis = precise::hypothesis(&mut clouds, options, settings, stages);
-        let sources = (hypothesis, previous.map(|(_, rounds)| rounds));
         let (observation, mesh) = (self.observation.borrow(), self.mesh.borrow());
-        let rounds = precise::begin(observation, mesh, sources, options, settings, stages)?;
+        let rounds = precise::begin(observation, mesh, (hypothesis, previous), options, settings, stages)?;
         Ok(State::Searching(clouds, Box::new(rounds), effort))
     }
 }

@@ -63,7 +63,7 @@ pub fn estimate_some_normals(
 ) -> Vec<Vec3> {
     let neighborhood = neighborhood.into();
     let mut normals = vec![Vec3::ZERO; points.len()];
-    tree.some_neighborhoods(points, neighborhood.max_neighbors, neighborhood.radius, stride, |index, neighbors| {
+    tree.neighborhoods(points, neighborhood.max_neighbors, neighborhood.radius, stride, |index, neighbors| {
         let Some((&point, slot)) = points.get(index as usize).zip(normals.get_mut(index as usize)) else { return };
         let normal = thinnest_direction(point, neighbors, points);
         let outward = match orientation {

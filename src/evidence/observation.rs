@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::cloud::Cloud;
-use crate::geometry::image::{DepthMap, Image, Mask};
+use crate::geometry::image::{DepthMap, Image, Mask, bounds_of};
 use crate::geometry::pinhole::Pinhole;
 use crate::geometry::random::Random;
 use crate::number::number;
@@ -124,18 +124,6 @@ impl Observation {
         pixels.filter(|&(_, (&z, &m))| z > 0.0 && m != 0).map(|(i, (&z, _))| (i, z))
     }
 
-    /// Width and height of the mask's bounding box, pixels.
-    fn mask_sides(&self) -> [usize; 2] {
-        let mut bounds = [[usize::MAX, 0]; 2];
-        for (v, row) in self.mask.data().chunks_exact(self.mask.width()).enumerate() {
-            let Some(first) = row.iter().position(|&m| m != 0) else { continue };
-            let last = row.iter().rposition(|&m| m != 0).unwrap_or(first);
-            bounds[0] = [bounds[0][0].min(first), bounds[0][1].max(last)];
-            bounds[1] = [bounds[1][0].min(v), bounds[1][1].max(v)];
-        }
-        bounds.map(|[low, high]| (high + 1).saturating_sub(low))
-    }
-
     fn check_readings(&self) -> Result<()> {
         let mask_pixels = self.mask.data().iter().filter(|&&m| m != 0).count();
         if mask_pixels == 0 {
@@ -176,7 +164,7 @@ impl Observation {
                 "Check the unit of the depth, and that it was read with the right byte order.",
             ));
         }
-        let sides = self.mask_sides();
+        let sides = bounds_of(self.mask.data(), self.mask.width(), |m| *m != 0).map(|[low, high]| high + 1 - low);
         if sides[0].min(sides[1]) < MIN_SIDE {
             return Err(degenerate_mask(format!("a line of {} × {} pixels", sides[0], sides[1])));
         }

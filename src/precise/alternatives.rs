@@ -16,6 +16,9 @@ use crate::report::Alternative;
 pub(super) const NOISE: f32 = 0.15;
 /// Minimum rotation between different poses, radians.
 const MIN_TURN: f64 = 0.26;
+/// Maximum distances between the surfaces of equivalent placements, relative to the tolerance of automatic symmetry: low
+/// enough that the two sides of a phone are different placements.
+const SAME_SURFACE: f64 = 0.7;
 /// Number of vertices compared to decide whether two placements of the mesh coincide.
 const SAMPLES: usize = 300;
 /// Maximum deviation of a rotation from a declared symmetry, radians.
@@ -88,7 +91,7 @@ impl Likeness {
     }
 }
 
-/// Whether the mesh coincides with itself under both poses, within the tolerance of automatic symmetry.
+/// Whether the mesh coincides with itself under both poses, within [`SAME_SURFACE`].
 fn coincide(tree: &TriangleTree, samples: &[DVec3], a: &Found, b: &Found) -> bool {
     let (scale_b, origin_b) = b.pose.scale_translation();
     let (scale, origin) = a.pose.scale_translation();
@@ -100,6 +103,5 @@ fn coincide(tree: &TriangleTree, samples: &[DVec3], a: &Found, b: &Found) -> boo
     });
     let mean = distances.iter().map(|d| f64::from(*d)).sum::<f64>() / distances.len().max(1) as f64;
     let tail = quantile(distances.iter().copied(), 0.95).map_or(f64::INFINITY, f64::from);
-    // Twice the tolerance of a single rotation, because two refinements end slightly apart.
-    mean <= 0.7 * AUTO_MEAN && tail <= 0.7 * AUTO_TAIL
+    mean <= SAME_SURFACE * AUTO_MEAN && tail <= SAME_SURFACE * AUTO_TAIL
 }

@@ -5,7 +5,9 @@
 
 use super::rim::{RimImages, rim_offset};
 use crate::evidence::observation::Observation;
+use crate::geometry::components::{Component, components};
 use crate::geometry::distance_transform::squared_distances;
+use crate::geometry::image::bounds_of;
 use crate::geometry::order::{self, quantile};
 use crate::geometry::pinhole::Pinhole;
 
@@ -105,7 +107,7 @@ impl Crop {
     fn new(observation: &Observation) -> Self {
         let (mask, depth) = (observation.mask(), observation.depth());
         let size = [mask.width(), mask.height()];
-        let bounds = bounds_of(mask.data().iter().map(|m| *m != 0), size[0]);
+        let bounds = bounds_of(mask.data(), size[0], |m| *m != 0);
         let margin = (MARGIN * longer_side(&bounds)) as usize + 4;
         let origin = bounds.map(|[low, _]| low.saturating_sub(margin));
         let end = [0, 1].map(|axis| (bounds[axis][1] + margin + 1).min(size[axis]));
@@ -150,7 +152,7 @@ impl Crop {
         let Some(largest) = components.iter().max_by_key(|c| c.pixels.len()) else { return };
         let is_large = |c: &Component| area(c) >= COMPONENT * area(largest);
         let main = self.mask_of(components.iter().filter(|c| is_large(c)));
-        let extent_px = longer_side(&bounds_of(main.iter().copied(), self.width));
+        let extent_px = longer_side(&bounds_of(&main, self.width, |set| *set));
         let largest_m = median_depth(largest);
         let extent_m = largest_m.map_or(f64::INFINITY, |z| extent_px * z / self.camera.fx);
         let reach = ISLAND_REACH * extent_px + 4.0;
@@ -174,7 +176,7 @@ impl Crop {
 
     fn into_clean(self, observation: &Observation) -> CleanObservation {
         let pixels = self.count();
-        let bounds = bounds_of(self.mask.iter().copied(), self.width);
+        let bounds = bounds_of(&self.mask, self.width, |set| *set);
         let extent_px = longer_side(&bounds);
         let outline = signed_distance(&self.mask, self.width, self.height);
         let inner = self.inner_readings(&outline);
@@ -293,62 +295,6 @@ fn signed_distance(mask: &[bool], width: usize, height: usize) -> Vec<f32> {
     mask.iter().zip(to_mask.iter().zip(&to_outside)).map(distance).collect()
 }
 
-/// First and last column, first and last row of the set pixels.
-fn bounds_of(mask: impl Iterator<Item = bool>, width: usize) -> [[usize; 2]; 2] {
-    let mut bounds = [[usize::MAX, 0]; 2];
-    for (i, _) in mask.enumerate().filter(|(_, set)| *set) {
-        for (bound, at) in bounds.iter_mut().zip([i % width, i / width]) {
-            *bound = [bound[0].min(at), bound[1].max(at)];
-        }
-    }
-    bounds.map(|[low, high]| [low.min(high), high])
-}
-
 fn longer_side(bounds: &[[usize; 2]; 2]) -> f64 {
     bounds.iter().map(|[low, high]| high - low).max().unwrap_or(0) as f64
-}
-
-/// A connected component (four neighbours).
-struct Component {
-    pixels: Vec<u32>,
-    touches_border: bool,
-}
-
-/// The connected components of the set pixels of an image.
-fn components(set: &[bool], width: usize, height: usize) -> Vec<Component> {
-    let mut seen = vec![false; set.len()];
-    let mut list = Vec::new();
-    for start in 0..set.len() {
-        if !set[start] || seen[start] {
-            continue;
-        }
-        seen[start] = true;
-        let mut component = Component { pixels: vec![start as u32], touches_border: false };
-        let mut next = 0;
-        while let Some(&i) = component.pixels.get(next) {
-            next += 1;
-            let (u, v) = (i as usize % width, i as usize / width);
-            component.touches_border |= u == 0 || v == 0 || u + 1 == width || v + 1 == height;
-            let mut visit = |j: usize| {
-                if set[j] && !seen[j] {
-                    seen[j] = true;
-                    component.pixels.push(j as u32);
-                }
-            };
-            if u > 0 {
-                visit(i as usize - 1);
-            }
-            if u + 1 < width {
-                visit(i as usize + 1);
-            }
-            if v > 0 {
-                visit(i as usize - width);
-            }
-            if v + 1 < height {
-                visit(i as usize + width);
-            }
-        }
-        list.push(component);
-    }
-    list
 }

@@ -28,6 +28,7 @@ pub mod search;
 pub mod turns;
 
 use core::ops::Range;
+use std::rc::Rc;
 
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::clouds::Clouds;
@@ -41,6 +42,7 @@ use crate::precise::options::{AlignOptions, ExtentAxis, SearchScope};
 use crate::progress::{Stage, Stopwatch};
 use crate::report::{Alternative, Counts, Effort, ScoreTerms, Solution, Uncertainty};
 use alternatives::alternatives;
+use clean::CleanObservation;
 use confidence::confidence;
 use pose::{CropPose, MeshFrame};
 use prepared_mesh::PreparedMesh;
@@ -60,8 +62,8 @@ pub const PLAN: &[(Stage, f64)] = &[
     (Stage::Metrics, 0.85),
 ];
 
-/// A search before its first round. A `hypothesis` from another source, and what `previous` searches have found, is
-/// added to the candidates of the grid.
+/// A search before its first round. A `hypothesis` from another source, and the poses that a `previous` search has found,
+/// are added to the candidates of the grid.
 ///
 /// # Errors
 /// [`ErrorCode::NoConsensus`] if decimation leaves no triangle, [`ErrorCode::InvalidOption`] for an initial pose
@@ -76,7 +78,9 @@ pub fn begin(
 ) -> Result<Rounds> {
     stages.enter(Stage::Prepare);
     let pyramid = mesh.pyramid(&settings.grids).ok_or_else(no_candidate)?;
-    let mut search = Search::new(observation, pyramid, *settings);
+    let clean = previous.map(|rounds| rounds.search.observation.clone());
+    let clean = clean.unwrap_or_else(|| Rc::new(CleanObservation::new(observation)));
+    let mut search = Search::new(clean, pyramid, *settings);
     search.assume(prior(options, mesh.mesh(), &search.mesh.frame));
     let initial = options.initial.map(|pose| seen_from(&pose, &search.mesh.frame)).transpose()?;
     let mut rounds = Rounds::new(search, initial, options.search == SearchScope::Global);
@@ -193,8 +197,8 @@ pub fn efforts(options: &AlignOptions) -> Vec<SearchSettings> {
     }
 }
 
-/// Progress of an alignment at the start and the end of one of `efforts` searches, 0 to 1. Most time is the last one's,
-/// if it is reached.
+/// Progress of an alignment at the start and the end of one of `efforts` searches, 0 to 1. The last one, if it is reached,
+/// takes most of the time.
 pub fn share(effort: usize, efforts: usize) -> Range<f64> {
     const SEARCH: [f64; 2] = [0.2, 0.85];
     const BEFORE: f64 = 0.15;

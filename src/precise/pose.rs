@@ -56,6 +56,11 @@ pub struct CropPose {
 pub type Step = [f64; 7];
 
 impl CropPose {
+    /// The pose with the scale s and the translation t, metres, whose z is above 0.
+    pub fn new(rotation: DQuat, scale: f64, t: DVec3) -> Self {
+        Self { rotation, size: libm::log(scale / t.z), place: t.truncate() / t.z, distance: libm::log(t.z) }
+    }
+
     /// s and t, metres.
     pub fn scale_translation(&self) -> (f64, DVec3) {
         let z = libm::exp(self.distance);
@@ -80,12 +85,7 @@ impl CropPose {
         let rotation = DQuat::from_array(similarity.quaternion_xyzw()).normalize();
         let t = DVec3::from_slice(similarity.translation.as_slice());
         let t = t + rotation * frame.center * similarity.scale;
-        let pose = Self {
-            rotation,
-            size: libm::log(similarity.scale * frame.diagonal / t.z),
-            place: t.truncate() / t.z,
-            distance: libm::log(t.z),
-        };
+        let pose = Self::new(rotation, similarity.scale * frame.diagonal, t);
         (t.z > 0.0 && pose.is_finite()).then_some(pose)
     }
 

@@ -15,11 +15,8 @@ pub trait Scored: Copy {
 
 /// The best `count` candidates, best first.
 pub fn best_of<T: Scored>(candidates: &[T], count: usize) -> Vec<T> {
-    let mut keys: Vec<u64> = (0..).zip(candidates).map(|(i, c)| order::pack(-c.total(), i)).collect();
-    order::select_smallest(&mut keys, count);
-    keys.truncate(count);
-    order::sort(&mut keys);
-    keys.into_iter().map(|key| candidates[order::index_of(key) as usize]).collect()
+    let best = order::largest(candidates.iter().map(T::total), count);
+    best.into_iter().map(|i| candidates[i as usize]).collect()
 }
 
 /// The best `count` candidates whose rotations differ by at least `angle`, best first.

@@ -102,6 +102,9 @@ const fn rounds(effort: Effort) -> [Round; ROUNDS] {
     ]
 }
 
+/// Minimum number of rotations of a search whose work is limited.
+pub const MIN_ROTATIONS: usize = 60;
+
 /// Confidence from which on a search with little effort is not followed by one with more.
 pub const SURE: f64 = 0.9;
 
@@ -177,7 +180,7 @@ impl SearchSettings {
         let share = ((budget - turns) / (self.cost() - turns)).clamp(0.02, 20.0);
         let scaled = |count: usize, least: usize| ((count as f64 * share) as usize).max(least);
         let mut within = Self { max_load: MAX_LOAD[1], ..self };
-        within.rounds[0].work = scaled(self.rotations(), 60);
+        within.rounds[0].work = scaled(self.rotations(), MIN_ROTATIONS);
         for (round, least) in within.rounds.iter_mut().zip([30, 6, 3, 2]) {
             round.keep = scaled(round.keep, least);
         }

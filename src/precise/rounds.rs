@@ -8,7 +8,7 @@ use super::coarse::Coarse;
 use super::grid::CropGrid;
 use super::pose::CropPose;
 use super::ranking::{best_of, distinct};
-use super::recipe::{COARSE, FINE, FIRST_REFINEMENT, RANKING, Round, TURNING, Task};
+use super::recipe::{COARSE, FINE, FIRST_REFINEMENT, MIN_ROTATIONS, RANKING, Round, TURNING, Task};
 use super::refine::Refiner;
 use super::render::Canvas;
 use super::search::{Found, Search};
@@ -18,9 +18,9 @@ use crate::geometry::similarity::Similarity;
 /// Score below the best pose at which a turn of it is not refined, and at which a refined one is not ranked.
 const FAR: f32 = 0.8;
 const NEAR: f32 = 0.3;
-/// Rotations after which the work of a round on the rotation grid is known, and the fewest rotations of such a round.
+
+/// Rotations after which the work of a round on the rotation grid is known.
 const PROBED_ROTATIONS: usize = 16;
-const MIN_ROTATIONS: usize = 60;
 
 /// A running search.
 pub struct Rounds {

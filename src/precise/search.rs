@@ -17,7 +17,6 @@ use super::recipe::{COARSE, FINE, SearchSettings};
 use super::refine::{Refined, Refiner};
 use super::render::Canvas;
 use super::score::Score;
-use crate::evidence::observation::Observation;
 
 /// Rotations tried around a given pose, radians, and the number that are refined.
 const NEIGHBORHOOD: [f64; 2] = [0.17, 0.4];
@@ -28,7 +27,7 @@ pub struct Search {
     /// The mesh, decimated for every grid.
     pub mesh: Rc<MeshPyramid>,
     /// The cleaned observation.
-    pub observation: CleanObservation,
+    pub observation: Rc<CleanObservation>,
     /// Number of renders so far.
     pub renders: usize,
     pub(super) settings: SearchSettings,
@@ -73,9 +72,8 @@ impl From<Refined> for Found {
 }
 
 impl Search {
-    /// Cleans the observation, and prepares the fine grid.
-    pub fn new(observation: &Observation, mesh: Rc<MeshPyramid>, settings: SearchSettings) -> Self {
-        let observation = CleanObservation::new(observation);
+    /// Prepares the fine grid.
+    pub fn new(observation: Rc<CleanObservation>, mesh: Rc<MeshPyramid>, settings: SearchSettings) -> Self {
         Self {
             mesh,
             fine: CropGrid::new(&observation, settings.grids[FINE].cells),

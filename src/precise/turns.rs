@@ -9,10 +9,12 @@ use crate::evidence::sample::SurfaceMoments;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::rotations::exp;
 
-/// Number of [`Turns::of`] a pose.
-pub const TURNS: usize = 12;
 /// Angles of the turns about an axis, radians.
 const ANGLES: [f64; 3] = [PI, FRAC_PI_2, -FRAC_PI_2];
+/// Number of [`Turns::of`] a pose: about three axes and the line of sight.
+pub const TURNS: usize = 4 * ANGLES.len();
+/// Minimum depth of a turned pose relative to that of the pose, so that the mesh stays in front of the camera.
+const NEAREST: f64 = 0.1;
 
 /// The centre and the axes of turns of a mesh, in its normalised frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,8 +45,8 @@ impl Turns {
     fn turned(&self, pose: &CropPose, rotation: DQuat) -> CropPose {
         let rotation = rotation.normalize();
         let (scale, translation) = pose.scale_translation();
-        let moved = translation + (pose.rotation * self.center - rotation * self.center) * scale;
-        let z = moved.z.max(0.1 * translation.z);
-        CropPose { rotation, size: libm::log(scale / z), place: moved.truncate() / z, distance: libm::log(z) }
+        let mut moved = translation + (pose.rotation * self.center - rotation * self.center) * scale;
+        moved.z = moved.z.max(NEAREST * translation.z);
+        CropPose::new(rotation, scale, moved)
     }
 }

@@ -10,22 +10,21 @@ use glam::Vec3;
 use super::cloud_pair::CloudPair;
 use super::compatibility::hypotheses;
 use super::feature_registration::Estimate;
-use super::icp::{IcpSettings, movement};
+use super::icp::movement;
 use super::matching::{Match, best_matches};
 use super::normalized_pair::NormalizedPair;
 use super::options::RegisterOptions;
 use super::pose_scorer::{PoseScorer, distinctiveness};
-use super::pose_selector::{Candidate, about_clouds, at_bound, with_normals};
+use super::pose_selector::{Candidate, check_scale, no_consensus, with_normals};
 use super::ransac::{Guard, GuardMode};
 use super::rigid::{FREE_SLACK_VOXELS, limit_points};
-use super::settings::RegistrationSettings;
+use super::settings::{RegistrationSettings, given_voxel_size};
 use super::umeyama::ScaleMode;
-use crate::error::{Error, ErrorCode, Result};
+use crate::error::Result;
 use crate::geometry::cloud::Cloud;
-use crate::geometry::order::{index_of, pack, sort};
+use crate::geometry::order::largest;
 use crate::geometry::similarity::{Similarity, vec3};
 use crate::geometry::voxel_grid::voxel_size_leaving;
-use crate::options::scale::ScaleOption;
 use crate::progress::{Stage, Stopwatch};
 use crate::register::free_space::FreeSpace;
 use crate::report::Counts;
@@ -77,7 +76,7 @@ const SCALE_SLACK: [f64; 2] = [0.87, 1.15];
 /// Registers clouds whose scale is unknown, or known to be within bounds.
 ///
 /// # Errors
-/// [`ErrorCode::NoConsensus`], also if a scale without given bounds ends at a bound of the default range.
+/// [`NoConsensus`](crate::error::ErrorCode::NoConsensus), also if a scale without given bounds ends at a bound of the default range.
 pub(super) fn register_free(
     [source_xyz, target_xyz]: [&[f64]; 2],
     options: &RegisterOptions,
@@ -89,25 +88,26 @@ pub(super) fn register_free(
     let scans = Scans::new(&frames, [source_xyz, target_xyz], options);
 
     let [least, most] = [guard[0].max(WIDEST[0]), guard[1].min(WIDEST[1])];
+    let vote = scans.at(&VOTE);
     let mut voted: Vec<Hypothesis> = Vec::new();
     let mut scale = least * COARSE_STEP.min(most / least).sqrt();
     while scale <= most {
-        let scaled = scans.scaled(scale, &VOTE, guard, options);
+        let scaled = scans.scaled(scale, &vote, guard, options);
         let clouds = CloudPair::new(&scaled.source, scaled.target, scaled.settings.voxel_size);
         voted.extend(Level::new(&scaled, &clouds, &VOTE, stages).hypotheses(&VOTE));
         scale *= COARSE_STEP;
     }
-    let mut voted = best_first(&voted);
-    voted.truncate(VOTED);
+    let voted = best_first(&voted, VOTED);
 
     let Some(first) = voted.first() else { return Err(no_consensus("no three matches that preserve distances")) };
     let (scale, least) = (first.pose.scale, SECOND * first.score);
     let differs = |other: &f64| (other / scale).max(scale / other) >= SECOND_RATIO;
     let second = voted.iter().take_while(|vote| vote.score >= least).map(|vote| vote.pose.scale).find(differs);
+    let pose = scans.at(&POSE);
     let mut best: Option<(f64, Estimate)> = None;
     for scale in core::iter::once(scale).chain(second) {
-        let mut scaled = scans.scaled(scale, &POSE, guard, options);
-        if let Some(voxel_size) = given_voxel_size(&frames, options) {
+        let mut scaled = scans.scaled(scale, &pose, guard, options);
+        if let Some(voxel_size) = given_voxel_size(options, &frames) {
             let guard = guard.map(|bound| bound / scale);
             scaled.settings = RegistrationSettings::new(options, voxel_size, ScaleMode::Free, Some(guard));
         }
@@ -118,17 +118,8 @@ pub(super) fn register_free(
         }
     }
     let Some((_, estimate)) = best else { return Err(no_consensus("no pose")) };
-    // Bounds that are given hold a scale; the default ones only limit the search.
-    if matches!(options.scale, ScaleOption::Free) && estimate.clamped {
-        return Err(at_bound());
-    }
+    check_scale(&estimate, options)?;
     Ok(Candidate::new(&frames, estimate))
-}
-
-/// The voxel size of the options in the normalised frame of the target.
-fn given_voxel_size(frames: &NormalizedPair, options: &RegisterOptions) -> Option<f64> {
-    let of_size = options.voxel_size.map(|size| size / frames.target.diagonal());
-    of_size.or(options.voxel_divisions.map(|divisions| 1.0 / divisions))
 }
 
 /// Both clouds in their normalised frames, with normals.
@@ -153,13 +144,17 @@ impl Scans {
         Self { source, target, eyes: [source_eye, target_eye] }
     }
 
+    /// The resolution of a round, as far as it does not depend on the scale.
+    fn at(&self, round: &Round) -> Resolution {
+        Resolution { voxels: round.voxels, target: voxel_size_leaving(&self.target, round.voxels) }
+    }
+
     /// Both clouds, the source scaled.
-    fn scaled(&self, scale: f64, round: &Round, guard: [f64; 2], options: &RegisterOptions) -> Scaled<'_> {
+    fn scaled(&self, scale: f64, resolution: &Resolution, guard: [f64; 2], options: &RegisterOptions) -> Scaled<'_> {
         let factor = scale as f32;
         let points = self.source.points.iter().map(|&p| factor * p).collect();
         let source = Cloud { points, normals: self.source.normals.clone() };
-        let leaving = |cloud: &Cloud| voxel_size_leaving(cloud, round.voxels);
-        let voxel_size = leaving(&source).max(leaving(&self.target));
+        let voxel_size = voxel_size_leaving(&source, resolution.voxels).max(resolution.target);
         let slack = FREE_SLACK_VOXELS * voxel_size;
         let free = [
             self.eyes[0].and_then(|eye| FreeSpace::seen_from(factor * eye, &source.points, slack)),
@@ -169,6 +164,14 @@ impl Scans {
         let settings = RegistrationSettings::new(options, f64::from(voxel_size), ScaleMode::Free, Some(guard));
         Scaled { scale, source, target: &self.target, free, settings }
     }
+}
+
+/// The resolution of both clouds.
+struct Resolution {
+    /// Voxels of the larger cloud.
+    voxels: usize,
+    /// Size of the voxels that leave so many of the target.
+    target: f32,
 }
 
 /// Both clouds at a relative scale, at which that of a pose is about 1.
@@ -194,9 +197,7 @@ impl Scaled<'_> {
         stages.enter(Stage::Icp);
         let refined = chosen.into_iter().map(|candidate| {
             let own = self.own(&candidate.pose);
-            let settings = self.near(own.scale);
-            let icp = settings.icp_on_grid();
-            let icp = icp.map(|icp| IcpSettings { max_iterations: ITERATIONS.min(icp.max_iterations), ..icp });
+            let icp = self.near(own.scale).brief_icp_on_grid(ITERATIONS);
             let own = icp.map_or(own, |icp| clouds.refine_on_grid(&own, &icp).target_from_source);
             level.judged(self.unscaled(own), candidate.inliers)
         });
@@ -221,7 +222,7 @@ impl Scaled<'_> {
     fn distinct(&self, candidates: &[Hypothesis], distance: f32) -> Vec<Hypothesis> {
         let apart = f64::from(2.0 * distance).max(APART * self.scale.min(1.0));
         let mut chosen: Vec<Hypothesis> = Vec::new();
-        for candidate in best_first(candidates) {
+        for candidate in best_first(candidates, candidates.len()) {
             let pose = self.own(&candidate.pose);
             let is_new = |other: &Hypothesis| movement(&self.own(&other.pose), &pose) > apart;
             if chosen.len() < REFINED && chosen.iter().all(is_new) {
@@ -263,11 +264,10 @@ struct Hypothesis {
     inliers: usize,
 }
 
-/// Hypotheses by falling score.
-fn best_first(hypotheses: &[Hypothesis]) -> Vec<Hypothesis> {
-    let mut keys: Vec<u64> = hypotheses.iter().zip(0..).map(|(h, i)| pack(-h.score as f32, i)).collect();
-    sort(&mut keys);
-    keys.into_iter().map(|key| hypotheses[index_of(key) as usize]).collect()
+/// The best `count` hypotheses, best first.
+fn best_first(hypotheses: &[Hypothesis], count: usize) -> Vec<Hypothesis> {
+    let best = largest(hypotheses.iter().map(|h| h.score as f32), count);
+    best.into_iter().map(|i| hypotheses[i as usize]).collect()
 }
 
 /// The matches of both clouds at a scale, and what scores poses.
@@ -307,8 +307,4 @@ impl<'a> Level<'a> {
         }
         found
     }
-}
-
-fn no_consensus(found: &'static str) -> Error {
-    about_clouds(Error::new(ErrorCode::NoConsensus, "source", found, "", ""), "source")
 }

@@ -28,23 +28,29 @@ impl PoseScorer<'_> {
     /// The agreement of the grids under a pose, in both directions: near points with similar normals, weighted by
     /// distinctiveness, minus the contradictions of free space. Higher is better.
     pub fn score(&self, pose: &Similarity) -> f64 {
-        let [source_free, target_free] = self.free.each_ref().map(Option::as_ref);
-        let CloudPair { source, target } = self.clouds;
-        self.one_way([source, target], &self.weights[0], target_free, pose)
-            + self.one_way([target, source], &self.weights[1], source_free, &pose.inverse())
+        let [there, back] = self.both_ways(pose);
+        there + back
     }
 
     /// Like [`PoseScorer::score`], comparable between scales: the area on which both grids agree, relative to the
     /// geometric mean of their areas. A source that shrinks agrees everywhere, but with ever less of the target.
     pub fn balanced(&self, pose: &Similarity) -> f64 {
-        let [source_free, target_free] = self.free.each_ref().map(Option::as_ref);
+        let [there, back] = self.both_ways(pose);
         let CloudPair { source, target } = self.clouds;
-        let there = self.one_way([source, target], &self.weights[0], target_free, pose);
-        let back = self.one_way([target, source], &self.weights[1], source_free, &pose.inverse());
         let [n, m] = [source, target].map(|side| side.grid.cloud.len().max(1) as f64);
         // Linear size of the source relative to the target, by the areas that their voxels cover.
         let size = pose.scale * (n / m).sqrt();
         there / n * size + back / m / size
+    }
+
+    /// The agreement of the source's grid with the target, and of the target's grid with the source.
+    fn both_ways(&self, pose: &Similarity) -> [f64; 2] {
+        let [source_free, target_free] = self.free.each_ref().map(Option::as_ref);
+        let CloudPair { source, target } = self.clouds;
+        [
+            self.one_way([source, target], &self.weights[0], target_free, pose),
+            self.one_way([target, source], &self.weights[1], source_free, &pose.inverse()),
+        ]
     }
 
     fn one_way(

@@ -5,8 +5,8 @@ use glam::Vec3;
 use super::feature_registration::{Estimate, FeatureRegistration};
 use super::normalized_pair::{Fit, NormalizedPair};
 use super::options::RegisterOptions;
-use super::settings::RegistrationSettings;
-use crate::error::{Error, ErrorCode, Result};
+use super::settings::{RegistrationSettings, given_voxel_size};
+use crate::error::{Error, ErrorCode, Result, Text};
 use crate::evidence::NORMAL_NEIGHBORS;
 use crate::evidence::normals::outward_normals;
 use crate::geometry::cloud::Cloud;
@@ -123,15 +123,12 @@ impl PoseSelector {
             }
             match registration.solve(&settings, stages) {
                 Ok(estimate) => {
-                    // Bounds that are given hold a scale; the default ones only limit the search.
-                    let is_none = estimate.clamped && matches!(options.scale, ScaleOption::Free);
                     // The inliers would lead to the same pose again.
                     registration.discard(&estimate.inliers);
-                    if is_none {
-                        self.failure.get_or_insert_with(at_bound);
-                        continue;
+                    match check_scale(&estimate, options) {
+                        Ok(()) => self.consider(Candidate::new(&frames, estimate)),
+                        Err(error) => drop(self.failure.get_or_insert(error)),
                     }
-                    self.consider(Candidate::new(&frames, estimate));
                 }
                 Err(error) => {
                     self.failure.get_or_insert(about_clouds(error, "source"));
@@ -266,9 +263,7 @@ impl Agreement {
 
 /// The voxel size in the normalised frame of the target.
 fn unit_voxel_size(options: &RegisterOptions, frames: &NormalizedPair) -> f64 {
-    options
-        .voxel_size
-        .map_or(1.0 / options.voxel_divisions.unwrap_or(DIVISIONS), |size| size / frames.target.diagonal())
+    given_voxel_size(options, frames).unwrap_or(1.0 / DIVISIONS)
 }
 
 /// The cloud with [`outward_normals`].
@@ -291,10 +286,18 @@ pub(crate) fn about_clouds(error: Error, argument: &str) -> Error {
     )
 }
 
-/// The error of a free scale that ends at a bound.
-pub(super) fn at_bound() -> Error {
-    let found = "a scale at a bound of the range that was searched";
+/// The error for clouds without a consistent pose.
+pub(super) fn no_consensus(found: impl Into<Text>) -> Error {
     about_clouds(Error::new(ErrorCode::NoConsensus, "source", found, "", ""), "source")
+}
+
+/// Rejects an estimate whose free scale ended at a bound. Bounds that are given hold a scale; the default ones only limit
+/// the search.
+pub(super) fn check_scale(estimate: &Estimate, options: &RegisterOptions) -> Result<()> {
+    if estimate.clamped && matches!(options.scale, ScaleOption::Free) {
+        return Err(no_consensus("a scale at a bound of the range that was searched"));
+    }
+    Ok(())
 }
 
 fn no_attempt() -> Error {

@@ -8,16 +8,16 @@ use super::feature_registration::Estimate;
 use super::normalized_pair::NormalizedPair;
 use super::options::RegisterOptions;
 use super::pose_scorer::{PoseScorer, distinctiveness};
-use super::pose_selector::{Candidate, about_clouds, with_normals};
-use super::settings::RegistrationSettings;
-use crate::error::{Error, ErrorCode, Result};
+use super::pose_selector::{Candidate, no_consensus, with_normals};
+use super::settings::{RegistrationSettings, given_voxel_size};
+use crate::error::Result;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::similarity::{Similarity, vec3};
 use crate::geometry::voxel_grid::{voxel_downsample, voxel_size_leaving};
 use crate::progress::{Stage, Stopwatch};
 use crate::register::compatibility::{Hypothesis, hypotheses};
 use crate::register::free_space::FreeSpace;
-use crate::register::icp::{IcpSettings, movement};
+use crate::register::icp::movement;
 use crate::register::matching::best_matches;
 use crate::report::Counts;
 
@@ -40,7 +40,7 @@ pub(super) const FREE_SLACK_VOXELS: f32 = 2.0;
 /// Registers clouds with a known scale (`options.scale` is fixed).
 ///
 /// # Errors
-/// [`ErrorCode::NoConsensus`].
+/// [`NoConsensus`](crate::error::ErrorCode::NoConsensus).
 pub(super) fn register_rigid(
     [source_xyz, target_xyz]: [&[f64]; 2],
     options: &RegisterOptions,
@@ -50,8 +50,7 @@ pub(super) fn register_rigid(
     let most = options.max_points as usize;
     let source = limit_points(frames.source.normalized_flat(source_xyz), most);
     let target = limit_points(frames.target.normalized_flat(target_xyz), most);
-    let given = options.voxel_size.map(|size| size / frames.target.diagonal());
-    let voxel_size = match given.or(options.voxel_divisions.map(|divisions| 1.0 / divisions)) {
+    let voxel_size = match given_voxel_size(options, &frames) {
         Some(size) => size as f32,
         None => voxel_size_leaving(&source, VOXELS).max(voxel_size_leaving(&target, VOXELS)),
     };
@@ -89,8 +88,7 @@ pub(super) fn register_rigid(
 
     stages.enter(Stage::Icp);
     let mut best: Option<(f64, Similarity, Vec<usize>)> = None;
-    let icp =
-        settings.icp_on_grid().map(|icp| IcpSettings { max_iterations: ITERATIONS.min(icp.max_iterations), ..icp });
+    let icp = settings.brief_icp_on_grid(ITERATIONS);
     for hypothesis in candidates {
         let pose = hypothesis.target_from_source;
         let pose = icp.map_or(pose, |icp| clouds.refine_on_grid(&pose, &icp).target_from_source);
@@ -99,7 +97,9 @@ pub(super) fn register_rigid(
             best = Some((score, pose, hypothesis.inliers));
         }
     }
-    let Some((_, pose, inliers)) = best else { return Err(no_consensus(matches.len())) };
+    let Some((_, pose, inliers)) = best else {
+        return Err(no_consensus(format!("{} matches, no three of which preserve distances", matches.len())));
+    };
     let refined = clouds.refine(&pose, &settings);
     let counts = Counts { matches: matches.len(), inliers: inliers.len(), iterations, ..clouds.counts(&refined) };
     let estimate = Estimate {
@@ -134,9 +134,4 @@ fn distinct_candidates(scorer: &PoseScorer<'_>, mut found: Vec<Hypothesis>) -> V
         }
     }
     chosen
-}
-
-fn no_consensus(matches: usize) -> Error {
-    let found = format!("{matches} matches, no three of which preserve distances");
-    about_clouds(Error::new(ErrorCode::NoConsensus, "source", found, "", ""), "source")
 }

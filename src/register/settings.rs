@@ -1,6 +1,7 @@
 //! Settings of feature-based registration.
 
 use super::icp::{IcpMetric, IcpSettings};
+use super::normalized_pair::NormalizedPair;
 use super::options::RegisterOptions;
 use super::ransac::{Guard, GuardMode, RansacSettings};
 use super::support::SupportSettings;
@@ -62,6 +63,11 @@ impl RegistrationSettings {
         }
     }
 
+    /// Settings of ICP on the voxel grid with at most this many iterations; `None` for no refinement.
+    pub(super) fn brief_icp_on_grid(&self, iterations: usize) -> Option<IcpSettings> {
+        self.icp_on_grid().map(|icp| IcpSettings { max_iterations: iterations.min(icp.max_iterations), ..icp })
+    }
+
     /// Settings of ICP on the voxel grid; `None` for no refinement.
     pub(super) fn icp_on_grid(&self) -> Option<IcpSettings> {
         Some(IcpSettings {
@@ -75,6 +81,12 @@ impl RegistrationSettings {
             tolerance: TOLERANCE,
         })
     }
+}
+
+/// The voxel size of the options in the normalised frame of the target, if they give one.
+pub(super) fn given_voxel_size(options: &RegisterOptions, frames: &NormalizedPair) -> Option<f64> {
+    let of_size = options.voxel_size.map(|size| size / frames.target.diagonal());
+    of_size.or(options.voxel_divisions.map(|divisions| 1.0 / divisions))
 }
 
 /// The ICP metric of an option; `None` for no refinement.

@@ -221,6 +221,25 @@ fn queries_that_are_no_point_find_nothing() {
 }
 
 #[wasm_bindgen_test(unsupported = test)]
+fn a_stride_visits_some_points_evenly_with_the_same_neighbours() {
+    for (name, points) in distributions(&mut Draw::new(3)).into_iter().filter(|(_, points)| points.len() >= 200) {
+        let tree = KdTree::new(&points);
+        let mut all = vec![Vec::new(); points.len()];
+        tree.neighborhoods(&points, 7, f32::INFINITY, 1, |index, keys| all[index as usize] = keys.to_vec());
+        for stride in [2, 5] {
+            let mut visited = 0;
+            tree.neighborhoods(&points, 7, f32::INFINITY, stride, |index, keys| {
+                visited += 1;
+                assert_eq!(keys, all[index as usize], "{name}, stride {stride}, point {index}");
+            });
+            // Groups have six to twelve points.
+            let share = (visited * stride) as f64 / points.len() as f64;
+            assert!((0.5..=1.3).contains(&share), "{name}, stride {stride}: {visited} of {}", points.len());
+        }
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
 fn shared_searches_find_what_single_ones_find() {
     for seed in 0..2 {
         for (name, points) in distributions(&mut Draw::new(seed)) {
@@ -230,7 +249,7 @@ fn shared_searches_find_what_single_ones_find() {
                 for radius in [f32::INFINITY, near, 0.0] {
                     let mut visited = vec![false; points.len()];
                     let mut expected = Vec::new();
-                    tree.neighborhoods(&points, k, radius, |index, keys| {
+                    tree.neighborhoods(&points, k, radius, 1, |index, keys| {
                         let context = format!("seed {seed}, {name}, {k} within {radius} of point {index}");
                         assert!(!core::mem::replace(&mut visited[index as usize], true), "{context}: twice");
                         tree.k_nearest(points[index as usize], k, &mut expected);

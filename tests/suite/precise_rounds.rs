@@ -3,6 +3,7 @@
 use std::rc::Rc;
 
 use sim3align::geometry::rotations::angle_between;
+use sim3align::precise::clean::CleanObservation;
 use sim3align::precise::mesh_pyramid::MeshPyramid;
 use sim3align::precise::pose::{CropPose, MeshFrame};
 use sim3align::precise::recipe::{FIRST_REFINEMENT, RANKING, SearchSettings, TURNING, Task};
@@ -30,7 +31,8 @@ fn rounds(initial: bool, global: bool) -> Rounds {
     let pyramid = Rc::new(MeshPyramid::new(&mesh, &settings.grids).unwrap());
     let pose = CropPose::of_similarity(&truth(), &MeshFrame::of(&mesh)).unwrap();
     let near = pose.moved(&[0.1, -0.05, 0.08, 0.04, 0.01, -0.02, 0.05]);
-    Rounds::new(Search::new(&observe(&mesh, &truth()), pyramid, settings), initial.then_some(near), global)
+    let clean = Rc::new(CleanObservation::new(&observe(&mesh, &truth())));
+    Rounds::new(Search::new(clean, pyramid, settings), initial.then_some(near), global)
 }
 
 fn assert_same(found: &[Found], expected: &[Found], what: &str) {

@@ -17,6 +17,7 @@ use sim3align::evidence::observation::Observation;
 use sim3align::metrics::Metrics;
 use sim3align::metrics::pose_error::{PoseErrors, pose_errors};
 use sim3align::metrics::symmetry::{Symmetry, SymmetryAxis};
+use sim3align::precise::clean::CleanObservation;
 use sim3align::precise::efforts;
 use sim3align::precise::mesh_pyramid::MeshPyramid;
 use sim3align::precise::options::AlignOptions;
@@ -226,7 +227,7 @@ pub fn run_case(case: &BenchCase, method: &Method, overrides: &[(String, f64)]) 
         });
         let settings = searches.iter().find(|s| Some(s.effort) == effort).or(searches.last())?;
         let mesh = MeshPyramid::new(&case.mesh, &settings.grids)?;
-        let search = Search::new(&case.observation, Rc::new(mesh), *settings);
+        let search = Search::new(Rc::new(CleanObservation::new(&case.observation)), Rc::new(mesh), *settings);
         let pose = CropPose::of_similarity(&truth.camera_from_mesh, &search.mesh.frame)?;
         Some(f64::from(search.score(&pose).total))
     });

@@ -1,4 +1,4 @@
-//! Where a sensor has no reading: on what is dark, reflects, or is seen at a grazing angle.
+//! Holes in a sensor's readings, on dark, reflective and grazing surfaces.
 
 use glam::DVec3;
 
@@ -15,7 +15,7 @@ use sim3align_geometry::similarity::vector3;
 /// Fewest pixels of one part that can be a dark part.
 const LEAST_PART_PX: usize = 40;
 
-/// What the object shows: its mesh in the world, and the part of each triangle.
+/// The object: its mesh in the world frame, and the part of each triangle.
 pub struct Shown<'a> {
     /// The mesh.
     pub mesh: &'a Mesh,
@@ -70,7 +70,7 @@ pub fn on_object(scene: &Scene, shown: &Shown, tier: Tier, random: &mut Random) 
     holes
 }
 
-/// Draws holes around the object, in what it stands on or in front of.
+/// Draws holes around the object, in its support and background.
 pub fn around(scene: &Scene, random: &mut Random) -> Vec<usize> {
     let share = between(random, 0.2, 0.6);
     let object: Vec<usize> = (0..scene.visible.len()).filter(|&i| scene.visible[i]).collect();
@@ -116,7 +116,7 @@ impl Views {
     }
 }
 
-/// A part of the object that about so large a share of it shows, if there is one.
+/// A random part of the object that covers at most about this share of its visible pixels, if there is one.
 fn dark_part(scene: &Scene, shown: &Shown, object: &[usize], share: f64, random: &mut Random) -> Option<usize> {
     let mut sizes = std::collections::BTreeMap::new();
     for &i in object {

@@ -1,4 +1,4 @@
-//! What the classes of the set [`super::tier::CaseSet::Sensors`] do to depth and mask.
+//! Effects of the classes of the set [`super::tier::CaseSet::Sensors`] on depth and mask.
 
 use super::holes::{self, Shown};
 use super::mask::Segmented;
@@ -19,7 +19,7 @@ const LARGEST_STEP: f64 = 0.06;
 const HOLES_AROUND: f64 = 0.5;
 /// Fewest masked pixels with a reading.
 const LEAST_READINGS: usize = 250;
-/// Fewest masked pixels of a part that tells how the object is turned.
+/// Fewest masked pixels of a part that determines the orientation of the object.
 const LEAST_KEY_PX: usize = 40;
 
 /// Magnitudes of the effects, by name.
@@ -64,12 +64,12 @@ pub fn apply(
             if !in_two(&mask, scene.width) {
                 return Ok(None);
             }
-            let (labels, sizes) = parts(&mask, scene.width);
-            let smaller = sizes[1] as f64 / mask.iter().filter(|m| **m).count().max(1) as f64;
+            let parts = parts(&mask, scene.width);
+            let smaller = parts[1].pixels.len() as f64 / mask.iter().filter(|m| **m).count().max(1) as f64;
             parameters.push(("smallerPart", smaller));
             let lost = usize::from(chance(random, 0.7));
             if chance(random, 0.5) {
-                lose(readings, (0..labels.len()).filter(|&i| labels[i] == lost));
+                lose(readings, parts[lost].pixels.iter().map(|&i| i as usize));
                 segmented.tags.push("part-without-depth");
             }
         }
@@ -99,7 +99,7 @@ pub fn apply(
     Ok(Some(parameters).filter(|_| with_reading >= LEAST_READINGS))
 }
 
-/// Whether the mask contains enough of a part that tells how the object is turned.
+/// Whether the mask contains enough of a part that determines the orientation of the object.
 fn shows_key(scene: &Scene, shown: &Shown, segmented: &Segmented) -> bool {
     let masked = segmented.mask.data().iter().zip(&scene.object_triangles).filter(|(m, _)| **m != 0);
     let is_key = |triangle: u32| shown.parts.get(triangle as usize).is_some_and(|part| shown.keys.contains(part));

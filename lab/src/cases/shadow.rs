@@ -1,5 +1,5 @@
-//! The shadow of a projector that stands beside the camera: structured light and active stereo have no reading where the
-//! camera sees what the projector does not.
+//! The shadow of a projector beside the camera: structured light and active stereo have no reading at points that only
+//! the camera sees.
 
 use super::scene::Scene;
 use crate::draws::{between, sign};
@@ -18,8 +18,8 @@ pub const SHARES: [f64; 2] = [0.1, 0.4];
 const LONGEST: f64 = 0.9;
 /// Halvings of the interval of baselines.
 const HALVINGS: usize = 9;
-/// How much nearer, as a share of the object's diagonal, what casts a shadow is: more than the error of a rasterised
-/// depth on a slope.
+/// Minimum distance, as a share of the object's diagonal, between a point in the shadow and the surface in front of it:
+/// more than the error of a rasterised depth on a slope.
 const NEARER: f64 = 0.03;
 
 /// A projector's shadow.

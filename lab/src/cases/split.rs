@@ -1,4 +1,4 @@
-//! A bar before the object, and the parts into which it cuts what is visible.
+//! A bar in front of the object, and the parts into which it cuts the visible region.
 
 use core::f64::consts::FRAC_PI_2;
 
@@ -6,11 +6,12 @@ use glam::{DAffine3, DQuat, DVec3};
 
 use super::solid::Solid;
 use crate::draws::between;
+use sim3align_geometry::components::{Component, components};
 use sim3align_geometry::pinhole::Pinhole;
 use sim3align_geometry::random::Random;
 use sim3align_geometry::similarity::{Similarity, vector3};
 
-/// Smallest share of what is visible that counts as a part.
+/// Minimum share of the visible pixels that counts as a part.
 const LEAST_PART: f64 = 0.12;
 /// Share of the visible pixels that the two largest parts make up at least.
 const LEAST_BOTH: f64 = 0.97;
@@ -52,48 +53,17 @@ pub fn bar(object: &[f32], width: usize, view: (&Pinhole, &Similarity), random: 
     solid.at(frame).cylinder([radius, radius * between(random, 0.7, 1.0)], along.length());
 }
 
-/// The number of the part of each pixel of a region, from 0 for the largest, and the sizes of the parts. Pixels outside
-/// have [`usize::MAX`]; pixels that share an edge are connected.
-pub fn parts(region: &[bool], width: usize) -> (Vec<usize>, Vec<usize>) {
-    let mut labels = vec![usize::MAX; region.len()];
-    let mut sizes = Vec::new();
-    for start in 0..region.len() {
-        if !region[start] || labels[start] != usize::MAX {
-            continue;
-        }
-        let label = sizes.len();
-        let (mut open, mut size) = (vec![start], 0);
-        labels[start] = label;
-        while let Some(i) = open.pop() {
-            size += 1;
-            let u = i % width;
-            let around = [
-                (u > 0).then(|| i - 1),
-                (u + 1 < width).then(|| i + 1),
-                i.checked_sub(width),
-                Some(i + width).filter(|&k| k < region.len()),
-            ];
-            for k in around.into_iter().flatten().filter(|&k| region[k]) {
-                if labels[k] == usize::MAX {
-                    labels[k] = label;
-                    open.push(k);
-                }
-            }
-        }
-        sizes.push(size);
-    }
-    let mut order: Vec<usize> = (0..sizes.len()).collect();
-    order.sort_by_key(|&label| core::cmp::Reverse(sizes[label]));
-    let mut rank = vec![0; sizes.len()];
-    order.iter().enumerate().for_each(|(place, &label)| rank[label] = place);
-    labels.iter_mut().filter(|label| **label != usize::MAX).for_each(|label| *label = rank[*label]);
-    (labels, order.iter().map(|&label| sizes[label]).collect())
+/// The parts of a region, the largest first.
+pub fn parts(region: &[bool], width: usize) -> Vec<Component> {
+    let mut parts = components(region, width, region.len() / width);
+    parts.sort_by_key(|part| core::cmp::Reverse(part.pixels.len()));
+    parts
 }
 
-/// Whether a region consists of two large parts, and hardly anything else.
+/// Whether a region consists of two large parts, apart from a few pixels.
 pub fn in_two(region: &[bool], width: usize) -> bool {
-    let (_, sizes) = parts(region, width);
-    let total = sizes.iter().sum::<usize>() as f64;
-    let [first, second] = [0, 1].map(|k| sizes.get(k).map_or(0.0, |&size| size as f64));
+    let parts = parts(region, width);
+    let total = parts.iter().map(|part| part.pixels.len()).sum::<usize>() as f64;
+    let [first, second] = [0, 1].map(|k| parts.get(k).map_or(0.0, |part| part.pixels.len() as f64));
     second >= LEAST_PART * total && first + second >= LEAST_BOTH * total
 }

@@ -51,11 +51,11 @@ pub enum Class {
     /// Depth from a sensor whose projector stands beside the camera: beside the object, a band of the background that
     /// the camera sees and the projector does not has no reading.
     WideShadow,
-    /// No readings where the object is dark, reflects, or is seen at a grazing angle.
+    /// No readings on dark, reflective and grazing parts of the object.
     Holes,
     /// The holes of [`Class::Holes`], which the mask does not contain either.
     MaskOfReadings,
-    /// A bar before the object cuts the mask in two; in half of the cases, one part has no reading.
+    /// A bar in front of the object cuts the mask in two; in half of the cases, one part has no reading.
     SplitMask,
     /// Depth in steps of millimetres that grow with its square, as disparities in steps give it.
     Quantised,
@@ -211,7 +211,7 @@ impl Class {
         }
     }
 
-    /// Whether a sensor measured the depth, and no model estimated it.
+    /// Whether the class needs the depth of a sensor instead of a depth model's.
     pub(super) fn needs_sensor(self) -> bool {
         SENSORS.contains(&self) && self != Self::PredictedMask
     }

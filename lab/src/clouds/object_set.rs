@@ -1,5 +1,6 @@
 //! Objects in scenes, in 3DMatch's layout: the complete surface of an object, and the readings of a depth image around
-//! it, which show one side of it, what it stands on and what is near. The unit is a decimetre, so that the tolerance of rooms, 0.2 units, is 2 cm.
+//! it, which contain one side of the object, its support and its neighbours. The unit is a decimetre, so that the
+//! tolerance of rooms, 0.2 units, is 2 cm.
 
 use std::path::Path;
 
@@ -25,10 +26,7 @@ const PER_METRE: f32 = 10.0;
 /// Points of an object.
 const OBJECT_POINTS: usize = 15_000;
 
-/// Every so many pixels of a row and a column are points of a scene.
-const PIXEL_STEP: usize = 1;
-
-/// Radius of what is shown, relative to that of the object.
+/// Radius of the ball of readings, relative to that of the object.
 const MARGIN: f32 = 1.5;
 
 /// Points this near to each other show the same surface, in units.
@@ -97,8 +95,7 @@ fn around(object: &[Vec3], scene_from_object: &Similarity, scene: &[Vec3]) -> Ve
 /// The readings of a depth image as points.
 fn points(observation: &Observation) -> Vec<Vec3> {
     let (depth, camera) = (observation.depth(), observation.camera());
-    let pixels = (0..depth.height()).step_by(PIXEL_STEP);
-    let pixels = pixels.flat_map(|v| (0..depth.width()).step_by(PIXEL_STEP).map(move |u| (u, v)));
+    let pixels = (0..depth.height()).flat_map(|v| (0..depth.width()).map(move |u| (u, v)));
     let point = |(u, v): (usize, usize)| {
         let z = depth.get(u, v).filter(|z| *z > 0.0)?;
         Some(PER_METRE * vec3(&vector3(camera.back_project(u as f64, v as f64, f64::from(z)))))

@@ -16,8 +16,8 @@ use super::Failure;
 const USAGE: &str = "\
 Usage: sim3align-lab profile [--quality QUALITY] RUNS CASE...
 
-Aligns each case folder RUNS times and prints JSON: { \"<folder>\": [result, …] }. QUALITY is fast, balanced (default) or
-best; all other options are the defaults.";
+Aligns each case folder RUNS times and prints JSON: { \"<folder>\": [result, …] }. QUALITY is one of `align`;
+it and all other options have its defaults.";
 
 struct Clock(Instant);
 
@@ -55,7 +55,8 @@ fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Error>
             Long("quality") => {
                 let name = parser.value()?.string()?;
                 if !options.quality.set(&name) {
-                    return Err(format!("--quality {name}: fast, balanced or best is expected").into());
+                    let names = options.quality.names().join(", ");
+                    return Err(format!("--quality {name}: one of {names} is expected").into());
                 }
             }
             Value(count) if runs.is_none() => runs = Some(count.parse()?),

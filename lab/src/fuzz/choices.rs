@@ -1,11 +1,11 @@
-//! The list of whole numbers that describes an input.
+//! The list of integers from which an input is generated.
 
 use sim3align_geometry::random::Random;
 
 /// Random stream of the choices.
 const STREAM: u64 = 31;
 
-/// A source of choices that remembers what was chosen.
+/// A source of choices that records them.
 #[derive(Debug, Clone)]
 pub struct Choices {
     source: Source,
@@ -56,7 +56,7 @@ impl Choices {
         choice
     }
 
-    /// One of several values; the first is the plainest.
+    /// One of several values; the first is the simplest.
     pub fn pick<T: Copy>(&mut self, values: &[T]) -> T {
         values[self.below(values.len())]
     }
@@ -66,7 +66,7 @@ impl Choices {
         self.below(n) == n - 1
     }
 
-    /// A whole number from `low` to `high`, about evenly distributed in its logarithm.
+    /// An integer from `low` to `high`, about evenly distributed in its logarithm.
     pub fn size(&mut self, low: usize, high: usize) -> usize {
         let (low, high) = (low.max(1), high.max(low).max(1));
         let doublings = (high / low).max(1).ilog2() as usize + 1;

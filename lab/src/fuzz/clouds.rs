@@ -4,7 +4,7 @@ use super::choices::Choices;
 use super::options::{any_number, transform};
 use sim3align_geometry::random::Random;
 
-/// Two clouds of at most `most` points, and what they are.
+/// Two clouds of at most `most` points, and a description of them.
 pub fn pair(c: &mut Choices, most: usize) -> (String, [Vec<f64>; 2]) {
     let (source_words, source) = cloud(c, most);
     let (target_words, target) = match c.below(3) {

@@ -1,4 +1,4 @@
-//! The time that a thread has computed: on a busy machine, much less than the time that has passed.
+//! The CPU time of a thread, which on a busy machine is much less than the elapsed time.
 
 use std::time::Instant;
 
@@ -14,7 +14,7 @@ impl CpuTimer {
         Self { began: cpu_seconds(), wall: Instant::now() }
     }
 
-    /// Seconds of computing since the start; where the system does not count them, seconds since the start.
+    /// CPU seconds since the start, or elapsed seconds if the system does not count CPU time.
     pub fn seconds(&self) -> f64 {
         match self.began.zip(cpu_seconds()) {
             Some((began, now)) => now - began,
@@ -23,7 +23,7 @@ impl CpuTimer {
     }
 }
 
-/// Seconds that this thread has computed, on Linux.
+/// CPU seconds of this thread, on Linux.
 fn cpu_seconds() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;

@@ -9,7 +9,7 @@ use super::choices::Choices;
 
 type Shape = fn(&mut Choices, usize) -> (Vec<DVec3>, Vec<[u32; 3]>);
 
-/// The plainest first.
+/// The simplest first.
 const SHAPES: [(&str, Shape); 9] = [
     ("blob", blob),
     ("box", |_, _| grid_sphere([4, 2], |p| p / p.abs().max_element())),
@@ -22,7 +22,7 @@ const SHAPES: [(&str, Shape); 9] = [
     ("single triangle", |_, _| (vec![DVec3::ZERO, DVec3::X, DVec3::Y], vec![[0, 1, 2]])),
 ];
 
-/// A mesh of at most about `most` triangles, and what it is.
+/// A mesh of at most about `most` triangles, and a description of it.
 pub fn mesh(c: &mut Choices, most: usize) -> (String, Result<Mesh>) {
     let (name, shape) = if c.once_in(2) { SHAPES[c.below(SHAPES.len())] } else { SHAPES[0] };
     let count = c.size(8, most);

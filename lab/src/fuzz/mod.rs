@@ -1,8 +1,8 @@
 //! Structural fuzzing: inputs that are valid by type and hostile by content, drawn from a seed.
 //!
-//! An input is what a generator makes of a list of whole numbers, its [`choices`]; 0 is always the plainest choice. The
-//! list is short even where the input has a million triangles. It can be drawn from a seed, read from a file, taken from
-//! a coverage-guided fuzzer, and made smaller without knowledge of what it describes.
+//! A generator turns a list of integers, the [`choices`], into an input; 0 is always the simplest choice. The list is
+//! short even if the input has a million triangles. It can be drawn from a seed, read from a file, taken from a
+//! coverage-guided fuzzer, and minimised without knowledge of the input.
 
 pub mod choices;
 pub mod cpu;

@@ -9,7 +9,7 @@ use sim3align_geometry::similarity::Similarity;
 
 use super::choices::Choices;
 
-/// Numbers that any number may be replaced by.
+/// Numbers that may replace any number.
 const NUMBERS: [f64; 16] = [
     1.0,
     0.0,
@@ -34,7 +34,7 @@ pub fn any_number(c: &mut Choices) -> f64 {
     if c.once_in(4) { c.pick(&NUMBERS) } else { 0.01 * c.size(1, 1000) as f64 }
 }
 
-/// Options of which `changed` are other than by default; whole numbers are at most `most`, as far as their range allows.
+/// Options of which `changed` differ from the defaults; integers are at most `most`, as far as their range allows.
 pub fn options<O: Options>(c: &mut Choices, changed: usize, most: u32) -> O {
     let mut options = O::default();
     let count = O::FIELDS.len();

@@ -1,4 +1,4 @@
-//! What is fuzzed, and what counts as a fault.
+//! The targets of the fuzzer, and the criteria for faults.
 
 use sim3align_geometry::error::{Error, ErrorCode};
 
@@ -27,7 +27,7 @@ impl Default for Ceilings {
 pub struct Call {
     /// The call. A fault is described by the error.
     pub run: Box<dyn FnOnce() -> Result<Answer, String>>,
-    /// What is passed, in a few words.
+    /// A short description of the arguments.
     pub description: String,
     /// Whether the ceilings apply: not to options that ask for more work than the defaults.
     pub is_bounded: bool,
@@ -45,7 +45,7 @@ pub enum Answer {
 /// A call that has returned.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Execution {
-    /// What was passed.
+    /// A short description of the arguments.
     pub description: String,
     /// The answer, or the fault.
     pub outcome: Result<Answer, String>,
@@ -55,7 +55,7 @@ pub struct Execution {
     pub bytes: usize,
 }
 
-/// Something to fuzz.
+/// A target of the fuzzer.
 #[derive(Debug, Clone, Copy)]
 pub struct Target {
     /// Its name on the command line, and of its folder of regression cases.
@@ -67,7 +67,7 @@ pub struct Target {
     generate: fn(&mut Choices) -> Call,
 }
 
-/// Everything that is fuzzed.
+/// All targets.
 pub const TARGETS: [Target; 6] = [
     Target { name: "readers", weight: 2, batch: 200_000, generate: readers::call },
     Target { name: "align", weight: 4, batch: 200, generate: align::small },
@@ -83,7 +83,7 @@ impl Target {
         TARGETS.into_iter().find(|target| target.name == name)
     }
 
-    /// Makes the call that the choices describe.
+    /// Makes the call with the arguments that the choices produce.
     pub fn execute(&self, choices: &mut Choices, ceilings: &Ceilings) -> Execution {
         let Call { run, description, is_bounded } = (self.generate)(choices);
         reset_peak();
@@ -102,7 +102,7 @@ impl Target {
         Execution { description, outcome, seconds, bytes }
     }
 
-    /// What the choices describe, in a few words.
+    /// A short description of the arguments that the choices produce.
     pub fn describe(&self, choices: &mut Choices) -> String {
         (self.generate)(choices).description
     }

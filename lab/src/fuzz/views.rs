@@ -20,7 +20,7 @@ pub enum Size {
 /// Most pixels of an image, so that the generator itself takes little time.
 const MAX_PIXELS: usize = 1 << 24;
 
-/// An observation, and what it is.
+/// An observation, and a description of it.
 pub fn view(c: &mut Choices, size: Size) -> (String, Result<Observation>) {
     let [width, height] = image_size(c, size);
     let (camera_words, camera) = camera(c, [width, height]);

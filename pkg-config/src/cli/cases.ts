@@ -68,8 +68,8 @@ function unique(paths: readonly string[]): string[] {
   const repeated: string[] = [];
   const first = paths.filter((path) => {
     const real = realPath(path);
-    if (seen.has(real)) repeated.push(path);
     const isFirst = !seen.has(real);
+    if (!isFirst) repeated.push(path);
     seen.add(real);
     return isFirst;
   });

@@ -1,6 +1,7 @@
 /** Files as bytes, and detection of their type. */
 import { checkAttached } from "../attached.js";
 import { describe, invalidArgument, messageOf, Sim3AlignError } from "../error.js";
+import type { Formats, LoadFormats } from "../formats-module.js";
 import { isBuffer, isKind, isTypedArray } from "../kinds.js";
 
 /**
@@ -24,6 +25,22 @@ export async function fileBytes(argument: string, value: unknown): Promise<Uint8
       { cause },
     );
   }
+}
+
+/**
+ * Calls a reader of files, unless the bytes were moved to another thread while the readers were loaded.
+ * @param rename of the arguments in errors
+ */
+export async function callReader<T>(
+  formats: LoadFormats,
+  argument: string,
+  bytes: Uint8Array,
+  read: (readers: Formats) => T,
+  rename?: (argument: string) => string,
+): Promise<T> {
+  const module = await formats();
+  checkAttached(argument, bytes);
+  return module.call(read, rename);
 }
 
 /** The bytes of a file; `argument` is its name in errors. */

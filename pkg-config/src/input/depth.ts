@@ -1,9 +1,8 @@
 /** Converts depth maps and point maps to arrays with their size. */
-import { checkAttached } from "../attached.js";
 import { invalidArgument, Sim3AlignError } from "../error.js";
 import type { LoadFormats } from "../formats-module.js";
 import { isRecord, isTypedArray, withoutUndefined, wrongKind } from "../values.js";
-import { fileBytes } from "./bytes.js";
+import { callReader, fileBytes } from "./bytes.js";
 
 /** A depth map or a point map for the core. */
 export interface SizedArray<T> {
@@ -46,9 +45,10 @@ export async function readDepth(
       remedy: "256 levels are a visualisation of depth: pass the depth map itself.",
     });
   }
-  const module = await formats();
-  checkAttached("depth", bytes);
-  const file = module.call(
+  const file = await callReader(
+    formats,
+    "depth",
+    bytes,
     (readers) => readers.readDepth(bytes, withoutUndefined(scale)),
     (argument) => argument.replace(/^options\./, ""),
   );

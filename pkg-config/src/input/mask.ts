@@ -1,10 +1,9 @@
 /** Converts masks to bytes with their size. */
-import { checkAttached } from "../attached.js";
 import { invalidArgument } from "../error.js";
 import { decodedRle, readRleFile } from "../formats/coco-rle.js";
 import type { LoadFormats } from "../formats-module.js";
 import { failure, isKind, isRecord, isTypedArray, wrongKind } from "../values.js";
-import { beginsLikeImage, beginsLikeJson, fileBytes } from "./bytes.js";
+import { beginsLikeImage, beginsLikeJson, callReader, fileBytes } from "./bytes.js";
 import type { SizedArray } from "./depth.js";
 
 type MaskArray = Uint8Array | Uint8ClampedArray;
@@ -42,9 +41,7 @@ export async function readMask(mask: unknown, pixels: number, formats: LoadForma
     return bare(bytes);
   }
   if (!isImage && beginsLikeJson(bytes)) return readRleFile("mask", bytes);
-  const module = await formats();
-  checkAttached("mask", bytes);
-  return module.call((readers) => readers.readMask(bytes));
+  return callReader(formats, "mask", bytes, (readers) => readers.readMask(bytes));
 }
 
 /** Explains the length of an image with several values per pixel. The core checks every other length. */

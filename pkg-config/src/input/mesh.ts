@@ -1,11 +1,10 @@
 /** Meshes from arrays or mesh files. */
 
-import { checkAttached } from "../attached.js";
 import { invalidArgument } from "../error.js";
 import type { LoadFormats } from "../formats-module.js";
 import type { CoreMesh } from "../prepared-mesh.js";
 import { isRecord, isTypedArray, withoutUndefined, wrongKind } from "../values.js";
-import { fileBytes } from "./bytes.js";
+import { callReader, fileBytes } from "./bytes.js";
 import type { MeshFile } from "./types.js";
 
 const kinds =
@@ -19,9 +18,7 @@ export async function readMesh(mesh: unknown, formats: LoadFormats): Promise<Cor
   if (bytes === null) throw invalidArgument("mesh", mesh, kinds, "Pass the mesh to align.");
   const { format, resources } = file as Omit<MeshFile, "bytes">;
   const options = withoutUndefined({ format, resources });
-  const module = await formats();
-  checkAttached("mesh", bytes);
-  return module.call((readers) => readers.readMesh(bytes, options), ofMesh);
+  return callReader(formats, "mesh", bytes, (readers) => readers.readMesh(bytes, options), ofMesh);
 }
 
 /** The options of the reader are properties of the mesh. */

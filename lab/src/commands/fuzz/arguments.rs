@@ -26,7 +26,7 @@ beyond a ceiling. The choices that lead to it are made as few as possible, and k
   --range A..B       makes calls A to B of one target in this process; what the command does in each of its processes
   --help             this text";
 
-/// What the command does.
+/// The mode of the command.
 pub enum Mode {
     /// Searches until the time is over.
     Search,

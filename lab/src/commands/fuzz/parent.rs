@@ -34,7 +34,7 @@ struct Sums {
     faults: usize,
 }
 
-/// What a process said last.
+/// The last report of a process.
 enum End {
     /// All calls returned: the sums.
     Done(Sums),
@@ -71,7 +71,7 @@ pub fn search(arguments: &Arguments) -> Result<(), Failure> {
     Err(Failure::Failed(format!("{faults} faults; their choices are in {}", arguments.out.display())))
 }
 
-/// The target that has had least of its share, and its next calls; `None` when all is done.
+/// The target with the smallest share of the time so far, and its next calls; `None` at the end.
 fn next_batch<'a>(
     arguments: &'a Arguments,
     sums: &Mutex<BTreeMap<&'a str, Sums>>,
@@ -96,7 +96,7 @@ fn next_batch<'a>(
     let known = sums.entry(target.name).or_default();
     let from = known.next;
     known.next = (from + target.batch).min(most(&target));
-    // What is running counts a little, so that the targets take turns.
+    // Running batches count a little, so that the targets take turns.
     known.seconds += 0.1;
     Some((target, from..known.next))
 }
@@ -116,7 +116,7 @@ fn run_batch<'a>(
                 return Ok(());
             }
             Some(End::Fault(number, words)) => (number, words),
-            // It died without a word: call by call, the last one that began is known.
+            // It died without a report: the calls are repeated one at a time.
             None => crash(target, at..range.end, arguments)?,
         };
         let (number, words) = fault;
@@ -153,7 +153,7 @@ fn calls(target: Target, range: std::ops::Range<u64>, arguments: &Arguments) -> 
             _ => {}
         }
     }
-    // Its status says no more than its last line.
+    // The last line says more than the exit status.
     let _ = child.wait();
     Ok((at, end))
 }
@@ -182,7 +182,7 @@ fn add(sums: &mut Sums, new: &Sums) {
     }
 }
 
-/// The call that ends its process without a word.
+/// Finds the call that ends its process without a report.
 fn crash(target: Target, range: std::ops::Range<u64>, arguments: &Arguments) -> Result<(u64, String), Failure> {
     for number in range.clone() {
         match calls(target, number..number + 1, arguments)? {
@@ -218,7 +218,7 @@ fn keep(target: Target, number: u64, words: &str, arguments: &Arguments) -> Resu
     if let Some(failure) = failure {
         return Err(failure);
     }
-    // It is not there where nothing was tried.
+    // Without trials there is none.
     let _ = std::fs::remove_file(&trial);
     println!("  smallest: {}", target.describe(&mut Choices::of(smallest.clone())));
     write(&path, &smallest, words).map_err(failed)
@@ -229,7 +229,7 @@ fn write(path: &PathBuf, list: &[u32], words: &str) -> std::io::Result<()> {
     std::fs::write(path, format!("# {words}\n{}\n", numbers.join(" ")))
 }
 
-/// What makes two faults the same: the place of a panic, otherwise the first word.
+/// The key by which faults are considered equal: the place of a panic, otherwise the first word.
 fn kind_of(words: &str) -> String {
     if words.starts_with("slow") || words.starts_with("hang") {
         return "slow".into();

@@ -105,7 +105,7 @@ const WORDS: [&str; 24] = [
     "f 1 2 3 4 5 -1",
 ];
 
-/// A whole number that a binary field may hold.
+/// An integer that a binary field may contain.
 const WORDS_32: [u32; 12] = [0, 1, 2, 3, 4, 255, 65_535, 65_536, 0x7fff_ffff, 0x8000_0000, 0xffff_fffe, 0xffff_ffff];
 
 /// Any damage to any file, read as anything.
@@ -224,7 +224,7 @@ fn replace(bytes: &mut Vec<u8>, at: usize, belongs: impl Fn(u8) -> bool, new: &s
 
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
 
-/// Writes the check sums of a PNG's parts anew, so that damage reaches what is behind their check.
+/// Recomputes the checksums of the chunks of a PNG, so that damage reaches the code after their check.
 fn repair_png(bytes: &mut [u8]) {
     let mut at = PNG.len();
     while let Some(head) = bytes.get(at..at + 4) {
@@ -236,7 +236,7 @@ fn repair_png(bytes: &mut [u8]) {
     }
 }
 
-/// The check sum of PNG (ISO 3309).
+/// The checksum of PNG (ISO 3309).
 fn crc_32(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(u32::MAX, |sum, &byte| {
         (0..8).fold(sum ^ u32::from(byte), |sum, _| if sum & 1 == 1 { sum >> 1 ^ 0xedb8_8320 } else { sum >> 1 })
