@@ -4,6 +4,7 @@ pub mod clouds;
 pub mod extents;
 pub mod normals;
 pub mod observation;
+pub mod photo;
 pub mod sample;
 
 use crate::error::Result;

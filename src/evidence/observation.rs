@@ -1,7 +1,10 @@
 //! Observation (paper §3.1): the partial cloud of an object from depth, mask and camera.
 
+use std::rc::Rc;
+
 use glam::Vec3;
 
+use super::photo::{Photo, check_photo};
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::cloud::Cloud;
 use crate::geometry::image::{DepthMap, Image, Mask, bounds_of};
@@ -33,6 +36,7 @@ pub struct Observation {
     depth: DepthMap,
     mask: Mask,
     camera: Pinhole,
+    photo: Option<Rc<Photo>>,
 }
 
 impl Observation {
@@ -61,9 +65,23 @@ impl Observation {
         check_pixels(&depth)?;
         camera.check_field_of_view(depth.width(), depth.height())?;
         depth.data_mut().iter_mut().filter(|z| **z < NEAREST_M).for_each(|z| *z = 0.0);
-        let observation = Self { depth, mask, camera };
+        let observation = Self { depth, mask, camera, photo: None };
         observation.check_readings()?;
         Ok(observation)
+    }
+
+    /// The observation with its photo.
+    ///
+    /// # Errors
+    /// [`ErrorCode::SizeMismatch`] if the photo cannot have the field of view of the depth map.
+    pub fn with_photo(self, photo: Photo) -> Result<Self> {
+        check_photo(&photo, [self.depth.width(), self.depth.height()])?;
+        Ok(Self { photo: Some(Rc::new(photo)), ..self })
+    }
+
+    /// The photo, if there is one.
+    pub fn photo(&self) -> Option<&Photo> {
+        self.photo.as_deref()
     }
 
     /// The depth map in metres; 0 is "no reading".
@@ -99,6 +117,7 @@ impl Observation {
             depth: Image::new("depth", width, height, depths).ok()?,
             mask: Image::new("mask", width, height, mask).ok()?,
             camera: Pinhole { fx, fy, cx, cy },
+            photo: self.photo.clone(),
         })
     }
 

@@ -10,12 +10,14 @@ use super::recipe::{GRIDS, Grid, SearchSettings};
 use crate::error::Result;
 use crate::evidence::sample::check_shape;
 use crate::geometry::mesh::Mesh;
+use crate::geometry::surface_colors::SurfaceColors;
 
 /// A mesh with cached derived data: the result of its validation, and its decimations. Both are computed on first use.
 /// Results are bit-identical to those of the mesh itself. Vertices that no triangle uses are removed: they are no part
 /// of the object, and every render would transform them.
 pub struct PreparedMesh<'a> {
     mesh: Cow<'a, Mesh>,
+    colors: Option<SurfaceColors>,
     is_checked: Cell<bool>,
     /// By number of triangles, which depends on the quality.
     pyramids: RefCell<Vec<([usize; GRIDS], Rc<MeshPyramid>)>>,
@@ -36,7 +38,17 @@ impl<'a> PreparedMesh<'a> {
 
     fn of(mesh: Cow<'a, Mesh>) -> Self {
         let mesh = mesh.without_unused_vertices().map_or(mesh, Cow::Owned);
-        Self { mesh, is_checked: Cell::new(false), pyramids: RefCell::default() }
+        Self { mesh, colors: None, is_checked: Cell::new(false), pyramids: RefCell::default() }
+    }
+
+    /// The mesh with the colours of its surface.
+    pub fn with_colors(self, colors: SurfaceColors) -> Self {
+        Self { colors: Some(colors), ..self }
+    }
+
+    /// The colours of the surface, if they are known.
+    pub fn colors(&self) -> Option<&SurfaceColors> {
+        self.colors.as_ref()
     }
 
     /// The mesh.
