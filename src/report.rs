@@ -174,6 +174,44 @@ pub struct Alternative {
     pub score: f64,
     /// The angle between its rotation and the alignment's, in degrees, 0 to 180.
     pub turn_deg: f64,
+    /// By how much its colours agree less with the photo than the alignment's, as a difference of correlations; present
+    /// where colours were compared.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "types", ts(optional))]
+    pub color_margin: Option<f64>,
+}
+
+choices! {
+    /// What the comparison of colours came to.
+    pub enum ColorVerdict {
+        /// Too little of the mesh is in the mask for a comparison.
+        #[default]
+        Hidden = "hidden",
+        /// No other pose that shape allows looks different.
+        Uniform = "uniform",
+        /// No pose that shape allows agrees with the photo: the colours of the mesh are not those of the object, or its
+        /// print is invisible. Shape decided.
+        Unmatched = "unmatched",
+        /// The best pose by shape agrees best with the photo, too.
+        Agreed = "agreed",
+        /// Of the poses that shape allows, another one agrees best with the photo, and is the result.
+        Decided = "decided",
+    }
+}
+
+/// What the colours of photo and mesh contributed to an alignment.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "camelCase")]
+pub struct ColorReport {
+    /// What the comparison came to.
+    pub verdict: ColorVerdict,
+    /// Correlation of the colours of mesh and photo at the resulting pose, without the shading that normals explain,
+    /// −1 to 1.
+    pub agreement: f64,
+    /// Lead over the next pose that shape allows and that looks different, in units of the correlation; `null` where there
+    /// is none.
+    pub margin: Option<f64>,
 }
 
 /// Standard deviations of the pose's parts, as the observation determines them. Parts that a single view leaves open,
@@ -236,6 +274,10 @@ pub struct PreciseDiagnostics {
     pub score: f64,
     /// The terms of the score.
     pub terms: ScoreTerms,
+    /// What colour contributed; present where photo and mesh have colours.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "types", ts(optional))]
+    pub color: Option<ColorReport>,
 }
 
 /// The result of `align`: camera from mesh, x_cam = s·R·p_mesh + t (OpenCV camera: x right, y down, z forward; metres).

@@ -13,6 +13,7 @@ use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::Normals;
 use crate::evidence::clouds::Clouds;
 use crate::evidence::observation::Observation;
+use crate::precise::color::ColorStage;
 use crate::precise::options::AlignOptions;
 use crate::precise::prepared_mesh::PreparedMesh;
 use crate::precise::recipe::SURE;
@@ -43,6 +44,8 @@ enum State {
     Ready(Box<Clouds>),
     /// The search with the effort of this index is running.
     Searching(Box<Clouds>, Box<Rounds>, usize),
+    /// The poses that the last search has left are compared with the photo.
+    Comparing(Box<Clouds>, Box<Rounds>, Box<ColorStage>),
     /// The method has found a pose.
     Found(Box<Clouds>, Box<Solution>, Option<Box<Certainty>>),
     /// The result has been returned, or an error.
@@ -97,6 +100,15 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
                     }
                     self.advance(State::Searching(clouds, rounds, effort), &mut stages)?
                 }
+                State::Comparing(clouds, rounds, mut stage) => {
+                    let colors = self.mesh.borrow().colors();
+                    if colors.is_some_and(|colors| !stage.run(&rounds, colors, pause)) {
+                        self.state = State::Comparing(clouds, rounds, stage);
+                        self.stages = Some(stages);
+                        return Ok(None);
+                    }
+                    self.advance(State::Comparing(clouds, rounds, stage), &mut stages)?
+                }
                 State::Found(mut clouds, solution, certainty) => {
                     let (observation, mesh) = (self.observation.borrow(), self.mesh.borrow().mesh());
                     let metrics = score(observation, mesh, &self.setup, &mut clouds, &solution, &mut stages)?;
@@ -139,15 +151,29 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
             },
             State::Searching(clouds, rounds, effort) => match &self.method {
                 Method::Precise(options) => {
-                    let concluded = precise::conclude(&rounds, mesh.mesh(), options);
+                    let concluded = precise::conclude(&rounds, mesh.mesh(), options, None);
                     let is_sure = matches!(&concluded, Ok((_, certainty)) if certainty.confidence >= SURE);
                     if !is_sure && effort + 1 < self.efforts.len() {
                         return self.search(clouds, options, effort + 1, Some(&rounds), stages);
                     }
                     let (solution, certainty) = concluded?;
-                    State::Found(clouds, Box::new(solution), Some(Box::new(certainty)))
+                    match observation.photo().filter(|_| mesh.colors().is_some()) {
+                        Some(photo) => {
+                            let stage = ColorStage::new(&rounds, photo);
+                            State::Comparing(clouds, rounds, Box::new(stage))
+                        }
+                        None => State::Found(clouds, Box::new(solution), Some(Box::new(certainty))),
+                    }
                 }
                 Method::Paper(_) => return Err(over()),
+            },
+            State::Comparing(clouds, rounds, stage) => match (&self.method, mesh.colors()) {
+                (Method::Precise(options), Some(colors)) => {
+                    let judgment = stage.judge(&rounds, colors);
+                    let (solution, certainty) = precise::conclude(&rounds, mesh.mesh(), options, Some(&judgment))?;
+                    State::Found(clouds, Box::new(solution), Some(Box::new(certainty)))
+                }
+                _ => return Err(over()),
             },
             State::Found(..) | State::Over => return Err(over()),
         })
@@ -172,10 +198,10 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
 
 fn with_certainty(aligned: PaperAlignment, certainty: Option<Box<Certainty>>) -> AnyAlignment {
     let Some(certainty) = certainty else { return aligned.into() };
-    let Certainty { confidence, alternatives, uncertainty, score, terms, effort } = *certainty;
+    let Certainty { confidence, alternatives, uncertainty, score, terms, effort, color } = *certainty;
     let PaperAlignment { camera_from_mesh, metrics, mut warnings, diagnostics } = aligned;
     warnings.extend(about_fit(&terms));
-    let diagnostics = PreciseDiagnostics { common: diagnostics, effort, score, terms };
+    let diagnostics = PreciseDiagnostics { common: diagnostics, effort, score, terms, color };
     Alignment { camera_from_mesh, confidence, alternatives, uncertainty, metrics, warnings, diagnostics }.into()
 }
 

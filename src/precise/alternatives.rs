@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::color::Rival;
 use super::search::{Found, Search};
 use crate::error::Result;
 use crate::geometry::mesh::Mesh;
@@ -50,9 +51,40 @@ pub(super) fn alternatives(
         camera_from_mesh: (&other.pose.similarity(&search.mesh.frame)).into(),
         score: f64::from(other.score.total),
         turn_deg: turn(best, other).to_degrees(),
+        color_margin: None,
     };
     Ok(kept.iter().skip(1).map(report).collect())
 }
+
+/// Tells the alternatives how well their colours agree with the photo, and adds poses that look different, though their
+/// shape does not.
+pub(super) fn add_rivals(alternatives: &mut Vec<Alternative>, best: &Found, rivals: &[Rival], search: &Search) {
+    let rotation = |other: &Alternative| glam::DQuat::from_array(other.camera_from_mesh.rotation);
+    let mut added = 0;
+    for rival in rivals {
+        let near = |other: &&mut Alternative| angle_between(rotation(other), rival.found.pose.rotation) < MIN_TURN;
+        match alternatives.iter_mut().find(near) {
+            Some(known) => {
+                known.color_margin.get_or_insert(rival.margin);
+            }
+            None if added < MAX_RIVALS && rival.margin < CLEAR => {
+                added += 1;
+                alternatives.push(Alternative {
+                    camera_from_mesh: (&rival.found.pose.similarity(&search.mesh.frame)).into(),
+                    score: f64::from(rival.found.score.total),
+                    turn_deg: angle_between(best.pose.rotation, rival.found.pose.rotation).to_degrees(),
+                    color_margin: Some(rival.margin),
+                });
+            }
+            None => {}
+        }
+    }
+}
+
+/// Maximum number of alternatives that only their colours tell from the best pose, and the margin from which on colour has
+/// refuted them.
+const MAX_RIVALS: usize = 4;
+const CLEAR: f64 = 0.5;
 
 /// The criterion for equivalent placements of the mesh.
 enum Likeness {

@@ -6,6 +6,7 @@
 //! independent terms, and how sharply the score falls around the pose.
 
 use super::alternatives::NOISE;
+use super::color::SHAPE;
 use super::conditioning::Conditioning;
 use super::search::Found;
 use crate::report::Alternative;
@@ -23,7 +24,9 @@ const ROTATION_DEG: [f64; 2] = [0.03, 90.0];
 pub(super) fn confidence(best: &Found, alternatives: &[Alternative], conditioning: Option<&Conditioning>) -> f64 {
     let Some(held) = conditioning else { return 0.0 };
     let score = f64::from(best.score.total);
-    let margin = alternatives.iter().fold(f64::from(NOISE), |margin, other| margin.min(score - other.score));
+    // Colour has lowered the odds of poses that shape alone cannot exclude.
+    let lead = |other: &Alternative| score - other.score + other.color_margin.unwrap_or(0.0).max(0.0) / SHAPE;
+    let margin = alternatives.iter().fold(f64::from(NOISE), |margin, other| margin.min(lead(other)));
     let log = |x: f64, [low, high]: [f64; 2]| libm::log(x.max(low).min(high));
     let features = [
         f64::from(best.score.overlap),

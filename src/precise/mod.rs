@@ -6,11 +6,14 @@
 
 mod alternatives;
 pub mod anchors;
+pub mod appearance;
 pub mod clean;
 pub mod coarse;
+pub mod color;
 pub mod conditioning;
 mod confidence;
 pub mod grid;
+pub mod lookalikes;
 pub mod mesh_pyramid;
 pub mod objective;
 pub mod options;
@@ -28,6 +31,7 @@ pub mod search;
 pub mod turns;
 
 use core::ops::Range;
+use std::borrow::Cow;
 use std::rc::Rc;
 
 use crate::error::{Error, ErrorCode, Result};
@@ -40,9 +44,10 @@ use crate::paper;
 use crate::paper::options::PaperOptions;
 use crate::precise::options::{AlignOptions, ExtentAxis, SearchScope};
 use crate::progress::{Stage, Stopwatch};
-use crate::report::{Alternative, Counts, Effort, ScoreTerms, Solution, Uncertainty};
-use alternatives::alternatives;
+use crate::report::{Alternative, ColorReport, Counts, Effort, ScoreTerms, Solution, Uncertainty};
+use alternatives::{add_rivals, alternatives};
 use clean::CleanObservation;
+use color::Judgment;
 use confidence::confidence;
 use pose::{CropPose, MeshFrame};
 use prepared_mesh::PreparedMesh;
@@ -151,16 +156,28 @@ pub struct Certainty {
     pub terms: ScoreTerms,
     /// The effort of the search that found the pose.
     pub effort: Effort,
+    /// What colour contributed, if it was known.
+    pub color: Option<ColorReport>,
 }
 
-/// The best pose of the search, and its reliability.
+/// The best pose of the search, or the one that colour chose, and its reliability.
 ///
 /// # Errors
 /// [`ErrorCode::NoConsensus`] if no pose overlaps the mask.
-pub fn conclude(rounds: &Rounds, mesh: &Mesh, options: &AlignOptions) -> Result<(Solution, Certainty)> {
-    let (found, search) = (&rounds.found, &rounds.search);
+pub fn conclude(
+    rounds: &Rounds,
+    mesh: &Mesh,
+    options: &AlignOptions,
+    color: Option<&Judgment>,
+) -> Result<(Solution, Certainty)> {
+    let search = &rounds.search;
+    let mut found = Cow::Borrowed(&rounds.found);
+    if let Some(chosen) = color.and_then(|color| color.chosen) {
+        found.to_mut().insert(0, chosen);
+    }
     let best = found.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
-    let alternatives = alternatives(found, search, mesh, &options.symmetry)?;
+    let mut alternatives = alternatives(&found, search, mesh, &options.symmetry)?;
+    color.into_iter().for_each(|color| add_rivals(&mut alternatives, best, &color.rivals, search));
     let (conditioning, residual_m) = search.conditioning(&best.pose);
     let solution = Solution {
         camera_from_mesh: best.pose.similarity(&search.mesh.frame),
@@ -170,7 +187,7 @@ pub fn conclude(rounds: &Rounds, mesh: &Mesh, options: &AlignOptions) -> Result<
         counts: Counts { renders: search.renders, ..Counts::default() },
     };
     let certainty = Certainty {
-        confidence: confidence(best, &alternatives, conditioning.as_ref()),
+        confidence: confidence(best, &alternatives, conditioning.as_ref()) * color.map_or(1.0, |color| color.certainty),
         alternatives,
         uncertainty: conditioning.map(|c| Uncertainty {
             scale: c.scale,
@@ -182,6 +199,7 @@ pub fn conclude(rounds: &Rounds, mesh: &Mesh, options: &AlignOptions) -> Result<
         score: f64::from(best.score.total),
         terms: (&best.score).into(),
         effort: search.settings.effort,
+        color: color.map(|color| color.report),
     };
     Ok((solution, certainty))
 }

@@ -33,7 +33,7 @@ pub struct Search {
     pub(super) settings: SearchSettings,
     prior: Prior,
     /// The fine grid, on which the final poses are compared.
-    pub(super) fine: CropGrid,
+    pub fine: CropGrid,
 }
 
 /// A candidate in its current state.
@@ -114,7 +114,7 @@ impl Search {
     }
 
     /// The objective on the grid with this index.
-    pub(super) fn objective<'a>(&'a self, index: usize, grid: &'a CropGrid) -> Objective<'a> {
+    pub fn objective<'a>(&'a self, index: usize, grid: &'a CropGrid) -> Objective<'a> {
         let scoring = self.settings.scoring(&self.observation, index);
         Objective { model: &self.mesh.models[index], grid, scoring, prior: self.prior }
     }

@@ -4,6 +4,7 @@ use core::f64::consts::{FRAC_PI_2, PI};
 
 use glam::{DQuat, DVec3};
 
+use super::lookalikes::dihedral;
 use super::pose::CropPose;
 use crate::evidence::sample::SurfaceMoments;
 use crate::geometry::mesh::Mesh;
@@ -41,8 +42,15 @@ impl Turns {
         about_axes.chain(about_sight).map(|rotation| self.turned(pose, rotation)).collect()
     }
 
+    /// A pose turned by `rolls` steps about each principal axis of the mesh, and each of these after a half turn about
+    /// another one.
+    pub fn about_axes(&self, pose: &CropPose, rolls: usize) -> Vec<CropPose> {
+        let turns = (0..3).flat_map(|k| dihedral(self.axes[k], self.axes[(k + 1) % 3], rolls));
+        turns.map(|turn| self.turned(pose, pose.rotation * turn)).collect()
+    }
+
     /// The pose with another rotation, and the centre where it was.
-    fn turned(&self, pose: &CropPose, rotation: DQuat) -> CropPose {
+    pub fn turned(&self, pose: &CropPose, rotation: DQuat) -> CropPose {
         let rotation = rotation.normalize();
         let (scale, translation) = pose.scale_translation();
         let mut moved = translation + (pose.rotation * self.center - rotation * self.center) * scale;

@@ -22,6 +22,7 @@ use sim3align::precise::efforts;
 use sim3align::precise::mesh_pyramid::MeshPyramid;
 use sim3align::precise::options::AlignOptions;
 use sim3align::precise::pose::CropPose;
+use sim3align::precise::prepared_mesh::PreparedMesh;
 use sim3align::precise::recipe::FIRST_REFINEMENT;
 use sim3align::precise::{Search, SearchSettings};
 use sim3align::progress::{Host, Stage};
@@ -29,6 +30,7 @@ use sim3align::report::{Alternative, AnyAlignment, Sim3};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::similarity::Similarity;
+use sim3align_geometry::surface_colors::SurfaceColors;
 
 /// A case from any source.
 #[derive(Debug, Clone)]
@@ -49,6 +51,8 @@ pub struct BenchCase {
     pub observation: Observation,
     /// The mesh.
     pub mesh: Mesh,
+    /// Its colours, if they are known.
+    pub colors: Option<SurfaceColors>,
     /// The true pose, if known.
     pub truth: Option<Truth>,
 }
@@ -131,6 +135,7 @@ impl From<EvaluationCase> for BenchCase {
             parameters,
             observation: case.observation,
             mesh: case.mesh,
+            colors: case.colors,
             truth: Some(Truth { camera_from_mesh: case.camera_from_mesh, symmetry: case.symmetry }),
         }
     }
@@ -170,6 +175,7 @@ impl BenchCase {
             parameters: meta.get("parameters").cloned().unwrap_or_default(),
             observation: case.observation,
             mesh: case.mesh,
+            colors: None,
             truth: truth.transpose()?,
         })
     }
@@ -216,7 +222,13 @@ pub fn run_case(case: &BenchCase, method: &Method, overrides: &[(String, f64)]) 
         });
     }
     let mut record = run_method(case, |observation, mesh, host| match method {
-        Method::Precise(options) => align_with(observation, mesh, options, searches.clone(), host).map(Into::into),
+        Method::Precise(options) => {
+            let mut mesh = PreparedMesh::borrowed(mesh);
+            if let Some(colors) = &case.colors {
+                mesh = mesh.with_colors(colors.clone());
+            }
+            align_with(observation, mesh, options, searches.clone(), host).map(Into::into)
+        }
         Method::Paper(options) => align_paper(observation, mesh, options, host).map(Into::into),
     });
     record.truth_score = case.truth.as_ref().and_then(|truth| {

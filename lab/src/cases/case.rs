@@ -10,16 +10,21 @@ use super::families;
 use super::generator::generate;
 use super::holes::Shown;
 use super::mask::Segmented;
+use super::photo::take;
+use super::print::Print;
 use super::readings::Readings;
 use super::scans::Scan;
 use super::scene::{Scene, put_down, turned_axis};
 use super::sensor;
 use super::split::in_two;
-use super::streams::{GENERATOR_STREAM, MASK_STREAM, OBJECT_STREAM, READINGS_STREAM, SCENE_STREAM, SENSOR_STREAM};
+use super::streams::{
+    COLOR_STREAM, GENERATOR_STREAM, MASK_STREAM, OBJECT_STREAM, READINGS_STREAM, SCENE_STREAM, SENSOR_STREAM,
+};
+use super::texture::paint;
 use super::tier::{CaseSet, Class, Tier};
 use crate::case_folder::contents::{case_files, parameters_json, symmetry_json};
 use crate::cases::distortion::canonicalise;
-use crate::draws::mixed;
+use crate::draws::{chance, mixed};
 use crate::files::write_files;
 use sim3align::evidence::observation::Observation;
 use sim3align::evidence::sample::SurfaceMoments;
@@ -28,6 +33,7 @@ use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::random::Random;
 use sim3align_geometry::similarity::Similarity;
+use sim3align_geometry::surface_colors::SurfaceColors;
 
 /// Default number of cases.
 pub const CASES: usize = 240;
@@ -65,6 +71,8 @@ pub struct EvaluationCase {
     pub observation: Observation,
     /// The generated mesh, in its canonical frame.
     pub mesh: Mesh,
+    /// Its colours; the observation then has a photo.
+    pub colors: Option<SurfaceColors>,
     /// The true pose, in the scale of the depth map.
     pub camera_from_mesh: Similarity,
     /// Rotational symmetries of the mesh, in its frame.
@@ -104,6 +112,7 @@ impl EvaluationSet {
             let seed = match self.classes {
                 CaseSet::General => seed,
                 CaseSet::Sensors => mixed([seed, SENSOR_STREAM]),
+                CaseSet::Colors => mixed([seed, COLOR_STREAM]),
             };
             if let Some(case) = self.draw(index, seed)? {
                 return Ok(case);
@@ -147,6 +156,19 @@ impl EvaluationSet {
         let random = &mut Random::new(seed, GENERATOR_STREAM);
         let generated = generate(&object, &placed, &symmetry, &scene, (tier, class), random)?;
         let (mesh, object_from_mesh) = canonicalise(&generated.mesh, seed)?;
+        let mut observation = Observation::new(readings.depth, segmented.mask, scene.camera)?;
+        let mut colors = None;
+        let random = &mut Random::new(seed, COLOR_STREAM);
+        if let Some(kind) = class.print(chance(random, 0.5)) {
+            let print = Print::draw(&placed, &symmetry, kind, random);
+            if class.is_told_by_color() && !print.tells(&placed, &symmetry, &scene) {
+                return Ok(None);
+            }
+            observation = observation.with_photo(take(&scene, (&placed, &print), class, tier, random)?)?;
+            let eye = DVec3::from_array(scene.camera_from_world.inverse().translation.into());
+            colors = Some(paint(&mesh, &object_from_mesh, (&print, &placed), eye, (tier, class), random)?);
+        }
+        let is_told = class.is_told_by_color();
 
         // The scale error of the depth map scales the camera frame.
         let metric = Similarity { scale: readings.bias, ..Similarity::identity() };
@@ -173,10 +195,11 @@ impl EvaluationSet {
             family: object.family,
             tags,
             parameters,
-            observation: Observation::new(readings.depth, segmented.mask, scene.camera)?,
+            observation,
             mesh,
+            colors,
             camera_from_mesh: camera_from_object.compose(&object_from_mesh),
-            symmetry: declared(&generated.symmetry, &object_from_mesh),
+            symmetry: if is_told { Symmetry::None } else { declared(&generated.symmetry, &object_from_mesh) },
             object: placed,
             camera_from_object,
         }))

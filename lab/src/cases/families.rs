@@ -41,6 +41,16 @@ const FAMILIES: &[Family] = &[
     Family("sofa", figures::sofa, Kind::Common),
 ];
 
+/// Families whose shape does not tell how an object is turned.
+const SYMMETRIC: &[Family] = &[
+    Family("box", tools::carton, Kind::Common),
+    Family("block", tools::block, Kind::Common),
+    Family("book", tools::book, Kind::Common),
+    Family("can", kitchen::can, Kind::Common),
+    Family("bottle", kitchen::bottle, Kind::Common),
+    Family("box", tools::carton, Kind::Common),
+];
+
 /// Families that stand on the floor.
 const FURNITURE: &[&str] = &["chair", "sofa"];
 
@@ -58,6 +68,9 @@ impl Family {
 
 /// Draws an object for a case.
 pub(crate) fn draw(random: &mut Random, tier: Tier, class: Class, scans: &[Scan]) -> Result<Object> {
+    if class.is_symmetric() {
+        return SYMMETRIC[random.below(SYMMETRIC.len())].object(random);
+    }
     let free = !matches!(class, Class::Thin | Class::Ambiguous | Class::MissingPart);
     if free && !scans.is_empty() && chance(random, SCANS) {
         return scans[random.below(scans.len())].object(random);

@@ -45,6 +45,15 @@ pub fn mug(r: &mut Random) -> Draft {
     draft
 }
 
+pub fn can(r: &mut Random) -> Draft {
+    let mut draft = Draft::default();
+    let radius = between(r, 0.03, 0.055);
+    let height = radius * between(r, 0.9, 3.2);
+    draft.solid.at(DAffine3::IDENTITY).cylinder([radius, radius], height);
+    draft.symmetry = vec![ROUND, (DVec3::X, Some(2))];
+    draft
+}
+
 pub fn bottle(r: &mut Random) -> Draft {
     let mut draft = Draft::default();
     let (radius, height) = (between(r, 0.028, 0.045), between(r, 0.17, 0.3));

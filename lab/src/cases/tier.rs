@@ -1,5 +1,6 @@
 //! Sets of cases, tiers of difficulty, and classes of cases.
 
+use super::print::PrintKind;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 
 /// A set of classes that are generated together. The sets share no random numbers.
@@ -10,6 +11,8 @@ pub enum CaseSet {
     General,
     /// Effects of depth sensors and predicted masks.
     Sensors,
+    /// Coloured objects, their photos and coloured meshes.
+    Colors,
 }
 
 /// Tier of difficulty of a case.
@@ -61,6 +64,18 @@ pub enum Class {
     Quantised,
     /// A mask with smooth errors of its outline and small islands, as a segmentation network predicts it.
     PredictedMask,
+    /// A symmetric shape whose print alone tells how it is turned.
+    Printed,
+    /// A symmetric shape of two colours or with blots.
+    Blotted,
+    /// A shape that tells how it is turned, with a print.
+    PrintedShape,
+    /// One colour: it tells nothing.
+    OneColor,
+    /// A mesh with the colours of another object.
+    WrongColors,
+    /// [`Class::Printed`] in a grey photo.
+    GreyPhoto,
 }
 
 const EASY: &[Class] = &[Class::Plain];
@@ -94,15 +109,28 @@ const HARD: &[Class] = &[
 const SENSORS: &[Class] =
     &[Class::WideShadow, Class::Holes, Class::MaskOfReadings, Class::SplitMask, Class::Quantised, Class::PredictedMask];
 
+/// Of every tier.
+const COLORS: &[Class] = &[
+    Class::Printed,
+    Class::PrintedShape,
+    Class::Blotted,
+    Class::Printed,
+    Class::OneColor,
+    Class::GreyPhoto,
+    Class::Printed,
+    Class::WrongColors,
+];
+
 impl CaseSet {
     /// All sets.
-    pub const ALL: &[Self] = &[Self::General, Self::Sensors];
+    pub const ALL: &[Self] = &[Self::General, Self::Sensors, Self::Colors];
 
     /// The set's name.
     pub fn as_str(self) -> &'static str {
         match self {
             Self::General => "general",
             Self::Sensors => "sensors",
+            Self::Colors => "colors",
         }
     }
 
@@ -119,6 +147,7 @@ impl CaseSet {
         let classes = match self {
             Self::General => Tier::of(index).pick(EASY, MEDIUM, HARD),
             Self::Sensors => SENSORS,
+            Self::Colors => COLORS,
         };
         classes[index / 3 % classes.len()]
     }
@@ -186,6 +215,12 @@ impl Class {
         Self::SplitMask,
         Self::Quantised,
         Self::PredictedMask,
+        Self::Printed,
+        Self::Blotted,
+        Self::PrintedShape,
+        Self::OneColor,
+        Self::WrongColors,
+        Self::GreyPhoto,
     ];
 
     /// The class's name.
@@ -208,12 +243,38 @@ impl Class {
             Self::SplitMask => "split-mask",
             Self::Quantised => "quantised",
             Self::PredictedMask => "predicted-mask",
+            Self::Printed => "printed",
+            Self::Blotted => "blotted",
+            Self::PrintedShape => "printed-shape",
+            Self::OneColor => "one-color",
+            Self::WrongColors => "wrong-colors",
+            Self::GreyPhoto => "grey-photo",
         }
     }
 
     /// Whether the class needs the depth of a sensor instead of a depth model's.
     pub(super) fn needs_sensor(self) -> bool {
         SENSORS.contains(&self) && self != Self::PredictedMask
+    }
+
+    /// Whether the shape is symmetric, so that at most its print tells how it is turned.
+    pub(super) fn is_symmetric(self) -> bool {
+        COLORS.contains(&self) && self != Self::PrintedShape
+    }
+
+    /// The print of a class of coloured cases.
+    pub(super) fn print(self, second: bool) -> Option<PrintKind> {
+        COLORS.contains(&self).then_some(match self {
+            Self::Blotted if second => PrintKind::TwoTone,
+            Self::Blotted => PrintKind::Speckled,
+            Self::OneColor => PrintKind::Uniform,
+            _ => PrintKind::Label,
+        })
+    }
+
+    /// Whether colour tells of the turns of a symmetric shape which one is right.
+    pub(super) fn is_told_by_color(self) -> bool {
+        matches!(self, Self::Printed | Self::Blotted | Self::GreyPhoto)
     }
 
     /// The class of a name.

@@ -117,6 +117,26 @@ pub fn carton(r: &mut Random) -> Draft {
     draft
 }
 
+/// A box with a square base.
+pub fn block(r: &mut Random) -> Draft {
+    let mut draft = Draft::default();
+    let wide = between(r, 0.02, 0.05);
+    let tall = wide * between(r, 1.3, 3.0);
+    draft.solid.at(to(0.0, 0.0, tall)).cuboid(DVec3::new(wide, wide, tall), between(r, 0.001, 0.005));
+    draft.symmetry = vec![(DVec3::Z, Some(4)), (DVec3::X, Some(2))];
+    draft
+}
+
+/// A flat box.
+pub fn book(r: &mut Random) -> Draft {
+    let mut draft = Draft::default();
+    let long = between(r, 0.06, 0.14);
+    let half = DVec3::new(long, long * between(r, 0.6, 0.8), long * between(r, 0.1, 0.3));
+    draft.solid.at(to(0.0, 0.0, half.z)).cuboid(half, between(r, 0.001, 0.004));
+    draft.symmetry = vec![(DVec3::X, Some(2)), (DVec3::Y, Some(2)), (DVec3::Z, Some(2))];
+    draft
+}
+
 pub fn phone(r: &mut Random) -> Draft {
     let mut draft = Draft::default();
     let half = DVec3::new(between(r, 0.065, 0.082), between(r, 0.033, 0.039), between(r, 0.0038, 0.0055));

@@ -22,7 +22,7 @@ use sim3align::report::{
     Alignment, Alternative, Counts, Diagnostics, PaperAlignment, PreciseDiagnostics, Registration,
     RegistrationDiagnostics, ScoreTerms, Sim3, Uncertainty, Warning, WarningCode,
 };
-use sim3align::report::{Effort, Preset};
+use sim3align::report::{ColorReport, ColorVerdict, Effort, Preset};
 use sim3align_geometry::error::ErrorCode;
 use ts_rs::{Config, TS};
 
@@ -151,6 +151,7 @@ fn types() -> String {
     let paper = "  /** The paper's method. */\n  preset: \"paper\";\n";
     let declarations = [
         declaration::<Preset>(&config),
+        declaration::<ColorVerdict>(&config),
         declaration::<Quality>(&config),
         declaration::<Effort>(&config),
         declaration::<SearchScope>(&config),
@@ -174,6 +175,7 @@ fn types() -> String {
         declaration::<PoseErrors>(&config),
         declaration::<Counts>(&config),
         declaration::<ScoreTerms>(&config),
+        declaration::<ColorReport>(&config),
         declaration::<Alternative>(&config),
         declaration::<Uncertainty>(&config),
         declaration::<Diagnostics>(&config),

@@ -29,7 +29,8 @@ Cases
   --misfits N        cases 0 to N − 1 with the mesh of the next case: no pose is right
   --scenes N         all pairs of a set of N cluttered scenes; 100 scenes are 338 pairs
   --prior P          what made the meshes of the scenes: detailed (default), smooth or both
-  --set SET          the generated set: general (default), or sensors, with effects of depth sensors and predicted masks
+  --set SET          the generated set: general (default), sensors, with effects of depth sensors and predicted
+                     masks, or colors, with photos and coloured meshes
   --set-seed S       seed of the generated set and of the scenes, default 0
   --meshes DIR       show the GLB files of a folder in a third of the generated cases
   --cases DIR...     case folders, or folders of case folders

@@ -1,0 +1,138 @@
+//! Photos: a scene under unknown light, through a camera with its own white balance, focus and noise.
+
+use core::f64::consts::TAU;
+
+use glam::DVec3;
+
+use super::print::{Print, color, encoded};
+use super::scene::Scene;
+use super::tier::{Class, Tier};
+use crate::draws::{between, chance, normal};
+use sim3align::evidence::photo::Photo;
+use sim3align_geometry::error::Result;
+use sim3align_geometry::image::Image;
+use sim3align_geometry::mesh::Mesh;
+use sim3align_geometry::random::Random;
+use sim3align_geometry::rasteriser::NO_TRIANGLE;
+use sim3align_geometry::similarity::{vec3, vector3};
+
+/// The light of a scene, and what the camera makes of it.
+struct Look {
+    /// Towards the light, world frame.
+    light: DVec3,
+    ambient: f64,
+    highlight: f64,
+    /// Exposure and white balance.
+    gain: DVec3,
+    /// A shadow over a part of the image: direction, start and depth.
+    shadow: (DVec3, f64, f64),
+    noise: f64,
+    blur: usize,
+    /// Offset from the depth map, pixels.
+    shift: [f64; 2],
+}
+
+impl Look {
+    fn draw(random: &mut Random, tier: Tier, width: usize) -> Self {
+        let azimuth = TAU * random.uniform();
+        let (sine, cosine) = libm::sincos(azimuth);
+        let light = DVec3::new(cosine, sine, between(random, 0.3, 2.0)).normalize();
+        let warmth = between(random, -1.0, 1.0) * tier.pick(0.08, 0.2, 0.35);
+        let exposure = libm::exp(between(random, -1.0, 1.0) * tier.pick(0.2, 0.4, 0.7));
+        let tint = between(random, -1.0, 1.0) * tier.pick(0.03, 0.06, 0.1);
+        let angle = TAU * random.uniform();
+        let depth = if chance(random, tier.pick(0.0, 0.3, 0.5)) { between(random, 0.3, 0.8) } else { 1.0 };
+        let size = width as f64 / 640.0;
+        let shift = tier.pick(1.0, 3.0, 6.0) * size;
+        Self {
+            light,
+            ambient: between(random, 0.35, 0.8),
+            highlight: between(random, 0.0, tier.pick(0.05, 0.2, 0.4)),
+            gain: exposure * DVec3::new(1.0 + warmth, 1.0 + tint, 1.0 - warmth),
+            shadow: (DVec3::new(libm::cos(angle), libm::sin(angle), 0.0), between(random, -0.5, 0.5), depth),
+            noise: between(random, 0.2, 1.0) * tier.pick(0.01, 0.02, 0.035),
+            blur: random.below(tier.pick(1, 2, 3) + 1),
+            shift: [between(random, -shift, shift), between(random, -shift, shift)],
+        }
+    }
+}
+
+/// Takes the photo of a scene whose object, `placed` in the world, has this print.
+///
+/// # Errors
+/// Only in case of a bug in the generator.
+pub fn take(
+    scene: &Scene,
+    (placed, print): (&Mesh, &Print),
+    class: Class,
+    tier: Tier,
+    random: &mut Random,
+) -> Result<Photo> {
+    let (width, height) = (scene.width, scene.height);
+    let is_grey = class == Class::GreyPhoto;
+    let look = Look::draw(random, tier, width);
+    let world_from_camera = scene.camera_from_world.inverse();
+    let eye = DVec3::from_array(world_from_camera.translation.into());
+    let (ground, other) = (color(random), color(random));
+    let lit = |albedo: DVec3, point: DVec3, normal: DVec3, at: DVec3| {
+        let diffuse = normal.dot(look.light).max(0.0);
+        let half = (look.light + (eye - point).normalize_or_zero()).normalize_or_zero();
+        let highlight = look.highlight * libm::pow(normal.dot(half).max(0.0), 30.0);
+        let (across, start, depth) = look.shadow;
+        let shade = 1.0 - (1.0 - depth) * ((across.dot(at) - start) * 8.0).clamp(0.0, 1.0);
+        (albedo * (look.ambient + (1.0 - look.ambient) * diffuse) + highlight) * shade * look.gain
+    };
+    let mut linear = Vec::with_capacity(width * height);
+    for v in 0..height {
+        for u in 0..width {
+            let i = v * width + u;
+            let at = DVec3::new(2.0 * u as f64 / width as f64 - 1.0, 2.0 * v as f64 / height as f64 - 1.0, 0.0);
+            let z = f64::from(scene.depth[i]);
+            let point = vector3(scene.camera.back_project(u as f64, v as f64, z));
+            let point = vec3(&world_from_camera.apply(point)).as_dvec3();
+            let triangle = scene.object_triangles[i];
+            linear.push(if scene.visible[i] && triangle != NO_TRIANGLE {
+                let [a, b, c] = placed.corners(placed.triangles()[triangle as usize]).map(|p| p.as_dvec3());
+                let normal = (b - a).cross(c - a).normalize_or_zero();
+                let normal = if normal.dot(eye - point) < 0.0 { -normal } else { normal };
+                lit(print.at(point, normal), point, normal, at)
+            } else {
+                let albedo = if point.z < 0.002 { ground } else { other };
+                lit(albedo, point, DVec3::Z, at)
+            });
+        }
+    }
+    let blurred = blurred(linear, width, height, look.blur);
+    let mut pixels = Vec::with_capacity(width * height);
+    for v in 0..height {
+        for u in 0..width {
+            let from = |x: usize, by: f64, size: usize| (x as f64 + by).round().clamp(0.0, size as f64 - 1.0) as usize;
+            let (u, v) = (from(u, look.shift[0], width), from(v, look.shift[1], height));
+            let mut shown = encoded(blurred[v * width + u]);
+            if is_grey {
+                shown = DVec3::splat(shown.dot(DVec3::new(0.299, 0.587, 0.114)));
+            }
+            let noisy = |x: f64, noise: f64| (255.0 * (x + noise)).round().clamp(0.0, 255.0) as u8;
+            let common = look.noise * normal(random);
+            let own = if is_grey { [0.0; 3] } else { [0, 1, 2].map(|_| look.noise * normal(random)) };
+            pixels.push([0, 1, 2].map(|k| noisy(shown[k], common + own[k])));
+        }
+    }
+    Image::new("image", width, height, pixels)
+}
+
+/// Means over squares of 2·`radius` + 1 pixels.
+fn blurred(pixels: Vec<DVec3>, width: usize, height: usize, radius: usize) -> Vec<DVec3> {
+    if radius == 0 {
+        return pixels;
+    }
+    let pass = |from: &[DVec3], stride: usize, size: usize| -> Vec<DVec3> {
+        let mean = |i: usize| {
+            let at = i / stride % size;
+            let (first, last) = (at.saturating_sub(radius), (at + radius).min(size - 1));
+            (first..=last).map(|k| from[i - at * stride + k * stride]).sum::<DVec3>() / (last - first + 1) as f64
+        };
+        (0..from.len()).map(mean).collect()
+    };
+    pass(&pass(&pixels, 1, width), width, height)
+}

@@ -1,0 +1,71 @@
+//! Lookalikes: poses that turn the best one such that its shape in the image hardly changes.
+
+use core::f64::consts::{PI, TAU};
+
+use glam::{DQuat, DVec3};
+
+use super::coarse::Candidate;
+use super::pose::CropPose;
+use super::ranking::best_of;
+use super::recipe::COARSE;
+use super::render::Canvas;
+use super::rounds::Rounds;
+use crate::geometry::rotations::angle_between;
+
+/// Number of rolls about each principal axis, and of each half turn followed by a roll.
+pub const ROLLS: usize = 24;
+/// Minimum rotation between lookalikes, radians: of those whose score is that of the best pose, such as rolls of a can,
+/// and of the others, which are refined.
+const APART: [f64; 2] = [0.2, 0.45];
+/// Maximum number of lookalikes.
+const MOST: usize = 60;
+/// Score on the coarse grid below that of the best pose at which a turn is no lookalike, and down to which it needs no
+/// refinement.
+const FAR: f32 = 0.25;
+const SAME: f32 = 0.02;
+
+/// A pose that may explain the shape as well as the best one.
+#[derive(Debug, Clone, Copy)]
+pub struct Lookalike {
+    /// The pose.
+    pub pose: CropPose,
+    /// Whether its shape differs so much that it should be refined.
+    pub is_rough: bool,
+}
+
+/// The turns of the best pose that look about the same, and the other poses that the search has found.
+pub fn lookalikes(rounds: &Rounds) -> Vec<Lookalike> {
+    let search = &rounds.search;
+    let Some((best, others)) = rounds.found.split_first() else { return Vec::new() };
+    let mut canvas = Canvas::default();
+    let grid = search.grid(COARSE);
+    let objective = search.objective(COARSE, &grid);
+    let score = objective.score(&mut canvas, &best.pose).total;
+    let turned = search.mesh.turns.about_axes(&best.pose, ROLLS);
+    let poses = others.iter().map(|other| other.pose).chain(turned);
+    let likely: Vec<Candidate> = poses
+        .map(|pose| Candidate { score: objective.score(&mut canvas, &pose), pose })
+        .filter(|candidate| candidate.score.total > score - FAR)
+        .collect();
+    let mut kept: Vec<CropPose> = vec![best.pose];
+    let mut alike = Vec::new();
+    for (apart, is_rough) in APART.into_iter().zip([false, true]) {
+        for candidate in best_of(&likely, likely.len()) {
+            let pose = candidate.pose;
+            let is_near = |other: &CropPose| angle_between(other.rotation, pose.rotation) < apart;
+            if (candidate.score.total < score - SAME) == is_rough && kept.len() <= MOST && !kept.iter().any(is_near) {
+                kept.push(pose);
+                alike.push(Lookalike { pose, is_rough });
+            }
+        }
+    }
+    alike
+}
+
+/// The rotations of a dihedral group about `axis`: rolls, and as many after a half turn about `across`. The first is none.
+pub fn dihedral(axis: DVec3, across: DVec3, rolls: usize) -> impl Iterator<Item = DQuat> {
+    let flips = [DQuat::IDENTITY, DQuat::from_axis_angle(across, PI)];
+    flips.into_iter().flat_map(move |flip| {
+        (0..rolls).map(move |k| DQuat::from_axis_angle(axis, TAU * k as f64 / rolls as f64) * flip)
+    })
+}
