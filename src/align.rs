@@ -25,7 +25,7 @@ use task::AlignTask;
 /// [`ErrorCode::DegenerateMesh`](crate::error::ErrorCode::DegenerateMesh),
 /// [`ErrorCode::NoConsensus`](crate::error::ErrorCode::NoConsensus): the identity is never returned instead.
 pub fn align(observation: &Observation, mesh: &Mesh, options: &AlignOptions, host: &mut dyn Host) -> Result<Alignment> {
-    align_with(observation, PreparedMesh::borrowed(mesh), options, crate::precise::efforts(options), host)
+    align_with(observation, mesh, options, crate::precise::efforts(options), host)
 }
 
 /// [`align`] with explicit settings of the searches instead of those derived from the options, for ablations.
@@ -34,12 +34,12 @@ pub fn align(observation: &Observation, mesh: &Mesh, options: &AlignOptions, hos
 /// As [`align`].
 pub fn align_with(
     observation: &Observation,
-    mesh: PreparedMesh<'_>,
+    mesh: &Mesh,
     options: &AlignOptions,
     efforts: Vec<SearchSettings>,
     host: &mut dyn Host,
 ) -> Result<Alignment> {
-    let task = AlignTask::new(observation, mesh, options.clone().into(), host)?;
+    let task = AlignTask::new(observation, PreparedMesh::borrowed(mesh), options.clone().into(), host)?;
     match task.with_efforts(efforts).finish()? {
         AnyAlignment::Precise(alignment) => Ok(*alignment),
         AnyAlignment::Paper(_) => Err(other_method()),

@@ -14,6 +14,8 @@ use crate::metrics::pose_error::{PoseErrors, pose_errors};
 use crate::metrics::symmetry::Symmetry;
 use crate::metrics::{self, Metrics};
 use crate::options::{Options, options};
+use crate::precise::color::agreement;
+use crate::precise::prepared_mesh::PreparedMesh;
 use crate::report::{Warning, is_collapsed};
 
 options! {
@@ -92,7 +94,21 @@ pub fn evaluate(
     camera_from_mesh: &Similarity,
     options: &EvaluateOptions,
 ) -> Result<Evaluation> {
+    evaluate_prepared(observation, &PreparedMesh::borrowed(mesh), camera_from_mesh, options)
+}
+
+/// [`evaluate`] for a prepared mesh, which may have colours.
+///
+/// # Errors
+/// As [`evaluate`].
+pub fn evaluate_prepared(
+    observation: &Observation,
+    prepared: &PreparedMesh<'_>,
+    camera_from_mesh: &Similarity,
+    options: &EvaluateOptions,
+) -> Result<Evaluation> {
     options.validate()?;
+    let mesh = prepared.mesh();
     let evidence = Evidence::of(
         observation,
         mesh,
@@ -102,7 +118,8 @@ pub fn evaluate(
             seed: u64::from(options.seed),
         },
     )?;
-    let metrics = metrics::score(observation, mesh, camera_from_mesh, &evidence)?;
+    let mut metrics = metrics::score(observation, mesh, camera_from_mesh, &evidence)?;
+    metrics.color_agreement = agreement(observation, prepared, camera_from_mesh);
     let observed = Extents::of("depth", &evidence.observed.points)?;
     let reconstructed = Extents::of("mesh", &evidence.reconstructed.points)?;
     let initial_scale = initial_scale(&observed, &reconstructed);

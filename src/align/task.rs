@@ -13,7 +13,7 @@ use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::Normals;
 use crate::evidence::clouds::Clouds;
 use crate::evidence::observation::Observation;
-use crate::precise::color::ColorStage;
+use crate::precise::color::{ColorStage, agreement};
 use crate::precise::options::AlignOptions;
 use crate::precise::prepared_mesh::PreparedMesh;
 use crate::precise::recipe::SURE;
@@ -111,7 +111,11 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
                 }
                 State::Found(mut clouds, solution, certainty) => {
                     let (observation, mesh) = (self.observation.borrow(), self.mesh.borrow().mesh());
-                    let metrics = score(observation, mesh, &self.setup, &mut clouds, &solution, &mut stages)?;
+                    let mut metrics = score(observation, mesh, &self.setup, &mut clouds, &solution, &mut stages)?;
+                    if let (Some(metrics), Some(_)) = (&mut metrics, &certainty) {
+                        let pose = &solution.camera_from_mesh;
+                        metrics.color_agreement = agreement(observation, self.mesh.borrow(), pose);
+                    }
                     let aligned = report(observation, &self.setup, &clouds, &solution, metrics, stages);
                     return Ok(Some(with_certainty(aligned, certainty)));
                 }

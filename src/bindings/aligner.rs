@@ -34,7 +34,7 @@ pub fn evaluate(input: &JsValue, transform: &JsValue, options: &JsValue) -> core
         let options = options::options(options, &options::OF_CALLS, |_| None)?;
         let camera_from_mesh = transform::similarity(transform, "transform")?;
         let (observation, mesh) = (input::observation(input)?, mesh::mesh_of(input)?);
-        align::evaluate::evaluate(&observation, mesh.mesh(), &camera_from_mesh, &options)
+        align::evaluate::evaluate_prepared(&observation, &mesh, &camera_from_mesh, &options)
     };
     answer(run())
 }

@@ -48,6 +48,11 @@ pub struct Metrics {
     pub normal_consistency: Option<f64>,
     /// Mean |rendered − observed| depth over the mask's pixels that have both, millimetres; `null` where none has.
     pub depth_mae_mm: Option<f64>,
+    /// Correlation of the mesh's colours with the photo inside the mask, without the shading that normals explain, −1 to
+    /// 1, higher is better; absent where the mesh or the photo has no colours. Not of the paper.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "types", ts(optional))]
+    pub color_agreement: Option<f64>,
 }
 
 /// Computes the metrics of a transform at the resolution of the depth map.
@@ -97,6 +102,7 @@ pub fn score(
         fitness: agreement.fitness,
         normal_consistency: agreement.normal_consistency,
         depth_mae_mm: millimetres(depth_mae(depth, mask, rasteriser.depth())),
+        color_agreement: None,
     })
 }
 

@@ -4,21 +4,27 @@
 //! are within noise, the one that agrees best with the photo is taken. Where no pose agrees, the colours of the mesh are
 //! not those of the object, and shape decides alone.
 
+use std::rc::Rc;
+
 use glam::DVec3;
 
 use super::alternatives::NOISE;
 use super::appearance::{Appearance, PhotoCells};
+use super::clean::CleanObservation;
 use super::lookalikes::{Lookalike, lookalikes};
 use super::pose::CropPose;
-use super::recipe::{FINE, FINEST, MIDDLE};
+use super::prepared_mesh::PreparedMesh;
+use super::recipe::{FINE, FINEST, MIDDLE, SearchSettings};
 use super::refine::Refiner;
 use super::render::Canvas;
 use super::rounds::Rounds;
-use super::search::Found;
+use super::search::{Found, Search};
+use crate::evidence::observation::Observation;
 use crate::evidence::photo::Photo;
 use crate::geometry::rotations::{angle_between, exp};
+use crate::geometry::similarity::Similarity;
 use crate::geometry::surface_colors::SurfaceColors;
-use crate::report::{ColorReport, ColorVerdict};
+use crate::report::{ColorReport, ColorVerdict, Effort};
 
 /// Minimum correlation of the best pose with the photo for colour to decide.
 const AGREES: f64 = 0.3;
@@ -32,6 +38,9 @@ const DIFFERENT: f64 = 2.0;
 const RIVAL: f64 = 0.35;
 /// Factor of the correlation in the logarithm of the odds of two poses.
 const ODDS: f64 = 15.0;
+/// Minimum certainty where no pose agrees: as likely as not, the colours of the mesh mean nothing, and the turns that its
+/// shape allows are all right.
+const UNMATCHED: f64 = 0.5;
 /// Steps of the refinement of a lookalike, and of the pose that colour chose.
 const STEPS: [usize; 2] = [4, 6];
 /// Standard deviation of a rotation, radians, from which on colour refines it; and the angles of its steps.
@@ -163,7 +172,7 @@ impl ColorStage {
         }
         Judgment {
             chosen: (is_changed || rolled.is_some()).then_some(found),
-            certainty: 1.0 / (1.0 + odds),
+            certainty: (1.0 / (1.0 + odds)).max(if is_used { 0.0 } else { UNMATCHED }),
             report: ColorReport {
                 verdict,
                 agreement: chosen.appearance.agreement,
@@ -219,6 +228,20 @@ impl Judgment {
         let report = ColorReport { verdict: ColorVerdict::Hidden, agreement: 0.0, margin: None };
         Self { chosen: None, rivals: Vec::new(), certainty: 1.0, report }
     }
+}
+
+/// The correlation of the colours of a posed mesh with the photo, without the shading that normals explain, −1 to 1;
+/// `None` where either has no colours, or too little of the mesh is in the mask.
+pub fn agreement(observation: &Observation, mesh: &PreparedMesh<'_>, pose: &Similarity) -> Option<f64> {
+    let (photo, colors) = (observation.photo()?, mesh.colors()?);
+    let settings = SearchSettings::from(Effort::Fast);
+    let clean = Rc::new(CleanObservation::new(observation));
+    let search = Search::new(clean, mesh.pyramid(&settings.grids)?, settings);
+    let photo = PhotoCells::new(photo, search.observation.image, &search.fine);
+    let pose = CropPose::of_similarity(pose, &search.mesh.frame)?;
+    let mut canvas = Canvas::default();
+    search.objective(FINE, &search.fine).score(&mut canvas, &pose);
+    Some(photo.compare(&canvas, colors, &search.mesh.frame, &search.fine)?.agreement)
 }
 
 /// A pose refined on the finest grid.

@@ -213,8 +213,7 @@ fn a_bound_on_work_bounds_renders_of_costly_inputs() {
     let mesh = soup(3000, 1.0);
     let renders = |max_load: u64| {
         let settings = SearchSettings { max_load, ..SearchSettings::from(Effort::Fast) };
-        let alignment =
-            align_with(&observation, PreparedMesh::borrowed(&mesh), &quick(), vec![settings], &mut Silent).unwrap();
+        let alignment = align_with(&observation, &mesh, &quick(), vec![settings], &mut Silent).unwrap();
         alignment.diagnostics.common.counts.renders
     };
     let [unbounded, bounded] = [u64::from(u32::MAX), 4].map(renders);
@@ -222,12 +221,7 @@ fn a_bound_on_work_bounds_renders_of_costly_inputs() {
     let ordinary = observe(&body(), &truth());
     let of_body = |max_load: u64| {
         let settings = SearchSettings { max_load, ..SearchSettings::from(Effort::Fast) };
-        align_with(&ordinary, PreparedMesh::new(body()), &quick(), vec![settings], &mut Silent)
-            .unwrap()
-            .diagnostics
-            .common
-            .counts
-            .renders
+        align_with(&ordinary, &body(), &quick(), vec![settings], &mut Silent).unwrap().diagnostics.common.counts.renders
     };
     assert_eq!(of_body(12), of_body(u64::from(u32::MAX)), "an ordinary input is within every bound");
 }

@@ -12,7 +12,7 @@ use crate::case_folder::contents::parameters_json;
 use crate::cases::case::EvaluationCase;
 use sim3align::align::evaluate::{EvaluateOptions, Truth, evaluate};
 use sim3align::align::method::Method;
-use sim3align::align::{align_paper, align_with};
+use sim3align::align::task::AlignTask;
 use sim3align::evidence::observation::Observation;
 use sim3align::metrics::Metrics;
 use sim3align::metrics::pose_error::{PoseErrors, pose_errors};
@@ -47,11 +47,11 @@ pub struct BenchCase {
     pub tags: Vec<String>,
     /// Magnitudes of the simulated errors, by name.
     pub parameters: Value,
-    /// Depth, mask and camera.
+    /// Depth, mask and camera, and the photo if there is one.
     pub observation: Observation,
     /// The mesh.
     pub mesh: Mesh,
-    /// Its colours, if they are known.
+    /// Its colours, if it has any.
     pub colors: Option<SurfaceColors>,
     /// The true pose, if known.
     pub truth: Option<Truth>,
@@ -148,6 +148,9 @@ impl BenchCase {
     /// Those of [`read_case`], and [`ErrorCode::CorruptFile`] for `symmetryAxes` that are none.
     pub fn read(folder: &Path) -> Result<Self> {
         let case = read_case(folder)?;
+        if let Some(problem) = &case.color_problem {
+            eprintln!("\nwithout colours: {problem}");
+        }
         let json =
             |name: &str| -> Option<Value> { serde_json::from_slice(&std::fs::read(folder.join(name)).ok()?).ok() };
         let meta = json("meta.json").unwrap_or_default();
@@ -175,9 +178,16 @@ impl BenchCase {
             parameters: meta.get("parameters").cloned().unwrap_or_default(),
             observation: case.observation,
             mesh: case.mesh,
-            colors: None,
+            colors: case.colors,
             truth: truth.transpose()?,
         })
+    }
+}
+
+impl BenchCase {
+    /// The case without its photo and colours.
+    pub fn without_color(self) -> Self {
+        Self { observation: self.observation.without_photo(), colors: None, ..self }
     }
 }
 
@@ -221,15 +231,9 @@ pub fn run_case(case: &BenchCase, method: &Method, overrides: &[(String, f64)]) 
             override_setting(settings, name, *value);
         });
     }
-    let mut record = run_method(case, |observation, mesh, host| match method {
-        Method::Precise(options) => {
-            let mut mesh = PreparedMesh::borrowed(mesh);
-            if let Some(colors) = &case.colors {
-                mesh = mesh.with_colors(colors.clone());
-            }
-            align_with(observation, mesh, options, searches.clone(), host).map(Into::into)
-        }
-        Method::Paper(options) => align_paper(observation, mesh, options, host).map(Into::into),
+    let mut record = run_method(case, |observation, mesh, host| {
+        let mesh = PreparedMesh::borrowed(mesh).with_colors(case.colors.clone());
+        AlignTask::new(observation, mesh, method.clone(), host)?.with_efforts(searches.clone()).finish()
     });
     record.truth_score = case.truth.as_ref().and_then(|truth| {
         // By the objective of the search that found the pose: scores of others are not comparable.

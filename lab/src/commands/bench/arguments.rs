@@ -34,10 +34,12 @@ Cases
   --set-seed S       seed of the generated set and of the scenes, default 0
   --meshes DIR       show the GLB files of a folder in a third of the generated cases
   --cases DIR...     case folders, or folders of case folders
+  --no-color         leave out photos and the colours of meshes
   --tier T,…         only these: easy, medium, hard
   --class C,…        only these: plain, occluded, border-cut, tiny, thin, missing-part, extra-part, ragged-mask,
                      warped, sparse-sensor, ambiguous; of the set sensors: wide-shadow, holes, mask-of-readings,
-                     split-mask, quantised, predicted-mask
+                     split-mask, quantised, predicted-mask; of the set colors: printed, blotted, printed-shape,
+                     one-color, wrong-colors, grey-photo
   --only I,…         only these indices of the generated set (--generated is not needed)
 
 Method
@@ -123,6 +125,7 @@ pub struct Arguments {
     pub set_seed: u64,
     pub meshes: Option<PathBuf>,
     pub cases: Vec<PathBuf>,
+    pub color: bool,
     pub tiers: Vec<Tier>,
     pub classes: Vec<Class>,
     pub only: Option<Vec<usize>>,
@@ -151,6 +154,7 @@ impl Arguments {
             set_seed: 0,
             meshes: None,
             cases: Vec::new(),
+            color: true,
             tiers: Tier::ALL.to_vec(),
             classes: Class::ALL.to_vec(),
             only: None,
@@ -175,6 +179,7 @@ impl Arguments {
                 Long("cases") => arguments.cases.extend(parser.values()?.map(PathBuf::from)),
                 Long("tier") => arguments.tiers = list(&parser.value()?.string()?, Tier::from_name)?,
                 Long("class") => arguments.classes = list(&parser.value()?.string()?, Class::from_name)?,
+                Long("no-color") => arguments.color = false,
                 Long("only") => arguments.only = Some(list(&parser.value()?.string()?, str::parse::<usize>)?),
                 Long("preset") => options.push(format!("preset={}", parser.value()?.string()?)),
                 Long("seed") => options.push(format!("seed={}", parser.value()?.string()?)),
