@@ -153,43 +153,37 @@ impl ColorStage {
         };
         let mut rivals: Vec<&Compared> = self.compared.iter().filter(is_rival).collect();
         rivals.sort_by(|a, b| b.total.total_cmp(&a.total));
-        let lead = |rival: &Compared| if is_used { chosen.total - rival.total } else { 0.0 };
-        let odds: f64 = rivals.iter().map(|rival| libm::exp(-ODDS * lead(rival))).sum();
-        let verdict = match (rivals.is_empty(), is_used, core::ptr::eq(chosen, first)) {
+        let is_changed = !core::ptr::eq(chosen, first);
+        let verdict = match (rivals.is_empty(), is_used, is_changed) {
             (true, ..) => ColorVerdict::Uniform,
             (_, false, _) => ColorVerdict::Unmatched,
-            (_, _, true) => ColorVerdict::Agreed,
-            _ => ColorVerdict::Decided,
+            (_, _, false) => ColorVerdict::Agreed,
+            (_, _, true) => ColorVerdict::Decided,
         };
         let mut found = chosen.found;
-        let is_changed = !core::ptr::eq(chosen, first);
         if is_changed {
             found.pose = polished(rounds, found.pose);
         }
         let rolled = if is_used { self.roll(rounds, colors, found.pose) } else { None };
-        if let Some(pose) = rolled {
+        let gain = rolled.map_or(0.0, |(_, gain)| gain);
+        if let Some((pose, _)) = rolled {
             found.pose = pose;
         }
+        let agreement = chosen.appearance.agreement + gain;
+        let lead = |rival: &Compared| if is_used { chosen.total + gain - rival.total } else { 0.0 };
+        let odds: f64 = rivals.iter().map(|rival| libm::exp(-ODDS * lead(rival))).sum();
+        let margin = |rival: &Compared| agreement - rival.appearance.agreement;
         Judgment {
             chosen: (is_changed || rolled.is_some()).then_some(found),
             certainty: (1.0 / (1.0 + odds)).max(if is_used { 0.0 } else { UNMATCHED }),
-            report: ColorReport {
-                verdict,
-                agreement: chosen.appearance.agreement,
-                margin: rivals.first().map(|rival| lead(rival)),
-            },
-            rivals: rivals
-                .iter()
-                .map(|rival| Rival {
-                    found: rival.found,
-                    margin: chosen.appearance.agreement - rival.appearance.agreement,
-                })
-                .collect(),
+            report: ColorReport { verdict, agreement, margin: rivals.first().map(|rival| lead(rival)) },
+            rivals: rivals.iter().map(|rival| Rival { found: rival.found, margin: margin(rival) }).collect(),
         }
     }
 
-    /// Rolls a pose about the axis that shape leaves open to where its colours agree best; `None` if shape leaves none.
-    fn roll(&self, rounds: &Rounds, colors: &SurfaceColors, pose: CropPose) -> Option<CropPose> {
+    /// Rolls a pose about the axis that shape leaves open to where its colours agree best, and the gain of agreement;
+    /// `None` if shape leaves none, or no roll is better.
+    fn roll(&self, rounds: &Rounds, colors: &SurfaceColors, pose: CropPose) -> Option<(CropPose, f64)> {
         let search = &rounds.search;
         let (conditioning, _) = search.conditioning(&pose);
         let (deviation, axis) = conditioning?.rotation;
@@ -204,7 +198,8 @@ impl ColorStage {
             let appearance = self.photo.compare(&canvas, colors, &search.mesh.frame, &search.fine);
             appearance.map_or(f64::NEG_INFINITY, |a| a.agreement + SHAPE * f64::from(score.total))
         };
-        let mut best = (total(0.0), 0.0);
+        let start = total(0.0);
+        let mut best = (start, 0.0);
         for step in ROLL_STEPS {
             let middle = best.1;
             for angle in [middle - step, middle + step] {
@@ -214,7 +209,7 @@ impl ColorStage {
                 }
             }
         }
-        (best.1 != 0.0).then(|| self.rolled(rounds, &pose, axis, best.1))
+        (best.1 != 0.0).then(|| (self.rolled(rounds, &pose, axis, best.1), best.0 - start))
     }
 
     fn rolled(&self, rounds: &Rounds, pose: &CropPose, axis: DVec3, angle: f64) -> CropPose {

@@ -39,6 +39,7 @@ pub mod pose_error;
 pub mod precise;
 pub mod precise_anchors;
 pub mod precise_coarse;
+pub mod precise_color;
 pub mod precise_evidence;
 pub mod precise_refine;
 pub mod precise_rounds;

@@ -1,0 +1,251 @@
+//! Colour: it decides between the turns that shape cannot tell, and leaves everything else as it is.
+
+use glam::{DVec3, Vec3};
+use nalgebra::{Rotation3, Vector3};
+use sim3align::align::evaluate::{EvaluateOptions, evaluate, evaluate_prepared};
+use sim3align::align::task::AlignTask;
+use sim3align::evidence::observation::Observation;
+use sim3align::evidence::photo::Photo;
+use sim3align::evidence::sample::sample_surface;
+use sim3align::geometry::image::Image;
+use sim3align::geometry::mesh::Mesh;
+use sim3align::geometry::rasteriser::{NO_TRIANGLE, Rasteriser};
+use sim3align::geometry::similarity::{Similarity, vec3, vector3};
+use sim3align::geometry::surface_colors::{COLOR_SAMPLES, Rgb, SurfaceColors};
+use sim3align::metrics::pose_error::pose_errors;
+use sim3align::metrics::symmetry::Symmetry;
+use sim3align::precise::lookalikes::dihedral;
+use sim3align::precise::prepared_mesh::PreparedMesh;
+use sim3align::progress::Silent;
+use sim3align::report::{Alignment, AnyAlignment, ColorVerdict};
+use wasm_bindgen_test::wasm_bindgen_test;
+
+use crate::precise::{observe, quick};
+use crate::shapes::cuboid;
+use crate::support::Draw;
+
+/// Colours as a function of position and outward normal, mesh frame.
+type Paint = fn(Vec3, Vec3) -> Vec3;
+
+const EXTENT: Vec3 = Vec3::new(0.5, 0.9, 0.35);
+
+fn carton() -> Mesh {
+    cuboid(EXTENT)
+}
+
+/// Patches that differ from side to side.
+fn label(p: Vec3, n: Vec3) -> Vec3 {
+    let at = p / EXTENT;
+    let patch = |u: f32, v: f32, half: f32| (at.y - u).abs() < half && (at.x + at.z - v).abs() < half;
+    if n.z > 0.5 && patch(0.2, 0.1, 0.18) {
+        Vec3::new(0.8, 0.15, 0.1)
+    } else if n.x.abs() > 0.5 && patch(0.1 * n.x, 0.2 * n.x, 0.2) {
+        Vec3::new(0.1, 0.2, 0.7)
+    } else if patch(-0.3, 0.0, 0.1) {
+        Vec3::new(0.05, 0.05, 0.05)
+    } else {
+        Vec3::new(0.75, 0.7, 0.4)
+    }
+}
+
+fn uniform(_: Vec3, _: Vec3) -> Vec3 {
+    Vec3::new(0.3, 0.6, 0.5)
+}
+
+/// Another object's print.
+fn other(p: Vec3, _: Vec3) -> Vec3 {
+    if libm::sinf(23.0 * p.x + 9.0 * p.y) * libm::sinf(17.0 * p.z - 11.0 * p.y) > 0.0 {
+        Vec3::new(0.7, 0.2, 0.6)
+    } else {
+        Vec3::new(0.2, 0.6, 0.3)
+    }
+}
+
+fn rgb(color: Vec3) -> Rgb {
+    (color * 255.0).to_array().map(|x| x.round().clamp(0.0, 255.0) as u8)
+}
+
+fn painted(mesh: &Mesh, paint: Paint) -> SurfaceColors {
+    let samples = sample_surface(mesh, COLOR_SAMPLES, 0).unwrap();
+    let colors = samples.points.iter().zip(&samples.normals).map(|(p, n)| rgb(paint(*p, *n))).collect();
+    SurfaceColors::new(samples, colors).unwrap()
+}
+
+/// The photo that the camera of [`observe`] takes, with these gains, `light` on what faces the camera, and an offset.
+fn photo(mesh: &Mesh, pose: &Similarity, paint: Paint, (gain, light): (Vec3, f32), shift: usize) -> Photo {
+    let observation = observe(mesh, pose);
+    let (width, height) = (observation.depth().width(), observation.depth().height());
+    let mut rasteriser = Rasteriser::new();
+    rasteriser.render(mesh, pose, &observation.camera(), width, height);
+    let inverse = pose.inverse();
+    let color = |i: usize| {
+        let (triangle, z) = (rasteriser.triangles()[i], f64::from(rasteriser.depth()[i]));
+        if triangle == NO_TRIANGLE {
+            return [90, 80, 70];
+        }
+        let point = observation.camera().back_project((i % width) as f64, (i / width) as f64, z);
+        let [a, b, c] = mesh.corners(mesh.triangles()[triangle as usize]);
+        let normal = (b - a).cross(c - a).normalize();
+        let facing = -(pose.rotation * vector3(normal)).z as f32;
+        rgb(paint(vec3(&inverse.apply(vector3(point))), normal) * gain * (1.0 - light + light * facing))
+    };
+    let pixels = (0..width * height).map(|i| if i % width >= shift { color(i - shift) } else { [90, 80, 70] });
+    Image::new("image", width, height, pixels.collect()).unwrap()
+}
+
+fn truth() -> Similarity {
+    Similarity {
+        scale: 0.17,
+        rotation: Rotation3::new(Vector3::new(0.7, -0.5, 1.1)),
+        translation: Vector3::new(0.01, -0.01, 0.6),
+    }
+}
+
+fn solve(observation: Observation, mesh: &PreparedMesh<'_>) -> Alignment {
+    match AlignTask::new(observation, mesh, quick().into(), Silent).unwrap().finish().unwrap() {
+        AnyAlignment::Precise(alignment) => *alignment,
+        AnyAlignment::Paper(_) => unreachable!(),
+    }
+}
+
+fn rotation_error(mesh: &Mesh, found: &Alignment, truth: &Similarity) -> f64 {
+    let pose = Similarity::from_column_major(&found.camera_from_mesh.matrix).unwrap();
+    pose_errors(mesh, &pose, truth, &Symmetry::None).unwrap().rotation_error_deg
+}
+
+/// A result as text, without its times.
+fn described(mut found: Alignment) -> String {
+    found.diagnostics.common.timings_ms = Default::default();
+    format!("{found:?}")
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn the_print_decides_which_side_of_a_box_faces_the_camera() {
+    let mesh = carton();
+    let prepared = PreparedMesh::borrowed(&mesh).with_colors(painted(&mesh, label));
+    let turns = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis * core::f64::consts::PI);
+    let turned = [DVec3::ZERO].into_iter().chain(turns).map(|turn| {
+        let turn = Rotation3::new(Vector3::from(turn.to_array()));
+        Similarity { rotation: truth().rotation * turn, ..truth() }
+    });
+    let mut decided = 0;
+    for (i, pose) in turned.enumerate() {
+        // Darker, bluer, lit from the camera, and two pixels off.
+        let look = (Vec3::new(0.6, 0.7, 0.9), 0.5);
+        let seen = observe(&mesh, &pose).with_photo(photo(&mesh, &pose, label, look, 2)).unwrap();
+        let found = solve(seen, &prepared);
+        let color = found.diagnostics.color.unwrap();
+        assert!(rotation_error(&mesh, &found, &pose) < 2.0, "turn {i}: {color:?}");
+        assert!(color.agreement > 0.6 && color.margin.unwrap() > 0.2, "turn {i}: {color:?}");
+        assert!(found.confidence > 0.5, "turn {i}: {}", found.confidence);
+        decided += usize::from(color.verdict == ColorVerdict::Decided);
+    }
+    // Shape takes one of the four.
+    assert_eq!(decided, 3);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn without_photo_or_colours_the_answer_is_that_of_shape_to_the_bit() {
+    let mesh = carton();
+    let plain = PreparedMesh::borrowed(&mesh);
+    let colored = PreparedMesh::borrowed(&mesh).with_colors(painted(&mesh, label));
+    let seen = observe(&mesh, &truth());
+    let with_photo = seen.clone().with_photo(photo(&mesh, &truth(), label, (Vec3::ONE, 0.0), 0)).unwrap();
+    let expected = described(solve(seen.clone(), &plain));
+    assert_eq!(described(solve(seen, &colored)), expected);
+    assert_eq!(described(solve(with_photo, &plain)), expected);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn one_colour_and_wrong_colours_leave_the_pose_of_shape() {
+    let mesh = carton();
+    let seen = observe(&mesh, &truth());
+    let shape = solve(seen.clone(), &PreparedMesh::borrowed(&mesh));
+    let cases: [(Paint, Paint, ColorVerdict); 2] =
+        [(uniform, uniform, ColorVerdict::Uniform), (label, other, ColorVerdict::Unmatched)];
+    for (object, generated, verdict) in cases {
+        let seen = seen.clone().with_photo(photo(&mesh, &truth(), object, (Vec3::ONE, 0.4), 1)).unwrap();
+        let found = solve(seen, &PreparedMesh::borrowed(&mesh).with_colors(painted(&mesh, generated)));
+        assert_eq!(found.camera_from_mesh, shape.camera_from_mesh, "{verdict:?}");
+        let color = found.diagnostics.color.unwrap();
+        assert_eq!(color.verdict, verdict, "{color:?}");
+        match verdict {
+            ColorVerdict::Uniform => assert_eq!(found.confidence, shape.confidence),
+            // The colours of the mesh tell its sides apart, and the photo does not say which is seen.
+            _ => assert!(found.confidence < 0.9 * shape.confidence && !found.alternatives.is_empty()),
+        }
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn agreement_hardly_depends_on_light_and_exposure() {
+    let mesh = carton();
+    let prepared = PreparedMesh::borrowed(&mesh).with_colors(painted(&mesh, label));
+    let mut draw = Draw::new(31);
+    let agreement = |look, paint, pose: &Similarity| {
+        let seen = observe(&mesh, &truth()).with_photo(photo(&mesh, &truth(), paint, look, 0)).unwrap();
+        let metrics = evaluate_prepared(&seen, &prepared, pose, &EvaluateOptions::default()).unwrap().metrics;
+        metrics.color_agreement.unwrap()
+    };
+    let reference = agreement((Vec3::ONE, 0.0), label, &truth());
+    assert!(reference > 0.95, "{reference}");
+    for _ in 0..5 {
+        let mut gain = || draw.between(0.5, 1.0);
+        let look = (Vec3::new(gain(), gain(), gain()), draw.between(0.0, 0.6));
+        let agreement = agreement(look, label, &truth());
+        assert!((agreement - reference).abs() < 0.15, "{look:?}: {agreement}, {reference}");
+    }
+    let about_y = Rotation3::new(Vector3::new(0.0, core::f64::consts::PI, 0.0));
+    let turned = Similarity { rotation: truth().rotation * about_y, ..truth() };
+    assert!(agreement((Vec3::ONE, 0.0), label, &turned) < 0.5 * reference);
+    assert!(agreement((Vec3::ONE, 0.0), uniform, &truth()).abs() < 0.1);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn metrics_have_a_colour_agreement_only_where_there_are_colours() {
+    let mesh = carton();
+    let seen = observe(&mesh, &truth());
+    let with_photo = seen.clone().with_photo(photo(&mesh, &truth(), label, (Vec3::ONE, 0.0), 0)).unwrap();
+    let options = EvaluateOptions::default();
+    assert_eq!(evaluate(&seen, &mesh, &truth(), &options).unwrap().metrics.color_agreement, None);
+    assert_eq!(evaluate(&with_photo, &mesh, &truth(), &options).unwrap().metrics.color_agreement, None);
+    // The same in the result of an alignment, at its pose.
+    let prepared = PreparedMesh::borrowed(&mesh).with_colors(painted(&mesh, label));
+    let found = solve(with_photo.clone(), &prepared);
+    let pose = Similarity::from_column_major(&found.camera_from_mesh.matrix).unwrap();
+    let again = evaluate_prepared(&with_photo, &prepared, &pose, &options).unwrap();
+    let difference = found.metrics.unwrap().color_agreement.unwrap() - again.metrics.color_agreement.unwrap();
+    // The matrix of a result has rounded once.
+    assert!(difference.abs() < 1e-6, "{difference}");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_comparison_may_pause_after_any_pose() {
+    let mesh = carton();
+    let prepared = PreparedMesh::borrowed(&mesh).with_colors(painted(&mesh, label));
+    let seen = observe(&mesh, &truth()).with_photo(photo(&mesh, &truth(), label, (Vec3::ONE, 0.3), 0)).unwrap();
+    let expected = described(solve(seen.clone(), &prepared));
+    let mut task = AlignTask::new(seen, &prepared, quick().into(), Silent).unwrap();
+    let mut pauses = 0;
+    let found = loop {
+        pauses += 1;
+        if let Some(found) = task.step(&mut || true).unwrap() {
+            break found;
+        }
+    };
+    let AnyAlignment::Precise(found) = found else { unreachable!() };
+    assert_eq!(described(*found), expected);
+    assert!(pauses > 100, "{pauses}");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn turns_about_an_axis_form_a_group() {
+    let (axis, across) = (DVec3::new(1.0, 2.0, 2.0) / 3.0, DVec3::new(2.0, 1.0, -2.0) / 3.0);
+    let group: Vec<_> = dihedral(axis, across, 6).collect();
+    let is_member = |rotation: glam::DQuat| group.iter().any(|g| g.dot(rotation).abs() > 1.0 - 1e-12);
+    assert_eq!(group.len(), 12);
+    for (i, a) in group.iter().enumerate() {
+        assert!(group.iter().all(|b| is_member(*a * *b)), "element {i}");
+        assert!(group[..i].iter().all(|b| a.dot(*b).abs() < 1.0 - 1e-6), "element {i} twice");
+    }
+}
