@@ -1,6 +1,6 @@
 //! Observation (paper §3.1): the partial cloud of an object from depth, mask and camera.
 
-use std::rc::Rc;
+use std::sync::Arc;
 
 use glam::Vec3;
 
@@ -36,7 +36,7 @@ pub struct Observation {
     depth: DepthMap,
     mask: Mask,
     camera: Pinhole,
-    photo: Option<Rc<Photo>>,
+    photo: Option<Arc<Photo>>,
 }
 
 impl Observation {
@@ -76,7 +76,7 @@ impl Observation {
     /// [`ErrorCode::SizeMismatch`] if the photo cannot have the field of view of the depth map.
     pub fn with_photo(self, photo: Photo) -> Result<Self> {
         check_photo(&photo, [self.depth.width(), self.depth.height()])?;
-        Ok(Self { photo: Some(Rc::new(photo)), ..self })
+        Ok(Self { photo: Some(Arc::new(photo)), ..self })
     }
 
     /// The photo, if there is one.
