@@ -51,6 +51,8 @@ impl PngInfo {
             let data = cursor.take(length)?;
             cursor.take(4)?;
             match (&kind, data) {
+                // The decoder, which stops reading headers at the pixels, would take another one than this.
+                (b"IHDR", _) if header.is_some() => return Err(corrupt(argument, "a PNG with two headers", "one")),
                 (b"IHDR", &[a, b, c, d, e, f, g, h, bit_depth, colour, ..]) => {
                     let width = u32::from_be_bytes([a, b, c, d]) as usize;
                     let height = u32::from_be_bytes([e, f, g, h]) as usize;

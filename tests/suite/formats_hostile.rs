@@ -82,6 +82,19 @@ fn a_text_mesh_cut_short_is_refused_where_the_cut_can_be_seen() {
     }
 }
 
+#[wasm_bindgen_test(unsupported = test)]
+fn a_png_with_a_second_smaller_header_is_refused() {
+    // Signature, then the header chunk: length, name, 13 bytes, checksum.
+    let (start, header) = (8, 25);
+    let file = fixture!("mask-grey.png");
+    let (before, end) = file.split_at(file.len() - 12);
+    // The decoder would only read the first header, the check of the size the last one.
+    let doubled = [before, &file[start..start + header], end].concat();
+    assert_eq!(mask(&doubled), Err(ErrorCode::CorruptFile));
+    assert_eq!(depth(&doubled), Err(ErrorCode::CorruptFile));
+    assert_eq!(mask(file), Ok(()));
+}
+
 /// Prints which run it was when the code under test panics.
 struct NamedInPanics {
     fixture: usize,
