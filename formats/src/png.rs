@@ -58,6 +58,10 @@ impl PngInfo {
                     let height = u32::from_be_bytes([e, f, g, h]) as usize;
                     header = Some((width, height, bit_depth, colour));
                 }
+                // The decoder panics at a colour that is not whole.
+                (b"PLTE", _) if data.len() % 3 != 0 => {
+                    return Err(corrupt(argument, format!("a palette of {} bytes", data.len()), "3 bytes per colour"));
+                }
                 (b"PLTE", &[r, g, b, ..]) => first_palette_colour = Some([r, g, b]),
                 (b"IDAT", _) => compressed_bytes += length,
                 (b"IEND", _) => break,

@@ -95,6 +95,30 @@ fn a_png_with_a_second_smaller_header_is_refused() {
     assert_eq!(mask(file), Ok(()));
 }
 
+#[wasm_bindgen_test(unsupported = test)]
+fn a_palette_with_part_of_a_colour_is_refused() {
+    let file = fixture!("mask-palette.png");
+    let at = file.windows(4).position(|name| name == b"PLTE").unwrap() - 4;
+    let length = u32::from_be_bytes([file[at], file[at + 1], file[at + 2], file[at + 3]]);
+    assert!(length >= 6, "{length}");
+    for missing in [1, 2] {
+        let kept = length - missing;
+        let chunk = [b"PLTE", &file[at + 8..at + 8 + kept as usize]].concat();
+        let checksum = crc_32(&chunk).to_be_bytes();
+        let rest = &file[at + 12 + length as usize..];
+        let damaged = [&file[..at], &kept.to_be_bytes(), &chunk, &checksum, rest].concat();
+        assert_eq!(mask(&damaged), Err(ErrorCode::CorruptFile), "{missing} bytes missing");
+        assert_eq!(depth(&damaged), Err(ErrorCode::CorruptFile), "{missing} bytes missing");
+    }
+}
+
+/// The checksum of PNG (ISO 3309).
+fn crc_32(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(u32::MAX, |sum, &byte| {
+        (0..8).fold(sum ^ u32::from(byte), |sum, _| if sum & 1 == 1 { sum >> 1 ^ 0xedb8_8320 } else { sum >> 1 })
+    })
+}
+
 /// Prints which run it was when the code under test panics.
 struct NamedInPanics {
     fixture: usize,
