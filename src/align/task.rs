@@ -130,9 +130,10 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
                 }
                 State::Ready(clouds)
             }
-            State::Ready(mut clouds) => match &self.method {
+            State::Ready(clouds) => match &self.method {
                 Method::Precise(options) => self.search(clouds, options, 0, None, stages)?,
                 Method::Paper(options) => {
+                    let mut clouds = clouds;
                     let solution = paper::estimate(&mut clouds, options, stages)?;
                     State::Found(clouds, Box::new(solution), None)
                 }
@@ -156,16 +157,15 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
     /// Begins the search with the effort of this index, after the `previous` one, if any.
     fn search(
         &self,
-        mut clouds: Box<Clouds>,
+        clouds: Box<Clouds>,
         options: &AlignOptions,
         effort: usize,
         previous: Option<&Rounds>,
         stages: &mut Stopwatch<'h>,
     ) -> Result<State> {
         let settings = self.efforts.get(effort).ok_or_else(over)?;
-        let hypothesis = precise::hypothesis(&mut clouds, options, settings, stages);
         let (observation, mesh) = (self.observation.borrow(), self.mesh.borrow());
-        let rounds = precise::begin(observation, mesh, (hypothesis, previous), options, settings, stages)?;
+        let rounds = precise::begin(observation, mesh, previous, options, settings, stages)?;
         Ok(State::Searching(clouds, Box::new(rounds), effort))
     }
 }
