@@ -1,12 +1,11 @@
-//! An alignment that runs in steps, so that a thread can do other work between them.
+//! An alignment by search that runs in steps, so that a thread can do other work between them.
 //!
-//! A step ends as soon as possible after the caller requests a pause: in the search of `precise` after any render or
-//! refinement of a pose, elsewhere at the end of a stage. Results are bit-identical regardless of pauses.
+//! A step ends as soon as possible after the caller requests a pause: in the search after any render or refinement of a
+//! pose, elsewhere at the end of a stage. Results are bit-identical regardless of pauses.
 
 use core::borrow::Borrow;
 use core::mem::replace;
 
-use super::method::Method;
 use super::outcome::{Setup, report, score};
 use super::warnings::about_fit;
 use crate::error::{Error, ErrorCode, Result};
@@ -19,14 +18,14 @@ use crate::precise::recipe::SURE;
 use crate::precise::rounds::Rounds;
 use crate::precise::{Certainty, SearchSettings};
 use crate::progress::{Host, Stopwatch};
-use crate::report::{Alignment, AnyAlignment, PaperAlignment, PreciseDiagnostics, Solution};
-use crate::{paper, precise};
+use crate::precise;
+use crate::report::{Alignment, PaperAlignment, PreciseDiagnostics, Solution};
 
 /// An alignment in steps. It owns or borrows its observation and mesh.
 pub struct AlignTask<'h, O, M> {
     observation: O,
     mesh: M,
-    method: Method,
+    options: AlignOptions,
     efforts: Vec<SearchSettings>,
     setup: Setup,
     stages: Option<Stopwatch<'h>>,
@@ -43,8 +42,8 @@ enum State {
     Ready(Box<Clouds>),
     /// The search with the effort of this index is running.
     Searching(Box<Clouds>, Box<Rounds>, usize),
-    /// The method has found a pose.
-    Found(Box<Clouds>, Box<Solution>, Option<Box<Certainty>>),
+    /// The search has found a pose.
+    Found(Box<Clouds>, Box<Solution>, Box<Certainty>),
     /// The result has been returned, or an error.
     Over,
 }
@@ -54,13 +53,10 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
     ///
     /// # Errors
     /// [`ErrorCode::InvalidOption`].
-    pub fn new(observation: O, mesh: M, method: Method, host: impl Host + 'h) -> Result<Self> {
-        let (setup, efforts, plan) = match &method {
-            Method::Precise(options) => (Setup::of_precise(options)?, precise::efforts(options), precise::PLAN),
-            Method::Paper(options) => (Setup::of_paper(options)?, Vec::new(), paper::PLAN),
-        };
-        let stages = Some(Stopwatch::new(host, plan));
-        Ok(Self { observation, mesh, method, efforts, setup, stages, state: State::Begun })
+    pub fn new(observation: O, mesh: M, options: AlignOptions, host: impl Host + 'h) -> Result<Self> {
+        let (setup, efforts) = (Setup::of_precise(&options)?, precise::efforts(&options));
+        let stages = Some(Stopwatch::new(host, precise::PLAN));
+        Ok(Self { observation, mesh, options, efforts, setup, stages, state: State::Begun })
     }
 
     /// Overrides the settings of the searches that follow from the options, for ablations.
@@ -72,7 +68,7 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
     ///
     /// # Errors
     /// As [`AlignTask::step`].
-    pub fn finish(mut self) -> Result<AnyAlignment> {
+    pub fn finish(mut self) -> Result<Alignment> {
         loop {
             if let Some(alignment) = self.step(&mut || false)? {
                 return Ok(alignment);
@@ -84,7 +80,7 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
     ///
     /// # Errors
     /// [`ErrorCode::DegenerateMesh`], [`ErrorCode::NoConsensus`]; the task then ends.
-    pub fn step(&mut self, pause: &mut dyn FnMut() -> bool) -> Result<Option<AnyAlignment>> {
+    pub fn step(&mut self, pause: &mut dyn FnMut() -> bool) -> Result<Option<Alignment>> {
         let Some(mut stages) = self.stages.take() else { return Err(over()) };
         loop {
             self.state = match replace(&mut self.state, State::Over) {
@@ -101,7 +97,7 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
                     let (observation, mesh) = (self.observation.borrow(), self.mesh.borrow().mesh());
                     let metrics = score(observation, mesh, &self.setup, &mut clouds, &solution, &mut stages)?;
                     let aligned = report(observation, &self.setup, &clouds, &solution, metrics, stages);
-                    return Ok(Some(with_certainty(aligned, certainty)));
+                    return Ok(Some(with_certainty(aligned, *certainty)));
                 }
                 state => self.advance(state, &mut stages)?,
             };
@@ -122,34 +118,20 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
             }
             State::Drawn(mut clouds) => {
                 if self.setup.metrics {
-                    let normals = match &self.method {
-                        Method::Precise(_) => Normals::Some,
-                        Method::Paper(_) => Normals::All,
-                    };
-                    clouds.evidence(normals, stages);
+                    clouds.evidence(Normals::Some, stages);
                 }
                 State::Ready(clouds)
             }
-            State::Ready(clouds) => match &self.method {
-                Method::Precise(options) => self.search(clouds, options, 0, None, stages)?,
-                Method::Paper(options) => {
-                    let mut clouds = clouds;
-                    let solution = paper::estimate(&mut clouds, options, stages)?;
-                    State::Found(clouds, Box::new(solution), None)
+            State::Ready(clouds) => self.search(clouds, 0, None, stages)?,
+            State::Searching(clouds, rounds, effort) => {
+                let concluded = precise::conclude(&rounds, mesh.mesh(), &self.options);
+                let is_sure = matches!(&concluded, Ok((_, certainty)) if certainty.confidence >= SURE);
+                if !is_sure && effort + 1 < self.efforts.len() {
+                    return self.search(clouds, effort + 1, Some(&rounds), stages);
                 }
-            },
-            State::Searching(clouds, rounds, effort) => match &self.method {
-                Method::Precise(options) => {
-                    let concluded = precise::conclude(&rounds, mesh.mesh(), options);
-                    let is_sure = matches!(&concluded, Ok((_, certainty)) if certainty.confidence >= SURE);
-                    if !is_sure && effort + 1 < self.efforts.len() {
-                        return self.search(clouds, options, effort + 1, Some(&rounds), stages);
-                    }
-                    let (solution, certainty) = concluded?;
-                    State::Found(clouds, Box::new(solution), Some(Box::new(certainty)))
-                }
-                Method::Paper(_) => return Err(over()),
-            },
+                let (solution, certainty) = concluded?;
+                State::Found(clouds, Box::new(solution), Box::new(certainty))
+            }
             State::Found(..) | State::Over => return Err(over()),
         })
     }
@@ -158,25 +140,23 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
     fn search(
         &self,
         clouds: Box<Clouds>,
-        options: &AlignOptions,
         effort: usize,
         previous: Option<&Rounds>,
         stages: &mut Stopwatch<'h>,
     ) -> Result<State> {
         let settings = self.efforts.get(effort).ok_or_else(over)?;
         let (observation, mesh) = (self.observation.borrow(), self.mesh.borrow());
-        let rounds = precise::begin(observation, mesh, previous, options, settings, stages)?;
+        let rounds = precise::begin(observation, mesh, previous, &self.options, settings, stages)?;
         Ok(State::Searching(clouds, Box::new(rounds), effort))
     }
 }
 
-fn with_certainty(aligned: PaperAlignment, certainty: Option<Box<Certainty>>) -> AnyAlignment {
-    let Some(certainty) = certainty else { return aligned.into() };
-    let Certainty { confidence, alternatives, uncertainty, score, terms, effort } = *certainty;
+fn with_certainty(aligned: PaperAlignment, certainty: Certainty) -> Alignment {
+    let Certainty { confidence, alternatives, uncertainty, score, terms, effort } = certainty;
     let PaperAlignment { camera_from_mesh, metrics, mut warnings, diagnostics } = aligned;
     warnings.extend(about_fit(&terms));
     let diagnostics = PreciseDiagnostics { common: diagnostics, effort, score, terms };
-    Alignment { camera_from_mesh, confidence, alternatives, uncertainty, metrics, warnings, diagnostics }.into()
+    Alignment { camera_from_mesh, confidence, alternatives, uncertainty, metrics, warnings, diagnostics }
 }
 
 fn over() -> Error {
