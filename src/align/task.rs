@@ -12,13 +12,13 @@ use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::Normals;
 use crate::evidence::clouds::Clouds;
 use crate::evidence::observation::Observation;
+use crate::precise;
 use crate::precise::options::AlignOptions;
 use crate::precise::prepared_mesh::PreparedMesh;
 use crate::precise::recipe::SURE;
 use crate::precise::rounds::Rounds;
 use crate::precise::{Certainty, SearchSettings};
 use crate::progress::{Host, Stopwatch};
-use crate::precise;
 use crate::report::{Alignment, PaperAlignment, PreciseDiagnostics, Solution};
 
 /// An alignment in steps. It owns or borrows its observation and mesh.
