@@ -6,15 +6,17 @@ mod outcome;
 pub mod task;
 pub mod warnings;
 
-use crate::error::{Error, ErrorCode, Result};
+use crate::error::Result;
 use crate::evidence::observation::Observation;
 use crate::geometry::mesh::Mesh;
+use crate::paper;
 use crate::paper::options::PaperOptions;
 use crate::precise::SearchSettings;
 use crate::precise::options::AlignOptions;
 use crate::precise::prepared_mesh::PreparedMesh;
 use crate::progress::Host;
 use crate::report::{Alignment, AnyAlignment, PaperAlignment};
+use method::Method;
 pub use outcome::{Setup, align_by};
 use task::AlignTask;
 
@@ -39,11 +41,8 @@ pub fn align_with(
     efforts: Vec<SearchSettings>,
     host: &mut dyn Host,
 ) -> Result<Alignment> {
-    let task = AlignTask::new(observation, PreparedMesh::borrowed(mesh), options.clone().into(), host)?;
-    match task.with_efforts(efforts).finish()? {
-        AnyAlignment::Precise(alignment) => Ok(*alignment),
-        AnyAlignment::Paper(_) => Err(other_method()),
-    }
+    let task = AlignTask::new(observation, PreparedMesh::borrowed(mesh), options.clone(), host)?;
+    task.with_efforts(efforts).finish()
 }
 
 /// Aligns a mesh with an observation by the method of the paper.
@@ -56,18 +55,22 @@ pub fn align_paper(
     options: &PaperOptions,
     host: &mut dyn Host,
 ) -> Result<PaperAlignment> {
-    match AlignTask::new(observation, PreparedMesh::borrowed(mesh), options.clone().into(), host)?.finish()? {
-        AnyAlignment::Paper(alignment) => Ok(*alignment),
-        AnyAlignment::Precise(_) => Err(other_method()),
-    }
+    let setup = Setup::of_paper(options)?;
+    align_by(observation, mesh, &setup, paper::PLAN, host, |clouds, stages| paper::estimate(clouds, options, stages))
 }
 
-fn other_method() -> Error {
-    Error::new(
-        ErrorCode::Internal,
-        "method",
-        "the result of another method",
-        "the result of the requested method",
-        "Please report this.",
-    )
+/// Aligns a mesh with an observation by either method.
+///
+/// # Errors
+/// As [`align`].
+pub fn align_by_method(
+    observation: &Observation,
+    mesh: &Mesh,
+    method: &Method,
+    host: &mut dyn Host,
+) -> Result<AnyAlignment> {
+    match method {
+        Method::Precise(options) => align(observation, mesh, options, host).map(Into::into),
+        Method::Paper(options) => align_paper(observation, mesh, options, host).map(Into::into),
+    }
 }

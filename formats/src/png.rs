@@ -61,10 +61,16 @@ impl PngInfo {
             let data = cursor.take(length)?;
             cursor.take(4)?;
             match (&kind, data) {
+                // The decoder, which stops reading headers at the pixels, would take another one than this.
+                (b"IHDR", _) if header.is_some() => return Err(corrupt(argument, "a PNG with two headers", "one")),
                 (b"IHDR", &[a, b, c, d, e, f, g, h, bit_depth, colour, ..]) => {
                     let width = u32::from_be_bytes([a, b, c, d]) as usize;
                     let height = u32::from_be_bytes([e, f, g, h]) as usize;
                     header = Some((width, height, bit_depth, colour));
+                }
+                // The decoder panics at a colour that is not whole.
+                (b"PLTE", _) if data.len() % 3 != 0 => {
+                    return Err(corrupt(argument, format!("a palette of {} bytes", data.len()), "3 bytes per colour"));
                 }
                 (b"PLTE", &[r, g, b, ..]) => first_palette_colour = Some([r, g, b]),
                 (b"IDAT", _) => compressed_bytes += length,

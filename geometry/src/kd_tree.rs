@@ -48,6 +48,8 @@ struct Node {
     bounds: Bounds,
     /// The right child; 0 in a leaf.
     right: u32,
+    /// The smallest index of its points: of points that coincide, a search for the nearest visits no more than it keeps.
+    first: u32,
 }
 
 impl KdTree {
@@ -132,7 +134,10 @@ impl KdTree {
             // the centre has k neighbours within r + d, all of which are within r + 2 d of the centre.
             self.k_nearest(center, k, &mut found);
             let reach = found.last().filter(|_| found.len() == k).map_or(f32::INFINITY, |n| n.distance_squared.sqrt());
-            self.within(center, (reach + 2.0 * spread) * (1.0 + ROUNDING), &mut found);
+            // Of points that coincide with the centre, there may be many more.
+            if spread > 0.0 || reach > 0.0 {
+                self.within(center, (reach + 2.0 * spread) * (1.0 + ROUNDING), &mut found);
+            }
             near.clear();
             near.extend(found.iter().filter_map(|n| Some((*points.get(n.index as usize)?, n.index))));
             for &(query, index) in group {
@@ -170,17 +175,20 @@ impl KdTree {
         }
         let middle = low + (high - low) / 2;
         let (left, right) = ((node + 1, low, middle), (right, middle, high));
-        let to_left = self.nodes[left.0].bounds.distance_squared(query);
-        let to_right = self.nodes[right.0].bounds.distance_squared(query);
-        let ((near, to_near), (far, to_far)) = if to_left <= to_right {
+        let closest = |child: usize| {
+            let Node { bounds, first, .. } = &self.nodes[child];
+            Neighbor { index: *first, distance_squared: bounds.distance_squared(query) }
+        };
+        let (to_left, to_right) = (closest(left.0), closest(right.0));
+        let ((near, to_near), (far, to_far)) = if to_left.distance_squared <= to_right.distance_squared {
             ((left, to_left), (right, to_right))
         } else {
             ((right, to_right), (left, to_left))
         };
-        if to_near <= collector.reach_squared() {
+        if collector.wants(to_near) {
             self.descend(near.0, near.1, near.2, query, collector);
         }
-        if to_far <= collector.reach_squared() {
+        if collector.wants(to_far) {
             self.descend(far.0, far.1, far.2, query, collector);
         }
     }
@@ -191,7 +199,7 @@ fn build(points: &[Vec3], order: &mut [u32], nodes: &mut Vec<Node>) {
     let point = |i: u32| points[i as usize];
     let bounds = order.iter().map(|&i| Bounds { min: point(i), max: point(i) }).fold(Bounds::NOTHING, Bounds::union);
     let node = nodes.len();
-    nodes.push(Node { bounds, right: 0 });
+    nodes.push(Node { bounds, right: 0, first: order.iter().copied().min().unwrap_or_default() });
     if order.len() <= LEAF_SIZE {
         return;
     }
@@ -210,10 +218,11 @@ fn build(points: &[Vec3], order: &mut [u32], nodes: &mut Vec<Node>) {
     build(points, right, nodes);
 }
 
-/// Candidates that a search keeps, and its current search radius.
+/// Candidates that a search keeps.
 trait Collector {
     fn offer(&mut self, neighbor: Neighbor);
-    fn reach_squared(&self) -> f32;
+    /// Whether it would keep this neighbour, or any that is not before it.
+    fn wants(&self, first: Neighbor) -> bool;
 }
 
 struct Nearest {
@@ -222,13 +231,13 @@ struct Nearest {
 
 impl Collector for Nearest {
     fn offer(&mut self, neighbor: Neighbor) {
-        if neighbor.key() < self.best.key() {
+        if self.wants(neighbor) {
             self.best = neighbor;
         }
     }
 
-    fn reach_squared(&self) -> f32 {
-        self.best.distance_squared
+    fn wants(&self, first: Neighbor) -> bool {
+        first.key() < self.best.key()
     }
 }
 
@@ -239,20 +248,19 @@ struct KNearest<'a> {
 
 impl Collector for KNearest<'_> {
     fn offer(&mut self, neighbor: Neighbor) {
-        if self.found.len() == self.k {
-            if self.found.last().is_some_and(|last| neighbor.key() >= last.key()) {
-                return;
-            }
-            self.found.pop();
+        if !self.wants(neighbor) {
+            return;
         }
+        self.found.truncate(self.k - 1);
         let at = self.found.partition_point(|n| n.key() < neighbor.key());
         self.found.insert(at, neighbor);
     }
 
-    fn reach_squared(&self) -> f32 {
+    fn wants(&self, first: Neighbor) -> bool {
         match self.found.last() {
-            Some(last) if self.found.len() == self.k => last.distance_squared,
-            _ => f32::INFINITY,
+            Some(last) if self.found.len() == self.k => first.key() < last.key(),
+            // Nothing is near a query that is no point.
+            _ => !first.distance_squared.is_nan(),
         }
     }
 }
@@ -264,12 +272,12 @@ struct Within<'a> {
 
 impl Collector for Within<'_> {
     fn offer(&mut self, neighbor: Neighbor) {
-        if neighbor.distance_squared <= self.radius_squared {
+        if self.wants(neighbor) {
             self.found.push(neighbor);
         }
     }
 
-    fn reach_squared(&self) -> f32 {
-        self.radius_squared
+    fn wants(&self, first: Neighbor) -> bool {
+        first.distance_squared <= self.radius_squared
     }
 }

@@ -31,7 +31,7 @@ pub mod symmetric_eigen;
 pub mod triangle_tree;
 pub mod voxel_grid;
 
-/// The allocator of both modules: two-level segregated fit, with constant time to allocate and to free, and a fifth of the
+/// The allocator of all modules: two-level segregated fit, with constant time to allocate and to free, and a fifth of the
 /// code of the standard one.
 #[cfg(target_arch = "wasm32")]
 #[global_allocator]

@@ -12,6 +12,11 @@ export interface AlignerOptions {
   /** The formats module, loaded when the first file is passed. Default: `wasm/formats_bg.wasm` next to this script. */
   formatsWasm?: WasmSource | undefined;
   /**
+   * The registration module, loaded when `register`, `estimateSim3` or `preset: "paper"` is first used. Default:
+   * `wasm/registration_bg.wasm` next to this script.
+   */
+  registrationWasm?: WasmSource | undefined;
+  /**
    * The number of workers: 0 (the default) runs calls on the calling thread; `"auto"` is one less than the number of
    * cores, 1 to 8. Workers run this package's `worker.js` as module `Worker`s, or as `node:worker_threads`. They need
    * neither shared memory nor special headers. Idle workers do not keep a Node process alive.
@@ -28,6 +33,7 @@ export interface AlignerOptions {
 export interface BundledAssets {
   wasm?: LazySource;
   formatsWasm?: LazySource;
+  registrationWasm?: LazySource;
   workerScript?: string;
 }
 
@@ -48,6 +54,7 @@ export function checkedOptions<T extends object>(options: T | undefined) {
 const alignerOptions: readonly string[] = [
   "wasm",
   "formatsWasm",
+  "registrationWasm",
   "workers",
   "createWorker",
 ] satisfies (keyof AlignerOptions)[];

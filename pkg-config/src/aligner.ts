@@ -19,7 +19,7 @@ import { formatsModule } from "./formats-module.js";
 import type { Preset } from "./generated/types.js";
 import { classNames } from "./input/resolve.js";
 import type { AlignInput, MeshInput } from "./input/types.js";
-import type { Job, Results } from "./jobs.js";
+import { isOfPaper, type Job, type Results } from "./jobs.js";
 import { checkSignals, reasonOf } from "./on-abort.js";
 import type {
   AlignAllOptions,
@@ -35,10 +35,11 @@ import { workerFactory } from "./pool/port.js";
 import { copied } from "./pool/transfer.js";
 import { isDisposedMesh, keptMesh, nextMeshId, PreparedMesh } from "./prepared-mesh.js";
 import { checkedListener, ProgressListener } from "./progress.js";
+import { registrationModule } from "./registration-module.js";
 import type { AlignAllResult, AlignResult, Evaluation, Registration } from "./results.js";
 import { coreSim3, type Sim3Like } from "./sim3.js";
 import { ownArgument, snapshot } from "./snapshot.js";
-import { isRecord } from "./values.js";
+import { isRecord, withoutUndefined } from "./values.js";
 import type { LoadedModule } from "./wasm-module.js";
 
 /** Upper limit of "auto", because each worker holds a copy of its input. */
@@ -70,10 +71,17 @@ export class Aligner {
 
   /** @internal */
   static async create(options: AlignerOptions, assets: BundledAssets = {}): Promise<Aligner> {
-    const { wasm = assets.wasm, formatsWasm = assets.formatsWasm, ...given } = checkedAlignerOptions(options);
+    const { wasm, formatsWasm, registrationWasm, ...given } = {
+      ...assets,
+      ...withoutUndefined(checkedAlignerOptions(options)),
+    };
     const workers = checkedWorkers(given.workers);
     const core = await coreModule.load(wasm);
-    const mainThread = new MainThreadEngine(core, () => formatsModule.load(formatsWasm));
+    const mainThread = new MainThreadEngine(
+      core,
+      () => formatsModule.load(formatsWasm),
+      () => registrationModule.load(registrationWasm),
+    );
     if (workers === 0) return new Aligner(core, mainThread);
     const factory = await workerFactory(assets.workerScript, checkedFactory(given.createWorker));
     const size = workers === "auto" ? Math.min(Math.max(factory.cores - 1, 1), MAX_AUTO) : workers;
@@ -81,6 +89,7 @@ export class Aligner {
       create: factory.create,
       core: await coreModule.compile(),
       formats: () => formatsModule.compile(formatsWasm),
+      registration: () => registrationModule.compile(registrationWasm),
     };
     return new Aligner(core, new WorkerPool(size, setup, mainThread));
   }
@@ -229,7 +238,7 @@ export class Aligner {
     this.#checkUsable();
     const own = snapshot("input", data, classNames);
     const prepared: unknown = isRecord(own) ? own.mesh : undefined;
-    const job = { method, ...this.#withArrays(own), options, ...more } as unknown as Job & { method: M };
+    const job = { method, ...this.#withArrays(own, options), options, ...more } as unknown as Job & { method: M };
     const progress = new ProgressListener(onProgress);
     const call = { signal: checkedSignal(signal), progress, transfer: checkedFlag("transfer", transfer) };
     // Arrays that were not moved are returned in the object that the caller passed; a prepared mesh replaces its arrays.
@@ -250,14 +259,19 @@ export class Aligner {
       if (isRecord(error.input)) error.input = returned(error.input);
       throw error;
     } finally {
-      if (prepared instanceof PreparedMesh && isDisposedMesh(prepared)) this.#engine.dropMesh((job as MeshJob).meshId);
+      const meshId = "meshId" in job ? job.meshId : undefined;
+      if (meshId !== undefined && prepared instanceof PreparedMesh && isDisposedMesh(prepared)) {
+        this.#engine.dropMesh(meshId);
+      }
     }
   }
 
   /** The data of a job, with a prepared mesh replaced by its arrays. */
-  #withArrays(data: unknown): { data: unknown; meshId?: number } {
+  #withArrays(data: unknown, options: object): { data: unknown; meshId?: number } {
     if (!isRecord(data) || !(data.mesh instanceof PreparedMesh)) return { data };
     const { id, mesh } = keptMesh(data.mesh, this.#engine);
+    // Only the core module caches meshes.
+    if (isOfPaper(options)) return { data: { ...data, mesh: copied(mesh) } };
     return { data: { ...data, mesh }, meshId: id };
   }
 
@@ -265,5 +279,3 @@ export class Aligner {
     if (this.#isDisposed) throw disposed();
   }
 }
-
-type MeshJob = Job & { meshId: number };

@@ -5,9 +5,6 @@ import type { CoreMesh } from "./prepared-mesh.js";
 import * as glue from "./wasm/core.js";
 import { type Glue, WasmModule } from "./wasm-module.js";
 
-/** The result of either preset. */
-export type CoreAlignment = Results.Alignment | Results.PaperAlignment;
-
 /** Points as interleaved x, y, z. */
 export type Cloud = Float32Array | Float64Array;
 
@@ -20,17 +17,15 @@ export type CoreListener = (stage: Results.Stage, fraction: number, best?: Float
 /** An alignment that runs in steps, so that the thread can do other work between them. */
 export interface AlignTask {
   /** Runs for about this long; returns the result when finished. */
-  step(sliceMs: number): CoreAlignment | undefined;
+  step(sliceMs: number): Results.Alignment | undefined;
   free(): void;
 }
 
 /** The functions of the core. They validate their arguments and throw errors with codes. */
 export interface Core extends Glue {
-  align(input: CoreInput, options: object, onProgress: CoreListener | undefined): CoreAlignment;
+  align(input: CoreInput, options: object, onProgress: CoreListener | undefined): Results.Alignment;
   beginAlign(input: CoreInput, options: object, onProgress: CoreListener | undefined): AlignTask;
   evaluate(input: CoreInput, transform: unknown, options: object): Results.Evaluation;
-  register(source: Cloud, target: Cloud, options: object): Results.Registration;
-  estimateSim3(source: Cloud, target: Cloud, correspondences: Uint32Array, options: object): Results.Registration;
   prepareMesh(mesh: CoreMesh): void;
   dropMesh(id: number): void;
   version(): string;

@@ -1,13 +1,15 @@
 /** Engines that run jobs: on the calling thread, or in workers. */
 
 import { checkAttached } from "./attached.js";
-import type { Core, CoreAlignment, CoreListener } from "./core.js";
+import type { Core, CoreListener } from "./core.js";
 import { disposed, withoutInput } from "./error.js";
 import type { LoadFormats } from "./formats-module.js";
+import type { Alignment } from "./generated/types.js";
 import type { CoreInput } from "./input/core-input.js";
 import { type Job, perform, type Results } from "./jobs.js";
 import { checkSignals } from "./on-abort.js";
 import type { ProgressListener } from "./progress.js";
+import type { LoadRegistrar } from "./registration-module.js";
 import type { LoadedModule } from "./wasm-module.js";
 
 /** Options that control how a call runs. */
@@ -46,11 +48,13 @@ export class MainThreadEngine implements Engine {
   readonly capacity = 1;
   readonly #core: LoadedModule<Core>;
   readonly #formats: LoadFormats;
+  readonly #registrar: LoadRegistrar;
   #isDisposed = false;
 
-  constructor(core: LoadedModule<Core>, formats: LoadFormats) {
+  constructor(core: LoadedModule<Core>, formats: LoadFormats, registrar: LoadRegistrar) {
     this.#core = core;
     this.#formats = formats;
+    this.#registrar = registrar;
   }
 
   async run<J extends Job>(job: J, call: Call): Promise<Outcome<J>> {
@@ -67,14 +71,17 @@ export class MainThreadEngine implements Engine {
       check();
     }
     const listener: CoreListener = (stage, fraction, best) => progress.report(stage, fraction, best);
-    const formats = async () => {
-      const module = await this.#formats();
-      check();
-      return module;
-    };
+    const checked =
+      <M>(load: () => Promise<M>) =>
+      async () => {
+        const module = await load();
+        check();
+        return module;
+      };
     const align = (input: CoreInput, options: object, onProgress?: CoreListener) =>
       alignInSteps(this.#core, [input, options, onProgress], check);
-    const modules = { core: this.#core, formats, align };
+    const [formats, registrar] = [checked(this.#formats), checked(this.#registrar)];
+    const modules = { core: this.#core, formats, registrar, align };
     return { result: await perform(job, modules, progress.isWanted ? listener : undefined), data: job.data };
   }
 
@@ -95,7 +102,7 @@ async function alignInSteps(
   core: LoadedModule<Core>,
   args: Parameters<Core["align"]>,
   check: () => void,
-): Promise<CoreAlignment> {
+): Promise<Alignment> {
   // The thread may have been elsewhere since the input was read.
   checkAttached("input", args[0]);
   const task = core.call((c) => c.beginAlign(...args), withoutInput);

@@ -1,13 +1,15 @@
 /** Calls as data, so that the same code runs them on the calling thread or in a worker. */
 import { checkAttached } from "./attached.js";
-import type { Core, CoreAlignment, CoreListener } from "./core.js";
+import type { Core, CoreListener } from "./core.js";
 import { withoutInput } from "./error.js";
 import type { LoadFormats } from "./formats-module.js";
+import type { Alignment } from "./generated/types.js";
 import type { CoreInput } from "./input/core-input.js";
 import { readMesh } from "./input/mesh.js";
 import { resolveInput } from "./input/resolve.js";
 import type { AlignInput, MeshInput } from "./input/types.js";
 import type { CoreMesh } from "./prepared-mesh.js";
+import type { LoadRegistrar } from "./registration-module.js";
 import { type AlignResult, type Clouds, type Evaluation, type Registration, withWarnings } from "./results.js";
 import { isTypedArray, wrongKind } from "./values.js";
 import type { LoadedModule } from "./wasm-module.js";
@@ -33,9 +35,13 @@ export interface Results {
 export interface JobModules {
   core: LoadedModule<Core>;
   formats: LoadFormats;
+  registrar: LoadRegistrar;
   /** Overrides the alignment by a single call of the core. */
-  align?: (input: CoreInput, options: object, listener?: CoreListener) => Promise<CoreAlignment>;
+  align?: (input: CoreInput, options: object, listener?: CoreListener) => Promise<Alignment>;
 }
+
+/** Whether these are options of `align` for the method of the paper, which the registration module runs. */
+export const isOfPaper = (options: { preset?: unknown }): boolean => options.preset === "paper";
 
 /** Runs a job. `listener` is called when stages begin; if it throws, the job fails with that exception. */
 export async function perform<J extends Job>(
@@ -45,7 +51,7 @@ export async function perform<J extends Job>(
 ): Promise<Results[J["method"]]>;
 export async function perform(
   job: Job,
-  { core, formats, align }: JobModules,
+  { core, formats, registrar, align }: JobModules,
   listener?: CoreListener,
 ): Promise<unknown> {
   const { options } = job;
@@ -53,6 +59,14 @@ export async function perform(
   switch (job.method) {
     case "align": {
       const { core: input, warnings } = await resolveInput(job.data, formats, job.meshId);
+      if (isOfPaper(options)) {
+        const module = await registrar();
+        checkAttached("input", input);
+        return withWarnings(
+          module.call((m) => m.alignPaper(input, options, listener), withoutInput),
+          warnings,
+        );
+      }
       const result = await (align === undefined
         ? core.call((c) => c.align(input, options, listener), withoutInput)
         : align(input, options, listener));
@@ -75,14 +89,18 @@ export async function perform(
     }
     case "register": {
       const { source, target } = checkedClouds(job.data);
-      return core.call((c) => c.register(source, target, options));
+      const module = await registrar();
+      checkAttached("input", job.data);
+      return module.call((m) => m.register(source, target, options));
     }
     case "estimateSim3": {
       const { source, target, correspondences } = checkedClouds(job.data);
       if (!isTypedArray<Uint32Array>(correspondences, "Uint32Array")) {
         throw wrongKind("correspondences", correspondences, "a Uint32Array of index pairs", "Uint32Array");
       }
-      return core.call((c) => c.estimateSim3(source, target, correspondences, options));
+      const module = await registrar();
+      checkAttached("input", job.data);
+      return module.call((m) => m.estimateSim3(source, target, correspondences, options));
     }
   }
 }

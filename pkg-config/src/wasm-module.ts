@@ -75,7 +75,7 @@ function notLoaded(name: string, cause: unknown): Sim3AlignError {
   return new Sim3AlignError(
     {
       code: "NOT_INITIALISED",
-      argument: name === "core" ? "wasm" : "formatsWasm",
+      argument: name === "core" ? "wasm" : `${name}Wasm`,
       found: cause instanceof Error ? cause.message : String(cause),
       expected: `the WebAssembly module ${file} of the same version`,
       remedy,

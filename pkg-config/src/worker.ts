@@ -3,12 +3,14 @@ import type { Core } from "./core.js";
 import { type ErrorParts, internalError, partsOf, Sim3AlignError } from "./error.js";
 import type { Formats } from "./formats-module.js";
 import { perform } from "./jobs.js";
-import type { Reply, Request } from "./pool/protocol.js";
+import type { LazyName, Reply, Request } from "./pool/protocol.js";
 import { buffersOf } from "./pool/transfer.js";
+import type { Registrar } from "./registration-module.js";
 // Imported statically, because some bundlers put a worker script into a single file without dynamic imports.
 import * as coreGlue from "./wasm/core.js";
 import * as formatsGlue from "./wasm/formats.js";
-import { type LoadedModule, WasmModule } from "./wasm-module.js";
+import * as registrationGlue from "./wasm/registration.js";
+import { type Glue, type LoadedModule, WasmModule } from "./wasm-module.js";
 
 type Post = (message: Reply, transfer?: ArrayBuffer[]) => void;
 
@@ -16,16 +18,17 @@ type Post = (message: Reply, transfer?: ArrayBuffer[]) => void;
 class WorkerHost {
   readonly #post: Post;
   #core: Promise<LoadedModule<Core>> | undefined;
-  #formats: Promise<LoadedModule<Formats>> | undefined;
-  /** Receives the answer to `needs-formats`. */
-  #receiveFormats: ((formats: WebAssembly.Module | ErrorParts) => void) | undefined;
+  readonly #formats = this.#lazy<Formats>("formats", formatsGlue);
+  readonly #registrar = this.#lazy<Registrar>("registration", registrationGlue as unknown as Registrar);
+  /** Receives the answer to `needs-module`. */
+  #receiveModule: ((module: WebAssembly.Module | ErrorParts) => void) | undefined;
 
   constructor(post: Post) {
     this.#post = post;
   }
 
   receive(message: Request): void {
-    if (message.type === "formats") this.#receiveFormats?.(message.formats);
+    if (message.type === "module") this.#receiveModule?.(message.module);
     else if (message.type === "start") this.#core = this.#loadCore(message.core);
     else if (message.type === "drop-mesh") this.#dropMesh(message.id);
     else this.#run(message);
@@ -55,7 +58,7 @@ class WorkerHost {
         throw internalError(error);
       });
       if (core === undefined) throw new Error("no core");
-      const modules = { core, formats: () => this.#loadFormats() };
+      const modules = { core, formats: this.#formats, registrar: this.#registrar };
       return { type: "done", result: await perform(job, modules, wantsProgress ? listener : undefined) };
     } catch (error) {
       return { type: "done", error: partsOf(error instanceof Sim3AlignError ? error : internalError(error)) };
@@ -74,25 +77,29 @@ class WorkerHost {
     return core;
   }
 
-  #loadFormats(): Promise<LoadedModule<Formats>> {
-    if (this.#formats === undefined) {
-      const loading = this.#requestFormats();
-      this.#formats = loading;
-      loading.catch(() => {
-        this.#formats = undefined;
-      });
-    }
-    return this.#formats;
+  /** A module that is loaded when a job first needs it; after a failure, the next job tries again. */
+  #lazy<G extends Glue>(name: LazyName, glue: G): () => Promise<LoadedModule<G>> {
+    let loading: Promise<LoadedModule<G>> | undefined;
+    return () => {
+      if (loading === undefined) {
+        loading = this.#request(name).then((module) => new WasmModule<G>(name, module, () => glue).load());
+        loading.catch(() => {
+          loading = undefined;
+        });
+      }
+      return loading;
+    };
   }
 
-  async #requestFormats(): Promise<LoadedModule<Formats>> {
-    const formats = await new Promise<WebAssembly.Module | ErrorParts>((resolve) => {
-      this.#receiveFormats = resolve;
-      this.#post({ type: "needs-formats" });
+  /** Asks the pool for a compiled module. The worker runs one job at a time, and so asks for one at a time. */
+  async #request(name: LazyName): Promise<WebAssembly.Module> {
+    const module = await new Promise<WebAssembly.Module | ErrorParts>((resolve) => {
+      this.#receiveModule = resolve;
+      this.#post({ type: "needs-module", name });
     });
-    this.#receiveFormats = undefined;
-    if ("code" in formats) throw new Sim3AlignError(formats);
-    return new WasmModule<Formats>("formats", formats, () => formatsGlue).load();
+    this.#receiveModule = undefined;
+    if ("code" in module) throw new Sim3AlignError(module);
+    return module;
   }
 }
 

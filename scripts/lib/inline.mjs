@@ -25,10 +25,11 @@ export async function bundleInline() {
     ["core", base64.core],
     ["worker", worker.outputFiles[0]?.text],
   ]);
-  // Few callers need the formats module: it stays a file of its own.
-  const formats = "inline/formats.js";
+  // Few callers need the other modules: they stay files of their own.
   mkdirSync(join(packageDir, "inline"), { recursive: true });
-  writeFileSync(join(packageDir, formats), `${exported(base64.formats)}\n`);
+  for (const [name, module] of Object.entries(base64)) {
+    if (name !== "core") writeFileSync(join(packageDir, "inline", `${name}.js`), `${exported(module)}\n`);
+  }
   rmSync(join(packageDir, "inlined.d.ts"), { force: true });
   await build({
     ...common,
@@ -40,8 +41,12 @@ export async function bundleInline() {
       {
         name: "inlined",
         setup(build) {
-          build.onResolve({ filter: /^inlined:formats$/ }, () => ({ path: `./${formats}`, external: true }));
-          build.onResolve({ filter: /^inlined:/ }, ({ path }) => ({ path: path.slice(8), namespace: "inlined" }));
+          build.onResolve({ filter: /^inlined:/ }, ({ path }) => {
+            const name = path.slice(8);
+            return inlined.has(name)
+              ? { path: name, namespace: "inlined" }
+              : { path: `./inline/${name}.js`, external: true };
+          });
           build.onLoad({ filter: /.*/, namespace: "inlined" }, ({ path }) => ({
             contents: exported(inlined.get(path)),
           }));

@@ -1,4 +1,4 @@
-/** The two WebAssembly modules with their JavaScript glue. */
+/** The WebAssembly modules with their JavaScript glue. */
 import { cpSync, existsSync, readdirSync, readFileSync, rmSync } from "node:fs";
 import { homedir } from "node:os";
 import { join } from "node:path";
@@ -25,7 +25,8 @@ import { step } from "./step.mjs";
 
 /** @type {readonly WasmModule[]} */
 export const wasmModules = [
-  { name: "core", crate: "sim3align", budget: 165_000 },
+  { name: "core", crate: "sim3align-core", budget: 150_000 },
+  { name: "registration", crate: "sim3align-registration", budget: 120_000 },
   { name: "formats", crate: "sim3align-formats", budget: 260_000 },
 ];
 
@@ -53,7 +54,7 @@ export function sizes(file) {
  */
 export const kilobytes = (bytes) => `${(bytes / 1000).toFixed(1)} kB`;
 
-/** Compiles both crates at once. */
+/** Compiles all crates at once. */
 const compiled = once(async () => {
   await rustToolchain();
   await step("WebAssembly", async () => {

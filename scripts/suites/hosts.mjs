@@ -8,6 +8,7 @@ import { print } from "../lib/output.mjs";
 import { at, installDir } from "../lib/paths.mjs";
 import { attempt, run } from "../lib/run.mjs";
 import { runChecks, step } from "../lib/step.mjs";
+import { wasmModules } from "../lib/wasm.mjs";
 import { inBrowser, install, missing } from "./installed.mjs";
 
 /** Apps of Vite, webpack and esbuild. */
@@ -82,7 +83,7 @@ async function checkWorkerd(expected) {
     entryPoints: [join(installDir, "tests", "bundlers", "workerd.js")],
     ...{ bundle: true, format: "esm", outdir, loader: { ".wasm": "copy" }, assetNames: "[name]", logLevel: "silent" },
   });
-  const wasm = ["core_bg.wasm", "formats_bg.wasm"];
+  const wasm = wasmModules.map(({ name }) => `${name}_bg.wasm`);
   const modules = [
     `(name = "main", esModule = embed "workerd.js")`,
     ...wasm.map((name) => `(name = "./${name}", wasm = embed "${name}")`),

@@ -1,18 +1,18 @@
-//! An alignment that runs in steps, so that a thread can do other work between them.
+//! An alignment by search that runs in steps, so that a thread can do other work between them.
 //!
-//! A step ends as soon as possible after the caller requests a pause: in the search of `precise` after any render or
-//! refinement of a pose, elsewhere at the end of a stage. Results are bit-identical regardless of pauses.
+//! A step ends as soon as possible after the caller requests a pause: in the search after any render or refinement of a
+//! pose, elsewhere at the end of a stage. Results are bit-identical regardless of pauses.
 
 use core::borrow::Borrow;
 use core::mem::replace;
 
-use super::method::Method;
 use super::outcome::{Setup, report, score};
 use super::warnings::about_fit;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::Normals;
 use crate::evidence::clouds::Clouds;
 use crate::evidence::observation::Observation;
+use crate::precise;
 use crate::precise::color::{ColorStage, agreement};
 use crate::precise::options::AlignOptions;
 use crate::precise::prepared_mesh::PreparedMesh;
@@ -20,14 +20,13 @@ use crate::precise::recipe::SURE;
 use crate::precise::rounds::Rounds;
 use crate::precise::{Certainty, SearchSettings};
 use crate::progress::{Host, Stopwatch};
-use crate::report::{Alignment, AnyAlignment, PaperAlignment, PreciseDiagnostics, Solution};
-use crate::{paper, precise};
+use crate::report::{Alignment, PaperAlignment, PreciseDiagnostics, Solution};
 
 /// An alignment in steps. It owns or borrows its observation and mesh.
 pub struct AlignTask<'h, O, M> {
     observation: O,
     mesh: M,
-    method: Method,
+    options: AlignOptions,
     efforts: Vec<SearchSettings>,
     setup: Setup,
     stages: Option<Stopwatch<'h>>,
@@ -46,8 +45,8 @@ enum State {
     Searching(Box<Clouds>, Box<Rounds>, usize),
     /// The poses that the last search has left are compared with the photo.
     Comparing(Box<Clouds>, Box<Rounds>, Box<ColorStage>),
-    /// The method has found a pose.
-    Found(Box<Clouds>, Box<Solution>, Option<Box<Certainty>>),
+    /// The search has found a pose.
+    Found(Box<Clouds>, Box<Solution>, Box<Certainty>),
     /// The result has been returned, or an error.
     Over,
 }
@@ -57,13 +56,10 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
     ///
     /// # Errors
     /// [`ErrorCode::InvalidOption`].
-    pub fn new(observation: O, mesh: M, method: Method, host: impl Host + 'h) -> Result<Self> {
-        let (setup, efforts, plan) = match &method {
-            Method::Precise(options) => (Setup::of_precise(options)?, precise::efforts(options), precise::PLAN),
-            Method::Paper(options) => (Setup::of_paper(options)?, Vec::new(), paper::PLAN),
-        };
-        let stages = Some(Stopwatch::new(host, plan));
-        Ok(Self { observation, mesh, method, efforts, setup, stages, state: State::Begun })
+    pub fn new(observation: O, mesh: M, options: AlignOptions, host: impl Host + 'h) -> Result<Self> {
+        let (setup, efforts) = (Setup::of_precise(&options)?, precise::efforts(&options));
+        let stages = Some(Stopwatch::new(host, precise::PLAN));
+        Ok(Self { observation, mesh, options, efforts, setup, stages, state: State::Begun })
     }
 
     /// Overrides the settings of the searches that follow from the options, for ablations.
@@ -75,7 +71,7 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
     ///
     /// # Errors
     /// As [`AlignTask::step`].
-    pub fn finish(mut self) -> Result<AnyAlignment> {
+    pub fn finish(mut self) -> Result<Alignment> {
         loop {
             if let Some(alignment) = self.step(&mut || false)? {
                 return Ok(alignment);
@@ -87,7 +83,7 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
     ///
     /// # Errors
     /// [`ErrorCode::DegenerateMesh`], [`ErrorCode::NoConsensus`]; the task then ends.
-    pub fn step(&mut self, pause: &mut dyn FnMut() -> bool) -> Result<Option<AnyAlignment>> {
+    pub fn step(&mut self, pause: &mut dyn FnMut() -> bool) -> Result<Option<Alignment>> {
         let Some(mut stages) = self.stages.take() else { return Err(over()) };
         loop {
             self.state = match replace(&mut self.state, State::Over) {
@@ -112,12 +108,12 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
                 State::Found(mut clouds, solution, certainty) => {
                     let (observation, mesh) = (self.observation.borrow(), self.mesh.borrow().mesh());
                     let mut metrics = score(observation, mesh, &self.setup, &mut clouds, &solution, &mut stages)?;
-                    if let (Some(metrics), Some(_)) = (&mut metrics, &certainty) {
+                    if let Some(metrics) = &mut metrics {
                         let pose = &solution.camera_from_mesh;
                         metrics.color_agreement = agreement(observation, self.mesh.borrow(), pose);
                     }
                     let aligned = report(observation, &self.setup, &clouds, &solution, metrics, stages);
-                    return Ok(Some(with_certainty(aligned, certainty)));
+                    return Ok(Some(with_certainty(aligned, *certainty)));
                 }
                 state => self.advance(state, &mut stages)?,
             };
@@ -138,47 +134,32 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
             }
             State::Drawn(mut clouds) => {
                 if self.setup.metrics {
-                    let normals = match &self.method {
-                        Method::Precise(_) => Normals::Some,
-                        Method::Paper(_) => Normals::All,
-                    };
-                    clouds.evidence(normals, stages);
+                    clouds.evidence(Normals::Some, stages);
                 }
                 State::Ready(clouds)
             }
-            State::Ready(mut clouds) => match &self.method {
-                Method::Precise(options) => self.search(clouds, options, 0, None, stages)?,
-                Method::Paper(options) => {
-                    let solution = paper::estimate(&mut clouds, options, stages)?;
-                    State::Found(clouds, Box::new(solution), None)
+            State::Ready(clouds) => self.search(clouds, 0, None, stages)?,
+            State::Searching(clouds, rounds, effort) => {
+                let concluded = precise::conclude(&rounds, mesh.mesh(), &self.options, None);
+                let is_sure = matches!(&concluded, Ok((_, certainty)) if certainty.confidence >= SURE);
+                if !is_sure && effort + 1 < self.efforts.len() {
+                    return self.search(clouds, effort + 1, Some(&rounds), stages);
                 }
-            },
-            State::Searching(clouds, rounds, effort) => match &self.method {
-                Method::Precise(options) => {
-                    let concluded = precise::conclude(&rounds, mesh.mesh(), options, None);
-                    let is_sure = matches!(&concluded, Ok((_, certainty)) if certainty.confidence >= SURE);
-                    if !is_sure && effort + 1 < self.efforts.len() {
-                        return self.search(clouds, options, effort + 1, Some(&rounds), stages);
+                let (solution, certainty) = concluded?;
+                match observation.photo().filter(|_| mesh.colors().is_some()) {
+                    Some(photo) => {
+                        let stage = ColorStage::new(&rounds, photo);
+                        State::Comparing(clouds, rounds, Box::new(stage))
                     }
-                    let (solution, certainty) = concluded?;
-                    match observation.photo().filter(|_| mesh.colors().is_some()) {
-                        Some(photo) => {
-                            let stage = ColorStage::new(&rounds, photo);
-                            State::Comparing(clouds, rounds, Box::new(stage))
-                        }
-                        None => State::Found(clouds, Box::new(solution), Some(Box::new(certainty))),
-                    }
+                    None => State::Found(clouds, Box::new(solution), Box::new(certainty)),
                 }
-                Method::Paper(_) => return Err(over()),
-            },
-            State::Comparing(clouds, rounds, stage) => match (&self.method, mesh.colors()) {
-                (Method::Precise(options), Some(colors)) => {
-                    let judgment = stage.judge(&rounds, colors);
-                    let (solution, certainty) = precise::conclude(&rounds, mesh.mesh(), options, Some(&judgment))?;
-                    State::Found(clouds, Box::new(solution), Some(Box::new(certainty)))
-                }
-                _ => return Err(over()),
-            },
+            }
+            State::Comparing(clouds, rounds, stage) => {
+                let judgment = mesh.colors().map(|colors| stage.judge(&rounds, colors));
+                let (solution, certainty) =
+                    precise::conclude(&rounds, mesh.mesh(), &self.options, judgment.as_ref())?;
+                State::Found(clouds, Box::new(solution), Box::new(certainty))
+            }
             State::Found(..) | State::Over => return Err(over()),
         })
     }
@@ -186,27 +167,24 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
     /// Begins the search with the effort of this index, after the `previous` one, if any.
     fn search(
         &self,
-        mut clouds: Box<Clouds>,
-        options: &AlignOptions,
+        clouds: Box<Clouds>,
         effort: usize,
         previous: Option<&Rounds>,
         stages: &mut Stopwatch<'h>,
     ) -> Result<State> {
         let settings = self.efforts.get(effort).ok_or_else(over)?;
-        let hypothesis = precise::hypothesis(&mut clouds, options, settings, stages);
         let (observation, mesh) = (self.observation.borrow(), self.mesh.borrow());
-        let rounds = precise::begin(observation, mesh, (hypothesis, previous), options, settings, stages)?;
+        let rounds = precise::begin(observation, mesh, previous, &self.options, settings, stages)?;
         Ok(State::Searching(clouds, Box::new(rounds), effort))
     }
 }
 
-fn with_certainty(aligned: PaperAlignment, certainty: Option<Box<Certainty>>) -> AnyAlignment {
-    let Some(certainty) = certainty else { return aligned.into() };
-    let Certainty { confidence, alternatives, uncertainty, score, terms, effort, color } = *certainty;
+fn with_certainty(aligned: PaperAlignment, certainty: Certainty) -> Alignment {
+    let Certainty { confidence, alternatives, uncertainty, score, terms, effort, color } = certainty;
     let PaperAlignment { camera_from_mesh, metrics, mut warnings, diagnostics } = aligned;
     warnings.extend(about_fit(&terms));
     let diagnostics = PreciseDiagnostics { common: diagnostics, effort, score, terms, color };
-    Alignment { camera_from_mesh, confidence, alternatives, uncertainty, metrics, warnings, diagnostics }.into()
+    Alignment { camera_from_mesh, confidence, alternatives, uncertainty, metrics, warnings, diagnostics }
 }
 
 fn over() -> Error {

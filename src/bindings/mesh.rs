@@ -5,9 +5,7 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use wasm_bindgen::JsValue;
-use wasm_bindgen::prelude::wasm_bindgen;
 
-use super::error::to_js;
 use super::object::{get, to_f32s, to_u32s, wrong_type};
 use crate::error::Result;
 use crate::evidence::sample::check_triangles;
@@ -51,14 +49,7 @@ pub fn mesh_of(input: &JsValue) -> Result<Rc<PreparedMesh<'static>>> {
     mesh(&get(input, "mesh").unwrap_or(JsValue::UNDEFINED))
 }
 
-/// Validates and decimates a mesh, and caches it under its `id`; see `Aligner.prepareMesh` in the TypeScript package.
-#[wasm_bindgen(js_name = prepareMesh, skip_typescript)]
-pub fn prepare_mesh(given: &JsValue) -> core::result::Result<(), JsValue> {
-    mesh(given).and_then(|mesh| mesh.prepare()).map_err(|error| to_js(&error))
-}
-
 /// Removes the mesh with this id from the cache, if present.
-#[wasm_bindgen(js_name = dropMesh, skip_typescript)]
-pub fn drop_mesh(id: u32) {
+pub fn drop_kept(id: u32) {
     KEPT.with_borrow_mut(|kept| kept.remove(&id));
 }

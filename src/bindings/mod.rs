@@ -1,11 +1,11 @@
-//! Exports to JavaScript: conversion and validation, no logic. Only this module uses `wasm_bindgen`.
+//! Conversion and validation of arguments and results, for the exports in `modules/`; no logic. Only this module uses
+//! `wasm_bindgen`.
 
-pub mod aligner;
+pub mod answer;
 pub mod error;
-mod host;
-mod input;
+pub mod host;
+pub mod input;
 pub mod mesh;
-mod object;
-mod options;
-pub mod task;
-mod transform;
+pub mod object;
+pub mod options;
+pub mod transform;

@@ -5,7 +5,6 @@ use wasm_bindgen::{JsCast, JsValue};
 
 use super::object::{describe, get, number, to_numbers, wrong_type};
 use super::transform::similarity;
-use crate::align::method::Method;
 use crate::error::{Error, ErrorCode, Result};
 use crate::metrics::symmetry::{Symmetry, SymmetryAxis};
 use crate::number::{number as number_text, numbers};
@@ -21,23 +20,23 @@ pub const OF_CALLS: [&str; 2] = ["signal", "transfer"];
 /// The same for `align`, whose method `preset` selects.
 const OF_ALIGN: [&str; 4] = ["preset", OF_CALLS[0], OF_CALLS[1], "onProgress"];
 
-/// The options of `align`: `preset` selects the method and its set of options.
-pub fn method(value: &JsValue) -> Result<Method> {
-    let mut preset = Preset::default();
-    if let Some(name) = property(value, "preset") {
-        let mut field = Field::Choice(&mut preset);
-        if !set(&mut field, &name, "preset")? {
-            return Err(field.error("preset", describe(&name)));
-        }
-    }
-    Ok(match preset {
-        Preset::Precise => Method::Precise(read(value, preset)?),
-        Preset::Paper => Method::Paper(read(value, preset)?),
-    })
+/// The options of `align` with the preset `precise`, the default.
+pub fn precise(value: &JsValue) -> Result<AlignOptions> {
+    read(value, Preset::Precise)
 }
 
-/// The options of one preset.
+/// The options of `align` with the preset `paper`.
+pub fn paper(value: &JsValue) -> Result<PaperOptions> {
+    read(value, Preset::Paper)
+}
+
+/// The options of one preset, which another value of `preset` contradicts.
 fn read<T: Options>(value: &JsValue, preset: Preset) -> Result<T> {
+    if let Some(name) = property(value, "preset")
+        && name.as_string().as_deref() != Some(preset.as_str())
+    {
+        return Err(Field::Choice(&mut Preset::default()).error("preset", describe(&name)));
+    }
     options(value, &OF_ALIGN, |name| {
         let (other, names) = match preset {
             Preset::Precise => (Preset::Paper, PaperOptions::names()),

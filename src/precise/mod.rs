@@ -35,13 +35,10 @@ use std::borrow::Cow;
 use std::rc::Rc;
 
 use crate::error::{Error, ErrorCode, Result};
-use crate::evidence::clouds::Clouds;
 use crate::evidence::observation::{Observation, degenerate_mask};
 use crate::geometry::cloud::Bounds;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::Similarity;
-use crate::paper;
-use crate::paper::options::PaperOptions;
 use crate::precise::options::{AlignOptions, ExtentAxis, SearchScope};
 use crate::progress::{Stage, Stopwatch};
 use crate::report::{Alternative, ColorReport, Counts, Effort, ScoreTerms, Solution, Uncertainty};
@@ -67,8 +64,7 @@ pub const PLAN: &[(Stage, f64)] = &[
     (Stage::Metrics, 0.85),
 ];
 
-/// A search before its first round. A `hypothesis` from another source, and the poses that a `previous` search has found,
-/// are added to the candidates of the grid.
+/// A search before its first round. The poses that a `previous` search has found are added to the candidates of the grid.
 ///
 /// # Errors
 /// [`ErrorCode::NoConsensus`] if decimation leaves no triangle, [`ErrorCode::InvalidOption`] for an initial pose
@@ -76,7 +72,7 @@ pub const PLAN: &[(Stage, f64)] = &[
 pub fn begin(
     observation: &Observation,
     mesh: &PreparedMesh<'_>,
-    (hypothesis, previous): (Option<Similarity>, Option<&Rounds>),
+    previous: Option<&Rounds>,
     options: &AlignOptions,
     settings: &SearchSettings,
     stages: &mut Stopwatch<'_>,
@@ -97,8 +93,6 @@ pub fn begin(
         rounds.resume(&previous.found);
     }
     stages.enter(Stage::Search);
-    let pose = hypothesis.and_then(|pose| CropPose::of_similarity(&pose, &rounds.search.mesh.frame));
-    pose.into_iter().for_each(|pose| rounds.join(pose));
     Ok(rounds)
 }
 
@@ -121,25 +115,6 @@ pub fn run(
         stages.reach(share.start + (share.end - share.start) * round.done, rounds.best());
     }
     true
-}
-
-/// The pose of the method of the paper, at the best quality. Descriptors are weak evidence, but independent of the
-/// search.
-pub fn hypothesis(
-    clouds: &mut Clouds,
-    options: &AlignOptions,
-    settings: &SearchSettings,
-    stages: &mut Stopwatch<'_>,
-) -> Option<Similarity> {
-    let is_wanted = settings.effort == Effort::Best && options.search == SearchScope::Global;
-    let paper = PaperOptions {
-        seed: options.seed,
-        max_observed_points: options.max_observed_points,
-        surface_samples: options.surface_samples,
-        ..PaperOptions::default()
-    };
-    let found = is_wanted.then(|| paper::estimate(clouds, &paper, stages).ok()).flatten()?;
-    Some(found.camera_from_mesh)
 }
 
 /// The reliability of the pose.

@@ -42,8 +42,8 @@ pub struct Rounds {
     /// Work of the round so far, and the work after which it ends; see [`Canvas::work`].
     work: u64,
     allowance: u64,
-    /// Candidates from other sources than the rotation grid: one list precedes those of the grid, the other follows.
-    others: [Vec<CropPose>; 2],
+    /// Candidates from other sources than the rotation grid, which precede those of the grid.
+    others: Vec<CropPose>,
     /// The best candidate of the last round, if any.
     best: Vec<Found>,
     /// Candidates of the ranking round other than turns of the best one.
@@ -70,7 +70,7 @@ impl Rounds {
             tasks_done: 0,
             work: 0,
             allowance: 0,
-            others: [around, Vec::new()],
+            others: around,
             best: Vec::new(),
             unturned: Vec::new(),
             search,
@@ -79,7 +79,7 @@ impl Rounds {
 
     /// Adds poses that another search has refined to the candidates of the grid.
     pub fn resume(&mut self, found: &[Found]) {
-        let list = if self.index < FIRST_REFINEMENT { &mut self.others[0] } else { &mut self.poses };
+        let list = if self.index < FIRST_REFINEMENT { &mut self.others } else { &mut self.poses };
         list.extend(poses_of(found));
     }
 
@@ -99,12 +99,6 @@ impl Rounds {
     /// Whether the mask has no cell on the grid of the first round or on the fine one.
     pub fn shows_no_mask(&self) -> bool {
         self.grid.mask_cells == 0 || self.search.fine.mask_cells == 0
-    }
-
-    /// Adds the neighbourhood of a pose from another source to the candidates of the grid.
-    pub fn join(&mut self, pose: CropPose) {
-        let around = self.search.around(pose);
-        self.others[1].extend(around);
     }
 
     /// The current round; `None` after the end of the search.
@@ -224,8 +218,7 @@ impl Rounds {
             self.unturned = core::mem::replace(&mut self.poses, turned);
         }
         if self.index == FIRST_REFINEMENT {
-            let [before, after] = core::mem::take(&mut self.others);
-            self.poses = [before, core::mem::take(&mut self.poses), after].concat();
+            self.poses.splice(0..0, core::mem::take(&mut self.others));
         }
         if let Some(next) = self.search.settings.rounds.get(self.index)
             && next.grid != round.grid

@@ -23,7 +23,8 @@ function inFreshProcess(script: string): string {
     const path = ${JSON.stringify(coreWasm)};
     const cloud = Float64Array.of(0,0,0, 1,0,0, 0,1,0, 0,0,1);
     const pairs = Uint32Array.of(0,0, 1,1, 2,2, 3,3);
-    const check = async (aligner) => {
+    const check = async (aligner) => assert.match((await aligner.buildInfo()).version, /^\\d/);
+    const estimate = async (aligner) => {
       const { scale } = await aligner.estimateSim3(cloud, cloud.map((x) => 2 * x), pairs);
       assert.ok(Math.abs(scale - 2) < 1e-9);
     };
@@ -42,7 +43,7 @@ test("importing the package does nothing by itself", () => {
   assert.equal(output.trim(), "0");
 });
 
-test("the core loads once, however many ask at once; the file readers only when a file is passed", () => {
+test("the core loads once, however many ask at once; the other modules only when they are needed", () => {
   const output = inFreshProcess(`
     const compiled = [];
     const { compile } = WebAssembly;
@@ -68,6 +69,10 @@ test("the core loads once, however many ask at once; the file readers only when 
     const bad = { depth: new Uint8Array(3), mask: new Uint8Array(3), camera: { fovYDeg: 50 }, mesh: new Uint8Array(3) };
     for (const aligner of aligners) await aligner.align(bad).catch((error) => assert.equal(error.code, "UNSUPPORTED_FORMAT"));
     assert.equal(compiled.length, 2);
+    await Promise.all(aligners.map(estimate));
+    assert.equal(compiled.length, 3);
+    await assert.rejects(aligners[0].align({ ...parsed, mask }, { preset: "paper" }), { code: "TOO_FEW_POINTS" });
+    assert.equal(compiled.length, 3);
     console.log("done");
   `);
   assert.equal(output.trim(), "done");
@@ -112,6 +117,9 @@ test("a failed load says what to do, and the next one tries again", () => {
     const files = { depth: new Uint8Array(3), mask: new Uint8Array(3), camera: { fovYDeg: 50 }, mesh: new Uint8Array(3) };
     await assert.rejects(bad.align(files), { code: "NOT_INITIALISED", argument: "formatsWasm" });
     await assert.rejects(aligner.align(files), { code: "UNSUPPORTED_FORMAT" });
+    const other = await createAligner({ registrationWasm: missing });
+    await assert.rejects(estimate(other), { code: "NOT_INITIALISED", argument: "registrationWasm" });
+    await estimate(other);
     console.log("done");
   `);
   assert.equal(output.trim(), "done");

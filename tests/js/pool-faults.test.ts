@@ -43,7 +43,7 @@ function spoil(message: Message, post: Post): void {
 
 const works = async (aligner: Aligner) => assert.deepEqual(withoutTimes(await aligner.align(input, quick)), expected);
 
-for (const type of ["start", "job", "formats"]) {
+for (const type of ["start", "job", "module"]) {
   test(`a message (${type}) that the worker cannot read: it is sent again, to a new worker`, async () => {
     let spoilt = 0;
     const { aligner, workers } = await poolWith((message, transfer, post) => {
@@ -203,7 +203,7 @@ test("a prepared mesh is freed in the worker, if no call used it, and after a ca
   let whenFormats = () => {};
   const { aligner } = await poolWith((message, transfer, post) => {
     sent.push(message.type);
-    if (message.type === "formats") whenFormats();
+    if (message.type === "module") whenFormats();
     post(message, transfer);
   });
   const unused = await aligner.prepareMesh(mesh);
@@ -218,7 +218,7 @@ test("a prepared mesh is freed in the worker, if no call used it, and after a ca
   const waiting = aligner.align({ ...input, mesh: prepared }, quick);
   assert.ok((await call).scale > 0);
   assert.deepEqual(withoutTimes(await waiting), expected);
-  assert.deepEqual(sent.splice(0), ["job", "job", "formats", "drop-mesh", "job", "drop-mesh"]);
+  assert.deepEqual(sent.splice(0), ["job", "job", "module", "drop-mesh", "job", "drop-mesh"]);
 
   await assert.rejects(aligner.prepareMesh({ positions: new Float32Array(9) }), { code: "DEGENERATE_MESH" });
   assert.deepEqual(sent, ["job", "drop-mesh"], "a mesh that was refused");

@@ -82,6 +82,43 @@ fn a_text_mesh_cut_short_is_refused_where_the_cut_can_be_seen() {
     }
 }
 
+#[wasm_bindgen_test(unsupported = test)]
+fn a_png_with_a_second_smaller_header_is_refused() {
+    // Signature, then the header chunk: length, name, 13 bytes, checksum.
+    let (start, header) = (8, 25);
+    let file = fixture!("mask-grey.png");
+    let (before, end) = file.split_at(file.len() - 12);
+    // The decoder would only read the first header, the check of the size the last one.
+    let doubled = [before, &file[start..start + header], end].concat();
+    assert_eq!(mask(&doubled), Err(ErrorCode::CorruptFile));
+    assert_eq!(depth(&doubled), Err(ErrorCode::CorruptFile));
+    assert_eq!(mask(file), Ok(()));
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_palette_with_part_of_a_colour_is_refused() {
+    let file = fixture!("mask-palette.png");
+    let at = file.windows(4).position(|name| name == b"PLTE").unwrap() - 4;
+    let length = u32::from_be_bytes([file[at], file[at + 1], file[at + 2], file[at + 3]]);
+    assert!(length >= 6, "{length}");
+    for missing in [1, 2] {
+        let kept = length - missing;
+        let chunk = [b"PLTE", &file[at + 8..at + 8 + kept as usize]].concat();
+        let checksum = crc_32(&chunk).to_be_bytes();
+        let rest = &file[at + 12 + length as usize..];
+        let damaged = [&file[..at], &kept.to_be_bytes(), &chunk, &checksum, rest].concat();
+        assert_eq!(mask(&damaged), Err(ErrorCode::CorruptFile), "{missing} bytes missing");
+        assert_eq!(depth(&damaged), Err(ErrorCode::CorruptFile), "{missing} bytes missing");
+    }
+}
+
+/// The checksum of PNG (ISO 3309).
+fn crc_32(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(u32::MAX, |sum, &byte| {
+        (0..8).fold(sum ^ u32::from(byte), |sum, _| if sum & 1 == 1 { sum >> 1 ^ 0xedb8_8320 } else { sum >> 1 })
+    })
+}
+
 /// Prints which run it was when the code under test panics.
 struct NamedInPanics {
     fixture: usize,

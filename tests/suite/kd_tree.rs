@@ -190,6 +190,28 @@ fn ties_go_to_the_smaller_index_whatever_the_order() {
     }
 }
 
+/// Visits of all points for each would be 4·10¹⁰.
+#[wasm_bindgen_test(unsupported = test)]
+fn of_many_coincident_points_a_search_visits_few() {
+    let mut points = vec![Vec3::new(0.5, -0.25, 3.0); 200_000];
+    points.push(Vec3::ZERO);
+    let tree = KdTree::new(&points);
+    let mut found = Vec::new();
+    for query in [points[0], Vec3::ZERO, Vec3::new(1.0, 0.0, 3.0)].into_iter().cycle().take(points.len()) {
+        let nearest = tree.nearest(query).unwrap();
+        assert_eq!(nearest.index, if query == Vec3::ZERO { 200_000 } else { 0 });
+        tree.k_nearest(query, 8, &mut found);
+        assert_eq!(found.len(), 8);
+        assert!(found.iter().map(|n| n.index).filter(|i| *i < 200_000).eq(0..if query == Vec3::ZERO { 7 } else { 8 }));
+    }
+    let mut visited = 0;
+    tree.neighborhoods(&points, 8, f32::INFINITY, 1, |_, keys| {
+        visited += 1;
+        assert_eq!(keys.len(), 8);
+    });
+    assert_eq!(visited, points.len());
+}
+
 #[wasm_bindgen_test(unsupported = test)]
 fn the_radius_includes_its_boundary() {
     let tree = KdTree::new(&[Vec3::ZERO, Vec3::X * 2.0]);

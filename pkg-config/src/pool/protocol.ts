@@ -14,13 +14,16 @@ export type Request =
   | { type: "job"; job: Job; wantsProgress: boolean; returnData: boolean }
   /** Frees the cached data of a prepared mesh. */
   | { type: "drop-mesh"; id: number }
-  /** The answer to `needs-formats`: the compiled file readers, or the reason for the failure to load them. */
-  | { type: "formats"; formats: WebAssembly.Module | ErrorParts };
+  /** The answer to `needs-module`: the compiled module, or the reason for the failure to load it. */
+  | { type: "module"; name: LazyName; module: WebAssembly.Module | ErrorParts };
+
+/** The modules that a worker asks for when a job first needs them. */
+export type LazyName = "formats" | "registration";
 
 /** Messages from the worker. */
 export type Reply =
   | { type: "progress"; stage: Stage; fraction: number; best?: Float64Array | undefined }
-  | { type: "needs-formats" }
+  | { type: "needs-module"; name: LazyName }
   /** A message to the worker could not be read: its content is lost. */
   | { type: "unreadable" }
   | { type: "done"; result: unknown; data?: unknown; error?: undefined }

@@ -3,7 +3,7 @@ import { type ErrorParts, messageOf, partsOf, Sim3AlignError } from "../error.js
 import type { CreateWorker } from "../platform.js";
 import type { ProgressListener } from "../progress.js";
 import { type Port, portOf } from "./port.js";
-import type { Reply, Request } from "./protocol.js";
+import type { LazyName, Reply, Request } from "./protocol.js";
 
 /** The worker terminated or trapped before it answered; the job may be retried. */
 export class WorkerLost extends Error {}
@@ -29,10 +29,9 @@ export interface Answer {
 }
 
 /** Everything a slot needs to start a worker. */
-export interface WorkerSetup {
+export interface WorkerSetup extends Record<LazyName, () => Promise<WebAssembly.Module>> {
   create: CreateWorker;
   core: WebAssembly.Module;
-  formats(): Promise<WebAssembly.Module>;
 }
 
 interface Pending {
@@ -153,9 +152,9 @@ export class WorkerSlot {
   #receive(message: Reply, port: Port): void {
     if (message.type === "progress") {
       this.#pending?.progress.report(message.stage, message.fraction, message.best);
-    } else if (message.type === "needs-formats") {
+    } else if (message.type === "needs-module") {
       const lost = (error: unknown) => this.#isCurrent(port) && this.end(new WorkerLost(messageOf(error)));
-      this.#sendFormats(port).catch(lost);
+      this.#sendModule(message.name, port).catch(lost);
     } else if (message.type === "unreadable") {
       this.end(new WorkerLost("a message that the worker could not read"));
     } else if (message.error === undefined) {
@@ -168,11 +167,11 @@ export class WorkerSlot {
     }
   }
 
-  async #sendFormats(port: Port): Promise<void> {
-    const formats = await this.#setup.formats().catch((error) => {
+  async #sendModule(name: LazyName, port: Port): Promise<void> {
+    const module = await this.#setup[name]().catch((error) => {
       if (error instanceof Sim3AlignError) return partsOf(error);
       throw error;
     });
-    port.post({ type: "formats", formats });
+    port.post({ type: "module", name, module });
   }
 }

@@ -24,6 +24,7 @@ beyond a ceiling. The choices that lead to it are made as few as possible, and k
   --out DIR          folder for the choices of faults, default lab/findings
   --replay FILE      makes the call of such a file, TARGET-*.txt or TARGET/*.txt, and prints what happens
   --range A..B       makes calls A to B of one target in this process; what the command does in each of its processes
+  --trace            with --range, prints the number of each call before it is made
   --help             this text";
 
 /// The mode of the command.
@@ -45,6 +46,8 @@ pub struct Arguments {
     pub jobs: usize,
     pub ceilings: Ceilings,
     pub out: PathBuf,
+    /// Whether a range of calls prints each number.
+    pub trace: bool,
 }
 
 /// `None` if help is requested.
@@ -58,6 +61,7 @@ pub fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Er
         jobs: std::thread::available_parallelism().map_or(1, |count| count.get()),
         ceilings: Ceilings::default(),
         out: PathBuf::from("lab/findings"),
+        trace: false,
     };
     let mut range = None;
     while let Some(argument) = parser.next()? {
@@ -71,6 +75,7 @@ pub fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Er
             Long("megabytes") => arguments.ceilings.bytes = parser.value()?.parse::<usize>()? << 20,
             Long("out") => arguments.out = parser.value()?.into(),
             Long("replay") => arguments.mode = Mode::Replay(parser.value()?.into()),
+            Long("trace") => arguments.trace = true,
             Long("range") => range = Some(to_range(&parser.value()?.string()?)?),
             Long("target") => {
                 let names = parser.value()?.string()?;

@@ -35,6 +35,9 @@ pub fn run(target: Target, range: Range<u64>, arguments: &Arguments) -> Result<(
     let count = range.end.saturating_sub(range.start);
     for number in range {
         CURRENT.store(number, Ordering::Relaxed);
+        if arguments.trace {
+            println!("at {number}");
+        }
         let mut choices = Choices::random(seed_of(arguments.seed, number));
         let Execution { outcome, seconds, bytes, .. } = target.execute(&mut choices, &arguments.ceilings);
         match outcome {

@@ -108,7 +108,7 @@ fn run_batch<'a>(
     sums: &Mutex<BTreeMap<&'a str, Sums>>,
 ) -> Result<(), Failure> {
     while !range.is_empty() {
-        let (at, end) = calls(target, range.clone(), arguments)?;
+        let (at, end) = calls(target, range.clone(), arguments, &[])?;
         let fault = match end {
             Some(End::Done(new)) => {
                 let mut sums = sums.lock().unwrap_or_else(PoisonError::into_inner);
@@ -135,9 +135,15 @@ fn run_batch<'a>(
 }
 
 /// Makes a range of calls in a process; the number it was at, and how it ended.
-fn calls(target: Target, range: std::ops::Range<u64>, arguments: &Arguments) -> Result<(u64, Option<End>), Failure> {
+fn calls(
+    target: Target,
+    range: std::ops::Range<u64>,
+    arguments: &Arguments,
+    flags: &[&str],
+) -> Result<(u64, Option<End>), Failure> {
     let mut command = program(arguments)?;
     command.args(["--target", target.name, "--range", &format!("{}..{}", range.start, range.end)]);
+    command.args(flags);
     let mut at = range.start;
     let mut end = None;
     let mut child = start(&mut command)?;
@@ -182,16 +188,14 @@ fn add(sums: &mut Sums, new: &Sums) {
     }
 }
 
-/// Finds the call that ends its process without a report.
+/// Finds the call that ends its process without a report: makes the calls again, and each is announced.
 fn crash(target: Target, range: std::ops::Range<u64>, arguments: &Arguments) -> Result<(u64, String), Failure> {
-    for number in range.clone() {
-        match calls(target, number..number + 1, arguments)? {
-            (_, Some(End::Done(_))) => {}
-            (_, Some(End::Fault(number, words))) => return Ok((number, words)),
-            (_, None) => return Ok((number, "the process died: out of memory, or of stack".into())),
-        }
+    let start = range.start;
+    match calls(target, range, arguments, &["--trace"])? {
+        (_, Some(End::Fault(number, words))) => Ok((number, words)),
+        (_, Some(End::Done(_))) => Ok((start, "the process died once, and not again".into())),
+        (number, None) => Ok((number, "the process died: out of memory, or of stack".into())),
     }
-    Ok((range.start, "the process died once, and not again".into()))
 }
 
 /// Minimises the choices of a fault, and writes them to a file.

@@ -1,12 +1,11 @@
 //! `align`, with both presets.
 
+use sim3align::align::align_by_method;
 use sim3align::align::method::Method;
-use sim3align::align::task::AlignTask;
 use sim3align::evidence::observation::Observation;
 use sim3align::options::Choice;
 use sim3align::paper::options::PaperOptions;
 use sim3align::precise::options::{AlignOptions, Quality};
-use sim3align::precise::prepared_mesh::PreparedMesh;
 use sim3align::progress::Silent;
 use sim3align::report::{Alignment, AnyAlignment, Sim3};
 use sim3align_geometry::error::Result;
@@ -42,7 +41,7 @@ fn call(c: &mut Choices, size: Size, most: usize) -> Call {
     Call {
         description: format!("{view_words}; {mesh_words}; {words}"),
         is_bounded,
-        run: Box::new(move || match aligned(observation, mesh, method) {
+        run: Box::new(move || match aligned(observation, mesh, &method) {
             Ok(AnyAlignment::Precise(alignment)) => check(&alignment),
             Ok(AnyAlignment::Paper(alignment)) => check_pose(&alignment.camera_from_mesh),
             Err(error) => typed(&error, takes_transform),
@@ -67,9 +66,9 @@ fn method(c: &mut Choices, size: Size) -> (Method, bool) {
     (options.into(), is_bounded)
 }
 
-fn aligned(observation: Result<Observation>, mesh: Result<Mesh>, method: Method) -> Result<AnyAlignment> {
+fn aligned(observation: Result<Observation>, mesh: Result<Mesh>, method: &Method) -> Result<AnyAlignment> {
     let (observation, mesh) = (observation?, mesh?);
-    AlignTask::new(&observation, PreparedMesh::borrowed(&mesh), method, Silent).and_then(AlignTask::finish)
+    align_by_method(&observation, &mesh, method, &mut Silent)
 }
 
 fn check(alignment: &Alignment) -> core::result::Result<Answer, String> {

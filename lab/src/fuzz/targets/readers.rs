@@ -230,15 +230,8 @@ fn repair_png(bytes: &mut [u8]) {
     while let Some(head) = bytes.get(at..at + 4) {
         let length = head.iter().fold(0, |n, &byte| n << 8 | usize::from(byte));
         let Some(end) = at.checked_add(8 + length).filter(|end| end + 4 <= bytes.len()) else { return };
-        let sum = crc_32(&bytes[at + 4..end]).to_be_bytes();
+        let sum = crc32fast::hash(&bytes[at + 4..end]).to_be_bytes();
         bytes[end..end + 4].copy_from_slice(&sum);
         at = end + 4;
     }
-}
-
-/// The checksum of PNG (ISO 3309).
-fn crc_32(bytes: &[u8]) -> u32 {
-    !bytes.iter().fold(u32::MAX, |sum, &byte| {
-        (0..8).fold(sum ^ u32::from(byte), |sum, _| if sum & 1 == 1 { sum >> 1 ^ 0xedb8_8320 } else { sum >> 1 })
-    })
 }

@@ -4,16 +4,15 @@ use core::cell::RefCell;
 use std::rc::Rc;
 
 use js_sys::Function;
+use sim3align::align::task::AlignTask as Task;
+use sim3align::bindings::answer::answer;
+use sim3align::bindings::error::to_js;
+use sim3align::bindings::host::{JsHost, now_ms};
+use sim3align::bindings::{input, mesh, options};
+use sim3align::evidence::observation::Observation;
+use sim3align::precise::prepared_mesh::PreparedMesh;
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
-
-use super::aligner::answer;
-use super::error::to_js;
-use super::host::{JsHost, now_ms};
-use super::{input, mesh, options};
-use crate::align::task::AlignTask as Task;
-use crate::evidence::observation::Observation;
-use crate::precise::prepared_mesh::PreparedMesh;
 
 /// A running alignment.
 #[wasm_bindgen(skip_typescript)]
@@ -23,9 +22,9 @@ pub struct AlignTask(RefCell<Task<'static, Observation, Rc<PreparedMesh<'static>
 #[wasm_bindgen(js_name = beginAlign, skip_typescript)]
 pub fn begin_align(input: &JsValue, options: &JsValue, on_progress: Option<Function>) -> Result<AlignTask, JsValue> {
     let begin = || {
-        let method = options::method(options)?;
+        let options = options::precise(options)?;
         let (observation, mesh) = (input::observation(input)?, mesh::mesh_of(input)?);
-        Task::new(observation, mesh, method, JsHost::new(on_progress))
+        Task::new(observation, mesh, options, JsHost::new(on_progress))
     };
     begin().map(|task| AlignTask(RefCell::new(task))).map_err(|error| to_js(&error))
 }

@@ -1,0 +1,22 @@
+/** The registration module: the WebAssembly module with `register`, `estimateSim3` and the preset `paper`. */
+import type { Cloud, CoreListener } from "./core.js";
+import type { PaperAlignment, Registration } from "./generated/types.js";
+import type { CoreInput } from "./input/core-input.js";
+import { type Glue, type LoadedModule, WasmModule } from "./wasm-module.js";
+
+/** The functions of the module. They validate their arguments and throw errors with codes. */
+export interface Registrar extends Glue {
+  alignPaper(input: CoreInput, options: object, onProgress: CoreListener | undefined): PaperAlignment;
+  register(source: Cloud, target: Cloud, options: object): Registration;
+  estimateSim3(source: Cloud, target: Cloud, correspondences: Uint32Array, options: object): Registration;
+}
+
+/** Loads the module when a call first needs it. */
+export type LoadRegistrar = () => Promise<LoadedModule<Registrar>>;
+
+/** The module, shared by all aligners of this realm. */
+export const registrationModule = new WasmModule<Registrar>(
+  "registration",
+  () => new URL("./wasm/registration_bg.wasm", import.meta.url),
+  async () => (await import("./wasm/registration.js")) as unknown as Registrar,
+);

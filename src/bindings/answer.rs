@@ -1,0 +1,14 @@
+//! Results in the form that the modules return.
+
+use serde::Serialize;
+use serde_wasm_bindgen::Serializer;
+use wasm_bindgen::JsValue;
+
+use super::error::to_js;
+use crate::error::Result;
+
+/// The result as a plain object, or the error to throw.
+pub fn answer<T: Serialize>(result: Result<T>) -> core::result::Result<JsValue, JsValue> {
+    let value = result.map_err(|error| to_js(&error))?;
+    value.serialize(&Serializer::json_compatible()).map_err(Into::into)
+}
