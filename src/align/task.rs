@@ -156,8 +156,7 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
             }
             State::Comparing(clouds, rounds, stage) => {
                 let judgment = mesh.colors().map(|colors| stage.judge(&rounds, colors));
-                let (solution, certainty) =
-                    precise::conclude(&rounds, mesh.mesh(), &self.options, judgment.as_ref())?;
+                let (solution, certainty) = precise::conclude(&rounds, mesh.mesh(), &self.options, judgment.as_ref())?;
                 State::Found(clouds, Box::new(solution), Box::new(certainty))
             }
             State::Found(..) | State::Over => return Err(over()),
