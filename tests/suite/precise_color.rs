@@ -17,7 +17,7 @@ use sim3align::metrics::symmetry::Symmetry;
 use sim3align::precise::lookalikes::dihedral;
 use sim3align::precise::prepared_mesh::PreparedMesh;
 use sim3align::progress::Silent;
-use sim3align::report::{Alignment, AnyAlignment, ColorVerdict};
+use sim3align::report::{Alignment, ColorVerdict};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::precise::{observe, quick};
@@ -102,10 +102,7 @@ fn truth() -> Similarity {
 }
 
 fn solve(observation: Observation, mesh: &PreparedMesh<'_>) -> Alignment {
-    match AlignTask::new(observation, mesh, quick().into(), Silent).unwrap().finish().unwrap() {
-        AnyAlignment::Precise(alignment) => *alignment,
-        AnyAlignment::Paper(_) => unreachable!(),
-    }
+    AlignTask::new(observation, mesh, quick(), Silent).unwrap().finish().unwrap()
 }
 
 fn rotation_error(mesh: &Mesh, found: &Alignment, truth: &Similarity) -> f64 {
@@ -190,8 +187,8 @@ fn agreement_hardly_depends_on_light_and_exposure() {
     let reference = agreement((Vec3::ONE, 0.0), label, &truth());
     assert!(reference > 0.95, "{reference}");
     for _ in 0..5 {
-        let mut gain = || draw.between(0.5, 1.0);
-        let look = (Vec3::new(gain(), gain(), gain()), draw.between(0.0, 0.6));
+        let mut gain = || draw.between(0.5, 1.0) as f32;
+        let look = (Vec3::new(gain(), gain(), gain()), draw.between(0.0, 0.6) as f32);
         let agreement = agreement(look, label, &truth());
         assert!((agreement - reference).abs() < 0.15, "{look:?}: {agreement}, {reference}");
     }
@@ -225,7 +222,7 @@ fn a_comparison_may_pause_after_any_pose() {
     let prepared = PreparedMesh::borrowed(&mesh).with_colors(painted(&mesh, label));
     let seen = observe(&mesh, &truth()).with_photo(photo(&mesh, &truth(), label, (Vec3::ONE, 0.3), 0)).unwrap();
     let expected = described(solve(seen.clone(), &prepared));
-    let mut task = AlignTask::new(seen, &prepared, quick().into(), Silent).unwrap();
+    let mut task = AlignTask::new(seen, &prepared, quick(), Silent).unwrap();
     let mut pauses = 0;
     let found = loop {
         pauses += 1;
@@ -233,8 +230,7 @@ fn a_comparison_may_pause_after_any_pose() {
             break found;
         }
     };
-    let AnyAlignment::Precise(found) = found else { unreachable!() };
-    assert_eq!(described(*found), expected);
+    assert_eq!(described(found), expected);
     assert!(pauses > 100, "{pauses}");
 }
 

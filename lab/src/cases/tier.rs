@@ -180,7 +180,7 @@ impl Tier {
     }
 
     /// One of three values.
-    pub(super) fn pick<T>(self, easy: T, medium: T, hard: T) -> T {
+    pub fn pick<T>(self, easy: T, medium: T, hard: T) -> T {
         match self {
             Self::Easy => easy,
             Self::Medium => medium,

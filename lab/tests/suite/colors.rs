@@ -1,0 +1,90 @@
+//! The generated set of coloured objects: each class shows its effect, and colour decides what shape leaves.
+
+use sim3align::align::evaluate::{EvaluateOptions, evaluate_prepared};
+use sim3align::align::task::AlignTask;
+use sim3align::metrics::pose_error::pose_errors;
+use sim3align::metrics::symmetry::Symmetry;
+use sim3align::precise::options::AlignOptions;
+use sim3align::precise::prepared_mesh::PreparedMesh;
+use sim3align::progress::Silent;
+use sim3align_geometry::similarity::Similarity;
+use sim3align_lab::cases::case::{EvaluationCase, EvaluationSet};
+use sim3align_lab::cases::tier::{CaseSet, Class, Tier};
+
+/// Every class of every tier.
+const LOOKED_AT: usize = 24;
+
+fn of_class(class: Class) -> Vec<EvaluationCase> {
+    let set = EvaluationSet::new(11).of(CaseSet::Colors);
+    let indices = (0..LOOKED_AT).filter(|&index| CaseSet::Colors.class(index) == class);
+    indices.map(|index| set.case(index).unwrap()).collect()
+}
+
+fn agreement(case: &EvaluationCase, pose: &Similarity) -> f64 {
+    let mesh = PreparedMesh::borrowed(&case.mesh).with_colors(case.colors.clone());
+    let metrics = evaluate_prepared(&case.observation, &mesh, pose, &EvaluateOptions::default()).unwrap().metrics;
+    metrics.color_agreement.unwrap()
+}
+
+#[test]
+fn the_print_agrees_at_the_true_pose_and_only_where_it_is_the_objects() {
+    for class in [Class::Printed, Class::Blotted, Class::PrintedShape] {
+        for case in of_class(class) {
+            let true_pose = agreement(&case, &case.camera_from_mesh);
+            let least = case.tier.pick(0.7, 0.5, 0.2);
+            // A shape with a print may turn its blank side to the camera.
+            assert!(
+                true_pose > if class == Class::PrintedShape { -0.2 } else { least },
+                "{}: {true_pose}",
+                case.name()
+            );
+        }
+    }
+    for class in [Class::WrongColors, Class::OneColor] {
+        for case in of_class(class) {
+            let true_pose = agreement(&case, &case.camera_from_mesh);
+            assert!(true_pose < 0.3, "{}: {true_pose}", case.name());
+        }
+    }
+}
+
+#[test]
+fn a_grey_photo_has_no_colour_and_others_have() {
+    for class in [Class::GreyPhoto, Class::Printed] {
+        for case in of_class(class) {
+            let photo = case.observation.photo().unwrap();
+            let is_grey = photo.data().iter().all(|[r, g, b]| r == g && g == b);
+            assert_eq!(is_grey, class == Class::GreyPhoto, "{}", case.name());
+        }
+    }
+}
+
+#[test]
+fn what_the_print_tells_has_no_symmetry_and_what_it_does_not_has_that_of_its_shape() {
+    for class in [Class::Printed, Class::Blotted, Class::GreyPhoto] {
+        assert!(of_class(class).iter().all(|case| case.symmetry == Symmetry::None));
+    }
+    for class in [Class::OneColor, Class::WrongColors] {
+        assert!(of_class(class).iter().all(|case| case.symmetry != Symmetry::None));
+    }
+}
+
+#[test]
+fn the_set_depends_on_its_seed_alone() {
+    let case = |seed| EvaluationSet::new(seed).of(CaseSet::Colors).case(1).unwrap();
+    assert_eq!(case(3).observation, case(3).observation);
+    assert_eq!(case(3).colors, case(3).colors);
+    assert_ne!(case(3).colors, case(4).colors);
+}
+
+#[test]
+fn colour_finds_the_right_turn() {
+    for case in of_class(Class::Printed).iter().filter(|case| case.tier != Tier::Hard) {
+        let mesh = PreparedMesh::borrowed(&case.mesh).with_colors(case.colors.clone());
+        let task = AlignTask::new(&case.observation, mesh, AlignOptions::default(), Silent).unwrap();
+        let found = task.finish().unwrap();
+        let pose = Similarity::from_column_major(&found.camera_from_mesh.matrix).unwrap();
+        let errors = pose_errors(&case.mesh, &pose, &case.camera_from_mesh, &case.symmetry).unwrap();
+        assert!(errors.rotation_error_deg < 10.0, "{}: {errors:?}, {:?}", case.name(), found.diagnostics.color);
+    }
+}
