@@ -1,12 +1,12 @@
 /** Validation of arguments, with errors that name them. Values may come from any realm: window, worker, test runner. */
 import { describe, type ErrorCode, invalidArgument, Sim3AlignError } from "./error.js";
-import { isKind, isRecord, isTypedArray } from "./kinds.js";
+import { isKind, isRecord, isTypedArray, typedArrayKind } from "./kinds.js";
 
 export { isKind, isRecord, isTypedArray };
 
 /** The error for a plain array, or a typed array of the wrong type. */
 export function wrongKind(argument: string, value: unknown, expected: string, typedArray: string): Sim3AlignError {
-  const isArray = Array.isArray(value) || (ArrayBuffer.isView(value) && !isKind(value, "DataView"));
+  const isArray = isKind(value, "Array") || (ArrayBuffer.isView(value) && !isKind(value, "DataView"));
   const remedy = isArray ? `Convert it: ${typedArray}.from(${argument}).` : "Pass one of these.";
   return invalidArgument(argument, value, expected, remedy);
 }
@@ -39,10 +39,26 @@ export function failure(
   return new Sim3AlignError({ code, argument, found, expected, remedy });
 }
 
-/** Flattens an array of any type and nesting, such as `[[1, 2]]` or the data of a tensor. */
+/** Levels of nested arrays: a tensor has few, and an array may contain itself. */
+const MAX_NESTING = 16;
+
+function flat(array: readonly unknown[], levels: number): unknown[] {
+  if (levels === 0) throw new Error("too many levels");
+  // Its own method: a proxy that invents a length has none.
+  // Holes become undefined.
+  const copy = Array.from(array.slice());
+  if (!copy.some(Array.isArray)) return copy;
+  return copy.flatMap((item) => (Array.isArray(item) ? flat(item, levels - 1) : [item]));
+}
+
+/** Flattens an array of any type and nesting, such as `[[1, 2]]` or the data of a tensor; `null` for anything else. */
 export function flattened(value: unknown): unknown[] | null {
-  if (Array.isArray(value)) return value.flat(Number.POSITIVE_INFINITY);
-  if (ArrayBuffer.isView(value) && "length" in value) return Array.from(value as unknown as ArrayLike<unknown>);
+  try {
+    if (Array.isArray(value)) return flat(value, MAX_NESTING);
+    if (typedArrayKind(value) !== undefined) return Array.from(value as ArrayLike<unknown>);
+  } catch {
+    // Memory that is not there, a proxy that throws, or an array within itself.
+  }
   return null;
 }
 
@@ -92,6 +108,11 @@ export function oneOf<T extends string>(argument: string, value: unknown, words:
   if (words.includes(value as T)) return value as T;
   const expected = words.map((word) => JSON.stringify(word)).join(" or ");
   throw failure("INVALID_OPTION", argument, describe(value), expected, "Check the spelling.");
+}
+
+/** The options of a call. */
+export function optionsOf<T extends object>(options: T): T {
+  return record("options", options, "an object with options") as T;
 }
 
 /** An object with properties. */

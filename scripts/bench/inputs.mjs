@@ -64,6 +64,16 @@ function declaredSymmetry(folder) {
     : symmetryAxes.map(({ axis, fold }) => (Number.isInteger(fold) ? { axis, fold } : { axis }));
 }
 
+/** The core, and its memory, in a new instance. */
+export async function freshCore() {
+  const [{ createAligner }, glue] = await Promise.all(["index.js", "wasm/core.js"].map(packageModule));
+  const aligner = await createAligner();
+  glue.__wbg_reset_state();
+  /** @type {WebAssembly.Memory} */
+  const memory = (await glue.default()).memory;
+  return { aligner, memory };
+}
+
 /** @typedef {TypedCase["mesh"]} Mesh */
 
 /**

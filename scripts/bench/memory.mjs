@@ -7,7 +7,7 @@ import { join } from "node:path";
 import { buildPackage } from "../lib/package.mjs";
 import { step } from "../lib/step.mjs";
 import { command, count } from "./command.mjs";
-import { bumpyRing, packageModule, pictureOf, qualities } from "./inputs.mjs";
+import { bumpyRing, freshCore, packageModule, pictureOf, qualities } from "./inputs.mjs";
 import { fixed, markdownTable } from "./table.mjs";
 
 /** @typedef {import("./inputs.mjs").TypedCase} TypedCase */
@@ -55,16 +55,6 @@ async function meshFrom(folder) {
   }
   if (best === null) throw new Error(`${folder} holds no GLB file. Remedy: name another, or leave --meshes out.`);
   return best;
-}
-
-/** The core, and its memory, in a new instance. */
-async function freshCore() {
-  const [{ createAligner }, glue] = await Promise.all(["index.js", "wasm/core.js"].map(packageModule));
-  const aligner = await createAligner();
-  glue.__wbg_reset_state();
-  /** @type {WebAssembly.Memory} */
-  const memory = (await glue.default()).memory;
-  return { aligner, memory };
 }
 
 /**

@@ -119,7 +119,7 @@ test("a failed load says what to do, and the next one tries again", () => {
     await assert.rejects(aligner.align(files), { code: "UNSUPPORTED_FORMAT" });
     const other = await createAligner({ registrationWasm: missing });
     await assert.rejects(estimate(other), { code: "NOT_INITIALISED", argument: "registrationWasm" });
-    await estimate(other);
+    await estimate(aligner);
     console.log("done");
   `);
   assert.equal(output.trim(), "done");

@@ -32,10 +32,7 @@ const near = (a: number, b: number) => Math.abs(a / b - 1) < 1e-6;
 type Check = (found: Alignment) => boolean;
 const effects: readonly [options: AlignOptions & { metrics?: true }, check: Check][] = [
   [{ quality: "balanced" }, (found) => found.diagnostics.counts.renders > plain.diagnostics.counts.renders],
-  [
-    { quality: "best", workBudget: 100 },
-    (found) => found.diagnostics.counts.renders > 0 && "features" in found.diagnostics.timingsMs,
-  ],
+  [{ quality: "best", workBudget: 100 }, (found) => found.diagnostics.effort === "best"],
   [{ scale: 0.9 * truth.scale }, (found) => near(found.scale, 0.9 * truth.scale)],
   [{ scale: [0.05, 0.2] }, (found) => near(found.scale, plain.scale) && !found.diagnostics.clamped],
   [{ scale: [1.1 * truth.scale, 1] }, (found) => found.scale >= 1.1 * truth.scale - 1e-9 && found.diagnostics.clamped],

@@ -36,7 +36,16 @@ fn cpu_seconds() -> Option<f64> {
 
     let mut text = [0; 64];
     let length = SCHEDSTAT.with(|file| file.as_ref()?.read_at(&mut text, 0).ok())?;
-    let nanoseconds = text[..length].split(|byte| *byte == b' ').next()?;
+    seconds_in(&text[..length])
+}
+
+/// CPU seconds of the main thread, on Linux.
+pub fn of_main_thread() -> Option<f64> {
+    seconds_in(&std::fs::read("/proc/self/schedstat").ok()?)
+}
+
+fn seconds_in(schedstat: &[u8]) -> Option<f64> {
+    let nanoseconds = schedstat.split(|byte| *byte == b' ').next()?;
     let nanoseconds: f64 = core::str::from_utf8(nanoseconds).ok()?.parse().ok()?;
     Some(nanoseconds * 1e-9)
 }

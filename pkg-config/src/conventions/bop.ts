@@ -1,6 +1,6 @@
 /** Poses in the format of the BOP benchmark. */
 import type { Sim3, Sim3Like } from "../sim3.js";
-import { finiteNumbers, positive, record, vector3, whole } from "../values.js";
+import { finiteNumbers, optionsOf, positive, record, vector3, whole } from "../values.js";
 import { type Matrix3, rotationOf } from "./rotation.js";
 import { sim3Of, similarityOf } from "./similarity.js";
 
@@ -35,7 +35,8 @@ export interface BopExport {
  * const modelMm = mesh.positions.map((x) => 1000 * scale * x);
  * @throws {@link Sim3AlignError} if the transform is not a similarity
  */
-export function toBop(transform: Sim3Like, { objId }: { objId?: number } = {}): BopExport {
+export function toBop(transform: Sim3Like, options: { objId?: number } = {}): BopExport {
+  const { objId } = optionsOf(options);
   const { scale, rotation, translation } = similarityOf(transform);
   const entry = { cam_R_m2c: [...rotation], cam_t_m2c: translation.map((metres) => 1000 * metres) };
   return { entry: objId === undefined ? entry : { ...entry, obj_id: whole("options.objId", objId, 0) }, scale };
@@ -53,7 +54,8 @@ export function toBop(transform: Sim3Like, { objId }: { objId?: number } = {}): 
  * await aligner.evaluate(input, result, { truth });
  * @throws {@link Sim3AlignError} for missing or invalid numbers
  */
-export function fromBop(entry: BopPose, { scale = 0.001 }: { scale?: number } = {}): Sim3 {
+export function fromBop(entry: BopPose, options: { scale?: number } = {}): Sim3 {
+  const { scale = 0.001 } = optionsOf(options);
   const { cam_R_m2c, cam_t_m2c } = record("entry", entry, "an entry of scene_gt.json");
   const nine = finiteNumbers("entry.cam_R_m2c", cam_R_m2c, 9, "nine finite numbers, row-major");
   const [x, y, z] = vector3("entry.cam_t_m2c", cam_t_m2c);

@@ -1,6 +1,15 @@
 /** Cuboids for annotation tools. */
 
-import { finiteNumbers, oneOf, positive, type Quaternion, record, type Vector3, vector3 } from "../values.js";
+import {
+  finiteNumbers,
+  oneOf,
+  optionsOf,
+  positive,
+  type Quaternion,
+  record,
+  type Vector3,
+  vector3,
+} from "../values.js";
 import { type CameraFrame, turnTo } from "./frames.js";
 import type { ObjectBox } from "./object-box.js";
 import {
@@ -53,10 +62,8 @@ export interface Cuboid {
  * const { center, size, yawRad } = toCuboid(objectDimensions(mesh, result));
  * @throws {@link Sim3AlignError} for an invalid box, and `INVALID_OPTION` if the axes are not perpendicular
  */
-export function toCuboid(
-  box: Pick<ObjectBox, "sizeM" | "centerM" | "rotation">,
-  { frame = "ros", front = "z", up = "y" }: CuboidOptions = {},
-): Cuboid {
+export function toCuboid(box: Pick<ObjectBox, "sizeM" | "centerM" | "rotation">, options: CuboidOptions = {}): Cuboid {
+  const { frame = "ros", front = "z", up = "y" } = optionsOf(options);
   const { sizeM, centerM, rotation } = record("box", box, "{ sizeM, centerM, rotation }");
   const sides = finiteNumbers("box.sizeM", sizeM, 3, "three finite numbers") as Vector3;
   for (const side of sides) if (side !== 0) positive("box.sizeM", side);

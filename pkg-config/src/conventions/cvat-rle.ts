@@ -3,7 +3,7 @@ import { describe } from "../error.js";
 import { type ImageSize, sizeOf } from "../formats/pixels.js";
 import { filledRuns } from "../formats/runs.js";
 import type { PixelArray } from "../input/types.js";
-import { failure, isRecord, whole } from "../values.js";
+import { failure, flattened, isRecord, whole } from "../values.js";
 
 /** A `<mask>` element of CVAT's XML ("CVAT for images"); attributes may be strings, as returned by an XML parser. */
 export interface CvatMaskElement {
@@ -52,11 +52,11 @@ interface BoxRuns {
 }
 
 function fromPoints(points: unknown): BoxRuns {
-  if (!Array.isArray(points) && !ArrayBuffer.isView(points)) {
+  const numbers = flattened(points);
+  if (numbers === null) {
     const expected = "[run, run, …, left, top, right, bottom], or { rle, left, top, width, height }";
     throw failure("INVALID_ARGUMENT", "mask", describe(points), expected, "Pass the points of a mask shape.");
   }
-  const numbers = Array.from(points as unknown as ArrayLike<unknown>);
   if (numbers.length < 5) {
     const remedy = "Pass the points of a shape of type mask.";
     throw failure(

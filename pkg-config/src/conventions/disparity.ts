@@ -2,7 +2,7 @@
 
 import { pixelsOf, pointKinds } from "../formats/pixels.js";
 import type { PixelArray } from "../input/types.js";
-import { finite } from "../values.js";
+import { finite, record } from "../values.js";
 
 /**
  * Converts relative inverse depth (disparity), the output of the relative models of Depth Anything and MiDaS, to depth
@@ -25,8 +25,9 @@ export function depthFromDisparity(
   calibration: { scale: number; shift?: number },
 ): PixelArray<Float32Array> {
   const { data, width, height } = pixelsOf<Float32Array>("disparity", disparity, pointKinds);
-  const scale = finite("calibration.scale", calibration?.scale);
-  const shift = finite("calibration.shift", calibration?.shift ?? 0);
+  const given = record("calibration", calibration, "{ scale, shift? }");
+  const scale = finite("calibration.scale", given.scale);
+  const shift = finite("calibration.shift", given.shift ?? 0);
   const depth = data.map((d) => {
     const metres = 1 / (scale * d + shift);
     return Number.isFinite(metres) && metres > 0 ? metres : 0;

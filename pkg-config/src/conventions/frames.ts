@@ -1,6 +1,6 @@
 /** Camera frames of other tools. */
 import type { Sim3, Sim3Like } from "../sim3.js";
-import { oneOf, type Quaternion, type Vector3 } from "../values.js";
+import { oneOf, optionsOf, type Quaternion, type Vector3 } from "../values.js";
 import { type Matrix3, transposed } from "./rotation.js";
 import { composed, type Similarity, sim3Of, similarityOf } from "./similarity.js";
 
@@ -118,7 +118,8 @@ export interface RosPose {
  * const { position, orientation, scale } = toRos(result);    // header.frame_id: "camera_link"
  * @throws {@link Sim3AlignError} if the transform is not a similarity, and `INVALID_OPTION` for another frame
  */
-export function toRos(transform: Sim3Like, { frame = "body" }: { frame?: "body" | "optical" } = {}): RosPose {
+export function toRos(transform: Sim3Like, options: { frame?: "body" | "optical" } = {}): RosPose {
+  const { frame = "body" } = optionsOf(options);
   const isBody = oneOf("options.frame", frame, ["body", "optical"]) === "body";
   const { rotation, translation, scale } = toFrame(transform, isBody ? "ros" : "opencv");
   const [[x, y, z], [qx, qy, qz, qw]] = [translation, rotation];

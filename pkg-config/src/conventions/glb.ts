@@ -1,8 +1,10 @@
 /** Export of placed meshes, and placement of existing GLB files. */
+import { checkAttached } from "../attached.js";
 import { describe } from "../error.js";
 import type { MeshArrays } from "../input/types.js";
+import { isBuffer } from "../kinds.js";
 import type { Sim3Like } from "../sim3.js";
-import { failure, isKind, isRecord, isTypedArray, oneOf, wrongKind } from "../values.js";
+import { failure, isRecord, isTypedArray, oneOf, optionsOf, wrongKind } from "../values.js";
 import { inFrame } from "./frames.js";
 import { type GltfNode, type GltfNodeOptions, toGltfNode } from "./gltf-node.js";
 import { meshOf } from "./mesh.js";
@@ -32,7 +34,7 @@ const binaryChunk = 0x004e4942;
  */
 export function exportGlb(mesh: MeshArrays, transform: Sim3Like, options: GlbOptions = {}): Uint8Array {
   const { positions, indices } = meshOf("mesh", mesh);
-  const { mode = "node", frame = "opengl" } = options;
+  const { mode = "node", frame = "opengl" } = optionsOf(options);
   const isBaked = oneOf("options.mode", mode, ["node", "baked"]) === "baked";
   const node = toGltfNode(transform, options);
   const placed = sim3Of(inFrame("options.frame", similarityOf(transform), frame));
@@ -141,8 +143,8 @@ function glbOf(json: object, others: readonly (readonly [type: number, content: 
 }
 
 function chunksOf(glb: unknown): { json: Record<string, unknown>; others: [number, Uint8Array][] } {
-  const isBuffer = isKind<ArrayBuffer>(glb, "ArrayBuffer");
-  const bytes = isBuffer ? new Uint8Array(glb) : isTypedArray<Uint8Array>(glb, "Uint8Array") ? glb : null;
+  if (isBuffer(glb) || isTypedArray(glb, "Uint8Array")) checkAttached("glb", glb);
+  const bytes = isBuffer(glb) ? new Uint8Array(glb) : isTypedArray<Uint8Array>(glb, "Uint8Array") ? glb : null;
   if (bytes === null) throw wrongKind("glb", glb, "the bytes of a GLB file", "Uint8Array");
   const corrupt = (found: string) =>
     failure("CORRUPT_FILE", "glb", found, "a complete GLB file", "Pass the aligned file unchanged.");

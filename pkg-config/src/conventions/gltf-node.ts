@@ -1,7 +1,7 @@
 /** Transforms as glTF nodes. */
 import type { Sim3Like } from "../sim3.js";
 import type { Quaternion, Vector3 } from "../values.js";
-import { isRecord } from "../values.js";
+import { isRecord, optionsOf } from "../values.js";
 import { type CameraFrame, inFrame } from "./frames.js";
 import { sim3Of, similarityOf } from "./similarity.js";
 
@@ -39,10 +39,8 @@ export interface GltfNode {
  * gltf.nodes.push({ ...toGltfNode(result), mesh: 0 });
  * @throws {@link Sim3AlignError} if the transform is not a similarity, and `INVALID_OPTION` for an unknown frame
  */
-export function toGltfNode(
-  transform: Sim3Like,
-  { frame = "opengl", metrics, name = "sim3align" }: GltfNodeOptions = {},
-): GltfNode {
+export function toGltfNode(transform: Sim3Like, options: GltfNodeOptions = {}): GltfNode {
+  const { frame = "opengl", metrics, name = "sim3align" } = optionsOf(options);
   const { scale, rotation, translation } = sim3Of(inFrame("options.frame", similarityOf(transform), frame));
   const known = { metrics, ...factsOf(transform, metrics) };
   const facts = Object.fromEntries(Object.entries(known).filter(([, fact]) => fact !== undefined && fact !== null));

@@ -2,7 +2,7 @@
 import { describe } from "../error.js";
 import { type ImageSize, sizeOf } from "../formats/pixels.js";
 import type { PixelArray } from "../input/types.js";
-import { failure } from "../values.js";
+import { failure, flattened } from "../values.js";
 
 /**
  * Decodes a brush annotation of Label Studio (`BrushLabels`, `format: "rle"`).
@@ -51,10 +51,8 @@ export function fromLabelStudioRle(rle: ArrayLike<number>, image: ImageSize): Pi
 }
 
 function bytesOf(rle: unknown): ArrayLike<number> {
-  const isList = Array.isArray(rle) || ArrayBuffer.isView(rle);
-  if (isList && Array.prototype.every.call(rle, (byte) => Number.isInteger(byte) && byte >= 0 && byte < 256)) {
-    return rle as ArrayLike<number>;
-  }
+  const bytes = flattened(rle) as number[] | null;
+  if (bytes?.every((byte) => Number.isInteger(byte) && byte >= 0 && byte < 256)) return bytes;
   const expected = "bytes: integers from 0 to 255";
   throw failure("INVALID_ARGUMENT", "rle", describe(rle), expected, "Pass value.rle of a result of type brushlabels.");
 }

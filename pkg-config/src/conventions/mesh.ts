@@ -1,4 +1,5 @@
 /** Validation of meshes in arrays. */
+import { checkAttached } from "../attached.js";
 import { describe } from "../error.js";
 import type { MeshArrays } from "../input/types.js";
 import { failure, isTypedArray, record, wrongKind } from "../values.js";
@@ -20,6 +21,7 @@ export function meshOf(argument: string, mesh: unknown): Mesh {
   if (!isTypedArray<Float32Array>(positions, "Float32Array")) {
     throw wrongKind(named, positions, "a Float32Array, x, y, z per vertex", "Float32Array");
   }
+  checkAttached(named, positions);
   const count = positions.length / 3;
   if (count === 0) throw failure("EMPTY_MESH", argument, "no vertex", "triangles", "Pass a mesh.");
   if (!Number.isInteger(count)) {
@@ -44,6 +46,7 @@ export function meshOf(argument: string, mesh: unknown): Mesh {
   if (!isTypedArray<Uint32Array | Uint16Array>(indices, "Uint32Array", "Uint16Array")) {
     throw wrongKind(namedIndices, indices, "a Uint32Array or a Uint16Array", "Uint32Array");
   }
+  checkAttached(namedIndices, indices);
   if (indices.length === 0) throw failure("EMPTY_MESH", argument, "no triangle", "triangles", "Pass a mesh.");
   if (indices.length % 3 !== 0) {
     const remedy = "Split polygons into triangles.";

@@ -1,7 +1,7 @@
 /** Bounding boxes of aligned objects, and thereby their dimensions. */
 import type { MeshArrays } from "../input/types.js";
 import type { Sim3Like } from "../sim3.js";
-import { oneOf, type Quaternion, type Vector3 } from "../values.js";
+import { oneOf, optionsOf, type Quaternion, type Vector3 } from "../values.js";
 import { type Mesh, meshOf } from "./mesh.js";
 import { smallestBoxAxes } from "./minimal-box.js";
 import { type Matrix3, product, quaternionOf, transposed, turned } from "./rotation.js";
@@ -43,11 +43,8 @@ export interface DimensionOptions {
  * const { sizeM: [width, height, depth] } = objectDimensions(mesh, result);
  * @throws {@link Sim3AlignError} for an invalid mesh or transform, and `INVALID_OPTION`
  */
-export function objectDimensions(
-  mesh: MeshArrays,
-  transform: Sim3Like,
-  { box = "axes" }: DimensionOptions = {},
-): ObjectBox {
+export function objectDimensions(mesh: MeshArrays, transform: Sim3Like, options: DimensionOptions = {}): ObjectBox {
+  const { box = "axes" } = optionsOf(options);
   const checked = meshOf("mesh", mesh);
   const similarity = similarityOf(transform);
   const isMinimal = oneOf("options.box", box, ["axes", "minimal"]) === "minimal";

@@ -12,7 +12,7 @@ import {
   sizeOf,
 } from "../formats/pixels.js";
 import type { PinholeCamera, PixelArray } from "../input/types.js";
-import { failure, record, whole } from "../values.js";
+import { failure, optionsOf, record, whole } from "../values.js";
 
 /** A region of an image, in integer pixels. */
 export interface PixelBox extends ImageSize {
@@ -108,7 +108,8 @@ export function resizeCamera(
  * const box = maskBox(mask, { marginPx: 40 });
  * @throws {@link Sim3AlignError} `EMPTY_MASK` if no pixel is the object
  */
-export function maskBox(mask: PixelArray<MaskPixels>, { marginPx = 0 }: { marginPx?: number } = {}): PixelBox {
+export function maskBox(mask: PixelArray<MaskPixels>, options: { marginPx?: number } = {}): PixelBox {
+  const { marginPx = 0 } = optionsOf(options);
   const { data, width, height } = pixelsOf<MaskPixels>("mask", mask, maskKinds);
   const margin = whole("options.marginPx", marginPx, 0);
   let [left, top, right, bottom] = [width, height, -1, -1];

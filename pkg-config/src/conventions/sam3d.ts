@@ -1,6 +1,6 @@
 /** Layouts of SAM 3D Objects. */
 import type { Sim3, Sim3Like } from "../sim3.js";
-import { failure, finiteNumbers, flattened, oneOf, record, type Vector3, vector3 } from "../values.js";
+import { failure, finiteNumbers, flattened, oneOf, optionsOf, record, type Vector3, vector3 } from "../values.js";
 import { turnTo } from "./frames.js";
 import {
   type Matrix3,
@@ -53,7 +53,8 @@ const zUp = (vertices: Sam3dVertices) => zUpFrom[oneOf("options.vertices", verti
  * await aligner.align(input, { initial });
  * @throws {@link Sim3AlignError} for missing or invalid numbers; `INVALID_TRANSFORM` for a non-uniform scale
  */
-export function fromSam3d(layout: Sam3dLayout, { vertices = "glb" }: { vertices?: Sam3dVertices } = {}): Sim3 {
+export function fromSam3d(layout: Sam3dLayout, options: { vertices?: Sam3dVertices } = {}): Sim3 {
+  const { vertices = "glb" } = optionsOf(options);
   const { scale, rotation, translation } = record("layout", layout, "{ scale, rotation, translation }");
   const q = xyzwFromWxyz(finiteNumbers("layout.rotation", rotation, 4, "a quaternion: four finite numbers, w first"));
   const camera = turnTo("frame", "pytorch3d");
@@ -89,8 +90,9 @@ function uniformScale(value: unknown): number {
  */
 export function toSam3d(
   transform: Sim3Like,
-  { vertices = "glb" }: { vertices?: Sam3dVertices } = {},
+  options: { vertices?: Sam3dVertices } = {},
 ): { scale: Vector3; rotation: [w: number, x: number, y: number, z: number]; translation: Vector3 } {
+  const { vertices = "glb" } = optionsOf(options);
   const { scale, rotation, translation } = similarityOf(transform);
   const camera = turnTo("frame", "pytorch3d");
   const fromZUp = product(product(camera, rotation), transposed(zUp(vertices)));

@@ -1,7 +1,17 @@
 /** Conversions and operations of similarity transforms. */
+import { checkAttached } from "../attached.js";
 import { describe } from "../error.js";
 import type { Sim3, Sim3Like } from "../sim3.js";
-import { failure, finiteNumbers, isRecord, isTypedArray, type Vector3, vector3, wrongKind } from "../values.js";
+import {
+  failure,
+  finiteNumbers,
+  flattened,
+  isRecord,
+  isTypedArray,
+  type Vector3,
+  vector3,
+  wrongKind,
+} from "../values.js";
 import {
   determinant,
   entry,
@@ -40,7 +50,7 @@ export function similarityOf(transform: unknown, argument = "transform"): Simila
 
 function rotationFrom(argument: string, value: unknown): Matrix3 {
   const expected = "a quaternion x, y, z, w, or nine numbers, row-major";
-  if ((value as ArrayLike<unknown> | undefined)?.length === 4) return rotationFromQuaternion(argument, value);
+  if (flattened(value)?.length === 4) return rotationFromQuaternion(argument, value);
   return rotationOf(argument, finiteNumbers(argument, value, 9, expected) as unknown as Matrix3);
 }
 
@@ -159,6 +169,7 @@ export function applyToPoints<T extends Float32Array | Float64Array>(transform: 
   if (!isTypedArray<T>(points, "Float32Array", "Float64Array")) {
     throw wrongKind("points", points, "a Float32Array or a Float64Array, x, y, z per point", "Float32Array");
   }
+  checkAttached("points", points);
   if (points.length % 3 !== 0) {
     throw failure(
       "WRONG_LENGTH",

@@ -1,8 +1,10 @@
 /** Masks and depth maps from tensors of transformers.js. */
+import { checkAttached } from "../attached.js";
 import { describe } from "../error.js";
 import { checkCount } from "../formats/pixels.js";
 import type { PixelArray } from "../input/types.js";
-import { failure, flattened, isTypedArray, record, whole } from "../values.js";
+import { typedArrayKind } from "../kinds.js";
+import { failure, flattened, isKind, isRecord, isTypedArray, record, whole, wrongKind } from "../values.js";
 
 /** A tensor of transformers.js, or any object with `data` and `dims`. */
 export interface TensorLike {
@@ -21,14 +23,19 @@ export interface MaskChoice {
 }
 
 function dimensions(tensor: unknown) {
-  const { data, dims } = record("tensor", tensor, "a tensor: { data, dims }");
-  if (!Array.isArray(dims) || dims.length < 2) {
+  const { data, dims: given } = record("tensor", tensor, "a tensor: { data, dims }");
+  const dims = flattened(given);
+  if (dims === null || dims.length < 2) {
     const expected = "[…, height, width]";
-    throw failure("INVALID_ARGUMENT", "tensor.dims", describe(dims), expected, "Pass one tensor, not a list of them.");
+    throw failure("INVALID_ARGUMENT", "tensor.dims", describe(given), expected, "Pass one tensor, not a list of them.");
   }
   const [height, width] = dims.slice(-2).map((dimension) => whole("tensor.dims", dimension, 1)) as [number, number];
   const count = dims.slice(0, -2).reduce((all: number, dimension) => all * whole("tensor.dims", dimension, 1), 1);
-  checkCount("tensor.data", (data as ArrayLike<unknown> | undefined)?.length ?? 0, { width, height }, count);
+  if (typedArrayKind(data) === undefined && !isKind(data, "Array")) {
+    throw wrongKind("tensor.data", data, "a typed array", "Float32Array");
+  }
+  checkAttached("tensor.data", data);
+  checkCount("tensor.data", (data as ArrayLike<unknown>).length, { width, height }, count);
   return { data, width, height, count };
 }
 
@@ -45,11 +52,12 @@ function dimensions(tensor: unknown) {
  * const mask = maskFromTensor(masks, { scores: iou_scores });
  * @throws {@link Sim3AlignError} if dimensions and data do not match, or no mask is selected
  */
-export function maskFromTensor(tensor: TensorLike, { index, scores }: MaskChoice = {}): PixelArray<Uint8Array> {
+export function maskFromTensor(tensor: TensorLike, choice: MaskChoice = {}): PixelArray<Uint8Array> {
+  const { index, scores } = record("choice", choice, "{ index } or { scores }") as MaskChoice;
   const { data, width, height, count } = dimensions(tensor);
   const chosen = index ?? (scores === undefined ? undefined : best(scores, count)) ?? (count === 1 ? 0 : undefined);
   if (chosen === undefined || !Number.isInteger(chosen) || chosen < 0 || chosen >= count) {
-    const found = chosen === undefined ? `no choice among ${count} masks` : String(chosen);
+    const found = chosen === undefined ? `no choice among ${count} masks` : describe(chosen);
     const remedy = "Pass { scores: iou_scores }, or the index of a mask.";
     throw failure("INVALID_OPTION", "choice", found, `an index below ${count}, or scores`, remedy);
   }
@@ -64,7 +72,7 @@ export function maskFromTensor(tensor: TensorLike, { index, scores }: MaskChoice
 }
 
 function best(scores: TensorLike | ArrayLike<number>, count: number): number {
-  const numbers = flattened("data" in scores ? scores.data : scores) as number[] | null;
+  const numbers = flattened(isRecord(scores) ? scores.data : scores) as number[] | null;
   if (numbers?.length !== count) {
     const found = numbers === null ? describe(scores) : `${numbers.length} scores`;
     throw failure("WRONG_LENGTH", "choice.scores", found, `one for each of ${count} masks`, "Pass iou_scores.");

@@ -1,9 +1,9 @@
 /** COCO's run-length encoding of masks: column-major runs, starting with background. */
 import { describe } from "../error.js";
 import type { CocoRle, PixelArray } from "../input/types.js";
-import { failure, finiteNumbers, isRecord, record, whole } from "../values.js";
+import { failure, finiteNumbers, flattened, isRecord, record, whole } from "../values.js";
 import { type JsonFile, numbersIn, parsedJson } from "./json.js";
-import { type ImageSize, type MaskPixels, maskKinds, pixelsOf } from "./pixels.js";
+import { type ImageSize, MAX_PIXELS, type MaskPixels, maskKinds, pixelsOf } from "./pixels.js";
 import { filledRuns } from "./runs.js";
 
 /**
@@ -80,13 +80,11 @@ export function readRleFile(argument: string, file: JsonFile): PixelArray<Uint8A
 /** The validated run lengths of an array or a compressed string. */
 function runsOf(argument: string, counts: unknown): number[] {
   if (typeof counts === "string") return decompressed(argument, counts);
-  if (Array.isArray(counts) || ArrayBuffer.isView(counts)) return Array.from(counts as ArrayLike<number>);
+  const runs = flattened(counts);
+  if (runs !== null) return runs as number[];
   const remedy = "Rasterise polygons first, for example with pycocotools' annToMask.";
   throw failure("INVALID_ARGUMENT", argument, describe(counts), "a string, or an array of run lengths", remedy);
 }
-
-/** Maximum number of pixels of a mask, as for image files: 8192 × 8192. */
-const MAX_PIXELS = 1 << 26;
 
 /** Checks a size before allocation, because the file may be malicious. */
 function checkSize(argument: string, { width, height }: ImageSize): void {

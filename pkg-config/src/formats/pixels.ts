@@ -1,4 +1,5 @@
 /** Images: pixels and their size. */
+import { checkAttached } from "../attached.js";
 import type { PixelArray } from "../input/types.js";
 import { failure, isTypedArray, record, whole, wrongKind } from "../values.js";
 
@@ -16,10 +17,22 @@ export type MaskPixels = Uint8Array | Uint8ClampedArray;
 /** The pixels of a depth map. */
 export type DepthPixels = Float32Array | Uint16Array;
 
-/** Validates an image size of at least one pixel. */
+/** Maximum number of pixels of an image, as for image files: 8192 × 8192. */
+export const MAX_PIXELS = 1 << 26;
+
+/** Validates an image size of at least one pixel, before memory is allocated for it. */
 export function sizeOf(argument: string, size: unknown): ImageSize {
-  const { width, height } = record(argument, size, "{ width, height }");
-  return { width: whole(`${argument}.width`, width, 1), height: whole(`${argument}.height`, height, 1) };
+  const given = record(argument, size, "{ width, height }");
+  const [width, height] = [whole(`${argument}.width`, given.width, 1), whole(`${argument}.height`, given.height, 1)];
+  if (width * height <= MAX_PIXELS) return { width, height };
+  const expected = `at most ${MAX_PIXELS} pixels (8192 × 8192)`;
+  throw failure(
+    "INVALID_ARGUMENT",
+    argument,
+    `${width} × ${height} pixels`,
+    expected,
+    "Check the order of the numbers.",
+  );
 }
 
 /** Validates an image: its array type, and the number of its values. */
@@ -32,6 +45,7 @@ export function pixelsOf<T extends ArrayLike<number>>(
   const { data } = record(argument, image, "{ data, width, height }");
   const { width, height } = sizeOf(argument, image);
   if (!isTypedArray<T>(data, ...kinds)) throw wrongKind(`${argument}.data`, data, kinds.join(" or "), kinds[0] ?? "");
+  checkAttached(`${argument}.data`, data);
   checkCount(`${argument}.data`, data.length, { width, height }, channels);
   return { data, width, height };
 }

@@ -29,7 +29,7 @@ const faults = ["INTERNAL", "WORKER_FAILED", "NOT_INITIALISED"];
  * @param allowed codes that the circumstances explain
  */
 export function checkError(error: unknown, reasons: readonly unknown[] = [], allowed: readonly string[] = []): void {
-  if (error instanceof Thrown || reasons.includes(error) || isOfListener(error)) return;
+  if (error instanceof Thrown || reasons.includes(error) || isOfListener(error) || isOfProxy(error)) return;
   if (!(error instanceof Sim3AlignError)) throw new Error("an error without type", { cause: error });
   const { code, argument, found, expected, remedy, message } = error;
   if (faults.includes(code) && !allowed.includes(code)) throw new Error(`a fault: ${message}`, { cause: error });
@@ -41,6 +41,10 @@ export function checkError(error: unknown, reasons: readonly unknown[] = [], all
 /** Whether a function of the caller threw this when it was called: a class is one that cannot be called. */
 const isOfListener = (error: unknown) =>
   error instanceof TypeError && /^Class constructor WithAccessors cannot be invoked/.test(error.message);
+
+/** Whether a proxy of the caller threw this when it was read: it contradicts its target. */
+const isOfProxy = (error: unknown) =>
+  error instanceof TypeError && /^'get' on proxy: property .* read-only and non-configurable/.test(error.message);
 
 /** Options that may be valid. */
 function options(random: Random, method: keyof typeof OPTIONS): Fields {

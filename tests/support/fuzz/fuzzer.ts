@@ -1,10 +1,14 @@
-/** The fuzzer of the package: odd calls without and with workers, and storms of a pool. Each execution has a seed. */
+/**
+ * The fuzzer of the package: odd calls without and with workers, storms of a pool, and odd calls of the conventions. Each
+ * execution has a seed.
+ */
 import assert from "node:assert/strict";
 import { type Aligner, createAligner } from "sim3align";
 import { Random } from "../random.js";
 import { withoutTimes } from "../results.js";
 import { input } from "../scene.js";
 import { checkError, type Outcome, outcomeOf, randomCall } from "./calls.js";
+import { conventionCall } from "./conventions.js";
 import { storm } from "./storm.js";
 
 /** A kind of execution: what it does with a seed, and how many calls that were. */
@@ -14,6 +18,7 @@ export type Target = (seed: number) => Promise<number>;
 export interface Targets {
   calls: Target;
   storms: Target;
+  conventions: Target;
   /** Checks that nothing was left behind, and ends the workers. */
   end(): Promise<void>;
 }
@@ -61,6 +66,21 @@ export async function targets(): Promise<Targets> {
         return 2;
       }),
     storms: (seed) => guarded("storms", seed, () => storm(new Random(seed))),
+    conventions: (seed) =>
+      guarded("conventions", seed, async () => {
+        const { name, call } = conventionCall(new Random(seed));
+        try {
+          // Not awaited: the result may hold a `then` of the caller.
+          call();
+        } catch (thrown) {
+          try {
+            checkError(thrown);
+          } catch (error) {
+            throw new Error(`${name}: ${(error as Error).message}`, { cause: (error as Error).cause ?? error });
+          }
+        }
+        return 1;
+      }),
     async end() {
       for (const aligner of aligners) assert.deepEqual(await bits(aligner), expected, "other bits afterwards");
       for (const aligner of aligners) aligner.dispose();

@@ -5,7 +5,7 @@ import { type Target, targets } from "./fuzzer.js";
 const MAX_FINDINGS = 20;
 
 const [minutes = 1, first = 0] = process.argv.slice(2).map(Number);
-const { calls, storms, end } = await targets();
+const { calls, storms, conventions, end } = await targets();
 const findings = new Map<string, string>();
 const counts = { executions: 0, calls: 0 };
 // A rejection that nobody handles is a finding of the target that runs.
@@ -25,6 +25,8 @@ async function run(target: Target, seed: number): Promise<void> {
 
 for (let seed = first + 1; performance.now() < until && findings.size < MAX_FINDINGS; seed++) {
   await run(calls, seed);
+  // These take a hundredth of the time.
+  for (let i = 0; i < 20; i++) await run(conventions, 20 * seed + i);
   // A storm takes as long as many calls.
   if (seed % 50 === 0) await run(storms, seed);
 }

@@ -6,19 +6,19 @@ use std::panic;
 use std::path::Path;
 use std::process::exit;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use sim3align_lab::fuzz::choices::Choices;
 use sim3align_lab::fuzz::target::{Answer, Ceilings, Execution, Target};
 
 use super::super::Failure;
 use super::arguments::Arguments;
-use sim3align_lab::fuzz::cpu::CpuTimer;
+use sim3align_lab::fuzz::cpu::{CpuTimer, of_main_thread};
 
 /// Exit status after a fault that was printed.
 pub const FAULT: i32 = 3;
-/// Times the ceiling after which a call is given up.
-const PATIENCE: f64 = 4.0;
+/// Times the ceiling after which a call is given up: of computing, and of waiting.
+const PATIENCE: [f64; 2] = [4.0, 40.0];
 /// Milliseconds between looks at the current call.
 const LOOK_MS: u64 = 100;
 
@@ -94,12 +94,17 @@ fn watch(ceilings: Ceilings) {
         fault(&format!("panic at {place}: {words}"));
     }));
     std::thread::spawn(move || {
-        let (mut last, mut looks) = (u64::MAX, 0);
+        let (mut last, mut began) = (u64::MAX, (0.0, Instant::now()));
         loop {
             let current = CURRENT.load(Ordering::Relaxed);
-            looks = if current == last { looks + 1 } else { 0 };
-            last = current;
-            if looks as f64 * LOOK_MS as f64 > 1000.0 * PATIENCE * ceilings.seconds {
+            // Calls are made by the main thread. On a busy machine it computes for a part of the time only.
+            let computing = of_main_thread();
+            if current != last {
+                (last, began) = (current, (computing.unwrap_or_default(), Instant::now()));
+            }
+            let waiting = began.1.elapsed().as_secs_f64();
+            let computing = computing.map_or(waiting, |seconds| seconds - began.0);
+            if computing > PATIENCE[0] * ceilings.seconds || waiting > PATIENCE[1] * ceilings.seconds {
                 fault("hang: no end in sight");
             }
             println!("at {current}");
