@@ -86,7 +86,10 @@ pub fn read_mesh(
 pub fn external_resources(
     #[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue,
 ) -> core::result::Result<Vec<String>, JsValue> {
-    to_bytes("mesh", bytes).and_then(|bytes| gltf::external_resources(&bytes)).map_err(|error| to_js(&error))
+    to_bytes("mesh", bytes)
+        .and_then(|bytes| gltf::external_resources(&bytes))
+        .map(|found| found.shape)
+        .map_err(|error| to_js(&error))
 }
 
 /// Reads a 16-bit grey PNG or a `.npy` array as depth in metres.

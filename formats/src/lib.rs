@@ -1,20 +1,29 @@
-//! File readers: meshes, depth maps, masks, cameras and true poses.
+//! File readers: meshes and their colours, photos, depth maps, masks, cameras and true poses.
 //!
 //! Readers take bytes. For malicious input, they return a value or an error, and allocate memory in proportion to the
 //! input or up to a stated limit.
 
 pub mod bindings;
+mod color;
 mod cursor;
 pub mod depth;
 pub mod gltf;
 pub mod guard;
+mod jpeg;
 pub mod mask;
 pub mod mesh;
 mod mesh_builder;
+mod mtl;
 mod npy;
 mod obj;
+mod orientation;
+mod painted_mesh;
+pub mod photo;
 pub mod ply;
 mod ply_header;
 mod png;
+mod reducer;
 mod stl;
 pub mod text;
+mod texture;
+mod texture_loader;

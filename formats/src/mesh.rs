@@ -7,6 +7,7 @@ use crate::guard::{beginning, unsupported};
 use crate::{obj, ply, stl, text};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::mesh::Mesh;
+use sim3align_geometry::surface_colors::SurfaceColors;
 
 /// The supported mesh formats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -82,19 +83,52 @@ impl fmt::Debug for MeshReadOptions<'_> {
     }
 }
 
-/// Reads a mesh: all parts merged, node transforms applied, in the unit and axes of the file. Unused vertices are
-/// removed; normals, colours and textures are not read.
+/// A mesh and its colours.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ColoredMesh {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// The colours of its surface; `None` if the file has none, or none that can be read.
+    pub colors: Option<SurfaceColors>,
+    /// Why the colours can't be read; the mesh can be used without them.
+    pub problem: Option<Error>,
+}
+
+/// What is read of a mesh file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Content {
+    Shape,
+    ShapeAndColors,
+}
+
+/// Reads the shape of a mesh: all parts merged, node transforms applied, in the unit and axes of the file. Unused
+/// vertices are removed; normals, colours and textures are not read.
 ///
 /// # Errors
 /// [`ErrorCode::UnsupportedFormat`], [`ErrorCode::CorruptFile`], [`ErrorCode::FileTooLarge`],
 /// [`ErrorCode::CompressedMesh`], [`ErrorCode::InvalidArgument`] for a missing external buffer,
 /// and those of [`Mesh::new`].
 pub fn read_mesh(bytes: &[u8], options: &MeshReadOptions<'_>) -> Result<Mesh> {
+    read(bytes, options, Content::Shape).map(|read| read.mesh)
+}
+
+/// Reads a mesh with the colours of its surface: the same mesh as [`read_mesh`], with colours from vertices (glTF
+/// `COLOR_0`, PLY, OBJ), base colour factors and base colour textures (glTF) or an MTL (OBJ). In glTF they are multiplied.
+/// Parts without colour are white. If any texture or attribute of the colours can't be read, there are no colours but a
+/// [`problem`](ColoredMesh::problem): a part painted wrong would mislead.
+///
+/// # Errors
+/// As [`read_mesh`].
+pub fn read_colored_mesh(bytes: &[u8], options: &MeshReadOptions<'_>) -> Result<ColoredMesh> {
+    read(bytes, options, Content::ShapeAndColors)
+}
+
+fn read(bytes: &[u8], options: &MeshReadOptions<'_>, content: Content) -> Result<ColoredMesh> {
     match options.format.or_else(|| MeshFormat::sniff(bytes)) {
-        Some(MeshFormat::Gltf) => gltf::read_gltf(bytes, options.resources),
-        Some(MeshFormat::Obj) => obj::read_obj(bytes),
-        Some(MeshFormat::Ply) => ply::read_ply(bytes),
-        Some(MeshFormat::Stl) => stl::read_stl(bytes),
+        Some(MeshFormat::Gltf) => gltf::read_gltf(bytes, options.resources, content),
+        Some(MeshFormat::Obj) => obj::read_obj(bytes, options.resources, content),
+        Some(MeshFormat::Ply) => ply::read_ply(bytes, content),
+        Some(MeshFormat::Stl) => stl::read_stl(bytes).map(|mesh| ColoredMesh { mesh, colors: None, problem: None }),
         None => Err(unsupported(
             "mesh",
             beginning(bytes),

@@ -2,21 +2,26 @@
 
 use glam::{DMat4, Vec3};
 
+use crate::color::WHITE;
 use crate::guard::{MAX_TRIANGLES, MAX_VERTICES, too_large};
+use crate::painted_mesh::{Paint, PaintedMesh};
 use sim3align_geometry::error::Result;
 use sim3align_geometry::mesh::Mesh;
+use sim3align_geometry::surface_colors::Rgb;
 
 /// Collects the vertices and triangles of a file.
 #[derive(Debug, Default)]
 pub(crate) struct MeshBuilder {
     positions: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
+    /// Of the vertices and triangles so far, or fewer: the rest has no colour or coordinates of its own.
+    paint: Paint,
 }
 
 impl MeshBuilder {
     /// A builder with initial vertices.
     pub fn with_positions(positions: Vec<Vec3>) -> Self {
-        Self { positions, triangles: Vec::new() }
+        Self { positions, ..Self::default() }
     }
 
     /// Number of vertices.
@@ -67,14 +72,61 @@ impl MeshBuilder {
         Ok(())
     }
 
+    /// Sets the sRGB-encoded colour of the last vertex.
+    pub fn color_vertex(&mut self, color: Rgb) {
+        let count = self.positions.len();
+        self.paint.vertex_colors.resize(count.saturating_sub(1), WHITE);
+        self.paint.vertex_colors.push(color);
+    }
+
+    /// Sets the sRGB-encoded colours of all vertices.
+    pub fn color_vertices(&mut self, colors: Vec<Rgb>) {
+        self.paint.vertex_colors = colors;
+    }
+
+    /// Sets the texture coordinates of all triangles, from those of the vertices.
+    pub fn map_vertices(&mut self, coordinates: &[[f32; 2]]) {
+        let of_corner = |corner: u32| coordinates.get(corner as usize).copied().unwrap_or_default();
+        self.paint.coordinates = self.triangles.iter().map(|triangle| triangle.map(of_corner)).collect();
+    }
+
+    /// Sets the texture coordinates of the fan that begins with the triangle of index `first`, from those of its corners.
+    pub fn map_fan(&mut self, first: usize, coordinates: &[[f32; 2]]) {
+        let Some((&center, rest)) = coordinates.split_first() else { return };
+        self.paint.coordinates.resize(first, Default::default());
+        self.paint.coordinates.extend(rest.windows(2).map(|pair| [center, pair[0], pair[1]]));
+    }
+
+    /// The triangles that follow have the material of this index.
+    pub fn use_material(&mut self, material: Option<usize>) {
+        let first = self.triangles.len();
+        while self.paint.parts.last().is_some_and(|part| part.0 >= first) {
+            self.paint.parts.pop();
+        }
+        if self.paint.parts.last().map(|part| part.1) != Some(material) {
+            self.paint.parts.push((first, material));
+        }
+    }
+
     /// Adds a mesh under a transform (f64). If the transform mirrors, the orientation of the triangles is reversed, so
     /// that they still face outward.
-    pub fn append(&mut self, mesh: &Mesh, transform: &DMat4) -> Result<()> {
+    pub fn append(&mut self, part: &PaintedMesh, transform: &DMat4) -> Result<()> {
+        let PaintedMesh { mesh, paint } = part;
         let offset = self.positions.len() as u32;
         for position in mesh.positions() {
             self.push_vertex(transform.transform_point3(position.as_dvec3()).as_vec3())?;
         }
         let mirrored = transform.determinant() < 0.0;
+        if !paint.vertex_colors.is_empty() {
+            self.paint.vertex_colors.resize(offset as usize, WHITE);
+            self.paint.vertex_colors.extend(&paint.vertex_colors);
+        }
+        if !paint.coordinates.is_empty() {
+            self.paint.coordinates.resize(self.triangles.len(), Default::default());
+            let turned = |&[a, b, c]: &[[f32; 2]; 3]| if mirrored { [a, c, b] } else { [a, b, c] };
+            self.paint.coordinates.extend(paint.coordinates.iter().map(turned));
+        }
+        self.use_material(paint.parts.first().and_then(|part| part.1));
         for &[a, b, c] in mesh.triangles() {
             let [a, b, c] = if mirrored { [a, c, b] } else { [a, b, c] };
             self.push_triangle([a + offset, b + offset, c + offset])?;
@@ -87,16 +139,20 @@ impl MeshBuilder {
     ///
     /// # Errors
     /// Those of [`Mesh::new`].
-    pub fn finish(self) -> Result<Mesh> {
-        let mut used = vec![false; self.positions.len()];
-        for &index in self.triangles.as_flattened() {
+    pub fn finish(self) -> Result<PaintedMesh> {
+        let Self { positions, triangles, mut paint } = self;
+        if !paint.vertex_colors.is_empty() {
+            paint.vertex_colors.resize(positions.len(), WHITE);
+        }
+        let mut used = vec![false; positions.len()];
+        for &index in triangles.as_flattened() {
             match used.get_mut(index as usize) {
                 Some(used) => *used = true,
-                None => return Mesh::new(self.positions, self.triangles),
+                None => return Ok(PaintedMesh { mesh: Mesh::new(positions, triangles)?, paint }),
             }
         }
-        if self.triangles.is_empty() || used.iter().all(|&used| used) {
-            return Mesh::new(self.positions, self.triangles);
+        if triangles.is_empty() || used.iter().all(|&used| used) {
+            return Ok(PaintedMesh { mesh: Mesh::new(positions, triangles)?, paint });
         }
         let mut count = 0;
         let new_indices: Vec<u32> = used
@@ -107,8 +163,15 @@ impl MeshBuilder {
                 index
             })
             .collect();
-        let positions = self.positions.iter().zip(&used).filter(|(_, used)| **used).map(|(p, _)| *p).collect();
+        let positions = of_used(&positions, &used);
+        paint.vertex_colors = of_used(&paint.vertex_colors, &used);
         let renumber = |triangle: &[u32; 3]| triangle.map(|i| new_indices.get(i as usize).copied().unwrap_or(i));
-        Mesh::new(positions, self.triangles.iter().map(renumber).collect())
+        let mesh = Mesh::new(positions, triangles.iter().map(renumber).collect())?;
+        Ok(PaintedMesh { mesh, paint })
     }
+}
+
+/// The values of used vertices.
+fn of_used<T: Copy>(values: &[T], used: &[bool]) -> Vec<T> {
+    values.iter().zip(used).filter(|(_, used)| **used).map(|(value, _)| *value).collect()
 }

@@ -1,23 +1,154 @@
-//! Wavefront OBJ: vertices and faces; other statements are ignored.
+//! Wavefront OBJ: vertices, faces and colours; other statements are ignored.
 
 use glam::DVec3;
 
-use crate::guard::corrupt;
+use crate::gltf::{Resources, external};
+use crate::guard::{MAX_VERTICES, corrupt, too_large};
+use crate::mesh::{ColoredMesh, Content};
 use crate::mesh_builder::MeshBuilder;
+use crate::mtl::MaterialLibrary;
 use crate::text::{lines, number, quoted, words};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::mesh::Mesh;
+use sim3align_geometry::surface_colors::Rgb;
 
 /// Reads `v` and `f` lines: polygons become fans, negative indices count back from the latest vertex, and a
-/// backslash at the end of a line continues it. Vertex colours, weights, normals and free-form surfaces are not read.
+/// backslash at the end of a line continues it. Normals and free-form surfaces are not read.
+///
+/// Colours are those of the vertices (`v x y z r g b`, sRGB-encoded, 0 to 1), or those of the materials: `map_Kd` with
+/// the `vt` of the faces, else `Kd`.
 ///
 /// # Errors
 /// [`ErrorCode::CorruptFile`] with the line number, [`ErrorCode::IndexOutOfRange`], [`ErrorCode::FileTooLarge`],
-/// and those of [`Mesh::new`].
-pub fn read_obj(bytes: &[u8]) -> Result<Mesh> {
+/// and those of [`Mesh::new`](sim3align_geometry::mesh::Mesh::new).
+pub(crate) fn read_obj(bytes: &[u8], resources: Option<Resources<'_>>, content: Content) -> Result<ColoredMesh> {
     let mut builder = MeshBuilder::default();
-    let mut statement: Vec<&[u8]> = Vec::new();
+    let mut colors = (content == Content::ShapeAndColors).then(|| ObjColors::new(resources));
     let mut corners = Vec::new();
+    for_each_statement(bytes, &mut |line, statement| {
+        match statement.split_first() {
+            Some((&b"v", rest)) => {
+                builder.push_vertex(vertex(rest, line)?)?;
+                if let (Some(color), true) = (vertex_color(rest), colors.is_some()) {
+                    builder.color_vertex(color);
+                }
+            }
+            Some((&b"f", rest)) => {
+                corners.clear();
+                for word in rest {
+                    corners.push(corner(word, builder.vertex_count(), line)?);
+                }
+                if corners.len() < 3 {
+                    let found = format!("a face of {} corners in line {line}", corners.len());
+                    return Err(corrupt("mesh", found, "at least 3"));
+                }
+                let first = builder.triangle_count();
+                builder.push_fan(&corners)?;
+                if let Some(colors) = &colors {
+                    colors.map_face(&mut builder, first, rest);
+                }
+            }
+            Some((&word, rest)) => {
+                if let Some(colors) = &mut colors {
+                    colors.read(word, rest, &mut builder)?;
+                }
+            }
+            None => {}
+        }
+        Ok(())
+    })?;
+    let painted = builder.finish()?;
+    let Some(colors) = colors else { return Ok(painted.plain(None)) };
+    // Vertex colours need no library, and are what scanners and generators write beside a name of one.
+    if let Some(missing) = colors.missing
+        && painted.paint.vertex_colors.is_empty()
+    {
+        return Ok(painted.plain(Some(missing)));
+    }
+    let mut used: Vec<usize> = painted.paint.parts.iter().filter_map(|part| part.1).collect();
+    used.sort_unstable();
+    used.dedup();
+    let materials = colors.library.load(&used, resources);
+    Ok(painted.colored(materials))
+}
+
+/// The files that an OBJ or MTL names: its libraries or textures, as written.
+pub(crate) fn external_resources(bytes: &[u8]) -> Result<Vec<String>> {
+    let mut files = Vec::new();
+    for_each_statement(bytes, &mut |_, statement| {
+        if let Some((&b"mtllib", rest)) = statement.split_first() {
+            files.push(file_name(rest));
+        }
+        Ok(())
+    })?;
+    let mut library = MaterialLibrary::default();
+    library.add(bytes);
+    files.extend(library.files().map(str::to_owned));
+    files.sort();
+    files.dedup();
+    Ok(files)
+}
+
+/// What the faces of an OBJ refer to.
+struct ObjColors<'a> {
+    resources: Option<Resources<'a>>,
+    library: MaterialLibrary,
+    /// Texture coordinates, from the lower left corner of the image.
+    coordinates: Vec<[f32; 2]>,
+    material: Option<usize>,
+    /// The error for a library that `resources` lacks.
+    missing: Option<Error>,
+}
+
+impl<'a> ObjColors<'a> {
+    fn new(resources: Option<Resources<'a>>) -> Self {
+        Self { resources, library: MaterialLibrary::default(), coordinates: Vec::new(), material: None, missing: None }
+    }
+
+    /// Reads the statements that concern colours.
+    fn read(&mut self, word: &[u8], rest: &[&[u8]], builder: &mut MeshBuilder) -> Result<()> {
+        match word {
+            b"vt" => {
+                if self.coordinates.len() >= MAX_VERTICES {
+                    let found = format!("more than {MAX_VERTICES} texture coordinates");
+                    return Err(too_large("mesh", found, "fewer"));
+                }
+                let mut numbers = rest.iter().map(|word| number(word).unwrap_or_default() as f32);
+                self.coordinates.push([numbers.next().unwrap_or_default(), numbers.next().unwrap_or_default()]);
+            }
+            b"mtllib" => match external(&file_name(rest), self.resources) {
+                Ok(bytes) => self.library.add(&bytes),
+                Err(error) => self.missing = Some(error),
+            },
+            b"usemtl" => {
+                self.material = self.library.index_of(&rest.join(&b' '));
+                builder.use_material(self.material);
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Sets the texture coordinates of the triangles of a face, if its material has a texture.
+    fn map_face(&self, builder: &mut MeshBuilder, first: usize, corners: &[&[u8]]) {
+        let Some([offset, scale]) = self.library.mapping(self.material) else { return };
+        let of = |word: &&[u8]| {
+            let digits = word.split(|&b| b == b'/').nth(1).unwrap_or_default();
+            let index: i64 =
+                core::str::from_utf8(digits).ok().and_then(|digits| digits.parse().ok()).unwrap_or_default();
+            let from_zero = if index < 0 { self.coordinates.len() as i64 + index } else { index - 1 };
+            let place = usize::try_from(from_zero).unwrap_or(usize::MAX);
+            let [u, v] = self.coordinates.get(place).copied().unwrap_or_default();
+            // Rows of images count from the top.
+            [u * scale[0] + offset[0], 1.0 - (v * scale[1] + offset[1])]
+        };
+        let mapped: Vec<[f32; 2]> = corners.iter().map(of).collect();
+        builder.map_fan(first, &mapped);
+    }
+}
+
+/// Calls `visit` with the line number and the words of each statement.
+fn for_each_statement(bytes: &[u8], visit: &mut dyn FnMut(usize, &[&[u8]]) -> Result<()>) -> Result<()> {
+    let mut statement: Vec<&[u8]> = Vec::new();
     for (i, line) in lines(bytes).enumerate() {
         let code = line.split(|&b| b == b'#').next().unwrap_or_default().trim_ascii_end();
         if let Some(continued) = code.strip_suffix(b"\\") {
@@ -25,26 +156,15 @@ pub fn read_obj(bytes: &[u8]) -> Result<Mesh> {
             continue;
         }
         statement.extend(words(code));
-        match statement.split_first() {
-            Some((&b"v", rest)) => {
-                builder.push_vertex(vertex(rest, i + 1)?)?;
-            }
-            Some((&b"f", rest)) => {
-                corners.clear();
-                for word in rest {
-                    corners.push(corner(word, builder.vertex_count(), i + 1)?);
-                }
-                if corners.len() < 3 {
-                    let found = format!("a face of {} corners in line {}", corners.len(), i + 1);
-                    return Err(corrupt("mesh", found, "at least 3"));
-                }
-                builder.push_fan(&corners)?;
-            }
-            _ => {}
-        }
+        visit(i + 1, &statement)?;
         statement.clear();
     }
-    builder.finish()
+    Ok(())
+}
+
+/// A name with spaces.
+fn file_name(words: &[&[u8]]) -> String {
+    String::from_utf8_lossy(&words.join(&b' ')).replace('\\', "/")
 }
 
 fn vertex(words: &[&[u8]], line: usize) -> Result<glam::Vec3> {
@@ -55,6 +175,15 @@ fn vertex(words: &[&[u8]], line: usize) -> Result<glam::Vec3> {
             .ok_or_else(|| corrupt("mesh", format!("{} in line {line}", quoted(word)), "v x y z: three numbers"))?;
     }
     Ok(DVec3::from_array(xyz).as_vec3())
+}
+
+/// The colour after the coordinates of a vertex. A single number there is a weight.
+fn vertex_color(words: &[&[u8]]) -> Option<Rgb> {
+    let mut color = [0; 3];
+    for (channel, word) in color.iter_mut().zip(words.get(3..6)?) {
+        *channel = (number(word)? * 255.0).round() as u8;
+    }
+    Some(color)
 }
 
 /// The vertex index of `v`, `v/vt`, `v//vn` or `v/vt/vn`, counted from 0.

@@ -4,26 +4,34 @@ use glam::{DVec3, Vec3};
 
 use crate::cursor::Cursor;
 use crate::guard::{MAX_VERTICES, corrupt, too_large};
+use crate::mesh::{ColoredMesh, Content};
 use crate::mesh_builder::MeshBuilder;
 use crate::ply_header::{Element, Encoding, Header, Scalar};
 use crate::text::{number, quoted};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::mesh::Mesh;
+use sim3align_geometry::surface_colors::Rgb;
 
 /// Reads the elements `vertex` (x, y, z of any type, at any position among the properties), `face` (polygons, as
-/// fans) and `tristrips`; ignores the others.
+/// fans) and `tristrips`; ignores the others. Colours are the properties red, green and blue of the vertices: whole numbers
+/// up to the largest of their type, or floats from 0 to 1, sRGB-encoded.
 ///
 /// # Errors
 /// [`ErrorCode::CorruptFile`], [`ErrorCode::UnsupportedFormat`], [`ErrorCode::FileTooLarge`],
-/// [`ErrorCode::IndexOutOfRange`] and those of [`Mesh::new`].
-pub fn read_ply(bytes: &[u8]) -> Result<Mesh> {
+/// [`ErrorCode::IndexOutOfRange`] and those of [`Mesh::new`](sim3align_geometry::mesh::Mesh::new).
+pub(crate) fn read_ply(bytes: &[u8], content: Content) -> Result<ColoredMesh> {
     let (header, body) = Header::read(bytes)?;
     let mut body = Body { encoding: header.encoding, cursor: Cursor::new("mesh", body) };
     let mut builder = MeshBuilder::default();
     for element in header.elements.iter().filter(|element| !element.properties.is_empty()) {
         body.check_count(element)?;
         match element.name.as_slice() {
-            b"vertex" => read_vertices(element, &mut body, |point| builder.push_vertex(point).map(|_| ()))?,
+            b"vertex" => read_vertices(element, &mut body, |point, color| {
+                builder.push_vertex(point)?;
+                if let (Some(color), Content::ShapeAndColors) = (color, content) {
+                    builder.color_vertex(color);
+                }
+                Ok(())
+            })?,
             b"face" => read_faces(element, &mut body, &mut |corners| builder.push_fan(corners))?,
             b"tristrips" => read_faces(element, &mut body, &mut |corners| {
                 // −1, which arrives as u32::MAX, separates the strips.
@@ -32,7 +40,7 @@ pub fn read_ply(bytes: &[u8]) -> Result<Mesh> {
             _ => read_records(element, &mut body, |_, _| Ok(()))?,
         }
     }
-    builder.finish()
+    Ok(builder.finish()?.colored(Ok(Vec::new())))
 }
 
 /// Reads only the element `vertex`: the points of a cloud without faces.
@@ -52,7 +60,7 @@ pub fn read_ply_points(bytes: &[u8]) -> Result<Vec<Vec3>> {
         if element.count > MAX_VERTICES {
             return Err(too_large("cloud", format!("{} points", element.count), format!("at most {MAX_VERTICES}")));
         }
-        read_vertices(element, &mut body, |point| {
+        read_vertices(element, &mut body, |point, _| {
             points.push(point);
             Ok(())
         })?;
@@ -61,24 +69,38 @@ pub fn read_ply_points(bytes: &[u8]) -> Result<Vec<Vec3>> {
     Err(corrupt("cloud", "no vertices", "the element vertex"))
 }
 
-fn read_vertices(element: &Element, body: &mut Body<'_>, mut push: impl FnMut(Vec3) -> Result<()>) -> Result<()> {
+fn read_vertices(
+    element: &Element,
+    body: &mut Body<'_>,
+    mut push: impl FnMut(Vec3, Option<Rgb>) -> Result<()>,
+) -> Result<()> {
+    let place_of = |name: &[u8]| element.properties.iter().position(|p| p.name == name && p.list_length.is_none());
     let mut place = [0; 3];
     for (place, name) in place.iter_mut().zip([b"x", b"y", b"z"]) {
-        *place =
-            element.properties.iter().position(|p| p.name == name && p.list_length.is_none()).ok_or_else(|| {
-                corrupt("mesh", format!("vertices without {}", name.escape_ascii()), "the properties x, y and z")
-            })?;
+        *place = place_of(name).ok_or_else(|| {
+            corrupt("mesh", format!("vertices without {}", name.escape_ascii()), "the properties x, y and z")
+        })?;
     }
+    let colors = match [b"red".as_slice(), b"green", b"blue"].map(place_of) {
+        [Some(red), Some(green), Some(blue)] => Some([red, green, blue]),
+        _ => None,
+    };
     let last = element.properties.len() - 1;
-    let mut xyz = [0.0; 3];
+    let (mut xyz, mut rgb) = ([0.0; 3], [0; 3]);
     read_records(element, body, |property, values| {
         for (x, place) in xyz.iter_mut().zip(place) {
             if property == place {
                 *x = values.first().copied().unwrap_or(f64::NAN);
             }
         }
+        for (channel, place) in rgb.iter_mut().zip(colors.unwrap_or_default()) {
+            if property == place && colors.is_some() {
+                let most = element.properties.get(place).map_or(1.0, |property| property.scalar.most());
+                *channel = (values.first().copied().unwrap_or_default() / most * 255.0).round() as u8;
+            }
+        }
         if property == last {
-            push(as_vec3(xyz))?;
+            push(as_vec3(xyz), colors.map(|_| rgb))?;
         }
         Ok(())
     })

@@ -40,6 +40,19 @@ impl Scalar {
         })
     }
 
+    /// The number that stands for the full intensity of a colour.
+    pub fn most(self) -> f64 {
+        match self {
+            Self::I8 => 127.0,
+            Self::U8 => 255.0,
+            Self::I16 => 32_767.0,
+            Self::U16 => 65_535.0,
+            Self::I32 => 2_147_483_647.0,
+            Self::U32 => 4_294_967_295.0,
+            Self::F32 | Self::F64 => 1.0,
+        }
+    }
+
     /// Bytes per number in a binary body.
     pub fn size(self) -> usize {
         match self {

@@ -2,17 +2,27 @@
 
 use std::io;
 
-use image::codecs::png::PngDecoder;
-use image::{ColorType, ImageDecoder, Limits};
+use png::{BitDepth, Decoder, DecodingError, Limits, Transformations};
 
 use crate::cursor::Cursor;
 use crate::guard::{corrupt, pixel_count};
+use crate::orientation::Orientation;
+use crate::reducer::{Reducer, reduced_size};
 use sim3align_geometry::error::Result;
+use sim3align_geometry::image::Image;
+use sim3align_geometry::surface_colors::Rgb;
 
 pub(crate) const MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
 
 /// Maximum compression ratio of DEFLATE, 1032:1; a file that would need more is incomplete.
 const MAX_RATIO: usize = 1032;
+
+/// Maximum memory of the decoder beside the pixels.
+const MAX_DECODER_BYTES: usize = 1 << 28;
+
+/// First column and row, and distances of columns and rows, of the passes of an interlaced image (PNG 3, 8.2).
+const PASSES: [[usize; 4]; 7] =
+    [[0, 0, 8, 8], [4, 0, 8, 8], [0, 4, 4, 8], [2, 0, 4, 4], [0, 2, 2, 4], [1, 0, 2, 2], [0, 1, 1, 2]];
 
 /// The header of a PNG file.
 #[derive(Debug, Clone, Copy)]
@@ -90,21 +100,84 @@ impl PngInfo {
 
     /// Decodes the pixels of the file with this header.
     pub fn decode(&self, argument: &'static str, bytes: &[u8]) -> Result<PngPixels> {
-        let broken = |error: image::ImageError| {
-            corrupt(argument, format!("a PNG that can't be decoded: {error}"), "a PNG image")
-        };
-        let mut limits = Limits::no_limits();
-        limits.max_alloc = Some(1 << 30);
-        let decoder = PngDecoder::with_limits(io::Cursor::new(bytes), limits).map_err(broken)?;
-        let colour = decoder.color_type();
-        let mut data = vec![0; usize::try_from(decoder.total_bytes()).unwrap_or_default()];
-        decoder.read_image(&mut data).map_err(broken)?;
-        let is_16_bit = matches!(colour, ColorType::L16 | ColorType::La16 | ColorType::Rgb16 | ColorType::Rgba16);
-        let samples = if is_16_bit {
-            data.as_chunks::<2>().0.iter().map(|&pair| u16::from_ne_bytes(pair)).collect()
-        } else {
-            data.into_iter().map(u16::from).collect()
-        };
-        Ok(PngPixels { channels: usize::from(colour.channel_count()), has_alpha: colour.has_alpha(), samples })
+        let mut pixels = PngPixels { channels: 0, has_alpha: false, samples: Vec::new() };
+        self.each_row(argument, bytes, Transformations::EXPAND, &mut |row| {
+            if pixels.samples.is_empty() {
+                pixels = PngPixels {
+                    channels: row.channels,
+                    has_alpha: row.channels.is_multiple_of(2),
+                    samples: vec![0; self.width * self.height * row.channels],
+                };
+            }
+            for (i, pixel) in row.samples.chunks_exact(row.channels * row.bytes).enumerate() {
+                let place = (row.row * self.width + row.first + i * row.step) * row.channels;
+                let slots = pixels.samples.iter_mut().skip(place);
+                for (slot, sample) in slots.zip(pixel.chunks_exact(row.bytes)) {
+                    *slot = sample.iter().fold(0, |value, &byte| value << 8 | u16::from(byte));
+                }
+            }
+        })?;
+        Ok(pixels)
     }
+
+    /// Calls `visit` with each decoded row, or with each row of a pass if the image is interlaced; returns the EXIF data.
+    fn each_row(
+        &self,
+        argument: &'static str,
+        bytes: &[u8],
+        transformations: Transformations,
+        visit: &mut dyn FnMut(PngRow<'_>),
+    ) -> Result<Option<Vec<u8>>> {
+        let broken =
+            |error: DecodingError| corrupt(argument, format!("a PNG that can't be decoded: {error}"), "a PNG image");
+        let mut decoder = Decoder::new_with_limits(io::Cursor::new(bytes), Limits { bytes: MAX_DECODER_BYTES });
+        decoder.set_transformations(transformations);
+        decoder.set_ignore_text_chunk(true);
+        decoder.set_ignore_iccp_chunk(true);
+        let mut reader = decoder.read_info().map_err(broken)?;
+        let (color, depth) = reader.output_color_type();
+        let (channels, bytes) = (color.samples(), if depth == BitDepth::Sixteen { 2 } else { 1 });
+        let exif = reader.info().exif_metadata.as_ref().map(|exif| exif.to_vec());
+        let passes = if reader.info().interlaced { &PASSES[..] } else { &[[0, 0, 1, 1]] };
+        for &[first, first_row, step, row_step] in passes.iter().filter(|pass| pass[0] < self.width) {
+            for row in (first_row..self.height).step_by(row_step) {
+                let Some(samples) = reader.next_row().map_err(broken)? else {
+                    return Err(corrupt(argument, "a PNG with too few rows", "a PNG image"));
+                };
+                visit(PngRow { row, first, step, channels, bytes, samples: samples.data() });
+            }
+        }
+        Ok(exif)
+    }
+}
+
+/// A row, or every `step`th pixel of it from the `first`, as interleaved big-endian samples.
+struct PngRow<'a> {
+    row: usize,
+    first: usize,
+    step: usize,
+    channels: usize,
+    /// Bytes per sample, 1 or 2.
+    bytes: usize,
+    samples: &'a [u8],
+}
+
+/// Reads a PNG as colours, of at most `max_pixels` pixels; larger ones are reduced. Also returns the EXIF orientation, which
+/// is not applied. Alpha is ignored.
+pub(crate) fn read_rgb(argument: &'static str, bytes: &[u8], max_pixels: usize) -> Result<(Image<Rgb>, Orientation)> {
+    let info = PngInfo::read(argument, bytes)?;
+    let full = [info.width, info.height];
+    let mut reducer = Reducer::new(full, 1, reduced_size(full, max_pixels));
+    let transformations = Transformations::EXPAND | Transformations::STRIP_16;
+    let exif = info.each_row(argument, bytes, transformations, &mut |row| {
+        for (i, pixel) in row.samples.chunks_exact(row.channels).enumerate() {
+            let color = match *pixel {
+                [grey] | [grey, _] => [grey; 3],
+                [r, g, b, ..] => [r, g, b],
+                [] => [0; 3],
+            };
+            reducer.add(row.first + i * row.step, row.row, color);
+        }
+    })?;
+    Ok((reducer.finish(argument)?, exif.as_deref().map_or(Orientation::UPRIGHT, Orientation::of_exif)))
 }

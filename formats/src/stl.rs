@@ -48,7 +48,7 @@ fn read_binary(bytes: &[u8]) -> Result<Mesh> {
         }
         welder.push(corners)?;
     }
-    welder.builder.finish()
+    welder.builder.finish().map(|painted| painted.mesh)
 }
 
 fn read_text(bytes: &[u8]) -> Result<Mesh> {
@@ -83,7 +83,7 @@ fn read_text(bytes: &[u8]) -> Result<Mesh> {
     if !ended {
         return Err(corrupt("mesh", "no \"endsolid\" line", "\"endsolid\" at the end of an ASCII STL"));
     }
-    welder.builder.finish()
+    welder.builder.finish().map(|painted| painted.mesh)
 }
 
 /// Assigns one index to equal coordinates.

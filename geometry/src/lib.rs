@@ -25,6 +25,7 @@ pub mod rasteriser;
 pub mod rotations;
 pub mod similarity;
 pub mod singular_values;
+pub mod surface;
 pub mod surface_colors;
 pub mod symmetric_eigen;
 pub mod triangle_tree;

@@ -79,6 +79,11 @@ impl Observation {
         Ok(Self { photo: Some(Arc::new(photo)), ..self })
     }
 
+    /// The observation without its photo.
+    pub fn without_photo(self) -> Self {
+        Self { photo: None, ..self }
+    }
+
     /// The photo, if there is one.
     pub fn photo(&self) -> Option<&Photo> {
         self.photo.as_deref()

@@ -41,9 +41,9 @@ impl<'a> PreparedMesh<'a> {
         Self { mesh, colors: None, is_checked: Cell::new(false), pyramids: RefCell::default() }
     }
 
-    /// The mesh with the colours of its surface.
-    pub fn with_colors(self, colors: SurfaceColors) -> Self {
-        Self { colors: Some(colors), ..self }
+    /// The mesh with the colours of its surface, or without any.
+    pub fn with_colors(self, colors: impl Into<Option<SurfaceColors>>) -> Self {
+        Self { colors: colors.into(), ..self }
     }
 
     /// The colours of the surface, if they are known.

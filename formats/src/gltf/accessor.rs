@@ -5,10 +5,12 @@ use ::gltf::json::accessor::{ComponentType, Type};
 use ::gltf::json::validation::Checked;
 use glam::Vec3;
 
+use crate::color::srgb;
 use crate::gltf::Document;
 use crate::gltf::buffers::Buffers;
 use crate::guard::{MAX_TRIANGLES, MAX_VERTICES, corrupt, too_large};
 use sim3align_geometry::error::Result;
+use sim3align_geometry::surface_colors::Rgb;
 
 /// Maximum number of elements of an accessor without a buffer view, which consists of zeros and is not bounded by the
 /// size of the file.
@@ -42,6 +44,34 @@ impl<'a> AccessorReader<'a> {
             let value = |i: usize| component.read(bytes.get(i * size..).unwrap_or_default());
             Vec3::new(value(0), value(1), value(2))
         })
+    }
+
+    /// A COLOR_n accessor, sRGB-encoded. Whole numbers count as normalised, as the specification demands. Alpha is ignored.
+    pub fn colors(&mut self, index: usize) -> Result<Vec<Rgb>> {
+        let accessor = self.accessor(index)?;
+        let shape = if accessor.type_ == Checked::Valid(Type::Vec4) { Type::Vec4 } else { Type::Vec3 };
+        let kind = component_type(accessor, shape, index)?;
+        let (component, size) = (Component { kind, normalized: true }, kind.size());
+        self.read(accessor, MAX_VERTICES, shape.multiplicity() * size, [0; 3], |bytes| {
+            srgb(core::array::from_fn(|i| component.read(bytes.get(i * size..).unwrap_or_default())))
+        })
+    }
+
+    /// A TEXCOORD_n accessor.
+    pub fn coordinates(&mut self, index: usize) -> Result<Vec<[f32; 2]>> {
+        let accessor = self.accessor(index)?;
+        let kind = component_type(accessor, Type::Vec2, index)?;
+        let (component, size) = (Component { kind, normalized: accessor.normalized }, kind.size());
+        self.read(accessor, MAX_VERTICES, 2 * size, [0.0; 2], |bytes| {
+            core::array::from_fn(|i| component.read(bytes.get(i * size..).unwrap_or_default()))
+        })
+    }
+
+    /// The bytes of a buffer view.
+    pub fn bytes_of_view(&mut self, index: usize) -> Result<&[u8]> {
+        let length = self.document.buffer_views.get(index).map_or(0, |view| view.byte_length.0);
+        let whole = usize::try_from(length).unwrap_or(usize::MAX);
+        self.run(index, 0, 1, whole).map(|mut run| run.next().unwrap_or_default())
     }
 
     /// An accessor of vertex indices.

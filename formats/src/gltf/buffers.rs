@@ -11,7 +11,7 @@ use sim3align_geometry::error::{Error, ErrorCode, Result};
 /// Returns the content of a relative URI in a `.gltf` file.
 pub type Resources<'a> = &'a dyn Fn(&str) -> Option<Vec<u8>>;
 
-/// The buffers, each loaded on first use; those of animations and images are never loaded.
+/// The buffers, each loaded on first use; those of animations are never loaded.
 pub(super) struct Buffers<'a> {
     declared: &'a [json::Buffer],
     binary: Option<&'a [u8]>,
@@ -23,6 +23,11 @@ pub(super) struct Buffers<'a> {
 impl<'a> Buffers<'a> {
     pub fn new(declared: &'a [json::Buffer], binary: Option<&'a [u8]>, resources: Option<Resources<'a>>) -> Self {
         Self { declared, binary, resources, loaded: vec![None; declared.len()], loaded_bytes: 0 }
+    }
+
+    /// The external files.
+    pub fn resources(&self) -> Option<Resources<'a>> {
+        self.resources
     }
 
     /// Whether buffer `index` has data. Compressed files contain one without.
@@ -81,7 +86,8 @@ fn load<'a>(
     Ok(bytes)
 }
 
-fn external(uri: &str, resources: Option<Resources<'_>>) -> Result<Vec<u8>> {
+/// The bytes of a file that a mesh file refers to.
+pub(crate) fn external(uri: &str, resources: Option<Resources<'_>>) -> Result<Vec<u8>> {
     let find = resources.and_then(|find| {
         find(uri).or_else(|| find(core::str::from_utf8(&data_uri::percent_decode(uri.as_bytes())).ok()?))
     });
@@ -90,8 +96,8 @@ fn external(uri: &str, resources: Option<Resources<'_>>) -> Result<Vec<u8>> {
             ErrorCode::InvalidArgument,
             "options.resources",
             format!("no bytes for {uri:?}"),
-            "the bytes of every external buffer, by the URI in the .gltf file",
-            "Pass them in resources, or pack the file into one: npx @gltf-transform/cli copy in.gltf out.glb.",
+            "the bytes of every external file, by the URI in the mesh file",
+            "Pass them in resources, or pack a .gltf into one file: npx @gltf-transform/cli copy in.gltf out.glb.",
         )
     })
 }

@@ -1,23 +1,26 @@
 //! glTF 2.0: the default scene as one mesh, in the scene's frame.
 //!
 //! The types of the `gltf-json` crate parse the JSON. Indices and offsets are resolved by checked code of this module,
-//! so that a malicious file results in an error. Only the parts that define triangles are parsed, so that an invalid
-//! material or texture does not prevent reading the mesh.
+//! so that a malicious file results in an error. The parts that define triangles are parsed apart from those that define
+//! colours, so that an invalid material or texture does not prevent reading the mesh.
 
 mod accessor;
 mod buffers;
 mod container;
 mod data_uri;
+mod materials;
 mod scene;
 
 use ::gltf::json;
 use serde::Deserialize;
 
 pub use self::buffers::Resources;
+pub(crate) use self::buffers::external;
 use self::container::Container;
+use self::materials::Materials;
 use crate::guard::{corrupt, too_large, unsupported};
+use crate::mesh::{ColoredMesh, Content};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::mesh::Mesh;
 
 /// Maximum number of objects in the JSON: each takes much more memory than its two characters.
 const MAX_JSON_OBJECTS: usize = 1 << 20;
@@ -132,24 +135,47 @@ fn compressed(extension: &str) -> Error {
 /// # Errors
 /// [`ErrorCode::CorruptFile`], [`ErrorCode::FileTooLarge`], [`ErrorCode::UnsupportedFormat`] for required
 /// extensions, [`ErrorCode::CompressedMesh`], [`ErrorCode::InvalidArgument`] for a buffer that `resources` lacks,
-/// and those of [`Mesh::new`].
-pub fn read_gltf(bytes: &[u8], resources: Option<Resources<'_>>) -> Result<Mesh> {
+/// and those of [`Mesh::new`](sim3align_geometry::mesh::Mesh::new).
+pub(crate) fn read_gltf(bytes: &[u8], resources: Option<Resources<'_>>, content: Content) -> Result<ColoredMesh> {
     let container = Container::split(bytes)?;
     let document = Document::parse(container.json)?;
     document.check_extensions()?;
     let buffers = buffers::Buffers::new(&document.buffers, container.binary, resources);
-    scene::read_scene(accessor::AccessorReader { document: &document, buffers, elements_read: 0 })
+    let mut reader = accessor::AccessorReader { document: &document, buffers, elements_read: 0 };
+    let materials = match content {
+        Content::Shape => None,
+        Content::ShapeAndColors => Some(Materials::parse(container.json)),
+    };
+    scene::read_scene(&mut reader, materials)
 }
 
-/// The distinct URIs of the external buffers of a `.gltf`, as written: the files that `resources` must provide.
+/// The distinct URIs of the external files of a `.gltf`, as written: what `resources` must provide for the shape, its
+/// buffers, and what the colours need in addition, the images of base colours.
 ///
 /// # Errors
 /// [`ErrorCode::CorruptFile`], [`ErrorCode::FileTooLarge`], [`ErrorCode::UnsupportedFormat`].
-pub fn external_resources(bytes: &[u8]) -> Result<Vec<String>> {
-    let document = Document::parse(Container::split(bytes)?.json)?;
-    let uris = document.buffers.into_iter().filter_map(|buffer| buffer.uri);
-    let mut external: Vec<String> = uris.filter(|uri| !uri.starts_with("data:")).collect();
-    external.sort();
-    external.dedup();
-    Ok(external)
+pub fn external_resources(bytes: &[u8]) -> Result<ExternalResources> {
+    let json = Container::split(bytes)?.json;
+    let document = Document::parse(json)?;
+    let uris = document.buffers.iter().filter_map(|buffer| buffer.uri.as_deref());
+    let shape = distinct(uris.filter(|uri| !uri.starts_with("data:")));
+    let mut colors = Materials::parse(json).map_or_else(|_| Vec::new(), |m| distinct(m.external_images()));
+    colors.retain(|uri| !shape.contains(uri));
+    Ok(ExternalResources { shape, colors })
+}
+
+/// The files that a mesh file refers to, by the URIs in it.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct ExternalResources {
+    /// Without these, it can't be read.
+    pub shape: Vec<String>,
+    /// Without these, it has no colours.
+    pub colors: Vec<String>,
+}
+
+fn distinct<'a>(uris: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut uris: Vec<String> = uris.map(str::to_owned).collect();
+    uris.sort();
+    uris.dedup();
+    uris
 }

@@ -7,15 +7,22 @@ use glam::{DMat4, DQuat, DVec3};
 
 use crate::gltf::Document;
 use crate::gltf::accessor::AccessorReader;
+use crate::gltf::materials::Materials;
 use crate::guard::corrupt;
+use crate::mesh::ColoredMesh;
 use crate::mesh_builder::MeshBuilder;
+use crate::painted_mesh::PaintedMesh;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::mesh::Mesh;
 
-/// All triangles of the scene, in the frame of the scene.
-pub(super) fn read_scene(mut reader: AccessorReader<'_>) -> Result<Mesh> {
+/// All triangles of the scene, in the frame of the scene, with colours if there are `materials`.
+pub(super) fn read_scene(reader: &mut AccessorReader<'_>, materials: Option<Result<Materials>>) -> Result<ColoredMesh> {
     let document = reader.document;
-    let mut parts: Vec<Option<Vec<Mesh>>> = vec![None; document.meshes.len()];
+    let mut parts: Vec<Option<Vec<PaintedMesh>>> = document.meshes.iter().map(|_| None).collect();
+    let (materials, mut problem) = match materials {
+        Some(Ok(materials)) => (Some(materials), None),
+        Some(Err(problem)) => (None, Some(problem)),
+        None => (None, None),
+    };
     let mut builder = MeshBuilder::default();
     let mut skipped = 0;
     for (index, transform) in instances(document)? {
@@ -28,7 +35,7 @@ pub(super) fn read_scene(mut reader: AccessorReader<'_>) -> Result<Mesh> {
             None => {
                 let mut parts = Vec::new();
                 for primitive in &mesh.primitives {
-                    match read_primitive(&mut reader, primitive)? {
+                    match read_primitive(reader, primitive, materials.as_ref(), &mut problem)? {
                         Some(part) => parts.push(part),
                         None => skipped += 1,
                     }
@@ -55,7 +62,13 @@ pub(super) fn read_scene(mut reader: AccessorReader<'_>) -> Result<Mesh> {
             "A point cloud can't be rendered: mesh it first.",
         ));
     }
-    builder.finish()
+    let painted = builder.finish()?;
+    let Some(materials) = materials.filter(|_| problem.is_none()) else { return Ok(painted.plain(problem)) };
+    let mut used: Vec<usize> = painted.paint.parts.iter().filter_map(|part| part.1).collect();
+    used.sort_unstable();
+    used.dedup();
+    let loaded = materials.load(&used, reader);
+    Ok(painted.colored(loaded))
 }
 
 /// The meshes of the scene, each with its transform to the scene.
@@ -120,8 +133,14 @@ fn parent_from_node(node: &json::Node) -> DMat4 {
     )
 }
 
-/// The triangles of a primitive in its mesh's frame; `None` for points, lines and empty ones.
-fn read_primitive(reader: &mut AccessorReader<'_>, primitive: &json::mesh::Primitive) -> Result<Option<Mesh>> {
+/// The triangles of a primitive in its mesh's frame; `None` for points, lines and empty ones. `problem` is set if its
+/// colours can't be read.
+fn read_primitive(
+    reader: &mut AccessorReader<'_>,
+    primitive: &json::mesh::Primitive,
+    materials: Option<&Materials>,
+    problem: &mut Option<Error>,
+) -> Result<Option<PaintedMesh>> {
     let Checked::Valid(mode) = primitive.mode else {
         return Err(corrupt("mesh", "a primitive of an unknown mode", "0 to 6"));
     };
@@ -144,6 +163,7 @@ fn read_primitive(reader: &mut AccessorReader<'_>, primitive: &json::mesh::Primi
         None => (0..positions.len() as u32).collect(),
     };
     let mut builder = MeshBuilder::with_positions(positions);
+    builder.use_material(primitive.material.map(|material| material.value()));
     match mode {
         Mode::TriangleStrip => builder.push_strip(&corners)?,
         Mode::TriangleFan => builder.push_fan(&corners)?,
@@ -156,5 +176,44 @@ fn read_primitive(reader: &mut AccessorReader<'_>, primitive: &json::mesh::Primi
             triangles.iter().try_for_each(|&triangle| builder.push_triangle(triangle))?;
         }
     }
-    if builder.triangle_count() == 0 { Ok(None) } else { builder.finish().map(Some) }
+    if builder.triangle_count() == 0 {
+        return Ok(None);
+    }
+    if let Some(materials) = materials
+        && problem.is_none()
+    {
+        *problem = paint(&mut builder, reader, primitive, materials).err();
+    }
+    builder.finish().map(Some)
+}
+
+/// Reads the vertex colours and texture coordinates of a primitive whose triangles have been read.
+fn paint(
+    builder: &mut MeshBuilder,
+    reader: &mut AccessorReader<'_>,
+    primitive: &json::mesh::Primitive,
+    materials: &Materials,
+) -> Result<()> {
+    let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).map(|accessor| accessor.value());
+    let check = |name: &str, count: usize, builder: &MeshBuilder| {
+        let vertices = builder.vertex_count();
+        let found = || format!("{name} of {count} elements for {vertices} vertices");
+        if count == vertices { Ok(()) } else { Err(corrupt("mesh", found(), "one per vertex")) }
+    };
+    if let Some(accessor) = attribute(Semantic::Colors(0)) {
+        let colors = reader.colors(accessor)?;
+        check("COLOR_0", colors.len(), builder)?;
+        builder.color_vertices(colors);
+    }
+    if let Some(texture) = materials.texture_of(primitive.material.map(|material| material.value())) {
+        let set = texture.coordinate_set();
+        let Some(accessor) = attribute(Semantic::TexCoords(set)) else {
+            return Err(corrupt("mesh", format!("a textured part without TEXCOORD_{set}"), "texture coordinates"));
+        };
+        let mut coordinates = reader.coordinates(accessor)?;
+        check("texture coordinates", coordinates.len(), builder)?;
+        texture.transform_coordinates(&mut coordinates);
+        builder.map_vertices(&coordinates);
+    }
+    Ok(())
 }

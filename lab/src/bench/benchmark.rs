@@ -12,7 +12,7 @@ use crate::case_folder::contents::parameters_json;
 use crate::cases::case::EvaluationCase;
 use sim3align::align::evaluate::{EvaluateOptions, Truth, evaluate};
 use sim3align::align::method::Method;
-use sim3align::align::{align_paper, align_with};
+use sim3align::align::task::AlignTask;
 use sim3align::evidence::observation::Observation;
 use sim3align::metrics::Metrics;
 use sim3align::metrics::pose_error::{PoseErrors, pose_errors};
@@ -22,6 +22,7 @@ use sim3align::precise::efforts;
 use sim3align::precise::mesh_pyramid::MeshPyramid;
 use sim3align::precise::options::AlignOptions;
 use sim3align::precise::pose::CropPose;
+use sim3align::precise::prepared_mesh::PreparedMesh;
 use sim3align::precise::recipe::FIRST_REFINEMENT;
 use sim3align::precise::{Search, SearchSettings};
 use sim3align::progress::{Host, Stage};
@@ -29,6 +30,7 @@ use sim3align::report::{Alternative, AnyAlignment, Sim3};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::similarity::Similarity;
+use sim3align_geometry::surface_colors::SurfaceColors;
 
 /// A case from any source.
 #[derive(Debug, Clone)]
@@ -45,10 +47,12 @@ pub struct BenchCase {
     pub tags: Vec<String>,
     /// Magnitudes of the simulated errors, by name.
     pub parameters: Value,
-    /// Depth, mask and camera.
+    /// Depth, mask and camera, and the photo if there is one.
     pub observation: Observation,
     /// The mesh.
     pub mesh: Mesh,
+    /// Its colours, if it has any.
+    pub colors: Option<SurfaceColors>,
     /// The true pose, if known.
     pub truth: Option<Truth>,
 }
@@ -131,6 +135,7 @@ impl From<EvaluationCase> for BenchCase {
             parameters,
             observation: case.observation,
             mesh: case.mesh,
+            colors: None,
             truth: Some(Truth { camera_from_mesh: case.camera_from_mesh, symmetry: case.symmetry }),
         }
     }
@@ -143,6 +148,9 @@ impl BenchCase {
     /// Those of [`read_case`], and [`ErrorCode::CorruptFile`] for `symmetryAxes` that are none.
     pub fn read(folder: &Path) -> Result<Self> {
         let case = read_case(folder)?;
+        if let Some(problem) = &case.color_problem {
+            eprintln!("\nwithout colours: {problem}");
+        }
         let json =
             |name: &str| -> Option<Value> { serde_json::from_slice(&std::fs::read(folder.join(name)).ok()?).ok() };
         let meta = json("meta.json").unwrap_or_default();
@@ -170,8 +178,16 @@ impl BenchCase {
             parameters: meta.get("parameters").cloned().unwrap_or_default(),
             observation: case.observation,
             mesh: case.mesh,
+            colors: case.colors,
             truth: truth.transpose()?,
         })
+    }
+}
+
+impl BenchCase {
+    /// The case without its photo and colours.
+    pub fn without_color(self) -> Self {
+        Self { observation: self.observation.without_photo(), colors: None, ..self }
     }
 }
 
@@ -215,9 +231,9 @@ pub fn run_case(case: &BenchCase, method: &Method, overrides: &[(String, f64)]) 
             override_setting(settings, name, *value);
         });
     }
-    let mut record = run_method(case, |observation, mesh, host| match method {
-        Method::Precise(options) => align_with(observation, mesh, options, searches.clone(), host).map(Into::into),
-        Method::Paper(options) => align_paper(observation, mesh, options, host).map(Into::into),
+    let mut record = run_method(case, |observation, mesh, host| {
+        let mesh = PreparedMesh::borrowed(mesh).with_colors(case.colors.clone());
+        AlignTask::new(observation, mesh, method.clone(), host)?.with_efforts(searches.clone()).finish()
     });
     record.truth_score = case.truth.as_ref().and_then(|truth| {
         // By the objective of the search that found the pose: scores of others are not comparable.

@@ -8,15 +8,18 @@ use super::pose::read_truth;
 use sim3align::evidence::observation::Observation;
 use sim3align_formats::depth::{DepthReadOptions, read_depth};
 use sim3align_formats::mask::read_mask;
-use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, read_mesh};
+use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, read_colored_mesh};
+use sim3align_formats::photo::read_photo;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::similarity::Similarity;
+use sim3align_geometry::surface_colors::SurfaceColors;
 
 /// File names of each part, in order of preference.
 const DEPTH_FILES: &[&str] = &["depth.npy", "depth.png"];
 const MASK_FILES: &[&str] = &["mask.png", "mask.npy"];
 const MESH_FILES: &[&str] = &["mesh.glb", "mesh.gltf", "mesh.obj", "mesh.ply", "mesh.stl"];
+const PHOTO_FILES: &[&str] = &["rgb.png", "rgb.jpg", "rgb.jpeg", "image.png", "image.jpg", "image.jpeg"];
 const CAMERA_FILES: &[&str] = &["camera.json"];
 
 /// The content of a case folder.
@@ -24,16 +27,20 @@ const CAMERA_FILES: &[&str] = &["camera.json"];
 pub struct Case {
     /// Name of the folder.
     pub name: String,
-    /// Depth, mask and camera.
+    /// Depth, mask and camera, and the photo if there is one.
     pub observation: Observation,
     /// The mesh, in the mesh frame.
     pub mesh: Mesh,
+    /// The colours of the mesh, if it has any.
+    pub colors: Option<SurfaceColors>,
+    /// Why the mesh has no colours, if they can't be read.
+    pub color_problem: Option<Error>,
     /// `camera_from_mesh` and the description of the symmetry, if `gt.json` has them.
     pub truth: Option<(Similarity, String)>,
 }
 
 /// Reads a case folder: `depth.npy|png`, `mask.png|npy`, `mesh.glb|gltf|obj|ply|stl`, `camera.json`
-/// and, optionally, `gt.json`. Integer depth has the unit of the camera file, by default millimetres.
+/// and, optionally, `rgb.png|jpg`, `image.png|jpg` and `gt.json`. Integer depth has the unit of the camera file, by default millimetres.
 ///
 /// # Errors
 /// [`ErrorCode::InvalidArgument`] for a missing file, and those of the readers and of
@@ -56,17 +63,26 @@ pub fn read_case(folder: &Path) -> Result<Case> {
     let resources = |uri: &str| read_beside(folder, uri);
     let extension = mesh_path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
     let mesh_options = MeshReadOptions { format: Some(MeshFormat::from_name(extension)?), resources: Some(&resources) };
-    let mesh = read_mesh(&mesh_bytes, &mesh_options).map_err(in_file(&mesh_path))?;
+    let read = read_colored_mesh(&mesh_bytes, &mesh_options).map_err(in_file(&mesh_path))?;
+    let (mesh, colors) = (read.mesh, read.colors);
+    let color_problem = read.problem.map(in_file(&mesh_path));
     let truth_path = folder.join("gt.json");
     let truth = match fs::read(&truth_path) {
         Ok(bytes) => read_truth(&bytes).map_err(in_file(&truth_path))?,
         Err(_) => None,
     };
-    let observation = Observation::new(depth, mask, camera).map_err(|error| {
+    let in_folder = |error: Error| {
         let argument = format!("{}: {}", folder.display(), error.argument);
         error.about(argument)
-    })?;
-    Ok(Case { name: name.unwrap_or_else(|| folder.display().to_string()), observation, mesh, truth })
+    };
+    let mut observation = Observation::new(depth, mask, camera).map_err(in_folder)?;
+    if PHOTO_FILES.iter().any(|name| folder.join(name).is_file()) {
+        let (path, bytes) = find(folder, PHOTO_FILES)?;
+        let photo = read_photo(&bytes).map_err(in_file(&path))?;
+        observation = observation.with_photo(photo).map_err(in_folder)?;
+    }
+    let name = name.unwrap_or_else(|| folder.display().to_string());
+    Ok(Case { name, observation, mesh, colors, color_problem, truth })
 }
 
 /// The first existing file of `names`, and its content.

@@ -4,9 +4,10 @@ use std::time::Instant;
 
 use lexopt::prelude::*;
 use serde_json::{Map, Value as Json};
-use sim3align::align::align;
+use sim3align::align::task::AlignTask;
 use sim3align::options::Choice;
 use sim3align::precise::options::AlignOptions;
+use sim3align::precise::prepared_mesh::PreparedMesh;
 use sim3align::progress::{Host, Stage};
 use sim3align_geometry::error::Error;
 use sim3align_lab::case_folder::case::read_case;
@@ -34,7 +35,8 @@ fn results(folder: &str, runs: usize, options: &AlignOptions) -> Result<Vec<Json
     (0..runs)
         .map(|_| {
             let mut clock = Clock(Instant::now());
-            let alignment = align(&case.observation, &case.mesh, options, &mut clock)?;
+            let mesh = PreparedMesh::borrowed(&case.mesh).with_colors(case.colors.clone());
+            let alignment = AlignTask::new(&case.observation, mesh, options.clone().into(), &mut clock)?.finish()?;
             Ok(serde_json::to_value(alignment).unwrap_or_default())
         })
         .collect()

@@ -93,6 +93,7 @@ impl From<SceneCase> for BenchCase {
             tags: case.tags.iter().map(|tag| (*tag).to_owned()).collect(),
             observation: case.observation,
             mesh: case.mesh,
+            colors: None,
             truth: Some(Truth { camera_from_mesh: case.camera_from_mesh, symmetry: case.symmetry }),
         }
     }

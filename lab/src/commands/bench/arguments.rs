@@ -33,6 +33,7 @@ Cases
   --set-seed S       seed of the generated set and of the scenes, default 0
   --meshes DIR       show the GLB files of a folder in a third of the generated cases
   --cases DIR...     case folders, or folders of case folders
+  --no-color         leave out photos and the colours of meshes
   --tier T,…         only these: easy, medium, hard
   --class C,…        only these: plain, occluded, border-cut, tiny, thin, missing-part, extra-part, ragged-mask,
                      warped, sparse-sensor, ambiguous; of the set sensors: wide-shadow, holes, mask-of-readings,
@@ -122,6 +123,7 @@ pub struct Arguments {
     pub set_seed: u64,
     pub meshes: Option<PathBuf>,
     pub cases: Vec<PathBuf>,
+    pub color: bool,
     pub tiers: Vec<Tier>,
     pub classes: Vec<Class>,
     pub only: Option<Vec<usize>>,
@@ -150,6 +152,7 @@ impl Arguments {
             set_seed: 0,
             meshes: None,
             cases: Vec::new(),
+            color: true,
             tiers: Tier::ALL.to_vec(),
             classes: Class::ALL.to_vec(),
             only: None,
@@ -174,6 +177,7 @@ impl Arguments {
                 Long("cases") => arguments.cases.extend(parser.values()?.map(PathBuf::from)),
                 Long("tier") => arguments.tiers = list(&parser.value()?.string()?, Tier::from_name)?,
                 Long("class") => arguments.classes = list(&parser.value()?.string()?, Class::from_name)?,
+                Long("no-color") => arguments.color = false,
                 Long("only") => arguments.only = Some(list(&parser.value()?.string()?, str::parse::<usize>)?),
                 Long("preset") => options.push(format!("preset={}", parser.value()?.string()?)),
                 Long("seed") => options.push(format!("seed={}", parser.value()?.string()?)),

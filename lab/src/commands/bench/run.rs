@@ -104,7 +104,10 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
         })
         .map(drop);
     }
-    let load = |source: &Source| load(source, &set, &scenes);
+    let load = |source: &Source| {
+        let case = load(source, &set, &scenes)?;
+        Ok(if arguments.color { case } else { case.without_color() })
+    };
     if let (Some(path), Some(source)) = (&arguments.picture, sources.first()) {
         return draw(&load(source)?, arguments.matrix.as_deref(), path);
     }
@@ -192,7 +195,7 @@ fn load(source: &Source, set: &EvaluationSet, scenes: &Scenes) -> Result<BenchCa
         Source::Misfit(index) => set.case(index + 1).and_then(|other| {
             let case = BenchCase::from(set.case(*index)?);
             let name = format!("misfit-{}", case.name);
-            Ok(BenchCase { name, class: "misfit".into(), mesh: other.mesh, ..case })
+            Ok(BenchCase { name, class: "misfit".into(), mesh: other.mesh, colors: None, ..case })
         }),
         Source::Scene { scene, pair, prior } => scenes.case(*scene, *pair, *prior),
         Source::Folder(folder) => BenchCase::read(folder),

@@ -1,0 +1,202 @@
+//! The materials of a glTF scene: base colours and their textures.
+//!
+//! They are parsed apart from the geometry, and only for colours: a mesh with a broken material can still be read.
+
+use std::borrow::Cow;
+
+use ::gltf::json;
+use serde::Deserialize;
+
+use crate::gltf::accessor::AccessorReader;
+use crate::gltf::buffers::external;
+use crate::gltf::data_uri;
+use crate::guard::corrupt;
+use crate::painted_mesh::Material;
+use crate::texture::Wrap;
+use crate::texture_loader::{TextureLoader, unsupported_texture};
+use sim3align_geometry::error::Result;
+
+const CLAMP_TO_EDGE: u32 = 33_071;
+const MIRRORED_REPEAT: u32 = 33_648;
+
+/// The parts of a glTF file that define its colours.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct Materials {
+    materials: Vec<MaterialJson>,
+    textures: Vec<TextureJson>,
+    images: Vec<ImageJson>,
+    samplers: Vec<Sampler>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+struct MaterialJson {
+    pbr_metallic_roughness: Option<BaseColor>,
+    extensions: Option<MaterialExtensions>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+struct MaterialExtensions {
+    #[serde(rename = "KHR_materials_pbrSpecularGlossiness")]
+    specular_glossiness: Option<BaseColor>,
+}
+
+/// The base colour, or the diffuse colour of `KHR_materials_pbrSpecularGlossiness`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+struct BaseColor {
+    #[serde(alias = "diffuseFactor")]
+    base_color_factor: Option<[f32; 4]>,
+    #[serde(alias = "diffuseTexture")]
+    base_color_texture: Option<TextureInfo>,
+}
+
+/// A reference to a texture and its coordinates.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+pub(super) struct TextureInfo {
+    index: usize,
+    tex_coord: u32,
+    extensions: Option<TextureExtensions>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+struct TextureExtensions {
+    #[serde(rename = "KHR_texture_transform")]
+    transform: Option<TextureTransform>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+struct TextureTransform {
+    offset: Option<[f32; 2]>,
+    rotation: f32,
+    scale: Option<[f32; 2]>,
+    tex_coord: Option<u32>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+struct TextureJson {
+    source: Option<usize>,
+    sampler: Option<usize>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+struct ImageJson {
+    uri: Option<String>,
+    buffer_view: Option<usize>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+struct Sampler {
+    wrap_s: u32,
+    wrap_t: u32,
+}
+
+impl Materials {
+    /// Parses the JSON of a glTF file.
+    pub fn parse(json: &[u8]) -> Result<Self> {
+        json::deserialize::from_slice(json)
+            .map_err(|error| corrupt("mesh", format!("glTF materials that can't be read: {error}"), "glTF 2.0"))
+    }
+
+    /// The base colour of a material.
+    fn base_color(&self, material: usize) -> Option<&BaseColor> {
+        let material = self.materials.get(material)?;
+        let extension = material.extensions.as_ref().and_then(|extensions| extensions.specular_glossiness.as_ref());
+        material.pbr_metallic_roughness.as_ref().or(extension)
+    }
+
+    /// The texture of a material, if it has one.
+    pub fn texture_of(&self, material: Option<usize>) -> Option<&TextureInfo> {
+        self.base_color(material?)?.base_color_texture.as_ref()
+    }
+
+    /// The URIs of the external images of base colours, as written.
+    pub fn external_images(&self) -> impl Iterator<Item = &str> {
+        (0..self.materials.len()).filter_map(|material| {
+            let texture = self.textures.get(self.texture_of(Some(material))?.index)?;
+            let uri = self.images.get(texture.source?)?.uri.as_deref()?;
+            (!uri.starts_with("data:")).then_some(uri)
+        })
+    }
+
+    /// The materials with their textures; those that no part `used` are left at the default.
+    pub fn load(&self, used: &[usize], reader: &mut AccessorReader<'_>) -> Result<Vec<Material>> {
+        let mut loader = TextureLoader::default();
+        let mut loaded: Vec<Material> = vec![Material::default(); self.materials.len()];
+        for &index in used {
+            let Some(slot) = loaded.get_mut(index) else {
+                let found = format!("material {index} of {}", self.materials.len());
+                return Err(corrupt("mesh", found, "a material that exists"));
+            };
+            let Some(base_color) = self.base_color(index) else { continue };
+            if let Some([r, g, b, _]) = base_color.base_color_factor {
+                slot.factor = [r, g, b];
+            }
+            let Some(info) = &base_color.base_color_texture else { continue };
+            let Some(texture) = self.textures.get(info.index) else {
+                let found = format!("texture {} of {}", info.index, self.textures.len());
+                return Err(corrupt("mesh", found, "a texture that exists"));
+            };
+            // The images of other formats are in extensions.
+            let source = texture.source.ok_or_else(|| unsupported_texture("a texture of another format"))?;
+            let sampler = texture.sampler.and_then(|sampler| self.samplers.get(sampler));
+            slot.wrap = sampler.map_or_else(Default::default, |s| [s.wrap_s, s.wrap_t].map(wrap));
+            slot.texture = Some(loader.load(&source.to_string(), || self.image_bytes(source, reader))?);
+        }
+        Ok(loaded)
+    }
+
+    fn image_bytes<'r>(&self, index: usize, reader: &'r mut AccessorReader<'_>) -> Result<Cow<'r, [u8]>> {
+        let Some(image) = self.images.get(index) else {
+            let found = format!("image {index} of {}", self.images.len());
+            return Err(corrupt("mesh", found, "an image that exists"));
+        };
+        match (&image.uri, image.buffer_view) {
+            (_, Some(view)) => reader.bytes_of_view(view).map(Cow::Borrowed),
+            (Some(uri), None) if uri.starts_with("data:") => match data_uri::decode(uri) {
+                Some(bytes) => Ok(Cow::Owned(bytes)),
+                None => Err(corrupt("mesh", format!("image {index} with a broken data URI"), "data:…;base64,…")),
+            },
+            (Some(uri), None) => external(uri, reader.buffers.resources()).map(Cow::Owned),
+            (None, None) => Err(corrupt("mesh", format!("image {index} without data"), "a buffer view or a URI")),
+        }
+    }
+}
+
+impl TextureInfo {
+    /// The number of the set of texture coordinates.
+    pub fn coordinate_set(&self) -> u32 {
+        self.transform().and_then(|transform| transform.tex_coord).unwrap_or(self.tex_coord)
+    }
+
+    fn transform(&self) -> Option<&TextureTransform> {
+        self.extensions.as_ref()?.transform.as_ref()
+    }
+
+    /// Applies `KHR_texture_transform`: scale, then a counter-clockwise rotation as the image is viewed, then the offset.
+    pub fn transform_coordinates(&self, coordinates: &mut [[f32; 2]]) {
+        let Some(transform) = self.transform() else { return };
+        let ([dx, dy], [sx, sy]) = (transform.offset.unwrap_or_default(), transform.scale.unwrap_or([1.0; 2]));
+        let (sin, cos) = (libm::sinf(transform.rotation), libm::cosf(transform.rotation));
+        for [u, v] in coordinates {
+            let (x, y) = (*u * sx, *v * sy);
+            (*u, *v) = (cos * x + sin * y + dx, cos * y - sin * x + dy);
+        }
+    }
+}
+
+fn wrap(mode: u32) -> Wrap {
+    match mode {
+        CLAMP_TO_EDGE => Wrap::Clamp,
+        MIRRORED_REPEAT => Wrap::Mirror,
+        _ => Wrap::Repeat,
+    }
+}

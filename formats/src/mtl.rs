@@ -1,0 +1,144 @@
+//! Material libraries of OBJ files.
+
+use std::borrow::Cow;
+
+use crate::color::linear;
+use crate::gltf::{Resources, external};
+use crate::painted_mesh::Material;
+use crate::text::{lines, number, words};
+use crate::texture::Wrap;
+use crate::texture_loader::TextureLoader;
+use sim3align_geometry::error::Result;
+
+/// Maximum number of options before a file name; there are twelve kinds.
+const MAX_OPTIONS: usize = 24;
+
+/// The materials of the libraries that an OBJ names.
+#[derive(Debug, Default)]
+pub(crate) struct MaterialLibrary {
+    entries: Vec<Entry>,
+}
+
+#[derive(Debug, Default)]
+struct Entry {
+    name: Vec<u8>,
+    /// `Kd`.
+    diffuse: Option<[f64; 3]>,
+    /// `map_Kd`: the file, and its options.
+    map: Option<Map>,
+}
+
+#[derive(Debug, Default)]
+struct Map {
+    file: String,
+    is_clamped: bool,
+    offset: [f32; 2],
+    scale: [f32; 2],
+}
+
+impl MaterialLibrary {
+    /// Adds the materials of an MTL file.
+    pub fn add(&mut self, bytes: &[u8]) {
+        for line in lines(bytes) {
+            let line = line.split(|&b| b == b'#').next().unwrap_or_default();
+            let mut parts = words(line);
+            match (parts.next().map(<[u8]>::to_ascii_lowercase).as_deref(), self.entries.last_mut()) {
+                (Some(b"newmtl"), _) => {
+                    let name = parts.collect::<Vec<_>>().join(&b' ');
+                    self.entries.push(Entry { name, ..Entry::default() });
+                }
+                (Some(b"kd"), Some(entry)) => {
+                    let numbers: Vec<f64> = parts.map_while(number).collect();
+                    // One number stands for all three channels.
+                    entry.diffuse = match *numbers {
+                        [r, g, b, ..] => Some([r, g, b]),
+                        [grey] => Some([grey; 3]),
+                        _ => entry.diffuse,
+                    };
+                }
+                (Some(b"map_kd"), Some(entry)) => entry.map = Map::parse(line),
+                _ => {}
+            }
+        }
+    }
+
+    /// The index of the material of this name; the last one of its name counts.
+    pub fn index_of(&self, name: &[u8]) -> Option<usize> {
+        self.entries.iter().rposition(|entry| entry.name == name)
+    }
+
+    /// Offset and scale of the texture coordinates of a material; `None` without a texture.
+    pub fn mapping(&self, material: Option<usize>) -> Option<[[f32; 2]; 2]> {
+        let map = self.entries.get(material?)?.map.as_ref()?;
+        Some([map.offset, map.scale])
+    }
+
+    /// The files of the textures, as written.
+    pub fn files(&self) -> impl Iterator<Item = &str> {
+        self.entries.iter().filter_map(|entry| Some(entry.map.as_ref()?.file.as_str()))
+    }
+
+    /// The materials with their textures; those that no part `used` are left at the default.
+    pub fn load(&self, used: &[usize], resources: Option<Resources<'_>>) -> Result<Vec<Material>> {
+        let mut loader = TextureLoader::default();
+        let mut loaded: Vec<Material> = vec![Material::default(); self.entries.len()];
+        for &index in used {
+            let (Some(slot), Some(entry)) = (loaded.get_mut(index), self.entries.get(index)) else { continue };
+            let Some(map) = &entry.map else {
+                // Viewers take the numbers as they are for display, sRGB-encoded.
+                slot.factor =
+                    entry.diffuse.map_or([1.0; 3], |diffuse| linear(diffuse.map(|x| (x * 255.0).round() as u8)));
+                continue;
+            };
+            // With a texture, Kd is ignored: exporters write 0, 0.8 or 1 there, whatever the texture.
+            slot.texture = Some(loader.load(&map.file, || external(&map.file, resources).map(Cow::Owned))?);
+            slot.wrap = [if map.is_clamped { Wrap::Clamp } else { Wrap::Repeat }; 2];
+        }
+        Ok(loaded)
+    }
+}
+
+/// All after the first word of a line.
+fn rest_of(line: &[u8]) -> Vec<u8> {
+    let line = line.trim_ascii();
+    let end = line.iter().position(u8::is_ascii_whitespace).unwrap_or(line.len());
+    line.get(end..).unwrap_or_default().trim_ascii().to_vec()
+}
+
+impl Map {
+    /// `map_Kd -option values… file name`.
+    fn parse(line: &[u8]) -> Option<Self> {
+        let mut map = Self { scale: [1.0; 2], ..Self::default() };
+        let mut rest = rest_of(line);
+        for _ in 0..MAX_OPTIONS {
+            if !rest.starts_with(b"-") {
+                break;
+            }
+            let parts: Vec<&[u8]> = words(&rest).collect();
+            let numbers = |from: usize| parts.iter().skip(from).map_while(|word| number(word)).take(3);
+            let count = match parts.first().copied().unwrap_or_default() {
+                b"-o" | b"-s" | b"-t" => numbers(1).count(),
+                b"-mm" => 2,
+                _ => 1,
+            };
+            let pair = |default: f32| {
+                let mut values = numbers(1).map(|x| x as f32);
+                [values.next().unwrap_or(default), values.next().unwrap_or(default)]
+            };
+            match parts.first().copied().unwrap_or_default() {
+                b"-o" => map.offset = pair(0.0),
+                b"-s" => map.scale = pair(1.0),
+                b"-clamp" => map.is_clamped = parts.get(1) == Some(&b"on".as_slice()),
+                _ => {}
+            }
+            for _ in 0..=count {
+                rest = rest_of(&rest);
+                if rest.is_empty() {
+                    return None;
+                }
+            }
+        }
+        map.file = String::from_utf8_lossy(&rest).replace('\\', "/");
+        (!map.file.is_empty()).then_some(map)
+    }
+}

@@ -1,0 +1,111 @@
+//! A mesh with all that gives its surface colour, and the colours at points of it.
+
+use std::rc::Rc;
+
+use crate::color::{WHITE, linear, srgb};
+use crate::mesh::ColoredMesh;
+use crate::texture::{Texture, Wrap};
+use sim3align_geometry::error::{Error, Result};
+use sim3align_geometry::mesh::Mesh;
+use sim3align_geometry::surface::{SurfaceSample, surface_area, triangle_area};
+use sim3align_geometry::surface_colors::{COLOR_SAMPLES, Rgb, SurfaceColors, interpolated};
+
+/// What gives the surface of a mesh its colour.
+#[derive(Debug, Default)]
+pub(crate) struct Paint {
+    /// sRGB-encoded colour of each vertex; empty if none has one.
+    pub vertex_colors: Vec<Rgb>,
+    /// Texture coordinates of the corners of each triangle; fewer than triangles if the last have none.
+    pub coordinates: Vec<[[f32; 2]; 3]>,
+    /// First triangle and material of each part, ascending.
+    pub parts: Vec<(usize, Option<usize>)>,
+}
+
+/// A mesh and its paint.
+#[derive(Debug)]
+pub(crate) struct PaintedMesh {
+    pub mesh: Mesh,
+    pub paint: Paint,
+}
+
+/// A surface: its colour is that of the vertices, times the factor, times the texture, in linear light.
+#[derive(Debug, Clone)]
+pub(crate) struct Material {
+    /// Linear light.
+    pub factor: [f32; 3],
+    pub texture: Option<Rc<Texture>>,
+    pub wrap: [Wrap; 2],
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self { factor: [1.0; 3], texture: None, wrap: Default::default() }
+    }
+}
+
+impl Material {
+    /// Whether it has a colour other than the default.
+    fn is_colored(&self) -> bool {
+        self.texture.is_some() || self.factor != [1.0; 3]
+    }
+}
+
+impl PaintedMesh {
+    /// The mesh with its colours. `materials` are those that the parts refer to; other parts are white.
+    pub fn colored(self, materials: Result<Vec<Material>>) -> ColoredMesh {
+        let Self { mesh, paint } = self;
+        match materials.map(|materials| paint.surface_colors(&mesh, &materials)) {
+            Ok(colors) => ColoredMesh { mesh, colors, problem: None },
+            Err(problem) => ColoredMesh { mesh, colors: None, problem: Some(problem) },
+        }
+    }
+
+    /// The mesh without colours.
+    pub fn plain(self, problem: Option<Error>) -> ColoredMesh {
+        ColoredMesh { mesh: self.mesh, colors: None, problem }
+    }
+}
+
+impl Paint {
+    /// The colours of the mesh's surface; `None` if nothing gives it any, or if it has no area.
+    fn surface_colors(&self, mesh: &Mesh, materials: &[Material]) -> Option<SurfaceColors> {
+        let white = Material::default();
+        let parts: Vec<(usize, &Material)> = (self.parts.iter())
+            .map(|&(first, index)| (first, index.and_then(|index| materials.get(index)).unwrap_or(&white)))
+            .collect();
+        if self.vertex_colors.is_empty() && !parts.iter().any(|(_, material)| material.is_colored()) {
+            return None;
+        }
+        let spacing = surface_area(mesh) / COLOR_SAMPLES as f64;
+        SurfaceColors::sample(mesh, &mut |sample| {
+            let part = parts.partition_point(|&(first, _)| first <= sample.triangle).checked_sub(1);
+            let material = part.and_then(|part| parts.get(part)).map_or(&white, |(_, material)| material);
+            self.color(mesh, material, sample, spacing)
+        })
+        .ok()
+    }
+
+    /// The colour at a point, with the texture averaged over `spacing`, an area of the surface.
+    fn color(&self, mesh: &Mesh, material: &Material, sample: &SurfaceSample, spacing: f64) -> Rgb {
+        let corners = mesh.triangles().get(sample.triangle).copied().unwrap_or_default();
+        let of_vertex = |i: u32| self.vertex_colors.get(i as usize).copied().unwrap_or(WHITE);
+        let vertices = interpolated(corners.map(of_vertex), sample.weights);
+        let texture = material.texture.as_ref().map_or(WHITE, |texture| {
+            let corners_uv = self.coordinates.get(sample.triangle).copied().unwrap_or_default();
+            let [a, b, c] = corners_uv.map(|uv| uv.map(f64::from));
+            let [second, third] = sample.weights;
+            let at = |axis: usize| a[axis] + (b[axis] - a[axis]) * second + (c[axis] - a[axis]) * third;
+            let in_texture = ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs() / 2.0;
+            let area = in_texture / triangle_area(mesh, sample.triangle) * spacing;
+            texture.color([at(0), at(1)], area, material.wrap)
+        });
+        match (vertices == WHITE, material.factor == [1.0; 3]) {
+            (true, true) => texture,
+            (false, true) if texture == WHITE => vertices,
+            _ => {
+                let (vertices, texture) = (linear(vertices), linear(texture));
+                srgb(core::array::from_fn(|i| vertices[i] * material.factor[i] * texture[i]))
+            }
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! Textures, averaged to the distance of the points where they are read.
+
+use sim3align_geometry::error::Result;
+use sim3align_geometry::image::Image;
+use sim3align_geometry::surface_colors::Rgb;
+
+use crate::reducer::reduce;
+
+/// Maximum number of texels of a texture after reading: the texels of a surface that fills a quarter of it are still
+/// several times as dense as the points where colours are read.
+pub(crate) const MAX_TEXELS: usize = 1 << 20;
+
+/// What a texture shows beyond its edges.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) enum Wrap {
+    #[default]
+    Repeat,
+    Mirror,
+    Clamp,
+}
+
+impl Wrap {
+    /// The texel of an index beyond the edges.
+    fn apply(self, index: i64, count: usize) -> usize {
+        let count = count as i64;
+        let wrapped = match self {
+            Self::Repeat => index.rem_euclid(count),
+            Self::Mirror => {
+                let index = index.rem_euclid(2 * count);
+                index.min(2 * count - 1 - index)
+            }
+            Self::Clamp => index.clamp(0, count - 1),
+        };
+        wrapped as usize
+    }
+}
+
+/// An image and its reductions, each half as wide and high as the one before.
+#[derive(Debug)]
+pub(crate) struct Texture {
+    levels: Vec<Image<Rgb>>,
+}
+
+impl Texture {
+    pub fn new(image: Image<Rgb>) -> Result<Self> {
+        let mut levels = vec![image];
+        while let Some(last) = levels.last()
+            && last.width().max(last.height()) > 1
+        {
+            let half = [last.width(), last.height()].map(|side| (side / 2).max(1));
+            levels.push(reduce(last, half)?);
+        }
+        Ok(Self { levels })
+    }
+
+    /// The colour at coordinates u, v: (0, 0) is the upper left corner of the image, (1, 1) the lower right one. `area` is
+    /// what the colour is averaged over, as a fraction of the image.
+    pub fn color(&self, [u, v]: [f64; 2], area: f64, wrap: [Wrap; 2]) -> Rgb {
+        let Some(finest) = self.levels.first() else { return [0; 3] };
+        // Levels of a quarter of the texels each, as long as a texel is no larger than the area.
+        let mut texels = area * finest.data().len() as f64;
+        let mut level = 0;
+        while texels >= 4.0 && level + 1 < self.levels.len() {
+            (texels, level) = (texels / 4.0, level + 1);
+        }
+        let Some(image) = self.levels.get(level) else { return [0; 3] };
+        let sides = [image.width(), image.height()];
+        // Texel centres are at half-integers. Beyond 2^31 repetitions, coordinates resolve nothing.
+        let place = |x: f64, side: usize| {
+            let at = if x.abs() < 2_147_483_648.0 { x * side as f64 - 0.5 } else { 0.0 };
+            (at.floor() as i64, at - at.floor())
+        };
+        let [(column, across), (row, down)] = [place(u, sides[0]), place(v, sides[1])];
+        let columns = [column, column + 1].map(|i| wrap[0].apply(i, sides[0]));
+        let rows = [row, row + 1].map(|i| wrap[1].apply(i, sides[1]));
+        let texel = |row: usize, column: usize| image.get(column, row).unwrap_or_default().map(f64::from);
+        let [top, bottom] = rows.map(|row| {
+            let [left, right] = columns.map(|column| texel(row, column));
+            core::array::from_fn::<f64, 3, _>(|i| left[i] + (right[i] - left[i]) * across)
+        });
+        core::array::from_fn(|i| (top[i] + (bottom[i] - top[i]) * down).round() as u8)
+    }
+}

@@ -1,0 +1,235 @@
+//! The surface of a mesh: points spread evenly over it, its moments, and the check for degenerate meshes.
+
+use glam::{DMat3, DVec3, Vec3};
+
+use crate::cloud::Cloud;
+use crate::error::{Error, ErrorCode, Result};
+use crate::mesh::Mesh;
+use crate::number::number;
+use crate::random::Random;
+use crate::symmetric_eigen::SymmetricEigen;
+
+/// Random stream of [`each_surface_sample`].
+const STREAM: u64 = 2;
+
+/// Root-mean-square thickness, relative to the box diagonal, below which a surface is a plane (or, in its second
+/// direction, a line). A sheet of A4 paper has 1.4e-4, a bank card 4e-3; the rounding of f32 vertices 1e-7.
+pub const MIN_THICKNESS: f64 = 1e-4;
+
+/// Smallest and largest diagonal of a mesh's bounding box, mesh units. Beyond, squares of distances on the surface leave
+/// the range of f32. An object of a metre has 1e9 in nanometres.
+pub const DIAGONALS: [f64; 2] = [1e-15, 1e15];
+
+/// Maximum number of triangles of a mesh: ten times those of generated meshes. With more, copies of the mesh alone would
+/// take the memory that an alignment may.
+pub const MAX_TRIANGLES: usize = 1 << 22;
+
+/// A point on a mesh's surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfaceSample {
+    /// Index of the triangle.
+    pub triangle: usize,
+    /// Barycentric weights of the triangle's second and third corner.
+    pub weights: [f64; 2],
+    /// Its position.
+    pub point: Vec3,
+    /// The unit normal of its triangle, outward.
+    pub normal: Vec3,
+}
+
+/// `count` points spread evenly by area over the mesh's surface, each with its triangle's unit normal: those of
+/// [`each_surface_sample`].
+///
+/// # Errors
+/// As [`each_surface_sample`].
+pub fn sample_surface(mesh: &Mesh, count: usize, seed: u64) -> Result<Cloud> {
+    let mut cloud = Cloud { points: Vec::with_capacity(count), normals: Vec::with_capacity(count) };
+    each_surface_sample(mesh, count, seed, &mut |sample| {
+        cloud.points.push(sample.point);
+        cloud.normals.push(sample.normal);
+    })?;
+    Ok(cloud)
+}
+
+/// Calls `visit` with `count` points spread evenly by area over the mesh's surface, in the order of the triangles.
+///
+/// Stratified: the cumulative area over all triangles is divided into `count` equal intervals with one point each, so
+/// that a triangle with n intervals gets n ± 1 points. If the mesh faces inward (negative signed volume), all normals
+/// are flipped.
+///
+/// # Errors
+/// [`ErrorCode::DegenerateMesh`] if the area is 0 or not finite, or the diagonal beyond [`DIAGONALS`];
+/// [`ErrorCode::FileTooLarge`] above [`MAX_TRIANGLES`].
+pub fn each_surface_sample(mesh: &Mesh, count: usize, seed: u64, visit: &mut dyn FnMut(SurfaceSample)) -> Result<()> {
+    check_triangles(mesh.triangles().len())?;
+    let mut total = 0.0;
+    let ends: Vec<f64> = (mesh.triangles().iter())
+        .map(|&t| {
+            total += area_vector(corners(mesh, t)).length();
+            total
+        })
+        .collect();
+    check_area(total)?;
+    check_diagonal(mesh)?;
+    // The last triangle with area; rounding must not select one after it.
+    let last = ends.partition_point(|&end| end < total).min(ends.len() - 1);
+    let facing = if mesh.signed_volume6() < 0.0 { -1.0 } else { 1.0 };
+
+    let mut random = Random::new(seed, STREAM);
+    let mut triangle = 0;
+    for k in 0..count {
+        let at = (k as f64 + random.uniform()) / count as f64 * total;
+        while triangle < last && ends[triangle] <= at {
+            triangle += 1;
+        }
+        let [a, b, c] = corners(mesh, mesh.triangles()[triangle]);
+        // The square root makes the draw uniform in area (Osada et al. 2002, "Shape distributions", §3.1).
+        let (r, w) = (random.uniform().sqrt(), random.uniform());
+        let weights = [r * (1.0 - w), r * w];
+        let point = (a + (b - a) * weights[0] + (c - a) * weights[1]).as_vec3();
+        let normal = (area_vector([a, b, c]).normalize_or_zero() * facing).as_vec3();
+        visit(SurfaceSample { triangle, weights, point, normal });
+    }
+    Ok(())
+}
+
+/// Rejects meshes whose pose or scale cannot be determined from any view: without area, planar, or collinear.
+///
+/// # Errors
+/// [`ErrorCode::DegenerateMesh`], from the thickness along the principal axes (see [`MIN_THICKNESS`]), and those of
+/// [`each_surface_sample`].
+pub fn check_shape(mesh: &Mesh) -> Result<()> {
+    check_triangles(mesh.triangles().len())?;
+    let moments = SurfaceMoments::of(mesh);
+    check_area(moments.area)?;
+    let eigen = moments.principal_axes();
+    let diagonal = check_diagonal(mesh)?;
+    let [thin, middle, _] = eigen.values.map(|v| v.max(0.0).sqrt() / diagonal);
+    let degenerate = |found: String, remedy: &str| {
+        Err(Error::new(ErrorCode::DegenerateMesh, "mesh", found, "a surface around a volume", remedy.to_owned()))
+    };
+    if middle < MIN_THICKNESS {
+        return degenerate(
+            format!("a needle: {} of its diagonal thick in two directions", number(middle)),
+            "Check that the vertices are x, y, z triples and that no axis was scaled to zero.",
+        );
+    }
+    if thin < MIN_THICKNESS {
+        return degenerate(
+            format!("a plane: {} of its diagonal thick", number(thin)),
+            "Pass the whole object's mesh, not a flat patch; a sheet needs a thickness of its own.",
+        );
+    }
+    Ok(())
+}
+
+/// Area, centroid and covariance of a surface with uniform weight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfaceMoments {
+    /// Total area.
+    pub area: f64,
+    /// Centroid of the surface.
+    pub centroid: DVec3,
+    /// Mean of (x − centroid)(x − centroid)ᵀ.
+    pub covariance: DMat3,
+}
+
+impl SurfaceMoments {
+    /// The moments of a mesh's surface, integrated exactly. All zero for a mesh without area.
+    pub fn of(mesh: &Mesh) -> Self {
+        // Relative to a vertex: second moments about a distant origin would lose the precision of the covariance.
+        let origin = mesh.positions().first().map_or(DVec3::ZERO, |p| p.as_dvec3());
+        let (mut area, mut first, mut second) = (0.0, DVec3::ZERO, DMat3::ZERO);
+        for &triangle in mesh.triangles() {
+            let [a, b, c] = corners(mesh, triangle).map(|p| p - origin);
+            let weight = area_vector([a, b, c]).length();
+            let sum = a + b + c;
+            area += weight;
+            first += sum * (weight / 3.0);
+            // ∫ x xᵀ over a triangle is A/12 · (Σ vᵢvᵢᵀ + (Σ vᵢ)(Σ vᵢ)ᵀ).
+            second += (outer(a) + outer(b) + outer(c) + outer(sum)) * (weight / 12.0);
+        }
+        if area == 0.0 {
+            return Self { area, centroid: origin, covariance: DMat3::ZERO };
+        }
+        let mean = first / area;
+        Self { area, centroid: origin + mean, covariance: second * (1.0 / area) - outer(mean) }
+    }
+
+    /// The principal axes, the thinnest first; the values are variances.
+    pub fn principal_axes(&self) -> SymmetricEigen {
+        SymmetricEigen::of(self.covariance)
+    }
+}
+
+fn outer(v: DVec3) -> DMat3 {
+    DMat3::from_cols(v * v.x, v * v.y, v * v.z)
+}
+
+fn corners(mesh: &Mesh, triangle: [u32; 3]) -> [DVec3; 3] {
+    mesh.corners(triangle).map(|p| p.as_dvec3())
+}
+
+/// The area of a mesh's surface.
+pub fn surface_area(mesh: &Mesh) -> f64 {
+    (0..mesh.triangles().len()).map(|triangle| triangle_area(mesh, triangle)).sum()
+}
+
+/// The area of the triangle with this index; 0 if there is none.
+pub fn triangle_area(mesh: &Mesh, triangle: usize) -> f64 {
+    mesh.triangles().get(triangle).map_or(0.0, |&t| area_vector(corners(mesh, t)).length())
+}
+
+/// The vector along the normal whose length is the area of the triangle.
+fn area_vector([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a) * 0.5
+}
+
+/// The diagonal of the bounding box of the triangles, if it is within [`DIAGONALS`]; unused vertices are ignored.
+fn check_diagonal(mesh: &Mesh) -> Result<f64> {
+    let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    for p in mesh.triangles().iter().flat_map(|&t| mesh.corners(t)) {
+        (min, max) = (min.min(p), max.max(p));
+    }
+    let diagonal = (max.as_dvec3() - min.as_dvec3()).length();
+    if (DIAGONALS[0]..=DIAGONALS[1]).contains(&diagonal) {
+        return Ok(diagonal);
+    }
+    Err(Error::new(
+        ErrorCode::DegenerateMesh,
+        "mesh",
+        format!("a bounding box with a diagonal of {}", number(diagonal)),
+        format!("a diagonal from {} to {}", number(DIAGONALS[0]), number(DIAGONALS[1])),
+        "Scale the mesh to any usual unit, such as metres or millimetres.",
+    ))
+}
+
+/// Checks the number of a mesh's triangles.
+///
+/// # Errors
+/// [`ErrorCode::FileTooLarge`] above [`MAX_TRIANGLES`].
+pub fn check_triangles(count: usize) -> Result<()> {
+    if count <= MAX_TRIANGLES {
+        return Ok(());
+    }
+    Err(Error::new(
+        ErrorCode::FileTooLarge,
+        "mesh",
+        format!("{count} triangles"),
+        format!("at most {MAX_TRIANGLES}"),
+        "Simplify the mesh: the search uses ten thousand triangles at most.",
+    ))
+}
+
+fn check_area(total: f64) -> Result<()> {
+    if total > 0.0 && total.is_finite() {
+        return Ok(());
+    }
+    Err(Error::new(
+        ErrorCode::DegenerateMesh,
+        "mesh",
+        format!("triangles with a total area of {}", number(total)),
+        "a surface with area",
+        "Check that the vertices are x, y, z triples and that the indices do not all refer to one vertex.",
+    ))
+}
