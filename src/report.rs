@@ -106,6 +106,9 @@ pub enum WarningCode {
     /// The camera file has lens distortion, which the pinhole model leaves out. The package's camera reader warns of
     /// it.
     CameraNotPinhole,
+    /// The colours of the mesh file cannot be read, such as a texture in an unsupported format: the mesh is aligned by its
+    /// shape alone. The package's mesh reader warns of it.
+    ColorsNotRead,
 }
 
 /// Sizes of the problem and events during the run. `precise` counts points and renders, the other methods everything

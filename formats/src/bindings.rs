@@ -1,15 +1,19 @@
 //! The file readers' exports.
 
-use js_sys::{ArrayBuffer, Float32Array, Object, Reflect, Uint8Array, Uint32Array};
+use glam::Vec3;
+use js_sys::{Array, ArrayBuffer, Float32Array, Object, Reflect, Uint8Array, Uint32Array};
 use serde::Serialize;
 use serde_wasm_bindgen::Serializer;
 use wasm_bindgen::prelude::*;
 
 use crate::depth::{DepthReadOptions, read_depth as depth_from_bytes};
-use crate::gltf;
 use crate::guard::MAX_BUFFER_BYTES;
 use crate::mask::read_mask as mask_from_bytes;
-use crate::mesh::{MeshFormat, MeshReadOptions, read_mesh as mesh_from_bytes};
+use crate::mesh::{
+    ColoredMesh, MeshFormat, MeshReadOptions, external_resources as resources_of, read_colored_mesh as mesh_from_bytes,
+    read_mesh as read_mesh_shape,
+};
+use crate::photo::read_photo;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::image::Image;
 
@@ -21,8 +25,10 @@ export type FileBytes = Uint8Array | ArrayBuffer;
 export interface ReadMeshOptions {
   /** The format; told from the content by default. */
   format?: "glb" | "gltf" | "obj" | "ply" | "stl";
-  /** The buffers of a `.gltf` by the URIs it names them with: see `externalResources`. */
+  /** The files that a `.gltf` or `.obj` refers to, by the names in it: see `externalResources`. */
   resources?: Record<string, FileBytes>;
+  /** Whether to read the colours; `true` by default. */
+  colors?: boolean;
 }
 
 /** A mesh that was read. */
@@ -31,6 +37,36 @@ export interface MeshArrays {
   positions: Float32Array;
   /** Three vertex indices per triangle. */
   indices: Uint32Array;
+  /** The colours of the surface, if the file has any. */
+  samples?: ColorSamples;
+  /** Why the colours of the file can't be read. */
+  warnings: string[];
+}
+
+/** Colours of a surface, at points spread evenly over it. */
+export interface ColorSamples {
+  /** x, y, z per point. */
+  positions: Float32Array;
+  /** x, y, z of the unit normal per point, outward. */
+  normals: Float32Array;
+  /** Red, green and blue per point, sRGB-encoded. */
+  colors: Uint8Array;
+}
+
+/** The files that a mesh file refers to, by the names in it. */
+export interface ExternalResources {
+  /** Without these, the mesh can't be read. */
+  shape: string[];
+  /** Without these, it has no colours. */
+  colors: string[];
+}
+
+/** A photo that was read; `width` and `height` in pixels. */
+export interface PhotoImage {
+  /** Red, green and blue per pixel, row by row, sRGB-encoded. */
+  data: Uint8Array;
+  width: number;
+  height: number;
 }
 
 export interface ReadDepthOptions {
@@ -57,39 +93,75 @@ export interface MaskImage {
 }
 "#;
 
-/// Reads GLB, glTF, OBJ, PLY or STL: all parts merged, node transforms applied.
+/// Reads GLB, glTF, OBJ, PLY or STL: all parts merged, node transforms applied, with the colours of the surface.
 #[wasm_bindgen(js_name = readMesh, unchecked_return_type = "MeshArrays")]
 pub fn read_mesh(
     #[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue,
     #[wasm_bindgen(unchecked_optional_param_type = "ReadMeshOptions")] options: &JsValue,
 ) -> core::result::Result<JsValue, JsValue> {
     let read = || {
-        let options = Options::new(options, &["format", "resources"])?;
+        let options = Options::new(options, &["format", "resources", "colors"])?;
         let resources = options.get("resources");
         let find = |uri: &str| to_bytes("", &Reflect::get(resources.as_ref()?, &uri.into()).ok()?).ok();
         let format = match options.get("format") {
             None => None,
             Some(format) => Some(MeshFormat::from_name(&string("options.format", &format)?)?),
         };
-        mesh_from_bytes(&to_bytes("mesh", bytes)?, &MeshReadOptions { format, resources: Some(&find) })
+        let bytes = to_bytes("mesh", bytes)?;
+        let with_resources = MeshReadOptions { format, resources: Some(&find) };
+        if options.get("colors").is_some_and(|colors| colors.is_falsy()) {
+            return read_mesh_shape(&bytes, &with_resources).map(ColoredMesh::from);
+        }
+        mesh_from_bytes(&bytes, &with_resources)
     };
-    let mesh = read().map_err(|error| to_js(&error))?;
-    let positions: Vec<f32> = mesh.positions().iter().flat_map(|p| p.to_array()).collect();
-    Ok(object(&[
-        ("positions", Float32Array::from(positions.as_slice()).into()),
+    let ColoredMesh { mesh, colors, problem } = read().map_err(|error| to_js(&error))?;
+    let mut properties = vec![
+        ("positions", flat(mesh.positions()).into()),
         ("indices", Uint32Array::from(mesh.triangles().as_flattened()).into()),
-    ]))
+        ("warnings", problem.iter().map(|problem| JsValue::from(without_colors(problem))).collect::<Array>().into()),
+    ];
+    if let Some(colors) = &colors {
+        let samples = colors.samples();
+        properties.push((
+            "samples",
+            object(&[
+                ("positions", flat(&samples.points).into()),
+                ("normals", flat(&samples.normals).into()),
+                ("colors", Uint8Array::from(colors.colors().as_flattened()).into()),
+            ]),
+        ));
+    }
+    Ok(object(&properties))
 }
 
-/// The URIs of the files that a `.gltf` keeps its geometry in: what `readMesh` needs as `resources`.
-#[wasm_bindgen(js_name = externalResources)]
+/// The warning for colours that can't be read.
+fn without_colors(problem: &Error) -> String {
+    format!("The mesh is read without its colours. {problem}")
+}
+
+fn flat(points: &[Vec3]) -> Float32Array {
+    let numbers: Vec<f32> = points.iter().flat_map(|p| p.to_array()).collect();
+    Float32Array::from(numbers.as_slice())
+}
+
+/// The files that a mesh file refers to: what `readMesh` needs as `resources`. The libraries of an OBJ refer to files
+/// themselves.
+#[wasm_bindgen(js_name = externalResources, unchecked_return_type = "ExternalResources")]
 pub fn external_resources(
     #[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue,
-) -> core::result::Result<Vec<String>, JsValue> {
-    to_bytes("mesh", bytes)
-        .and_then(|bytes| gltf::external_resources(&bytes))
-        .map(|found| found.shape)
-        .map_err(|error| to_js(&error))
+) -> core::result::Result<JsValue, JsValue> {
+    let found = to_bytes("mesh", bytes).and_then(|bytes| resources_of(&bytes)).map_err(|error| to_js(&error))?;
+    let names = |names: &[String]| names.iter().map(|name| JsValue::from(name.as_str())).collect::<Array>().into();
+    Ok(object(&[("shape", names(&found.shape)), ("colors", names(&found.colors))]))
+}
+
+/// Reads a PNG or a JPEG as a photo: sRGB colours, turned as the EXIF data say; large ones are reduced.
+#[wasm_bindgen(js_name = readImage, unchecked_return_type = "PhotoImage")]
+pub fn read_image(
+    #[wasm_bindgen(unchecked_param_type = "FileBytes")] bytes: &JsValue,
+) -> core::result::Result<JsValue, JsValue> {
+    let photo = to_bytes("image", bytes).and_then(|bytes| read_photo(&bytes)).map_err(|error| to_js(&error))?;
+    Ok(image(&photo, Uint8Array::from(photo.data().as_flattened()).into()))
 }
 
 /// Reads a 16-bit grey PNG or a `.npy` array as depth in metres.

@@ -14,6 +14,9 @@ pub(crate) const MAGIC: &[u8] = b"\xff\xd8\xff";
 /// Maximum number of pixels of a progressive image: all its coefficients are in memory, up to six bytes per pixel.
 const MAX_PROGRESSIVE_PIXELS: usize = 1 << 25;
 
+/// Maximum number of pixels per byte: a block of 64 pixels takes at least a bit. The decoder fills what is missing.
+const PIXELS_PER_BYTE: usize = 8 * 64;
+
 /// Smallest side of an image that the decoder reduces itself.
 const MIN_SCALED_SIDE: usize = 64;
 
@@ -24,6 +27,10 @@ pub(crate) fn read(argument: &'static str, bytes: &[u8], max_pixels: usize) -> R
     let info = read_header(argument, &mut decoder)?;
     let full = [usize::from(info.width), usize::from(info.height)];
     let count = pixel_count(argument, full[0], full[1])?;
+    if bytes.len() < count / PIXELS_PER_BYTE {
+        let found = format!("{} × {} pixels in {} bytes", full[0], full[1], bytes.len());
+        return Err(corrupt(argument, found, "enough bytes for the pixels"));
+    }
     if info.coding_process == CodingProcess::DctProgressive && count > MAX_PROGRESSIVE_PIXELS {
         let found = format!("a progressive JPEG of {} × {} pixels", full[0], full[1]);
         return Err(too_large(argument, found, format!("at most {MAX_PROGRESSIVE_PIXELS} pixels")));

@@ -70,7 +70,7 @@ impl MeshFormat {
 pub struct MeshReadOptions<'a> {
     /// The format; detected from the content if `None`.
     pub format: Option<MeshFormat>,
-    /// The external buffers of a `.gltf` file, by URI as written in it; see [`gltf::external_resources`].
+    /// The external files, by URI or name as written in the mesh file; see [`external_resources`].
     pub resources: Option<Resources<'a>>,
 }
 
@@ -92,6 +92,39 @@ pub struct ColoredMesh {
     pub colors: Option<SurfaceColors>,
     /// Why the colours can't be read; the mesh can be used without them.
     pub problem: Option<Error>,
+}
+
+impl From<Mesh> for ColoredMesh {
+    /// The mesh without colours.
+    fn from(mesh: Mesh) -> Self {
+        Self { mesh, colors: None, problem: None }
+    }
+}
+
+/// The files that a mesh file refers to, by the URIs or names in it.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct ExternalResources {
+    /// Without these, the mesh can't be read: the buffers of a `.gltf`.
+    pub shape: Vec<String>,
+    /// Without these, it has no colours: the images of base colours, and the libraries of an `.obj` with their textures.
+    pub colors: Vec<String>,
+}
+
+/// The distinct files that a mesh file refers to. Of an `.obj`, these are its libraries; given the content of a library,
+/// its textures.
+///
+/// # Errors
+/// [`ErrorCode::CorruptFile`], [`ErrorCode::FileTooLarge`], [`ErrorCode::UnsupportedFormat`].
+pub fn external_resources(bytes: &[u8]) -> Result<ExternalResources> {
+    let is_text = |bytes: &[u8]| !bytes.contains(&0);
+    match MeshFormat::sniff(bytes) {
+        Some(MeshFormat::Gltf) => gltf::external_resources(bytes),
+        // A library is not told from other text.
+        Some(MeshFormat::Obj) | None if is_text(bytes) => {
+            Ok(ExternalResources { shape: Vec::new(), colors: obj::external_resources(bytes)? })
+        }
+        _ => Ok(ExternalResources::default()),
+    }
 }
 
 /// What is read of a mesh file.
@@ -128,7 +161,7 @@ fn read(bytes: &[u8], options: &MeshReadOptions<'_>, content: Content) -> Result
         Some(MeshFormat::Gltf) => gltf::read_gltf(bytes, options.resources, content),
         Some(MeshFormat::Obj) => obj::read_obj(bytes, options.resources, content),
         Some(MeshFormat::Ply) => ply::read_ply(bytes, content),
-        Some(MeshFormat::Stl) => stl::read_stl(bytes).map(|mesh| ColoredMesh { mesh, colors: None, problem: None }),
+        Some(MeshFormat::Stl) => stl::read_stl(bytes).map(ColoredMesh::from),
         None => Err(unsupported(
             "mesh",
             beginning(bytes),

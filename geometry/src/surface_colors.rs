@@ -102,5 +102,5 @@ impl SurfaceColors {
 /// The colour at a point of a triangle, from those of its corners.
 pub fn interpolated(corners: [Rgb; 3], [second, third]: [f64; 2]) -> Rgb {
     let [a, b, c] = corners.map(|color| color.map(f64::from));
-    core::array::from_fn(|i| (a[i] + (b[i] - a[i]) * second + (c[i] - a[i]) * third).round() as u8)
+    core::array::from_fn(|i| (a[i] + (b[i] - a[i]) * second + (c[i] - a[i]) * third + 0.5) as u8)
 }

@@ -3,9 +3,10 @@
 use js_sys::Uint16Array;
 use wasm_bindgen::{JsCast, JsValue};
 
-use super::object::{get, number, required_number, size, to_f32s, to_u8s, wrong_type};
+use super::object::{get, number, required_number, size, to_colors, to_f32s, to_u8s, wrong_type};
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::observation::{Observation, from_point_map};
+use crate::evidence::photo::Photo;
 use crate::geometry::image::{DepthMap, Image, Mask, check_size};
 use crate::geometry::pinhole::Pinhole;
 use crate::number::number as number_text;
@@ -13,7 +14,7 @@ use crate::number::number as number_text;
 /// Default metres per unit of integer depth: millimetres.
 const DEFAULT_DEPTH_SCALE: f64 = 0.001;
 
-/// `{ depth | pointMap, depthScale?, width, height, camera, mask, maskWidth?, maskHeight?, resizeMask? }`.
+/// `{ depth | pointMap, depthScale?, width, height, camera, mask, maskWidth?, maskHeight?, resizeMask?, image? }`.
 #[inline(never)]
 pub fn observation(input: &JsValue) -> Result<Observation> {
     if !input.is_object() {
@@ -34,7 +35,18 @@ pub fn observation(input: &JsValue) -> Result<Observation> {
             (depth(input, width, height)?, camera(&given)?)
         }
     };
-    Observation::new(depth, mask(input, width, height)?, camera)
+    let observation = Observation::new(depth, mask(input, width, height)?, camera)?;
+    match get(input, "image") {
+        Some(image) => observation.with_photo(photo(&image)?),
+        None => Ok(observation),
+    }
+}
+
+/// `{ data, width, height }` with a `Uint8Array` of red, green and blue: other forms are resolved in TypeScript.
+fn photo(image: &JsValue) -> Result<Photo> {
+    let side = |name| size(image, name).map(Option::unwrap_or_default);
+    let colors = to_colors(&get(image, "data").unwrap_or(JsValue::UNDEFINED), "image.data")?;
+    Image::new("image", side("width")?, side("height")?, colors)
 }
 
 fn depth(input: &JsValue, width: usize, height: usize) -> Result<DepthMap> {

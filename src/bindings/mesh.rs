@@ -4,12 +4,15 @@ use core::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
+use glam::Vec3;
 use wasm_bindgen::JsValue;
 
-use super::object::{get, to_f32s, to_u32s, wrong_type};
+use super::object::{get, to_colors, to_f32s, to_u32s, wrong_type};
 use crate::error::Result;
 use crate::evidence::sample::check_triangles;
+use crate::geometry::cloud::Cloud;
 use crate::geometry::mesh::Mesh;
+use crate::geometry::surface_colors::SurfaceColors;
 use crate::precise::prepared_mesh::PreparedMesh;
 
 thread_local! {
@@ -17,7 +20,7 @@ thread_local! {
     static KEPT: RefCell<BTreeMap<u32, Rc<PreparedMesh<'static>>>> = const { RefCell::new(BTreeMap::new()) };
 }
 
-/// `{ positions, indices? }`; with `id`, the mesh is cached under this number, and the arrays are only read if it is
+/// `{ positions, indices?, colors? | samples? }`; with `id`, the mesh is cached under this number, and the arrays are only read if it is
 /// not cached yet.
 #[inline(never)]
 pub fn mesh(mesh: &JsValue) -> Result<Rc<PreparedMesh<'static>>> {
@@ -37,11 +40,30 @@ pub fn mesh(mesh: &JsValue) -> Result<Rc<PreparedMesh<'static>>> {
     check_triangles(indices.as_ref().map_or(0, |indices| length(indices) / 3).max(length(&positions) / 9))?;
     let positions = to_f32s(&positions, "mesh.positions")?;
     let indices = indices.map(|indices| to_u32s(&indices, "mesh.indices")).transpose()?;
-    let mesh = Rc::new(PreparedMesh::new(Mesh::from_flat(&positions, indices.as_deref())?));
+    let triangles = Mesh::from_flat(&positions, indices.as_deref())?;
+    let colors = colors(mesh, &triangles)?;
+    let mesh = Rc::new(PreparedMesh::new(triangles).with_colors(colors));
     if let Some(id) = id {
         KEPT.with_borrow_mut(|kept| kept.insert(id, mesh.clone()));
     }
     Ok(mesh)
+}
+
+/// `colors`, sRGB-encoded red, green and blue per vertex, or `samples`, `{ positions, normals, colors }`, what the readers
+/// of files make of textures.
+#[inline(never)]
+fn colors(mesh: &JsValue, triangles: &Mesh) -> Result<Option<SurfaceColors>> {
+    let argument = "mesh.colors";
+    if let Some(samples) = get(mesh, "samples") {
+        let part = |name| get(&samples, name).unwrap_or(JsValue::UNDEFINED);
+        let points = |name| -> Result<Vec<Vec3>> {
+            Ok(to_f32s(&part(name), argument)?.chunks_exact(3).map(Vec3::from_slice).collect())
+        };
+        let cloud = Cloud { points: points("positions")?, normals: points("normals")? };
+        return SurfaceColors::new(cloud, to_colors(&part("colors"), argument)?).map(Some);
+    }
+    let Some(colors) = get(mesh, "colors") else { return Ok(None) };
+    SurfaceColors::of_vertices(triangles, &to_colors(&colors, argument)?).map(Some)
 }
 
 /// `{ mesh }`.

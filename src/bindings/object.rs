@@ -4,6 +4,7 @@ use js_sys::{Array, Float32Array, Float64Array, Reflect, Uint8Array, Uint8Clampe
 use wasm_bindgen::{JsCast, JsValue};
 
 use crate::error::{Error, ErrorCode, Result};
+use crate::geometry::surface_colors::Rgb;
 use crate::number::number as number_text;
 
 /// The property `key`, or `None` if it is missing, `undefined` or `null`.
@@ -113,6 +114,11 @@ pub fn to_u8s(value: &JsValue, argument: &str) -> Result<Vec<u8>> {
         Some(array) => Ok(array.to_vec()),
         None => Err(not_typed_array(argument, value, "a Uint8Array")),
     }
+}
+
+/// A copy of a `Uint8Array` of red, green and blue; what is left over is ignored, because TypeScript checks the lengths.
+pub fn to_colors(value: &JsValue, argument: &str) -> Result<Vec<Rgb>> {
+    to_u8s(value, argument).map(|bytes| bytes.as_chunks().0.to_vec())
 }
 
 /// A value of the wrong type.

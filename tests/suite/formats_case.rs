@@ -7,8 +7,7 @@ use std::path::{Path, PathBuf};
 use sim3align::error::{ErrorCode, Result};
 use sim3align::geometry::image::{DepthMap, Image};
 use sim3align::geometry::mesh::Mesh;
-use sim3align_formats::gltf::external_resources;
-use sim3align_formats::mesh::{MeshReadOptions, read_mesh};
+use sim3align_formats::mesh::{MeshReadOptions, external_resources, read_mesh};
 use sim3align_lab::case_folder::case::read_case;
 use sim3align_lab::case_folder::write;
 
@@ -121,7 +120,7 @@ fn real_cases_are_read_whole() {
 fn read_with_files_beside(path: &Path) -> Result<Mesh> {
     let bytes = fs::read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     let beside = |uri: &str| fs::read(path.parent()?.join(uri)).ok();
-    for uri in external_resources(&bytes)? {
+    for uri in external_resources(&bytes)?.shape {
         assert!(beside(&uri).is_some(), "{uri}");
     }
     read_mesh(&bytes, &MeshReadOptions { format: None, resources: Some(&beside) })

@@ -19,7 +19,7 @@ pub(crate) use self::buffers::external;
 use self::container::Container;
 use self::materials::Materials;
 use crate::guard::{corrupt, too_large, unsupported};
-use crate::mesh::{ColoredMesh, Content};
+use crate::mesh::{ColoredMesh, Content, ExternalResources};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 
 /// Maximum number of objects in the JSON: each takes much more memory than its two characters.
@@ -149,12 +149,8 @@ pub(crate) fn read_gltf(bytes: &[u8], resources: Option<Resources<'_>>, content:
     scene::read_scene(&mut reader, materials)
 }
 
-/// The distinct URIs of the external files of a `.gltf`, as written: what `resources` must provide for the shape, its
-/// buffers, and what the colours need in addition, the images of base colours.
-///
-/// # Errors
-/// [`ErrorCode::CorruptFile`], [`ErrorCode::FileTooLarge`], [`ErrorCode::UnsupportedFormat`].
-pub fn external_resources(bytes: &[u8]) -> Result<ExternalResources> {
+/// The external files of a `.gltf`: buffers, and images of base colours.
+pub(crate) fn external_resources(bytes: &[u8]) -> Result<ExternalResources> {
     let json = Container::split(bytes)?.json;
     let document = Document::parse(json)?;
     let uris = document.buffers.iter().filter_map(|buffer| buffer.uri.as_deref());
@@ -162,15 +158,6 @@ pub fn external_resources(bytes: &[u8]) -> Result<ExternalResources> {
     let mut colors = Materials::parse(json).map_or_else(|_| Vec::new(), |m| distinct(m.external_images()));
     colors.retain(|uri| !shape.contains(uri));
     Ok(ExternalResources { shape, colors })
-}
-
-/// The files that a mesh file refers to, by the URIs in it.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct ExternalResources {
-    /// Without these, it can't be read.
-    pub shape: Vec<String>,
-    /// Without these, it has no colours.
-    pub colors: Vec<String>,
 }
 
 fn distinct<'a>(uris: impl Iterator<Item = &'a str>) -> Vec<String> {

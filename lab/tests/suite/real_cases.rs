@@ -7,7 +7,7 @@ use sim3align::align::evaluate::{EvaluateOptions, Truth, evaluate};
 use sim3align::metrics::symmetry::Symmetry;
 use sim3align::paper::options::PaperOptions;
 use sim3align::progress::Silent;
-use sim3align_geometry::similarity::Similarity;
+use sim3align_geometry::similarity::{Similarity, vector3};
 use sim3align_lab::case_folder::case::{Case, read_case};
 
 fn cases() -> Vec<Case> {
@@ -63,4 +63,41 @@ fn the_true_pose_scores_as_a_perfect_one() {
         assert_eq!(metrics.fitness.map(|f| f > 0.93), Some(true), "{}: {:?}", case.name, metrics.fitness);
     }
     assert!(tried > 0, "no case has a truth");
+}
+
+/// Where texture coordinates are upside down, or the photo is of another view, the colours have nothing in common.
+#[test]
+#[ignore = "needs SIM3ALIGN_CASES"]
+fn the_colors_of_a_mesh_at_its_true_pose_are_those_of_the_photo() {
+    let mut tried = 0;
+    for case in cases() {
+        let (Some((camera_from_mesh, _)), Some(colors), Some(photo)) =
+            (case.truth, case.colors, case.observation.photo())
+        else {
+            continue;
+        };
+        tried += 1;
+        let (depth, camera) = (case.observation.depth(), case.observation.camera());
+        let mut pairs: Vec<[f64; 2]> = Vec::new();
+        for (&point, color) in colors.samples().points.iter().zip(colors.colors()) {
+            let p = camera_from_mesh.apply(vector3(point));
+            let (u, v) = (camera.fx * p.x / p.z + camera.cx, camera.fy * p.y / p.z + camera.cy);
+            let (u, v) = (u.round() as usize, v.round() as usize);
+            let is_visible = depth.get(u, v).is_some_and(|z| z > 0.0 && (f64::from(z) - p.z).abs() < 0.01);
+            if !is_visible || case.observation.mask().get(u, v) == Some(0) {
+                continue;
+            }
+            let [column, row] = [u * photo.width() / depth.width(), v * photo.height() / depth.height()];
+            let seen = photo.get(column, row).unwrap();
+            let luma = |color: &[u8; 3]| color.iter().map(|&c| f64::from(c)).sum::<f64>();
+            pairs.push([luma(color), luma(&seen)]);
+        }
+        let mean = |axis: usize| pairs.iter().map(|pair| pair[axis]).sum::<f64>() / pairs.len() as f64;
+        let means = [mean(0), mean(1)];
+        let moment = |a: usize, b: usize| pairs.iter().map(|p| (p[a] - means[a]) * (p[b] - means[b])).sum::<f64>();
+        let correlation = moment(0, 1) / (moment(0, 0) * moment(1, 1)).sqrt();
+        println!("{}: {} points, means {means:?}, correlation {correlation:.3}", case.name, pairs.len());
+        assert!(pairs.len() > 1000 && correlation > 0.5, "{}: {correlation}", case.name);
+    }
+    assert!(tried > 0, "no case has a truth, a photo and colours");
 }

@@ -1,9 +1,10 @@
-//! The readers of mesh, depth and mask files, on damaged files.
+//! The readers of mesh, photo, depth and mask files, on damaged files.
 
 use sim3align_formats::depth::{DepthReadOptions, read_depth};
-use sim3align_formats::gltf::external_resources;
 use sim3align_formats::mask::read_mask;
-use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, read_mesh};
+use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, external_resources, read_colored_mesh};
+use sim3align_formats::photo::{MAX_PHOTO_PIXELS, read_photo};
+use sim3align_geometry::surface_colors::COLOR_SAMPLES;
 
 use crate::fuzz::choices::Choices;
 use crate::fuzz::target::{Answer, Call, typed};
@@ -15,7 +16,7 @@ macro_rules! files {
 }
 
 /// Files of every format and variant.
-const FILES: [(&str, &[u8]); 31] = files![
+const FILES: [(&str, &[u8]); 45] = files![
     "mesh.glb",
     "scene.glb",
     "mesh-data-uri.gltf",
@@ -47,6 +48,20 @@ const FILES: [(&str, &[u8]); 31] = files![
     "mask-palette.png",
     "mask-bool.npy",
     "mask-f4.npy",
+    "mesh-textured.glb",
+    "mesh-textured.obj",
+    "mesh-textured.mtl",
+    "mesh-colors.glb",
+    "mesh-colors.ply",
+    "photo-16.png",
+    "photo-interlaced.png",
+    "photo-palette.png",
+    "photo-exif.png",
+    "photo-420.jpg",
+    "photo-progressive.jpg",
+    "photo-grey.jpg",
+    "photo-cmyk.jpg",
+    "photo-exif-6.jpg",
 ];
 
 /// Numbers that replace numbers in text.
@@ -136,11 +151,17 @@ fn read(bytes: &[u8], format: Option<&str>, scale: Option<f64>) -> Result<Answer
     let format = format.and_then(|name| MeshFormat::from_name(name).ok());
     let resource = |_: &str| Some(bytes.to_vec());
     let options = MeshReadOptions { format, resources: Some(&resource) };
-    let mesh = match read_mesh(bytes, &options) {
-        Ok(mesh) => {
-            let count = mesh.positions().len();
-            if !mesh.triangles().as_flattened().iter().all(|&i| (i as usize) < count) {
+    let mesh = match read_colored_mesh(bytes, &options) {
+        Ok(read) => {
+            let count = read.mesh.positions().len();
+            if !read.mesh.triangles().as_flattened().iter().all(|&i| (i as usize) < count) {
                 return Err("result: an index out of range".into());
+            }
+            if read.colors.is_some_and(|colors| colors.colors().len() != COLOR_SAMPLES) {
+                return Err("result: too few colours".into());
+            }
+            if let Some(problem) = read.problem {
+                typed(&problem, false)?;
             }
             Answer::Result
         }
@@ -153,6 +174,11 @@ fn read(bytes: &[u8], format: Option<&str>, scale: Option<f64>) -> Result<Answer
         Ok(depth) if !depth.data().iter().all(|z| z.is_finite() && *z >= 0.0) => {
             return Err("result: a depth that is no reading".into());
         }
+        Ok(_) => {}
+        Err(error) => drop(typed(&error, false)?),
+    }
+    match read_photo(bytes) {
+        Ok(photo) if photo.data().len() > MAX_PHOTO_PIXELS => return Err("result: a photo that is too large".into()),
         Ok(_) => {}
         Err(error) => drop(typed(&error, false)?),
     }
