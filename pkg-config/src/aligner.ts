@@ -199,8 +199,8 @@ export class Aligner {
     try {
       const given = await this.#run("prepareMesh", { mesh }, checkedOptions(options), { meshId: id });
       // Without workers, these are the caller's arrays.
-      checkAttached("mesh", given);
-      return new PreparedMesh({ id, mesh: copied(given) }, this.#engine);
+      checkAttached("mesh", given.mesh);
+      return new PreparedMesh({ id, mesh: copied(given.mesh), warnings: given.warnings }, this.#engine);
     } catch (error) {
       // Nothing refers to what the call has left there.
       this.#engine.dropMesh(id);
@@ -269,10 +269,11 @@ export class Aligner {
   /** The data of a job, with a prepared mesh replaced by its arrays. */
   #withArrays(data: unknown, options: object): { data: unknown; meshId?: number } {
     if (!isRecord(data) || !(data.mesh instanceof PreparedMesh)) return { data };
-    const { id, mesh } = keptMesh(data.mesh, this.#engine);
+    const { id, mesh, warnings } = keptMesh(data.mesh, this.#engine);
+    const arrays = { ...mesh, warnings };
     // Only the core module caches meshes.
-    if (isOfPaper(options)) return { data: { ...data, mesh: copied(mesh) } };
-    return { data: { ...data, mesh }, meshId: id };
+    if (isOfPaper(options)) return { data: { ...data, mesh: copied(arrays) } };
+    return { data: { ...data, mesh: arrays }, meshId: id };
   }
 
   #checkUsable(): void {

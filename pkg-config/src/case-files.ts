@@ -9,14 +9,17 @@ import type { AlignInput, EncodedBytes, MeshFile, MeshFormat } from "./input/typ
 export type CaseFiles = Readonly<Record<string, EncodedBytes | (() => Promise<EncodedBytes>)>>;
 
 /** How to read the files of a case. */
-export type CaseSettings = Partial<Pick<AlignInput, "depthScale" | "imageId" | "resizeMask">>;
+export type CaseSettings = Partial<Pick<AlignInput, "depthScale" | "imageId" | "resizeMask">> & {
+  /** Whether to read the photo; `true` by default. */
+  image?: boolean | undefined;
+};
 
 /** A case whose files have been read, but not decoded. */
 export interface Case {
   /** The input for `align` and `evaluate`. */
   input: AlignInput;
-  /** The name of the file of each part of the input. */
-  files: Record<keyof typeof caseFiles, string>;
+  /** The name of the file of each part of the input; of the photo, if there is one. */
+  files: Record<Exclude<keyof typeof caseFiles, "image">, string> & { image?: string };
   /** The true pose; `null` if unknown. */
   truth: KnownPose | null;
 }
@@ -27,6 +30,7 @@ export const caseFiles = {
   mask: ["mask.png", "mask.npy", "mask.json"],
   mesh: ["mesh.glb", "mesh.gltf", "mesh.obj", "mesh.ply", "mesh.stl"],
   camera: ["camera.json", "scene_camera.json"],
+  image: ["rgb.png", "rgb.jpg", "rgb.jpeg", "image.png", "image.jpg", "image.jpeg"],
 } as const;
 
 const meshFormats: readonly string[] = ["glb", "gltf", "obj", "ply", "stl"] satisfies MeshFormat[];
@@ -42,8 +46,10 @@ export async function caseFrom(
   formats: LoadFormats,
   place = "the files",
 ): Promise<Case> {
+  const { image: withImage = true, ...more } = settings;
+  const existing = (part: keyof typeof caseFiles) => caseFiles[part].find((candidate) => candidate in files);
   const find = (part: keyof typeof caseFiles) => {
-    const name = caseFiles[part].find((candidate) => candidate in files);
+    const name = existing(part);
     if (name !== undefined) return name;
     throw fileNotFound(part, `no such file in ${place}`, caseFiles[part].join(" or "));
   };
@@ -52,21 +58,24 @@ export async function caseFrom(
     const file = files[name];
     return requiredBytes(name, typeof file === "function" ? await file() : file);
   };
-  const [depth, mask, meshBytes, cameraFile, truth] = await Promise.all([
+  const photo = withImage ? existing("image") : undefined;
+  const [depth, mask, meshBytes, cameraFile, truth, image] = await Promise.all([
     ...[read(names.depth), read(names.mask), read(names.mesh), read(names.camera)],
     "gt.json" in files ? read("gt.json") : undefined,
+    photo === undefined ? undefined : read(photo),
   ]);
   const mesh = await meshFile(names.mesh, meshBytes as Uint8Array, formats, async (path) => {
     if (path in files) return read(path);
-    throw fileNotFound("mesh", `no ${path} in ${place}`, `the buffers of ${names.mesh}`);
+    throw fileNotFound("mesh", `no ${path} in ${place}`, `the files that ${names.mesh} refers to`);
   });
-  const input = { depth, mask, mesh, cameraFile, ...settings } as AlignInput;
-  return { input, files: names, truth: truth === undefined ? null : parsePoseFile("truth", truth) };
+  const input = { depth, mask, mesh, cameraFile, ...(image === undefined ? {} : { image }), ...more } as AlignInput;
+  const named = photo === undefined ? names : { ...names, image: photo };
+  return { input, files: named, truth: truth === undefined ? null : parsePoseFile("truth", truth) };
 }
 
 /**
- * Reads a mesh file as an input. The extension determines the format; the buffers of a `.gltf` are read from its
- * folder.
+ * Reads a mesh file as an input. The extension determines the format; the files that a `.gltf` or an `.obj` refers to are
+ * read from its folder.
  * @param read returns the bytes of a file, by its path relative to the folder of the mesh
  * @internal
  */
@@ -79,21 +88,47 @@ export async function meshFile(
   const extension = /\.([^./\\]+)$/.exec(name)?.[1]?.toLowerCase() ?? "";
   if (!meshFormats.includes(extension)) return { bytes };
   const format = extension as MeshFormat;
-  if (format !== "gltf") return { bytes, format };
-  const uris = (await formats()).call((readers) => readers.externalResources(bytes));
+  if (format !== "gltf" && format !== "obj") return { bytes, format };
   const resources: Record<string, Uint8Array> = {};
-  for (const uri of uris) resources[uri] = await read(pathBelow(uri));
+  const readers = await formats();
+  const namesIn = (file: Uint8Array) => readers.call((module) => module.externalResources(file));
+  const { shape, colors } = namesIn(bytes);
+  for (const uri of shape) {
+    const path = pathBelow(uri);
+    if (path === undefined) throw outside(uri);
+    resources[uri] = await read(path);
+  }
+  const readOptional = async (uri: string) => {
+    const path = pathBelow(uri);
+    const file = path === undefined ? undefined : await read(path).catch(unlessMissing);
+    if (file !== undefined) resources[uri] = file;
+    return file;
+  };
+  for (const uri of colors) {
+    const file = await readOptional(uri);
+    // The material libraries of an OBJ refer to textures.
+    if (file === undefined || format === "gltf") continue;
+    for (const texture of namesIn(file).colors) await readOptional(texture);
+  }
   return { bytes, format, resources };
 }
 
-/** The path of a URI in a `.gltf`. Paths outside its folder are rejected, because the file may be malicious. */
-function pathBelow(uri: string): string {
+/** A mesh without its textures is aligned by its shape, and the reader warns of what is missing. */
+function unlessMissing(error: unknown): undefined {
+  if (!(error instanceof Sim3AlignError && error.code === "FILE_NOT_FOUND")) throw error;
+}
+
+/** The path of a URI in a mesh file; `undefined` outside its folder, because the file may be malicious. */
+function pathBelow(uri: string): string | undefined {
   const parts = decoded(uri)
     .split(/[/\\]/)
     .filter((part) => part !== ".");
   const isBelow = parts.every((part) => part !== ".." && part !== "" && !part.includes(":"));
-  if (isBelow && parts.length > 0) return parts.join("/");
-  throw new Sim3AlignError({
+  return isBelow && parts.length > 0 ? parts.join("/") : undefined;
+}
+
+function outside(uri: string): Sim3AlignError {
+  return new Sim3AlignError({
     code: "CORRUPT_FILE",
     argument: "mesh",
     found: `a buffer at ${JSON.stringify(uri)}`,

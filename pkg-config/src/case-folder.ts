@@ -20,6 +20,7 @@ export interface CasePaths {
   mesh: string;
   /** A camera file, or the camera. */
   camera: string | { value: CameraInput };
+  image?: string | undefined;
 }
 
 const loadFormats = () => formatsModule.load();
@@ -36,7 +37,7 @@ export async function readCaseFolder(folder: string, settings: CaseSettings = {}
   return { ...found, name: basename(resolve(folder)), files };
 }
 
-/** Names of the files in a case folder; includes subfolders only if a `.gltf` may refer to them. */
+/** Names of the files in a case folder; includes subfolders only if the mesh may refer to them. */
 async function namesIn(folder: string): Promise<string[]> {
   const list = (recursive: boolean) =>
     readdir(folder, { recursive }).catch((cause) => {
@@ -44,25 +45,29 @@ async function namesIn(folder: string): Promise<string[]> {
     });
   const names = await list(false);
   const mesh = caseFiles.mesh.find((name) => names.includes(name));
-  return mesh === "mesh.gltf" ? (await list(true)).map((name) => name.replaceAll("\\", "/")) : names;
+  return mesh === "mesh.gltf" || mesh === "mesh.obj"
+    ? (await list(true)).map((name) => name.replaceAll("\\", "/"))
+    : names;
 }
 
 /** Reads a case from individual files. */
 export async function readCaseFiles(name: string, paths: CasePaths, settings: CaseSettings = {}): Promise<CaseOnDisk> {
-  const { camera, ...files } = paths;
+  const { camera, image: imagePath, ...files } = paths;
+  const { image: withImage = true, ...more } = settings;
   const beside = (path: string) => read("mesh", join(dirname(paths.mesh), path));
-  const [depth, mask, mesh, cameraInput] = await Promise.all([
+  const [depth, mask, mesh, cameraInput, image] = await Promise.all([
     read("depth", paths.depth),
     read("mask", paths.mask),
     read("mesh", paths.mesh).then((bytes) => meshFile(paths.mesh, bytes, loadFormats, beside)),
     typeof camera === "string"
       ? read("camera", camera).then((cameraFile) => ({ cameraFile }))
       : { camera: camera.value },
+    imagePath === undefined || !withImage ? {} : read("image", imagePath).then((image) => ({ image })),
   ]);
   return {
     name,
-    input: { depth, mask, mesh, ...cameraInput, ...settings } as AlignInput,
-    files: typeof camera === "string" ? { ...files, camera } : files,
+    input: { depth, mask, mesh, ...cameraInput, ...image, ...more } as AlignInput,
+    files: { ...files, ...(typeof camera === "string" ? { camera } : {}), ...(imagePath && { image: imagePath }) },
     truth: null,
   };
 }

@@ -13,6 +13,7 @@ import { type Formats, formatsModule } from "./formats-module.js";
 import { beginsLikeJson, callReader, requiredBytes } from "./input/bytes.js";
 import type { CameraFileInput, CocoRle, EncodedBytes, MeshFormat, PixelArray } from "./input/types.js";
 import type { WasmSource } from "./platform.js";
+import type { ColorSamples } from "./prepared-mesh.js";
 import { ownArgument, ownOptions } from "./snapshot.js";
 import { isRecord, withoutUndefined } from "./values.js";
 
@@ -22,6 +23,7 @@ export { type ErrorCode, type ErrorParts, Sim3AlignError } from "./error.js";
 export type { CameraFile, CameraFileOptions } from "./formats/camera-file.js";
 export type { AlignInput, CameraFileInput, CocoRle, EncodedBytes, MeshFormat, PixelArray } from "./input/types.js";
 export type { WasmSource } from "./platform.js";
+export type { ColorSamples } from "./prepared-mesh.js";
 export type { Sim3 } from "./sim3.js";
 
 /** A depth map from a file: metres along the optical axis, row-major; 0 is "no reading". */
@@ -30,12 +32,27 @@ export type DepthImage = PixelArray<Float32Array>;
 /** A mask from a file: row-major, 1 is the object. */
 export type MaskImage = PixelArray<Uint8Array>;
 
+/** A photo from a file: red, green and blue per pixel, row-major, sRGB-encoded. */
+export type PhotoImage = PixelArray<Uint8Array>;
+
 /** A mesh from a file, in the unit and axes of the file. */
 export interface MeshFromFile {
   /** Interleaved x, y, z. */
   positions: Float32Array;
   /** Three vertex indices per triangle. */
   indices: Uint32Array;
+  /** The colours of the surface, from vertices, materials and textures, if the file has any that can be read. */
+  samples?: ColorSamples;
+  /** Why the colours cannot be read; empty if they can, or if there are none. */
+  warnings: string[];
+}
+
+/** The files that a mesh file refers to, by the names in it. */
+export interface ExternalResources {
+  /** The buffers of a `.gltf`, without which it cannot be read. */
+  shape: string[];
+  /** Textures and material libraries, without which it has no colours. */
+  colors: string[];
 }
 
 /**
@@ -74,9 +91,21 @@ export async function readMask(file: EncodedBytes | CocoRle): Promise<MaskImage>
 }
 
 /**
- * Reads a GLB, glTF, OBJ, PLY or STL file. Merges all parts, and applies node transforms.
+ * Reads a photo from a PNG or a JPEG. The EXIF orientation is applied; alpha and colour profiles are ignored; a photo of
+ * more than two megapixels is reduced by a whole number.
+ * @throws {@link Sim3AlignError} for any other file
+ */
+export async function readImage(file: EncodedBytes): Promise<PhotoImage> {
+  const bytes = await requiredBytes("file", file);
+  return call(bytes, (readers) => readers.readImage(bytes));
+}
+
+/**
+ * Reads a GLB, glTF, OBJ, PLY or STL file. Merges all parts, and applies node transforms. The result can be passed as
+ * `mesh`, with its colours.
  * @param options.format by default detected from the content
- * @param options.resources the buffers of a `.gltf` by URI: see {@link externalResources}
+ * @param options.resources the files that the mesh file refers to, by name: see {@link externalResources}
+ * @param options.colors whether to read the colours, `true` by default
  * @throws {@link Sim3AlignError} for any other file
  */
 export async function readMesh(
@@ -84,6 +113,7 @@ export async function readMesh(
   options: {
     format?: MeshFormat | undefined;
     resources?: Readonly<Record<string, Uint8Array | ArrayBuffer>> | undefined;
+    colors?: boolean | undefined;
   } = {},
 ): Promise<MeshFromFile> {
   const given = optionsOf(options);
@@ -92,10 +122,11 @@ export async function readMesh(
 }
 
 /**
- * The URIs of the external files with the geometry of a `.gltf`, unchanged.
- * @throws {@link Sim3AlignError} for a file that is not glTF
+ * The files that a `.gltf` or an `.obj` refers to, by the names in it, unchanged. The material libraries of an `.obj` refer
+ * to textures: call it with their content, too.
+ * @throws {@link Sim3AlignError} for a glTF that cannot be read
  */
-export async function externalResources(file: EncodedBytes): Promise<string[]> {
+export async function externalResources(file: EncodedBytes): Promise<ExternalResources> {
   const bytes = await requiredBytes("file", file);
   return call(bytes, (readers) => readers.externalResources(bytes));
 }
@@ -122,7 +153,7 @@ export async function readPose(file: EncodedBytes | string | object): Promise<Kn
 
 /**
  * Reads a case folder: `depth.npy|png`, `mask.png|npy|json`, `mesh.glb|gltf|obj|ply|stl`, `camera.json` or
- * `scene_camera.json`, and optionally `gt.json`.
+ * `scene_camera.json`, and optionally `rgb.png|jpg` or `image.png|jpg`, and `gt.json`.
  * @param files by name, relative to the folder
  *
  * @example

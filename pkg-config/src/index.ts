@@ -54,6 +54,8 @@ export type {
   MeshFile,
   MeshFormat,
   MeshInput,
+  PhotoInput,
+  PhotoOfView,
   PinholeCamera,
   PixelArray,
   PointMapAlignInput,

@@ -5,10 +5,9 @@ import { withoutInput } from "./error.js";
 import type { LoadFormats } from "./formats-module.js";
 import type { Alignment } from "./generated/types.js";
 import type { CoreInput } from "./input/core-input.js";
-import { readMesh } from "./input/mesh.js";
+import { type MeshAndWarnings, readMesh } from "./input/mesh.js";
 import { resolveInput } from "./input/resolve.js";
 import type { AlignInput, MeshInput } from "./input/types.js";
-import type { CoreMesh } from "./prepared-mesh.js";
 import type { LoadRegistrar } from "./registration-module.js";
 import { type AlignResult, type Clouds, type Evaluation, type Registration, withWarnings } from "./results.js";
 import { isTypedArray, wrongKind } from "./values.js";
@@ -26,7 +25,7 @@ export type Job =
 export interface Results {
   align: AlignResult;
   evaluate: Evaluation;
-  prepareMesh: CoreMesh;
+  prepareMesh: MeshAndWarnings;
   register: Registration;
   estimateSim3: Registration;
 }
@@ -82,10 +81,10 @@ export async function perform(
       );
     }
     case "prepareMesh": {
-      const mesh = await readMesh(job.data.mesh, formats);
+      const { mesh, warnings } = await readMesh(job.data.mesh, formats, true);
       checkAttached("mesh", mesh);
       core.call((c) => c.prepareMesh({ ...mesh, id: job.meshId }));
-      return mesh;
+      return { mesh, warnings };
     }
     case "register": {
       const { source, target } = checkedClouds(job.data);

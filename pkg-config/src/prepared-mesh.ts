@@ -2,10 +2,24 @@
 
 import { invalidArgument, Sim3AlignError } from "./error.js";
 
+/** Colours of a surface, at points spread evenly over it. */
+export interface ColorSamples {
+  /** Interleaved x, y, z per point, in the frame of the mesh. */
+  positions: Float32Array;
+  /** The unit normal of the surface at each point, outward: interleaved x, y, z. */
+  normals: Float32Array;
+  /** Red, green and blue per point, sRGB-encoded. */
+  colors: Uint8Array;
+}
+
 /** A mesh for the core. */
 export interface CoreMesh {
   positions: Float32Array;
   indices?: Uint32Array | Uint16Array;
+  /** sRGB-encoded red, green and blue per vertex. */
+  colors?: Uint8Array;
+  /** Colours at points of the surface, instead. */
+  samples?: ColorSamples;
   /** The id under which the core caches the mesh. If it is cached, the arrays are not read. */
   id?: number;
 }
@@ -14,6 +28,8 @@ export interface CoreMesh {
 export interface KeptMesh {
   readonly id: number;
   readonly mesh: CoreMesh;
+  /** Why it has no colours. */
+  readonly warnings: readonly string[];
 }
 
 /** Holds what threads derive from prepared meshes, by id. */

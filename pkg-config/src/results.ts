@@ -58,8 +58,17 @@ export type AlignAllResult<A = Alignment> =
   | { index: number; alignment: A; input?: AlignInput; error?: undefined }
   | { index: number; alignment?: undefined; input?: AlignInput; error: Sim3AlignError };
 
+/** The warnings of the readers of files. */
+export interface FileWarnings {
+  /** Of the camera file. */
+  camera: readonly string[];
+  /** Of the colours of the mesh file. */
+  colors: readonly string[];
+}
+
 /** A result whose warnings include those of the input files, before those of the core. */
-export function withWarnings<T extends { warnings: Core.Warning[] }>(result: T, messages: readonly string[]): T {
-  const warnings = messages.map((message): Core.Warning => ({ code: "CAMERA_NOT_PINHOLE", message }));
+export function withWarnings<T extends { warnings: Core.Warning[] }>(result: T, { camera, colors }: FileWarnings): T {
+  const coded = (code: Core.WarningCode) => (message: string) => ({ code, message });
+  const warnings = [...camera.map(coded("CAMERA_NOT_PINHOLE")), ...colors.map(coded("COLORS_NOT_READ"))];
   return { ...result, warnings: [...warnings, ...result.warnings] };
 }

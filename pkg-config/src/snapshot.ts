@@ -4,7 +4,7 @@
  */
 import { checkAttached } from "./attached.js";
 import { invalidArgument, messageOf, Sim3AlignError, withoutInput } from "./error.js";
-import { isRecord, proxiedKind } from "./kinds.js";
+import { isKind, isRecord, proxiedKind } from "./kinds.js";
 import { PreparedMesh } from "./prepared-mesh.js";
 
 /** No argument has more levels: a camera file of several images has five. Deeper objects are left out. */
@@ -61,7 +61,7 @@ class Reader {
     try {
       const proxied = proxiedKind(value);
       if (proxied !== undefined) throw proxy(argument, value, proxied);
-      if (value instanceof PreparedMesh || !(Array.isArray(value) || isRecord(value))) return value;
+      if (value instanceof PreparedMesh || !(Array.isArray(value) || this.#isRead(argument, value))) return value;
       this.#open.add(value);
       const copied = Array.isArray(value) ? this.#array(argument, value, level) : this.#record(argument, value, level);
       this.#open.delete(value);
@@ -70,6 +70,11 @@ class Reader {
     } catch (cause) {
       throw cause instanceof Sim3AlignError ? cause : unreadable(argument, cause);
     }
+  }
+
+  /** Whether an object is copied by its properties: also an object of the platform, if its names are known. */
+  #isRead(argument: string, value: object): value is Record<string, unknown> {
+    return isRecord(value) || (this.#classNames[argument] !== undefined && isKind(value, "ImageData"));
   }
 
   #array(argument: string, array: readonly unknown[], level: number): unknown[] {

@@ -67,7 +67,7 @@ test("formats: what the files hold", async () => {
   assert.deepEqual(indices, mesh.indices);
   assert.equal(positions.length, mesh.positions.length);
   const gltf = Buffer.from(JSON.stringify(gltfJson(mesh, {}, { uri: "a%20b.bin" })));
-  assert.deepEqual(await externalResources(gltf), ["a%20b.bin"]);
+  assert.deepEqual(await externalResources(gltf), { shape: ["a%20b.bin"], colors: [] });
   await assert.rejects(readMesh(Uint8Array.of(1, 2, 3)), (error) => error instanceof Sim3AlignError);
   await assert.rejects(readDepth("depth.npy" as never), { code: "INVALID_ARGUMENT", argument: "file" });
 });

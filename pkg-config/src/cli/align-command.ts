@@ -65,7 +65,7 @@ Examples
   sim3align align cases/mug --preset paper --seed 7 --guard 0.8,1.2 --guard-mode clamp
   sim3align align cases/mug --options '{"fpfhRadiusVoxels": 4}' --json - | jq .mug.scale
   sim3align align --depth d.png --mask m.png --mesh mug.glb --camera 600,600,320,240 --depth-scale 0.001
-  sim3align align --depth d.npy --mask m.png --mesh mug.obj --camera fov:55
+  sim3align align --depth d.npy --mask m.png --mesh mug.obj --camera fov:55 --image photo.jpg
 ${statusHelp}`;
 
 /** The command. */
@@ -78,6 +78,7 @@ export function alignCommand(): Command {
     .option("--mask <file>", "mask (.png, .npy, or .json with COCO RLE)")
     .option("--mesh <file>", "mesh (.glb, .gltf, .obj, .ply or .stl)")
     .option("--camera <file|fx,fy,cx,cy|fov:deg>", "camera: a file, intrinsics or a vertical field of view", camera)
+    .option("--image <file>", "photo (.png or .jpg) with the field of view of the depth map")
     .option("--json <file>", 'write the results as JSON; "-" is stdout')
     .addOption(new Option("--preset <name>", "method (default precise)").choices(["precise", "paper"]));
   addOptionFlags(addCaseOptions(command), shared);

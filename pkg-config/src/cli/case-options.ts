@@ -9,6 +9,7 @@ export interface CaseFlags {
   depthScale?: number;
   imageId?: string;
   resizeMask?: "nearest";
+  image?: string | boolean;
 }
 
 /** Adds the flags to a command. */
@@ -16,12 +17,13 @@ export function addCaseOptions(command: Command): Command {
   return command
     .option("--depth-scale <metres>", "metres per unit of depth, such as 0.001 for millimetres", number)
     .option("--image-id <id>", "image id in a BOP scene_camera.json")
+    .option("--no-image", "do not read the photo: align by shape alone")
     .addOption(new Option("--resize-mask <how>", "resize the mask to the size of the depth map").choices(["nearest"]));
 }
 
 /** Converts the flags to settings of a case. */
-export const caseSettings = ({ depthScale, imageId, resizeMask }: CaseFlags): CaseSettings =>
-  withoutUndefined({ depthScale, imageId, resizeMask });
+export const caseSettings = ({ depthScale, imageId, resizeMask, image }: CaseFlags): CaseSettings =>
+  withoutUndefined({ depthScale, imageId, resizeMask, image: image === false ? false : undefined });
 
 /** The layout of a case folder, for --help. */
 export const caseFolderHelp = `
@@ -33,6 +35,8 @@ A case folder holds
                                  the object in its own frame, in any unit
   camera.json                    {"fx", "fy", "cx", "cy"}, {"K"}, {"fovYDeg"}, or ROS CameraInfo; or BOP's
                                  scene_camera.json
+  rgb.png or .jpg, image.png or .jpg (optional)
+                                 the photo, registered to the depth map; compared with the colours of the mesh
   gt.json (optional)             {"scale", "rotation": 3×3 row-major, "translation": m, "symmetry"}: the true pose`;
 
 /** Frames and units, for --help. */

@@ -19,6 +19,8 @@ export interface FileFlags {
   mask?: string;
   mesh?: string;
   camera?: CasePaths["camera"];
+  /** The photo, or whether to use that of a case folder. */
+  image?: string | boolean;
 }
 
 /**
@@ -27,7 +29,10 @@ export interface FileFlags {
  */
 export function casesOf(folders: readonly string[], flags: FileFlags, settings: CaseSettings): CaseToDo[] {
   const { depth, mask, mesh, camera } = flags;
+  const image = typeof flags.image === "string" ? flags.image : undefined;
   const given = [depth, mask, mesh, camera].filter((flag) => flag !== undefined).length;
+  if (given === 0 && image !== undefined)
+    throw new UsageError("--image belongs to --depth, --mask, --mesh and --camera; a case folder holds its own.");
   if (given === 0 && folders.length === 0)
     throw new UsageError("Pass at least one case folder, or --depth, --mask, --mesh and --camera.");
   if (given === 0) return casesIn(folders, settings);
@@ -37,7 +42,7 @@ export function casesOf(folders: readonly string[], flags: FileFlags, settings: 
     throw new UsageError("--depth, --mask, --mesh and --camera belong together: pass all four.");
   }
   const name = basename(mesh).replace(/\.[^.]*$/, "");
-  return [{ name, hasTruth: false, read: () => readCaseFiles(name, { depth, mask, mesh, camera }, settings) }];
+  return [{ name, hasTruth: false, read: () => readCaseFiles(name, { depth, mask, mesh, camera, image }, settings) }];
 }
 
 /**

@@ -131,6 +131,8 @@ export interface CropInput {
   depth?: PixelArray<DepthPixels> | undefined;
   pointMap?: PixelArray<Float32Array> | undefined;
   mask?: PixelArray<MaskPixels> | undefined;
+  /** RGB or RGBA. */
+  image?: PixelArray<MaskPixels> | undefined;
   camera?: StatedCamera | undefined;
 }
 
@@ -140,7 +142,8 @@ export interface CropInput {
  *
  * Leave a margin around the object: if a mask touches the image border, the object is assumed to continue beyond it.
  *
- * @param input `depth`, `mask` and `pointMap` as `{ data, width, height }`, all of one size; `camera` with intrinsics
+ * @param input `depth`, `mask`, `pointMap` and `image` as `{ data, width, height }`, all of one size; `camera` with
+ * intrinsics
  * @param box in pixels of the image; see {@link maskBox}
  *
  * @example
@@ -148,17 +151,17 @@ export interface CropInput {
  * @throws {@link Sim3AlignError} `SIZE_MISMATCH` for images of different sizes, or a box that exceeds them
  */
 export function cropInput<T extends CropInput>(input: T, box: PixelBox): T {
-  const { depth, pointMap, mask, camera } = record("input", input, "{ depth, mask, camera }") as T;
+  const { depth, pointMap, mask, image, camera } = record("input", input, "{ depth, mask, camera }") as T;
   const { width, height } = sizeOf("box", box);
   const [left, top] = [whole("box.left", box.left, 0), whole("box.top", box.top, 0)];
-  const whose = Object.entries({ depth, mask, pointMap }).filter(([, image]) => image !== undefined);
+  const whose = Object.entries({ depth, mask, pointMap, image }).filter(([, part]) => part !== undefined);
   const [first] = whose;
   if (first === undefined) {
     throw failure("INVALID_ARGUMENT", "input", describe(input), "depth, mask or pointMap", "Pass the images.");
   }
   const size = sizeOf(`input.${first[0]}`, first[1]);
-  for (const [name, image] of whose) {
-    const found = sizeOf(`input.${name}`, image);
+  for (const [name, part] of whose) {
+    const found = sizeOf(`input.${name}`, part);
     if (found.width === size.width && found.height === size.height) continue;
     const expected = `${size.width} × ${size.height}, the size of ${first[0]}`;
     const remedy = "Resize the images to the same size first: resizeMask, resizeDepth.";
@@ -179,6 +182,7 @@ export function cropInput<T extends CropInput>(input: T, box: PixelBox): T {
     ...part("depth", depth, depthKinds),
     ...part("mask", mask, maskKinds),
     ...part<Float32Array>("pointMap", pointMap, pointKinds, 3),
+    ...part("image", image, maskKinds, image?.data?.length === 4 * size.width * size.height ? 4 : 3),
     ...(camera === undefined ? {} : { camera: moved(pinholeOf("input.camera", camera, size), { left, top }, box) }),
   };
 }

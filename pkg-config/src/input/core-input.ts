@@ -1,6 +1,7 @@
 /** The input of the core. */
 import type { Pinhole } from "../formats/pinhole.js";
 import type { CoreMesh } from "../prepared-mesh.js";
+import type { Photo } from "./colors.js";
 
 /** The input of the core, which checks lengths and values. */
 export interface CoreInput {
@@ -14,5 +15,6 @@ export interface CoreInput {
   maskHeight?: number;
   resizeMask?: unknown;
   camera?: Pinhole;
+  image?: Photo;
   mesh: CoreMesh;
 }

@@ -2,34 +2,92 @@
 
 import { invalidArgument } from "../error.js";
 import type { LoadFormats } from "../formats-module.js";
-import type { CoreMesh } from "../prepared-mesh.js";
-import { isRecord, isTypedArray, withoutUndefined, wrongKind } from "../values.js";
+import type { ColorSamples, CoreMesh } from "../prepared-mesh.js";
+import { failure, isRecord, isTypedArray, oneOf, record, withoutUndefined, wrongKind } from "../values.js";
 import { callReader, fileBytes } from "./bytes.js";
+import { type ColorArray, rgbOf } from "./colors.js";
 import type { MeshFile } from "./types.js";
 
 const kinds =
   "{ positions, indices? }, or the bytes of a GLB, glTF, OBJ, PLY or STL file (also as { bytes, format?, resources? })";
 
-/** The arrays of a mesh. */
-export async function readMesh(mesh: unknown, formats: LoadFormats): Promise<CoreMesh> {
-  if (isRecord(mesh) && "positions" in mesh) return arrays(mesh);
+/** A mesh for the core, and why it has no colours. */
+export interface MeshAndWarnings {
+  mesh: CoreMesh;
+  warnings: readonly string[];
+}
+
+/**
+ * The arrays of a mesh.
+ * @param withColors whether the colours are needed
+ */
+export async function readMesh(mesh: unknown, formats: LoadFormats, withColors: boolean): Promise<MeshAndWarnings> {
+  if (isRecord(mesh) && "positions" in mesh) return { mesh: arrays(mesh, withColors), warnings: warningsIn(mesh) };
   const file: { [K in keyof MeshFile]?: unknown } = isRecord(mesh) ? mesh : { bytes: mesh };
   const bytes = await fileBytes("mesh", file.bytes);
   if (bytes === null) throw invalidArgument("mesh", mesh, kinds, "Pass the mesh to align.");
   const { format, resources } = file as Omit<MeshFile, "bytes">;
-  const options = withoutUndefined({ format, resources });
-  return callReader(formats, "mesh", bytes, (readers) => readers.readMesh(bytes, options), ofMesh);
+  const options = { ...withoutUndefined({ format, resources }), colors: withColors };
+  const read = await callReader(formats, "mesh", bytes, (readers) => readers.readMesh(bytes, options), ofMesh);
+  const { warnings, ...found } = read;
+  return { mesh: found, warnings };
 }
 
 /** The options of the reader are properties of the mesh. */
 const ofMesh = (argument: string) => argument.replace(/^options\./, "mesh.");
 
-function arrays({ positions, indices }: Record<string, unknown>): CoreMesh {
+/** The warnings of the `readMesh` of `sim3align/formats`. */
+function warningsIn({ warnings }: Record<string, unknown>): string[] {
+  return Array.isArray(warnings) ? warnings.filter((text) => typeof text === "string") : [];
+}
+
+function arrays({ positions, indices, ...more }: Record<string, unknown>, withColors: boolean): CoreMesh {
   if (!isTypedArray<Float32Array>(positions, "Float32Array")) {
     throw wrongKind("mesh.positions", positions, "a Float32Array, x, y, z per vertex", "Float32Array");
   }
-  if (indices === undefined || indices === null) return { positions };
-  if (isTypedArray<Uint32Array | Uint16Array>(indices, "Uint32Array", "Uint16Array")) return { positions, indices };
+  // Checked in any case: whether colours are wrong must not depend on the photo.
+  const colors = colorsOf(more, positions.length / 3);
+  const found = withColors ? { positions, ...colors } : { positions };
+  if (indices === undefined || indices === null) return found;
+  if (isTypedArray<Uint32Array | Uint16Array>(indices, "Uint32Array", "Uint16Array")) return { ...found, indices };
   const expected = "a Uint32Array or a Uint16Array, three indices per triangle";
   throw wrongKind("mesh.indices", indices, expected, "Uint32Array");
+}
+
+function colorsOf(
+  { colors, colorSpace, samples }: Record<string, unknown>,
+  vertices: number,
+): Pick<CoreMesh, "colors" | "samples"> {
+  const space = oneOf("mesh.colorSpace", colorSpace ?? "srgb", ["srgb", "linear"]);
+  if (samples !== undefined && samples !== null) return { samples: samplesOf(samples) };
+  if (colors === undefined || colors === null) return {};
+  if (!isTypedArray<ColorArray>(colors, "Uint8Array", "Uint8ClampedArray", "Float32Array")) {
+    const expected = "a Uint8Array (0 to 255) or a Float32Array (0 to 1), RGB or RGBA per vertex";
+    throw wrongKind("mesh.colors", colors, expected, "Uint8Array");
+  }
+  const channels = [3, 4].find((count) => colors.length === count * vertices);
+  if (channels !== undefined) return { colors: rgbOf(colors, channels, space) };
+  const found = `${colors.length} values for ${vertices} vertices`;
+  const remedy = "Pass the colours of the same mesh, vertex by vertex.";
+  throw failure("WRONG_LENGTH", "mesh.colors", found, "3 or 4 per vertex", remedy);
+}
+
+/** The samples of the `readMesh` of `sim3align/formats`. */
+function samplesOf(samples: unknown): ColorSamples {
+  const expected = "{ positions, normals, colors } of a mesh that was read from a file";
+  const { positions, normals, colors } = record("mesh.samples", samples, expected);
+  for (const [name, array] of Object.entries({ positions, normals })) {
+    if (!isTypedArray<Float32Array>(array, "Float32Array")) {
+      throw wrongKind(`mesh.samples.${name}`, array, "a Float32Array, x, y, z per point", "Float32Array");
+    }
+  }
+  if (!isTypedArray<Uint8Array>(colors, "Uint8Array")) {
+    throw wrongKind("mesh.samples.colors", colors, "a Uint8Array, RGB per point", "Uint8Array");
+  }
+  const [count, ...others] = [colors, positions, normals].map((array) => (array as Uint8Array).length);
+  if ((count as number) % 3 !== 0 || others.some((other) => other !== count)) {
+    const found = `${count} colour values for ${others.join(" and ")} coordinates`;
+    throw failure("WRONG_LENGTH", "mesh.samples", found, "three of each per point", "Pass what readMesh() returned.");
+  }
+  return { positions, normals, colors } as ColorSamples;
 }

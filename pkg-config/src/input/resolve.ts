@@ -2,6 +2,7 @@
 
 import { invalidArgument, Sim3AlignError } from "../error.js";
 import type { LoadFormats } from "../formats-module.js";
+import type { FileWarnings } from "../results.js";
 import type { ClassNames } from "../snapshot.js";
 import { isRecord, isTypedArray, withoutUndefined } from "../values.js";
 import { cameraOf, cameraProperties } from "./camera.js";
@@ -9,20 +10,26 @@ import type { CoreInput } from "./core-input.js";
 import { checkSides, readDepth, readPointMap } from "./depth.js";
 import { readMask } from "./mask.js";
 import { readMesh } from "./mesh.js";
+import { readPhoto } from "./photo.js";
 
 /** A resolved input, and the warnings of its files. */
 export interface ResolvedInput {
   core: CoreInput;
-  warnings: readonly string[];
+  warnings: FileWarnings;
 }
 
 const properties = [
   ...["depth", "depthScale", "pointMap", "width", "height", "camera", "cameraFile", "imageId"],
-  ...["mask", "resizeMask", "mesh"],
+  ...["mask", "resizeMask", "mesh", "image"],
 ];
 
-/** The properties that an input and its camera may inherit from a class; others of the class are not arguments. */
-export const classNames: ClassNames = { input: properties, "input.camera": cameraProperties };
+/** The properties that an input and its parts may inherit from a class; others of the class are not arguments. */
+export const classNames: ClassNames = {
+  input: properties,
+  "input.camera": cameraProperties,
+  // The accessors of an ImageData.
+  "input.image": ["data", "width", "height"],
+};
 
 /**
  * Resolves an input. `formats` is called only if a file needs it.
@@ -33,18 +40,25 @@ export async function resolveInput(input: unknown, formats: LoadFormats, meshId?
   checkProperties(input);
   checkSides("", input);
   const { resizeMask, pointMap } = input;
-  const { warnings, ...image } =
+  const { warnings, ...view } =
     pointMap === undefined ? await depthAndCamera(input, formats) : await pointMapAndCamera(input, pointMap);
-  const mask = await readMask(input.mask, Number(image.width) * Number(image.height), formats);
+  const mask = await readMask(input.mask, Number(view.width) * Number(view.height), formats);
+  const image =
+    input.image === undefined || input.image === null ? undefined : await readPhoto(input.image, view, formats);
+  // A prepared mesh is kept for calls with a photo.
+  const mesh = await readMesh(input.mesh, formats, image !== undefined || meshId !== undefined);
+  // Colours matter only where there is a photo to compare them with.
+  const colorWarnings = image === undefined ? [] : mesh.warnings;
   const core = {
-    ...image,
+    ...view,
+    image,
     resizeMask,
     mask: mask.data,
     maskWidth: mask.width,
     maskHeight: mask.height,
-    mesh: withoutUndefined({ ...(await readMesh(input.mesh, formats)), id: meshId }),
+    mesh: withoutUndefined({ ...mesh.mesh, id: meshId }),
   };
-  return { core: withoutUndefined(core) as CoreInput, warnings };
+  return { core: withoutUndefined(core) as CoreInput, warnings: { camera: warnings, colors: colorWarnings } };
 }
 
 async function depthAndCamera(input: Record<string, unknown>, formats: LoadFormats) {

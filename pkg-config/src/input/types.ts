@@ -1,5 +1,5 @@
 /** The input of `align` and `evaluate`. */
-import type { PreparedMesh } from "../prepared-mesh.js";
+import type { ColorSamples, PreparedMesh } from "../prepared-mesh.js";
 
 /** The content of an encoded file, as read or fetched. */
 export type EncodedBytes = Uint8Array | ArrayBuffer | Blob;
@@ -102,6 +102,15 @@ export interface MeshArrays {
   positions: Float32Array;
   /** Three vertex indices per triangle; without them, every three vertices form a triangle. */
   indices?: Uint32Array | Uint16Array | null | undefined;
+  /** Colours, used with a photo: RGB or RGBA per vertex, 0 to 255 or, as floats, 0 to 1. Alpha is ignored. */
+  colors?: Uint8Array | Uint8ClampedArray | Float32Array | null | undefined;
+  /**
+   * The encoding of `colors`: `"srgb"`, the default, as in images and in most programs; or `"linear"`, proportional to
+   * light, as in three.js.
+   */
+  colorSpace?: "srgb" | "linear" | undefined;
+  /** Colours at points of the surface, which `readMesh` of `sim3align/formats` makes of textures; instead of `colors`. */
+  samples?: ColorSamples | null | undefined;
 }
 
 /** A mesh file. */
@@ -109,8 +118,29 @@ export interface MeshFile {
   bytes: EncodedBytes;
   /** Detected from the content by default. */
   format?: MeshFormat | undefined;
-  /** The buffers of a `.gltf`, by URI. */
+  /** The files that a `.gltf` or `.obj` refers to, by the names in it: buffers, textures and material libraries. */
   resources?: Readonly<Record<string, Uint8Array | ArrayBuffer>> | undefined;
+}
+
+/**
+ * The photo of the view: it shows the field of view of the depth map, pixel for pixel or at another size, sRGB-encoded.
+ * Alpha is ignored.
+ *
+ * - `Uint8Array` of the depth map's size, RGB or RGBA, row-major;
+ * - `{ data, width, height }` or an `ImageData`;
+ * - the bytes of a PNG or JPEG, detected by their signature, turned as their EXIF data say.
+ */
+export type PhotoInput =
+  | Uint8Array
+  | Uint8ClampedArray
+  | PixelArray<Uint8Array | Uint8ClampedArray>
+  | ArrayBuffer
+  | Blob;
+
+/** The photo of a view. */
+export interface PhotoOfView {
+  /** The photo, which is compared with the colours of the mesh, if it has any. */
+  image?: PhotoInput | undefined;
 }
 
 /** The object's mesh, in its own frame: arrays, a GLB, glTF, OBJ, PLY or STL file (node transforms are applied), or a prepared mesh. */
@@ -192,6 +222,7 @@ export interface OwnSizePointMapInput {
 
 /** An object seen in a depth map. */
 export type DepthAlignInput = ObjectInput &
+  PhotoOfView &
   (SizedDepthInput | OwnSizeDepthInput) &
   (StatedCameraInput | CameraFromFileInput) & {
     /**
@@ -204,11 +235,12 @@ export type DepthAlignInput = ObjectInput &
 
 /** An object seen in a point map. Without a camera, the intrinsics are fitted to the point map. */
 export type PointMapAlignInput = ObjectInput &
+  PhotoOfView &
   (SizedPointMapInput | OwnSizePointMapInput) &
   (StatedCameraInput | CameraFromFileInput | NoCameraInput) & {
     depth?: undefined;
     depthScale?: undefined;
   };
 
-/** The input of `align` and `evaluate`: depth with a camera, or a point map; the mask; the mesh. */
+/** The input of `align` and `evaluate`: depth with a camera, or a point map; the mask; the mesh; the photo, if there is one. */
 export type AlignInput = DepthAlignInput | PointMapAlignInput;

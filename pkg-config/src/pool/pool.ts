@@ -145,7 +145,8 @@ function sentData(slot: WorkerSlot, job: Job, isMoved: boolean): unknown {
     return isMoved ? job.data : copied(job.data);
   }
   const { mesh, ...rest } = job.data;
-  const sent = slot.hasMesh(job.meshId) ? { positions: new Float32Array() } : copied(mesh);
+  const { warnings } = mesh as { warnings?: unknown };
+  const sent = slot.hasMesh(job.meshId) ? { positions: new Float32Array(), warnings } : copied(mesh);
   return { ...(isMoved ? rest : copied(rest)), mesh: sent };
 }
 

@@ -5,6 +5,17 @@ import type { MeshArrays } from "../input/types.js";
 import { failure, finiteNumbers, oneOf } from "../values.js";
 import type { AttributeLike, GeometryLike, MeshTree, PlacedObject } from "./types.js";
 
+/** The triangles so far, and the colours of the vertices: linear red, green and blue. */
+interface Arrays {
+  positions: number[];
+  indices: number[];
+  colors: number[];
+  /** Whether any part has a colour other than white. */
+  isColored: boolean;
+  /** Whether any part has a texture or several materials, whose colours are not those of vertices. */
+  isUnknown: boolean;
+}
+
 /** A 4×4 matrix, column-major. */
 type Matrix4 = readonly number[];
 
@@ -23,6 +34,9 @@ export interface MeshInputOptions {
  * All triangles of a three.js geometry, or of an object and its descendants, as a mesh for `align`. The matrices of
  * descendants and instances are applied. Bones and morph targets are ignored: the mesh is in its bind pose.
  *
+ * Its colours are those of vertices times those of materials. A mesh with a texture has none, because textures are in
+ * the memory of the graphics card: pass the bytes of the file instead.
+ *
  * @param source a `BufferGeometry`, or an `Object3D` such as a `Mesh`, a `Group` or a loaded scene
  * @returns interleaved x, y, z in the chosen frame, and three indices per triangle
  *
@@ -33,10 +47,10 @@ export interface MeshInputOptions {
 export function meshInputFromThree(
   source: GeometryLike | MeshTree,
   { frame = "object" }: MeshInputOptions = {},
-): MeshArrays & { indices: Uint32Array } {
+): MeshArrays & { positions: Float32Array; indices: Uint32Array } {
   oneOf("options.frame", frame, ["object", "world"]);
-  const arrays = { positions: [] as number[], indices: [] as number[] };
-  if (isGeometry(source)) append(arrays, source, identity);
+  const arrays: Arrays = { positions: [], indices: [], colors: [], isColored: false, isUnknown: false };
+  if (isGeometry(source)) append(arrays, source, identity, { vertexColors: true });
   else if (isTree(source)) appendTree(arrays, source, frame);
   else {
     const remedy = "Pass a geometry, a mesh, or a loaded scene.";
@@ -51,14 +65,16 @@ export function meshInputFromThree(
       "Pass an object that contains meshes.",
     );
   }
-  return { positions: Float32Array.from(arrays.positions), indices: Uint32Array.from(arrays.indices) };
+  const mesh = { positions: Float32Array.from(arrays.positions), indices: Uint32Array.from(arrays.indices) };
+  if (!arrays.isColored || arrays.isUnknown) return mesh;
+  return { ...mesh, colors: Float32Array.from(arrays.colors), colorSpace: "linear" };
 }
 
 const isObject = (value: unknown): value is Record<string, unknown> => typeof value === "object" && value !== null;
 const isGeometry = (value: unknown): value is GeometryLike => isObject(value) && isObject(value.attributes);
 const isTree = (value: unknown): value is MeshTree => isObject(value) && typeof value.traverse === "function";
 
-function appendTree(arrays: { positions: number[]; indices: number[] }, tree: MeshTree, frame: "object" | "world") {
+function appendTree(arrays: Arrays, tree: MeshTree, frame: "object" | "world") {
   tree.updateWorldMatrix(true, true);
   const base = frame === "world" ? identity : inverse(matrixOf(tree.matrixWorld.elements));
   tree.traverse((object) => {
@@ -69,7 +85,7 @@ function appendTree(arrays: { positions: number[]; indices: number[] }, tree: Me
       throw failure("UNSUPPORTED_FORMAT", "source", "a BatchedMesh", "meshes and instances", remedy);
     }
     const local = product(base, matrixOf(found.matrixWorld.elements));
-    if (found.isInstancedMesh !== true) return append(arrays, found.geometry, local);
+    if (found.isInstancedMesh !== true) return append(arrays, found.geometry, local, found.material);
     const { array } = found.instanceMatrix as { array: ArrayLike<number> };
     for (let i = 0; i < (found.count as number); i++) {
       append(
@@ -79,13 +95,14 @@ function appendTree(arrays: { positions: number[]; indices: number[] }, tree: Me
           local,
           Array.from({ length: 16 }, (_, k) => array[16 * i + k] ?? 0),
         ),
+        found.material,
       );
     }
   });
 }
 
 /** Adds the triangles of a geometry, transformed. */
-function append(arrays: { positions: number[]; indices: number[] }, { attributes, index }: GeometryLike, m: Matrix4) {
+function append(arrays: Arrays, { attributes, index }: GeometryLike, m: Matrix4, material: unknown) {
   const position = attributes.position as AttributeLike | undefined;
   if (!position || typeof position.getX !== "function") return;
   const first = arrays.positions.length / 3;
@@ -95,12 +112,26 @@ function append(arrays: { positions: number[]; indices: number[] }, { attributes
     const [x, y, z] = [position.getX(i), position.getY(i), position.getZ(i)];
     arrays.positions.push(a * x + d * y + g * z + tx, b * x + e * y + h * z + ty, c * x + f * y + k * z + tz);
   }
+  appendColors(arrays, attributes.color as AttributeLike | undefined, position.count, material);
   const corner = (i: number) => first + (index === null ? i : index.getX(i));
   const count = index === null ? position.count : index.count;
   const isMirrored = a * (e * k - f * h) - d * (b * k - c * h) + g * (b * f - c * e) < 0;
   // Reflections invert the orientation of triangles: swap two corners.
   for (let i = 0; i + 2 < count; i += 3) {
     arrays.indices.push(corner(i), corner(i + (isMirrored ? 2 : 1)), corner(i + (isMirrored ? 1 : 2)));
+  }
+}
+
+/** Adds the colours of vertices: their attribute, if the material shows it, times the colour of the material. */
+function appendColors(arrays: Arrays, attribute: AttributeLike | undefined, count: number, material: unknown): void {
+  const { color, map, vertexColors } = (isObject(material) ? material : {}) as Record<string, unknown>;
+  if (Array.isArray(material) || isObject(map)) arrays.isUnknown = true;
+  const isShown = vertexColors === true && typeof attribute?.getX === "function" && attribute.count === count;
+  const { r = 1, g = 1, b = 1 } = (isObject(color) ? color : {}) as { r?: number; g?: number; b?: number };
+  if (isShown || r !== 1 || g !== 1 || b !== 1) arrays.isColored = true;
+  for (let i = 0; i < count; i++) {
+    const [x, y, z] = isShown ? [attribute.getX(i), attribute.getY(i), attribute.getZ(i)] : [1, 1, 1];
+    arrays.colors.push(r * x, g * y, b * z);
   }
 }
 

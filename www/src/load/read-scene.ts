@@ -134,13 +134,32 @@ async function readMaskAt(file: NamedFile, width: number, height: number, resize
 async function readMeshSource({ file, siblings }: MeshSource): Promise<{ mesh: MeshArrays; glb: Uint8Array | null }> {
   const bytes = await file.bytes();
   const ending = extension(file.path);
-  if (ending !== "gltf") return { mesh: await readMesh(bytes), glb: ending === "glb" ? bytes : null };
-  const resources: Record<string, Uint8Array> = {};
-  for (const uri of await externalResources(bytes)) {
-    const found = siblings.find(({ path }) => path.endsWith(decodeURIComponent(uri)));
-    if (found !== undefined) resources[uri] = await found.bytes();
+  if (ending !== "gltf" && ending !== "obj") {
+    return { mesh: await readMesh(bytes), glb: ending === "glb" ? bytes : null };
   }
-  return { mesh: await readMesh(bytes, { format: "gltf", resources }), glb: null };
+  const resources: Record<string, Uint8Array> = {};
+  const addResources = async (file: Uint8Array) => {
+    const { shape, colors } = await externalResources(file);
+    for (const name of [...shape, ...colors].filter((name) => !(name in resources))) {
+      const found = siblings.find(({ path }) => path.endsWith(decoded(name)));
+      if (found === undefined) continue;
+      const content = await found.bytes();
+      resources[name] = content;
+      // The material libraries of an OBJ refer to textures.
+      if (name.endsWith(".mtl")) await addResources(content);
+    }
+  };
+  await addResources(bytes);
+  return { mesh: await readMesh(bytes, { format: ending, resources }), glb: null };
+}
+
+/** A name in a mesh file, which may be a URI. */
+function decoded(name: string): string {
+  try {
+    return decodeURIComponent(name);
+  } catch {
+    return name;
+  }
 }
 
 /** The true pose. It only serves for comparison, so an unreadable file counts as a missing one. */

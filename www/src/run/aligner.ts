@@ -18,11 +18,12 @@ export function aligner(): Promise<Aligner> {
 }
 
 /** The input of `align` and `evaluate` for an object. */
-export const inputOf = ({ depthM, width, height, camera }: Scene, { mask, mesh }: ObjectModel): AlignInput => ({
+export const inputOf = ({ depthM, width, height, camera, rgba }: Scene, { mask, mesh }: ObjectModel): AlignInput => ({
   depth: depthM,
   width,
   height,
   camera,
   mask,
   mesh,
+  ...(rgba === null ? {} : { image: rgba }),
 });

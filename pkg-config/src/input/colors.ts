@@ -1,0 +1,87 @@
+/** Converts colours to what the core takes: sRGB-encoded red, green and blue, a byte each. */
+
+/** Arrays of colours: whole numbers from 0 to 255, or floats from 0 to 1. */
+export type ColorArray = Uint8Array | Uint8ClampedArray | Float32Array;
+
+/** The encoding of colours: as in images, or proportional to light. */
+export type ColorSpace = "srgb" | "linear";
+
+/** Maximum number of pixels of a photo for the core; photos from files are reduced to as many. */
+const MAX_PHOTO_PIXELS = 1 << 21;
+
+/** The colours without their alpha. */
+export function rgbOf(colors: ColorArray, channels: number, space: ColorSpace = "srgb"): Uint8Array {
+  if (channels === 3 && space === "srgb" && colors instanceof Uint8Array) return colors;
+  const encode = encoder(colors instanceof Float32Array, space);
+  const count = colors.length / channels;
+  const rgb = new Uint8Array(3 * count);
+  for (let i = 0; i < count; i++) {
+    for (let c = 0; c < 3; c++) rgb[3 * i + c] = encode(colors[channels * i + c] as number);
+  }
+  return rgb;
+}
+
+function encoder(isFloat: boolean, space: ColorSpace): (value: number) => number {
+  if (space === "linear") return isFloat ? encoded : (value) => encoded(value / 255);
+  // Rounds half up, and clamps; NaN is 0.
+  return isFloat ? (value) => Math.max(0, Math.min(255, Math.floor(value * 255 + 0.5))) || 0 : (value) => value;
+}
+
+/**
+ * Light half-way, in codes, between each code and the next. Rounded to 32 bits: `Math.pow` may differ by the last of 53
+ * bits between engines.
+ */
+const bounds = Array.from({ length: 255 }, (_, code) => {
+  const x = (code + 0.5) / 255;
+  return Math.fround(x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
+});
+
+/** The sRGB code of linear light. */
+function encoded(light: number): number {
+  let [low, high] = [0, bounds.length];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (light >= (bounds[middle] as number)) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+/** Pixels of a photo: sRGB-encoded red, green and blue, row-major. */
+export interface Photo {
+  data: Uint8Array;
+  width: number;
+  height: number;
+}
+
+/** A photo for the core, averaged to a smaller one if it is large, as the readers of files do. */
+export function photoOf(data: ColorArray, channels: number, width: number, height: number): Photo {
+  const [newWidth, newHeight] = reducedSize(width, height);
+  if (newWidth === width && newHeight === height) return { data: rgbOf(data, channels), width, height };
+  const sums = new Uint32Array(3 * newWidth * newHeight);
+  const counts = new Uint32Array(newWidth * newHeight);
+  // Each pixel counts where its centre lies.
+  const place = (i: number, size: number, full: number) =>
+    Math.min(Math.floor(((2 * i + 1) * size) / (2 * full)), size - 1);
+  const columns = Uint32Array.from({ length: width }, (_, u) => place(u, newWidth, width));
+  for (let v = 0; v < height; v++) {
+    const row = place(v, newHeight, height) * newWidth;
+    for (let u = 0; u < width; u++) {
+      const [to, from] = [row + (columns[u] as number), channels * (v * width + u)];
+      counts[to] = (counts[to] as number) + 1;
+      for (let c = 0; c < 3; c++) sums[3 * to + c] = (sums[3 * to + c] as number) + (data[from + c] as number);
+    }
+  }
+  const mean = (sum: number, i: number) => {
+    const count = counts[Math.floor(i / 3)] as number;
+    return Math.floor((sum + Math.floor(count / 2)) / count);
+  };
+  return { data: Uint8Array.from(sums, mean), width: newWidth, height: newHeight };
+}
+
+function reducedSize(width: number, height: number): [number, number] {
+  for (let by = 1; ; by++) {
+    const [w, h] = [width, height].map((side) => Math.max(1, Math.floor(side / by))) as [number, number];
+    if (w * h <= MAX_PHOTO_PIXELS) return [w, h];
+  }
+}

@@ -1,0 +1,54 @@
+/** The photo of an input. */
+import { invalidArgument } from "../error.js";
+import type { LoadFormats } from "../formats-module.js";
+import { failure, isRecord, isTypedArray, wrongKind } from "../values.js";
+import { beginsLikeImage, callReader, fileBytes } from "./bytes.js";
+import { type Photo, photoOf } from "./colors.js";
+import type { StatedSize } from "./depth.js";
+
+type Bytes = Uint8Array | Uint8ClampedArray;
+
+const kinds =
+  "a Uint8Array of RGB or RGBA pixels, { data, width, height } with one, an ImageData, or the bytes of a PNG or JPEG file";
+
+/**
+ * The pixels of a photo.
+ * @param size the size of the depth map, which is that of a bare array
+ */
+export async function readPhoto(image: unknown, size: StatedSize, formats: LoadFormats): Promise<Photo> {
+  if (isRecord(image) && "data" in image) {
+    const { data, width, height } = image;
+    if (!isBytes(data)) throw wrongKind("image.data", data, "a Uint8Array of RGB or RGBA pixels", "Uint8Array");
+    return pixels("image.", data, { width, height } as StatedSize);
+  }
+  if (isTypedArray<Uint8ClampedArray>(image, "Uint8ClampedArray")) return pixels("", image, size);
+  const bytes = await fileBytes("image", image);
+  if (bytes === null) throw wrongKind("image", image, kinds, "Uint8Array");
+  if (bytes === image && !beginsLikeImage(bytes) && channelsOf(bytes, size) !== undefined)
+    return pixels("", bytes, size);
+  return callReader(formats, "image", bytes, (readers) => readers.readImage(bytes));
+}
+
+const isBytes = (value: unknown): value is Bytes => isTypedArray(value, "Uint8Array", "Uint8ClampedArray");
+
+const channelsOf = ({ length }: Bytes, { width, height }: StatedSize): number | undefined =>
+  [3, 4].find((channels) => length > 0 && length === Number(width) * Number(height) * channels);
+
+/** `owner` is what has the size, for errors: `image.`, or nothing for the input. */
+function pixels(owner: "" | "image.", data: Bytes, { width, height }: StatedSize): Photo {
+  for (const [name, side] of Object.entries({ width, height })) {
+    if (Number.isSafeInteger(side) && (side as number) >= 0) continue;
+    throw invalidArgument(`${owner}${name}`, side, "an integer in pixels", "Pass the size of the image.");
+  }
+  const size = { width, height } as { width: number; height: number };
+  const channels = channelsOf(data, size);
+  if (channels !== undefined) return photoOf(data, channels, size.width, size.height);
+  const pixels = size.width * size.height;
+  throw failure(
+    "WRONG_LENGTH",
+    owner === "" ? "image" : "image.data",
+    `${data.length} values`,
+    `${3 * pixels} or ${4 * pixels}, RGB or RGBA for ${width} × ${height} pixels`,
+    "Pass { data, width, height } for a photo of another size than the depth map.",
+  );
+}
