@@ -55,11 +55,9 @@ impl<'a> AccessorReader<'a> {
         let shape = if accessor.type_ == Checked::Valid(Type::Vec4) { Type::Vec4 } else { Type::Vec3 };
         let kind = component_type(accessor, shape, index)?;
         let (component, size) = (Component { kind, normalized: true }, kind.size());
-        self.read(accessor, MAX_VERTICES, shape.multiplicity() * size, [0; 3], |bytes| {
-            match (kind, bytes) {
-                (ComponentType::U8, &[r, g, b, ..]) => [r, g, b],
-                _ => srgb(core::array::from_fn(|i| component.read(bytes.get(i * size..).unwrap_or_default()))),
-            }
+        self.read(accessor, MAX_VERTICES, shape.multiplicity() * size, [0; 3], |bytes| match (kind, bytes) {
+            (ComponentType::U8, &[r, g, b, ..]) => [r, g, b],
+            _ => srgb(core::array::from_fn(|i| component.read(bytes.get(i * size..).unwrap_or_default()))),
         })
     }
 
