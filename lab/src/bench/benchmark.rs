@@ -10,6 +10,7 @@ use serde_json::Value;
 use crate::case_folder::case::read_case;
 use crate::case_folder::contents::parameters_json;
 use crate::cases::case::EvaluationCase;
+use sim3align::align::align_paper;
 use sim3align::align::evaluate::{EvaluateOptions, Truth, evaluate};
 use sim3align::align::method::Method;
 use sim3align::align::task::AlignTask;
@@ -231,9 +232,13 @@ pub fn run_case(case: &BenchCase, method: &Method, overrides: &[(String, f64)]) 
             override_setting(settings, name, *value);
         });
     }
-    let mut record = run_method(case, |observation, mesh, host| {
-        let mesh = PreparedMesh::borrowed(mesh).with_colors(case.colors.clone());
-        AlignTask::new(observation, mesh, method.clone(), host)?.with_efforts(searches.clone()).finish()
+    let mut record = run_method(case, |observation, mesh, host| match method {
+        Method::Precise(options) => {
+            let mesh = PreparedMesh::borrowed(mesh).with_colors(case.colors.clone());
+            let task = AlignTask::new(observation, mesh, options.clone(), host)?;
+            task.with_efforts(searches.clone()).finish().map(Into::into)
+        }
+        Method::Paper(options) => align_paper(observation, mesh, options, host).map(Into::into),
     });
     record.truth_score = case.truth.as_ref().and_then(|truth| {
         // By the objective of the search that found the pose: scores of others are not comparable.
