@@ -31,10 +31,8 @@ export const classNames: ClassNames = { input: properties, "input.camera": camer
  */
 export async function resolveInput(input: unknown, formats: LoadFormats, meshId?: number): Promise<ResolvedInput> {
   checkProperties(input);
-  checkSides("", input);
-  const { resizeMask, pointMap } = input;
-  const { warnings, ...image } =
-    pointMap === undefined ? await depthAndCamera(input, formats) : await pointMapAndCamera(input, pointMap);
+  const { resizeMask } = input;
+  const { warnings, ...image } = await readView(input, formats);
   const mask = await readMask(input.mask, Number(image.width) * Number(image.height), formats);
   const core = {
     ...image,
@@ -45,6 +43,17 @@ export async function resolveInput(input: unknown, formats: LoadFormats, meshId?
     mesh: withoutUndefined({ ...(await readMesh(input.mesh, formats)), id: meshId }),
   };
   return { core: withoutUndefined(core) as CoreInput, warnings };
+}
+
+/**
+ * The depth map, or the point map, and the camera of an input.
+ * @throws {@link Sim3AlignError} as {@link resolveInput}
+ */
+export async function readView(input: unknown, formats: LoadFormats) {
+  checkProperties(input);
+  checkSides("", input);
+  const { pointMap } = input;
+  return pointMap === undefined ? depthAndCamera(input, formats) : pointMapAndCamera(input, pointMap);
 }
 
 async function depthAndCamera(input: Record<string, unknown>, formats: LoadFormats) {
