@@ -1,7 +1,7 @@
 //! Aligns generated 3D meshes with a masked depth map: the similarity x_cam = s·R·p + t, after "Robust 3D Alignment of
 //! Generative Reconstructions via Partial Monocular Observations".
 //!
-//! Every module imports only from those below it in this list: [`bindings`], [`align`], [`precise`], [`paper`],
+//! Every module imports only from those below it in this list: [`bindings`], [`scene`], [`align`], [`precise`], [`paper`],
 //! [`register`], [`report`], [`options`], [`metrics`], [`evidence`], [`progress`], [`geometry`].
 
 pub mod align;
@@ -14,6 +14,7 @@ pub mod precise;
 pub mod progress;
 pub mod register;
 pub mod report;
+pub mod scene;
 
 pub use sim3align_geometry as geometry;
 pub use sim3align_geometry::{error, number};

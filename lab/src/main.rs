@@ -4,7 +4,7 @@ mod commands;
 
 use std::process::ExitCode;
 
-use commands::{Failure, bench, cases, fuzz, profile, registration, scenes};
+use commands::{Failure, bench, cases, fuzz, profile, registration, scenes, together};
 use sim3align_lab::fuzz::memory::CountingAllocator;
 
 /// For the memory of `fuzz`.
@@ -17,6 +17,7 @@ Usage: sim3align-lab COMMAND [arguments]
   case          writes one generated case folder
   scenes        writes cluttered scenes as case folders
   bench         aligns cases with a known truth, and prints tables
+  together      aligns the objects of scenes alone and together, and prints tables
   registration  writes pairs of clouds, and registers them
   profile       aligns case folders natively, and prints times as JSON
   fuzz          searches for inputs on which the package fails
@@ -26,10 +27,11 @@ Usage: sim3align-lab COMMAND [arguments]
 /// Name and entry point of a command.
 type Command = (&'static str, fn(lexopt::Parser) -> Result<(), Failure>);
 
-const COMMANDS: [Command; 6] = [
+const COMMANDS: [Command; 7] = [
     ("case", cases::main),
     ("scenes", scenes::main),
     ("bench", bench::main),
+    ("together", together::main),
     ("registration", registration::main),
     ("profile", profile::main),
     ("fuzz", fuzz::main),

@@ -15,7 +15,7 @@ import { checkAttached } from "./attached.js";
 import { type Core, coreModule } from "./core.js";
 import { type Engine, MainThreadEngine } from "./engine.js";
 import { disposed, internalError, Sim3AlignError } from "./error.js";
-import { formatsModule } from "./formats-module.js";
+import { formatsModule, type LoadFormats } from "./formats-module.js";
 import type { Preset } from "./generated/types.js";
 import { classNames } from "./input/resolve.js";
 import type { AlignInput, MeshInput } from "./input/types.js";
@@ -37,6 +37,9 @@ import { isDisposedMesh, keptMesh, nextMeshId, PreparedMesh } from "./prepared-m
 import { checkedListener, ProgressListener } from "./progress.js";
 import { registrationModule } from "./registration-module.js";
 import type { AlignAllResult, AlignResult, Evaluation, Registration } from "./results.js";
+import { alignScene } from "./scene/align-scene.js";
+import { classNames as sceneClassNames } from "./scene/read-scene.js";
+import type { SceneInput, SceneOptions, SceneResult } from "./scene/types.js";
 import { coreSim3, type Sim3Like } from "./sim3.js";
 import { ownArgument, snapshot } from "./snapshot.js";
 import { isRecord, withoutUndefined } from "./values.js";
@@ -62,11 +65,13 @@ export async function createAligner(options: AlignerOptions = {}): Promise<Align
 export class Aligner {
   readonly #core: LoadedModule<Core>;
   readonly #engine: Engine;
+  readonly #formats: LoadFormats;
   #isDisposed = false;
 
-  private constructor(core: LoadedModule<Core>, engine: Engine) {
+  private constructor(core: LoadedModule<Core>, engine: Engine, formats: LoadFormats) {
     this.#core = core;
     this.#engine = engine;
+    this.#formats = formats;
   }
 
   /** @internal */
@@ -77,12 +82,9 @@ export class Aligner {
     };
     const workers = checkedWorkers(given.workers);
     const core = await coreModule.load(wasm);
-    const mainThread = new MainThreadEngine(
-      core,
-      () => formatsModule.load(formatsWasm),
-      () => registrationModule.load(registrationWasm),
-    );
-    if (workers === 0) return new Aligner(core, mainThread);
+    const formats = () => formatsModule.load(formatsWasm);
+    const mainThread = new MainThreadEngine(core, formats, () => registrationModule.load(registrationWasm));
+    if (workers === 0) return new Aligner(core, mainThread, formats);
     const factory = await workerFactory(assets.workerScript, checkedFactory(given.createWorker));
     const size = workers === "auto" ? Math.min(Math.max(factory.cores - 1, 1), MAX_AUTO) : workers;
     const setup = {
@@ -91,7 +93,7 @@ export class Aligner {
       formats: () => formatsModule.compile(formatsWasm),
       registration: () => registrationModule.compile(registrationWasm),
     };
-    return new Aligner(core, new WorkerPool(size, setup, mainThread));
+    return new Aligner(core, new WorkerPool(size, setup, mainThread), formats);
   }
 
   /**
@@ -143,6 +145,51 @@ export class Aligner {
       },
       isOwn: (error): error is Sim3AlignError => error instanceof Sim3AlignError && error.code !== "DISPOSED",
     });
+  }
+
+  /**
+   * Aligns the objects of a scene: one depth map, a mask and a mesh per object. Each is first aligned alone, as by
+   * `align`; then with what the others and the plane that they stand on tell of it: who hides whom, whose volume is
+   * taken, how high the ground is. Contact is evidence, not a rule: what hangs, leans or lies on something else stays so.
+   * Poses, frames and units are those of `align`; `contact` of each object says what it rests on.
+   *
+   * In workers, objects are aligned side by side; the result has the same bits for any number of workers. The depth map
+   * is needed by all objects: `transfer` moves nothing.
+   * @example
+   * ```ts
+   * const { objects, support } = await aligner.alignScene({ depth, camera, objects: [{ name, mask, mesh }] });
+   * ```
+   * @throws {@link Sim3AlignError} for an invalid view, mask or option. An object that cannot be aligned has an `error`
+   * in its place of the result
+   */
+  async alignScene(scene: SceneInput, options?: SceneOptions): Promise<SceneResult> {
+    this.#checkUsable();
+    const given: CallOptions & Record<string, unknown> = checkedOptions(options ?? {});
+    const { signal, transfer = false, onProgress, snap = false, initial, ...rest } = given;
+    if (initial !== undefined) {
+      const remedy = "Pass it as `initial` of an object.";
+      throw new Sim3AlignError({
+        ...{ code: "UNKNOWN_OPTION", argument: "options.initial" },
+        ...{ found: "a pose for all objects", expected: "options of alignScene", remedy },
+      });
+    }
+    const isReturned = checkedFlag("transfer", transfer);
+    const own = snapshot("input", scene, sceneClassNames);
+    const progress = new ProgressListener(onProgress);
+    const call = { signal: checkedSignal(signal), progress, transfer: false };
+    const settings = { options: rest, snap: checkedFlag("snap", snap), onProgress: onProgress as never };
+    const engine = { core: this.#core, engine: this.#engine, formats: this.#formats };
+    try {
+      checkSignals(call.signal === undefined ? [] : [call.signal]);
+      checkAttached("input", own);
+      const result = await alignScene(own, engine, settings, call);
+      checkSignals([progress.failed]);
+      return isReturned ? { ...result, input: scene } : result;
+    } catch (error) {
+      if (call.signal?.aborted && reasonOf(call.signal) === error) throw error;
+      checkSignals([progress.failed]);
+      throw error instanceof Sim3AlignError ? error : internalError(error);
+    }
   }
 
   /**

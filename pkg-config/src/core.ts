@@ -2,6 +2,7 @@
 import type * as Results from "./generated/types.js";
 import type { CoreInput } from "./input/core-input.js";
 import type { CoreMesh } from "./prepared-mesh.js";
+import type { Contacts, Known, Placement, PlaceTask, Supported } from "./scene/steps.js";
 import * as glue from "./wasm/core.js";
 import { type Glue, WasmModule } from "./wasm-module.js";
 
@@ -25,6 +26,14 @@ export interface AlignTask {
 export interface Core extends Glue {
   align(input: CoreInput, options: object, onProgress: CoreListener | undefined): Results.Alignment;
   beginAlign(input: CoreInput, options: object, onProgress: CoreListener | undefined): AlignTask;
+  beginPlace(
+    input: CoreInput & { others?: Uint8Array },
+    options: object,
+    known: Known | undefined,
+    onProgress: CoreListener | undefined,
+  ): PlaceTask;
+  sceneSupport(view: object, placements: (Placement | null)[], support: unknown, seed: number): Supported;
+  sceneContacts(view: object, placements: (Placement | null)[], supported: Supported, snap: boolean): Contacts;
   evaluate(input: CoreInput, transform: unknown, options: object): Results.Evaluation;
   prepareMesh(mesh: CoreMesh): void;
   dropMesh(id: number): void;

@@ -4,9 +4,7 @@ import { checkAttached } from "./attached.js";
 import type { Core, CoreListener } from "./core.js";
 import { disposed, withoutInput } from "./error.js";
 import type { LoadFormats } from "./formats-module.js";
-import type { Alignment } from "./generated/types.js";
-import type { CoreInput } from "./input/core-input.js";
-import { type Job, perform, type Results } from "./jobs.js";
+import { type InSlices, type Job, perform, type Results, type Task } from "./jobs.js";
 import { checkSignals } from "./on-abort.js";
 import type { ProgressListener } from "./progress.js";
 import type { LoadRegistrar } from "./registration-module.js";
@@ -78,10 +76,9 @@ export class MainThreadEngine implements Engine {
         check();
         return module;
       };
-    const align = (input: CoreInput, options: object, onProgress?: CoreListener) =>
-      alignInSteps(this.#core, [input, options, onProgress], check);
+    const inSlices: InSlices = (begin, input) => runInSlices(this.#core, begin, input, check);
     const [formats, registrar] = [checked(this.#formats), checked(this.#registrar)];
-    const modules = { core: this.#core, formats, registrar, align };
+    const modules = { core: this.#core, formats, registrar, inSlices };
     return { result: await perform(job, modules, progress.isWanted ? listener : undefined), data: job.data };
   }
 
@@ -97,15 +94,16 @@ export class MainThreadEngine implements Engine {
 /** Yields to timers, events and rendering. */
 const turn = () => new Promise<void>((resolve) => setTimeout(resolve));
 
-/** Aligns in time slices. Between them, the thread yields, and `check` may throw. */
-async function alignInSteps(
+/** Runs a task in time slices. Between them, the thread yields, and `check` may throw. */
+async function runInSlices<T>(
   core: LoadedModule<Core>,
-  args: Parameters<Core["align"]>,
+  begin: (core: Core) => Task<T>,
+  input: object,
   check: () => void,
-): Promise<Alignment> {
+): Promise<T> {
   // The thread may have been elsewhere since the input was read.
-  checkAttached("input", args[0]);
-  const task = core.call((c) => c.beginAlign(...args), withoutInput);
+  checkAttached("input", input);
+  const task = core.call(begin, withoutInput);
   const { instance } = core;
   try {
     for (;;) {
@@ -115,7 +113,7 @@ async function alignInSteps(
       await turn();
       check();
       // Another call trapped, and the task was lost with its instance.
-      if (core.instance !== instance) return await alignInSteps(core, args, check);
+      if (core.instance !== instance) return await runInSlices(core, begin, input, check);
     }
   } finally {
     if (core.instance === instance) task.free();

@@ -18,6 +18,7 @@ export {
 } from "./generated/options.js";
 export type {
   Alternative,
+  Contact,
   Counts,
   Diagnostics,
   Effort,
@@ -91,4 +92,17 @@ export type {
   Registration,
   WithoutMetrics,
 } from "./results.js";
+export type {
+  KnownOfObject,
+  LabelMap,
+  Plane,
+  SceneAlignment,
+  SceneFailure,
+  SceneInput,
+  SceneMetrics,
+  SceneObjectInput,
+  SceneOptions,
+  SceneResult,
+  Support,
+} from "./scene/types.js";
 export type { Sim3, Sim3Like } from "./sim3.js";

@@ -3,27 +3,31 @@ import { checkAttached } from "./attached.js";
 import type { Core, CoreListener } from "./core.js";
 import { withoutInput } from "./error.js";
 import type { LoadFormats } from "./formats-module.js";
-import type { Alignment } from "./generated/types.js";
-import type { CoreInput } from "./input/core-input.js";
 import { type MeshAndWarnings, readMesh } from "./input/mesh.js";
 import { resolveInput } from "./input/resolve.js";
 import type { AlignInput, MeshInput } from "./input/types.js";
 import type { LoadRegistrar } from "./registration-module.js";
 import { type AlignResult, type Clouds, type Evaluation, type Registration, withWarnings } from "./results.js";
+import type { Known, Placed } from "./scene/steps.js";
 import { isTypedArray, wrongKind } from "./values.js";
 import type { LoadedModule } from "./wasm-module.js";
 
 /** A call. `data` contains all large arrays; `options` are in the form of the core. */
 export type Job =
   | { method: "align"; data: AlignInput; options: object; meshId?: number | undefined }
+  | { method: "place"; data: PlaceInput; options: object; meshId?: number | undefined }
   | { method: "evaluate"; data: AlignInput; options: object; transform: unknown; meshId?: number | undefined }
   | { method: "prepareMesh"; data: { mesh: MeshInput }; options: object; meshId: number }
   | { method: "register"; data: Clouds; options: object }
   | { method: "estimateSim3"; data: Clouds; options: object };
 
+/** An object of a scene, the pixels of the others and, once it is known, what they have told. */
+export type PlaceInput = AlignInput & { others?: Uint8Array | undefined; known?: Known | undefined };
+
 /** The result of each call. */
 export interface Results {
   align: AlignResult;
+  place: Placed;
   evaluate: Evaluation;
   prepareMesh: MeshAndWarnings;
   register: Registration;
@@ -35,12 +39,22 @@ export interface JobModules {
   core: LoadedModule<Core>;
   formats: LoadFormats;
   registrar: LoadRegistrar;
-  /** Overrides the alignment by a single call of the core. */
-  align?: (input: CoreInput, options: object, listener?: CoreListener) => Promise<Alignment>;
+  /** Runs a task in slices, instead of at once. */
+  inSlices?: InSlices;
 }
 
 /** Whether these are options of `align` for the method of the paper, which the registration module runs. */
 export const isOfPaper = (options: { preset?: unknown }): boolean => options.preset === "paper";
+
+/** A task of the core that runs in slices. */
+export interface Task<T> {
+  /** Runs for about this long; returns the result when finished. */
+  step(sliceMs: number): T | undefined;
+  free(): void;
+}
+
+/** Runs a task to its end. `input` is what its beginning reads. */
+export type InSlices = <T>(begin: (core: Core) => Task<T>, input: object) => Promise<T>;
 
 /** Runs a job. `listener` is called when stages begin; if it throws, the job fails with that exception. */
 export async function perform<J extends Job>(
@@ -50,7 +64,7 @@ export async function perform<J extends Job>(
 ): Promise<Results[J["method"]]>;
 export async function perform(
   job: Job,
-  { core, formats, registrar, align }: JobModules,
+  { core, formats, registrar, inSlices = atOnce(core) }: JobModules,
   listener?: CoreListener,
 ): Promise<unknown> {
   const { options } = job;
@@ -66,10 +80,14 @@ export async function perform(
           warnings,
         );
       }
-      const result = await (align === undefined
-        ? core.call((c) => c.align(input, options, listener), withoutInput)
-        : align(input, options, listener));
+      const result = await inSlices((c) => c.beginAlign(input, options, listener), input);
       return withWarnings(result, warnings);
+    }
+    case "place": {
+      const { others, known, ...own } = job.data;
+      const { core: input } = await resolveInput(own, formats, job.meshId);
+      const observed = others === undefined ? input : { ...input, others };
+      return inSlices((c) => c.beginPlace(observed, options, known, listener), observed);
     }
     case "evaluate": {
       const { core: input, warnings } = await resolveInput(job.data, formats, job.meshId);
@@ -102,6 +120,21 @@ export async function perform(
       return module.call((m) => m.estimateSim3(source, target, correspondences, options));
     }
   }
+}
+
+/** Runs tasks at once. */
+function atOnce(core: LoadedModule<Core>): InSlices {
+  return async (begin) =>
+    core.call((c) => {
+      const task = begin(c);
+      for (;;) {
+        const result = task.step(Number.POSITIVE_INFINITY);
+        if (result !== undefined) {
+          task.free();
+          return result;
+        }
+      }
+    }, withoutInput);
 }
 
 function checkedClouds(clouds: Clouds): Clouds {

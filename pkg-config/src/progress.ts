@@ -30,8 +30,9 @@ export class ProgressListener {
   /**
    * Calls the caller's function, unless it has failed. Does not throw: see {@link failed}.
    * @param best the best pose, column-major, and its score, after a round of the search
+   * @param more further properties of the report
    */
-  report(stage: Progress["stage"], fraction: number, best?: Float64Array): void {
+  report(stage: Progress["stage"], fraction: number, best?: Float64Array, more: object = {}): void {
     if (this.#onProgress === undefined || this.failed.aborted) return;
     if (best !== undefined) this.#best = { matrix: Array.from(best.subarray(0, 16)), score: best[16] as number };
     this.#fraction = Math.max(this.#fraction, fraction);
@@ -43,7 +44,7 @@ export class ProgressListener {
     this.#times.push(now);
     const fail = (error: unknown) => this.#failed.abort(error);
     try {
-      const returned = this.#onProgress({ stage, fraction: this.#fraction, best: this.#best });
+      const returned = this.#onProgress({ stage, fraction: this.#fraction, best: this.#best, ...more });
       // Otherwise, the rejection of an async function would be unhandled, which ends a Node process.
       Promise.resolve(returned).catch(fail);
     } catch (error) {

@@ -18,9 +18,10 @@ use crate::precise::options::AlignOptions;
 use crate::precise::prepared_mesh::PreparedMesh;
 use crate::precise::recipe::SURE;
 use crate::precise::rounds::Rounds;
-use crate::precise::{Certainty, SearchSettings};
+use crate::precise::surroundings::Neighbourhood;
+use crate::precise::{Certainty, Found, SearchSettings};
 use crate::progress::{Host, Stopwatch};
-use crate::report::{Alignment, PaperAlignment, PreciseDiagnostics, Solution};
+use crate::report::{Alignment, Effort, PaperAlignment, PreciseDiagnostics, Solution};
 
 /// An alignment in steps. It owns or borrows its observation and mesh.
 pub struct AlignTask<'h, O, M> {
@@ -28,9 +29,25 @@ pub struct AlignTask<'h, O, M> {
     mesh: M,
     options: AlignOptions,
     efforts: Vec<SearchSettings>,
+    given: Option<Given>,
     setup: Setup,
     stages: Option<Stopwatch<'h>>,
     state: State,
+}
+
+/// What another alignment of the same input has found, and what has become known of its surroundings since.
+#[derive(Debug, Clone, Default)]
+pub struct Given {
+    /// The poses, best first.
+    pub found: Vec<Found>,
+    /// The effort of the search that found them.
+    pub effort: Effort,
+    /// Number of images that it drew.
+    pub renders: usize,
+    /// The probability that the best pose is right.
+    pub confidence: f64,
+    /// The surroundings.
+    pub known: Neighbourhood,
 }
 
 /// The progress of the task.
@@ -41,9 +58,13 @@ enum State {
     Drawn(Box<Clouds>),
     /// Their normals are estimated, if the metrics need them.
     Ready(Box<Clouds>),
+    /// The search among given poses is running.
+    Resumed(Box<Clouds>, Box<Rounds>),
     /// The search with the effort of this index is running.
     Searching(Box<Clouds>, Box<Rounds>, usize),
-    /// The poses that the last search has left are compared with the photo.
+    /// The searches have ended.
+    Searched(Box<Clouds>, Box<Rounds>, Box<(Solution, Certainty)>),
+    /// The poses that the searches have left are compared with the photo.
     Comparing(Box<Clouds>, Box<Rounds>, Box<ColorStage>),
     /// The search has found a pose.
     Found(Box<Clouds>, Box<Solution>, Box<Certainty>),
@@ -59,12 +80,50 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
     pub fn new(observation: O, mesh: M, options: AlignOptions, host: impl Host + 'h) -> Result<Self> {
         let (setup, efforts) = (Setup::of_precise(&options)?, precise::efforts(&options));
         let stages = Some(Stopwatch::new(host, precise::PLAN));
-        Ok(Self { observation, mesh, options, efforts, setup, stages, state: State::Begun })
+        Ok(Self { observation, mesh, options, efforts, given: None, setup, stages, state: State::Begun })
     }
 
     /// Overrides the settings of the searches that follow from the options, for ablations.
     pub fn with_efforts(self, efforts: Vec<SearchSettings>) -> Self {
         Self { efforts, ..self }
+    }
+
+    /// Searches among these poses only.
+    pub fn with_given(self, given: Given) -> Self {
+        Self { given: Some(given), ..self }
+    }
+
+    /// Continues until the searches have ended, or until `pause` returns true. Returns whether they have ended.
+    ///
+    /// # Errors
+    /// As [`AlignTask::step`].
+    pub fn step_search(&mut self, pause: &mut dyn FnMut() -> bool) -> Result<bool> {
+        let Some(mut stages) = self.stages.take() else { return Err(over()) };
+        while !matches!(self.state, State::Searched(..)) {
+            if matches!(self.state, State::Found(..)) {
+                return Err(over());
+            }
+            let is_paused = !self.advance_by(pause, &mut stages)? || pause();
+            if is_paused && !matches!(self.state, State::Searched(..)) {
+                self.stages = Some(stages);
+                return Ok(false);
+            }
+        }
+        self.stages = Some(stages);
+        Ok(true)
+    }
+
+    /// What the searches have found, and with which confidence, once they have ended.
+    pub fn searched(&self) -> Option<(&Rounds, f64)> {
+        match &self.state {
+            State::Searched(_, rounds, concluded) => Some((rounds, concluded.1.confidence)),
+            _ => None,
+        }
+    }
+
+    /// The observation.
+    pub fn observation(&self) -> &Observation {
+        self.observation.borrow()
     }
 
     /// Runs the task to its end.
@@ -86,42 +145,49 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
     pub fn step(&mut self, pause: &mut dyn FnMut() -> bool) -> Result<Option<Alignment>> {
         let Some(mut stages) = self.stages.take() else { return Err(over()) };
         loop {
-            self.state = match replace(&mut self.state, State::Over) {
-                State::Searching(clouds, mut rounds, effort) => {
-                    let share = precise::share(effort, self.efforts.len());
-                    if !precise::run(&mut rounds, &share, pause, &mut stages) {
-                        self.state = State::Searching(clouds, rounds, effort);
-                        self.stages = Some(stages);
-                        return Ok(None);
-                    }
-                    self.advance(State::Searching(clouds, rounds, effort), &mut stages)?
+            if let State::Found(..) = self.state {
+                let State::Found(mut clouds, solution, certainty) = replace(&mut self.state, State::Over) else {
+                    return Err(over());
+                };
+                let (observation, mesh) = (self.observation.borrow(), self.mesh.borrow().mesh());
+                let mut metrics = score(observation, mesh, &self.setup, &mut clouds, &solution, &mut stages)?;
+                if let Some(metrics) = &mut metrics {
+                    let pose = &solution.camera_from_mesh;
+                    metrics.color_agreement = agreement(observation, self.mesh.borrow(), pose);
                 }
-                State::Comparing(clouds, rounds, mut stage) => {
-                    let colors = self.mesh.borrow().colors();
-                    if colors.is_some_and(|colors| !stage.run(&rounds, colors, pause)) {
-                        self.state = State::Comparing(clouds, rounds, stage);
-                        self.stages = Some(stages);
-                        return Ok(None);
-                    }
-                    self.advance(State::Comparing(clouds, rounds, stage), &mut stages)?
-                }
-                State::Found(mut clouds, solution, certainty) => {
-                    let (observation, mesh) = (self.observation.borrow(), self.mesh.borrow().mesh());
-                    let mut metrics = score(observation, mesh, &self.setup, &mut clouds, &solution, &mut stages)?;
-                    if let Some(metrics) = &mut metrics {
-                        let pose = &solution.camera_from_mesh;
-                        metrics.color_agreement = agreement(observation, self.mesh.borrow(), pose);
-                    }
-                    let aligned = report(observation, &self.setup, &clouds, &solution, metrics, stages);
-                    return Ok(Some(with_certainty(aligned, *certainty)));
-                }
-                state => self.advance(state, &mut stages)?,
-            };
-            if pause() {
+                let aligned = report(observation, &self.setup, &clouds, &solution, metrics, stages);
+                return Ok(Some(with_certainty(aligned, *certainty)));
+            }
+            if !self.advance_by(pause, &mut stages)? || pause() {
                 self.stages = Some(stages);
                 return Ok(None);
             }
         }
+    }
+
+    /// Runs one stage, or a part of it until `pause` returns true. Returns whether the stage has ended.
+    fn advance_by(&mut self, pause: &mut dyn FnMut() -> bool, stages: &mut Stopwatch<'h>) -> Result<bool> {
+        let mut state = replace(&mut self.state, State::Over);
+        let running = match &mut state {
+            State::Searching(_, rounds, effort) => Some((rounds, precise::share(*effort, self.efforts.len()))),
+            State::Resumed(_, rounds) => Some((rounds, precise::share(0, 1))),
+            _ => None,
+        };
+        if let Some((rounds, share)) = running
+            && !precise::run(rounds, &share, pause, stages)
+        {
+            self.state = state;
+            return Ok(false);
+        }
+        if let State::Comparing(_, rounds, stage) = &mut state
+            && let Some(colors) = self.mesh.borrow().colors()
+            && !stage.run(rounds, colors, pause)
+        {
+            self.state = state;
+            return Ok(false);
+        }
+        self.state = self.advance(state, stages)?;
+        Ok(true)
     }
 
     /// Runs one stage.
@@ -138,22 +204,32 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
                 }
                 State::Ready(clouds)
             }
-            State::Ready(clouds) => self.search(clouds, 0, None, stages)?,
+            State::Ready(clouds) => match &self.given {
+                Some(given) => self.resume(clouds, given, stages)?,
+                None => self.search(clouds, 0, None, stages)?,
+            },
             State::Searching(clouds, rounds, effort) => {
                 let concluded = precise::conclude(&rounds, mesh.mesh(), &self.options, None);
                 let is_sure = matches!(&concluded, Ok((_, certainty)) if certainty.confidence >= SURE);
                 if !is_sure && effort + 1 < self.efforts.len() {
                     return self.search(clouds, effort + 1, Some(&rounds), stages);
                 }
-                let (solution, certainty) = concluded?;
-                match observation.photo().filter(|_| mesh.colors().is_some()) {
-                    Some(photo) => {
-                        let stage = ColorStage::new(&rounds, photo);
-                        State::Comparing(clouds, rounds, Box::new(stage))
-                    }
-                    None => State::Found(clouds, Box::new(solution), Box::new(certainty)),
-                }
+                State::Searched(clouds, rounds, Box::new(concluded?))
             }
+            State::Resumed(clouds, rounds) => {
+                let concluded = precise::conclude(&rounds, mesh.mesh(), &self.options, None)?;
+                State::Searched(clouds, rounds, Box::new(concluded))
+            }
+            State::Searched(clouds, rounds, concluded) => match observation.photo().filter(|_| mesh.colors().is_some()) {
+                Some(photo) => {
+                    let stage = ColorStage::new(&rounds, photo);
+                    State::Comparing(clouds, rounds, Box::new(stage))
+                }
+                None => {
+                    let (solution, certainty) = *concluded;
+                    State::Found(clouds, Box::new(solution), Box::new(certainty))
+                }
+            },
             State::Comparing(clouds, rounds, stage) => {
                 let judgment = mesh.colors().map(|colors| stage.judge(&rounds, colors));
                 let (solution, certainty) = precise::conclude(&rounds, mesh.mesh(), &self.options, judgment.as_ref())?;
@@ -161,6 +237,15 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
             }
             State::Found(..) | State::Over => return Err(over()),
         })
+    }
+
+    /// Begins the search among given poses.
+    fn resume(&self, clouds: Box<Clouds>, given: &Given, stages: &mut Stopwatch<'h>) -> Result<State> {
+        let settings = self.efforts.iter().find(|settings| settings.effort == given.effort).ok_or_else(over)?.again();
+        let (observation, mesh) = (self.observation.borrow(), self.mesh.borrow());
+        let found = (given.found.as_slice(), given.renders, given.confidence >= SURE);
+        let rounds = precise::resume(observation, mesh, found, given.known.clone(), &self.options, &settings, stages)?;
+        Ok(State::Resumed(clouds, Box::new(rounds)))
     }
 
     /// Begins the search with the effort of this index, after the `previous` one, if any.

@@ -14,9 +14,23 @@ use crate::number::number as number_text;
 /// Default metres per unit of integer depth: millimetres.
 const DEFAULT_DEPTH_SCALE: f64 = 0.001;
 
-/// `{ depth | pointMap, depthScale?, width, height, camera, mask, maskWidth?, maskHeight?, resizeMask?, image? }`.
+/// `{ depth | pointMap, depthScale?, width, height, camera, mask, maskWidth?, maskHeight?, resizeMask?, image?, others? }`.
 #[inline(never)]
 pub fn observation(input: &JsValue) -> Result<Observation> {
+    let (depth, camera) = view(input)?;
+    let (width, height) = (depth.width(), depth.height());
+    let mut observation = Observation::new(depth, mask(input, width, height)?, camera)?;
+    if let Some(image) = get(input, "image") {
+        observation = observation.with_photo(photo(&image)?)?;
+    }
+    match get(input, "others") {
+        Some(others) => observation.with_others(Image::new("occluders", width, height, to_u8s(&others, "occluders")?)?),
+        None => Ok(observation),
+    }
+}
+
+/// The depth map and the camera of an input.
+pub fn view(input: &JsValue) -> Result<(DepthMap, Pinhole)> {
     if !input.is_object() {
         let remedy = "Pass { depth, width, height, mask, camera, mesh }.";
         return Err(wrong_type("input", input, "an object", remedy));
@@ -24,21 +38,16 @@ pub fn observation(input: &JsValue) -> Result<Observation> {
     let missing = |name| wrong_type(name, &JsValue::UNDEFINED, "an integer in pixels", "Pass the image size.");
     let width = size(input, "width")?.ok_or_else(|| missing("width"))?;
     let height = size(input, "height")?.ok_or_else(|| missing("height"))?;
-    let (depth, camera) = match get(input, "pointMap") {
+    match get(input, "pointMap") {
         Some(points) => {
             let (depth, fitted) = from_point_map(width, height, &to_f32s(&points, "pointMap")?)?;
             // Known intrinsics take precedence over fitted ones.
-            (depth, get(input, "camera").map_or(Ok(fitted), |c| camera(&c))?)
+            Ok((depth, get(input, "camera").map_or(Ok(fitted), |c| camera(&c))?))
         }
         None => {
             let given = get(input, "camera").unwrap_or(JsValue::UNDEFINED);
-            (depth(input, width, height)?, camera(&given)?)
+            Ok((depth(input, width, height)?, camera(&given)?))
         }
-    };
-    let observation = Observation::new(depth, mask(input, width, height)?, camera)?;
-    match get(input, "image") {
-        Some(image) => observation.with_photo(photo(&image)?),
-        None => Ok(observation),
     }
 }
 
@@ -98,7 +107,7 @@ fn mask(input: &JsValue, width: usize, height: usize) -> Result<Mask> {
 }
 
 /// `{ fx, fy, cx, cy }`: other forms of a camera are resolved in TypeScript.
-fn camera(value: &JsValue) -> Result<Pinhole> {
+pub fn camera(value: &JsValue) -> Result<Pinhole> {
     if !value.is_object() {
         let remedy = "Intrinsics are in pixels of the depth image.";
         return Err(wrong_type("camera", value, "{ fx, fy, cx, cy }", remedy));

@@ -37,6 +37,7 @@ pub struct Observation {
     mask: Mask,
     camera: Pinhole,
     photo: Option<Arc<Photo>>,
+    others: Option<Arc<Mask>>,
 }
 
 impl Observation {
@@ -65,7 +66,7 @@ impl Observation {
         check_pixels(&depth)?;
         camera.check_field_of_view(depth.width(), depth.height())?;
         depth.data_mut().iter_mut().filter(|z| **z < NEAREST_M).for_each(|z| *z = 0.0);
-        let observation = Self { depth, mask, camera, photo: None };
+        let observation = Self { depth, mask, camera, photo: None, others: None };
         observation.check_readings()?;
         Ok(observation)
     }
@@ -82,6 +83,26 @@ impl Observation {
     /// The observation without its photo.
     pub fn without_photo(self) -> Self {
         Self { photo: None, ..self }
+    }
+
+    /// The observation with the pixels that are known to show other objects. Pixels of its own mask are ignored.
+    ///
+    /// # Errors
+    /// [`ErrorCode::SizeMismatch`] if the mask of the others has another size.
+    pub fn with_others(self, others: Mask) -> Result<Self> {
+        let size = |mask: &Mask| [mask.width(), mask.height()];
+        if size(&others) != size(&self.mask) {
+            let [width, height] = size(&others);
+            let found = format!("{width} × {height} pixels");
+            let remedy = "Pass masks of the size of the depth map.";
+            return Err(Error::new(ErrorCode::SizeMismatch, "occluders", found, "masks of one size", remedy));
+        }
+        Ok(Self { others: Some(Arc::new(others)), ..self })
+    }
+
+    /// The pixels of other objects, if they are known.
+    pub fn others(&self) -> Option<&Mask> {
+        self.others.as_deref()
     }
 
     /// The photo, if there is one.
@@ -116,6 +137,7 @@ impl Observation {
         let at = |i: usize| i / width * step * size[0] + i % width * step;
         let depths = (0..width * height).map(|i| self.depth.data()[at(i)]).collect();
         let mask = (0..width * height).map(|i| self.mask.data()[at(i)]).collect();
+        let others = self.others.as_ref().map(|others| (0..width * height).map(|i| others.data()[at(i)]).collect());
         let Pinhole { fx, fy, cx, cy } = self.camera;
         let [fx, fy, cx, cy] = [fx, fy, cx, cy].map(|x| x / step as f64);
         Some(Self {
@@ -123,6 +145,10 @@ impl Observation {
             mask: Image::new("mask", width, height, mask).ok()?,
             camera: Pinhole { fx, fy, cx, cy },
             photo: self.photo.clone(),
+            others: match others {
+                Some(others) => Some(Arc::new(Image::new("mask", width, height, others).ok()?)),
+                None => None,
+            },
         })
     }
 

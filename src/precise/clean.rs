@@ -7,7 +7,7 @@ use super::rim::{RimImages, rim_offset};
 use crate::evidence::observation::Observation;
 use crate::geometry::components::{Component, components};
 use crate::geometry::distance_transform::squared_distances;
-use crate::geometry::image::bounds_of;
+use crate::geometry::image::{Mask, bounds_of};
 use crate::geometry::order::{self, quantile};
 use crate::geometry::pinhole::Pinhole;
 
@@ -67,8 +67,9 @@ impl CleanObservation {
         let reduced = observation.reduced(MAX_PIXELS);
         let observation = reduced.as_ref().unwrap_or(observation);
         let mut crop = Crop::new(observation);
-        crop.close_pin_holes();
-        crop.drop_islands();
+        let others = observation.others().map(|others| crop.cut(others));
+        crop.close_pin_holes(others.as_deref());
+        crop.drop_islands(others.as_deref());
         let mut clean = crop.into_clean(observation);
         let extent_m = (0..2).map(|axis| clean.bounds[axis][1] - clean.bounds[axis][0]).fold(0.0, f64::max)
             / clean.camera.fx
@@ -77,7 +78,26 @@ impl CleanObservation {
         let images = RimImages { width: *width, height: *height, outline, scene };
         let offset = rim_offset(images, RIM_JUMP[0] * extent_m + RIM_JUMP[1] * clean.median_m);
         clean.move_rim(offset);
+        if let Some(others) = others {
+            clean.put_behind(&others);
+        }
         clean
+    }
+
+    /// Depth margin at which the scene hides the mesh, metres.
+    pub fn occluder_m(&self) -> f64 {
+        0.02 * self.diagonal_m + 0.005 * self.median_m
+    }
+
+    /// Lets what other objects show hide the mesh without the margin that free space needs: there, a surface at the
+    /// same depth is theirs, and the mesh is free space only if it is clearly nearer.
+    fn put_behind(&mut self, others: &[bool]) {
+        let nearer = (1.5 * self.occluder_m()) as f32;
+        for ((scene, other), outline) in self.scene.iter_mut().zip(others).zip(&self.outline) {
+            if *other && *outline > 0.0 && *scene > 0.0 {
+                *scene = (*scene - nearer).max(1e-3 * *scene);
+            }
+        }
     }
 
     /// Moves the outline outwards.
@@ -127,19 +147,29 @@ impl Crop {
         self.mask.iter().filter(|set| **set).count()
     }
 
-    /// Fills small holes.
-    fn close_pin_holes(&mut self) {
+    /// Another mask of the image, without the pixels of this one.
+    fn cut(&self, others: &Mask) -> Vec<bool> {
+        let pixel = |i: usize| {
+            let (u, v) = (i % self.width + self.origin[0], i / self.width + self.origin[1]);
+            !self.mask[i] && others.get(u, v).is_some_and(|other| other != 0)
+        };
+        (0..self.mask.len()).map(pixel).collect()
+    }
+
+    /// Fills small holes, other than those that show `others`.
+    fn close_pin_holes(&mut self, others: Option<&[bool]>) {
         let limit = (PIN_HOLE * self.count() as f64) as usize;
         let outside: Vec<bool> = self.mask.iter().map(|set| !set).collect();
         for component in components(&outside, self.width, self.height) {
-            if component.pixels.len() <= limit.max(4) && !component.touches_border {
+            let shows_other = others.is_some_and(|others| component.pixels.iter().any(|&i| others[i as usize]));
+            if component.pixels.len() <= limit.max(4) && !component.touches_border && !shows_other {
                 component.pixels.iter().for_each(|&i| self.mask[i as usize] = true);
             }
         }
     }
 
-    /// Keeps the components that may belong to one object.
-    fn drop_islands(&mut self) {
+    /// Keeps the components that may belong to one object. Those that only `others` separate are near each other.
+    fn drop_islands(&mut self, others: Option<&[bool]>) {
         let components = components(&self.mask, self.width, self.height);
         if components.len() < 2 {
             return;
@@ -157,14 +187,23 @@ impl Crop {
         let extent_m = largest_m.map_or(f64::INFINITY, |z| extent_px * z / self.camera.fx);
         let reach = ISLAND_REACH * extent_px + 4.0;
         let distances = squared_distances(&main, self.width, self.height);
+        let bridged = others.map(|others| self.bridged(&main, others));
         let kept = components.iter().filter(|c| {
             let large = is_large(c);
-            let near = || c.pixels.iter().any(|&i| f64::from(distances[i as usize]) <= reach * reach);
+            let bridged = || bridged.as_ref().is_some_and(|b| c.pixels.iter().any(|&i| b[i as usize]));
+            let near = || bridged() || c.pixels.iter().any(|&i| f64::from(distances[i as usize]) <= reach * reach);
             let apart_m = median_depth(c).zip(largest_m).map_or(0.0, |(a, b)| (a - b).abs());
             let at_depth = apart_m <= if large { 2.5 } else { 1.0 } * extent_m;
             at_depth && (large || (area(c) >= ISLAND * area(largest) && near()))
         });
         self.mask = self.mask_of(kept);
+    }
+
+    /// The pixels that are connected with `main` through the mask and `others`.
+    fn bridged(&self, main: &[bool], others: &[bool]) -> Vec<bool> {
+        let joined: Vec<bool> = self.mask.iter().zip(others).map(|(mask, other)| *mask || *other).collect();
+        let components = components(&joined, self.width, self.height);
+        self.mask_of(components.iter().filter(|c| c.pixels.iter().any(|&i| main[i as usize])))
     }
 
     /// The mask of only these components.

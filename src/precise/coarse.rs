@@ -71,13 +71,14 @@ impl Coarse<'_> {
 
     /// Renders a pose once, and moves it to the distance that fits the depths; the silhouette does not change.
     pub fn at_its_distance(&self, canvas: &mut Canvas, pose: CropPose) -> Candidate {
-        let Objective { model, grid, scoring, prior } = &self.objective;
+        let Objective { model, grid, scoring, prior, surroundings } = &self.objective;
         canvas.draw(model, &pose, grid);
         let ratios = canvas.inverse_depth.iter().zip(&grid.depth).map(|(w, z)| w * z).filter(|r| *r > 0.0);
         let stretch = median(ratios).unwrap_or(1.0);
         let distant = CropPose { distance: pose.distance + libm::log(f64::from(stretch)), ..pose };
         let pose = prior.held(distant);
-        if (pose.size - distant.size).abs() > 1e-3 {
+        // Unlike the silhouette, the surroundings depend on the distance.
+        if (pose.size - distant.size).abs() > 1e-3 || surroundings.is_some() {
             return Candidate { pose, score: self.objective.score(canvas, &pose) };
         }
         let mut score = scoring.score(canvas, model, grid, stretch);

@@ -24,10 +24,12 @@ pub mod ranking;
 pub mod recipe;
 pub mod refine;
 pub mod render;
+pub mod rests;
 pub mod rim;
 pub mod rounds;
 pub mod score;
 pub mod search;
+pub mod surroundings;
 pub mod turns;
 
 use core::ops::Range;
@@ -52,7 +54,8 @@ use prior::Prior;
 pub use recipe::SearchSettings;
 use recipe::Task;
 use rounds::Rounds;
-pub use search::Search;
+pub use search::{Found, Search};
+use surroundings::{Neighbourhood, Surroundings};
 
 /// Progress at the start of each stage, 0 to 1; from profiles of real cases.
 pub const PLAN: &[(Stage, f64)] = &[
@@ -95,6 +98,46 @@ pub fn begin(
     stages.enter(Stage::Search);
     Ok(rounds)
 }
+
+/// A search among the poses that another one has `found`, with what is known of the surroundings of the object. Without
+/// surroundings, the result is that of the other search. If that was not sure, the rotations in which the mesh stands on
+/// the ground are searched as well.
+///
+/// # Errors
+/// As [`begin`].
+pub fn resume(
+    observation: &Observation,
+    mesh: &PreparedMesh<'_>,
+    (found, renders, is_sure): (&[Found], usize, bool),
+    known: Neighbourhood,
+    options: &AlignOptions,
+    settings: &SearchSettings,
+    stages: &mut Stopwatch<'_>,
+) -> Result<Rounds> {
+    stages.enter(Stage::Prepare);
+    let pyramid = mesh.pyramid(&settings.grids).ok_or_else(no_candidate)?;
+    let clean = Rc::new(CleanObservation::new(observation));
+    let mut search = Search::new(clean, pyramid, *settings);
+    search.assume(prior(options, mesh.mesh(), &search.mesh.frame));
+    search.renders = renders;
+    if known.is_empty() {
+        return Ok(Rounds::ended(search, found.to_vec()));
+    }
+    let surroundings = Surroundings::new(known, &search.mesh, &search.observation);
+    let put_down: Vec<CropPose> = found.iter().take(PUT_DOWN).flat_map(|f| surroundings.put_down(&f.pose)).collect();
+    // Where the search was unsure, the ground leaves few rotations.
+    let standing = if is_sure || options.search == SearchScope::Local { Vec::new() } else { surroundings.standing() };
+    search.surround(surroundings);
+    let mut rounds =
+        if standing.is_empty() { Rounds::new(search, None, false) } else { Rounds::among(search, standing) };
+    rounds.resume(found);
+    rounds.propose(put_down);
+    stages.enter(Stage::Search);
+    Ok(rounds)
+}
+
+/// Number of poses that are put down on the ground.
+const PUT_DOWN: usize = 4;
 
 /// Continues a search until it ends or `pause` returns true. Returns whether it has ended. `share` is the progress at its
 /// start and end, 0 to 1.
@@ -161,8 +204,11 @@ pub fn conclude(
         residual_m,
         counts: Counts { renders: search.renders, ..Counts::default() },
     };
+    // The confidence is fitted to how sharply the image determines a pose. The ground makes every pose sharp, right or
+    // wrong; what it tells is which of several poses is the better one.
+    let by_image = if search.is_surrounded() { search.conditioning_by_image(&best.pose) } else { conditioning };
     let certainty = Certainty {
-        confidence: confidence(best, &alternatives, conditioning.as_ref()) * color.map_or(1.0, |color| color.certainty),
+        confidence: confidence(best, &alternatives, by_image.as_ref()) * color.map_or(1.0, |color| color.certainty),
         alternatives,
         uncertainty: conditioning.map(|c| Uncertainty {
             scale: c.scale,

@@ -5,6 +5,7 @@ use super::pose::CropPose;
 use super::prior::Prior;
 use super::render::{Canvas, Model};
 use super::score::{Score, Scoring};
+use super::surroundings::Surroundings;
 
 /// The objective on one grid.
 #[derive(Clone, Copy)]
@@ -17,6 +18,8 @@ pub struct Objective<'a> {
     pub scoring: Scoring,
     /// The prior.
     pub prior: Prior,
+    /// What surrounds the object, if that is known.
+    pub surroundings: Option<&'a Surroundings>,
 }
 
 impl Objective<'_> {
@@ -25,6 +28,9 @@ impl Objective<'_> {
         canvas.draw(self.model, pose, self.grid);
         let mut score = self.scoring.score(canvas, self.model, self.grid, 1.0);
         score.total += self.prior.score(pose);
+        if let Some(surroundings) = self.surroundings {
+            score.total += surroundings.score(canvas, self.grid, pose);
+        }
         score
     }
 }

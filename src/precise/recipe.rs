@@ -158,6 +158,12 @@ impl SearchSettings {
         self.rounds[0].work
     }
 
+    /// The settings of a search among the poses that one with these settings has found: the same grids, so that scores
+    /// are comparable, and the rounds of the least effort.
+    pub fn again(self) -> Self {
+        Self { rounds: rounds(Effort::Fast), ..self }
+    }
+
     /// The work of the search, in units of the work budget.
     pub fn cost(&self) -> f64 {
         let [rotate, place, first, second, _, fine, _] = self.rounds;
@@ -192,7 +198,7 @@ impl SearchSettings {
         let Grid { depth_error, outline, .. } = self.grids[grid];
         let mut weights = self.weights;
         weights.outline *= outline;
-        let occluder_m = 0.02 * clean.diagonal_m + 0.005 * clean.median_m;
+        let occluder_m = clean.occluder_m();
         Scoring {
             weights,
             depth_m: (depth_error * clean.diagonal_m) as f32,

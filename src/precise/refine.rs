@@ -56,7 +56,7 @@ impl Refiner<'_> {
         let pose = self.objective.prior.held(pose);
         let score = self.objective.score(canvas, &pose);
         let mut best = Refined { pose, score, renders: 1, converged: false };
-        let mut equations = self.equations(canvas, &best.score);
+        let mut equations = self.equations(canvas, &best.score, &best.pose);
         let mut damping = DAMPING[0];
         for _ in 0..iterations {
             let Some(step) = self.step(&equations, &best.pose, damping) else { break };
@@ -73,7 +73,7 @@ impl Refiner<'_> {
                 if gain < MIN_GAIN {
                     break;
                 }
-                equations = self.equations(canvas, &score);
+                equations = self.equations(canvas, &score, &best.pose);
                 damping *= DAMPING[1];
             } else {
                 damping = (damping * DAMPING[2]).max(DAMPING[0]);
@@ -100,8 +100,8 @@ impl Refiner<'_> {
         step.iter().all(|x| x.is_finite()).then_some(step)
     }
 
-    /// The quadratic at the last render.
-    pub fn equations(&self, canvas: &Canvas, score: &Score) -> NormalEquations {
+    /// The quadratic at the last render, which is of `pose`.
+    pub fn equations(&self, canvas: &Canvas, score: &Score, pose: &CropPose) -> NormalEquations {
         let mut equations = NormalEquations::new();
         let mut turns = Turns::default();
         let (grid, weights) = (self.objective.grid, &self.objective.scoring.weights);
@@ -168,6 +168,9 @@ impl Refiner<'_> {
             }
         }
         turns.add_to(&mut equations, normal_weight);
+        if let Some(surroundings) = self.objective.surroundings {
+            surroundings.add_to(&mut equations, pose, self.lock_scale);
+        }
         equations
     }
 

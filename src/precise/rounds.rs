@@ -3,12 +3,14 @@
 //! The results of a round, in the order of its tasks, determine the next round; ties are broken by that order. A search
 //! can therefore pause after any task, with bit-identical results.
 
+use glam::DQuat;
+
 use super::anchors::{Anchor, anchors};
 use super::coarse::Coarse;
 use super::grid::CropGrid;
 use super::pose::CropPose;
 use super::ranking::{best_of, distinct};
-use super::recipe::{COARSE, FINE, FIRST_REFINEMENT, MIN_ROTATIONS, RANKING, Round, TURNING, Task};
+use super::recipe::{COARSE, FINE, FIRST_REFINEMENT, MIN_ROTATIONS, RANKING, ROUNDS, Round, TURNING, Task};
 use super::refine::Refiner;
 use super::render::Canvas;
 use super::search::{Found, Search};
@@ -32,6 +34,8 @@ pub struct Rounds {
     index: usize,
     /// The grid of the current round, unless it is the fine grid of the search.
     grid: CropGrid,
+    /// The rotations of the first round, if they are not those of the rotation grid.
+    rotations: Vec<DQuat>,
     /// Sizes and positions tried for each rotation.
     anchors: Vec<Anchor>,
     /// Initial poses of the tasks of the round; the rotations of the first round need no list.
@@ -64,6 +68,7 @@ impl Rounds {
             found: Vec::new(),
             index,
             grid: search.grid(search.settings.rounds[index].grid),
+            rotations: Vec::new(),
             anchors,
             poses: if global { Vec::new() } else { around.clone() },
             outcomes: Vec::new(),
@@ -77,10 +82,30 @@ impl Rounds {
         }
     }
 
+    /// Starts with these rotations instead of the rotation grid.
+    pub fn among(search: Search, rotations: Vec<DQuat>) -> Self {
+        let mut rounds = Self::new(search, None, true);
+        rounds.rotations = rotations;
+        rounds
+    }
+
+    /// A search that has ended with these candidates.
+    pub fn ended(search: Search, found: Vec<Found>) -> Self {
+        let mut rounds = Self::new(search, None, false);
+        (rounds.found, rounds.index) = (found, ROUNDS);
+        rounds
+    }
+
     /// Adds poses that another search has refined to the candidates of the grid.
     pub fn resume(&mut self, found: &[Found]) {
         let list = if self.index < FIRST_REFINEMENT { &mut self.others } else { &mut self.poses };
         list.extend(poses_of(found));
+    }
+
+    /// Adds poses from another source to those of the first refinement.
+    pub fn propose(&mut self, poses: impl IntoIterator<Item = CropPose>) {
+        let list = if self.index < FIRST_REFINEMENT { &mut self.others[1] } else { &mut self.poses };
+        list.extend(poses);
     }
 
     /// The work of the current round that its inputs may ask for.
@@ -110,7 +135,11 @@ impl Rounds {
 
     /// Number of tasks of the current round.
     fn tasks(&self) -> usize {
-        if self.index == 0 { self.search.settings.rotations() } else { self.poses.len() }
+        match self.index {
+            0 if !self.rotations.is_empty() => self.rotations.len(),
+            0 => self.search.settings.rotations(),
+            _ => self.poses.len(),
+        }
     }
 
     /// Runs tasks of the current round until `pause`, which is called after each, returns true. After the last task,
@@ -131,7 +160,8 @@ impl Rounds {
             let task = self.tasks_done;
             match round.task {
                 Task::Rotate => {
-                    let rotation = super_fibonacci(task, round.work);
+                    let rotation = self.rotations.get(task).copied();
+                    let rotation = rotation.unwrap_or_else(|| super_fibonacci(task, round.work));
                     coarse.try_anchors(&mut canvas, &search.mesh.outermost, rotation, &self.anchors, &mut tried);
                     self.outcomes.extend(tried.drain(..).map(Found::from));
                 }
@@ -152,7 +182,11 @@ impl Rounds {
             self.work += core::mem::take(&mut canvas.work);
             if round.task == Task::Rotate {
                 let all = self.work * self.tasks() as u64 / self.tasks_done as u64;
-                if self.tasks_done == PROBED_ROTATIONS && all > self.allowance && self.tasks() > MIN_ROTATIONS {
+                if self.rotations.is_empty()
+                    && self.tasks_done == PROBED_ROTATIONS
+                    && all > self.allowance
+                    && self.tasks() > MIN_ROTATIONS
+                {
                     self.rotate_less(all);
                     return self.run(pause);
                 }

@@ -17,6 +17,8 @@ use super::recipe::{COARSE, FINE, SearchSettings};
 use super::refine::{Refined, Refiner};
 use super::render::Canvas;
 use super::score::Score;
+use super::surroundings::Surroundings;
+use crate::report::Effort;
 
 /// Rotations tried around a given pose, radians, and the number that are refined.
 const NEIGHBORHOOD: [f64; 2] = [0.17, 0.4];
@@ -32,6 +34,7 @@ pub struct Search {
     pub renders: usize,
     pub(super) settings: SearchSettings,
     prior: Prior,
+    surroundings: Option<Surroundings>,
     /// The fine grid, on which the final poses are compared.
     pub fine: CropGrid,
 }
@@ -81,12 +84,18 @@ impl Search {
             renders: 0,
             settings,
             prior: Prior::default(),
+            surroundings: None,
         }
     }
 
     /// Sets the prior.
     pub fn assume(&mut self, prior: Prior) {
         self.prior = prior;
+    }
+
+    /// Sets the surroundings.
+    pub fn surround(&mut self, surroundings: Surroundings) {
+        self.surroundings = Some(surroundings);
     }
 
     /// A pose and its neighbourhood: rotated about every axis, at its own distance and at that of the depths.
@@ -116,7 +125,18 @@ impl Search {
     /// The objective on the grid with this index.
     pub fn objective<'a>(&'a self, index: usize, grid: &'a CropGrid) -> Objective<'a> {
         let scoring = self.settings.scoring(&self.observation, index);
-        Objective { model: &self.mesh.models[index], grid, scoring, prior: self.prior }
+        Objective {
+            model: &self.mesh.models[index],
+            grid,
+            scoring,
+            prior: self.prior,
+            surroundings: self.surroundings.as_ref(),
+        }
+    }
+
+    /// The effort of the search.
+    pub fn effort(&self) -> Effort {
+        self.settings.effort
     }
 
     /// Whether a pose is at a bound of a scale that is not fixed.
@@ -129,12 +149,26 @@ impl Search {
         self.objective(FINE, &self.fine).score(&mut Canvas::default(), pose)
     }
 
+    /// The conditioning of a pose by the image alone.
+    pub fn conditioning_by_image(&self, pose: &CropPose) -> Option<Conditioning> {
+        let objective = Objective { surroundings: None, ..self.objective(FINE, &self.fine) };
+        let refiner = Refiner { objective, lock_scale: false };
+        let mut canvas = Canvas::default();
+        let score = refiner.objective.score(&mut canvas, pose);
+        Conditioning::of(&refiner.equations(&canvas, &score, pose), pose)
+    }
+
+    /// Whether the surroundings are known.
+    pub fn is_surrounded(&self) -> bool {
+        self.surroundings.is_some()
+    }
+
     /// The conditioning of a pose, and the root mean square of its depth residuals, metres.
     pub fn conditioning(&self, pose: &CropPose) -> (Option<Conditioning>, f64) {
         let refiner = Refiner { objective: self.objective(FINE, &self.fine), lock_scale: false };
         let mut canvas = Canvas::default();
         let score = refiner.objective.score(&mut canvas, pose);
-        let equations = refiner.equations(&canvas, &score);
+        let equations = refiner.equations(&canvas, &score, pose);
         (Conditioning::of(&equations, pose), refiner.depth_rms(&canvas))
     }
 }

@@ -36,7 +36,7 @@ impl Scene {
 
     fn coarse(&self, prior: Prior) -> Coarse<'_> {
         let scoring = SearchSettings::from(Effort::Balanced).scoring(&self.clean, COARSE);
-        let objective = Objective { model: &self.model, grid: &self.grid, scoring, prior };
+        let objective = Objective { model: &self.model, grid: &self.grid, scoring, prior, surroundings: None };
         Coarse { objective, median_m: self.clean.median_m }
     }
 }

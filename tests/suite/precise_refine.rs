@@ -22,11 +22,11 @@ use crate::precise::{body, observe, truth};
 use crate::precise_scene::{HEIGHT, WIDTH, facing, model, noisy_grid, pose, scoring};
 use crate::support::Draw;
 
-type Matrix = SMatrix<f64, 7, 7>;
-type Vector = SVector<f64, 7>;
+pub type Matrix = SMatrix<f64, 7, 7>;
+pub type Vector = SVector<f64, 7>;
 
 /// JᵀWJ and JᵀWr, which equations tell by their damped steps alone.
-fn unpacked(equations: &NormalEquations) -> (Matrix, Vector) {
+pub fn unpacked(equations: &NormalEquations) -> (Matrix, Vector) {
     const DAMPING: f64 = 1e-2;
     let inverse = equations.inverse(DAMPING).unwrap();
     let damped = Matrix::from_fn(|i, j| inverse[j][i]).try_inverse().unwrap();
@@ -84,7 +84,8 @@ impl Scene {
     }
 
     fn equations(&self, scoring: Scoring, score: &Score, lock_scale: bool) -> NormalEquations {
-        let objective = Objective { model: &self.model, grid: &self.grid, scoring, prior: Prior::default() };
+        let objective =
+            Objective { model: &self.model, grid: &self.grid, scoring, prior: Prior::default(), surroundings: None };
         Refiner { objective, lock_scale }.equations(&self.canvas, score)
     }
 
@@ -227,7 +228,8 @@ fn the_depth_residual_is_a_root_mean_square_without_outliers() {
                 left_out += usize::from(!counts);
             }
         }
-        let objective = Objective { model: &scene.model, grid: &scene.grid, scoring, prior: Prior::default() };
+        let objective =
+            Objective { model: &scene.model, grid: &scene.grid, scoring, prior: Prior::default(), surroundings: None };
         let found = Refiner { objective, lock_scale: false }.depth_rms(&scene.canvas);
         let expected = (sum / count as f64).sqrt();
         assert!(left_out > 5, "seed {seed}");
@@ -248,7 +250,7 @@ fn observed() -> (Model, CropGrid, Scoring, CropPose) {
 #[wasm_bindgen_test(unsupported = test)]
 fn a_refinement_climbs_back_to_where_the_observation_was_drawn() {
     let (model, grid, scoring, truth) = observed();
-    let objective = Objective { model: &model, grid: &grid, scoring, prior: Prior::default() };
+    let objective = Objective { model: &model, grid: &grid, scoring, prior: Prior::default(), surroundings: None };
     let (mut canvas, mut other) = (Canvas::default(), Canvas::default());
     for seed in 0..8 {
         let draw = &mut Draw::new(seed);
@@ -280,7 +282,7 @@ fn a_refinement_keeps_a_locked_scale_and_the_bounds_of_a_free_one() {
         let draw = &mut Draw::new(seed);
         let step: Step = core::array::from_fn(|_| draw.between(-0.05, 0.05));
         let start = truth.moved(&step);
-        let free = Objective { model: &model, grid: &grid, scoring, prior: Prior::default() };
+        let free = Objective { model: &model, grid: &grid, scoring, prior: Prior::default(), surroundings: None };
         let locked = Refiner { objective: free, lock_scale: true }.refine(&mut canvas, start, 20);
         assert!((log_scale(&locked.pose) - log_scale(&start)).abs() < 1e-12, "seed {seed}: {locked:?}");
         let before = Refiner { objective: free, lock_scale: true }.refine(&mut canvas, start, 0).score.total;

@@ -168,7 +168,7 @@ fn the_objective_is_the_score_of_the_picture_and_the_prior() {
         let observed = pose(draw, 3.0);
         let grid = noisy_grid(draw, &model, &observed, &scoring);
         let prior = Prior { scale: None, up: Some([rotation(draw) * DVec3::Z, DVec3::X]) };
-        let objective = Objective { model: &model, grid: &grid, scoring, prior };
+        let objective = Objective { model: &model, grid: &grid, scoring, prior, surroundings: None };
         let tried = pose(draw, 5.0);
         let found = objective.score(&mut canvas, &tried);
         other.draw(&model, &tried, &grid);

@@ -5,4 +5,5 @@ pub mod imported;
 pub mod option_text;
 pub mod overlay;
 pub mod records;
+pub mod scene_bench;
 pub mod statistics;

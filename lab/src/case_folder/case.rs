@@ -6,9 +6,10 @@ use std::path::{Component, Path, PathBuf};
 use super::camera::{depth_scale, read_camera};
 use super::pose::read_truth;
 use sim3align::evidence::observation::Observation;
+use sim3align::evidence::photo::Photo;
 use sim3align_formats::depth::{DepthReadOptions, read_depth};
 use sim3align_formats::mask::read_mask;
-use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, read_colored_mesh};
+use sim3align_formats::mesh::{ColoredMesh, MeshFormat, MeshReadOptions, read_colored_mesh};
 use sim3align_formats::photo::read_photo;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::mesh::Mesh;
@@ -16,11 +17,11 @@ use sim3align_geometry::similarity::Similarity;
 use sim3align_geometry::surface_colors::SurfaceColors;
 
 /// File names of each part, in order of preference.
-const DEPTH_FILES: &[&str] = &["depth.npy", "depth.png"];
-const MASK_FILES: &[&str] = &["mask.png", "mask.npy"];
-const MESH_FILES: &[&str] = &["mesh.glb", "mesh.gltf", "mesh.obj", "mesh.ply", "mesh.stl"];
+pub(super) const DEPTH_FILES: &[&str] = &["depth.npy", "depth.png"];
+pub(super) const MASK_FILES: &[&str] = &["mask.png", "mask.npy"];
+pub(super) const MESH_FILES: &[&str] = &["mesh.glb", "mesh.gltf", "mesh.obj", "mesh.ply", "mesh.stl"];
+pub(super) const CAMERA_FILES: &[&str] = &["camera.json"];
 const PHOTO_FILES: &[&str] = &["rgb.png", "rgb.jpg", "rgb.jpeg", "image.png", "image.jpg", "image.jpeg"];
-const CAMERA_FILES: &[&str] = &["camera.json"];
 
 /// The content of a case folder.
 #[derive(Debug, Clone)]
@@ -51,42 +52,61 @@ pub fn read_case(folder: &Path) -> Result<Case> {
     let (camera_path, camera_bytes) = find(folder, CAMERA_FILES)?;
     let (mask_path, mask_bytes) = find(folder, MASK_FILES)?;
     let (mesh_path, mesh_bytes) = find(folder, MESH_FILES)?;
-    let in_file = |path: &Path| {
-        let path = path.display().to_string();
-        move |error: Error| error.about(path)
-    };
     let depth_options = DepthReadOptions { depth_scale: None, integer_depth_scale: depth_scale(&camera_bytes) };
     let depth = read_depth(&depth_bytes, &depth_options).map_err(in_file(&depth_path))?;
     let size = [depth.width(), depth.height()];
     let camera = read_camera(&camera_bytes, size).map_err(in_file(&camera_path))?;
     let mask = read_mask(&mask_bytes).map_err(in_file(&mask_path))?;
-    let resources = |uri: &str| read_beside(folder, uri);
-    let extension = mesh_path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
-    let mesh_options = MeshReadOptions { format: Some(MeshFormat::from_name(extension)?), resources: Some(&resources) };
-    let read = read_colored_mesh(&mesh_bytes, &mesh_options).map_err(in_file(&mesh_path))?;
+    let read = mesh_of(folder, &mesh_path, &mesh_bytes)?;
     let (mesh, colors) = (read.mesh, read.colors);
     let color_problem = read.problem.map(in_file(&mesh_path));
-    let truth_path = folder.join("gt.json");
-    let truth = match fs::read(&truth_path) {
-        Ok(bytes) => read_truth(&bytes).map_err(in_file(&truth_path))?,
-        Err(_) => None,
-    };
+    let truth = truth_of(folder)?;
     let in_folder = |error: Error| {
         let argument = format!("{}: {}", folder.display(), error.argument);
         error.about(argument)
     };
     let mut observation = Observation::new(depth, mask, camera).map_err(in_folder)?;
-    if PHOTO_FILES.iter().any(|name| folder.join(name).is_file()) {
-        let (path, bytes) = find(folder, PHOTO_FILES)?;
-        let photo = read_photo(&bytes).map_err(in_file(&path))?;
+    if let Some(photo) = photo_of(folder)? {
         observation = observation.with_photo(photo).map_err(in_folder)?;
     }
     let name = name.unwrap_or_else(|| folder.display().to_string());
     Ok(Case { name, observation, mesh, colors, color_problem, truth })
 }
 
+/// Names the file of an error.
+pub(super) fn in_file(path: &Path) -> impl FnOnce(Error) -> Error {
+    let path = path.display().to_string();
+    move |error: Error| error.about(path)
+}
+
+/// The mesh of a file in a folder, with its colours.
+pub(super) fn mesh_of(folder: &Path, path: &Path, bytes: &[u8]) -> Result<ColoredMesh> {
+    let resources = |uri: &str| read_beside(folder, uri);
+    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+    let options = MeshReadOptions { format: Some(MeshFormat::from_name(extension)?), resources: Some(&resources) };
+    read_colored_mesh(bytes, &options).map_err(in_file(path))
+}
+
+/// The photo in a folder, if there is one.
+pub(super) fn photo_of(folder: &Path) -> Result<Option<Photo>> {
+    if !PHOTO_FILES.iter().any(|name| folder.join(name).is_file()) {
+        return Ok(None);
+    }
+    let (path, bytes) = find(folder, PHOTO_FILES)?;
+    read_photo(&bytes).map_err(in_file(&path)).map(Some)
+}
+
+/// The true pose in a folder, if there is one.
+pub(super) fn truth_of(folder: &Path) -> Result<Option<(Similarity, String)>> {
+    let path = folder.join("gt.json");
+    match fs::read(&path) {
+        Ok(bytes) => read_truth(&bytes).map_err(in_file(&path)),
+        Err(_) => Ok(None),
+    }
+}
+
 /// The first existing file of `names`, and its content.
-fn find(folder: &Path, names: &[&str]) -> Result<(PathBuf, Vec<u8>)> {
+pub(super) fn find(folder: &Path, names: &[&str]) -> Result<(PathBuf, Vec<u8>)> {
     let missing = |found: String| {
         Error::new(
             ErrorCode::InvalidArgument,

@@ -5,4 +5,5 @@ pub mod case;
 pub(crate) mod contents;
 pub mod json;
 pub mod pose;
+pub mod scene_folder;
 pub mod write;

@@ -21,3 +21,5 @@ pub(crate) const LAYOUT_STREAM: u64 = 17;
 pub(crate) const COUNT_STREAM: u64 = 18;
 /// Cluttered scenes: quality of mask, depth and mesh.
 pub(crate) const QUALITY_STREAM: u64 = 19;
+/// How objects are held.
+pub(crate) const STANCE_STREAM: u64 = 32;

@@ -6,6 +6,7 @@ pub mod fuzz;
 pub mod profile;
 pub mod registration;
 pub mod scenes;
+pub mod together;
 
 /// Reason for which a command ended early.
 pub enum Failure {

@@ -9,7 +9,7 @@ use super::clutter;
 use crate::cases::distortion::random_rotation;
 use crate::cases::draft::{Axis, Object};
 use crate::cases::families;
-use crate::cases::scene::put_down_turned;
+use crate::cases::scene::{put_down_turned, turned_axis};
 use crate::draws::between;
 use crate::draws::chance;
 use sim3align::evidence::sample::SurfaceMoments;
@@ -35,9 +35,46 @@ const STEPS: usize = 400;
 const FIRST_STEP: f64 = 0.03;
 const SHORTER: f64 = 0.98;
 
+/// How an object is held.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stance {
+    /// It stands on the desk.
+    Stands,
+    /// It touches the desk, tilted, and leans on something that is not seen.
+    Leans,
+    /// It hangs over the desk.
+    Hangs,
+    /// It stands on another object.
+    OnTop,
+}
+
+impl Stance {
+    /// Its name.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Stands => "stands",
+            Self::Leans => "leans",
+            Self::Hangs => "hangs",
+            Self::OnTop => "on top",
+        }
+    }
+
+    /// Six of ten stand.
+    fn draw(random: &mut Random) -> Self {
+        match random.uniform() {
+            u if u < 0.6 => Self::Stands,
+            u if u < 0.72 => Self::Leans,
+            u if u < 0.84 => Self::Hangs,
+            _ => Self::OnTop,
+        }
+    }
+}
+
 /// An object at its place.
 #[derive(Debug, Clone)]
 pub struct Placed {
+    /// How it is held.
+    pub stance: Stance,
     /// The object in its own frame.
     pub object: Object,
     /// Its surface in the world's frame, resting on z = 0.
@@ -109,12 +146,33 @@ impl Floor {
 
 impl Layout {
     /// This many objects and their surroundings.
-    pub fn draw(count: usize, random: &mut Random, object_random: &mut Random) -> Result<Self> {
+    ///
+    /// Without `stances`, all objects stand on the desk.
+    pub fn draw(
+        count: usize,
+        random: &mut Random,
+        object_random: &mut Random,
+        mut stances: Option<&mut Random>,
+    ) -> Result<Self> {
         let front = TAU * random.uniform();
         let mut floor = Floor::default();
-        let mut objects = Vec::new();
+        let mut objects: Vec<Placed> = Vec::new();
         for _ in 0..count {
             let (object, mesh, symmetry) = put_down(object_random)?;
+            let stance = match &mut stances {
+                Some(random) if !objects.is_empty() => Stance::draw(random),
+                _ => Stance::Stands,
+            };
+            if let (Stance::OnTop, Some(random)) = (stance, &mut stances) {
+                let below = &objects[random.below(objects.len())].mesh;
+                let mesh = on_top(&mesh, below)?;
+                objects.push(Placed { stance, object, mesh, symmetry });
+                continue;
+            }
+            let (mesh, symmetry) = match (stance, &mut stances) {
+                (Stance::Stands | Stance::OnTop, _) | (_, None) => (mesh, symmetry),
+                (_, Some(random)) => held(stance, &mesh, &symmetry, random)?,
+            };
             let from = match floor.0.len() {
                 0 => DVec2::ZERO,
                 n => floor.0[random.below(n)].1,
@@ -126,7 +184,7 @@ impl Layout {
                 TAU * random.uniform()
             };
             let place = floor.take(Footprint::of(&mesh), from, unit(side), between(random, 0.003, 0.02));
-            objects.push(Placed { object, mesh: moved(&mesh, place)?, symmetry });
+            objects.push(Placed { stance, object, mesh: moved(&mesh, place)?, symmetry });
         }
         let points = || objects.iter().flat_map(|placed| placed.mesh.positions());
         let (low, high) = points().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)));
@@ -175,6 +233,31 @@ fn put_down(random: &mut Random) -> Result<(Object, Mesh, Vec<Axis>)> {
     };
     let (mesh, symmetry) = put_down_turned(&object, &turn_down(down, heading))?;
     Ok((object, mesh, symmetry))
+}
+
+/// A mesh tilted, or turned and lifted.
+fn held(stance: Stance, mesh: &Mesh, symmetry: &[Axis], random: &mut Random) -> Result<(Mesh, Vec<Axis>)> {
+    let (turn, lift) = if stance == Stance::Leans {
+        let (sine, cosine) = libm::sincos(TAU * random.uniform());
+        let axis = nalgebra::Unit::new_normalize(Vector3::new(cosine, sine, 0.0));
+        (Rotation3::from_axis_angle(&axis, between(random, 0.25, 0.6)), 0.0)
+    } else {
+        (random_rotation(random).to_rotation_matrix(), between(random, 0.05, 0.2))
+    };
+    let turned: Vec<Vector3<f64>> =
+        mesh.positions().iter().map(|p| turn * Vector3::new(p.x.into(), p.y.into(), p.z.into())).collect();
+    let low = turned.iter().fold(f64::INFINITY, |low, p| low.min(p.z));
+    let positions = turned.iter().map(|p| DVec3::new(p.x, p.y, p.z - low + lift).as_vec3()).collect();
+    let symmetry = symmetry.iter().map(|&(axis, fold)| (turned_axis(turn.matrix(), axis), fold)).collect();
+    Ok((Mesh::new(positions, mesh.triangles().to_vec())?, symmetry))
+}
+
+/// A mesh over the middle of another one, touching its highest point.
+fn on_top(mesh: &Mesh, below: &Mesh) -> Result<Mesh> {
+    let (low, high) =
+        below.positions().iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)));
+    let offset = Vec3::new(0.5 * (low.x + high.x), 0.5 * (low.y + high.y), high.z);
+    Mesh::new(mesh.positions().iter().map(|p| *p + offset).collect(), mesh.triangles().to_vec())
 }
 
 fn moved(mesh: &Mesh, place: DVec2) -> Result<Mesh> {

@@ -18,6 +18,7 @@ mod view;
 
 pub use case::{DEPTH_SCALE, SceneCase};
 pub use difficulty::{Sight, difficulty, tier};
+pub use layout::Stance;
 pub use prior::Prior;
 pub use scene::{ClutteredScene, LEAST_VISIBLE, MIN_MASK_PX, ScenePair};
 pub use set::{SCENES, SceneSet};

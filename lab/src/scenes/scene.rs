@@ -2,7 +2,7 @@
 
 use super::case::{DEPTH_SCALE, SceneCase};
 use super::difficulty::{Sight, difficulty, tier};
-use super::layout::{Layout, Placed};
+use super::layout::{Layout, Placed, Stance};
 use super::prior::Prior;
 use super::view::{Seen, View};
 use crate::cases::case::{declared, is_telling};
@@ -10,7 +10,9 @@ use crate::cases::distortion::canonicalise;
 use crate::cases::mask::Segmented;
 use crate::cases::readings::Readings;
 use crate::cases::scene::Scene;
-use crate::cases::streams::{LAYOUT_STREAM, MASK_STREAM, OBJECT_STREAM, QUALITY_STREAM, READINGS_STREAM, SCENE_STREAM};
+use crate::cases::streams::{
+    LAYOUT_STREAM, MASK_STREAM, OBJECT_STREAM, QUALITY_STREAM, READINGS_STREAM, SCENE_STREAM, STANCE_STREAM,
+};
 use crate::cases::tier::{Class, Tier};
 use crate::draws::{chance, mixed};
 use sim3align::evidence::observation::Observation;
@@ -75,11 +77,13 @@ pub struct ScenePair {
 
 impl ClutteredScene {
     /// The scene at a place in a set, with this many objects.
-    pub(super) fn draw(set_seed: u64, index: usize, objects: usize) -> Result<Self> {
+    pub(super) fn draw(set_seed: u64, index: usize, objects: usize, is_arranged: bool) -> Result<Self> {
         for attempt in 0..LAYOUTS {
             let seed = mixed([set_seed, index as u64, attempt]);
             let things = &mut Random::new(seed, OBJECT_STREAM);
-            let layout = Layout::draw(objects, &mut Random::new(seed, LAYOUT_STREAM), things)?;
+            let stances = &mut Random::new(seed, STANCE_STREAM);
+            let stances = is_arranged.then_some(stances);
+            let layout = Layout::draw(objects, &mut Random::new(seed, LAYOUT_STREAM), things, stances)?;
             let view_random = &mut Random::new(seed, SCENE_STREAM);
             // Every tenth scene or so may show an object that the border cuts.
             let too_near = chance(view_random, 0.1);
@@ -207,6 +211,11 @@ impl ScenePair {
     /// The pair's name, and that of its folder.
     pub fn name(&self) -> String {
         format!("{:03}-{}-{}", self.scene, self.index, self.family)
+    }
+
+    /// How the object is held.
+    pub fn stance(&self) -> Stance {
+        self.placed.stance
     }
 
     /// Visible share of the object's silhouette.

@@ -32,6 +32,8 @@ pub struct SceneSet {
     seed: u64,
     /// Objects of each scene.
     objects: Vec<usize>,
+    /// Whether objects also lean, hang and stand on each other.
+    is_arranged: bool,
 }
 
 impl SceneSet {
@@ -39,7 +41,12 @@ impl SceneSet {
     pub fn new(seed: u64, scenes: usize) -> Self {
         let blocks = scenes.div_ceil(BLOCK);
         let objects = (0..blocks).flat_map(|block| objects_of_block(seed, block)).take(scenes).collect();
-        Self { seed, objects }
+        Self { seed, objects, is_arranged: false }
+    }
+
+    /// A set whose objects also lean, hang and stand on each other: two to seven in each scene.
+    pub fn arranged(seed: u64, scenes: usize) -> Self {
+        Self { seed, objects: (0..scenes).map(|scene| 2 + scene % 6).collect(), is_arranged: true }
     }
 
     /// Number of scenes.
@@ -76,7 +83,7 @@ impl SceneSet {
                 "Make a set of more scenes.",
             ));
         };
-        ClutteredScene::draw(self.seed, index, objects)
+        ClutteredScene::draw(self.seed, index, objects, self.is_arranged)
     }
 
     /// Writes every pair as `folder`/PRIOR/SCENE-OBJECT-FAMILY, on several threads; `progress` gets the number of

@@ -23,6 +23,7 @@ use sim3align::report::{
     RegistrationDiagnostics, ScoreTerms, Sim3, Uncertainty, Warning, WarningCode,
 };
 use sim3align::report::{ColorReport, ColorVerdict, Effort, Preset};
+use sim3align::scene::contact::Contact;
 use sim3align_geometry::error::ErrorCode;
 use ts_rs::{Config, TS};
 
@@ -184,6 +185,7 @@ fn types() -> String {
         declaration::<PaperAlignment>(&config),
         declaration::<EvaluationDiagnostics>(&config),
         declaration::<Evaluation>(&config),
+        declaration::<Contact>(&config),
         declaration::<RegistrationDiagnostics>(&config),
         declaration::<Registration>(&config),
     ];

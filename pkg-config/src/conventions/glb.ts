@@ -7,6 +7,7 @@ import type { Sim3Like } from "../sim3.js";
 import { failure, isRecord, isTypedArray, oneOf, optionsOf, wrongKind } from "../values.js";
 import { inFrame } from "./frames.js";
 import { type GltfNode, type GltfNodeOptions, toGltfNode } from "./gltf-node.js";
+import type { GltfParts } from "./merged-gltf.js";
 import { meshOf } from "./mesh.js";
 import { applyToPoints, sim3Of, similarityOf } from "./similarity.js";
 
@@ -102,9 +103,22 @@ export function placeGlb(
   return glbOf(placed, others);
 }
 
-const bytesOf = (array: Float32Array | Uint32Array) => new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
+/** The parts of a GLB file. */
+export function partsOf(glb: unknown): GltfParts {
+  const { json, others } = chunksOf(glb);
+  return { json, binary: others.find(([type]) => type === binaryChunk)?.[1] ?? new Uint8Array() };
+}
 
-function bounds(vertices: Float32Array): { min: number[]; max: number[] } {
+/** The GLB file of its parts. */
+export const glbOfParts = ({ json, binary }: GltfParts): Uint8Array =>
+  glbOf(json, binary.length > 0 ? [[binaryChunk, binary]] : []);
+
+/** The bytes of an array. */
+export const bytesOf = (array: Float32Array | Uint32Array) =>
+  new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
+
+/** The least and the largest coordinates, as accessors of positions need them. */
+export function bounds(vertices: Float32Array): { min: number[]; max: number[] } {
   const [min, max] = [Array<number>(3).fill(Number.POSITIVE_INFINITY), Array<number>(3).fill(Number.NEGATIVE_INFINITY)];
   vertices.forEach((x, i) => {
     min[i % 3] = Math.min(min[i % 3] ?? x, x);

@@ -836,6 +836,28 @@ warnings: Array<Warning>,
 diagnostics: EvaluationDiagnostics, };
 
 /**
+ * What an object stands on, and whose volume it shares.
+ */
+export type Contact = { 
+/**
+ * What it rests on: `"support"`, the index of another object, or `null` if it touches neither.
+ */
+restsOn: "support" | number | null, 
+/**
+ * Height of its lowest point over what is below it, in metres; negative where it enters it. `null` without a
+ * support.
+ */
+gapM: number | null, 
+/**
+ * Share of its volume that is inside other objects, 0 to 1.
+ */
+sharedVolume: number, 
+/**
+ * How far `snap` has moved it along the normal of the support, in metres.
+ */
+snappedM: number, };
+
+/**
  * What `register` and `estimateSim3` report besides the transform and its fit.
  */
 export type RegistrationDiagnostics = { 

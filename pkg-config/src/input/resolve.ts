@@ -38,10 +38,8 @@ export const classNames: ClassNames = {
  */
 export async function resolveInput(input: unknown, formats: LoadFormats, meshId?: number): Promise<ResolvedInput> {
   checkProperties(input);
-  checkSides("", input);
-  const { resizeMask, pointMap } = input;
-  const { warnings, ...view } =
-    pointMap === undefined ? await depthAndCamera(input, formats) : await pointMapAndCamera(input, pointMap);
+  const { resizeMask } = input;
+  const { warnings, ...view } = await readView(input, formats);
   const mask = await readMask(input.mask, Number(view.width) * Number(view.height), formats);
   const image =
     input.image === undefined || input.image === null ? undefined : await readPhoto(input.image, view, formats);
@@ -59,6 +57,17 @@ export async function resolveInput(input: unknown, formats: LoadFormats, meshId?
     mesh: withoutUndefined({ ...mesh.mesh, id: meshId }),
   };
   return { core: withoutUndefined(core) as CoreInput, warnings: { camera: warnings, colors: colorWarnings } };
+}
+
+/**
+ * The depth map, or the point map, and the camera of an input.
+ * @throws {@link Sim3AlignError} as {@link resolveInput}
+ */
+export async function readView(input: unknown, formats: LoadFormats) {
+  checkProperties(input);
+  checkSides("", input);
+  const { pointMap } = input;
+  return pointMap === undefined ? depthAndCamera(input, formats) : pointMapAndCamera(input, pointMap);
 }
 
 async function depthAndCamera(input: Record<string, unknown>, formats: LoadFormats) {

@@ -1,0 +1,275 @@
+//! The steps of a scene. What one step hands over to the next crosses to JavaScript, so that objects can be aligned by
+//! different workers: numbers in typed arrays, without loss.
+
+use core::cell::RefCell;
+use std::rc::Rc;
+
+use glam::DVec3;
+use js_sys::{Array, Float32Array, Float64Array, Function, Object, Reflect};
+use wasm_bindgen::JsValue;
+use wasm_bindgen::prelude::wasm_bindgen;
+
+use sim3align::align::task::AlignTask;
+use sim3align::bindings::answer::answer;
+use sim3align::bindings::error::to_js;
+use sim3align::bindings::host::{JsHost, now_ms};
+use sim3align::bindings::object::{get, required_number, to_f32s, to_f64s, to_numbers, to_u8s, wrong_type};
+use sim3align::bindings::{input, mesh, options};
+use sim3align::error::{Error, Result};
+use sim3align::evidence::observation::Observation;
+use sim3align::geometry::image::{Image, Mask};
+use sim3align::geometry::similarity::Similarity;
+use sim3align::options::Choice;
+use sim3align::precise::options::AlignOptions;
+use sim3align::precise::prepared_mesh::PreparedMesh;
+use sim3align::precise::surroundings::{Layer, Neighbourhood};
+use sim3align::report::{Alignment, Effort};
+use sim3align::scene::contact::contacts;
+use sim3align::scene::placement::{Body, Placement, found_of};
+use sim3align::scene::plane::Plane;
+use sim3align::scene::planes::union_of;
+use sim3align::scene::support::{Ground, Support, SupportChoice, View, find_support};
+use sim3align::scene::task::placement_of;
+
+type Task = AlignTask<'static, Observation, Rc<PreparedMesh<'static>>>;
+
+/// A step of one object of a scene.
+#[wasm_bindgen(skip_typescript)]
+pub struct PlaceTask {
+    task: RefCell<Task>,
+    /// What the search has found, once it has ended.
+    placement: RefCell<Option<JsValue>>,
+    /// Whether the step ends with the search.
+    is_alone: bool,
+    /// The mesh, and the normal of the ground.
+    measured: Option<(Rc<PreparedMesh<'static>>, DVec3)>,
+}
+
+/// Begins to align an object of a scene alone or, with `known`, with what the others have told:
+/// `{ placement, ground, layers }`.
+#[wasm_bindgen(js_name = beginPlace, skip_typescript)]
+pub fn begin_place(
+    input: &JsValue,
+    options: &JsValue,
+    known: &JsValue,
+    on_progress: Option<Function>,
+) -> core::result::Result<PlaceTask, JsValue> {
+    let begin = || {
+        let options = options::precise(options)?;
+        let is_alone = !known.is_object();
+        // The metrics are those of the result.
+        let options = if is_alone { AlignOptions { metrics: false, ..options } } else { options };
+        let (observation, mesh) = (input::observation(input)?, mesh::mesh_of(input)?);
+        let mut measured = None;
+        let mut task = Task::new(observation, mesh.clone(), options, JsHost::new(on_progress))?;
+        if !is_alone {
+            let placement = placement(&of(known, "placement"))?;
+            let ground = ground(&of(known, "ground"))?.map(|g| (g.plane.normal, g.plane.d, g.gap_m));
+            measured = ground.map(|(normal, ..)| (mesh, normal));
+            let layers = Array::from(&of(known, "layers"));
+            let layers = layers.iter().map(|l| Ok(Rc::new(layer(&l)?))).collect::<Result<_>>()?;
+            task = task.with_given(placement.given(Neighbourhood { ground, layers }));
+        }
+        Ok(PlaceTask { task: RefCell::new(task), placement: RefCell::default(), is_alone, measured })
+    };
+    begin().map_err(|error| to_js(&error))
+}
+
+#[wasm_bindgen]
+impl PlaceTask {
+    /// Runs for about `slice_ms` milliseconds. Returns `{ placement, alignment? }` when finished, otherwise `undefined`.
+    #[wasm_bindgen(skip_typescript)]
+    pub fn step(&self, slice_ms: f64) -> core::result::Result<JsValue, JsValue> {
+        let end = now_ms() + slice_ms;
+        let pause = &mut || now_ms() >= end;
+        let mut task = self.task.borrow_mut();
+        let mut step = || {
+            if self.placement.borrow().is_none() {
+                if !task.step_search(pause)? {
+                    return Ok(None);
+                }
+                let mut placement = placement_of(&task)?;
+                if let Some((mesh, normal)) = &self.measured {
+                    placement.body = placement.body.measured(mesh.mesh(), &placement.camera_from_mesh, *normal);
+                }
+                self.placement.replace(Some(placement_object(&placement)));
+            }
+            if self.is_alone { Ok(Some(None)) } else { Ok(task.step(pause)?.map(Some)) }
+        };
+        let done: Result<Option<Option<Alignment>>> = step();
+        let Some(alignment) = done.map_err(|error| to_js(&error))? else { return Ok(JsValue::UNDEFINED) };
+        let placement = self.placement.take().unwrap_or(JsValue::UNDEFINED);
+        let alignment = alignment.map_or(Ok(JsValue::UNDEFINED), |alignment| answer(Ok(alignment)))?;
+        Ok(object([("placement", placement), ("alignment", alignment)]))
+    }
+}
+
+/// The support of a scene, and what each object may stand on:
+/// `({ depth, …, camera, masks }, placements, support, seed) → { support, grounds }`. A placement is `null` for an object
+/// that could not be aligned.
+#[wasm_bindgen(js_name = sceneSupport, skip_typescript)]
+pub fn scene_support(
+    view: &JsValue,
+    placements: &JsValue,
+    support: &JsValue,
+    seed: u32,
+) -> core::result::Result<JsValue, JsValue> {
+    let run = || {
+        let (depth, camera) = input::view(view)?;
+        let (width, height) = (depth.width(), depth.height());
+        let masks = Array::from(&of(view, "masks"));
+        let masks: Vec<Mask> = masks
+            .iter()
+            .map(|mask| Image::new("mask", width, height, to_u8s(&mask, "mask")?))
+            .collect::<Result<_>>()?;
+        let placements: Vec<_> =
+            Array::from(placements).iter().map(|p| optional(&p, placement)).collect::<Result<_>>()?;
+        let taken = union_of(width, height, masks.iter());
+        let view = View { depth: &depth, camera: &camera, taken: &taken, seed: u64::from(seed) };
+        let (support, grounds) = find_support(&view, &choice(support)?, &placements);
+        let grounds: Array = grounds.iter().map(|g| g.as_ref().map_or(JsValue::NULL, ground_object)).collect();
+        Ok(object([("support", support.as_ref().map_or(JsValue::NULL, support_object)), ("grounds", grounds.into())]))
+    };
+    run().map_err(|error: Error| to_js(&error))
+}
+
+/// The contacts of posed objects: `({ camera }, placements, { support, grounds }, snap) → [contact | null]`.
+#[wasm_bindgen(js_name = sceneContacts, skip_typescript)]
+pub fn scene_contacts(
+    view: &JsValue,
+    placements: &JsValue,
+    supported: &JsValue,
+    snap: bool,
+) -> core::result::Result<JsValue, JsValue> {
+    let run = || {
+        let camera = input::camera(&of(view, "camera"))?;
+        let bodies: Vec<_> = Array::from(placements).iter().map(|p| optional(&p, body)).collect::<Result<_>>()?;
+        let support = optional(&of(supported, "support"), plane)?;
+        let grounds = of(supported, "grounds");
+        let grounds: Vec<_> = Array::from(&grounds).iter().map(|g| ground(&g)).collect::<Result<_>>()?;
+        Ok(contacts(&bodies, &grounds, support.as_ref(), &camera, snap))
+    };
+    answer(run())
+}
+
+fn of(object: &JsValue, key: &str) -> JsValue {
+    get(object, key).unwrap_or(JsValue::UNDEFINED)
+}
+
+fn optional<T>(value: &JsValue, read: impl Fn(&JsValue) -> Result<T>) -> Result<Option<T>> {
+    if value.is_object() { read(value).map(Some) } else { Ok(None) }
+}
+
+fn object<const N: usize>(fields: [(&str, JsValue); N]) -> JsValue {
+    let object = Object::new();
+    for (name, value) in fields {
+        // Setting a property of a new object cannot fail.
+        let _ = Reflect::set(&object, &name.into(), &value);
+    }
+    object.into()
+}
+
+/// `"auto"`, `{ normal, d }` or `null`.
+fn choice(value: &JsValue) -> Result<SupportChoice> {
+    if value.is_null() {
+        return Ok(SupportChoice::None);
+    }
+    if value.is_undefined() || value.as_string().as_deref() == Some("auto") {
+        return Ok(SupportChoice::Auto);
+    }
+    let invalid = || {
+        let remedy = "The plane is n·x + d = 0 in the camera frame, metres; n points to the side of the objects.";
+        wrong_type("support", value, "\"auto\", { normal: [x, y, z], d } or null", remedy)
+    };
+    let normal = to_numbers::<3>(&of(value, "normal"), "support.normal").map_err(|_| invalid())?;
+    let d = required_number(value, "support", "d")?;
+    let normal = DVec3::from(normal);
+    let length = normal.length();
+    if !(length > 0.0 && length.is_finite() && d.is_finite()) {
+        return Err(invalid());
+    }
+    // As it is given: the camera may be below it.
+    Ok(SupportChoice::Plane(Plane { normal: normal / length, d: d / length }))
+}
+
+fn placement(value: &JsValue) -> Result<Placement> {
+    let mut effort = Effort::default();
+    effort.set(&of(value, "effort").as_string().unwrap_or_default());
+    let found = found_of(&to_f64s(&of(value, "found"), "placement.found")?);
+    Ok(Placement {
+        found,
+        effort,
+        renders: required_number(value, "placement", "renders")? as usize,
+        confidence: required_number(value, "placement", "confidence")?,
+        camera_from_mesh: Similarity::from_column_major(&to_numbers(&of(value, "matrix"), "placement.matrix")?)?,
+        body: body(value)?,
+    })
+}
+
+fn body(value: &JsValue) -> Result<Body> {
+    let points = to_f32s(&of(value, "points"), "placement.points")?;
+    let points = points.as_chunks().0.iter().map(|p: &[f32; 3]| glam::Vec3::from(*p)).collect();
+    let along = optional(&of(value, "along"), |along| to_numbers::<2>(along, "placement.along"))?;
+    Ok(Body { points, layer: Rc::new(layer(value)?), along })
+}
+
+fn layer(value: &JsValue) -> Result<Layer> {
+    let spans = to_f32s(&of(value, "spans"), "placement.spans")?;
+    let origin = to_numbers::<2>(&of(value, "origin"), "placement.origin")?;
+    let width = required_number(value, "placement", "layerWidth")? as usize;
+    Ok(Layer { origin: origin.map(|x| x as usize), width, spans: spans.as_chunks().0.to_vec() })
+}
+
+fn plane(value: &JsValue) -> Result<Plane> {
+    let normal = to_numbers::<3>(&of(value, "normal"), "ground.normal")?;
+    Ok(Plane { normal: normal.into(), d: required_number(value, "ground", "d")? })
+}
+
+fn ground(value: &JsValue) -> Result<Option<Ground>> {
+    if !value.is_object() {
+        return Ok(None);
+    }
+    Ok(Some(Ground {
+        plane: plane(value)?,
+        gap_m: required_number(value, "ground", "gapM")?,
+        on: of(value, "on").as_f64().map(|on| on as usize),
+    }))
+}
+
+fn placement_object(placement: &Placement) -> JsValue {
+    let Placement { effort, renders, confidence, camera_from_mesh, body, .. } = placement;
+    let Layer { origin, width, spans } = body.layer.as_ref();
+    let points: Vec<f32> = body.points.iter().flat_map(|p| p.to_array()).collect();
+    let origin = origin.map(|x| JsValue::from(x as f64));
+    object([
+        ("found", Float64Array::from(placement.numbers().as_slice()).into()),
+        ("effort", effort.name().into()),
+        ("renders", (*renders as f64).into()),
+        ("confidence", (*confidence).into()),
+        ("matrix", Float64Array::from(camera_from_mesh.to_column_major().as_slice()).into()),
+        ("points", Float32Array::from(points.as_slice()).into()),
+        (
+            "along",
+            body.along.map_or(JsValue::NULL, |along| along.iter().map(|x| JsValue::from(*x)).collect::<Array>().into()),
+        ),
+        ("origin", origin.iter().collect::<Array>().into()),
+        ("layerWidth", (*width as f64).into()),
+        ("spans", Float32Array::from(spans.as_flattened()).into()),
+    ])
+}
+
+fn plane_fields(plane: &Plane) -> [(&'static str, JsValue); 2] {
+    let normal: Array = plane.normal.to_array().iter().map(|x| JsValue::from(*x)).collect();
+    [("normal", normal.into()), ("d", plane.d.into())]
+}
+
+fn ground_object(ground: &Ground) -> JsValue {
+    let [normal, d] = plane_fields(&ground.plane);
+    let on = ground.on.map_or(JsValue::NULL, |on| JsValue::from(on as f64));
+    object([normal, d, ("gapM", ground.gap_m.into()), ("on", on)])
+}
+
+fn support_object(support: &Support) -> JsValue {
+    let [normal, d] = plane_fields(&support.plane);
+    object([normal, d, ("confidence", support.confidence.into())])
+}

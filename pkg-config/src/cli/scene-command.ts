@@ -1,0 +1,225 @@
+/** `sim3align scene`: aligns the objects of scenes and prints what stands where. */
+import { writeFileSync } from "node:fs";
+import { Command, Option } from "commander";
+import { read } from "../case-folder.js";
+import { exportSceneGlb, type SceneGlbObject } from "../conventions/scene-glb.js";
+import { parseCameraFile } from "../formats/camera-file.js";
+import { parsedJson } from "../formats/json.js";
+import { formatsModule } from "../formats-module.js";
+import { createAligner, type PoseErrors, type SceneInput, type SceneResult } from "../index.js";
+import { readMesh } from "../input/mesh.js";
+import { readSceneFolder, type SceneOnDisk, type SceneSettings } from "../scene-folder.js";
+import { withoutUndefined } from "../values.js";
+import { addCaseOptions, type CaseFlags, caseSettings, conventionsHelp, statusHelp } from "./case-options.js";
+import { fixed } from "./number.js";
+import { type Failure, failure, failureText, type Outcome, outcomeJson } from "./outcome.js";
+import { Output } from "./output.js";
+import { ProgressLine } from "./progress-line.js";
+import { type Column, headings, tableLine } from "./table.js";
+import { UsageError } from "./usage-error.js";
+
+interface SceneFlags extends CaseFlags {
+  json?: string;
+  glb?: string;
+  snap?: boolean;
+  support?: string;
+  models?: string;
+  quality?: "auto" | "fast" | "balanced" | "best";
+}
+
+const help = `
+A scene folder holds
+  depth.npy or depth.png, camera.json   as a case folder, see "sim3align align --help"
+  objects/NAME/mask.png, .npy or .json  the mask of each object
+  objects/NAME/mesh.glb, …              its mesh; textures are kept by --glb
+  objects/NAME/gt.json (optional)       its true pose
+A scene in the layout of BOP (depth/, mask_visib/, scene_camera.json, scene_gt.json, and models in models/, ../models or
+../../models) is one as well; --image-id selects the image.
+${conventionsHelp}
+  The support is the plane n·x + d = 0 in the camera frame, metres; n points to the side of the objects.
+
+Output
+  A row per object: confidence, scale, what it rests on, gap, shared volume, silhouette IoU; with gt.json also the errors
+  against it.
+  --json writes { "<scene>": { "objects": { "<object>": as a case of "align --json", with "contact" },
+  "support": { "normal", "d", "confidence" } | null, "metrics", "warnings" } }; a scene that failed has { "error" }.
+  --glb writes the scene of a single folder: nodes by name, materials and textures, the camera, and the support as ground,
+  y up, in metres.
+
+Examples
+  sim3align scene scenes/desk
+  sim3align scene scenes/* --json results.json
+  sim3align scene scenes/desk --snap --glb desk.glb
+  sim3align scene bop/test/000048 --image-id 1 --json -
+${statusHelp}`;
+
+/** The command. */
+export function sceneCommand(): Command {
+  const command = new Command("scene")
+    .summary("align all objects of each scene, and what they stand on")
+    .description("Aligns the objects of each scene together: one depth map, a mask and a mesh per object.")
+    .argument("<scene...>", "scene folders")
+    .option("--json <file>", 'write the results as JSON; "-" is stdout')
+    .option("--glb <file>", "write the scene as one GLB file")
+    .option("--snap", "put objects exactly onto what they touch")
+    .option("--support <auto|none|file>", 'what objects stand on: found, nothing, or a JSON file { "normal", "d" }')
+    .option("--models <folder>", "the models of a BOP scene")
+    .addOption(new Option("--quality <name>", "work of the search").choices(["auto", "fast", "balanced", "best"]));
+  return addCaseOptions(command).addHelpText("after", help).action(run);
+}
+
+async function run(folders: string[], flags: SceneFlags): Promise<void> {
+  if (flags.glb !== undefined && folders.length > 1) throw new UsageError("--glb takes a single scene.");
+  const output = new Output(flags.json);
+  const support = await supportOf(flags.support);
+  const aligner = await createAligner();
+  const progress = new ProgressLine(process.stderr, folders.length);
+  const settings: SceneSettings = withoutUndefined({ ...caseSettings(flags), models: flags.models });
+  let hasFailed = false;
+  for (const folder of folders) {
+    progress.begin(folder);
+    try {
+      const scene = await readSceneFolder(folder, settings);
+      const input = { ...scene.input, support } as SceneInput;
+      const result = await aligner.alignScene(input, {
+        ...withoutUndefined({ quality: flags.quality, snap: flags.snap }),
+        onProgress: (state) => progress.update(state),
+      });
+      const errors = await errorsOf(aligner, scene, result);
+      progress.clear();
+      const outcomes = outcomesOf(result, errors);
+      hasFailed ||= outcomes.some((outcome) => "error" in outcome);
+      output.results?.add(scene.name, sceneJson(result, outcomes));
+      output.lines(lines(scene.name, result, outcomes, errors));
+      if (flags.glb !== undefined) writeFileSync(flags.glb, await glbOf(scene, result));
+    } catch (error) {
+      if (error instanceof UsageError) throw error;
+      progress.clear();
+      hasFailed = true;
+      const outcome = failure(folder, error);
+      output.results?.add(folder, outcomeJson(outcome));
+      output.lines([output.style.red("failed ") + failureText(outcome)]);
+    }
+    if (output.isClosed) break;
+  }
+  output.results?.end();
+  if (hasFailed) process.exitCode = 1;
+}
+
+async function supportOf(flag: string | undefined): Promise<SceneInput["support"]> {
+  if (flag === undefined || flag === "auto") return "auto";
+  if (flag === "none") return null;
+  // The core checks the plane.
+  return parsedJson("support", await read("support", flag)) as SceneInput["support"];
+}
+
+async function errorsOf(
+  aligner: Awaited<ReturnType<typeof createAligner>>,
+  scene: SceneOnDisk,
+  { objects }: SceneResult,
+): Promise<(PoseErrors | null)[]> {
+  const errors: (PoseErrors | null)[] = [];
+  const { objects: inputs, labels: _, occluders: __, support: ___, ...view } = scene.input;
+  for (const [i, object] of objects.entries()) {
+    const truth = scene.truths[i];
+    const input = inputs[i];
+    if (object.error !== undefined || truth === null || truth === undefined || input === undefined) {
+      errors.push(null);
+      continue;
+    }
+    const { mask, mesh, resizeMask } = input;
+    const own = { ...view, mask, mesh, ...withoutUndefined({ resizeMask }) } as Parameters<typeof aligner.evaluate>[0];
+    const { transform, symmetry } = truth;
+    errors.push((await aligner.evaluate(own, object, { truth: transform, symmetry })).errors);
+  }
+  return errors;
+}
+
+const outcomesOf = ({ objects }: SceneResult, errors: readonly (PoseErrors | null)[]): Outcome[] =>
+  objects.map((object, i) => {
+    const name = object.name ?? `${i}`;
+    if (object.error !== undefined) return { name, error: object.error, file: undefined };
+    return { name, alignment: object, errors: errors[i] ?? null };
+  });
+
+/** The JSON entry of a scene. */
+function sceneJson({ objects, support, metrics, warnings }: SceneResult, outcomes: readonly Outcome[]): object {
+  const entries = outcomes.map((outcome, i) => {
+    const object = objects[i];
+    const contact = object === undefined || object.error !== undefined ? {} : { contact: object.contact };
+    return [outcome.name, { ...outcomeJson(outcome), ...contact }];
+  });
+  return { objects: Object.fromEntries(entries), support, metrics, warnings };
+}
+
+const number = (heading: string): Column => ({ heading, isNumber: true, width: 8 });
+const columns: Column[] = [
+  { heading: "object", width: 20 },
+  ...["conf.", "scale"].map(number),
+  { heading: "rests on", width: 20 },
+  ...["gap mm", "shared %", "IoU", "Δscale %", "Δrot °", "Δtrans %"].map(number),
+];
+
+function lines(
+  name: string,
+  { objects, support, warnings }: SceneResult,
+  outcomes: readonly Outcome[],
+  errors: readonly (PoseErrors | null)[],
+): string[] {
+  const plane =
+    support === null
+      ? "no support"
+      : `support n = ${support.normal.map((x) => fixed(x, 4)).join(" ")}, d = ${fixed(support.d, 4)} m`;
+  const rows = objects.map((object, i) => {
+    const outcome = outcomes[i] as Outcome;
+    if (object.error !== undefined || "error" in outcome) return `failed ${failureText(outcome as Failure)}`;
+    const { restsOn, gapM, sharedVolume } = object.contact;
+    const below = typeof restsOn === "number" ? (outcomes[restsOn]?.name ?? `${restsOn}`) : (restsOn ?? "–");
+    const error = errors[i];
+    const cells = [
+      outcome.name,
+      fixed(object.confidence, 2),
+      fixed(object.scale, 5),
+      below,
+      gapM === null ? "–" : fixed(1000 * gapM, 1),
+      fixed(100 * sharedVolume, 1),
+      fixed(object.metrics?.iou ?? null, 3),
+      ...(error === null || error === undefined
+        ? ["–", "–", "–"]
+        : [
+            fixed(100 * error.scaleError, 1),
+            fixed(error.rotationErrorDeg, 1),
+            fixed(100 * error.translationErrorRelative, 1),
+          ]),
+    ];
+    return tableLine(columns, cells);
+  });
+  const notes = warnings.map(({ code, message }) => `${code}: ${message}`);
+  return [`${name}: ${plane}`, headings(columns), ...rows, ...notes];
+}
+
+/** The scene as one file. Only GLB files keep their materials. */
+async function glbOf({ input }: SceneOnDisk, { objects, support }: SceneResult): Promise<Uint8Array> {
+  const placed: SceneGlbObject[] = [];
+  for (const [i, object] of objects.entries()) {
+    const given = input.objects[i]?.mesh;
+    if (object.error !== undefined || given === undefined) continue;
+    const { bytes, format } = given as { bytes: Uint8Array; format?: string };
+    const mesh = format === "glb" ? bytes : await readMesh(given, () => formatsModule.load());
+    placed.push({ name: object.name, mesh, transform: object });
+  }
+  const camera = cameraOf(input);
+  return exportSceneGlb(placed, { support, ...(camera === undefined ? {} : { camera }) });
+}
+
+function cameraOf(input: SceneInput): { fy: number; width: number; height: number } | undefined {
+  const { cameraFile, imageId } = input as { cameraFile?: Uint8Array; imageId?: string };
+  if (cameraFile === undefined) return undefined;
+  try {
+    const { fy, cx, cy, width, height } = parseCameraFile(cameraFile, withoutUndefined({ imageId }));
+    // A file without size: the principal point is about the middle.
+    return { fy, width: width ?? 2 * cx + 1, height: height ?? 2 * cy + 1 };
+  } catch {
+    return undefined;
+  }
+}

@@ -1,0 +1,187 @@
+/** Reads a scene: the view once, and a mask per object. */
+import { describe, invalidArgument, Sim3AlignError } from "../error.js";
+import type { LoadFormats } from "../formats-module.js";
+import { readMask } from "../input/mask.js";
+import { readPhoto } from "../input/photo.js";
+import { classNames as inputClassNames, readView } from "../input/resolve.js";
+import type { AlignInput } from "../input/types.js";
+import type { ClassNames } from "../snapshot.js";
+import { failure, isRecord, isTypedArray, withoutUndefined } from "../values.js";
+import type { KnownOfObject, SceneInput, SceneObjectInput } from "./types.js";
+
+/** A scene whose images have been read. */
+export interface ReadScene {
+  /** The properties of the input of each object other than mask and mesh. */
+  view: Record<string, unknown>;
+  /** Width and height of the depth map, pixels. */
+  size: [width: number, height: number];
+  objects: ReadObject[];
+  /** Masks of what has no mesh. */
+  occluders: Uint8Array[];
+  support: unknown;
+  warnings: readonly string[];
+}
+
+/** An object whose mask has been read. */
+export interface ReadObject {
+  name: string | undefined;
+  mask: Uint8Array;
+  mesh: unknown;
+  known: KnownOfObject;
+}
+
+const sceneProperties = ["objects", "labels", "occluders", "support"];
+const objectProperties = ["name", "mask", "label", "resizeMask", "mesh"];
+const knownProperties: readonly string[] = [
+  "scale",
+  "knownExtentM",
+  "knownExtentAxis",
+  "meshUp",
+  "cameraUp",
+  "symmetry",
+  "initial",
+  "search",
+  "quality",
+] satisfies (keyof KnownOfObject)[];
+
+/** The properties that a scene may inherit from a class. */
+export const classNames: ClassNames = {
+  ...inputClassNames,
+  input: [...(inputClassNames.input ?? []), ...sceneProperties],
+};
+
+/**
+ * Reads a scene.
+ * @throws {@link Sim3AlignError} for arguments of the wrong type, masks of another size, and the errors of the readers
+ */
+export async function readScene(scene: SceneInput, formats: LoadFormats): Promise<ReadScene> {
+  if (!isRecord(scene)) {
+    throw invalidArgument("scene", scene, "{ depth, camera, objects }", "See SceneInput in the documentation.");
+  }
+  const { objects, labels, occluders, support, ...rest } = scene as SceneInput & Record<string, unknown>;
+  const { warnings, ...view } = await readView(rest, formats);
+  const { image } = rest;
+  const photo = image === undefined || image === null ? undefined : await readPhoto(image, view, formats);
+  const size: [number, number] = [Number(view.width), Number(view.height)];
+  const read = { size, formats, labels: labels === undefined ? undefined : checkedLabels(labels, size) };
+  const given = listOf("objects", objects);
+  if (given.length === 0) throw invalidArgument("objects", objects, "at least one object", "Pass { mask, mesh }.");
+  const readObjects: ReadObject[] = [];
+  for (const [i, object] of given.entries()) readObjects.push(await readObject(`objects[${i}]`, object, read));
+  const masks: Uint8Array[] = [];
+  for (const [i, mask] of listOf("occluders", occluders ?? []).entries()) {
+    masks.push(await maskOf(`occluders[${i}]`, mask, undefined, read));
+  }
+  const others = otherLabels(given, read.labels);
+  return {
+    view: withoutUndefined({ ...view, image: photo }),
+    size,
+    objects: readObjects,
+    occluders: others === null ? masks : [...masks, others],
+    support: support === undefined ? "auto" : support,
+    warnings,
+  };
+}
+
+interface Reading {
+  size: [number, number];
+  formats: LoadFormats;
+  labels: ArrayLike<number> | undefined;
+}
+
+function listOf(name: string, value: unknown): unknown[] {
+  if (Array.isArray(value)) return value;
+  throw invalidArgument(name, value, "an array", "Pass [{ mask, mesh }, …].");
+}
+
+async function readObject(argument: string, object: unknown, read: Reading): Promise<ReadObject> {
+  if (!isRecord(object)) throw invalidArgument(argument, object, "{ mask, mesh }", "Pass an object of the scene.");
+  const all = [...objectProperties, ...knownProperties];
+  const unknown = Object.keys(object).find((name) => !all.includes(name));
+  if (unknown !== undefined) {
+    const remedy = "Check the spelling. Options for all objects belong in the second argument.";
+    throw failure("INVALID_ARGUMENT", `${argument}.${unknown}`, "an unknown property", all.join(", "), remedy);
+  }
+  const { name, mask, label, resizeMask, mesh, ...known } = object as Partial<SceneObjectInput>;
+  if (name !== undefined && typeof name !== "string") {
+    throw invalidArgument(`${argument}.name`, name, "a string", "Pass the name of the object.");
+  }
+  const pixels =
+    mask === undefined && label !== undefined
+      ? labelled(`${argument}.label`, label, read)
+      : await maskOf(`${argument}.mask`, mask, resizeMask, read);
+  return { name, mask: pixels, mesh, known: withoutUndefined(known) as KnownOfObject };
+}
+
+async function maskOf(argument: string, mask: unknown, resize: unknown, read: Reading): Promise<Uint8Array> {
+  const [width, height] = read.size;
+  const { data, ...own } = await readMask(mask, width * height, read.formats).catch((error) => {
+    throw error instanceof Sim3AlignError ? renamed(error, argument) : error;
+  });
+  const [from, rows] = [own.width ?? width, own.height ?? height];
+  const pixels = new Uint8Array(data.buffer, data.byteOffset, data.byteLength);
+  if (pixels.length !== from * rows) {
+    throw failure("WRONG_LENGTH", argument, `${pixels.length} values`, `${from} × ${rows}`, "Pass one per pixel.");
+  }
+  if (from === width && rows === height) return pixels;
+  if (resize !== "nearest") {
+    const found = `${from} × ${rows} pixels for a depth map of ${width} × ${height}`;
+    const remedy = 'Resize the mask to the depth map, or set resizeMask: "nearest".';
+    throw failure("SIZE_MISMATCH", argument, found, "depth and mask of the same size", remedy);
+  }
+  const source = (i: number, to: number, of: number) => Math.floor(((2 * i + 1) * of) / (2 * to));
+  return Uint8Array.from({ length: width * height }, (_, i) => {
+    const [u, v] = [i % width, Math.floor(i / width)];
+    return pixels[source(v, height, rows) * from + source(u, width, from)] ?? 0;
+  });
+}
+
+function renamed(error: Sim3AlignError, argument: string): Sim3AlignError {
+  const { code, found, expected, remedy } = error;
+  return new Sim3AlignError({ code, argument: error.argument.replace(/^mask/, argument), found, expected, remedy });
+}
+
+const labelKinds = "{ data, width, height } with a Uint8Array, Uint16Array or Uint32Array";
+
+function checkedLabels(labels: unknown, [width, height]: [number, number]): ArrayLike<number> {
+  const { data, ...own } = isRecord(labels) ? labels : { data: undefined };
+  if (!isTypedArray<Uint8Array>(data, "Uint8Array", "Uint8ClampedArray", "Uint16Array", "Uint32Array")) {
+    throw invalidArgument("labels", labels, labelKinds, "Pass the label map of a segmentation.");
+  }
+  const { width: columns, height: rows } = own as { width?: unknown; height?: unknown };
+  if (columns === width && rows === height && data.length === width * height) return data;
+  const found = `${data.length} values of ${describe(columns)} × ${describe(rows)} pixels`;
+  throw failure("SIZE_MISMATCH", "labels", found, `${width} × ${height} pixels, as the depth map`, "Resize it.");
+}
+
+function labelled(argument: string, label: unknown, { labels }: Reading): Uint8Array {
+  if (labels === undefined) {
+    throw invalidArgument(argument, label, "a mask, or a label with `labels` of the scene", "Pass the label map.");
+  }
+  if (!Number.isSafeInteger(label) || (label as number) < 1) {
+    throw invalidArgument(argument, label, "an integer above 0", "0 is no object.");
+  }
+  return Uint8Array.from({ length: labels.length }, (_, i) => (labels[i] === label ? 1 : 0));
+}
+
+/** The pixels of labels without an object; `null` if there are none. */
+function otherLabels(objects: readonly unknown[], labels: ArrayLike<number> | undefined): Uint8Array | null {
+  if (labels === undefined) return null;
+  const known = new Set<unknown>([0, ...objects.map((object) => (object as SceneObjectInput).label)]);
+  const others = Uint8Array.from({ length: labels.length }, (_, i) => (known.has(labels[i]) ? 0 : 1));
+  return others.includes(1) ? others : null;
+}
+
+/** The input of one object. */
+export function inputOf(scene: ReadScene, index: number): { input: AlignInput; others: Uint8Array | undefined } {
+  const { mask, mesh } = scene.objects[index] as ReadObject;
+  const [width, height] = scene.size;
+  const masks = [...scene.objects.map((object) => object.mask), ...scene.occluders];
+  const others = masks.length < 2 ? undefined : new Uint8Array(width * height);
+  for (const [k, other] of masks.entries()) {
+    if (k === index || others === undefined) continue;
+    for (let i = 0; i < other.length; i++) if (other[i] !== 0) others[i] = 1;
+  }
+  const input = { ...scene.view, mask: { data: mask, width, height }, mesh } as unknown as AlignInput;
+  return { input, others };
+}

@@ -1,0 +1,113 @@
+//! Contact: what rests on what, and by how much it misses or enters it.
+
+use serde::Serialize;
+
+use super::layers::volumes;
+use super::placement::Body;
+use super::plane::Plane;
+use super::support::{Ground, diameter, extent};
+use crate::geometry::pinhole::Pinhole;
+
+/// What an object stands on, and whose volume it shares.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "camelCase")]
+pub struct Contact {
+    /// What it rests on: `"support"`, the index of another object, or `null` if it touches neither.
+    #[cfg_attr(feature = "types", ts(type = "\"support\" | number | null"))]
+    pub rests_on: Option<RestsOn>,
+    /// Height of its lowest point over what is below it, in metres; negative where it enters it. `null` without a
+    /// support.
+    pub gap_m: Option<f64>,
+    /// Share of its volume that is inside other objects, 0 to 1.
+    pub shared_volume: f64,
+    /// How far `snap` has moved it along the normal of the support, in metres.
+    pub snapped_m: f64,
+}
+
+/// What an object rests on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RestsOn {
+    /// The support.
+    Support,
+    /// The object with this index.
+    Object(usize),
+}
+
+impl Serialize for RestsOn {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Support => serializer.serialize_str("support"),
+            Self::Object(index) => serializer.serialize_u32(*index as u32),
+        }
+    }
+}
+
+/// Largest gap of an object that touches what is below it: metres, and relative to its size.
+const TOUCHES: [f64; 2] = [0.008, 0.03];
+
+/// The contacts of posed objects. `grounds` are those that their search has used: they tell whether an object touches what
+/// is below it. Gaps are those to the support itself, or to the top of the object below. With `snap`, what touches
+/// something is put exactly onto it.
+pub fn contacts(
+    bodies: &[Option<Body>],
+    grounds: &[Option<Ground>],
+    support: Option<&Plane>,
+    camera: &Pinhole,
+    snap: bool,
+) -> Vec<Option<Contact>> {
+    let mut shifts = vec![0.0; bodies.len()];
+    let mut contacts: Vec<Option<Contact>> = vec![None; bodies.len()];
+    // From below, so that what is on top moves with what is below it.
+    let mut order: Vec<usize> = Vec::new();
+    let low = |i: &usize| {
+        let known = bodies[*i].as_ref().zip(grounds[*i].as_ref());
+        // Over the support itself: the ground of what is on top is raised.
+        known.map_or(0.0, |(body, ground)| heights(body, &ground.plane)[0] - ground.plane.d)
+    };
+    for i in 0..bodies.len() {
+        let place = order.iter().position(|k| low(k) > low(&i)).unwrap_or(order.len());
+        order.insert(place, i);
+    }
+    for i in order {
+        let Some(body) = &bodies[i] else { continue };
+        let mut contact =
+            Contact { rests_on: None, gap_m: None, shared_volume: shared(i, bodies, camera), snapped_m: 0.0 };
+        if let Some((ground, support)) = grounds.get(i).copied().flatten().zip(support) {
+            let low = heights(body, support)[0];
+            let on = ground.on.and_then(|k| bodies[k].as_ref().map(|below| (k, below)));
+            let top = on.map_or(0.0, |(k, below)| heights(below, support)[1] + shifts[k]);
+            let gap = low - top;
+            let seen = if on.is_some() { gap } else { heights(body, &ground.plane)[0] };
+            if seen.abs() <= TOUCHES[0] + TOUCHES[1] * diameter(body) {
+                contact.rests_on = Some(ground.on.map_or(RestsOn::Support, RestsOn::Object));
+                if snap {
+                    shifts[i] = -gap;
+                    contact.snapped_m = -gap;
+                }
+            }
+            contact.gap_m = Some(gap + contact.snapped_m);
+        }
+        contacts[i] = Some(contact);
+    }
+    contacts
+}
+
+/// The lowest and the highest point of a body over a plane.
+fn heights(body: &Body, plane: &Plane) -> [f64; 2] {
+    body.along.map_or_else(|| extent(body, plane), |along| along.map(|h| h + plane.d))
+}
+
+/// The share of the volume of an object that is inside others.
+fn shared(i: usize, bodies: &[Option<Body>], camera: &Pinhole) -> f64 {
+    let Some(body) = &bodies[i] else { return 0.0 };
+    let (mut own, mut inside) = (0.0, 0.0);
+    for (k, other) in bodies.iter().enumerate() {
+        if let Some(other) = other.as_ref().filter(|_| k != i) {
+            let [volume, shared] = volumes(&body.layer, &other.layer, camera);
+            own = volume;
+            inside += shared;
+        }
+    }
+    if own > 0.0 { (inside / own).min(1.0) } else { 0.0 }
+}

@@ -1,0 +1,138 @@
+//! Placements: what the alignment of an object tells about it to the rest of the scene.
+
+use std::rc::Rc;
+
+use glam::{DVec3, Vec3};
+
+use super::layers::layer;
+use crate::align::task::Given;
+use crate::evidence::observation::Observation;
+use crate::geometry::mesh::Mesh;
+use crate::geometry::similarity::{Similarity, vec3, vector3};
+use crate::precise::Found;
+use crate::precise::pose::CropPose;
+use crate::precise::rounds::Rounds;
+use crate::precise::score::Score;
+use crate::precise::surroundings::{Layer, Neighbourhood};
+use crate::report::Effort;
+
+/// Numbers of a candidate in [`Placement::numbers`].
+const NUMBERS: usize = 21;
+
+/// What the alignment of an object tells.
+#[derive(Debug, Clone)]
+pub struct Placement {
+    /// The candidates, best first.
+    pub found: Vec<Found>,
+    /// The effort of the search that found them.
+    pub effort: Effort,
+    /// Number of images that it drew.
+    pub renders: usize,
+    /// The probability that the best one is right.
+    pub confidence: f64,
+    /// The best pose.
+    pub camera_from_mesh: Similarity,
+    /// The space that the object takes in the best pose.
+    pub body: Body,
+}
+
+/// The space that a posed object takes.
+#[derive(Debug, Clone)]
+pub struct Body {
+    /// Its extreme points, camera frame, metres.
+    pub points: Vec<Vec3>,
+    /// Its layer.
+    pub layer: Rc<Layer>,
+    /// The least and the largest coordinate of all its vertices along the normal of the ground, metres, once that is
+    /// known.
+    pub along: Option<[f64; 2]>,
+}
+
+impl Body {
+    /// Measures the vertices of the mesh in this pose along the normal of the ground.
+    pub fn measured(self, mesh: &Mesh, camera_from_mesh: &Similarity, normal: DVec3) -> Self {
+        let normal = nalgebra::Vector3::from(normal.to_array());
+        // n·(s·R·p + t), with n in the frame of the mesh.
+        let direction =
+            DVec3::from_array((camera_from_mesh.rotation.inverse() * normal * camera_from_mesh.scale).into());
+        let heights = mesh.positions().iter().map(|p| direction.dot(p.as_dvec3()));
+        let [low, high] = heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], h| [a.min(h), b.max(h)]);
+        let offset = normal.dot(&camera_from_mesh.translation);
+        Self { along: Some([low + offset, high + offset]), ..self }
+    }
+}
+
+impl Placement {
+    /// What a search has found; `None` if it has found nothing.
+    pub fn new(rounds: &Rounds, confidence: f64, observation: &Observation) -> Option<Self> {
+        let (found, search) = (&rounds.found, &rounds.search);
+        let camera_from_mesh = found.first()?.pose.similarity(&search.mesh.frame);
+        // Relative to the normalised frame of the mesh.
+        let frame = crate::precise::pose::MeshFrame { center: DVec3::ZERO, diagonal: 1.0 };
+        let pose = found.first()?.pose.similarity(&frame);
+        let points = search.mesh.outermost.iter().map(|p| vec3(&pose.apply(vector3(*p)))).collect();
+        let size = [observation.depth().width(), observation.depth().height()];
+        let layer = Rc::new(layer(&search.mesh.fine, &pose, &observation.camera(), size));
+        Some(Self {
+            found: found.clone(),
+            effort: search.effort(),
+            renders: search.renders,
+            confidence,
+            camera_from_mesh,
+            body: Body { points, layer, along: None },
+        })
+    }
+
+    /// What the search of the object begins with, once it knows its surroundings.
+    pub fn given(&self, known: Neighbourhood) -> Given {
+        let Self { effort, renders, confidence, .. } = *self;
+        Given { found: self.found.clone(), effort, renders, confidence, known }
+    }
+
+    /// The candidates as numbers, without loss.
+    pub fn numbers(&self) -> Vec<f64> {
+        self.found.iter().flat_map(numbers_of).collect()
+    }
+}
+
+fn numbers_of(found: &Found) -> [f64; NUMBERS] {
+    let Found { pose, score, converged, renders } = found;
+    let [qx, qy, qz, qw] = pose.rotation.to_array();
+    let &Score { total, overlap, coverage, depth, normals, outline, hidden, union, counts } = score;
+    let [depths, turns, rims] = counts;
+    let terms = [total, overlap, coverage, depth, normals, outline, hidden, union, depths, turns, rims].map(f64::from);
+    let [a, b, c, d, e, f, g, h, i, j, k] = terms;
+    let more = [f64::from(u8::from(*converged)), *renders as f64];
+    let [place_x, place_y] = pose.place.to_array();
+    let (size, distance) = (pose.size, pose.distance);
+    [qx, qy, qz, qw, size, place_x, place_y, distance, a, b, c, d, e, f, g, h, i, j, k, more[0], more[1]]
+}
+
+/// The candidates of [`Placement::numbers`].
+pub fn found_of(numbers: &[f64]) -> Vec<Found> {
+    let candidate = |n: &[f64; NUMBERS]| {
+        let term = |i: usize| n[8 + i] as f32;
+        Found {
+            pose: CropPose {
+                rotation: glam::DQuat::from_xyzw(n[0], n[1], n[2], n[3]),
+                size: n[4],
+                place: glam::DVec2::new(n[5], n[6]),
+                distance: n[7],
+            },
+            score: Score {
+                total: term(0),
+                overlap: term(1),
+                coverage: term(2),
+                depth: term(3),
+                normals: term(4),
+                outline: term(5),
+                hidden: term(6),
+                union: term(7),
+                counts: [term(8), term(9), term(10)],
+            },
+            converged: n[19] != 0.0,
+            renders: n[20] as usize,
+        }
+    };
+    numbers.as_chunks().0.iter().map(candidate).collect()
+}

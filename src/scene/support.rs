@@ -1,0 +1,224 @@
+//! Support: which plane of the scene the objects stand on, and what each object may stand on.
+
+use glam::{DVec3, Vec3};
+use serde::Serialize;
+
+use super::layers::extremes_along;
+use super::placement::{Body, Placement};
+use super::plane::Plane;
+use super::planes::{FoundPlane, find_planes};
+use crate::geometry::image::{DepthMap, Mask};
+use crate::geometry::order::median;
+use crate::geometry::pinhole::Pinhole;
+
+/// What is known of the support.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum SupportChoice {
+    /// It is found in the depth map.
+    #[default]
+    Auto,
+    /// The plane.
+    Plane(Plane),
+    /// There is none.
+    None,
+}
+
+/// The plane that the objects stand on.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Support {
+    /// The plane.
+    #[serde(flatten)]
+    pub plane: Plane,
+    /// How much of the scene agrees that it is one that things stand on, 0 to 1; 1 for a plane that was given.
+    pub confidence: f64,
+}
+
+/// What an object may stand on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ground {
+    /// The plane near the object: depth maps are bent.
+    pub plane: Plane,
+    /// The gap that halves the credit of the contact, metres.
+    pub gap_m: f64,
+    /// The object whose top it is; `None` for the support.
+    pub on: Option<usize>,
+}
+
+/// The images that the support is found in.
+#[derive(Debug, Clone, Copy)]
+pub struct View<'a> {
+    /// The depth map.
+    pub depth: &'a DepthMap,
+    /// Its camera.
+    pub camera: &'a Pinhole,
+    /// The pixels of all objects, and their rims.
+    pub taken: &'a Mask,
+    /// Seed of the draws.
+    pub seed: u64,
+}
+
+/// Gap that halves the credit of the contact: metres, metres per metre of depth, and relative to the size of the object.
+const GAP: [f64; 3] = [0.002, 0.003, 0.015];
+/// Distance of the lowest point from the plane that halves the credit of standing on it: metres, and relative to the
+/// size.
+const TOUCH: [f64; 2] = [0.01, 0.06];
+/// Least credit of all objects for a plane that is the support.
+const LEAST_CREDIT: f64 = 0.25;
+/// Credit of a plane that faces sideways, relative to one that faces up in the image: cameras are mostly held upright.
+const SIDEWAYS: f64 = 0.5;
+/// Readings around an object that tell how far the plane is bent there, the width of their band relative to the box of
+/// the object, and the largest bend, metres and metres per metre of depth.
+const LOCAL_READINGS: usize = 150;
+const LOCAL_BAND: f64 = 0.35;
+const MAX_BEND: [f64; 2] = [0.004, 0.012];
+/// Largest offset between what things stand on and what the sensor shows of it, metres.
+const MAX_OFFSET_M: f64 = 0.008;
+
+/// The support, and what each object may stand on.
+pub fn find_support(
+    view: &View<'_>,
+    choice: &SupportChoice,
+    placements: &[Option<Placement>],
+) -> (Option<Support>, Vec<Option<Ground>>) {
+    let support = match choice {
+        SupportChoice::None => None,
+        SupportChoice::Plane(plane) => Some(Support { plane: *plane, confidence: 1.0 }),
+        SupportChoice::Auto => {
+            let planes = find_planes(view.depth, view.camera, view.taken, view.seed);
+            chosen(&planes, placements)
+        }
+    };
+    let Some(support) = support else { return (None, vec![None; placements.len()]) };
+    let bent: Vec<Option<Plane>> = placements
+        .iter()
+        .map(|p| p.as_ref().map(|p| support.plane.raised(bend(view, &support.plane, &p.body))))
+        .collect();
+    let offset = common_offset(&bent, placements);
+    let ground = |(i, plane): (usize, &Option<Plane>)| {
+        let plane = plane.as_ref()?.raised(offset);
+        let body = &placements[i].as_ref()?.body;
+        let gap_m = gap_m(body);
+        Some(match below(i, &plane, placements) {
+            Some((on, top)) => Ground { plane: plane.raised(top), gap_m, on: Some(on) },
+            None => Ground { plane, gap_m, on: None },
+        })
+    };
+    let grounds = bent.iter().enumerate().map(ground).collect();
+    (Some(support), grounds)
+}
+
+/// The plane that most objects stand on.
+fn chosen(planes: &[FoundPlane], placements: &[Option<Placement>]) -> Option<Support> {
+    let objects = placements.iter().flatten();
+    let all: f64 = objects.clone().map(|p| 0.2 + p.confidence).sum();
+    let credit = |found: &FoundPlane| {
+        let touching = |p: &Placement| {
+            let gap = extent(&p.body, &found.plane)[0] / (TOUCH[0] + TOUCH[1] * diameter(&p.body));
+            (0.2 + p.confidence) / (1.0 + gap * gap)
+        };
+        let up = found.plane.normal.dot(DVec3::NEG_Y).max(0.0);
+        // A plane that more of the scene lies on is more likely the one that objects stand on.
+        let size = found.share / (found.share + 0.02);
+        objects.clone().map(touching).sum::<f64>() / all.max(1e-9) * (SIDEWAYS + (1.0 - SIDEWAYS) * up) * size
+    };
+    let best =
+        planes.iter().map(|found| (credit(found), found)).fold(None, |best: Option<(f64, &FoundPlane)>, next| {
+            if best.is_none_or(|best| next.0 > best.0) { Some(next) } else { best }
+        })?;
+    let confidence = best.0.min(1.0);
+    (confidence >= LEAST_CREDIT).then_some(Support { plane: best.1.plane, confidence })
+}
+
+/// The lowest and the highest point of a body over a plane.
+pub fn extent(body: &Body, plane: &Plane) -> [f64; 2] {
+    extremes_along(&body.points, plane.normal).map(|h| h + plane.d)
+}
+
+/// The longest side of a body's box, about its diameter.
+pub fn diameter(body: &Body) -> f64 {
+    crate::geometry::cloud::Bounds::of(&body.points).map_or(0.0, |b| f64::from(b.diagonal()))
+}
+
+fn gap_m(body: &Body) -> f64 {
+    GAP[0] + GAP[1] * depth_of(body) + GAP[2] * diameter(body)
+}
+
+fn depth_of(body: &Body) -> f64 {
+    let sum: f64 = body.points.iter().map(|p| f64::from(p.z)).sum();
+    sum / body.points.len().max(1) as f64
+}
+
+/// How far the readings around a body are over the plane.
+fn bend(view: &View<'_>, plane: &Plane, body: &Body) -> f64 {
+    let layer = &body.layer;
+    let (width, height) = (view.depth.width(), view.depth.height());
+    let rows = layer.spans.len() / layer.width.max(1);
+    let band = (LOCAL_BAND * layer.width.max(rows) as f64) as usize + 8;
+    let columns = layer.origin[0].saturating_sub(band)..(layer.origin[0] + layer.width + band).min(width);
+    let lines = layer.origin[1].saturating_sub(band)..(layer.origin[1] + rows + band).min(height);
+    let limit = MAX_BEND[0] + MAX_BEND[1] * depth_of(body);
+    let mut heights = Vec::new();
+    for v in lines {
+        for u in columns.clone() {
+            let i = v * width + u;
+            let z = view.depth.data()[i];
+            if z > 0.0 && view.taken.data()[i] == 0 {
+                let h = plane.height(view.camera.back_project(u as f64, v as f64, f64::from(z)).as_dvec3());
+                if h.abs() < limit {
+                    heights.push(h as f32);
+                }
+            }
+        }
+    }
+    if heights.len() < LOCAL_READINGS {
+        return 0.0;
+    }
+    median(heights.into_iter()).map_or(0.0, f64::from)
+}
+
+/// How far the objects stand over what the depth map shows of the plane, on average: sensors misplace tables.
+fn common_offset(planes: &[Option<Plane>], placements: &[Option<Placement>]) -> f64 {
+    let gap = |(plane, p): (&Option<Plane>, &Option<Placement>)| {
+        let (plane, p) = plane.as_ref().zip(p.as_ref())?;
+        let gap = extent(&p.body, plane)[0];
+        (gap.abs() < 2.0 * gap_m(&p.body) && p.confidence > 0.5).then_some(gap as f32)
+    };
+    let gaps: Vec<f32> = planes.iter().zip(placements).filter_map(gap).collect();
+    let count = gaps.len() as f64;
+    let middle = median(gaps.into_iter()).map_or(0.0, f64::from);
+    // As if one and a half objects had shown none.
+    (middle * count / (count + 1.5)).max(-MAX_OFFSET_M).min(MAX_OFFSET_M)
+}
+
+/// The object that another one stands on, and the height of its top over the plane.
+fn below(i: usize, plane: &Plane, placements: &[Option<Placement>]) -> Option<(usize, f64)> {
+    let body = &placements[i].as_ref()?.body;
+    let tolerance = TOUCH[0] + TOUCH[1] * diameter(body);
+    let low = extent(body, plane)[0];
+    let mut best: Option<(f64, usize, f64)> = None;
+    for (k, other) in placements.iter().enumerate() {
+        let Some(other) = other.as_ref().filter(|_| k != i) else { continue };
+        let top = extent(&other.body, plane)[1];
+        let apart = (low - top).abs();
+        // Nearer to the top of the other than to the plane.
+        if apart < 1.5 * tolerance && apart < low && is_over(body, &other.body, plane) {
+            if best.is_none_or(|(least, ..)| apart < least) {
+                best = Some((apart, k, top));
+            }
+        }
+    }
+    best.map(|(_, k, top)| (k, top))
+}
+
+/// Whether the centre of a body is over another one.
+fn is_over(body: &Body, other: &Body, plane: &Plane) -> bool {
+    let center = body.points.iter().copied().sum::<Vec3>() / body.points.len().max(1) as f32;
+    let across = plane.normal.any_orthonormal_vector();
+    let along = plane.normal.cross(across);
+    (0..24).all(|k| {
+        let (sin, cos) = crate::geometry::angle::sin_cos(core::f64::consts::TAU * f64::from(k) / 24.0);
+        let direction = across * cos + along * sin;
+        let [_, reach] = extremes_along(&other.points, direction);
+        direction.dot(center.as_dvec3()) <= reach
+    })
+}

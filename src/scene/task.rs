@@ -1,0 +1,204 @@
+//! The steps of a scene: each object alone, the support, each object with what the others have told.
+
+use core::borrow::Borrow;
+use std::rc::Rc;
+
+use super::contact::{Contact, contacts};
+use super::placement::{Body, Placement};
+use super::planes::union_of;
+use super::support::{Ground, Support, SupportChoice, View, find_support};
+use crate::align::task::AlignTask;
+use crate::error::Result;
+use crate::evidence::observation::Observation;
+use crate::geometry::image::{DepthMap, Image, Mask};
+use crate::geometry::pinhole::Pinhole;
+use crate::geometry::similarity::Similarity;
+use crate::precise::options::AlignOptions;
+use crate::precise::prepared_mesh::PreparedMesh;
+use crate::precise::surroundings::Neighbourhood;
+use crate::progress::Host;
+use crate::report::Alignment;
+
+/// A scene: one depth map, and the objects in it.
+pub struct Scene<'m> {
+    /// Depth.
+    pub depth: DepthMap,
+    /// Its camera.
+    pub camera: Pinhole,
+    /// The objects.
+    pub objects: Vec<SceneObject<'m>>,
+    /// Masks of what else is known to stand there, without a mesh.
+    pub occluders: Vec<Mask>,
+    /// What they stand on.
+    pub support: SupportChoice,
+    /// Whether objects are put exactly onto what they touch.
+    pub snap: bool,
+}
+
+/// An object of a scene.
+pub struct SceneObject<'m> {
+    /// Its pixels.
+    pub mask: Mask,
+    /// Its mesh.
+    pub mesh: PreparedMesh<'m>,
+    /// What is known of it.
+    pub options: AlignOptions,
+}
+
+/// An object, aligned.
+#[derive(Debug, Clone)]
+pub struct PlacedObject {
+    /// The alignment.
+    pub alignment: Alignment,
+    /// What it rests on.
+    pub contact: Contact,
+}
+
+/// The result of a scene.
+#[derive(Debug)]
+pub struct SceneAlignment {
+    /// Each object, or why it could not be aligned.
+    pub objects: Vec<Result<PlacedObject>>,
+    /// What they stand on.
+    pub support: Option<Support>,
+}
+
+/// Aligns the objects of a scene, one after the other.
+///
+/// # Errors
+/// [`ErrorCode::SizeMismatch`](crate::error::ErrorCode::SizeMismatch) for masks of another size than the depth map.
+/// Errors of one object are in its place of the result.
+pub fn align_scene(scene: &Scene<'_>, host: &mut dyn Host) -> Result<SceneAlignment> {
+    let Scene { depth, camera, objects, occluders, .. } = scene;
+    let masks: Vec<&Mask> = objects.iter().map(|object| &object.mask).chain(occluders).collect();
+    let observation = |i: usize| observation_of(depth, camera, &masks, i);
+    let found: Vec<Result<Placement>> =
+        objects.iter().enumerate().map(|(i, object)| alone(&observation(i)?, object, host)).collect();
+    let (placements, failures): (Vec<_>, Vec<_>) =
+        found.into_iter().map(|f| f.map_or_else(|e| (None, Some(e)), |p| (Some(p), None))).unzip();
+    let taken = union_of(depth.width(), depth.height(), masks.iter().copied());
+    let seed = objects.first().map_or(0, |object| u64::from(object.options.seed));
+    let view = View { depth, camera, taken: &taken, seed };
+    let (support, grounds) = find_support(&view, &scene.support, &placements);
+
+    let mut bodies: Vec<Option<Body>> = Vec::new();
+    let mut aligned: Vec<Result<Alignment>> = Vec::new();
+    for (i, failure) in failures.into_iter().enumerate() {
+        let run = || {
+            let Some(placement) = &placements[i] else { return Err(failure.unwrap_or_else(missing)) };
+            together(&observation(i)?, &objects[i], placement, neighbourhood(i, &placements, &grounds), host)
+        };
+        let (alignment, body) = match run() {
+            Ok((alignment, body)) => (Ok(alignment), Some(body)),
+            Err(error) => (Err(error), None),
+        };
+        aligned.push(alignment);
+        bodies.push(body);
+    }
+    let plane = support.as_ref().map(|support| &support.plane);
+    let contacts = contacts(&bodies, &grounds, plane, camera, scene.snap);
+    let objects = aligned.into_iter().zip(contacts).zip(&grounds).map(|((alignment, contact), ground)| {
+        let (mut alignment, contact) = (alignment?, contact.ok_or_else(missing)?);
+        if let Some(ground) = ground.filter(|_| contact.snapped_m != 0.0) {
+            let mut pose = Similarity::from_column_major(&alignment.camera_from_mesh.matrix)?;
+            pose.translation += nalgebra::Vector3::from((ground.plane.normal * contact.snapped_m).to_array());
+            alignment.camera_from_mesh = (&pose).into();
+        }
+        Ok(PlacedObject { alignment, contact })
+    });
+    Ok(SceneAlignment { objects: objects.collect(), support })
+}
+
+/// The observation of an object, with the pixels of all others.
+///
+/// # Errors
+/// Those of [`Observation::new`].
+pub fn observation_of(depth: &DepthMap, camera: &Pinhole, masks: &[&Mask], object: usize) -> Result<Observation> {
+    let Some(mask) = masks.get(object) else { return Err(missing()) };
+    let observation = Observation::new(depth.clone(), (*mask).clone(), *camera)?;
+    if masks.len() < 2 {
+        return Ok(observation);
+    }
+    let mut others = Image::filled(depth.width(), depth.height(), 0u8);
+    for (_, mask) in masks.iter().enumerate().filter(|(k, _)| *k != object) {
+        for (other, pixel) in others.data_mut().iter_mut().zip(mask.data()) {
+            *other |= u8::from(*pixel != 0);
+        }
+    }
+    observation.with_others(others)
+}
+
+/// Aligns an object alone, and returns what the others need to know.
+///
+/// # Errors
+/// Those of [`AlignTask::step`].
+pub fn alone(observation: &Observation, object: &SceneObject<'_>, host: &mut dyn Host) -> Result<Placement> {
+    // The metrics are those of the result.
+    let options = AlignOptions { metrics: false, ..object.options.clone() };
+    let mut task = AlignTask::new(observation, &object.mesh, options, host)?;
+    searched(&mut task)
+}
+
+fn searched<'m, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>>(
+    task: &mut AlignTask<'_, O, M>,
+) -> Result<Placement> {
+    while !task.step_search(&mut || false)? {}
+    placement_of(task)
+}
+
+/// What a task whose search has ended tells the others.
+///
+/// # Errors
+/// [`ErrorCode::Internal`](crate::error::ErrorCode::Internal) for a search that has not ended.
+pub fn placement_of<'m, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>>(
+    task: &AlignTask<'_, O, M>,
+) -> Result<Placement> {
+    let (rounds, confidence) = task.searched().ok_or_else(missing)?;
+    Placement::new(rounds, confidence, task.observation()).ok_or_else(missing)
+}
+
+/// What an object is told about the others.
+pub fn neighbourhood(object: usize, placements: &[Option<Placement>], grounds: &[Option<Ground>]) -> Neighbourhood {
+    let ground = grounds.get(object).copied().flatten().map(|g| (g.plane.normal, g.plane.d, g.gap_m));
+    let others = placements.iter().enumerate().filter(|(k, _)| *k != object).filter_map(|(_, p)| p.as_ref());
+    // A body that is probably elsewhere takes no space.
+    let layers = others.filter(|p| p.confidence > SOLID).map(|p| Rc::clone(&p.body.layer)).collect();
+    Neighbourhood { ground, layers }
+}
+
+/// Confidence from which on an object takes space.
+const SOLID: f64 = 0.5;
+
+/// Aligns an object with what the others have told.
+///
+/// # Errors
+/// Those of [`AlignTask::step`].
+pub fn together(
+    observation: &Observation,
+    object: &SceneObject<'_>,
+    placement: &Placement,
+    known: Neighbourhood,
+    host: &mut dyn Host,
+) -> Result<(Alignment, Body)> {
+    let normal = known.ground.map(|(normal, ..)| normal);
+    let given = placement.given(known);
+    let task = AlignTask::new(observation, &object.mesh, object.options.clone(), host)?;
+    let mut task = task.with_given(given);
+    let Placement { body, camera_from_mesh, .. } = searched(&mut task)?;
+    let body = match normal {
+        Some(normal) => body.measured(object.mesh.mesh(), &camera_from_mesh, normal),
+        None => body,
+    };
+    Ok((task.finish()?, body))
+}
+
+/// The error for a step without what the one before should have left.
+pub fn missing() -> crate::error::Error {
+    crate::error::Error::new(
+        crate::error::ErrorCode::Internal,
+        "scene",
+        "an object without a pose",
+        "a pose of every object",
+        "Please report this.",
+    )
+}

@@ -1,0 +1,205 @@
+//! Scenes: boxes on a floor, on one another and in the air.
+
+use glam::{DVec3, Vec3};
+use nalgebra::{Rotation3, Vector3};
+use sim3align::align::align;
+use sim3align::evidence::observation::Observation;
+use sim3align::geometry::image::{DepthMap, Image, Mask};
+use sim3align::geometry::mesh::Mesh;
+use sim3align::geometry::pinhole::Pinhole;
+use sim3align::geometry::random::Random;
+use sim3align::geometry::rasteriser::Rasteriser;
+use sim3align::geometry::similarity::Similarity;
+use sim3align::precise::options::{AlignOptions, Quality};
+use sim3align::precise::prepared_mesh::PreparedMesh;
+use sim3align::progress::Silent;
+use sim3align::scene::contact::RestsOn;
+use sim3align::scene::placement::{Placement, found_of};
+use sim3align::scene::support::SupportChoice;
+use sim3align::scene::task::{Scene, SceneAlignment, SceneObject, align_scene, alone};
+use wasm_bindgen_test::wasm_bindgen_test;
+
+use super::shapes::{cuboid, mapped};
+
+const WIDTH: usize = 200;
+const HEIGHT: usize = 150;
+
+fn camera() -> Pinhole {
+    Pinhole::new(220.0, 220.0, 99.5, 74.5).unwrap()
+}
+
+/// A wedge: a box whose top slopes, so that no turn maps it onto itself.
+fn wedge(extent: Vec3) -> Mesh {
+    mapped(&cuboid(extent), |p| {
+        if p.y < 0.0 { Vec3::new(0.7 * p.x + 0.05 * extent.x, p.y * (1.0 + 0.5 * p.x / extent.x), p.z) } else { p }
+    })
+}
+
+/// Camera from world: world x right, y down, the floor at y = 0; the camera 0.6 m over it and tilted.
+fn view() -> Similarity {
+    let turn = Rotation3::from_axis_angle(&Vector3::x_axis(), -0.6);
+    Similarity { scale: 1.0, rotation: turn, translation: Vector3::new(0.0, 0.08, 0.95) }
+}
+
+/// A mesh, and its place in the world.
+struct Thing {
+    mesh: Mesh,
+    world_from_mesh: Similarity,
+}
+
+fn thing(extent: [f32; 3], at: [f64; 3], turn: f64) -> Thing {
+    let rotation = Rotation3::from_axis_angle(&Vector3::y_axis(), turn);
+    let mesh = wedge(Vec3::from(extent));
+    Thing { mesh, world_from_mesh: Similarity { scale: 1.0, rotation, translation: Vector3::from(at) } }
+}
+
+/// The depth map of things on a floor, and their masks.
+fn seen(things: &[Thing], noise: f64) -> (DepthMap, Vec<Mask>) {
+    let camera = camera();
+    let up = view().rotation * Vector3::new(0.0, -1.0, 0.0);
+    let d = -up.dot(&view().translation);
+    let mut random = Random::new(7, 920);
+    let mut depth: Vec<f32> = (0..WIDTH * HEIGHT)
+        .map(|i| {
+            let ray = camera.back_project((i % WIDTH) as f64, (i / WIDTH) as f64, 1.0).as_dvec3();
+            let z = -d / DVec3::from_array(up.into()).dot(ray);
+            if z > 0.0 && z < 5.0 { z as f32 } else { 0.0 }
+        })
+        .collect();
+    let mut owner = vec![0usize; depth.len()];
+    let mut rasteriser = Rasteriser::new();
+    for (k, thing) in things.iter().enumerate() {
+        rasteriser.render_depth(&thing.mesh, &view().compose(&thing.world_from_mesh), &camera, WIDTH, HEIGHT);
+        for (i, z) in rasteriser.depth().iter().enumerate() {
+            if *z > 0.0 && (depth[i] == 0.0 || *z < depth[i]) {
+                (depth[i], owner[i]) = (*z, k + 1);
+            }
+        }
+    }
+    for z in &mut depth {
+        *z *= (1.0 + noise * (random.uniform() - 0.5)) as f32;
+    }
+    let mask = |k: usize| {
+        let pixels = owner.iter().map(|o| u8::from(*o == k + 1)).collect();
+        Image::new("mask", WIDTH, HEIGHT, pixels).unwrap()
+    };
+    (DepthMap::from_metres(WIDTH, HEIGHT, depth).unwrap(), (0..things.len()).map(mask).collect())
+}
+
+fn options() -> AlignOptions {
+    AlignOptions { quality: Quality::Fast, metrics: false, ..AlignOptions::default() }
+}
+
+fn scene_of<'m>(things: &'m [Thing], support: SupportChoice, snap: bool) -> Scene<'m> {
+    let (depth, masks) = seen(things, 0.002);
+    let object = |(thing, mask): (&'m Thing, Mask)| SceneObject {
+        mask,
+        mesh: PreparedMesh::borrowed(&thing.mesh),
+        options: options(),
+    };
+    let objects = things.iter().zip(masks).map(object).collect();
+    Scene { depth, camera: camera(), objects, occluders: Vec::new(), support, snap }
+}
+
+fn pose(scene: &SceneAlignment, i: usize) -> Similarity {
+    let placed = scene.objects[i].as_ref().unwrap();
+    Similarity::from_column_major(&placed.alignment.camera_from_mesh.matrix).unwrap()
+}
+
+/// Two wedges on the floor, one on top of another, and one in the air.
+fn things() -> Vec<Thing> {
+    vec![
+        thing([0.16, 0.1, 0.12], [-0.16, -0.05, 0.0], 0.4),
+        thing([0.1, 0.16, 0.08], [0.12, -0.08, 0.06], -0.3),
+        thing([0.08, 0.07, 0.07], [-0.17, -0.134, 0.0], 1.1),
+        thing([0.09, 0.07, 0.08], [0.04, -0.24, -0.1], 0.8),
+    ]
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn what_stands_lies_and_hangs_is_told_apart() {
+    let things = things();
+    let scene = scene_of(&things, SupportChoice::Auto, false);
+    let aligned = align_scene(&scene, &mut Silent).unwrap();
+    let support = aligned.support.unwrap();
+    let up = view().rotation * Vector3::new(0.0, -1.0, 0.0);
+    assert!(support.plane.normal.dot(DVec3::from_array(up.into())) > 0.9999, "{support:?}");
+    assert!((support.plane.d + up.dot(&view().translation)).abs() < 0.002, "{support:?}");
+    let contacts: Vec<_> = aligned.objects.iter().map(|o| o.as_ref().unwrap().contact.clone()).collect();
+    let rests: Vec<_> = contacts.iter().map(|contact| contact.rests_on).collect();
+    assert_eq!(rests[0], Some(RestsOn::Support), "{contacts:?}");
+    assert_eq!(rests[1], Some(RestsOn::Support), "{contacts:?}");
+    assert_eq!(rests[2], Some(RestsOn::Object(0)), "{contacts:?}");
+    assert_eq!(rests[3], None, "{contacts:?}");
+    // It is not pulled down: its true height is 20 cm.
+    let hanging = contacts[3].gap_m.unwrap();
+    assert!((hanging - 0.205).abs() < 0.02, "{hanging}");
+    for (i, thing) in things.iter().enumerate() {
+        let truth = view().compose(&thing.world_from_mesh);
+        let found = pose(&aligned, i);
+        assert!((found.scale / truth.scale - 1.0).abs() < 0.05, "{i}: {}", found.scale);
+        assert!(found.rotation_angle_to(&truth).to_degrees() < 6.0, "{i}: {}", found.rotation_angle_to(&truth));
+    }
+    assert!(contacts.iter().all(|contact| contact.shared_volume < 0.05), "{contacts:?}");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn snapping_closes_gaps_along_the_normal_only() {
+    let things = things();
+    let loose = align_scene(&scene_of(&things, SupportChoice::Auto, false), &mut Silent).unwrap();
+    let snapped = align_scene(&scene_of(&things, SupportChoice::Auto, true), &mut Silent).unwrap();
+    let normal = snapped.support.unwrap().plane.normal;
+    for i in 0..things.len() {
+        let contact = &snapped.objects[i].as_ref().unwrap().contact;
+        let moved = pose(&snapped, i).translation - pose(&loose, i).translation;
+        let moved = DVec3::from_array(moved.into());
+        assert!((moved - normal * contact.snapped_m).length() < 1e-12, "{i}: {moved}");
+        match contact.rests_on {
+            Some(_) => assert!(contact.gap_m.unwrap().abs() < 1e-9, "{i}: {contact:?}"),
+            None => assert_eq!(contact.snapped_m, 0.0),
+        }
+    }
+}
+
+/// `align` is a scene of one object without support.
+#[wasm_bindgen_test(unsupported = test)]
+fn one_object_without_support_is_align() {
+    let things = &things()[1..2];
+    let scene = scene_of(things, SupportChoice::None, false);
+    let aligned = align_scene(&scene, &mut Silent).unwrap();
+    assert!(aligned.support.is_none());
+    let object = aligned.objects[0].as_ref().unwrap();
+    let observation = Observation::new(scene.depth.clone(), scene.objects[0].mask.clone(), camera()).unwrap();
+    let expected = align(&observation, &things[0].mesh, &options(), &mut Silent).unwrap();
+    assert_eq!(object.alignment.camera_from_mesh, expected.camera_from_mesh);
+    assert_eq!(object.alignment.confidence, expected.confidence);
+    assert_eq!(object.alignment.alternatives, expected.alternatives);
+    assert_eq!(object.alignment.uncertainty, expected.uncertainty);
+    assert_eq!(object.alignment.diagnostics.score, expected.diagnostics.score);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn candidates_survive_as_numbers() {
+    let things = &things()[..1];
+    let scene = scene_of(things, SupportChoice::None, false);
+    let observation = Observation::new(scene.depth.clone(), scene.objects[0].mask.clone(), camera()).unwrap();
+    let placement: Placement = alone(&observation, &scene.objects[0], &mut Silent).unwrap();
+    let copies = found_of(&placement.numbers());
+    assert_eq!(copies.len(), placement.found.len());
+    for (copy, found) in copies.iter().zip(&placement.found) {
+        assert_eq!(copy.pose, found.pose);
+        assert_eq!(copy.score, found.score);
+        assert_eq!((copy.converged, copy.renders), (found.converged, found.renders));
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn an_object_that_fails_leaves_the_others() {
+    let things = things();
+    let mut scene = scene_of(&things[..2], SupportChoice::Auto, false);
+    scene.objects[1].mask = Image::filled(WIDTH, HEIGHT, 0);
+    let aligned = align_scene(&scene, &mut Silent).unwrap();
+    assert!(aligned.objects[0].is_ok());
+    let error = aligned.objects[1].as_ref().err().unwrap();
+    assert_eq!(error.code.as_str(), "EMPTY_MASK");
+}
