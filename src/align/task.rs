@@ -220,7 +220,8 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
                 let concluded = precise::conclude(&rounds, mesh.mesh(), &self.options, None)?;
                 State::Searched(clouds, rounds, Box::new(concluded))
             }
-            State::Searched(clouds, rounds, concluded) => match observation.photo().filter(|_| mesh.colors().is_some()) {
+            State::Searched(clouds, rounds, concluded) => match observation.photo().filter(|_| mesh.colors().is_some())
+            {
                 Some(photo) => {
                     let stage = ColorStage::new(&rounds, photo);
                     State::Comparing(clouds, rounds, Box::new(stage))

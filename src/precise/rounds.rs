@@ -104,7 +104,7 @@ impl Rounds {
 
     /// Adds poses from another source to those of the first refinement.
     pub fn propose(&mut self, poses: impl IntoIterator<Item = CropPose>) {
-        let list = if self.index < FIRST_REFINEMENT { &mut self.others[1] } else { &mut self.poses };
+        let list = if self.index < FIRST_REFINEMENT { &mut self.others } else { &mut self.poses };
         list.extend(poses);
     }
 

@@ -205,7 +205,7 @@ async function glbOf({ input }: SceneOnDisk, { objects, support }: SceneResult):
     const given = input.objects[i]?.mesh;
     if (object.error !== undefined || given === undefined) continue;
     const { bytes, format } = given as { bytes: Uint8Array; format?: string };
-    const mesh = format === "glb" ? bytes : await readMesh(given, () => formatsModule.load());
+    const mesh = format === "glb" ? bytes : (await readMesh(given, () => formatsModule.load(), false)).mesh;
     placed.push({ name: object.name, mesh, transform: object });
   }
   const camera = cameraOf(input);

@@ -71,7 +71,7 @@ export async function alignScene(
       return { ...named, ...moved(alignment, grounds[i] ?? null, contact.snappedM), contact };
     });
     const result: SceneResult = { objects, support, metrics: metricsOf(objects), warnings: [] };
-    return withWarnings(result, scene.warnings);
+    return withWarnings(result, { camera: scene.warnings, colors: [] });
   } finally {
     run.end();
   }

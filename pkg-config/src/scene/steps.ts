@@ -1,6 +1,5 @@
 /** What the steps of a scene hand over to one another; see `src/bindings/scene.rs`. */
-import type { CoreAlignment } from "../core.js";
-import type { Contact } from "../generated/types.js";
+import type { Alignment, Contact } from "../generated/types.js";
 
 /** The space that an object takes: for each pixel of a part of the image, where the line of sight enters and leaves it. */
 export interface Layer {
@@ -39,7 +38,7 @@ export interface Known {
 /** The result of a step of an object; the alignment belongs to the last one. */
 export interface Placed {
   placement: Placement;
-  alignment?: CoreAlignment;
+  alignment?: Alignment;
 }
 
 /** A step of an object that runs in slices. */
