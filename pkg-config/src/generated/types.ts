@@ -8,6 +8,11 @@ import type { Direction, ScaleOption, Sim3Like, SymmetryOption } from "../argume
 export type Preset = "precise" | "paper";
 
 /**
+ * What the comparison of colours came to.
+ */
+export type ColorVerdict = "hidden" | "uniform" | "unmatched" | "agreed" | "decided";
+
+/**
  * How much work the search does.
  */
 export type Quality = "auto" | "fast" | "balanced" | "best";
@@ -429,7 +434,12 @@ normalConsistency: number | null,
 /**
  * Mean |rendered − observed| depth over the mask's pixels that have both, millimetres; `null` where none has.
  */
-depthMaeMm: number | null, };
+depthMaeMm: number | null, 
+/**
+ * Correlation of the mesh's colours with the photo inside the mask, without the shading that normals explain, −1 to
+ * 1, higher is better; absent where the mesh or the photo has no colours. Not of the paper.
+ */
+colorAgreement?: number, };
 
 /**
  * Errors of an estimate relative to the true pose, up to the symmetry of the object.
@@ -548,6 +558,25 @@ outline: number,
 hidden: number, };
 
 /**
+ * What the colours of photo and mesh contributed to an alignment.
+ */
+export type ColorReport = { 
+/**
+ * What the comparison came to.
+ */
+verdict: ColorVerdict, 
+/**
+ * Correlation of the colours of mesh and photo at the resulting pose, without the shading that normals explain,
+ * −1 to 1.
+ */
+agreement: number, 
+/**
+ * Lead over the next pose that shape allows and that looks different, in units of the correlation; `null` where there
+ * is none.
+ */
+margin: number | null, };
+
+/**
  * Another pose that explains the observation: a transform like the alignment's own.
  */
 export type Alternative = { 
@@ -559,6 +588,11 @@ score: number,
  * The angle between its rotation and the alignment's, in degrees, 0 to 180.
  */
 turnDeg: number, 
+/**
+ * By how much its colours agree less with the photo than the alignment's, as a difference of correlations; present
+ * where colours were compared.
+ */
+colorMargin?: number, 
 /**
  * s, target units per source unit; for `align`, metres per mesh unit.
  */
@@ -667,6 +701,10 @@ score: number,
  * The terms of the score.
  */
 terms: ScoreTerms, 
+/**
+ * What colour contributed; present where photo and mesh have colours.
+ */
+color?: ColorReport, 
 /**
  * The method that ran.
  */
