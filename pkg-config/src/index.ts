@@ -21,6 +21,8 @@ export type {
   Contact,
   Counts,
   Diagnostics,
+  ColorReport,
+  ColorVerdict,
   Effort,
   EvaluationDiagnostics,
   ExtentAxis,
