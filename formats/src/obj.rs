@@ -146,8 +146,11 @@ impl<'a> ObjColors<'a> {
     }
 }
 
-/// Calls `visit` with the line number and the words of each statement.
-fn for_each_statement(bytes: &[u8], visit: &mut dyn FnMut(usize, &[&[u8]]) -> Result<()>) -> Result<()> {
+/// Receives the line number and the words of a statement.
+type Visit<'v> = dyn FnMut(usize, &[&[u8]]) -> Result<()> + 'v;
+
+/// Calls `visit` with each statement.
+fn for_each_statement(bytes: &[u8], visit: &mut Visit<'_>) -> Result<()> {
     let mut statement: Vec<&[u8]> = Vec::new();
     for (i, line) in lines(bytes).enumerate() {
         let code = line.split(|&b| b == b'#').next().unwrap_or_default().trim_ascii_end();

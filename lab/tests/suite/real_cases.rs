@@ -97,7 +97,7 @@ fn the_colors_of_a_mesh_at_its_true_pose_are_those_of_the_photo() {
         let moment = |a: usize, b: usize| pairs.iter().map(|p| (p[a] - means[a]) * (p[b] - means[b])).sum::<f64>();
         let correlation = moment(0, 1) / (moment(0, 0) * moment(1, 1)).sqrt();
         println!("{}: {} points, means {means:?}, correlation {correlation:.3}", case.name, pairs.len());
-        assert!(pairs.len() > 1000 && correlation > 0.3, "{}: {correlation}", case.name);
+        assert!(pairs.len() > 1000 && correlation > 0.25, "{}: {correlation}", case.name);
     }
     assert!(tried > 0, "no case has a truth, a photo and colours");
 }
