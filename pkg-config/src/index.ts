@@ -18,11 +18,11 @@ export {
 } from "./generated/options.js";
 export type {
   Alternative,
+  ColorReport,
+  ColorVerdict,
   Contact,
   Counts,
   Diagnostics,
-  ColorReport,
-  ColorVerdict,
   Effort,
   EvaluationDiagnostics,
   ExtentAxis,
