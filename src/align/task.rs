@@ -50,6 +50,9 @@ pub struct Given {
     pub known: Neighbourhood,
 }
 
+/// Loss of confidence by which the surroundings contradict what an object alone shows.
+const CONTRADICTION: f64 = 0.3;
+
 /// The progress of the task.
 enum State {
     /// Nothing.
@@ -229,6 +232,17 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
             }
             State::Resumed(clouds, rounds) => {
                 let concluded = precise::conclude(&rounds, mesh.mesh(), &self.options, None)?;
+                if let Some(given) = &self.given
+                    && concluded.1.confidence < given.confidence - CONTRADICTION
+                {
+                    // Surroundings that spoil a good pose are those of a neighbour that is misplaced itself.
+                    let alone = Given { known: Neighbourhood::default(), ..given.clone() };
+                    let State::Resumed(clouds, rounds) = self.resume(clouds, &alone, stages)? else {
+                        return Err(over());
+                    };
+                    let concluded = precise::conclude(&rounds, mesh.mesh(), &self.options, None)?;
+                    return Ok(State::Searched(clouds, rounds, Box::new(concluded)));
+                }
                 State::Searched(clouds, rounds, Box::new(concluded))
             }
             State::Searched(clouds, rounds, concluded) => match observation.photo().filter(|_| mesh.colors().is_some())

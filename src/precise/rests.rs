@@ -36,6 +36,8 @@ const FACE_TILT: f64 = 0.2;
 /// diagonal.
 const TIP: f64 = 0.1;
 const FIRM_RADIUS: f64 = 0.1;
+/// The rise below which it falls over, relative to the diagonal and the tilt.
+const FALLS: f64 = -0.02;
 
 /// The attitudes of a mesh in its normalised frame.
 pub fn rests(mesh: &Mesh) -> Vec<Rest> {
@@ -48,7 +50,7 @@ pub fn rests(mesh: &Mesh) -> Vec<Rest> {
         if rests.len() >= MOST || rests.iter().any(|known| (known.down - down).length() < APART) {
             continue;
         }
-        let rest = standing(mesh, center, &extremes, down);
+        let Some(rest) = standing(mesh, center, &extremes, down) else { continue };
         if rests.iter().all(|known| (known.down - rest.down).length() >= APART) {
             rests.push(rest);
         }
@@ -112,8 +114,9 @@ fn rolled(points: &[DVec3], mut down: DVec3) -> DVec3 {
     down
 }
 
-/// The attitude near a direction: the face that touches the ground, and how firmly it stands.
-fn standing(mesh: &Mesh, center: DVec3, extremes: &[DVec3], rolled: DVec3) -> Rest {
+/// The attitude near a direction: the face that touches the ground, and how firmly it stands; `None` where it falls over,
+/// balanced on an edge.
+fn standing(mesh: &Mesh, center: DVec3, extremes: &[DVec3], rolled: DVec3) -> Option<Rest> {
     let mut down = rolled;
     let mut base = center + down * lowest(extremes, down).dot(down);
     for _ in 0..2 {
@@ -136,20 +139,23 @@ fn standing(mesh: &Mesh, center: DVec3, extremes: &[DVec3], rolled: DVec3) -> Re
     let angles = (0..8).map(|k| core::f64::consts::PI * f64::from(k) / 8.0);
     let loosest =
         angles.map(|angle| (rise(angle), angle)).fold((f64::INFINITY, 0.0), |a, b| if b.0 < a.0 { b } else { a });
+    if loosest.0 < FALLS {
+        return None;
+    }
     let firm = |radius: f64| (radius / FIRM_RADIUS).max(0.0).min(1.0);
     let (sin, cos) = crate::geometry::angle::sin_cos(loosest.1);
     let moves = across * cos + other * sin;
     // To move `down` along `moves`, it tips about the axis perpendicular to it.
     let tips = down.cross(moves);
     let along = rise(loosest.1 + core::f64::consts::FRAC_PI_2);
-    Rest { down, base, axes: [tips, moves], firmness: [firm(loosest.0), firm(along)] }
+    Some(Rest { down, base, axes: [tips, moves], firmness: [firm(loosest.0), firm(along)] })
 }
 
 /// The unit normal, outwards, and the centre of the face that touches the ground.
 fn face(mesh: &Mesh, center: DVec3, extremes: &[DVec3], down: DVec3) -> Option<(DVec3, DVec3)> {
     let ground = lowest(extremes, down).dot(down) - BASE;
-    let (mut area, mut sum, mut spread) = (0.0, DVec3::ZERO, DMat3::ZERO);
-    let mut parts: Vec<(DVec3, f64)> = Vec::new();
+    let (mut area, mut sum, mut second) = (0.0, DVec3::ZERO, DMat3::ZERO);
+    let outer = |v: DVec3| DMat3::from_cols(v * v.x, v * v.y, v * v.z);
     for triangle in mesh.triangles() {
         let [a, b, c] = mesh.corners(*triangle);
         let normal = (b - a).cross(c - a);
@@ -157,23 +163,22 @@ fn face(mesh: &Mesh, center: DVec3, extremes: &[DVec3], down: DVec3) -> Option<(
         if normal.dot(down.as_vec3()).abs() < FACING * normal.length() {
             continue;
         }
-        let middle = (a + b + c).as_dvec3() / 3.0 - center;
-        if middle.dot(down) >= ground {
-            parts.push((middle, 0.5 * f64::from(normal.length())));
+        let [a, b, c] = [a, b, c].map(|p| p.as_dvec3() - center);
+        let all = a + b + c;
+        if all.dot(down) < 3.0 * ground {
+            continue;
         }
-    }
-    for (middle, weight) in &parts {
+        let weight = 0.5 * f64::from(normal.length());
         area += weight;
-        sum += *middle * *weight;
+        sum += all * (weight / 3.0);
+        // ∫ x xᵀ over a triangle is A/12 · (Σ vᵢvᵢᵀ + (Σ vᵢ)(Σ vᵢ)ᵀ).
+        second += (outer(a) + outer(b) + outer(c) + outer(all)) * (weight / 12.0);
     }
     if area < BASE_AREA {
         return None;
     }
     let mean = sum / area;
-    for (middle, weight) in &parts {
-        let v = *middle - mean;
-        spread += DMat3::from_cols(v * v.x, v * v.y, v * v.z) * *weight;
-    }
+    let spread = second * (1.0 / area) - outer(mean);
     let eigen = SymmetricEigen::of(spread);
     // A strip has no plane.
     if eigen.values[1] < 10.0 * eigen.values[0] {

@@ -173,14 +173,13 @@ impl Ground {
         equations.add(&jacobian, gap, self.weight * SHARES[0] * touch(gap).1);
 
         let Some(rest) = rest else { return };
-        let down = pose.rotation * rest.down;
         let credit = level(tilt);
         let weight =
             2.0 * self.weight * SHARES[1] * near_ground(gap) * firmness(rest) * credit * credit / (TILT * TILT);
         for (k, error) in tilt.into_iter().enumerate() {
             let axis = pose.rotation * rest.axes[1 - k] * rest.firmness[k].sqrt();
-            // δ(R·down) = ω × R·down; the axes are held, because errors along `down` are of second order.
-            let turn = down.cross(axis);
+            // The tilt is axis·n, because the axis is perpendicular to `down`, and δ(axis) = ω × axis.
+            let turn = axis.cross(self.normal);
             equations.add(&[turn.x, turn.y, turn.z, 0.0, 0.0, 0.0, 0.0], error, weight);
         }
     }

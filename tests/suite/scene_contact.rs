@@ -37,10 +37,10 @@ fn a_box_stands_on_its_six_sides_and_a_ball_on_none() {
 
 #[wasm_bindgen_test(unsupported = test)]
 fn a_rough_underside_is_stood_on_as_a_whole() {
-    let mut random = Random::new(3, 910);
     // A plate of many quads whose heights differ by a hundredth.
+    let rough = |p: Vec3| Random::new(u64::from((p.x + 3.0 * p.y).to_bits()), 910).uniform() as f32;
     let bumpy = mapped(&sphere(0.5, 40), |p| {
-        let z = if p.z < -0.2 { -0.2 - 0.01 * random.uniform() as f32 } else { p.z };
+        let z = if p.z < -0.2 { -0.2 - 0.01 * rough(p) } else { p.z };
         Vec3::new(p.x, p.y, z)
     });
     let found = rests(&bumpy);

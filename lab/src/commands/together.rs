@@ -20,6 +20,7 @@ Aligns every object of each scene alone and all of them together, and prints bot
 
   --scenes N       N cluttered scenes; 100 are 338 pairs
   --arranged N     N scenes of two to seven objects, which also lean, hang and stand on each other
+  --from N         leaves out the scenes before this one
   --prior P        what made their meshes: detailed (default) or smooth
   --set-seed S     seed of the set, default 0
   --cases DIR...   scene folders: depth.*, camera.json, objects/NAME/{mask.*, mesh.*, gt.json}, plane.json
@@ -40,6 +41,7 @@ enum Source {
 struct Arguments {
     scenes: usize,
     arranged: usize,
+    from: usize,
     prior: Prior,
     set_seed: u64,
     cases: Vec<PathBuf>,
@@ -55,6 +57,7 @@ fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Error>
     let mut arguments = Arguments {
         scenes: 0,
         arranged: 0,
+        from: 0,
         prior: Prior::Detailed,
         set_seed: 0,
         cases: Vec::new(),
@@ -69,6 +72,7 @@ fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Error>
             Long("help") | Short('h') => return Ok(None),
             Long("scenes") => arguments.scenes = parser.value()?.parse()?,
             Long("arranged") => arguments.arranged = parser.value()?.parse()?,
+            Long("from") => arguments.from = parser.value()?.parse()?,
             Long("prior") => {
                 let name = parser.value()?.string()?;
                 arguments.prior = Prior::from_name(&name).map_err(|error: Error| error.to_string())?;
@@ -103,7 +107,9 @@ pub fn main(parser: lexopt::Parser) -> Result<(), Failure> {
     };
     let set = SceneSet::new(arguments.set_seed, arguments.scenes);
     let arranged = SceneSet::arranged(arguments.set_seed, arguments.arranged);
-    let generated = (0..arguments.scenes).map(Source::Generated).chain((0..arguments.arranged).map(Source::Arranged));
+    let generated = (arguments.from..arguments.scenes)
+        .map(Source::Generated)
+        .chain((arguments.from..arguments.arranged).map(Source::Arranged));
     let sources: Vec<Source> = arguments.cases.iter().cloned().map(Source::Folder).chain(generated).collect();
     let run = |source: &Source| {
         let scene = match source {
