@@ -184,12 +184,15 @@ pub fn together(
     let given = placement.given(known);
     let task = AlignTask::new(observation, &object.mesh, object.options.clone(), host)?;
     let mut task = task.with_given(given);
-    let Placement { body, camera_from_mesh, .. } = searched(&mut task)?;
+    let Placement { body, .. } = searched(&mut task)?;
+    let alignment = task.finish()?;
+    // Colours may have chosen another of the poses.
+    let pose = Similarity::from_column_major(&alignment.camera_from_mesh.matrix)?;
     let body = match normal {
-        Some(normal) => body.measured(object.mesh.mesh(), &camera_from_mesh, normal),
+        Some(normal) => body.measured(object.mesh.mesh(), &pose, normal),
         None => body,
     };
-    Ok((task.finish()?, body))
+    Ok((alignment, body))
 }
 
 /// The error for a step without what the one before should have left.

@@ -38,7 +38,7 @@ type Task = AlignTask<'static, Observation, Rc<PreparedMesh<'static>>>;
 pub struct PlaceTask {
     task: RefCell<Task>,
     /// What the search has found, once it has ended.
-    placement: RefCell<Option<JsValue>>,
+    placement: RefCell<Option<Placement>>,
     /// Whether the step ends with the search.
     is_alone: bool,
     /// The mesh, and the normal of the ground.
@@ -88,17 +88,20 @@ impl PlaceTask {
                 if !task.step_search(pause)? {
                     return Ok(None);
                 }
-                let mut placement = placement_of(&task)?;
-                if let Some((mesh, normal)) = &self.measured {
-                    placement.body = placement.body.measured(mesh.mesh(), &placement.camera_from_mesh, *normal);
-                }
-                self.placement.replace(Some(placement_object(&placement)));
+                self.placement.replace(Some(placement_of(&task)?));
             }
             if self.is_alone { Ok(Some(None)) } else { Ok(task.step(pause)?.map(Some)) }
         };
         let done: Result<Option<Option<Alignment>>> = step();
         let Some(alignment) = done.map_err(|error| to_js(&error))? else { return Ok(JsValue::UNDEFINED) };
-        let placement = self.placement.take().unwrap_or(JsValue::UNDEFINED);
+        let Some(mut placement) = self.placement.take() else { return Ok(JsValue::UNDEFINED) };
+        if let (Some(alignment), Some((mesh, normal))) = (&alignment, &self.measured) {
+            // Colours may have chosen another of the poses.
+            let pose = Similarity::from_column_major(&alignment.camera_from_mesh.matrix);
+            let pose = pose.map_err(|error| to_js(&error))?;
+            placement.body = placement.body.measured(mesh.mesh(), &pose, *normal);
+        }
+        let placement = placement_object(&placement);
         let alignment = alignment.map_or(Ok(JsValue::UNDEFINED), |alignment| answer(Ok(alignment)))?;
         Ok(object([("placement", placement), ("alignment", alignment)]))
     }
