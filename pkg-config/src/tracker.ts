@@ -15,14 +15,20 @@ import type { TrackedFrame } from "./results.js";
 import { coreSim3, type Sim3Like } from "./sim3.js";
 import { ownArgument, snapshot } from "./snapshot.js";
 
-/** The engine of a tracker. */
+/**
+ * The engine of a tracker.
+ * @internal
+ */
 export interface OwnEngine {
   engine: Engine;
   /** Whether other calls use it: it then outlives the tracker. */
   isShared: boolean;
 }
 
-/** The mesh of a tracker, and its id if it is prepared. */
+/**
+ * The mesh of a tracker, and its id if it is prepared.
+ * @internal
+ */
 export interface TrackerMesh {
   data: { mesh: MeshInput };
   meshId?: number;
