@@ -86,7 +86,7 @@ impl Scene {
     fn equations(&self, scoring: Scoring, score: &Score, lock_scale: bool) -> NormalEquations {
         let objective =
             Objective { model: &self.model, grid: &self.grid, scoring, prior: Prior::default(), surroundings: None };
-        Refiner { objective, lock_scale }.equations(&self.canvas, score)
+        Refiner { objective, lock_scale }.equations(&self.canvas, score, &self.pose)
     }
 
     /// The same by its definition: every residual is a function of the pose, its derivatives are differences.
