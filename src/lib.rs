@@ -1,7 +1,8 @@
 //! Aligns generated 3D meshes with a masked depth map: the similarity x_cam = s·R·p + t, after "Robust 3D Alignment of
 //! Generative Reconstructions via Partial Monocular Observations".
 //!
-//! Every module imports only from those below it in this list: [`bindings`], [`scene`], [`align`], [`precise`], [`paper`],
+//! Every module imports only from those below it in this list: [`bindings`], [`track`], [`views`], [`scene`], [`align`],
+//! [`precise`], [`paper`],
 //! [`register`], [`report`], [`options`], [`metrics`], [`evidence`], [`progress`], [`geometry`].
 
 pub mod align;
@@ -15,6 +16,8 @@ pub mod progress;
 pub mod register;
 pub mod report;
 pub mod scene;
+pub mod track;
+pub mod views;
 
 pub use sim3align_geometry as geometry;
 pub use sim3align_geometry::{error, number};

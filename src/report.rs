@@ -103,6 +103,10 @@ pub enum WarningCode {
     NotConverged,
     /// Even the best pose explains the observation poorly: the mesh may be of another object.
     MeshDoubtful,
+    /// A view contradicts the others and does not count (`alignViews`).
+    ViewContradicts,
+    /// A view shows too little where the object should be, and does not count (`alignViews`).
+    ViewShowsNothing,
     /// The camera file has lens distortion, which the pinhole model leaves out. The package's camera reader warns of
     /// it.
     CameraNotPinhole,

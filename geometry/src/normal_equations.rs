@@ -63,6 +63,24 @@ impl NormalEquations {
         }
     }
 
+    /// Adds the equations of other parameters x = A·y, of which these are y: AᵀMA and Aᵀg. `map` holds the rows of A.
+    pub fn add_mapped(&mut self, other: &Self, map: &[[f64; PARAMETERS]; PARAMETERS]) {
+        // Entry by entry of M, so that no matrix is multiplied out.
+        for (i, from) in map.iter().enumerate() {
+            for (j, to) in map.iter().enumerate() {
+                let weight = other.matrix[i.min(j)][i.max(j)];
+                for (k, row) in self.matrix.iter_mut().enumerate() {
+                    for (entry, to) in row[k..].iter_mut().zip(&to[k..]) {
+                        *entry += from[k] * weight * to;
+                    }
+                }
+            }
+            for (entry, from) in self.gradient.iter_mut().zip(from) {
+                *entry += from * other.gradient[i];
+            }
+        }
+    }
+
     /// The step x that minimises Σ w (r + J·x)² + λ‖x‖², with λ = `damping` × the trace of JᵀWJ.
     ///
     /// A small damping (1e-9) gives a step of 0 along unconstrained directions. A large one (1e-3 and above) shortens

@@ -103,6 +103,7 @@ impl Similarity {
     }
 
     /// The rotation as a unit quaternion x, y, z, w with w ≥ 0.
+    #[inline(never)]
     pub fn quaternion_xyzw(&self) -> [f64; 4] {
         let q = UnitQuaternion::from_rotation_matrix(&self.rotation);
         let sign = if q.w < 0.0 { -1.0 } else { 1.0 };
@@ -133,6 +134,7 @@ impl Similarity {
     }
 
     /// Composition, `inner` first: x ↦ self(inner(x)).
+    #[inline(never)]
     pub fn compose(&self, inner: &Self) -> Self {
         Self {
             scale: self.scale * inner.scale,
@@ -142,6 +144,7 @@ impl Similarity {
     }
 
     /// The inverse transform.
+    #[inline(never)]
     pub fn inverse(&self) -> Self {
         let rotation = self.rotation.inverse();
         let scale = 1.0 / self.scale;

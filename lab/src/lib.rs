@@ -12,3 +12,4 @@ pub mod fuzz;
 pub mod parallel;
 pub mod samples;
 pub mod scenes;
+pub mod sequences;

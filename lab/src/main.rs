@@ -4,7 +4,7 @@ mod commands;
 
 use std::process::ExitCode;
 
-use commands::{Failure, bench, cases, fuzz, profile, registration, scenes, together};
+use commands::{Failure, bench, cases, fuzz, profile, registration, scenes, together, track, views};
 use sim3align_lab::fuzz::memory::CountingAllocator;
 
 /// For the memory of `fuzz`.
@@ -19,6 +19,8 @@ Usage: sim3align-lab COMMAND [arguments]
   bench         aligns cases with a known truth, and prints tables
   together      aligns the objects of scenes alone and together, and prints tables
   registration  writes pairs of clouds, and registers them
+  views         aligns one object in several views, and prints tables
+  track         tracks one object through videos, and prints tables
   profile       aligns case folders natively, and prints times as JSON
   fuzz          searches for inputs on which the package fails
 
@@ -27,12 +29,14 @@ Usage: sim3align-lab COMMAND [arguments]
 /// Name and entry point of a command.
 type Command = (&'static str, fn(lexopt::Parser) -> Result<(), Failure>);
 
-const COMMANDS: [Command; 7] = [
+const COMMANDS: [Command; 9] = [
     ("case", cases::main),
     ("scenes", scenes::main),
     ("bench", bench::main),
     ("together", together::main),
     ("registration", registration::main),
+    ("views", views::main),
+    ("track", track::main),
     ("profile", profile::main),
     ("fuzz", fuzz::main),
 ];

@@ -17,6 +17,7 @@ import { type Engine, MainThreadEngine } from "./engine.js";
 import { disposed, internalError, Sim3AlignError } from "./error.js";
 import { formatsModule, type LoadFormats } from "./formats-module.js";
 import type { Preset } from "./generated/types.js";
+import type { ViewsInput } from "./input/frame-types.js";
 import { classNames } from "./input/resolve.js";
 import type { AlignInput, MeshInput } from "./input/types.js";
 import { isOfPaper, type Job, type Results } from "./jobs.js";
@@ -29,6 +30,8 @@ import type {
   OptionsOf,
   Progress,
   RegisterOptions,
+  TrackOptions,
+  ViewsOptions,
 } from "./options.js";
 import { WorkerPool } from "./pool/pool.js";
 import { workerFactory } from "./pool/port.js";
@@ -36,12 +39,13 @@ import { copied } from "./pool/transfer.js";
 import { isDisposedMesh, keptMesh, nextMeshId, PreparedMesh } from "./prepared-mesh.js";
 import { checkedListener, ProgressListener } from "./progress.js";
 import { registrationModule } from "./registration-module.js";
-import type { AlignAllResult, AlignResult, Evaluation, Registration } from "./results.js";
+import type { AlignAllResult, AlignResult, Evaluation, Registration, ViewsAlignment } from "./results.js";
 import { alignScene } from "./scene/align-scene.js";
 import { classNames as sceneClassNames } from "./scene/read-scene.js";
 import type { SceneInput, SceneOptions, SceneResult } from "./scene/types.js";
 import { coreSim3, type Sim3Like } from "./sim3.js";
 import { ownArgument, snapshot } from "./snapshot.js";
+import { type OwnEngine, Tracker, type TrackerMesh } from "./tracker.js";
 import { isRecord, withoutUndefined } from "./values.js";
 import type { LoadedModule } from "./wasm-module.js";
 
@@ -68,10 +72,15 @@ export class Aligner {
   readonly #formats: LoadFormats;
   #isDisposed = false;
 
-  private constructor(core: LoadedModule<Core>, engine: Engine, formats: LoadFormats) {
+  /** Creates an engine for one tracker. */
+  readonly #dedicated: () => OwnEngine;
+  readonly #trackers = new Set<Tracker>();
+
+  private constructor(core: LoadedModule<Core>, engine: Engine, formats: LoadFormats, dedicated: () => OwnEngine) {
     this.#core = core;
     this.#engine = engine;
     this.#formats = formats;
+    this.#dedicated = dedicated;
   }
 
   /** @internal */
@@ -84,7 +93,9 @@ export class Aligner {
     const core = await coreModule.load(wasm);
     const formats = () => formatsModule.load(formatsWasm);
     const mainThread = new MainThreadEngine(core, formats, () => registrationModule.load(registrationWasm));
-    if (workers === 0) return new Aligner(core, mainThread, formats);
+    // Shared with all other calls on this thread, which the end of a tracker must not end.
+    const shared = { engine: mainThread, isShared: true };
+    if (workers === 0) return new Aligner(core, mainThread, formats, () => shared);
     const factory = await workerFactory(assets.workerScript, checkedFactory(given.createWorker));
     const size = workers === "auto" ? Math.min(Math.max(factory.cores - 1, 1), MAX_AUTO) : workers;
     const setup = {
@@ -93,7 +104,8 @@ export class Aligner {
       formats: () => formatsModule.compile(formatsWasm),
       registration: () => registrationModule.compile(registrationWasm),
     };
-    return new Aligner(core, new WorkerPool(size, setup, mainThread), formats);
+    const dedicated = () => ({ engine: new WorkerPool(1, setup, mainThread), isShared: false });
+    return new Aligner(core, new WorkerPool(size, setup, mainThread), formats, dedicated);
   }
 
   /**
@@ -193,6 +205,45 @@ export class Aligner {
   }
 
   /**
+   * Aligns a mesh with several views of the same object.
+   *
+   * With the poses of all cameras (`cameraToWorld`), there is one search over the evidence of all views: the result is the
+   * pose in the world, and in each camera. A view may lack a mask, and one that contradicts the others is found and left
+   * out (`role`). Without camera poses, the views have one size in common and a pose each; the world is then the camera of
+   * the first view that agrees with that size, and `views[i].camera` the pose of each camera that follows from it.
+   * @throws {@link Sim3AlignError} for invalid input, whose argument names the view (`views[1].depth`), and
+   * `NO_CONSENSUS` if no pose is supported by the data
+   */
+  async alignViews(input: ViewsInput, options?: ViewsOptions): Promise<ViewsAlignment> {
+    const { onProgress, ...rest }: { onProgress?: unknown } = checkedOptions(options);
+    return this.#run("alignViews", input, rest, { onProgress });
+  }
+
+  /**
+   * Opens a tracker, which follows the object of a mesh through the frames of a video. With workers, it has a worker of
+   * its own, until it is closed.
+   * @throws {@link Sim3AlignError} for an invalid mesh or invalid options
+   */
+  async track(mesh: MeshInput, options?: TrackOptions): Promise<Tracker> {
+    const { signal, initial, ...rest }: { signal?: unknown; initial?: unknown } = checkedOptions(options);
+    const coreOptions = initial === undefined ? rest : { ...rest, initial: coreSim3(initial as Sim3Like) };
+    this.#checkUsable();
+    const own = this.#withArrays(snapshot("input", { mesh }, classNames), coreOptions);
+    const closed = (tracker: Tracker) => this.#trackers.delete(tracker);
+    const tracker = await Tracker.open(
+      this.#dedicated(),
+      own as TrackerMesh,
+      coreOptions,
+      checkedSignal(signal),
+      closed,
+    );
+    if (this.#isDisposed) tracker.close();
+    this.#checkUsable();
+    this.#trackers.add(tracker);
+    return tracker;
+  }
+
+  /**
    * Computes the metrics of a transform and, if `options.truth` is given, its errors.
    * @param transform camera from mesh, metres
    * @throws {@link Sim3AlignError} for invalid input, `INVALID_TRANSFORM` if the transform is not a similarity
@@ -268,6 +319,7 @@ export class Aligner {
   dispose(): void {
     if (this.#isDisposed) return;
     this.#isDisposed = true;
+    for (const tracker of this.#trackers) tracker.close();
     this.#engine.dispose();
   }
 
@@ -284,7 +336,7 @@ export class Aligner {
   ): Promise<Results[M]> {
     this.#checkUsable();
     const own = snapshot("input", data, classNames);
-    const prepared: unknown = isRecord(own) ? own.mesh : undefined;
+    const prepared: unknown = isRecord(own) ? (own as Record<string, unknown>).mesh : undefined;
     const job = { method, ...this.#withArrays(own, options), options, ...more } as unknown as Job & { method: M };
     const progress = new ProgressListener(onProgress);
     const call = { signal: checkedSignal(signal), progress, transfer: checkedFlag("transfer", transfer) };

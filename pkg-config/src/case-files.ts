@@ -1,9 +1,12 @@
 /** A case: the files of one observation, one mesh and, if known, the true pose. */
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
 import { Sim3AlignError } from "./error.js";
+import { numbersIn, parsedJson, shown } from "./formats/json.js";
 import type { LoadFormats } from "./formats-module.js";
 import { requiredBytes } from "./input/bytes.js";
+import type { ViewInput } from "./input/frame-types.js";
 import type { AlignInput, EncodedBytes, MeshFile, MeshFormat } from "./input/types.js";
+import { isRecord, withoutUndefined } from "./values.js";
 
 /** Files by name, relative to the folder of the case: bytes, or a function that reads them on demand. */
 export type CaseFiles = Readonly<Record<string, EncodedBytes | (() => Promise<EncodedBytes>)>>;
@@ -32,6 +35,59 @@ export const caseFiles = {
   camera: ["camera.json", "scene_camera.json"],
   image: ["rgb.png", "rgb.jpg", "rgb.jpeg", "image.png", "image.jpg", "image.jpeg"],
 } as const;
+
+/** Frames whose files have been read, but not decoded. */
+export interface FrameFiles {
+  /** The input for a view or a tracker. */
+  input: ViewInput;
+  /** The true pose; `null` if unknown. */
+  truth: KnownPose | null;
+}
+
+/** The file with the pose of a frame's camera, and the camera's pose in it: `camera_to_world`, 4×4 by rows, metres. */
+export const CAMERA_POSE_FILE = "pose.json";
+
+/**
+ * Reads a frame: depth map, camera file, and optionally mask, `pose.json` and `gt.json`, identified by name.
+ * @param place location of the files, for errors
+ * @internal
+ */
+export async function frameFrom(files: CaseFiles, settings: CaseSettings, place: string): Promise<FrameFiles> {
+  const read = async (name: string) => {
+    const file = files[name];
+    return requiredBytes(name, typeof file === "function" ? await file() : file);
+  };
+  const find = (part: "depth" | "mask" | "camera") => caseFiles[part].find((candidate) => candidate in files);
+  const required = (part: "depth" | "camera") => {
+    const name = find(part);
+    if (name !== undefined) return read(name);
+    throw fileNotFound(part, `no such file in ${place}`, caseFiles[part].join(" or "));
+  };
+  const optional = (name: string | undefined) => (name !== undefined && name in files ? read(name) : undefined);
+  const [depth, cameraFile, mask, pose, truth] = await Promise.all([
+    required("depth"),
+    required("camera"),
+    optional(find("mask")),
+    optional(CAMERA_POSE_FILE),
+    optional("gt.json"),
+  ]);
+  const cameraToWorld = pose === undefined ? undefined : cameraPose(pose);
+  const input = withoutUndefined({ depth, cameraFile, mask, cameraToWorld, ...settings }) as ViewInput;
+  return { input, truth: truth === undefined ? null : parsePoseFile("truth", truth) };
+}
+
+function cameraPose(bytes: Uint8Array): number[] {
+  const json = parsedJson("pose", bytes);
+  const rows = isRecord(json) ? numbersIn(json.camera_to_world, 16) : null;
+  if (rows !== null) return Array.from(rows, (_, i) => rows[4 * (i % 4) + Math.floor(i / 4)] as number);
+  throw new Sim3AlignError({
+    code: "CORRUPT_FILE",
+    argument: "pose",
+    found: isRecord(json) ? shown(json.camera_to_world) : shown(json),
+    expected: '{ "camera_to_world": 4 × 4 numbers, row by row }',
+    remedy: "The matrix maps points of the camera (x right, y down, z forward) to the world, in metres.",
+  });
+}
 
 const meshFormats: readonly string[] = ["glb", "gltf", "obj", "ply", "stl"] satisfies MeshFormat[];
 

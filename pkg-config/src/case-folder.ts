@@ -1,9 +1,19 @@
 /** Cases on disk (Node only). */
+import { existsSync } from "node:fs";
 import { readdir, readFile } from "node:fs/promises";
 import { basename, dirname, join, resolve } from "node:path";
-import { type Case, type CaseSettings, caseFiles, caseFrom, fileNotFound, meshFile } from "./case-files.js";
+import {
+  type Case,
+  type CaseSettings,
+  caseFiles,
+  caseFrom,
+  type FrameFiles,
+  fileNotFound,
+  frameFrom,
+  meshFile,
+} from "./case-files.js";
 import { formatsModule } from "./formats-module.js";
-import type { AlignInput, CameraInput } from "./input/types.js";
+import type { AlignInput, CameraInput, MeshFile } from "./input/types.js";
 
 export type { CaseSettings } from "./case-files.js";
 
@@ -35,6 +45,45 @@ export async function readCaseFolder(folder: string, settings: CaseSettings = {}
   const found = await caseFrom(Object.fromEntries(entries), settings, loadFormats, folder);
   const files = Object.fromEntries(Object.entries(found.files).map(([part, name]) => [part, join(folder, name)]));
   return { ...found, name: basename(resolve(folder)), files };
+}
+
+/** Several frames of one object, on disk. */
+export interface FramesOnDisk {
+  /** The mesh. */
+  mesh: MeshFile;
+  /** The frames, by their names, in order. */
+  frames: ({ name: string } & FrameFiles)[];
+}
+
+/** The names of the `frame_*` folders of a case, in order; none for a case of one view. */
+export async function frameNames(folder: string): Promise<string[]> {
+  const entries = await readdir(folder, { withFileTypes: true }).catch(() => []);
+  const names = entries.filter((entry) => entry.isDirectory() && entry.name.startsWith("frame_"));
+  return names.map(({ name }) => name).sort();
+}
+
+/**
+ * Reads a case folder with `frame_*` folders.
+ * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` with the expected names
+ */
+export async function readFrames(folder: string, settings: CaseSettings = {}): Promise<FramesOnDisk> {
+  const names = await frameNames(folder);
+  const frames = names.map(async (name) => ({ name, ...(await readFrame(join(folder, name), settings)) }));
+  return { mesh: await readMeshOf(folder), frames: await Promise.all(frames) };
+}
+
+/** Reads the mesh of a case. */
+export async function readMeshOf(folder: string): Promise<MeshFile> {
+  const mesh = caseFiles.mesh.find((name) => existsSync(join(folder, name)));
+  if (mesh === undefined) throw fileNotFound("mesh", `no such file in ${folder}`, caseFiles.mesh.join(" or "));
+  const beside = (path: string) => read("mesh", join(folder, path));
+  return meshFile(mesh, await read("mesh", join(folder, mesh)), loadFormats, beside);
+}
+
+/** Reads a frame of a case. */
+export async function readFrame(folder: string, settings: CaseSettings): Promise<FrameFiles> {
+  const entries = (await readdir(folder)).map((name) => [name, () => read("frame", join(folder, name))] as const);
+  return frameFrom(Object.fromEntries(entries), settings, folder);
 }
 
 /** Names of the files in a case folder; includes subfolders only if the mesh may refer to them. */

@@ -6,6 +6,7 @@ import { alignCommand } from "./cli/align-command.js";
 import { statusHelp } from "./cli/case-options.js";
 import { evaluateCommand } from "./cli/evaluate-command.js";
 import { sceneCommand } from "./cli/scene-command.js";
+import { trackCommand } from "./cli/track-command.js";
 import { UsageError } from "./cli/usage-error.js";
 
 const { version } = JSON.parse(readFileSync(new URL("./package.json", import.meta.url), "utf8")) as { version: string };
@@ -15,6 +16,7 @@ Examples
   sim3align align cases/mug                      align one case and show everything about it
   sim3align align cases/* --json results.json    align several cases; print a table and write a JSON file
   sim3align scene scenes/desk --glb desk.glb     align all objects of a scene; write it as one file
+  sim3align track videos/mug                     track an object through the frames of a video
   sim3align evaluate cases/mug --transform results.json
 
 See "sim3align align --help" for the layout of a case folder, and for the frames and units of the results.
@@ -24,6 +26,7 @@ const program = new Command("sim3align")
   .description("Aligns generated 3D meshes with a masked depth map, in pose and metric scale.")
   .version(version)
   .addCommand(alignCommand())
+  .addCommand(trackCommand())
   .addCommand(evaluateCommand())
   .addCommand(sceneCommand())
   .addHelpText("after", help);

@@ -15,12 +15,16 @@ export {
   OPTIONS,
   PAPER_DEFAULTS,
   REGISTER_DEFAULTS,
+  TRACK_DEFAULTS,
+  VIEWS_DEFAULTS,
 } from "./generated/options.js";
 export type {
   Alternative,
+  CameraPose,
   ColorReport,
   ColorVerdict,
   Contact,
+  CorrectedFrame,
   Counts,
   Diagnostics,
   Effort,
@@ -38,10 +42,17 @@ export type {
   SearchScope,
   Stage,
   Timings,
+  TrackState,
   Uncertainty,
+  ViewPose,
+  ViewRole,
+  ViewsDiagnostics,
   Warning,
   WarningCode,
+  WorldFrame,
+  WorldUncertainty,
 } from "./generated/types.js";
+export type { FrameInput, ViewInput, ViewsInput } from "./input/frame-types.js";
 export type {
   AlignInput,
   CameraFileInput,
@@ -80,6 +91,8 @@ export type {
   ScaleOption,
   SymmetryAxis,
   SymmetryOption,
+  TrackOptions,
+  ViewsOptions,
 } from "./options.js";
 export type { CreateWorker, WasmSource, WorkerLike } from "./platform.js";
 export { PreparedMesh } from "./prepared-mesh.js";
@@ -92,6 +105,8 @@ export type {
   Evaluation,
   PaperAlignment,
   Registration,
+  TrackedFrame,
+  ViewsAlignment,
   WithoutMetrics,
 } from "./results.js";
 export type {
@@ -108,3 +123,4 @@ export type {
   Support,
 } from "./scene/types.js";
 export type { Sim3, Sim3Like } from "./sim3.js";
+export { Tracker } from "./tracker.js";

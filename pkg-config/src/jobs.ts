@@ -3,11 +3,22 @@ import { checkAttached } from "./attached.js";
 import type { Core, CoreListener } from "./core.js";
 import { withoutInput } from "./error.js";
 import type { LoadFormats } from "./formats-module.js";
+import type { CorrectedFrame } from "./generated/types.js";
+import type { FrameInput, ViewsInput } from "./input/frame-types.js";
+import { resolveFrame, resolveViews } from "./input/frames.js";
 import { type MeshAndWarnings, readMesh } from "./input/mesh.js";
 import { resolveInput } from "./input/resolve.js";
 import type { AlignInput, MeshInput } from "./input/types.js";
 import type { LoadRegistrar } from "./registration-module.js";
-import { type AlignResult, type Clouds, type Evaluation, type Registration, withWarnings } from "./results.js";
+import {
+  type AlignResult,
+  type Clouds,
+  type Evaluation,
+  type Registration,
+  type TrackedFrame,
+  type ViewsAlignment,
+  withWarnings,
+} from "./results.js";
 import type { Known, Placed } from "./scene/steps.js";
 import { isTypedArray, wrongKind } from "./values.js";
 import type { LoadedModule } from "./wasm-module.js";
@@ -16,6 +27,11 @@ import type { LoadedModule } from "./wasm-module.js";
 export type Job =
   | { method: "align"; data: AlignInput; options: object; meshId?: number | undefined }
   | { method: "place"; data: PlaceInput; options: object; meshId?: number | undefined }
+  | { method: "alignViews"; data: ViewsInput; options: object; meshId?: number | undefined }
+  | { method: "openTracker"; data: { mesh: MeshInput }; options: object; tracker: number; meshId?: number | undefined }
+  | { method: "trackFrame"; data: FrameInput; options: object; tracker: number }
+  | { method: "correctTrack"; data: { pose: unknown; frame: unknown }; options: object; tracker: number }
+  | { method: "closeTracker"; data: object; options: object; tracker: number }
   | { method: "evaluate"; data: AlignInput; options: object; transform: unknown; meshId?: number | undefined }
   | { method: "prepareMesh"; data: { mesh: MeshInput }; options: object; meshId: number }
   | { method: "register"; data: Clouds; options: object }
@@ -28,6 +44,11 @@ export type PlaceInput = AlignInput & { others?: Uint8Array | undefined; known?:
 export interface Results {
   align: AlignResult;
   place: Placed;
+  alignViews: ViewsAlignment;
+  openTracker: undefined;
+  trackFrame: TrackedFrame;
+  correctTrack: CorrectedFrame[];
+  closeTracker: undefined;
   evaluate: Evaluation;
   prepareMesh: MeshAndWarnings;
   register: Registration;
@@ -89,6 +110,32 @@ export async function perform(
       const observed = others === undefined ? input : { ...input, others };
       return inSlices((c) => c.beginPlace(observed, options, known, listener), observed);
     }
+    case "alignViews": {
+      const { core: input, warnings } = await resolveViews(job.data, formats, job.meshId);
+      const result = await inSlices((c) => c.beginAlignViews(input, options, listener), input);
+      return {
+        ...result,
+        views: result.views.map((view, k) => withWarnings(view, { camera: warnings[k] ?? [], colors: [] })),
+      };
+    }
+    case "openTracker": {
+      // A prepared mesh is kept for calls with a photo.
+      const read = await readMesh(job.data.mesh, formats, job.meshId !== undefined);
+      const mesh = job.meshId === undefined ? read.mesh : { ...read.mesh, id: job.meshId };
+      checkAttached("mesh", mesh);
+      core.call((c) => c.openTracker(job.tracker, { mesh }, options));
+      return undefined;
+    }
+    case "trackFrame": {
+      const { core: frame } = await resolveFrame(job.data, formats);
+      checkAttached("frame", frame);
+      return core.call((c) => c.trackFrame(job.tracker, frame, listener));
+    }
+    case "correctTrack":
+      return core.call((c) => c.correctTrack(job.tracker, job.data.pose, job.data.frame));
+    case "closeTracker":
+      core.call((c) => c.closeTracker(job.tracker));
+      return undefined;
     case "evaluate": {
       const { core: input, warnings } = await resolveInput(job.data, formats, job.meshId);
       // Files are read while the thread does other work, which may take the memory away.

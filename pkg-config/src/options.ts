@@ -97,6 +97,12 @@ export type AlignAllOptions<P extends Core.Preset = "precise", M extends boolean
     onProgress?: ((progress: Progress & { index: number }) => void) | undefined;
   };
 
+/** Options of `Aligner.alignViews`. */
+export interface ViewsOptions extends Core.ViewsOptions, AlignCallOptions {}
+
+/** Options of `Aligner.track`. */
+export interface TrackOptions extends Core.TrackOptions, Pick<CallOptions, "signal"> {}
+
 /** Options of `Aligner.evaluate`. */
 export interface EvaluateOptions extends Core.EvaluateOptions, CallOptions {}
 

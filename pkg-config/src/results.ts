@@ -4,6 +4,7 @@
  */
 import type { Sim3AlignError } from "./error.js";
 import type * as Core from "./generated/types.js";
+import type { FrameInput, ViewsInput } from "./input/frame-types.js";
 import type { AlignInput } from "./input/types.js";
 
 /** The result of `align`: camera from mesh, x_cam = s·R·p_mesh + t (OpenCV: x right, y down, z forward; metres). */
@@ -33,6 +34,18 @@ export type AlignResult<P extends Core.Preset = Core.Preset, M extends boolean =
     ? AlignmentByPreset[P]
     : WithoutMetrics<AlignmentByPreset[P]>
   : never;
+
+/** The result of `alignViews`: world from mesh, x_world = s·R·p_mesh + t, in metres, and the pose in each view. */
+export interface ViewsAlignment extends Core.ViewsAlignment {
+  /** With `transfer: true`: the returned arrays of the input. */
+  input?: ViewsInput;
+}
+
+/** The result of `Tracker.next`: camera from mesh, x_cam = s·R·p_mesh + t. */
+export interface TrackedFrame extends Core.TrackedFrame {
+  /** With `transfer: true`: the returned arrays of the frame. */
+  input?: FrameInput;
+}
 
 /** The result of `evaluate`. */
 export interface Evaluation extends Core.Evaluation {

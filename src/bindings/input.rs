@@ -5,6 +5,7 @@ use wasm_bindgen::{JsCast, JsValue};
 
 use super::object::{get, number, required_number, size, to_colors, to_f32s, to_u8s, wrong_type};
 use crate::error::{Error, ErrorCode, Result};
+use crate::evidence::frame::Frame;
 use crate::evidence::observation::{Observation, from_point_map};
 use crate::evidence::photo::Photo;
 use crate::geometry::image::{DepthMap, Image, Mask, check_size};
@@ -27,6 +28,13 @@ pub fn observation(input: &JsValue) -> Result<Observation> {
         Some(others) => observation.with_others(Image::new("occluders", width, height, to_u8s(&others, "occluders")?)?),
         None => Ok(observation),
     }
+}
+
+/// The depth map, the camera and, if there is one, the mask of an input.
+pub fn frame(input: &JsValue) -> Result<Frame> {
+    let (depth, camera) = view(input)?;
+    let mask = get(input, "mask").map(|_| mask(input, depth.width(), depth.height())).transpose()?;
+    Ok(Frame { depth, camera, mask })
 }
 
 /// The depth map and the camera of an input.

@@ -17,6 +17,9 @@ use crate::report::Preset;
 /// Options of every call that the TypeScript package handles itself. Lists of options in errors contain them.
 pub const OF_CALLS: [&str; 2] = ["signal", "transfer"];
 
+/// The same for calls that report their progress.
+pub const OF_LONG_CALLS: [&str; 3] = [OF_CALLS[0], OF_CALLS[1], "onProgress"];
+
 /// The same for `align`, whose method `preset` selects.
 const OF_ALIGN: [&str; 4] = ["preset", OF_CALLS[0], OF_CALLS[1], "onProgress"];
 

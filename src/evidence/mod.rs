@@ -2,6 +2,7 @@
 
 pub mod clouds;
 pub mod extents;
+pub mod frame;
 pub mod normals;
 pub mod observation;
 pub mod photo;

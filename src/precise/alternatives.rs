@@ -14,7 +14,7 @@ use crate::report::Alternative;
 
 /// Score difference attributed to noise. In generated cases won by a flip, the true pose scores lower by about this
 /// much.
-pub(super) const NOISE: f32 = 0.15;
+pub(crate) const NOISE: f32 = 0.15;
 /// Minimum rotation between different poses, radians.
 const MIN_TURN: f64 = 0.26;
 /// Maximum distances between the surfaces of equivalent placements, relative to the tolerance of automatic symmetry: low
@@ -27,7 +27,7 @@ const SAME_TURN: f64 = 0.17;
 
 /// The poses after the first whose scores are within noise of it. Poses near it or near each other, and placements
 /// equivalent under the symmetry of the object, are excluded.
-pub(super) fn alternatives(
+pub(crate) fn alternatives(
     found: &[Found],
     search: &Search,
     mesh: &Mesh,

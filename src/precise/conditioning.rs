@@ -8,7 +8,7 @@ use crate::geometry::symmetric_eigen::SymmetricEigen;
 
 /// Score decrease at one standard deviation, calibrated so that the errors of correct poses on generated cases have the
 /// reported size.
-const DROP: f64 = 0.01;
+pub const DROP: f64 = 0.01;
 /// Regularisation, so that unconstrained directions remain finite.
 const DAMPING: f64 = 1e-9;
 

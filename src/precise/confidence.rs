@@ -21,12 +21,18 @@ const SCALE: [f64; 2] = [1e-3, 1.0];
 const ROTATION_DEG: [f64; 2] = [0.03, 90.0];
 
 /// The probability that a pose is correct, 0 to 1.
-pub(super) fn confidence(best: &Found, alternatives: &[Alternative], conditioning: Option<&Conditioning>) -> f64 {
-    let Some(held) = conditioning else { return 0.0 };
+pub(crate) fn confidence(best: &Found, alternatives: &[Alternative], conditioning: Option<&Conditioning>) -> f64 {
     let score = f64::from(best.score.total);
     // Colour has lowered the odds of poses that shape alone cannot exclude.
     let lead = |other: &Alternative| score - other.score + other.color_margin.unwrap_or(0.0).max(0.0) / SHAPE;
     let margin = alternatives.iter().fold(f64::from(NOISE), |margin, other| margin.min(lead(other)));
+    sureness(best, margin, conditioning)
+}
+
+/// The same, given the lead over the next best placement, of which no more than [`NOISE`] counts.
+pub(crate) fn sureness(best: &Found, lead: f64, conditioning: Option<&Conditioning>) -> f64 {
+    let Some(held) = conditioning else { return 0.0 };
+    let margin = lead.min(f64::from(NOISE));
     let log = |x: f64, [low, high]: [f64; 2]| libm::log(x.max(low).min(high));
     let features = [
         f64::from(best.score.overlap),

@@ -41,6 +41,8 @@ pub struct CropGrid {
     pub mask_cells: usize,
     /// Depth of the object, metres; 0 if unknown.
     pub depth: Vec<f32>,
+    /// Number of cells with a depth of the object.
+    pub depth_cells: usize,
     /// Normal of the object, towards the camera; zero if unknown.
     pub normals: Vec<Vec3>,
     /// Depth of the scene, metres; 0 without a reading, almost 0 outside the image.
@@ -75,6 +77,7 @@ impl CropGrid {
             corner,
             mask: Vec::with_capacity(width * height),
             mask_cells: 0,
+            depth_cells: 0,
             depth: Vec::with_capacity(width * height),
             normals: Vec::new(),
             scene: Vec::with_capacity(width * height),
@@ -84,6 +87,7 @@ impl CropGrid {
         };
         grid.sample(observation);
         grid.mask_cells = grid.mask.iter().filter(|m| **m).count();
+        grid.depth_cells = grid.depth.iter().filter(|z| **z > 0.0).count();
         grid.known = grid.known_share();
         grid.fit_normals();
         grid.measure_bounds();

@@ -4,14 +4,15 @@
 //! in closed form; refinement of the best distinct ones over all seven parameters; and another refinement of the best
 //! of these at full resolution.
 
-mod alternatives;
+pub(crate) mod alternatives;
 pub mod anchors;
 pub mod appearance;
+pub mod ascent;
 pub mod clean;
 pub mod coarse;
 pub mod color;
 pub mod conditioning;
-mod confidence;
+pub(crate) mod confidence;
 pub mod grid;
 pub mod lookalikes;
 pub mod mesh_pyramid;
@@ -48,7 +49,6 @@ use alternatives::{add_rivals, alternatives};
 use clean::CleanObservation;
 use color::Judgment;
 use confidence::confidence;
-use mesh_pyramid::MeshPyramid;
 use pose::{CropPose, MeshFrame};
 use prepared_mesh::PreparedMesh;
 use prior::Prior;
@@ -81,7 +81,8 @@ pub fn begin(
     settings: &SearchSettings,
     stages: &mut Stopwatch<'_>,
 ) -> Result<Rounds> {
-    let pyramid = decimate(mesh, settings, stages)?;
+    stages.enter(Stage::Prepare);
+    let pyramid = mesh.pyramid(&settings.grids).ok_or_else(no_candidate)?;
     let clean = previous.map(|rounds| rounds.search.observation.clone());
     let clean = clean.unwrap_or_else(|| Rc::new(CleanObservation::new(observation)));
     let mut search = Search::new(clean, pyramid, *settings);
@@ -114,7 +115,8 @@ pub fn resume(
     settings: &SearchSettings,
     stages: &mut Stopwatch<'_>,
 ) -> Result<Rounds> {
-    let pyramid = decimate(mesh, settings, stages)?;
+    stages.enter(Stage::Prepare);
+    let pyramid = mesh.pyramid(&settings.grids).ok_or_else(no_candidate)?;
     let clean = Rc::new(CleanObservation::new(observation));
     let mut search = Search::new(clean, pyramid, *settings);
     search.assume(prior(options, mesh.mesh(), &search.mesh.frame));
@@ -137,21 +139,6 @@ pub fn resume(
 
 /// Number of poses that are put down on the ground.
 const PUT_DOWN: usize = 4;
-
-/// Decimates the mesh for a search, if it is not yet.
-///
-/// # Errors
-/// [`ErrorCode::NoConsensus`] if decimation leaves no triangle.
-pub fn decimate(
-    mesh: &PreparedMesh<'_>,
-    settings: &SearchSettings,
-    stages: &mut Stopwatch<'_>,
-) -> Result<Rc<MeshPyramid>> {
-    if stages.running() != Some(Stage::Prepare) {
-        stages.enter(Stage::Prepare);
-    }
-    mesh.pyramid(&settings.grids).ok_or_else(no_candidate)
-}
 
 /// Continues a search until it ends or `pause` returns true. Returns whether it has ended. `share` is the progress at its
 /// start and end, 0 to 1.
@@ -278,7 +265,7 @@ fn within(efforts: impl Iterator<Item = SearchSettings>, budget: f64) -> Vec<Sea
 }
 
 /// The prior on scale and orientation.
-fn prior(options: &AlignOptions, mesh: &Mesh, frame: &MeshFrame) -> Prior {
+pub(crate) fn prior(options: &AlignOptions, mesh: &Mesh, frame: &MeshFrame) -> Prior {
     let extent = Bounds::of(mesh.positions()).map_or(glam::Vec3::ONE, |b| b.extent());
     let side = f64::from(match options.known_extent_axis {
         ExtentAxis::Longest => extent.max_element(),
@@ -308,7 +295,7 @@ fn seen_from(pose: &Similarity, frame: &MeshFrame) -> Result<CropPose> {
     })
 }
 
-fn no_candidate() -> Error {
+pub(crate) fn no_candidate() -> Error {
     Error::new(
         ErrorCode::NoConsensus,
         "mesh",

@@ -68,6 +68,7 @@ impl CropPose {
     }
 
     /// Converts the pose to a similarity.
+    #[inline(never)]
     pub fn similarity(&self, frame: &MeshFrame) -> Similarity {
         let (scale, translation) = self.scale_translation();
         let scale = scale / frame.diagonal;

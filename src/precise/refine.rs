@@ -6,6 +6,7 @@
 
 use glam::Vec3;
 
+use super::ascent::{Ascent, Summit, ascend, limited};
 use super::objective::Objective;
 use super::pose::{CropPose, Step};
 use super::render::Canvas;
@@ -33,71 +34,55 @@ pub struct Refined {
     pub converged: bool,
 }
 
-/// Initial damping, and its factors after an accepted and after a rejected step.
-const DAMPING: [f64; 3] = [1e-3, 0.25, 6.0];
-/// Damping at which steps become negligible.
-const MAX_DAMPING: f64 = 10.0;
-/// Smaller gains than the first threshold are no progress; if the last gain is below the second, the refinement has
-/// converged.
-const MIN_GAIN: f32 = 1e-5;
-const SMALL_GAIN: f32 = 2e-3;
-/// Maximum rotation, in radians, and maximum relative change of size of a step.
-const MAX_TURN: f64 = 0.35;
-const MAX_STRETCH: f64 = 0.25;
 /// Minimum magnitude of residuals, in units of their scale, because a loss like |e| has no finite curvature at 0.
 const MIN_DEPTH_ERROR: f32 = 0.1;
 const MIN_OUTLINE_CELLS: f32 = 0.5;
 /// 1/d², where d is the distance in cells beyond which the nearest outline is rarely the correct one.
 const FAR_OUTLINE: f32 = 1.0 / 9.0;
 
-impl Refiner<'_> {
-    /// Refines `pose` in at most `iterations` steps.
-    pub fn refine(&self, canvas: &mut Canvas, pose: CropPose, iterations: usize) -> Refined {
-        let pose = self.objective.prior.held(pose);
-        let score = self.objective.score(canvas, &pose);
-        let mut best = Refined { pose, score, renders: 1, converged: false };
-        let mut equations = self.equations(canvas, &best.score, &best.pose);
-        let mut damping = DAMPING[0];
-        for _ in 0..iterations {
-            let Some(step) = self.step(&equations, &best.pose, damping) else { break };
-            let next = self.objective.prior.held(best.pose.moved(&step));
-            if !next.is_finite() {
-                break;
-            }
-            let score = self.objective.score(canvas, &next);
-            best.renders += 1;
-            if score.total > best.score.total {
-                let gain = score.total - best.score.total;
-                (best.pose, best.score) = (next, score);
-                best.converged = gain < SMALL_GAIN;
-                if gain < MIN_GAIN {
-                    break;
-                }
-                equations = self.equations(canvas, &score, &best.pose);
-                damping *= DAMPING[1];
-            } else {
-                damping = (damping * DAMPING[2]).max(DAMPING[0]);
-                if damping > MAX_DAMPING {
-                    best.converged = true;
-                    break;
-                }
-            }
-        }
-        best
+/// A refinement on one grid, whose last render is on the canvas.
+struct OnGrid<'a, 'c> {
+    refiner: &'a Refiner<'a>,
+    canvas: &'c mut Canvas,
+}
+
+impl Ascent for OnGrid<'_, '_> {
+    type Pose = CropPose;
+    type Score = Score;
+
+    fn held(&self, pose: CropPose) -> CropPose {
+        self.refiner.objective.prior.held(pose)
     }
 
-    /// The damped step from `pose`, limited to the range in which the quadratic is valid.
-    fn step(&self, equations: &NormalEquations, pose: &CropPose, damping: f64) -> Option<Step> {
-        let mut step = equations.solve(damping)?;
-        if self.lock_scale {
+    fn score(&mut self, pose: &CropPose) -> Score {
+        self.refiner.objective.score(self.canvas, pose)
+    }
+
+    fn total(score: &Score) -> f32 {
+        score.total
+    }
+
+    fn equations(&mut self, pose: &CropPose, score: &Score) -> NormalEquations {
+        self.refiner.equations(self.canvas, score, pose)
+    }
+
+    fn moved(&self, pose: &CropPose, mut step: Step) -> Option<CropPose> {
+        if self.refiner.lock_scale {
             // log s = size + distance.
             step[6] = -step[3] / libm::exp(pose.size);
         }
-        let turn = (step[0] * step[0] + step[1] * step[1] + step[2] * step[2]).sqrt();
-        let stretch = step[3..6].iter().fold(0.0f64, |m, x| m.max(x.abs()));
-        let shorten = (MAX_TURN / turn).min(MAX_STRETCH / stretch).min(1.0);
-        step.iter_mut().for_each(|x| *x *= shorten);
-        step.iter().all(|x| x.is_finite()).then_some(step)
+        let step = limited(step);
+        let next = pose.moved(&step);
+        (step.iter().all(|x| x.is_finite()) && self.held(next).is_finite()).then_some(next)
+    }
+}
+
+impl Refiner<'_> {
+    /// Refines `pose` in at most `iterations` steps.
+    pub fn refine(&self, canvas: &mut Canvas, pose: CropPose, iterations: usize) -> Refined {
+        let Summit { pose, score, renders, converged } =
+            ascend(&mut OnGrid { refiner: self, canvas }, pose, iterations);
+        Refined { pose, score, renders, converged }
     }
 
     /// The quadratic at the last render, which is of `pose`.
@@ -105,13 +90,14 @@ impl Refiner<'_> {
         let mut equations = NormalEquations::new();
         let mut turns = Turns::default();
         let (grid, weights) = (self.objective.grid, &self.objective.scoring.weights);
-        let per_cell = |weight: f32, cells: f32| weight * score.overlap / cells.max(1.0);
+        let factor = weights.factor(score, grid);
+        let per_cell = |weight: f32, cells: f32| weight * factor / cells.max(1.0);
         let [depth_cells, normal_cells, outline_cells] = score.counts;
         let depth_weight = per_cell(weights.depth, depth_cells);
         let normal_weight = per_cell(weights.normals, normal_cells);
         let outline_weight = per_cell(weights.outline, outline_cells);
         // The score is a product, so the weight of a cell of overlap includes the other factor.
-        let overlap_weight = weights.agreement(score) / score.union.max(1.0);
+        let overlap_weight = weights.silhouette * weights.agreement(score) / score.union.max(1.0);
         let per_depth = 1.0 / self.objective.scoring.depth_m;
         let half = self.objective.scoring.outline_cells;
         let wants_outline = outline_weight > 0.0 || overlap_weight > 0.0;

@@ -133,6 +133,16 @@ impl Rounds {
         round.filter(|_| self.index < FIRST_REFINEMENT || self.tasks() > 0)
     }
 
+    /// The index of the current round.
+    pub fn index(&self) -> usize {
+        self.index
+    }
+
+    /// The poses with which the current round starts; empty in the first round.
+    pub fn poses(&self) -> &[CropPose] {
+        &self.poses
+    }
+
     /// Number of tasks of the current round.
     fn tasks(&self) -> usize {
         match self.index {

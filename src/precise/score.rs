@@ -19,15 +19,29 @@ pub struct Weights {
     pub occluded: f32,
     /// Weight in the union of a silhouette cell where the depth map has no reading; see [`CropGrid::known`].
     pub unknown: f32,
+    /// Share of the overlap in the factor of the score: 1 by default. The rest is the share of the depth readings that the
+    /// mesh covers, which does not depend on the outline of the mask.
+    pub silhouette: f32,
 }
 
 impl Default for Weights {
     fn default() -> Self {
-        Self { overlap: 0.2, depth: 1.0, normals: 0.25, outline: 0.6, occluded: 0.15, unknown: 0.07 }
+        Self { overlap: 0.2, depth: 1.0, normals: 0.25, outline: 0.6, occluded: 0.15, unknown: 0.07, silhouette: 1.0 }
     }
 }
 
 impl Weights {
+    /// The weights with which the depth counts alone.
+    pub fn of_depth_alone(self) -> Self {
+        Self { overlap: 0.0, outline: 0.0, silhouette: 0.0, ..self }
+    }
+
+    /// The factor of the agreement in a score.
+    pub fn factor(&self, score: &Score, grid: &CropGrid) -> f32 {
+        let covered = score.counts[0] / (grid.depth_cells as f32).max(1.0);
+        self.silhouette * score.overlap + (1.0 - self.silhouette) * covered
+    }
+
     /// The factor of the overlap in a score.
     pub fn agreement(&self, score: &Score) -> f32 {
         self.overlap + self.depth * score.depth + self.normals * score.normals + self.outline * score.outline
@@ -191,7 +205,7 @@ impl Scoring {
         };
         // Agreement is weighted by the fraction of the union that it covers. Weighted by the coverage alone, which free
         // space does not reduce, it would favour a mesh that is too large.
-        Score { total: overlap * self.weights.agreement(&score), ..score }
+        Score { total: self.weights.factor(&score, grid) * self.weights.agreement(&score), ..score }
     }
 }
 

@@ -32,8 +32,8 @@ pub struct Search {
     pub observation: Rc<CleanObservation>,
     /// Number of renders so far.
     pub renders: usize,
-    pub(super) settings: SearchSettings,
-    prior: Prior,
+    pub(crate) settings: SearchSettings,
+    pub(crate) prior: Prior,
     surroundings: Option<Surroundings>,
     /// The fine grid, on which the final poses are compared.
     pub fine: CropGrid,
@@ -99,7 +99,7 @@ impl Search {
     }
 
     /// A pose and its neighbourhood: rotated about every axis, at its own distance and at that of the depths.
-    pub(super) fn around(&mut self, pose: CropPose) -> Vec<CropPose> {
+    pub(crate) fn around(&mut self, pose: CropPose) -> Vec<CropPose> {
         let grid = self.grid(COARSE);
         let stage = Coarse { objective: self.objective(COARSE, &grid), median_m: self.observation.median_m };
         let mut canvas = Canvas::default();
@@ -118,7 +118,7 @@ impl Search {
     }
 
     /// The evidence on one of the grids; see also `fine`.
-    pub(super) fn grid(&self, grid: usize) -> CropGrid {
+    pub fn grid(&self, grid: usize) -> CropGrid {
         CropGrid::new(&self.observation, self.settings.grids[grid].cells)
     }
 

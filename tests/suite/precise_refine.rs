@@ -170,7 +170,8 @@ impl Scene {
 
 #[wasm_bindgen_test(unsupported = test)]
 fn the_quadratic_is_that_of_finite_differences() {
-    let none = Weights { overlap: 0.0, depth: 0.0, normals: 0.0, outline: 0.0, occluded: 0.2, unknown: 0.1 };
+    let none =
+        Weights { overlap: 0.0, depth: 0.0, normals: 0.0, outline: 0.0, occluded: 0.2, unknown: 0.1, silhouette: 1.0 };
     // A union without end makes the overlap's own term vanish.
     let terms = [
         ("depth", Weights { depth: 1.3, ..none }, f32::INFINITY),

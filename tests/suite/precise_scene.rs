@@ -54,6 +54,7 @@ pub fn empty_grid(width: usize, height: usize) -> CropGrid {
         corner: [0.0; 2],
         mask: vec![false; cells],
         mask_cells: 0,
+        depth_cells: 0,
         depth: vec![0.0; cells],
         normals: vec![Vec3::ZERO; cells],
         scene: vec![0.0; cells],
@@ -112,6 +113,7 @@ pub fn facing(canvas: &Canvas, model: &Model, grid: &CropGrid, u: usize, v: usiz
 }
 
 pub fn scoring() -> Scoring {
-    let weights = Weights { overlap: 0.3, depth: 1.1, normals: 0.4, outline: 0.7, occluded: 0.2, unknown: 0.1 };
+    let weights =
+        Weights { overlap: 0.3, depth: 1.1, normals: 0.4, outline: 0.7, occluded: 0.2, unknown: 0.1, silhouette: 1.0 };
     Scoring { weights, depth_m: 0.03, occluder_m: 0.04, outline_cells: 1.7 }
 }

@@ -23,7 +23,7 @@ fn by_definition(
     pose: &CropPose,
     stretch: f64,
 ) -> ([f64; 8], [f64; 3]) {
-    let Weights { overlap, depth, normals, outline, occluded, unknown } = scoring.weights;
+    let Weights { overlap, depth, normals, outline, occluded, unknown, .. } = scoring.weights;
     let is_drawn = |u: usize, v: usize| canvas.inverse_depth[v * grid.width + u] > 0.0;
     let (mut both, mut extra, mut hidden, mut unseen) = (0.0, 0.0, 0.0, 0.0);
     // Cells without a reading weigh less the more of the background has one, down to `unknown` at 30 %.

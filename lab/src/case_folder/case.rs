@@ -105,6 +105,17 @@ pub(super) fn truth_of(folder: &Path) -> Result<Option<(Similarity, String)>> {
     }
 }
 
+/// The content of the first existing file of `names`.
+pub(crate) fn part(folder: &Path, names: &[&str]) -> Result<Vec<u8>> {
+    find(folder, names).map(|(_, bytes)| bytes)
+}
+
+/// The mesh of a folder: `mesh.glb|gltf|obj|ply|stl`.
+pub(crate) fn mesh_in(folder: &Path) -> Result<Mesh> {
+    let (path, bytes) = find(folder, MESH_FILES)?;
+    Ok(mesh_of(folder, &path, &bytes)?.mesh)
+}
+
 /// The first existing file of `names`, and its content.
 pub(super) fn find(folder: &Path, names: &[&str]) -> Result<(PathBuf, Vec<u8>)> {
     let missing = |found: String| {

@@ -7,6 +7,8 @@ pub mod profile;
 pub mod registration;
 pub mod scenes;
 pub mod together;
+pub mod track;
+pub mod views;
 
 /// Reason for which a command ended early.
 pub enum Failure {

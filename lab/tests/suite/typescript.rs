@@ -24,6 +24,12 @@ use sim3align::report::{
 };
 use sim3align::report::{ColorReport, ColorVerdict, Effort, Preset};
 use sim3align::scene::contact::Contact;
+use sim3align::track::options::TrackOptions;
+use sim3align::track::report::{CorrectedFrame, TrackState, TrackedFrame};
+use sim3align::views::options::ViewsOptions;
+use sim3align::views::report::{
+    CameraPose, ViewPose, ViewRole, ViewsAlignment, ViewsDiagnostics, WorldFrame, WorldUncertainty,
+};
 use sim3align_geometry::error::ErrorCode;
 use ts_rs::{Config, TS};
 
@@ -161,6 +167,8 @@ fn types() -> String {
         declaration::<Icp>(&config),
         interface::<AlignOptions>("AlignOptions", precise),
         interface::<PaperOptions>("PaperOptions", paper),
+        interface::<ViewsOptions>("ViewsOptions", ""),
+        interface::<TrackOptions>("TrackOptions", ""),
         interface::<EvaluateOptions>("EvaluateOptions", ""),
         interface::<RegisterOptions>("RegisterOptions", ""),
         interface::<EstimateSim3Options>("EstimateSim3Options", ""),
@@ -183,6 +191,16 @@ fn types() -> String {
         declaration::<PreciseDiagnostics>(&config),
         declaration::<Alignment>(&config),
         declaration::<PaperAlignment>(&config),
+        declaration::<WorldFrame>(&config),
+        declaration::<ViewRole>(&config),
+        declaration::<WorldUncertainty>(&config),
+        declaration::<CameraPose>(&config),
+        declaration::<ViewPose>(&config),
+        declaration::<ViewsDiagnostics>(&config),
+        declaration::<ViewsAlignment>(&config),
+        declaration::<TrackState>(&config),
+        declaration::<TrackedFrame>(&config),
+        declaration::<CorrectedFrame>(&config),
         declaration::<EvaluationDiagnostics>(&config),
         declaration::<Evaluation>(&config),
         declaration::<Contact>(&config),
@@ -226,7 +244,7 @@ fn table<T: Options>(name: &str) -> String {
 
 fn options() -> String {
     let imports = "import type { OptionRow } from \"../options.js\";\nimport type {\n  AlignOptions,\n  EstimateSim3Options,\n  \
-        EvaluateOptions,\n  PaperOptions,\n  RegisterOptions,\n} from \"./types.js\";\n\n";
+        EvaluateOptions,\n  PaperOptions,\n  RegisterOptions,\n  TrackOptions,\n  ViewsOptions,\n} from \"./types.js\";\n\n";
     let constants = [
         defaults::<AlignOptions>("ALIGN_DEFAULTS", "Defaults of `align`.", "AlignOptions", Some("precise")),
         defaults::<PaperOptions>(
@@ -235,6 +253,8 @@ fn options() -> String {
             "PaperOptions",
             Some("paper"),
         ),
+        defaults::<ViewsOptions>("VIEWS_DEFAULTS", "Defaults of `alignViews`.", "ViewsOptions", None),
+        defaults::<TrackOptions>("TRACK_DEFAULTS", "Defaults of `track`.", "TrackOptions", None),
         defaults::<EvaluateOptions>("EVALUATE_DEFAULTS", "Defaults of `evaluate`.", "EvaluateOptions", None),
         defaults::<RegisterOptions>("REGISTER_DEFAULTS", "Defaults of `register`.", "RegisterOptions", None),
         defaults::<EstimateSim3Options>(
@@ -247,6 +267,8 @@ fn options() -> String {
     let tables = [
         table::<AlignOptions>("align"),
         table::<PaperOptions>("paper"),
+        table::<ViewsOptions>("alignViews"),
+        table::<TrackOptions>("track"),
         table::<EvaluateOptions>("evaluate"),
         table::<RegisterOptions>("register"),
         table::<EstimateSim3Options>("estimateSim3"),
@@ -281,6 +303,8 @@ fn every_option_is_described_on_one_line() {
     let all = [
         summaries::<AlignOptions>(),
         summaries::<PaperOptions>(),
+        summaries::<ViewsOptions>(),
+        summaries::<TrackOptions>(),
         summaries::<EvaluateOptions>(),
         summaries::<RegisterOptions>(),
         summaries::<EstimateSim3Options>(),

@@ -4,3 +4,5 @@ pub mod aligner;
 pub mod mesh;
 pub mod scene;
 pub mod task;
+pub mod track;
+pub mod views;

@@ -1,14 +1,17 @@
 /** `sim3align align`: aligns cases and prints the results. */
 import { Command, Option } from "commander";
-import type { CaseOnDisk } from "../case-folder.js";
+import { type CaseOnDisk, frameNames, readFrames } from "../case-folder.js";
 import {
   type Aligner,
+  type AlignInput,
   createAligner,
   OPTIONS,
   type OptionRow,
   type OptionsOf,
   type Preset,
+  type Progress,
   Sim3AlignError,
+  type ViewsOptions,
 } from "../index.js";
 import { withoutUndefined } from "../values.js";
 import {
@@ -26,7 +29,7 @@ import { failure, type Outcome, outcomeJson, type Success } from "./outcome.js";
 import { Output } from "./output.js";
 import { camera, jsonObject } from "./parse.js";
 import { ProgressLine } from "./progress-line.js";
-import { details, notes, Summary } from "./report.js";
+import { details, notes, Summary, viewsDetails } from "./report.js";
 import { readTransform, transformFileHelp } from "./transform-file.js";
 import { UsageError } from "./usage-error.js";
 
@@ -55,10 +58,14 @@ Output
   --json writes { "<case>": { scale, rotation, translation, matrix, quaternion, confidence, alternatives, uncertainty,
   metrics, warnings, timingsMs, diagnostics } }; a case that failed has { error: { code, argument, found, expected,
   remedy, message } }. With --preset paper, confidence and uncertainty are null and alternatives is empty.
+  A case with frames has { scale, rotation, translation, …, frames: { "<frame>": { scale, rotation, translation, …,
+  confidence, role, camera } } }: its own pose is world from mesh, if the camera poses are known; those of the frames are
+  camera from mesh.
 
 Examples
   sim3align align cases/mug
   sim3align align cases/* --json results.json
+  sim3align align views/mug
   sim3align align cases/mug --known-extent 0.095 --known-extent-axis y
   sim3align align cases/mug --initial annotated.json --search local
   sim3align align cases/mug --camera-up 0,-1,0 --mesh-up 0,1,0 --quality best
@@ -122,19 +129,24 @@ async function run(folders: string[], flags: AlignFlags): Promise<void> {
 /** What follows the table: details of a single case, or the warnings and failures of all. */
 function remarks(outcomes: readonly Outcome[], { style }: Output): string[] {
   const [only] = outcomes;
-  if (outcomes.length === 1 && only !== undefined && !("error" in only)) return details(only, style);
+  if (outcomes.length === 1 && only !== undefined && !("error" in only)) {
+    return "views" in only ? viewsDetails(only, style) : details(only, style);
+  }
   const lines = notes(outcomes, style);
   return outcomes.length === 1 || lines.length === 0 ? lines : ["", ...lines];
 }
 
 async function alignCase(
   aligner: Aligner,
-  { name, read }: CaseToDo,
+  { name, folder, read }: CaseToDo,
   flags: AlignFlags,
   progress: ProgressLine,
 ): Promise<Outcome> {
   let files: CaseOnDisk["files"] = {};
   try {
+    if (folder !== undefined && (await frameNames(folder)).length > 0) {
+      return await alignFrames(aligner, name, folder, flags, progress);
+    }
     const { input, truth, ...read_ } = await read();
     files = read_.files;
     const options = await alignOptions(flags, name);
@@ -145,9 +157,38 @@ async function alignCase(
     const { errors } = await aligner.evaluate(input, alignment, { truth: transform, symmetry });
     return { ...success, errors };
   } catch (error) {
+    if (error instanceof UsageError) throw error;
     if (isAboutOptions(error)) throw new UsageError(error.message);
     return failure(name, error, files);
   }
+}
+
+/** Aligns a case of several views. Without the camera poses of all frames, those of some do not help. */
+async function alignFrames(
+  aligner: Aligner,
+  name: string,
+  folder: string,
+  flags: AlignFlags,
+  progress: ProgressLine,
+): Promise<Outcome> {
+  const { mesh, frames } = await readFrames(folder, caseSettings(flags));
+  const isKnown = frames.every(({ input }) => input.cameraToWorld !== undefined);
+  const views = frames.map(({ input }) => (isKnown ? input : { ...input, cameraToWorld: undefined }));
+  const { preset, ...options } = await alignOptions(flags, name);
+  if (preset === "paper") throw new UsageError(`${name} has several frames, for which --preset paper has no method.`);
+  const onProgress = (state: Progress) => progress.update(state);
+  const alignment = await aligner.alignViews({ mesh, views }, { ...(options as ViewsOptions), onProgress });
+  const errors = await Promise.all(
+    frames.map(async ({ input, truth }, k) => {
+      const pose = alignment.views[k];
+      if (truth === null || pose === undefined || input.mask === undefined) return null;
+      const { cameraToWorld, ...frame } = input;
+      const { transform, symmetry } = truth;
+      const found = await aligner.evaluate({ ...frame, mesh } as AlignInput, pose, { truth: transform, symmetry });
+      return found.errors;
+    }),
+  );
+  return { name, views: alignment, frames: frames.map((frame) => frame.name), errors };
 }
 
 /** Whether all cases would fail with this error. The initial pose may differ from case to case. */

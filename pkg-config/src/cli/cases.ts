@@ -10,6 +10,8 @@ export interface CaseToDo {
   name: string;
   /** Whether its true pose is known. */
   hasTruth: boolean;
+  /** The folder, where the case is one. */
+  folder?: string;
   read(): Promise<CaseOnDisk>;
 }
 
@@ -62,6 +64,7 @@ function casesIn(paths: readonly string[], settings: CaseSettings): CaseToDo[] {
     return {
       name: isUnique ? name : folder,
       hasTruth: hasTruth(folder),
+      folder,
       read: () => readCaseFolder(folder, settings),
     };
   });

@@ -1,6 +1,6 @@
 /** Outcomes of cases, for tables and for JSON. */
 import { describe, Sim3AlignError } from "../error.js";
-import type { AlignResult, Evaluation, PoseErrors, Sim3 } from "../index.js";
+import type { AlignResult, Evaluation, PoseErrors, Sim3, TrackedFrame, ViewsAlignment } from "../index.js";
 
 /** An aligned case. */
 export interface Success {
@@ -8,6 +8,16 @@ export interface Success {
   alignment: AlignResult;
   /** The errors relative to the true pose, if the case has one. */
   errors: PoseErrors | null;
+}
+
+/** A case of several views that was aligned. */
+export interface ViewsSuccess {
+  name: string;
+  views: ViewsAlignment;
+  /** The names of the views, in order. */
+  frames: readonly string[];
+  /** The errors relative to the true pose of each view, if it has one. */
+  errors: readonly (PoseErrors | null)[];
 }
 
 /** A failed case. */
@@ -18,7 +28,7 @@ export interface Failure {
   file: string | undefined;
 }
 
-export type Outcome = Success | Failure;
+export type Outcome = Success | ViewsSuccess | Failure;
 
 /** Converts any exception to a `Sim3AlignError`. */
 export function asSim3AlignError(error: unknown): Sim3AlignError {
@@ -70,6 +80,42 @@ function alignmentJson({ alignment, errors }: Success) {
   };
 }
 
+/** The JSON entry of several views: the pose in the world, if the camera poses are known, and in each frame. */
+function viewsJson({ views: alignment, frames, errors }: ViewsSuccess) {
+  const { scale, rotation, rotationMatrix, translation, matrix, world, alternatives, views } = alignment;
+  const { confidence, uncertainty, warnings } = alignment;
+  const { timingsMs, ...diagnostics } = alignment.diagnostics;
+  const pose = transformJson({ scale, rotation, rotationMatrix, translation, matrix });
+  const frame = (k: number) => {
+    const { camera, ...view } = views[k] as (typeof views)[number];
+    const own = errors[k] ?? null;
+    return { ...transformJson(view), camera: transformJson(camera), ...(own === null ? {} : { errors: own }) };
+  };
+  return {
+    // Without camera poses, there is no world: the poses are those of the frames.
+    ...(world === "given" ? pose : { scale }),
+    world,
+    confidence,
+    alternatives: alternatives.map(transformJson),
+    uncertainty,
+    frames: Object.fromEntries(frames.map((name, k) => [name, frame(k)])),
+    warnings,
+    timingsMs,
+    diagnostics,
+  };
+}
+
+/** The JSON entry of a video, with the frames so far. */
+export function trackJson(frames: readonly { name: string; tracked: TrackedFrame | Failure }[]): object {
+  const poses = frames.flatMap(({ tracked }) => ("error" in tracked ? [] : [tracked]));
+  const entry = ({ tracked }: (typeof frames)[number]) =>
+    "error" in tracked ? failureJson(tracked) : transformJson(tracked);
+  return {
+    scale: poses.at(-1)?.scale ?? null,
+    frames: Object.fromEntries(frames.map((frame) => [frame.name, entry(frame)])),
+  };
+}
+
 function failureJson({ error, file }: Failure) {
   const { code, argument, found, expected, remedy, message } = error;
   return { error: { code, argument, found, expected, remedy, message, ...(file === undefined ? {} : { file }) } };
@@ -77,7 +123,7 @@ function failureJson({ error, file }: Failure) {
 
 /** The JSON entry of a case. */
 export const outcomeJson = (outcome: Outcome): object =>
-  "error" in outcome ? failureJson(outcome) : alignmentJson(outcome);
+  "error" in outcome ? failureJson(outcome) : "views" in outcome ? viewsJson(outcome) : alignmentJson(outcome);
 
 /** The JSON entry of an evaluated case. */
 export const evaluationJson = (evaluation: Evaluation | Failure): object =>

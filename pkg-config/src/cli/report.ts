@@ -1,7 +1,7 @@
 /** Human-readable tables of results. */
 import type { AlignResult, Evaluation, Metrics, PoseErrors, Warning } from "../index.js";
 import { fixed, significant } from "./number.js";
-import { failureText, type Outcome, type Success } from "./outcome.js";
+import { failureText, type Outcome, type Success, type ViewsSuccess } from "./outcome.js";
 import type { Style } from "./style.js";
 import { type Column, headings, pairs, tableLine, textWidth } from "./table.js";
 
@@ -37,7 +37,9 @@ export class Summary {
     const cells =
       "error" in outcome
         ? [outcome.name, this.#style.red(outcome.error.code)]
-        : [...row(outcome), ...(this.#hasTruth ? errorCells(outcome.errors) : [])];
+        : "views" in outcome
+          ? [...viewsRow(outcome), ...(this.#hasTruth ? errorCells(null) : [])]
+          : [...row(outcome), ...(this.#hasTruth ? errorCells(outcome.errors) : [])];
     const lines = [tableLine(this.#columns, cells)];
     if (this.#isEmpty) lines.unshift(this.#style.bold(headings(this.#columns)));
     this.#isEmpty = false;
@@ -62,6 +64,60 @@ function row({ name, alignment }: Success): string[] {
     fixed(metrics?.fitness, 3),
     fixed(metrics?.depthMaeMm, 2),
     fixed(timingsMs.total / 1000, 2),
+  ];
+}
+
+function viewsRow({ name, views: alignment }: ViewsSuccess): string[] {
+  const { confidence, alternatives, scale, views, diagnostics } = alignment;
+  const mean = (metric: "iou" | "boundaryF" | "centerDriftPx" | "chamferMm" | "fitness" | "depthMaeMm") => {
+    const values = views.flatMap(({ metrics }) => metrics?.[metric] ?? []);
+    return values.length === 0 ? null : values.reduce((sum, value) => sum + value, 0) / values.length;
+  };
+  return [
+    name,
+    fixed(confidence, 2),
+    String(alternatives.length),
+    significant(scale, 4),
+    "–",
+    fixed(mean("iou"), 3),
+    fixed(mean("boundaryF"), 3),
+    fixed(mean("centerDriftPx"), 1),
+    fixed(mean("chamferMm"), 2),
+    fixed(mean("fitness"), 3),
+    fixed(mean("depthMaeMm"), 2),
+    fixed(diagnostics.timingsMs.total / 1000, 2),
+  ];
+}
+
+/** Details of a case of several views. */
+export function viewsDetails({ name, views: alignment, frames, errors }: ViewsSuccess, style: Style): string[] {
+  const { scale, translation, rotation, world, confidence, uncertainty, views, warnings, diagnostics } = alignment;
+  const frame = world === "given" ? "world" : "camera of the first view that is used";
+  const numbers = (values: readonly number[]) => values.map((x) => fixed(x, 6)).join("  ");
+  const view = (frameName: string, k: number): Row[] => {
+    const { confidence, role, metrics } = views[k] as (typeof views)[number];
+    const own = errors[k] ?? null;
+    const error =
+      own === null
+        ? ""
+        : `, errors: scale ${fixed(100 * own.scaleError, 2)} %, rotation ${fixed(own.rotationErrorDeg, 2)}°, translation ${fixed(100 * own.translationErrorRelative, 2)} %`;
+    return [[frameName, `${role}, confidence ${fixed(confidence, 2)}, IoU ${fixed(metrics?.iou, 3)}${error}`]];
+  };
+  return [
+    style.bold(`${name}: ${frame} from mesh, x = s·R·p + t`),
+    ...pairs([
+      [
+        "scale s",
+        `${significant(scale, 6)} m per mesh unit${uncertainty === null ? "" : ` ± ${fixed(100 * uncertainty.scale, 2)} %`}`,
+      ],
+      ["translation t", `${numbers(translation)} m`],
+      ["rotation R", `${numbers(rotation)} (quaternion x y z w)`],
+      ["confidence", `${fixed(confidence, 2)}, score ${fixed(diagnostics.score, 3)}`],
+    ]),
+    "",
+    style.bold("Views"),
+    ...pairs(frames.flatMap(view)),
+    ...warningsSection([...warnings, ...views.flatMap((each) => each.warnings)], style),
   ];
 }
 
@@ -209,6 +265,8 @@ export function notes(outcomes: readonly Outcome[], style: Style): string[] {
   return outcomes.flatMap((outcome) =>
     "error" in outcome
       ? [style.red("failed ") + failureText(outcome)]
-      : outcome.alignment.warnings.map((warning) => `${outcome.name}: ${warningText(warning, style)}`),
+      : ("views" in outcome ? outcome.views : outcome.alignment).warnings.map(
+          (warning) => `${outcome.name}: ${warningText(warning, style)}`,
+        ),
   );
 }

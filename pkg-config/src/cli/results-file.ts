@@ -25,18 +25,21 @@ export class ResultsFile {
     this.#isIncremental = path !== "-" && checkWritable(path);
   }
 
-  /** Adds the entry of a case. */
-  add(name: string, entry: object): void {
+  /**
+   * Adds the entry of a case.
+   * @param isFinal whether no other entry will replace it
+   */
+  add(name: string, entry: object, isFinal = true): void {
     const text = `  ${JSON.stringify(name)}: ${JSON.stringify(entry, null, 2).replaceAll("\n", "\n  ")}`;
     if (!this.#isIncremental) {
-      this.#entries.push(text);
+      if (isFinal) this.#entries.push(text);
       return;
     }
-    const isFirst = this.#file === undefined;
+    const isFirst = this.#length === 0;
     this.#file ??= openSync(this.#path, "w");
     const bytes = Buffer.from(`${isFirst ? "{\n" : ",\n"}${text}${END}`);
     writeAll(this.#file, bytes, this.#length);
-    this.#length += bytes.length - END.length;
+    if (isFinal) this.#length += bytes.length - END.length;
   }
 
   /** Writes what is not written yet. */

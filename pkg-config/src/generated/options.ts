@@ -7,6 +7,8 @@ import type {
   EvaluateOptions,
   PaperOptions,
   RegisterOptions,
+  TrackOptions,
+  ViewsOptions,
 } from "./types.js";
 
 /** Defaults of `align`. */
@@ -50,6 +52,30 @@ export const PAPER_DEFAULTS = {
   lockScale: true,
   icpIterations: 60,
 } as const satisfies PaperOptions;
+
+/** Defaults of `alignViews`. */
+export const VIEWS_DEFAULTS = {
+  quality: "auto",
+  scale: "free",
+  knownExtentM: null,
+  knownExtentAxis: "longest",
+  symmetry: "auto",
+  metrics: true,
+  seed: 0,
+  maxObservedPoints: 20000,
+  surfaceSamples: 10000,
+} as const satisfies ViewsOptions;
+
+/** Defaults of `track`. */
+export const TRACK_DEFAULTS = {
+  quality: "auto",
+  scale: "free",
+  knownExtentM: null,
+  knownExtentAxis: "longest",
+  initial: null,
+  metrics: false,
+  seed: 0,
+} as const satisfies TrackOptions;
 
 /** Defaults of `evaluate`. */
 export const EVALUATE_DEFAULTS = {
@@ -351,6 +377,136 @@ export const OPTIONS = {
       isNullable: false,
       default: 60,
       summary: "Upper bound on the iterations of each of ICP's two passes: on the voxel grid, then on the points",
+    },
+  ],
+  alignViews: [
+    {
+      name: "quality",
+      kind: "choice",
+      choices: ["auto", "fast", "balanced", "best"],
+      isNullable: false,
+      default: "auto",
+      summary: "How much work the searches do",
+    },
+    {
+      name: "scale",
+      kind: "scale",
+      isNullable: false,
+      default: "free",
+      summary: "The scale in metres per mesh unit: `\"free\"`, a known number (1 for a mesh in metres), or bounds `[min, max]`",
+    },
+    {
+      name: "knownExtentM",
+      kind: "number",
+      above: 0,
+      isNullable: true,
+      default: null,
+      summary: "The object's known length along `knownExtentAxis`, in metres",
+    },
+    {
+      name: "knownExtentAxis",
+      kind: "choice",
+      choices: ["longest", "x", "y", "z"],
+      isNullable: false,
+      default: "longest",
+      summary: "The side of the mesh's bounding box that `knownExtentM` measures",
+    },
+    {
+      name: "symmetry",
+      kind: "symmetry",
+      isNullable: false,
+      default: "auto",
+      summary: "The object's symmetry, so that `alternatives` does not list equivalent poses; as in `align`",
+    },
+    {
+      name: "metrics",
+      kind: "boolean",
+      isNullable: false,
+      default: true,
+      summary: "Whether to compute the `metrics` of each view",
+    },
+    {
+      name: "seed",
+      kind: "integer",
+      min: 0,
+      max: 4294967295,
+      isNullable: false,
+      default: 0,
+      summary: "Seed of all random draws",
+    },
+    {
+      name: "maxObservedPoints",
+      kind: "integer",
+      min: 32,
+      max: 1000000,
+      isNullable: false,
+      default: 20000,
+      summary: "Upper bound on the depth readings of each view that are used for metrics",
+    },
+    {
+      name: "surfaceSamples",
+      kind: "integer",
+      min: 100,
+      max: 1000000,
+      isNullable: false,
+      default: 10000,
+      summary: "Number of points sampled on the mesh surface for metrics",
+    },
+  ],
+  track: [
+    {
+      name: "quality",
+      kind: "choice",
+      choices: ["auto", "fast", "balanced", "best"],
+      isNullable: false,
+      default: "auto",
+      summary: "How much work the search in the first frame does, and the one that finds a lost object again",
+    },
+    {
+      name: "scale",
+      kind: "scale",
+      isNullable: false,
+      default: "free",
+      summary: "The scale in metres per mesh unit: `\"free\"`, a known number (1 for a mesh in metres), or bounds `[min, max]`",
+    },
+    {
+      name: "knownExtentM",
+      kind: "number",
+      above: 0,
+      isNullable: true,
+      default: null,
+      summary: "The object's known length along `knownExtentAxis`, in metres",
+    },
+    {
+      name: "knownExtentAxis",
+      kind: "choice",
+      choices: ["longest", "x", "y", "z"],
+      isNullable: false,
+      default: "longest",
+      summary: "The side of the mesh's bounding box that `knownExtentM` measures",
+    },
+    {
+      name: "initial",
+      kind: "transform",
+      isNullable: true,
+      default: null,
+      summary: "The pose in the first frame, camera from mesh, in metres, if it is known",
+    },
+    {
+      name: "metrics",
+      kind: "boolean",
+      isNullable: false,
+      default: false,
+      summary: "Whether to compute `metrics` of each frame that has a mask, which takes several times as long as tracking",
+    },
+    {
+      name: "seed",
+      kind: "integer",
+      min: 0,
+      max: 4294967295,
+      isNullable: false,
+      default: 0,
+      summary: "Seed of all random draws",
     },
   ],
   evaluate: [

@@ -211,6 +211,92 @@ export interface PaperOptions {
 }
 
 /**
+ * Options of `alignViews`. All have defaults.
+ */
+export interface ViewsOptions {
+  /**
+   * How much work the searches do. Default `"auto"`.
+   */
+  quality?: Quality | undefined;
+  /**
+   * The scale in metres per mesh unit: `"free"`, a known number (1 for a mesh in metres), or bounds `[min, max]`. Not
+   * together with `knownExtentM`. Default `"free"`.
+   */
+  scale?: ScaleOption | undefined;
+  /**
+   * The object's known length along `knownExtentAxis`, in metres. It fixes the scale. Takes a finite number above 0,
+   * or null. Default `null`.
+   */
+  knownExtentM?: number | null | undefined;
+  /**
+   * The side of the mesh's bounding box that `knownExtentM` measures. Default `"longest"`.
+   */
+  knownExtentAxis?: ExtentAxis | undefined;
+  /**
+   * The object's symmetry, so that `alternatives` does not list equivalent poses; as in `align`. Default `"auto"`.
+   */
+  symmetry?: SymmetryOption | undefined;
+  /**
+   * Whether to compute the `metrics` of each view. Without them the call takes less time. Default `true`.
+   */
+  metrics?: boolean | undefined;
+  /**
+   * Seed of all random draws. The same input and seed give the same bits. Takes a whole number from 0 to 4294967295.
+   * Default `0`.
+   */
+  seed?: number | undefined;
+  /**
+   * Upper bound on the depth readings of each view that are used for metrics. Takes a whole number from 32 to
+   * 1000000. Default `20000`.
+   */
+  maxObservedPoints?: number | undefined;
+  /**
+   * Number of points sampled on the mesh surface for metrics. Takes a whole number from 100 to 1000000. Default
+   * `10000`.
+   */
+  surfaceSamples?: number | undefined;
+}
+
+/**
+ * Options of `track`. All have defaults.
+ */
+export interface TrackOptions {
+  /**
+   * How much work the search in the first frame does, and the one that finds a lost object again. Default `"auto"`.
+   */
+  quality?: Quality | undefined;
+  /**
+   * The scale in metres per mesh unit: `"free"`, a known number (1 for a mesh in metres), or bounds `[min, max]`. Not
+   * together with `knownExtentM`. Default `"free"`.
+   */
+  scale?: ScaleOption | undefined;
+  /**
+   * The object's known length along `knownExtentAxis`, in metres. It fixes the scale. Takes a finite number above 0,
+   * or null. Default `null`.
+   */
+  knownExtentM?: number | null | undefined;
+  /**
+   * The side of the mesh's bounding box that `knownExtentM` measures. Default `"longest"`.
+   */
+  knownExtentAxis?: ExtentAxis | undefined;
+  /**
+   * The pose in the first frame, camera from mesh, in metres, if it is known. That frame then needs no mask. Default
+   * `null`.
+   */
+  initial?: Sim3Like | null | undefined;
+  /**
+   * Whether to compute `metrics` of each frame that has a mask, which takes several times as long as tracking.
+   * Default `false`.
+   */
+  metrics?: boolean | undefined;
+  /**
+   * Seed of all random draws. The same frames and seed give the same bits. Takes a whole number from 0 to 4294967295.
+   * Default `0`.
+   */
+  seed?: number | undefined;
+}
+
+/**
  * Options of `evaluate`. All have defaults.
  */
 export interface EvaluateOptions {
@@ -355,7 +441,7 @@ export type ErrorCode = "INVALID_ARGUMENT" | "INVALID_OPTION" | "UNKNOWN_OPTION"
 /**
  * The kinds of warning.
  */
-export type WarningCode = "DEPTH_LOOKS_LIKE_MILLIMETRES" | "DEPTH_LOOKS_TOO_SMALL" | "MASK_COVERS_IMAGE" | "MASK_TOUCHES_BORDER" | "SPARSE_DEPTH" | "SCALE_CLAMPED" | "SCALE_COLLAPSED" | "NOT_CONVERGED" | "MESH_DOUBTFUL" | "CAMERA_NOT_PINHOLE" | "COLORS_NOT_READ";
+export type WarningCode = "DEPTH_LOOKS_LIKE_MILLIMETRES" | "DEPTH_LOOKS_TOO_SMALL" | "MASK_COVERS_IMAGE" | "MASK_TOUCHES_BORDER" | "SPARSE_DEPTH" | "SCALE_CLAMPED" | "SCALE_COLLAPSED" | "NOT_CONVERGED" | "MESH_DOUBTFUL" | "VIEW_CONTRADICTS" | "VIEW_SHOWS_NOTHING" | "CAMERA_NOT_PINHOLE" | "COLORS_NOT_READ";
 
 /**
  * A condition that the caller should know about; the result stands.
@@ -814,6 +900,301 @@ warnings: Array<Warning>,
  * Everything else: initial scale, counts, timings.
  */
 diagnostics: Diagnostics, 
+/**
+ * s, target units per source unit; for `align`, metres per mesh unit.
+ */
+scale: number, 
+/**
+ * R as a unit quaternion [x, y, z, w], w ≥ 0 (three.js, glTF).
+ */
+rotation: [number, number, number, number], 
+/**
+ * R as three rows of three.
+ */
+rotationMatrix: [[number, number, number], [number, number, number], [number, number, number]], 
+/**
+ * t, in target units; for `align`, metres.
+ */
+translation: [number, number, number], 
+/**
+ * The 4×4 matrix, 16 numbers **column by column** (three.js `Matrix4.elements`, glTF `node.matrix`, WebGPU).
+ */
+matrix: number[], };
+
+/**
+ * What the world of a result is.
+ */
+export type WorldFrame = "given" | "camera";
+
+/**
+ * What a view contributed to the result.
+ */
+export type ViewRole = "used" | "contradicting" | "blind";
+
+/**
+ * Standard deviations of the pose in the world, as all views together determine them.
+ */
+export type WorldUncertainty = { 
+/**
+ * Of the scale, relative: 0.01 is one per cent.
+ */
+scale: number, 
+/**
+ * Of the rotation about the least determined axis, in degrees.
+ */
+rotationDeg: number, 
+/**
+ * That axis: a unit vector in the world frame.
+ */
+rotationAxis: [number, number, number], 
+/**
+ * Of the mesh centre's position along the least determined direction, in metres.
+ */
+positionM: number, };
+
+/**
+ * The pose of a camera in the world.
+ */
+export type CameraPose = { 
+/**
+ * Standard deviation of its rotation, in degrees; 0 for given camera poses and for the camera that is the world.
+ */
+rotationSdDeg: number, 
+/**
+ * Standard deviation of its position, in metres; 0 as above.
+ */
+positionSdM: number, 
+/**
+ * s, target units per source unit; for `align`, metres per mesh unit.
+ */
+scale: number, 
+/**
+ * R as a unit quaternion [x, y, z, w], w ≥ 0 (three.js, glTF).
+ */
+rotation: [number, number, number, number], 
+/**
+ * R as three rows of three.
+ */
+rotationMatrix: [[number, number, number], [number, number, number], [number, number, number]], 
+/**
+ * t, in target units; for `align`, metres.
+ */
+translation: [number, number, number], 
+/**
+ * The 4×4 matrix, 16 numbers **column by column** (three.js `Matrix4.elements`, glTF `node.matrix`, WebGPU).
+ */
+matrix: number[], };
+
+/**
+ * The object in one of the views.
+ */
+export type ViewPose = { 
+/**
+ * Probability that this pose is right; see `Alignment.confidence`.
+ */
+confidence: number, 
+/**
+ * What the view contributed.
+ */
+role: ViewRole, 
+/**
+ * The pose of its camera.
+ */
+camera: CameraPose, 
+/**
+ * The score of the pose in this view; it compares with that of `align` for the same view.
+ */
+score: number, 
+/**
+ * The terms of the score.
+ */
+terms: ScoreTerms, 
+/**
+ * Agreement of the posed mesh with the view.
+ */
+metrics: Metrics, 
+/**
+ * Conditions of this view that the caller should know about.
+ */
+warnings: Array<Warning>, 
+/**
+ * s, target units per source unit; for `align`, metres per mesh unit.
+ */
+scale: number, 
+/**
+ * R as a unit quaternion [x, y, z, w], w ≥ 0 (three.js, glTF).
+ */
+rotation: [number, number, number, number], 
+/**
+ * R as three rows of three.
+ */
+rotationMatrix: [[number, number, number], [number, number, number], [number, number, number]], 
+/**
+ * t, in target units; for `align`, metres.
+ */
+translation: [number, number, number], 
+/**
+ * The 4×4 matrix, 16 numbers **column by column** (three.js `Matrix4.elements`, glTF `node.matrix`, WebGPU).
+ */
+matrix: number[], };
+
+/**
+ * What `alignViews` reports besides the poses.
+ */
+export type ViewsDiagnostics = { 
+/**
+ * The seed it ran with.
+ */
+seed: number, 
+/**
+ * The effort of the searches that found the pose.
+ */
+effort: Effort, 
+/**
+ * The sum of the scores of all views.
+ */
+score: number, 
+/**
+ * Whether the refinement converged.
+ */
+converged: boolean, 
+/**
+ * Images that the searches drew.
+ */
+renders: number, 
+/**
+ * Milliseconds per stage, and their total.
+ */
+timingsMs: Timings, };
+
+/**
+ * The result of `alignViews`: world from mesh, x_world = s·R·p_mesh + t, in metres.
+ */
+export type ViewsAlignment = { 
+/**
+ * What the world is.
+ */
+world: WorldFrame, 
+/**
+ * Probability that the pose is right (scale within 5 %, rotation within 10° up to symmetry, translation within 5 %
+ * of the diameter). Without given camera poses, that of the least certain view.
+ */
+confidence: number, 
+/**
+ * Other poses that explain all views nearly as well, world from mesh, best first. Empty without given camera poses.
+ */
+alternatives: Array<Alternative>, 
+/**
+ * How well the views together determine the pose; `null` where they do not.
+ */
+uncertainty: WorldUncertainty | null, 
+/**
+ * The object in each view, in the order of the input.
+ */
+views: Array<ViewPose>, 
+/**
+ * Conditions that the caller should know about; the result stands.
+ */
+warnings: Array<Warning>, 
+/**
+ * Everything else.
+ */
+diagnostics: ViewsDiagnostics, 
+/**
+ * s, target units per source unit; for `align`, metres per mesh unit.
+ */
+scale: number, 
+/**
+ * R as a unit quaternion [x, y, z, w], w ≥ 0 (three.js, glTF).
+ */
+rotation: [number, number, number, number], 
+/**
+ * R as three rows of three.
+ */
+rotationMatrix: [[number, number, number], [number, number, number], [number, number, number]], 
+/**
+ * t, in target units; for `align`, metres.
+ */
+translation: [number, number, number], 
+/**
+ * The 4×4 matrix, 16 numbers **column by column** (three.js `Matrix4.elements`, glTF `node.matrix`, WebGPU).
+ */
+matrix: number[], };
+
+/**
+ * What a tracker knows of a frame.
+ */
+export type TrackState = "tracking" | "uncertain" | "lost";
+
+/**
+ * The pose in a frame: camera from mesh, x_cam = s·R·p_mesh + t (OpenCV camera: x right, y down, z forward; metres).
+ */
+export type TrackedFrame = { 
+/**
+ * The number of the frame: 0 for the first.
+ */
+frame: number, 
+/**
+ * What the tracker knows of it.
+ */
+state: TrackState, 
+/**
+ * Probability that the pose is right; see `Alignment.confidence`. 0 while the object is lost.
+ */
+confidence: number, 
+/**
+ * Standard deviation of the size, relative: 0.01 is one per cent. 0 for a given scale.
+ */
+scaleSd: number, 
+/**
+ * Whether the size is settled: later frames keep it.
+ */
+isScaleSettled: boolean, 
+/**
+ * Whether the pose was searched for anew, without the frame before.
+ */
+isDetected: boolean, 
+/**
+ * The score of the pose, as of `align`.
+ */
+score: number, 
+/**
+ * The terms of the score.
+ */
+terms: ScoreTerms, 
+/**
+ * Agreement of the posed mesh with the frame, if it was asked for and the frame has a mask.
+ */
+metrics: Metrics | null, 
+/**
+ * s, target units per source unit; for `align`, metres per mesh unit.
+ */
+scale: number, 
+/**
+ * R as a unit quaternion [x, y, z, w], w ≥ 0 (three.js, glTF).
+ */
+rotation: [number, number, number, number], 
+/**
+ * R as three rows of three.
+ */
+rotationMatrix: [[number, number, number], [number, number, number], [number, number, number]], 
+/**
+ * t, in target units; for `align`, metres.
+ */
+translation: [number, number, number], 
+/**
+ * The 4×4 matrix, 16 numbers **column by column** (three.js `Matrix4.elements`, glTF `node.matrix`, WebGPU).
+ */
+matrix: number[], };
+
+/**
+ * The pose of a frame after a correction of another one.
+ */
+export type CorrectedFrame = { 
+/**
+ * The number of the frame.
+ */
+frame: number, 
 /**
  * s, target units per source unit; for `align`, metres per mesh unit.
  */

@@ -18,3 +18,15 @@ export interface CoreInput {
   image?: Photo;
   mesh: CoreMesh;
 }
+
+/** A frame for the core. */
+export type CoreFrame = Omit<CoreInput, "mask" | "mesh"> & {
+  mask?: CoreInput["mask"];
+  cameraToWorld?: unknown;
+};
+
+/** Several views for the core. */
+export interface CoreViews {
+  mesh: CoreMesh;
+  views: CoreFrame[];
+}

@@ -18,10 +18,12 @@ export interface ResolvedInput {
   warnings: FileWarnings;
 }
 
-const properties = [
+/** The properties of an input that describe its image. */
+export const imageProperties = [
   ...["depth", "depthScale", "pointMap", "width", "height", "camera", "cameraFile", "imageId"],
-  ...["mask", "resizeMask", "mesh", "image"],
 ];
+
+const properties = [...imageProperties, "mask", "resizeMask", "mesh", "image"];
 
 /** The properties that an input and its parts may inherit from a class; others of the class are not arguments. */
 export const classNames: ClassNames = {
@@ -65,6 +67,11 @@ export async function resolveInput(input: unknown, formats: LoadFormats, meshId?
  */
 export async function readView(input: unknown, formats: LoadFormats) {
   checkProperties(input);
+  return imageAndCamera(input, formats);
+}
+
+/** The same, whose other properties have been checked. */
+export async function imageAndCamera(input: Record<string, unknown>, formats: LoadFormats) {
   checkSides("", input);
   const { pointMap } = input;
   return pointMap === undefined ? depthAndCamera(input, formats) : pointMapAndCamera(input, pointMap);

@@ -41,6 +41,7 @@ export function buffersOf(value: unknown): ArrayBuffer[] {
 
 function mapped(value: unknown, replace: (array: ArrayBuffer | ArrayBufferView) => unknown): unknown {
   if (ArrayBuffer.isView(value) || isBuffer(value)) return replace(value);
+  if (Array.isArray(value)) return value.map((inner) => mapped(inner, replace));
   if (!isRecord(value)) return value;
   return Object.fromEntries(Object.entries(value).map(([name, inner]) => [name, mapped(inner, replace)]));
 }

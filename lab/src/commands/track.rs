@@ -1,0 +1,203 @@
+//! `track`: tracks one object through videos, generated or from case folders, and prints a table.
+
+use lexopt::prelude::*;
+use sim3align::metrics::pose_error::pose_errors;
+use sim3align::precise::prepared_mesh::PreparedMesh;
+use sim3align::progress::Silent;
+use sim3align::track::options::TrackOptions;
+use sim3align::track::report::TrackState;
+use sim3align::track::tracker::Tracker;
+use sim3align_geometry::error::Result;
+use sim3align_geometry::similarity::Similarity;
+use sim3align_lab::bench::statistics::{cell, median};
+use sim3align_lab::fuzz::cpu::CpuTimer;
+use sim3align_lab::parallel::parallel_map;
+use sim3align_lab::sequences::Sequence;
+use sim3align_lab::sequences::folder::read_sequence;
+use sim3align_lab::sequences::video::VideoSet;
+
+use super::Failure;
+
+const USAGE: &str = "\
+Usage: sim3align-lab track [--generated N] [--frames F] [--seed S] [--threads T] [--verbose] [FOLDER...]
+
+Tracks each video with the masks of all frames, and with that of the first frame alone, and prints errors, flips, losses, and
+the time of a frame. FOLDER holds a mesh and folders frame_*.";
+
+struct Arguments {
+    generated: usize,
+    set: VideoSet,
+    threads: usize,
+    verbose: bool,
+    folders: Vec<String>,
+}
+
+fn parse(mut parser: lexopt::Parser) -> core::result::Result<Option<Arguments>, lexopt::Error> {
+    let set = VideoSet { seed: 1, frames: 150 };
+    let mut parsed = Arguments { generated: 0, set, threads: 1, verbose: false, folders: Vec::new() };
+    while let Some(argument) = parser.next()? {
+        match argument {
+            Long("help") | Short('h') => return Ok(None),
+            Long("generated") => parsed.generated = parser.value()?.parse()?,
+            Long("frames") => parsed.set.frames = parser.value()?.parse()?,
+            Long("seed") => parsed.set.seed = parser.value()?.parse()?,
+            Long("threads") => parsed.threads = parser.value()?.parse()?,
+            Long("verbose") => parsed.verbose = true,
+            Value(folder) => parsed.folders.push(folder.string()?),
+            _ => return Err(argument.unexpected()),
+        }
+    }
+    Ok(Some(parsed))
+}
+
+/// Rotation error from which on a pose is a flip, degrees.
+const FLIP_DEG: f64 = 45.0;
+/// Fraction of the object that a frame must show for it to count.
+const SHOWN: f64 = 0.4;
+
+/// The result of one video.
+#[derive(Default)]
+struct Outcome {
+    row: usize,
+    kind: String,
+    /// Rotation and size errors of the frames that show the object, degrees and relative.
+    rotations: Vec<f64>,
+    sizes: Vec<f64>,
+    strict: usize,
+    flips: usize,
+    /// Frames that show the object and are said to be uncertain, or lost.
+    unsure: [usize; 2],
+    /// Wrong frames said to be tracked.
+    silent: usize,
+    /// Longest time to find the object again, frames.
+    found_after: usize,
+    times: Vec<f64>,
+}
+
+const ROWS: [&str; 2] = ["all masks", "first mask"];
+
+fn run(sequence: &Sequence, verbose: bool) -> Result<Vec<Outcome>> {
+    let mut outcomes = Vec::new();
+    for (row, name) in ROWS.into_iter().enumerate() {
+        let mesh = PreparedMesh::borrowed(&sequence.mesh);
+        let mut tracker = Tracker::new(&mesh, TrackOptions::default())?;
+        let mut outcome = Outcome { row, kind: sequence.kind.clone(), ..Outcome::default() };
+        let mut missed = 0;
+        for (k, frame) in sequence.frames.iter().enumerate() {
+            let mut seen = frame.view.frame.clone();
+            if row == 1 && k > 0 {
+                seen.mask = None;
+            }
+            let began = CpuTimer::start();
+            let found = match tracker.next(&seen, &mut Silent) {
+                Ok(found) => found,
+                Err(error) => {
+                    println!("{} {name} {}: {} {error}", sequence.name, frame.name, error.code.as_str());
+                    break;
+                }
+            };
+            if k > 0 {
+                outcome.times.push(1000.0 * began.seconds());
+            }
+            let Some(truth) = &frame.camera_from_mesh else { continue };
+            let pose = Similarity::from_column_major(&found.camera_from_mesh.matrix)?;
+            let errors = pose_errors(&sequence.mesh, &pose, truth, &sequence.symmetry)?;
+            if verbose {
+                println!(
+                    "{} {name} {}: {:?} scale {:+.2} % rotation {:.2}° translation {:.2} % confidence {:.3} sd {:.2} % {:.0} ms{}",
+                    sequence.name,
+                    frame.name,
+                    found.state,
+                    100.0 * (pose.scale / truth.scale - 1.0),
+                    errors.rotation_error_deg,
+                    100.0 * errors.translation_error_relative,
+                    found.confidence,
+                    100.0 * found.scale_sd,
+                    outcome.times.last().copied().unwrap_or_default(),
+                    if found.is_detected { " detected" } else { "" },
+                );
+            }
+            let strict = errors.scale_error < 0.05
+                && errors.rotation_error_deg < 10.0
+                && errors.translation_error_relative < 0.05;
+            outcome.silent += usize::from(found.state == TrackState::Tracking && !strict);
+            if frame.visible < SHOWN {
+                continue;
+            }
+            outcome.unsure[0] += usize::from(found.state == TrackState::Uncertain);
+            outcome.unsure[1] += usize::from(found.state == TrackState::Lost);
+            outcome.strict += usize::from(strict);
+            missed = if strict { 0 } else { missed + 1 };
+            outcome.found_after = outcome.found_after.max(missed);
+            outcome.flips += usize::from(found.state != TrackState::Lost && errors.rotation_error_deg > FLIP_DEG);
+            outcome.rotations.push(errors.rotation_error_deg);
+            outcome.sizes.push(errors.scale_error);
+        }
+        outcomes.push(outcome);
+    }
+    Ok(outcomes)
+}
+
+/// Runs the command.
+pub fn main(arguments: lexopt::Parser) -> core::result::Result<(), Failure> {
+    let arguments = match parse(arguments) {
+        Ok(Some(arguments)) => arguments,
+        Ok(None) => return Err(Failure::Help(USAGE)),
+        Err(error) => return Err(Failure::Usage(error, USAGE)),
+    };
+    let Arguments { generated, set, threads, verbose, folders } = arguments;
+    enum Source {
+        Folder(String),
+        Index(usize),
+    }
+    let sources: Vec<Source> =
+        folders.into_iter().map(Source::Folder).chain((0..generated).map(Source::Index)).collect();
+    let work = |source: &Source| -> Result<Vec<Outcome>> {
+        let sequence = match source {
+            Source::Folder(folder) => read_sequence(folder.as_ref())?,
+            Source::Index(index) => set.video(*index)?,
+        };
+        run(&sequence, verbose)
+    };
+    let outcomes = parallel_map(threads, &sources, work, |_| {})
+        .map_err(|error| Failure::Failed(format!("{} {error}", error.code.as_str())))?;
+    let outcomes: Vec<Outcome> = outcomes.into_iter().flatten().collect();
+    let mut kinds: Vec<&str> = outcomes.iter().map(|o| o.kind.as_str()).collect();
+    kinds.sort_unstable();
+    kinds.dedup();
+    println!(
+        "| row | videos | frames | strict % | rotation median, worst ° | size median, last worst % | flips | uncertain, lost | wrong and tracking | longest until right, frames | ms |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|---|---|");
+    for (row, name) in ROWS.into_iter().enumerate() {
+        for kind in kinds.iter().copied().chain([""]) {
+            let of: Vec<&Outcome> =
+                outcomes.iter().filter(|o| o.row == row && (kind.is_empty() || o.kind == kind)).collect();
+            if of.is_empty() {
+                continue;
+            }
+            let frames: usize = of.iter().map(|o| o.rotations.len()).sum();
+            let sum = |count: fn(&Outcome) -> usize| of.iter().map(|o| count(o)).sum::<usize>();
+            let all =
+                |list: fn(&Outcome) -> &Vec<f64>| of.iter().flat_map(|o| list(o).iter().copied()).collect::<Vec<_>>();
+            let rotations = all(|o| &o.rotations);
+            let worst = rotations.iter().copied().fold(0.0, f64::max);
+            let last = of.iter().filter_map(|o| o.sizes.last()).copied().fold(0.0, f64::max);
+            println!(
+                "| {name} | {} | {frames} | {:.1} | {}, {worst:.1} | {}, {:.2} | {} | {}, {} | {} | {} | {} |",
+                if kind.is_empty() { "all" } else { kind },
+                100.0 * sum(|o| o.strict) as f64 / frames.max(1) as f64,
+                cell(median(rotations), 2),
+                cell(median(all(|o| &o.sizes)).map(|size| 100.0 * size), 2),
+                100.0 * last,
+                sum(|o| o.flips),
+                sum(|o| o.unsure[0]),
+                sum(|o| o.unsure[1]),
+                sum(|o| o.silent),
+                of.iter().map(|o| o.found_after).max().unwrap_or_default(),
+                cell(median(all(|o| &o.times)), 1),
+            );
+        }
+    }
+    Ok(())
+}

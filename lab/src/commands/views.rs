@@ -1,0 +1,207 @@
+//! `views`: aligns one object in several views, generated or from case folders, and prints a table.
+
+use std::time::Instant;
+
+use lexopt::prelude::*;
+use sim3align::metrics::pose_error::{PoseErrors, pose_errors};
+use sim3align::progress::Silent;
+use sim3align::report::Sim3;
+use sim3align::views::options::ViewsOptions;
+use sim3align::views::report::{ViewRole, ViewsAlignment};
+use sim3align::views::{View, align_views};
+use sim3align_geometry::error::Result;
+use sim3align_geometry::similarity::Similarity;
+use sim3align_lab::bench::statistics::{cell, median};
+use sim3align_lab::parallel::parallel_map;
+use sim3align_lab::sequences::Sequence;
+use sim3align_lab::sequences::folder::read_sequence;
+use sim3align_lab::sequences::rig::RigSet;
+
+use super::Failure;
+
+const USAGE: &str = "\
+Usage: sim3align-lab views [--generated N] [--seed S] [--views V] [--threads T] [--verbose] [FOLDER...]
+
+Aligns each case with one view, with all views and known camera poses, and with all views and unknown ones, and prints the
+fraction of strictly correct poses and the errors of the size. FOLDER holds a mesh and folders frame_*.";
+
+struct Arguments {
+    generated: usize,
+    set: RigSet,
+    threads: usize,
+    verbose: bool,
+    folders: Vec<String>,
+}
+
+fn parse(mut parser: lexopt::Parser) -> core::result::Result<Option<Arguments>, lexopt::Error> {
+    let set = RigSet { seed: 1, views: None };
+    let mut parsed = Arguments { generated: 0, set, threads: 1, verbose: false, folders: Vec::new() };
+    while let Some(argument) = parser.next()? {
+        match argument {
+            Long("help") | Short('h') => return Ok(None),
+            Long("generated") => parsed.generated = parser.value()?.parse()?,
+            Long("seed") => parsed.set.seed = parser.value()?.parse()?,
+            Long("views") => parsed.set.views = Some(parser.value()?.parse()?),
+            Long("threads") => parsed.threads = parser.value()?.parse()?,
+            Long("verbose") => parsed.verbose = true,
+            Value(folder) => parsed.folders.push(folder.string()?),
+            _ => return Err(argument.unexpected()),
+        }
+    }
+    Ok(Some(parsed))
+}
+
+/// The result of one row for one case.
+struct Outcome {
+    row: usize,
+    kind: String,
+    strict: bool,
+    scale: f64,
+    confidence: f64,
+    /// Wrong views found, wrong views, and right views left out.
+    left_out: [usize; 3],
+    ms: f64,
+}
+
+const ROWS: [&str; 3] = ["one view", "known cameras", "unknown cameras"];
+
+fn similarity(pose: &Sim3) -> Result<Similarity> {
+    Similarity::from_column_major(&pose.matrix)
+}
+
+fn is_strict(errors: &PoseErrors) -> bool {
+    errors.scale_error < 0.05 && errors.rotation_error_deg < 10.0 && errors.translation_error_relative < 0.05
+}
+
+fn errors_of(sequence: &Sequence, k: usize, pose: &Sim3) -> Result<Option<PoseErrors>> {
+    let Some(truth) = &sequence.frames[k].camera_from_mesh else { return Ok(None) };
+    pose_errors(&sequence.mesh, &similarity(pose)?, truth, &sequence.symmetry).map(Some)
+}
+
+fn run(sequence: &Sequence, verbose: bool) -> Result<Vec<Outcome>> {
+    let mut outcomes = Vec::new();
+    for (row, name) in ROWS.into_iter().enumerate() {
+        let views: Vec<View> = sequence
+            .frames
+            .iter()
+            .take(if row == 0 { 1 } else { usize::MAX })
+            .map(|frame| View {
+                world_from_camera: frame.view.world_from_camera.filter(|_| row == 1),
+                ..frame.view.clone()
+            })
+            .collect();
+        if row == 1 && views.iter().any(|view| view.world_from_camera.is_none()) {
+            continue;
+        }
+        let options = ViewsOptions { metrics: false, symmetry: sequence.symmetry.clone(), ..ViewsOptions::default() };
+        let began = Instant::now();
+        let found = align_views(views, &sequence.mesh, &options, &mut Silent);
+        let ms = began.elapsed().as_secs_f64() * 1000.0;
+        let found: ViewsAlignment = match found {
+            Ok(found) => found,
+            Err(error) => {
+                println!("{} {name}: {} {error}", sequence.name, error.code.as_str());
+                continue;
+            }
+        };
+        let mut strict = true;
+        let mut scale: f64 = 0.0;
+        let mut left_out = [0; 3];
+        for (k, (view, frame)) in found.views.iter().zip(&sequence.frames).enumerate() {
+            let is_out = view.role == ViewRole::Contradicting;
+            left_out[0] += usize::from(is_out && frame.is_wrong);
+            left_out[1] += usize::from(frame.is_wrong);
+            left_out[2] += usize::from(is_out && !frame.is_wrong);
+            // With known cameras, what the pose in the world says of a wrong view is no answer.
+            let skipped = frame.is_wrong && row == 1;
+            let Some(errors) = errors_of(sequence, k, &view.camera_from_mesh)?.filter(|_| !skipped) else { continue };
+            strict &= is_strict(&errors);
+            scale = scale.max(errors.scale_error);
+            if verbose {
+                println!(
+                    "{} {name} {}: scale {:+.2} % rotation {:.2}° translation {:.2} % confidence {:.3} score {:.3} {:?}",
+                    sequence.name,
+                    frame.name,
+                    100.0 * (view.camera_from_mesh.scale / frame.camera_from_mesh.map_or(1.0, |t| t.scale) - 1.0),
+                    errors.rotation_error_deg,
+                    100.0 * errors.translation_error_relative,
+                    view.confidence,
+                    view.score,
+                    view.role,
+                );
+            }
+        }
+        if verbose {
+            let sd = found.uncertainty.map_or(f64::NAN, |u| u.scale);
+            println!(
+                "{} {name}: confidence {:.3} size sd {:.2} % {ms:.0} ms",
+                sequence.name,
+                found.confidence,
+                100.0 * sd
+            );
+        }
+        let kind = sequence.kind.clone();
+        outcomes.push(Outcome { row, kind, strict, scale, confidence: found.confidence, left_out, ms });
+    }
+    Ok(outcomes)
+}
+
+/// Runs the command.
+pub fn main(arguments: lexopt::Parser) -> core::result::Result<(), Failure> {
+    let arguments = match parse(arguments) {
+        Ok(Some(arguments)) => arguments,
+        Ok(None) => return Err(Failure::Help(USAGE)),
+        Err(error) => return Err(Failure::Usage(error, USAGE)),
+    };
+    let Arguments { generated, set, threads, verbose, folders } = arguments;
+    enum Source {
+        Folder(String),
+        Index(usize),
+    }
+    let sources: Vec<Source> =
+        folders.into_iter().map(Source::Folder).chain((0..generated).map(Source::Index)).collect();
+    let work = |source: &Source| -> Result<Vec<Outcome>> {
+        let sequence = match source {
+            Source::Folder(folder) => read_sequence(folder.as_ref())?,
+            Source::Index(index) => set.case(*index)?,
+        };
+        run(&sequence, verbose)
+    };
+    let outcomes = parallel_map(threads, &sources, work, |_| {})
+        .map_err(|error| Failure::Failed(format!("{} {error}", error.code.as_str())))?;
+    let outcomes: Vec<Outcome> = outcomes.into_iter().flatten().collect();
+    let mut kinds: Vec<&str> = outcomes.iter().map(|o| o.kind.as_str()).collect();
+    kinds.sort_unstable();
+    kinds.dedup();
+    println!(
+        "| row | cases | n | strict % | size error median % | ≤ .5 % | ≤ 2 % | confidence ≥ .9 and wrong | wrong views found | right views left out | ms |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|---|---|");
+    for (row, name) in ROWS.into_iter().enumerate() {
+        for kind in kinds.iter().copied().chain([""]) {
+            let of: Vec<&Outcome> =
+                outcomes.iter().filter(|o| o.row == row && (kind.is_empty() || o.kind == kind)).collect();
+            if of.is_empty() {
+                continue;
+            }
+            let share = |count: usize| 100.0 * count as f64 / of.len() as f64;
+            let within = |limit: f64| share(of.iter().filter(|o| o.scale <= limit).count());
+            let sum = |i: usize| of.iter().map(|o| o.left_out[i]).sum::<usize>();
+            println!(
+                "| {name} | {} | {} | {:.1} | {} | {:.1} | {:.1} | {} | {} of {} | {} | {} |",
+                if kind.is_empty() { "all" } else { kind },
+                of.len(),
+                share(of.iter().filter(|o| o.strict).count()),
+                cell(median(of.iter().map(|o| 100.0 * o.scale).collect()), 2),
+                within(0.005),
+                within(0.02),
+                of.iter().filter(|o| o.confidence >= 0.9 && !o.strict).count(),
+                sum(0),
+                sum(1),
+                sum(2),
+                cell(median(of.iter().map(|o| o.ms).collect()), 0),
+            );
+        }
+    }
+    Ok(())
+}

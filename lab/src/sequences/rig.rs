@@ -1,0 +1,113 @@
+//! Generated views: two to eight cameras around an object.
+
+use nalgebra::Vector3;
+
+use super::stage::Stage;
+use super::{Sequence, SequenceFrame, jittered};
+use crate::cases::tier::Tier;
+use crate::draws::{between, mixed, sign};
+use sim3align::evidence::frame::Frame;
+use sim3align::views::View;
+use sim3align_geometry::error::{Error, ErrorCode, Result};
+use sim3align_geometry::random::Random;
+
+/// Random streams of a rig.
+const STREAM: u64 = 31;
+/// Draws of a case until one shows enough.
+const DRAWS: u64 = 64;
+/// Fewest visible pixels of the object in a view, and the smallest visible fraction.
+const MIN_PX: usize = 1500;
+const MIN_VISIBLE: f64 = 0.6;
+/// Errors of noisy camera poses: degrees and metres.
+const NOISE: [f64; 2] = [0.5, 0.003];
+
+/// A generated set of views.
+#[derive(Debug, Clone, Copy)]
+pub struct RigSet {
+    /// The seed.
+    pub seed: u64,
+    /// Number of views; `None` draws from two to eight.
+    pub views: Option<usize>,
+}
+
+impl RigSet {
+    /// Case `index`, which depends on the set and the index alone. A third of the cases has noisy camera poses, and a sixth
+    /// (of those with three views and more) one wrong view.
+    ///
+    /// # Errors
+    /// [`ErrorCode::Internal`] in case of a bug in the generator.
+    pub fn case(&self, index: usize) -> Result<Sequence> {
+        for draw in 0..DRAWS {
+            if let Some(case) = self.draw(index, mixed([self.seed, index as u64, draw]))? {
+                return Ok(case);
+            }
+        }
+        Err(Error::new(ErrorCode::Internal, "case", "no fitting draw", "one in a few", "Please report the seed."))
+    }
+
+    fn draw(&self, index: usize, seed: u64) -> Result<Option<Sequence>> {
+        let random = &mut Random::new(seed, STREAM);
+        let tier = Tier::of(index);
+        let stage = Stage::draw(tier, random)?;
+        let count = self.views.unwrap_or_else(|| 2 + random.below(7));
+        // Between neighbouring cameras.
+        let baseline = between(random, 5.0, 180.0);
+        let noisy = index % 3 == 1;
+        let wrong = (index % 6 == 5 && count > 2).then(|| random.below(count));
+        let first = between(random, 0.0, 360.0);
+        let turn = sign(random);
+        let mut scenes = Vec::new();
+        for k in 0..count {
+            let heading = first + turn * baseline * k as f64 + between(random, -2.0, 2.0);
+            let elevation = between(random, 15.0, 55.0);
+            let distance = stage.distance * between(random, 0.85, 1.2);
+            let mut off = || between(random, -0.3, 0.3) * stage.object.diagonal();
+            let past = Vector3::new(off(), off(), off());
+            let camera = stage.look([heading, elevation, between(random, -8.0, 8.0)], distance, past)?;
+            let scene = stage.shot(&camera, None);
+            if scene.visible_px() < MIN_PX || 1.0 - scene.hidden < MIN_VISIBLE {
+                return Ok(None);
+            }
+            scenes.push(scene);
+        }
+        let made = stage.made(&scenes[0], seed, random)?;
+        let mut frames = Vec::new();
+        for (k, scene) in scenes.iter().enumerate() {
+            let (depth, mask) = stage.readings(scene, random)?;
+            let is_wrong = wrong == Some(k);
+            let mut given = scene.camera_from_world.inverse();
+            if noisy {
+                given = jittered(&given, NOISE, random);
+            }
+            if is_wrong {
+                // The pose of a camera that was moved since.
+                given = jittered(&given, [between(random, 25.0, 90.0), 0.5 * stage.distance], random);
+            }
+            frames.push(SequenceFrame {
+                name: format!("frame_{k:02}"),
+                camera_from_mesh: Some(scene.camera_from_world.compose(&made.world_from_mesh)),
+                view: View {
+                    frame: Frame { depth, camera: scene.camera, mask: Some(mask) },
+                    world_from_camera: Some(given),
+                },
+                visible: 1.0 - scene.hidden,
+                is_wrong,
+            });
+        }
+        let kind = if wrong.is_some() {
+            "wrong view"
+        } else if noisy {
+            "noisy cameras"
+        } else {
+            "exact cameras"
+        };
+        Ok(Some(Sequence {
+            name: format!("{index:04}-{}-{count}x{baseline:.0}-{}", tier.as_str(), stage.object.family),
+            kind: kind.into(),
+            mesh: made.mesh,
+            symmetry: made.symmetry,
+            frames,
+            world_from_mesh: Some(made.world_from_mesh),
+        }))
+    }
+}

@@ -1,0 +1,146 @@
+//! An object on a table that cameras look at from all sides.
+
+use core::f64::consts::TAU;
+
+use glam::{DAffine3, DVec3};
+use nalgebra::{Rotation3, Vector3};
+
+use crate::cases::case::declared;
+use crate::cases::distortion::canonicalise;
+use crate::cases::draft::{Axis, Object};
+use crate::cases::families;
+use crate::cases::generator::generate;
+use crate::cases::mask::Segmented;
+use crate::cases::readings::Readings;
+use crate::cases::scene::{Scene, background, hidden, in_front, looking, put_before, put_down};
+use crate::cases::solid::Solid;
+use crate::cases::tier::{Class, Tier};
+use crate::draws::between;
+use sim3align::metrics::symmetry::Symmetry;
+use sim3align_geometry::cloud::Bounds;
+use sim3align_geometry::error::Result;
+use sim3align_geometry::image::{DepthMap, Mask};
+use sim3align_geometry::mesh::Mesh;
+use sim3align_geometry::pinhole::Pinhole;
+use sim3align_geometry::random::Random;
+use sim3align_geometry::rasteriser::Rasteriser;
+use sim3align_geometry::similarity::{Similarity, vector3};
+
+/// Image size of all frames.
+pub const SIZE: [usize; 2] = [640, 480];
+/// Distance of the wall: too far for a reading.
+const WALL_M: f64 = 50.0;
+
+/// The scene without cameras. The world is in metres, z up, and the table is at z = 0.
+pub struct Stage {
+    /// The object.
+    pub object: Object,
+    placed: Mesh,
+    symmetry: Vec<Axis>,
+    neighbours: Option<Mesh>,
+    /// The intrinsics of all frames.
+    pub camera: Pinhole,
+    /// Centre of the object, and the distance from which it spans a usual number of pixels.
+    pub center: Vector3<f64>,
+    /// See `center`.
+    pub distance: f64,
+    tier: Tier,
+}
+
+/// The object as a generator makes it.
+pub struct Made {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// Its true pose.
+    pub world_from_mesh: Similarity,
+    /// Its symmetry.
+    pub symmetry: Symmetry,
+}
+
+impl Stage {
+    /// A stage with an object of any family that fits on a desk.
+    pub fn draw(tier: Tier, random: &mut Random) -> Result<Self> {
+        let object = families::draw_for_desk(random)?;
+        let (placed, symmetry) = put_down(&object, tier, random)?;
+        let (width, height) = (SIZE[0] as f64, SIZE[1] as f64);
+        let focal = between(random, 0.8, 1.1) * width;
+        let camera = Pinhole::new(focal, focal, 0.5 * width - 0.5, 0.5 * height - 0.5)?;
+        let diagonal = object.diagonal();
+        let center = Bounds::of(placed.positions()).map_or_else(Vector3::zeros, |b| vector3(b.center()));
+        let distance = focal * diagonal / between(random, 150.0, 280.0);
+        let mut solid = Solid::default();
+        for _ in 0..random.below(3) {
+            let heading = TAU * random.uniform();
+            let far = diagonal * between(random, 1.1, 2.0);
+            let half = diagonal * between(random, 0.1, 0.3);
+            let spot = DVec3::new(far * libm::cos(heading), far * libm::sin(heading), half);
+            solid.at(DAffine3::from_translation(spot)).cuboid(DVec3::splat(half), 0.05 * half);
+        }
+        let neighbours = if solid.is_empty() { None } else { Some(solid.finish()?.0) };
+        Ok(Self { object, placed, symmetry, neighbours, camera, center, distance, tier })
+    }
+
+    /// Camera from world for a camera at this heading and elevation, degrees, and this distance, that looks past the
+    /// centre by an offset.
+    pub fn look(&self, [heading, elevation, roll]: [f64; 3], distance: f64, past: Vector3<f64>) -> Result<Similarity> {
+        let (rise, level) = libm::sincos(elevation.to_radians());
+        let (sine, cosine) = libm::sincos(heading.to_radians());
+        let towards = Vector3::new(cosine * level, sine * level, rise);
+        let eye = self.center + towards * distance;
+        let forward = (self.center + past - eye).normalize();
+        let roll = Rotation3::from_axis_angle(&Vector3::z_axis(), roll.to_radians());
+        let rotation = roll.matrix() * looking(&forward);
+        Similarity::from_parts(1.0, rotation, -(rotation * eye))
+    }
+
+    /// The scene as a camera sees it, with something in front.
+    pub fn shot(&self, camera_from_world: &Similarity, occluder: Option<&Mesh>) -> Scene {
+        let [width, height] = SIZE;
+        let mut rasteriser = Rasteriser::new();
+        rasteriser.render(&self.placed, camera_from_world, &self.camera, width, height);
+        let (object_depth, object_triangles) = (rasteriser.depth().to_vec(), rasteriser.triangles().to_vec());
+        let mut others = vec![0.0; width * height];
+        for mesh in self.neighbours.iter().chain(occluder) {
+            rasteriser.render_depth(mesh, camera_from_world, &self.camera, width, height);
+            put_before(&mut others, rasteriser.depth());
+        }
+        let mut depth = background(camera_from_world, &self.camera, (Vector3::x(), WALL_M), width, height);
+        put_before(&mut depth, &object_depth);
+        put_before(&mut depth, &others);
+        let silhouette_px = object_depth.iter().filter(|z| **z > 0.0).count();
+        let hidden = hidden(&object_depth, &others) as f64 / silhouette_px.max(1) as f64;
+        let visible = object_depth.iter().zip(&others).map(|(&z, &other)| in_front(z, other)).collect();
+        Scene {
+            width,
+            height,
+            camera: self.camera,
+            camera_from_world: *camera_from_world,
+            object_depth,
+            object_triangles,
+            depth,
+            visible,
+            silhouette_px,
+            cut: 0.0,
+            hidden,
+        }
+    }
+
+    /// The mesh that a generator makes of the object as one camera sees it.
+    pub fn made(&self, scene: &Scene, seed: u64, random: &mut Random) -> Result<Made> {
+        let cell = (self.tier, Class::Plain);
+        let generated = generate(&self.object, &self.placed, &self.symmetry, scene, cell, random)?;
+        let (mesh, world_from_mesh) = canonicalise(&generated.mesh, seed)?;
+        Ok(Made { mesh, world_from_mesh, symmetry: declared(&generated.symmetry, &world_from_mesh) })
+    }
+
+    /// Depth of a sensor and the mask of a segmentation model.
+    pub fn readings(&self, scene: &Scene, random: &mut Random) -> Result<(DepthMap, Mask)> {
+        let cell = (self.tier, Class::SparseSensor);
+        let readings = Readings::draw(scene, self.object.diagonal(), cell, random)?;
+        if scene.visible_px() == 0 {
+            return Ok((readings.depth, Mask::filled(scene.width, scene.height, 0)));
+        }
+        let mask = Segmented::draw(scene, (self.tier, Class::Plain), random)?.mask;
+        Ok((readings.depth, mask))
+    }
+}

@@ -1,0 +1,81 @@
+//! Trackers, by the id of the caller.
+
+use core::cell::RefCell;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use js_sys::Function;
+use wasm_bindgen::JsValue;
+use wasm_bindgen::prelude::wasm_bindgen;
+
+use sim3align::bindings::answer::answer;
+use sim3align::bindings::host::JsHost;
+use sim3align::bindings::object::wrong_type;
+use sim3align::bindings::transform::similarity;
+use sim3align::bindings::{input, mesh, options};
+use sim3align::error::{Error, ErrorCode, Result};
+use sim3align::precise::prepared_mesh::PreparedMesh;
+use sim3align::track::tracker::Tracker;
+
+type Kept = Rc<RefCell<Tracker<Rc<PreparedMesh<'static>>>>>;
+
+thread_local! {
+    static TRACKERS: RefCell<BTreeMap<u32, Kept>> = const { RefCell::new(BTreeMap::new()) };
+}
+
+/// Creates a tracker under this id; see `Aligner.track` in the TypeScript package.
+#[wasm_bindgen(js_name = openTracker, skip_typescript)]
+pub fn open_tracker(id: u32, input: &JsValue, options: &JsValue) -> core::result::Result<JsValue, JsValue> {
+    let open = || {
+        let options = options::options(options, &options::OF_CALLS, |_| None)?;
+        let tracker = Tracker::new(mesh::mesh_of(input)?, options)?;
+        TRACKERS.with_borrow_mut(|trackers| trackers.insert(id, Rc::new(RefCell::new(tracker))));
+        Ok(())
+    };
+    answer(open())
+}
+
+/// Tracks the next frame; see `Tracker.next` in the TypeScript package.
+#[wasm_bindgen(js_name = trackFrame, skip_typescript)]
+pub fn track_frame(id: u32, frame: &JsValue, on_progress: Option<Function>) -> core::result::Result<JsValue, JsValue> {
+    let track = || {
+        let tracker = tracker(id)?;
+        let frame = input::frame(frame)?;
+        tracker.borrow_mut().next(&frame, &mut JsHost::new(on_progress))
+    };
+    answer(track())
+}
+
+/// Corrects the pose of a frame; see `Tracker.correct` in the TypeScript package.
+#[wasm_bindgen(js_name = correctTrack, skip_typescript)]
+pub fn correct_track(id: u32, pose: &JsValue, frame: &JsValue) -> core::result::Result<JsValue, JsValue> {
+    let correct = || {
+        let tracker = tracker(id)?;
+        let pose = similarity(pose, "pose")?;
+        let index = frame.as_f64().filter(|index| index.fract() == 0.0 && *index >= 0.0).map(|index| index as usize);
+        if index.is_none() && !frame.is_undefined() && !frame.is_null() {
+            return Err(wrong_type("frame", frame, "the number of a frame", "Pass `frame` of its result."));
+        }
+        tracker.borrow_mut().correct(&pose, index)
+    };
+    answer(correct())
+}
+
+/// Removes a tracker, if there is one with this id.
+#[wasm_bindgen(js_name = closeTracker, skip_typescript)]
+pub fn close_tracker(id: u32) {
+    TRACKERS.with_borrow_mut(|trackers| trackers.remove(&id));
+}
+
+/// The tracker with this id. It is lost if the module trapped since.
+fn tracker(id: u32) -> Result<Kept> {
+    TRACKERS.with_borrow(|trackers| trackers.get(&id).cloned()).ok_or_else(|| {
+        Error::new(
+            ErrorCode::InvalidArgument,
+            "tracker",
+            "a tracker that is gone",
+            "an open tracker",
+            "Open another one with track(), and pass the last pose as options.initial.",
+        )
+    })
+}

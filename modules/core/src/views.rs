@@ -1,0 +1,83 @@
+//! Alignments of several views, in steps.
+
+use core::cell::RefCell;
+use std::rc::Rc;
+
+use js_sys::{Array, Function};
+use wasm_bindgen::JsValue;
+use wasm_bindgen::prelude::wasm_bindgen;
+
+use sim3align::bindings::answer::answer;
+use sim3align::bindings::error::to_js;
+use sim3align::bindings::host::{JsHost, now_ms};
+use sim3align::bindings::object::{get, wrong_type};
+use sim3align::bindings::transform::similarity;
+use sim3align::bindings::{input, mesh, options};
+use sim3align::error::{Error, ErrorCode, Result};
+use sim3align::number::number;
+use sim3align::precise::prepared_mesh::PreparedMesh;
+use sim3align::views::View;
+use sim3align::views::task::ViewsTask as Task;
+
+/// Largest deviation of the scale of a camera pose from 1.
+const RIGID: f64 = 1e-3;
+
+/// A running alignment of several views.
+#[wasm_bindgen(skip_typescript)]
+pub struct ViewsTask(RefCell<Task<'static, Rc<PreparedMesh<'static>>>>);
+
+/// Starts an alignment; see `Aligner.alignViews` in the TypeScript package.
+#[wasm_bindgen(js_name = beginAlignViews, skip_typescript)]
+pub fn begin_align_views(
+    input: &JsValue,
+    options: &JsValue,
+    on_progress: Option<Function>,
+) -> core::result::Result<ViewsTask, JsValue> {
+    let begin = || {
+        let options = options::options(options, &options::OF_LONG_CALLS, |_| None)?;
+        let views = get(input, "views").filter(Array::is_array);
+        let views = views.ok_or_else(|| wrong_type("views", &JsValue::UNDEFINED, "an array", "Pass the views."))?;
+        let views = Array::from(&views);
+        let views = views.iter().enumerate().map(|(k, value)| view(&value, k)).collect::<Result<Vec<_>>>()?;
+        Task::new(views, mesh::mesh_of(input)?, options, JsHost::new(on_progress))
+    };
+    begin().map(|task| ViewsTask(RefCell::new(task))).map_err(|error| to_js(&error))
+}
+
+/// A view, whose errors name it.
+fn view(value: &JsValue, index: usize) -> Result<View> {
+    let read = || {
+        let frame = input::frame(value)?;
+        let pose = get(value, "cameraToWorld").map(|pose| similarity(&pose, "cameraToWorld")).transpose()?;
+        if let Some(pose) = &pose
+            && (pose.scale - 1.0).abs() > RIGID
+        {
+            return Err(Error::new(
+                ErrorCode::InvalidTransform,
+                "cameraToWorld",
+                format!("a scale of {}", number(pose.scale)),
+                "the pose of a camera: a rotation and a translation in metres",
+                "Convert the world to metres, and divide the scale out.",
+            ));
+        }
+        Ok(View { frame, world_from_camera: pose })
+    };
+    read().map_err(|error: Error| {
+        let argument = format!("views[{index}].{}", error.argument);
+        error.about(argument)
+    })
+}
+
+#[wasm_bindgen]
+impl ViewsTask {
+    /// Runs for about `slice_ms` milliseconds. Returns the alignment when finished, otherwise `undefined`.
+    #[wasm_bindgen(skip_typescript)]
+    pub fn step(&self, slice_ms: f64) -> core::result::Result<JsValue, JsValue> {
+        let end = now_ms() + slice_ms;
+        match self.0.borrow_mut().step(&mut || now_ms() >= end) {
+            Ok(None) => Ok(JsValue::UNDEFINED),
+            Ok(Some(alignment)) => answer(Ok(alignment)),
+            Err(error) => Err(to_js(&error)),
+        }
+    }
+}

@@ -1,0 +1,165 @@
+/// <reference lib="esnext.disposable" preserve="true" />
+/** Trackers: one object through a video. */
+import { checkedFlag, checkedOptions, checkedSignal } from "./aligner-options.js";
+import type { Engine } from "./engine.js";
+import { disposed, internalError, Sim3AlignError } from "./error.js";
+import type { CorrectedFrame } from "./generated/types.js";
+import type { FrameInput } from "./input/frame-types.js";
+import { classNames } from "./input/resolve.js";
+import type { MeshInput } from "./input/types.js";
+import type { Job, Results } from "./jobs.js";
+import { checkSignals, onAbort } from "./on-abort.js";
+import type { CallOptions } from "./options.js";
+import { ProgressListener } from "./progress.js";
+import type { TrackedFrame } from "./results.js";
+import { coreSim3, type Sim3Like } from "./sim3.js";
+import { ownArgument, snapshot } from "./snapshot.js";
+
+/**
+ * The engine of a tracker.
+ * @internal
+ */
+export interface OwnEngine {
+  engine: Engine;
+  /** Whether other calls use it: it then outlives the tracker. */
+  isShared: boolean;
+}
+
+/**
+ * The mesh of a tracker, and its id if it is prepared.
+ * @internal
+ */
+export interface TrackerMesh {
+  data: { mesh: MeshInput };
+  meshId?: number;
+}
+
+let lastTracker = 0;
+
+/**
+ * Follows one object through the frames of a video. Each pose starts at that of the frame before; the size sharpens over
+ * the frames that show the object from other sides, and then stays. Calls run in their order; the same frames give
+ * bit-identical results with and without workers.
+ * @example
+ * ```ts
+ * const tracker = await aligner.track(mesh);
+ * const first = await tracker.next({ depth, mask, camera });
+ * const second = await tracker.next({ depth: nextDepth, camera });
+ * tracker.close();
+ * ```
+ */
+export class Tracker {
+  readonly #id: number;
+  readonly #own: OwnEngine;
+  readonly #closed: (tracker: Tracker) => void;
+  #last: Promise<unknown> = Promise.resolve();
+  #isClosed = false;
+
+  private constructor(id: number, own: OwnEngine, closed: (tracker: Tracker) => void) {
+    this.#id = id;
+    this.#own = own;
+    this.#closed = closed;
+  }
+
+  /** @internal */
+  static async open(
+    own: OwnEngine,
+    mesh: TrackerMesh,
+    options: object,
+    signal: AbortSignal | undefined,
+    closed: (tracker: Tracker) => void,
+  ): Promise<Tracker> {
+    lastTracker += 1;
+    const tracker = new Tracker(lastTracker, own, closed);
+    try {
+      if (signal !== undefined) {
+        checkSignals([signal]);
+        onAbort(signal, () => tracker.close());
+      }
+      await tracker.#run({ method: "openTracker", ...mesh, options, tracker: tracker.#id });
+      if (signal !== undefined) checkSignals([signal]);
+      return tracker;
+    } catch (error) {
+      tracker.close();
+      throw error;
+    }
+  }
+
+  /**
+   * The pose in the next frame.
+   *
+   * A frame without a mask is looked at where the object should be. While the object is lost (`state`), it is searched for
+   * in frames with a mask. The first frame needs a mask, unless `initial` is given.
+   * @param options `signal` rejects a call that has not begun; a frame that has begun is tracked to its end
+   * @throws {@link Sim3AlignError} for invalid input, `NO_CONSENSUS` if the object is not found in the first frame, and
+   * `DISPOSED` after `close()`. The tracker remains usable.
+   */
+  async next(frame: FrameInput, options: CallOptions = {}): Promise<TrackedFrame> {
+    const { signal, transfer = false } = checkedOptions(options);
+    const listened = checkedSignal(signal);
+    const isMoved = checkedFlag("transfer", transfer);
+    const data = snapshot("input", frame, classNames);
+    const job = { method: "trackFrame", data, options: {}, tracker: this.#id } as const;
+    return this.#inOrder(async () => {
+      if (listened !== undefined) checkSignals([listened]);
+      const { result, data } = await this.#outcome(job, isMoved);
+      return isMoved ? { ...result, input: data } : result;
+    });
+  }
+
+  /**
+   * Sets the pose of a frame, for example that of an annotator, and carries it on: forwards to the next frames, and
+   * backwards to all frames since the object was last found anew, with the motion that was tracked.
+   * @param pose camera from mesh, metres
+   * @param frame the number of the frame (`frame` of its result); by default the last one
+   * @returns the new poses of all frames that change
+   * @throws {@link Sim3AlignError} `INVALID_TRANSFORM`, and `INVALID_ARGUMENT` for a frame that was not tracked
+   */
+  async correct(pose: Sim3Like, frame?: number): Promise<CorrectedFrame[]> {
+    const data = { pose: coreSim3(ownArgument("pose", pose)), frame };
+    return this.#inOrder(() => this.#run({ method: "correctTrack", data, options: {}, tracker: this.#id }));
+  }
+
+  /** Ends the tracker, and frees its worker. Running and later calls reject with `DISPOSED`. */
+  close(): void {
+    if (this.#isClosed) return;
+    this.#isClosed = true;
+    this.#closed(this);
+    if (this.#own.isShared) {
+      const job = { method: "closeTracker", data: {}, options: {}, tracker: this.#id } as const;
+      const free = () => this.#own.engine.run(job, call());
+      this.#last.then(free, free).catch(() => {});
+    } else {
+      this.#own.engine.dispose();
+    }
+  }
+
+  /** Closes the tracker at the end of the scope of a `using` declaration. */
+  [Symbol.dispose](): void {
+    this.close();
+  }
+
+  /** Runs a call after those before. */
+  #inOrder<T>(run: () => Promise<T>): Promise<T> {
+    const own = this.#last.then(run, run);
+    this.#last = own.catch(() => {});
+    return own;
+  }
+
+  async #run<J extends Job>(job: J): Promise<Results[J["method"]]> {
+    return (await this.#outcome(job, false)).result;
+  }
+
+  async #outcome<J extends Job>(job: J, transfer: boolean) {
+    if (this.#isClosed) throw disposed();
+    try {
+      const outcome = await this.#own.engine.run(job, call(transfer));
+      if (this.#isClosed) throw disposed();
+      return outcome;
+    } catch (error) {
+      throw error instanceof Sim3AlignError ? error : internalError(error);
+    }
+  }
+}
+
+const call = (transfer = false) => ({ signal: undefined, progress: new ProgressListener(undefined), transfer });

@@ -1,0 +1,55 @@
+//! A frame: depth and camera, and the mask of the object where it is known.
+
+use super::observation::Observation;
+use crate::error::Result;
+use crate::geometry::image::{DepthMap, Mask};
+use crate::geometry::pinhole::Pinhole;
+
+/// One image of several views or of a video.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Frame {
+    /// Depth in metres; 0 is "no reading".
+    pub depth: DepthMap,
+    /// The intrinsics.
+    pub camera: Pinhole,
+    /// The mask of the object, of the size of the depth map, if it is known.
+    pub mask: Option<Mask>,
+}
+
+impl Frame {
+    /// The observation of the frame; `None` without a mask.
+    ///
+    /// # Errors
+    /// As [`Observation::new`].
+    pub fn observation(&self) -> Result<Option<Observation>> {
+        self.mask.clone().map(|mask| Observation::new(self.depth.clone(), mask, self.camera)).transpose()
+    }
+}
+
+impl Frame {
+    /// The part of the frame in a box of pixels, [first, end) along columns and rows, at every `step`-th pixel. The camera
+    /// frame stays the same.
+    pub fn window(&self, bounds: [[usize; 2]; 2], step: usize) -> Self {
+        let width = self.depth.width();
+        let step = step.max(1);
+        let [columns, rows] = bounds.map(|[first, end]| (first..end).step_by(step));
+        let size = [columns.len(), rows.len()];
+        let pixels = || rows.clone().flat_map(|v| columns.clone().map(move |u| v * width + u));
+        let Pinhole { fx, fy, cx, cy } = self.camera;
+        let scale = 1.0 / step as f64;
+        let mut depth = DepthMap::filled(size[0], size[1], 0.0);
+        depth.data_mut().iter_mut().zip(pixels()).for_each(|(z, i)| *z = self.depth.data()[i]);
+        let mask = self.mask.as_ref().map(|mask| {
+            let mut part = Mask::filled(size[0], size[1], 0);
+            part.data_mut().iter_mut().zip(pixels()).for_each(|(m, i)| *m = mask.data()[i]);
+            part
+        });
+        let camera = Pinhole {
+            fx: fx * scale,
+            fy: fy * scale,
+            cx: (cx - bounds[0][0] as f64) * scale,
+            cy: (cy - bounds[1][0] as f64) * scale,
+        };
+        Self { depth, camera, mask }
+    }
+}

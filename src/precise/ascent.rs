@@ -1,0 +1,95 @@
+//! Levenberg-Marquardt ascent on a score that is bounded by a quadratic at every pose.
+
+use super::pose::Step;
+use crate::geometry::normal_equations::NormalEquations;
+
+/// A score of poses to be maximised.
+pub trait Ascent {
+    /// A pose.
+    type Pose: Copy;
+    /// Its score.
+    type Score;
+
+    /// The pose that the prior allows.
+    fn held(&self, pose: Self::Pose) -> Self::Pose;
+
+    /// Renders a pose and scores it.
+    fn score(&mut self, pose: &Self::Pose) -> Self::Score;
+
+    /// The number to maximise.
+    fn total(score: &Self::Score) -> f32;
+
+    /// The quadratic at the last render, which had this pose and this score.
+    fn equations(&mut self, pose: &Self::Pose, score: &Self::Score) -> NormalEquations;
+
+    /// The pose after the minimiser of the quadratic, limited to the range in which that is valid; `None` if the result
+    /// is not finite.
+    fn moved(&self, pose: &Self::Pose, step: Step) -> Option<Self::Pose>;
+}
+
+/// The result of an ascent.
+pub struct Summit<P, S> {
+    /// The pose.
+    pub pose: P,
+    /// Its score.
+    pub score: S,
+    /// Number of poses rendered.
+    pub renders: usize,
+    /// Whether the ascent converged: the last step hardly increased the score, or no step would.
+    pub converged: bool,
+}
+
+/// Initial damping, and its factors after an accepted and after a rejected step.
+const DAMPING: [f64; 3] = [1e-3, 0.25, 6.0];
+/// Damping at which steps become negligible.
+const MAX_DAMPING: f64 = 10.0;
+/// Smaller gains than the first threshold are no progress; if the last gain is below the second, the ascent has
+/// converged.
+const MIN_GAIN: f32 = 1e-5;
+const SMALL_GAIN: f32 = 2e-3;
+/// Maximum rotation, in radians, and maximum relative change of size of a step.
+const MAX_TURN: f64 = 0.35;
+const MAX_STRETCH: f64 = 0.25;
+
+/// Ascends from `pose` in at most `iterations` steps.
+pub fn ascend<A: Ascent>(problem: &mut A, pose: A::Pose, iterations: usize) -> Summit<A::Pose, A::Score> {
+    let pose = problem.held(pose);
+    let score = problem.score(&pose);
+    let mut best = Summit { pose, score, renders: 1, converged: false };
+    let mut equations = problem.equations(&best.pose, &best.score);
+    let mut damping = DAMPING[0];
+    for _ in 0..iterations {
+        let Some(step) = equations.solve(damping) else { break };
+        let Some(next) = problem.moved(&best.pose, step) else { break };
+        let next = problem.held(next);
+        let score = problem.score(&next);
+        best.renders += 1;
+        let gain = A::total(&score) - A::total(&best.score);
+        if gain > 0.0 {
+            (best.pose, best.score) = (next, score);
+            best.converged = gain < SMALL_GAIN;
+            if gain < MIN_GAIN {
+                break;
+            }
+            equations = problem.equations(&best.pose, &best.score);
+            damping *= DAMPING[1];
+        } else {
+            damping = (damping * DAMPING[2]).max(DAMPING[0]);
+            if damping > MAX_DAMPING {
+                best.converged = true;
+                break;
+            }
+        }
+    }
+    best
+}
+
+/// The step, shortened to the range in which the quadratic is valid. Components 0 to 2 are a rotation, 3 to 5 relative
+/// changes of size and place.
+pub fn limited(mut step: Step) -> Step {
+    let turn = (step[0] * step[0] + step[1] * step[1] + step[2] * step[2]).sqrt();
+    let stretch = step[3..6].iter().fold(0.0f64, |m, x| m.max(x.abs()));
+    let shorten = (MAX_TURN / turn).min(MAX_STRETCH / stretch).min(1.0);
+    step.iter_mut().for_each(|x| *x *= shorten);
+    step
+}

@@ -1,0 +1,86 @@
+//! The part of a frame around the object, prepared for rendering.
+
+use std::rc::Rc;
+
+use crate::error::Result;
+use crate::evidence::frame::Frame;
+use crate::evidence::observation::Observation;
+use crate::geometry::image::bounds_of;
+use crate::geometry::similarity::Similarity;
+use crate::precise::SearchSettings;
+use crate::precise::clean::CleanObservation;
+use crate::precise::mesh_pyramid::MeshPyramid;
+use crate::precise::pose::CropPose;
+use crate::precise::search::Search;
+use crate::views::predicted_mask::with_predicted_mask;
+
+/// Margin of the window around the mask or the mesh, relative to its longer side, and in pixels.
+const MARGIN: f64 = 0.46;
+const MARGIN_PX: f64 = 8.0;
+/// Pixels of the box of the object beyond which the window is thinned out: the finest grid that is used has some thousand
+/// cells.
+const MAX_BOX_PX: f64 = 16_000.0;
+
+/// The search around the mask of a frame; `None` if the mask shows nothing.
+///
+/// # Errors
+/// As [`Observation::new`].
+pub fn of_mask(frame: &Frame, mesh: &Rc<MeshPyramid>, settings: &SearchSettings) -> Result<Option<Search>> {
+    let Some(mask) = frame.mask.as_ref().filter(|mask| mask.data().iter().any(|m| *m != 0)) else { return Ok(None) };
+    let bounds = bounds_of(mask.data(), mask.width(), |m| *m != 0).map(|[low, high]| [low as f64, high as f64]);
+    let Some(window) = window(frame, bounds) else { return Ok(None) };
+    search(&window, mesh, settings)
+}
+
+/// The search around the object where a pose predicts it, for a frame without a mask; `None` if the frame does not show it
+/// there.
+///
+/// # Errors
+/// As [`Observation::new`].
+pub fn of_pose(
+    frame: &Frame,
+    pose: &CropPose,
+    mesh: &Rc<MeshPyramid>,
+    settings: &SearchSettings,
+) -> Result<Option<Search>> {
+    let (scale, center) = pose.scale_translation();
+    let camera = frame.camera;
+    // The sphere around the mesh, whose diameter is the diagonal of its box: the scale.
+    let radius = 0.5 * scale / center.z;
+    let at = [camera.fx * pose.place.x + camera.cx, camera.fy * pose.place.y + camera.cy];
+    let half = [camera.fx * radius, camera.fy * radius];
+    let bounds = [0, 1].map(|axis| [at[axis] - half[axis], at[axis] + half[axis]]);
+    let Some(window) = window(frame, bounds) else { return Ok(None) };
+    let camera_from_frame =
+        Similarity { scale, translation: nalgebra::Vector3::from(center.to_array()), ..pose.similarity(&mesh.frame) };
+    let masked = with_predicted_mask(&window, &mesh.fine, &camera_from_frame, scale);
+    search(&masked, mesh, settings)
+}
+
+fn search(window: &Frame, mesh: &Rc<MeshPyramid>, settings: &SearchSettings) -> Result<Option<Search>> {
+    let Some(mask) = &window.mask else { return Ok(None) };
+    let observation = Observation::new(window.depth.clone(), mask.clone(), window.camera)?;
+    let search = Search::new(Rc::new(CleanObservation::new(&observation)), mesh.clone(), *settings);
+    Ok((search.fine.mask_cells > 0).then_some(search))
+}
+
+/// The frame around a box, in pixels; `None` if that is outside the image.
+fn window(frame: &Frame, bounds: [[f64; 2]; 2]) -> Option<Frame> {
+    let size = [frame.depth.width(), frame.depth.height()];
+    let sides = bounds.map(|[low, high]| high - low);
+    if !sides.iter().all(|side| side.is_finite()) {
+        return None;
+    }
+    let margin = MARGIN * sides[0].max(sides[1]) + MARGIN_PX;
+    let mut pixels = [[0; 2]; 2];
+    for axis in 0..2 {
+        let most = size[axis] as f64;
+        let inside = |x: f64| x.max(0.0).min(most) as usize;
+        pixels[axis] = [inside(bounds[axis][0] - margin), inside(bounds[axis][1] + margin + 1.0)];
+        if pixels[axis][0] >= pixels[axis][1] {
+            return None;
+        }
+    }
+    let step = (sides[0] * sides[1] / MAX_BOX_PX).max(1.0).sqrt().ceil() as usize;
+    Some(frame.window(pixels, step))
+}

@@ -1,0 +1,107 @@
+//! The evidence of a frame near expected poses, and the pose that fits it best.
+
+use std::rc::Rc;
+
+use super::evidence::{of_mask, of_pose};
+use crate::evidence::frame::Frame;
+use crate::precise::SearchSettings;
+use crate::precise::mesh_pyramid::MeshPyramid;
+use crate::precise::pose::CropPose;
+use crate::precise::recipe::{FINE, MIDDLE};
+use crate::precise::refine::Refiner;
+use crate::precise::render::Canvas;
+use crate::precise::score::Score;
+use crate::precise::search::{Found, Search};
+
+/// Steps of the refinement on the middle and on the fine grid.
+const STEPS: [usize; 2] = [7, 6];
+/// Times that the mask of a frame without one is predicted.
+const PREDICTIONS: usize = 3;
+
+/// The pose found in a frame.
+pub struct Seen {
+    /// The pose.
+    pub found: Found,
+    /// The evidence.
+    pub search: Search,
+    /// Whether all rotations were searched.
+    pub is_detected: bool,
+    /// Share of the silhouette that is seen; 1 with a mask, which states what is seen.
+    pub visible: f32,
+    /// Whether the mask was predicted.
+    pub is_predicted: bool,
+}
+
+/// Finds the object near expected poses.
+pub struct Sight {
+    /// The mesh.
+    pub mesh: Rc<MeshPyramid>,
+    /// Grids and weights.
+    pub settings: SearchSettings,
+}
+
+impl Sight {
+    /// The best pose near the expected ones; `wide`: also in their neighbourhood.
+    pub fn around(&self, frame: &Frame, expected: &[CropPose], wide: bool) -> Option<Seen> {
+        let first = *expected.first()?;
+        let masked = of_mask(frame, &self.mesh, &self.settings).ok()?;
+        let has_mask = masked.is_some();
+        if !has_mask && frame.mask.is_some() {
+            // The mask says that nothing is seen.
+            return None;
+        }
+        let mut search = match masked {
+            Some(search) => search,
+            None => of_pose(frame, &first, &self.mesh, &self.settings).ok().flatten()?,
+        };
+        let mut poses = expected.to_vec();
+        if wide {
+            poses.extend(expected.iter().flat_map(|pose| search.around(*pose)).collect::<Vec<_>>());
+        }
+        let mut found = self.refined(&search, &poses, !has_mask)?;
+        if !has_mask {
+            for round in 1..PREDICTIONS {
+                search = of_pose(frame, &found.pose, &self.mesh, &self.settings).ok().flatten()?;
+                found = self.refined(&search, &[found.pose], round + 1 < PREDICTIONS)?;
+            }
+        }
+        let visible = if has_mask { 1.0 } else { visible(&search, &found.pose) };
+        Some(Seen { found, search, is_detected: false, visible, is_predicted: !has_mask })
+    }
+
+    /// The best of several poses, refined at their size. `by_depth`: the outline is that of another pose, and does not count.
+    fn refined(&self, search: &Search, poses: &[CropPose], by_depth: bool) -> Option<Found> {
+        let grid = search.grid(MIDDLE);
+        if grid.mask_cells == 0 {
+            return None;
+        }
+        let mut objective = search.objective(MIDDLE, &grid);
+        if by_depth {
+            objective.scoring.weights = objective.scoring.weights.of_depth_alone();
+        }
+        let canvas = &mut Canvas::default();
+        let scored = poses.iter().map(|pose| (objective.score(canvas, pose).total, *pose));
+        let (_, best) = scored.reduce(|best, next| if next.0 > best.0 { next } else { best })?;
+        let middle = Refiner { objective, lock_scale: true }.refine(canvas, best, STEPS[0]);
+        if by_depth {
+            return Some(middle.into());
+        }
+        let fine = Refiner { objective: search.objective(FINE, &search.fine), lock_scale: true };
+        Some(fine.refine(canvas, middle.pose, STEPS[1]).into())
+    }
+}
+
+/// What a fit is measured by: the agreement of silhouette and depth.
+pub fn agreement(score: &Score) -> f32 {
+    score.overlap * score.depth
+}
+
+/// The share of the silhouette where the depth shows the object.
+fn visible(search: &Search, pose: &CropPose) -> f32 {
+    let canvas = &mut Canvas::default();
+    let objective = search.objective(FINE, &search.fine);
+    objective.score(canvas, pose);
+    let drawn = canvas.inverse_depth.iter().zip(&search.fine.mask).filter(|(w, _)| **w > 0.0);
+    let (all, seen) = drawn.fold((0u32, 0u32), |(all, seen), (_, mask)| (all + 1, seen + u32::from(*mask)));
+    seen as f32 / all.max(1) as f32
+}

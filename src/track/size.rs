@@ -1,0 +1,61 @@
+//! The size of a tracked object: evidence of frames from different sides, weighted by its certainty, until it settles.
+
+use glam::DQuat;
+
+use crate::geometry::rotations::angle_between;
+use crate::views::common_size::{SizeEvidence, mean};
+
+/// Angle between the directions from which frames count as different evidence, radians.
+const APART: f64 = 0.12;
+/// Number of frames, and standard deviation, relative, at which the size settles.
+const SETTLED: usize = 16;
+const SETTLED_SD: f64 = 0.0028;
+
+/// The size so far.
+#[derive(Debug, Clone)]
+pub struct Size {
+    frames: Vec<(DQuat, SizeEvidence)>,
+    known: Option<f64>,
+    settled: Option<(f64, f64)>,
+}
+
+impl Size {
+    /// A size of which nothing is known, or the given one, as the logarithm of the scale.
+    pub fn new(known: Option<f64>) -> Self {
+        Self { frames: Vec::new(), known, settled: None }
+    }
+
+    /// The logarithm of the scale and its standard deviation; `None` before the first evidence.
+    pub fn value(&self) -> Option<(f64, f64)> {
+        if let Some(known) = self.known {
+            return Some((known, 0.0));
+        }
+        self.settled.or_else(|| mean(self.frames.iter().map(|(_, evidence)| *evidence)))
+    }
+
+    /// Whether later frames keep the size.
+    pub fn is_settled(&self) -> bool {
+        self.known.is_some() || self.settled.is_some()
+    }
+
+    /// Whether a frame with this rotation would add evidence: frames from the same side share their errors.
+    pub fn wants(&self, rotation: DQuat) -> bool {
+        !self.is_settled() && self.frames.iter().all(|(known, _)| angle_between(*known, rotation) > APART)
+    }
+
+    /// Adds the evidence of a frame.
+    pub fn add(&mut self, rotation: DQuat, evidence: SizeEvidence) {
+        self.frames.push((rotation, evidence));
+        let settled = mean(self.frames.iter().map(|(_, evidence)| *evidence));
+        if self.frames.len() >= SETTLED || settled.is_some_and(|(_, sd)| sd < SETTLED_SD) {
+            self.settled = settled;
+        }
+    }
+
+    /// Begins again with the size of a correction.
+    pub fn correct(&mut self, rotation: DQuat, evidence: SizeEvidence) {
+        if self.known.is_none() {
+            (self.frames, self.settled) = (vec![(rotation, evidence)], None);
+        }
+    }
+}

@@ -1,0 +1,391 @@
+//! The tracker.
+
+use core::borrow::Borrow;
+use glam::DQuat;
+
+use super::motion::Motion;
+use super::options::TrackOptions;
+use super::report::{CorrectedFrame, TrackState, TrackedFrame};
+use super::sight::{Seen, Sight, agreement};
+use super::size::Size;
+use crate::error::{Error, ErrorCode, Result};
+use crate::evidence::frame::Frame;
+use crate::evidence::observation::Observation;
+use crate::evidence::sample::Sampling;
+use crate::geometry::rotations::angle_between;
+use crate::geometry::similarity::Similarity;
+use crate::metrics;
+use crate::number::number;
+use crate::options::Options;
+use crate::precise::alternatives::NOISE;
+use crate::precise::confidence::sureness;
+use crate::precise::objective::Objective;
+use crate::precise::pose::CropPose;
+use crate::precise::prepared_mesh::PreparedMesh;
+use crate::precise::prior::Prior;
+use crate::precise::recipe::{FINE, SURE};
+use crate::precise::refine::Refiner;
+use crate::precise::render::Canvas;
+use crate::precise::rounds::Rounds;
+use crate::precise::score::Score;
+use crate::precise::search::{Found, Search};
+use crate::precise::{self, SearchSettings, no_candidate};
+use crate::progress::{Host, Stopwatch};
+use crate::report::Effort;
+use crate::views::common_size::{PREDICTED_ERROR, SILHOUETTE_ERROR, SizeEvidence, refine_at};
+use crate::views::world_pose::{PlacedCamera, WorldPose};
+
+/// Steps of the refinement that shows the size, and after a change of the size.
+const STEPS: [usize; 2] = [6, 3];
+/// Fit relative to that of earlier frames, below which the neighbourhood is searched, a frame is uncertain, and the object
+/// is lost.
+const FITS: f32 = 0.85;
+const UNCERTAIN: f32 = 0.7;
+const LOST: f32 = 0.45;
+/// Weight of a frame in the usual fit.
+const NEW: f32 = 0.1;
+/// Share of the silhouette that must be seen in a frame without a mask, for it to be certain, and not to be lost.
+const SEEN: [f32; 2] = [0.35, 0.12];
+/// Standard deviation of the size of a correction, relative.
+const CORRECTION_SD: f64 = 0.005;
+/// Maximum number of frames that a correction carries back.
+const HISTORY: usize = 100_000;
+
+/// A tracker of one object. It owns or borrows its mesh.
+pub struct Tracker<M> {
+    mesh: M,
+    options: TrackOptions,
+    sight: Sight,
+    prior: Prior,
+    size: Size,
+    /// The pose of the last frame, in its camera.
+    last: Option<WorldPose>,
+    motion: Motion,
+    state: TrackState,
+    /// The usual fit of a frame.
+    usual: Option<f32>,
+    /// The difference between the scores of the pose and of the best other one, where the object was found.
+    margin: f64,
+    /// The poses of all frames, and the number of the stretch of frames that each belongs to: a new one begins where the
+    /// object was found anew.
+    history: Vec<(WorldPose, usize)>,
+    stretch: usize,
+    /// Number of frames so far.
+    frames: usize,
+}
+
+impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
+    /// A tracker before its first frame.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidOption`], [`ErrorCode::DegenerateMesh`].
+    pub fn new(mesh: M, options: TrackOptions) -> Result<Self> {
+        options.validate()?;
+        let prepared = mesh.borrow();
+        prepared.check()?;
+        let settings = SearchSettings { lock_scale: true, ..SearchSettings::from(Effort::Fast) };
+        let pyramid = prepared.pyramid(&settings.grids).ok_or_else(no_candidate)?;
+        let prior = precise::prior(&options.of_detection(), prepared.mesh(), &pyramid.frame);
+        let known = prior.scale.filter(|[min, max]| min == max).map(|[scale, _]| libm::log(scale));
+        Ok(Self {
+            mesh,
+            options,
+            sight: Sight { mesh: pyramid, settings },
+            prior,
+            size: Size::new(known),
+            last: None,
+            motion: Motion::REST,
+            state: TrackState::Lost,
+            usual: None,
+            margin: 0.0,
+            history: Vec::new(),
+            stretch: 0,
+            frames: 0,
+        })
+    }
+
+    /// The pose in the next frame. A frame without a mask, or with an empty one, is looked at where the object should be.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidArgument`] for a first frame without a mask and without `initial`; [`ErrorCode::NoConsensus`] if
+    /// the object is not found in the first frame, and those of [`Observation::new`] there; [`ErrorCode::SizeMismatch`]
+    /// and [`ErrorCode::InvalidCamera`] in all frames. The tracker remains usable.
+    pub fn next(&mut self, frame: &Frame, host: &mut dyn Host) -> Result<TrackedFrame> {
+        check(frame)?;
+        let seen = match self.last {
+            Some(last) => self.follow(frame, last, host),
+            None => Some(self.first(frame, host)?),
+        };
+        self.conclude(frame, seen)
+    }
+
+    /// Sets the pose of a frame, by default of the last one, and carries it on to all frames of the same stretch: forwards
+    /// to the next frames, and backwards with the motion that was tracked. Returns the frames whose poses change.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidArgument`] for a frame that has not been tracked, [`ErrorCode::InvalidTransform`] for a pose
+    /// behind the camera.
+    pub fn correct(&mut self, pose: &Similarity, frame: Option<usize>) -> Result<Vec<CorrectedFrame>> {
+        let count = self.history.len();
+        let index = frame.unwrap_or(count.wrapping_sub(1));
+        let Some(&(wrong, stretch)) = self.history.get(index) else {
+            return Err(Error::new(
+                ErrorCode::InvalidArgument,
+                "frame",
+                format!("frame {} of {count}", number(index as f64)),
+                "the number of a frame that was tracked",
+                "Call next() with the frame first.",
+            ));
+        };
+        let fixed = CropPose::of_similarity(pose, &self.sight.mesh.frame).ok_or_else(|| {
+            Error::new(
+                ErrorCode::InvalidTransform,
+                "pose",
+                "a pose with the centre of the mesh behind the camera",
+                "a pose in front of the camera: z forward",
+                "Convert the pose from its own camera frame (OpenGL: negate y and z; PyTorch3D: negate x and y).",
+            )
+        })?;
+        let fixed = PlacedCamera::AT_ORIGIN.place(&fixed);
+        // In the frame of the mesh, so that what was tracked of its motion stays.
+        let turn = (wrong.rotation.conjugate() * fixed.rotation).normalize();
+        let shift = wrong.rotation.conjugate() * (fixed.center - wrong.center);
+        let stretch_ratio = fixed.log_scale - wrong.log_scale;
+        let mut changed = Vec::new();
+        for (k, (pose, of)) in self.history.iter_mut().enumerate() {
+            if *of != stretch {
+                continue;
+            }
+            *pose = if k == index {
+                fixed
+            } else {
+                WorldPose {
+                    rotation: (pose.rotation * turn).normalize(),
+                    log_scale: pose.log_scale + stretch_ratio,
+                    center: pose.center + pose.rotation * shift,
+                }
+            };
+            let camera_from_mesh = (&pose.similarity(&self.sight.mesh.frame)).into();
+            changed.push(CorrectedFrame { camera_from_mesh, frame: k });
+        }
+        if stretch == self.stretch {
+            self.last = self.history.last().map(|(pose, _)| *pose);
+            self.state = TrackState::Tracking;
+            self.usual = None;
+            self.margin = f64::from(NOISE);
+            let evidence = SizeEvidence { log_scale: fixed.log_scale, sd: CORRECTION_SD, score: 0.0 };
+            self.size.correct(fixed.rotation, evidence);
+        }
+        Ok(changed)
+    }
+
+    /// The pose in the first frame.
+    fn first(&mut self, frame: &Frame, host: &mut dyn Host) -> Result<Seen> {
+        let has_mask = frame.mask.as_ref().is_some_and(|mask| mask.data().iter().any(|m| *m != 0));
+        if let (Some(initial), false) = (&self.options.initial, has_mask) {
+            let pose = CropPose::of_similarity(initial, &self.sight.mesh.frame).ok_or_else(no_candidate)?;
+            return self.sight.around(frame, &[pose], false).ok_or_else(no_candidate);
+        }
+        let observation = frame.observation()?.ok_or_else(|| {
+            Error::new(
+                ErrorCode::InvalidArgument,
+                "mask",
+                "nothing",
+                "the mask of the object in the first frame",
+                "Pass the mask, or the pose in the first frame as options.initial.",
+            )
+        })?;
+        self.detect(&observation, None, host)
+    }
+
+    /// The pose in a frame after the first; `None` if the object is lost.
+    fn follow(&mut self, frame: &Frame, last: WorldPose, host: &mut dyn Host) -> Option<Seen> {
+        let size = self.size.value();
+        let sized = |pose: WorldPose| size.map_or(pose, |(log_scale, _)| WorldPose { log_scale, ..pose });
+        let expected = [self.motion.carried(&last), last].map(sized);
+        let seen: Vec<CropPose> = expected.iter().filter_map(|pose| PlacedCamera::AT_ORIGIN.see(pose)).collect();
+        let near = self.sight.around(frame, &seen, false);
+        let fit = |seen: &Option<Seen>, tracker: &Self| seen.as_ref().map_or(0.0, |seen| tracker.fit(seen));
+        if fit(&near, self) >= FITS && self.state != TrackState::Lost {
+            return near;
+        }
+        let wide = self.sight.around(frame, &seen, true);
+        let near = if fit(&wide, self) > fit(&near, self) { wide } else { near };
+        if fit(&near, self) >= UNCERTAIN && self.state != TrackState::Lost {
+            return near;
+        }
+        // Found anew, where a mask says that there is something to find.
+        let observation = frame.observation().ok().flatten();
+        let anew = observation.and_then(|observation| self.detect(&observation, Some(last.rotation), host).ok());
+        let best = if fit(&anew, self) > 1.1 * fit(&near, self) { anew } else { near };
+        let least = if self.state == TrackState::Lost { UNCERTAIN } else { LOST };
+        best.filter(|seen| self.fit(seen) >= least && seen.visible >= SEEN[1])
+    }
+
+    /// Searches all rotations. With a `before`, the nearest of the poses that fit equally well counts: an object that looks
+    /// alike from several sides has not turned unseen.
+    fn detect(&mut self, observation: &Observation, before: Option<DQuat>, host: &mut dyn Host) -> Result<Seen> {
+        let options = self.options.of_detection();
+        let mut rounds: Option<Rounds> = None;
+        let (mut certainty, mut found) = (0.0, Vec::new());
+        for settings in precise::efforts(&options) {
+            if certainty >= SURE || (before.is_some() && rounds.is_some()) {
+                break;
+            }
+            let stages = &mut Stopwatch::new(&mut *host, precise::PLAN);
+            let known = self.size.value().filter(|_| before.is_some());
+            let settings = SearchSettings { lock_scale: settings.lock_scale || known.is_some(), ..settings };
+            let mesh = self.mesh.borrow();
+            let mut next = precise::begin(observation, mesh, rounds.as_ref(), &options, &settings, stages)?;
+            if let Some((log_scale, _)) = known {
+                next.search.assume(Prior { scale: Some([libm::exp(log_scale); 2]), ..self.prior });
+            }
+            precise::run(&mut next, &(0.2..0.85), &mut || false, stages);
+            let best = next.found.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
+            let (conditioning, _) = next.search.conditioning(&best.pose);
+            let rival = next.found.iter().skip(1).map(|other| other.score.total).fold(0.0, f32::max);
+            certainty = sureness(best, f64::from(best.score.total - rival), conditioning.as_ref());
+            found.clone_from(&next.found);
+            rounds = Some(next);
+        }
+        let rounds = rounds.ok_or_else(no_candidate)?;
+        let best = found.first().ok_or_else(no_candidate)?.score.total;
+        let mut chosen = found[0];
+        if let Some(before) = before {
+            for other in found.iter().filter(|other| other.score.total > best - 0.5 * NOISE) {
+                if angle_between(other.pose.rotation, before) < angle_between(chosen.pose.rotation, before) {
+                    chosen = *other;
+                }
+            }
+        }
+        let rival = found.iter().map(|other| other.score.total).filter(|total| *total < chosen.score.total);
+        self.margin = f64::from(chosen.score.total - rival.fold(0.0, f32::max));
+        let settings = self.sight.settings;
+        let mut search = rounds.search;
+        // Without the size of the detection, the frames after it would be compared on other grids.
+        search = Search::new(search.observation.clone(), self.sight.mesh.clone(), settings);
+        chosen.score = search.score(&chosen.pose);
+        Ok(Seen { found: chosen, search, is_detected: true, visible: 1.0, is_predicted: false })
+    }
+
+    /// The agreement of a pose relative to that of earlier frames, about 1 for one as good.
+    fn fit(&self, seen: &Seen) -> f32 {
+        let fit = agreement(&seen.found.score);
+        self.usual.map_or(1.0, |usual| fit / usual.max(1e-3))
+    }
+
+    /// Updates size, motion and state, and reports.
+    fn conclude(&mut self, frame: &Frame, seen: Option<Seen>) -> Result<TrackedFrame> {
+        let Some(Seen { mut found, search, is_detected, visible, is_predicted }) = seen else {
+            return Ok(self.lost());
+        };
+        let fit = self.usual.map_or(1.0, |usual| agreement(&found.score) / usual.max(1e-3));
+        let is_certain = fit >= UNCERTAIN && visible >= SEEN[0];
+        self.state = if is_certain { TrackState::Tracking } else { TrackState::Uncertain };
+        let before = self.last;
+        if is_detected {
+            self.stretch += 1;
+            self.motion = Motion::REST;
+        }
+        if is_certain {
+            let usual = self.usual.unwrap_or_else(|| agreement(&found.score));
+            self.usual = Some(usual + NEW * (agreement(&found.score) - usual));
+            self.weigh_size(&search, &mut found, if is_predicted { PREDICTED_ERROR } else { SILHOUETTE_ERROR });
+        }
+        let pose = PlacedCamera::AT_ORIGIN.place(&found.pose);
+        if let (Some(before), false) = (before, is_detected) {
+            self.motion = Motion::between(&before, &pose);
+        }
+        self.remember(pose);
+        let confidence = {
+            let (conditioning, _) = search.conditioning(&found.pose);
+            let scale_sd = self.size.value().map_or(1.0, |(_, sd)| sd);
+            let conditioning = conditioning
+                .map(|held| precise::conditioning::Conditioning { scale: scale_sd.min(held.scale), ..held });
+            sureness(&found, self.margin, conditioning.as_ref())
+        };
+        let camera_from_mesh = pose.similarity(&self.sight.mesh.frame);
+        let measured = match frame.observation() {
+            Ok(Some(observation)) if self.options.metrics => {
+                let sampling = Sampling { seed: u64::from(self.options.seed), ..Sampling::default() };
+                Some(metrics::evaluate(&observation, self.mesh.borrow().mesh(), &camera_from_mesh, &sampling)?)
+            }
+            _ => None,
+        };
+        Ok(TrackedFrame {
+            camera_from_mesh: (&camera_from_mesh).into(),
+            frame: self.frames - 1,
+            state: self.state,
+            confidence,
+            scale_sd: self.size.value().map_or(0.0, |(_, sd)| sd),
+            is_scale_settled: self.size.is_settled(),
+            is_detected,
+            score: f64::from(found.score.total),
+            terms: (&found.score).into(),
+            metrics: measured,
+        })
+    }
+
+    /// Adds the evidence of a frame to the size, and moves its pose to the size that follows.
+    fn weigh_size(&mut self, search: &Search, found: &mut Found, silhouette_error: f64) {
+        if !self.size.wants(found.pose.rotation) {
+            return;
+        }
+        let objective = search.objective(FINE, &search.fine);
+        let objective = Objective { prior: self.prior, ..objective };
+        let free = Refiner { objective, lock_scale: false }.refine(&mut Canvas::default(), found.pose, STEPS[0]);
+        if let Some(evidence) = SizeEvidence::at(objective, &free.pose, silhouette_error) {
+            self.size.add(found.pose.rotation, evidence);
+        }
+        if let Some((log_scale, _)) = self.size.value() {
+            *found = refine_at(objective, found.pose, log_scale, STEPS[1]).into();
+        }
+    }
+
+    /// The frame in which the object was not found: its motion is carried on.
+    fn lost(&mut self) -> TrackedFrame {
+        let expected = self.last.map(|last| self.motion.carried(&last));
+        self.state = TrackState::Lost;
+        self.motion = Motion::REST;
+        let pose = expected.unwrap_or(WorldPose { rotation: DQuat::IDENTITY, log_scale: 0.0, center: glam::DVec3::Z });
+        self.remember(pose);
+        TrackedFrame {
+            camera_from_mesh: (&pose.similarity(&self.sight.mesh.frame)).into(),
+            frame: self.frames - 1,
+            state: self.state,
+            confidence: 0.0,
+            scale_sd: self.size.value().map_or(0.0, |(_, sd)| sd),
+            is_scale_settled: self.size.is_settled(),
+            is_detected: false,
+            score: 0.0,
+            terms: (&Score::default()).into(),
+            metrics: None,
+        }
+    }
+
+    fn remember(&mut self, pose: WorldPose) {
+        self.last = Some(pose);
+        self.frames += 1;
+        if self.history.len() < HISTORY {
+            self.history.push((pose, self.stretch));
+        }
+    }
+}
+
+/// Checks what holds for every frame.
+fn check(frame: &Frame) -> Result<()> {
+    let size = [frame.depth.width(), frame.depth.height()];
+    frame.camera.check_field_of_view(size[0], size[1])?;
+    if let Some(mask) = &frame.mask
+        && [mask.width(), mask.height()] != size
+    {
+        return Err(Error::new(
+            ErrorCode::SizeMismatch,
+            "mask",
+            format!("{} × {} pixels for a depth map of {} × {}", mask.width(), mask.height(), size[0], size[1]),
+            "depth and mask of the same size",
+            "Resize the mask to the depth map, or set resizeMask: \"nearest\".",
+        ));
+    }
+    Ok(())
+}

@@ -1,0 +1,157 @@
+//! One size for several views of the same object whose relative poses are unknown.
+
+use super::joint::{Joint, JointView};
+use super::world_pose::{PlacedCamera, WorldPose};
+use crate::precise::conditioning::DROP;
+use crate::precise::objective::Objective;
+use crate::precise::pose::CropPose;
+use crate::precise::prior::Prior;
+use crate::precise::refine::{Refined, Refiner};
+use crate::precise::render::Canvas;
+use crate::precise::score::Weights;
+
+/// Standard deviation of the size due to errors that all masks have in common, relative.
+pub const SILHOUETTE_ERROR: f64 = 0.01;
+/// The same for masks that were predicted.
+pub const PREDICTED_ERROR: f64 = 0.03;
+/// The same due to the mesh and to errors of the depths of views from several sides; and of one view.
+pub const DEPTH_ERROR: f64 = 0.003;
+const DEPTH_ERROR_ALONE: f64 = 0.01;
+/// Factor of the standard deviation of the size from depths alone: the score is calibrated with the errors of masks.
+const DEPTH_SD: f64 = 0.5;
+/// Difference of the sizes beyond which the depths are not trusted alone, relative.
+const MAX_BIAS: f64 = 0.05;
+/// Steps of the refinement on depths alone.
+const STEPS: usize = 10;
+/// Score below a view's best at which the view counts as contradicting.
+const CONTRADICTION: f64 = 0.3;
+/// Step between sizes tried, relative, and their maximum number.
+const STEP: f64 = 0.0025;
+const MAX_STEPS: usize = 2000;
+/// Regularisation, so that undetermined directions remain finite.
+const DAMPING: f64 = 1e-9;
+
+/// What one pose in one view says about the size.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SizeEvidence {
+    /// Logarithm of the most likely scale.
+    pub log_scale: f64,
+    /// Its standard deviation, relative.
+    pub sd: f64,
+    /// The score at that scale.
+    pub score: f64,
+}
+
+impl SizeEvidence {
+    /// What one view, whose silhouette has this error, says near a pose, all other parameters free; `None` if it says
+    /// nothing.
+    pub fn at(objective: Objective<'_>, pose: &CropPose, silhouette_error: f64) -> Option<Self> {
+        let camera = PlacedCamera::AT_ORIGIN;
+        let mut joint = Joint::new(vec![JointView { objective, camera, floor: 0.0 }], false);
+        let (fused, _) = Self::fused(&mut joint, &camera.place(pose), [silhouette_error, DEPTH_ERROR_ALONE])?;
+        Some(fused)
+    }
+
+    /// What silhouettes and depths say together near a pose, each with the error that all of them have in common, and the
+    /// pose on which the depths agree best alone.
+    ///
+    /// The size in the silhouettes is biased if the masks are too large or too small everywhere; the depths do not depend on
+    /// the outlines. Both count by their certainty.
+    pub fn fused(joint: &mut Joint<'_>, pose: &WorldPose, errors: [f64; 2]) -> Option<(Self, WorldPose)> {
+        let silhouettes = Self::of(joint, pose)?;
+        let kept: Vec<Weights> = joint.views.iter().map(|view| view.objective.scoring.weights).collect();
+        for view in &mut joint.views {
+            view.objective.scoring.weights = view.objective.scoring.weights.of_depth_alone();
+        }
+        let moved = joint.refine(*pose, STEPS).pose;
+        let depths = Self::of(joint, &moved);
+        for (view, weights) in joint.views.iter_mut().zip(kept) {
+            view.objective.scoring.weights = weights;
+        }
+        let alone = silhouettes.with_error(errors[0]);
+        let Some(depths) = depths.filter(|depths| (depths.log_scale - silhouettes.log_scale).abs() < MAX_BIAS) else {
+            return Some((alone, *pose));
+        };
+        let depths = Self { sd: DEPTH_SD * depths.sd, ..depths }.with_error(errors[1]);
+        let (log_scale, sd) = mean([alone, depths].into_iter())?;
+        Some((Self { log_scale, sd, score: silhouettes.score }, moved))
+    }
+
+    /// What the quadratic at a pose says, all other parameters free.
+    pub fn of(joint: &mut Joint<'_>, pose: &WorldPose) -> Option<Self> {
+        let score = joint.score(pose);
+        let equations = joint.equations(pose, &score);
+        let sd = (2.0 * DROP * equations.inverse(DAMPING)?[3][3]).max(0.0).sqrt();
+        let shift = equations.solve(DAMPING)?[3];
+        let log_scale = pose.log_scale + shift.max(-sd).min(sd);
+        (log_scale.is_finite() && sd.is_finite()).then_some(Self { log_scale, sd, score: f64::from(score.total) })
+    }
+
+    /// The evidence with another, independent error.
+    pub fn with_error(self, sd: f64) -> Self {
+        Self { sd: (self.sd * self.sd + sd * sd).sqrt(), ..self }
+    }
+
+    /// The weight in a mean.
+    pub fn weight(&self) -> f64 {
+        1.0 / (self.sd * self.sd)
+    }
+
+    /// The score at another scale.
+    fn score_at(&self, log_scale: f64) -> f64 {
+        let off = (log_scale - self.log_scale) / self.sd;
+        self.score - DROP * off * off
+    }
+}
+
+/// The weighted mean of the logarithms of the scale, and its standard deviation; `None` without evidence.
+pub fn mean(evidence: impl Iterator<Item = SizeEvidence> + Clone) -> Option<(f64, f64)> {
+    let weight: f64 = evidence.clone().map(|e| e.weight()).sum();
+    let sum: f64 = evidence.map(|e| e.weight() * e.log_scale).sum();
+    (weight > 0.0).then(|| (sum / weight, 1.0 / weight.sqrt()))
+}
+
+/// The common size of views with alternative poses: the one at which the sum of the best scores is largest, where a view
+/// that fits no common size adds a constant. Returns the logarithm of the scale, its standard deviation, and for each view
+/// the index of its pose, `None` if it contradicts.
+pub fn common_size(views: &[Vec<SizeEvidence>]) -> Option<(f64, f64, Vec<Option<usize>>)> {
+    let sizes = || views.iter().flatten().map(|e| e.log_scale);
+    let (low, high) = (sizes().reduce(f64::min)?, sizes().reduce(f64::max)?);
+    let steps = (((high - low) / STEP) as usize).min(MAX_STEPS);
+    let tried = (0..=steps).map(|k| low + (high - low) * k as f64 / steps.max(1) as f64).chain(sizes());
+    let mut best: Option<(f64, f64)> = None;
+    for size in tried {
+        let total: f64 = views.iter().filter(|v| !v.is_empty()).map(|view| value(view, size).0).sum();
+        if best.is_none_or(|(_, most)| total > most) {
+            best = Some((size, total));
+        }
+    }
+    let (size, _) = best?;
+    let chosen: Vec<Option<usize>> = views.iter().map(|view| value(view, size).1).collect();
+    let agreeing = views.iter().zip(&chosen).filter_map(|(view, chosen)| chosen.map(|i| view[i]));
+    let (size, sd) = mean(agreeing)?;
+    Some((size, sd, chosen))
+}
+
+/// The score of a view at a size, and the index of its best pose there unless the view contradicts it.
+fn value(view: &[SizeEvidence], size: f64) -> (f64, Option<usize>) {
+    let own = view.iter().map(|e| e.score).fold(f64::NEG_INFINITY, f64::max);
+    let (mut best, mut chosen) = (own - CONTRADICTION, None);
+    for (i, evidence) in view.iter().enumerate() {
+        let score = evidence.score_at(size);
+        if score > best {
+            (best, chosen) = (score, Some(i));
+        }
+    }
+    (best, chosen)
+}
+
+/// A pose refined at a given scale.
+pub fn refine_at(objective: Objective<'_>, pose: CropPose, log_scale: f64, steps: usize) -> Refined {
+    let bounds = [libm::exp(log_scale); 2];
+    let objective = Objective { prior: Prior { scale: Some(bounds), ..objective.prior }, ..objective };
+    // At the depth of the surface, so that a change of the size moves the centre.
+    let grown = log_scale - pose.size - pose.distance;
+    let pose = CropPose { size: pose.size + grown, ..pose };
+    Refiner { objective, lock_scale: true }.refine(&mut Canvas::default(), pose, steps)
+}

@@ -1,0 +1,232 @@
+//! The result of views with known camera poses: the best pose, which views it rests on, and how certain it is.
+
+use std::rc::Rc;
+
+use super::View;
+use super::joint::JointScore;
+use super::known::{Part, Ranked, contradicts, join, on_fine_grids, rank, with_fused_size};
+use super::options::ViewsOptions;
+use super::predicted_mask::with_predicted_mask;
+use super::report::{ViewRole, WorldFrame, WorldUncertainty};
+use super::searched_view::SearchedView;
+use super::summary::{Summary, SummaryView};
+use super::world_pose::{PlacedCamera, WorldPose};
+use crate::error::Result;
+use crate::geometry::mesh::Mesh;
+use crate::geometry::normal_equations::NormalEquations;
+use crate::geometry::similarity::Similarity;
+use crate::geometry::symmetric_eigen::SymmetricEigen;
+use crate::metrics::symmetry::Symmetry;
+use crate::precise::alternatives::alternatives;
+use crate::precise::clean::CleanObservation;
+use crate::precise::conditioning::{Conditioning, DROP};
+use crate::precise::confidence::confidence;
+use crate::precise::no_candidate;
+use crate::precise::score::Score;
+use crate::precise::search::{Found, Search};
+use crate::report::{Alternative, Sim3};
+
+/// Times that the mask of a view without one is predicted.
+const PREDICTIONS: usize = 2;
+/// Regularisation, so that undetermined directions remain finite.
+const DAMPING: f64 = 1e-9;
+
+/// The result on the evidence of all views.
+///
+/// # Errors
+/// [`NoConsensus`](crate::error::ErrorCode::NoConsensus) if no pose is in front of a camera and overlaps a mask.
+pub fn in_world(searched: &[SearchedView], views: &[View], mesh: &Mesh, options: &ViewsOptions) -> Result<Summary> {
+    let lock_scale = searched.first().is_some_and(|view| view.search().settings.lock_scale);
+    let cameras: Vec<PlacedCamera> = views.iter().map(camera).collect();
+    let own = |view: &SearchedView| view.found().first().map(|found| found.pose);
+    let parts: Vec<Part<'_>> =
+        searched.iter().map(|view| Part { search: view.search(), camera: view.camera, own: own(view) }).collect();
+    let hypotheses: Vec<WorldPose> = searched
+        .iter()
+        .flat_map(|view| {
+            let poses = view.found().iter().map(|found| found.pose).chain(view.candidates.iter().copied());
+            poses.map(|pose| view.camera.place(&pose))
+        })
+        .collect();
+    let (mut ranked, mut renders) = join(&parts, &hypotheses, lock_scale);
+    renders += searched.iter().map(|view| view.search().renders).sum::<usize>();
+
+    // The views that the best pose contradicts are left out.
+    let best = ranked.first().ok_or_else(no_candidate)?;
+    let mut roles = vec![ViewRole::Blind; views.len()];
+    let mut used: Vec<Part<'_>> = Vec::new();
+    for ((part, view), score) in parts.iter().zip(searched).zip(&best.score.views) {
+        let is_used = parts.len() == 1 || !contradicts(part, score.total);
+        roles[view.index] = if is_used { ViewRole::Used } else { ViewRole::Contradicting };
+        used.extend(is_used.then_some(*part));
+    }
+    if used.len() < parts.len() {
+        ranked = rank(&used, &poses(&ranked), lock_scale, &mut renders);
+    }
+
+    // Views without a mask: it follows from the pose, and the pose from it.
+    let mut unmasked: Vec<(usize, Search)> = Vec::new();
+    for _ in 0..PREDICTIONS {
+        let Some(best) = ranked.first() else { break };
+        if used.is_empty() || views.iter().all(|view| view.frame.mask.is_some()) {
+            break;
+        }
+        unmasked = predicted(&best.pose, views, &cameras, used[0].search);
+        let mut all = used.clone();
+        all.extend(unmasked.iter().map(|(k, search)| Part { search, camera: cameras[*k], own: None }));
+        ranked = rank(&all, &poses(&ranked), lock_scale, &mut renders);
+    }
+    for (k, search) in &unmasked {
+        roles[*k] = ViewRole::Used;
+        used.push(Part { search, camera: cameras[*k], own: None });
+    }
+    let mut fused = None;
+    if let Some(best) = ranked.first_mut()
+        && used.len() > 1
+        && !lock_scale
+        && let Some((pose, sd)) = with_fused_size(&used, best.pose, &mut renders)
+    {
+        best.pose = pose;
+        fused = Some(sd);
+    }
+    let (Some(best), Some(first)) = (ranked.first(), used.first()) else { return Err(no_candidate()) };
+
+    let mut joint = on_fine_grids(&used, lock_scale);
+    let score = joint.score(&best.pose);
+    let conditioning = conditioning(&joint.equations(&best.pose, &score), &best.pose)
+        .map(|held| Conditioning { scale: fused.unwrap_or(held.scale), ..held });
+    let others = other_poses(&ranked, first, mesh, &options.symmetry)?;
+    let sum = Found {
+        pose: first.camera.see(&best.pose).ok_or_else(no_candidate)?,
+        score: mean_score(&score, best.score.total),
+        converged: best.converged,
+        renders: 0,
+    };
+    let confidence = confidence(&sum, &others, conditioning.as_ref());
+    let world_from_mesh = best.pose.similarity(&first.search.mesh.frame);
+    let shown = |k: usize| {
+        let part = parts.iter().zip(searched).find(|(_, view)| view.index == k).map(|(part, _)| *part);
+        let part = part.or_else(|| {
+            let (_, search) = unmasked.iter().find(|(index, _)| *index == k)?;
+            Some(Part { search, camera: cameras[k], own: None })
+        })?;
+        Some(part.search.score(&part.camera.see(&best.pose)?))
+    };
+    let views = (0..views.len())
+        .map(|k| {
+            let world_from_camera = cameras[k].world_from_camera();
+            SummaryView {
+                camera_from_mesh: world_from_camera.inverse().compose(&world_from_mesh),
+                confidence,
+                role: roles[k],
+                world_from_camera,
+                rotation_sd_deg: 0.0,
+                position_sd_m: 0.0,
+                score: shown(k).unwrap_or_default(),
+            }
+        })
+        .collect();
+    Ok(Summary {
+        world_from_mesh,
+        world: WorldFrame::Given,
+        confidence,
+        alternatives: others.into_iter().map(|other| moved(other, &first.camera.world_from_camera())).collect(),
+        uncertainty: conditioning.map(|held| WorldUncertainty {
+            scale: held.scale,
+            rotation_deg: held.rotation.0.to_degrees(),
+            rotation_axis: held.rotation.1.to_array(),
+            position_m: held.lateral_m,
+        }),
+        views,
+        score: f64::from(best.score.total),
+        converged: best.converged,
+        renders,
+        effort: first.search.settings.effort,
+    })
+}
+
+fn camera(view: &View) -> PlacedCamera {
+    view.world_from_camera.as_ref().map_or(PlacedCamera::AT_ORIGIN, PlacedCamera::of)
+}
+
+fn poses(ranked: &[Ranked]) -> Vec<WorldPose> {
+    ranked.iter().map(|ranked| ranked.pose).collect()
+}
+
+/// The evidence of the views without a mask, where the pose predicts one with enough readings.
+fn predicted(pose: &WorldPose, views: &[View], cameras: &[PlacedCamera], like: &Search) -> Vec<(usize, Search)> {
+    let mesh = &like.mesh;
+    let mut evidence = Vec::new();
+    for (k, (view, camera)) in views.iter().zip(cameras).enumerate() {
+        if view.frame.mask.is_some() {
+            continue;
+        }
+        let Some(seen) = camera.see(pose) else { continue };
+        let (scale, translation) = seen.scale_translation();
+        let camera_from_frame = Similarity { scale, ..seen.similarity(&mesh.frame) };
+        let camera_from_frame =
+            Similarity { translation: nalgebra::Vector3::from(translation.to_array()), ..camera_from_frame };
+        let frame = with_predicted_mask(&view.frame, &mesh.fine, &camera_from_frame, scale);
+        let Ok(Some(observation)) = frame.observation() else { continue };
+        let mut search = Search::new(Rc::new(CleanObservation::new(&observation)), mesh.clone(), like.settings);
+        search.assume(like.prior);
+        if search.fine.mask_cells > 0 {
+            evidence.push((k, search));
+        }
+    }
+    evidence
+}
+
+/// The conditioning of a world pose; its positions are those of the centre of the mesh along the least determined axis.
+fn conditioning(equations: &NormalEquations, pose: &WorldPose) -> Option<Conditioning> {
+    let covariance = equations.inverse(DAMPING)?.map(|row| row.map(|x| 2.0 * DROP * x));
+    let block = |from: usize| {
+        let row = |i: usize| [0, 1, 2].map(|j| covariance[from + i][from + j]);
+        SymmetricEigen::of(glam::DMat3::from_cols_array_2d(&[row(0), row(1), row(2)]))
+    };
+    let root = |x: f64| x.max(0.0).sqrt();
+    let (turns, places) = (block(0), block(4));
+    let position_m = libm::exp(pose.log_scale) * root(places.values[2]);
+    Some(Conditioning {
+        scale: root(covariance[3][3]),
+        rotation: (root(turns.values[2]), turns.vectors[2]),
+        lateral_m: position_m,
+        distance_m: position_m,
+    })
+}
+
+/// The means of the terms over all views, and the total of all.
+fn mean_score(score: &JointScore, total: f32) -> Score {
+    let count = score.views.len().max(1) as f32;
+    let mean = |term: fn(&Score) -> f32| score.views.iter().map(term).sum::<f32>() / count;
+    Score {
+        total,
+        overlap: mean(|s| s.overlap),
+        coverage: mean(|s| s.coverage),
+        depth: mean(|s| s.depth),
+        normals: mean(|s| s.normals),
+        outline: mean(|s| s.outline),
+        hidden: mean(|s| s.hidden),
+        ..Score::default()
+    }
+}
+
+/// The poses nearly as good as the best one, in the camera of the first view.
+fn other_poses(ranked: &[Ranked], first: &Part<'_>, mesh: &Mesh, symmetry: &Symmetry) -> Result<Vec<Alternative>> {
+    let found = ranked.iter().filter_map(|ranked| {
+        let score = Score { total: ranked.score.total, ..Score::default() };
+        Some(Found { pose: first.camera.see(&ranked.pose)?, score, converged: ranked.converged, renders: 0 })
+    });
+    alternatives(&found.collect::<Vec<_>>(), first.search, mesh, symmetry)
+}
+
+/// An alternative in the world instead of a camera.
+fn moved(other: Alternative, world_from_camera: &Similarity) -> Alternative {
+    let Sim3 { matrix, .. } = &other.camera_from_mesh;
+    let moved =
+        Similarity::from_column_major(matrix).map(|camera_from_mesh| world_from_camera.compose(&camera_from_mesh));
+    match moved {
+        Ok(world_from_mesh) => Alternative { camera_from_mesh: (&world_from_mesh).into(), ..other },
+        Err(_) => other,
+    }
+}

@@ -1,0 +1,72 @@
+//! The search in one view, whose poses are hypotheses for all.
+
+use super::world_pose::PlacedCamera;
+use crate::error::Result;
+use crate::evidence::observation::Observation;
+use crate::precise::options::AlignOptions;
+use crate::precise::pose::CropPose;
+use crate::precise::prepared_mesh::PreparedMesh;
+use crate::precise::recipe::FIRST_REFINEMENT;
+use crate::precise::rounds::Rounds;
+use crate::precise::search::{Found, Search};
+use crate::precise::{self, SearchSettings};
+use crate::progress::Stopwatch;
+
+/// A view with a mask, and its search.
+pub struct SearchedView {
+    /// Index of the view in the input.
+    pub index: usize,
+    /// Its camera in the world.
+    pub camera: PlacedCamera,
+    /// The finished or running search.
+    pub rounds: Rounds,
+    /// Distinct poses after the first refinement: more than the ranking keeps.
+    pub candidates: Vec<CropPose>,
+}
+
+impl SearchedView {
+    /// A view before its search; `previous` is the same view after a search with less effort.
+    ///
+    /// # Errors
+    /// As [`precise::begin`].
+    pub fn begin(
+        (index, camera): (usize, PlacedCamera),
+        observation: &Observation,
+        mesh: &PreparedMesh<'_>,
+        (options, settings): (&AlignOptions, &SearchSettings),
+        previous: Option<&Self>,
+        stages: &mut Stopwatch<'_>,
+    ) -> Result<Self> {
+        let before = previous.map(|view| &view.rounds);
+        let rounds = precise::begin(observation, mesh, before, options, settings, stages)?;
+        Ok(Self { index, camera, rounds, candidates: Vec::new() })
+    }
+
+    /// Continues the search until it ends or `pause` returns true. Returns whether it has ended.
+    pub fn run(&mut self, pause: &mut dyn FnMut() -> bool) -> bool {
+        while self.rounds.round().is_some() {
+            if !self.rounds.run(pause) {
+                return false;
+            }
+            if self.rounds.index() == FIRST_REFINEMENT + 1 {
+                self.candidates = self.rounds.poses().to_vec();
+            }
+        }
+        true
+    }
+
+    /// The poses that the search has found, best first.
+    pub fn found(&self) -> &[Found] {
+        &self.rounds.found
+    }
+
+    /// The view's own best score.
+    pub fn best(&self) -> f32 {
+        self.found().first().map_or(0.0, |best| best.score.total)
+    }
+
+    /// The search.
+    pub fn search(&self) -> &Search {
+        &self.rounds.search
+    }
+}

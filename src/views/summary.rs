@@ -1,0 +1,153 @@
+//! What an alignment of several views has found, before its metrics.
+
+use super::View;
+use super::options::ViewsOptions;
+use super::report::{CameraPose, ViewPose, ViewRole, ViewsAlignment, ViewsDiagnostics, WorldFrame, WorldUncertainty};
+use crate::align::warnings;
+use crate::error::Result;
+use crate::evidence::observation::Observation;
+use crate::evidence::sample::Sampling;
+use crate::geometry::mesh::Mesh;
+use crate::geometry::similarity::Similarity;
+use crate::metrics;
+use crate::precise::score::Score;
+use crate::progress::Stopwatch;
+use crate::report::{Alternative, Effort, ScoreTerms, Warning, WarningCode};
+
+/// The poses found.
+pub struct Summary {
+    /// The pose in the world.
+    pub world_from_mesh: Similarity,
+    /// What the world is.
+    pub world: WorldFrame,
+    /// See [`ViewsAlignment`].
+    pub confidence: f64,
+    /// See [`ViewsAlignment`].
+    pub alternatives: Vec<Alternative>,
+    /// See [`ViewsAlignment`].
+    pub uncertainty: Option<WorldUncertainty>,
+    /// The object in each view.
+    pub views: Vec<SummaryView>,
+    /// Sum of the scores.
+    pub score: f64,
+    /// Whether the refinement converged.
+    pub converged: bool,
+    /// Number of images drawn.
+    pub renders: usize,
+    /// The effort of the searches.
+    pub effort: Effort,
+}
+
+/// The object in one view.
+pub struct SummaryView {
+    /// The pose in the view.
+    pub camera_from_mesh: Similarity,
+    /// See [`ViewPose`].
+    pub confidence: f64,
+    /// What the view contributed.
+    pub role: ViewRole,
+    /// The camera.
+    pub world_from_camera: Similarity,
+    /// See [`CameraPose`].
+    pub rotation_sd_deg: f64,
+    /// See [`CameraPose`].
+    pub position_sd_m: f64,
+    /// The score in the view.
+    pub score: Score,
+}
+
+impl Summary {
+    /// The result, with the metrics of each view that has a mask, if they are wanted.
+    ///
+    /// # Errors
+    /// As [`metrics::evaluate`].
+    pub fn report(
+        &self,
+        mesh: &Mesh,
+        inputs: &[View],
+        observations: &[Option<Observation>],
+        options: &ViewsOptions,
+        stages: Stopwatch<'_>,
+    ) -> Result<ViewsAlignment> {
+        let sampling = Sampling {
+            max_points: options.max_observed_points as usize,
+            surface_samples: options.surface_samples as usize,
+            seed: u64::from(options.seed),
+        };
+        let mut views = Vec::with_capacity(self.views.len());
+        for ((view, _), observation) in self.views.iter().zip(inputs).zip(observations) {
+            let measured = match observation {
+                Some(observation) if options.metrics => {
+                    Some(metrics::evaluate(observation, mesh, &view.camera_from_mesh, &sampling)?)
+                }
+                _ => None,
+            };
+            let terms: ScoreTerms = (&view.score).into();
+            let mut warnings = observation.as_ref().map_or_else(Vec::new, warnings::about_observation);
+            if view.role == ViewRole::Used && observation.is_some() {
+                warnings.extend(warnings::about_fit(&terms));
+            }
+            views.push(ViewPose {
+                camera_from_mesh: (&view.camera_from_mesh).into(),
+                confidence: view.confidence,
+                role: view.role,
+                camera: CameraPose {
+                    world_from_camera: (&view.world_from_camera).into(),
+                    rotation_sd_deg: view.rotation_sd_deg,
+                    position_sd_m: view.position_sd_m,
+                },
+                score: f64::from(view.score.total),
+                terms,
+                metrics: measured,
+                warnings,
+            });
+        }
+        Ok(ViewsAlignment {
+            world_from_mesh: (&self.world_from_mesh).into(),
+            world: self.world,
+            confidence: self.confidence,
+            alternatives: self.alternatives.clone(),
+            uncertainty: self.uncertainty,
+            views,
+            warnings: self.warnings(),
+            diagnostics: ViewsDiagnostics {
+                seed: options.seed,
+                effort: self.effort,
+                score: self.score,
+                converged: self.converged,
+                renders: self.renders,
+                timings_ms: stages.finish(),
+            },
+        })
+    }
+
+    /// Warnings about the views as a whole.
+    fn warnings(&self) -> Vec<Warning> {
+        let of = |role| {
+            let views = self.views.iter().enumerate().filter(move |(_, view)| view.role == role);
+            let names: Vec<String> = views.map(|(k, _)| k.to_string()).collect();
+            names
+        };
+        let (against, blind) = (of(ViewRole::Contradicting), of(ViewRole::Blind));
+        let mut warnings = Vec::new();
+        if !against.is_empty() {
+            warnings.push(Warning {
+                code: WarningCode::ViewContradicts,
+                message: format!(
+                    "Views {} contradict the others and do not count. Check their masks and camera poses, and that they show the same object.",
+                    against.join(", ")
+                ),
+            });
+        }
+        if !blind.is_empty() {
+            warnings.push(Warning {
+                code: WarningCode::ViewShowsNothing,
+                message: format!(
+                    "Views {} have too few readings where the object should be, and do not count.",
+                    blind.join(", ")
+                ),
+            });
+        }
+        warnings
+    }
+}

@@ -1,0 +1,173 @@
+//! Unrelated views, without camera poses: one size for all of them, and a pose in each.
+
+use super::common_size::{SILHOUETTE_ERROR, SizeEvidence, common_size, mean, refine_at};
+use super::report::{ViewRole, WorldFrame, WorldUncertainty};
+use super::searched_view::SearchedView;
+use super::summary::{Summary, SummaryView};
+use crate::error::Result;
+use crate::geometry::similarity::Similarity;
+use crate::precise::conditioning::Conditioning;
+use crate::precise::confidence::sureness;
+use crate::precise::no_candidate;
+use crate::precise::objective::Objective;
+use crate::precise::recipe::{FINE, FINEST};
+use crate::precise::search::{Found, Search};
+
+/// Score below a view's best at which a pose of it is not tried at the common size.
+const NEAR: f32 = 0.35;
+/// Poses of a view tried at the common size, and the steps of their refinement on the fine and the finest grid.
+const TRIED: usize = 5;
+const STEPS: [usize; 2] = [14, 8];
+/// Times that the size follows from the poses that were refined at the size before.
+const ROUNDS: usize = 2;
+
+/// The result of views with unknown camera poses.
+pub struct CommonSize {
+    /// Standard deviation of the size, relative.
+    pub sd: f64,
+    /// The pose of each searched view at this scale, and whether the view agrees with it.
+    pub views: Vec<(Found, bool)>,
+    /// Number of poses rendered.
+    pub renders: usize,
+}
+
+/// Finds the common size; `None` if no view has a pose.
+pub fn with_common_size(searched: &[SearchedView]) -> Option<CommonSize> {
+    let mut renders = 0;
+    let likely: Vec<Vec<Found>> = searched.iter().map(|view| likely(view.found())).collect();
+    let evidence: Vec<Vec<SizeEvidence>> = searched
+        .iter()
+        .zip(&likely)
+        .map(|(view, found)| {
+            let objective = fine(view.search());
+            renders += found.len();
+            found.iter().filter_map(|found| SizeEvidence::at(objective, &found.pose, SILHOUETTE_ERROR)).collect()
+        })
+        .collect();
+    let (mut size, mut sd, chosen) = common_size(&evidence)?;
+    let agrees: Vec<bool> = chosen.iter().map(Option::is_some).collect();
+    let mut poses: Vec<Found> = Vec::new();
+    for round in 0..ROUNDS {
+        poses = searched
+            .iter()
+            .enumerate()
+            .map(|(k, view)| {
+                // A view that contradicts keeps its own size.
+                let tried = if round == 0 { likely[k].clone() } else { vec![poses[k]] };
+                let refined = tried.into_iter().map(|found| {
+                    let own = found.pose.size + found.pose.distance;
+                    let refined =
+                        refine_at(fine(view.search()), found.pose, if agrees[k] { size } else { own }, STEPS[0]);
+                    renders += refined.renders;
+                    Found::from(refined)
+                });
+                best_of(refined)
+            })
+            .collect::<Option<Vec<_>>>()?;
+        let evidence = searched.iter().zip(&poses).zip(&agrees).filter(|(_, agrees)| **agrees);
+        let evidence: Vec<SizeEvidence> = evidence
+            .filter_map(|((view, found), _)| SizeEvidence::at(fine(view.search()), &found.pose, SILHOUETTE_ERROR))
+            .collect();
+        (size, sd) = mean(evidence.iter().copied()).unwrap_or((size, sd));
+    }
+    let views = searched.iter().zip(poses).zip(agrees).map(|((view, found), agrees)| {
+        let own = found.pose.size + found.pose.distance;
+        let search = view.search();
+        let grid = search.grid(FINEST);
+        let refined = refine_at(search.objective(FINEST, &grid), found.pose, if agrees { size } else { own }, STEPS[1]);
+        renders += refined.renders;
+        // The score stays that of the fine grid, because scores of different grids are not comparable.
+        (
+            Found { pose: refined.pose, score: search.score(&refined.pose), converged: refined.converged, renders: 0 },
+            agrees,
+        )
+    });
+    let views = views.collect();
+    Some(CommonSize { sd, views, renders })
+}
+
+/// The result of views without camera poses. Its world is the camera of the first view that agrees with the size.
+///
+/// # Errors
+/// [`NoConsensus`](crate::error::ErrorCode::NoConsensus) if no view has a pose.
+pub fn unrelated(searched: &[SearchedView]) -> Result<Summary> {
+    let common = with_common_size(searched).ok_or_else(no_candidate)?;
+    let effort = searched.first().map_or_else(Default::default, |view| view.search().settings.effort);
+    let first = common.views.iter().position(|(_, agrees)| *agrees).unwrap_or(0);
+    let mut views: Vec<SummaryView> = Vec::new();
+    let mut held: Vec<Option<Conditioning>> = Vec::new();
+    for (view, (found, agrees)) in searched.iter().zip(&common.views) {
+        let search = view.search();
+        // The size is as certain as all views together make it.
+        let conditioning = search
+            .conditioning(&found.pose)
+            .0
+            .map(|own| Conditioning { scale: if *agrees { common.sd } else { own.scale }, ..own });
+        let rival = view.found().iter().skip(1).map(|other| other.score.total).fold(0.0, f32::max);
+        let lead = f64::from(found.score.total - rival);
+        let confidence = if *agrees { sureness(found, lead, conditioning.as_ref()) } else { 0.0 };
+        views.push(SummaryView {
+            camera_from_mesh: found.pose.similarity(&search.mesh.frame),
+            confidence,
+            role: if *agrees { ViewRole::Used } else { ViewRole::Contradicting },
+            world_from_camera: Similarity::identity(),
+            rotation_sd_deg: 0.0,
+            position_sd_m: 0.0,
+            score: found.score,
+        });
+        held.push(conditioning);
+    }
+    let world_from_mesh = views[first].camera_from_mesh;
+    for k in 0..views.len() {
+        if k == first {
+            continue;
+        }
+        let relative = world_from_mesh.compose(&views[k].camera_from_mesh.inverse());
+        let sd = |part: fn(&Conditioning) -> f64| {
+            let [a, b] = [first, k].map(|k| held[k].as_ref().map_or(f64::INFINITY, part));
+            (a * a + b * b).sqrt()
+        };
+        let turn = sd(|held| held.rotation.0);
+        let moved = sd(|held| held.lateral_m.max(held.distance_m));
+        // The camera swings about the object as far as the rotation of the object is uncertain.
+        let swing = turn * views[k].camera_from_mesh.translation.norm();
+        let view = &mut views[k];
+        view.world_from_camera = Similarity { scale: 1.0, ..relative };
+        view.rotation_sd_deg = turn.to_degrees();
+        view.position_sd_m = (moved * moved + swing * swing).sqrt();
+    }
+    let used = || views.iter().filter(|view| view.role == ViewRole::Used);
+    let confidence = used().map(|view| view.confidence).fold(1.0, f64::min);
+    let uncertainty = held[first].map(|held| WorldUncertainty {
+        scale: common.sd,
+        rotation_deg: held.rotation.0.to_degrees(),
+        rotation_axis: held.rotation.1.to_array(),
+        position_m: held.lateral_m.max(held.distance_m),
+    });
+    Ok(Summary {
+        world_from_mesh,
+        world: WorldFrame::Camera,
+        confidence,
+        alternatives: Vec::new(),
+        uncertainty,
+        score: used().map(|view| f64::from(view.score.total)).sum(),
+        converged: common.views.iter().all(|(found, _)| found.converged),
+        renders: common.renders + searched.iter().map(|view| view.search().renders).sum::<usize>(),
+        effort,
+        views,
+    })
+}
+
+/// The poses of a view that may be right.
+fn likely(found: &[Found]) -> Vec<Found> {
+    let best = found.first().map_or(0.0, |best| best.score.total);
+    found.iter().filter(|f| f.score.total > best - NEAR).take(TRIED).copied().collect()
+}
+
+fn best_of(found: impl Iterator<Item = Found>) -> Option<Found> {
+    found.reduce(|best, next| if next.score.total > best.score.total { next } else { best })
+}
+
+fn fine(search: &Search) -> Objective<'_> {
+    search.objective(FINE, &search.fine)
+}

@@ -1,0 +1,54 @@
+/** Several views of the test scene, from cameras on a circle around the object. */
+import { type Mesh, mesh, type Pose, render, truth } from "./scene.js";
+
+const pinhole = { fx: 300, fy: 301, cx: 79.5, cy: 60 };
+const size = { width: 160, height: 120 };
+
+/** A frame of the scene, and the true pose in it. */
+export interface RigFrame {
+  frame: {
+    depth: Float32Array;
+    width: number;
+    height: number;
+    mask: Uint8Array;
+    camera: { fx: number; fy: number; cx: number; cy: number };
+  };
+  /** World from camera; the world is the camera at 0°. */
+  cameraToWorld: { scale: number; rotation: [number, number, number, number]; translation: [number, number, number] };
+  pose: Pose;
+}
+
+/** What a camera sees that is turned about the object by this angle, degrees. */
+export function frameAt(degrees: number): RigFrame {
+  const half = (degrees * Math.PI) / 360;
+  const turn: Pose["rotation"] = [0, Math.sin(half), 0, Math.cos(half)];
+  const pose: Pose = { ...truth, rotation: product(turn, truth.rotation) };
+  const { depth, mask, camera } = render(mesh as Mesh, pose, pinhole, size.width, size.height);
+  const back: Pose["rotation"] = [0, -turn[1], 0, turn[3]];
+  const [x, y, z] = truth.translation;
+  // c − Rᵀ·c, about the object's origin c.
+  const [sin, cos] = [Math.sin(2 * half), Math.cos(2 * half)];
+  const translation: [number, number, number] = [x - (cos * x - sin * z), y - y, z - (sin * x + cos * z)];
+  return {
+    frame: { depth, ...size, mask, camera },
+    cameraToWorld: { scale: 1, rotation: back, translation },
+    pose,
+  };
+}
+
+type Quaternion = Pose["rotation"];
+
+function product([ax, ay, az, aw]: Quaternion, [bx, by, bz, bw]: Quaternion): Quaternion {
+  return [
+    aw * bx + ax * bw + ay * bz - az * by,
+    aw * by - ax * bz + ay * bw + az * bx,
+    aw * bz + ax * by - ay * bx + az * bw,
+    aw * bw - ax * bx - ay * by - az * bz,
+  ];
+}
+
+/** The angle between two rotations, degrees. */
+export function turnBetween(a: readonly number[], b: readonly number[]): number {
+  const dot = a.reduce((sum, x, i) => sum + x * (b[i] as number), 0);
+  return (2 * Math.acos(Math.min(1, Math.abs(dot))) * 180) / Math.PI;
+}
