@@ -142,7 +142,7 @@ fn standing(mesh: &Mesh, center: DVec3, extremes: &[DVec3], rolled: DVec3) -> Op
     if loosest.0 < FALLS {
         return None;
     }
-    let firm = |radius: f64| (radius / FIRM_RADIUS).max(0.0).min(1.0);
+    let firm = |radius: f64| (radius / FIRM_RADIUS).clamp(0.0, 1.0);
     let (sin, cos) = crate::geometry::angle::sin_cos(loosest.1);
     let moves = across * cos + other * sin;
     // To move `down` along `moves`, it tips about the axis perpendicular to it.

@@ -187,7 +187,7 @@ fn common_offset(planes: &[Option<Plane>], placements: &[Option<Placement>]) -> 
     let count = gaps.len() as f64;
     let middle = median(gaps.into_iter()).map_or(0.0, f64::from);
     // As if one and a half objects had shown none.
-    (middle * count / (count + 1.5)).max(-MAX_OFFSET_M).min(MAX_OFFSET_M)
+    (middle * count / (count + 1.5)).clamp(-MAX_OFFSET_M, MAX_OFFSET_M)
 }
 
 /// The object that another one stands on, and the height of its top over the plane.
@@ -201,10 +201,9 @@ fn below(i: usize, plane: &Plane, placements: &[Option<Placement>]) -> Option<(u
         let top = extent(&other.body, plane)[1];
         let apart = (low - top).abs();
         // Nearer to the top of the other than to the plane.
-        if apart < 1.5 * tolerance && apart < low && is_over(body, &other.body, plane) {
-            if best.is_none_or(|(least, ..)| apart < least) {
-                best = Some((apart, k, top));
-            }
+        let is_near = apart < 1.5 * tolerance && apart < low && best.is_none_or(|(least, ..)| apart < least);
+        if is_near && is_over(body, &other.body, plane) {
+            best = Some((apart, k, top));
         }
     }
     best.map(|(_, k, top)| (k, top))

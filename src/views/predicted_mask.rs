@@ -26,7 +26,7 @@ pub fn with_predicted_mask(frame: &Frame, mesh: &Mesh, camera_from_mesh: &Simila
     let mut rasteriser = Rasteriser::new();
     rasteriser.render_depth(mesh, camera_from_mesh, &frame.camera, width, height);
     let area = rasteriser.depth().iter().filter(|z| **z > 0.0).count() as f32;
-    let growth = (GROWTH * area.sqrt()).max(GROWTH_PX[0]).min(GROWTH_PX[1]);
+    let growth = (GROWTH * area.sqrt()).clamp(GROWTH_PX[0], GROWTH_PX[1]);
     let grown = Grown::new(rasteriser.depth(), width, height);
     let diagonal = diagonal_m as f32;
     let tolerance = TOLERANCE * diagonal;

@@ -118,11 +118,8 @@ pub fn unrelated(searched: &[SearchedView]) -> Result<Summary> {
         held.push(conditioning);
     }
     let world_from_mesh = views[first].camera_from_mesh;
-    for k in 0..views.len() {
-        if k == first {
-            continue;
-        }
-        let relative = world_from_mesh.compose(&views[k].camera_from_mesh.inverse());
+    for (k, view) in views.iter_mut().enumerate().filter(|(k, _)| *k != first) {
+        let relative = world_from_mesh.compose(&view.camera_from_mesh.inverse());
         let sd = |part: fn(&Conditioning) -> f64| {
             let [a, b] = [first, k].map(|k| held[k].as_ref().map_or(f64::INFINITY, part));
             (a * a + b * b).sqrt()
@@ -130,8 +127,7 @@ pub fn unrelated(searched: &[SearchedView]) -> Result<Summary> {
         let turn = sd(|held| held.rotation.0);
         let moved = sd(|held| held.lateral_m.max(held.distance_m));
         // The camera swings about the object as far as the rotation of the object is uncertain.
-        let swing = turn * views[k].camera_from_mesh.translation.norm();
-        let view = &mut views[k];
+        let swing = turn * view.camera_from_mesh.translation.norm();
         view.world_from_camera = Similarity { scale: 1.0, ..relative };
         view.rotation_sd_deg = turn.to_degrees();
         view.position_sd_m = (moved * moved + swing * swing).sqrt();

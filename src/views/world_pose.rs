@@ -103,8 +103,8 @@ impl PlacedCamera {
         let row = |axis: usize| turn.row(axis);
         let size = libm::exp(seen.size);
         let mut map = [[0.0; PARAMETERS]; PARAMETERS];
-        for axis in 0..3 {
-            map[axis][..3].copy_from_slice(&row(axis).to_array());
+        for (axis, turned) in map.iter_mut().take(3).enumerate() {
+            turned[..3].copy_from_slice(&row(axis).to_array());
         }
         // log z grows by e^size times the step along the line of sight.
         let along = row(2);

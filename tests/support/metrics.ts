@@ -8,7 +8,9 @@ export function assertSameMetrics(found: Metrics, expected: Metrics): void {
   for (const [name, value] of Object.entries(expected) as [keyof Metrics, number | null][]) {
     const other = found[name];
     const isSame =
-      value === null || other === null ? value === other : Math.abs(other - value) <= 1e-9 * Math.abs(value);
+      value === null || other === null || other === undefined
+        ? value === other
+        : Math.abs(other - value) <= 1e-9 * Math.abs(value);
     assert.ok(isSame, `${name}: ${other}, not ${value}`);
   }
 }
