@@ -25,7 +25,7 @@ import { step } from "./step.mjs";
 
 /** @type {readonly WasmModule[]} */
 export const wasmModules = [
-  { name: "core", crate: "sim3align-core", budget: 150_000 },
+  { name: "core", crate: "sim3align-core", budget: 210_000 },
   { name: "registration", crate: "sim3align-registration", budget: 120_000 },
   { name: "formats", crate: "sim3align-formats", budget: 260_000 },
 ];

@@ -21,6 +21,7 @@ use super::rounds::Rounds;
 use super::search::{Found, Search};
 use crate::evidence::observation::Observation;
 use crate::evidence::photo::Photo;
+use crate::geometry::order::largest;
 use crate::geometry::rotations::{angle_between, exp};
 use crate::geometry::similarity::Similarity;
 use crate::geometry::surface_colors::SurfaceColors;
@@ -151,8 +152,9 @@ impl ColorStage {
             angle_between(other.found.pose.rotation, chosen.found.pose.rotation) > RIVAL
                 && other.appearance.difference(&chosen.appearance) > DIFFERENT
         };
-        let mut rivals: Vec<&Compared> = self.compared.iter().filter(is_rival).collect();
-        rivals.sort_by(|a, b| b.total.total_cmp(&a.total));
+        let rivals: Vec<&Compared> = self.compared.iter().filter(is_rival).collect();
+        let order = largest(rivals.iter().map(|rival| rival.total as f32), rivals.len());
+        let rivals: Vec<&Compared> = order.into_iter().map(|i| rivals[i as usize]).collect();
         let is_changed = !core::ptr::eq(chosen, first);
         let verdict = match (rivals.is_empty(), is_used, is_changed) {
             (true, ..) => ColorVerdict::Uniform,

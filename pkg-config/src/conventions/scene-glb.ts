@@ -1,7 +1,8 @@
 /** Export of a whole scene as one GLB. */
+import { invalidArgument } from "../error.js";
 import type { MeshArrays } from "../input/types.js";
 import type { Sim3Like } from "../sim3.js";
-import { finite, isRecord, type Vector3, vector3 } from "../values.js";
+import { finite, isRecord, optionsOf, positive, record, type Vector3, vector3 } from "../values.js";
 import { bounds, bytesOf, glbOfParts, partsOf } from "./glb.js";
 import { type GltfNode, toGltfNode } from "./gltf-node.js";
 import { MergedGltf } from "./merged-gltf.js";
@@ -41,11 +42,16 @@ const GROUND = [1.6, 0.2] as const;
  * @throws {@link Sim3AlignError} for an invalid mesh, GLB or transform
  */
 export function exportSceneGlb(objects: readonly SceneGlbObject[], options: SceneGlbOptions = {}): Uint8Array {
-  const { support = null, camera } = options;
+  const { support = null, camera } = optionsOf(options);
+  if (!Array.isArray(objects)) {
+    throw invalidArgument("objects", objects, "an array of { mesh, transform }", "Pass one of these per object.");
+  }
+  const given = Array.from(objects, (object, i) => record(`objects[${i}]`, object, "{ mesh, transform }"));
+  const parts = given as unknown as SceneGlbObject[];
   const merged = new MergedGltf();
-  const centers = objects.map(({ transform }) => similarityOf(transform).translation);
+  const centers = parts.map(({ transform }) => similarityOf(transform).translation);
   const { rotation, translation } = worldFromCamera(support, centers);
-  const children = objects.map(({ name, mesh, transform }, i) => {
+  const children = parts.map(({ name, mesh, transform }, i) => {
     const node: GltfNode & { children?: number[]; mesh?: number } = toGltfNode(transform, {
       name: name ?? `object ${i}`,
       frame: "opencv",
@@ -58,7 +64,7 @@ export function exportSceneGlb(objects: readonly SceneGlbObject[], options: Scen
     }
     return merged.push("nodes", node);
   });
-  if (camera !== undefined) children.push(addCamera(merged, camera));
+  if (camera !== undefined) children.push(addCamera(merged, record("options.camera", camera, "{ fy, width, height }")));
   const roots = [merged.push("nodes", { name: "view", rotation, translation, children })];
   if (support !== null) roots.push(addGround(merged, reachOf(centers)));
   return glbOfParts(merged.finish(roots));
@@ -83,8 +89,9 @@ function meanOf(points: readonly Vector[]): Vector {
 /** The turn and the shift from the OpenCV camera frame to that of the file. */
 function worldFromCamera(support: SceneGlbOptions["support"], centers: readonly Vector[]) {
   if (support === null || support === undefined) return { rotation: [1, 0, 0, 0], translation: [0, 0, 0] };
+  record("options.support", support, "{ normal, d }");
   const normal = vector3("options.support.normal", support.normal);
-  const length = Math.sqrt(dot(normal, normal));
+  const length = positive("the length of options.support.normal", Math.sqrt(dot(normal, normal)));
   const d = finite("options.support.d", support.d) / length;
   const up = scaled(normal, 1 / length);
   // The camera's right stays right, unless it looks along the ground sideways.
@@ -148,7 +155,9 @@ function addGround(merged: MergedGltf, reach: number): number {
   return merged.push("nodes", { name: "support", mesh });
 }
 
-function addCamera(merged: MergedGltf, { fy, width, height }: NonNullable<SceneGlbOptions["camera"]>): number {
+function addCamera(merged: MergedGltf, given: Record<string, unknown>): number {
+  const number = (name: string) => positive(`options.camera.${name}`, given[name]);
+  const [fy, width, height] = [number("fy"), number("width"), number("height")];
   const camera = merged.push("cameras", {
     type: "perspective",
     perspective: { yfov: 2 * Math.atan(height / (2 * fy)), aspectRatio: width / height, znear: 0.01 },

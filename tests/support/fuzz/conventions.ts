@@ -49,6 +49,18 @@ const table: readonly (readonly [name: keyof typeof conventions, ...args: Argume
   ["toThree", "transform"],
   ["toRos", "transform", () => ({ frame: "optical" })],
   ["exportGlb", "mesh", "transform", (random) => ({ mode: pick(random, ["node", "baked"]) })],
+  [
+    "exportSceneGlb",
+    (random) => [
+      {
+        name: "mug",
+        mesh: pick<unknown>(random, [valid.glb(), valid.mesh(random)]),
+        transform: valid.transform(random),
+      },
+      { mesh: valid.mesh(random), transform: valid.transform(random) },
+    ],
+    () => ({ support: { normal: [0, -1, 0.2], d: 0.4 }, camera: { fy: 500, width: 640, height: 480 } }),
+  ],
   ["placeGlb", "glb", "transform", () => ({ frame: "opencv", name: "mug" })],
   ["toGltfNode", "transform", () => ({ metrics: { iou: 0.9 }, name: "mug" })],
   ["fromLabelStudioRle", () => new Uint8Array([0, 0, 0, 192, 58, 8, 0, 1, 255, 7, 9, 9]), () => ({ ...image })],
