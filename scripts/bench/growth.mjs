@@ -55,6 +55,7 @@ async function watched(call) {
 async function measure({ triangles, width, height }, runs) {
   const input = pictureOf(bumpyRing(triangles), width, height, 1.6);
   const { aligner, memory } = await freshCore();
+  /** @type {Awaited<ReturnType<typeof watched>>[]} */
   const results = [];
   for (let i = 0; i < runs; i++) results.push(await watched(() => aligner.align(input)));
   const stages = Object.values(groups).map((names) =>
