@@ -26,6 +26,6 @@ const [masks] = await processor.post_process_masks(pred_masks, inputs.original_s
 
 const aligner = await createAligner();
 const mesh = await readFile(meshFile);
-const found = { predicted_depth, masks, iou_scores, disparity: undefined };
+const found = { predicted_depth, masks, iou_scores, disparity: undefined, image: picture.rgb() };
 const result = await alignTensors(aligner, found, { fovYDeg: Number(fovYDeg) }, mesh);
 console.log({ scale: result.scale, translation: result.translation, confidence: result.confidence });

@@ -148,12 +148,13 @@ test("06-transformersjs aligns the tensors of a depth pipeline and of SAM", asyn
   const three = Uint8Array.from([part, mask, new Uint8Array(mask.length).fill(1)].flatMap((one) => [...one]));
   const masks = new Tensor({ type: "bool", data: three, dims: [1, 3, height, width] });
   const iou_scores = new Tensor({ type: "float32", data: Float32Array.of(0.88, 0.98, 0.93), dims: [1, 1, 3] });
+  const image = { data: new Uint8ClampedArray(4 * width * height).fill(120), width, height };
   const { alignTensors } = await import(join(examplesDir, "06-transformersjs", "align-tensors.mjs"));
   const aligned = (values: Float32Array, disparity?: { scale: number; shift: number }): Promise<Alignment> => {
     const predicted_depth = new Tensor({ type: "float32", data: values, dims: [height, width] });
     return alignTensors(
       aligner,
-      { predicted_depth, masks, iou_scores, disparity },
+      { predicted_depth, masks, iou_scores, disparity, image },
       JSON.parse(`${sample.cameraFile}`),
       sample.mesh,
     );

@@ -136,7 +136,7 @@ function objectsOf(json: Record<string, unknown>, name: string): Record<string, 
 
 /** A GLB file of a JSON chunk and other chunks, each padded to a multiple of four bytes. */
 function glbOf(json: object, others: readonly (readonly [type: number, content: Uint8Array])[]): Uint8Array {
-  const chunks = [[jsonChunk, new TextEncoder().encode(JSON.stringify(json))] as const, ...others];
+  const chunks = [[jsonChunk, encoded(json)] as const, ...others];
   const padded = (content: Uint8Array) => Math.ceil(content.length / 4) * 4;
   const length = chunks.reduce((sum, [, content]) => sum + 8 + padded(content), 12);
   const file = new Uint8Array(length);
@@ -191,4 +191,14 @@ function parsed(bytes: Uint8Array, corrupt: (found: string) => Error): Record<st
   }
   if (!isRecord(json)) throw corrupt(`${describe(json)} as its JSON`);
   return json;
+}
+
+/** JSON as bytes. What callers add to it, metrics and names, may be anything. */
+function encoded(json: unknown): Uint8Array {
+  try {
+    return new TextEncoder().encode(JSON.stringify(json));
+  } catch {
+    const found = "a value that JSON cannot hold";
+    throw failure("INVALID_ARGUMENT", "options.metrics", found, "metrics as in a result", "Pass those of a result.");
+  }
 }

@@ -2,7 +2,7 @@
 import { invalidArgument } from "../error.js";
 import type { MeshArrays } from "../input/types.js";
 import type { Sim3Like } from "../sim3.js";
-import { finite, isRecord, optionsOf, positive, record, type Vector3, vector3 } from "../values.js";
+import { finite, flattened, isRecord, optionsOf, positive, record, type Vector3, vector3 } from "../values.js";
 import { bounds, bytesOf, glbOfParts, partsOf } from "./glb.js";
 import { type GltfNode, toGltfNode } from "./gltf-node.js";
 import { MergedGltf } from "./merged-gltf.js";
@@ -43,10 +43,11 @@ const GROUND = [1.6, 0.2] as const;
  */
 export function exportSceneGlb(objects: readonly SceneGlbObject[], options: SceneGlbOptions = {}): Uint8Array {
   const { support = null, camera } = optionsOf(options);
-  if (!Array.isArray(objects)) {
+  const list = flattened(objects);
+  if (list === null) {
     throw invalidArgument("objects", objects, "an array of { mesh, transform }", "Pass one of these per object.");
   }
-  const given = Array.from(objects, (object, i) => record(`objects[${i}]`, object, "{ mesh, transform }"));
+  const given = list.map((object, i) => record(`objects[${i}]`, object, "{ mesh, transform }"));
   const parts = given as unknown as SceneGlbObject[];
   const merged = new MergedGltf();
   const centers = parts.map(({ transform }) => similarityOf(transform).translation);
