@@ -57,10 +57,14 @@ const CONTRADICTION: f64 = 0.3;
 enum State {
     /// Nothing.
     Begun,
+    /// The mesh is checked.
+    Checked,
     /// Both clouds are sampled.
     Drawn(Box<Clouds>),
     /// Their normals are estimated, if the metrics need them.
     Ready(Box<Clouds>),
+    /// The mesh of the first search is decimated.
+    Decimated(Box<Clouds>),
     /// The search among given poses is running.
     Resumed(Box<Clouds>, Box<Rounds>),
     /// The search with the effort of this index is running.
@@ -199,6 +203,9 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
         Ok(match state {
             State::Begun => {
                 mesh.check()?;
+                State::Checked
+            }
+            State::Checked => {
                 State::Drawn(Box::new(Clouds::new(observation, mesh.mesh(), &self.setup.sampling, stages)?))
             }
             State::Drawn(mut clouds) => {
@@ -209,8 +216,12 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
             }
             State::Ready(clouds) => match &self.given {
                 Some(given) => self.resume(clouds, given, stages)?,
-                None => self.search(clouds, 0, None, stages)?,
+                None => {
+                    precise::decimate(mesh, self.efforts.first().ok_or_else(over)?, stages)?;
+                    State::Decimated(clouds)
+                }
             },
+            State::Decimated(clouds) => self.search(clouds, 0, None, stages)?,
             State::Searching(clouds, rounds, effort) => {
                 let concluded = precise::conclude(&rounds, mesh.mesh(), &self.options, None);
                 let is_sure = matches!(&concluded, Ok((_, certainty)) if certainty.confidence >= SURE);

@@ -49,6 +49,7 @@ use alternatives::{add_rivals, alternatives};
 use clean::CleanObservation;
 use color::Judgment;
 use confidence::confidence;
+use mesh_pyramid::MeshPyramid;
 use pose::{CropPose, MeshFrame};
 use prepared_mesh::PreparedMesh;
 use prior::Prior;
@@ -81,8 +82,7 @@ pub fn begin(
     settings: &SearchSettings,
     stages: &mut Stopwatch<'_>,
 ) -> Result<Rounds> {
-    stages.enter(Stage::Prepare);
-    let pyramid = mesh.pyramid(&settings.grids).ok_or_else(no_candidate)?;
+    let pyramid = decimate(mesh, settings, stages)?;
     let clean = previous.map(|rounds| rounds.search.observation.clone());
     let clean = clean.unwrap_or_else(|| Rc::new(CleanObservation::new(observation)));
     let mut search = Search::new(clean, pyramid, *settings);
@@ -115,8 +115,7 @@ pub fn resume(
     settings: &SearchSettings,
     stages: &mut Stopwatch<'_>,
 ) -> Result<Rounds> {
-    stages.enter(Stage::Prepare);
-    let pyramid = mesh.pyramid(&settings.grids).ok_or_else(no_candidate)?;
+    let pyramid = decimate(mesh, settings, stages)?;
     let clean = Rc::new(CleanObservation::new(observation));
     let mut search = Search::new(clean, pyramid, *settings);
     search.assume(prior(options, mesh.mesh(), &search.mesh.frame));
@@ -139,6 +138,21 @@ pub fn resume(
 
 /// Number of poses that are put down on the ground.
 const PUT_DOWN: usize = 4;
+
+/// Decimates the mesh for a search, if it is not yet.
+///
+/// # Errors
+/// [`ErrorCode::NoConsensus`] if decimation leaves no triangle.
+pub fn decimate(
+    mesh: &PreparedMesh<'_>,
+    settings: &SearchSettings,
+    stages: &mut Stopwatch<'_>,
+) -> Result<Rc<MeshPyramid>> {
+    if stages.running() != Some(Stage::Prepare) {
+        stages.enter(Stage::Prepare);
+    }
+    mesh.pyramid(&settings.grids).ok_or_else(no_candidate)
+}
 
 /// Continues a search until it ends or `pause` returns true. Returns whether it has ended. `share` is the progress at its
 /// start and end, 0 to 1.
