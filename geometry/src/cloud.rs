@@ -101,3 +101,15 @@ impl Bounds {
         self.extent().length()
     }
 }
+
+/// The index of the point farthest along a direction, the first of equal ones; `None` without points.
+pub fn farthest_along(points: &[Vec3], direction: Vec3) -> Option<usize> {
+    let mut best: Option<(usize, f32)> = None;
+    for (i, point) in points.iter().enumerate() {
+        let along = point.dot(direction);
+        if best.is_none_or(|(_, most)| along > most) {
+            best = Some((i, along));
+        }
+    }
+    best.map(|(i, _)| i)
+}

@@ -1,10 +1,12 @@
-//! Uniform sampling of SO(3).
+//! Rotations, and even sampling of SO(3) and of the sphere.
 
 use core::f64::consts::{SQRT_2, TAU};
 
-use glam::{DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec3};
+use nalgebra::{Matrix3, Rotation3};
 
 use super::angle::{exp_so3, sin_cos};
+use super::similarity::Similarity;
 
 /// ψ of the super-Fibonacci spiral: the root of ψ⁴ = ψ + 4.
 const PSI: f64 = 1.533_751_168_755_204_3;
@@ -20,6 +22,16 @@ pub fn super_fibonacci(i: usize, n: usize) -> DQuat {
     DQuat::from_xyzw(r * sin_a, r * cos_a, q * sin_b, q * cos_b)
 }
 
+/// The `k`-th of `n` points of a Fibonacci spiral on the unit sphere.
+pub fn fibonacci_sphere(k: usize, n: usize) -> DVec3 {
+    /// Angle between consecutive points, radians: the golden angle.
+    const GOLDEN: f64 = 2.399_963_229_728_653;
+    let z = 1.0 - (2.0 * k as f64 + 1.0) / n as f64;
+    let (sin, cos) = sin_cos(GOLDEN * k as f64);
+    let r = (1.0 - z * z).sqrt();
+    DVec3::new(r * cos, r * sin, z)
+}
+
 /// The angle between two rotations, in radians.
 pub fn angle_between(a: DQuat, b: DQuat) -> f64 {
     // Uses the arc tangent, because the arc cosine is inaccurate near 0.
@@ -31,4 +43,14 @@ pub fn angle_between(a: DQuat, b: DQuat) -> f64 {
 /// The rotation by |`vector`| radians about `vector`.
 pub fn exp(vector: DVec3) -> DQuat {
     DQuat::from_array(exp_so3(vector.to_array().into()).coords.into()).normalize()
+}
+
+/// The rotation of a similarity as a quaternion.
+pub fn quaternion_of(similarity: &Similarity) -> DQuat {
+    DQuat::from_array(similarity.quaternion_xyzw()).normalize()
+}
+
+/// The rotation matrix of a unit quaternion.
+pub fn matrix_of(rotation: DQuat) -> Rotation3<f64> {
+    Rotation3::from_matrix_unchecked(Matrix3::from_column_slice(&DMat3::from_quat(rotation).to_cols_array()))
 }

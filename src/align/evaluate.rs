@@ -119,7 +119,7 @@ pub fn evaluate_prepared(
         },
     )?;
     let mut metrics = metrics::score(observation, mesh, camera_from_mesh, &evidence)?;
-    metrics.color_agreement = agreement(observation, prepared, camera_from_mesh);
+    metrics.color_agreement = agreement(observation, None, prepared, camera_from_mesh);
     let observed = Extents::of("depth", &evidence.observed.points)?;
     let reconstructed = Extents::of("mesh", &evidence.reconstructed.points)?;
     let initial_scale = initial_scale(&observed, &reconstructed);

@@ -5,6 +5,7 @@
 
 use core::borrow::Borrow;
 use core::mem::replace;
+use std::rc::Rc;
 
 use super::outcome::{Setup, report, score};
 use super::warnings::about_fit;
@@ -13,6 +14,7 @@ use crate::evidence::Normals;
 use crate::evidence::clouds::Clouds;
 use crate::evidence::observation::Observation;
 use crate::precise;
+use crate::precise::clean::CleanObservation;
 use crate::precise::color::{ColorStage, agreement};
 use crate::precise::options::AlignOptions;
 use crate::precise::prepared_mesh::PreparedMesh;
@@ -74,7 +76,7 @@ enum State {
     /// The poses that the searches have left are compared with the photo.
     Comparing(Box<Clouds>, Box<Rounds>, Box<ColorStage>),
     /// The search has found a pose.
-    Found(Box<Clouds>, Box<Solution>, Box<Certainty>),
+    Found(Box<Clouds>, Rc<CleanObservation>, Box<Solution>, Box<Certainty>),
     /// The result has been returned, or an error.
     Over,
 }
@@ -153,14 +155,14 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
         let Some(mut stages) = self.stages.take() else { return Err(over()) };
         loop {
             if let State::Found(..) = self.state {
-                let State::Found(mut clouds, solution, certainty) = replace(&mut self.state, State::Over) else {
+                let State::Found(mut clouds, clean, solution, certainty) = replace(&mut self.state, State::Over) else {
                     return Err(over());
                 };
                 let (observation, mesh) = (self.observation.borrow(), self.mesh.borrow().mesh());
                 let mut metrics = score(observation, mesh, &self.setup, &mut clouds, &solution, &mut stages)?;
                 if let Some(metrics) = &mut metrics {
                     let pose = &solution.camera_from_mesh;
-                    metrics.color_agreement = agreement(observation, self.mesh.borrow(), pose);
+                    metrics.color_agreement = agreement(observation, Some(clean), self.mesh.borrow(), pose);
                 }
                 let aligned = report(observation, &self.setup, &clouds, &solution, metrics, stages);
                 return Ok(Some(with_certainty(aligned, *certainty)));
@@ -215,7 +217,7 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
                 State::Ready(clouds)
             }
             State::Ready(clouds) => match &self.given {
-                Some(given) => self.resume(clouds, given, stages)?,
+                Some(given) => self.resume(clouds, given, None, stages)?,
                 None => {
                     precise::decimate(mesh, self.efforts.first().ok_or_else(over)?, stages)?;
                     State::Decimated(clouds)
@@ -237,7 +239,8 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
                 {
                     // Surroundings that spoil a good pose are those of a neighbour that is misplaced itself.
                     let alone = Given { known: Neighbourhood::default(), ..given.clone() };
-                    let State::Resumed(clouds, rounds) = self.resume(clouds, &alone, stages)? else {
+                    let clean = rounds.search.observation.clone();
+                    let State::Resumed(clouds, rounds) = self.resume(clouds, &alone, Some(clean), stages)? else {
                         return Err(over());
                     };
                     let concluded = precise::conclude(&rounds, mesh.mesh(), &self.options, None)?;
@@ -253,24 +256,31 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
                 }
                 None => {
                     let (solution, certainty) = *concluded;
-                    State::Found(clouds, Box::new(solution), Box::new(certainty))
+                    State::Found(clouds, rounds.search.observation.clone(), Box::new(solution), Box::new(certainty))
                 }
             },
             State::Comparing(clouds, rounds, stage) => {
                 let judgment = mesh.colors().map(|colors| stage.judge(&rounds, colors));
                 let (solution, certainty) = precise::conclude(&rounds, mesh.mesh(), &self.options, judgment.as_ref())?;
-                State::Found(clouds, Box::new(solution), Box::new(certainty))
+                State::Found(clouds, rounds.search.observation.clone(), Box::new(solution), Box::new(certainty))
             }
             State::Found(..) | State::Over => return Err(over()),
         })
     }
 
     /// Begins the search among given poses.
-    fn resume(&self, clouds: Box<Clouds>, given: &Given, stages: &mut Stopwatch<'h>) -> Result<State> {
+    fn resume(
+        &self,
+        clouds: Box<Clouds>,
+        given: &Given,
+        clean: Option<Rc<CleanObservation>>,
+        stages: &mut Stopwatch<'h>,
+    ) -> Result<State> {
         let settings = self.efforts.iter().find(|settings| settings.effort == given.effort).ok_or_else(over)?.again();
         let (observation, mesh) = (self.observation.borrow(), self.mesh.borrow());
         let found = (given.found.as_slice(), given.renders, given.confidence >= SURE);
-        let rounds = precise::resume(observation, mesh, found, given.known.clone(), &self.options, &settings, stages)?;
+        let rounds =
+            precise::resume(observation, mesh, clean, found, given.known.clone(), &self.options, &settings, stages)?;
         Ok(State::Resumed(clouds, Box::new(rounds)))
     }
 

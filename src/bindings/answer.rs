@@ -12,3 +12,8 @@ pub fn answer<T: Serialize>(result: Result<T>) -> core::result::Result<JsValue, 
     let value = result.map_err(|error| to_js(&error))?;
     value.serialize(&Serializer::json_compatible()).map_err(Into::into)
 }
+
+/// The result of a step of a task: `undefined` until the task has ended.
+pub fn step_answer<T: Serialize>(step: Result<Option<T>>) -> core::result::Result<JsValue, JsValue> {
+    step.transpose().map_or(Ok(JsValue::UNDEFINED), answer)
+}

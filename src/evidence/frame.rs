@@ -24,9 +24,7 @@ impl Frame {
     pub fn observation(&self) -> Result<Option<Observation>> {
         self.mask.clone().map(|mask| Observation::new(self.depth.clone(), mask, self.camera)).transpose()
     }
-}
 
-impl Frame {
     /// The part of the frame in a box of pixels, [first, end) along columns and rows, at every `step`-th pixel. The camera
     /// frame stays the same.
     pub fn window(&self, bounds: [[usize; 2]; 2], step: usize) -> Self {

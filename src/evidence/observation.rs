@@ -48,21 +48,7 @@ impl Observation {
     /// [`ErrorCode::NoDepthInMask`], [`ErrorCode::TooFewPoints`], [`ErrorCode::DegenerateMask`],
     /// [`ErrorCode::FlatDepth`].
     pub fn new(mut depth: DepthMap, mask: Mask, camera: Pinhole) -> Result<Self> {
-        if (depth.width(), depth.height()) != (mask.width(), mask.height()) {
-            return Err(Error::new(
-                ErrorCode::SizeMismatch,
-                "mask",
-                format!(
-                    "{} × {} pixels for a depth map of {} × {}",
-                    mask.width(),
-                    mask.height(),
-                    depth.width(),
-                    depth.height()
-                ),
-                "depth and mask of the same size",
-                "Resize the mask to the depth map, or set resizeMask: \"nearest\".",
-            ));
-        }
+        check_mask_size(&depth, &mask)?;
         check_pixels(&depth)?;
         camera.check_field_of_view(depth.width(), depth.height())?;
         depth.data_mut().iter_mut().filter(|z| **z < NEAREST_M).for_each(|z| *z = 0.0);
@@ -242,6 +228,24 @@ pub fn degenerate_mask(found: impl Into<crate::error::Text>) -> Error {
         "the area that the object covers in the image",
         "Pass the object's whole mask. An object that is this thin in the image needs a larger image.",
     )
+}
+
+/// Checks that a mask has the size of its depth map.
+///
+/// # Errors
+/// [`ErrorCode::SizeMismatch`].
+pub fn check_mask_size(depth: &DepthMap, mask: &Mask) -> Result<()> {
+    let size = [depth.width(), depth.height()];
+    if [mask.width(), mask.height()] == size {
+        return Ok(());
+    }
+    Err(Error::new(
+        ErrorCode::SizeMismatch,
+        "mask",
+        format!("{} × {} pixels for a depth map of {} × {}", mask.width(), mask.height(), size[0], size[1]),
+        "depth and mask of the same size",
+        "Resize the mask to the depth map, or set resizeMask: \"nearest\".",
+    ))
 }
 
 fn check_pixels(depth: &DepthMap) -> Result<()> {

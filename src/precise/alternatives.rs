@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::color::Rival;
+use super::score::NOISE;
 use super::search::{Found, Search};
 use crate::error::Result;
 use crate::geometry::mesh::Mesh;
@@ -12,9 +13,6 @@ use crate::geometry::triangle_tree::TriangleTree;
 use crate::metrics::symmetry::{AUTO_MEAN, AUTO_TAIL, Symmetry};
 use crate::report::Alternative;
 
-/// Score difference attributed to noise. In generated cases won by a flip, the true pose scores lower by about this
-/// much.
-pub(crate) const NOISE: f32 = 0.15;
 /// Minimum rotation between different poses, radians.
 const MIN_TURN: f64 = 0.26;
 /// Maximum distances between the surfaces of equivalent placements, relative to the tolerance of automatic symmetry: low
@@ -24,6 +22,10 @@ const SAME_SURFACE: f64 = 0.7;
 const SAMPLES: usize = 300;
 /// Maximum deviation of a rotation from a declared symmetry, radians.
 const SAME_TURN: f64 = 0.17;
+/// Maximum number of alternatives that only their colours tell from the best pose, and the margin from which on colour has
+/// refuted them.
+const MAX_RIVALS: usize = 4;
+const CLEAR: f64 = 0.5;
 
 /// The poses after the first whose scores are within noise of it. Poses near it or near each other, and placements
 /// equivalent under the symmetry of the object, are excluded.
@@ -47,13 +49,17 @@ pub(crate) fn alternatives(
             kept.push(other);
         }
     }
-    let report = |other: &&Found| Alternative {
+    Ok(kept.iter().skip(1).map(|other| alternative(best, other, None, search)).collect())
+}
+
+/// A pose as an alternative to the best one.
+fn alternative(best: &Found, other: &Found, color_margin: Option<f64>, search: &Search) -> Alternative {
+    Alternative {
         camera_from_mesh: (&other.pose.similarity(&search.mesh.frame)).into(),
         score: f64::from(other.score.total),
-        turn_deg: turn(best, other).to_degrees(),
-        color_margin: None,
-    };
-    Ok(kept.iter().skip(1).map(report).collect())
+        turn_deg: angle_between(best.pose.rotation, other.pose.rotation).to_degrees(),
+        color_margin,
+    }
 }
 
 /// Tells the alternatives how well their colours agree with the photo, and adds poses that look different, though their
@@ -69,22 +75,12 @@ pub(super) fn add_rivals(alternatives: &mut Vec<Alternative>, best: &Found, riva
             }
             None if added < MAX_RIVALS && rival.margin < CLEAR => {
                 added += 1;
-                alternatives.push(Alternative {
-                    camera_from_mesh: (&rival.found.pose.similarity(&search.mesh.frame)).into(),
-                    score: f64::from(rival.found.score.total),
-                    turn_deg: angle_between(best.pose.rotation, rival.found.pose.rotation).to_degrees(),
-                    color_margin: Some(rival.margin),
-                });
+                alternatives.push(alternative(best, &rival.found, Some(rival.margin), search));
             }
             None => {}
         }
     }
 }
-
-/// Maximum number of alternatives that only their colours tell from the best pose, and the margin from which on colour has
-/// refuted them.
-const MAX_RIVALS: usize = 4;
-const CLEAR: f64 = 0.5;
 
 /// The criterion for equivalent placements of the mesh.
 enum Likeness {

@@ -1,6 +1,6 @@
 //! Coarse search: every rotation of the grid, with size, position and distance in closed form.
 
-use glam::{DMat3, DQuat, DVec2, DVec3, Vec3};
+use glam::{DMat3, DQuat, DVec2, Vec3};
 
 use super::anchors::Anchor;
 use super::objective::Objective;
@@ -8,8 +8,9 @@ use super::pose::CropPose;
 use super::ranking::Scored;
 use super::render::{Canvas, Model};
 use super::score::Score;
-use crate::geometry::angle::sin_cos;
+use crate::geometry::cloud::farthest_along;
 use crate::geometry::order::median;
+use crate::geometry::rotations::fibonacci_sphere;
 
 /// Number of directions along which extreme vertices of the mesh are kept, for bounding boxes.
 const DIRECTIONS: usize = 128;
@@ -119,31 +120,9 @@ impl Coarse<'_> {
 
 /// The extreme vertices along evenly spread directions: almost all that a bounding box can touch.
 pub fn outermost(model: &Model) -> Vec<Vec3> {
-    let mut kept: Vec<u32> = (0..DIRECTIONS)
-        .filter_map(|k| {
-            let direction = direction(k).as_vec3();
-            let along = |p: &Vec3| p.dot(direction);
-            let mut best: Option<(u32, f32)> = None;
-            for (i, p) in (0..).zip(&model.positions) {
-                let x = along(p);
-                if best.is_none_or(|(_, most)| x > most) {
-                    best = Some((i, x));
-                }
-            }
-            best.map(|(i, _)| i)
-        })
-        .collect();
+    let farthest = |k| farthest_along(&model.positions, fibonacci_sphere(k, DIRECTIONS).as_vec3());
+    let mut kept: Vec<usize> = (0..DIRECTIONS).filter_map(farthest).collect();
     let mut seen = vec![false; model.positions.len()];
-    kept.retain(|&i| !core::mem::replace(&mut seen[i as usize], true));
-    kept.iter().map(|&i| model.positions[i as usize]).collect()
-}
-
-/// The `k`-th of [`DIRECTIONS`] points of a Fibonacci spiral on the sphere.
-fn direction(k: usize) -> DVec3 {
-    /// Angle between consecutive points, radians: the golden angle.
-    const GOLDEN: f64 = 2.399_963_229_728_653;
-    let z = 1.0 - (2.0 * k as f64 + 1.0) / DIRECTIONS as f64;
-    let (sin, cos) = sin_cos(GOLDEN * k as f64);
-    let r = (1.0 - z * z).sqrt();
-    DVec3::new(r * cos, r * sin, z)
+    kept.retain(|&i| !core::mem::replace(&mut seen[i], true));
+    kept.iter().map(|&i| model.positions[i]).collect()
 }

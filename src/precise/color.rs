@@ -8,7 +8,6 @@ use std::rc::Rc;
 
 use glam::DVec3;
 
-use super::alternatives::NOISE;
 use super::appearance::{Appearance, PhotoCells};
 use super::clean::CleanObservation;
 use super::lookalikes::{Lookalike, lookalikes};
@@ -18,6 +17,7 @@ use super::recipe::{FINE, FINEST, MIDDLE, SearchSettings};
 use super::refine::Refiner;
 use super::render::Canvas;
 use super::rounds::Rounds;
+use super::score::NOISE;
 use super::search::{Found, Search};
 use crate::evidence::observation::Observation;
 use crate::evidence::photo::Photo;
@@ -228,11 +228,17 @@ impl Judgment {
 }
 
 /// The correlation of the colours of a posed mesh with the photo, without the shading that normals explain, −1 to 1;
-/// `None` where either has no colours, or too little of the mesh is in the mask.
-pub fn agreement(observation: &Observation, mesh: &PreparedMesh<'_>, pose: &Similarity) -> Option<f64> {
+/// `None` where either has no colours, or too little of the mesh is in the mask. `clean` is the observation, where it has
+/// been cleaned already.
+pub fn agreement(
+    observation: &Observation,
+    clean: Option<Rc<CleanObservation>>,
+    mesh: &PreparedMesh<'_>,
+    pose: &Similarity,
+) -> Option<f64> {
     let (photo, colors) = (observation.photo()?, mesh.colors()?);
     let settings = SearchSettings::from(Effort::Fast);
-    let clean = Rc::new(CleanObservation::new(observation));
+    let clean = clean.unwrap_or_else(|| Rc::new(CleanObservation::new(observation)));
     let search = Search::new(clean, mesh.pyramid(&settings.grids)?, settings);
     let photo = PhotoCells::new(photo, search.observation.image, &search.fine);
     let pose = CropPose::of_similarity(pose, &search.mesh.frame)?;

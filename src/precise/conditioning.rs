@@ -3,14 +3,14 @@
 use glam::{DMat3, DVec3};
 
 use super::pose::CropPose;
-use crate::geometry::normal_equations::NormalEquations;
+use crate::geometry::normal_equations::{NormalEquations, PARAMETERS};
 use crate::geometry::symmetric_eigen::SymmetricEigen;
 
 /// Score decrease at one standard deviation, calibrated so that the errors of correct poses on generated cases have the
 /// reported size.
 pub const DROP: f64 = 0.01;
 /// Regularisation, so that unconstrained directions remain finite.
-const DAMPING: f64 = 1e-9;
+pub const DAMPING: f64 = 1e-9;
 
 /// Standard deviations of a pose, given the observation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,20 +28,34 @@ pub struct Conditioning {
 impl Conditioning {
     /// From the quadratic at a refined pose; `None` if it constrains nothing.
     pub fn of(equations: &NormalEquations, pose: &CropPose) -> Option<Self> {
-        let covariance = equations.inverse(DAMPING)?.map(|row| row.map(|x| 2.0 * DROP * x));
+        let covariance = covariance(equations)?;
         let (scale, translation) = pose.scale_translation();
         let size = libm::exp(pose.size);
-        let turns =
-            DMat3::from_cols_array_2d(&[0, 1, 2].map(|i| [covariance[i][0], covariance[i][1], covariance[i][2]]));
-        let eigen = SymmetricEigen::of(turns);
         // log s = size + distance; distance is in units of the size.
         let log_scale = covariance[3][3] + 2.0 * size * covariance[3][6] + size * size * covariance[6][6];
-        let root = |x: f64| x.max(0.0).sqrt();
         Some(Self {
-            scale: root(log_scale),
-            rotation: (root(eigen.values[2]), eigen.vectors[2]),
-            lateral_m: scale * root(covariance[4][4].max(covariance[5][5])),
-            distance_m: translation.z * size * root(covariance[6][6]),
+            scale: deviation(log_scale),
+            rotation: widest(&covariance, 0),
+            lateral_m: scale * deviation(covariance[4][4].max(covariance[5][5])),
+            distance_m: translation.z * size * deviation(covariance[6][6]),
         })
     }
+}
+
+/// The covariance of the parameters; `None` if the quadratic constrains nothing.
+pub fn covariance(equations: &NormalEquations) -> Option<[[f64; PARAMETERS]; PARAMETERS]> {
+    Some(equations.inverse(DAMPING)?.map(|row| row.map(|x| 2.0 * DROP * x)))
+}
+
+/// The standard deviation of three parameters, from the one with this index, in the direction in which it is largest, and
+/// that direction.
+pub fn widest(covariance: &[[f64; PARAMETERS]; PARAMETERS], from: usize) -> (f64, DVec3) {
+    let row = |i: usize| [0, 1, 2].map(|j| covariance[from + i][from + j]);
+    let eigen = SymmetricEigen::of(DMat3::from_cols_array_2d(&[row(0), row(1), row(2)]));
+    (deviation(eigen.values[2]), eigen.vectors[2])
+}
+
+/// The standard deviation of a variance, which rounding may have made negative.
+pub fn deviation(variance: f64) -> f64 {
+    variance.max(0.0).sqrt()
 }

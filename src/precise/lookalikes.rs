@@ -1,9 +1,5 @@
 //! Lookalikes: poses that turn the best one such that its shape in the image hardly changes.
 
-use core::f64::consts::{PI, TAU};
-
-use glam::{DQuat, DVec3};
-
 use super::coarse::Candidate;
 use super::pose::CropPose;
 use super::ranking::best_of;
@@ -49,8 +45,9 @@ pub fn lookalikes(rounds: &Rounds) -> Vec<Lookalike> {
         .collect();
     let mut kept: Vec<CropPose> = vec![best.pose];
     let mut alike = Vec::new();
+    let likely = best_of(&likely, likely.len());
     for (apart, is_rough) in APART.into_iter().zip([false, true]) {
-        for candidate in best_of(&likely, likely.len()) {
+        for candidate in &likely {
             let pose = candidate.pose;
             let is_near = |other: &CropPose| angle_between(other.rotation, pose.rotation) < apart;
             if (candidate.score.total < score - SAME) == is_rough && kept.len() <= MOST && !kept.iter().any(is_near) {
@@ -60,12 +57,4 @@ pub fn lookalikes(rounds: &Rounds) -> Vec<Lookalike> {
         }
     }
     alike
-}
-
-/// The rotations of a dihedral group about `axis`: rolls, and as many after a half turn about `across`. The first is none.
-pub fn dihedral(axis: DVec3, across: DVec3, rolls: usize) -> impl Iterator<Item = DQuat> {
-    let flips = [DQuat::IDENTITY, DQuat::from_axis_angle(across, PI)];
-    flips.into_iter().flat_map(move |flip| {
-        (0..rolls).map(move |k| DQuat::from_axis_angle(axis, TAU * k as f64 / rolls as f64) * flip)
-    })
 }

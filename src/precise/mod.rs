@@ -69,6 +69,9 @@ pub const PLAN: &[(Stage, f64)] = &[
     (Stage::Metrics, 0.85),
 ];
 
+/// Number of poses that are put down on the ground.
+const PUT_DOWN: usize = 4;
+
 /// A search before its first round. The poses that a `previous` search has found are added to the candidates of the grid.
 ///
 /// # Errors
@@ -82,12 +85,9 @@ pub fn begin(
     settings: &SearchSettings,
     stages: &mut Stopwatch<'_>,
 ) -> Result<Rounds> {
-    let pyramid = decimate(mesh, settings, stages)?;
     let clean = previous.map(|rounds| rounds.search.observation.clone());
-    let clean = clean.unwrap_or_else(|| Rc::new(CleanObservation::new(observation)));
-    let mut search = Search::new(clean, pyramid, *settings);
-    search.assume(prior(options, mesh.mesh(), &search.mesh.frame));
-    let initial = options.initial.map(|pose| seen_from(&pose, &search.mesh.frame)).transpose()?;
+    let search = prepared(observation, clean, mesh, options, settings, stages)?;
+    let initial = options.initial.map(|pose| seen_from(&pose, &search.mesh.frame, INITIAL)).transpose()?;
     let mut rounds = Rounds::new(search, initial, options.search == SearchScope::Global);
     if rounds.shows_no_mask() {
         return Err(degenerate_mask(format!("{} pixels in a line, or apart", rounds.search.observation.pixels)));
@@ -102,23 +102,21 @@ pub fn begin(
 
 /// A search among the poses that another one has `found`, with what is known of the surroundings of the object. Without
 /// surroundings, the result is that of the other search. If that was not sure, the rotations in which the mesh stands on
-/// the ground are searched as well.
+/// the ground are searched as well. `clean` is the observation, where it has been cleaned already.
 ///
 /// # Errors
 /// As [`begin`].
 pub fn resume(
     observation: &Observation,
     mesh: &PreparedMesh<'_>,
+    clean: Option<Rc<CleanObservation>>,
     (found, renders, is_sure): (&[Found], usize, bool),
     known: Neighbourhood,
     options: &AlignOptions,
     settings: &SearchSettings,
     stages: &mut Stopwatch<'_>,
 ) -> Result<Rounds> {
-    let pyramid = decimate(mesh, settings, stages)?;
-    let clean = Rc::new(CleanObservation::new(observation));
-    let mut search = Search::new(clean, pyramid, *settings);
-    search.assume(prior(options, mesh.mesh(), &search.mesh.frame));
+    let mut search = prepared(observation, clean, mesh, options, settings, stages)?;
     search.renders = renders;
     if known.is_empty() {
         return Ok(Rounds::ended(search, found.to_vec()));
@@ -136,8 +134,21 @@ pub fn resume(
     Ok(rounds)
 }
 
-/// Number of poses that are put down on the ground.
-const PUT_DOWN: usize = 4;
+/// A search with its prior, prepared.
+fn prepared(
+    observation: &Observation,
+    clean: Option<Rc<CleanObservation>>,
+    mesh: &PreparedMesh<'_>,
+    options: &AlignOptions,
+    settings: &SearchSettings,
+    stages: &mut Stopwatch<'_>,
+) -> Result<Search> {
+    let pyramid = decimate(mesh, settings, stages)?;
+    let clean = clean.unwrap_or_else(|| Rc::new(CleanObservation::new(observation)));
+    let mut search = Search::new(clean, pyramid, *settings);
+    search.assume(prior(options, mesh.mesh(), &search.mesh.frame));
+    Ok(search)
+}
 
 /// Decimates the mesh for a search, if it is not yet.
 ///
@@ -296,12 +307,22 @@ pub(crate) fn prior(options: &AlignOptions, mesh: &Mesh, frame: &MeshFrame) -> P
     }
 }
 
-/// The initial pose of the caller.
-fn seen_from(pose: &Similarity, frame: &MeshFrame) -> Result<CropPose> {
+/// Where a pose that callers may have in another camera frame was given.
+const INITIAL: (ErrorCode, &str) = (ErrorCode::InvalidOption, "options.initial");
+
+/// A pose of the caller. `code` and `argument` are those of its error.
+///
+/// # Errors
+/// For a pose with the centre of the mesh behind the camera.
+pub fn seen_from(
+    pose: &Similarity,
+    frame: &MeshFrame,
+    (code, argument): (ErrorCode, &'static str),
+) -> Result<CropPose> {
     CropPose::of_similarity(pose, frame).ok_or_else(|| {
         Error::new(
-            ErrorCode::InvalidOption,
-            "options.initial",
+            code,
+            argument,
             "a pose with the centre of the mesh behind the camera",
             "a pose in front of the camera: z forward",
             "Convert the pose from its own camera frame (OpenGL: negate y and z; PyTorch3D: negate x and y).",

@@ -1,12 +1,12 @@
 //! Poses parametrised by what the image determines: apparent size and position of the mesh, and separately its
 //! distance.
 
-use glam::{DMat3, DQuat, DVec2, DVec3};
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use glam::{DQuat, DVec2, DVec3};
+use nalgebra::Vector3;
 
 use crate::geometry::cloud::Bounds;
 use crate::geometry::mesh::Mesh;
-use crate::geometry::rotations::exp;
+use crate::geometry::rotations::{exp, matrix_of, quaternion_of};
 use crate::geometry::similarity::Similarity;
 
 /// The normalised frame of a mesh: the centre of its box is the origin, and the diagonal is 1.
@@ -19,6 +19,9 @@ pub struct MeshFrame {
 }
 
 impl MeshFrame {
+    /// The frame of a mesh that is normalised already.
+    pub const NORMALIZED: Self = Self { center: DVec3::ZERO, diagonal: 1.0 };
+
     /// The frame of a mesh.
     pub fn of(mesh: &Mesh) -> Self {
         let bounds = Bounds::of(mesh.positions());
@@ -73,17 +76,12 @@ impl CropPose {
         let (scale, translation) = self.scale_translation();
         let scale = scale / frame.diagonal;
         let translation = translation - self.rotation * frame.center * scale;
-        let matrix = DMat3::from_quat(self.rotation).to_cols_array();
-        Similarity {
-            scale,
-            rotation: Rotation3::from_matrix_unchecked(Matrix3::from_column_slice(&matrix)),
-            translation: Vector3::from(translation.to_array()),
-        }
+        Similarity { scale, rotation: matrix_of(self.rotation), translation: Vector3::from(translation.to_array()) }
     }
 
     /// The inverse conversion; `None` if the centre of the mesh is not in front of the camera.
     pub fn of_similarity(similarity: &Similarity, frame: &MeshFrame) -> Option<Self> {
-        let rotation = DQuat::from_array(similarity.quaternion_xyzw()).normalize();
+        let rotation = quaternion_of(similarity);
         let t = DVec3::from_slice(similarity.translation.as_slice());
         let t = t + rotation * frame.center * similarity.scale;
         let pose = Self::new(rotation, similarity.scale * frame.diagonal, t);

@@ -6,10 +6,25 @@
 
 use glam::{DMat3, DVec3, Vec3};
 
-use super::surroundings::Rest;
 use crate::evidence::sample::SurfaceMoments;
+use crate::geometry::angle::sin_cos;
+use crate::geometry::cloud::farthest_along;
 use crate::geometry::mesh::Mesh;
+use crate::geometry::rotations::fibonacci_sphere;
 use crate::geometry::symmetric_eigen::SymmetricEigen;
+
+/// A stable attitude of a mesh on a plane, in the normalised frame of the mesh.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rest {
+    /// The unit direction that points into the plane.
+    pub down: DVec3,
+    /// The centre of what touches the plane.
+    pub base: DVec3,
+    /// Two unit axes about which the object may tip, perpendicular to `down` and to each other.
+    pub axes: [DVec3; 2],
+    /// How firmly it stands about each axis, 0 (it rolls) to 1.
+    pub firmness: [f64; 2],
+}
 
 /// Directions in which extreme vertices are found.
 const DIRECTIONS: usize = 600;
@@ -44,8 +59,8 @@ pub fn rests(mesh: &Mesh) -> Vec<Rest> {
     let center = SurfaceMoments::of(mesh).centroid;
     let extremes = extremes(mesh.positions(), center);
     let mut rests: Vec<Rest> = Vec::new();
-    for start in directions(STARTS) {
-        let down = rolled(&extremes, start);
+    for k in 0..STARTS {
+        let down = rolled(&extremes, fibonacci_sphere(k, STARTS));
         // Compared before the face is fitted, which takes longer.
         if rests.len() >= MOST || rests.iter().any(|known| (known.down - down).length() < APART) {
             continue;
@@ -58,33 +73,12 @@ pub fn rests(mesh: &Mesh) -> Vec<Rest> {
     rests
 }
 
-/// Evenly spread unit vectors: a Fibonacci spiral.
-fn directions(count: usize) -> impl Iterator<Item = DVec3> {
-    /// Angle between consecutive points, radians: the golden angle.
-    const GOLDEN: f64 = 2.399_963_229_728_653;
-    (0..count).map(move |k| {
-        let z = 1.0 - (2.0 * k as f64 + 1.0) / count as f64;
-        let (sin, cos) = crate::geometry::angle::sin_cos(GOLDEN * k as f64);
-        let r = (1.0 - z * z).sqrt();
-        DVec3::new(r * cos, r * sin, z)
-    })
-}
-
 /// The extreme vertices, relative to the centre.
 fn extremes(positions: &[Vec3], center: DVec3) -> Vec<DVec3> {
     let mut kept = vec![false; positions.len()];
-    for direction in directions(DIRECTIONS) {
-        let direction = direction.as_vec3();
-        let mut best = (f32::NEG_INFINITY, 0);
-        for (i, p) in positions.iter().enumerate() {
-            let along = p.dot(direction);
-            if along > best.0 {
-                best = (along, i);
-            }
-        }
-        if let Some(kept) = kept.get_mut(best.1) {
-            *kept = true;
-        }
+    for k in 0..DIRECTIONS {
+        let farthest = farthest_along(positions, fibonacci_sphere(k, DIRECTIONS).as_vec3());
+        farthest.into_iter().for_each(|i| kept[i] = true);
     }
     positions.iter().zip(kept).filter(|(_, kept)| *kept).map(|(p, _)| p.as_dvec3() - center).collect()
 }
@@ -131,7 +125,7 @@ fn standing(mesh: &Mesh, center: DVec3, extremes: &[DVec3], rolled: DVec3) -> Op
     let other = down.cross(across);
     // How much the centre rises when it tips: about the radius of the base times the angle.
     let rise = |angle: f64| {
-        let (sin, cos) = crate::geometry::angle::sin_cos(angle);
+        let (sin, cos) = sin_cos(angle);
         let side = across * cos + other * sin;
         let tipped = |sign: f64| height((down + side * (sign * TIP)).normalize_or(down)) - height(down);
         tipped(1.0).min(tipped(-1.0)) / TIP
@@ -143,7 +137,7 @@ fn standing(mesh: &Mesh, center: DVec3, extremes: &[DVec3], rolled: DVec3) -> Op
         return None;
     }
     let firm = |radius: f64| (radius / FIRM_RADIUS).clamp(0.0, 1.0);
-    let (sin, cos) = crate::geometry::angle::sin_cos(loosest.1);
+    let (sin, cos) = sin_cos(loosest.1);
     let moves = across * cos + other * sin;
     // To move `down` along `moves`, it tips about the axis perpendicular to it.
     let tips = down.cross(moves);

@@ -4,6 +4,10 @@ use super::grid::CropGrid;
 use super::render::{Canvas, Model};
 use crate::report::ScoreTerms;
 
+/// Score difference attributed to noise. In generated cases won by a flip, the true pose scores lower by about this
+/// much.
+pub const NOISE: f32 = 0.15;
+
 /// Weights of the terms.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Weights {

@@ -12,22 +12,9 @@ use super::grid::CropGrid;
 use super::mesh_pyramid::MeshPyramid;
 use super::pose::CropPose;
 use super::render::Canvas;
-use super::rests::rests;
+use super::rests::{Rest, rests};
 use crate::geometry::normal_equations::NormalEquations;
 use crate::geometry::rotations::exp;
-
-/// A stable attitude of a mesh on a plane, in the normalised frame of the mesh.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rest {
-    /// The unit direction that points into the plane.
-    pub down: DVec3,
-    /// The centre of what touches the plane.
-    pub base: DVec3,
-    /// Two unit axes about which the object may tip, perpendicular to `down` and to each other.
-    pub axes: [DVec3; 2],
-    /// How firmly it stands about each axis, 0 (it rolls) to 1.
-    pub firmness: [f64; 2],
-}
 
 /// The plane that an object may stand on.
 #[derive(Debug, Clone)]

@@ -1,10 +1,9 @@
 //! Turns: the half and quarter turns of a pose, in which many objects look alike.
 
-use core::f64::consts::{FRAC_PI_2, PI};
+use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::{DQuat, DVec3};
 
-use super::lookalikes::dihedral;
 use super::pose::CropPose;
 use crate::evidence::sample::SurfaceMoments;
 use crate::geometry::mesh::Mesh;
@@ -57,4 +56,12 @@ impl Turns {
         moved.z = moved.z.max(NEAREST * translation.z);
         CropPose::new(rotation, scale, moved)
     }
+}
+
+/// The rotations of a dihedral group about `axis`: rolls, and as many after a half turn about `across`. The first is none.
+pub fn dihedral(axis: DVec3, across: DVec3, rolls: usize) -> impl Iterator<Item = DQuat> {
+    let flips = [DQuat::IDENTITY, DQuat::from_axis_angle(across, PI)];
+    flips.into_iter().flat_map(move |flip| {
+        (0..rolls).map(move |k| DQuat::from_axis_angle(axis, TAU * k as f64 / rolls as f64) * flip)
+    })
 }

@@ -79,8 +79,12 @@ pub fn volumes(layer: &Layer, other: &Layer, camera: &Pinhole) -> [f64; 2] {
     [own, shared]
 }
 
-/// The lowest and the highest point of a mesh along a direction, camera frame.
+/// The lowest and the highest of some points along a direction, camera frame.
 pub fn extremes_along(points: &[Vec3], normal: DVec3) -> [f64; 2] {
-    let heights = points.iter().map(|p| normal.dot(p.as_dvec3()));
-    heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], h| [low.min(h), high.max(h)])
+    extremes(points.iter().map(|p| normal.dot(p.as_dvec3())))
+}
+
+/// The least and the largest of some numbers.
+pub fn extremes(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
+    numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
 }

@@ -4,17 +4,18 @@ use std::rc::Rc;
 
 use glam::{DVec3, Vec3};
 
-use super::layers::layer;
+use super::layers::{extremes, layer};
 use crate::align::task::Given;
+use crate::error::Result;
 use crate::evidence::observation::Observation;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::{Similarity, vec3, vector3};
 use crate::precise::Found;
-use crate::precise::pose::CropPose;
+use crate::precise::pose::{CropPose, MeshFrame};
 use crate::precise::rounds::Rounds;
 use crate::precise::score::Score;
 use crate::precise::surroundings::{Layer, Neighbourhood};
-use crate::report::Effort;
+use crate::report::{Alignment, Effort};
 
 /// Numbers of a candidate in [`Placement::numbers`].
 const NUMBERS: usize = 21;
@@ -49,16 +50,21 @@ pub struct Body {
 }
 
 impl Body {
-    /// Measures the vertices of the mesh in this pose along the normal of the ground.
-    pub fn measured(self, mesh: &Mesh, camera_from_mesh: &Similarity, normal: DVec3) -> Self {
+    /// Measures the vertices of the mesh along the normal of the ground, in the pose of the alignment: colours may have
+    /// chosen another one than the search.
+    ///
+    /// # Errors
+    /// Those of [`Similarity::from_column_major`], which only a bug could cause.
+    pub fn measured(self, mesh: &Mesh, alignment: &Alignment, normal: DVec3) -> Result<Self> {
+        let camera_from_mesh = Similarity::from_column_major(&alignment.camera_from_mesh.matrix)?;
         let normal = nalgebra::Vector3::from(normal.to_array());
         // n·(s·R·p + t), with n in the frame of the mesh.
         let direction =
             DVec3::from_array((camera_from_mesh.rotation.inverse() * normal * camera_from_mesh.scale).into());
         let heights = mesh.positions().iter().map(|p| direction.dot(p.as_dvec3()));
-        let [low, high] = heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], h| [a.min(h), b.max(h)]);
+        let [low, high] = extremes(heights);
         let offset = normal.dot(&camera_from_mesh.translation);
-        Self { along: Some([low + offset, high + offset]), ..self }
+        Ok(Self { along: Some([low + offset, high + offset]), ..self })
     }
 }
 
@@ -67,9 +73,7 @@ impl Placement {
     pub fn new(rounds: &Rounds, confidence: f64, observation: &Observation) -> Option<Self> {
         let (found, search) = (&rounds.found, &rounds.search);
         let camera_from_mesh = found.first()?.pose.similarity(&search.mesh.frame);
-        // Relative to the normalised frame of the mesh.
-        let frame = crate::precise::pose::MeshFrame { center: DVec3::ZERO, diagonal: 1.0 };
-        let pose = found.first()?.pose.similarity(&frame);
+        let pose = found.first()?.pose.similarity(&MeshFrame::NORMALIZED);
         let points = search.mesh.outermost.iter().map(|p| vec3(&pose.apply(vector3(*p)))).collect();
         let size = [observation.depth().width(), observation.depth().height()];
         let layer = Rc::new(layer(&search.mesh.fine, &pose, &observation.camera(), size));

@@ -44,6 +44,13 @@ pub struct Ground {
     pub on: Option<usize>,
 }
 
+impl Ground {
+    /// What a search is told of it: see [`Neighbourhood::ground`](crate::precise::surroundings::Neighbourhood::ground).
+    pub fn known(&self) -> (DVec3, f64, f64) {
+        (self.plane.normal, self.plane.d, self.gap_m)
+    }
+}
+
 /// The images that the support is found in.
 #[derive(Debug, Clone, Copy)]
 pub struct View<'a> {

@@ -159,7 +159,7 @@ pub fn placement_of<'m, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>>(
 
 /// What an object is told about the others.
 pub fn neighbourhood(object: usize, placements: &[Option<Placement>], grounds: &[Option<Ground>]) -> Neighbourhood {
-    let ground = grounds.get(object).copied().flatten().map(|g| (g.plane.normal, g.plane.d, g.gap_m));
+    let ground = grounds.get(object).copied().flatten().map(|ground| ground.known());
     let others = placements.iter().enumerate().filter(|(k, _)| *k != object).filter_map(|(_, p)| p.as_ref());
     // A body that is probably elsewhere takes no space.
     let layers = others.filter(|p| p.confidence > SOLID).map(|p| Rc::clone(&p.body.layer)).collect();
@@ -186,10 +186,8 @@ pub fn together(
     let mut task = task.with_given(given);
     let Placement { body, .. } = searched(&mut task)?;
     let alignment = task.finish()?;
-    // Colours may have chosen another of the poses.
-    let pose = Similarity::from_column_major(&alignment.camera_from_mesh.matrix)?;
     let body = match normal {
-        Some(normal) => body.measured(object.mesh.mesh(), &pose, normal),
+        Some(normal) => body.measured(object.mesh.mesh(), &alignment, normal)?,
         None => body,
     };
     Ok((alignment, body))

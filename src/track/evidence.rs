@@ -6,11 +6,10 @@ use crate::error::Result;
 use crate::evidence::frame::Frame;
 use crate::evidence::observation::Observation;
 use crate::geometry::image::bounds_of;
-use crate::geometry::similarity::Similarity;
 use crate::precise::SearchSettings;
 use crate::precise::clean::CleanObservation;
 use crate::precise::mesh_pyramid::MeshPyramid;
-use crate::precise::pose::CropPose;
+use crate::precise::pose::{CropPose, MeshFrame};
 use crate::precise::search::Search;
 use crate::views::predicted_mask::with_predicted_mask;
 
@@ -51,9 +50,7 @@ pub fn of_pose(
     let half = [camera.fx * radius, camera.fy * radius];
     let bounds = [0, 1].map(|axis| [at[axis] - half[axis], at[axis] + half[axis]]);
     let Some(window) = window(frame, bounds) else { return Ok(None) };
-    let camera_from_frame =
-        Similarity { scale, translation: nalgebra::Vector3::from(center.to_array()), ..pose.similarity(&mesh.frame) };
-    let masked = with_predicted_mask(&window, &mesh.fine, &camera_from_frame, scale);
+    let masked = with_predicted_mask(&window, &mesh.fine, &pose.similarity(&MeshFrame::NORMALIZED));
     search(&masked, mesh, settings)
 }
 

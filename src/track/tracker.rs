@@ -10,14 +10,13 @@ use super::sight::{Seen, Sight, agreement};
 use super::size::Size;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::frame::Frame;
-use crate::evidence::observation::Observation;
+use crate::evidence::observation::{Observation, check_mask_size};
 use crate::evidence::sample::Sampling;
 use crate::geometry::rotations::angle_between;
 use crate::geometry::similarity::Similarity;
 use crate::metrics;
 use crate::number::number;
 use crate::options::Options;
-use crate::precise::alternatives::NOISE;
 use crate::precise::confidence::sureness;
 use crate::precise::objective::Objective;
 use crate::precise::pose::CropPose;
@@ -27,7 +26,7 @@ use crate::precise::recipe::{FINE, SURE};
 use crate::precise::refine::Refiner;
 use crate::precise::render::Canvas;
 use crate::precise::rounds::Rounds;
-use crate::precise::score::Score;
+use crate::precise::score::{NOISE, Score};
 use crate::precise::search::{Found, Search};
 use crate::precise::{self, SearchSettings, no_candidate};
 use crate::progress::{Host, Stopwatch};
@@ -137,15 +136,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
                 "Call next() with the frame first.",
             ));
         };
-        let fixed = CropPose::of_similarity(pose, &self.sight.mesh.frame).ok_or_else(|| {
-            Error::new(
-                ErrorCode::InvalidTransform,
-                "pose",
-                "a pose with the centre of the mesh behind the camera",
-                "a pose in front of the camera: z forward",
-                "Convert the pose from its own camera frame (OpenGL: negate y and z; PyTorch3D: negate x and y).",
-            )
-        })?;
+        let fixed = precise::seen_from(pose, &self.sight.mesh.frame, (ErrorCode::InvalidTransform, "pose"))?;
         let fixed = PlacedCamera::AT_ORIGIN.place(&fixed);
         // In the frame of the mesh, so that what was tracked of its motion stays.
         let turn = (wrong.rotation.conjugate() * fixed.rotation).normalize();
@@ -276,10 +267,9 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
 
     /// Updates size, motion and state, and reports.
     fn conclude(&mut self, frame: &Frame, seen: Option<Seen>) -> Result<TrackedFrame> {
-        let Some(Seen { mut found, search, is_detected, visible, is_predicted }) = seen else {
-            return Ok(self.lost());
-        };
-        let fit = self.usual.map_or(1.0, |usual| agreement(&found.score) / usual.max(1e-3));
+        let Some(seen) = seen else { return Ok(self.lost()) };
+        let fit = self.fit(&seen);
+        let Seen { mut found, search, is_detected, visible, is_predicted } = seen;
         let is_certain = fit >= UNCERTAIN && visible >= SEEN[0];
         self.state = if is_certain { TrackState::Tracking } else { TrackState::Uncertain };
         let before = self.last;
@@ -374,18 +364,6 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
 
 /// Checks what holds for every frame.
 fn check(frame: &Frame) -> Result<()> {
-    let size = [frame.depth.width(), frame.depth.height()];
-    frame.camera.check_field_of_view(size[0], size[1])?;
-    if let Some(mask) = &frame.mask
-        && [mask.width(), mask.height()] != size
-    {
-        return Err(Error::new(
-            ErrorCode::SizeMismatch,
-            "mask",
-            format!("{} × {} pixels for a depth map of {} × {}", mask.width(), mask.height(), size[0], size[1]),
-            "depth and mask of the same size",
-            "Resize the mask to the depth map, or set resizeMask: \"nearest\".",
-        ));
-    }
-    Ok(())
+    frame.camera.check_field_of_view(frame.depth.width(), frame.depth.height())?;
+    frame.mask.as_ref().map_or(Ok(()), |mask| check_mask_size(&frame.depth, mask))
 }

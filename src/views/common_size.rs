@@ -2,7 +2,7 @@
 
 use super::joint::{Joint, JointView};
 use super::world_pose::{PlacedCamera, WorldPose};
-use crate::precise::conditioning::DROP;
+use crate::precise::conditioning::{DAMPING, DROP, covariance, deviation};
 use crate::precise::objective::Objective;
 use crate::precise::pose::CropPose;
 use crate::precise::prior::Prior;
@@ -28,8 +28,6 @@ const CONTRADICTION: f64 = 0.3;
 /// Step between sizes tried, relative, and their maximum number.
 const STEP: f64 = 0.0025;
 const MAX_STEPS: usize = 2000;
-/// Regularisation, so that undetermined directions remain finite.
-const DAMPING: f64 = 1e-9;
 
 /// What one pose in one view says about the size.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -81,7 +79,7 @@ impl SizeEvidence {
     pub fn of(joint: &mut Joint<'_>, pose: &WorldPose) -> Option<Self> {
         let score = joint.score(pose);
         let equations = joint.equations(pose, &score);
-        let sd = (2.0 * DROP * equations.inverse(DAMPING)?[3][3]).max(0.0).sqrt();
+        let sd = deviation(covariance(&equations)?[3][3]);
         let shift = equations.solve(DAMPING)?[3];
         let log_scale = pose.log_scale + shift.max(-sd).min(sd);
         (log_scale.is_finite() && sd.is_finite()).then_some(Self { log_scale, sd, score: f64::from(score.total) })

@@ -15,21 +15,19 @@ use crate::error::Result;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::normal_equations::NormalEquations;
 use crate::geometry::similarity::Similarity;
-use crate::geometry::symmetric_eigen::SymmetricEigen;
 use crate::metrics::symmetry::Symmetry;
 use crate::precise::alternatives::alternatives;
 use crate::precise::clean::CleanObservation;
-use crate::precise::conditioning::{Conditioning, DROP};
+use crate::precise::conditioning::{Conditioning, covariance, deviation, widest};
 use crate::precise::confidence::confidence;
 use crate::precise::no_candidate;
+use crate::precise::pose::MeshFrame;
 use crate::precise::score::Score;
 use crate::precise::search::{Found, Search};
 use crate::report::{Alternative, Sim3};
 
 /// Times that the mask of a view without one is predicted.
 const PREDICTIONS: usize = 2;
-/// Regularisation, so that undetermined directions remain finite.
-const DAMPING: f64 = 1e-9;
 
 /// The result on the evidence of all views.
 ///
@@ -162,11 +160,8 @@ fn predicted(pose: &WorldPose, views: &[View], cameras: &[PlacedCamera], like: &
             continue;
         }
         let Some(seen) = camera.see(pose) else { continue };
-        let (scale, translation) = seen.scale_translation();
-        let camera_from_frame = Similarity { scale, ..seen.similarity(&mesh.frame) };
-        let camera_from_frame =
-            Similarity { translation: nalgebra::Vector3::from(translation.to_array()), ..camera_from_frame };
-        let frame = with_predicted_mask(&view.frame, &mesh.fine, &camera_from_frame, scale);
+        let camera_from_frame = seen.similarity(&MeshFrame::NORMALIZED);
+        let frame = with_predicted_mask(&view.frame, &mesh.fine, &camera_from_frame);
         let Ok(Some(observation)) = frame.observation() else { continue };
         let mut search = Search::new(Rc::new(CleanObservation::new(&observation)), mesh.clone(), like.settings);
         search.assume(like.prior);
@@ -179,20 +174,10 @@ fn predicted(pose: &WorldPose, views: &[View], cameras: &[PlacedCamera], like: &
 
 /// The conditioning of a world pose; its positions are those of the centre of the mesh along the least determined axis.
 fn conditioning(equations: &NormalEquations, pose: &WorldPose) -> Option<Conditioning> {
-    let covariance = equations.inverse(DAMPING)?.map(|row| row.map(|x| 2.0 * DROP * x));
-    let block = |from: usize| {
-        let row = |i: usize| [0, 1, 2].map(|j| covariance[from + i][from + j]);
-        SymmetricEigen::of(glam::DMat3::from_cols_array_2d(&[row(0), row(1), row(2)]))
-    };
-    let root = |x: f64| x.max(0.0).sqrt();
-    let (turns, places) = (block(0), block(4));
-    let position_m = libm::exp(pose.log_scale) * root(places.values[2]);
-    Some(Conditioning {
-        scale: root(covariance[3][3]),
-        rotation: (root(turns.values[2]), turns.vectors[2]),
-        lateral_m: position_m,
-        distance_m: position_m,
-    })
+    let covariance = covariance(equations)?;
+    let rotation = widest(&covariance, 0);
+    let position_m = libm::exp(pose.log_scale) * widest(&covariance, 4).0;
+    Some(Conditioning { scale: deviation(covariance[3][3]), rotation, lateral_m: position_m, distance_m: position_m })
 }
 
 /// The means of the terms over all views, and the total of all.

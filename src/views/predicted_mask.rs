@@ -17,18 +17,18 @@ const SMOOTH: [f32; 2] = [0.01, 0.004];
 /// Distance of a pixel next to the silhouette, and of a diagonal neighbour: a chamfer distance.
 const NEXT: [f32; 2] = [1.0, 1.414];
 
-/// The frame with the mask that a pose predicts. `diagonal_m` is that of the posed mesh, metres.
+/// The frame with the mask that a pose predicts. The mesh is normalised: the diagonal of its box is 1.
 ///
 /// Readings of a surface that goes on beyond the grown silhouette, such as a table, may or may not be of the object where
 /// they are near it: they are removed.
-pub fn with_predicted_mask(frame: &Frame, mesh: &Mesh, camera_from_mesh: &Similarity, diagonal_m: f64) -> Frame {
+pub fn with_predicted_mask(frame: &Frame, mesh: &Mesh, camera_from_mesh: &Similarity) -> Frame {
     let (width, height) = (frame.depth.width(), frame.depth.height());
     let mut rasteriser = Rasteriser::new();
     rasteriser.render_depth(mesh, camera_from_mesh, &frame.camera, width, height);
     let area = rasteriser.depth().iter().filter(|z| **z > 0.0).count() as f32;
     let growth = (GROWTH * area.sqrt()).clamp(GROWTH_PX[0], GROWTH_PX[1]);
     let grown = Grown::new(rasteriser.depth(), width, height);
-    let diagonal = diagonal_m as f32;
+    let diagonal = camera_from_mesh.scale as f32;
     let tolerance = TOLERANCE * diagonal;
     let depth = frame.depth.data();
     let agrees = |i: usize| depth[i] > 0.0 && (depth[i] - grown.depth[i]).abs() < tolerance;

@@ -1,6 +1,5 @@
 //! What an alignment of several views has found, before its metrics.
 
-use super::View;
 use super::options::ViewsOptions;
 use super::report::{CameraPose, ViewPose, ViewRole, ViewsAlignment, ViewsDiagnostics, WorldFrame, WorldUncertainty};
 use crate::align::warnings;
@@ -64,7 +63,6 @@ impl Summary {
     pub fn report(
         &self,
         mesh: &Mesh,
-        inputs: &[View],
         observations: &[Option<Observation>],
         options: &ViewsOptions,
         stages: Stopwatch<'_>,
@@ -75,7 +73,7 @@ impl Summary {
             seed: u64::from(options.seed),
         };
         let mut views = Vec::with_capacity(self.views.len());
-        for ((view, _), observation) in self.views.iter().zip(inputs).zip(observations) {
+        for (view, observation) in self.views.iter().zip(observations) {
             let measured = match observation {
                 Some(observation) if options.metrics => {
                     Some(metrics::evaluate(observation, mesh, &view.camera_from_mesh, &sampling)?)

@@ -112,7 +112,7 @@ impl<'h, 'm, M: Borrow<PreparedMesh<'m>>> ViewsTask<'h, M> {
                 State::Found(summary) => {
                     stages.enter(Stage::Metrics);
                     let mesh = self.mesh.borrow().mesh();
-                    let alignment = summary.report(mesh, &self.views, &self.observations, &self.options, stages)?;
+                    let alignment = summary.report(mesh, &self.observations, &self.options, stages)?;
                     return Ok(Some(alignment));
                 }
                 State::Over => return Err(over()),

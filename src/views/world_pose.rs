@@ -1,10 +1,10 @@
 //! Poses in the world, and the cameras that see them.
 
 use glam::{DMat3, DQuat, DVec3};
-use nalgebra::{Matrix3, Rotation3, Vector3};
+use nalgebra::Vector3;
 
 use crate::geometry::normal_equations::PARAMETERS;
-use crate::geometry::rotations::exp;
+use crate::geometry::rotations::{exp, matrix_of, quaternion_of};
 use crate::geometry::similarity::Similarity;
 use crate::precise::pose::{CropPose, MeshFrame, Step};
 
@@ -40,7 +40,7 @@ impl WorldPose {
     pub fn similarity(&self, frame: &MeshFrame) -> Similarity {
         let scale = libm::exp(self.log_scale) / frame.diagonal;
         let translation = self.center - self.rotation * frame.center * scale;
-        Similarity { scale, rotation: rotation_of(self.rotation), translation: Vector3::from(translation.to_array()) }
+        Similarity { scale, rotation: matrix_of(self.rotation), translation: Vector3::from(translation.to_array()) }
     }
 }
 
@@ -69,7 +69,7 @@ impl PlacedCamera {
         let rotation = self.rotation.conjugate();
         Similarity {
             scale: 1.0,
-            rotation: rotation_of(rotation),
+            rotation: matrix_of(rotation),
             translation: Vector3::from((-(rotation * self.translation)).to_array()),
         }
     }
@@ -115,13 +115,4 @@ impl PlacedCamera {
         map[6][4..].copy_from_slice(&along.to_array());
         map
     }
-}
-
-/// The rotation of a similarity as a quaternion.
-pub fn quaternion_of(similarity: &Similarity) -> DQuat {
-    DQuat::from_array(similarity.quaternion_xyzw()).normalize()
-}
-
-fn rotation_of(rotation: DQuat) -> Rotation3<f64> {
-    Rotation3::from_matrix_unchecked(Matrix3::from_column_slice(&DMat3::from_quat(rotation).to_cols_array()))
 }

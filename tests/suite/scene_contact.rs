@@ -9,8 +9,8 @@ use sim3align::geometry::pinhole::Pinhole;
 use sim3align::geometry::random::Random;
 use sim3align::geometry::similarity::Similarity;
 use sim3align::precise::pose::{CropPose, Step};
-use sim3align::precise::rests::rests;
-use sim3align::precise::surroundings::{Ground, Rest, Surroundings};
+use sim3align::precise::rests::{Rest, rests};
+use sim3align::precise::surroundings::{Ground, Surroundings};
 use sim3align::scene::layers::{layer, volumes};
 use wasm_bindgen_test::wasm_bindgen_test;
 

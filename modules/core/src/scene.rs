@@ -64,7 +64,7 @@ pub fn begin_place(
         let mut task = Task::new(observation, mesh.clone(), options, JsHost::new(on_progress))?;
         if !is_alone {
             let placement = placement(&of(known, "placement"))?;
-            let ground = ground(&of(known, "ground"))?.map(|g| (g.plane.normal, g.plane.d, g.gap_m));
+            let ground = ground(&of(known, "ground"))?.map(|ground| ground.known());
             measured = ground.map(|(normal, ..)| (mesh, normal));
             let layers = Array::from(&of(known, "layers"));
             let layers = layers.iter().map(|l| Ok(Rc::new(layer(&l)?))).collect::<Result<_>>()?;
@@ -96,10 +96,8 @@ impl PlaceTask {
         let Some(alignment) = done.map_err(|error| to_js(&error))? else { return Ok(JsValue::UNDEFINED) };
         let Some(mut placement) = self.placement.take() else { return Ok(JsValue::UNDEFINED) };
         if let (Some(alignment), Some((mesh, normal))) = (&alignment, &self.measured) {
-            // Colours may have chosen another of the poses.
-            let pose = Similarity::from_column_major(&alignment.camera_from_mesh.matrix);
-            let pose = pose.map_err(|error| to_js(&error))?;
-            placement.body = placement.body.measured(mesh.mesh(), &pose, *normal);
+            let measured = placement.body.measured(mesh.mesh(), alignment, *normal);
+            placement.body = measured.map_err(|error| to_js(&error))?;
         }
         let placement = placement_object(&placement);
         let alignment = alignment.map_or(Ok(JsValue::UNDEFINED), |alignment| answer(Ok(alignment)))?;

@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use js_sys::Function;
 use sim3align::align::task::AlignTask as Task;
-use sim3align::bindings::answer::answer;
+use sim3align::bindings::answer::step_answer;
 use sim3align::bindings::error::to_js;
 use sim3align::bindings::host::{JsHost, now_ms};
 use sim3align::bindings::{input, mesh, options};
@@ -35,11 +35,6 @@ impl AlignTask {
     #[wasm_bindgen(skip_typescript)]
     pub fn step(&self, slice_ms: f64) -> Result<JsValue, JsValue> {
         let end = now_ms() + slice_ms;
-        let stepped = self.0.borrow_mut().step(&mut || now_ms() >= end);
-        match stepped {
-            Ok(None) => Ok(JsValue::UNDEFINED),
-            Ok(Some(alignment)) => answer(Ok(alignment)),
-            Err(error) => Err(to_js(&error)),
-        }
+        step_answer(self.0.borrow_mut().step(&mut || now_ms() >= end))
     }
 }

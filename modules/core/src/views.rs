@@ -7,7 +7,7 @@ use js_sys::{Array, Function};
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
-use sim3align::bindings::answer::answer;
+use sim3align::bindings::answer::step_answer;
 use sim3align::bindings::error::to_js;
 use sim3align::bindings::host::{JsHost, now_ms};
 use sim3align::bindings::object::{get, wrong_type};
@@ -74,10 +74,6 @@ impl ViewsTask {
     #[wasm_bindgen(skip_typescript)]
     pub fn step(&self, slice_ms: f64) -> core::result::Result<JsValue, JsValue> {
         let end = now_ms() + slice_ms;
-        match self.0.borrow_mut().step(&mut || now_ms() >= end) {
-            Ok(None) => Ok(JsValue::UNDEFINED),
-            Ok(Some(alignment)) => answer(Ok(alignment)),
-            Err(error) => Err(to_js(&error)),
-        }
+        step_answer(self.0.borrow_mut().step(&mut || now_ms() >= end))
     }
 }
