@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use crate::cloud::Bounds;
 use crate::error::{Error, ErrorCode, Result};
 use crate::number::numbers;
 
@@ -99,6 +100,11 @@ impl Mesh {
     /// The corners of a triangle of this mesh.
     pub fn corners(&self, triangle: [u32; 3]) -> [Vec3; 3] {
         triangle.map(|i| self.positions[i as usize])
+    }
+
+    /// The diagonal of the bounding box of the vertices.
+    pub fn diagonal(&self) -> f64 {
+        Bounds::of(&self.positions).map_or(0.0, |bounds| f64::from(bounds.diagonal()))
     }
 
     /// The mesh without the vertices that no triangle uses; `None` if there are none.
