@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 
-use crate::gltf::{Resources, external};
 use crate::guard::{MAX_VERTICES, corrupt, too_large};
 use crate::mesh::{ColoredMesh, Content};
 use crate::mesh_builder::MeshBuilder;
 use crate::mtl::MaterialLibrary;
+use crate::resources::{Resources, distinct, external};
 use crate::text::{lines, number, quoted, words};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::surface_colors::Rgb;
@@ -64,10 +64,7 @@ pub(crate) fn read_obj(bytes: &[u8], resources: Option<Resources<'_>>, content: 
     {
         return Ok(painted.plain(Some(missing)));
     }
-    let mut used: Vec<usize> = painted.paint.parts.iter().filter_map(|part| part.1).collect();
-    used.sort_unstable();
-    used.dedup();
-    let materials = colors.library.load(&used, resources);
+    let materials = colors.library.load(&painted.paint.used_materials(), resources);
     Ok(painted.colored(materials))
 }
 
@@ -82,10 +79,7 @@ pub(crate) fn external_resources(bytes: &[u8]) -> Result<Vec<String>> {
     })?;
     let mut library = MaterialLibrary::default();
     library.add(bytes);
-    files.extend(library.files().map(str::to_owned));
-    files.sort();
-    files.dedup();
-    Ok(files)
+    Ok(distinct(files.iter().map(String::as_str).chain(library.files())))
 }
 
 /// What the faces of an OBJ refer to.

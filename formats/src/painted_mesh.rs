@@ -67,6 +67,14 @@ impl PaintedMesh {
 }
 
 impl Paint {
+    /// The indices of the materials that parts have, ascending.
+    pub fn used_materials(&self) -> Vec<usize> {
+        let mut used: Vec<usize> = self.parts.iter().filter_map(|part| part.1).collect();
+        used.sort_unstable();
+        used.dedup();
+        used
+    }
+
     /// The colours of the mesh's surface; `None` if nothing gives it any, or if it has no area.
     fn surface_colors(&self, mesh: &Mesh, materials: &[Material]) -> Option<SurfaceColors> {
         let white = Material::default();
