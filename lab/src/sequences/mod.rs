@@ -27,8 +27,6 @@ pub struct Sequence {
     pub symmetry: Symmetry,
     /// The frames.
     pub frames: Vec<SequenceFrame>,
-    /// The true pose in the world, where the camera poses are known.
-    pub world_from_mesh: Option<Similarity>,
 }
 
 /// A frame of a sequence.

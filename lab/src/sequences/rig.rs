@@ -107,7 +107,6 @@ impl RigSet {
             mesh: made.mesh,
             symmetry: made.symmetry,
             frames,
-            world_from_mesh: Some(made.world_from_mesh),
         }))
     }
 }

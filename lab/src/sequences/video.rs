@@ -167,7 +167,6 @@ impl VideoSet {
             mesh: made.mesh,
             symmetry: made.symmetry,
             frames,
-            world_from_mesh: Some(made.world_from_mesh),
         }))
     }
 }
