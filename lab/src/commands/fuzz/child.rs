@@ -8,15 +8,15 @@ use std::process::exit;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
+use sim3align_lab::cpu_time::{CpuTimer, of_main_thread};
 use sim3align_lab::fuzz::choices::Choices;
 use sim3align_lab::fuzz::target::{Answer, Ceilings, Execution, Target};
 
 use super::super::Failure;
 use super::arguments::Arguments;
-use sim3align_lab::fuzz::cpu::{CpuTimer, of_main_thread};
 
 /// Exit status after a fault that was printed.
-pub const FAULT: i32 = 3;
+const FAULT: i32 = 3;
 /// Times the ceiling after which a call is given up: of computing, and of waiting.
 const PATIENCE: [f64; 2] = [4.0, 40.0];
 /// Milliseconds between looks at the current call.
