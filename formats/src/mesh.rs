@@ -127,7 +127,7 @@ pub fn external_resources(bytes: &[u8]) -> Result<ExternalResources> {
     }
 }
 
-/// What is read of a mesh file.
+/// The parts of a mesh file to read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Content {
     Shape,

@@ -58,7 +58,7 @@ pub(crate) fn read_obj(bytes: &[u8], resources: Option<Resources<'_>>, content: 
     })?;
     let painted = builder.finish()?;
     let Some(colors) = colors else { return Ok(painted.plain(None)) };
-    // Vertex colours need no library, and are what scanners and generators write beside a name of one.
+    // Vertex colours need no library; scanners and generators often write them even in files that name one.
     if let Some(missing) = colors.missing
         && painted.paint.vertex_colors.is_empty()
     {
@@ -82,7 +82,7 @@ pub(crate) fn external_resources(bytes: &[u8]) -> Result<Vec<String>> {
     Ok(distinct(files.iter().map(String::as_str).chain(library.files())))
 }
 
-/// What the faces of an OBJ refer to.
+/// Materials and texture coordinates that the faces of an OBJ refer to.
 struct ObjColors<'a> {
     resources: Option<Resources<'a>>,
     library: MaterialLibrary,

@@ -165,8 +165,8 @@ struct PngRow<'a> {
     samples: &'a [u8],
 }
 
-/// Reads a PNG as colours, of at most `max_pixels` pixels; larger ones are reduced. Also returns the EXIF orientation, which
-/// is not applied. Alpha is ignored.
+/// Reads a PNG as colours, of at most `max_pixels` pixels; larger ones are reduced. Also returns the EXIF orientation,
+/// which is not applied. Alpha is ignored.
 pub(crate) fn read_rgb(argument: &'static str, bytes: &[u8], max_pixels: usize) -> Result<(Image<Rgb>, Orientation)> {
     let info = PngInfo::read(argument, bytes)?;
     let full = [info.width, info.height];

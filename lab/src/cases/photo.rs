@@ -16,7 +16,7 @@ use sim3align_geometry::random::Random;
 use sim3align_geometry::rasteriser::NO_TRIANGLE;
 use sim3align_geometry::similarity::vec3;
 
-/// The light of a scene, and what the camera makes of it.
+/// The light of a scene, and the response of the camera.
 struct Look {
     /// Towards the light, world frame.
     light: DVec3,

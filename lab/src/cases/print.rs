@@ -16,13 +16,12 @@ use sim3align_geometry::similarity::vec3;
 /// Sides of a label: those of a box, or one that goes round.
 const SIDES: usize = 6;
 
-/// Mean difference of the sRGB-encoded colours of a visible surface and the same surface turned, from which on they tell
-/// the one from the other.
+/// Smallest mean difference of sRGB-encoded colours at which a turned surface is told apart.
 const TELLING: f64 = 0.06;
 /// Number of turns about an axis of revolution that are told apart.
 const ROLLS: u32 = 12;
 
-/// What a surface is printed with.
+/// Kinds of print.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PrintKind {
     /// Patches of colour on every side, as on packages.

@@ -15,7 +15,7 @@ use sim3align_geometry::surface_colors::{COLOR_SAMPLES, SurfaceColors};
 /// Number of points over which a texture is blurred.
 const BLUR_SAMPLES: usize = 6;
 
-/// What a model invents where it did not see the object.
+/// How a model colours the side it did not see.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Back {
     /// The truth.
@@ -43,7 +43,7 @@ pub fn paint(
         1 => Back::Mean,
         _ => Back::Other,
     };
-    // What is of one colour gets no print on its back.
+    // An object of one colour gets no print on its back.
     let kinds = [PrintKind::Label, PrintKind::Speckled, PrintKind::TwoTone];
     let kind = if class == Class::OneColor { PrintKind::Uniform } else { kinds[random.below(3)] };
     let other = Print::draw(placed, &[], kind, random);

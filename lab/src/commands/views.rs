@@ -108,7 +108,8 @@ fn run(sequence: &Sequence, verbose: bool) -> Result<Vec<Outcome>> {
             left_out[0] += usize::from(is_out && frame.is_wrong);
             left_out[1] += usize::from(frame.is_wrong);
             left_out[2] += usize::from(is_out && !frame.is_wrong);
-            // With known cameras, what the pose in the world says of a wrong view is no answer.
+            // With known cameras, the pose in a wrong view follows from that view's wrong camera pose, so it is not
+            // scored.
             let skipped = frame.is_wrong && row == 1;
             let Some(errors) = errors_of(sequence, k, &view.camera_from_mesh)?.filter(|_| !skipped) else { continue };
             strict &= STRICT.holds(&errors);

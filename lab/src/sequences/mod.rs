@@ -19,7 +19,7 @@ use crate::draws::normal;
 pub struct Sequence {
     /// Name of the case.
     pub name: String,
-    /// What it tests.
+    /// Kind of case, the row group in tables.
     pub kind: String,
     /// The mesh.
     pub mesh: Mesh,

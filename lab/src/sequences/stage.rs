@@ -40,7 +40,7 @@ pub struct Stage {
     neighbours: Option<Mesh>,
     /// The intrinsics of all frames.
     pub camera: Pinhole,
-    /// Centre of the object, and the distance from which it spans a usual number of pixels.
+    /// Centre of the object, and the distance at which it spans 150 to 280 pixels.
     pub center: Vector3<f64>,
     /// See `center`.
     pub distance: f64,

@@ -24,7 +24,7 @@ const STREAM: u64 = 32;
 const DRAWS: u64 = 64;
 const MIN_PX: usize = 2500;
 
-/// What a video shows.
+/// Kinds of video.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Motion {
     /// A camera in a hand, which moves to and fro.

@@ -68,7 +68,7 @@ pub fn seed_of(seed: u32, number: u64) -> u64 {
     u64::from(seed) << 32 ^ number
 }
 
-/// Makes the call of a file of choices under the same watch; prints what is passed and what comes back.
+/// Replays a file of choices under the same watch; prints the arguments and the outcome.
 pub fn replay(target: Target, path: &Path, ceilings: &Ceilings) -> Result<(), Failure> {
     let failed = |words: String| Failure::Failed(format!("{}: {words}", path.display()));
     let text = std::fs::read_to_string(path).map_err(|error| failed(error.to_string()))?;

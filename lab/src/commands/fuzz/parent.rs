@@ -18,7 +18,7 @@ use super::child::seed_of;
 
 /// Trials of the minimisation of one fault, and of one that takes long.
 const TRIALS: [usize; 2] = [300, 20];
-/// Readers are called so many times as often as `--executions` says.
+/// Factor on `--executions` for readers.
 const READER_CALLS: u64 = 1000;
 /// Faults after which a target is left alone.
 const MAX_FAULTS: usize = 20;
@@ -159,7 +159,7 @@ fn calls(
             _ => {}
         }
     }
-    // The last line says more than the exit status.
+    // The last line printed tells more than the exit status.
     let _ = child.wait();
     Ok((at, end))
 }
