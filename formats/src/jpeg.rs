@@ -14,14 +14,15 @@ pub(crate) const MAGIC: &[u8] = b"\xff\xd8\xff";
 /// Maximum number of pixels of a progressive image: all its coefficients are in memory, up to six bytes per pixel.
 const MAX_PROGRESSIVE_PIXELS: usize = 1 << 25;
 
-/// Maximum number of pixels per byte: a block of 64 pixels takes at least a bit. The decoder fills what is missing.
+/// Maximum number of pixels per byte: a block of 64 pixels takes at least a bit. The decoder fills missing data,
+/// so a short file could otherwise claim any size.
 const PIXELS_PER_BYTE: usize = 8 * 64;
 
 /// Smallest side of an image that the decoder reduces itself.
 const MIN_SCALED_SIDE: usize = 64;
 
 /// Reads a JPEG of at most `max_pixels` pixels; larger ones are reduced. Also returns the EXIF orientation, which is not
-/// applied. CMYK is converted as its inks absorb; colour profiles are ignored.
+/// applied. CMYK is converted multiplicatively, channel × black; colour profiles are ignored.
 pub(crate) fn read(argument: &'static str, bytes: &[u8], max_pixels: usize) -> Result<(Image<Rgb>, Orientation)> {
     let mut decoder = Decoder::new(bytes);
     let info = read_header(argument, &mut decoder)?;

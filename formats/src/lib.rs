@@ -6,6 +6,7 @@
 pub mod bindings;
 mod color;
 mod cursor;
+mod data_uri;
 pub mod depth;
 pub mod gltf;
 pub mod guard;
@@ -23,6 +24,7 @@ pub mod ply;
 mod ply_header;
 mod png;
 mod reducer;
+pub mod resources;
 mod stl;
 pub mod text;
 mod texture;

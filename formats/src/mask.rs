@@ -38,10 +38,10 @@ fn read_png(bytes: &[u8]) -> Result<Mask> {
     let info = PngInfo::read("mask", bytes)?;
     let pixels = info.decode("mask", bytes)?;
     let channels = pixels.channels.max(1);
-    let colours = if pixels.has_alpha { channels - 1 } else { channels };
+    let colours = if pixels.has_alpha() { channels - 1 } else { channels };
     let alpha = |pixel: &[u16]| pixel.last().copied().unwrap_or_default();
     let first_alpha = pixels.samples.get(..channels).map(alpha);
-    let is_cut_out = pixels.has_alpha && pixels.samples.chunks_exact(channels).any(|p| Some(alpha(p)) != first_alpha);
+    let is_cut_out = pixels.has_alpha() && pixels.samples.chunks_exact(channels).any(|p| Some(alpha(p)) != first_alpha);
     let background = info.first_palette_colour.unwrap_or_default().map(u16::from);
     let is_object = |pixel: &[u16]| {
         if is_cut_out {

@@ -2,9 +2,9 @@
 
 use core::fmt;
 
-use crate::gltf::{self, Resources};
 use crate::guard::{beginning, unsupported};
-use crate::{obj, ply, stl, text};
+use crate::resources::Resources;
+use crate::{gltf, obj, ply, stl, text};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::surface_colors::SurfaceColors;
@@ -127,7 +127,7 @@ pub fn external_resources(bytes: &[u8]) -> Result<ExternalResources> {
     }
 }
 
-/// What is read of a mesh file.
+/// The parts of a mesh file to read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Content {
     Shape,

@@ -6,7 +6,7 @@ use crate::color::WHITE;
 use crate::guard::{MAX_TRIANGLES, MAX_VERTICES, too_large};
 use crate::painted_mesh::{Paint, PaintedMesh};
 use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
+use sim3align_geometry::mesh::{Mesh, UsedVertices};
 use sim3align_geometry::surface_colors::Rgb;
 
 /// Collects the vertices and triangles of a file.
@@ -144,34 +144,12 @@ impl MeshBuilder {
         if !paint.vertex_colors.is_empty() {
             paint.vertex_colors.resize(positions.len(), WHITE);
         }
-        let mut used = vec![false; positions.len()];
-        for &index in triangles.as_flattened() {
-            match used.get_mut(index as usize) {
-                Some(used) => *used = true,
-                None => return Ok(PaintedMesh { mesh: Mesh::new(positions, triangles)?, paint }),
-            }
-        }
-        if triangles.is_empty() || used.iter().all(|&used| used) {
+        let used = UsedVertices::of(&triangles, positions.len());
+        let Some(used) = used.filter(|used| !triangles.is_empty() && !used.are_all()) else {
             return Ok(PaintedMesh { mesh: Mesh::new(positions, triangles)?, paint });
-        }
-        let mut count = 0;
-        let new_indices: Vec<u32> = used
-            .iter()
-            .map(|&used| {
-                let index = count;
-                count += u32::from(used);
-                index
-            })
-            .collect();
-        let positions = of_used(&positions, &used);
-        paint.vertex_colors = of_used(&paint.vertex_colors, &used);
-        let renumber = |triangle: &[u32; 3]| triangle.map(|i| new_indices.get(i as usize).copied().unwrap_or(i));
-        let mesh = Mesh::new(positions, triangles.iter().map(renumber).collect())?;
+        };
+        paint.vertex_colors = used.select(&paint.vertex_colors);
+        let mesh = Mesh::new(used.select(&positions), used.renumbered(&triangles))?;
         Ok(PaintedMesh { mesh, paint })
     }
-}
-
-/// The values of used vertices.
-fn of_used<T: Copy>(values: &[T], used: &[bool]) -> Vec<T> {
-    values.iter().zip(used).filter(|(_, used)| **used).map(|(value, _)| *value).collect()
 }

@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 
 use crate::color::linear;
-use crate::gltf::{Resources, external};
 use crate::painted_mesh::Material;
+use crate::resources::{Resources, external};
 use crate::text::{lines, number, words};
 use crate::texture::Wrap;
 use crate::texture_loader::TextureLoader;

@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 
-use crate::gltf::{Resources, external};
 use crate::guard::{MAX_VERTICES, corrupt, too_large};
 use crate::mesh::{ColoredMesh, Content};
 use crate::mesh_builder::MeshBuilder;
 use crate::mtl::MaterialLibrary;
+use crate::resources::{Resources, distinct, external};
 use crate::text::{lines, number, quoted, words};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::surface_colors::Rgb;
@@ -58,16 +58,13 @@ pub(crate) fn read_obj(bytes: &[u8], resources: Option<Resources<'_>>, content: 
     })?;
     let painted = builder.finish()?;
     let Some(colors) = colors else { return Ok(painted.plain(None)) };
-    // Vertex colours need no library, and are what scanners and generators write beside a name of one.
+    // Vertex colours need no library; scanners and generators often write them even in files that name one.
     if let Some(missing) = colors.missing
         && painted.paint.vertex_colors.is_empty()
     {
         return Ok(painted.plain(Some(missing)));
     }
-    let mut used: Vec<usize> = painted.paint.parts.iter().filter_map(|part| part.1).collect();
-    used.sort_unstable();
-    used.dedup();
-    let materials = colors.library.load(&used, resources);
+    let materials = colors.library.load(&painted.paint.used_materials(), resources);
     Ok(painted.colored(materials))
 }
 
@@ -82,13 +79,10 @@ pub(crate) fn external_resources(bytes: &[u8]) -> Result<Vec<String>> {
     })?;
     let mut library = MaterialLibrary::default();
     library.add(bytes);
-    files.extend(library.files().map(str::to_owned));
-    files.sort();
-    files.dedup();
-    Ok(files)
+    Ok(distinct(files.iter().map(String::as_str).chain(library.files())))
 }
 
-/// What the faces of an OBJ refer to.
+/// Materials and texture coordinates that the faces of an OBJ refer to.
 struct ObjColors<'a> {
     resources: Option<Resources<'a>>,
     library: MaterialLibrary,

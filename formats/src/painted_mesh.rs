@@ -10,7 +10,7 @@ use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::surface::{SurfaceSample, surface_area, triangle_area};
 use sim3align_geometry::surface_colors::{COLOR_SAMPLES, Rgb, SurfaceColors, interpolated};
 
-/// What gives the surface of a mesh its colour.
+/// The sources of a mesh's surface colour.
 #[derive(Debug, Default)]
 pub(crate) struct Paint {
     /// sRGB-encoded colour of each vertex; empty if none has one.
@@ -28,7 +28,7 @@ pub(crate) struct PaintedMesh {
     pub paint: Paint,
 }
 
-/// A surface: its colour is that of the vertices, times the factor, times the texture, in linear light.
+/// A material: the surface colour is vertex colour × factor × texture, in linear light.
 #[derive(Debug, Clone)]
 pub(crate) struct Material {
     /// Linear light.
@@ -67,6 +67,14 @@ impl PaintedMesh {
 }
 
 impl Paint {
+    /// The indices of the materials that parts have, ascending.
+    pub fn used_materials(&self) -> Vec<usize> {
+        let mut used: Vec<usize> = self.parts.iter().filter_map(|part| part.1).collect();
+        used.sort_unstable();
+        used.dedup();
+        used
+    }
+
     /// The colours of the mesh's surface; `None` if nothing gives it any, or if it has no area.
     fn surface_colors(&self, mesh: &Mesh, materials: &[Material]) -> Option<SurfaceColors> {
         let white = Material::default();

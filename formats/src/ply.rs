@@ -93,10 +93,12 @@ fn read_vertices(
                 *x = values.first().copied().unwrap_or(f64::NAN);
             }
         }
-        for (channel, place) in rgb.iter_mut().zip(colors.unwrap_or_default()) {
-            if property == place && colors.is_some() {
-                let most = element.properties.get(place).map_or(1.0, |property| property.scalar.most());
-                *channel = (values.first().copied().unwrap_or_default() / most * 255.0).round() as u8;
+        if let Some(places) = colors {
+            for (channel, place) in rgb.iter_mut().zip(places) {
+                if property == place {
+                    let most = element.properties.get(place).map_or(1.0, |property| property.scalar.most());
+                    *channel = (values.first().copied().unwrap_or_default() / most * 255.0).round() as u8;
+                }
             }
         }
         if property == last {

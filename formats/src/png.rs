@@ -41,8 +41,14 @@ pub(crate) struct PngInfo {
 #[derive(Debug)]
 pub(crate) struct PngPixels {
     pub channels: usize,
-    pub has_alpha: bool,
     pub samples: Vec<u16>,
+}
+
+impl PngPixels {
+    /// Whether the last channel is alpha.
+    pub fn has_alpha(&self) -> bool {
+        matches!(self.channels, 2 | 4)
+    }
 }
 
 impl PngInfo {
@@ -100,14 +106,11 @@ impl PngInfo {
 
     /// Decodes the pixels of the file with this header.
     pub fn decode(&self, argument: &'static str, bytes: &[u8]) -> Result<PngPixels> {
-        let mut pixels = PngPixels { channels: 0, has_alpha: false, samples: Vec::new() };
+        let mut pixels = PngPixels { channels: 0, samples: Vec::new() };
         self.each_row(argument, bytes, Transformations::EXPAND, &mut |row| {
             if pixels.samples.is_empty() {
-                pixels = PngPixels {
-                    channels: row.channels,
-                    has_alpha: row.channels.is_multiple_of(2),
-                    samples: vec![0; self.width * self.height * row.channels],
-                };
+                let samples = vec![0; self.width * self.height * row.channels];
+                pixels = PngPixels { channels: row.channels, samples };
             }
             for (i, pixel) in row.samples.chunks_exact(row.channels * row.bytes).enumerate() {
                 let place = (row.row * self.width + row.first + i * row.step) * row.channels;
@@ -162,8 +165,8 @@ struct PngRow<'a> {
     samples: &'a [u8],
 }
 
-/// Reads a PNG as colours, of at most `max_pixels` pixels; larger ones are reduced. Also returns the EXIF orientation, which
-/// is not applied. Alpha is ignored.
+/// Reads a PNG as colours, of at most `max_pixels` pixels; larger ones are reduced. Also returns the EXIF orientation,
+/// which is not applied. Alpha is ignored.
 pub(crate) fn read_rgb(argument: &'static str, bytes: &[u8], max_pixels: usize) -> Result<(Image<Rgb>, Orientation)> {
     let info = PngInfo::read(argument, bytes)?;
     let full = [info.width, info.height];

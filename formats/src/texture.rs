@@ -10,7 +10,7 @@ use crate::reducer::reduce;
 /// several times as dense as the points where colours are read.
 pub(crate) const MAX_TEXELS: usize = 1 << 20;
 
-/// What a texture shows beyond its edges.
+/// How a texture continues beyond its edges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) enum Wrap {
     #[default]
@@ -53,8 +53,8 @@ impl Texture {
         Ok(Self { levels })
     }
 
-    /// The colour at coordinates u, v: (0, 0) is the upper left corner of the image, (1, 1) the lower right one. `area` is
-    /// what the colour is averaged over, as a fraction of the image.
+    /// The colour at coordinates u, v: (0, 0) is the upper left corner of the image, (1, 1) the lower right one.
+    /// `area`: the fraction of the image that the colour is averaged over.
     pub fn color(&self, [u, v]: [f64; 2], area: f64, wrap: [Wrap; 2]) -> Rgb {
         let Some(finest) = self.levels.first() else { return [0; 3] };
         // Levels of a quarter of the texels each, as long as a texel is no larger than the area.
@@ -65,7 +65,7 @@ impl Texture {
         }
         let Some(image) = self.levels.get(level) else { return [0; 3] };
         let sides = [image.width(), image.height()];
-        // Texel centres are at half-integers. Beyond 2^31 repetitions, coordinates resolve nothing.
+        // Texel centres are at half-integers. Beyond 2^31 repetitions, coordinates have no sub-texel precision.
         let place = |x: f64, side: usize| {
             let at = if x.abs() < 2_147_483_648.0 { x * side as f64 - 0.5 } else { 0.0 };
             (at.floor() as i64, at - at.floor())

@@ -123,7 +123,7 @@ impl Clusters {
         let reach = f64::from(self.cell);
         let positions = quadrics.iter().map(|q| q.vertex(reach)).collect();
         let mesh = Mesh::new(positions, self.triangles).ok()?;
-        // Clusters of unconnected triangles may have lost all of theirs.
+        // Where triangles are unconnected, many clusters keep no triangle.
         let is_sparse = mesh.positions().len() > 3 * mesh.triangles().len();
         is_sparse.then(|| mesh.without_unused_vertices()).flatten().or(Some(mesh))
     }

@@ -45,7 +45,7 @@ pub enum ErrorCode {
     IndexOutOfRange,
     /// A coordinate is NaN or infinite.
     NonFinite,
-    /// A degenerate mesh: zero area, a plane, a needle, or a size beyond what numbers resolve.
+    /// A degenerate mesh: zero area, a plane, a needle, or a size outside the supported range.
     DegenerateMesh,
     /// Points that do not determine a similarity: coincident or collinear.
     DegeneratePoints,

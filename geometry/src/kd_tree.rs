@@ -221,7 +221,7 @@ fn build(points: &[Vec3], order: &mut [u32], nodes: &mut Vec<Node>) {
 /// Candidates that a search keeps.
 trait Collector {
     fn offer(&mut self, neighbor: Neighbor);
-    /// Whether it would keep this neighbour, or any that is not before it.
+    /// Whether it would keep `first`, or any neighbour that sorts after it.
     fn wants(&self, first: Neighbor) -> bool;
 }
 
@@ -259,7 +259,7 @@ impl Collector for KNearest<'_> {
     fn wants(&self, first: Neighbor) -> bool {
         match self.found.last() {
             Some(last) if self.found.len() == self.k => first.key() < last.key(),
-            // Nothing is near a query that is no point.
+            // A query that is NaN has no neighbours.
             _ => !first.distance_squared.is_nan(),
         }
     }

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use crate::cloud::Bounds;
 use crate::error::{Error, ErrorCode, Result};
 use crate::number::numbers;
 
@@ -101,36 +102,25 @@ impl Mesh {
         triangle.map(|i| self.positions[i as usize])
     }
 
+    /// The diagonal of the bounding box of the vertices.
+    pub fn diagonal(&self) -> f64 {
+        Bounds::of(&self.positions).map_or(0.0, |bounds| f64::from(bounds.diagonal()))
+    }
+
     /// The mesh without the vertices that no triangle uses; `None` if there are none.
     pub fn without_unused_vertices(&self) -> Option<Self> {
-        let used = self.used_by(&self.triangles);
-        if used.iter().all(|&used| used) { None } else { Some(self.part(&self.triangles, &used)) }
+        let used = UsedVertices::of(&self.triangles, self.positions.len())?;
+        if used.are_all() { None } else { Some(self.part(&self.triangles, &used)) }
     }
 
     /// The mesh of only these of its triangles, and the vertices that they use.
     pub fn of_triangles(&self, triangles: &[[u32; 3]]) -> Self {
-        self.part(triangles, &self.used_by(triangles))
+        let used = UsedVertices::of(triangles, self.positions.len());
+        used.map_or_else(|| self.clone(), |used| self.part(triangles, &used))
     }
 
-    /// Whether each vertex is one of a triangle.
-    fn used_by(&self, triangles: &[[u32; 3]]) -> Vec<bool> {
-        let mut used = vec![false; self.positions.len()];
-        triangles.as_flattened().iter().for_each(|&i| used[i as usize] = true);
-        used
-    }
-
-    fn part(&self, triangles: &[[u32; 3]], used: &[bool]) -> Self {
-        let mut count = 0;
-        let mut number = |used: &bool| {
-            let index = count;
-            count += u32::from(*used);
-            index
-        };
-        let numbers: Vec<u32> = used.iter().map(&mut number).collect();
-        let kept = self.positions.iter().zip(used).filter(|(_, used)| **used);
-        let positions = kept.map(|(position, _)| *position).collect();
-        let triangles = triangles.iter().map(|triangle| triangle.map(|i| numbers[i as usize])).collect();
-        Self { positions, triangles }
+    fn part(&self, triangles: &[[u32; 3]], used: &UsedVertices) -> Self {
+        Self { positions: used.select(&self.positions), triangles: used.renumbered(triangles) }
     }
 
     /// Six times the signed enclosed volume: negative if the triangles face inward. 0 is inconclusive. Computed
@@ -142,5 +132,43 @@ impl Mesh {
             a.dot(b.cross(c))
         };
         self.triangles.iter().map(volume).sum()
+    }
+}
+
+/// Which vertices are corners of triangles.
+#[derive(Debug, Clone)]
+pub struct UsedVertices(Vec<bool>);
+
+impl UsedVertices {
+    /// Those of `count` vertices that these triangles use; `None` if an index is out of range.
+    pub fn of(triangles: &[[u32; 3]], count: usize) -> Option<Self> {
+        let mut used = vec![false; count];
+        for &index in triangles.as_flattened() {
+            *used.get_mut(index as usize)? = true;
+        }
+        Some(Self(used))
+    }
+
+    /// Whether all vertices are used.
+    pub fn are_all(&self) -> bool {
+        self.0.iter().all(|&used| used)
+    }
+
+    /// The values of the used vertices, from those of all.
+    pub fn select<T: Copy>(&self, values: &[T]) -> Vec<T> {
+        values.iter().zip(&self.0).filter(|(_, used)| **used).map(|(value, _)| *value).collect()
+    }
+
+    /// The triangles with indices that count only the used vertices.
+    pub fn renumbered(&self, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
+        let mut count = 0;
+        let mut number = |used: &bool| {
+            let index = count;
+            count += u32::from(*used);
+            index
+        };
+        let numbers: Vec<u32> = self.0.iter().map(&mut number).collect();
+        let new_index = |i: u32| numbers.get(i as usize).copied().unwrap_or(i);
+        triangles.iter().map(|triangle| triangle.map(new_index)).collect()
     }
 }

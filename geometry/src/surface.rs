@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3, Vec3};
 
-use crate::cloud::Cloud;
+use crate::cloud::{Bounds, Cloud};
 use crate::error::{Error, ErrorCode, Result};
 use crate::mesh::Mesh;
 use crate::number::number;
@@ -187,10 +187,8 @@ fn area_vector([a, b, c]: [DVec3; 3]) -> DVec3 {
 
 /// The diagonal of the bounding box of the triangles, if it is within [`DIAGONALS`]; unused vertices are ignored.
 fn check_diagonal(mesh: &Mesh) -> Result<f64> {
-    let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-    for p in mesh.triangles().iter().flat_map(|&t| mesh.corners(t)) {
-        (min, max) = (min.min(p), max.max(p));
-    }
+    let boxes = mesh.triangles().iter().map(|&t| Bounds::of_triangle(&mesh.corners(t)));
+    let Bounds { min, max } = boxes.fold(Bounds::NOTHING, Bounds::union);
     let diagonal = (max.as_dvec3() - min.as_dvec3()).length();
     if (DIAGONALS[0]..=DIAGONALS[1]).contains(&diagonal) {
         return Ok(diagonal);

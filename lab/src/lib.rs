@@ -6,6 +6,7 @@ pub mod bench;
 pub mod case_folder;
 pub mod cases;
 pub mod clouds;
+pub mod cpu_time;
 mod draws;
 mod files;
 pub mod fuzz;

@@ -40,10 +40,7 @@ impl<'a> AccessorReader<'a> {
         let kind = component_type(accessor, Type::Vec3, index)?;
         let component = Component { kind, normalized: accessor.normalized };
         let size = kind.size();
-        self.read(accessor, MAX_VERTICES, 3 * size, Vec3::ZERO, |bytes| {
-            let value = |i: usize| component.read(bytes.get(i * size..).unwrap_or_default());
-            Vec3::new(value(0), value(1), value(2))
-        })
+        self.read(accessor, MAX_VERTICES, 3 * size, Vec3::ZERO, |bytes| Vec3::from_array(component.vector(bytes)))
     }
 
     /// A COLOR_n accessor, sRGB-encoded. Whole numbers count as normalised, as the specification demands. Alpha is ignored.
@@ -57,7 +54,7 @@ impl<'a> AccessorReader<'a> {
         let (component, size) = (Component { kind, normalized: true }, kind.size());
         self.read(accessor, MAX_VERTICES, shape.multiplicity() * size, [0; 3], |bytes| match (kind, bytes) {
             (ComponentType::U8, &[r, g, b, ..]) => [r, g, b],
-            _ => srgb(core::array::from_fn(|i| component.read(bytes.get(i * size..).unwrap_or_default()))),
+            _ => srgb(component.vector(bytes)),
         })
     }
 
@@ -66,9 +63,7 @@ impl<'a> AccessorReader<'a> {
         let accessor = self.accessor(index)?;
         let kind = component_type(accessor, Type::Vec2, index)?;
         let (component, size) = (Component { kind, normalized: accessor.normalized }, kind.size());
-        self.read(accessor, MAX_VERTICES, 2 * size, [0.0; 2], |bytes| {
-            core::array::from_fn(|i| component.read(bytes.get(i * size..).unwrap_or_default()))
-        })
+        self.read(accessor, MAX_VERTICES, 2 * size, [0.0; 2], |bytes| component.vector(bytes))
     }
 
     /// The bytes of a buffer view.
@@ -240,6 +235,12 @@ fn unsigned(kind: ComponentType, bytes: &[u8]) -> u32 {
 }
 
 impl Component {
+    /// The first `N` numbers of an element.
+    fn vector<const N: usize>(self, bytes: &[u8]) -> [f32; N] {
+        let size = self.kind.size();
+        core::array::from_fn(|i| self.read(bytes.get(i * size..).unwrap_or_default()))
+    }
+
     /// glTF 2.0, section 3.11 (animations) and KHR_mesh_quantization give the same table for normalised integers.
     fn read(self, bytes: &[u8]) -> f32 {
         let (value, most) = match (self.kind, bytes) {

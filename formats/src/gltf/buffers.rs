@@ -4,12 +4,9 @@ use std::borrow::Cow;
 
 use ::gltf::json;
 
-use crate::gltf::data_uri;
 use crate::guard::{MAX_BUFFER_BYTES, corrupt, too_large};
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-
-/// Returns the content of a relative URI in a `.gltf` file.
-pub type Resources<'a> = &'a dyn Fn(&str) -> Option<Vec<u8>>;
+use crate::resources::{Resources, at_uri};
+use sim3align_geometry::error::Result;
 
 /// The buffers, each loaded on first use; those of animations are never loaded.
 pub(super) struct Buffers<'a> {
@@ -70,34 +67,11 @@ fn load<'a>(
             let found = format!("buffer {index} without URI or binary chunk");
             return Err(corrupt("mesh", found, "bytes for every buffer"));
         }
-        (Some(uri), _) if uri.starts_with("data:") => match data_uri::decode(uri) {
-            Some(bytes) => Cow::Owned(bytes),
-            None => {
-                let found = format!("buffer {index} with a broken data URI");
-                return Err(corrupt("mesh", found, "data:…;base64,…"));
-            }
-        },
-        (Some(uri), _) => Cow::Owned(external(uri, resources)?),
+        (Some(uri), _) => at_uri(uri, resources, || format!("buffer {index}"))?,
     };
     if (bytes.len() as u64) < declared.byte_length.0 {
         let found = format!("buffer {index} of {} bytes", bytes.len());
         return Err(corrupt("mesh", found, format!("{} bytes, as its byteLength says", declared.byte_length.0)));
     }
     Ok(bytes)
-}
-
-/// The bytes of a file that a mesh file refers to.
-pub(crate) fn external(uri: &str, resources: Option<Resources<'_>>) -> Result<Vec<u8>> {
-    let find = resources.and_then(|find| {
-        find(uri).or_else(|| find(core::str::from_utf8(&data_uri::percent_decode(uri.as_bytes())).ok()?))
-    });
-    find.ok_or_else(|| {
-        Error::new(
-            ErrorCode::InvalidArgument,
-            "options.resources",
-            format!("no bytes for {uri:?}"),
-            "the bytes of every external file, by the URI in the mesh file",
-            "Pass them in resources, or pack a .gltf into one file: npx @gltf-transform/cli copy in.gltf out.glb.",
-        )
-    })
 }

@@ -8,10 +8,9 @@ use ::gltf::json;
 use serde::Deserialize;
 
 use crate::gltf::accessor::AccessorReader;
-use crate::gltf::buffers::external;
-use crate::gltf::data_uri;
 use crate::guard::corrupt;
 use crate::painted_mesh::Material;
+use crate::resources::at_uri;
 use crate::texture::Wrap;
 use crate::texture_loader::{TextureLoader, unsupported_texture};
 use sim3align_geometry::error::Result;
@@ -161,11 +160,7 @@ impl Materials {
         };
         match (&image.uri, image.buffer_view) {
             (_, Some(view)) => reader.bytes_of_view(view).map(Cow::Borrowed),
-            (Some(uri), None) if uri.starts_with("data:") => match data_uri::decode(uri) {
-                Some(bytes) => Ok(Cow::Owned(bytes)),
-                None => Err(corrupt("mesh", format!("image {index} with a broken data URI"), "data:…;base64,…")),
-            },
-            (Some(uri), None) => external(uri, reader.buffers.resources()).map(Cow::Owned),
+            (Some(uri), None) => at_uri(uri, reader.buffers.resources(), || format!("image {index}")),
             (None, None) => Err(corrupt("mesh", format!("image {index} without data"), "a buffer view or a URI")),
         }
     }

@@ -7,19 +7,17 @@
 mod accessor;
 mod buffers;
 mod container;
-mod data_uri;
 mod materials;
 mod scene;
 
 use ::gltf::json;
 use serde::Deserialize;
 
-pub use self::buffers::Resources;
-pub(crate) use self::buffers::external;
 use self::container::Container;
 use self::materials::Materials;
 use crate::guard::{corrupt, too_large, unsupported};
 use crate::mesh::{ColoredMesh, Content, ExternalResources};
+use crate::resources::{Resources, distinct};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 
 /// Maximum number of objects in the JSON: each takes much more memory than its two characters.
@@ -158,11 +156,4 @@ pub(crate) fn external_resources(bytes: &[u8]) -> Result<ExternalResources> {
     let mut colors = Materials::parse(json).map_or_else(|_| Vec::new(), |m| distinct(m.external_images()));
     colors.retain(|uri| !shape.contains(uri));
     Ok(ExternalResources { shape, colors })
-}
-
-fn distinct<'a>(uris: impl Iterator<Item = &'a str>) -> Vec<String> {
-    let mut uris: Vec<String> = uris.map(str::to_owned).collect();
-    uris.sort();
-    uris.dedup();
-    uris
 }

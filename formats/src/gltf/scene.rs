@@ -18,10 +18,9 @@ use sim3align_geometry::error::{Error, ErrorCode, Result};
 pub(super) fn read_scene(reader: &mut AccessorReader<'_>, materials: Option<Result<Materials>>) -> Result<ColoredMesh> {
     let document = reader.document;
     let mut parts: Vec<Option<Vec<PaintedMesh>>> = document.meshes.iter().map(|_| None).collect();
-    let (materials, mut problem) = match materials {
-        Some(Ok(materials)) => (Some(materials), None),
-        Some(Err(problem)) => (None, Some(problem)),
-        None => (None, None),
+    let (materials, mut problem) = match materials.transpose() {
+        Ok(materials) => (materials, None),
+        Err(problem) => (None, Some(problem)),
     };
     let mut builder = MeshBuilder::default();
     let mut skipped = 0;
@@ -64,10 +63,7 @@ pub(super) fn read_scene(reader: &mut AccessorReader<'_>, materials: Option<Resu
     }
     let painted = builder.finish()?;
     let Some(materials) = materials.filter(|_| problem.is_none()) else { return Ok(painted.plain(problem)) };
-    let mut used: Vec<usize> = painted.paint.parts.iter().filter_map(|part| part.1).collect();
-    used.sort_unstable();
-    used.dedup();
-    let loaded = materials.load(&used, reader);
+    let loaded = materials.load(&painted.paint.used_materials(), reader);
     Ok(painted.colored(loaded))
 }
 

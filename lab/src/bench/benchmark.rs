@@ -183,9 +183,7 @@ impl BenchCase {
             truth: truth.transpose()?,
         })
     }
-}
 
-impl BenchCase {
     /// The case without its photo and colours.
     pub fn without_color(self) -> Self {
         Self { observation: self.observation.without_photo(), colors: None, ..self }

@@ -1,14 +1,18 @@
 //! Aligns the objects of scenes alone and together, and compares both with the truth.
 
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use glam::DVec3;
 use nalgebra::UnitQuaternion;
 use serde::Serialize;
+use serde_json::Value;
 
 use super::benchmark::{LOOSE, STRICT, Tolerance};
-use super::statistics::median;
-use crate::case_folder::scene_folder::SceneFolder;
+use super::statistics::{cell, median};
+use crate::case_folder::case::{depth_and_camera, last_name, mask_in, mesh_in, name_of, truth_of};
+use crate::case_folder::json;
 use crate::scenes::{ClutteredScene, Prior};
 use sim3align::align::align;
 use sim3align::align::evaluate::Truth;
@@ -22,7 +26,7 @@ use sim3align::report::Sim3;
 use sim3align::scene::contact::{Contact, RestsOn};
 use sim3align::scene::plane::Plane;
 use sim3align::scene::support::{Support, SupportChoice};
-use sim3align::scene::task::{Scene, SceneObject, align_scene};
+use sim3align::scene::task::{PlacedObject, Scene, SceneObject, align_scene};
 use sim3align_geometry::error::Result;
 use sim3align_geometry::image::{DepthMap, Mask};
 use sim3align_geometry::mesh::Mesh;
@@ -95,6 +99,13 @@ pub struct Outcome {
     pub error: Option<String>,
 }
 
+impl Outcome {
+    /// Whether the pose is within a tolerance; never if the true pose is unknown.
+    fn is_within(&self, tolerance: &Tolerance) -> bool {
+        self.errors.is_some_and(|errors| tolerance.holds(&errors))
+    }
+}
+
 /// A scene, aligned.
 #[derive(Debug, Clone, Serialize)]
 #[serde(rename_all = "camelCase")]
@@ -140,6 +151,24 @@ impl BenchScene {
         })
     }
 
+    /// A scene folder: `depth.npy|png`, `camera.json`, `objects/NAME/` with `mask.png|npy`, `mesh.*` and, optionally,
+    /// `gt.json`; optionally `plane.json`, the true support.
+    ///
+    /// # Errors
+    /// Those of [`read_case`](crate::case_folder::case::read_case).
+    pub fn read(folder: &Path) -> Result<Self> {
+        let (depth, camera) = depth_and_camera(folder)?;
+        let entries = fs::read_dir(folder.join("objects")).into_iter().flatten().filter_map(core::result::Result::ok);
+        let mut folders: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
+        folders.sort();
+        let objects = folders.iter().map(|folder| BenchObject::read(folder)).collect::<Result<_>>()?;
+        let plane = fs::read(folder.join("plane.json")).ok().and_then(|bytes| {
+            let value: Value = serde_json::from_slice(&bytes).ok()?;
+            Plane::new(json::numbers::<3>(value.get("normal")?)?.into(), value.get("d")?.as_f64()?)
+        });
+        Ok(Self { name: name_of(folder), depth, camera, objects, plane })
+    }
+
     /// Aligns it.
     ///
     /// # Errors
@@ -164,8 +193,7 @@ impl BenchScene {
         let begun = Instant::now();
         let aligned = align_scene(&scene, &mut Silent)?;
         let seconds = [alone_seconds, begun.elapsed().as_secs_f64()];
-        let record = |((object, alone), placed): ((&BenchObject, Outcome), &Result<_>)| {
-            let placed: &Result<sim3align::scene::task::PlacedObject> = placed;
+        let record = |((object, alone), placed): ((&BenchObject, Outcome), &Result<PlacedObject>)| {
             let together = match placed {
                 Ok(placed) => self.outcome(object, &placed.alignment.camera_from_mesh, placed.alignment.confidence),
                 Err(error) => Outcome { error: Some(error.to_string()), ..Outcome::default() },
@@ -223,25 +251,19 @@ impl BenchScene {
     }
 }
 
-impl From<SceneFolder> for BenchScene {
-    fn from(folder: SceneFolder) -> Self {
-        let object = |object: crate::case_folder::scene_folder::FolderObject| BenchObject {
-            name: object.name,
-            mask: object.mask,
-            mesh: object.mesh,
-            truth: object.truth.map(|(camera_from_mesh, words)| Truth {
-                camera_from_mesh,
-                symmetry: Symmetry::from_description(&words),
-            }),
-            stance: None,
+impl BenchObject {
+    fn read(folder: &Path) -> Result<Self> {
+        let truth = |(camera_from_mesh, words): (Similarity, String)| Truth {
+            camera_from_mesh,
+            symmetry: Symmetry::from_description(&words),
         };
-        Self {
-            name: folder.name,
-            depth: folder.depth,
-            camera: folder.camera,
-            objects: folder.objects.into_iter().map(object).collect(),
-            plane: folder.plane,
-        }
+        Ok(Self {
+            name: last_name(folder),
+            mask: mask_in(folder)?,
+            mesh: mesh_in(folder)?,
+            truth: truth_of(folder)?.map(truth),
+            stance: None,
+        })
     }
 }
 
@@ -261,7 +283,7 @@ pub fn table(scenes: &[SceneRecord]) -> String {
 
 fn table_of(name: &str, scenes: &[SceneRecord], objects: &[&ObjectRecord]) -> String {
     let of = |outcome: &dyn Fn(&ObjectRecord) -> Outcome| row(&objects.iter().map(|o| outcome(o)).collect::<Vec<_>>());
-    let right = |outcome: &Outcome| outcome.errors.is_some_and(|errors| STRICT.holds(&errors));
+    let right = |outcome: &Outcome| outcome.is_within(&STRICT);
     let count = |test: &dyn Fn(&&ObjectRecord) -> bool| objects.iter().copied().filter(|o| test(o)).count();
     let (worse, better) =
         (count(&|o| right(&o.alone) && !right(&o.together)), count(&|o| !right(&o.alone) && right(&o.together)));
@@ -269,7 +291,7 @@ fn table_of(name: &str, scenes: &[SceneRecord], objects: &[&ObjectRecord]) -> St
     let resting = count(&|o| o.contact.as_ref().is_some_and(|c| c.rests_on == Some(RestsOn::Support)));
     let planes: Vec<[f64; 2]> = scenes.iter().filter_map(|scene| scene.plane_errors).collect();
     let time: f64 = scenes.iter().map(|s| s.seconds[1]).sum::<f64>() / scenes.iter().map(|s| s.seconds[0]).sum::<f64>();
-    let number = |x: Option<f64>, unit: f64| x.map_or("–".into(), |x| format!("{:.2}", unit * x));
+    let number = |x: Option<f64>, unit: f64| cell(x.map(|x| unit * x), 2);
     format!(
         "{name}: {} scenes, {} objects\n\n| | strict | loose | tilt ≤ 3° | median tilt, ° | median gap, mm | confidence where right, wrong |\n|---|---|---|---|---|---|---|\n| alone | {} |\n| together | {} |\n\nright alone and wrong together: {worse}; wrong alone and right together: {better}\non the support: {resting}; median shared volume: {} %; planes found: {}, median errors {}°, {} mm; time: {time:.2} ×\n",
         scenes.len(),
@@ -286,23 +308,23 @@ fn table_of(name: &str, scenes: &[SceneRecord], objects: &[&ObjectRecord]) -> St
 fn row(outcomes: &[Outcome]) -> String {
     let known = outcomes.len().max(1) as f64;
     let share = |tolerance: &Tolerance| {
-        let right = outcomes.iter().filter(|o| o.errors.is_some_and(|errors| tolerance.holds(&errors))).count();
+        let right = outcomes.iter().filter(|o| o.is_within(tolerance)).count();
         format!("{:.1} %", 100.0 * right as f64 / known)
     };
     let tilts: Vec<f64> = outcomes.iter().filter_map(|o| o.tilt_deg).collect();
     let level = tilts.iter().filter(|tilt| **tilt <= 3.0).count() as f64 / tilts.len().max(1) as f64;
     let gaps = outcomes.iter().filter_map(|o| o.gap_m.map(f64::abs)).collect();
     let sure = |is_right: bool| {
-        let of = outcomes.iter().filter(|o| o.errors.is_some_and(|errors| STRICT.holds(&errors)) == is_right);
-        median(of.map(|o| o.confidence).collect()).map_or("–".into(), |x| format!("{x:.2}"))
+        let of = outcomes.iter().filter(|o| o.is_within(&STRICT) == is_right);
+        cell(median(of.map(|o| o.confidence).collect()), 2)
     };
     format!(
         "{} | {} | {:.1} % | {} | {} | {}, {}",
         share(&STRICT),
         share(&LOOSE),
         100.0 * level,
-        median(tilts).map_or("–".into(), |x| format!("{x:.2}")),
-        median(gaps).map_or("–".into(), |x| format!("{:.2}", 1000.0 * x)),
+        cell(median(tilts), 2),
+        cell(median(gaps).map(|gap| 1000.0 * gap), 2),
         sure(true),
         sure(false),
     )

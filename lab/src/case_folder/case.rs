@@ -12,15 +12,17 @@ use sim3align_formats::mask::read_mask;
 use sim3align_formats::mesh::{ColoredMesh, MeshFormat, MeshReadOptions, read_colored_mesh};
 use sim3align_formats::photo::read_photo;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
+use sim3align_geometry::image::{DepthMap, Mask};
 use sim3align_geometry::mesh::Mesh;
+use sim3align_geometry::pinhole::Pinhole;
 use sim3align_geometry::similarity::Similarity;
 use sim3align_geometry::surface_colors::SurfaceColors;
 
 /// File names of each part, in order of preference.
-pub(super) const DEPTH_FILES: &[&str] = &["depth.npy", "depth.png"];
-pub(super) const MASK_FILES: &[&str] = &["mask.png", "mask.npy"];
-pub(super) const MESH_FILES: &[&str] = &["mesh.glb", "mesh.gltf", "mesh.obj", "mesh.ply", "mesh.stl"];
-pub(super) const CAMERA_FILES: &[&str] = &["camera.json"];
+const DEPTH_FILES: &[&str] = &["depth.npy", "depth.png"];
+const MASK_FILES: &[&str] = &["mask.png", "mask.npy"];
+const MESH_FILES: &[&str] = &["mesh.glb", "mesh.gltf", "mesh.obj", "mesh.ply", "mesh.stl"];
+const CAMERA_FILES: &[&str] = &["camera.json"];
 const PHOTO_FILES: &[&str] = &["rgb.png", "rgb.jpg", "rgb.jpeg", "image.png", "image.jpg", "image.jpeg"];
 
 /// The content of a case folder.
@@ -41,22 +43,16 @@ pub struct Case {
 }
 
 /// Reads a case folder: `depth.npy|png`, `mask.png|npy`, `mesh.glb|gltf|obj|ply|stl`, `camera.json`
-/// and, optionally, `rgb.png|jpg`, `image.png|jpg` and `gt.json`. Integer depth has the unit of the camera file, by default millimetres.
+/// and, optionally, `rgb.png|jpg`, `image.png|jpg` and `gt.json`. Integer depth has the unit of the camera file, by
+/// default millimetres.
 ///
 /// # Errors
 /// [`ErrorCode::InvalidArgument`] for a missing file, and those of the readers and of
 /// [`Observation::new`]; the argument names the file.
 pub fn read_case(folder: &Path) -> Result<Case> {
-    let name = folder.canonicalize().ok().and_then(|path| Some(path.file_name()?.to_string_lossy().into_owned()));
-    let (depth_path, depth_bytes) = find(folder, DEPTH_FILES)?;
-    let (camera_path, camera_bytes) = find(folder, CAMERA_FILES)?;
-    let (mask_path, mask_bytes) = find(folder, MASK_FILES)?;
+    let (depth, camera) = depth_and_camera(folder)?;
+    let mask = mask_in(folder)?;
     let (mesh_path, mesh_bytes) = find(folder, MESH_FILES)?;
-    let depth_options = DepthReadOptions { depth_scale: None, integer_depth_scale: depth_scale(&camera_bytes) };
-    let depth = read_depth(&depth_bytes, &depth_options).map_err(in_file(&depth_path))?;
-    let size = [depth.width(), depth.height()];
-    let camera = read_camera(&camera_bytes, size).map_err(in_file(&camera_path))?;
-    let mask = read_mask(&mask_bytes).map_err(in_file(&mask_path))?;
     let read = mesh_of(folder, &mesh_path, &mesh_bytes)?;
     let (mesh, colors) = (read.mesh, read.colors);
     let color_problem = read.problem.map(in_file(&mesh_path));
@@ -69,18 +65,50 @@ pub fn read_case(folder: &Path) -> Result<Case> {
     if let Some(photo) = photo_of(folder)? {
         observation = observation.with_photo(photo).map_err(in_folder)?;
     }
-    let name = name.unwrap_or_else(|| folder.display().to_string());
-    Ok(Case { name, observation, mesh, colors, color_problem, truth })
+    Ok(Case { name: name_of(folder), observation, mesh, colors, color_problem, truth })
+}
+
+/// The name of a folder, through links and relative paths; the path if it has none.
+pub(crate) fn name_of(folder: &Path) -> String {
+    let name = folder.canonicalize().ok().and_then(|path| Some(path.file_name()?.to_string_lossy().into_owned()));
+    name.unwrap_or_else(|| folder.display().to_string())
+}
+
+/// The last part of a path.
+pub(crate) fn last_name(path: &Path) -> String {
+    path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+/// The depth of a folder, and its camera.
+pub(crate) fn depth_and_camera(folder: &Path) -> Result<(DepthMap, Pinhole)> {
+    let (depth_path, depth_bytes) = find(folder, DEPTH_FILES)?;
+    let (camera_path, camera_bytes) = find(folder, CAMERA_FILES)?;
+    let options = DepthReadOptions { depth_scale: None, integer_depth_scale: depth_scale(&camera_bytes) };
+    let depth = read_depth(&depth_bytes, &options).map_err(in_file(&depth_path))?;
+    let size = [depth.width(), depth.height()];
+    let camera = read_camera(&camera_bytes, size).map_err(in_file(&camera_path))?;
+    Ok((depth, camera))
+}
+
+/// The mask of a folder.
+pub(crate) fn mask_in(folder: &Path) -> Result<Mask> {
+    let (path, bytes) = find(folder, MASK_FILES)?;
+    read_mask(&bytes).map_err(in_file(&path))
+}
+
+/// Whether a folder has a mask.
+pub(crate) fn has_mask(folder: &Path) -> bool {
+    has_any(folder, MASK_FILES)
 }
 
 /// Names the file of an error.
-pub(super) fn in_file(path: &Path) -> impl FnOnce(Error) -> Error {
+fn in_file(path: &Path) -> impl FnOnce(Error) -> Error {
     let path = path.display().to_string();
     move |error: Error| error.about(path)
 }
 
 /// The mesh of a file in a folder, with its colours.
-pub(super) fn mesh_of(folder: &Path, path: &Path, bytes: &[u8]) -> Result<ColoredMesh> {
+fn mesh_of(folder: &Path, path: &Path, bytes: &[u8]) -> Result<ColoredMesh> {
     let resources = |uri: &str| read_beside(folder, uri);
     let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
     let options = MeshReadOptions { format: Some(MeshFormat::from_name(extension)?), resources: Some(&resources) };
@@ -88,8 +116,8 @@ pub(super) fn mesh_of(folder: &Path, path: &Path, bytes: &[u8]) -> Result<Colore
 }
 
 /// The photo in a folder, if there is one.
-pub(super) fn photo_of(folder: &Path) -> Result<Option<Photo>> {
-    if !PHOTO_FILES.iter().any(|name| folder.join(name).is_file()) {
+fn photo_of(folder: &Path) -> Result<Option<Photo>> {
+    if !has_any(folder, PHOTO_FILES) {
         return Ok(None);
     }
     let (path, bytes) = find(folder, PHOTO_FILES)?;
@@ -97,17 +125,12 @@ pub(super) fn photo_of(folder: &Path) -> Result<Option<Photo>> {
 }
 
 /// The true pose in a folder, if there is one.
-pub(super) fn truth_of(folder: &Path) -> Result<Option<(Similarity, String)>> {
+pub(crate) fn truth_of(folder: &Path) -> Result<Option<(Similarity, String)>> {
     let path = folder.join("gt.json");
     match fs::read(&path) {
         Ok(bytes) => read_truth(&bytes).map_err(in_file(&path)),
         Err(_) => Ok(None),
     }
-}
-
-/// The content of the first existing file of `names`.
-pub(crate) fn part(folder: &Path, names: &[&str]) -> Result<Vec<u8>> {
-    find(folder, names).map(|(_, bytes)| bytes)
 }
 
 /// The mesh of a folder: `mesh.glb|gltf|obj|ply|stl`.
@@ -116,8 +139,12 @@ pub(crate) fn mesh_in(folder: &Path) -> Result<Mesh> {
     Ok(mesh_of(folder, &path, &bytes)?.mesh)
 }
 
+fn has_any(folder: &Path, names: &[&str]) -> bool {
+    names.iter().any(|name| folder.join(name).is_file())
+}
+
 /// The first existing file of `names`, and its content.
-pub(super) fn find(folder: &Path, names: &[&str]) -> Result<(PathBuf, Vec<u8>)> {
+fn find(folder: &Path, names: &[&str]) -> Result<(PathBuf, Vec<u8>)> {
     let missing = |found: String| {
         Error::new(
             ErrorCode::InvalidArgument,

@@ -5,5 +5,4 @@ pub mod case;
 pub(crate) mod contents;
 pub mod json;
 pub mod pose;
-pub mod scene_folder;
 pub mod write;

@@ -159,16 +159,16 @@ impl EvaluationSet {
         let mut observation = Observation::new(readings.depth, segmented.mask, scene.camera)?;
         let mut colors = None;
         let random = &mut Random::new(seed, COLOR_STREAM);
+        let is_told = class.is_told_by_color();
         if let Some(kind) = class.print(chance(random, 0.5)) {
             let print = Print::draw(&placed, &symmetry, kind, random);
-            if class.is_told_by_color() && !print.tells(&placed, &symmetry, &scene) {
+            if is_told && !print.tells(&placed, &symmetry, &scene) {
                 return Ok(None);
             }
             observation = observation.with_photo(take(&scene, (&placed, &print), class, tier, random)?)?;
             let eye = DVec3::from_array(scene.camera_from_world.inverse().translation.into());
             colors = Some(paint(&mesh, &object_from_mesh, (&print, &placed), eye, (tier, class), random)?);
         }
-        let is_told = class.is_told_by_color();
 
         // The scale error of the depth map scales the camera frame.
         let metric = Similarity { scale: readings.bias, ..Similarity::identity() };

@@ -3,7 +3,6 @@
 use glam::DVec3;
 
 use super::solid::Solid;
-use sim3align_geometry::cloud::Bounds;
 use sim3align_geometry::mesh::Mesh;
 
 /// An axis of symmetry in the object's frame: direction, and how many times it looks the same in a full turn.
@@ -44,6 +43,6 @@ pub struct Object {
 impl Object {
     /// The diagonal of its bounding box, metres.
     pub fn diagonal(&self) -> f64 {
-        Bounds::of(self.mesh.positions()).map_or(0.0, |b| f64::from(b.diagonal()))
+        self.mesh.diagonal()
     }
 }

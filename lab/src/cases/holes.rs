@@ -10,7 +10,6 @@ use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::order::quantile;
 use sim3align_geometry::random::Random;
 use sim3align_geometry::rasteriser::NO_TRIANGLE;
-use sim3align_geometry::similarity::vector3;
 
 /// Fewest pixels of one part that can be a dark part.
 const LEAST_PART_PX: usize = 40;
@@ -108,9 +107,8 @@ impl Views {
             (b - a).cross(c - a).normalize_or(DVec3::Z)
         };
         let to_eye = |&i: &usize| {
-            let (u, v) = ((i % scene.width) as f64, (i / scene.width) as f64);
-            let point = vector3(scene.camera.back_project(u, v, f64::from(scene.object_depth[i])));
-            (eye - DVec3::from_array(world_from_camera.apply(point).into())).normalize_or(DVec3::Z)
+            let point = scene.world_point(&world_from_camera, i, scene.object_depth[i]);
+            (eye - DVec3::from_array(point.into())).normalize_or(DVec3::Z)
         };
         Self { normals: object.iter().map(normal).collect(), to_eye: object.iter().map(to_eye).collect() }
     }

@@ -14,9 +14,9 @@ use sim3align_geometry::image::Image;
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::random::Random;
 use sim3align_geometry::rasteriser::NO_TRIANGLE;
-use sim3align_geometry::similarity::{vec3, vector3};
+use sim3align_geometry::similarity::vec3;
 
-/// The light of a scene, and what the camera makes of it.
+/// The light of a scene, and the response of the camera.
 struct Look {
     /// Towards the light, world frame.
     light: DVec3,
@@ -87,9 +87,7 @@ pub fn take(
         for u in 0..width {
             let i = v * width + u;
             let at = DVec3::new(2.0 * u as f64 / width as f64 - 1.0, 2.0 * v as f64 / height as f64 - 1.0, 0.0);
-            let z = f64::from(scene.depth[i]);
-            let point = vector3(scene.camera.back_project(u as f64, v as f64, z));
-            let point = vec3(&world_from_camera.apply(point)).as_dvec3();
+            let point = vec3(&scene.world_point(&world_from_camera, i, scene.depth[i])).as_dvec3();
             let triangle = scene.object_triangles[i];
             linear.push(if scene.visible[i] && triangle != NO_TRIANGLE {
                 let [a, b, c] = placed.corners(placed.triangles()[triangle as usize]).map(|p| p.as_dvec3());

@@ -11,18 +11,17 @@ use sim3align::evidence::sample::SurfaceMoments;
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::random::Random;
 use sim3align_geometry::rasteriser::NO_TRIANGLE;
-use sim3align_geometry::similarity::{vec3, vector3};
+use sim3align_geometry::similarity::vec3;
 
 /// Sides of a label: those of a box, or one that goes round.
 const SIDES: usize = 6;
 
-/// Mean difference of the sRGB-encoded colours of a visible surface and the same surface turned, from which on they tell
-/// the one from the other.
+/// Smallest mean difference of sRGB-encoded colours at which a turned surface is told apart.
 const TELLING: f64 = 0.06;
 /// Number of turns about an axis of revolution that are told apart.
 const ROLLS: u32 = 12;
 
-/// What a surface is printed with.
+/// Kinds of print.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PrintKind {
     /// Patches of colour on every side, as on packages.
@@ -153,11 +152,10 @@ impl Print {
         let shown: Vec<(DVec3, DVec3)> = pixels
             .step_by(7)
             .map(|i| {
-                let (u, v) = ((i % scene.width) as f64, (i / scene.width) as f64);
-                let point = vector3(scene.camera.back_project(u, v, f64::from(scene.object_depth[i])));
+                let point = scene.world_point(&world_from_camera, i, scene.object_depth[i]);
                 let corners = placed.corners(placed.triangles()[scene.object_triangles[i] as usize]);
                 let [a, b, c] = corners.map(|p| p.as_dvec3());
-                (vec3(&world_from_camera.apply(point)).as_dvec3(), (b - a).cross(c - a).normalize_or_zero())
+                (vec3(&point).as_dvec3(), (b - a).cross(c - a).normalize_or_zero())
             })
             .collect();
         let differs = |turn: DMat3| {

@@ -58,8 +58,7 @@ impl Scan {
     fn read(name: String, bytes: &[u8]) -> Result<Self> {
         let mut mesh = read_mesh(bytes, &MeshReadOptions { format: Some(MeshFormat::Gltf), resources: None })?;
         if mesh.triangles().len() > MAX_TRIANGLES {
-            let diagonal = Bounds::of(mesh.positions()).map_or(0.0, |b| f64::from(b.diagonal()));
-            let cell = diagonal / CELLS;
+            let cell = mesh.diagonal() / CELLS;
             mesh = cluster(&mesh, cell, DVec3::ZERO)?;
         }
         let symmetry = principal_symmetry(&mesh, true)?;

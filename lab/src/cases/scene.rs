@@ -209,6 +209,12 @@ impl Scene {
         })
     }
 
+    /// The point that pixel `i` shows at z-depth `z`, in the world frame.
+    pub fn world_point(&self, world_from_camera: &Similarity, i: usize, z: f32) -> Vector3<f64> {
+        let (u, v) = ((i % self.width) as f64, (i / self.width) as f64);
+        world_from_camera.apply(vector3(self.camera.back_project(u, v, f64::from(z))))
+    }
+
     /// Number of pixels that show the object.
     pub fn visible_px(&self) -> usize {
         self.visible.iter().filter(|v| **v).count()
@@ -305,9 +311,16 @@ fn aim(random: &mut Random, class: Class, span: f64, width: f64, height: f64) ->
 }
 
 /// The axes of a camera that looks along `forward`, level: world to camera.
-pub fn looking(forward: &Vector3<f64>) -> Matrix3<f64> {
+fn looking(forward: &Vector3<f64>) -> Matrix3<f64> {
     let right = forward.cross(&Vector3::z()).normalize();
     Matrix3::from_rows(&[right.transpose(), forward.cross(&right).transpose(), forward.transpose()])
+}
+
+/// Camera from world for a camera at `eye` that looks along `forward`, turned from level by `roll` radians.
+pub fn camera_at(eye: &Vector3<f64>, forward: &Vector3<f64>, roll: f64) -> Result<Similarity> {
+    let roll = Rotation3::from_axis_angle(&Vector3::z_axis(), roll);
+    let rotation = roll.matrix() * looking(forward);
+    Similarity::from_parts(1.0, rotation, -(rotation * eye))
 }
 
 fn rendered(solid: &Solid, pose: &Similarity, plan: &Plan) -> Result<Vec<f32>> {
@@ -340,7 +353,7 @@ pub fn in_front(z: f32, other: f32) -> bool {
 }
 
 /// Pixels that show the object, before and behind the others.
-fn shown(object: &[f32], others: &[f32]) -> Vec<bool> {
+pub fn shown(object: &[f32], others: &[f32]) -> Vec<bool> {
     object.iter().zip(others).map(|(&z, &other)| in_front(z, other)).collect()
 }
 

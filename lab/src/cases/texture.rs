@@ -15,7 +15,7 @@ use sim3align_geometry::surface_colors::{COLOR_SAMPLES, SurfaceColors};
 /// Number of points over which a texture is blurred.
 const BLUR_SAMPLES: usize = 6;
 
-/// What a model invents where it did not see the object.
+/// How a model colours the side it did not see.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Back {
     /// The truth.
@@ -43,12 +43,12 @@ pub fn paint(
         1 => Back::Mean,
         _ => Back::Other,
     };
-    // What is of one colour gets no print on its back.
+    // An object of one colour gets no print on its back.
     let kinds = [PrintKind::Label, PrintKind::Speckled, PrintKind::TwoTone];
     let kind = if class == Class::OneColor { PrintKind::Uniform } else { kinds[random.below(3)] };
     let other = Print::draw(placed, &[], kind, random);
     let print = if class == Class::WrongColors { &other } else { print };
-    let diagonal = world_from_mesh.scale * mesh_diagonal(mesh);
+    let diagonal = world_from_mesh.scale * mesh.diagonal();
     let blur = diagonal * between(random, 0.2, 1.0) * tier.pick(0.004, 0.012, 0.025);
     let mix = DMat3::from_cols_array(&core::array::from_fn(|k| {
         let share = tier.pick(0.02, 0.06, 0.12) * normal(random);
@@ -95,8 +95,4 @@ fn blurred(print: &Print, point: DVec3, normal_of: DVec3, radius: f64, random: &
         })
         .sum();
     sum / BLUR_SAMPLES as f64
-}
-
-fn mesh_diagonal(mesh: &Mesh) -> f64 {
-    sim3align_geometry::cloud::Bounds::of(mesh.positions()).map_or(0.0, |b| f64::from(b.diagonal()))
 }

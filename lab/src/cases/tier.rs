@@ -272,7 +272,7 @@ impl Class {
         })
     }
 
-    /// Whether colour tells of the turns of a symmetric shape which one is right.
+    /// Whether colour alone determines which turn of a symmetric shape is right.
     pub(super) fn is_told_by_color(self) -> bool {
         matches!(self, Self::Printed | Self::Blotted | Self::GreyPhoto)
     }

@@ -6,6 +6,7 @@ pub mod fuzz;
 pub mod profile;
 pub mod registration;
 pub mod scenes;
+mod sequence_rows;
 pub mod together;
 pub mod track;
 pub mod views;

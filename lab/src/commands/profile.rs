@@ -5,11 +5,11 @@ use std::time::Instant;
 use lexopt::prelude::*;
 use serde_json::{Map, Value as Json};
 use sim3align::align::task::AlignTask;
-use sim3align::options::Choice;
 use sim3align::precise::options::AlignOptions;
 use sim3align::precise::prepared_mesh::PreparedMesh;
 use sim3align::progress::{Host, Stage};
 use sim3align_geometry::error::Error;
+use sim3align_lab::bench::option_text;
 use sim3align_lab::case_folder::case::read_case;
 
 use super::Failure;
@@ -55,11 +55,7 @@ fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Error>
         match argument {
             Long("help") | Short('h') => return Ok(None),
             Long("quality") => {
-                let name = parser.value()?.string()?;
-                if !options.quality.set(&name) {
-                    let names = options.quality.names().join(", ");
-                    return Err(format!("--quality {name}: one of {names} is expected").into());
-                }
+                option_text::assign(&mut options, "quality", &parser.value()?.string()?).transpose()?;
             }
             Value(count) if runs.is_none() => runs = Some(count.parse()?),
             Value(folder) => folders.push(folder.string()?),

@@ -3,11 +3,10 @@
 use std::path::PathBuf;
 
 use lexopt::prelude::*;
-use sim3align::options::Choice;
 use sim3align::precise::options::AlignOptions;
 use sim3align_geometry::error::Error;
+use sim3align_lab::bench::option_text;
 use sim3align_lab::bench::scene_bench::{BenchScene, SceneRecord, table};
-use sim3align_lab::case_folder::scene_folder::read_scene_folder;
 use sim3align_lab::parallel::parallel_map;
 use sim3align_lab::scenes::{Prior, SceneSet};
 
@@ -31,10 +30,9 @@ Aligns every object of each scene alone and all of them together, and prints bot
   --threads N      default: all
   --help           this text";
 
-/// Where a scene comes from.
-enum Source {
-    Generated(usize),
-    Arranged(usize),
+/// The source of a scene.
+enum Source<'a> {
+    Generated(&'a SceneSet, usize),
     Folder(PathBuf),
 }
 
@@ -80,10 +78,7 @@ fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Error>
             Long("set-seed") => arguments.set_seed = parser.value()?.parse()?,
             Long("cases") => arguments.cases.extend(parser.values()?.map(PathBuf::from)),
             Long("quality") => {
-                let name = parser.value()?.string()?;
-                if !arguments.options.quality.set(&name) {
-                    return Err(format!("--quality {name}: an unknown quality").into());
-                }
+                option_text::assign(&mut arguments.options, "quality", &parser.value()?.string()?).transpose()?;
             }
             Long("snap") => arguments.snap = true,
             Long("objects") => arguments.objects = true,
@@ -107,15 +102,14 @@ pub fn main(parser: lexopt::Parser) -> Result<(), Failure> {
     };
     let set = SceneSet::new(arguments.set_seed, arguments.scenes);
     let arranged = SceneSet::arranged(arguments.set_seed, arguments.arranged);
-    let generated = (arguments.from..arguments.scenes)
-        .map(Source::Generated)
-        .chain((arguments.from..arguments.arranged).map(Source::Arranged));
+    let generated = [(&set, arguments.scenes), (&arranged, arguments.arranged)]
+        .into_iter()
+        .flat_map(|(set, count)| (arguments.from..count).map(move |index| Source::Generated(set, index)));
     let sources: Vec<Source> = arguments.cases.iter().cloned().map(Source::Folder).chain(generated).collect();
     let run = |source: &Source| {
         let scene = match source {
-            Source::Folder(path) => read_scene_folder(path)?.into(),
-            Source::Generated(index) => BenchScene::of_cluttered(&set.scene(*index)?, arguments.prior)?,
-            Source::Arranged(index) => BenchScene::of_cluttered(&arranged.scene(*index)?, arguments.prior)?,
+            Source::Folder(path) => BenchScene::read(path)?,
+            Source::Generated(set, index) => BenchScene::of_cluttered(&set.scene(*index)?, arguments.prior)?,
         };
         scene.run(&arguments.options, arguments.snap)
     };

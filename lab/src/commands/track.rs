@@ -9,20 +9,20 @@ use sim3align::track::report::TrackState;
 use sim3align::track::tracker::Tracker;
 use sim3align_geometry::error::Result;
 use sim3align_geometry::similarity::Similarity;
+use sim3align_lab::bench::benchmark::STRICT;
 use sim3align_lab::bench::statistics::{cell, median};
-use sim3align_lab::fuzz::cpu::CpuTimer;
-use sim3align_lab::parallel::parallel_map;
+use sim3align_lab::cpu_time::CpuTimer;
 use sim3align_lab::sequences::Sequence;
-use sim3align_lab::sequences::folder::read_sequence;
 use sim3align_lab::sequences::video::VideoSet;
 
 use super::Failure;
+use super::sequence_rows::{each_row, outcomes};
 
 const USAGE: &str = "\
 Usage: sim3align-lab track [--generated N] [--frames F] [--seed S] [--threads T] [--verbose] [FOLDER...]
 
-Tracks each video with the masks of all frames, and with that of the first frame alone, and prints errors, flips, losses, and
-the time of a frame. FOLDER holds a mesh and folders frame_*.";
+Tracks each video with the masks of all frames, and with that of the first frame alone, and prints errors, flips,
+losses, and the time of a frame. FOLDER holds a mesh and folders frame_*.";
 
 struct Arguments {
     generated: usize,
@@ -117,9 +117,7 @@ fn run(sequence: &Sequence, verbose: bool) -> Result<Vec<Outcome>> {
                     if found.is_detected { " detected" } else { "" },
                 );
             }
-            let strict = errors.scale_error < 0.05
-                && errors.rotation_error_deg < 10.0
-                && errors.translation_error_relative < 0.05;
+            let strict = STRICT.holds(&errors);
             outcome.silent += usize::from(found.state == TrackState::Tracking && !strict);
             if frame.visible < SHOWN {
                 continue;
@@ -146,36 +144,16 @@ pub fn main(arguments: lexopt::Parser) -> core::result::Result<(), Failure> {
         Err(error) => return Err(Failure::Usage(error, USAGE)),
     };
     let Arguments { generated, set, threads, verbose, folders } = arguments;
-    enum Source {
-        Folder(String),
-        Index(usize),
-    }
-    let sources: Vec<Source> =
-        folders.into_iter().map(Source::Folder).chain((0..generated).map(Source::Index)).collect();
-    let work = |source: &Source| -> Result<Vec<Outcome>> {
-        let sequence = match source {
-            Source::Folder(folder) => read_sequence(folder.as_ref())?,
-            Source::Index(index) => set.video(*index)?,
-        };
-        run(&sequence, verbose)
-    };
-    let outcomes = parallel_map(threads, &sources, work, |_| {})
-        .map_err(|error| Failure::Failed(format!("{} {error}", error.code.as_str())))?;
-    let outcomes: Vec<Outcome> = outcomes.into_iter().flatten().collect();
-    let mut kinds: Vec<&str> = outcomes.iter().map(|o| o.kind.as_str()).collect();
-    kinds.sort_unstable();
-    kinds.dedup();
+    let outcomes = outcomes(folders, generated, threads, |index| set.video(index), |sequence| run(sequence, verbose))?;
     println!(
         "| row | videos | frames | strict % | rotation median, worst ° | size median, last worst % | flips | uncertain, lost | wrong and tracking | longest until right, frames | ms |"
     );
     println!("|---|---|---|---|---|---|---|---|---|---|---|");
-    for (row, name) in ROWS.into_iter().enumerate() {
-        for kind in kinds.iter().copied().chain([""]) {
-            let of: Vec<&Outcome> =
-                outcomes.iter().filter(|o| o.row == row && (kind.is_empty() || o.kind == kind)).collect();
-            if of.is_empty() {
-                continue;
-            }
+    each_row(
+        &ROWS,
+        &outcomes,
+        |outcome| (outcome.row, outcome.kind.as_str()),
+        |name, kind, of| {
             let frames: usize = of.iter().map(|o| o.rotations.len()).sum();
             let sum = |count: fn(&Outcome) -> usize| of.iter().map(|o| count(o)).sum::<usize>();
             let all =
@@ -184,8 +162,7 @@ pub fn main(arguments: lexopt::Parser) -> core::result::Result<(), Failure> {
             let worst = rotations.iter().copied().fold(0.0, f64::max);
             let last = of.iter().filter_map(|o| o.sizes.last()).copied().fold(0.0, f64::max);
             println!(
-                "| {name} | {} | {frames} | {:.1} | {}, {worst:.1} | {}, {:.2} | {} | {}, {} | {} | {} | {} |",
-                if kind.is_empty() { "all" } else { kind },
+                "| {name} | {kind} | {frames} | {:.1} | {}, {worst:.1} | {}, {:.2} | {} | {}, {} | {} | {} | {} |",
                 100.0 * sum(|o| o.strict) as f64 / frames.max(1) as f64,
                 cell(median(rotations), 2),
                 cell(median(all(|o| &o.sizes)).map(|size| 100.0 * size), 2),
@@ -197,7 +174,7 @@ pub fn main(arguments: lexopt::Parser) -> core::result::Result<(), Failure> {
                 of.iter().map(|o| o.found_after).max().unwrap_or_default(),
                 cell(median(all(|o| &o.times)), 1),
             );
-        }
-    }
+        },
+    );
     Ok(())
 }

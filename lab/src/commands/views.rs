@@ -11,13 +11,13 @@ use sim3align::views::report::{ViewRole, ViewsAlignment};
 use sim3align::views::{View, align_views};
 use sim3align_geometry::error::Result;
 use sim3align_geometry::similarity::Similarity;
+use sim3align_lab::bench::benchmark::STRICT;
 use sim3align_lab::bench::statistics::{cell, median};
-use sim3align_lab::parallel::parallel_map;
 use sim3align_lab::sequences::Sequence;
-use sim3align_lab::sequences::folder::read_sequence;
 use sim3align_lab::sequences::rig::RigSet;
 
 use super::Failure;
+use super::sequence_rows::{each_row, outcomes};
 
 const USAGE: &str = "\
 Usage: sim3align-lab views [--generated N] [--seed S] [--views V] [--threads T] [--verbose] [FOLDER...]
@@ -69,10 +69,6 @@ fn similarity(pose: &Sim3) -> Result<Similarity> {
     Similarity::from_column_major(&pose.matrix)
 }
 
-fn is_strict(errors: &PoseErrors) -> bool {
-    errors.scale_error < 0.05 && errors.rotation_error_deg < 10.0 && errors.translation_error_relative < 0.05
-}
-
 fn errors_of(sequence: &Sequence, k: usize, pose: &Sim3) -> Result<Option<PoseErrors>> {
     let Some(truth) = &sequence.frames[k].camera_from_mesh else { return Ok(None) };
     pose_errors(&sequence.mesh, &similarity(pose)?, truth, &sequence.symmetry).map(Some)
@@ -112,10 +108,11 @@ fn run(sequence: &Sequence, verbose: bool) -> Result<Vec<Outcome>> {
             left_out[0] += usize::from(is_out && frame.is_wrong);
             left_out[1] += usize::from(frame.is_wrong);
             left_out[2] += usize::from(is_out && !frame.is_wrong);
-            // With known cameras, what the pose in the world says of a wrong view is no answer.
+            // With known cameras, the pose in a wrong view follows from that view's wrong camera pose, so it is not
+            // scored.
             let skipped = frame.is_wrong && row == 1;
             let Some(errors) = errors_of(sequence, k, &view.camera_from_mesh)?.filter(|_| !skipped) else { continue };
-            strict &= is_strict(&errors);
+            strict &= STRICT.holds(&errors);
             scale = scale.max(errors.scale_error);
             if verbose {
                 println!(
@@ -154,42 +151,21 @@ pub fn main(arguments: lexopt::Parser) -> core::result::Result<(), Failure> {
         Err(error) => return Err(Failure::Usage(error, USAGE)),
     };
     let Arguments { generated, set, threads, verbose, folders } = arguments;
-    enum Source {
-        Folder(String),
-        Index(usize),
-    }
-    let sources: Vec<Source> =
-        folders.into_iter().map(Source::Folder).chain((0..generated).map(Source::Index)).collect();
-    let work = |source: &Source| -> Result<Vec<Outcome>> {
-        let sequence = match source {
-            Source::Folder(folder) => read_sequence(folder.as_ref())?,
-            Source::Index(index) => set.case(*index)?,
-        };
-        run(&sequence, verbose)
-    };
-    let outcomes = parallel_map(threads, &sources, work, |_| {})
-        .map_err(|error| Failure::Failed(format!("{} {error}", error.code.as_str())))?;
-    let outcomes: Vec<Outcome> = outcomes.into_iter().flatten().collect();
-    let mut kinds: Vec<&str> = outcomes.iter().map(|o| o.kind.as_str()).collect();
-    kinds.sort_unstable();
-    kinds.dedup();
+    let outcomes = outcomes(folders, generated, threads, |index| set.case(index), |sequence| run(sequence, verbose))?;
     println!(
         "| row | cases | n | strict % | size error median % | ≤ .5 % | ≤ 2 % | confidence ≥ .9 and wrong | wrong views found | right views left out | ms |"
     );
     println!("|---|---|---|---|---|---|---|---|---|---|---|");
-    for (row, name) in ROWS.into_iter().enumerate() {
-        for kind in kinds.iter().copied().chain([""]) {
-            let of: Vec<&Outcome> =
-                outcomes.iter().filter(|o| o.row == row && (kind.is_empty() || o.kind == kind)).collect();
-            if of.is_empty() {
-                continue;
-            }
+    each_row(
+        &ROWS,
+        &outcomes,
+        |outcome| (outcome.row, outcome.kind.as_str()),
+        |name, kind, of| {
             let share = |count: usize| 100.0 * count as f64 / of.len() as f64;
             let within = |limit: f64| share(of.iter().filter(|o| o.scale <= limit).count());
             let sum = |i: usize| of.iter().map(|o| o.left_out[i]).sum::<usize>();
             println!(
-                "| {name} | {} | {} | {:.1} | {} | {:.1} | {:.1} | {} | {} of {} | {} | {} |",
-                if kind.is_empty() { "all" } else { kind },
+                "| {name} | {kind} | {} | {:.1} | {} | {:.1} | {:.1} | {} | {} of {} | {} | {} |",
                 of.len(),
                 share(of.iter().filter(|o| o.strict).count()),
                 cell(median(of.iter().map(|o| 100.0 * o.scale).collect()), 2),
@@ -201,7 +177,7 @@ pub fn main(arguments: lexopt::Parser) -> core::result::Result<(), Failure> {
                 sum(2),
                 cell(median(of.iter().map(|o| o.ms).collect()), 0),
             );
-        }
-    }
+        },
+    );
     Ok(())
 }

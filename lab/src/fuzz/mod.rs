@@ -5,7 +5,6 @@
 //! coverage-guided fuzzer, and minimised without knowledge of the input.
 
 pub mod choices;
-pub mod cpu;
 pub mod memory;
 pub mod minimise;
 mod options;

@@ -3,9 +3,9 @@
 use sim3align_geometry::error::{Error, ErrorCode};
 
 use super::choices::Choices;
-use super::cpu::CpuTimer;
 use super::memory::{peak_bytes, reset_peak};
 use super::targets::{align, evaluate, readers, register};
+use crate::cpu_time::CpuTimer;
 
 /// Time and memory that a call with default options may take.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -13,9 +13,11 @@ use crate::cases::scene::{put_down_turned, turned_axis};
 use crate::draws::between;
 use crate::draws::chance;
 use sim3align::evidence::sample::SurfaceMoments;
+use sim3align_geometry::cloud::Bounds;
 use sim3align_geometry::error::Result;
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::random::Random;
+use sim3align_geometry::similarity::vector3;
 
 /// Directions in which footprints are measured.
 const DIRECTIONS: usize = 64;
@@ -147,31 +149,30 @@ impl Floor {
 impl Layout {
     /// This many objects and their surroundings.
     ///
-    /// Without `stances`, all objects stand on the desk.
+    /// Unless `is_arranged`, all objects stand on the desk.
     pub fn draw(
         count: usize,
         random: &mut Random,
         object_random: &mut Random,
-        mut stances: Option<&mut Random>,
+        stances: &mut Random,
+        is_arranged: bool,
     ) -> Result<Self> {
         let front = TAU * random.uniform();
         let mut floor = Floor::default();
         let mut objects: Vec<Placed> = Vec::new();
         for _ in 0..count {
             let (object, mesh, symmetry) = put_down(object_random)?;
-            let stance = match &mut stances {
-                Some(random) if !objects.is_empty() => Stance::draw(random),
-                _ => Stance::Stands,
-            };
-            if let (Stance::OnTop, Some(random)) = (stance, &mut stances) {
-                let below = &objects[random.below(objects.len())].mesh;
-                let mesh = on_top(&mesh, below)?;
-                objects.push(Placed { stance, object, mesh, symmetry });
-                continue;
-            }
-            let (mesh, symmetry) = match (stance, &mut stances) {
-                (Stance::Stands | Stance::OnTop, _) | (_, None) => (mesh, symmetry),
-                (_, Some(random)) => held(stance, &mesh, &symmetry, random)?,
+            let may_vary = is_arranged && !objects.is_empty();
+            let stance = if may_vary { Stance::draw(stances) } else { Stance::Stands };
+            let (mesh, symmetry) = match stance {
+                Stance::Stands => (mesh, symmetry),
+                Stance::Leans | Stance::Hangs => held(stance, &mesh, &symmetry, stances)?,
+                Stance::OnTop => {
+                    let below = &objects[stances.below(objects.len())].mesh;
+                    let mesh = on_top(&mesh, below)?;
+                    objects.push(Placed { stance, object, mesh, symmetry });
+                    continue;
+                }
             };
             let from = match floor.0.len() {
                 0 => DVec2::ZERO,
@@ -244,8 +245,7 @@ fn held(stance: Stance, mesh: &Mesh, symmetry: &[Axis], random: &mut Random) -> 
     } else {
         (random_rotation(random).to_rotation_matrix(), between(random, 0.05, 0.2))
     };
-    let turned: Vec<Vector3<f64>> =
-        mesh.positions().iter().map(|p| turn * Vector3::new(p.x.into(), p.y.into(), p.z.into())).collect();
+    let turned: Vec<Vector3<f64>> = mesh.positions().iter().map(|p| turn * vector3(*p)).collect();
     let low = turned.iter().fold(f64::INFINITY, |low, p| low.min(p.z));
     let positions = turned.iter().map(|p| DVec3::new(p.x, p.y, p.z - low + lift).as_vec3()).collect();
     let symmetry = symmetry.iter().map(|&(axis, fold)| (turned_axis(turn.matrix(), axis), fold)).collect();
@@ -254,14 +254,15 @@ fn held(stance: Stance, mesh: &Mesh, symmetry: &[Axis], random: &mut Random) -> 
 
 /// A mesh over the middle of another one, touching its highest point.
 fn on_top(mesh: &Mesh, below: &Mesh) -> Result<Mesh> {
-    let (low, high) =
-        below.positions().iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)));
-    let offset = Vec3::new(0.5 * (low.x + high.x), 0.5 * (low.y + high.y), high.z);
-    Mesh::new(mesh.positions().iter().map(|p| *p + offset).collect(), mesh.triangles().to_vec())
+    let Some(bounds) = Bounds::of(below.positions()) else { return Ok(mesh.clone()) };
+    shifted(mesh, bounds.center().with_z(bounds.max.z))
 }
 
 fn moved(mesh: &Mesh, place: DVec2) -> Result<Mesh> {
-    let offset = place.extend(0.0).as_vec3();
+    shifted(mesh, place.extend(0.0).as_vec3())
+}
+
+fn shifted(mesh: &Mesh, offset: Vec3) -> Result<Mesh> {
     Mesh::new(mesh.positions().iter().map(|p| *p + offset).collect(), mesh.triangles().to_vec())
 }
 

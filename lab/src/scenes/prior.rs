@@ -146,10 +146,6 @@ fn seen_points(scene: &Scene) -> Vec<Vector3<f64>> {
     let world_from_camera = scene.camera_from_world.inverse();
     let shown: Vec<usize> = (0..scene.visible.len()).filter(|&i| scene.visible[i]).collect();
     let every = shown.len().div_ceil(FITTED_PIXELS).max(1);
-    let point = |&i: &usize| {
-        let (u, v) = ((i % scene.width) as f64, (i / scene.width) as f64);
-        let z = f64::from(scene.object_depth[i]);
-        world_from_camera.apply(vector3(scene.camera.back_project(u, v, z)))
-    };
+    let point = |&i: &usize| scene.world_point(&world_from_camera, i, scene.object_depth[i]);
     shown.iter().step_by(every).map(point).collect()
 }

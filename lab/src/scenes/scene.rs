@@ -82,8 +82,7 @@ impl ClutteredScene {
             let seed = mixed([set_seed, index as u64, attempt]);
             let things = &mut Random::new(seed, OBJECT_STREAM);
             let stances = &mut Random::new(seed, STANCE_STREAM);
-            let stances = is_arranged.then_some(stances);
-            let layout = Layout::draw(objects, &mut Random::new(seed, LAYOUT_STREAM), things, stances)?;
+            let layout = Layout::draw(objects, &mut Random::new(seed, LAYOUT_STREAM), things, stances, is_arranged)?;
             let view_random = &mut Random::new(seed, SCENE_STREAM);
             // Every tenth scene or so may show an object that the border cuts.
             let too_near = chance(view_random, 0.1);

@@ -1,9 +1,9 @@
 //! The camera, and what it sees of every object.
 
-use nalgebra::{Rotation3, Vector3};
+use nalgebra::Vector3;
 
 use super::layout::Layout;
-use crate::cases::scene::{Scene, background, count, hidden, in_front, looking, put_before};
+use crate::cases::scene::{Scene, background, camera_at, count, hidden, put_before, shown};
 use crate::draws::between;
 use sim3align_geometry::error::Result;
 use sim3align_geometry::mesh::Mesh;
@@ -58,12 +58,11 @@ impl View {
         let target = vector3(layout.centre) + Vector3::new(aside(), aside(), aside());
         let eye = vector3(layout.centre) + towards * distance;
         let forward = (target - eye).normalize();
-        let roll = Rotation3::from_axis_angle(&Vector3::z_axis(), between(random, -4.0, 4.0).to_radians());
-        let rotation = roll.matrix() * looking(&forward);
+        let camera_from_world = camera_at(&eye, &forward, between(random, -4.0, 4.0).to_radians())?;
         let (sine, cosine) = libm::sincos(layout.front);
         let faces = Vector3::new(cosine, sine, 0.0);
         let wall = (faces, layout.wall - faces.dot(&vector3(layout.centre)));
-        Ok(Self { camera, camera_from_world: Similarity::from_parts(1.0, rotation, -(rotation * eye))?, wall })
+        Ok(Self { camera, camera_from_world, wall })
     }
 
     /// What it sees.
@@ -97,7 +96,7 @@ impl View {
                 object_depth: object_depth.to_vec(),
                 object_triangles: object_triangles.to_vec(),
                 depth: depth.clone(),
-                visible: object_depth.iter().zip(others).map(|(&z, &other)| in_front(z, other)).collect(),
+                visible: shown(object_depth, others),
                 silhouette_px,
                 cut: 1.0 - share(count(object_depth)),
                 hidden: share(hidden(object_depth, others)),

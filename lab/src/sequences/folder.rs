@@ -8,15 +8,11 @@ use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
 
 use super::{Sequence, SequenceFrame};
-use crate::case_folder::camera::{depth_scale, read_camera};
-use crate::case_folder::case::{mesh_in, part};
+use crate::case_folder::case::{depth_and_camera, has_mask, last_name, mask_in, mesh_in, truth_of};
 use crate::case_folder::json;
-use crate::case_folder::pose::read_truth;
 use sim3align::evidence::frame::Frame;
 use sim3align::metrics::symmetry::Symmetry;
 use sim3align::views::View;
-use sim3align_formats::depth::{DepthReadOptions, read_depth};
-use sim3align_formats::mask::read_mask;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::similarity::Similarity;
 
@@ -28,7 +24,7 @@ pub fn read_sequence(folder: &Path) -> Result<Sequence> {
     let mut folders: Vec<PathBuf> = fs::read_dir(folder)
         .map_err(|error| missing(folder, error.to_string()))?
         .filter_map(|entry| Some(entry.ok()?.path()))
-        .filter(|path| path.is_dir() && name_of(path).starts_with("frame_"))
+        .filter(|path| path.is_dir() && last_name(path).starts_with("frame_"))
         .collect();
     folders.sort();
     if folders.is_empty() {
@@ -36,41 +32,28 @@ pub fn read_sequence(folder: &Path) -> Result<Sequence> {
     }
     let frames = folders.iter().map(|folder| read_frame(folder)).collect::<Result<Vec<_>>>()?;
     Ok(Sequence {
-        name: name_of(folder),
+        name: last_name(folder),
         kind: "real".into(),
         mesh: mesh_in(folder)?,
         symmetry: Symmetry::Auto,
         frames,
-        world_from_mesh: truth(folder)?,
     })
 }
 
 fn read_frame(folder: &Path) -> Result<SequenceFrame> {
-    let camera = part(folder, &["camera.json"])?;
-    let depth = part(folder, &["depth.npy", "depth.png"])?;
-    let mask = part(folder, &["mask.png", "mask.npy"]).ok();
-    let options = DepthReadOptions { depth_scale: None, integer_depth_scale: depth_scale(&camera) };
-    let depth = read_depth(&depth, &options)?;
-    let camera = read_camera(&camera, [depth.width(), depth.height()])?;
-    let mask = mask.map(|bytes| read_mask(&bytes)).transpose()?;
+    let (depth, camera) = depth_and_camera(folder)?;
+    let mask = if has_mask(folder) { Some(mask_in(folder)?) } else { None };
     let world_from_camera = match fs::read(folder.join("pose.json")) {
         Ok(bytes) => Some(camera_to_world(&bytes)?),
         Err(_) => None,
     };
     Ok(SequenceFrame {
-        name: name_of(folder),
+        name: last_name(folder),
         view: View { frame: Frame { depth, camera, mask }, world_from_camera },
-        camera_from_mesh: truth(folder)?,
+        camera_from_mesh: truth_of(folder)?.map(|(pose, _)| pose),
         visible: 1.0,
         is_wrong: false,
     })
-}
-
-fn truth(folder: &Path) -> Result<Option<Similarity>> {
-    match fs::read(folder.join("gt.json")) {
-        Ok(bytes) => Ok(read_truth(&bytes)?.map(|(pose, _)| pose)),
-        Err(_) => Ok(None),
-    }
 }
 
 /// `camera_to_world`, 4 × 4 by rows.
@@ -81,10 +64,6 @@ fn camera_to_world(bytes: &[u8]) -> Result<Similarity> {
     let rows = rows.ok_or_else(|| json::corrupt("pose", json::found(given.or(Some(&Value::Null))), "4 × 4 numbers"))?;
     let rotation = Matrix3::new(rows[0], rows[1], rows[2], rows[4], rows[5], rows[6], rows[8], rows[9], rows[10]);
     Similarity::from_parts(1.0, rotation, Vector3::new(rows[3], rows[7], rows[11]))
-}
-
-fn name_of(path: &Path) -> String {
-    path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
 fn missing(folder: &Path, found: String) -> Error {

@@ -19,7 +19,7 @@ use crate::draws::normal;
 pub struct Sequence {
     /// Name of the case.
     pub name: String,
-    /// What it tests.
+    /// Kind of case, the row group in tables.
     pub kind: String,
     /// The mesh.
     pub mesh: Mesh,
@@ -27,8 +27,6 @@ pub struct Sequence {
     pub symmetry: Symmetry,
     /// The frames.
     pub frames: Vec<SequenceFrame>,
-    /// The true pose in the world, where the camera poses are known.
-    pub world_from_mesh: Option<Similarity>,
 }
 
 /// A frame of a sequence.

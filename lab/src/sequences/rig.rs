@@ -11,7 +11,7 @@ use sim3align::views::View;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::random::Random;
 
-/// Random streams of a rig.
+/// Random stream of a rig.
 const STREAM: u64 = 31;
 /// Draws of a case until one shows enough.
 const DRAWS: u64 = 64;
@@ -107,7 +107,6 @@ impl RigSet {
             mesh: made.mesh,
             symmetry: made.symmetry,
             frames,
-            world_from_mesh: Some(made.world_from_mesh),
         }))
     }
 }

@@ -3,7 +3,7 @@
 use core::f64::consts::TAU;
 
 use glam::{DAffine3, DVec3};
-use nalgebra::{Rotation3, Vector3};
+use nalgebra::Vector3;
 
 use crate::cases::case::declared;
 use crate::cases::distortion::canonicalise;
@@ -12,7 +12,7 @@ use crate::cases::families;
 use crate::cases::generator::generate;
 use crate::cases::mask::Segmented;
 use crate::cases::readings::Readings;
-use crate::cases::scene::{Scene, background, hidden, in_front, looking, put_before, put_down};
+use crate::cases::scene::{Scene, background, camera_at, count, hidden, put_before, put_down, shown};
 use crate::cases::solid::Solid;
 use crate::cases::tier::{Class, Tier};
 use crate::draws::between;
@@ -40,7 +40,7 @@ pub struct Stage {
     neighbours: Option<Mesh>,
     /// The intrinsics of all frames.
     pub camera: Pinhole,
-    /// Centre of the object, and the distance from which it spans a usual number of pixels.
+    /// Centre of the object, and the distance at which it spans 150 to 280 pixels.
     pub center: Vector3<f64>,
     /// See `center`.
     pub distance: f64,
@@ -88,9 +88,7 @@ impl Stage {
         let towards = Vector3::new(cosine * level, sine * level, rise);
         let eye = self.center + towards * distance;
         let forward = (self.center + past - eye).normalize();
-        let roll = Rotation3::from_axis_angle(&Vector3::z_axis(), roll.to_radians());
-        let rotation = roll.matrix() * looking(&forward);
-        Similarity::from_parts(1.0, rotation, -(rotation * eye))
+        camera_at(&eye, &forward, roll.to_radians())
     }
 
     /// The scene as a camera sees it, with something in front.
@@ -107,9 +105,9 @@ impl Stage {
         let mut depth = background(camera_from_world, &self.camera, (Vector3::x(), WALL_M), width, height);
         put_before(&mut depth, &object_depth);
         put_before(&mut depth, &others);
-        let silhouette_px = object_depth.iter().filter(|z| **z > 0.0).count();
+        let silhouette_px = count(&object_depth);
         let hidden = hidden(&object_depth, &others) as f64 / silhouette_px.max(1) as f64;
-        let visible = object_depth.iter().zip(&others).map(|(&z, &other)| in_front(z, other)).collect();
+        let visible = shown(&object_depth, &others);
         Scene {
             width,
             height,

@@ -24,7 +24,7 @@ const STREAM: u64 = 32;
 const DRAWS: u64 = 64;
 const MIN_PX: usize = 2500;
 
-/// What a video shows.
+/// Kinds of video.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Motion {
     /// A camera in a hand, which moves to and fro.
@@ -167,7 +167,6 @@ impl VideoSet {
             mesh: made.mesh,
             symmetry: made.symmetry,
             frames,
-            world_from_mesh: Some(made.world_from_mesh),
         }))
     }
 }

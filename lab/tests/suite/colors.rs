@@ -1,4 +1,4 @@
-//! The generated set of coloured objects: each class shows its effect, and colour decides what shape leaves.
+//! The generated set of coloured objects: each class shows its effect, and colour decides where shape does not.
 
 use sim3align::align::evaluate::{EvaluateOptions, evaluate_prepared};
 use sim3align::align::task::AlignTask;

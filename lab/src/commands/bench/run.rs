@@ -24,8 +24,8 @@ use super::table;
 /// The source of a case.
 pub enum Source {
     Generated(CaseSet, usize),
-    /// A case of the generated set with the mesh of the next one.
-    Misfit(usize),
+    /// A case of a generated set with the mesh of the next one.
+    Misfit(CaseSet, usize),
     Scene {
         scene: usize,
         pair: usize,
@@ -40,7 +40,8 @@ impl Source {
         match self {
             Self::Generated(CaseSet::General, index) => format!("generated-{index:04}"),
             Self::Generated(set, index) => format!("{}-{index:04}", set.as_str()),
-            Self::Misfit(index) => format!("misfit-{index:04}"),
+            Self::Misfit(CaseSet::General, index) => format!("misfit-{index:04}"),
+            Self::Misfit(set, index) => format!("misfit-{}-{index:04}", set.as_str()),
             Self::Scene { scene, pair, prior } => format!("scene-{scene:03}-{pair}-{}", prior.as_str()),
             Self::Folder(folder) => folder.file_name().unwrap_or_default().to_string_lossy().into_owned(),
         }
@@ -100,7 +101,7 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
                 let case = set.case(*index).map_err(|error| error.to_string())?;
                 case.write(&folder.join(case.name())).map_err(|error| error.to_string())
             }
-            Source::Misfit(_) | Source::Scene { .. } | Source::Folder(_) => Ok(()),
+            Source::Misfit(..) | Source::Scene { .. } | Source::Folder(_) => Ok(()),
         })
         .map(drop);
     }
@@ -192,7 +193,7 @@ fn run_row(case: &BenchCase, row: &Row) -> Record {
 fn load(source: &Source, set: &EvaluationSet, scenes: &Scenes) -> Result<BenchCase, String> {
     let case = match source {
         Source::Generated(_, index) => set.case(*index).map(BenchCase::from),
-        Source::Misfit(index) => set.case(index + 1).and_then(|other| {
+        Source::Misfit(_, index) => set.case(index + 1).and_then(|other| {
             let case = BenchCase::from(set.case(*index)?);
             let name = format!("misfit-{}", case.name);
             Ok(BenchCase { name, class: "misfit".into(), mesh: other.mesh, colors: None, ..case })
@@ -213,7 +214,7 @@ fn sources(arguments: &Arguments, scenes: &Scenes) -> Result<Vec<Source>, String
     };
     let of_set = |index| Source::Generated(arguments.set, index);
     let mut sources: Vec<Source> = generated.into_iter().map(of_set).collect();
-    sources.extend((0..arguments.misfits).map(Source::Misfit));
+    sources.extend((0..arguments.misfits).map(|index| Source::Misfit(arguments.set, index)));
     sources.extend(scenes.sources(&arguments.priors));
     for folder in &arguments.cases {
         sources.extend(case_folders(folder)?.into_iter().map(Source::Folder));

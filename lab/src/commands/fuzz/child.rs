@@ -8,15 +8,15 @@ use std::process::exit;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
+use sim3align_lab::cpu_time::{CpuTimer, of_main_thread};
 use sim3align_lab::fuzz::choices::Choices;
 use sim3align_lab::fuzz::target::{Answer, Ceilings, Execution, Target};
 
 use super::super::Failure;
 use super::arguments::Arguments;
-use sim3align_lab::fuzz::cpu::{CpuTimer, of_main_thread};
 
 /// Exit status after a fault that was printed.
-pub const FAULT: i32 = 3;
+const FAULT: i32 = 3;
 /// Times the ceiling after which a call is given up: of computing, and of waiting.
 const PATIENCE: [f64; 2] = [4.0, 40.0];
 /// Milliseconds between looks at the current call.
@@ -68,7 +68,7 @@ pub fn seed_of(seed: u32, number: u64) -> u64 {
     u64::from(seed) << 32 ^ number
 }
 
-/// Makes the call of a file of choices under the same watch; prints what is passed and what comes back.
+/// Replays a file of choices under the same watch; prints the arguments and the outcome.
 pub fn replay(target: Target, path: &Path, ceilings: &Ceilings) -> Result<(), Failure> {
     let failed = |words: String| Failure::Failed(format!("{}: {words}", path.display()));
     let text = std::fs::read_to_string(path).map_err(|error| failed(error.to_string()))?;

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
-use std::path::{Path, PathBuf};
+use std::ops::Range;
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -17,7 +18,7 @@ use super::child::seed_of;
 
 /// Trials of the minimisation of one fault, and of one that takes long.
 const TRIALS: [usize; 2] = [300, 20];
-/// Readers are called so many times as often as `--executions` says.
+/// Factor on `--executions` for readers.
 const READER_CALLS: u64 = 1000;
 /// Faults after which a target is left alone.
 const MAX_FAULTS: usize = 20;
@@ -76,7 +77,7 @@ fn next_batch<'a>(
     arguments: &'a Arguments,
     sums: &Mutex<BTreeMap<&'a str, Sums>>,
     end: Instant,
-) -> Option<(Target, std::ops::Range<u64>)> {
+) -> Option<(Target, Range<u64>)> {
     let mut sums = sums.lock().unwrap_or_else(PoisonError::into_inner);
     let most = |target: &Target| match arguments.executions {
         Some(count) => count * if target.name == "readers" { READER_CALLS } else { 1 },
@@ -103,13 +104,13 @@ fn next_batch<'a>(
 
 fn run_batch<'a>(
     target: Target,
-    mut range: std::ops::Range<u64>,
+    mut range: Range<u64>,
     arguments: &'a Arguments,
     sums: &Mutex<BTreeMap<&'a str, Sums>>,
 ) -> Result<(), Failure> {
     while !range.is_empty() {
         let (at, end) = calls(target, range.clone(), arguments, &[])?;
-        let fault = match end {
+        let (number, words) = match end {
             Some(End::Done(new)) => {
                 let mut sums = sums.lock().unwrap_or_else(PoisonError::into_inner);
                 add(sums.entry(target.name).or_default(), &new);
@@ -119,7 +120,6 @@ fn run_batch<'a>(
             // It died without a report: the calls are repeated one at a time.
             None => crash(target, at..range.end, arguments)?,
         };
-        let (number, words) = fault;
         keep(target, number, &words, arguments)?;
         let mut sums = sums.lock().unwrap_or_else(PoisonError::into_inner);
         let known = sums.entry(target.name).or_default();
@@ -137,7 +137,7 @@ fn run_batch<'a>(
 /// Makes a range of calls in a process; the number it was at, and how it ended.
 fn calls(
     target: Target,
-    range: std::ops::Range<u64>,
+    range: Range<u64>,
     arguments: &Arguments,
     flags: &[&str],
 ) -> Result<(u64, Option<End>), Failure> {
@@ -159,7 +159,7 @@ fn calls(
             _ => {}
         }
     }
-    // The last line says more than the exit status.
+    // The last line printed tells more than the exit status.
     let _ = child.wait();
     Ok((at, end))
 }
@@ -189,7 +189,7 @@ fn add(sums: &mut Sums, new: &Sums) {
 }
 
 /// Finds the call that ends its process without a report: makes the calls again, and each is announced.
-fn crash(target: Target, range: std::ops::Range<u64>, arguments: &Arguments) -> Result<(u64, String), Failure> {
+fn crash(target: Target, range: Range<u64>, arguments: &Arguments) -> Result<(u64, String), Failure> {
     let start = range.start;
     match calls(target, range, arguments, &["--trace"])? {
         (_, Some(End::Fault(number, words))) => Ok((number, words)),
@@ -228,7 +228,7 @@ fn keep(target: Target, number: u64, words: &str, arguments: &Arguments) -> Resu
     write(&path, &smallest, words).map_err(failed)
 }
 
-fn write(path: &PathBuf, list: &[u32], words: &str) -> std::io::Result<()> {
+fn write(path: &Path, list: &[u32], words: &str) -> std::io::Result<()> {
     let numbers: Vec<String> = list.iter().map(u32::to_string).collect();
     std::fs::write(path, format!("# {words}\n{}\n", numbers.join(" ")))
 }

@@ -141,7 +141,7 @@ pub fn call(c: &mut Choices) -> Call {
     let scale = c.pick(&[None, None, Some(0.001), Some(0.0), Some(f64::NAN), Some(1e300), Some(1e-300)]);
     Call {
         description: format!("{name}, damaged: {} bytes", bytes.len()),
-        // A file may ask for memory in proportion to what it holds.
+        // Ceilings apply: memory must stay in proportion to the file.
         is_bounded: true,
         run: Box::new(move || read(&bytes, format, scale)),
     }
@@ -242,7 +242,7 @@ fn replace(bytes: &mut Vec<u8>, at: usize, belongs: impl Fn(u8) -> bool, new: &s
     if new.len() < length {
         new.resize(length, b' ');
     }
-    // Takes spaces after it, too.
+    // Also overwrites the spaces that follow.
     let spaces = bytes[start + length..].iter().take_while(|byte| **byte == b' ').count();
     let end = (start + new.len().max(length)).min(start + length + spaces);
     drop(bytes.splice(start..end, new));

@@ -1,14 +1,14 @@
 //! `data:` URIs and percent-encoding.
 
 /// The bytes of a `data:` URI, base64 or percent-encoded; `None` for any other URI.
-pub(super) fn decode(uri: &str) -> Option<Vec<u8>> {
+pub(crate) fn decode(uri: &str) -> Option<Vec<u8>> {
     let (head, body) = uri.strip_prefix("data:")?.split_once(',')?;
     let body = percent_decode(body.as_bytes());
     if head.trim_end().ends_with(";base64") { base64(&body) } else { Some(body) }
 }
 
 /// Decodes `%20` → space, and so on. A `%` without two hexadecimal digits is kept.
-pub(super) fn percent_decode(text: &[u8]) -> Vec<u8> {
+pub(crate) fn percent_decode(text: &[u8]) -> Vec<u8> {
     let digit = |b: Option<&u8>| b.and_then(|&b| char::from(b).to_digit(16)).map(|d| d as u8);
     let mut decoded = Vec::with_capacity(text.len());
     let mut rest = text;
