@@ -21,7 +21,7 @@ use crate::precise::prepared_mesh::PreparedMesh;
 use crate::precise::recipe::SURE;
 use crate::precise::rounds::Rounds;
 use crate::precise::surroundings::Neighbourhood;
-use crate::precise::{Certainty, Found, SearchSettings};
+use crate::precise::{Certainty, Earlier, Found, SearchSettings};
 use crate::progress::{Host, Stopwatch};
 use crate::report::{Alignment, Effort, PaperAlignment, PreciseDiagnostics, Solution};
 
@@ -278,9 +278,10 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
     ) -> Result<State> {
         let settings = self.efforts.iter().find(|settings| settings.effort == given.effort).ok_or_else(over)?.again();
         let (observation, mesh) = (self.observation.borrow(), self.mesh.borrow());
-        let found = (given.found.as_slice(), given.renders, given.confidence >= SURE);
+        let is_sure = given.confidence >= SURE;
+        let earlier = Earlier { clean, found: &given.found, renders: given.renders, is_sure };
         let rounds =
-            precise::resume(observation, mesh, clean, found, given.known.clone(), &self.options, &settings, stages)?;
+            precise::resume(observation, mesh, earlier, given.known.clone(), &self.options, &settings, stages)?;
         Ok(State::Resumed(clouds, Box::new(rounds)))
     }
 

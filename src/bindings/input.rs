@@ -1,5 +1,7 @@
 //! Observation and mesh from JavaScript objects.
 
+use std::sync::Arc;
+
 use js_sys::Uint16Array;
 use wasm_bindgen::{JsCast, JsValue};
 
@@ -30,11 +32,12 @@ pub fn observation(input: &JsValue) -> Result<Observation> {
     }
 }
 
-/// The depth map, the camera and, if there is one, the mask of an input.
+/// The depth map, the camera and, if there are any, the mask and the photo of an input.
 pub fn frame(input: &JsValue) -> Result<Frame> {
     let (depth, camera) = view(input)?;
     let mask = get(input, "mask").map(|_| mask(input, depth.width(), depth.height())).transpose()?;
-    Ok(Frame { depth, camera, mask })
+    let photo = get(input, "image").map(|image| photo(&image)).transpose()?.map(Arc::new);
+    Ok(Frame { depth, camera, mask, photo })
 }
 
 /// The depth map and the camera of an input.

@@ -1,6 +1,9 @@
 //! A frame: depth and camera, and the mask of the object where it is known.
 
+use std::sync::Arc;
+
 use super::observation::Observation;
+use super::photo::Photo;
 use crate::error::Result;
 use crate::geometry::image::{DepthMap, Mask};
 use crate::geometry::pinhole::Pinhole;
@@ -14,19 +17,26 @@ pub struct Frame {
     pub camera: Pinhole,
     /// The mask of the object, of the size of the depth map, if it is known.
     pub mask: Option<Mask>,
+    /// The photo, with the field of view of the depth map, if there is one.
+    pub photo: Option<Arc<Photo>>,
 }
 
 impl Frame {
     /// The observation of the frame; `None` without a mask.
     ///
     /// # Errors
-    /// As [`Observation::new`].
+    /// As [`Observation::new`] and [`Observation::with_photo`].
     pub fn observation(&self) -> Result<Option<Observation>> {
-        self.mask.clone().map(|mask| Observation::new(self.depth.clone(), mask, self.camera)).transpose()
+        let Some(mask) = self.mask.clone() else { return Ok(None) };
+        let observation = Observation::new(self.depth.clone(), mask, self.camera)?;
+        Ok(Some(match &self.photo {
+            Some(photo) => observation.with_photo(photo.clone())?,
+            None => observation,
+        }))
     }
 
-    /// The part of the frame in a box of pixels, [first, end) along columns and rows, at every `step`-th pixel. The camera
-    /// frame stays the same.
+    /// The part of the frame in a box of pixels, [first, end) along columns and rows, at every `step`-th pixel, without the
+    /// photo. The camera frame stays the same.
     pub fn window(&self, bounds: [[usize; 2]; 2], step: usize) -> Self {
         let width = self.depth.width();
         let step = step.max(1);
@@ -48,6 +58,6 @@ impl Frame {
             cx: (cx - bounds[0][0] as f64) * scale,
             cy: (cy - bounds[1][0] as f64) * scale,
         };
-        Self { depth, camera, mask }
+        Self { depth, camera, mask, photo: None }
     }
 }

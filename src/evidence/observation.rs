@@ -61,9 +61,10 @@ impl Observation {
     ///
     /// # Errors
     /// [`ErrorCode::SizeMismatch`] if the photo cannot have the field of view of the depth map.
-    pub fn with_photo(self, photo: Photo) -> Result<Self> {
+    pub fn with_photo(self, photo: impl Into<Arc<Photo>>) -> Result<Self> {
+        let photo = photo.into();
         check_photo(&photo, [self.depth.width(), self.depth.height()])?;
-        Ok(Self { photo: Some(Arc::new(photo)), ..self })
+        Ok(Self { photo: Some(photo), ..self })
     }
 
     /// The observation without its photo.

@@ -10,6 +10,20 @@ const ASPECT: f64 = 0.02;
 /// A photo, registered to the depth map: it shows the same field of view, at any size. sRGB-encoded.
 pub type Photo = Image<Rgb>;
 
+/// The part of a photo that an image shows, relative to its sides.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PhotoRegion {
+    /// The left upper corner.
+    pub corner: [f64; 2],
+    /// Width and height.
+    pub size: [f64; 2],
+}
+
+impl PhotoRegion {
+    /// All of it.
+    pub const WHOLE: Self = Self { corner: [0.0; 2], size: [1.0; 2] };
+}
+
 /// Checks that a photo can have the field of view of a depth map of this size.
 ///
 /// # Errors

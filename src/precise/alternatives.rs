@@ -64,7 +64,7 @@ fn alternative(best: &Found, other: &Found, color_margin: Option<f64>, search: &
 
 /// Tells the alternatives how well their colours agree with the photo, and adds poses that look different, though their
 /// shape does not.
-pub(super) fn add_rivals(alternatives: &mut Vec<Alternative>, best: &Found, rivals: &[Rival], search: &Search) {
+pub(crate) fn add_rivals(alternatives: &mut Vec<Alternative>, best: &Found, rivals: &[Rival], search: &Search) {
     let rotation = |other: &Alternative| glam::DQuat::from_array(other.camera_from_mesh.rotation);
     let mut added = 0;
     for rival in rivals {

@@ -9,7 +9,7 @@ use glam::{DMat4, DVec4, Vec3};
 use super::grid::CropGrid;
 use super::pose::MeshFrame;
 use super::render::Canvas;
-use crate::evidence::photo::Photo;
+use crate::evidence::photo::{Photo, PhotoRegion};
 use crate::geometry::surface_colors::SurfaceColors;
 
 /// Maximum number of pixels along a side of a cell whose mean is its colour.
@@ -46,16 +46,18 @@ pub struct Appearance {
 }
 
 impl PhotoCells {
-    /// The means of the photo on the cells of a grid. `image` is the size of the depth map in pixels.
-    pub fn new(photo: &Photo, image: [usize; 2], grid: &CropGrid) -> Self {
+    /// The means of the photo on the cells of a grid. `image` is the size in pixels of the depth map, which shows this
+    /// region of the photo.
+    pub fn new(photo: &Photo, region: &PhotoRegion, image: [usize; 2], grid: &CropGrid) -> Self {
         let sizes = [photo.width(), photo.height()];
-        let ratio: [f64; 2] = core::array::from_fn(|k| sizes[k] as f64 / image[k] as f64);
+        let ratio: [f64; 2] = core::array::from_fn(|k| sizes[k] as f64 * region.size[k] / image[k] as f64);
+        let corner: [f64; 2] = core::array::from_fn(|k| sizes[k] as f64 * region.corner[k]);
         let samples: [usize; 2] =
             core::array::from_fn(|k| ((grid.cell[k] * ratio[k]).ceil() as usize).clamp(1, MAX_SAMPLES));
         // The pixel at a sample of a cell.
         let at = |i: usize, k: usize, axis: usize| {
             let within = (k as f64 + 0.5) / samples[axis] as f64;
-            let x = (grid.corner[axis] + (i as f64 + within) * grid.cell[axis]) * ratio[axis];
+            let x = (grid.corner[axis] + (i as f64 + within) * grid.cell[axis]) * ratio[axis] + corner[axis];
             (x >= 0.0 && x < sizes[axis] as f64).then_some(x as usize)
         };
         let mut colors = Vec::with_capacity(grid.width * grid.height);
@@ -122,6 +124,11 @@ impl Appearance {
             agreement: common / ((photo + noise) * (mesh + noise)).sqrt(),
             contrasts: cells.iter().map(|cell| (cell.index, cell.mesh)).collect(),
         }
+    }
+
+    /// Number of cells that were compared.
+    pub fn cells(&self) -> usize {
+        self.contrasts.len()
     }
 
     /// The mean squared difference of the contrasts of two poses, on their common cells, relative to the noise.

@@ -6,9 +6,10 @@
 
 use std::rc::Rc;
 
-use glam::DVec3;
+use glam::DQuat;
 
 use super::appearance::{Appearance, PhotoCells};
+use super::choice::{Choice, HIDDEN, Look, SHAPE, best_roll};
 use super::clean::CleanObservation;
 use super::lookalikes::{Lookalike, lookalikes};
 use super::pose::CropPose;
@@ -20,39 +21,26 @@ use super::rounds::Rounds;
 use super::score::NOISE;
 use super::search::{Found, Search};
 use crate::evidence::observation::Observation;
-use crate::evidence::photo::Photo;
-use crate::geometry::order::largest;
+use crate::evidence::photo::{Photo, PhotoRegion};
 use crate::geometry::rotations::{angle_between, exp};
 use crate::geometry::similarity::Similarity;
 use crate::geometry::surface_colors::SurfaceColors;
-use crate::report::{ColorReport, ColorVerdict, Effort};
+use crate::report::{ColorReport, Effort};
 
-/// Minimum correlation of the best pose with the photo for colour to decide.
-const AGREES: f64 = 0.3;
-/// Correlation that outweighs a difference of 1 between shape scores.
-pub(super) const SHAPE: f64 = 0.5;
-/// Gain for which another pose than that of shape is taken.
-const MIN_GAIN: f64 = 0.02;
 /// Contrast between two poses, relative to the noise, from which on they look different.
-const DIFFERENT: f64 = 2.0;
+pub const DIFFERENT: f64 = 2.0;
 /// Minimum rotation between poses that are rivals, radians.
 const RIVAL: f64 = 0.35;
-/// Factor of the correlation in the logarithm of the odds of two poses.
-const ODDS: f64 = 15.0;
-/// Minimum certainty where no pose agrees: as likely as not, the colours of the mesh mean nothing, and the turns that its
-/// shape allows are all right.
-const UNMATCHED: f64 = 0.5;
 /// Steps of the refinement of a lookalike, and of the pose that colour chose.
 const STEPS: [usize; 2] = [4, 6];
-/// Standard deviation of a rotation, radians, from which on colour refines it; and the angles of its steps.
-const LOOSE: f64 = 0.05;
-const ROLL_STEPS: [f64; 4] = [0.12, 0.06, 0.03, 0.015];
+/// Standard deviation of a rotation, radians, from which on colour refines it.
+pub const LOOSE: f64 = 0.05;
 
 /// The comparison of a search's poses with the photo, in steps.
 pub struct ColorStage {
     photo: PhotoCells,
     /// What is still to be compared, last first.
-    queue: Vec<Lookalike>,
+    queue: Vec<Lookalike<CropPose>>,
     compared: Vec<Compared>,
 }
 
@@ -60,8 +48,7 @@ pub struct ColorStage {
 struct Compared {
     found: Found,
     appearance: Appearance,
-    /// The agreement with the photo, with the difference of the shape scores.
-    total: f64,
+    look: Look,
 }
 
 /// A pose that shape cannot tell from the chosen one, but that looks different.
@@ -82,6 +69,8 @@ pub struct Judgment {
     pub certainty: f64,
     /// For the result.
     pub report: ColorReport,
+    /// Whether a pose agrees with the photo, so that colour counts.
+    pub is_used: bool,
 }
 
 impl ColorStage {
@@ -89,7 +78,7 @@ impl ColorStage {
     pub fn new(rounds: &Rounds, photo: &Photo) -> Self {
         let search = &rounds.search;
         let queue = lookalikes(rounds).into_iter().rev().collect();
-        Self { photo: PhotoCells::new(photo, search.observation.image, &search.fine), queue, compared: Vec::new() }
+        Self { photo: cells(photo, search), queue, compared: Vec::new() }
     }
 
     /// Compares poses until all are or `pause`, which is called after each, returns true. Returns whether all are.
@@ -137,93 +126,83 @@ impl ColorStage {
             return None;
         }
         let appearance = self.photo.compare(canvas, colors, &search.mesh.frame, &search.fine)?;
-        let total = appearance.agreement + SHAPE * f64::from(score.total - shape);
-        Some(Compared { found: Found { pose, score, ..*best }, appearance, total })
+        let look = Look::new(appearance.agreement, score.total - shape);
+        Some(Compared { found: Found { pose, score, ..*best }, appearance, look })
     }
 
     /// Chooses among the compared poses.
     pub fn judge(&self, rounds: &Rounds, colors: &SurfaceColors) -> Judgment {
-        let Some(first) = self.compared.first() else { return Judgment::none() };
-        let most = self.compared.iter().fold(f64::NEG_INFINITY, |most, c| most.max(c.appearance.agreement));
-        let is_used = most >= AGREES;
-        let best = self.compared.iter().fold(first, |best, c| if c.total > best.total { c } else { best });
-        let chosen = if is_used && best.total > first.total + MIN_GAIN { best } else { first };
-        let is_rival = |other: &&Compared| {
-            angle_between(other.found.pose.rotation, chosen.found.pose.rotation) > RIVAL
-                && other.appearance.difference(&chosen.appearance) > DIFFERENT
+        let looks = self.compared.iter().map(|compared| compared.look).collect();
+        let differ = |a: usize, b: usize| {
+            let [a, b] = [a, b].map(|k| &self.compared[k]);
+            are_rivals(a.found.pose.rotation, b.found.pose.rotation)
+                && a.appearance.difference(&b.appearance) > DIFFERENT
         };
-        let rivals: Vec<&Compared> = self.compared.iter().filter(is_rival).collect();
-        let order = largest(rivals.iter().map(|rival| rival.total as f32), rivals.len());
-        let rivals: Vec<&Compared> = order.into_iter().map(|i| rivals[i as usize]).collect();
-        let is_changed = !core::ptr::eq(chosen, first);
-        let verdict = match (rivals.is_empty(), is_used, is_changed) {
-            (true, ..) => ColorVerdict::Uniform,
-            (_, false, _) => ColorVerdict::Unmatched,
-            (_, _, false) => ColorVerdict::Agreed,
-            (_, _, true) => ColorVerdict::Decided,
-        };
-        let mut found = chosen.found;
+        let Some(choice) = Choice::among(looks, differ) else { return Judgment::none() };
+        let is_changed = choice.chosen != 0;
+        let mut found = self.compared[choice.chosen].found;
         if is_changed {
             found.pose = polished(rounds, found.pose);
         }
-        let rolled = if is_used { self.roll(rounds, colors, found.pose) } else { None };
+        let rolled = if choice.is_used { roll(&rounds.search, &self.photo, colors, found.pose, LOOSE) } else { None };
         let gain = rolled.map_or(0.0, |(_, gain)| gain);
         if let Some((pose, _)) = rolled {
             found.pose = pose;
         }
-        let agreement = chosen.appearance.agreement + gain;
-        let lead = |rival: &Compared| if is_used { chosen.total + gain - rival.total } else { 0.0 };
-        let odds: f64 = rivals.iter().map(|rival| libm::exp(-ODDS * lead(rival))).sum();
-        let margin = |rival: &Compared| agreement - rival.appearance.agreement;
+        let rival = |&k: &usize| Rival { found: self.compared[k].found, margin: choice.margin(k, gain) };
         Judgment {
             chosen: (is_changed || rolled.is_some()).then_some(found),
-            certainty: (1.0 / (1.0 + odds)).max(if is_used { 0.0 } else { UNMATCHED }),
-            report: ColorReport { verdict, agreement, margin: rivals.first().map(|rival| lead(rival)) },
-            rivals: rivals.iter().map(|rival| Rival { found: rival.found, margin: margin(rival) }).collect(),
+            certainty: choice.certainty(gain),
+            report: choice.report(gain),
+            rivals: choice.rivals.iter().map(rival).collect(),
+            is_used: choice.is_used,
         }
-    }
-
-    /// Rolls a pose about the axis that shape leaves open to where its colours agree best, and the gain of agreement;
-    /// `None` if shape leaves none, or no roll is better.
-    fn roll(&self, rounds: &Rounds, colors: &SurfaceColors, pose: CropPose) -> Option<(CropPose, f64)> {
-        let search = &rounds.search;
-        let (conditioning, _) = search.conditioning(&pose);
-        let (deviation, axis) = conditioning?.rotation;
-        if deviation < LOOSE {
-            return None;
-        }
-        let mut canvas = Canvas::default();
-        let objective = search.objective(FINE, &search.fine);
-        let mut total = |angle: f64| {
-            let turned = self.rolled(rounds, &pose, axis, angle);
-            let score = objective.score(&mut canvas, &turned);
-            let appearance = self.photo.compare(&canvas, colors, &search.mesh.frame, &search.fine);
-            appearance.map_or(f64::NEG_INFINITY, |a| a.agreement + SHAPE * f64::from(score.total))
-        };
-        let start = total(0.0);
-        let mut best = (start, 0.0);
-        for step in ROLL_STEPS {
-            let middle = best.1;
-            for angle in [middle - step, middle + step] {
-                let there = total(angle);
-                if there > best.0 {
-                    best = (there, angle);
-                }
-            }
-        }
-        (best.1 != 0.0).then(|| (self.rolled(rounds, &pose, axis, best.1), best.0 - start))
-    }
-
-    fn rolled(&self, rounds: &Rounds, pose: &CropPose, axis: DVec3, angle: f64) -> CropPose {
-        rounds.search.mesh.turns.turned(pose, exp(axis * angle) * pose.rotation)
     }
 }
 
+/// Whether two poses are so far apart that one of them is wrong.
+pub fn are_rivals(a: DQuat, b: DQuat) -> bool {
+    angle_between(a, b) > RIVAL
+}
+
+/// Rolls a pose about the axis that shape leaves open to where its colours agree best, and the gain of agreement; `None`
+/// if shape leaves none by `loose` radians, or no roll is better.
+pub fn roll(
+    search: &Search,
+    photo: &PhotoCells,
+    colors: &SurfaceColors,
+    pose: CropPose,
+    loose: f64,
+) -> Option<(CropPose, f64)> {
+    let (conditioning, _) = search.conditioning(&pose);
+    let (deviation, axis) = conditioning?.rotation;
+    if deviation < loose {
+        return None;
+    }
+    let rolled = |angle: f64| search.mesh.turns.turned(&pose, exp(axis * angle) * pose.rotation);
+    let mut canvas = Canvas::default();
+    let objective = search.objective(FINE, &search.fine);
+    let (angle, gain) = best_roll(|angle| {
+        let score = objective.score(&mut canvas, &rolled(angle));
+        let appearance = photo.compare(&canvas, colors, &search.mesh.frame, &search.fine);
+        appearance.map_or(f64::NEG_INFINITY, |a| Look::new(a.agreement, score.total).total)
+    })?;
+    Some((rolled(angle), gain))
+}
+
 impl Judgment {
+    /// The smallest lead over a pose that looks different, in units of the shape score, of which no more than [`NOISE`]
+    /// counts; negative infinity if colour does not count.
+    pub fn lead(&self) -> f64 {
+        if !self.is_used {
+            return f64::NEG_INFINITY;
+        }
+        self.rivals.iter().fold(f64::from(NOISE), |least, rival| least.min(rival.margin.max(0.0) / SHAPE))
+    }
+
     /// Nothing can be compared.
     fn none() -> Self {
-        let report = ColorReport { verdict: ColorVerdict::Hidden, agreement: 0.0, margin: None };
-        Self { chosen: None, rivals: Vec::new(), certainty: 1.0, report }
+        Self { chosen: None, rivals: Vec::new(), certainty: 1.0, report: HIDDEN, is_used: false }
     }
 }
 
@@ -240,11 +219,20 @@ pub fn agreement(
     let settings = SearchSettings::from(Effort::Fast);
     let clean = clean.unwrap_or_else(|| Rc::new(CleanObservation::new(observation)));
     let search = Search::new(clean, mesh.pyramid(&settings.grids)?, settings);
-    let photo = PhotoCells::new(photo, search.observation.image, &search.fine);
     let pose = CropPose::of_similarity(pose, &search.mesh.frame)?;
+    agreement_at(&search, &cells(photo, &search), colors, &pose)
+}
+
+/// The correlation of the colours of a pose with the photo; `None` if nothing can be compared.
+pub fn agreement_at(search: &Search, photo: &PhotoCells, colors: &SurfaceColors, pose: &CropPose) -> Option<f64> {
     let mut canvas = Canvas::default();
-    search.objective(FINE, &search.fine).score(&mut canvas, &pose);
+    search.objective(FINE, &search.fine).score(&mut canvas, pose);
     Some(photo.compare(&canvas, colors, &search.mesh.frame, &search.fine)?.agreement)
+}
+
+/// The photo on the fine grid of a search in the whole depth map.
+pub fn cells(photo: &Photo, search: &Search) -> PhotoCells {
+    PhotoCells::new(photo, &PhotoRegion::WHOLE, search.observation.image, &search.fine)
 }
 
 /// A pose refined on the finest grid.

@@ -5,7 +5,7 @@
 //! half-hidden objects have low scores. Informative are the margin to the next best placement, the agreement of
 //! independent terms, and how sharply the score falls around the pose.
 
-use super::color::SHAPE;
+use super::choice::SHAPE;
 use super::conditioning::Conditioning;
 use super::score::NOISE;
 use super::search::Found;

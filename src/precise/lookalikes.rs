@@ -1,8 +1,10 @@
 //! Lookalikes: poses that turn the best one such that its shape in the image hardly changes.
 
+use glam::DQuat;
+
 use super::coarse::Candidate;
 use super::pose::CropPose;
-use super::ranking::best_of;
+use super::ranking::{Scored, best_of};
 use super::recipe::COARSE;
 use super::render::Canvas;
 use super::rounds::Rounds;
@@ -22,15 +24,15 @@ const SAME: f32 = 0.02;
 
 /// A pose that may explain the shape as well as the best one.
 #[derive(Debug, Clone, Copy)]
-pub struct Lookalike {
+pub struct Lookalike<P> {
     /// The pose.
-    pub pose: CropPose,
+    pub pose: P,
     /// Whether its shape differs so much that it should be refined.
     pub is_rough: bool,
 }
 
 /// The turns of the best pose that look about the same, and the other poses that the search has found.
-pub fn lookalikes(rounds: &Rounds) -> Vec<Lookalike> {
+pub fn lookalikes(rounds: &Rounds) -> Vec<Lookalike<CropPose>> {
     let search = &rounds.search;
     let Some((best, others)) = rounds.found.split_first() else { return Vec::new() };
     let mut canvas = Canvas::default();
@@ -39,19 +41,23 @@ pub fn lookalikes(rounds: &Rounds) -> Vec<Lookalike> {
     let score = objective.score(&mut canvas, &best.pose).total;
     let turned = search.mesh.turns.about_axes(&best.pose, ROLLS);
     let poses = others.iter().map(|other| other.pose).chain(turned);
-    let likely: Vec<Candidate> = poses
-        .map(|pose| Candidate { score: objective.score(&mut canvas, &pose), pose })
-        .filter(|candidate| candidate.score.total > score - FAR)
-        .collect();
-    let mut kept: Vec<CropPose> = vec![best.pose];
+    let scored = poses.map(|pose| Candidate { score: objective.score(&mut canvas, &pose), pose });
+    let alike = among(best.pose.rotation, score, scored);
+    alike.into_iter().map(|Lookalike { pose, is_rough }| Lookalike { pose: pose.pose, is_rough }).collect()
+}
+
+/// Those of `poses` that look about like the best one, whose rotation and score are given. The scores are those of the
+/// coarse grid, the mean of all views.
+pub fn among<P: Scored>(best: DQuat, score: f32, poses: impl Iterator<Item = P>) -> Vec<Lookalike<P>> {
+    let likely: Vec<P> = poses.filter(|pose| pose.total() > score - FAR).collect();
+    let mut kept: Vec<DQuat> = vec![best];
     let mut alike = Vec::new();
     let likely = best_of(&likely, likely.len());
     for (apart, is_rough) in APART.into_iter().zip([false, true]) {
-        for candidate in &likely {
-            let pose = candidate.pose;
-            let is_near = |other: &CropPose| angle_between(other.rotation, pose.rotation) < apart;
-            if (candidate.score.total < score - SAME) == is_rough && kept.len() <= MOST && !kept.iter().any(is_near) {
-                kept.push(pose);
+        for &pose in &likely {
+            let is_near = |other: &DQuat| angle_between(*other, pose.rotation()) < apart;
+            if (pose.total() < score - SAME) == is_rough && kept.len() <= MOST && !kept.iter().any(is_near) {
+                kept.push(pose.rotation());
                 alike.push(Lookalike { pose, is_rough });
             }
         }

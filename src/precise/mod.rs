@@ -8,6 +8,7 @@ pub(crate) mod alternatives;
 pub mod anchors;
 pub mod appearance;
 pub mod ascent;
+pub mod choice;
 pub mod clean;
 pub mod coarse;
 pub mod color;
@@ -100,17 +101,28 @@ pub fn begin(
     Ok(rounds)
 }
 
-/// A search among the poses that another one has `found`, with what is known of the surroundings of the object. Without
+/// What an earlier search leaves to the next.
+pub struct Earlier<'a> {
+    /// The observation, where it has been cleaned already.
+    pub clean: Option<Rc<CleanObservation>>,
+    /// The poses, best first.
+    pub found: &'a [Found],
+    /// Number of poses that it has rendered.
+    pub renders: usize,
+    /// Whether it was sure of the first.
+    pub is_sure: bool,
+}
+
+/// A search among the poses that another one has found, with what is known of the surroundings of the object. Without
 /// surroundings, the result is that of the other search. If that was not sure, the rotations in which the mesh stands on
-/// the ground are searched as well. `clean` is the observation, where it has been cleaned already.
+/// the ground are searched as well.
 ///
 /// # Errors
 /// As [`begin`].
 pub fn resume(
     observation: &Observation,
     mesh: &PreparedMesh<'_>,
-    clean: Option<Rc<CleanObservation>>,
-    (found, renders, is_sure): (&[Found], usize, bool),
+    Earlier { clean, found, renders, is_sure }: Earlier<'_>,
     known: Neighbourhood,
     options: &AlignOptions,
     settings: &SearchSettings,

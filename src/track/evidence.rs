@@ -1,12 +1,14 @@
-//! The part of a frame around the object, prepared for rendering.
+//! The part of a frame around the object, prepared for rendering and for comparison with the photo.
 
 use std::rc::Rc;
 
 use crate::error::Result;
 use crate::evidence::frame::Frame;
 use crate::evidence::observation::Observation;
+use crate::evidence::photo::PhotoRegion;
 use crate::geometry::image::bounds_of;
 use crate::precise::SearchSettings;
+use crate::precise::appearance::PhotoCells;
 use crate::precise::clean::CleanObservation;
 use crate::precise::mesh_pyramid::MeshPyramid;
 use crate::precise::pose::{CropPose, MeshFrame};
@@ -20,18 +22,26 @@ const MARGIN_PX: f64 = 8.0;
 /// cells.
 const MAX_BOX_PX: f64 = 16_000.0;
 
-/// The search around the mask of a frame; `None` if the mask shows nothing.
+/// The evidence around an object in a frame.
+pub struct Evidence {
+    /// The search.
+    pub search: Search,
+    /// The photo on its fine grid, if there is one.
+    pub photo: Option<PhotoCells>,
+}
+
+/// The evidence around the mask of a frame; `None` if the mask shows nothing.
 ///
 /// # Errors
 /// As [`Observation::new`].
-pub fn of_mask(frame: &Frame, mesh: &Rc<MeshPyramid>, settings: &SearchSettings) -> Result<Option<Search>> {
+pub fn of_mask(frame: &Frame, mesh: &Rc<MeshPyramid>, settings: &SearchSettings) -> Result<Option<Evidence>> {
     let Some(mask) = frame.mask.as_ref().filter(|mask| mask.data().iter().any(|m| *m != 0)) else { return Ok(None) };
     let bounds = bounds_of(mask.data(), mask.width(), |m| *m != 0).map(|[low, high]| [low as f64, high as f64]);
-    let Some(window) = window(frame, bounds) else { return Ok(None) };
-    search(&window, mesh, settings)
+    let Some(window) = Window::around(frame, bounds) else { return Ok(None) };
+    evidence(frame, &window.frame, &window.region, mesh, settings)
 }
 
-/// The search around the object where a pose predicts it, for a frame without a mask; `None` if the frame does not show it
+/// The evidence around the object where a pose predicts it, for a frame without a mask; `None` if the frame does not show it
 /// there.
 ///
 /// # Errors
@@ -41,7 +51,7 @@ pub fn of_pose(
     pose: &CropPose,
     mesh: &Rc<MeshPyramid>,
     settings: &SearchSettings,
-) -> Result<Option<Search>> {
+) -> Result<Option<Evidence>> {
     let (scale, center) = pose.scale_translation();
     let camera = frame.camera;
     // The sphere around the mesh, whose diameter is the diagonal of its box: the scale.
@@ -49,35 +59,60 @@ pub fn of_pose(
     let at = [camera.fx * pose.place.x + camera.cx, camera.fy * pose.place.y + camera.cy];
     let half = [camera.fx * radius, camera.fy * radius];
     let bounds = [0, 1].map(|axis| [at[axis] - half[axis], at[axis] + half[axis]]);
-    let Some(window) = window(frame, bounds) else { return Ok(None) };
-    let masked = with_predicted_mask(&window, &mesh.fine, &pose.similarity(&MeshFrame::NORMALIZED));
-    search(&masked, mesh, settings)
+    let Some(window) = Window::around(frame, bounds) else { return Ok(None) };
+    let masked = with_predicted_mask(&window.frame, &mesh.fine, &pose.similarity(&MeshFrame::NORMALIZED));
+    evidence(frame, &masked, &window.region, mesh, settings)
 }
 
-fn search(window: &Frame, mesh: &Rc<MeshPyramid>, settings: &SearchSettings) -> Result<Option<Search>> {
+fn evidence(
+    whole: &Frame,
+    window: &Frame,
+    region: &PhotoRegion,
+    mesh: &Rc<MeshPyramid>,
+    settings: &SearchSettings,
+) -> Result<Option<Evidence>> {
     let Some(mask) = &window.mask else { return Ok(None) };
     let observation = Observation::new(window.depth.clone(), mask.clone(), window.camera)?;
     let search = Search::new(Rc::new(CleanObservation::new(&observation)), mesh.clone(), *settings);
-    Ok((search.fine.mask_cells > 0).then_some(search))
+    let photo = whole.photo.as_ref();
+    let photo = photo.map(|photo| PhotoCells::new(photo, region, search.observation.image, &search.fine));
+    Ok((search.fine.mask_cells > 0).then_some(Evidence { search, photo }))
 }
 
-/// The frame around a box, in pixels; `None` if that is outside the image.
-fn window(frame: &Frame, bounds: [[f64; 2]; 2]) -> Option<Frame> {
-    let size = [frame.depth.width(), frame.depth.height()];
-    let sides = bounds.map(|[low, high]| high - low);
-    if !sides.iter().all(|side| side.is_finite()) {
-        return None;
-    }
-    let margin = MARGIN * sides[0].max(sides[1]) + MARGIN_PX;
-    let mut pixels = [[0; 2]; 2];
-    for axis in 0..2 {
-        let most = size[axis] as f64;
-        let inside = |x: f64| x.max(0.0).min(most) as usize;
-        pixels[axis] = [inside(bounds[axis][0] - margin), inside(bounds[axis][1] + margin + 1.0)];
-        if pixels[axis][0] >= pixels[axis][1] {
+/// A part of a frame, and where it lies in the photo.
+struct Window {
+    frame: Frame,
+    region: PhotoRegion,
+}
+
+impl Window {
+    /// The frame around a box, in pixels; `None` if that is outside the image.
+    fn around(frame: &Frame, bounds: [[f64; 2]; 2]) -> Option<Self> {
+        let size = [frame.depth.width(), frame.depth.height()];
+        let sides = bounds.map(|[low, high]| high - low);
+        if !sides.iter().all(|side| side.is_finite()) {
             return None;
         }
+        let margin = MARGIN * sides[0].max(sides[1]) + MARGIN_PX;
+        let mut pixels = [[0; 2]; 2];
+        for axis in 0..2 {
+            let most = size[axis] as f64;
+            let inside = |x: f64| x.max(0.0).min(most) as usize;
+            pixels[axis] = [inside(bounds[axis][0] - margin), inside(bounds[axis][1] + margin + 1.0)];
+            if pixels[axis][0] >= pixels[axis][1] {
+                return None;
+            }
+        }
+        let step = (sides[0] * sides[1] / MAX_BOX_PX).max(1.0).sqrt().ceil() as usize;
+        let part = frame.window(pixels, step);
+        // Of every cell of `step` pixels, the first is taken.
+        let per_px = step as f64;
+        let first = |axis: usize| pixels[axis][0] as f64 - 0.5 * (per_px - 1.0);
+        let sides = [part.depth.width(), part.depth.height()];
+        let region = PhotoRegion {
+            corner: [0, 1].map(|axis| first(axis) / size[axis] as f64),
+            size: [0, 1].map(|axis| sides[axis] as f64 * per_px / size[axis] as f64),
+        };
+        Some(Self { frame: part, region })
     }
-    let step = (sides[0] * sides[1] / MAX_BOX_PX).max(1.0).sqrt().ceil() as usize;
-    Some(frame.window(pixels, step))
 }

@@ -1,5 +1,6 @@
 //! Tracking of one object through a video: each pose starts at the one before, and the size sharpens over the frames.
 
+pub mod detection;
 pub mod evidence;
 pub mod motion;
 pub mod options;

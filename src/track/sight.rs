@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use super::evidence::{of_mask, of_pose};
+use super::evidence::{Evidence, of_mask, of_pose};
 use crate::evidence::frame::Frame;
 use crate::precise::SearchSettings;
 use crate::precise::mesh_pyramid::MeshPyramid;
@@ -23,7 +23,7 @@ pub struct Seen {
     /// The pose.
     pub found: Found,
     /// The evidence.
-    pub search: Search,
+    pub evidence: Evidence,
     /// Whether all rotations were searched.
     pub is_detected: bool,
     /// Share of the silhouette that is seen; 1 with a mask, which states what is seen.
@@ -50,23 +50,23 @@ impl Sight {
             // The mask says that nothing is seen.
             return None;
         }
-        let mut search = match masked {
-            Some(search) => search,
+        let mut evidence = match masked {
+            Some(evidence) => evidence,
             None => of_pose(frame, &first, &self.mesh, &self.settings).ok().flatten()?,
         };
         let mut poses = expected.to_vec();
         if wide {
-            poses.extend(expected.iter().flat_map(|pose| search.around(*pose)).collect::<Vec<_>>());
+            poses.extend(expected.iter().flat_map(|pose| evidence.search.around(*pose)).collect::<Vec<_>>());
         }
-        let mut found = self.refined(&search, &poses, !has_mask)?;
+        let mut found = self.refined(&evidence.search, &poses, !has_mask)?;
         if !has_mask {
             for round in 1..PREDICTIONS {
-                search = of_pose(frame, &found.pose, &self.mesh, &self.settings).ok().flatten()?;
-                found = self.refined(&search, &[found.pose], round + 1 < PREDICTIONS)?;
+                evidence = of_pose(frame, &found.pose, &self.mesh, &self.settings).ok().flatten()?;
+                found = self.refined(&evidence.search, &[found.pose], round + 1 < PREDICTIONS)?;
             }
         }
-        let visible = if has_mask { 1.0 } else { visible(&search, &found.pose) };
-        Some(Seen { found, search, is_detected: false, visible, is_predicted: !has_mask })
+        let visible = if has_mask { 1.0 } else { visible(&evidence.search, &found.pose) };
+        Some(Seen { found, evidence, is_detected: false, visible, is_predicted: !has_mask })
     }
 
     /// The best of several poses, refined at their size. `by_depth`: the outline is that of another pose, and does not count.

@@ -3,6 +3,8 @@
 use core::borrow::Borrow;
 use glam::DQuat;
 
+use super::detection::{Detection, Known};
+use super::evidence::Evidence;
 use super::motion::Motion;
 use super::options::TrackOptions;
 use super::report::{CorrectedFrame, TrackState, TrackedFrame};
@@ -11,25 +13,26 @@ use super::size::Size;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::frame::Frame;
 use crate::evidence::observation::{Observation, check_mask_size};
+use crate::evidence::photo::check_photo;
 use crate::evidence::sample::Sampling;
-use crate::geometry::rotations::angle_between;
 use crate::geometry::similarity::Similarity;
 use crate::metrics;
 use crate::number::number;
 use crate::options::Options;
+use crate::precise::choice::AGREES;
+use crate::precise::color::{LOOSE, agreement_at, cells, roll};
 use crate::precise::confidence::sureness;
 use crate::precise::objective::Objective;
 use crate::precise::pose::CropPose;
 use crate::precise::prepared_mesh::PreparedMesh;
 use crate::precise::prior::Prior;
-use crate::precise::recipe::{FINE, SURE};
+use crate::precise::recipe::FINE;
 use crate::precise::refine::Refiner;
 use crate::precise::render::Canvas;
-use crate::precise::rounds::Rounds;
 use crate::precise::score::{NOISE, Score};
 use crate::precise::search::{Found, Search};
 use crate::precise::{self, SearchSettings, no_candidate};
-use crate::progress::{Host, Stopwatch};
+use crate::progress::Host;
 use crate::report::Effort;
 use crate::views::common_size::{PREDICTED_ERROR, SILHOUETTE_ERROR, SizeEvidence, refine_at};
 use crate::views::world_pose::{PlacedCamera, WorldPose};
@@ -65,6 +68,8 @@ pub struct Tracker<M> {
     usual: Option<f32>,
     /// The difference between the scores of the pose and of the best other one, where the object was found.
     margin: f64,
+    /// Probability that the turn in which it was found is right, if only colours tell.
+    turn_certainty: f64,
     /// The poses of all frames, and the number of the stretch of frames that each belongs to: a new one begins where the
     /// object was found anew.
     history: Vec<(WorldPose, usize)>,
@@ -97,6 +102,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             state: TrackState::Lost,
             usual: None,
             margin: 0.0,
+            turn_certainty: 1.0,
             history: Vec::new(),
             stretch: 0,
             frames: 0,
@@ -164,6 +170,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             self.state = TrackState::Tracking;
             self.usual = None;
             self.margin = f64::from(NOISE);
+            self.turn_certainty = 1.0;
             let evidence = SizeEvidence { log_scale: fixed.log_scale, sd: CORRECTION_SD, score: 0.0 };
             self.size.correct(fixed.rotation, evidence);
         }
@@ -213,50 +220,20 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         best.filter(|seen| self.fit(seen) >= least && seen.visible >= SEEN[1])
     }
 
-    /// Searches all rotations. With a `before`, the nearest of the poses that fit equally well counts: an object that looks
-    /// alike from several sides has not turned unseen.
+    /// Searches all rotations, with what is known if the object was seen before in this rotation.
     fn detect(&mut self, observation: &Observation, before: Option<DQuat>, host: &mut dyn Host) -> Result<Seen> {
+        let log_scale = self.size.value().map(|(log_scale, _)| log_scale);
+        let known = Known { prior: self.prior, before: before.map(|before| (log_scale, before)) };
         let options = self.options.of_detection();
-        let mut rounds: Option<Rounds> = None;
-        let (mut certainty, mut found) = (0.0, Vec::new());
-        for settings in precise::efforts(&options) {
-            if certainty >= SURE || (before.is_some() && rounds.is_some()) {
-                break;
-            }
-            let stages = &mut Stopwatch::new(&mut *host, precise::PLAN);
-            let known = self.size.value().filter(|_| before.is_some());
-            let settings = SearchSettings { lock_scale: settings.lock_scale || known.is_some(), ..settings };
-            let mesh = self.mesh.borrow();
-            let mut next = precise::begin(observation, mesh, rounds.as_ref(), &options, &settings, stages)?;
-            if let Some((log_scale, _)) = known {
-                next.search.assume(Prior { scale: Some([libm::exp(log_scale); 2]), ..self.prior });
-            }
-            precise::run(&mut next, &(0.2..0.85), &mut || false, stages);
-            let best = next.found.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
-            let (conditioning, _) = next.search.conditioning(&best.pose);
-            let rival = next.found.iter().skip(1).map(|other| other.score.total).fold(0.0, f32::max);
-            certainty = sureness(best, f64::from(best.score.total - rival), conditioning.as_ref());
-            found.clone_from(&next.found);
-            rounds = Some(next);
-        }
-        let rounds = rounds.ok_or_else(no_candidate)?;
-        let best = found.first().ok_or_else(no_candidate)?.score.total;
-        let mut chosen = found[0];
-        if let Some(before) = before {
-            for other in found.iter().filter(|other| other.score.total > best - 0.5 * NOISE) {
-                if angle_between(other.pose.rotation, before) < angle_between(chosen.pose.rotation, before) {
-                    chosen = *other;
-                }
-            }
-        }
-        let rival = found.iter().map(|other| other.score.total).filter(|total| *total < chosen.score.total);
-        self.margin = f64::from(chosen.score.total - rival.fold(0.0, f32::max));
-        let settings = self.sight.settings;
-        let mut search = rounds.search;
-        // Without the size of the detection, the frames after it would be compared on other grids.
-        search = Search::new(search.observation.clone(), self.sight.mesh.clone(), settings);
-        chosen.score = search.score(&chosen.pose);
-        Ok(Seen { found: chosen, search, is_detected: true, visible: 1.0, is_predicted: false })
+        let detection = Detection::search(observation, self.mesh.borrow(), &options, &known, host)?;
+        self.margin = detection.margin;
+        self.turn_certainty = detection.turn_certainty;
+        // With the settings of the frames after it, so that scores compare.
+        let search = Search::new(detection.observation, self.sight.mesh.clone(), self.sight.settings);
+        let found = Found { score: search.score(&detection.found.pose), ..detection.found };
+        let photo = observation.photo().map(|photo| cells(photo, &search));
+        let evidence = Evidence { search, photo };
+        Ok(Seen { found, evidence, is_detected: true, visible: 1.0, is_predicted: false })
     }
 
     /// The agreement of a pose relative to that of earlier frames, about 1 for one as good.
@@ -269,7 +246,8 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
     fn conclude(&mut self, frame: &Frame, seen: Option<Seen>) -> Result<TrackedFrame> {
         let Some(seen) = seen else { return Ok(self.lost()) };
         let fit = self.fit(&seen);
-        let Seen { mut found, search, is_detected, visible, is_predicted } = seen;
+        let Seen { mut found, evidence, is_detected, visible, is_predicted } = seen;
+        let search = &evidence.search;
         let is_certain = fit >= UNCERTAIN && visible >= SEEN[0];
         self.state = if is_certain { TrackState::Tracking } else { TrackState::Uncertain };
         let before = self.last;
@@ -280,7 +258,8 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         if is_certain {
             let usual = self.usual.unwrap_or_else(|| agreement(&found.score));
             self.usual = Some(usual + NEW * (agreement(&found.score) - usual));
-            self.weigh_size(&search, &mut found, if is_predicted { PREDICTED_ERROR } else { SILHOUETTE_ERROR });
+            self.roll(&evidence, &mut found);
+            self.weigh_size(search, &mut found, if is_predicted { PREDICTED_ERROR } else { SILHOUETTE_ERROR });
         }
         let pose = PlacedCamera::AT_ORIGIN.place(&found.pose);
         if let (Some(before), false) = (before, is_detected) {
@@ -292,7 +271,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             let scale_sd = self.size.value().map_or(1.0, |(_, sd)| sd);
             let conditioning = conditioning
                 .map(|held| precise::conditioning::Conditioning { scale: scale_sd.min(held.scale), ..held });
-            sureness(&found, self.margin, conditioning.as_ref())
+            sureness(&found, self.margin, conditioning.as_ref()) * self.turn_certainty
         };
         let camera_from_mesh = pose.similarity(&self.sight.mesh.frame);
         let measured = match frame.observation() {
@@ -314,6 +293,17 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             terms: (&found.score).into(),
             metrics: measured,
         })
+    }
+
+    /// Rolls the pose about the axis that shape leaves open, to where its colours agree with the photo.
+    fn roll(&self, evidence: &Evidence, found: &mut Found) {
+        let Evidence { search, photo: Some(photo) } = evidence else { return };
+        let Some(colors) = self.mesh.borrow().colors() else { return };
+        if let Some((pose, _)) = roll(search, photo, colors, found.pose, LOOSE)
+            && agreement_at(search, photo, colors, &pose).is_some_and(|agreement| agreement >= AGREES)
+        {
+            *found = Found { pose, score: search.score(&pose), ..*found };
+        }
     }
 
     /// Adds the evidence of a frame to the size, and moves its pose to the size that follows.
@@ -365,5 +355,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
 /// Checks what holds for every frame.
 fn check(frame: &Frame) -> Result<()> {
     frame.camera.check_field_of_view(frame.depth.width(), frame.depth.height())?;
+    let size = [frame.depth.width(), frame.depth.height()];
+    frame.photo.as_ref().map_or(Ok(()), |photo| check_photo(photo, size))?;
     frame.mask.as_ref().map_or(Ok(()), |mask| check_mask_size(&frame.depth, mask))
 }

@@ -3,6 +3,7 @@
 use std::rc::Rc;
 
 use super::View;
+use super::by_color::Photos;
 use super::joint::JointScore;
 use super::known::{Part, Ranked, contradicts, join, on_fine_grids, rank, with_fused_size};
 use super::options::ViewsOptions;
@@ -16,12 +17,16 @@ use crate::geometry::mesh::Mesh;
 use crate::geometry::normal_equations::NormalEquations;
 use crate::geometry::similarity::Similarity;
 use crate::metrics::symmetry::Symmetry;
-use crate::precise::alternatives::alternatives;
+use crate::precise::alternatives::{add_rivals, alternatives};
+use crate::precise::appearance::PhotoCells;
 use crate::precise::clean::CleanObservation;
+use crate::precise::color::{Judgment, cells};
 use crate::precise::conditioning::{Conditioning, covariance, deviation, widest};
 use crate::precise::confidence::confidence;
 use crate::precise::no_candidate;
 use crate::precise::pose::MeshFrame;
+use crate::precise::prepared_mesh::PreparedMesh;
+use crate::precise::recipe::SURE;
 use crate::precise::score::Score;
 use crate::precise::search::{Found, Search};
 use crate::report::{Alternative, Sim3};
@@ -33,12 +38,19 @@ const PREDICTIONS: usize = 2;
 ///
 /// # Errors
 /// [`NoConsensus`](crate::error::ErrorCode::NoConsensus) if no pose is in front of a camera and overlaps a mask.
-pub fn in_world(searched: &[SearchedView], views: &[View], mesh: &Mesh, options: &ViewsOptions) -> Result<Summary> {
+pub fn in_world(
+    searched: &[SearchedView],
+    views: &[View],
+    mesh: &PreparedMesh<'_>,
+    options: &ViewsOptions,
+) -> Result<Summary> {
     let lock_scale = searched.first().is_some_and(|view| view.search().settings.lock_scale);
     let cameras: Vec<PlacedCamera> = views.iter().map(camera).collect();
     let own = |view: &SearchedView| view.found().first().map(|found| found.pose);
-    let parts: Vec<Part<'_>> =
-        searched.iter().map(|view| Part { search: view.search(), camera: view.camera, own: own(view) }).collect();
+    let parts: Vec<Part<'_>> = searched
+        .iter()
+        .map(|view| Part { index: view.index, search: view.search(), camera: view.camera, own: own(view) })
+        .collect();
     let hypotheses: Vec<WorldPose> = searched
         .iter()
         .flat_map(|view| {
@@ -71,12 +83,12 @@ pub fn in_world(searched: &[SearchedView], views: &[View], mesh: &Mesh, options:
         }
         unmasked = predicted(&best.pose, views, &cameras, used[0].search);
         let mut all = used.clone();
-        all.extend(unmasked.iter().map(|(k, search)| Part { search, camera: cameras[*k], own: None }));
+        all.extend(unmasked.iter().map(|(k, search)| Part { index: *k, search, camera: cameras[*k], own: None }));
         ranked = rank(&all, &poses(&ranked), lock_scale, &mut renders);
     }
     for (k, search) in &unmasked {
         roles[*k] = ViewRole::Used;
-        used.push(Part { search, camera: cameras[*k], own: None });
+        used.push(Part { index: *k, search, camera: cameras[*k], own: None });
     }
     let mut fused = None;
     if let Some(best) = ranked.first_mut()
@@ -87,26 +99,40 @@ pub fn in_world(searched: &[SearchedView], views: &[View], mesh: &Mesh, options:
         best.pose = pose;
         fused = Some(sd);
     }
-    let (Some(best), Some(first)) = (ranked.first(), used.first()) else { return Err(no_candidate()) };
-
     let mut joint = on_fine_grids(&used, lock_scale);
-    let score = joint.score(&best.pose);
-    let conditioning = conditioning(&joint.equations(&best.pose, &score), &best.pose)
-        .map(|held| Conditioning { scale: fused.unwrap_or(held.scale), ..held });
-    let others = other_poses(&ranked, first, mesh, &options.symmetry)?;
+    let mut held = |best: &Ranked| {
+        let score = joint.score(&best.pose);
+        let held = conditioning(&joint.equations(&best.pose, &score), &best.pose)
+            .map(|held| Conditioning { scale: fused.unwrap_or(held.scale), ..held });
+        (score, held)
+    };
+    let (mut score, mut conditioning) = held(ranked.first().ok_or_else(no_candidate)?);
+    let is_size_known = lock_scale || fused.is_some();
+    let judged = by_color(&used, views, mesh, (&ranked, conditioning.as_ref()), is_size_known, &mut renders);
+    if let Some((_, Some(chosen))) = &judged {
+        (score, conditioning) = held(chosen);
+        ranked.insert(0, chosen.clone());
+    }
+    let color = judged.map(|(judgment, _)| judgment);
+    let (Some(best), Some(first)) = (ranked.first(), used.first()) else { return Err(no_candidate()) };
+    let mut others = other_poses(&ranked, first, mesh.mesh(), &options.symmetry)?;
     let sum = Found {
         pose: first.camera.see(&best.pose).ok_or_else(no_candidate)?,
         score: mean_score(&score, best.score.total),
         converged: best.converged,
         renders: 0,
     };
-    let confidence = confidence(&sum, &others, conditioning.as_ref());
+    if let Some(color) = &color {
+        add_rivals(&mut others, &sum, &color.rivals, first.search);
+    }
+    let by_shape = confidence(&sum, &others, conditioning.as_ref());
+    let confidence = by_shape * color.as_ref().map_or(1.0, |color| color.certainty);
     let world_from_mesh = best.pose.similarity(&first.search.mesh.frame);
     let shown = |k: usize| {
         let part = parts.iter().zip(searched).find(|(_, view)| view.index == k).map(|(part, _)| *part);
         let part = part.or_else(|| {
             let (_, search) = unmasked.iter().find(|(index, _)| *index == k)?;
-            Some(Part { search, camera: cameras[k], own: None })
+            Some(Part { index: k, search, camera: cameras[k], own: None })
         })?;
         Some(part.search.score(&part.camera.see(&best.pose)?))
     };
@@ -121,6 +147,7 @@ pub fn in_world(searched: &[SearchedView], views: &[View], mesh: &Mesh, options:
                 rotation_sd_deg: 0.0,
                 position_sd_m: 0.0,
                 score: shown(k).unwrap_or_default(),
+                color: color.as_ref().filter(|_| views[k].frame.photo.is_some()).map(|color| color.report),
             }
         })
         .collect();
@@ -128,6 +155,7 @@ pub fn in_world(searched: &[SearchedView], views: &[View], mesh: &Mesh, options:
         world_from_mesh,
         world: WorldFrame::Given,
         confidence,
+        is_sure: by_shape >= SURE,
         alternatives: others.into_iter().map(|other| moved(other, &first.camera.world_from_camera())).collect(),
         uncertainty: conditioning.map(|held| WorldUncertainty {
             scale: held.scale,
@@ -141,6 +169,22 @@ pub fn in_world(searched: &[SearchedView], views: &[View], mesh: &Mesh, options:
         renders,
         effort: first.search.settings.effort,
     })
+}
+
+/// What colour says of the best pose; `None` without colours.
+fn by_color(
+    used: &[Part<'_>],
+    views: &[View],
+    mesh: &PreparedMesh<'_>,
+    (ranked, conditioning): (&[Ranked], Option<&Conditioning>),
+    lock_scale: bool,
+    renders: &mut usize,
+) -> Option<(Judgment, Option<Ranked>)> {
+    let colors = mesh.colors()?;
+    let photo = |part: &Part<'_>| views[part.index].frame.photo.as_ref().map(|photo| cells(photo, part.search));
+    let photos: Vec<Option<PhotoCells>> = used.iter().map(photo).collect();
+    photos.iter().flatten().next()?;
+    Photos { parts: used, photos: &photos, colors }.judge(ranked, conditioning, lock_scale, renders)
 }
 
 fn camera(view: &View) -> PlacedCamera {

@@ -61,6 +61,11 @@ impl<'a> Joint<'a> {
         sum
     }
 
+    /// The last render in a view.
+    pub fn canvas(&self, view: usize) -> &Canvas {
+        &self.canvases[view]
+    }
+
     /// The quadratic of the sum at the last render, without views at their floor.
     pub fn equations(&self, pose: &WorldPose, score: &JointScore) -> NormalEquations {
         let mut sum = NormalEquations::new();

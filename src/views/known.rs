@@ -30,6 +30,8 @@ const NEAR: f32 = 0.3;
 /// A view that takes part.
 #[derive(Clone, Copy)]
 pub struct Part<'a> {
+    /// Its index in the input.
+    pub index: usize,
     /// Its search.
     pub search: &'a Search,
     /// Its camera.
@@ -138,12 +140,12 @@ pub fn with_fused_size(parts: &[Part<'_>], pose: WorldPose, renders: &mut usize)
 }
 
 /// The grids of all views.
-fn grids(parts: &[Part<'_>], index: usize) -> Vec<CropGrid> {
+pub fn grids(parts: &[Part<'_>], index: usize) -> Vec<CropGrid> {
     parts.iter().map(|part| part.search.grid(index)).collect()
 }
 
 /// The joint objective on the grids with this index.
-fn level<'a>(parts: &[Part<'a>], grids: &'a [CropGrid], index: usize, lock_scale: bool) -> Joint<'a> {
+pub fn level<'a>(parts: &[Part<'a>], grids: &'a [CropGrid], index: usize, lock_scale: bool) -> Joint<'a> {
     let views = parts.iter().zip(grids).map(|(part, grid)| JointView {
         objective: part.search.objective(index, grid),
         camera: part.camera,
@@ -168,9 +170,11 @@ fn turns(parts: &[Part<'_>], pose: &WorldPose) -> Vec<WorldPose> {
 
 /// A pose with a total.
 #[derive(Clone, Copy)]
-struct Hypothesis {
-    pose: WorldPose,
-    total: f32,
+pub struct Hypothesis {
+    /// The pose.
+    pub pose: WorldPose,
+    /// Its score, of all views.
+    pub total: f32,
 }
 
 impl Scored for Hypothesis {

@@ -1,6 +1,7 @@
 //! One object in several views: with known camera poses, one pose from the evidence of all; without them, one size for
 //! all, a pose in each, and the camera poses that follow.
 
+pub mod by_color;
 pub mod common_size;
 mod in_world;
 pub mod joint;
@@ -16,7 +17,6 @@ pub mod world_pose;
 
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::frame::Frame;
-use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::Similarity;
 use crate::precise::prepared_mesh::PreparedMesh;
 use crate::progress::Host;
@@ -42,12 +42,11 @@ pub struct View {
 /// As [`ViewsTask::new`] and [`ViewsTask::step`].
 pub fn align_views(
     views: Vec<View>,
-    mesh: &Mesh,
+    mesh: &PreparedMesh<'_>,
     options: &ViewsOptions,
     host: &mut dyn Host,
 ) -> Result<ViewsAlignment> {
-    let mesh = PreparedMesh::borrowed(mesh);
-    let mut task = ViewsTask::new(views, &mesh, options.clone(), host)?;
+    let mut task = ViewsTask::new(views, mesh, options.clone(), host)?;
     loop {
         if let Some(alignment) = task.step(&mut || false)? {
             return Ok(alignment);

@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::metrics::Metrics;
 use crate::options::choices;
 use crate::progress::Timings;
-use crate::report::{Alternative, Effort, ScoreTerms, Sim3, Warning};
+use crate::report::{Alternative, ColorReport, Effort, ScoreTerms, Sim3, Warning};
 
 choices! {
     /// What the world of a result is.
@@ -78,6 +78,11 @@ pub struct ViewPose {
     pub score: f64,
     /// The terms of the score.
     pub terms: ScoreTerms,
+    /// What the colours of photo and mesh contributed; with given camera poses, those of all views together. Present where
+    /// the view has a photo and the mesh has colours.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "types", ts(optional))]
+    pub color: Option<ColorReport>,
     /// Agreement of the posed mesh with the view.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[cfg_attr(feature = "types", ts(as = "Metrics"))]

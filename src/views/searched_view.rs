@@ -3,6 +3,9 @@
 use super::world_pose::PlacedCamera;
 use crate::error::Result;
 use crate::evidence::observation::Observation;
+use crate::evidence::photo::Photo;
+use crate::geometry::surface_colors::SurfaceColors;
+use crate::precise::color::{ColorStage, Judgment};
 use crate::precise::options::AlignOptions;
 use crate::precise::pose::CropPose;
 use crate::precise::prepared_mesh::PreparedMesh;
@@ -22,6 +25,8 @@ pub struct SearchedView {
     pub rounds: Rounds,
     /// Distinct poses after the first refinement: more than the ranking keeps.
     pub candidates: Vec<CropPose>,
+    /// What colour says about its poses, once it has been asked.
+    pub color: Option<Judgment>,
 }
 
 impl SearchedView {
@@ -39,7 +44,7 @@ impl SearchedView {
     ) -> Result<Self> {
         let before = previous.map(|view| &view.rounds);
         let rounds = precise::begin(observation, mesh, before, options, settings, stages)?;
-        Ok(Self { index, camera, rounds, candidates: Vec::new() })
+        Ok(Self { index, camera, rounds, candidates: Vec::new(), color: None })
     }
 
     /// Continues the search until it ends or `pause` returns true. Returns whether it has ended.
@@ -53,6 +58,18 @@ impl SearchedView {
             }
         }
         true
+    }
+
+    /// Compares the poses of the search, which has ended, with the photo. The pose that colour chooses becomes the first.
+    pub fn judge_colors(&mut self, photo: Option<&Photo>, colors: Option<&SurfaceColors>) {
+        let (Some(photo), Some(colors)) = (photo, colors) else { return };
+        let mut stage = ColorStage::new(&self.rounds, photo);
+        stage.run(&self.rounds, colors, &mut || false);
+        let judgment = stage.judge(&self.rounds, colors);
+        if let Some(chosen) = judgment.chosen {
+            self.rounds.found.insert(0, chosen);
+        }
+        self.color = Some(judgment);
     }
 
     /// The poses that the search has found, best first.

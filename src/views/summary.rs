@@ -6,12 +6,13 @@ use crate::align::warnings;
 use crate::error::Result;
 use crate::evidence::observation::Observation;
 use crate::evidence::sample::Sampling;
-use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::Similarity;
-use crate::metrics;
+use crate::metrics::{self, Metrics};
+use crate::precise::color::agreement;
+use crate::precise::prepared_mesh::PreparedMesh;
 use crate::precise::score::Score;
 use crate::progress::Stopwatch;
-use crate::report::{Alternative, Effort, ScoreTerms, Warning, WarningCode};
+use crate::report::{Alternative, ColorReport, Effort, ScoreTerms, Warning, WarningCode};
 
 /// The poses found.
 pub struct Summary {
@@ -21,6 +22,8 @@ pub struct Summary {
     pub world: WorldFrame,
     /// See [`ViewsAlignment`].
     pub confidence: f64,
+    /// Whether more effort would not change what shape says.
+    pub is_sure: bool,
     /// See [`ViewsAlignment`].
     pub alternatives: Vec<Alternative>,
     /// See [`ViewsAlignment`].
@@ -53,6 +56,8 @@ pub struct SummaryView {
     pub position_sd_m: f64,
     /// The score in the view.
     pub score: Score,
+    /// What colour contributed.
+    pub color: Option<ColorReport>,
 }
 
 impl Summary {
@@ -62,7 +67,7 @@ impl Summary {
     /// As [`metrics::evaluate`].
     pub fn report(
         &self,
-        mesh: &Mesh,
+        mesh: &PreparedMesh<'_>,
         observations: &[Option<Observation>],
         options: &ViewsOptions,
         stages: Stopwatch<'_>,
@@ -76,7 +81,9 @@ impl Summary {
         for (view, observation) in self.views.iter().zip(observations) {
             let measured = match observation {
                 Some(observation) if options.metrics => {
-                    Some(metrics::evaluate(observation, mesh, &view.camera_from_mesh, &sampling)?)
+                    let pose = &view.camera_from_mesh;
+                    let measured = metrics::evaluate(observation, mesh.mesh(), pose, &sampling)?;
+                    Some(Metrics { color_agreement: agreement(observation, None, mesh, pose), ..measured })
                 }
                 _ => None,
             };
@@ -96,6 +103,7 @@ impl Summary {
                 },
                 score: f64::from(view.score.total),
                 terms,
+                color: view.color,
                 metrics: measured,
                 warnings,
             });

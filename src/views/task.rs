@@ -15,7 +15,6 @@ use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::observation::Observation;
 use crate::options::Options;
 use crate::precise::prepared_mesh::PreparedMesh;
-use crate::precise::recipe::SURE;
 use crate::precise::{self, SearchSettings};
 use crate::progress::{Host, Stage, Stopwatch};
 
@@ -111,8 +110,7 @@ impl<'h, 'm, M: Borrow<PreparedMesh<'m>>> ViewsTask<'h, M> {
                 }
                 State::Found(summary) => {
                     stages.enter(Stage::Metrics);
-                    let mesh = self.mesh.borrow().mesh();
-                    let alignment = summary.report(mesh, &self.observations, &self.options, stages)?;
+                    let alignment = summary.report(self.mesh.borrow(), &self.observations, &self.options, stages)?;
                     return Ok(Some(alignment));
                 }
                 State::Over => return Err(over()),
@@ -150,12 +148,18 @@ impl<'h, 'm, M: Borrow<PreparedMesh<'m>>> ViewsTask<'h, M> {
     }
 
     /// The result of all searches; or the next search, if it is not certain.
-    fn combine(&self, views: Vec<SearchedView>, effort: usize, stages: &mut Stopwatch<'h>) -> Result<State> {
+    fn combine(&self, mut views: Vec<SearchedView>, effort: usize, stages: &mut Stopwatch<'h>) -> Result<State> {
         stages.enter(Stage::Refine);
-        let mesh = self.mesh.borrow().mesh();
-        let summary =
-            if self.is_known { in_world(&views, &self.views, mesh, &self.options) } else { unrelated(&views) };
-        let is_sure = summary.as_ref().is_ok_and(|summary| summary.confidence >= SURE);
+        let mesh = self.mesh.borrow();
+        let summary = if self.is_known {
+            in_world(&views, &self.views, mesh, &self.options)
+        } else {
+            for view in &mut views {
+                view.judge_colors(self.views[view.index].frame.photo.as_deref(), mesh.colors());
+            }
+            unrelated(&views)
+        };
+        let is_sure = summary.as_ref().is_ok_and(|summary| summary.is_sure);
         if !is_sure && effort + 1 < self.efforts.len() {
             return Ok(State::Searching(Vec::new(), views, effort + 1));
         }

@@ -6,11 +6,12 @@ use super::searched_view::SearchedView;
 use super::summary::{Summary, SummaryView};
 use crate::error::Result;
 use crate::geometry::similarity::Similarity;
+use crate::precise::color::Judgment;
 use crate::precise::conditioning::Conditioning;
 use crate::precise::confidence::sureness;
 use crate::precise::no_candidate;
 use crate::precise::objective::Objective;
-use crate::precise::recipe::{FINE, FINEST};
+use crate::precise::recipe::{FINE, FINEST, SURE};
 use crate::precise::search::{Found, Search};
 
 /// Score below a view's best at which a pose of it is not tried at the common size.
@@ -34,7 +35,7 @@ pub struct CommonSize {
 /// Finds the common size; `None` if no view has a pose.
 pub fn with_common_size(searched: &[SearchedView]) -> Option<CommonSize> {
     let mut renders = 0;
-    let likely: Vec<Vec<Found>> = searched.iter().map(|view| likely(view.found())).collect();
+    let likely: Vec<Vec<Found>> = searched.iter().map(likely).collect();
     let evidence: Vec<Vec<SizeEvidence>> = searched
         .iter()
         .zip(&likely)
@@ -96,6 +97,7 @@ pub fn unrelated(searched: &[SearchedView]) -> Result<Summary> {
     let first = common.views.iter().position(|(_, agrees)| *agrees).unwrap_or(0);
     let mut views: Vec<SummaryView> = Vec::new();
     let mut held: Vec<Option<Conditioning>> = Vec::new();
+    let mut least: f64 = 1.0;
     for (view, (found, agrees)) in searched.iter().zip(&common.views) {
         let search = view.search();
         // The size is as certain as all views together make it.
@@ -105,7 +107,13 @@ pub fn unrelated(searched: &[SearchedView]) -> Result<Summary> {
             .map(|own| Conditioning { scale: if *agrees { common.sd } else { own.scale }, ..own });
         let rival = view.found().iter().skip(1).map(|other| other.score.total).fold(0.0, f32::max);
         let lead = f64::from(found.score.total - rival);
-        let confidence = if *agrees { sureness(found, lead, conditioning.as_ref()) } else { 0.0 };
+        let color = view.color.as_ref();
+        let lead = lead.max(color.map_or(f64::NEG_INFINITY, Judgment::lead));
+        let by_shape = if *agrees { sureness(found, lead, conditioning.as_ref()) } else { 0.0 };
+        if *agrees {
+            least = least.min(by_shape);
+        }
+        let confidence = by_shape * color.map_or(1.0, |color| color.certainty);
         views.push(SummaryView {
             camera_from_mesh: found.pose.similarity(&search.mesh.frame),
             confidence,
@@ -114,6 +122,7 @@ pub fn unrelated(searched: &[SearchedView]) -> Result<Summary> {
             rotation_sd_deg: 0.0,
             position_sd_m: 0.0,
             score: found.score,
+            color: color.map(|color| color.report),
         });
         held.push(conditioning);
     }
@@ -144,6 +153,7 @@ pub fn unrelated(searched: &[SearchedView]) -> Result<Summary> {
         world_from_mesh,
         world: WorldFrame::Camera,
         confidence,
+        is_sure: least >= SURE,
         alternatives: Vec::new(),
         uncertainty,
         score: used().map(|view| f64::from(view.score.total)).sum(),
@@ -154,10 +164,12 @@ pub fn unrelated(searched: &[SearchedView]) -> Result<Summary> {
     })
 }
 
-/// The poses of a view that may be right.
-fn likely(found: &[Found]) -> Vec<Found> {
-    let best = found.first().map_or(0.0, |best| best.score.total);
-    found.iter().filter(|f| f.score.total > best - NEAR).take(TRIED).copied().collect()
+/// The poses of a view that may be right: the one that colour says is, or all that shape allows.
+fn likely(view: &SearchedView) -> Vec<Found> {
+    let found = view.found();
+    let best = view.best();
+    let tried = if view.color.as_ref().is_some_and(|color| color.is_used) { 1 } else { TRIED };
+    found.iter().filter(|f| f.score.total > best - NEAR).take(tried).copied().collect()
 }
 
 fn best_of(found: impl Iterator<Item = Found>) -> Option<Found> {

@@ -19,7 +19,7 @@ use wasm_bindgen_test::wasm_bindgen_test;
 
 /// A hand-held video of an object with one right pose.
 fn video(frames: usize) -> Sequence {
-    VideoSet { seed: 7, frames }.video(0).unwrap()
+    VideoSet { seed: 7, frames, is_printed: false }.video(0).unwrap()
 }
 
 fn pose_of(found: &TrackedFrame) -> Similarity {

@@ -18,7 +18,7 @@ use crate::support::{Draw, fingerprint};
 
 /// Case 0 of a set is easy and has exact camera poses, case 5 is hard and has a wrong view.
 fn rig(seed: u64, views: usize, index: usize) -> Sequence {
-    RigSet { seed, views: Some(views) }.case(index).unwrap()
+    RigSet { seed, views: Some(views), is_printed: false }.case(index).unwrap()
 }
 
 fn views_of(sequence: &Sequence) -> Vec<View> {
@@ -30,7 +30,7 @@ fn options(sequence: &Sequence) -> ViewsOptions {
 }
 
 fn align(sequence: &Sequence, views: Vec<View>) -> ViewsAlignment {
-    align_views(views, &sequence.mesh, &options(sequence), &mut Silent).unwrap()
+    align_views(views, &sequence.prepared(), &options(sequence), &mut Silent).unwrap()
 }
 
 /// Checks the poses in all views but the wrong ones.
@@ -144,7 +144,8 @@ fn pauses_and_repeats_change_no_bit() {
 #[wasm_bindgen_test(unsupported = test)]
 fn what_is_refused() {
     let sequence = rig(46, 2, 0);
-    let refused = |views: Vec<View>| align_views(views, &sequence.mesh, &options(&sequence), &mut Silent).unwrap_err();
+    let refused =
+        |views: Vec<View>| align_views(views, &sequence.prepared(), &options(&sequence), &mut Silent).unwrap_err();
     let views = views_of(&sequence);
     assert_eq!(refused(Vec::new()).code, ErrorCode::InvalidArgument);
     let mut mixed = views.clone();

@@ -260,7 +260,7 @@ impl BenchObject {
         Ok(Self {
             name: last_name(folder),
             mask: mask_in(folder)?,
-            mesh: mesh_in(folder)?,
+            mesh: mesh_in(folder)?.mesh,
             truth: truth_of(folder)?.map(truth),
             stance: None,
         })

@@ -116,7 +116,7 @@ fn mesh_of(folder: &Path, path: &Path, bytes: &[u8]) -> Result<ColoredMesh> {
 }
 
 /// The photo in a folder, if there is one.
-fn photo_of(folder: &Path) -> Result<Option<Photo>> {
+pub(crate) fn photo_of(folder: &Path) -> Result<Option<Photo>> {
     if !has_any(folder, PHOTO_FILES) {
         return Ok(None);
     }
@@ -134,9 +134,9 @@ pub(crate) fn truth_of(folder: &Path) -> Result<Option<(Similarity, String)>> {
 }
 
 /// The mesh of a folder: `mesh.glb|gltf|obj|ply|stl`.
-pub(crate) fn mesh_in(folder: &Path) -> Result<Mesh> {
+pub(crate) fn mesh_in(folder: &Path) -> Result<ColoredMesh> {
     let (path, bytes) = find(folder, MESH_FILES)?;
-    Ok(mesh_of(folder, &path, &bytes)?.mesh)
+    mesh_of(folder, &path, &bytes)
 }
 
 fn has_any(folder: &Path, names: &[&str]) -> bool {

@@ -69,7 +69,7 @@ impl Family {
 /// Draws an object for a case.
 pub(crate) fn draw(random: &mut Random, tier: Tier, class: Class, scans: &[Scan]) -> Result<Object> {
     if class.is_symmetric() {
-        return SYMMETRIC[random.below(SYMMETRIC.len())].object(random);
+        return draw_symmetric(random);
     }
     let free = !matches!(class, Class::Thin | Class::Ambiguous | Class::MissingPart);
     if free && !scans.is_empty() && chance(random, SCANS) {
@@ -85,6 +85,11 @@ pub(crate) fn draw(random: &mut Random, tier: Tier, class: Class, scans: &[Scan]
     };
     let families: Vec<&Family> = FAMILIES.iter().filter(fits).collect();
     families[random.below(families.len())].object(random)
+}
+
+/// Draws an object whose shape does not tell how it is turned.
+pub(crate) fn draw_symmetric(random: &mut Random) -> Result<Object> {
+    SYMMETRIC[random.below(SYMMETRIC.len())].object(random)
 }
 
 /// Draws an object of any family that fits on a desk with others.

@@ -2,7 +2,6 @@
 
 use lexopt::prelude::*;
 use sim3align::metrics::pose_error::pose_errors;
-use sim3align::precise::prepared_mesh::PreparedMesh;
 use sim3align::progress::Silent;
 use sim3align::track::options::TrackOptions;
 use sim3align::track::report::TrackState;
@@ -19,22 +18,25 @@ use super::Failure;
 use super::sequence_rows::{each_row, outcomes};
 
 const USAGE: &str = "\
-Usage: sim3align-lab track [--generated N] [--frames F] [--seed S] [--threads T] [--verbose] [FOLDER...]
+Usage: sim3align-lab track [--generated N] [--frames F] [--seed S] [--threads T] [--printed]
+       [--no-color] [--verbose] [FOLDER...]
 
 Tracks each video with the masks of all frames, and with that of the first frame alone, and prints errors, flips,
-losses, and the time of a frame. FOLDER holds a mesh and folders frame_*.";
+losses, and the time of a frame. FOLDER holds a mesh and folders frame_*.
+--printed: objects whose print alone tells how they are turned; --no-color: without their photos.";
 
 struct Arguments {
     generated: usize,
     set: VideoSet,
     threads: usize,
     verbose: bool,
+    with_color: bool,
     folders: Vec<String>,
 }
 
 fn parse(mut parser: lexopt::Parser) -> core::result::Result<Option<Arguments>, lexopt::Error> {
-    let set = VideoSet { seed: 1, frames: 150 };
-    let mut parsed = Arguments { generated: 0, set, threads: 1, verbose: false, folders: Vec::new() };
+    let set = VideoSet { seed: 1, frames: 150, is_printed: false };
+    let mut parsed = Arguments { generated: 0, set, threads: 1, verbose: false, with_color: true, folders: Vec::new() };
     while let Some(argument) = parser.next()? {
         match argument {
             Long("help") | Short('h') => return Ok(None),
@@ -42,6 +44,8 @@ fn parse(mut parser: lexopt::Parser) -> core::result::Result<Option<Arguments>, 
             Long("frames") => parsed.set.frames = parser.value()?.parse()?,
             Long("seed") => parsed.set.seed = parser.value()?.parse()?,
             Long("threads") => parsed.threads = parser.value()?.parse()?,
+            Long("printed") => parsed.set.is_printed = true,
+            Long("no-color") => parsed.with_color = false,
             Long("verbose") => parsed.verbose = true,
             Value(folder) => parsed.folders.push(folder.string()?),
             _ => return Err(argument.unexpected()),
@@ -76,10 +80,10 @@ struct Outcome {
 
 const ROWS: [&str; 2] = ["all masks", "first mask"];
 
-fn run(sequence: &Sequence, verbose: bool) -> Result<Vec<Outcome>> {
+fn run(sequence: &Sequence, with_color: bool, verbose: bool) -> Result<Vec<Outcome>> {
     let mut outcomes = Vec::new();
     for (row, name) in ROWS.into_iter().enumerate() {
-        let mesh = PreparedMesh::borrowed(&sequence.mesh);
+        let mesh = sequence.prepared();
         let mut tracker = Tracker::new(&mesh, TrackOptions::default())?;
         let mut outcome = Outcome { row, kind: sequence.kind.clone(), ..Outcome::default() };
         let mut missed = 0;
@@ -87,6 +91,9 @@ fn run(sequence: &Sequence, verbose: bool) -> Result<Vec<Outcome>> {
             let mut seen = frame.view.frame.clone();
             if row == 1 && k > 0 {
                 seen.mask = None;
+            }
+            if !with_color {
+                seen.photo = None;
             }
             let began = CpuTimer::start();
             let found = match tracker.next(&seen, &mut Silent) {
@@ -143,8 +150,9 @@ pub fn main(arguments: lexopt::Parser) -> core::result::Result<(), Failure> {
         Ok(None) => return Err(Failure::Help(USAGE)),
         Err(error) => return Err(Failure::Usage(error, USAGE)),
     };
-    let Arguments { generated, set, threads, verbose, folders } = arguments;
-    let outcomes = outcomes(folders, generated, threads, |index| set.video(index), |sequence| run(sequence, verbose))?;
+    let Arguments { generated, set, threads, verbose, with_color, folders } = arguments;
+    let outcomes =
+        outcomes(folders, generated, threads, |index| set.video(index), |sequence| run(sequence, with_color, verbose))?;
     println!(
         "| row | videos | frames | strict % | rotation median, worst ° | size median, last worst % | flips | uncertain, lost | wrong and tracking | longest until right, frames | ms |"
     );

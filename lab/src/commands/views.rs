@@ -20,22 +20,25 @@ use super::Failure;
 use super::sequence_rows::{each_row, outcomes};
 
 const USAGE: &str = "\
-Usage: sim3align-lab views [--generated N] [--seed S] [--views V] [--threads T] [--verbose] [FOLDER...]
+Usage: sim3align-lab views [--generated N] [--seed S] [--views V] [--threads T] [--printed]
+       [--no-color] [--verbose] [FOLDER...]
 
 Aligns each case with one view, with all views and known camera poses, and with all views and unknown ones, and prints the
-fraction of strictly correct poses and the errors of the size. FOLDER holds a mesh and folders frame_*.";
+fraction of strictly correct poses and the errors of the size. FOLDER holds a mesh and folders frame_*.
+--printed: objects whose print alone tells how they are turned; --no-color: without their photos.";
 
 struct Arguments {
     generated: usize,
     set: RigSet,
     threads: usize,
     verbose: bool,
+    with_color: bool,
     folders: Vec<String>,
 }
 
 fn parse(mut parser: lexopt::Parser) -> core::result::Result<Option<Arguments>, lexopt::Error> {
-    let set = RigSet { seed: 1, views: None };
-    let mut parsed = Arguments { generated: 0, set, threads: 1, verbose: false, folders: Vec::new() };
+    let set = RigSet { seed: 1, views: None, is_printed: false };
+    let mut parsed = Arguments { generated: 0, set, threads: 1, verbose: false, with_color: true, folders: Vec::new() };
     while let Some(argument) = parser.next()? {
         match argument {
             Long("help") | Short('h') => return Ok(None),
@@ -43,6 +46,8 @@ fn parse(mut parser: lexopt::Parser) -> core::result::Result<Option<Arguments>, 
             Long("seed") => parsed.set.seed = parser.value()?.parse()?,
             Long("views") => parsed.set.views = Some(parser.value()?.parse()?),
             Long("threads") => parsed.threads = parser.value()?.parse()?,
+            Long("printed") => parsed.set.is_printed = true,
+            Long("no-color") => parsed.with_color = false,
             Long("verbose") => parsed.verbose = true,
             Value(folder) => parsed.folders.push(folder.string()?),
             _ => return Err(argument.unexpected()),
@@ -74,16 +79,18 @@ fn errors_of(sequence: &Sequence, k: usize, pose: &Sim3) -> Result<Option<PoseEr
     pose_errors(&sequence.mesh, &similarity(pose)?, truth, &sequence.symmetry).map(Some)
 }
 
-fn run(sequence: &Sequence, verbose: bool) -> Result<Vec<Outcome>> {
+fn run(sequence: &Sequence, with_color: bool, verbose: bool) -> Result<Vec<Outcome>> {
     let mut outcomes = Vec::new();
     for (row, name) in ROWS.into_iter().enumerate() {
         let views: Vec<View> = sequence
             .frames
             .iter()
             .take(if row == 0 { 1 } else { usize::MAX })
-            .map(|frame| View {
-                world_from_camera: frame.view.world_from_camera.filter(|_| row == 1),
-                ..frame.view.clone()
+            .map(|frame| {
+                let mut view = frame.view.clone();
+                view.world_from_camera = view.world_from_camera.filter(|_| row == 1);
+                view.frame.photo = view.frame.photo.filter(|_| with_color);
+                view
             })
             .collect();
         if row == 1 && views.iter().any(|view| view.world_from_camera.is_none()) {
@@ -91,7 +98,7 @@ fn run(sequence: &Sequence, verbose: bool) -> Result<Vec<Outcome>> {
         }
         let options = ViewsOptions { metrics: false, symmetry: sequence.symmetry.clone(), ..ViewsOptions::default() };
         let began = Instant::now();
-        let found = align_views(views, &sequence.mesh, &options, &mut Silent);
+        let found = align_views(views, &sequence.prepared(), &options, &mut Silent);
         let ms = began.elapsed().as_secs_f64() * 1000.0;
         let found: ViewsAlignment = match found {
             Ok(found) => found,
@@ -150,8 +157,9 @@ pub fn main(arguments: lexopt::Parser) -> core::result::Result<(), Failure> {
         Ok(None) => return Err(Failure::Help(USAGE)),
         Err(error) => return Err(Failure::Usage(error, USAGE)),
     };
-    let Arguments { generated, set, threads, verbose, folders } = arguments;
-    let outcomes = outcomes(folders, generated, threads, |index| set.case(index), |sequence| run(sequence, verbose))?;
+    let Arguments { generated, set, threads, verbose, with_color, folders } = arguments;
+    let outcomes =
+        outcomes(folders, generated, threads, |index| set.case(index), |sequence| run(sequence, with_color, verbose))?;
     println!(
         "| row | cases | n | strict % | size error median % | ≤ .5 % | ≤ 2 % | confidence ≥ .9 and wrong | wrong views found | right views left out | ms |"
     );

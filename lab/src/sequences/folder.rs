@@ -3,12 +3,13 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
 
 use super::{Sequence, SequenceFrame};
-use crate::case_folder::case::{depth_and_camera, has_mask, last_name, mask_in, mesh_in, truth_of};
+use crate::case_folder::case::{depth_and_camera, has_mask, last_name, mask_in, mesh_in, photo_of, truth_of};
 use crate::case_folder::json;
 use sim3align::evidence::frame::Frame;
 use sim3align::metrics::symmetry::Symmetry;
@@ -31,10 +32,12 @@ pub fn read_sequence(folder: &Path) -> Result<Sequence> {
         return Err(missing(folder, "no folder frame_*".into()));
     }
     let frames = folders.iter().map(|folder| read_frame(folder)).collect::<Result<Vec<_>>>()?;
+    let read = mesh_in(folder)?;
     Ok(Sequence {
         name: last_name(folder),
         kind: "real".into(),
-        mesh: mesh_in(folder)?,
+        mesh: read.mesh,
+        colors: read.colors,
         symmetry: Symmetry::Auto,
         frames,
     })
@@ -42,6 +45,7 @@ pub fn read_sequence(folder: &Path) -> Result<Sequence> {
 
 fn read_frame(folder: &Path) -> Result<SequenceFrame> {
     let (depth, camera) = depth_and_camera(folder)?;
+    let photo = photo_of(folder)?.map(Arc::new);
     let mask = if has_mask(folder) { Some(mask_in(folder)?) } else { None };
     let world_from_camera = match fs::read(folder.join("pose.json")) {
         Ok(bytes) => Some(camera_to_world(&bytes)?),
@@ -49,7 +53,7 @@ fn read_frame(folder: &Path) -> Result<SequenceFrame> {
     };
     Ok(SequenceFrame {
         name: last_name(folder),
-        view: View { frame: Frame { depth, camera, mask }, world_from_camera },
+        view: View { frame: Frame { depth, camera, mask, photo }, world_from_camera },
         camera_from_mesh: truth_of(folder)?.map(|(pose, _)| pose),
         visible: 1.0,
         is_wrong: false,

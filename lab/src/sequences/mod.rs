@@ -7,10 +7,12 @@ pub mod video;
 
 use nalgebra::{UnitQuaternion, Vector3};
 use sim3align::metrics::symmetry::Symmetry;
+use sim3align::precise::prepared_mesh::PreparedMesh;
 use sim3align::views::View;
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::random::Random;
 use sim3align_geometry::similarity::Similarity;
+use sim3align_geometry::surface_colors::SurfaceColors;
 
 use crate::draws::normal;
 
@@ -23,6 +25,8 @@ pub struct Sequence {
     pub kind: String,
     /// The mesh.
     pub mesh: Mesh,
+    /// Its colours, if it has some.
+    pub colors: Option<SurfaceColors>,
     /// Its symmetry.
     pub symmetry: Symmetry,
     /// The frames.
@@ -42,6 +46,13 @@ pub struct SequenceFrame {
     pub visible: f64,
     /// Whether the view is wrong on purpose.
     pub is_wrong: bool,
+}
+
+impl Sequence {
+    /// The mesh with its colours.
+    pub fn prepared(&self) -> PreparedMesh<'_> {
+        PreparedMesh::borrowed(&self.mesh).with_colors(self.colors.clone())
+    }
 }
 
 /// A rigid transform with normally distributed errors: degrees and metres.

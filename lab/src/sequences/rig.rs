@@ -28,6 +28,8 @@ pub struct RigSet {
     pub seed: u64,
     /// Number of views; `None` draws from two to eight.
     pub views: Option<usize>,
+    /// Whether only the print of the objects tells how they are turned, and the frames have photos.
+    pub is_printed: bool,
 }
 
 impl RigSet {
@@ -48,7 +50,7 @@ impl RigSet {
     fn draw(&self, index: usize, seed: u64) -> Result<Option<Sequence>> {
         let random = &mut Random::new(seed, STREAM);
         let tier = Tier::of(index);
-        let stage = Stage::draw(tier, random)?;
+        let stage = Stage::draw(tier, self.is_printed, random)?;
         let count = self.views.unwrap_or_else(|| 2 + random.below(7));
         // Between neighbouring cameras.
         let baseline = between(random, 5.0, 180.0);
@@ -70,6 +72,9 @@ impl RigSet {
             }
             scenes.push(scene);
         }
+        if !scenes.iter().any(|scene| stage.tells(scene)) {
+            return Ok(None);
+        }
         let made = stage.made(&scenes[0], seed, random)?;
         let mut frames = Vec::new();
         for (k, scene) in scenes.iter().enumerate() {
@@ -87,7 +92,7 @@ impl RigSet {
                 name: format!("frame_{k:02}"),
                 camera_from_mesh: Some(scene.camera_from_world.compose(&made.world_from_mesh)),
                 view: View {
-                    frame: Frame { depth, camera: scene.camera, mask: Some(mask) },
+                    frame: Frame { depth, camera: scene.camera, mask: Some(mask), photo: stage.photo(scene, random)? },
                     world_from_camera: Some(given),
                 },
                 visible: 1.0 - scene.hidden,
@@ -105,6 +110,7 @@ impl RigSet {
             name: format!("{index:04}-{}-{count}x{baseline:.0}-{}", tier.as_str(), stage.object.family),
             kind: kind.into(),
             mesh: made.mesh,
+            colors: made.colors,
             symmetry: made.symmetry,
             frames,
         }))

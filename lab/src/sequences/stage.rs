@@ -1,6 +1,7 @@
 //! An object on a table that cameras look at from all sides.
 
 use core::f64::consts::TAU;
+use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 use nalgebra::Vector3;
@@ -11,11 +12,15 @@ use crate::cases::draft::{Axis, Object};
 use crate::cases::families;
 use crate::cases::generator::generate;
 use crate::cases::mask::Segmented;
+use crate::cases::photo::take;
+use crate::cases::print::{Print, PrintKind};
 use crate::cases::readings::Readings;
 use crate::cases::scene::{Scene, background, camera_at, count, hidden, put_before, put_down, shown};
 use crate::cases::solid::Solid;
+use crate::cases::texture::paint;
 use crate::cases::tier::{Class, Tier};
 use crate::draws::between;
+use sim3align::evidence::photo::Photo;
 use sim3align::metrics::symmetry::Symmetry;
 use sim3align_geometry::cloud::Bounds;
 use sim3align_geometry::error::Result;
@@ -25,6 +30,7 @@ use sim3align_geometry::pinhole::Pinhole;
 use sim3align_geometry::random::Random;
 use sim3align_geometry::rasteriser::Rasteriser;
 use sim3align_geometry::similarity::{Similarity, vector3};
+use sim3align_geometry::surface_colors::SurfaceColors;
 
 /// Image size of all frames.
 pub const SIZE: [usize; 2] = [640, 480];
@@ -38,6 +44,7 @@ pub struct Stage {
     placed: Mesh,
     symmetry: Vec<Axis>,
     neighbours: Option<Mesh>,
+    print: Option<Print>,
     /// The intrinsics of all frames.
     pub camera: Pinhole,
     /// Centre of the object, and the distance at which it spans 150 to 280 pixels.
@@ -55,13 +62,17 @@ pub struct Made {
     pub world_from_mesh: Similarity,
     /// Its symmetry.
     pub symmetry: Symmetry,
+    /// Its colours, if the object has some.
+    pub colors: Option<SurfaceColors>,
 }
 
 impl Stage {
-    /// A stage with an object of any family that fits on a desk.
-    pub fn draw(tier: Tier, random: &mut Random) -> Result<Self> {
-        let object = families::draw_for_desk(random)?;
+    /// A stage with an object of any family that fits on a desk; `is_printed`: with one whose shape does not tell how it is
+    /// turned, but for its print.
+    pub fn draw(tier: Tier, is_printed: bool, random: &mut Random) -> Result<Self> {
+        let object = if is_printed { families::draw_symmetric(random)? } else { families::draw_for_desk(random)? };
         let (placed, symmetry) = put_down(&object, tier, random)?;
+        let print = is_printed.then(|| Print::draw(&placed, &symmetry, PrintKind::Label, random));
         let (width, height) = (SIZE[0] as f64, SIZE[1] as f64);
         let focal = between(random, 0.8, 1.1) * width;
         let camera = Pinhole::new(focal, focal, 0.5 * width - 0.5, 0.5 * height - 0.5)?;
@@ -77,7 +88,7 @@ impl Stage {
             solid.at(DAffine3::from_translation(spot)).cuboid(DVec3::splat(half), 0.05 * half);
         }
         let neighbours = if solid.is_empty() { None } else { Some(solid.finish()?.0) };
-        Ok(Self { object, placed, symmetry, neighbours, camera, center, distance, tier })
+        Ok(Self { object, placed, symmetry, neighbours, print, camera, center, distance, tier })
     }
 
     /// Camera from world for a camera at this heading and elevation, degrees, and this distance, that looks past the
@@ -128,7 +139,25 @@ impl Stage {
         let cell = (self.tier, Class::Plain);
         let generated = generate(&self.object, &self.placed, &self.symmetry, scene, cell, random)?;
         let (mesh, world_from_mesh) = canonicalise(&generated.mesh, seed)?;
-        Ok(Made { mesh, world_from_mesh, symmetry: declared(&generated.symmetry, &world_from_mesh) })
+        let (mut colors, mut symmetry) = (None, declared(&generated.symmetry, &world_from_mesh));
+        if let Some(print) = &self.print {
+            let eye = DVec3::from_array(scene.camera_from_world.inverse().translation.into());
+            let cell = (self.tier, Class::Printed);
+            colors = Some(paint(&mesh, &world_from_mesh, (print, &self.placed), eye, cell, random)?);
+            symmetry = Symmetry::None;
+        }
+        Ok(Made { mesh, world_from_mesh, symmetry, colors })
+    }
+
+    /// Whether the print shows in a scene which of the turns that the shape allows is right.
+    pub fn tells(&self, scene: &Scene) -> bool {
+        self.print.as_ref().is_none_or(|print| print.tells(&self.placed, &self.symmetry, scene))
+    }
+
+    /// The photo of a scene, if the object has a print.
+    pub fn photo(&self, scene: &Scene, random: &mut Random) -> Result<Option<Arc<Photo>>> {
+        let Some(print) = &self.print else { return Ok(None) };
+        take(scene, (&self.placed, print), Class::Printed, self.tier, random).map(|photo| Some(Arc::new(photo)))
     }
 
     /// Depth of a sensor and the mask of a segmentation model.

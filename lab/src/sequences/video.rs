@@ -66,6 +66,8 @@ pub struct VideoSet {
     pub seed: u64,
     /// Number of frames of each.
     pub frames: usize,
+    /// Whether only the print of the objects tells how they are turned, and the frames have photos.
+    pub is_printed: bool,
 }
 
 /// A smooth path: a sum of three waves per coordinate, from −1 to 1.
@@ -99,7 +101,7 @@ impl VideoSet {
         let random = &mut Random::new(seed, STREAM);
         let motion = Motion::ALL[index % Motion::ALL.len()];
         let tier = if (index / Motion::ALL.len()).is_multiple_of(2) { Tier::Easy } else { Tier::Medium };
-        let stage = Stage::draw(tier, random)?;
+        let stage = Stage::draw(tier, self.is_printed, random)?;
         let diagonal = stage.object.diagonal();
         let (heading, elevation) = (between(random, 0.0, 360.0), between(random, 25.0, 45.0));
         let turn = sign(random) * between(random, 20.0, 60.0);
@@ -132,7 +134,7 @@ impl VideoSet {
             let occluder = if motion == Motion::Occluders { passing(&stage, &camera, time)? } else { None };
             let scene = stage.shot(&camera, occluder.as_ref());
             if k == 0 {
-                if scene.visible_px() < MIN_PX || scene.hidden > 0.1 {
+                if scene.visible_px() < MIN_PX || scene.hidden > 0.1 || !stage.tells(&scene) {
                     return Ok(None);
                 }
                 made = Some(stage.made(&scene, seed, random)?);
@@ -153,7 +155,7 @@ impl VideoSet {
             frames.push(SequenceFrame {
                 name: format!("frame_{k:04}"),
                 view: View {
-                    frame: Frame { depth, camera: scene.camera, mask: Some(mask) },
+                    frame: Frame { depth, camera: scene.camera, mask: Some(mask), photo: stage.photo(&scene, random)? },
                     world_from_camera: Some(camera.inverse()),
                 },
                 camera_from_mesh: Some(camera.compose(&made.world_from_mesh)),
@@ -165,6 +167,7 @@ impl VideoSet {
             name: format!("{index:04}-{}-{}", motion.as_str(), stage.object.family),
             kind: motion.as_str().into(),
             mesh: made.mesh,
+            colors: made.colors,
             symmetry: made.symmetry,
             frames,
         }))

@@ -1,0 +1,109 @@
+//! The choice among poses that shape leaves, by their colours.
+
+use crate::geometry::order::largest;
+use crate::report::{ColorReport, ColorVerdict};
+
+/// Minimum correlation of the best pose with the photo for colour to decide.
+pub const AGREES: f64 = 0.3;
+/// Correlation that outweighs a difference of 1 between shape scores.
+pub const SHAPE: f64 = 0.5;
+/// Gain for which another pose than that of shape is taken.
+const MIN_GAIN: f64 = 0.02;
+/// Factor of the correlation in the logarithm of the odds of two poses.
+const ODDS: f64 = 15.0;
+/// Minimum certainty where no pose agrees: as likely as not, the colours of the mesh mean nothing, and the turns that its
+/// shape allows are all right.
+const UNMATCHED: f64 = 0.5;
+
+/// A pose as shape and colour see it.
+#[derive(Debug, Clone, Copy)]
+pub struct Look {
+    /// Correlation with the photo.
+    pub agreement: f64,
+    /// The agreement, with the difference of the shape score from that of the best pose by shape.
+    pub total: f64,
+}
+
+impl Look {
+    /// A pose whose shape score is above that of the best pose by this much, per view.
+    pub fn new(agreement: f64, shape: f32) -> Self {
+        Self { agreement, total: agreement + SHAPE * f64::from(shape) }
+    }
+}
+
+/// Which of several poses colour chooses. The first is the best by shape.
+#[derive(Debug, Clone)]
+pub struct Choice {
+    looks: Vec<Look>,
+    /// Index of the chosen pose.
+    pub chosen: usize,
+    /// Indices of the poses that look different from the chosen one, best first.
+    pub rivals: Vec<usize>,
+    /// Whether a pose agrees with the photo, so that colour counts.
+    pub is_used: bool,
+}
+
+impl Choice {
+    /// The choice among poses; `differ` tells whether the poses of two indices are rivals. `None` without any.
+    pub fn among(looks: Vec<Look>, differ: impl Fn(usize, usize) -> bool) -> Option<Self> {
+        let first = looks.first()?;
+        let is_used = looks.iter().fold(f64::NEG_INFINITY, |most, look| most.max(look.agreement)) >= AGREES;
+        let best = (0..looks.len()).fold(0, |best, k| if looks[k].total > looks[best].total { k } else { best });
+        let chosen = if is_used && looks[best].total > first.total + MIN_GAIN { best } else { 0 };
+        let rivals: Vec<usize> = (0..looks.len()).filter(|&other| differ(other, chosen)).collect();
+        let order = largest(rivals.iter().map(|&rival| looks[rival].total as f32), rivals.len());
+        let rivals = order.into_iter().map(|i| rivals[i as usize]).collect();
+        Some(Self { looks, chosen, rivals, is_used })
+    }
+
+    /// Probability that the chosen pose is right, given that it is one of those compared. `gain` is by how much its
+    /// agreement has grown since.
+    pub fn certainty(&self, gain: f64) -> f64 {
+        let odds: f64 = self.rivals.iter().map(|&rival| libm::exp(-ODDS * self.lead(rival, gain))).sum();
+        (1.0 / (1.0 + odds)).max(if self.is_used { 0.0 } else { UNMATCHED })
+    }
+
+    /// By how much the agreement of a rival is below that of the chosen pose.
+    pub fn margin(&self, rival: usize, gain: f64) -> f64 {
+        self.looks[self.chosen].agreement + gain - self.looks[rival].agreement
+    }
+
+    /// For the result.
+    pub fn report(&self, gain: f64) -> ColorReport {
+        let verdict = match (self.rivals.is_empty(), self.is_used, self.chosen != 0) {
+            (true, ..) => ColorVerdict::Uniform,
+            (_, false, _) => ColorVerdict::Unmatched,
+            (_, _, false) => ColorVerdict::Agreed,
+            (_, _, true) => ColorVerdict::Decided,
+        };
+        let agreement = self.looks[self.chosen].agreement + gain;
+        ColorReport { verdict, agreement, margin: self.rivals.first().map(|&rival| self.lead(rival, gain)) }
+    }
+
+    fn lead(&self, rival: usize, gain: f64) -> f64 {
+        if self.is_used { self.looks[self.chosen].total + gain - self.looks[rival].total } else { 0.0 }
+    }
+}
+
+/// What colour contributes where nothing can be compared.
+pub const HIDDEN: ColorReport = ColorReport { verdict: ColorVerdict::Hidden, agreement: 0.0, margin: None };
+
+/// Angles of the steps of a roll, radians.
+const ROLL_STEPS: [f64; 4] = [0.12, 0.06, 0.03, 0.015];
+
+/// The roll about an open axis at which `total`, a function of the angle in radians, is largest, and its gain; `None` if
+/// no roll is better.
+pub fn best_roll(mut total: impl FnMut(f64) -> f64) -> Option<(f64, f64)> {
+    let start = total(0.0);
+    let mut best = (start, 0.0);
+    for step in ROLL_STEPS {
+        let middle = best.1;
+        for angle in [middle - step, middle + step] {
+            let there = total(angle);
+            if there > best.0 {
+                best = (there, angle);
+            }
+        }
+    }
+    (best.1 != 0.0).then_some((best.1, best.0 - start))
+}

@@ -1,0 +1,108 @@
+//! The search for a tracked object over all rotations, in its first frame and after it was lost.
+
+use std::rc::Rc;
+
+use glam::DQuat;
+
+use crate::error::Result;
+use crate::evidence::observation::Observation;
+use crate::geometry::rotations::angle_between;
+use crate::precise::clean::CleanObservation;
+use crate::precise::color::{ColorStage, Judgment};
+use crate::precise::confidence::sureness;
+use crate::precise::options::AlignOptions;
+use crate::precise::prepared_mesh::PreparedMesh;
+use crate::precise::prior::Prior;
+use crate::precise::recipe::SURE;
+use crate::precise::rounds::Rounds;
+use crate::precise::score::NOISE;
+use crate::precise::search::Found;
+use crate::precise::{self, SearchSettings, no_candidate};
+use crate::progress::{Host, Stopwatch};
+
+/// What a search knows beforehand.
+pub struct Known {
+    /// The prior on scale and orientation.
+    pub prior: Prior,
+    /// The logarithm of the scale, if it is known, and the rotation in which the object was seen last.
+    pub before: Option<(Option<f64>, DQuat)>,
+}
+
+/// A found object.
+pub struct Detection {
+    /// The pose.
+    pub found: Found,
+    /// The frame.
+    pub observation: Rc<CleanObservation>,
+    /// The difference between the scores of the pose and of the best other one.
+    pub margin: f64,
+    /// Probability that it is the right one of the turns in which only colours differ.
+    pub turn_certainty: f64,
+}
+
+impl Detection {
+    /// Searches all rotations. Among poses that fit equally well, colour decides; where it cannot, and the object was seen
+    /// before, the nearest one counts: an object that looks alike from several sides has not turned unseen.
+    ///
+    /// # Errors
+    /// As [`precise::begin`].
+    pub fn search(
+        observation: &Observation,
+        mesh: &PreparedMesh<'_>,
+        options: &AlignOptions,
+        known: &Known,
+        host: &mut dyn Host,
+    ) -> Result<Self> {
+        let mut rounds: Option<Rounds> = None;
+        let mut certainty = 0.0;
+        for settings in precise::efforts(options) {
+            if certainty >= SURE || (known.before.is_some() && rounds.is_some()) {
+                break;
+            }
+            let stages = &mut Stopwatch::new(&mut *host, precise::PLAN);
+            let log_scale = known.before.and_then(|(log_scale, _)| log_scale);
+            let settings = SearchSettings { lock_scale: settings.lock_scale || log_scale.is_some(), ..settings };
+            let mut next = precise::begin(observation, mesh, rounds.as_ref(), options, &settings, stages)?;
+            if let Some(log_scale) = log_scale {
+                next.search.assume(Prior { scale: Some([libm::exp(log_scale); 2]), ..known.prior });
+            }
+            precise::run(&mut next, &(0.2..0.85), &mut || false, stages);
+            let best = next.found.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
+            let (conditioning, _) = next.search.conditioning(&best.pose);
+            let rival = next.found.iter().skip(1).map(|other| other.score.total).fold(0.0, f32::max);
+            certainty = sureness(best, f64::from(best.score.total - rival), conditioning.as_ref());
+            rounds = Some(next);
+        }
+        let rounds = rounds.ok_or_else(no_candidate)?;
+        let judgment = by_color(&rounds, observation, mesh);
+        let (found, margin) = chosen(&rounds, judgment.as_ref(), known)?;
+        let turn_certainty = judgment.map_or(1.0, |judgment| judgment.certainty);
+        Ok(Self { found, observation: rounds.search.observation, margin, turn_certainty })
+    }
+}
+
+/// What colour says about the poses that a search has found; `None` without colours.
+fn by_color(rounds: &Rounds, observation: &Observation, mesh: &PreparedMesh<'_>) -> Option<Judgment> {
+    let (photo, colors) = (observation.photo()?, mesh.colors()?);
+    let mut stage = ColorStage::new(rounds, photo);
+    stage.run(rounds, colors, &mut || false);
+    Some(stage.judge(rounds, colors))
+}
+
+/// The pose that counts, and its lead over the others.
+fn chosen(rounds: &Rounds, judgment: Option<&Judgment>, known: &Known) -> Result<(Found, f64)> {
+    let first = *rounds.found.first().ok_or_else(no_candidate)?;
+    let mut chosen = judgment.and_then(|judgment| judgment.chosen).unwrap_or(first);
+    let is_colored = judgment.is_some_and(|judgment| judgment.is_used && !judgment.rivals.is_empty());
+    if let (Some((_, before)), false) = (known.before, is_colored) {
+        for other in rounds.found.iter().filter(|other| other.score.total > first.score.total - 0.5 * NOISE) {
+            if angle_between(other.pose.rotation, before) < angle_between(chosen.pose.rotation, before) {
+                chosen = *other;
+            }
+        }
+    }
+    let others = rounds.found.iter().filter(|other| other.score.total < chosen.score.total);
+    let rival = others.map(|other| other.score.total).fold(0.0, f32::max);
+    let margin = f64::from(chosen.score.total - rival);
+    Ok((chosen, judgment.map_or(margin, |color| margin.max(color.lead()))))
+}

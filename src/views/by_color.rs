@@ -1,0 +1,177 @@
+//! Colour in views with known camera poses: of the turns whose shape is within noise in all views together, the one that
+//! agrees best with all photos.
+
+use super::joint::Joint;
+use super::known::{Hypothesis, Part, Ranked, grids, level};
+use super::world_pose::WorldPose;
+use crate::geometry::rotations::exp;
+use crate::geometry::surface_colors::SurfaceColors;
+use crate::precise::appearance::{Appearance, PhotoCells};
+use crate::precise::choice::{Choice, Look, best_roll};
+use crate::precise::color::{DIFFERENT, Judgment, LOOSE, Rival, are_rivals};
+use crate::precise::conditioning::Conditioning;
+use crate::precise::lookalikes::{Lookalike, ROLLS, among};
+use crate::precise::recipe::{COARSE, FINE, FINEST, MIDDLE};
+use crate::precise::score::{NOISE, Score};
+use crate::precise::search::Found;
+
+/// Steps of the refinement of a lookalike, and of the pose that colour chose.
+const STEPS: [usize; 2] = [4, 6];
+
+/// The views and their photos.
+#[derive(Clone, Copy)]
+pub struct Photos<'a> {
+    /// The views that are used.
+    pub parts: &'a [Part<'a>],
+    /// The photo of each, on the fine grid of its search.
+    pub photos: &'a [Option<PhotoCells>],
+    /// The colours of the mesh.
+    pub colors: &'a SurfaceColors,
+}
+
+/// A pose whose shape is within noise of the best one.
+struct Compared {
+    ranked: Ranked,
+    /// The mean score of its shape.
+    shape: f32,
+    appearances: Vec<Option<Appearance>>,
+    look: Look,
+}
+
+impl Photos<'_> {
+    /// Judges the turns of the best of the `ranked` poses. Returns the judgment, whose poses are those in the first view,
+    /// and the chosen pose, if it is not the first. `None` if nothing can be compared.
+    pub fn judge(
+        &self,
+        ranked: &[Ranked],
+        conditioning: Option<&Conditioning>,
+        lock_scale: bool,
+        renders: &mut usize,
+    ) -> Option<(Judgment, Option<Ranked>)> {
+        let best = ranked.first()?;
+        let alike = self.lookalikes(best, ranked, lock_scale, renders)?;
+        let (middle, fine) = (grids(self.parts, MIDDLE), grids(self.parts, FINE));
+        let mut rough = level(self.parts, &middle, MIDDLE, lock_scale);
+        let mut joint = level(self.parts, &fine, FINE, lock_scale);
+        let first = self.compare(&mut joint, best, None)?;
+        let shape = first.shape;
+        let look = Look::new(first.look.agreement, 0.0);
+        let mut compared = vec![Compared { look, ..first }];
+        for Lookalike { pose, is_rough } in alike {
+            let mut pose = pose.pose;
+            if is_rough {
+                let refined = rough.refine(pose, STEPS[0]);
+                *renders += refined.renders;
+                pose = refined.pose;
+            }
+            *renders += 1;
+            compared.extend(self.compare(&mut joint, &Ranked { pose, ..best.clone() }, Some(shape)));
+        }
+        let differ = |a: usize, b: usize| {
+            let [a, b] = [a, b].map(|k| &compared[k]);
+            are_rivals(a.ranked.pose.rotation, b.ranked.pose.rotation) && difference(a, b) > DIFFERENT
+        };
+        let choice = Choice::among(compared.iter().map(|compared| compared.look).collect(), differ)?;
+        let is_changed = choice.chosen != 0;
+        let mut chosen = compared[choice.chosen].ranked.clone();
+        if is_changed {
+            let finest = grids(self.parts, FINEST);
+            let polished = level(self.parts, &finest, FINEST, lock_scale).refine(chosen.pose, STEPS[1]);
+            *renders += polished.renders;
+            chosen.pose = polished.pose;
+        }
+        let rolled = conditioning
+            .filter(|held| choice.is_used && held.rotation.0 >= LOOSE)
+            .and_then(|held| self.roll(&mut joint, &chosen, held));
+        let gain = rolled.map_or(0.0, |(_, gain)| gain);
+        if let Some((pose, _)) = rolled {
+            chosen.pose = pose;
+        }
+        let first = self.parts.first()?;
+        let seen = |ranked: &Ranked| {
+            let score = Score { total: ranked.score.total, ..Score::default() };
+            Some(Found { pose: first.camera.see(&ranked.pose)?, score, converged: ranked.converged, renders: 0 })
+        };
+        let rival = |&k: &usize| Some(Rival { found: seen(&compared[k].ranked)?, margin: choice.margin(k, gain) });
+        let chosen = (is_changed || rolled.is_some()).then_some(chosen);
+        let judgment = Judgment {
+            chosen: chosen.as_ref().and_then(seen),
+            rivals: choice.rivals.iter().filter_map(rival).collect(),
+            certainty: choice.certainty(gain),
+            report: choice.report(gain),
+            is_used: choice.is_used,
+        };
+        Some((judgment, chosen))
+    }
+
+    /// The turns that look about like the best pose in all views, on the coarse grid.
+    fn lookalikes(
+        &self,
+        best: &Ranked,
+        ranked: &[Ranked],
+        lock_scale: bool,
+        renders: &mut usize,
+    ) -> Option<Vec<Lookalike<Hypothesis>>> {
+        let (part, seen) = self.parts.iter().find_map(|part| Some((part, part.camera.see(&best.pose)?)))?;
+        let turned = part.search.mesh.turns.about_axes(&seen, ROLLS);
+        let turned = turned.iter().map(|turned| part.camera.place(turned));
+        let coarse = grids(self.parts, COARSE);
+        let mut joint = level(self.parts, &coarse, COARSE, lock_scale);
+        let mut mean = |pose: &WorldPose| joint.score(pose).total / self.parts.len() as f32;
+        let score = mean(&best.pose);
+        let poses: Vec<WorldPose> = ranked.iter().skip(1).map(|other| other.pose).chain(turned).collect();
+        *renders += poses.len();
+        let scored = poses.into_iter().map(|pose| Hypothesis { pose, total: mean(&pose) });
+        Some(among(best.pose.rotation, score, scored))
+    }
+
+    /// Renders a pose in all views; `None` if its shape is not within noise of `shape`, or nothing can be compared.
+    fn compare(&self, joint: &mut Joint<'_>, ranked: &Ranked, shape: Option<f32>) -> Option<Compared> {
+        let score = joint.score(&ranked.pose);
+        let own = score.total / self.parts.len() as f32;
+        if shape.is_some_and(|shape| own < shape - NOISE) {
+            return None;
+        }
+        let appearances: Vec<Option<Appearance>> = self
+            .photos
+            .iter()
+            .zip(self.parts)
+            .enumerate()
+            .map(|(k, (photo, part))| {
+                part.camera.see(&ranked.pose)?;
+                photo.as_ref()?.compare(joint.canvas(k), self.colors, &part.search.mesh.frame, &part.search.fine)
+            })
+            .collect();
+        let look = Look::new(mean_agreement(&appearances)?, own - shape.unwrap_or(0.0));
+        Some(Compared { ranked: Ranked { score, ..ranked.clone() }, shape: own, appearances, look })
+    }
+
+    /// The pose rolled about its open axis to where its colours agree best, and the gain.
+    fn roll(&self, joint: &mut Joint<'_>, chosen: &Ranked, held: &Conditioning) -> Option<(WorldPose, f64)> {
+        let part = self.parts.iter().find(|part| part.camera.see(&chosen.pose).is_some())?;
+        let rolled = |angle: f64| {
+            let rotation = exp(held.rotation.1 * angle) * chosen.pose.rotation;
+            let seen = part.camera.see(&chosen.pose)?;
+            let turned = part.camera.see(&WorldPose { rotation, ..chosen.pose })?;
+            Some(part.camera.place(&part.search.mesh.turns.turned(&seen, turned.rotation)))
+        };
+        let (angle, gain) = best_roll(|angle| {
+            let compared = rolled(angle).and_then(|pose| self.compare(joint, &Ranked { pose, ..chosen.clone() }, None));
+            compared.map_or(f64::NEG_INFINITY, |compared| compared.look.total)
+        })?;
+        Some((rolled(angle)?, gain))
+    }
+}
+
+/// The mean correlation with the photos, by the number of cells that are compared; `None` without any.
+fn mean_agreement(appearances: &[Option<Appearance>]) -> Option<f64> {
+    let cells: usize = appearances.iter().flatten().map(Appearance::cells).sum();
+    let sum: f64 = appearances.iter().flatten().map(|a| a.agreement * a.cells() as f64).sum();
+    (cells > 0).then(|| sum / cells as f64)
+}
+
+/// The largest difference of contrast in a view.
+fn difference(a: &Compared, b: &Compared) -> f64 {
+    let pairs = a.appearances.iter().zip(&b.appearances).filter_map(|(a, b)| a.as_ref().zip(b.as_ref()));
+    pairs.map(|(a, b)| a.difference(b)).fold(0.0, f64::max)
+}
