@@ -2,8 +2,11 @@
 
 use std::rc::Rc;
 
+use glam::Vec3;
+
 use super::evidence::{Evidence, of_mask, of_pose};
 use crate::evidence::frame::Frame;
+use crate::geometry::pinhole::Pinhole;
 use crate::precise::SearchSettings;
 use crate::precise::mesh_pyramid::MeshPyramid;
 use crate::precise::pose::CropPose;
@@ -96,7 +99,24 @@ pub fn agreement(score: &Score) -> f32 {
     score.overlap * score.depth
 }
 
-/// The share of the silhouette where the depth shows the object.
+/// The share of the object that a frame shows: of its vertices, those inside the image, times the share of its silhouette
+/// in the image that the mask covers.
+pub fn shown(frame: &Frame, evidence: &Evidence, pose: &CropPose) -> f32 {
+    let (scale, translation) = pose.scale_translation();
+    let Pinhole { fx, fy, cx, cy } = frame.camera;
+    let [width, height] = [frame.depth.width() as f64, frame.depth.height() as f64];
+    let mesh = &evidence.search.mesh;
+    let is_inside = |position: &&Vec3| {
+        let point = pose.rotation * position.as_dvec3() * scale + translation;
+        let (u, v) = (fx * point.x / point.z + cx + 0.5, fy * point.y / point.z + cy + 0.5);
+        point.z > 0.0 && u >= 0.0 && v >= 0.0 && u < width && v < height
+    };
+    let vertices = mesh.fine.positions();
+    let inside = vertices.iter().filter(is_inside).count() as f32 / vertices.len().max(1) as f32;
+    inside * visible(&evidence.search, pose)
+}
+
+/// The share of the silhouette, inside the image, that the mask covers.
 fn visible(search: &Search, pose: &CropPose) -> f32 {
     let canvas = &mut Canvas::default();
     let objective = search.objective(FINE, &search.fine);

@@ -8,7 +8,7 @@ use super::evidence::Evidence;
 use super::motion::Motion;
 use super::options::TrackOptions;
 use super::report::{CorrectedFrame, TrackState, TrackedFrame};
-use super::sight::{Seen, Sight, agreement};
+use super::sight::{Seen, Sight, agreement, shown};
 use super::size::Size;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::frame::Frame;
@@ -48,6 +48,9 @@ const LOST: f32 = 0.45;
 const NEW: f32 = 0.1;
 /// Share of the silhouette that must be seen in a frame without a mask, for it to be certain, and not to be lost.
 const SEEN: [f32; 2] = [0.35, 0.12];
+/// Share of the object that a frame must show for it to be searched for over all rotations, and for its rotation to count
+/// as known.
+const ENOUGH: f32 = 0.5;
 /// Standard deviation of the size of a correction, relative.
 const CORRECTION_SD: f64 = 0.005;
 /// Maximum number of frames that a correction carries back.
@@ -66,6 +69,8 @@ pub struct Tracker<M> {
     state: TrackState,
     /// The usual fit of a frame.
     usual: Option<f32>,
+    /// The rotation in the last frame that was certain and showed enough.
+    certain: Option<DQuat>,
     /// The difference between the scores of the pose and of the best other one, where the object was found.
     margin: f64,
     /// Probability that the turn in which it was found is right, if only colours tell.
@@ -101,6 +106,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             motion: Motion::REST,
             state: TrackState::Lost,
             usual: None,
+            certain: None,
             margin: 0.0,
             turn_certainty: 1.0,
             history: Vec::new(),
@@ -171,6 +177,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             self.usual = None;
             self.margin = f64::from(NOISE);
             self.turn_certainty = 1.0;
+            self.certain = self.last.map(|pose| pose.rotation);
             let evidence = SizeEvidence { log_scale: fixed.log_scale, sd: CORRECTION_SD, score: 0.0 };
             self.size.correct(fixed.rotation, evidence);
         }
@@ -212,9 +219,17 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         if fit(&near, self) >= UNCERTAIN && self.state != TrackState::Lost {
             return near;
         }
+        // An object that leaves the image, or passes behind another, is not where all rotations should be searched: little
+        // of it may look like anything.
+        let is_leaving = |seen: &Seen| shown(frame, &seen.evidence, &seen.found.pose) < ENOUGH;
+        if self.state != TrackState::Lost && near.as_ref().is_some_and(is_leaving) {
+            return near.filter(|seen| self.fit(seen) >= LOST && seen.visible >= SEEN[1]);
+        }
         // Found anew, where a mask says that there is something to find.
+        let before = self.certain.unwrap_or(last.rotation);
         let observation = frame.observation().ok().flatten();
-        let anew = observation.and_then(|observation| self.detect(&observation, Some(last.rotation), host).ok());
+        let anew = observation.and_then(|observation| self.detect(&observation, Some(before), host).ok());
+        let anew = anew.filter(|seen| !is_leaving(seen));
         let best = if fit(&anew, self) > 1.1 * fit(&near, self) { anew } else { near };
         let least = if self.state == TrackState::Lost { UNCERTAIN } else { LOST };
         best.filter(|seen| self.fit(seen) >= least && seen.visible >= SEEN[1])
@@ -258,6 +273,9 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         if is_certain {
             let usual = self.usual.unwrap_or_else(|| agreement(&found.score));
             self.usual = Some(usual + NEW * (agreement(&found.score) - usual));
+            if shown(frame, &evidence, &found.pose) >= ENOUGH {
+                self.certain = Some(found.pose.rotation);
+            }
             self.roll(&evidence, &mut found);
             self.weigh_size(search, &mut found, if is_predicted { PREDICTED_ERROR } else { SILHOUETTE_ERROR });
         }

@@ -1,5 +1,7 @@
 //! Rows over sequences, generated or from case folders: what `views` and `track` share.
 
+use core::ops::Range;
+
 use sim3align_geometry::error::Result;
 use sim3align_lab::parallel::parallel_map;
 use sim3align_lab::sequences::Sequence;
@@ -13,16 +15,15 @@ enum Source {
     Index(usize),
 }
 
-/// The outcomes of `run` for the sequences of the folders, then for `generated` sequences that `generate` makes.
+/// The outcomes of `run` for the sequences of the folders, then for the `generated` sequences, by index, that `generate` makes.
 pub fn outcomes<T: Send>(
     folders: Vec<String>,
-    generated: usize,
+    generated: Range<usize>,
     threads: usize,
     generate: impl Fn(usize) -> Result<Sequence> + Sync,
     run: impl Fn(&Sequence) -> Result<Vec<T>> + Sync,
 ) -> core::result::Result<Vec<T>, Failure> {
-    let sources: Vec<Source> =
-        folders.into_iter().map(Source::Folder).chain((0..generated).map(Source::Index)).collect();
+    let sources: Vec<Source> = folders.into_iter().map(Source::Folder).chain(generated.map(Source::Index)).collect();
     let work = |source: &Source| {
         run(&match source {
             Source::Folder(folder) => read_sequence(folder.as_ref())?,

@@ -1,5 +1,6 @@
 //! `track`: tracks one object through videos, generated or from case folders, and prints a table.
 
+use core::ops::Range;
 use lexopt::prelude::*;
 use sim3align::metrics::pose_error::pose_errors;
 use sim3align::progress::Silent;
@@ -18,15 +19,15 @@ use super::Failure;
 use super::sequence_rows::{each_row, outcomes};
 
 const USAGE: &str = "\
-Usage: sim3align-lab track [--generated N] [--frames F] [--seed S] [--threads T] [--printed]
+Usage: sim3align-lab track [--generated N] [--from I] [--frames F] [--seed S] [--threads T] [--printed]
        [--no-color] [--verbose] [FOLDER...]
 
 Tracks each video with the masks of all frames, and with that of the first frame alone, and prints errors, flips,
 losses, and the time of a frame. FOLDER holds a mesh and folders frame_*.
---printed: objects whose print alone tells how they are turned; --no-color: without their photos.";
+--from: index of the first generated case. --printed: objects whose print alone tells how they are turned; --no-color: without their photos.";
 
 struct Arguments {
-    generated: usize,
+    generated: Range<usize>,
     set: VideoSet,
     threads: usize,
     verbose: bool,
@@ -36,11 +37,13 @@ struct Arguments {
 
 fn parse(mut parser: lexopt::Parser) -> core::result::Result<Option<Arguments>, lexopt::Error> {
     let set = VideoSet { seed: 1, frames: 150, is_printed: false };
-    let mut parsed = Arguments { generated: 0, set, threads: 1, verbose: false, with_color: true, folders: Vec::new() };
+    let mut parsed =
+        Arguments { generated: 0..0, set, threads: 1, verbose: false, with_color: true, folders: Vec::new() };
     while let Some(argument) = parser.next()? {
         match argument {
             Long("help") | Short('h') => return Ok(None),
-            Long("generated") => parsed.generated = parser.value()?.parse()?,
+            Long("generated") => parsed.generated.end = parser.value()?.parse()?,
+            Long("from") => parsed.generated.start = parser.value()?.parse()?,
             Long("frames") => parsed.set.frames = parser.value()?.parse()?,
             Long("seed") => parsed.set.seed = parser.value()?.parse()?,
             Long("threads") => parsed.threads = parser.value()?.parse()?,
@@ -51,6 +54,7 @@ fn parse(mut parser: lexopt::Parser) -> core::result::Result<Option<Arguments>, 
             _ => return Err(argument.unexpected()),
         }
     }
+    parsed.generated.end += parsed.generated.start;
     Ok(Some(parsed))
 }
 

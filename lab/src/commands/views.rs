@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use core::ops::Range;
 use lexopt::prelude::*;
 use sim3align::metrics::pose_error::{PoseErrors, pose_errors};
 use sim3align::progress::Silent;
@@ -20,15 +21,15 @@ use super::Failure;
 use super::sequence_rows::{each_row, outcomes};
 
 const USAGE: &str = "\
-Usage: sim3align-lab views [--generated N] [--seed S] [--views V] [--threads T] [--printed]
+Usage: sim3align-lab views [--generated N] [--from I] [--seed S] [--views V] [--threads T] [--printed]
        [--no-color] [--verbose] [FOLDER...]
 
 Aligns each case with one view, with all views and known camera poses, and with all views and unknown ones, and prints the
 fraction of strictly correct poses and the errors of the size. FOLDER holds a mesh and folders frame_*.
---printed: objects whose print alone tells how they are turned; --no-color: without their photos.";
+--from: index of the first generated case. --printed: objects whose print alone tells how they are turned; --no-color: without their photos.";
 
 struct Arguments {
-    generated: usize,
+    generated: Range<usize>,
     set: RigSet,
     threads: usize,
     verbose: bool,
@@ -38,11 +39,13 @@ struct Arguments {
 
 fn parse(mut parser: lexopt::Parser) -> core::result::Result<Option<Arguments>, lexopt::Error> {
     let set = RigSet { seed: 1, views: None, is_printed: false };
-    let mut parsed = Arguments { generated: 0, set, threads: 1, verbose: false, with_color: true, folders: Vec::new() };
+    let mut parsed =
+        Arguments { generated: 0..0, set, threads: 1, verbose: false, with_color: true, folders: Vec::new() };
     while let Some(argument) = parser.next()? {
         match argument {
             Long("help") | Short('h') => return Ok(None),
-            Long("generated") => parsed.generated = parser.value()?.parse()?,
+            Long("generated") => parsed.generated.end = parser.value()?.parse()?,
+            Long("from") => parsed.generated.start = parser.value()?.parse()?,
             Long("seed") => parsed.set.seed = parser.value()?.parse()?,
             Long("views") => parsed.set.views = Some(parser.value()?.parse()?),
             Long("threads") => parsed.threads = parser.value()?.parse()?,
@@ -53,6 +56,7 @@ fn parse(mut parser: lexopt::Parser) -> core::result::Result<Option<Arguments>, 
             _ => return Err(argument.unexpected()),
         }
     }
+    parsed.generated.end += parsed.generated.start;
     Ok(Some(parsed))
 }
 
