@@ -21,7 +21,7 @@ use crate::precise::prepared_mesh::PreparedMesh;
 use crate::precise::recipe::SURE;
 use crate::precise::rounds::Rounds;
 use crate::precise::surroundings::Neighbourhood;
-use crate::precise::{Certainty, Found, SearchSettings};
+use crate::precise::{Certainty, Found, SearchSettings, Told};
 use crate::progress::{Host, Stopwatch};
 use crate::report::{Alignment, Effort, PaperAlignment, PreciseDiagnostics, Solution};
 
@@ -278,9 +278,13 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
     ) -> Result<State> {
         let settings = self.efforts.iter().find(|settings| settings.effort == given.effort).ok_or_else(over)?.again();
         let (observation, mesh) = (self.observation.borrow(), self.mesh.borrow());
-        let found = (given.found.as_slice(), given.renders, given.confidence >= SURE);
-        let rounds =
-            precise::resume(observation, mesh, clean, found, given.known.clone(), &self.options, &settings, stages)?;
+        let told = Told {
+            found: &given.found,
+            renders: given.renders,
+            is_sure: given.confidence >= SURE,
+            known: given.known.clone(),
+        };
+        let rounds = precise::resume(observation, mesh, clean, told, &self.options, &settings, stages)?;
         Ok(State::Resumed(clouds, Box::new(rounds)))
     }
 

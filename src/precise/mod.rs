@@ -100,7 +100,19 @@ pub fn begin(
     Ok(rounds)
 }
 
-/// A search among the poses that another one has `found`, with what is known of the surroundings of the object. Without
+/// What another search has told.
+pub struct Told<'a> {
+    /// The poses that it has found, best first.
+    pub found: &'a [Found],
+    /// The number of its renders.
+    pub renders: usize,
+    /// Whether it was sure of its best pose.
+    pub is_sure: bool,
+    /// What is known of the surroundings of the object.
+    pub known: Neighbourhood,
+}
+
+/// A search among the poses that another one has found, with what is known of the surroundings of the object. Without
 /// surroundings, the result is that of the other search. If that was not sure, the rotations in which the mesh stands on
 /// the ground are searched as well. `clean` is the observation, where it has been cleaned already.
 ///
@@ -110,8 +122,7 @@ pub fn resume(
     observation: &Observation,
     mesh: &PreparedMesh<'_>,
     clean: Option<Rc<CleanObservation>>,
-    (found, renders, is_sure): (&[Found], usize, bool),
-    known: Neighbourhood,
+    Told { found, renders, is_sure, known }: Told<'_>,
     options: &AlignOptions,
     settings: &SearchSettings,
     stages: &mut Stopwatch<'_>,
