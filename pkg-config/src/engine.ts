@@ -1,10 +1,8 @@
 /** Engines that run jobs: on the calling thread, or in workers. */
-
-import { checkAttached } from "./attached.js";
 import type { Core, CoreListener } from "./core.js";
-import { disposed, withoutInput } from "./error.js";
+import { disposed } from "./error.js";
 import type { LoadFormats } from "./formats-module.js";
-import { type InSlices, type Job, perform, type Results, type Task } from "./jobs.js";
+import { type InSlices, type Job, perform, type Results, runTask } from "./jobs.js";
 import { checkSignals } from "./on-abort.js";
 import type { ProgressListener } from "./progress.js";
 import type { LoadRegistrar } from "./registration-module.js";
@@ -76,7 +74,8 @@ export class MainThreadEngine implements Engine {
         check();
         return module;
       };
-    const inSlices: InSlices = (begin, input) => runInSlices(this.#core, begin, input, check);
+    const slices = { sliceMs: SLICE_MS, check, turn };
+    const inSlices: InSlices = (begin, input) => runTask(this.#core, begin, input, slices);
     const [formats, registrar] = [checked(this.#formats), checked(this.#registrar)];
     const modules = { core: this.#core, formats, registrar, inSlices };
     return { result: await perform(job, modules, progress.isWanted ? listener : undefined), data: job.data };
@@ -93,29 +92,3 @@ export class MainThreadEngine implements Engine {
 
 /** Yields to timers, events and rendering. */
 const turn = () => new Promise<void>((resolve) => setTimeout(resolve));
-
-/** Runs a task in time slices. Between them, the thread yields, and `check` may throw. */
-async function runInSlices<T>(
-  core: LoadedModule<Core>,
-  begin: (core: Core) => Task<T>,
-  input: object,
-  check: () => void,
-): Promise<T> {
-  // The thread may have been elsewhere since the input was read.
-  checkAttached("input", input);
-  const task = core.call(begin, withoutInput);
-  const { instance } = core;
-  try {
-    for (;;) {
-      const result = core.call(() => task.step(SLICE_MS), withoutInput);
-      check();
-      if (result !== undefined) return result;
-      await turn();
-      check();
-      // Another call trapped, and the task was lost with its instance.
-      if (core.instance !== instance) return await runInSlices(core, begin, input, check);
-    }
-  } finally {
-    if (core.instance === instance) task.free();
-  }
-}

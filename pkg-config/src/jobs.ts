@@ -1,12 +1,12 @@
 /** Calls as data, so that the same code runs them on the calling thread or in a worker. */
 import { checkAttached } from "./attached.js";
-import type { Core, CoreListener } from "./core.js";
+import type { Core, CoreListener, Task } from "./core.js";
 import { withoutInput } from "./error.js";
 import type { LoadFormats } from "./formats-module.js";
 import type { CorrectedFrame } from "./generated/types.js";
 import type { FrameInput, ViewsInput } from "./input/frame-types.js";
 import { resolveFrame, resolveViews } from "./input/frames.js";
-import { type MeshAndWarnings, readMesh } from "./input/mesh.js";
+import { type MeshAndWarnings, readCoreMesh, readMesh } from "./input/mesh.js";
 import { resolveInput } from "./input/resolve.js";
 import type { AlignInput, MeshInput } from "./input/types.js";
 import type { LoadRegistrar } from "./registration-module.js";
@@ -67,13 +67,6 @@ export interface JobModules {
 /** Whether these are options of `align` for the method of the paper, which the registration module runs. */
 export const isOfPaper = (options: { preset?: unknown }): boolean => options.preset === "paper";
 
-/** A task of the core that runs in slices. */
-export interface Task<T> {
-  /** Runs for about this long; returns the result when finished. */
-  step(sliceMs: number): T | undefined;
-  free(): void;
-}
-
 /** Runs a task to its end. `input` is what its beginning reads. */
 export type InSlices = <T>(begin: (core: Core) => Task<T>, input: object) => Promise<T>;
 
@@ -85,7 +78,7 @@ export async function perform<J extends Job>(
 ): Promise<Results[J["method"]]>;
 export async function perform(
   job: Job,
-  { core, formats, registrar, inSlices = atOnce(core) }: JobModules,
+  { core, formats, registrar, inSlices = (begin, input) => runTask(core, begin, input, all) }: JobModules,
   listener?: CoreListener,
 ): Promise<unknown> {
   const { options } = job;
@@ -106,9 +99,12 @@ export async function perform(
     }
     case "place": {
       const { others, known, ...own } = job.data;
-      const { core: input } = await resolveInput(own, formats, job.meshId);
+      const { core: input, warnings } = await resolveInput(own, formats, job.meshId);
       const observed = others === undefined ? input : { ...input, others };
-      return inSlices((c) => c.beginPlace(observed, options, known, listener), observed);
+      const placed = await inSlices((c) => c.beginPlace(observed, options, known, listener), observed);
+      if (placed.alignment === undefined) return placed;
+      // The camera belongs to the scene, which reports its warnings.
+      return { ...placed, alignment: withWarnings(placed.alignment, { camera: [], colors: warnings.colors }) };
     }
     case "alignViews": {
       const { core: input, warnings } = await resolveViews(job.data, formats, job.meshId);
@@ -119,9 +115,7 @@ export async function perform(
       };
     }
     case "openTracker": {
-      // A prepared mesh is kept for calls with a photo.
-      const read = await readMesh(job.data.mesh, formats, job.meshId !== undefined);
-      const mesh = job.meshId === undefined ? read.mesh : { ...read.mesh, id: job.meshId };
+      const { mesh } = await readCoreMesh(job.data.mesh, formats, false, job.meshId);
       checkAttached("mesh", mesh);
       core.call((c) => c.openTracker(job.tracker, { mesh }, options));
       return undefined;
@@ -169,19 +163,43 @@ export async function perform(
   }
 }
 
-/** Runs tasks at once. */
-function atOnce(core: LoadedModule<Core>): InSlices {
-  return async (begin) =>
-    core.call((c) => {
-      const task = begin(c);
-      for (;;) {
-        const result = task.step(Number.POSITIVE_INFINITY);
-        if (result !== undefined) {
-          task.free();
-          return result;
-        }
-      }
-    }, withoutInput);
+/** How a task runs. */
+export interface Slices {
+  /** About how long each slice takes. */
+  sliceMs: number;
+  /** Called after each slice and each turn; may throw. */
+  check(): void;
+  /** Gives the thread away between two slices. */
+  turn(): Promise<void>;
+}
+
+const all: Slices = { sliceMs: Number.POSITIVE_INFINITY, check() {}, async turn() {} };
+
+/** Runs a task of the core to its end, and frees it. */
+export async function runTask<T>(
+  core: LoadedModule<Core>,
+  begin: (core: Core) => Task<T>,
+  input: object,
+  slices: Slices,
+): Promise<T> {
+  const { sliceMs, check, turn } = slices;
+  // The thread may have been elsewhere since the input was read.
+  checkAttached("input", input);
+  const task = core.call(begin, withoutInput);
+  const { instance } = core;
+  try {
+    for (;;) {
+      const result = core.call(() => task.step(sliceMs), withoutInput);
+      check();
+      if (result !== undefined) return result;
+      await turn();
+      check();
+      // Another call trapped, and the task was lost with its instance.
+      if (core.instance !== instance) return await runTask(core, begin, input, slices);
+    }
+  } finally {
+    if (core.instance === instance) task.free();
+  }
 }
 
 function checkedClouds(clouds: Clouds): Clouds {

@@ -54,6 +54,8 @@ export class Tracker {
   readonly #closed: (tracker: Tracker) => void;
   #last: Promise<unknown> = Promise.resolve();
   #isClosed = false;
+  /** Ends the connection to the signal. */
+  #unfollow = () => {};
 
   private constructor(id: number, own: OwnEngine, closed: (tracker: Tracker) => void) {
     this.#id = id;
@@ -74,13 +76,15 @@ export class Tracker {
     try {
       if (signal !== undefined) {
         checkSignals([signal]);
-        onAbort(signal, () => tracker.close());
+        tracker.#unfollow = onAbort(signal, () => tracker.close());
       }
       await tracker.#run({ method: "openTracker", ...mesh, options, tracker: tracker.#id });
       if (signal !== undefined) checkSignals([signal]);
       return tracker;
     } catch (error) {
       tracker.close();
+      // An abort closes the tracker, which rejects the call with DISPOSED.
+      if (signal !== undefined) checkSignals([signal]);
       throw error;
     }
   }
@@ -124,6 +128,7 @@ export class Tracker {
   close(): void {
     if (this.#isClosed) return;
     this.#isClosed = true;
+    this.#unfollow();
     this.#closed(this);
     if (this.#own.isShared) {
       const job = { method: "closeTracker", data: {}, options: {}, tracker: this.#id } as const;

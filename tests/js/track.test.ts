@@ -1,5 +1,6 @@
 /** Trackers: with and without workers, in order, corrected, lost and closed. */
 import assert from "node:assert/strict";
+import { getEventListeners } from "node:events";
 import { after, test } from "node:test";
 import { type Aligner, createAligner, type FrameInput, TRACK_DEFAULTS } from "sim3align";
 import { rejectsWith } from "../support/errors.js";
@@ -88,6 +89,34 @@ for (const [name, aligner] of [
     assert.ok((await aligner.alignViews({ mesh, views: [frame as never] }, { quality: "fast" })).scale > 0);
   });
 }
+
+for (const [name, aligner] of [
+  ["without workers", here],
+  ["with a worker", pool],
+] as const) {
+  test(`${name}: an abort while the tracker opens rejects with its reason, and a signal outlives its trackers`, async () => {
+    const abort = new AbortController();
+    const reason = new Error("no longer needed");
+    const opening = aligner.track(mesh, { signal: abort.signal });
+    abort.abort(reason);
+    await assert.rejects(opening, reason);
+    const { signal } = new AbortController();
+    const tracker = await aligner.track(mesh, { signal });
+    assert.equal(getEventListeners(signal, "abort").length, 1);
+    tracker.close();
+    assert.equal(getEventListeners(signal, "abort").length, 0);
+  });
+}
+
+test("a wrong signal starts no worker", async () => {
+  const { length } = workers.made;
+  await rejectsWith(() => pool.track(mesh, { signal: 5 as never }), {
+    code: "INVALID_ARGUMENT",
+    argument: "options.signal",
+    message: /AbortSignal/,
+  });
+  assert.equal(workers.made.length, length);
+});
 
 test("a signal closes the tracker, and an aligner its trackers", async () => {
   const abort = new AbortController();

@@ -20,7 +20,7 @@ export class WorkerPool implements Engine {
   readonly #waiting: ((slot: WorkerSlot) => void)[] = [];
   readonly #ended = new AbortController();
 
-  /** @param fallback runs jobs that cannot be cloned */
+  /** @param fallback runs jobs that cannot be cloned; it is disposed with the pool */
   constructor(size: number, setup: WorkerSetup, fallback: Engine) {
     // Two per worker: the next job is prepared while one runs.
     this.capacity = 2 * size;

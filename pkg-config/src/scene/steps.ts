@@ -41,12 +41,6 @@ export interface Placed {
   alignment?: Alignment;
 }
 
-/** A step of an object that runs in slices. */
-export interface PlaceTask {
-  step(sliceMs: number): Placed | undefined;
-  free(): void;
-}
-
 /** The support of a scene, and what each object may stand on. */
 export interface Supported {
   support: { normal: [number, number, number]; d: number; confidence: number } | null;
