@@ -112,6 +112,17 @@ pub struct Told<'a> {
     pub known: Neighbourhood,
 }
 
+/// The type of [`resume`].
+pub type Resume = fn(
+    &Observation,
+    &PreparedMesh<'_>,
+    Option<Rc<CleanObservation>>,
+    Told<'_>,
+    &AlignOptions,
+    &SearchSettings,
+    &mut Stopwatch<'_>,
+) -> Result<Rounds>;
+
 /// A search among the poses that another one has found, with what is known of the surroundings of the object. Without
 /// surroundings, the result is that of the other search. If that was not sure, the rotations in which the mesh stands on
 /// the ground are searched as well. `clean` is the observation, where it has been cleaned already.
