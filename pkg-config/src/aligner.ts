@@ -12,15 +12,16 @@ import {
   checkedWorkers,
 } from "./aligner-options.js";
 import { checkAttached } from "./attached.js";
-import { type Core, coreModule } from "./core.js";
+import { coreModule } from "./core.js";
 import { type Call, type Engine, MainThreadEngine, signalsOf } from "./engine.js";
 import { disposed, internalError, Sim3AlignError } from "./error.js";
-import { formatsModule, type LoadFormats } from "./formats-module.js";
+import { formatsModule } from "./formats-module.js";
 import type { Preset } from "./generated/types.js";
 import type { ViewsInput } from "./input/frame-types.js";
 import { classNames } from "./input/resolve.js";
 import type { AlignInput, MeshInput } from "./input/types.js";
-import { isOfPaper, type Job, type Results } from "./jobs.js";
+import { isOfPaper, type Job, type Modules, type Results } from "./jobs.js";
+import { jointModule } from "./joint-module.js";
 import { checkSignals, reasonOf } from "./on-abort.js";
 import type {
   AlignAllOptions,
@@ -47,7 +48,6 @@ import { coreSim3, type Sim3Like } from "./sim3.js";
 import { ownArgument, snapshot } from "./snapshot.js";
 import { type OwnEngine, Tracker, type TrackerMesh } from "./tracker.js";
 import { failure, isRecord, withoutUndefined } from "./values.js";
-import type { LoadedModule } from "./wasm-module.js";
 
 /** Upper limit of "auto", because each worker holds a copy of its input. */
 const MAX_AUTO = 8;
@@ -67,36 +67,37 @@ export async function createAligner(options: AlignerOptions = {}): Promise<Align
  * before the call settles.
  */
 export class Aligner {
-  readonly #core: LoadedModule<Core>;
+  readonly #modules: Modules;
   readonly #engine: Engine;
-  readonly #formats: LoadFormats;
   #isDisposed = false;
 
   /** Creates an engine for one tracker. */
   readonly #dedicated: () => OwnEngine;
   readonly #trackers = new Set<Tracker>();
 
-  private constructor(core: LoadedModule<Core>, engine: Engine, formats: LoadFormats, dedicated: () => OwnEngine) {
-    this.#core = core;
+  private constructor(modules: Modules, engine: Engine, dedicated: () => OwnEngine) {
+    this.#modules = modules;
     this.#engine = engine;
-    this.#formats = formats;
     this.#dedicated = dedicated;
   }
 
   /** @internal */
   static async create(options: AlignerOptions, assets: BundledAssets = {}): Promise<Aligner> {
-    const { wasm, formatsWasm, registrationWasm, ...given } = {
+    const { wasm, formatsWasm, registrationWasm, jointWasm, ...given } = {
       ...assets,
       ...withoutUndefined(checkedAlignerOptions(options)),
     };
     const workers = checkedWorkers(given.workers);
-    const core = await coreModule.load(wasm);
-    const formats = () => formatsModule.load(formatsWasm);
-    const mainThread = () => new MainThreadEngine(core, formats, () => registrationModule.load(registrationWasm));
+    const modules: Modules = {
+      core: await coreModule.load(wasm),
+      formats: () => formatsModule.load(formatsWasm),
+      registrar: () => registrationModule.load(registrationWasm),
+      joint: () => jointModule.load(jointWasm),
+    };
     if (workers === 0) {
-      const engine = mainThread();
+      const engine = new MainThreadEngine(modules);
       // Shared with all other calls on this thread, which the end of a tracker must not end.
-      return new Aligner(core, engine, formats, () => ({ engine, isShared: true }));
+      return new Aligner(modules, engine, () => ({ engine, isShared: true }));
     }
     const factory = await workerFactory(assets.workerScript, checkedFactory(given.createWorker));
     const size = workers === "auto" ? Math.min(Math.max(factory.cores - 1, 1), MAX_AUTO) : workers;
@@ -105,10 +106,11 @@ export class Aligner {
       core: await coreModule.compile(),
       formats: () => formatsModule.compile(formatsWasm),
       registration: () => registrationModule.compile(registrationWasm),
+      joint: () => jointModule.compile(jointWasm),
     };
     // A pool disposes its engine of the main thread: each has one of its own.
-    const dedicated = () => ({ engine: new WorkerPool(1, setup, mainThread()), isShared: false });
-    return new Aligner(core, new WorkerPool(size, setup, mainThread()), formats, dedicated);
+    const pool = (size: number) => new WorkerPool(size, setup, new MainThreadEngine(modules));
+    return new Aligner(modules, pool(size), () => ({ engine: pool(1), isShared: false }));
   }
 
   /**
@@ -189,11 +191,10 @@ export class Aligner {
     const own = snapshot("input", scene, sceneClassNames);
     const call = { signal: checkedSignal(signal), progress: new ProgressListener(onProgress), transfer: false };
     const settings = { options: rest, snap: checkedFlag("snap", snap) };
-    const engine = { core: this.#core, engine: this.#engine, formats: this.#formats };
     const result = await guarded(call, () => {
       checkSignals(signalsOf(call));
       checkAttached("input", own);
-      return alignScene(own, engine, settings, call);
+      return alignScene(own, this.#modules, this.#engine, settings, call);
     });
     return isReturned ? { ...result, input: scene } : result;
   }
@@ -299,7 +300,7 @@ export class Aligner {
   /** The version of the core module. */
   async buildInfo(): Promise<{ version: string }> {
     this.#checkUsable();
-    return this.#core.call((core) => ({ version: core.version() }));
+    return this.#modules.core.call((core) => ({ version: core.version() }));
   }
 
   /**
@@ -328,7 +329,7 @@ export class Aligner {
     const own = snapshot("input", data, classNames);
     const prepared: unknown = isRecord(own) ? (own as Record<string, unknown>).mesh : undefined;
     const { release, ...arrays } = withArrays(own, this.#engine);
-    // Only the core module caches meshes.
+    // The registration module caches no meshes.
     const sent = isOfPaper(options) && "meshId" in arrays ? { data: withCopiedMesh(arrays.data) } : arrays;
     const job = { method, ...sent, options, ...more } as unknown as Job & { method: M };
     const progress = new ProgressListener(onProgress);

@@ -1,11 +1,10 @@
 /** Engines that run jobs: on the calling thread, or in workers. */
-import type { Core, CoreListener } from "./core.js";
+import type { CoreListener } from "./core.js";
 import { disposed } from "./error.js";
-import type { LoadFormats } from "./formats-module.js";
-import { type InSlices, type Job, perform, type Results, runTask } from "./jobs.js";
+import { type Job, type Modules, perform, type Results } from "./jobs.js";
+import type { JointAligner } from "./joint-module.js";
 import { checkSignals } from "./on-abort.js";
 import type { ProgressListener } from "./progress.js";
-import type { LoadRegistrar } from "./registration-module.js";
 import type { LoadedModule } from "./wasm-module.js";
 
 /** Options that control how a call runs. */
@@ -42,15 +41,13 @@ const SLICE_MS = 40;
 /** Runs jobs on the calling thread. */
 export class MainThreadEngine implements Engine {
   readonly capacity = 1;
-  readonly #core: LoadedModule<Core>;
-  readonly #formats: LoadFormats;
-  readonly #registrar: LoadRegistrar;
+  readonly #modules: Modules;
+  /** The joint module, once a job has needed it. */
+  #joint: LoadedModule<JointAligner> | undefined;
   #isDisposed = false;
 
-  constructor(core: LoadedModule<Core>, formats: LoadFormats, registrar: LoadRegistrar) {
-    this.#core = core;
-    this.#formats = formats;
-    this.#registrar = registrar;
+  constructor(modules: Modules) {
+    this.#modules = modules;
   }
 
   async run<J extends Job>(job: J, call: Call): Promise<Outcome<J>> {
@@ -74,15 +71,24 @@ export class MainThreadEngine implements Engine {
         check();
         return module;
       };
+    const { core, formats, registrar, joint } = this.#modules;
+    const loadJoint = async () => {
+      this.#joint = await joint();
+      return this.#joint;
+    };
+    const modules = { core, formats: checked(formats), registrar: checked(registrar), joint: checked(loadJoint) };
     const slices = { sliceMs: SLICE_MS, check, turn };
-    const inSlices: InSlices = (begin, input) => runTask(this.#core, begin, input, slices);
-    const [formats, registrar] = [checked(this.#formats), checked(this.#registrar)];
-    const modules = { core: this.#core, formats, registrar, inSlices };
-    return { result: await perform(job, modules, progress.isWanted ? listener : undefined), data: job.data };
+    return { result: await perform(job, modules, progress.isWanted ? listener : undefined, slices), data: job.data };
   }
 
   dropMesh(id: number): void {
-    this.#core.call((core) => core.dropMesh(id));
+    this.#modules.core.call((core) => core.dropMesh(id));
+    this.#joint?.call((joint) => joint.dropMesh(id));
+  }
+
+  /** Frees a tracker. */
+  closeTracker(id: number): void {
+    this.#joint?.call((joint) => joint.closeTracker(id));
   }
 
   dispose(): void {

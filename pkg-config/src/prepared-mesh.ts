@@ -53,7 +53,7 @@ export function nextMeshId(): number {
 /**
  * A mesh that `Aligner.prepareMesh` has read, validated and decimated. It replaces the mesh in the inputs of all
  * aligners on this thread, with or without workers. Results are bit-identical to those with the mesh itself. Each
- * thread that uses it holds a copy until `dispose()`.
+ * thread that uses it holds a copy until `dispose()`, and a second one after `alignScene`, `alignViews` or `track`.
  */
 export class PreparedMesh {
   /** @internal */

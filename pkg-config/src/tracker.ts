@@ -1,7 +1,7 @@
 /// <reference lib="esnext.disposable" preserve="true" />
 /** Trackers: one object through a video. */
 import { checkedFlag, checkedOptions, checkedSignal } from "./aligner-options.js";
-import type { Engine } from "./engine.js";
+import type { Engine, MainThreadEngine } from "./engine.js";
 import { disposed, internalError, Sim3AlignError } from "./error.js";
 import type { CorrectedFrame } from "./generated/types.js";
 import type { FrameInput } from "./input/frame-types.js";
@@ -16,14 +16,10 @@ import { coreSim3, type Sim3Like } from "./sim3.js";
 import { ownArgument, snapshot } from "./snapshot.js";
 
 /**
- * The engine of a tracker.
+ * The engine of a tracker. One that other calls share outlives the tracker.
  * @internal
  */
-export interface OwnEngine {
-  engine: Engine;
-  /** Whether other calls use it: it then outlives the tracker. */
-  isShared: boolean;
-}
+export type OwnEngine = { engine: MainThreadEngine; isShared: true } | { engine: Engine; isShared: false };
 
 /**
  * The mesh of a tracker, and its id if it is prepared.
@@ -78,7 +74,7 @@ export class Tracker {
         checkSignals([signal]);
         tracker.#unfollow = onAbort(signal, () => tracker.close());
       }
-      await tracker.#run({ method: "openTracker", ...mesh, options, tracker: tracker.#id });
+      await tracker.#inOrder(() => tracker.#run({ method: "openTracker", ...mesh, options, tracker: tracker.#id }));
       if (signal !== undefined) checkSignals([signal]);
       return tracker;
     } catch (error) {
@@ -130,13 +126,10 @@ export class Tracker {
     this.#isClosed = true;
     this.#unfollow();
     this.#closed(this);
-    if (this.#own.isShared) {
-      const job = { method: "closeTracker", data: {}, options: {}, tracker: this.#id } as const;
-      const free = () => this.#own.engine.run(job, call());
-      this.#last.then(free, free).catch(() => {});
-    } else {
-      this.#own.engine.dispose();
-    }
+    const own = this.#own;
+    // What runs, which may be the opening, ends first.
+    if (own.isShared) this.#last.then(() => own.engine.closeTracker(this.#id)).catch(() => {});
+    else own.engine.dispose();
   }
 
   /** Closes the tracker at the end of the scope of a `using` declaration. */

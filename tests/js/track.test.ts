@@ -2,8 +2,9 @@
 import assert from "node:assert/strict";
 import { getEventListeners } from "node:events";
 import { after, test } from "node:test";
-import { type Aligner, createAligner, type FrameInput, TRACK_DEFAULTS } from "sim3align";
+import { type Aligner, createAligner, type FrameInput, type Sim3AlignError, TRACK_DEFAULTS } from "sim3align";
 import { rejectsWith } from "../support/errors.js";
+import { internalModule } from "../support/internals.js";
 import { frameAt, turnBetween } from "../support/rig.js";
 import { mesh, truth } from "../support/scene.js";
 import { Workers } from "../support/workers.js";
@@ -137,4 +138,26 @@ test("a signal closes the tracker, and an aligner its trackers", async () => {
     message: /./,
   });
   assert.equal(TRACK_DEFAULTS.metrics, false);
+});
+
+test("closed trackers are freed, also those of a disposed aligner", async () => {
+  const { jointModule } = await internalModule("joint-module.js");
+  const module = await jointModule.load();
+  const isOpen = (id: number) => {
+    try {
+      module.call((joint: { trackFrame(id: number, frame: object): object }) => joint.trackFrame(id, {}));
+      return true;
+    } catch (error) {
+      return (error as Sim3AlignError).argument !== "tracker";
+    }
+  };
+  const open = () => Array.from({ length: 100 }, (_, id) => id).filter(isOpen);
+  assert.deepEqual(open(), []);
+  const other = await createAligner();
+  const trackers = [await other.track(mesh), await other.track(mesh)];
+  assert.equal(open().length, 2);
+  trackers[0]?.close();
+  other.dispose();
+  await new Promise((resolve) => setImmediate(resolve));
+  assert.deepEqual(open(), []);
 });

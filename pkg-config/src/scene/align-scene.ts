@@ -1,27 +1,17 @@
 /** Aligns the objects of a scene: each alone, then each with what the others have told. */
 import { checkAttached } from "../attached.js";
-import type { Core } from "../core.js";
 import { type Call, type Engine, signalsOf } from "../engine.js";
 import { Sim3AlignError } from "../error.js";
-import type { LoadFormats } from "../formats-module.js";
-import type { Job, PlaceInput } from "../jobs.js";
+import type { Job, Modules, PlaceInput } from "../jobs.js";
 import { onAbort, reasonOf } from "../on-abort.js";
 import type { Progress } from "../options.js";
 import { withArrays } from "../prepared-mesh.js";
 import { ProgressListener } from "../progress.js";
 import { type Alignment, withWarnings } from "../results.js";
 import { coreSim3 } from "../sim3.js";
-import type { LoadedModule } from "../wasm-module.js";
 import { inputOf, type ReadObject, type ReadScene, readScene } from "./read-scene.js";
 import type { Ground, Known, Placed, Placement } from "./steps.js";
 import type { SceneAlignment, SceneFailure, SceneInput, SceneMetrics, SceneResult } from "./types.js";
-
-/** What runs the steps of a scene. */
-export interface SceneEngine {
-  core: LoadedModule<Core>;
-  engine: Engine;
-  formats: LoadFormats;
-}
 
 /** The options of a scene: those of the core, and `snap`. */
 export interface SceneSettings {
@@ -41,11 +31,13 @@ const isOwn = (error: unknown): error is Sim3AlignError =>
 /** Aligns a scene. */
 export async function alignScene(
   input: SceneInput,
-  { core, engine, formats }: SceneEngine,
+  { formats, joint }: Modules,
+  engine: Engine,
   { options, snap }: SceneSettings,
   call: Call,
 ): Promise<SceneResult> {
   const scene = await readScene(input, formats);
+  const module = await joint();
   const run = new SceneRun(scene, engine, options, call);
   try {
     const alone = await run.each((index) => run.place(index));
@@ -55,7 +47,7 @@ export async function alignScene(
     checkAttached("input", { ...scene.view, objects: scene.objects.map(({ mask }) => ({ mask })) });
     checkAttached("occluders", scene.occluders);
     const seed = typeof options.seed === "number" ? options.seed : 0;
-    const supported = core.call((c) => c.sceneSupport(view, placements, scene.support, seed));
+    const supported = module.call((j) => j.sceneSupport(view, placements, scene.support, seed));
     const { support, grounds } = supported;
     const together = await run.each(async (index) => {
       const failed = alone[index];
@@ -63,7 +55,7 @@ export async function alignScene(
       return run.place(index, knownOf(index, placements, grounds));
     });
     const bodies = together.map((placed) => (placed instanceof Sim3AlignError ? null : placed.placement));
-    const contacts = core.call((c) => c.sceneContacts(scene.view, bodies, supported, snap));
+    const contacts = module.call((j) => j.sceneContacts(scene.view, bodies, supported, snap));
     const objects = together.map((placed, i): SceneAlignment | SceneFailure => {
       const { name } = scene.objects[i] as ReadObject;
       const named = name === undefined ? {} : { name };
