@@ -1,4 +1,4 @@
-/** What the steps of a scene hand over to one another; see `src/bindings/scene.rs`. */
+/** What the steps of a scene hand over to one another; see `modules/joint/src/scene.rs`. */
 import type { Alignment, Contact } from "../generated/types.js";
 
 /** The space that an object takes: for each pixel of a part of the image, where the line of sight enters and leaves it. */
