@@ -17,6 +17,11 @@ export interface AlignerOptions {
    */
   registrationWasm?: WasmSource | undefined;
   /**
+   * The joint module, loaded when `alignScene`, `alignViews` or `track` is first used. Default: `wasm/joint_bg.wasm` next
+   * to this script.
+   */
+  jointWasm?: WasmSource | undefined;
+  /**
    * The number of workers: 0 (the default) runs calls on the calling thread; `"auto"` is one less than the number of
    * cores, 1 to 8. Workers run this package's `worker.js` as module `Worker`s, or as `node:worker_threads`. They need
    * neither shared memory nor special headers. Idle workers do not keep a Node process alive.
@@ -34,6 +39,7 @@ export interface BundledAssets {
   wasm?: LazySource;
   formatsWasm?: LazySource;
   registrationWasm?: LazySource;
+  jointWasm?: LazySource;
   workerScript?: string;
 }
 
@@ -55,6 +61,7 @@ const alignerOptions: readonly string[] = [
   "wasm",
   "formatsWasm",
   "registrationWasm",
+  "jointWasm",
   "workers",
   "createWorker",
 ] satisfies (keyof AlignerOptions)[];

@@ -12,15 +12,16 @@ import {
   checkedWorkers,
 } from "./aligner-options.js";
 import { checkAttached } from "./attached.js";
-import { type Core, coreModule } from "./core.js";
-import { type Engine, MainThreadEngine } from "./engine.js";
+import { coreModule } from "./core.js";
+import { type Call, type Engine, MainThreadEngine, signalsOf } from "./engine.js";
 import { disposed, internalError, Sim3AlignError } from "./error.js";
-import { formatsModule, type LoadFormats } from "./formats-module.js";
+import { formatsModule } from "./formats-module.js";
 import type { Preset } from "./generated/types.js";
 import type { ViewsInput } from "./input/frame-types.js";
 import { classNames } from "./input/resolve.js";
 import type { AlignInput, MeshInput } from "./input/types.js";
-import { isOfPaper, type Job, type Results } from "./jobs.js";
+import { isOfPaper, type Job, type Modules, type Results } from "./jobs.js";
+import { jointModule } from "./joint-module.js";
 import { checkSignals, reasonOf } from "./on-abort.js";
 import type {
   AlignAllOptions,
@@ -36,7 +37,7 @@ import type {
 import { WorkerPool } from "./pool/pool.js";
 import { workerFactory } from "./pool/port.js";
 import { copied } from "./pool/transfer.js";
-import { isDisposedMesh, keptMesh, nextMeshId, PreparedMesh } from "./prepared-mesh.js";
+import { nextMeshId, PreparedMesh, withArrays } from "./prepared-mesh.js";
 import { checkedListener, ProgressListener } from "./progress.js";
 import { registrationModule } from "./registration-module.js";
 import type { AlignAllResult, AlignResult, Evaluation, Registration, ViewsAlignment } from "./results.js";
@@ -46,8 +47,7 @@ import type { SceneInput, SceneOptions, SceneResult } from "./scene/types.js";
 import { coreSim3, type Sim3Like } from "./sim3.js";
 import { ownArgument, snapshot } from "./snapshot.js";
 import { type OwnEngine, Tracker, type TrackerMesh } from "./tracker.js";
-import { isRecord, withoutUndefined } from "./values.js";
-import type { LoadedModule } from "./wasm-module.js";
+import { failure, isRecord, withoutUndefined } from "./values.js";
 
 /** Upper limit of "auto", because each worker holds a copy of its input. */
 const MAX_AUTO = 8;
@@ -67,35 +67,38 @@ export async function createAligner(options: AlignerOptions = {}): Promise<Align
  * before the call settles.
  */
 export class Aligner {
-  readonly #core: LoadedModule<Core>;
+  readonly #modules: Modules;
   readonly #engine: Engine;
-  readonly #formats: LoadFormats;
   #isDisposed = false;
 
   /** Creates an engine for one tracker. */
   readonly #dedicated: () => OwnEngine;
   readonly #trackers = new Set<Tracker>();
 
-  private constructor(core: LoadedModule<Core>, engine: Engine, formats: LoadFormats, dedicated: () => OwnEngine) {
-    this.#core = core;
+  private constructor(modules: Modules, engine: Engine, dedicated: () => OwnEngine) {
+    this.#modules = modules;
     this.#engine = engine;
-    this.#formats = formats;
     this.#dedicated = dedicated;
   }
 
   /** @internal */
   static async create(options: AlignerOptions, assets: BundledAssets = {}): Promise<Aligner> {
-    const { wasm, formatsWasm, registrationWasm, ...given } = {
+    const { wasm, formatsWasm, registrationWasm, jointWasm, ...given } = {
       ...assets,
       ...withoutUndefined(checkedAlignerOptions(options)),
     };
     const workers = checkedWorkers(given.workers);
-    const core = await coreModule.load(wasm);
-    const formats = () => formatsModule.load(formatsWasm);
-    const mainThread = new MainThreadEngine(core, formats, () => registrationModule.load(registrationWasm));
-    // Shared with all other calls on this thread, which the end of a tracker must not end.
-    const shared = { engine: mainThread, isShared: true };
-    if (workers === 0) return new Aligner(core, mainThread, formats, () => shared);
+    const modules: Modules = {
+      core: await coreModule.load(wasm),
+      formats: () => formatsModule.load(formatsWasm),
+      registrar: () => registrationModule.load(registrationWasm),
+      joint: () => jointModule.load(jointWasm),
+    };
+    if (workers === 0) {
+      const engine = new MainThreadEngine(modules);
+      // Shared with all other calls on this thread, which the end of a tracker must not end.
+      return new Aligner(modules, engine, () => ({ engine, isShared: true }));
+    }
     const factory = await workerFactory(assets.workerScript, checkedFactory(given.createWorker));
     const size = workers === "auto" ? Math.min(Math.max(factory.cores - 1, 1), MAX_AUTO) : workers;
     const setup = {
@@ -103,9 +106,11 @@ export class Aligner {
       core: await coreModule.compile(),
       formats: () => formatsModule.compile(formatsWasm),
       registration: () => registrationModule.compile(registrationWasm),
+      joint: () => jointModule.compile(jointWasm),
     };
-    const dedicated = () => ({ engine: new WorkerPool(1, setup, mainThread), isShared: false });
-    return new Aligner(core, new WorkerPool(size, setup, mainThread), formats, dedicated);
+    // A pool disposes its engine of the main thread: each has one of its own.
+    const pool = (size: number) => new WorkerPool(size, setup, new MainThreadEngine(modules));
+    return new Aligner(modules, pool(size), () => ({ engine: pool(1), isShared: false }));
   }
 
   /**
@@ -180,28 +185,18 @@ export class Aligner {
     const { signal, transfer = false, onProgress, snap = false, initial, ...rest } = given;
     if (initial !== undefined) {
       const remedy = "Pass it as `initial` of an object.";
-      throw new Sim3AlignError({
-        ...{ code: "UNKNOWN_OPTION", argument: "options.initial" },
-        ...{ found: "a pose for all objects", expected: "options of alignScene", remedy },
-      });
+      throw failure("UNKNOWN_OPTION", "options.initial", "a pose for all objects", "options of alignScene", remedy);
     }
     const isReturned = checkedFlag("transfer", transfer);
     const own = snapshot("input", scene, sceneClassNames);
-    const progress = new ProgressListener(onProgress);
-    const call = { signal: checkedSignal(signal), progress, transfer: false };
-    const settings = { options: rest, snap: checkedFlag("snap", snap), onProgress: onProgress as never };
-    const engine = { core: this.#core, engine: this.#engine, formats: this.#formats };
-    try {
-      checkSignals(call.signal === undefined ? [] : [call.signal]);
+    const call = { signal: checkedSignal(signal), progress: new ProgressListener(onProgress), transfer: false };
+    const settings = { options: rest, snap: checkedFlag("snap", snap) };
+    const result = await guarded(call, () => {
+      checkSignals(signalsOf(call));
       checkAttached("input", own);
-      const result = await alignScene(own, engine, settings, call);
-      checkSignals([progress.failed]);
-      return isReturned ? { ...result, input: scene } : result;
-    } catch (error) {
-      if (call.signal?.aborted && reasonOf(call.signal) === error) throw error;
-      checkSignals([progress.failed]);
-      throw error instanceof Sim3AlignError ? error : internalError(error);
-    }
+      return alignScene(own, this.#modules, this.#engine, settings, call);
+    });
+    return isReturned ? { ...result, input: scene } : result;
   }
 
   /**
@@ -227,16 +222,12 @@ export class Aligner {
   async track(mesh: MeshInput, options?: TrackOptions): Promise<Tracker> {
     const { signal, initial, ...rest }: { signal?: unknown; initial?: unknown } = checkedOptions(options);
     const coreOptions = initial === undefined ? rest : { ...rest, initial: coreSim3(initial as Sim3Like) };
+    const listened = checkedSignal(signal);
     this.#checkUsable();
-    const own = this.#withArrays(snapshot("input", { mesh }, classNames), coreOptions);
+    const { release, ...own } = withArrays(snapshot("input", { mesh }, classNames), this.#engine);
     const closed = (tracker: Tracker) => this.#trackers.delete(tracker);
-    const tracker = await Tracker.open(
-      this.#dedicated(),
-      own as TrackerMesh,
-      coreOptions,
-      checkedSignal(signal),
-      closed,
-    );
+    const opening = Tracker.open(this.#dedicated(), own as TrackerMesh, coreOptions, listened, closed);
+    const tracker = await opening.finally(release);
     if (this.#isDisposed) tracker.close();
     this.#checkUsable();
     this.#trackers.add(tracker);
@@ -298,7 +289,7 @@ export class Aligner {
       const given = await this.#run("prepareMesh", { mesh }, checkedOptions(options), { meshId: id });
       // Without workers, these are the caller's arrays.
       checkAttached("mesh", given.mesh);
-      return new PreparedMesh({ id, mesh: copied(given.mesh), warnings: given.warnings }, this.#engine);
+      return new PreparedMesh({ id, mesh: { ...copied(given.mesh), warnings: given.warnings } }, this.#engine);
     } catch (error) {
       // Nothing refers to what the call has left there.
       this.#engine.dropMesh(id);
@@ -309,7 +300,7 @@ export class Aligner {
   /** The version of the core module. */
   async buildInfo(): Promise<{ version: string }> {
     this.#checkUsable();
-    return this.#core.call((core) => ({ version: core.version() }));
+    return this.#modules.core.call((core) => ({ version: core.version() }));
   }
 
   /**
@@ -337,7 +328,10 @@ export class Aligner {
     this.#checkUsable();
     const own = snapshot("input", data, classNames);
     const prepared: unknown = isRecord(own) ? (own as Record<string, unknown>).mesh : undefined;
-    const job = { method, ...this.#withArrays(own, options), options, ...more } as unknown as Job & { method: M };
+    const { release, ...arrays } = withArrays(own, this.#engine);
+    // The registration module caches no meshes.
+    const sent = isOfPaper(options) && "meshId" in arrays ? { data: withCopiedMesh(arrays.data) } : arrays;
+    const job = { method, ...sent, options, ...more } as unknown as Job & { method: M };
     const progress = new ProgressListener(onProgress);
     const call = { signal: checkedSignal(signal), progress, transfer: checkedFlag("transfer", transfer) };
     // Arrays that were not moved are returned in the object that the caller passed; a prepared mesh replaces its arrays.
@@ -346,36 +340,36 @@ export class Aligner {
       return prepared instanceof PreparedMesh ? { ...(arrays as object), mesh: prepared } : arrays;
     };
     try {
-      const outcome = await this.#engine.run(job, call);
-      checkSignals([progress.failed]);
+      const outcome = await guarded(call, () => this.#engine.run(job, call));
       const result = outcome.result as Results[M];
       return transfer ? { ...result, input: returned(outcome.data) } : result;
     } catch (error) {
-      if (call.signal?.aborted && reasonOf(call.signal) === error) throw error;
-      // It came first: the error may be that of the last piece of work.
-      checkSignals([progress.failed]);
-      if (!(error instanceof Sim3AlignError)) throw internalError(error);
-      if (isRecord(error.input)) error.input = returned(error.input);
+      if (call.transfer && error instanceof Sim3AlignError && isRecord(error.input))
+        error.input = returned(error.input);
       throw error;
     } finally {
-      const meshId = "meshId" in job ? job.meshId : undefined;
-      if (meshId !== undefined && prepared instanceof PreparedMesh && isDisposedMesh(prepared)) {
-        this.#engine.dropMesh(meshId);
-      }
+      release();
     }
-  }
-
-  /** The data of a job, with a prepared mesh replaced by its arrays. */
-  #withArrays(data: unknown, options: object): { data: unknown; meshId?: number } {
-    if (!isRecord(data) || !(data.mesh instanceof PreparedMesh)) return { data };
-    const { id, mesh, warnings } = keptMesh(data.mesh, this.#engine);
-    const arrays = { ...mesh, warnings };
-    // Only the core module caches meshes.
-    if (isOfPaper(options)) return { data: { ...data, mesh: copied(arrays) } };
-    return { data: { ...data, mesh: arrays }, meshId: id };
   }
 
   #checkUsable(): void {
     if (this.#isDisposed) throw disposed();
   }
 }
+
+/** Runs a call, which rejects with a {@link Sim3AlignError}, the reason of its signal, or the exception of `onProgress`. */
+async function guarded<T>({ signal, progress }: Call, run: () => Promise<T>): Promise<T> {
+  try {
+    const result = await run();
+    checkSignals([progress.failed]);
+    return result;
+  } catch (error) {
+    if (signal?.aborted && reasonOf(signal) === error) throw error;
+    // It came first: the error may be that of the last piece of work.
+    checkSignals([progress.failed]);
+    throw error instanceof Sim3AlignError ? error : internalError(error);
+  }
+}
+
+/** The arrays of a prepared mesh are not moved to a worker. */
+const withCopiedMesh = (data: unknown) => ({ ...(data as object), mesh: copied((data as { mesh: unknown }).mesh) });

@@ -13,15 +13,10 @@ export function checkAttached(argument: string, value: unknown): void {
     if (!isAttached(value)) throw detached(argument, value);
   } else if (isRecord(value) || Array.isArray(value)) {
     for (const [name, inner] of Object.entries(value)) {
-      if (typeof inner === "object") checkAttached(`${argument}.${name}`, inner);
+      if (typeof inner === "object")
+        checkAttached(`${argument}${Array.isArray(value) ? `[${name}]` : `.${name}`}`, inner);
     }
   }
-}
-
-/** The same for one array, which is returned. */
-export function attached<T extends ArrayBufferView>(argument: string, array: T): T {
-  checkAttached(argument, array);
-  return array;
 }
 
 function detached(argument: string, value: unknown): Sim3AlignError {

@@ -40,12 +40,14 @@ export const caseFiles = {
 export interface FrameFiles {
   /** The input for a view or a tracker. */
   input: ViewInput;
+  /** The name of the file of each part of the input. */
+  files: Readonly<Record<string, string>>;
   /** The true pose; `null` if unknown. */
   truth: KnownPose | null;
 }
 
 /** The file with the pose of a frame's camera, and the camera's pose in it: `camera_to_world`, 4×4 by rows, metres. */
-export const CAMERA_POSE_FILE = "pose.json";
+const CAMERA_POSE_FILE = "pose.json";
 
 /**
  * Reads a frame: depth map, camera file, and optionally mask, `pose.json` and `gt.json`, identified by name.
@@ -60,20 +62,25 @@ export async function frameFrom(files: CaseFiles, settings: CaseSettings, place:
   const find = (part: "depth" | "mask" | "camera") => caseFiles[part].find((candidate) => candidate in files);
   const required = (part: "depth" | "camera") => {
     const name = find(part);
-    if (name !== undefined) return read(name);
+    if (name !== undefined) return name;
     throw fileNotFound(part, `no such file in ${place}`, caseFiles[part].join(" or "));
   };
   const optional = (name: string | undefined) => (name !== undefined && name in files ? read(name) : undefined);
+  const names = { depth: required("depth"), camera: required("camera") };
+  const maskName = find("mask");
   const [depth, cameraFile, mask, pose, truth] = await Promise.all([
-    required("depth"),
-    required("camera"),
-    optional(find("mask")),
+    read(names.depth),
+    read(names.camera),
+    optional(maskName),
     optional(CAMERA_POSE_FILE),
     optional("gt.json"),
   ]);
   const cameraToWorld = pose === undefined ? undefined : cameraPose(pose);
-  const input = withoutUndefined({ depth, cameraFile, mask, cameraToWorld, ...settings }) as ViewInput;
-  return { input, truth: truth === undefined ? null : parsePoseFile("truth", truth) };
+  // Frames have no photo.
+  const { image: _, ...more } = settings;
+  const input = withoutUndefined({ depth, cameraFile, mask, cameraToWorld, ...more }) as ViewInput;
+  const named = maskName === undefined ? names : { ...names, mask: maskName };
+  return { input, files: named, truth: truth === undefined ? null : parsePoseFile("truth", truth) };
 }
 
 function cameraPose(bytes: Uint8Array): number[] {

@@ -69,21 +69,28 @@ export async function frameNames(folder: string): Promise<string[]> {
 export async function readFrames(folder: string, settings: CaseSettings = {}): Promise<FramesOnDisk> {
   const names = await frameNames(folder);
   const frames = names.map(async (name) => ({ name, ...(await readFrame(join(folder, name), settings)) }));
-  return { mesh: await readMeshOf(folder), frames: await Promise.all(frames) };
+  return { mesh: await readMeshFile(meshIn(folder)), frames: await Promise.all(frames) };
 }
 
-/** Reads the mesh of a case. */
-export async function readMeshOf(folder: string): Promise<MeshFile> {
-  const mesh = caseFiles.mesh.find((name) => existsSync(join(folder, name)));
-  if (mesh === undefined) throw fileNotFound("mesh", `no such file in ${folder}`, caseFiles.mesh.join(" or "));
-  const beside = (path: string) => read("mesh", join(folder, path));
-  return meshFile(mesh, await read("mesh", join(folder, mesh)), loadFormats, beside);
+/** The path of the mesh of a case. */
+export function meshIn(folder: string): string {
+  const name = caseFiles.mesh.find((name) => existsSync(join(folder, name)));
+  if (name === undefined) throw fileNotFound("mesh", `no such file in ${folder}`, caseFiles.mesh.join(" or "));
+  return join(folder, name);
 }
 
-/** Reads a frame of a case. */
+/** Reads a mesh file, and the files next to it that it refers to. */
+export async function readMeshFile(path: string): Promise<MeshFile> {
+  const beside = (uri: string) => read("mesh", join(dirname(path), uri));
+  return meshFile(path, await read("mesh", path), loadFormats, beside);
+}
+
+/** Reads a frame of a case. `files` contains paths. */
 export async function readFrame(folder: string, settings: CaseSettings): Promise<FrameFiles> {
   const entries = (await readdir(folder)).map((name) => [name, () => read("frame", join(folder, name))] as const);
-  return frameFrom(Object.fromEntries(entries), settings, folder);
+  const frame = await frameFrom(Object.fromEntries(entries), settings, folder);
+  const files = Object.fromEntries(Object.entries(frame.files).map(([part, name]) => [part, join(folder, name)]));
+  return { ...frame, files };
 }
 
 /** Names of the files in a case folder; includes subfolders only if the mesh may refer to them. */
@@ -103,11 +110,10 @@ async function namesIn(folder: string): Promise<string[]> {
 export async function readCaseFiles(name: string, paths: CasePaths, settings: CaseSettings = {}): Promise<CaseOnDisk> {
   const { camera, image: imagePath, ...files } = paths;
   const { image: withImage = true, ...more } = settings;
-  const beside = (path: string) => read("mesh", join(dirname(paths.mesh), path));
   const [depth, mask, mesh, cameraInput, image] = await Promise.all([
     read("depth", paths.depth),
     read("mask", paths.mask),
-    read("mesh", paths.mesh).then((bytes) => meshFile(paths.mesh, bytes, loadFormats, beside)),
+    readMeshFile(paths.mesh),
     typeof camera === "string"
       ? read("camera", camera).then((cameraFile) => ({ cameraFile }))
       : { camera: camera.value },

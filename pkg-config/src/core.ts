@@ -1,8 +1,7 @@
 /** The interface of the core WebAssembly module. */
 import type * as Results from "./generated/types.js";
-import type { CoreFrame, CoreInput, CoreViews } from "./input/core-input.js";
+import type { CoreInput } from "./input/core-input.js";
 import type { CoreMesh } from "./prepared-mesh.js";
-import type { Contacts, Known, Placement, PlaceTask, Supported } from "./scene/steps.js";
 import * as glue from "./wasm/core.js";
 import { type Glue, WasmModule } from "./wasm-module.js";
 
@@ -15,34 +14,16 @@ export type Cloud = Float32Array | Float64Array;
  */
 export type CoreListener = (stage: Results.Stage, fraction: number, best?: Float64Array) => void;
 
-/** An alignment that runs in steps, so that the thread can do other work between them. */
-export interface Task<R> {
+/** A task of a module that runs in slices, so that the thread can do other work between them. */
+export interface Task<T> {
   /** Runs for about this long; returns the result when finished. */
-  step(sliceMs: number): R | undefined;
+  step(sliceMs: number): T | undefined;
   free(): void;
 }
 
 /** The functions of the core. They validate their arguments and throw errors with codes. */
 export interface Core extends Glue {
-  align(input: CoreInput, options: object, onProgress: CoreListener | undefined): Results.Alignment;
   beginAlign(input: CoreInput, options: object, onProgress: CoreListener | undefined): Task<Results.Alignment>;
-  beginPlace(
-    input: CoreInput & { others?: Uint8Array },
-    options: object,
-    known: Known | undefined,
-    onProgress: CoreListener | undefined,
-  ): PlaceTask;
-  sceneSupport(view: object, placements: (Placement | null)[], support: unknown, seed: number): Supported;
-  sceneContacts(view: object, placements: (Placement | null)[], supported: Supported, snap: boolean): Contacts;
-  beginAlignViews(
-    input: CoreViews,
-    options: object,
-    onProgress: CoreListener | undefined,
-  ): Task<Results.ViewsAlignment>;
-  openTracker(id: number, input: { mesh: CoreMesh }, options: object): void;
-  trackFrame(id: number, frame: CoreFrame, onProgress: CoreListener | undefined): Results.TrackedFrame;
-  correctTrack(id: number, pose: unknown, frame: unknown): Results.CorrectedFrame[];
-  closeTracker(id: number): void;
   evaluate(input: CoreInput, transform: unknown, options: object): Results.Evaluation;
   prepareMesh(mesh: CoreMesh): void;
   dropMesh(id: number): void;

@@ -1,13 +1,10 @@
 /** Engines that run jobs: on the calling thread, or in workers. */
-
-import { checkAttached } from "./attached.js";
-import type { Core, CoreListener } from "./core.js";
-import { disposed, withoutInput } from "./error.js";
-import type { LoadFormats } from "./formats-module.js";
-import { type InSlices, type Job, perform, type Results, type Task } from "./jobs.js";
+import type { CoreListener } from "./core.js";
+import { disposed } from "./error.js";
+import { type Job, type Modules, perform, type Results } from "./jobs.js";
+import type { JointAligner } from "./joint-module.js";
 import { checkSignals } from "./on-abort.js";
 import type { ProgressListener } from "./progress.js";
-import type { LoadRegistrar } from "./registration-module.js";
 import type { LoadedModule } from "./wasm-module.js";
 
 /** Options that control how a call runs. */
@@ -44,15 +41,13 @@ const SLICE_MS = 40;
 /** Runs jobs on the calling thread. */
 export class MainThreadEngine implements Engine {
   readonly capacity = 1;
-  readonly #core: LoadedModule<Core>;
-  readonly #formats: LoadFormats;
-  readonly #registrar: LoadRegistrar;
+  readonly #modules: Modules;
+  /** The joint module, once a job has needed it. */
+  #joint: LoadedModule<JointAligner> | undefined;
   #isDisposed = false;
 
-  constructor(core: LoadedModule<Core>, formats: LoadFormats, registrar: LoadRegistrar) {
-    this.#core = core;
-    this.#formats = formats;
-    this.#registrar = registrar;
+  constructor(modules: Modules) {
+    this.#modules = modules;
   }
 
   async run<J extends Job>(job: J, call: Call): Promise<Outcome<J>> {
@@ -76,14 +71,24 @@ export class MainThreadEngine implements Engine {
         check();
         return module;
       };
-    const inSlices: InSlices = (begin, input) => runInSlices(this.#core, begin, input, check);
-    const [formats, registrar] = [checked(this.#formats), checked(this.#registrar)];
-    const modules = { core: this.#core, formats, registrar, inSlices };
-    return { result: await perform(job, modules, progress.isWanted ? listener : undefined), data: job.data };
+    const { core, formats, registrar, joint } = this.#modules;
+    const loadJoint = async () => {
+      this.#joint = await joint();
+      return this.#joint;
+    };
+    const modules = { core, formats: checked(formats), registrar: checked(registrar), joint: checked(loadJoint) };
+    const slices = { sliceMs: SLICE_MS, check, turn };
+    return { result: await perform(job, modules, progress.isWanted ? listener : undefined, slices), data: job.data };
   }
 
   dropMesh(id: number): void {
-    this.#core.call((core) => core.dropMesh(id));
+    this.#modules.core.call((core) => core.dropMesh(id));
+    this.#joint?.call((joint) => joint.dropMesh(id));
+  }
+
+  /** Frees a tracker. */
+  closeTracker(id: number): void {
+    this.#joint?.call((joint) => joint.closeTracker(id));
   }
 
   dispose(): void {
@@ -93,29 +98,3 @@ export class MainThreadEngine implements Engine {
 
 /** Yields to timers, events and rendering. */
 const turn = () => new Promise<void>((resolve) => setTimeout(resolve));
-
-/** Runs a task in time slices. Between them, the thread yields, and `check` may throw. */
-async function runInSlices<T>(
-  core: LoadedModule<Core>,
-  begin: (core: Core) => Task<T>,
-  input: object,
-  check: () => void,
-): Promise<T> {
-  // The thread may have been elsewhere since the input was read.
-  checkAttached("input", input);
-  const task = core.call(begin, withoutInput);
-  const { instance } = core;
-  try {
-    for (;;) {
-      const result = core.call(() => task.step(SLICE_MS), withoutInput);
-      check();
-      if (result !== undefined) return result;
-      await turn();
-      check();
-      // Another call trapped, and the task was lost with its instance.
-      if (core.instance !== instance) return await runInSlices(core, begin, input, check);
-    }
-  } finally {
-    if (core.instance === instance) task.free();
-  }
-}

@@ -128,6 +128,11 @@ export function partsOf({ code, argument, found, expected, remedy }: Sim3AlignEr
   return { code, argument, found, expected, remedy };
 }
 
+/** The same error with another name of its argument. */
+export function renamed(error: Sim3AlignError, argument: string): Sim3AlignError {
+  return new Sim3AlignError({ ...partsOf(error), argument }, { cause: error });
+}
+
 /** The error for calls on a disposed aligner. */
 export function disposed(): Sim3AlignError {
   return new Sim3AlignError({

@@ -1,4 +1,4 @@
-/** The formats module: the second WebAssembly module, which reads mesh files, PNG and NPY. */
+/** The formats module: the WebAssembly module that reads mesh files, images and NPY. */
 import { type LoadedModule, WasmModule } from "./wasm-module.js";
 
 /** The functions of the file readers. */

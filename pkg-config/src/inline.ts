@@ -1,8 +1,9 @@
 /// <reference path="./inlined.d.ts" />
 /**
  * The package as a single script: the same as `sim3align`, with the WebAssembly module and the worker script embedded,
- * for sandboxes, bundled servers, and bundlers that copy no assets. The file readers, and the module of `register`,
- * `estimateSim3` and `preset: "paper"`, are in scripts of their own, which are imported when they are first needed. For workers, a content security policy must allow `worker-src blob:`.
+ * for sandboxes, bundled servers, and bundlers that copy no assets. The file readers, the module of `alignScene`,
+ * `alignViews` and `track`, and that of `register`, `estimateSim3` and `preset: "paper"` are in scripts of their own, which
+ * are imported when they are first needed. For workers, a content security policy must allow `worker-src blob:`.
  * @packageDocumentation
  */
 import core from "inlined:core";
@@ -17,6 +18,7 @@ export async function createAligner(options: AlignerOptions = {}): Promise<Align
   return Aligner.create(options, {
     wasm: () => bytesOf(core),
     formatsWasm: async () => bytesOf((await import("inlined:formats")).default),
+    jointWasm: async () => bytesOf((await import("inlined:joint")).default),
     registrationWasm: async () => bytesOf((await import("inlined:registration")).default),
     workerScript,
   });

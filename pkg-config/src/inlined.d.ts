@@ -12,6 +12,12 @@ declare module "inlined:formats" {
   export default base64;
 }
 
+declare module "inlined:joint" {
+  /** The joint module, base64. */
+  const base64: string;
+  export default base64;
+}
+
 declare module "inlined:registration" {
   /** The registration module, base64. */
   const base64: string;

@@ -1,14 +1,15 @@
 /** Calls as data, so that the same code runs them on the calling thread or in a worker. */
 import { checkAttached } from "./attached.js";
-import type { Core, CoreListener } from "./core.js";
+import type { Core, CoreListener, Task } from "./core.js";
 import { withoutInput } from "./error.js";
 import type { LoadFormats } from "./formats-module.js";
 import type { CorrectedFrame } from "./generated/types.js";
 import type { FrameInput, ViewsInput } from "./input/frame-types.js";
 import { resolveFrame, resolveViews } from "./input/frames.js";
-import { type MeshAndWarnings, readMesh } from "./input/mesh.js";
+import { type MeshAndWarnings, readCoreMesh, readMesh } from "./input/mesh.js";
 import { resolveInput } from "./input/resolve.js";
 import type { AlignInput, MeshInput } from "./input/types.js";
+import type { JointAligner, LoadJoint } from "./joint-module.js";
 import type { LoadRegistrar } from "./registration-module.js";
 import {
   type AlignResult,
@@ -21,7 +22,7 @@ import {
 } from "./results.js";
 import type { Known, Placed } from "./scene/steps.js";
 import { isTypedArray, wrongKind } from "./values.js";
-import type { LoadedModule } from "./wasm-module.js";
+import type { Glue, LoadedModule } from "./wasm-module.js";
 
 /** A call. `data` contains all large arrays; `options` are in the form of the core. */
 export type Job =
@@ -31,7 +32,6 @@ export type Job =
   | { method: "openTracker"; data: { mesh: MeshInput }; options: object; tracker: number; meshId?: number | undefined }
   | { method: "trackFrame"; data: FrameInput; options: object; tracker: number }
   | { method: "correctTrack"; data: { pose: unknown; frame: unknown }; options: object; tracker: number }
-  | { method: "closeTracker"; data: object; options: object; tracker: number }
   | { method: "evaluate"; data: AlignInput; options: object; transform: unknown; meshId?: number | undefined }
   | { method: "prepareMesh"; data: { mesh: MeshInput }; options: object; meshId: number }
   | { method: "register"; data: Clouds; options: object }
@@ -48,45 +48,45 @@ export interface Results {
   openTracker: undefined;
   trackFrame: TrackedFrame;
   correctTrack: CorrectedFrame[];
-  closeTracker: undefined;
   evaluate: Evaluation;
   prepareMesh: MeshAndWarnings;
   register: Registration;
   estimateSim3: Registration;
 }
 
-/** The modules that run a job. */
-export interface JobModules {
+/** The modules that run jobs. Others than the core are loaded when a job needs them. */
+export interface Modules {
   core: LoadedModule<Core>;
   formats: LoadFormats;
   registrar: LoadRegistrar;
-  /** Runs a task in slices, instead of at once. */
-  inSlices?: InSlices;
+  joint: LoadJoint;
 }
+
+/** The modules that cache prepared meshes, each its own copy. */
+export type MeshCache = "core" | "joint";
+
+/** The module that caches the prepared mesh of a job. */
+export const meshCacheOf = ({ method }: Job): MeshCache =>
+  method === "place" || method === "alignViews" || method === "openTracker" ? "joint" : "core";
 
 /** Whether these are options of `align` for the method of the paper, which the registration module runs. */
 export const isOfPaper = (options: { preset?: unknown }): boolean => options.preset === "paper";
 
-/** A task of the core that runs in slices. */
-export interface Task<T> {
-  /** Runs for about this long; returns the result when finished. */
-  step(sliceMs: number): T | undefined;
-  free(): void;
-}
-
-/** Runs a task to its end. `input` is what its beginning reads. */
-export type InSlices = <T>(begin: (core: Core) => Task<T>, input: object) => Promise<T>;
-
-/** Runs a job. `listener` is called when stages begin; if it throws, the job fails with that exception. */
+/**
+ * Runs a job. `listener` is called when stages begin; if it throws, the job fails with that exception.
+ * @param slices how tasks run; at once by default
+ */
 export async function perform<J extends Job>(
   job: J,
-  modules: JobModules,
-  listener?: CoreListener,
+  modules: Modules,
+  listener: CoreListener | undefined,
+  slices?: Slices,
 ): Promise<Results[J["method"]]>;
 export async function perform(
   job: Job,
-  { core, formats, registrar, inSlices = atOnce(core) }: JobModules,
-  listener?: CoreListener,
+  { core, formats, registrar, joint }: Modules,
+  listener: CoreListener | undefined,
+  slices: Slices = all,
 ): Promise<unknown> {
   const { options } = job;
   checkAttached("input", job.data);
@@ -101,41 +101,45 @@ export async function perform(
           warnings,
         );
       }
-      const result = await inSlices((c) => c.beginAlign(input, options, listener), input);
+      const result = await runTask(core, (c) => c.beginAlign(input, options, listener), input, slices);
       return withWarnings(result, warnings);
     }
     case "place": {
       const { others, known, ...own } = job.data;
-      const { core: input } = await resolveInput(own, formats, job.meshId);
+      const { core: input, warnings } = await resolveInput(own, formats, job.meshId);
       const observed = others === undefined ? input : { ...input, others };
-      return inSlices((c) => c.beginPlace(observed, options, known, listener), observed);
+      const begin = (j: JointAligner) => j.beginPlace(observed, options, known, listener);
+      const placed = await runTask(await joint(), begin, observed, slices);
+      if (placed.alignment === undefined) return placed;
+      // The camera belongs to the scene, which reports its warnings.
+      return { ...placed, alignment: withWarnings(placed.alignment, { camera: [], colors: warnings.colors }) };
     }
     case "alignViews": {
       const { core: input, warnings } = await resolveViews(job.data, formats, job.meshId);
-      const result = await inSlices((c) => c.beginAlignViews(input, options, listener), input);
+      const begin = (j: JointAligner) => j.beginAlignViews(input, options, listener);
+      const result = await runTask(await joint(), begin, input, slices);
       return {
         ...result,
         views: result.views.map((view, k) => withWarnings(view, { camera: warnings[k] ?? [], colors: [] })),
       };
     }
     case "openTracker": {
-      // A prepared mesh is kept for calls with a photo.
-      const read = await readMesh(job.data.mesh, formats, job.meshId !== undefined);
-      const mesh = job.meshId === undefined ? read.mesh : { ...read.mesh, id: job.meshId };
+      const { mesh } = await readCoreMesh(job.data.mesh, formats, false, job.meshId);
+      const module = await joint();
       checkAttached("mesh", mesh);
-      core.call((c) => c.openTracker(job.tracker, { mesh }, options));
+      module.call((j) => j.openTracker(job.tracker, { mesh }, options));
       return undefined;
     }
     case "trackFrame": {
       const { core: frame } = await resolveFrame(job.data, formats);
+      const module = await joint();
       checkAttached("frame", frame);
-      return core.call((c) => c.trackFrame(job.tracker, frame, listener));
+      return module.call((j) => j.trackFrame(job.tracker, frame, listener));
     }
-    case "correctTrack":
-      return core.call((c) => c.correctTrack(job.tracker, job.data.pose, job.data.frame));
-    case "closeTracker":
-      core.call((c) => c.closeTracker(job.tracker));
-      return undefined;
+    case "correctTrack": {
+      const { pose, frame } = job.data;
+      return (await joint()).call((j) => j.correctTrack(job.tracker, pose, frame));
+    }
     case "evaluate": {
       const { core: input, warnings } = await resolveInput(job.data, formats, job.meshId);
       // Files are read while the thread does other work, which may take the memory away.
@@ -169,19 +173,43 @@ export async function perform(
   }
 }
 
-/** Runs tasks at once. */
-function atOnce(core: LoadedModule<Core>): InSlices {
-  return async (begin) =>
-    core.call((c) => {
-      const task = begin(c);
-      for (;;) {
-        const result = task.step(Number.POSITIVE_INFINITY);
-        if (result !== undefined) {
-          task.free();
-          return result;
-        }
-      }
-    }, withoutInput);
+/** How a task runs. */
+export interface Slices {
+  /** About how long each slice takes. */
+  sliceMs: number;
+  /** Called after each slice and each turn; may throw. */
+  check(): void;
+  /** Gives the thread away between two slices. */
+  turn(): Promise<void>;
+}
+
+const all: Slices = { sliceMs: Number.POSITIVE_INFINITY, check() {}, async turn() {} };
+
+/** Runs a task to its end, and frees it. `input` is what its beginning reads. */
+async function runTask<G extends Glue, T>(
+  module: LoadedModule<G>,
+  begin: (glue: G) => Task<T>,
+  input: object,
+  slices: Slices,
+): Promise<T> {
+  const { sliceMs, check, turn } = slices;
+  // The thread may have been elsewhere since the input was read.
+  checkAttached("input", input);
+  const task = module.call(begin, withoutInput);
+  const { instance } = module;
+  try {
+    for (;;) {
+      const result = module.call(() => task.step(sliceMs), withoutInput);
+      check();
+      if (result !== undefined) return result;
+      await turn();
+      check();
+      // Another call trapped, and the task was lost with its instance.
+      if (module.instance !== instance) return await runTask(module, begin, input, slices);
+    }
+  } finally {
+    if (module.instance === instance) task.free();
+  }
 }
 
 function checkedClouds(clouds: Clouds): Clouds {

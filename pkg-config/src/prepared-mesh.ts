@@ -1,6 +1,6 @@
 /** Meshes that are read, validated and decimated once for many calls. */
-
 import { invalidArgument, Sim3AlignError } from "./error.js";
+import { isRecord } from "./kinds.js";
 
 /** Colours of a surface, at points spread evenly over it. */
 export interface ColorSamples {
@@ -27,9 +27,8 @@ export interface CoreMesh {
 /** A mesh, and the id under which each thread caches the data derived from it. */
 export interface KeptMesh {
   readonly id: number;
-  readonly mesh: CoreMesh;
-  /** Why it has no colours. */
-  readonly warnings: readonly string[];
+  /** Its arrays, and why it has no colours. */
+  readonly mesh: CoreMesh & { warnings: readonly string[] };
 }
 
 /** Holds what threads derive from prepared meshes, by id. */
@@ -54,7 +53,7 @@ export function nextMeshId(): number {
 /**
  * A mesh that `Aligner.prepareMesh` has read, validated and decimated. It replaces the mesh in the inputs of all
  * aligners on this thread, with or without workers. Results are bit-identical to those with the mesh itself. Each
- * thread that uses it holds a copy until `dispose()`.
+ * thread that uses it holds a copy until `dispose()`, and a second one after `alignScene`, `alignViews` or `track`.
  */
 export class PreparedMesh {
   /** @internal */
@@ -81,7 +80,7 @@ export class PreparedMesh {
  * @param holder drops its data when the mesh is disposed
  * @throws {@link Sim3AlignError} `DISPOSED`
  */
-export function keptMesh(mesh: PreparedMesh, holder: MeshHolder): KeptMesh {
+function keptMesh(mesh: PreparedMesh, holder: MeshHolder): KeptMesh {
   const state = states.get(mesh);
   if (state === undefined) {
     const remedy = "Pass the mesh itself: libraries that wrap objects in proxies have a function that unwraps them.";
@@ -100,5 +99,27 @@ export function keptMesh(mesh: PreparedMesh, holder: MeshHolder): KeptMesh {
   return state;
 }
 
-/** Whether a prepared mesh has been disposed: a call that began before may have left data of it behind. */
-export const isDisposedMesh = (mesh: PreparedMesh) => states.get(mesh) === "disposed";
+/** The data of a job. */
+export interface JobData {
+  data: unknown;
+  /** The id of its prepared mesh. */
+  meshId?: number;
+  /** To be called when the job has ended. */
+  release(): void;
+}
+
+/**
+ * The input of a call as the data of a job: a prepared mesh is replaced by its arrays.
+ * @param holder drops its data when the mesh is disposed
+ * @throws {@link Sim3AlignError} `DISPOSED`
+ */
+export function withArrays(input: unknown, holder: MeshHolder): JobData {
+  const prepared = isRecord(input) ? input.mesh : undefined;
+  if (!(prepared instanceof PreparedMesh)) return { data: input, release() {} };
+  const { id, mesh } = keptMesh(prepared, holder);
+  const release = () => {
+    // A call that began before the mesh was disposed may have left data of it behind.
+    if (states.get(prepared) === "disposed") holder.dropMesh(id);
+  };
+  return { data: { ...(input as object), mesh }, meshId: id, release };
+}

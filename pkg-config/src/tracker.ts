@@ -1,7 +1,7 @@
 /// <reference lib="esnext.disposable" preserve="true" />
 /** Trackers: one object through a video. */
 import { checkedFlag, checkedOptions, checkedSignal } from "./aligner-options.js";
-import type { Engine } from "./engine.js";
+import type { Engine, MainThreadEngine } from "./engine.js";
 import { disposed, internalError, Sim3AlignError } from "./error.js";
 import type { CorrectedFrame } from "./generated/types.js";
 import type { FrameInput } from "./input/frame-types.js";
@@ -16,14 +16,10 @@ import { coreSim3, type Sim3Like } from "./sim3.js";
 import { ownArgument, snapshot } from "./snapshot.js";
 
 /**
- * The engine of a tracker.
+ * The engine of a tracker. One that other calls share outlives the tracker.
  * @internal
  */
-export interface OwnEngine {
-  engine: Engine;
-  /** Whether other calls use it: it then outlives the tracker. */
-  isShared: boolean;
-}
+export type OwnEngine = { engine: MainThreadEngine; isShared: true } | { engine: Engine; isShared: false };
 
 /**
  * The mesh of a tracker, and its id if it is prepared.
@@ -54,6 +50,8 @@ export class Tracker {
   readonly #closed: (tracker: Tracker) => void;
   #last: Promise<unknown> = Promise.resolve();
   #isClosed = false;
+  /** Ends the connection to the signal. */
+  #unfollow = () => {};
 
   private constructor(id: number, own: OwnEngine, closed: (tracker: Tracker) => void) {
     this.#id = id;
@@ -74,13 +72,15 @@ export class Tracker {
     try {
       if (signal !== undefined) {
         checkSignals([signal]);
-        onAbort(signal, () => tracker.close());
+        tracker.#unfollow = onAbort(signal, () => tracker.close());
       }
-      await tracker.#run({ method: "openTracker", ...mesh, options, tracker: tracker.#id });
+      await tracker.#inOrder(() => tracker.#run({ method: "openTracker", ...mesh, options, tracker: tracker.#id }));
       if (signal !== undefined) checkSignals([signal]);
       return tracker;
     } catch (error) {
       tracker.close();
+      // An abort closes the tracker, which rejects the call with DISPOSED.
+      if (signal !== undefined) checkSignals([signal]);
       throw error;
     }
   }
@@ -124,14 +124,12 @@ export class Tracker {
   close(): void {
     if (this.#isClosed) return;
     this.#isClosed = true;
+    this.#unfollow();
     this.#closed(this);
-    if (this.#own.isShared) {
-      const job = { method: "closeTracker", data: {}, options: {}, tracker: this.#id } as const;
-      const free = () => this.#own.engine.run(job, call());
-      this.#last.then(free, free).catch(() => {});
-    } else {
-      this.#own.engine.dispose();
-    }
+    const own = this.#own;
+    // What runs, which may be the opening, ends first.
+    if (own.isShared) this.#last.then(() => own.engine.closeTracker(this.#id)).catch(() => {});
+    else own.engine.dispose();
   }
 
   /** Closes the tracker at the end of the scope of a `using` declaration. */

@@ -22,6 +22,21 @@ export function withoutUndefined<T extends object>(object: T): { [K in keyof T]?
   return Object.fromEntries(entries) as { [K in keyof T]?: Exclude<T[K], undefined> };
 }
 
+/** The strings in an array; none for any other value. */
+export const stringsIn = (value: unknown): string[] =>
+  Array.isArray(value) ? value.filter((text) => typeof text === "string") : [];
+
+/**
+ * Rejects misspelt properties, which would otherwise be ignored.
+ * @param prefix of their names in errors
+ * @throws {@link Sim3AlignError} `INVALID_ARGUMENT`
+ */
+export function checkNames(prefix: string, object: object, names: readonly string[], remedy: string): void {
+  const unknown = Object.keys(object).find((name) => !names.includes(name));
+  if (unknown === undefined) return;
+  throw failure("INVALID_ARGUMENT", `${prefix}${unknown}`, "an unknown property", names.join(", "), remedy);
+}
+
 /** Three numbers: x, y, z. */
 export type Vector3 = [x: number, y: number, z: number];
 
@@ -44,8 +59,8 @@ const MAX_NESTING = 16;
 
 function flat(array: readonly unknown[], levels: number): unknown[] {
   if (levels === 0) throw new Error("too many levels");
-  // Its own method: a proxy that invents a length has none.
-  // Holes become undefined.
+  // Calls the array's own `slice`: a proxy that invents a value for every property has no such function, so this throws
+  // instead of looping over an invented length. `Array.from` turns holes into undefined.
   const copy = Array.from(array.slice());
   if (!copy.some(Array.isArray)) return copy;
   return copy.flatMap((item) => (Array.isArray(item) ? flat(item, levels - 1) : [item]));

@@ -3,16 +3,24 @@ import type { Core } from "./core.js";
 import { type ErrorParts, internalError, partsOf, Sim3AlignError } from "./error.js";
 import type { Formats } from "./formats-module.js";
 import { perform } from "./jobs.js";
+import type { JointAligner } from "./joint-module.js";
 import type { LazyName, Reply, Request } from "./pool/protocol.js";
 import { buffersOf } from "./pool/transfer.js";
 import type { Registrar } from "./registration-module.js";
 // Imported statically, because some bundlers put a worker script into a single file without dynamic imports.
 import * as coreGlue from "./wasm/core.js";
 import * as formatsGlue from "./wasm/formats.js";
+import * as jointGlue from "./wasm/joint.js";
 import * as registrationGlue from "./wasm/registration.js";
 import { type Glue, type LoadedModule, WasmModule } from "./wasm-module.js";
 
 type Post = (message: Reply, transfer?: ArrayBuffer[]) => void;
+
+interface LazyModule<G extends Glue> {
+  load(): Promise<LoadedModule<G>>;
+  /** The module, if a job has needed it. */
+  loading(): Promise<LoadedModule<G>> | undefined;
+}
 
 /** Loads the modules and runs the jobs of one worker. */
 class WorkerHost {
@@ -20,6 +28,7 @@ class WorkerHost {
   #core: Promise<LoadedModule<Core>> | undefined;
   readonly #formats = this.#lazy<Formats>("formats", formatsGlue);
   readonly #registrar = this.#lazy<Registrar>("registration", registrationGlue as unknown as Registrar);
+  readonly #joint = this.#lazy<JointAligner>("joint", jointGlue as unknown as JointAligner);
   /** Receives the answer to `needs-module`. */
   #receiveModule: ((module: WebAssembly.Module | ErrorParts) => void) | undefined;
 
@@ -58,7 +67,7 @@ class WorkerHost {
         throw internalError(error);
       });
       if (core === undefined) throw new Error("no core");
-      const modules = { core, formats: this.#formats, registrar: this.#registrar };
+      const modules = { core, formats: this.#formats.load, registrar: this.#registrar.load, joint: this.#joint.load };
       return { type: "done", result: await perform(job, modules, wantsProgress ? listener : undefined) };
     } catch (error) {
       return { type: "done", error: partsOf(error instanceof Sim3AlignError ? error : internalError(error)) };
@@ -68,6 +77,7 @@ class WorkerHost {
   async #dropMesh(id: number): Promise<void> {
     // If the core could not be loaded, the next job fails.
     (await this.#core?.catch(() => undefined))?.call((core) => core.dropMesh(id));
+    (await this.#joint.loading()?.catch(() => undefined))?.call((joint) => joint.dropMesh(id));
   }
 
   #loadCore(module: WebAssembly.Module): Promise<LoadedModule<Core>> {
@@ -78,9 +88,9 @@ class WorkerHost {
   }
 
   /** A module that is loaded when a job first needs it; after a failure, the next job tries again. */
-  #lazy<G extends Glue>(name: LazyName, glue: G): () => Promise<LoadedModule<G>> {
+  #lazy<G extends Glue>(name: LazyName, glue: G): LazyModule<G> {
     let loading: Promise<LoadedModule<G>> | undefined;
-    return () => {
+    const load = () => {
       if (loading === undefined) {
         loading = this.#request(name).then((module) => new WasmModule<G>(name, module, () => glue).load());
         loading.catch(() => {
@@ -89,6 +99,7 @@ class WorkerHost {
       }
       return loading;
     };
+    return { load, loading: () => loading };
   }
 
   /** Asks the pool for a compiled module. The worker runs one job at a time, and so asks for one at a time. */

@@ -19,13 +19,13 @@ export function currentModel() {
     if (value === undefined) throw new Error(`src/precise declares no ${name}. Remedy: correct ${import.meta.url}.`);
     return value.split(",").map(Number);
   };
-  const [confidence, alternatives] = [read("confidence.rs"), read("alternatives.rs")];
+  const [confidence, score] = [read("confidence.rs"), read("score.rs")];
   const limits = (/** @type {string} */ name) => /** @type {Limits} */ (numbers(confidence, name));
   return {
     intercept: numbers(confidence, "INTERCEPT")[0] ?? Number.NaN,
     slopes: numbers(confidence, "SLOPES"),
     // A 32-bit number there.
-    noise: Math.fround(numbers(alternatives, "NOISE")[0] ?? Number.NaN),
+    noise: Math.fround(numbers(score, "NOISE")[0] ?? Number.NaN),
     scale: limits("SCALE"),
     rotationDeg: limits("ROTATION_DEG"),
   };

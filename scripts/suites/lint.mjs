@@ -9,7 +9,7 @@ import { runChecks } from "../lib/step.mjs";
 import { wasmModules } from "../lib/wasm.mjs";
 
 /** Crates of the workspace besides the aligner. */
-const crates = ["formats", "geometry", "lab", "modules/core", "modules/registration"];
+const crates = ["formats", "geometry", "lab", "modules/core", "modules/joint", "modules/registration"];
 
 export async function lint() {
   await setUp();

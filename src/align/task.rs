@@ -21,7 +21,7 @@ use crate::precise::prepared_mesh::PreparedMesh;
 use crate::precise::recipe::SURE;
 use crate::precise::rounds::Rounds;
 use crate::precise::surroundings::Neighbourhood;
-use crate::precise::{Certainty, Earlier, Found, SearchSettings};
+use crate::precise::{Certainty, Found, Resume, SearchSettings, Told};
 use crate::progress::{Host, Stopwatch};
 use crate::report::{Alignment, Effort, PaperAlignment, PreciseDiagnostics, Solution};
 
@@ -31,7 +31,9 @@ pub struct AlignTask<'h, O, M> {
     mesh: M,
     options: AlignOptions,
     efforts: Vec<SearchSettings>,
-    given: Option<Given>,
+    /// What it is given, and the search that begins with it. A module that gives its tasks nothing does not contain the
+    /// search.
+    given: Option<(Given, Resume)>,
     setup: Setup,
     stages: Option<Stopwatch<'h>>,
     state: State,
@@ -99,7 +101,7 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
 
     /// Searches among these poses only.
     pub fn with_given(self, given: Given) -> Self {
-        Self { given: Some(given), ..self }
+        Self { given: Some((given, precise::resume)), ..self }
     }
 
     /// Continues until the searches have ended, or until `pause` returns true. Returns whether they have ended.
@@ -217,7 +219,7 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
                 State::Ready(clouds)
             }
             State::Ready(clouds) => match &self.given {
-                Some(given) => self.resume(clouds, given, None, stages)?,
+                Some((given, resume)) => self.resume(clouds, given, *resume, None, stages)?,
                 None => {
                     precise::decimate(mesh, self.efforts.first().ok_or_else(over)?, stages)?;
                     State::Decimated(clouds)
@@ -234,13 +236,14 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
             }
             State::Resumed(clouds, rounds) => {
                 let concluded = precise::conclude(&rounds, mesh.mesh(), &self.options, None)?;
-                if let Some(given) = &self.given
+                if let Some((given, resume)) = &self.given
                     && concluded.1.confidence < given.confidence - CONTRADICTION
                 {
                     // Surroundings that spoil a good pose are those of a neighbour that is misplaced itself.
                     let alone = Given { known: Neighbourhood::default(), ..given.clone() };
                     let clean = rounds.search.observation.clone();
-                    let State::Resumed(clouds, rounds) = self.resume(clouds, &alone, Some(clean), stages)? else {
+                    let State::Resumed(clouds, rounds) = self.resume(clouds, &alone, *resume, Some(clean), stages)?
+                    else {
                         return Err(over());
                     };
                     let concluded = precise::conclude(&rounds, mesh.mesh(), &self.options, None)?;
@@ -273,15 +276,19 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
         &self,
         clouds: Box<Clouds>,
         given: &Given,
+        resume: Resume,
         clean: Option<Rc<CleanObservation>>,
         stages: &mut Stopwatch<'h>,
     ) -> Result<State> {
         let settings = self.efforts.iter().find(|settings| settings.effort == given.effort).ok_or_else(over)?.again();
         let (observation, mesh) = (self.observation.borrow(), self.mesh.borrow());
-        let is_sure = given.confidence >= SURE;
-        let earlier = Earlier { clean, found: &given.found, renders: given.renders, is_sure };
-        let rounds =
-            precise::resume(observation, mesh, earlier, given.known.clone(), &self.options, &settings, stages)?;
+        let told = Told {
+            found: &given.found,
+            renders: given.renders,
+            is_sure: given.confidence >= SURE,
+            known: given.known.clone(),
+        };
+        let rounds = resume(observation, mesh, clean, told, &self.options, &settings, stages)?;
         Ok(State::Resumed(clouds, Box::new(rounds)))
     }
 

@@ -1,7 +1,6 @@
 //! Meshes from JavaScript objects, and the cache of prepared meshes.
 
 use core::cell::RefCell;
-use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use glam::Vec3;
@@ -16,8 +15,8 @@ use crate::geometry::surface_colors::SurfaceColors;
 use crate::precise::prepared_mesh::PreparedMesh;
 
 thread_local! {
-    /// The cached meshes, by the id of the caller.
-    static KEPT: RefCell<BTreeMap<u32, Rc<PreparedMesh<'static>>>> = const { RefCell::new(BTreeMap::new()) };
+    /// The cached meshes, each with the id of the caller. There are few: a tree would be more code than data.
+    static KEPT: RefCell<Vec<(u32, Rc<PreparedMesh<'static>>)>> = const { RefCell::new(Vec::new()) };
 }
 
 /// `{ positions, indices?, colors? | samples? }`; with `id`, the mesh is cached under this number, and the arrays are only read if it is
@@ -29,7 +28,9 @@ pub fn mesh(mesh: &JsValue) -> Result<Rc<PreparedMesh<'static>>> {
         return Err(wrong_type("mesh", mesh, "{ positions, indices }", remedy));
     }
     let id = get(mesh, "id").and_then(|id| id.as_f64()).map(|id| id as u32);
-    let kept = id.and_then(|id| KEPT.with_borrow(|kept| kept.get(&id).cloned()));
+    let kept = id.and_then(|id| {
+        KEPT.with_borrow(|kept| kept.iter().find(|(known, _)| *known == id).map(|(_, mesh)| mesh.clone()))
+    });
     if let Some(kept) = kept {
         return Ok(kept);
     }
@@ -44,7 +45,7 @@ pub fn mesh(mesh: &JsValue) -> Result<Rc<PreparedMesh<'static>>> {
     let colors = colors(mesh, &triangles)?;
     let mesh = Rc::new(PreparedMesh::new(triangles).with_colors(colors));
     if let Some(id) = id {
-        KEPT.with_borrow_mut(|kept| kept.insert(id, mesh.clone()));
+        KEPT.with_borrow_mut(|kept| kept.push((id, mesh.clone())));
     }
     Ok(mesh)
 }
@@ -73,5 +74,5 @@ pub fn mesh_of(input: &JsValue) -> Result<Rc<PreparedMesh<'static>>> {
 
 /// Removes the mesh with this id from the cache, if present.
 pub fn drop_kept(id: u32) {
-    KEPT.with_borrow_mut(|kept| kept.remove(&id));
+    KEPT.with_borrow_mut(|kept| kept.retain(|(known, _)| *known != id));
 }

@@ -101,29 +101,40 @@ pub fn begin(
     Ok(rounds)
 }
 
-/// What an earlier search leaves to the next.
-pub struct Earlier<'a> {
-    /// The observation, where it has been cleaned already.
-    pub clean: Option<Rc<CleanObservation>>,
-    /// The poses, best first.
+/// What another search has told.
+pub struct Told<'a> {
+    /// The poses that it has found, best first.
     pub found: &'a [Found],
-    /// Number of poses that it has rendered.
+    /// The number of its renders.
     pub renders: usize,
-    /// Whether it was sure of the first.
+    /// Whether it was sure of its best pose.
     pub is_sure: bool,
+    /// What is known of the surroundings of the object.
+    pub known: Neighbourhood,
 }
+
+/// The type of [`resume`].
+pub type Resume = fn(
+    &Observation,
+    &PreparedMesh<'_>,
+    Option<Rc<CleanObservation>>,
+    Told<'_>,
+    &AlignOptions,
+    &SearchSettings,
+    &mut Stopwatch<'_>,
+) -> Result<Rounds>;
 
 /// A search among the poses that another one has found, with what is known of the surroundings of the object. Without
 /// surroundings, the result is that of the other search. If that was not sure, the rotations in which the mesh stands on
-/// the ground are searched as well.
+/// the ground are searched as well. `clean` is the observation, where it has been cleaned already.
 ///
 /// # Errors
 /// As [`begin`].
 pub fn resume(
     observation: &Observation,
     mesh: &PreparedMesh<'_>,
-    Earlier { clean, found, renders, is_sure }: Earlier<'_>,
-    known: Neighbourhood,
+    clean: Option<Rc<CleanObservation>>,
+    Told { found, renders, is_sure, known }: Told<'_>,
     options: &AlignOptions,
     settings: &SearchSettings,
     stages: &mut Stopwatch<'_>,

@@ -8,7 +8,7 @@ use crate::views::world_pose::WorldPose;
 /// Share of the last motion that is expected of the next frame.
 const CARRIED: f64 = 0.9;
 /// Rotation, radians, beyond which a motion is not carried on: the object was found anew.
-const MAX_TURN: f64 = 0.8;
+pub const MAX_TURN: f64 = 0.8;
 
 /// The motion from one frame to the next, about the centre of the mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,6 +33,11 @@ impl Motion {
         let axis = DVec3::new(turn.x, turn.y, turn.z).normalize_or_zero();
         let signed = if turn.w < 0.0 { -angle } else { angle };
         Self { turn: axis * signed, shift: after.center - before.center }
+    }
+
+    /// The rotation vector, radians.
+    pub fn turn(&self) -> DVec3 {
+        self.turn
     }
 
     /// The pose to expect after `pose`.

@@ -5,7 +5,8 @@ use glam::DQuat;
 
 use super::detection::{Detection, Known};
 use super::evidence::Evidence;
-use super::motion::Motion;
+use super::motion::{MAX_TURN, Motion};
+use super::open_axis::OpenAxis;
 use super::options::TrackOptions;
 use super::report::{CorrectedFrame, TrackState, TrackedFrame};
 use super::sight::{Seen, Sight, agreement, shown};
@@ -15,6 +16,7 @@ use crate::evidence::frame::Frame;
 use crate::evidence::observation::{Observation, check_mask_size};
 use crate::evidence::photo::check_photo;
 use crate::evidence::sample::Sampling;
+use crate::geometry::rotations::{angle_between, exp};
 use crate::geometry::similarity::Similarity;
 use crate::metrics;
 use crate::number::number;
@@ -51,6 +53,8 @@ const SEEN: [f32; 2] = [0.35, 0.12];
 /// Share of the object that a frame must show for it to be searched for over all rotations, and for its rotation to count
 /// as known.
 const ENOUGH: f32 = 0.5;
+/// The same for a rotation that differs from the last certain one by more than an object turns unseen.
+const MOST: f32 = 0.8;
 /// Standard deviation of the size of a correction, relative.
 const CORRECTION_SD: f64 = 0.005;
 /// Maximum number of frames that a correction carries back.
@@ -66,6 +70,7 @@ pub struct Tracker<M> {
     /// The pose of the last frame, in its camera.
     last: Option<WorldPose>,
     motion: Motion,
+    open_axis: OpenAxis,
     state: TrackState,
     /// The usual fit of a frame.
     usual: Option<f32>,
@@ -104,6 +109,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             size: Size::new(known),
             last: None,
             motion: Motion::REST,
+            open_axis: OpenAxis::default(),
             state: TrackState::Lost,
             usual: None,
             certain: None,
@@ -229,7 +235,11 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         let before = self.certain.unwrap_or(last.rotation);
         let observation = frame.observation().ok().flatten();
         let anew = observation.and_then(|observation| self.detect(&observation, Some(before), host).ok());
-        let anew = anew.filter(|seen| !is_leaving(seen));
+        let is_told = |seen: &Seen| {
+            let has_turned = angle_between(seen.found.pose.rotation, before) > MAX_TURN;
+            shown(frame, &seen.evidence, &seen.found.pose) >= if has_turned { MOST } else { ENOUGH }
+        };
+        let anew = anew.filter(is_told);
         let best = if fit(&anew, self) > 1.1 * fit(&near, self) { anew } else { near };
         let least = if self.state == TrackState::Lost { UNCERTAIN } else { LOST };
         best.filter(|seen| self.fit(seen) >= least && seen.visible >= SEEN[1])
@@ -269,6 +279,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         if is_detected {
             self.stretch += 1;
             self.motion = Motion::REST;
+            self.open_axis.reset();
         }
         if is_certain {
             let usual = self.usual.unwrap_or_else(|| agreement(&found.score));
@@ -276,7 +287,9 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             if shown(frame, &evidence, &found.pose) >= ENOUGH {
                 self.certain = Some(found.pose.rotation);
             }
-            self.roll(&evidence, &mut found);
+            if !self.roll(&evidence, &mut found) {
+                self.steady(search, &mut found);
+            }
             self.weigh_size(search, &mut found, if is_predicted { PREDICTED_ERROR } else { SILHOUETTE_ERROR });
         }
         let pose = PlacedCamera::AT_ORIGIN.place(&found.pose);
@@ -313,15 +326,29 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         })
     }
 
-    /// Rolls the pose about the axis that shape leaves open, to where its colours agree with the photo.
-    fn roll(&self, evidence: &Evidence, found: &mut Found) {
-        let Evidence { search, photo: Some(photo) } = evidence else { return };
-        let Some(colors) = self.mesh.borrow().colors() else { return };
+    /// Turns the pose about the axis that the frame determines least, towards the motion so far.
+    fn steady(&mut self, search: &Search, found: &mut Found) {
+        let (Some(held), Some(last)) = (search.conditioning(&found.pose).0, self.last) else { return };
+        let (predicted, pose) = (self.motion.carried(&last), PlacedCamera::AT_ORIGIN.place(&found.pose));
+        let angle = self.open_axis.correction(&predicted, &pose, &self.motion, held.rotation);
+        if angle != 0.0 {
+            let turned = search.mesh.turns.turned(&found.pose, exp(held.rotation.1 * angle) * found.pose.rotation);
+            *found = Found { pose: turned, score: search.score(&turned), ..*found };
+        }
+    }
+
+    /// Rolls the pose about the axis that shape leaves open, to where its colours agree with the photo. Returns whether
+    /// they tell.
+    fn roll(&self, evidence: &Evidence, found: &mut Found) -> bool {
+        let Evidence { search, photo: Some(photo) } = evidence else { return false };
+        let Some(colors) = self.mesh.borrow().colors() else { return false };
         if let Some((pose, _)) = roll(search, photo, colors, found.pose, LOOSE)
             && agreement_at(search, photo, colors, &pose).is_some_and(|agreement| agreement >= AGREES)
         {
             *found = Found { pose, score: search.score(&pose), ..*found };
+            return true;
         }
+        false
     }
 
     /// Adds the evidence of a frame to the size, and moves its pose to the size that follows.

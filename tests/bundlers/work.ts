@@ -5,7 +5,7 @@ import { input, mesh } from "../support/scene.js";
 /** What came of it: the matrices, which are to be those of Node. */
 export type Found = Record<string, number[]>;
 
-/** Aligns arrays and a file, without workers and with two. */
+/** Aligns arrays, a file and a scene of one object, without workers and with two. */
 export async function work(
   createAligner: (options?: AlignerOptions) => Promise<Aligner>,
   numbers: readonly number[] = [0, 2],
@@ -17,6 +17,9 @@ export async function work(
     const aligner = await createAligner({ workers });
     found[`arrays, ${workers}`] = Array.from((await aligner.align(input, quick)).matrix);
     found[`file, ${workers}`] = Array.from((await aligner.align(file, quick)).matrix);
+    const { mask, mesh, ...view } = input;
+    const { objects } = await aligner.alignScene({ ...view, objects: [{ mask, mesh }], support: null }, quick);
+    found[`scene, ${workers}`] = objects.flatMap((object) => (object.error === undefined ? object.matrix : []));
     for await (const { index, alignment } of aligner.alignAll([input, input], { ...quick, ordered: true })) {
       found[`all, ${workers}, ${index}`] = Array.from(alignment?.matrix ?? []);
     }

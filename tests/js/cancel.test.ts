@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import { after, test } from "node:test";
 import { type Aligner, createAligner, type Progress } from "sim3align";
 import { rejectsWith } from "../support/errors.js";
+import { internalModule } from "../support/internals.js";
 import { input, truth } from "../support/scene.js";
 import { Gate, slowInput, Workers, withoutTimes } from "../support/workers.js";
 
@@ -184,4 +185,21 @@ test("a hundred calls with one signal leave no listener behind", async () => {
   process.off("warning", warn);
   assert.equal(listeners, 0);
   assert.deepEqual(warnings, [], "Node sees no leak");
+});
+
+test("a task is freed when it fails, also where it runs at once, as in a worker", async () => {
+  const { perform } = await internalModule("jobs.js");
+  const failure = new Error("no consensus");
+  let freed = 0;
+  const task = {
+    step() {
+      throw failure;
+    },
+    free: () => {
+      freed += 1;
+    },
+  };
+  const core = { instance: 0, call: (work: (glue: object) => unknown) => work({ beginAlign: () => task }) };
+  await assert.rejects(perform({ method: "align", data: input, options: {} }, { core }), failure);
+  assert.equal(freed, 1);
 });

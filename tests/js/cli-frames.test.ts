@@ -95,6 +95,38 @@ test("a video is tracked from the mask of its first frame", () => {
   }
 });
 
+test("--no-image changes nothing: frames have no photo", () => {
+  for (const args of [
+    ["align", "known", "--quality", "fast"],
+    ["track", "video"],
+  ]) {
+    const { status, stderr } = run(...args, "--no-image");
+    assert.equal(status, 0, stderr);
+  }
+});
+
+test("what fails in a video is told with its file", () => {
+  mkdirSync(join(folder, "spoilt"));
+  writeFileSync(join(folder, "spoilt", "mesh.glb"), "no mesh");
+  mkdirSync(join(folder, "spoilt", "frame_00"));
+  const properties = ["code", "argument", "found", "expected", "remedy", "message", "file"];
+  const mesh = run("track", "spoilt", "--json", "spoilt.json");
+  assert.equal(mesh.status, 1, mesh.stderr);
+  const { error } = results("spoilt.json").spoilt;
+  assert.deepEqual(Object.keys(error), properties);
+  assert.equal(error.argument, "mesh");
+  assert.match(error.file, /spoilt.mesh\.glb$/);
+
+  writeFrames("torn", [0, 3]);
+  writeFileSync(join(folder, "torn", "frame_01", "depth.npy"), "no depth");
+  const frame = run("track", "torn", "--json", "torn.json");
+  assert.equal(frame.status, 1, frame.stderr);
+  const { frame_00, frame_01 } = results("torn.json").torn.frames;
+  assert.equal(frame_00.state, "tracking");
+  assert.deepEqual(Object.keys(frame_01.error), properties);
+  assert.match(frame_01.error.file, /frame_01.depth\.npy$/);
+});
+
 test("wrong usage is told", () => {
   mkdirSync(join(folder, "empty"));
   for (const [args, pattern] of [

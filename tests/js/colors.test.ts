@@ -227,6 +227,14 @@ test("a mesh with a texture that can't be read is aligned by its shape, with a w
     assert.match(warnings[0]?.message ?? "", /WebP.*gltf-transform/);
     assert.deepEqual({ ...found, warnings: plain.warnings }, plain);
   }
+  const { mask, mesh: _, ...view } = withPhoto;
+  for (const mesh of [webp(), prepared]) {
+    const scene = { ...view, objects: [{ mask, mesh }] };
+    const [object] = (await pooled.alignScene(scene, { quality: "fast" })).objects;
+    assert.ok(object !== undefined && object.error === undefined, object?.error?.message);
+    const codes = object.warnings.map(({ code }) => code);
+    assert.ok(codes.includes("COLORS_NOT_READ"), `${codes}`);
+  }
   const { warnings } = await aligner.evaluate({ ...input, mesh: webp() }, truth);
   assert.deepEqual(warnings, []);
   pooled.dispose();

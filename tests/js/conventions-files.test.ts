@@ -4,7 +4,7 @@ import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { createAligner } from "sim3align";
-import { applyToPoints, exportGlb, exportPly, placeGlb, toOpenGL, toSim3 } from "sim3align/conventions";
+import { applyToPoints, exportGlb, exportPly, exportSceneGlb, placeGlb, toOpenGL, toSim3 } from "sim3align/conventions";
 import { type BufferGeometry, type Group, Mesh, Vector3 } from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { PLYLoader } from "three/addons/loaders/PLYLoader.js";
@@ -18,6 +18,16 @@ import { mesh, truth, view } from "../support/scene.js";
 const buffer = (bytes: Uint8Array) => Uint8Array.from(bytes).buffer;
 const load = async (glb: Uint8Array): Promise<Group> => (await new GLTFLoader().parseAsync(buffer(glb), "")).scene;
 const soup = { positions: Float32Array.from(mesh.positions.subarray(0, 27)) };
+
+interface Primitive {
+  targets: object[];
+}
+
+/** What a GLB says about its content. */
+const documentOf = (glb: Uint8Array) =>
+  JSON.parse(
+    new TextDecoder().decode(glb.subarray(20, 20 + new DataView(glb.buffer, glb.byteOffset).getUint32(12, true))),
+  );
 
 /** All vertices below an object, where the scene has them. */
 function vertices(object: Group): number[] {
@@ -113,6 +123,39 @@ test("a GLB without a scene, and one with nothing in it, can be placed", async (
   assert.equal(scene.children[0]?.children.length, 2);
   const nothing = glbOf({ asset: { version: "2.0" }, buffers: [{ byteLength: 4 }] }, new Uint8Array(4));
   assert.equal((await load(placeGlb(nothing, truth))).children.length, 1);
+});
+
+test("a scene of several GLB files: morph targets and compressed primitives keep their data", async () => {
+  // Two triangles' positions: the first of the base shape, the second of a morph target.
+  const data = Float32Array.of(0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 1);
+  const accessor = { componentType: 5126, count: 3, type: "VEC3", min: [0, 0, 0], max: [1, 1, 1] };
+  const json = {
+    asset: { version: "2.0" },
+    scenes: [{ nodes: [0] }],
+    nodes: [{ mesh: 0 }],
+    meshes: [{ primitives: [{ attributes: { POSITION: 0 }, targets: [{ POSITION: 1 }] }] }],
+    accessors: [
+      { ...accessor, bufferView: 0, max: [1, 1, 0] },
+      { ...accessor, bufferView: 1, min: [0, 0, 1], max: [0, 0, 1] },
+    ],
+    bufferViews: [0, 36].map((byteOffset) => ({ buffer: 0, byteOffset, byteLength: 36 })),
+    buffers: [{ byteLength: 72 }],
+  };
+  const morphing = { mesh: glbOf(json, new Uint8Array(data.buffer)), transform: truth };
+  const merged = exportSceneGlb([morphing, morphing]);
+  await assertValid(merged);
+  const targets = (glb: Uint8Array) =>
+    documentOf(glb).meshes.map(({ primitives: [primitive] }: { primitives: Primitive[] }) => primitive?.targets);
+  assert.deepEqual(targets(merged), [[{ POSITION: 1 }], [{ POSITION: 3 }]]);
+
+  const draco = { bufferView: 1, attributes: { POSITION: 7 } };
+  const [primitive] = json.meshes[0]?.primitives ?? [];
+  const primitives = [{ ...primitive, extensions: { KHR_draco_mesh_compression: draco } }];
+  const compressed = { mesh: glbOf({ ...json, meshes: [{ primitives }] }, new Uint8Array(72)), transform: truth };
+  const [, second] = documentOf(exportSceneGlb([compressed, compressed])).meshes;
+  const moved = { bufferView: 3, attributes: { POSITION: 7 } };
+  assert.deepEqual(second.primitives[0].extensions, { KHR_draco_mesh_compression: moved });
+  assert.deepEqual(second.primitives[0].attributes, { POSITION: 2 });
 });
 
 test("PLY: three.js reads the vertices and triangles", () => {

@@ -73,6 +73,14 @@ test("the core loads once, however many ask at once; the other modules only when
     assert.equal(compiled.length, 3);
     await assert.rejects(aligners[0].align({ ...parsed, mask }, { preset: "paper" }), { code: "TOO_FEW_POINTS" });
     assert.equal(compiled.length, 3);
+    const { mesh, mask: _, ...view } = parsed;
+    const alone = aligners[0].alignViews({ mesh, views: [{ ...view, mask }] });
+    const joint = [alone, ...aligners.map((aligner) => aligner.alignScene({ ...view, objects: [{ mask, mesh }] }))];
+    for (const { status, value, reason } of await Promise.allSettled(joint)) {
+      assert.equal((status === "fulfilled" ? value.objects[0].error : reason).code, "TOO_FEW_POINTS");
+    }
+    (await aligners[1].track(mesh)).close();
+    assert.equal(compiled.length, 4);
     console.log("done");
   `);
   assert.equal(output.trim(), "done");
@@ -120,6 +128,10 @@ test("a failed load says what to do, and the next one tries again", () => {
     const other = await createAligner({ registrationWasm: missing });
     await assert.rejects(estimate(other), { code: "NOT_INITIALISED", argument: "registrationWasm" });
     await estimate(aligner);
+    const mesh = { positions: Float32Array.of(0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1), indices: Uint32Array.of(0, 1, 2, 0, 1, 3) };
+    const third = await createAligner({ jointWasm: missing });
+    await assert.rejects(third.track(mesh), { code: "NOT_INITIALISED", argument: "jointWasm" });
+    (await aligner.track(mesh)).close();
     console.log("done");
   `);
   assert.equal(output.trim(), "done");

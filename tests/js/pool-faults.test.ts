@@ -105,6 +105,17 @@ for (const type of ["start", "job"]) {
   });
 }
 
+test("what cannot be sent is aligned on the calling thread, also after a tracker was closed", async () => {
+  let isBroken = false;
+  const { aligner } = await poolWith((message, transfer, post) => {
+    if (isBroken && message.type === "job") throw new Error("out of memory");
+    post(message, transfer);
+  });
+  (await aligner.track(mesh)).close();
+  isBroken = true;
+  await works(aligner);
+});
+
 test("a worker that cannot be told that a mesh is freed is replaced", async () => {
   let isBroken = false;
   const { aligner, workers } = await poolWith((message, transfer, post) => {

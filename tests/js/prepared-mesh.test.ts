@@ -4,6 +4,7 @@ import { after, test } from "node:test";
 import { type AlignInput, type Alignment, createAligner, type OptionsOf, PreparedMesh } from "sim3align";
 import { rejectsWith } from "../support/errors.js";
 import { glb } from "../support/files.js";
+import { internalModule } from "../support/internals.js";
 import { input, mesh, truth } from "../support/scene.js";
 import { Workers, withoutTimes } from "../support/workers.js";
 
@@ -92,7 +93,8 @@ test("a worker gets the arrays once, and a worker that takes its place gets them
     const worker = own.create();
     const post = worker.postMessage.bind(worker);
     worker.postMessage = (message: { type: string; job?: { method: string; data: AlignInput } }, ...rest) => {
-      if (message.job?.method === "align") sent.push((message.job.data.mesh as typeof mesh).positions.length);
+      if (/^(align|place)$/.test(message.job?.method ?? "") && message.job)
+        sent.push((message.job.data.mesh as typeof mesh).positions.length);
       post(message, ...rest);
     };
     return worker;
@@ -105,8 +107,35 @@ test("a worker gets the arrays once, and a worker that takes its place gets them
   await (await own.nth(0)).terminate();
   assert.deepEqual(withoutTimes(await align()), expected);
   const whole = mesh.positions.length;
-  assert.deepEqual(sent, [whole, 0, whole]);
+  assert.deepEqual(sent.splice(0), [whole, 0, whole]);
+  // The joint module has a cache of its own.
+  const { mask, mesh: _, ...view } = input;
+  const scene = { ...view, objects: [{ mask, mesh: prepared }], support: null };
+  const [object] = (await one.alignScene(scene, { quality: "fast" })).objects;
+  assert.deepEqual(object?.error === undefined && object?.matrix, expected.matrix);
+  assert.deepEqual(withoutTimes(await align()), expected);
+  assert.deepEqual(sent, [whole, 0, 0]);
   one.dispose();
+});
+
+test("a disposed mesh is freed in all modules", async () => {
+  const [{ jointModule }, { coreModule }, { nextMeshId }] = await Promise.all(
+    ["joint-module.js", "core.js", "prepared-mesh.js"].map(internalModule),
+  );
+  const id = nextMeshId() + 1;
+  const prepared = await here.prepareMesh(mesh);
+  (await here.track(prepared)).close();
+  const [joint, core] = [await jointModule.load(), await coreModule.load()];
+  const cached = { mesh: { positions: new Float32Array(), id } };
+  const [tracker, options] = [10_000, {}];
+  const uses = [
+    () => joint.call((j: { openTracker(...args: unknown[]): void }) => j.openTracker(tracker, cached, options)),
+    () => core.call((c: { prepareMesh(mesh: object): void }) => c.prepareMesh(cached.mesh)),
+  ];
+  for (const use of uses) use();
+  prepared.dispose();
+  for (const use of uses) assert.throws(use, /mesh/);
+  joint.call((j: { closeTracker(id: number): void }) => j.closeTracker(tracker));
 });
 
 test("a prepared mesh of one aligner serves another, also after the first is gone", async () => {

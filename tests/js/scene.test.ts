@@ -175,6 +175,26 @@ test("a scene can be cancelled, and an exception of onProgress ends it", async (
   }
 });
 
+test("a signal without a reason ends a scene as an abort", async () => {
+  const controller = new AbortController();
+  // As in older implementations.
+  Object.defineProperty(controller.signal, "reason", { value: undefined });
+  const running = here.alignScene(tableScene, { ...quick, signal: controller.signal });
+  controller.abort();
+  await assert.rejects(running, { name: "AbortError" });
+});
+
+test("arrays that are moved while a scene is aligned are refused by name", async () => {
+  const depth = tableView.depth.slice();
+  const move = () => depth.length > 0 && structuredClone(depth, { transfer: [depth.buffer] });
+  await rejectsWith(() => here.alignScene({ ...tableScene, depth }, { ...quick, onProgress: move }), {
+    code: "INVALID_ARGUMENT",
+    argument: "depth",
+    message: /detached/,
+  });
+  assert.deepEqual(timeless(await here.alignScene(tableScene, quick)), timeless(expected));
+});
+
 test("an object that cannot be aligned leaves the others", async () => {
   const [first, second] = tableScene.objects;
   assert.ok(first && second);

@@ -1,8 +1,10 @@
 /** Trackers: with and without workers, in order, corrected, lost and closed. */
 import assert from "node:assert/strict";
+import { getEventListeners } from "node:events";
 import { after, test } from "node:test";
-import { type Aligner, createAligner, type FrameInput, TRACK_DEFAULTS } from "sim3align";
+import { type Aligner, createAligner, type FrameInput, type Sim3AlignError, TRACK_DEFAULTS } from "sim3align";
 import { rejectsWith } from "../support/errors.js";
+import { internalModule } from "../support/internals.js";
 import { frameAt, turnBetween } from "../support/rig.js";
 import { mesh, truth } from "../support/scene.js";
 import { Workers } from "../support/workers.js";
@@ -89,6 +91,34 @@ for (const [name, aligner] of [
   });
 }
 
+for (const [name, aligner] of [
+  ["without workers", here],
+  ["with a worker", pool],
+] as const) {
+  test(`${name}: an abort while the tracker opens rejects with its reason, and a signal outlives its trackers`, async () => {
+    const abort = new AbortController();
+    const reason = new Error("no longer needed");
+    const opening = aligner.track(mesh, { signal: abort.signal });
+    abort.abort(reason);
+    await assert.rejects(opening, reason);
+    const { signal } = new AbortController();
+    const tracker = await aligner.track(mesh, { signal });
+    assert.equal(getEventListeners(signal, "abort").length, 1);
+    tracker.close();
+    assert.equal(getEventListeners(signal, "abort").length, 0);
+  });
+}
+
+test("a wrong signal starts no worker", async () => {
+  const { length } = workers.made;
+  await rejectsWith(() => pool.track(mesh, { signal: 5 as never }), {
+    code: "INVALID_ARGUMENT",
+    argument: "options.signal",
+    message: /AbortSignal/,
+  });
+  assert.equal(workers.made.length, length);
+});
+
 test("a signal closes the tracker, and an aligner its trackers", async () => {
   const abort = new AbortController();
   const tracker = await here.track(mesh, { signal: abort.signal });
@@ -108,4 +138,26 @@ test("a signal closes the tracker, and an aligner its trackers", async () => {
     message: /./,
   });
   assert.equal(TRACK_DEFAULTS.metrics, false);
+});
+
+test("closed trackers are freed, also those of a disposed aligner", async () => {
+  const { jointModule } = await internalModule("joint-module.js");
+  const module = await jointModule.load();
+  const isOpen = (id: number) => {
+    try {
+      module.call((joint: { trackFrame(id: number, frame: object): object }) => joint.trackFrame(id, {}));
+      return true;
+    } catch (error) {
+      return (error as Sim3AlignError).argument !== "tracker";
+    }
+  };
+  const open = () => Array.from({ length: 100 }, (_, id) => id).filter(isOpen);
+  assert.deepEqual(open(), []);
+  const other = await createAligner();
+  const trackers = [await other.track(mesh), await other.track(mesh)];
+  assert.equal(open().length, 2);
+  trackers[0]?.close();
+  other.dispose();
+  await new Promise((resolve) => setImmediate(resolve));
+  assert.deepEqual(open(), []);
 });

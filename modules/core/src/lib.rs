@@ -2,7 +2,4 @@
 
 pub mod aligner;
 pub mod mesh;
-pub mod scene;
 pub mod task;
-pub mod track;
-pub mod views;

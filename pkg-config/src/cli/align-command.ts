@@ -192,7 +192,7 @@ async function alignFrames(
 }
 
 /** Whether all cases would fail with this error. The initial pose may differ from case to case. */
-function isAboutOptions(error: unknown): error is Sim3AlignError {
+export function isAboutOptions(error: unknown): error is Sim3AlignError {
   if (!(error instanceof Sim3AlignError)) return false;
   return error.argument.startsWith("options") && !error.argument.startsWith("options.initial");
 }

@@ -30,9 +30,10 @@ export class ResultsFile {
    * @param isFinal whether no other entry will replace it
    */
   add(name: string, entry: object, isFinal = true): void {
+    if (!this.#isIncremental && !isFinal) return;
     const text = `  ${JSON.stringify(name)}: ${JSON.stringify(entry, null, 2).replaceAll("\n", "\n  ")}`;
     if (!this.#isIncremental) {
-      if (isFinal) this.#entries.push(text);
+      this.#entries.push(text);
       return;
     }
     const isFirst = this.#length === 0;

@@ -1,8 +1,9 @@
 /** `sim3align track`: tracks an object through videos and prints the results. */
 import { basename, join, resolve } from "node:path";
 import { Command } from "commander";
-import { type CaseSettings, frameNames, readFrame, readMeshOf } from "../case-folder.js";
-import { type Aligner, createAligner, OPTIONS, Sim3AlignError, type TrackOptions } from "../index.js";
+import { type CaseSettings, frameNames, meshIn, readFrame, readMeshFile } from "../case-folder.js";
+import { type Aligner, createAligner, OPTIONS, type Tracker, type TrackOptions } from "../index.js";
+import { isAboutOptions } from "./align-command.js";
 import {
   addCaseOptions,
   type CaseFlags,
@@ -14,7 +15,7 @@ import {
 import { onInterruption } from "./interruption.js";
 import { fixed, significant } from "./number.js";
 import { addOptionFlags, givenOptions } from "./option-flags.js";
-import { failure, failureText, trackJson } from "./outcome.js";
+import { failure, failureText, outcomeJson, trackJson } from "./outcome.js";
 import { Output } from "./output.js";
 import { type Column, headings, tableLine } from "./table.js";
 import { readTransform } from "./transform-file.js";
@@ -74,24 +75,31 @@ async function trackVideo(aligner: Aligner, folder: string, flags: TrackFlags, o
   const name = basename(resolve(folder));
   const settings: CaseSettings = caseSettings(flags);
   const frames: Parameters<typeof trackJson>[0][number][] = [];
+  let files: Readonly<Record<string, string>> = {};
+  let tracker: Tracker | undefined;
   try {
     const names = await frameNames(folder);
     if (names.length === 0) throw new UsageError(`${folder} has no folder frame_*.`);
     const given: Record<string, unknown> = givenOptions(flags, OPTIONS.track);
     if (typeof given.initial === "string") given.initial = await readTransform("initial", given.initial, name);
-    const tracker = await aligner.track(await readMeshOf(folder), given as TrackOptions);
+    const mesh = meshIn(folder);
+    files = { mesh };
+    tracker = await aligner.track(await readMeshFile(mesh), given as TrackOptions);
     output.lines([output.style.bold(name), headings(columns)]);
     for (const [k, frame] of names.entries()) {
       const began = performance.now();
       const row = [frame];
+      let frameFiles: Readonly<Record<string, string>> = {};
       try {
-        const { cameraToWorld, ...input } = (await readFrame(join(folder, frame), settings)).input;
+        const read = await readFrame(join(folder, frame), settings);
+        frameFiles = read.files;
+        const { cameraToWorld, ...input } = read.input;
         const tracked = await tracker.next(input);
         frames.push({ name: frame, tracked });
         const { state, confidence, scale, scaleSd } = tracked;
         row.push(state, fixed(confidence, 2), significant(scale, 5), fixed(100 * scaleSd, 2));
       } catch (error) {
-        const failed = failure(frame, error);
+        const failed = failure(frame, error, frameFiles);
         frames.push({ name: frame, tracked: failed });
         row.push(failed.error.code, "–", "–", "–");
       }
@@ -100,14 +108,15 @@ async function trackVideo(aligner: Aligner, folder: string, flags: TrackFlags, o
       output.lines([tableLine(columns, row)]);
       if (output.isClosed) break;
     }
-    tracker.close();
     return !frames.some(({ tracked }) => "error" in tracked);
   } catch (error) {
     if (error instanceof UsageError) throw error;
-    if (error instanceof Sim3AlignError && error.argument.startsWith("options")) throw new UsageError(error.message);
-    const failed = failure(name, error);
-    output.results?.add(name, { error: { ...failed.error, message: failed.error.message } });
+    if (isAboutOptions(error)) throw new UsageError(error.message);
+    const failed = failure(name, error, files);
+    output.results?.add(name, outcomeJson(failed));
     output.lines([output.style.red("failed ") + failureText(failed)]);
     return false;
+  } finally {
+    tracker?.close();
   }
 }

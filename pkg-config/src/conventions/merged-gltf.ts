@@ -17,14 +17,14 @@ const lists = [
 
 type List = (typeof lists)[number];
 
-/** The lists that the properties of each kind of object refer to. */
+/** The lists that the properties of each kind of object refer to, with one index or several. */
 const references: Readonly<Record<string, Readonly<Record<string, List>>>> = {
   accessors: { bufferView: "bufferViews" },
   images: { bufferView: "bufferViews" },
   textures: { source: "images", sampler: "samplers" },
-  meshes: { indices: "accessors", material: "materials" },
-  nodes: { mesh: "meshes", skin: "skins", camera: "cameras", node: "nodes" },
-  skins: { inverseBindMatrices: "accessors", skeleton: "nodes" },
+  meshes: { indices: "accessors", material: "materials", bufferView: "bufferViews" },
+  nodes: { mesh: "meshes", skin: "skins", camera: "cameras", node: "nodes", children: "nodes" },
+  skins: { inverseBindMatrices: "accessors", skeleton: "nodes", joints: "nodes" },
   animations: { input: "accessors", output: "accessors", node: "nodes" },
   bufferViews: {},
   materials: {},
@@ -109,13 +109,12 @@ export class MergedGltf {
       }
       // Application data, which may contain anything.
       if (key === "extras") return value;
-      if (Array.isArray(value)) {
-        const within = arrayTarget(list, key);
-        return value.map((inner) =>
-          typeof inner === "number" && within !== undefined ? starts[within] + inner : move(inner, key, parent),
-        );
-      }
+      if (Array.isArray(value)) return value.map((inner) => move(inner, key, parent));
       if (!isRecord(value)) return value;
+      // Its attributes are ids of the compressed data.
+      if (key === "KHR_draco_mesh_compression" && typeof value.bufferView === "number") {
+        return { ...value, bufferView: starts.bufferViews + value.bufferView };
+      }
       const entries = Object.entries(value).map(([name, inner]) => [name, move(inner, name, key)]);
       const copy = Object.fromEntries(entries) as Json;
       // A view without an offset begins where the buffer of its file did.
@@ -128,19 +127,10 @@ export class MergedGltf {
 
 /** The list that a number refers to, by its name and that of its parent. */
 function targetOf(list: List, key: string, parent: string, known: Readonly<Record<string, List>>): List | undefined {
-  // The attributes of compressed primitives are ids of the compressed data.
-  if (list === "meshes" && parent === "attributes") return "accessors";
-  if (list === "meshes" && key === "bufferView") return "bufferViews";
+  // Attributes are named by their semantics, here and in morph targets.
+  if (list === "meshes" && (parent === "attributes" || parent === "targets")) return "accessors";
   if (list === "materials" && key === "index" && parent.toLowerCase().endsWith("texture")) return "textures";
-  if (list === "accessors" && key === "bufferView") return "bufferViews";
   return known[key];
-}
-
-/** The list that the numbers of an array refer to. */
-function arrayTarget(list: List, key: string): List | undefined {
-  if (list === "nodes" && key === "children") return "nodes";
-  if (list === "skins" && key === "joints") return "nodes";
-  return undefined;
 }
 
 const arrayOf = (value: unknown): unknown[] => (Array.isArray(value) ? value : []);

@@ -3,9 +3,7 @@
 import type { Vector3 } from "../values.js";
 import type { Mesh } from "./mesh.js";
 import { principalAxes } from "./principal-axes.js";
-import { column, fromColumns, type Matrix3 } from "./rotation.js";
-
-const dot = (a: Vector3, b: Vector3) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+import { column, dot, fromColumns, type Matrix3 } from "./rotation.js";
 
 type Point2 = readonly [number, number];
 

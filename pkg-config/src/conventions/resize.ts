@@ -7,6 +7,7 @@ import {
   type ImageSize,
   type MaskPixels,
   maskKinds,
+  nearest,
   pixelsOf,
   pointKinds,
   sizeOf,
@@ -41,9 +42,6 @@ function sampled<T extends Float32Array | Uint16Array | MaskPixels>(
   }
   return { data: result, width: to.width, height: to.height };
 }
-
-// The old pixel that contains the centre of the new one.
-const nearest = (i: number, to: number, from: number) => Math.floor(((2 * i + 1) * from) / (2 * to));
 
 function resized<T extends DepthPixels | MaskPixels>(image: PixelArray<T>, to: unknown): PixelArray<T> {
   const size = sizeOf("size", to);

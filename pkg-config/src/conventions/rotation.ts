@@ -4,6 +4,9 @@ import { failure, finiteNumbers, type Quaternion, type Vector3 } from "../values
 /** A 3×3 matrix, row-major. */
 export type Matrix3 = readonly [number, number, number, number, number, number, number, number, number];
 
+/** The dot product. */
+export const dot = (a: Readonly<Vector3>, b: Readonly<Vector3>): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+
 /** A matrix whose entries are computed from row and column. */
 const matrixOf = (entry: (row: 0 | 1 | 2, column: 0 | 1 | 2) => number): Matrix3 => [
   ...([entry(0, 0), entry(0, 1), entry(0, 2)] as const),

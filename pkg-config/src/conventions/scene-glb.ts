@@ -7,7 +7,7 @@ import { bounds, bytesOf, glbOfParts, partsOf } from "./glb.js";
 import { type GltfNode, toGltfNode } from "./gltf-node.js";
 import { MergedGltf } from "./merged-gltf.js";
 import { meshOf } from "./mesh.js";
-import { quaternionOf } from "./rotation.js";
+import { dot, quaternionOf } from "./rotation.js";
 import { similarityOf } from "./similarity.js";
 
 /** An object of a scene to export. */
@@ -28,7 +28,7 @@ export interface SceneGlbOptions {
   camera?: { fy: number; width: number; height: number } | undefined;
 }
 
-/** How far the ground reaches beyond the objects, relative to their distance from the middle, and at least, metres. */
+/** Half the side of the ground: this factor times the largest distance of an object from their mean, plus this many metres. */
 const GROUND = [1.6, 0.2] as const;
 
 /**
@@ -71,42 +71,40 @@ export function exportSceneGlb(objects: readonly SceneGlbObject[], options: Scen
   return glbOfParts(merged.finish(roots));
 }
 
-type Vector = Vector3;
-const dot = (a: Vector, b: Vector) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-const scaled = (a: Vector, s: number): Vector => [a[0] * s, a[1] * s, a[2] * s];
-const minus = (a: Vector, b: Vector): Vector => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-const cross = (a: Vector, b: Vector): Vector => [
+const scaled = (a: Vector3, s: number): Vector3 => [a[0] * s, a[1] * s, a[2] * s];
+const minus = (a: Vector3, b: Vector3): Vector3 => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+const cross = (a: Vector3, b: Vector3): Vector3 => [
   a[1] * b[2] - a[2] * b[1],
   a[2] * b[0] - a[0] * b[2],
   a[0] * b[1] - a[1] * b[0],
 ];
-const unit = (a: Vector): Vector => scaled(a, 1 / Math.sqrt(dot(a, a)));
+const unit = (a: Vector3): Vector3 => scaled(a, 1 / Math.sqrt(dot(a, a)));
 
-function meanOf(points: readonly Vector[]): Vector {
-  const sum = points.reduce<Vector>((a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]], [0, 0, 0]);
+function meanOf(points: readonly Vector3[]): Vector3 {
+  const sum = points.reduce<Vector3>((a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]], [0, 0, 0]);
   return scaled(sum, 1 / Math.max(points.length, 1));
 }
 
 /** The turn and the shift from the OpenCV camera frame to that of the file. */
-function worldFromCamera(support: SceneGlbOptions["support"], centers: readonly Vector[]) {
-  if (support === null || support === undefined) return { rotation: [1, 0, 0, 0], translation: [0, 0, 0] };
+function worldFromCamera(support: SceneGlbOptions["support"] & (object | null), centers: readonly Vector3[]) {
+  if (support === null) return { rotation: [1, 0, 0, 0], translation: [0, 0, 0] };
   record("options.support", support, "{ normal, d }");
   const normal = vector3("options.support.normal", support.normal);
   const length = positive("the length of options.support.normal", Math.sqrt(dot(normal, normal)));
   const d = finite("options.support.d", support.d) / length;
   const up = scaled(normal, 1 / length);
   // The camera's right stays right, unless it looks along the ground sideways.
-  const along: Vector = Math.abs(up[0]) < 0.9 ? [1, 0, 0] : [0, 0, -1];
+  const along: Vector3 = Math.abs(up[0]) < 0.9 ? [1, 0, 0] : [0, 0, -1];
   const right = unit(minus(along, scaled(up, dot(along, up))));
   const back = cross(right, up);
   const rows = [right, up, back] as const;
   const center = meanOf(centers);
   const foot = minus(center, scaled(up, dot(up, center) + d));
-  const [x, y, z] = rows.map((row) => -dot(row, foot)) as Vector;
+  const [x, y, z] = rows.map((row) => -dot(row, foot)) as Vector3;
   return { rotation: quaternionOf([...right, ...up, ...back]), translation: [x, y, z] };
 }
 
-function reachOf(centers: readonly Vector[]): number {
+function reachOf(centers: readonly Vector3[]): number {
   const center = meanOf(centers);
   const distances = centers.map((c) => Math.sqrt(dot(minus(c, center), minus(c, center))));
   return GROUND[0] * Math.max(0, ...distances) + GROUND[1];

@@ -20,6 +20,9 @@ export type DepthPixels = Float32Array | Uint16Array;
 /** Maximum number of pixels of an image, as for image files: 8192 × 8192. */
 export const MAX_PIXELS = 1 << 26;
 
+/** The index of the old pixel that contains the centre of a new one, along a side that is resized. */
+export const nearest = (i: number, to: number, from: number) => Math.floor(((2 * i + 1) * from) / (2 * to));
+
 /** Validates an image size of at least one pixel, before memory is allocated for it. */
 export function sizeOf(argument: string, size: unknown): ImageSize {
   const given = record(argument, size, "{ width, height }");

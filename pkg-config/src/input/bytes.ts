@@ -4,6 +4,12 @@ import { describe, invalidArgument, messageOf, Sim3AlignError } from "../error.j
 import type { Formats, LoadFormats } from "../formats-module.js";
 import { isBuffer, isKind, isTypedArray } from "../kinds.js";
 
+/** An array of bytes. */
+export type Bytes = Uint8Array | Uint8ClampedArray;
+
+/** Whether the value is an array of bytes. */
+export const isBytes = (value: unknown): value is Bytes => isTypedArray(value, "Uint8Array", "Uint8ClampedArray");
+
 /**
  * The bytes of a file, or `null`. Cannot distinguish a file from pixels in a `Uint8Array`.
  * @throws {@link Sim3AlignError} `FILE_NOT_FOUND` if a `Blob` or a `File` cannot be read

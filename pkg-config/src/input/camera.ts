@@ -3,7 +3,7 @@ import { invalidArgument } from "../error.js";
 import { checkCameraSize, depthScaleIn, parseCameraFile } from "../formats/camera-file.js";
 import { type Pinhole, pinholeOf } from "../formats/pinhole.js";
 import type { ImageSize } from "../formats/pixels.js";
-import { isRecord } from "../values.js";
+import { isRecord, stringsIn } from "../values.js";
 import { fileBytes } from "./bytes.js";
 import { checkSides } from "./depth.js";
 
@@ -58,13 +58,10 @@ function statedCamera(camera: unknown): Camera {
       const size = sizeOf(imageWidth, imageHeight);
       if (size === undefined) return { camera: undefined, warnings: [] };
       checkCameraSize("camera", { width, height }, size);
-      return { camera: pinholeOf("camera", camera, size), warnings: warningsIn(warnings) };
+      return { camera: pinholeOf("camera", camera, size), warnings: stringsIn(warnings) };
     },
   };
 }
-
-/** The warnings of `readCamera`. */
-const warningsIn = (value: unknown) => (Array.isArray(value) ? value.filter((text) => typeof text === "string") : []);
 
 async function fileCamera(file: unknown, imageId: unknown): Promise<Camera> {
   const content =

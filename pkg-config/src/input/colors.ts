@@ -1,4 +1,6 @@
 /** Converts colours to what the core takes: sRGB-encoded red, green and blue, a byte each. */
+import { nearest } from "../formats/pixels.js";
+import type { PixelArray } from "./types.js";
 
 /** Arrays of colours: whole numbers from 0 to 255, or floats from 0 to 1. */
 export type ColorArray = Uint8Array | Uint8ClampedArray | Float32Array;
@@ -28,7 +30,7 @@ function encoder(isFloat: boolean, space: ColorSpace): (value: number) => number
 }
 
 /**
- * Light half-way, in codes, between each code and the next. Rounded to 32 bits: `Math.pow` may differ by the last of 53
+ * The linear light halfway between adjacent sRGB codes. Rounded to 32 bits: `Math.pow` may differ by the last of 53
  * bits between engines.
  */
 const bounds = Array.from({ length: 255 }, (_, code) => {
@@ -48,11 +50,7 @@ function encoded(light: number): number {
 }
 
 /** Pixels of a photo: sRGB-encoded red, green and blue, row-major. */
-export interface Photo {
-  data: Uint8Array;
-  width: number;
-  height: number;
-}
+export type Photo = PixelArray<Uint8Array>;
 
 /** A photo for the core, averaged to a smaller one if it is large, as the readers of files do. */
 export function photoOf(data: ColorArray, channels: number, width: number, height: number): Photo {
@@ -61,11 +59,9 @@ export function photoOf(data: ColorArray, channels: number, width: number, heigh
   const sums = new Uint32Array(3 * newWidth * newHeight);
   const counts = new Uint32Array(newWidth * newHeight);
   // Each pixel counts where its centre lies.
-  const place = (i: number, size: number, full: number) =>
-    Math.min(Math.floor(((2 * i + 1) * size) / (2 * full)), size - 1);
-  const columns = Uint32Array.from({ length: width }, (_, u) => place(u, newWidth, width));
+  const columns = Uint32Array.from({ length: width }, (_, u) => nearest(u, width, newWidth));
   for (let v = 0; v < height; v++) {
-    const row = place(v, newHeight, height) * newWidth;
+    const row = nearest(v, height, newHeight) * newWidth;
     for (let u = 0; u < width; u++) {
       const [to, from] = [row + (columns[u] as number), channels * (v * width + u)];
       counts[to] = (counts[to] as number) + 1;

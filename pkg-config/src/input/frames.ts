@@ -1,13 +1,13 @@
 /** Converts views and frames to the typed arrays and numbers of the core. */
-import { invalidArgument, Sim3AlignError } from "../error.js";
+import { invalidArgument, renamed, Sim3AlignError } from "../error.js";
 import type { LoadFormats } from "../formats-module.js";
 import { coreSim3, type Sim3Like } from "../sim3.js";
-import { isRecord, withoutUndefined } from "../values.js";
-import type { CoreFrame, CoreInput, CoreViews } from "./core-input.js";
+import { checkNames, isRecord, withoutUndefined } from "../values.js";
+import type { CoreFrame, CoreViews } from "./core-input.js";
 import { checkSides } from "./depth.js";
 import { readMask } from "./mask.js";
-import { readMesh } from "./mesh.js";
-import { imageAndCamera, imageProperties } from "./resolve.js";
+import { readCoreMesh } from "./mesh.js";
+import { imageAndCamera, imageProperties, spelling } from "./resolve.js";
 
 /** A resolved frame, and the warnings of its files. */
 export interface ResolvedFrame {
@@ -27,16 +27,7 @@ export async function resolveFrame(
   if (!isRecord(frame)) {
     throw invalidArgument("frame", frame, "{ depth, camera, mask? }", "See FrameInput in the documentation.");
   }
-  const unknown = Object.keys(frame).find((name) => !properties.includes(name));
-  if (unknown !== undefined) {
-    throw new Sim3AlignError({
-      code: "INVALID_ARGUMENT",
-      argument: unknown,
-      found: "an unknown property",
-      expected: properties.join(", "),
-      remedy: "Check the spelling. Options belong in the second argument.",
-    });
-  }
+  checkNames("", frame, properties, spelling);
   checkSides("", frame);
   const { warnings, ...image } = await imageAndCamera(frame, formats);
   const core = { ...image, resizeMask: frame.resizeMask };
@@ -58,28 +49,16 @@ export interface ResolvedViews {
  * @throws {@link Sim3AlignError} whose argument names the view
  */
 export async function resolveViews(input: unknown, formats: LoadFormats, meshId?: number): Promise<ResolvedViews> {
-  const { mesh, views, ...rest } = isRecord(input) ? input : { mesh: undefined, views: undefined };
+  const given = isRecord(input) ? input : {};
+  const { mesh, views } = given;
   if (!Array.isArray(views)) {
     throw invalidArgument("views", views, "an array of views", "Pass { mesh, views: [{ depth, mask, camera }] }.");
   }
-  const unknown = Object.keys(rest)[0];
-  if (unknown !== undefined) {
-    throw new Sim3AlignError({
-      code: "INVALID_ARGUMENT",
-      argument: `input.${unknown}`,
-      found: "an unknown property",
-      expected: "mesh, views",
-      remedy: "What belongs to a view is a property of the view.",
-    });
-  }
+  checkNames("input.", given, ["mesh", "views"], "What belongs to a view is a property of the view.");
   const resolved = [];
   for (const [k, view] of views.entries()) resolved.push(await resolveView(view, k, formats));
   const core = {
-    // A prepared mesh is kept for calls with a photo.
-    mesh: withoutUndefined({
-      ...(await readMesh(mesh, formats, meshId !== undefined)).mesh,
-      id: meshId,
-    }) as CoreInput["mesh"],
+    mesh: (await readCoreMesh(mesh, formats, false, meshId)).mesh,
     views: resolved.map((view) => view.core),
   };
   return { core, warnings: resolved.map((view) => view.warnings) };
@@ -93,8 +72,6 @@ async function resolveView(view: unknown, index: number, formats: LoadFormats): 
     return { core: { ...core, cameraToWorld: coreSim3(cameraToWorld) }, warnings };
   } catch (error) {
     if (!(error instanceof Sim3AlignError)) throw error;
-    const { code, argument, found, expected, remedy } = error;
-    const named = `views[${index}]${argument === "frame" ? "" : `.${argument}`}`;
-    throw new Sim3AlignError({ code, argument: named, found, expected, remedy }, { cause: error });
+    throw renamed(error, `views[${index}]${error.argument === "frame" ? "" : `.${error.argument}`}`);
   }
 }

@@ -3,10 +3,8 @@ import { invalidArgument } from "../error.js";
 import { decodedRle, readRleFile } from "../formats/coco-rle.js";
 import type { LoadFormats } from "../formats-module.js";
 import { failure, isKind, isRecord, isTypedArray, wrongKind } from "../values.js";
-import { beginsLikeImage, beginsLikeJson, callReader, fileBytes } from "./bytes.js";
+import { type Bytes, beginsLikeImage, beginsLikeJson, callReader, fileBytes, isBytes } from "./bytes.js";
 import type { SizedArray } from "./depth.js";
-
-type MaskArray = Uint8Array | Uint8ClampedArray;
 
 const kinds =
   "a Uint8Array (non-zero is the object), { data, width, height } with one, COCO RLE { size, counts }, or the bytes of a PNG or a .npy file";
@@ -14,12 +12,12 @@ const kinds =
 /** The pixels of a mask.
  * @param pixels the number of pixels of the depth map
  */
-export async function readMask(mask: unknown, pixels: number, formats: LoadFormats): Promise<SizedArray<MaskArray>> {
+export async function readMask(mask: unknown, pixels: number, formats: LoadFormats): Promise<SizedArray<Bytes>> {
   if (isRecord(mask)) {
     if ("counts" in mask) return decodedRle("mask", mask);
     if ("data" in mask) {
       const { data, width, height } = mask as { data: unknown; width: number; height: number };
-      if (!isMaskArray(data)) throw wrongKind("mask.data", data, "a Uint8Array", "Uint8Array");
+      if (!isBytes(data)) throw wrongKind("mask.data", data, "a Uint8Array", "Uint8Array");
       if (typeof width !== "number" || typeof height !== "number") {
         const remedy = "Pass the width and height of the mask in pixels.";
         throw invalidArgument("mask", mask, "data, width and height", remedy);
@@ -45,7 +43,7 @@ export async function readMask(mask: unknown, pixels: number, formats: LoadForma
 }
 
 /** Explains the length of an image with several values per pixel. The core checks every other length. */
-function checkChannels(argument: string, { length }: MaskArray, pixels: number): void {
+function checkChannels(argument: string, { length }: Bytes, pixels: number): void {
   const channels = length / pixels;
   if (![2, 3, 4].includes(channels)) return;
   const found = `${length} values, ${channels} per pixel`;
@@ -56,6 +54,4 @@ function checkChannels(argument: string, { length }: MaskArray, pixels: number):
   throw failure("WRONG_LENGTH", argument, found, `${pixels} values, one per pixel`, remedy);
 }
 
-const bare = (data: MaskArray): SizedArray<MaskArray> => ({ data, width: undefined, height: undefined });
-
-const isMaskArray = (value: unknown): value is MaskArray => isTypedArray(value, "Uint8Array", "Uint8ClampedArray");
+const bare = (data: Bytes): SizedArray<Bytes> => ({ data, width: undefined, height: undefined });

@@ -3,7 +3,7 @@
 import { invalidArgument } from "../error.js";
 import type { LoadFormats } from "../formats-module.js";
 import type { ColorSamples, CoreMesh } from "../prepared-mesh.js";
-import { failure, isRecord, isTypedArray, oneOf, record, withoutUndefined, wrongKind } from "../values.js";
+import { failure, isRecord, isTypedArray, oneOf, record, stringsIn, withoutUndefined, wrongKind } from "../values.js";
 import { callReader, fileBytes } from "./bytes.js";
 import { type ColorArray, rgbOf } from "./colors.js";
 import type { MeshFile } from "./types.js";
@@ -22,7 +22,10 @@ export interface MeshAndWarnings {
  * @param withColors whether the colours are needed
  */
 export async function readMesh(mesh: unknown, formats: LoadFormats, withColors: boolean): Promise<MeshAndWarnings> {
-  if (isRecord(mesh) && "positions" in mesh) return { mesh: arrays(mesh, withColors), warnings: warningsIn(mesh) };
+  if (isRecord(mesh) && "positions" in mesh) {
+    // `readMesh` of `sim3align/formats` adds warnings.
+    return { mesh: arrays(mesh, withColors), warnings: stringsIn(mesh.warnings) };
+  }
   const file: { [K in keyof MeshFile]?: unknown } = isRecord(mesh) ? mesh : { bytes: mesh };
   const bytes = await fileBytes("mesh", file.bytes);
   if (bytes === null) throw invalidArgument("mesh", mesh, kinds, "Pass the mesh to align.");
@@ -33,13 +36,23 @@ export async function readMesh(mesh: unknown, formats: LoadFormats, withColors: 
   return { mesh: found, warnings };
 }
 
+/**
+ * The same for a call of the core.
+ * @param meshId the id of a prepared mesh
+ */
+export async function readCoreMesh(
+  mesh: unknown,
+  formats: LoadFormats,
+  withColors: boolean,
+  meshId?: number,
+): Promise<MeshAndWarnings> {
+  // A prepared mesh is cached with its colours: a later call may have a photo.
+  const { mesh: arrays, warnings } = await readMesh(mesh, formats, withColors || meshId !== undefined);
+  return { mesh: withoutUndefined({ ...arrays, id: meshId }) as CoreMesh, warnings };
+}
+
 /** The options of the reader are properties of the mesh. */
 const ofMesh = (argument: string) => argument.replace(/^options\./, "mesh.");
-
-/** The warnings of the `readMesh` of `sim3align/formats`. */
-function warningsIn({ warnings }: Record<string, unknown>): string[] {
-  return Array.isArray(warnings) ? warnings.filter((text) => typeof text === "string") : [];
-}
 
 function arrays({ positions, indices, ...more }: Record<string, unknown>, withColors: boolean): CoreMesh {
   if (!isTypedArray<Float32Array>(positions, "Float32Array")) {

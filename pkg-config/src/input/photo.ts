@@ -2,20 +2,19 @@
 import { invalidArgument } from "../error.js";
 import type { LoadFormats } from "../formats-module.js";
 import { failure, isRecord, isTypedArray, wrongKind } from "../values.js";
-import { beginsLikeImage, callReader, fileBytes } from "./bytes.js";
+import { type Bytes, beginsLikeImage, callReader, fileBytes, isBytes } from "./bytes.js";
 import { type Photo, photoOf } from "./colors.js";
 import type { StatedSize } from "./depth.js";
-
-type Bytes = Uint8Array | Uint8ClampedArray;
 
 const kinds =
   "a Uint8Array of RGB or RGBA pixels, { data, width, height } with one, an ImageData, or the bytes of a PNG or JPEG file";
 
 /**
- * The pixels of a photo.
+ * The pixels of a photo, if there is one.
  * @param size the size of the depth map, which is that of a bare array
  */
-export async function readPhoto(image: unknown, size: StatedSize, formats: LoadFormats): Promise<Photo> {
+export async function readPhoto(image: unknown, size: StatedSize, formats: LoadFormats): Promise<Photo | undefined> {
+  if (image === undefined || image === null) return undefined;
   if (isRecord(image) && "data" in image) {
     const { data, width, height } = image;
     if (!isBytes(data)) throw wrongKind("image.data", data, "a Uint8Array of RGB or RGBA pixels", "Uint8Array");
@@ -28,8 +27,6 @@ export async function readPhoto(image: unknown, size: StatedSize, formats: LoadF
     return pixels("", bytes, size);
   return callReader(formats, "image", bytes, (readers) => readers.readImage(bytes));
 }
-
-const isBytes = (value: unknown): value is Bytes => isTypedArray(value, "Uint8Array", "Uint8ClampedArray");
 
 const channelsOf = ({ length }: Bytes, { width, height }: StatedSize): number | undefined =>
   [3, 4].find((channels) => length > 0 && length === Number(width) * Number(height) * channels);

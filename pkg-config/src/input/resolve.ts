@@ -1,15 +1,15 @@
 /** Converts inputs to the typed arrays and numbers of the core. */
 
-import { invalidArgument, Sim3AlignError } from "../error.js";
+import { invalidArgument } from "../error.js";
 import type { LoadFormats } from "../formats-module.js";
 import type { FileWarnings } from "../results.js";
 import type { ClassNames } from "../snapshot.js";
-import { isRecord, isTypedArray, withoutUndefined } from "../values.js";
+import { checkNames, isRecord, isTypedArray, withoutUndefined } from "../values.js";
 import { cameraOf, cameraProperties } from "./camera.js";
 import type { CoreInput } from "./core-input.js";
 import { checkSides, readDepth, readPointMap } from "./depth.js";
 import { readMask } from "./mask.js";
-import { readMesh } from "./mesh.js";
+import { readCoreMesh } from "./mesh.js";
 import { readPhoto } from "./photo.js";
 
 /** A resolved input, and the warnings of its files. */
@@ -20,8 +20,18 @@ export interface ResolvedInput {
 
 /** The properties of an input that describe its image. */
 export const imageProperties = [
-  ...["depth", "depthScale", "pointMap", "width", "height", "camera", "cameraFile", "imageId"],
+  "depth",
+  "depthScale",
+  "pointMap",
+  "width",
+  "height",
+  "camera",
+  "cameraFile",
+  "imageId",
 ];
+
+/** The remedy for misspelt properties. */
+export const spelling = "Check the spelling. Options belong in the second argument.";
 
 const properties = [...imageProperties, "mask", "resizeMask", "mesh", "image"];
 
@@ -41,12 +51,10 @@ export const classNames: ClassNames = {
 export async function resolveInput(input: unknown, formats: LoadFormats, meshId?: number): Promise<ResolvedInput> {
   checkProperties(input);
   const { resizeMask } = input;
-  const { warnings, ...view } = await readView(input, formats);
+  const { warnings, ...view } = await imageAndCamera(input, formats);
   const mask = await readMask(input.mask, Number(view.width) * Number(view.height), formats);
-  const image =
-    input.image === undefined || input.image === null ? undefined : await readPhoto(input.image, view, formats);
-  // A prepared mesh is kept for calls with a photo.
-  const mesh = await readMesh(input.mesh, formats, image !== undefined || meshId !== undefined);
+  const image = await readPhoto(input.image, view, formats);
+  const mesh = await readCoreMesh(input.mesh, formats, image !== undefined, meshId);
   // Colours matter only where there is a photo to compare them with.
   const colorWarnings = image === undefined ? [] : mesh.warnings;
   const core = {
@@ -56,7 +64,7 @@ export async function resolveInput(input: unknown, formats: LoadFormats, meshId?
     mask: mask.data,
     maskWidth: mask.width,
     maskHeight: mask.height,
-    mesh: withoutUndefined({ ...mesh.mesh, id: meshId }),
+    mesh: mesh.mesh,
   };
   return { core: withoutUndefined(core) as CoreInput, warnings: { camera: warnings, colors: colorWarnings } };
 }
@@ -70,7 +78,7 @@ export async function readView(input: unknown, formats: LoadFormats) {
   return imageAndCamera(input, formats);
 }
 
-/** The same, whose other properties have been checked. */
+/** Like {@link readView}, for an input whose property names have been checked. */
 export async function imageAndCamera(input: Record<string, unknown>, formats: LoadFormats) {
   checkSides("", input);
   const { pointMap } = input;
@@ -114,13 +122,5 @@ function checkProperties(input: unknown): asserts input is Record<string, unknow
   if (!isRecord(input)) {
     throw invalidArgument("input", input, "{ depth, mask, mesh, camera }", "See AlignInput in the documentation.");
   }
-  const unknown = Object.keys(input).find((name) => !properties.includes(name));
-  if (unknown === undefined) return;
-  throw new Sim3AlignError({
-    code: "INVALID_ARGUMENT",
-    argument: `input.${unknown}`,
-    found: "an unknown property",
-    expected: properties.join(", "),
-    remedy: "Check the spelling. Options belong in the second argument.",
-  });
+  checkNames("input.", input, properties, spelling);
 }

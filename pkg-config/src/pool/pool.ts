@@ -2,7 +2,7 @@
 import { checkAttached } from "../attached.js";
 import { type Call, type Engine, type Outcome, signalsOf } from "../engine.js";
 import { disposed, Sim3AlignError } from "../error.js";
-import type { Job } from "../jobs.js";
+import { type Job, meshCacheOf } from "../jobs.js";
 import { isAttached } from "../kinds.js";
 import { checkSignals, onAbort, reasonOf } from "../on-abort.js";
 import { type Answer, JobFailed, Unsendable, WorkerLost, type WorkerSetup, WorkerSlot } from "./slot.js";
@@ -20,7 +20,7 @@ export class WorkerPool implements Engine {
   readonly #waiting: ((slot: WorkerSlot) => void)[] = [];
   readonly #ended = new AbortController();
 
-  /** @param fallback runs jobs that cannot be cloned */
+  /** @param fallback runs jobs that cannot be cloned; it is disposed with the pool */
   constructor(size: number, setup: WorkerSetup, fallback: Engine) {
     // Two per worker: the next job is prepared while one runs.
     this.capacity = 2 * size;
@@ -120,7 +120,7 @@ async function send(
   { transfer, progress }: Call,
   signals: readonly AbortSignal[],
 ): Promise<Answer | null> {
-  const meshId = "meshId" in job ? job.meshId : undefined;
+  const mesh = "meshId" in job && job.meshId !== undefined ? { id: job.meshId, cache: meshCacheOf(job) } : undefined;
   // Buffers of WebAssembly memory and of Node's pool cannot be transferred: they are copied.
   for (const isMoved of transfer ? [true, false] : [false]) {
     // While the job waited for the slot, for a new worker or for the first attempt, it may have been aborted, and its
@@ -131,7 +131,7 @@ async function send(
     try {
       const sent = { ...job, data: sentData(slot, job, isMoved) } as Job;
       const request = { type: "job", job: sent, wantsProgress: progress.isWanted, returnData: isMoved } as const;
-      return await slot.request(request, buffersOf(sent.data), progress, meshId);
+      return await slot.request(request, buffersOf(sent.data), progress, mesh);
     } catch (error) {
       if (!(error instanceof Unsendable)) throw error;
     }
@@ -139,14 +139,14 @@ async function send(
   return null;
 }
 
-/** The data of a job for a worker. The arrays of a prepared mesh are copied, once to each worker. */
+/** The data of a job for a worker. The arrays of a prepared mesh are copied, once to each cache of a worker. */
 function sentData(slot: WorkerSlot, job: Job, isMoved: boolean): unknown {
   if (job.method === "prepareMesh" || !("meshId" in job) || job.meshId === undefined) {
     return isMoved ? job.data : copied(job.data);
   }
   const { mesh, ...rest } = job.data;
   const { warnings } = mesh as { warnings?: unknown };
-  const sent = slot.hasMesh(job.meshId) ? { positions: new Float32Array(), warnings } : copied(mesh);
+  const sent = slot.hasMesh(job.meshId, meshCacheOf(job)) ? { positions: new Float32Array(), warnings } : copied(mesh);
   return { ...(isMoved ? rest : copied(rest)), mesh: sent };
 }
 

@@ -18,7 +18,7 @@ export type Request =
   | { type: "module"; name: LazyName; module: WebAssembly.Module | ErrorParts };
 
 /** The modules that a worker asks for when a job first needs them. */
-export type LazyName = "formats" | "registration";
+export type LazyName = "formats" | "joint" | "registration";
 
 /** Messages from the worker. */
 export type Reply =

@@ -1,5 +1,6 @@
 /** A worker slot of the pool; a failed worker is replaced. */
 import { type ErrorParts, messageOf, partsOf, Sim3AlignError } from "../error.js";
+import type { MeshCache } from "../jobs.js";
 import type { CreateWorker } from "../platform.js";
 import type { ProgressListener } from "../progress.js";
 import { type Port, portOf } from "./port.js";
@@ -46,10 +47,10 @@ export class WorkerSlot {
   #port: Port | undefined;
   #pending: Pending | undefined;
   /**
-   * The ids of the prepared meshes that were sent to the worker, and whether it is known to hold them: it may also hold
-   * one of a job that failed.
+   * The ids of the prepared meshes that were sent to the worker, and the modules that are known to hold them there: it may
+   * also hold one of a job that failed.
    */
-  readonly #meshes = new Map<number, boolean>();
+  readonly #meshes = new Map<number, Set<MeshCache>>();
   /** The ids of meshes to free when the running job is done. */
   readonly #dropped: number[] = [];
 
@@ -79,14 +80,14 @@ export class WorkerSlot {
 
   /**
    * Runs a job in the worker; one at a time.
-   * @param meshId the prepared mesh of the job
+   * @param mesh the prepared mesh of the job, and the module that caches it
    * @throws {@link Unsendable}, {@link WorkerLost}, {@link JobFailed}, and the reason passed to `end`
    */
   async request(
     message: Request & { type: "job" },
     transfer: ArrayBuffer[],
     progress: ProgressListener,
-    meshId?: number,
+    mesh?: { id: number; cache: MeshCache },
   ): Promise<Answer> {
     const port = this.#started();
     try {
@@ -99,9 +100,9 @@ export class WorkerSlot {
           throw new Unsendable("a message that cannot be sent", { cause });
         }
         port.hold(true);
-        if (meshId !== undefined && !this.#meshes.has(meshId)) this.#meshes.set(meshId, false);
+        if (mesh !== undefined && !this.#meshes.has(mesh.id)) this.#meshes.set(mesh.id, new Set());
       });
-      if (meshId !== undefined && this.#isCurrent(port)) this.#meshes.set(meshId, true);
+      if (mesh !== undefined && this.#isCurrent(port)) this.#meshes.get(mesh.id)?.add(mesh.cache);
       return answer;
     } finally {
       this.#pending = undefined;
@@ -110,9 +111,9 @@ export class WorkerSlot {
     }
   }
 
-  /** Whether the worker holds this mesh: its arrays need not be sent. */
-  hasMesh(id: number): boolean {
-    return this.#port !== undefined && this.#meshes.get(id) === true;
+  /** Whether the worker holds this mesh in this module: its arrays need not be sent. */
+  hasMesh(id: number, cache: MeshCache): boolean {
+    return this.#port !== undefined && this.#meshes.get(id)?.has(cache) === true;
   }
 
   /** Frees this mesh in the worker. */

@@ -1,33 +1,22 @@
 /** Aligns the objects of a scene: each alone, then each with what the others have told. */
-
-import type { Core } from "../core.js";
+import { checkAttached } from "../attached.js";
 import { type Call, type Engine, signalsOf } from "../engine.js";
 import { Sim3AlignError } from "../error.js";
-import type { LoadFormats } from "../formats-module.js";
-import type { PlaceInput } from "../jobs.js";
-import { onAbort } from "../on-abort.js";
+import type { Job, Modules, PlaceInput } from "../jobs.js";
+import { onAbort, reasonOf } from "../on-abort.js";
 import type { Progress } from "../options.js";
-import { isDisposedMesh, keptMesh, PreparedMesh } from "../prepared-mesh.js";
+import { withArrays } from "../prepared-mesh.js";
 import { ProgressListener } from "../progress.js";
 import { type Alignment, withWarnings } from "../results.js";
 import { coreSim3 } from "../sim3.js";
-import type { LoadedModule } from "../wasm-module.js";
 import { inputOf, type ReadObject, type ReadScene, readScene } from "./read-scene.js";
 import type { Ground, Known, Placed, Placement } from "./steps.js";
 import type { SceneAlignment, SceneFailure, SceneInput, SceneMetrics, SceneResult } from "./types.js";
-
-/** What runs the steps of a scene. */
-export interface SceneEngine {
-  core: LoadedModule<Core>;
-  engine: Engine;
-  formats: LoadFormats;
-}
 
 /** The options of a scene: those of the core, and `snap`. */
 export interface SceneSettings {
   options: Record<string, unknown>;
   snap: boolean;
-  onProgress: ((progress: Progress & { index: number }) => void) | undefined;
 }
 
 /** Share of the work of a scene that each object takes alone. */
@@ -42,18 +31,23 @@ const isOwn = (error: unknown): error is Sim3AlignError =>
 /** Aligns a scene. */
 export async function alignScene(
   input: SceneInput,
-  { core, engine, formats }: SceneEngine,
-  { options, snap, onProgress }: SceneSettings,
+  { formats, joint }: Modules,
+  engine: Engine,
+  { options, snap }: SceneSettings,
   call: Call,
 ): Promise<SceneResult> {
   const scene = await readScene(input, formats);
-  const run = new SceneRun(scene, engine, options, call, onProgress);
+  const module = await joint();
+  const run = new SceneRun(scene, engine, options, call);
   try {
     const alone = await run.each((index) => run.place(index));
     const placements = alone.map((placed) => (placed instanceof Sim3AlignError ? null : placed.placement));
     const view = { ...scene.view, masks: [...scene.objects.map(({ mask }) => mask), ...scene.occluders] };
+    // The thread may have been elsewhere since the scene was read.
+    checkAttached("input", { ...scene.view, objects: scene.objects.map(({ mask }) => ({ mask })) });
+    checkAttached("occluders", scene.occluders);
     const seed = typeof options.seed === "number" ? options.seed : 0;
-    const supported = core.call((c) => c.sceneSupport(view, placements, scene.support, seed));
+    const supported = module.call((j) => j.sceneSupport(view, placements, scene.support, seed));
     const { support, grounds } = supported;
     const together = await run.each(async (index) => {
       const failed = alone[index];
@@ -61,7 +55,7 @@ export async function alignScene(
       return run.place(index, knownOf(index, placements, grounds));
     });
     const bodies = together.map((placed) => (placed instanceof Sim3AlignError ? null : placed.placement));
-    const contacts = core.call((c) => c.sceneContacts(scene.view, bodies, supported, snap));
+    const contacts = module.call((j) => j.sceneContacts(scene.view, bodies, supported, snap));
     const objects = together.map((placed, i): SceneAlignment | SceneFailure => {
       const { name } = scene.objects[i] as ReadObject;
       const named = name === undefined ? {} : { name };
@@ -92,27 +86,19 @@ class SceneRun {
   readonly #engine: Engine;
   readonly #options: Record<string, unknown>;
   readonly #call: Call;
-  readonly #onProgress: SceneSettings["onProgress"];
   /** The fraction of each object. */
   readonly #fractions: number[];
   readonly #stopped = new AbortController();
   readonly #unfollow: (() => void)[];
 
-  constructor(
-    scene: ReadScene,
-    engine: Engine,
-    options: Record<string, unknown>,
-    call: Call,
-    onProgress: SceneSettings["onProgress"],
-  ) {
+  constructor(scene: ReadScene, engine: Engine, options: Record<string, unknown>, call: Call) {
     this.#scene = scene;
     this.#engine = engine;
     this.#options = options;
     this.#call = call;
-    this.#onProgress = onProgress;
     this.#fractions = scene.objects.map(() => 0);
     this.#unfollow = signalsOf(call).map((signal) => {
-      if (signal.aborted) this.#stopped.abort(signal.reason);
+      if (signal.aborted) this.#stopped.abort(reasonOf(signal));
       return onAbort(signal, (reason) => this.#stopped.abort(reason));
     });
   }
@@ -145,23 +131,19 @@ class SceneRun {
     const { known: own } = this.#scene.objects[index] as ReadObject;
     const options: Record<string, unknown> = { ...this.#options, ...own };
     if (options.initial !== undefined) options.initial = coreSim3(options.initial as never);
-    const { mesh } = input as { mesh: unknown };
-    const kept = mesh instanceof PreparedMesh ? keptMesh(mesh, this.#engine) : undefined;
-    const data = { ...input, ...(kept === undefined ? {} : { mesh: kept.mesh }), others, known } as PlaceInput;
+    const { release, ...sent } = withArrays({ ...input, others, known } satisfies PlaceInput, this.#engine);
     const from = known === undefined ? 0 : ALONE;
     const share = known === undefined ? ALONE : 1 - ALONE;
-    const progress = new ProgressListener(
-      this.#onProgress && ((state: Progress) => this.#report(index, from + share * state.fraction, state)),
-    );
+    const report = (state: Progress) => this.#report(index, from + share * state.fraction, state);
+    const progress = new ProgressListener(this.#call.progress.isWanted ? report : undefined);
     const call = { signal: this.#stopped.signal, progress, transfer: false };
-    const job = { method: "place" as const, data, options, ...(kept === undefined ? {} : { meshId: kept.id }) };
+    const job = { method: "place", ...sent, options } as Job & { method: "place" };
     try {
       const { result } = await this.#engine.run(job, call);
       this.#fractions[index] = from + share;
       return result;
     } finally {
-      // A call that began before the mesh was disposed may have left data of it behind.
-      if (kept !== undefined && isDisposedMesh(mesh as PreparedMesh)) this.#engine.dropMesh(kept.id);
+      release();
     }
   }
 

@@ -1,12 +1,13 @@
 /** Reads a scene: the view once, and a mask per object. */
-import { describe, invalidArgument, Sim3AlignError } from "../error.js";
+import { describe, invalidArgument, renamed, Sim3AlignError } from "../error.js";
+import { nearest } from "../formats/pixels.js";
 import type { LoadFormats } from "../formats-module.js";
 import { readMask } from "../input/mask.js";
 import { readPhoto } from "../input/photo.js";
 import { classNames as inputClassNames, readView } from "../input/resolve.js";
 import type { AlignInput } from "../input/types.js";
 import type { ClassNames } from "../snapshot.js";
-import { failure, isRecord, isTypedArray, withoutUndefined } from "../values.js";
+import { checkNames, failure, isRecord, isTypedArray, withoutUndefined } from "../values.js";
 import type { KnownOfObject, SceneInput, SceneObjectInput } from "./types.js";
 
 /** A scene whose images have been read. */
@@ -18,6 +19,8 @@ export interface ReadScene {
   objects: ReadObject[];
   /** Masks of what has no mesh. */
   occluders: Uint8Array[];
+  /** The number of masks that each pixel is in; `undefined` for a single mask. */
+  counts: Uint16Array | undefined;
   support: unknown;
   warnings: readonly string[];
 }
@@ -60,8 +63,7 @@ export async function readScene(scene: SceneInput, formats: LoadFormats): Promis
   }
   const { objects, labels, occluders, support, ...rest } = scene as SceneInput & Record<string, unknown>;
   const { warnings, ...view } = await readView(rest, formats);
-  const { image } = rest;
-  const photo = image === undefined || image === null ? undefined : await readPhoto(image, view, formats);
+  const photo = await readPhoto(rest.image, view, formats);
   const size: [number, number] = [Number(view.width), Number(view.height)];
   const read = { size, formats, labels: labels === undefined ? undefined : checkedLabels(labels, size) };
   const given = listOf("objects", objects);
@@ -73,11 +75,13 @@ export async function readScene(scene: SceneInput, formats: LoadFormats): Promis
     masks.push(await maskOf(`occluders[${i}]`, mask, undefined, read));
   }
   const others = otherLabels(given, read.labels);
+  if (others !== null) masks.push(others);
   return {
     view: withoutUndefined({ ...view, image: photo }),
     size,
     objects: readObjects,
-    occluders: others === null ? masks : [...masks, others],
+    occluders: masks,
+    counts: countsOf([...readObjects.map(({ mask }) => mask), ...masks]),
     support: support === undefined ? "auto" : support,
     warnings,
   };
@@ -97,11 +101,8 @@ function listOf(name: string, value: unknown): unknown[] {
 async function readObject(argument: string, object: unknown, read: Reading): Promise<ReadObject> {
   if (!isRecord(object)) throw invalidArgument(argument, object, "{ mask, mesh }", "Pass an object of the scene.");
   const all = [...objectProperties, ...knownProperties];
-  const unknown = Object.keys(object).find((name) => !all.includes(name));
-  if (unknown !== undefined) {
-    const remedy = "Check the spelling. Options for all objects belong in the second argument.";
-    throw failure("INVALID_ARGUMENT", `${argument}.${unknown}`, "an unknown property", all.join(", "), remedy);
-  }
+  const remedy = "Check the spelling. Options for all objects belong in the second argument.";
+  checkNames(`${argument}.`, object, all, remedy);
   const { name, mask, label, resizeMask, mesh, ...known } = object as Partial<SceneObjectInput>;
   if (name !== undefined && typeof name !== "string") {
     throw invalidArgument(`${argument}.name`, name, "a string", "Pass the name of the object.");
@@ -116,7 +117,7 @@ async function readObject(argument: string, object: unknown, read: Reading): Pro
 async function maskOf(argument: string, mask: unknown, resize: unknown, read: Reading): Promise<Uint8Array> {
   const [width, height] = read.size;
   const { data, ...own } = await readMask(mask, width * height, read.formats).catch((error) => {
-    throw error instanceof Sim3AlignError ? renamed(error, argument) : error;
+    throw error instanceof Sim3AlignError ? renamed(error, error.argument.replace(/^mask/, argument)) : error;
   });
   const [from, rows] = [own.width ?? width, own.height ?? height];
   const pixels = new Uint8Array(data.buffer, data.byteOffset, data.byteLength);
@@ -129,16 +130,10 @@ async function maskOf(argument: string, mask: unknown, resize: unknown, read: Re
     const remedy = 'Resize the mask to the depth map, or set resizeMask: "nearest".';
     throw failure("SIZE_MISMATCH", argument, found, "depth and mask of the same size", remedy);
   }
-  const source = (i: number, to: number, of: number) => Math.floor(((2 * i + 1) * of) / (2 * to));
   return Uint8Array.from({ length: width * height }, (_, i) => {
     const [u, v] = [i % width, Math.floor(i / width)];
-    return pixels[source(v, height, rows) * from + source(u, width, from)] ?? 0;
+    return pixels[nearest(v, height, rows) * from + nearest(u, width, from)] ?? 0;
   });
-}
-
-function renamed(error: Sim3AlignError, argument: string): Sim3AlignError {
-  const { code, found, expected, remedy } = error;
-  return new Sim3AlignError({ code, argument: error.argument.replace(/^mask/, argument), found, expected, remedy });
 }
 
 const labelKinds = "{ data, width, height } with a Uint8Array, Uint16Array or Uint32Array";
@@ -172,16 +167,22 @@ function otherLabels(objects: readonly unknown[], labels: ArrayLike<number> | un
   return others.includes(1) ? others : null;
 }
 
-/** The input of one object. */
+function countsOf(masks: readonly Uint8Array[]): Uint16Array | undefined {
+  const [first] = masks;
+  if (first === undefined || masks.length < 2) return undefined;
+  const counts = new Uint16Array(first.length);
+  for (const mask of masks) {
+    for (let i = 0; i < mask.length; i++) if (mask[i] !== 0) counts[i] = (counts[i] as number) + 1;
+  }
+  return counts;
+}
+
+/** The input of one object, and the pixels of the others. */
 export function inputOf(scene: ReadScene, index: number): { input: AlignInput; others: Uint8Array | undefined } {
   const { mask, mesh } = scene.objects[index] as ReadObject;
   const [width, height] = scene.size;
-  const masks = [...scene.objects.map((object) => object.mask), ...scene.occluders];
-  const others = masks.length < 2 ? undefined : new Uint8Array(width * height);
-  for (const [k, other] of masks.entries()) {
-    if (k === index || others === undefined) continue;
-    for (let i = 0; i < other.length; i++) if (other[i] !== 0) others[i] = 1;
-  }
+  const { counts } = scene;
+  const others = counts && Uint8Array.from(counts, (count, i) => (count > (mask[i] !== 0 ? 1 : 0) ? 1 : 0));
   const input = { ...scene.view, mask: { data: mask, width, height }, mesh } as unknown as AlignInput;
   return { input, others };
 }

@@ -1,4 +1,4 @@
-/** What the steps of a scene hand over to one another; see `src/bindings/scene.rs`. */
+/** What the steps of a scene hand over to one another; see `modules/joint/src/scene.rs`. */
 import type { Alignment, Contact } from "../generated/types.js";
 
 /** The space that an object takes: for each pixel of a part of the image, where the line of sight enters and leaves it. */
@@ -39,12 +39,6 @@ export interface Known {
 export interface Placed {
   placement: Placement;
   alignment?: Alignment;
-}
-
-/** A step of an object that runs in slices. */
-export interface PlaceTask {
-  step(sliceMs: number): Placed | undefined;
-  free(): void;
 }
 
 /** The support of a scene, and what each object may stand on. */

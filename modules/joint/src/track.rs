@@ -1,7 +1,6 @@
 //! Trackers, by the id of the caller.
 
 use core::cell::RefCell;
-use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use js_sys::Function;
@@ -20,7 +19,7 @@ use sim3align::track::tracker::Tracker;
 type Kept = Rc<RefCell<Tracker<Rc<PreparedMesh<'static>>>>>;
 
 thread_local! {
-    static TRACKERS: RefCell<BTreeMap<u32, Kept>> = const { RefCell::new(BTreeMap::new()) };
+    static TRACKERS: RefCell<Vec<(u32, Kept)>> = const { RefCell::new(Vec::new()) };
 }
 
 /// Creates a tracker under this id; see `Aligner.track` in the TypeScript package.
@@ -29,7 +28,7 @@ pub fn open_tracker(id: u32, input: &JsValue, options: &JsValue) -> core::result
     let open = || {
         let options = options::options(options, &options::OF_CALLS, |_| None)?;
         let tracker = Tracker::new(mesh::mesh_of(input)?, options)?;
-        TRACKERS.with_borrow_mut(|trackers| trackers.insert(id, Rc::new(RefCell::new(tracker))));
+        TRACKERS.with_borrow_mut(|trackers| trackers.push((id, Rc::new(RefCell::new(tracker)))));
         Ok(())
     };
     answer(open())
@@ -64,12 +63,14 @@ pub fn correct_track(id: u32, pose: &JsValue, frame: &JsValue) -> core::result::
 /// Removes a tracker, if there is one with this id.
 #[wasm_bindgen(js_name = closeTracker, skip_typescript)]
 pub fn close_tracker(id: u32) {
-    TRACKERS.with_borrow_mut(|trackers| trackers.remove(&id));
+    TRACKERS.with_borrow_mut(|trackers| trackers.retain(|(known, _)| *known != id));
 }
 
 /// The tracker with this id. It is lost if the module trapped since.
 fn tracker(id: u32) -> Result<Kept> {
-    TRACKERS.with_borrow(|trackers| trackers.get(&id).cloned()).ok_or_else(|| {
+    let kept =
+        TRACKERS.with_borrow(|trackers| trackers.iter().find(|(known, _)| *known == id).map(|(_, kept)| kept.clone()));
+    kept.ok_or_else(|| {
         Error::new(
             ErrorCode::InvalidArgument,
             "tracker",
