@@ -50,7 +50,7 @@ export interface FrameFiles {
 const CAMERA_POSE_FILE = "pose.json";
 
 /**
- * Reads a frame: depth map, camera file, and optionally mask, `pose.json` and `gt.json`, identified by name.
+ * Reads a frame: depth map, camera file, and optionally mask, photo, `pose.json` and `gt.json`, identified by name.
  * @param place location of the files, for errors
  * @internal
  */
@@ -59,7 +59,7 @@ export async function frameFrom(files: CaseFiles, settings: CaseSettings, place:
     const file = files[name];
     return requiredBytes(name, typeof file === "function" ? await file() : file);
   };
-  const find = (part: "depth" | "mask" | "camera") => caseFiles[part].find((candidate) => candidate in files);
+  const find = (part: "depth" | "mask" | "camera" | "image") => caseFiles[part].find((candidate) => candidate in files);
   const required = (part: "depth" | "camera") => {
     const name = find(part);
     if (name !== undefined) return name;
@@ -67,19 +67,19 @@ export async function frameFrom(files: CaseFiles, settings: CaseSettings, place:
   };
   const optional = (name: string | undefined) => (name !== undefined && name in files ? read(name) : undefined);
   const names = { depth: required("depth"), camera: required("camera") };
-  const maskName = find("mask");
-  const [depth, cameraFile, mask, pose, truth] = await Promise.all([
+  const { image: withImage = true, ...more } = settings;
+  const [maskName, photo] = [find("mask"), withImage ? find("image") : undefined];
+  const [depth, cameraFile, mask, image, pose, truth] = await Promise.all([
     read(names.depth),
     read(names.camera),
     optional(maskName),
+    optional(photo),
     optional(CAMERA_POSE_FILE),
     optional("gt.json"),
   ]);
   const cameraToWorld = pose === undefined ? undefined : cameraPose(pose);
-  // Frames have no photo.
-  const { image: _, ...more } = settings;
-  const input = withoutUndefined({ depth, cameraFile, mask, cameraToWorld, ...more }) as ViewInput;
-  const named = maskName === undefined ? names : { ...names, mask: maskName };
+  const input = withoutUndefined({ depth, cameraFile, mask, image, cameraToWorld, ...more }) as ViewInput;
+  const named = withoutUndefined({ ...names, mask: maskName, image: photo }) as FrameFiles["files"];
   return { input, files: named, truth: truth === undefined ? null : parsePoseFile("truth", truth) };
 }
 

@@ -15,6 +15,7 @@ import {
   type AlignResult,
   type Clouds,
   type Evaluation,
+  type FileWarnings,
   type Registration,
   type TrackedFrame,
   type ViewsAlignment,
@@ -120,11 +121,12 @@ export async function perform(
       const result = await runTask(await joint(), begin, input, slices);
       return {
         ...result,
-        views: result.views.map((view, k) => withWarnings(view, { camera: warnings[k] ?? [], colors: [] })),
+        views: result.views.map((view, k) => withWarnings(view, warnings[k] as FileWarnings)),
       };
     }
     case "openTracker": {
-      const { mesh } = await readCoreMesh(job.data.mesh, formats, false, job.meshId);
+      // Any frame may have a photo.
+      const { mesh } = await readCoreMesh(job.data.mesh, formats, true, job.meshId);
       const module = await joint();
       checkAttached("mesh", mesh);
       module.call((j) => j.openTracker(job.tracker, { mesh }, options));

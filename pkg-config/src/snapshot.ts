@@ -13,7 +13,10 @@ const MAX_LEVELS = 8;
 /** No array of numbers in an argument is longer; typed arrays are not copied. */
 const MAX_LENGTH = 1 << 27;
 
-/** The names that may be read from the class of an object, by the argument that the object is; all, if missing. */
+/**
+ * The names that may be read from the class of an object, by the argument that the object is (`[]` for any item of an array);
+ * all, if missing.
+ */
 export type ClassNames = Readonly<Record<string, readonly string[]>>;
 
 /**
@@ -74,7 +77,11 @@ class Reader {
 
   /** Whether an object is copied by its properties: also an object of the platform, if its names are known. */
   #isRead(argument: string, value: object): value is Record<string, unknown> {
-    return isRecord(value) || (this.#classNames[argument] !== undefined && isKind(value, "ImageData"));
+    return isRecord(value) || (this.#knownNames(argument) !== undefined && isKind(value, "ImageData"));
+  }
+
+  #knownNames(argument: string): readonly string[] | undefined {
+    return this.#classNames[argument.replace(/\[\d+\]/g, "[]")];
   }
 
   #array(argument: string, array: readonly unknown[], level: number): unknown[] {
@@ -109,7 +116,7 @@ class Reader {
   /** The names of an object, and of the accessors of its class. */
   #namesOf(argument: string, record: object): Iterable<string> {
     const names = new Set(Object.keys(record));
-    const known = this.#classNames[argument];
+    const known = this.#knownNames(argument);
     let prototype: object | null = Object.getPrototypeOf(record);
     for (let i = 0; i < MAX_LEVELS && prototype !== null; i++) {
       const next: object | null = Object.getPrototypeOf(prototype);

@@ -3,7 +3,6 @@
 pub mod detection;
 pub mod evidence;
 pub mod motion;
-pub mod open_axis;
 pub mod options;
 pub mod report;
 pub mod sight;

@@ -35,11 +35,6 @@ impl Motion {
         Self { turn: axis * signed, shift: after.center - before.center }
     }
 
-    /// The rotation vector, radians.
-    pub fn turn(&self) -> DVec3 {
-        self.turn
-    }
-
     /// The pose to expect after `pose`.
     pub fn carried(&self, pose: &WorldPose) -> WorldPose {
         let rotation = (exp(self.turn * CARRIED) * pose.rotation).normalize();

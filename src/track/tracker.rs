@@ -6,7 +6,6 @@ use glam::DQuat;
 use super::detection::{Detection, Known};
 use super::evidence::Evidence;
 use super::motion::{MAX_TURN, Motion};
-use super::open_axis::OpenAxis;
 use super::options::TrackOptions;
 use super::report::{CorrectedFrame, TrackState, TrackedFrame};
 use super::sight::{Seen, Sight, agreement, shown};
@@ -16,7 +15,7 @@ use crate::evidence::frame::Frame;
 use crate::evidence::observation::{Observation, check_mask_size};
 use crate::evidence::photo::check_photo;
 use crate::evidence::sample::Sampling;
-use crate::geometry::rotations::{angle_between, exp};
+use crate::geometry::rotations::angle_between;
 use crate::geometry::similarity::Similarity;
 use crate::metrics;
 use crate::number::number;
@@ -70,7 +69,6 @@ pub struct Tracker<M> {
     /// The pose of the last frame, in its camera.
     last: Option<WorldPose>,
     motion: Motion,
-    open_axis: OpenAxis,
     state: TrackState,
     /// The usual fit of a frame.
     usual: Option<f32>,
@@ -109,7 +107,6 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             size: Size::new(known),
             last: None,
             motion: Motion::REST,
-            open_axis: OpenAxis::default(),
             state: TrackState::Lost,
             usual: None,
             certain: None,
@@ -279,7 +276,6 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         if is_detected {
             self.stretch += 1;
             self.motion = Motion::REST;
-            self.open_axis.reset();
         }
         if is_certain {
             let usual = self.usual.unwrap_or_else(|| agreement(&found.score));
@@ -287,9 +283,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             if shown(frame, &evidence, &found.pose) >= ENOUGH {
                 self.certain = Some(found.pose.rotation);
             }
-            if !self.roll(&evidence, &mut found) {
-                self.steady(search, &mut found);
-            }
+            self.roll(&evidence, &mut found);
             self.weigh_size(search, &mut found, if is_predicted { PREDICTED_ERROR } else { SILHOUETTE_ERROR });
         }
         let pose = PlacedCamera::AT_ORIGIN.place(&found.pose);
@@ -326,29 +320,15 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         })
     }
 
-    /// Turns the pose about the axis that the frame determines least, towards the motion so far.
-    fn steady(&mut self, search: &Search, found: &mut Found) {
-        let (Some(held), Some(last)) = (search.conditioning(&found.pose).0, self.last) else { return };
-        let (predicted, pose) = (self.motion.carried(&last), PlacedCamera::AT_ORIGIN.place(&found.pose));
-        let angle = self.open_axis.correction(&predicted, &pose, &self.motion, held.rotation);
-        if angle != 0.0 {
-            let turned = search.mesh.turns.turned(&found.pose, exp(held.rotation.1 * angle) * found.pose.rotation);
-            *found = Found { pose: turned, score: search.score(&turned), ..*found };
-        }
-    }
-
-    /// Rolls the pose about the axis that shape leaves open, to where its colours agree with the photo. Returns whether
-    /// they tell.
-    fn roll(&self, evidence: &Evidence, found: &mut Found) -> bool {
-        let Evidence { search, photo: Some(photo) } = evidence else { return false };
-        let Some(colors) = self.mesh.borrow().colors() else { return false };
+    /// Rolls the pose about the axis that shape leaves open, to where its colours agree with the photo.
+    fn roll(&self, evidence: &Evidence, found: &mut Found) {
+        let Evidence { search, photo: Some(photo) } = evidence else { return };
+        let Some(colors) = self.mesh.borrow().colors() else { return };
         if let Some((pose, _)) = roll(search, photo, colors, found.pose, LOOSE)
             && agreement_at(search, photo, colors, &pose).is_some_and(|agreement| agreement >= AGREES)
         {
             *found = Found { pose, score: search.score(&pose), ..*found };
-            return true;
         }
-        false
     }
 
     /// Adds the evidence of a frame to the size, and moves its pose to the size that follows.

@@ -18,6 +18,9 @@ use crate::precise::search::Found;
 /// Steps of the refinement of a lookalike, and of the pose that colour chose.
 const STEPS: [usize; 2] = [4, 6];
 
+/// Correlation above which a photo agrees no better.
+const SURE_AGREEMENT: f64 = 0.99;
+
 /// The views and their photos.
 #[derive(Clone, Copy)]
 pub struct Photos<'a> {
@@ -142,7 +145,7 @@ impl Photos<'_> {
                 photo.as_ref()?.compare(joint.canvas(k), self.colors, &part.search.mesh.frame, &part.search.fine)
             })
             .collect();
-        let look = Look::new(mean_agreement(&appearances)?, own - shape.unwrap_or(0.0));
+        let look = Look::new(joint_agreement(&appearances)?, own - shape.unwrap_or(0.0));
         Some(Compared { ranked: Ranked { score, ..ranked.clone() }, shape: own, appearances, look })
     }
 
@@ -163,11 +166,21 @@ impl Photos<'_> {
     }
 }
 
-/// The mean correlation with the photos, by the number of cells that are compared; `None` without any.
-fn mean_agreement(appearances: &[Option<Appearance>]) -> Option<f64> {
-    let cells: usize = appearances.iter().flatten().map(Appearance::cells).sum();
-    let sum: f64 = appearances.iter().flatten().map(|a| a.agreement * a.cells() as f64).sum();
-    (cells > 0).then(|| sum / cells as f64)
+/// The correlation with all photos; `None` if nothing is compared. That of one photo is its own; of several, that with the
+/// same likelihood as all of them: −n·log(1 − ρ²) for n cells. A view of a side whose colours are invented takes little
+/// from one that agrees.
+fn joint_agreement(appearances: &[Option<Appearance>]) -> Option<f64> {
+    let seen: Vec<(f64, f64)> = appearances.iter().flatten().map(|a| (a.cells() as f64, a.agreement)).collect();
+    let cells: f64 = seen.iter().map(|(cells, _)| cells).sum();
+    match seen.as_slice() {
+        [] => None,
+        [(_, agreement)] => Some(*agreement),
+        _ => {
+            let unlikely = |agreement: f64| libm::log(1.0 - agreement.max(0.0).min(SURE_AGREEMENT).powi(2));
+            let mean = seen.iter().map(|(cells, agreement)| cells * unlikely(*agreement)).sum::<f64>() / cells;
+            Some((1.0 - libm::exp(mean)).max(0.0).sqrt())
+        }
+    }
 }
 
 /// The largest difference of contrast in a view.

@@ -1,10 +1,13 @@
 //! Alignment with several views: generated rigs, views without mask, wrong views, unknown cameras, and what is refused.
 
+use std::sync::Arc;
+
 use sim3align::error::ErrorCode;
+use sim3align::evidence::photo::Photo;
 use sim3align::geometry::similarity::Similarity;
 use sim3align::metrics::pose_error::pose_errors;
 use sim3align::progress::Silent;
-use sim3align::report::WarningCode;
+use sim3align::report::{ColorVerdict, WarningCode};
 use sim3align::views::common_size::{SizeEvidence, common_size};
 use sim3align::views::options::ViewsOptions;
 use sim3align::views::report::{ViewRole, ViewsAlignment, WorldFrame};
@@ -121,6 +124,71 @@ fn unknown_cameras_share_one_size_and_follow_from_the_object() {
     }
     assert_eq!(found.views[0].camera.rotation_sd_deg, 0.0);
     assert!(found.views[1].camera.rotation_sd_deg > 0.0);
+}
+
+/// Objects whose print alone tells how they are turned, in three views with photos.
+fn printed(seed: u64) -> Sequence {
+    RigSet { seed, views: Some(3), is_printed: true }.case(0).unwrap()
+}
+
+fn without_photos(mut views: Vec<View>) -> Vec<View> {
+    views.iter_mut().for_each(|view| view.frame.photo = None);
+    views
+}
+
+fn without_cameras(mut views: Vec<View>) -> Vec<View> {
+    views.iter_mut().for_each(|view| view.world_from_camera = None);
+    views
+}
+
+fn turn_deg(sequence: &Sequence, found: &ViewsAlignment, k: usize) -> f64 {
+    let pose = Similarity::from_column_major(&found.views[k].camera_from_mesh.matrix).unwrap();
+    let truth = sequence.frames[k].camera_from_mesh.unwrap();
+    pose_errors(&sequence.mesh, &pose, &truth, &sequence.symmetry).unwrap().rotation_error_deg
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn photos_of_several_views_tell_the_turn_that_shape_leaves_open() {
+    // A can, which shape takes upside down.
+    let sequence = printed(505);
+    let by_shape = align(&sequence, without_photos(views_of(&sequence)));
+    assert!(turn_deg(&sequence, &by_shape, 0) > 90.0);
+    assert!(by_shape.views.iter().all(|view| view.color.is_none()));
+    let found = align(&sequence, views_of(&sequence));
+    assert_right(&sequence, &found, "known cameras");
+    let color = found.views[0].color.unwrap();
+    assert!(color.agreement > 0.5 && color.margin.unwrap() > 0.1, "{color:?}");
+    assert!(found.views.iter().all(|view| view.color == Some(color)), "one decision for all views");
+    // The turn that shape had taken is an alternative, unless colour has clearly refuted it.
+    let upside_down = found.alternatives.iter().find(|other| other.turn_deg > 150.0);
+    assert!(upside_down.is_none_or(|other| other.color_margin.unwrap() > 0.0), "{upside_down:?}");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn photos_of_unrelated_views_tell_the_turn_in_each() {
+    // Boxes that shape takes the wrong way round.
+    for seed in [501, 503] {
+        let sequence = printed(seed);
+        let by_shape = align(&sequence, without_cameras(without_photos(views_of(&sequence))));
+        assert!((0..3).any(|k| turn_deg(&sequence, &by_shape, k) > 90.0), "seed {seed}");
+        let found = align(&sequence, without_cameras(views_of(&sequence)));
+        for (k, view) in found.views.iter().enumerate() {
+            let color = view.color.unwrap();
+            let right = turn_deg(&sequence, &found, k) < 10.0;
+            assert!(right || color.verdict == ColorVerdict::Unmatched, "seed {seed}, view {k}: {color:?}");
+        }
+        assert!(turn_deg(&sequence, &found, 0) < 10.0, "seed {seed}");
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_photo_of_another_shape_is_refused_by_its_view() {
+    let sequence = rig(41, 2, 0);
+    let mut views = views_of(&sequence);
+    views[1].frame.photo = Some(Arc::new(Photo::filled(30, 90, [9; 3])));
+    let options = options(&sequence);
+    let error = align_views(views, &sequence.prepared(), &options, &mut Silent).unwrap_err();
+    assert_eq!((error.code, error.argument.as_ref()), (ErrorCode::SizeMismatch, "views[1].image"));
 }
 
 #[wasm_bindgen_test(unsupported = test)]

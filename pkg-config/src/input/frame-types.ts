@@ -3,9 +3,9 @@ import type { Sim3Like } from "../sim3.js";
 import type { AlignInput, MaskInput, MeshInput } from "./types.js";
 
 /** The properties of an input that describe its depth map and camera. */
-type WithoutObject<T> = T extends unknown ? Omit<T, "mask" | "mesh" | "image"> : never;
+type WithoutObject<T> = T extends unknown ? Omit<T, "mask" | "mesh"> : never;
 
-/** A frame: depth with a camera, or a point map; and the mask of the object, if it is known. */
+/** A frame: depth with a camera, or a point map; and the photo and the mask of the object, if they are known. */
 export type FrameInput = WithoutObject<AlignInput> & {
   /** The mask of the object, if it is known. */
   mask?: MaskInput | undefined;

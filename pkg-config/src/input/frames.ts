@@ -1,21 +1,21 @@
 /** Converts views and frames to the typed arrays and numbers of the core. */
 import { invalidArgument, renamed, Sim3AlignError } from "../error.js";
 import type { LoadFormats } from "../formats-module.js";
+import type { FileWarnings } from "../results.js";
 import { coreSim3, type Sim3Like } from "../sim3.js";
 import { checkNames, isRecord, withoutUndefined } from "../values.js";
 import type { CoreFrame, CoreViews } from "./core-input.js";
 import { checkSides } from "./depth.js";
 import { readMask } from "./mask.js";
 import { readCoreMesh } from "./mesh.js";
-import { imageAndCamera, imageProperties, spelling } from "./resolve.js";
+import { readPhoto } from "./photo.js";
+import { frameProperties, imageAndCamera, spelling } from "./resolve.js";
 
 /** A resolved frame, and the warnings of its files. */
 export interface ResolvedFrame {
   core: CoreFrame;
   warnings: readonly string[];
 }
-
-const frameProperties: readonly string[] = [...imageProperties, "mask", "resizeMask"];
 
 /** Resolves a frame, whose mask may be missing. */
 export async function resolveFrame(
@@ -29,10 +29,11 @@ export async function resolveFrame(
   }
   checkNames("", frame, properties, spelling);
   checkSides("", frame);
-  const { warnings, ...image } = await imageAndCamera(frame, formats);
-  const core = { ...image, resizeMask: frame.resizeMask };
+  const { warnings, ...view } = await imageAndCamera(frame, formats);
+  const image = await readPhoto(frame.image, view, formats);
+  const core = { ...view, image, resizeMask: frame.resizeMask };
   if (frame.mask === undefined || frame.mask === null) return { core: withoutUndefined(core) as CoreFrame, warnings };
-  const mask = await readMask(frame.mask, Number(image.width) * Number(image.height), formats);
+  const mask = await readMask(frame.mask, Number(view.width) * Number(view.height), formats);
   const masked = { ...core, mask: mask.data, maskWidth: mask.width, maskHeight: mask.height };
   return { core: withoutUndefined(masked) as CoreFrame, warnings };
 }
@@ -40,7 +41,7 @@ export async function resolveFrame(
 /** Resolved views, and the warnings of the files of each. */
 export interface ResolvedViews {
   core: CoreViews;
-  warnings: readonly (readonly string[])[];
+  warnings: readonly FileWarnings[];
 }
 
 /**
@@ -57,11 +58,15 @@ export async function resolveViews(input: unknown, formats: LoadFormats, meshId?
   checkNames("input.", given, ["mesh", "views"], "What belongs to a view is a property of the view.");
   const resolved = [];
   for (const [k, view] of views.entries()) resolved.push(await resolveView(view, k, formats));
-  const core = {
-    mesh: (await readCoreMesh(mesh, formats, false, meshId)).mesh,
-    views: resolved.map((view) => view.core),
-  };
-  return { core, warnings: resolved.map((view) => view.warnings) };
+  const isColored = resolved.some(({ core }) => core.image !== undefined);
+  const read = await readCoreMesh(mesh, formats, isColored, meshId);
+  const core = { mesh: read.mesh, views: resolved.map((view) => view.core) };
+  // Colours matter only where there is a photo to compare them with.
+  const warningsOf = ({ core, warnings }: ResolvedFrame) => ({
+    camera: warnings,
+    colors: core.image === undefined ? [] : read.warnings,
+  });
+  return { core, warnings: resolved.map(warningsOf) };
 }
 
 async function resolveView(view: unknown, index: number, formats: LoadFormats): Promise<ResolvedFrame> {

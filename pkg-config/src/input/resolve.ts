@@ -33,14 +33,21 @@ export const imageProperties = [
 /** The remedy for misspelt properties. */
 export const spelling = "Check the spelling. Options belong in the second argument.";
 
-const properties = [...imageProperties, "mask", "resizeMask", "mesh", "image"];
+/** The properties of a frame: those of an input but the mesh. */
+export const frameProperties: readonly string[] = [...imageProperties, "mask", "resizeMask", "image"];
+
+const properties = [...frameProperties, "mesh"];
+
+/** The accessors of an ImageData. */
+const pixelNames = ["data", "width", "height"];
 
 /** The properties that an input and its parts may inherit from a class; others of the class are not arguments. */
 export const classNames: ClassNames = {
   input: properties,
   "input.camera": cameraProperties,
-  // The accessors of an ImageData.
-  "input.image": ["data", "width", "height"],
+  "input.image": pixelNames,
+  "input.views[].camera": cameraProperties,
+  "input.views[].image": pixelNames,
 };
 
 /**
