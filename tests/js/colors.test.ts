@@ -280,6 +280,25 @@ test("a mesh with a texture that can't be read is aligned by its shape, with a w
   pooled.dispose();
 });
 
+test("three.js: large textures are averaged, and samples reach the core", async () => {
+  const side = 1024;
+  const checkered = new Uint8Array(4 * side * side).map((_, i) => (i % 8 < 4 ? 0 : 200));
+  const texture = dataTexture({ image: { data: checkered, width: side, height: side } });
+  const box = new Mesh(new BoxGeometry(), new MeshBasicMaterial({ map: texture }));
+  const { samples } = meshInputFromThree(box);
+  assert.ok(samples?.colors.every((code) => code === 100));
+  const photo = new Uint8Array(3 * width * height).fill(100);
+  const found = await coreInput({ image: photo, mesh: meshInputFromThree(box) });
+  assert.deepEqual((found.mesh as MeshArrays).samples, samples);
+  const geometry = new BufferGeometry().setIndex(new BufferAttribute(Uint32Array.from(mesh.indices), 1));
+  geometry.setAttribute("position", new BufferAttribute(mesh.positions, 3));
+  geometry.setAttribute("uv", new BufferAttribute(new Float32Array(2 * vertices), 2));
+  const colored = meshInputFromThree(new Mesh(geometry, new MeshBasicMaterial({ map: dataTexture() })));
+  const { metrics } = await aligner.evaluate({ ...input, image: photo, mesh: colored }, truth);
+  // Neither has any contrast.
+  assert.equal(metrics.colorAgreement, 0);
+});
+
 test("a photo, or colours, without the other change no bit, with and without workers", async () => {
   const options = { seed: 5, quality: "fast" } as const;
   const plain = withoutTimes(await aligner.align(input, options));
@@ -468,25 +487,6 @@ test("three.js: images of browsers are drawn, and what cannot be read leaves the
   } finally {
     Reflect.deleteProperty(globalThis, "OffscreenCanvas");
   }
-});
-
-test("three.js: large textures are averaged, and samples reach the core", async () => {
-  const side = 1024;
-  const checkered = new Uint8Array(4 * side * side).map((_, i) => (i % 8 < 4 ? 0 : 200));
-  const texture = dataTexture({ image: { data: checkered, width: side, height: side } });
-  const box = new Mesh(new BoxGeometry(), new MeshBasicMaterial({ map: texture }));
-  const { samples } = meshInputFromThree(box);
-  assert.ok(samples?.colors.every((code) => code === 100));
-  const photo = new Uint8Array(3 * width * height).fill(100);
-  const found = await coreInput({ image: photo, mesh: meshInputFromThree(box) });
-  assert.deepEqual((found.mesh as MeshArrays).samples, samples);
-  const geometry = new BufferGeometry().setIndex(new BufferAttribute(Uint32Array.from(mesh.indices), 1));
-  geometry.setAttribute("position", new BufferAttribute(mesh.positions, 3));
-  geometry.setAttribute("uv", new BufferAttribute(new Float32Array(2 * vertices), 2));
-  const colored = meshInputFromThree(new Mesh(geometry, new MeshBasicMaterial({ map: dataTexture() })));
-  const { metrics } = await aligner.evaluate({ ...input, image: photo, mesh: colored }, truth);
-  // Neither has any contrast.
-  assert.equal(metrics.colorAgreement, 0);
 });
 
 test("cropInput crops the photo with the rest", () => {
