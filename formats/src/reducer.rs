@@ -13,7 +13,7 @@ pub(crate) struct Reducer {
     columns: Vec<u32>,
     rows: Vec<u32>,
     pixels: Vec<Rgb>,
-    /// Sums of the pixels in each new one; empty if the size stays.
+    /// Sums of the pixels in each new one; empty if each is one.
     sums: Vec<[u32; 3]>,
 }
 
@@ -34,7 +34,8 @@ impl Reducer {
             (0..full[axis].div_ceil(scale)).map(|i| new(i).min(size[axis] as u64 - 1) as u32).collect()
         };
         let count = size[0] * size[1];
-        let is_same = scale == 1 && size == full;
+        // Each pixel passed is a pixel of the new image: those of a decoder that reduces as much itself.
+        let is_same = full.map(|side| side.div_ceil(scale)) == size;
         Self {
             width: size[0],
             height: size[1],

@@ -5,6 +5,9 @@ use std::path::{Path, PathBuf};
 
 use sim3align_geometry::error::{Error, ErrorCode, Result, Text};
 
+/// The name of a file in a folder, and its content.
+pub type NamedFile = (&'static str, Vec<u8>);
+
 /// Reads a file.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
     fs::read(path).map_err(|error| {
@@ -25,7 +28,7 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<()> {
 }
 
 /// Writes files to a folder, and creates it if necessary.
-pub(crate) fn write_files(folder: &Path, files: &[(&'static str, Vec<u8>)]) -> Result<()> {
+pub(crate) fn write_files(folder: &Path, files: &[NamedFile]) -> Result<()> {
     fs::create_dir_all(folder).map_err(|error| unwritable(folder, error))?;
     for (name, bytes) in files {
         let path = folder.join(name);

@@ -8,6 +8,7 @@
 export { type ErrorCode, type ErrorParts, Sim3AlignError } from "./error.js";
 export type { StatedCamera } from "./formats/pinhole.js";
 export type { MeshArrays } from "./input/types.js";
+export type { ColorSamples } from "./prepared-mesh.js";
 export type { Sim3, Sim3Like } from "./sim3.js";
 export { applyPinhole, cameraFromPinhole, type LensOptions, type ThreeCamera } from "./three/camera.js";
 export { type MeshInputOptions, meshInputFromThree } from "./three/mesh-input.js";

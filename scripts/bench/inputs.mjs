@@ -74,6 +74,14 @@ export async function freshCore() {
   return { aligner, memory };
 }
 
+/** The memory of the module of the file readers, in a new instance. @returns {Promise<WebAssembly.Memory>} */
+export async function freshFormats() {
+  const [{ formatsModule }, glue] = await Promise.all(["formats-module.js", "wasm/formats.js"].map(packageModule));
+  await formatsModule.load();
+  glue.__wbg_reset_state();
+  return (await glue.default()).memory;
+}
+
 /** @typedef {TypedCase["mesh"]} Mesh */
 
 /**

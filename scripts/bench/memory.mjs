@@ -7,8 +7,9 @@ import { join } from "node:path";
 import { buildPackage } from "../lib/package.mjs";
 import { step } from "../lib/step.mjs";
 import { command, count } from "./command.mjs";
-import { bumpyRing, freshCore, packageModule, pictureOf, qualities } from "./inputs.mjs";
+import { bumpyRing, freshCore, freshFormats, packageModule, pictureOf, qualities } from "./inputs.mjs";
 import { fixed, markdownTable } from "./table.mjs";
+import { blocksPng, texturedGlb } from "./textured.mjs";
 
 /** @typedef {import("./inputs.mjs").TypedCase} TypedCase */
 
@@ -16,6 +17,14 @@ import { fixed, markdownTable } from "./table.mjs";
 const limit = 128_000_000;
 /** The input that the limit holds for. */
 const large = { triangles: 227_000, width: 1920, height: 1080 };
+/** Limit of both modules together with a photo and a texture, in bytes: 160 MB. */
+const colorLimit = 160_000_000;
+/** Photos and textures: the limit holds for the first; the others are reduced while they are read. */
+const pictures = [
+  { photo: [1920, 1080], texture: [2048, 2048] },
+  { photo: [3840, 2160], texture: [2048, 2048] },
+  { photo: [1920, 1080], texture: [8192, 8192] },
+];
 /** The mixed sizes: triangles, width, height. All have come up within the first alignments that the last are held against. */
 const mixed = [
   ...[
@@ -89,6 +98,31 @@ async function measurePeaks(meshes) {
   return peaks.every(({ peak }) => peak <= limit);
 }
 
+/** One line a pair of photo and texture: the memory of both modules after one alignment in new instances. */
+async function measureColor() {
+  const mesh = bumpyRing(large.triangles);
+  const input = pictureOf(mesh, large.width, large.height, 2);
+  console.log(
+    `\nThe same mesh as a GLB with a PNG texture, and a photo as PNG, read by the module of the file readers.\n`,
+  );
+  const peaks = [];
+  for (const { photo, texture } of pictures) {
+    const { aligner, memory } = await freshCore();
+    const readers = await freshFormats();
+    const colored = { ...input, mesh: texturedGlb(mesh, blocksPng(texture)), image: blocksPng(photo) };
+    const { diagnostics } = await aligner.align(colored);
+    if (diagnostics.color === undefined) throw new Error("The colours were not used.");
+    const bytes = [memory, readers].map(({ buffer }) => buffer.byteLength);
+    peaks.push({ name: `photo ${photo.join("×")}, texture ${texture.join("×")}`, bytes });
+  }
+  const rows = peaks.map(({ name, bytes }) => {
+    const sum = bytes.reduce((a, b) => a + b);
+    return [name, ...bytes.map(megabytes), megabytes(sum), megabytes(colorLimit), sum <= colorLimit ? "yes" : "NO"];
+  });
+  console.log(markdownTable(["with colour", "core, MB", "readers, MB", "both, MB", "limit, MB", "within"], rows));
+  return peaks.every(({ bytes }) => bytes.reduce((a, b) => a + b) <= colorLimit);
+}
+
 /**
  * Measures the memory after a few alignments of mixed sizes, and after many.
  * @param {number} alignments
@@ -121,7 +155,8 @@ await command("bench:memory", (program) =>
     .option("--alignments <n>", "how many on one instance", count, 500)
     .action(async ({ meshes, alignments }) => {
       await buildPackage();
-      const isWithin = await measurePeaks(meshes);
+      const isShapeWithin = await measurePeaks(meshes);
+      const isWithin = (await measureColor()) && isShapeWithin;
       console.log();
       const isFlat = await measureGrowth(alignments);
       if (!isWithin || !isFlat) process.exitCode = 1;

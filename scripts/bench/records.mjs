@@ -42,6 +42,8 @@ export const isWithin = (errors, tolerance) =>
  * from the others.
  * @typedef {object} BenchAlignment
  * @property {number[]} matrix camera from mesh, column by column
+ * @property {number} scale
+ * @property {number[]} rotation quaternion xyzw
  * @property {number} [confidence]
  * @property {readonly { score: number }[]} [alternatives]
  * @property {{ scale: number, rotationDeg: number } | null} [uncertainty]

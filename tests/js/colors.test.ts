@@ -5,9 +5,23 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { type AlignInput, createAligner, type MeshArrays, type PhotoInput } from "sim3align";
 import { cropInput } from "sim3align/conventions";
-import { externalResources, readCase, readImage, readMesh } from "sim3align/formats";
+import { type ColorSamples, externalResources, readCase, readImage, readMesh } from "sim3align/formats";
 import { meshInputFromThree } from "sim3align/three";
-import { BoxGeometry, BufferAttribute, Color, Group, Mesh, MeshBasicMaterial, Texture } from "three";
+import {
+  BoxGeometry,
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  DataTexture,
+  Group,
+  type Material,
+  Mesh,
+  MeshBasicMaterial,
+  MirroredRepeatWrapping,
+  RepeatWrapping,
+  SRGBColorSpace,
+  Texture,
+} from "three";
 import { folder, pixels, run, writeCase } from "../support/command-line.js";
 import { repository } from "../support/environment.js";
 import { type Expected, rejectsWith } from "../support/errors.js";
@@ -127,6 +141,32 @@ test("photo: what is none is named", async () => {
   await rejects(() => aligner.evaluate({ ...input, image: detached }, truth), "INVALID_ARGUMENT", "image");
 });
 
+test("photo: hostile files are refused by every call, which works on", async () => {
+  const huge = fixture("photo.png");
+  // 100 000 × 100 000 pixels.
+  huge.set([0, 1, 0x86, 0xa0, 0, 1, 0x86, 0xa0], 16);
+  const jpeg = fixture("photo.jpg");
+  const frame = jpeg.findIndex((byte, i) => byte === 0xff && jpeg[i + 1] === 0xc0);
+  const wide = jpeg.slice();
+  wide.fill(0xff, frame + 5, frame + 9);
+  const hostile: [image: Uint8Array, code: Expected["code"]][] = [
+    [huge, "FILE_TOO_LARGE"],
+    [wide, "FILE_TOO_LARGE"],
+    [jpeg.slice(0, jpeg.length / 2), "CORRUPT_FILE"],
+    [fixture("photo.png").slice(0, -20), "CORRUPT_FILE"],
+    [Buffer.from("RIFF\0\0\0\0WEBPVP8 "), "UNSUPPORTED_FORMAT"],
+  ];
+  const before = await aligner.evaluate(input, truth);
+  const pooled = await createAligner({ workers: 1 });
+  for (const [image, code] of hostile) {
+    await rejects(() => aligner.align({ ...input, image }), code, "image");
+    await rejects(() => pooled.align({ ...input, image }), code, "image");
+    assert.deepEqual(await aligner.evaluate(input, truth), before);
+    assert.deepEqual(await pooled.evaluate(input, truth), before);
+  }
+  pooled.dispose();
+});
+
 const vertices = mesh.positions.length / 3;
 const colors = Uint8Array.from({ length: 3 * vertices }, (_, i) => (11 * i) % 256);
 const withAlpha = Uint8ClampedArray.from({ length: 4 * vertices }, (_, i) =>
@@ -240,6 +280,25 @@ test("a mesh with a texture that can't be read is aligned by its shape, with a w
   pooled.dispose();
 });
 
+test("three.js: large textures are averaged, and samples reach the core", async () => {
+  const side = 1024;
+  const checkered = new Uint8Array(4 * side * side).map((_, i) => (i % 8 < 4 ? 0 : 200));
+  const texture = dataTexture({ image: { data: checkered, width: side, height: side } });
+  const box = new Mesh(new BoxGeometry(), new MeshBasicMaterial({ map: texture }));
+  const { samples } = meshInputFromThree(box);
+  assert.ok(samples?.colors.every((code) => code === 100));
+  const photo = new Uint8Array(3 * width * height).fill(100);
+  const found = await coreInput({ image: photo, mesh: meshInputFromThree(box) });
+  assert.deepEqual((found.mesh as MeshArrays).samples, samples);
+  const geometry = new BufferGeometry().setIndex(new BufferAttribute(Uint32Array.from(mesh.indices), 1));
+  geometry.setAttribute("position", new BufferAttribute(mesh.positions, 3));
+  geometry.setAttribute("uv", new BufferAttribute(new Float32Array(2 * vertices), 2));
+  const colored = meshInputFromThree(new Mesh(geometry, new MeshBasicMaterial({ map: dataTexture() })));
+  const { metrics } = await aligner.evaluate({ ...input, image: photo, mesh: colored }, truth);
+  // Neither has any contrast.
+  assert.equal(metrics.colorAgreement, 0);
+});
+
 test("a photo, or colours, without the other change no bit, with and without workers", async () => {
   const options = { seed: 5, quality: "fast" } as const;
   const plain = withoutTimes(await aligner.align(input, options));
@@ -293,7 +352,7 @@ test("case folders hold photos, textures and libraries", async () => {
   assert.deepEqual(bare.resources, {});
 });
 
-test("three.js: vertex colours times material colours, and none with a texture", () => {
+test("three.js: vertex colours times material colours", () => {
   const box = new BoxGeometry();
   const { count } = box.getAttribute("position");
   box.setAttribute("color", new BufferAttribute(new Float32Array(3 * count).fill(0.5), 3));
@@ -307,8 +366,127 @@ test("three.js: vertex colours times material colours, and none with a texture",
   assert.deepEqual([...(both?.slice(-3) ?? []), both?.length], [1, 1, 1, 6 * count]);
   const hidden = new Mesh(box, new MeshBasicMaterial({ color: red }));
   assert.deepEqual([...(meshInputFromThree(hidden).colors?.slice(0, 3) ?? [])], [0.5, 0.25, 0]);
-  const textured = new Mesh(box, new MeshBasicMaterial({ map: new Texture(), color: red }));
-  assert.equal(meshInputFromThree(new Group().add(textured, shown)).colors, undefined);
+});
+
+/** The colour at the sample nearest to a point of the surface. */
+function colorNear({ positions, colors }: ColorSamples, point: [number, number, number]): number[] {
+  const off = (i: number) => point.reduce((sum, x, axis) => sum + (x - (positions[3 * i + axis] as number)) ** 2, 0);
+  let nearest = 0;
+  for (let i = 1; i < positions.length / 3; i++) if (off(i) < off(nearest)) nearest = i;
+  return [...colors.subarray(3 * nearest, 3 * nearest + 3)];
+}
+
+/** A texture of 2 × 2 texels, first row first. */
+const texels = [
+  [255, 0, 0],
+  [0, 255, 0],
+  [0, 0, 255],
+  [255, 255, 0],
+] as const;
+
+function dataTexture(settings: Partial<DataTexture> = {}): DataTexture {
+  const texture = new DataTexture(Uint8Array.from(texels.flatMap((texel) => [...texel, 255])), 2, 2);
+  return Object.assign(texture, { colorSpace: SRGBColorSpace }, settings);
+}
+
+test("three.js: textures are sampled on the surface, times the colours of vertices and materials", () => {
+  // The quarters of the front of a cube: u grows with x, v with y.
+  const quarters: [number, number, number][] = [
+    [-0.25, -0.25, 0.5],
+    [0.25, -0.25, 0.5],
+    [-0.25, 0.25, 0.5],
+    [0.25, 0.25, 0.5],
+  ];
+  const seen = (map: Texture, settings: object = {}, box = new BoxGeometry()) => {
+    const mesh = meshInputFromThree(new Mesh(box, new MeshBasicMaterial({ map, ...settings })));
+    assert.ok(mesh.samples && mesh.colors === undefined);
+    assert.equal(mesh.samples.colors.length, mesh.samples.positions.length);
+    return quarters.map((point) => colorNear(mesh.samples as ColorSamples, point));
+  };
+  const [first, second, third, fourth] = texels.map((texel) => [...texel]) as [number[], number[], number[], number[]];
+  assert.deepEqual(seen(dataTexture()), [first, second, third, fourth]);
+  assert.deepEqual(seen(dataTexture({ flipY: true })), [third, fourth, first, second]);
+  const shifted = dataTexture({ wrapS: RepeatWrapping });
+  shifted.offset.set(0.5, 0);
+  assert.deepEqual(seen(shifted), [second, first, fourth, third]);
+  const clamped = dataTexture();
+  clamped.offset.set(0.5, 0);
+  assert.deepEqual(seen(clamped), [second, second, fourth, fourth]);
+  const mirrored = dataTexture({ wrapT: MirroredRepeatWrapping });
+  mirrored.offset.set(0, 1);
+  assert.deepEqual(seen(mirrored), [third, fourth, first, second]);
+  // Light of half the strength has the code 188.
+  const half = { color: new Color().setRGB(0.5, 1, 1) };
+  assert.deepEqual(seen(dataTexture(), half), [[188, 0, 0], second, third, [188, 255, 0]]);
+  const box = new BoxGeometry();
+  const count = box.getAttribute("position").count;
+  box.setAttribute("color", new BufferAttribute(new Float32Array(3 * count).fill(0.5), 3));
+  const dim = texels.map((texel) => texel.map((code) => (code === 255 ? 188 : 0)));
+  assert.deepEqual(seen(dataTexture(), { vertexColors: true }, box), dim);
+  const uv1 = new BoxGeometry();
+  uv1.setAttribute("uv1", uv1.getAttribute("uv"));
+  uv1.deleteAttribute("uv");
+  assert.deepEqual(seen(dataTexture({ channel: 1 }), {}, uv1), [first, second, third, fourth]);
+});
+
+test("three.js: parts with and without texture, mirrored and moved, keep their own colours", () => {
+  const textured = new Mesh(new BoxGeometry(), new MeshBasicMaterial({ map: dataTexture() }));
+  textured.position.set(-2, 0, 0);
+  textured.scale.set(-1, 1, 1);
+  const blue = new Mesh(new BoxGeometry(), new MeshBasicMaterial({ color: new Color().setRGB(0, 0, 1) }));
+  const again = new Mesh(textured.geometry, textured.material);
+  again.position.set(2, 0, 0);
+  const { samples } = meshInputFromThree(new Group().add(textured, blue, again));
+  assert.ok(samples);
+  assert.deepEqual(colorNear(samples, [-1.75, -0.25, 0.5]), texels[0]);
+  assert.deepEqual(colorNear(samples, [0.25, -0.25, 0.5]), [0, 0, 255]);
+  assert.deepEqual(colorNear(samples, [1.75, -0.25, 0.5]), texels[0]);
+  const { positions, normals } = samples;
+  for (let i = 0; i < normals.length / 3; i++) {
+    const [x = 0, y = 0, z = 0] = positions.subarray(3 * i, 3 * i + 3);
+    const middle = x < -1 ? -2 : x > 1 ? 2 : 0;
+    const out = (normals[3 * i] ?? 0) * (x - middle) + (normals[3 * i + 1] ?? 0) * y + (normals[3 * i + 2] ?? 0) * z;
+    assert.ok(out > 0.4, `${out} at ${x}, ${y}, ${z}`);
+  }
+});
+
+test("three.js: images of browsers are drawn, and what cannot be read leaves the mesh without colours", () => {
+  const of = (material: Material | Material[]) => meshInputFromThree(new Mesh(new BoxGeometry(), material));
+  const none = (material: Material | Material[]) => {
+    const { colors, samples } = of(material);
+    assert.deepEqual([colors, samples], [undefined, undefined]);
+  };
+  const image = { naturalWidth: 2, naturalHeight: 2 };
+  const drawn = new Texture(image as never);
+  none(new MeshBasicMaterial({ map: new Texture() }));
+  none(new MeshBasicMaterial({ map: drawn }));
+  none([new MeshBasicMaterial({ map: dataTexture() })]);
+  const unmapped = new BoxGeometry();
+  unmapped.deleteAttribute("uv");
+  const { samples } = meshInputFromThree(new Mesh(unmapped, new MeshBasicMaterial({ map: dataTexture() })));
+  assert.equal(samples, undefined);
+
+  const calls: unknown[] = [];
+  const context = {
+    drawImage: (...args: unknown[]) => calls.push(args),
+    getImageData: () => dataTexture().image,
+  };
+  class OffscreenCanvas {
+    getContext = () => context;
+  }
+  Object.assign(globalThis, { OffscreenCanvas });
+  try {
+    // Elements are turned over when they are uploaded.
+    const { samples } = of(new MeshBasicMaterial({ map: drawn }));
+    assert.deepEqual(calls, [[image, 0, 0, 2, 2]]);
+    assert.deepEqual(colorNear(samples as ColorSamples, [-0.25, -0.25, 0.5]), texels[2]);
+    context.getImageData = () => {
+      throw new Error("The canvas has been tainted by cross-origin data.");
+    };
+    none(new MeshBasicMaterial({ map: drawn }));
+  } finally {
+    Reflect.deleteProperty(globalThis, "OffscreenCanvas");
+  }
 });
 
 test("cropInput crops the photo with the rest", () => {

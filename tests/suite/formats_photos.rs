@@ -32,12 +32,20 @@ fn photos_of_every_kind_show_the_same_picture() {
     check("palette", fixture!("photo-palette.png"), QUARTERS, 0);
     check("interlaced", fixture!("photo-interlaced.png"), QUARTERS, 0);
     check("alpha is ignored", fixture!("photo-alpha.png"), QUARTERS, 0);
+    check("16 bits and alpha", fixture!("photo-16-alpha.png"), QUARTERS, 0);
+    check("palette and alpha", fixture!("photo-palette-alpha.png"), QUARTERS, 0);
     check("grey PNG", fixture!("photo-grey.png"), grey, 0);
+    check("grey and alpha", fixture!("photo-grey-alpha.png"), grey, 0);
     check("JPEG", fixture!("photo.jpg"), QUARTERS, 4);
     check("JPEG 4:2:0", fixture!("photo-420.jpg"), QUARTERS, 6);
     check("progressive JPEG", fixture!("photo-progressive.jpg"), QUARTERS, 6);
     check("grey JPEG", fixture!("photo-grey.jpg"), grey, 4);
     check("CMYK JPEG", fixture!("photo-cmyk.jpg"), QUARTERS, 6);
+    // Adobe's marker says how the first three components are to be read: 2 stands for YCCK. Pillow's values of the result.
+    let mut ycck = fixture!("photo-cmyk.jpg").to_vec();
+    let marker = ycck.windows(5).position(|word| word == b"Adobe").unwrap();
+    ycck[marker + 11] = 2;
+    check("YCCK JPEG", &ycck, [[192, 0, 211], [255, 181, 141], [138, 246, 255], [158, 0, 0]], 6);
 }
 
 #[wasm_bindgen_test(unsupported = test)]
@@ -117,7 +125,18 @@ fn hostile_photos_are_refused() {
     assert_eq!(code(&jpeg), ErrorCode::FileTooLarge);
     jpeg[frame + 5..frame + 9].copy_from_slice(&[0x1f, 0xff, 0x1f, 0xff]);
     assert_eq!(code(&jpeg), ErrorCode::CorruptFile);
-    for bytes in [fixture!("photo.jpg"), fixture!("photo-cmyk.jpg"), fixture!("photo-progressive.jpg")] {
+    // The number of components is that of the header, whatever Adobe's marker says.
+    let mut two = fixture!("photo.jpg").to_vec();
+    two[frame + 9] = 2;
+    assert!([ErrorCode::CorruptFile, ErrorCode::UnsupportedFormat].contains(&code(&two)));
+    for bytes in [
+        fixture!("photo.jpg"),
+        fixture!("photo-cmyk.jpg"),
+        fixture!("photo-progressive.jpg"),
+        fixture!("photo-palette.png"),
+        fixture!("photo-16.png"),
+        fixture!("photo-interlaced.png"),
+    ] {
         for length in 0..bytes.len() {
             let expected = [ErrorCode::CorruptFile, ErrorCode::UnsupportedFormat];
             let result = read_photo(&bytes[..length]).map(drop).map_err(|error| error.code);

@@ -10,6 +10,7 @@ use serde_json::Value;
 use crate::case_folder::case::read_case;
 use crate::case_folder::contents::parameters_json;
 use crate::cases::case::EvaluationCase;
+use crate::cpu_time::CpuTimer;
 use sim3align::align::align_paper;
 use sim3align::align::evaluate::{EvaluateOptions, Truth, evaluate};
 use sim3align::align::method::Method;
@@ -88,7 +89,7 @@ pub struct Record {
     pub truth_score: Option<f64>,
     /// Ratio of the true to the initial scale, s / s_init.
     pub truth_scale_ratio: Option<f64>,
-    /// What `align` took; NaN, `null` in JSON, where another program did not say what it took.
+    /// CPU time of `align`, which a busy machine changes little; NaN, `null` in JSON, where another program did not say what it took.
     pub seconds: f64,
 }
 
@@ -291,9 +292,9 @@ pub fn run_method(
     case: &BenchCase,
     method: impl FnOnce(&Observation, &Mesh, &mut dyn Host) -> Result<AnyAlignment>,
 ) -> Record {
-    let begun = Instant::now();
-    let outcome = method(&case.observation, &case.mesh, &mut Clock(begun));
-    let seconds = begun.elapsed().as_secs_f64();
+    let timer = CpuTimer::start();
+    let outcome = method(&case.observation, &case.mesh, &mut Clock(Instant::now()));
+    let seconds = timer.seconds();
     record_of(case, outcome.map_err(|error| described(&error)), seconds)
 }
 

@@ -1,10 +1,12 @@
 //! Encodes depth maps, masks, images, clouds and meshes as files.
 
+use std::fmt::Write as _;
 use std::io;
 
 use glam::Vec3;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
+use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
 
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::image::{DepthMap, Mask, check_size};
@@ -44,7 +46,7 @@ pub fn depth_png(depth: &DepthMap, depth_scale: f64) -> Result<Vec<u8>> {
     // The encoder takes 16-bit samples in native byte order.
     let units = depth.data().iter().map(|&z| (f64::from(z) / depth_scale).round() as u16);
     let bytes: Vec<u8> = units.flat_map(u16::to_ne_bytes).collect();
-    png(&bytes, depth.width(), depth.height(), ExtendedColorType::L16)
+    png(&bytes, depth.width(), depth.height(), ExtendedColorType::L16, CompressionType::Best)
 }
 
 /// A mask as 8-bit grey PNG: 255 is the object.
@@ -53,7 +55,7 @@ pub fn depth_png(depth: &DepthMap, depth_scale: f64) -> Result<Vec<u8>> {
 /// [`ErrorCode::Internal`] if the encoder fails.
 pub fn mask_png(mask: &Mask) -> Result<Vec<u8>> {
     let bytes: Vec<u8> = mask.data().iter().map(|&m| if m == 0 { 0 } else { 255 }).collect();
-    png(&bytes, mask.width(), mask.height(), ExtendedColorType::L8)
+    png(&bytes, mask.width(), mask.height(), ExtendedColorType::L8, CompressionType::Best)
 }
 
 /// An image as 8-bit RGB PNG; pixels are row-major.
@@ -62,19 +64,58 @@ pub fn mask_png(mask: &Mask) -> Result<Vec<u8>> {
 /// [`ErrorCode::WrongLength`] and [`ErrorCode::EmptyImage`] for a size that is not the picture's.
 pub fn rgb_png(pixels: &[[u8; 3]], width: usize, height: usize) -> Result<Vec<u8>> {
     check_size("image", width, height, pixels.len())?;
-    png(pixels.as_flattened(), width, height, ExtendedColorType::Rgb8)
+    // Noise hardly compresses any better with more effort.
+    png(pixels.as_flattened(), width, height, ExtendedColorType::Rgb8, CompressionType::Default)
 }
 
-fn png(bytes: &[u8], width: usize, height: usize, colour: ExtendedColorType) -> Result<Vec<u8>> {
+/// Settings of a JPEG.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct JpegSettings {
+    /// 1 to 100.
+    pub quality: u8,
+    /// Whether chroma has half the resolution in both directions (4:2:0).
+    pub is_chroma_halved: bool,
+    /// Whether the file is progressive.
+    pub is_progressive: bool,
+}
+
+/// An image as JPEG; pixels are row-major.
+///
+/// # Errors
+/// As [`rgb_png`], and [`ErrorCode::FileTooLarge`] for sides beyond 65 535 pixels.
+pub fn rgb_jpeg(pixels: &[[u8; 3]], width: usize, height: usize, settings: JpegSettings) -> Result<Vec<u8>> {
+    check_size("image", width, height, pixels.len())?;
+    let (Ok(columns), Ok(rows)) = (u16::try_from(width), u16::try_from(height)) else {
+        let found = format!("{width} × {height} pixels");
+        let remedy = "Write a PNG.";
+        return Err(Error::new(ErrorCode::FileTooLarge, "image", found, "at most 65535 × 65535", remedy));
+    };
+    let mut file = Vec::new();
+    let mut encoder = Encoder::new(&mut file, settings.quality);
+    encoder.set_sampling_factor(if settings.is_chroma_halved { SamplingFactor::F_2_2 } else { SamplingFactor::F_1_1 });
+    encoder.set_progressive(settings.is_progressive);
+    let written = encoder.encode(pixels.as_flattened(), columns, rows, ColorType::Rgb);
+    written.map_err(|error| not_encoded("a JPEG", &error))?;
+    Ok(file)
+}
+
+fn png(
+    bytes: &[u8],
+    width: usize,
+    height: usize,
+    colour: ExtendedColorType,
+    compression: CompressionType,
+) -> Result<Vec<u8>> {
     let mut file = io::Cursor::new(Vec::new());
-    // Halves the size of 16-bit depth relative to the default settings.
-    let encoder = PngEncoder::new_with_quality(&mut file, CompressionType::Best, FilterType::Sub);
+    // The filter halves the size of 16-bit depth relative to the default.
+    let encoder = PngEncoder::new_with_quality(&mut file, compression, FilterType::Sub);
     let written = encoder.write_image(bytes, width as u32, height as u32, colour);
-    written.map_err(|error| {
-        let remedy = "Please report it.";
-        Error::new(ErrorCode::Internal, "image", format!("a PNG encoder that says: {error}"), "a PNG", remedy)
-    })?;
+    written.map_err(|error| not_encoded("a PNG", &error))?;
     Ok(file.into_inner())
+}
+
+fn not_encoded(kind: &'static str, error: &dyn core::error::Error) -> Error {
+    Error::new(ErrorCode::Internal, "image", format!("an encoder that says: {error}"), kind, "Please report it.")
 }
 
 /// Points as binary PLY: float x, y, z.
@@ -125,4 +166,23 @@ pub fn glb(mesh: &Mesh) -> Vec<u8> {
     bytes.extend(positions.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes));
     bytes.extend(corners.iter().flat_map(|i| i.to_le_bytes()));
     bytes
+}
+
+/// A mesh as OBJ, which keeps shared vertices although each triangle has its own texture coordinates: those of the corners
+/// from the upper left corner of the image. `library` is the name of the MTL file, whose material is called `print`.
+pub fn textured_obj(mesh: &Mesh, coordinates: &[[[f64; 2]; 3]], library: &str) -> Vec<u8> {
+    let mut text = format!("mtllib {library}\n");
+    for p in mesh.positions() {
+        // The shortest digits that read back as the same f32.
+        let _ = writeln!(text, "v {} {} {}", p.x, p.y, p.z);
+    }
+    for [u, v] in coordinates.as_flattened() {
+        let _ = writeln!(text, "vt {u} {}", 1.0 - v);
+    }
+    text.push_str("usemtl print\n");
+    for (i, [a, b, c]) in mesh.triangles().iter().map(|t| t.map(|corner| corner + 1)).enumerate() {
+        let first = 3 * i + 1;
+        let _ = writeln!(text, "f {a}/{first} {b}/{} {c}/{}", first + 1, first + 2);
+    }
+    text.into_bytes()
 }

@@ -25,7 +25,7 @@ use super::tier::{CaseSet, Class, Tier};
 use crate::case_folder::contents::{case_files, parameters_json, symmetry_json};
 use crate::cases::distortion::canonicalise;
 use crate::draws::{chance, mixed};
-use crate::files::write_files;
+use crate::files::{NamedFile, write_files};
 use sim3align::evidence::observation::Observation;
 use sim3align::evidence::sample::SurfaceMoments;
 use sim3align::metrics::symmetry::{Symmetry, SymmetryAxis};
@@ -73,6 +73,8 @@ pub struct EvaluationCase {
     pub mesh: Mesh,
     /// Its colours; the observation then has a photo.
     pub colors: Option<SurfaceColors>,
+    /// The files from which photo, mesh and colours were read, if it has colours.
+    pub color_files: Vec<NamedFile>,
     /// The true pose, in the scale of the depth map.
     pub camera_from_mesh: Similarity,
     /// Rotational symmetries of the mesh, in its frame.
@@ -155,9 +157,9 @@ impl EvaluationSet {
         }
         let random = &mut Random::new(seed, GENERATOR_STREAM);
         let generated = generate(&object, &placed, &symmetry, &scene, (tier, class), random)?;
-        let (mesh, object_from_mesh) = canonicalise(&generated.mesh, seed)?;
+        let (mut mesh, object_from_mesh) = canonicalise(&generated.mesh, seed)?;
         let mut observation = Observation::new(readings.depth, segmented.mask, scene.camera)?;
-        let mut colors = None;
+        let (mut colors, mut color_files, mut of_photo) = (None, Vec::new(), None);
         let random = &mut Random::new(seed, COLOR_STREAM);
         let is_told = class.is_told_by_color();
         if let Some(kind) = class.print(chance(random, 0.5)) {
@@ -165,9 +167,14 @@ impl EvaluationSet {
             if is_told && !print.tells(&placed, &symmetry, &scene) {
                 return Ok(None);
             }
-            observation = observation.with_photo(take(&scene, (&placed, &print), class, tier, random)?)?;
+            let photo = take(&scene, (&placed, &print), class, tier, random)?;
+            observation = observation.with_photo(photo.photo)?;
             let eye = DVec3::from_array(scene.camera_from_world.inverse().translation.into());
-            colors = Some(paint(&mesh, &object_from_mesh, (&print, &placed), eye, (tier, class), random)?);
+            let painted = paint(&mesh, &object_from_mesh, (&print, &placed), eye, (tier, class), random)?;
+            (mesh, colors) = (painted.mesh.mesh, painted.mesh.colors);
+            color_files = painted.files;
+            color_files.push(photo.file);
+            of_photo = Some(photo.parameters);
         }
 
         // The scale error of the depth map scales the camera frame.
@@ -188,6 +195,7 @@ impl EvaluationSet {
         ];
         parameters.extend(effects);
         parameters.extend(generated.parameters);
+        parameters.extend(of_photo.into_iter().flatten());
         Ok(Some(EvaluationCase {
             index,
             tier,
@@ -198,6 +206,7 @@ impl EvaluationSet {
             observation,
             mesh,
             colors,
+            color_files,
             camera_from_mesh: camera_from_object.compose(&object_from_mesh),
             symmetry: if is_told { Symmetry::None } else { declared(&generated.symmetry, &object_from_mesh) },
             object: placed,
@@ -217,7 +226,7 @@ impl EvaluationCase {
     ///
     /// # Errors
     /// [`ErrorCode::Internal`] if an encoder fails.
-    pub fn files(&self) -> Result<Vec<(&'static str, Vec<u8>)>> {
+    pub fn files(&self) -> Result<Vec<NamedFile>> {
         let truth = symmetry_json(&self.symmetry, &self.name());
         let parameters = parameters_json(&self.parameters);
         let meta = json!({
@@ -229,6 +238,10 @@ impl EvaluationCase {
             "parameters": parameters,
         });
         let mut files = case_files(&self.observation, &self.mesh, &self.camera_from_mesh, truth, None)?;
+        if !self.color_files.is_empty() {
+            files.retain(|(name, _)| *name != "mesh.glb");
+            files.extend(self.color_files.iter().cloned());
+        }
         files.push(("meta.json", format!("{meta:#}\n").into_bytes()));
         Ok(files)
     }

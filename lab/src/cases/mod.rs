@@ -6,6 +6,7 @@
 //! common. A draw that shows too little of the object is repeated
 //! with other random numbers.
 
+mod atlas;
 pub mod case;
 mod cluster;
 pub(crate) mod distortion;

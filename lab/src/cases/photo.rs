@@ -1,4 +1,5 @@
-//! Photos: a scene under unknown light, through a camera with its own white balance, focus and noise.
+//! Photos: a scene under unknown light, through a camera with its own white balance, focus, noise and number of pixels,
+//! saved as PNG or JPEG.
 
 use core::f64::consts::TAU;
 
@@ -7,14 +8,20 @@ use glam::DVec3;
 use super::print::{Print, color, encoded};
 use super::scene::Scene;
 use super::tier::{Class, Tier};
+use crate::case_folder::write::{JpegSettings, rgb_jpeg, rgb_png};
 use crate::draws::{between, chance, normal};
+use crate::files::NamedFile;
 use sim3align::evidence::photo::Photo;
+use sim3align_formats::photo::read_photo;
 use sim3align_geometry::error::Result;
-use sim3align_geometry::image::Image;
 use sim3align_geometry::mesh::Mesh;
+use sim3align_geometry::pinhole::Pinhole;
 use sim3align_geometry::random::Random;
-use sim3align_geometry::rasteriser::NO_TRIANGLE;
-use sim3align_geometry::similarity::vec3;
+use sim3align_geometry::rasteriser::{NO_TRIANGLE, Rasteriser};
+use sim3align_geometry::similarity::{vec3, vector3};
+
+/// Sizes of photos relative to the depth map; the field of view is the same.
+const SIZES: [f64; 3] = [0.5, 1.5, 2.0];
 
 /// The light of a scene, and the response of the camera.
 struct Look {
@@ -28,8 +35,12 @@ struct Look {
     shadow: (DVec3, f64, f64),
     noise: f64,
     blur: usize,
-    /// Offset from the depth map, pixels.
+    /// Offset from the depth map, in its pixels.
     shift: [f64; 2],
+    /// Size relative to the depth map.
+    size: f64,
+    /// `None` for a PNG.
+    jpeg: Option<JpegSettings>,
 }
 
 impl Look {
@@ -53,8 +64,31 @@ impl Look {
             noise: between(random, 0.2, 1.0) * tier.pick(0.01, 0.02, 0.035),
             blur: random.below(tier.pick(1, 2, 3) + 1),
             shift: [between(random, -shift, shift), between(random, -shift, shift)],
+            size: if chance(random, 0.6) { SIZES[random.below(SIZES.len())] } else { 1.0 },
+            jpeg: chance(random, 0.75).then(|| JpegSettings::draw(random, tier.pick(80, 60, 40))),
         }
     }
+}
+
+impl JpegSettings {
+    /// As cameras and web sites save photos: most with halved chroma, some progressive.
+    pub(super) fn draw(random: &mut Random, lowest_quality: u8) -> Self {
+        Self {
+            quality: between(random, lowest_quality.into(), 96.0) as u8,
+            is_chroma_halved: chance(random, 0.7),
+            is_progressive: chance(random, 0.2),
+        }
+    }
+}
+
+/// A photo, its file, and what describes it among the parameters of the case.
+pub struct Taken {
+    /// The photo as it is read from the file.
+    pub photo: Photo,
+    /// `rgb.png` or `rgb.jpg`.
+    pub file: NamedFile,
+    /// Size relative to the depth map, and the quality of the JPEG, 0 for a PNG.
+    pub parameters: [(&'static str, f64); 2],
 }
 
 /// Takes the photo of a scene whose object, `placed` in the world, has this print.
@@ -67,10 +101,13 @@ pub fn take(
     class: Class,
     tier: Tier,
     random: &mut Random,
-) -> Result<Photo> {
-    let (width, height) = (scene.width, scene.height);
+) -> Result<Taken> {
     let is_grey = class == Class::GreyPhoto;
-    let look = Look::draw(random, tier, width);
+    let look = Look::draw(random, tier, scene.width);
+    let [width, height] = [scene.width, scene.height].map(|side| (look.size * side as f64).round() as usize);
+    let camera = resized(&scene.camera, look.size);
+    let mut rasteriser = Rasteriser::new();
+    rasteriser.render(placed, &scene.camera_from_world, &camera, width, height);
     let world_from_camera = scene.camera_from_world.inverse();
     let eye = DVec3::from_array(world_from_camera.translation.into());
     let (ground, other) = (color(random), color(random));
@@ -86,10 +123,18 @@ pub fn take(
     for v in 0..height {
         for u in 0..width {
             let i = v * width + u;
+            // The pixel of the depth map in which the centre of this one lies.
+            let [column, row] = [(u, scene.width), (v, scene.height)]
+                .map(|(x, size)| (((x as f64 + 0.5) / look.size) as usize).min(size - 1));
+            let place = row * scene.width + column;
+            let is_hidden = scene.object_depth[place] > 0.0 && !scene.visible[place];
+            let triangle = rasteriser.triangles()[i];
+            let is_object = triangle != NO_TRIANGLE && !is_hidden;
+            let z = if is_object { rasteriser.depth()[i] } else { scene.depth[place] };
+            let point = world_from_camera.apply(vector3(camera.back_project(u as f64, v as f64, f64::from(z))));
+            let point = vec3(&point).as_dvec3();
             let at = DVec3::new(2.0 * u as f64 / width as f64 - 1.0, 2.0 * v as f64 / height as f64 - 1.0, 0.0);
-            let point = vec3(&scene.world_point(&world_from_camera, i, scene.depth[i])).as_dvec3();
-            let triangle = scene.object_triangles[i];
-            linear.push(if scene.visible[i] && triangle != NO_TRIANGLE {
+            linear.push(if is_object {
                 let [a, b, c] = placed.corners(placed.triangles()[triangle as usize]).map(|p| p.as_dvec3());
                 let normal = (b - a).cross(c - a).normalize_or_zero();
                 let normal = if normal.dot(eye - point) < 0.0 { -normal } else { normal };
@@ -104,7 +149,9 @@ pub fn take(
     let mut pixels = Vec::with_capacity(width * height);
     for v in 0..height {
         for u in 0..width {
-            let from = |x: usize, by: f64, size: usize| (x as f64 + by).round().clamp(0.0, size as f64 - 1.0) as usize;
+            let from = |x: usize, by: f64, size: usize| {
+                (x as f64 + look.size * by).round().clamp(0.0, size as f64 - 1.0) as usize
+            };
             let (u, v) = (from(u, look.shift[0], width), from(v, look.shift[1], height));
             let mut shown = encoded(blurred[v * width + u]);
             if is_grey {
@@ -116,7 +163,19 @@ pub fn take(
             pixels.push([0, 1, 2].map(|k| noisy(shown[k], common + own[k])));
         }
     }
-    Image::new("image", width, height, pixels)
+    let file = match look.jpeg {
+        Some(settings) => ("rgb.jpg", rgb_jpeg(&pixels, width, height, settings)?),
+        None => ("rgb.png", rgb_png(&pixels, width, height)?),
+    };
+    let quality = look.jpeg.map_or(0.0, |jpeg| f64::from(jpeg.quality));
+    let photo = read_photo(&file.1)?;
+    Ok(Taken { photo, file, parameters: [("photoSize", look.size), ("photoJpegQuality", quality)] })
+}
+
+/// The camera of the same field of view with another number of pixels.
+fn resized(camera: &Pinhole, by: f64) -> Pinhole {
+    let centre = |c: f64| by * (c + 0.5) - 0.5;
+    Pinhole { fx: by * camera.fx, fy: by * camera.fy, cx: centre(camera.cx), cy: centre(camera.cy) }
 }
 
 /// Means over squares of 2·`radius` + 1 pixels.

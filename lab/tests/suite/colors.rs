@@ -8,6 +8,8 @@ use sim3align::precise::options::AlignOptions;
 use sim3align::precise::prepared_mesh::PreparedMesh;
 use sim3align::progress::Silent;
 use sim3align_geometry::similarity::Similarity;
+use sim3align_geometry::surface_colors::COLOR_SAMPLES;
+use sim3align_lab::bench::benchmark::BenchCase;
 use sim3align_lab::cases::case::{EvaluationCase, EvaluationSet};
 use sim3align_lab::cases::tier::{CaseSet, Class, Tier};
 
@@ -86,5 +88,42 @@ fn colour_finds_the_right_turn() {
         let pose = Similarity::from_column_major(&found.camera_from_mesh.matrix).unwrap();
         let errors = pose_errors(&case.mesh, &pose, &case.camera_from_mesh, &case.symmetry).unwrap();
         assert!(errors.rotation_error_deg < 10.0, "{}: {errors:?}, {:?}", case.name(), found.diagnostics.color);
+    }
+}
+
+#[test]
+fn photos_have_several_sizes_and_formats_and_are_read_from_files() {
+    let cases: Vec<EvaluationCase> =
+        (0..LOOKED_AT).map(|index| EvaluationSet::new(11).of(CaseSet::Colors).case(index).unwrap()).collect();
+    let parameter = |case: &EvaluationCase, name| case.parameters.iter().find(|p| p.0 == name).unwrap().1;
+    for case in &cases {
+        let (photo, depth) = (case.observation.photo().unwrap(), case.observation.depth());
+        let size = parameter(case, "photoSize");
+        // Photos of more than two megapixels are reduced by a whole number.
+        let ratio = size * depth.width() as f64 / photo.width() as f64;
+        assert!((ratio - ratio.round()).abs() < 1e-9, "{}: {ratio}", case.name());
+        let name = if parameter(case, "photoJpegQuality") > 0.0 { "rgb.jpg" } else { "rgb.png" };
+        assert!(case.color_files.iter().any(|file| file.0 == name), "{}", case.name());
+        assert_eq!(case.colors.as_ref().unwrap().colors().len(), COLOR_SAMPLES);
+    }
+    for size in [0.5, 1.0, 1.5, 2.0] {
+        assert!(cases.iter().any(|case| parameter(case, "photoSize") == size), "{size}");
+    }
+    let has = |name| cases.iter().any(|case| case.color_files.iter().any(|file| file.0 == name));
+    assert!(["rgb.jpg", "rgb.png", "texture.jpg", "texture.png"].into_iter().all(has));
+}
+
+#[test]
+fn a_written_case_has_the_same_photo_mesh_and_colours() {
+    let folder = std::env::temp_dir().join(format!("sim3align-colors-{}", std::process::id()));
+    for index in 0..6 {
+        let case = EvaluationSet::new(11).of(CaseSet::Colors).case(index).unwrap();
+        case.write(&folder).unwrap();
+        let read = BenchCase::read(&folder);
+        std::fs::remove_dir_all(&folder).unwrap();
+        let (read, made) = (read.unwrap(), BenchCase::from(case));
+        assert_eq!(read.observation.photo(), made.observation.photo());
+        assert_eq!(read.observation.depth(), made.observation.depth());
+        assert_eq!((read.mesh, read.colors), (made.mesh, made.colors));
     }
 }

@@ -3,6 +3,8 @@
 import { describe } from "../error.js";
 import type { MeshArrays } from "../input/types.js";
 import { failure, finiteNumbers, oneOf } from "../values.js";
+import { surfaceSamples } from "./surface-samples.js";
+import { type Texels, texelsOf } from "./texels.js";
 import type { AttributeLike, GeometryLike, MeshTree, PlacedObject } from "./types.js";
 
 /** The triangles so far, and the colours of the vertices: linear red, green and blue. */
@@ -12,8 +14,19 @@ interface Arrays {
   colors: number[];
   /** Whether any part has a colour other than white. */
   isColored: boolean;
-  /** Whether any part has a texture or several materials, whose colours are not those of vertices. */
+  /** Whether any part has several materials, or a texture that cannot be read. */
   isUnknown: boolean;
+  /** The parts with a texture, in the order of their triangles. */
+  textured: TexturedPart[];
+}
+
+/** Consecutive triangles with one texture. */
+interface TexturedPart {
+  firstTriangle: number;
+  endTriangle: number;
+  firstVertex: number;
+  coordinates: AttributeLike;
+  texels: Texels;
 }
 
 /** A 4×4 matrix, column-major. */
@@ -34,11 +47,13 @@ export interface MeshInputOptions {
  * All triangles of a three.js geometry, or of an object and its descendants, as a mesh for `align`. The matrices of
  * descendants and instances are applied. Bones and morph targets are ignored: the mesh is in its bind pose.
  *
- * Its colours are those of vertices times those of materials. A mesh with a texture has none, because textures are in
- * the memory of the graphics card: pass the bytes of the file instead.
+ * Its colours are those of vertices times those of materials and of their `map`, for use with a photo. A mesh has none if
+ * it has several materials, or a `map` that cannot be read: not loaded, compressed, of another origin, or an image outside
+ * browsers (a `DataTexture` can be read anywhere). Pass the bytes of the file instead.
  *
  * @param source a `BufferGeometry`, or an `Object3D` such as a `Mesh`, a `Group` or a loaded scene
- * @returns interleaved x, y, z in the chosen frame, and three indices per triangle
+ * @returns interleaved x, y, z in the chosen frame, three indices per triangle, and `colors`, or `samples` if there is a
+ * texture
  *
  * @example
  * const mesh = meshInputFromThree(gltf.scene);
@@ -49,7 +64,7 @@ export function meshInputFromThree(
   { frame = "object" }: MeshInputOptions = {},
 ): MeshArrays & { positions: Float32Array; indices: Uint32Array } {
   oneOf("options.frame", frame, ["object", "world"]);
-  const arrays: Arrays = { positions: [], indices: [], colors: [], isColored: false, isUnknown: false };
+  const arrays: Arrays = { positions: [], indices: [], colors: [], isColored: false, isUnknown: false, textured: [] };
   if (isGeometry(source)) append(arrays, source, identity, { vertexColors: true });
   else if (isTree(source)) appendTree(arrays, source, frame);
   else {
@@ -67,6 +82,7 @@ export function meshInputFromThree(
   }
   const mesh = { positions: Float32Array.from(arrays.positions), indices: Uint32Array.from(arrays.indices) };
   if (!arrays.isColored || arrays.isUnknown) return mesh;
+  if (arrays.textured.length > 0) return { ...mesh, samples: texturedSamples(mesh, arrays) };
   return { ...mesh, colors: Float32Array.from(arrays.colors), colorSpace: "linear" };
 }
 
@@ -113,6 +129,7 @@ function append(arrays: Arrays, { attributes, index }: GeometryLike, m: Matrix4,
     arrays.positions.push(a * x + d * y + g * z + tx, b * x + e * y + h * z + ty, c * x + f * y + k * z + tz);
   }
   appendColors(arrays, attributes.color as AttributeLike | undefined, position.count, material);
+  const firstTriangle = arrays.indices.length / 3;
   const corner = (i: number) => first + (index === null ? i : index.getX(i));
   const count = index === null ? position.count : index.count;
   const isMirrored = a * (e * k - f * h) - d * (b * k - c * h) + g * (b * f - c * e) < 0;
@@ -120,12 +137,56 @@ function append(arrays: Arrays, { attributes, index }: GeometryLike, m: Matrix4,
   for (let i = 0; i + 2 < count; i += 3) {
     arrays.indices.push(corner(i), corner(i + (isMirrored ? 2 : 1)), corner(i + (isMirrored ? 1 : 2)));
   }
+  const part = { firstTriangle, endTriangle: arrays.indices.length / 3, firstVertex: first };
+  appendTexture(arrays, attributes, part, material);
+}
+
+/** Adds the texture of a material, if it has one. */
+function appendTexture(
+  arrays: Arrays,
+  attributes: GeometryLike["attributes"],
+  part: Pick<TexturedPart, "firstTriangle" | "endTriangle" | "firstVertex">,
+  material: unknown,
+): void {
+  const map = isObject(material) ? material.map : undefined;
+  if (!isObject(map)) return;
+  const coordinates = attributes[map.channel ? `uv${map.channel}` : "uv"] as AttributeLike | undefined;
+  const texels = typeof coordinates?.getX === "function" ? texelsOf(map) : null;
+  if (texels === null) arrays.isUnknown = true;
+  else arrays.textured.push({ ...part, coordinates: coordinates as AttributeLike, texels });
+  arrays.isColored = true;
+}
+
+/** The colours of a surface: those of vertices times those of textures. */
+function texturedSamples(
+  { positions, indices }: { positions: Float32Array; indices: Uint32Array },
+  { colors, textured }: Arrays,
+) {
+  const texel = new Float64Array(3);
+  let at = 0;
+  // Triangles come in ascending order.
+  return surfaceSamples(positions, indices, (triangle, second, third, out) => {
+    const corners = [0, 1, 2].map((corner) => indices[3 * triangle + corner] as number);
+    const mixed = (of: (vertex: number) => number) => {
+      const [a = 0, b = 0, c = 0] = corners.map(of);
+      return a + (b - a) * second + (c - a) * third;
+    };
+    for (let channel = 0; channel < 3; channel++) out[channel] = mixed((i) => colors[3 * i + channel] as number);
+    while (at < textured.length - 1 && (textured[at] as TexturedPart).endTriangle <= triangle) at++;
+    const { firstTriangle, endTriangle, firstVertex, coordinates, texels } = textured[at] as TexturedPart;
+    if (triangle < firstTriangle || triangle >= endTriangle) return;
+    const [u, v] = [mixed((i) => coordinates.getX(i - firstVertex)), mixed((i) => coordinates.getY(i - firstVertex))];
+    texels.colorAt(u, v, texel);
+    for (let channel = 0; channel < 3; channel++) {
+      out[channel] = (out[channel] as number) * (texel[channel] as number);
+    }
+  });
 }
 
 /** Adds the colours of vertices: their attribute, if the material shows it, times the colour of the material. */
 function appendColors(arrays: Arrays, attribute: AttributeLike | undefined, count: number, material: unknown): void {
-  const { color, map, vertexColors } = (isObject(material) ? material : {}) as Record<string, unknown>;
-  if (Array.isArray(material) || isObject(map)) arrays.isUnknown = true;
+  const { color, vertexColors } = (isObject(material) ? material : {}) as Record<string, unknown>;
+  if (Array.isArray(material)) arrays.isUnknown = true;
   const isShown = vertexColors === true && typeof attribute?.getX === "function" && attribute.count === count;
   const { r = 1, g = 1, b = 1 } = (isObject(color) ? color : {}) as { r?: number; g?: number; b?: number };
   if (isShown || r !== 1 || g !== 1 || b !== 1) arrays.isColored = true;

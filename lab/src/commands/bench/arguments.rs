@@ -49,7 +49,7 @@ Method
   --row 'NAME: K=V K=V…'
                      one more row of the tables, with these options on top of the others; may be repeated;
                      method=M is another method: fgr, gicp, icp-point-to-plane, icp-point-to-point, ransac, teaser,
-                     quatro
+                     quatro; color=false leaves out photos and the colours of meshes
   --import NAME=DIR  one more row: another program's answers, DIR/CASE.json (docs/importing-results.md); may be
                      repeated; without --row these are the only rows
 
@@ -77,6 +77,8 @@ pub struct Row {
     pub paper: PaperOptions,
     pub search: Vec<(String, f64)>,
     pub method: Method,
+    /// Whether photos and the colours of meshes are left out.
+    pub is_shape_alone: bool,
     /// All assignments, as written.
     pub assignments: Vec<String>,
 }
@@ -236,13 +238,18 @@ fn list<T, E: std::fmt::Display>(text: &str, parse: impl Fn(&str) -> Result<T, E
 
 /// Sets an option from `name=value`, one of the search's settings from `search.name=number`, or the method.
 fn assign(row: &mut Row, assignment: &str) -> Result<(), String> {
-    let Row { preset, precise, paper, search, method, assignments, .. } = row;
+    let Row { preset, precise, paper, search, method, is_shape_alone, assignments, .. } = row;
     assignments.push(assignment.to_owned());
     let (name, value) = assignment.split_once('=').ok_or_else(|| format!("{assignment:?} is no NAME=VALUE"))?;
     if name == "method" {
         let names = || Baseline::ALL.map(Baseline::as_str).join(", ");
         let baseline = Baseline::from_name(value).ok_or_else(|| format!("no method {value}; there are {}", names()))?;
         *method = Method::Baseline(baseline);
+        return Ok(());
+    }
+    if name == "color" {
+        let color: bool = value.parse().map_err(|_| format!("color: found {value:?}, expected true or false"))?;
+        *is_shape_alone = !color;
         return Ok(());
     }
     if let Some(setting) = name.strip_prefix("search.") {

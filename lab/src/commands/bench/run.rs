@@ -178,6 +178,8 @@ fn draw(case: &BenchCase, matrix: Option<&[f64]>, path: &Path) -> Result<(), Str
 }
 
 fn run_row(case: &BenchCase, row: &Row) -> Record {
+    let shape = row.is_shape_alone.then(|| case.clone().without_color());
+    let case = shape.as_ref().unwrap_or(case);
     match &row.method {
         Method::Align => run_case(case, &row.preset_options(), &row.search),
         Method::Baseline(baseline) => {

@@ -1,0 +1,66 @@
+/** Colours at points of a surface. */
+import { rgbOf } from "../input/colors.js";
+import type { ColorSamples } from "../prepared-mesh.js";
+
+/** Number of points: as many as those of mesh files. */
+const COUNT = 32_768;
+
+/** Steps of a sequence that fills a square evenly: the inverse powers of the root of x³ = x + 1. */
+const STEPS = [0.7548776662466927, 0.5698402909980532] as const;
+
+/** Writes the linear colour of a triangle to `out`, at the point with these weights of its second and third corner. */
+export type ColorAt = (triangle: number, second: number, third: number, out: Float64Array) => void;
+
+/**
+ * Points spread evenly by area over a mesh, with outward normals and their colours; undefined for a mesh without area.
+ */
+export function surfaceSamples(
+  positions: Float32Array,
+  indices: Uint32Array,
+  colorAt: ColorAt,
+): ColorSamples | undefined {
+  const ends = new Float64Array(indices.length / 3);
+  let [area, volume] = [0, 0];
+  for (let t = 0; t < ends.length; t++) {
+    const { a, normal } = triangleOf(positions, indices, t);
+    area += Math.sqrt(dot(normal, normal));
+    volume += dot(a, normal);
+    ends[t] = area;
+  }
+  if (!(area > 0 && Number.isFinite(area))) return undefined;
+  const samples = { positions: new Float32Array(3 * COUNT), normals: new Float32Array(3 * COUNT) };
+  const colors = new Float32Array(3 * COUNT);
+  const color = new Float64Array(3);
+  const facing = volume < 0 ? -1 : 1;
+  let t = 0;
+  for (let k = 0; k < COUNT; k++) {
+    const at = ((k + 0.5) / COUNT) * area;
+    while (t < ends.length - 1 && (ends[t] as number) <= at) t++;
+    const { a, b, c, normal } = triangleOf(positions, indices, t);
+    let [second, third] = STEPS.map((step) => (k * step) % 1) as [number, number];
+    if (second + third > 1) [second, third] = [1 - second, 1 - third];
+    colorAt(t, second, third, color);
+    const length = Math.sqrt(dot(normal, normal)) || 1;
+    for (let axis = 0; axis < 3; axis++) {
+      const [x = 0, y = 0, z = 0] = [a[axis], b[axis], c[axis]];
+      samples.positions[3 * k + axis] = x + (y - x) * second + (z - x) * third;
+      samples.normals[3 * k + axis] = ((normal[axis] as number) / length) * facing;
+      colors[3 * k + axis] = color[axis] as number;
+    }
+  }
+  return { ...samples, colors: rgbOf(colors, 3, "linear") };
+}
+
+type Vector = [number, number, number];
+const dot = (a: Vector, b: Vector) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+
+/** The corners of a triangle, and its normal with the length of twice its area. */
+function triangleOf(positions: Float32Array, indices: Uint32Array, t: number) {
+  const [a, b, c] = [0, 1, 2].map((corner) => {
+    const first = 3 * (indices[3 * t + corner] as number);
+    return [positions[first], positions[first + 1], positions[first + 2]] as Vector;
+  }) as [Vector, Vector, Vector];
+  const [u, v] = [b, c].map((p) => p.map((x, axis) => x - (a[axis] as number))) as [Vector, Vector];
+  const normal: Vector = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+  return { a, b, c, normal };
+}
