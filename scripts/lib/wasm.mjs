@@ -26,7 +26,7 @@ import { step } from "./step.mjs";
 /** @type {readonly WasmModule[]} */
 export const wasmModules = [
   { name: "core", crate: "sim3align-core", budget: 145_000 },
-  { name: "joint", crate: "sim3align-joint", budget: 205_000 },
+  { name: "joint", crate: "sim3align-joint", budget: 212_000 },
   { name: "registration", crate: "sim3align-registration", budget: 120_000 },
   { name: "formats", crate: "sim3align-formats", budget: 260_000 },
 ];

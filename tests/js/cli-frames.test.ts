@@ -4,7 +4,8 @@ import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { folder, results, run } from "../support/command-line.js";
-import { glb, npy, png } from "../support/files.js";
+import { glb, npy, obj, png } from "../support/files.js";
+import { printedBox } from "../support/printed-box.js";
 import { frameAt, turnBetween } from "../support/rig.js";
 import { mesh, rotationRows, truth } from "../support/scene.js";
 
@@ -95,13 +96,43 @@ test("a video is tracked from the mask of its first frame", () => {
   }
 });
 
-test("--no-image changes nothing: frames have no photo", () => {
+test("--no-image is an option of cases with frames, too", () => {
   for (const args of [
     ["align", "known", "--quality", "fast"],
     ["track", "video"],
   ]) {
     const { status, stderr } = run(...args, "--no-image");
     assert.equal(status, 0, stderr);
+  }
+});
+
+test("the photos of frames are read, and left out with --no-image", () => {
+  const box = printedBox();
+  mkdirSync(join(folder, "printed"));
+  writeFileSync(join(folder, "printed", "mesh.obj"), obj(box.mesh));
+  const turned = [0, 4].map((angle, k) => {
+    const { frame, image, pose } = box.frameAt(angle);
+    const path = join(folder, "printed", `frame_0${k}`);
+    mkdirSync(path);
+    writeFileSync(join(path, "depth.npy"), npy(frame.depth, frame.height, frame.width));
+    writeFileSync(join(path, "camera.json"), JSON.stringify(frame.camera));
+    const white = frame.mask.map((m) => 255 * m);
+    writeFileSync(join(path, "mask.png"), png(white, frame.width, frame.height));
+    writeFileSync(join(path, "rgb.png"), png(image.data, frame.width, frame.height, 3));
+    return pose;
+  });
+  const frameOf = (args: string[], json: string) => {
+    const { status, stderr } = run(...args, "printed", "--json", json);
+    assert.equal(status, 0, stderr);
+    return results(json).printed.frames.frame_00;
+  };
+  for (const command of ["align", "track"]) {
+    const colored = frameOf([command], `${command}-colored.json`);
+    assert.ok(turnBetween(colored.quaternion, (turned[0] as { rotation: number[] }).rotation) < 3, command);
+    if (command === "align") {
+      assert.equal(colored.color.verdict === "agreed" || colored.color.verdict === "decided", true);
+      assert.equal(frameOf([command, "--no-image"], "plain.json").color, undefined);
+    }
   }
 });
 

@@ -14,7 +14,7 @@ const workers = new Workers();
 const pool = await createAligner({ workers: 1, createWorker: workers.create });
 after(() => pool.dispose());
 
-const video = [0, 3, 6, 9, 12].map(frameAt);
+const video = [0, 3, 6, 9, 12].map((angle) => frameAt(angle));
 const unmasked = (frame: FrameInput): FrameInput => ({ ...frame, mask: undefined });
 
 /** The results of a video whose first frame alone has a mask. */

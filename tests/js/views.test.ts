@@ -13,7 +13,7 @@ const workers = new Workers();
 const pool = await createAligner({ workers: 1, createWorker: workers.create });
 after(() => pool.dispose());
 
-const rig = [0, 120, 240].map(frameAt);
+const rig = [0, 120, 240].map((angle) => frameAt(angle));
 const known: ViewsInput = { mesh, views: rig.map(({ frame, cameraToWorld }) => ({ ...frame, cameraToWorld })) };
 const unknown: ViewsInput = { mesh, views: rig.map(({ frame }) => frame) };
 

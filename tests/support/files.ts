@@ -15,12 +15,13 @@ export function npy(data: Float32Array | Uint16Array | Uint8Array, height: numbe
   return Buffer.concat([Buffer.from("\x93NUMPY\x01\x00", "latin1"), length, Buffer.from(header, "latin1"), values]);
 }
 
-/** A grey PNG, of 8 bits from a `Uint8Array`, of 16 from a `Uint16Array`. */
-export function png(data: Uint8Array | Uint16Array, width: number, height: number): Uint8Array {
+/** A PNG, grey or (with three channels) of colours, of 8 bits from a `Uint8Array`, of 16 from a `Uint16Array`. */
+export function png(data: Uint8Array | Uint16Array, width: number, height: number, channels: 1 | 3 = 1): Uint8Array {
   const bytes = data.BYTES_PER_ELEMENT;
-  const rows = Buffer.alloc(height * (1 + width * bytes));
+  const values = width * channels;
+  const rows = Buffer.alloc(height * (1 + values * bytes));
   data.forEach((value, i) => {
-    const offset = Math.floor(i / width) * (1 + width * bytes) + 1 + (i % width) * bytes;
+    const offset = Math.floor(i / values) * (1 + values * bytes) + 1 + (i % values) * bytes;
     if (bytes === 1) rows.writeUInt8(value, offset);
     else rows.writeUInt16BE(value, offset);
   });
@@ -28,6 +29,7 @@ export function png(data: Uint8Array | Uint16Array, width: number, height: numbe
   header.writeUInt32BE(width, 0);
   header.writeUInt32BE(height, 4);
   header.writeUInt8(8 * bytes, 8);
+  header.writeUInt8(channels === 3 ? 2 : 0, 9);
   const chunk = (type: string, content: Uint8Array) => {
     const typed = Buffer.concat([Buffer.from(type, "latin1"), content]);
     const frame = Buffer.alloc(8);
@@ -40,10 +42,13 @@ export function png(data: Uint8Array | Uint16Array, width: number, height: numbe
   return Buffer.concat([signature, chunk("IHDR", header), chunk("IDAT", deflateSync(rows)), chunk("IEND", none)]);
 }
 
-/** A Wavefront OBJ file. */
-export function obj({ positions, indices }: Mesh): Uint8Array {
+/** A Wavefront OBJ file, whose vertices may have colours, 0 to 255. */
+export function obj({ positions, indices, colors }: Mesh & { colors?: Uint8Array }): Uint8Array {
   const lines: string[] = [];
-  for (let i = 0; i < positions.length; i += 3) lines.push(`v ${positions.slice(i, i + 3).join(" ")}`);
+  for (let i = 0; i < positions.length; i += 3) {
+    const color = Array.from(colors?.subarray(i, i + 3) ?? [], (c) => c / 255);
+    lines.push(`v ${[...positions.slice(i, i + 3), ...color].join(" ")}`);
+  }
   for (let i = 0; i < indices.length; i += 3) {
     lines.push(`f ${Array.from(indices.slice(i, i + 3), (index) => index + 1).join(" ")}`);
   }

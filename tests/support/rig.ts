@@ -18,12 +18,12 @@ export interface RigFrame {
   pose: Pose;
 }
 
-/** What a camera sees that is turned about the object by this angle, degrees. */
-export function frameAt(degrees: number): RigFrame {
+/** What a camera sees that is turned about the object, the blob by default, by this angle, degrees. */
+export function frameAt(degrees: number, object: Mesh = mesh as Mesh): RigFrame {
   const half = (degrees * Math.PI) / 360;
   const turn: Pose["rotation"] = [0, Math.sin(half), 0, Math.cos(half)];
   const pose: Pose = { ...truth, rotation: product(turn, truth.rotation) };
-  const { depth, mask, camera } = render(mesh as Mesh, pose, pinhole, size.width, size.height);
+  const { depth, mask, camera } = render(object, pose, pinhole, size.width, size.height);
   const back: Pose["rotation"] = [0, -turn[1], 0, turn[3]];
   const [x, y, z] = truth.translation;
   // c − Rᵀ·c, about the object's origin c.

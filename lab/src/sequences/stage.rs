@@ -138,12 +138,13 @@ impl Stage {
     pub fn made(&self, scene: &Scene, seed: u64, random: &mut Random) -> Result<Made> {
         let cell = (self.tier, Class::Plain);
         let generated = generate(&self.object, &self.placed, &self.symmetry, scene, cell, random)?;
-        let (mesh, world_from_mesh) = canonicalise(&generated.mesh, seed)?;
+        let (mut mesh, world_from_mesh) = canonicalise(&generated.mesh, seed)?;
         let (mut colors, mut symmetry) = (None, declared(&generated.symmetry, &world_from_mesh));
         if let Some(print) = &self.print {
             let eye = DVec3::from_array(scene.camera_from_world.inverse().translation.into());
             let cell = (self.tier, Class::Printed);
-            colors = Some(paint(&mesh, &world_from_mesh, (print, &self.placed), eye, cell, random)?);
+            let painted = paint(&mesh, &world_from_mesh, (print, &self.placed), eye, cell, random)?.mesh;
+            (mesh, colors) = (painted.mesh, painted.colors);
             symmetry = Symmetry::None;
         }
         Ok(Made { mesh, world_from_mesh, symmetry, colors })
@@ -157,7 +158,7 @@ impl Stage {
     /// The photo of a scene, if the object has a print.
     pub fn photo(&self, scene: &Scene, random: &mut Random) -> Result<Option<Arc<Photo>>> {
         let Some(print) = &self.print else { return Ok(None) };
-        take(scene, (&self.placed, print), Class::Printed, self.tier, random).map(|photo| Some(Arc::new(photo)))
+        take(scene, (&self.placed, print), Class::Printed, self.tier, random).map(|taken| Some(Arc::new(taken.photo)))
     }
 
     /// Depth of a sensor and the mask of a segmentation model.

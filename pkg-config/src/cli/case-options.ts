@@ -40,6 +40,8 @@ A case folder holds
   gt.json (optional)             {"scale", "rotation": 3×3 row-major, "translation": m, "symmetry"}: the true pose
 or a mesh and folders frame_*, each with depth, camera.json, and optionally
   mask.png, .npy or .json        in at least one frame; in all of them without pose.json
+  rgb.png or .jpg, image.png or .jpg
+                                 the photo of the frame
   pose.json                      {"camera_to_world": 4×4 row by row, m}: the camera's pose; in all frames or it is not used`;
 
 /** Frames and units, for --help. */

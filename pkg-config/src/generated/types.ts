@@ -1010,6 +1010,11 @@ score: number,
  */
 terms: ScoreTerms, 
 /**
+ * What the colours of photo and mesh contributed; with given camera poses, those of all views together. Present where
+ * the view has a photo and the mesh has colours.
+ */
+color?: ColorReport, 
+/**
  * Agreement of the posed mesh with the view.
  */
 metrics: Metrics, 
