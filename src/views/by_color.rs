@@ -176,7 +176,7 @@ fn joint_agreement(appearances: &[Option<Appearance>]) -> Option<f64> {
         [] => None,
         [(_, agreement)] => Some(*agreement),
         _ => {
-            let unlikely = |agreement: f64| libm::log(1.0 - agreement.max(0.0).min(SURE_AGREEMENT).powi(2));
+            let unlikely = |agreement: f64| libm::log(1.0 - agreement.clamp(0.0, SURE_AGREEMENT).powi(2));
             let mean = seen.iter().map(|(cells, agreement)| cells * unlikely(*agreement)).sum::<f64>() / cells;
             Some((1.0 - libm::exp(mean)).max(0.0).sqrt())
         }
