@@ -69,11 +69,25 @@ pub struct SceneAlignment {
 /// [`ErrorCode::SizeMismatch`](crate::error::ErrorCode::SizeMismatch) for masks of another size than the depth map.
 /// Errors of one object are in its place of the result.
 pub fn align_scene(scene: &Scene<'_>, host: &mut dyn Host) -> Result<SceneAlignment> {
-    let Scene { depth, camera, objects, occluders, .. } = scene;
-    let masks: Vec<&Mask> = objects.iter().map(|object| &object.mask).chain(occluders).collect();
+    let masks = masks_of(scene);
+    let observation = |i: usize| observation_of(&scene.depth, &scene.camera, &masks, i);
+    let objects = scene.objects.iter().enumerate();
+    let found = objects.map(|(i, object)| alone(&observation(i)?, object, host)).collect();
+    align_placed(scene, found, host)
+}
+
+/// Aligns the objects of a scene with what each has found alone.
+///
+/// # Errors
+/// Those of [`align_scene`].
+pub fn align_placed(
+    scene: &Scene<'_>,
+    found: Vec<Result<Placement>>,
+    host: &mut dyn Host,
+) -> Result<SceneAlignment> {
+    let Scene { depth, camera, objects, .. } = scene;
+    let masks = masks_of(scene);
     let observation = |i: usize| observation_of(depth, camera, &masks, i);
-    let found: Vec<Result<Placement>> =
-        objects.iter().enumerate().map(|(i, object)| alone(&observation(i)?, object, host)).collect();
     let (placements, failures): (Vec<_>, Vec<_>) =
         found.into_iter().map(|f| f.map_or_else(|e| (None, Some(e)), |p| (Some(p), None))).unzip();
     let taken = union_of(depth.width(), depth.height(), masks.iter().copied());
@@ -107,6 +121,10 @@ pub fn align_scene(scene: &Scene<'_>, host: &mut dyn Host) -> Result<SceneAlignm
         Ok(PlacedObject { alignment, contact })
     });
     Ok(SceneAlignment { objects: objects.collect(), support })
+}
+
+fn masks_of<'s>(scene: &'s Scene<'_>) -> Vec<&'s Mask> {
+    scene.objects.iter().map(|object| &object.mask).chain(&scene.occluders).collect()
 }
 
 /// The observation of an object, with the pixels of all others.
