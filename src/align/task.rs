@@ -13,6 +13,7 @@ use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::Normals;
 use crate::evidence::clouds::Clouds;
 use crate::evidence::observation::Observation;
+use crate::evidence::photo::Photo;
 use crate::precise;
 use crate::precise::clean::CleanObservation;
 use crate::precise::color::{ColorStage, agreement};
@@ -34,6 +35,8 @@ pub struct AlignTask<'h, O, M> {
     /// What it is given, and the search that begins with it. A module that gives its tasks nothing does not contain the
     /// search.
     given: Option<(Given, Resume)>,
+    /// Whether the searches end with the choice of the photo.
+    chooses: bool,
     setup: Setup,
     stages: Option<Stopwatch<'h>>,
     state: State,
@@ -54,6 +57,8 @@ pub struct Given {
     pub known: Neighbourhood,
 }
 
+/// Loss of confidence beyond which the surroundings do not choose another pose than the object alone.
+const DOUBT: f64 = 0.05;
 /// Loss of confidence by which the surroundings contradict what an object alone shows.
 const CONTRADICTION: f64 = 0.3;
 
@@ -76,7 +81,9 @@ enum State {
     /// The searches have ended.
     Searched(Box<Clouds>, Box<Rounds>, Box<(Solution, Certainty)>),
     /// The poses that the searches have left are compared with the photo.
-    Comparing(Box<Clouds>, Box<Rounds>, Box<ColorStage>),
+    Comparing(Box<Clouds>, Box<Rounds>, Box<(Solution, Certainty)>, Box<ColorStage>),
+    /// The photo has put its choice first, and the task ends with that.
+    Chosen(Box<Rounds>, Box<(Solution, Certainty)>),
     /// The search has found a pose.
     Found(Box<Clouds>, Rc<CleanObservation>, Box<Solution>, Box<Certainty>),
     /// The result has been returned, or an error.
@@ -91,7 +98,17 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
     pub fn new(observation: O, mesh: M, options: AlignOptions, host: impl Host + 'h) -> Result<Self> {
         let (setup, efforts) = (Setup::of_precise(&options)?, precise::efforts(&options));
         let stages = Some(Stopwatch::new(host, precise::PLAN));
-        Ok(Self { observation, mesh, options, efforts, given: None, setup, stages, state: State::Begun })
+        Ok(Self {
+            observation,
+            mesh,
+            options,
+            efforts,
+            given: None,
+            chooses: false,
+            setup,
+            stages,
+            state: State::Begun,
+        })
     }
 
     /// Overrides the settings of the searches that follow from the options, for ablations.
@@ -104,18 +121,23 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
         Self { given: Some((given, precise::resume)), ..self }
     }
 
+    /// Ends the searches with the pose that the photo chooses, if there is one.
+    pub fn with_choice(self) -> Self {
+        Self { chooses: true, ..self }
+    }
+
     /// Continues until the searches have ended, or until `pause` returns true. Returns whether they have ended.
     ///
     /// # Errors
     /// As [`AlignTask::step`].
     pub fn step_search(&mut self, pause: &mut dyn FnMut() -> bool) -> Result<bool> {
         let Some(mut stages) = self.stages.take() else { return Err(over()) };
-        while !matches!(self.state, State::Searched(..)) {
+        while !self.has_searched() {
             if matches!(self.state, State::Found(..)) {
                 return Err(over());
             }
             let is_paused = !self.advance_by(pause, &mut stages)? || pause();
-            if is_paused && !matches!(self.state, State::Searched(..)) {
+            if is_paused && !self.has_searched() {
                 self.stages = Some(stages);
                 return Ok(false);
             }
@@ -124,10 +146,25 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
         Ok(true)
     }
 
-    /// What the searches have found, and with which confidence, once they have ended.
+    fn has_searched(&self) -> bool {
+        match self.state {
+            State::Searched(..) => !self.chooses || self.photo().is_none(),
+            State::Chosen(..) => true,
+            _ => false,
+        }
+    }
+
+    /// The photo, if the colours of the mesh are known as well.
+    fn photo(&self) -> Option<&Photo> {
+        self.observation.borrow().photo().filter(|_| self.mesh.borrow().colors().is_some())
+    }
+
+    /// What the searches have found, and with which confidence of its shape, once they have ended.
     pub fn searched(&self) -> Option<(&Rounds, f64)> {
         match &self.state {
-            State::Searched(_, rounds, concluded) => Some((rounds, concluded.1.confidence)),
+            State::Searched(_, rounds, concluded) | State::Chosen(rounds, concluded) => {
+                Some((rounds, concluded.1.confidence))
+            }
             _ => None,
         }
     }
@@ -190,7 +227,7 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
             self.state = state;
             return Ok(false);
         }
-        if let State::Comparing(_, rounds, stage) = &mut state
+        if let State::Comparing(_, rounds, _, stage) = &mut state
             && let Some(colors) = self.mesh.borrow().colors()
             && !stage.run(rounds, colors, pause)
         {
@@ -234,8 +271,14 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
                 }
                 State::Searched(clouds, rounds, Box::new(concluded?))
             }
-            State::Resumed(clouds, rounds) => {
-                let concluded = precise::conclude(&rounds, mesh.mesh(), &self.options, None)?;
+            State::Resumed(clouds, mut rounds) => {
+                let mut concluded = precise::conclude(&rounds, mesh.mesh(), &self.options, None)?;
+                if let Some((given, _)) = &self.given
+                    && concluded.1.confidence < given.confidence - DOUBT
+                    && rounds.prefer(&given.found)
+                {
+                    concluded = precise::conclude(&rounds, mesh.mesh(), &self.options, None)?;
+                }
                 if let Some((given, resume)) = &self.given
                     && concluded.1.confidence < given.confidence - CONTRADICTION
                 {
@@ -251,23 +294,27 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
                 }
                 State::Searched(clouds, rounds, Box::new(concluded))
             }
-            State::Searched(clouds, rounds, concluded) => match observation.photo().filter(|_| mesh.colors().is_some())
-            {
+            State::Searched(clouds, rounds, concluded) => match self.photo() {
                 Some(photo) => {
                     let stage = ColorStage::new(&rounds, photo);
-                    State::Comparing(clouds, rounds, Box::new(stage))
+                    State::Comparing(clouds, rounds, concluded, Box::new(stage))
                 }
                 None => {
                     let (solution, certainty) = *concluded;
                     State::Found(clouds, rounds.search.observation.clone(), Box::new(solution), Box::new(certainty))
                 }
             },
-            State::Comparing(clouds, rounds, stage) => {
+            State::Comparing(clouds, mut rounds, concluded, stage) => {
                 let judgment = mesh.colors().map(|colors| stage.judge(&rounds, colors));
+                if self.chooses {
+                    let chosen = judgment.and_then(|judgment| judgment.chosen);
+                    chosen.into_iter().for_each(|chosen| rounds.found.insert(0, chosen));
+                    return Ok(State::Chosen(rounds, concluded));
+                }
                 let (solution, certainty) = precise::conclude(&rounds, mesh.mesh(), &self.options, judgment.as_ref())?;
                 State::Found(clouds, rounds.search.observation.clone(), Box::new(solution), Box::new(certainty))
             }
-            State::Found(..) | State::Over => return Err(over()),
+            State::Chosen(..) | State::Found(..) | State::Over => return Err(over()),
         })
     }
 
@@ -280,7 +327,12 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
         clean: Option<Rc<CleanObservation>>,
         stages: &mut Stopwatch<'h>,
     ) -> Result<State> {
-        let settings = self.efforts.iter().find(|settings| settings.effort == given.effort).ok_or_else(over)?.again();
+        let settings = self
+            .efforts
+            .iter()
+            .find(|settings| settings.effort == given.effort)
+            .ok_or_else(over)?
+            .again(given.confidence >= SURE);
         let (observation, mesh) = (self.observation.borrow(), self.mesh.borrow());
         let told = Told {
             found: &given.found,

@@ -159,9 +159,10 @@ impl SearchSettings {
     }
 
     /// The settings of a search among the poses that one with these settings has found: the same grids, so that scores
-    /// are comparable, and the rounds of the least effort.
-    pub fn again(self) -> Self {
-        Self { rounds: rounds(Effort::Fast), ..self }
+    /// are comparable, and the rounds of the least effort or, where that search was unsure, of the next one.
+    pub fn again(self, is_sure: bool) -> Self {
+        let effort = if is_sure || self.effort == Effort::Fast { Effort::Fast } else { Effort::Balanced };
+        Self { rounds: rounds(effort), ..self }
     }
 
     /// The work of the search, in units of the work budget.

@@ -21,6 +21,9 @@ use crate::geometry::similarity::Similarity;
 const FAR: f32 = 0.8;
 const NEAR: f32 = 0.3;
 
+/// Rotation by which a search may refine a pose of another one, radians.
+const SAME: f64 = 0.25;
+
 /// Rotations after which the work of a round on the rotation grid is known.
 const PROBED_ROTATIONS: usize = 16;
 
@@ -94,6 +97,19 @@ impl Rounds {
         let mut rounds = Self::new(search, None, false);
         (rounds.found, rounds.index) = (found, ROUNDS);
         rounds
+    }
+
+    /// Puts the candidate that is nearest to the best one of another search first, unless it is first. Returns whether the
+    /// order has changed.
+    pub fn prefer(&mut self, found: &[Found]) -> bool {
+        let Some(best) = found.first() else { return false };
+        let angle = |f: &Found| f.pose.rotation.angle_between(best.pose.rotation);
+        let near = self.found.iter().position(|f| angle(f) < SAME);
+        if let Some(place) = near.filter(|place| *place > 0) {
+            self.found[..=place].rotate_right(1);
+            return true;
+        }
+        false
     }
 
     /// Adds poses that another search has refined to the candidates of the grid.

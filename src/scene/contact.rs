@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::layers::volumes;
 use super::placement::Body;
 use super::plane::Plane;
+pub use super::support::RestsOn;
 use super::support::{Ground, diameter, extent};
 use crate::geometry::pinhole::Pinhole;
 
@@ -13,8 +14,9 @@ use crate::geometry::pinhole::Pinhole;
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "camelCase")]
 pub struct Contact {
-    /// What it rests on: `"support"`, the index of another object, or `null` if it touches neither.
-    #[cfg_attr(feature = "types", ts(type = "\"support\" | number | null"))]
+    /// What it rests on: `"support"`, the index of another object, `"level"` for a level surface at another height that
+    /// the depth map shows, such as a shelf or a box without a mesh, or `null` if it touches none of them.
+    #[cfg_attr(feature = "types", ts(type = "\"support\" | \"level\" | number | null"))]
     pub rests_on: Option<RestsOn>,
     /// Height of its lowest point over what is below it, in metres; negative where it enters it. `null` without a
     /// support.
@@ -23,24 +25,6 @@ pub struct Contact {
     pub shared_volume: f64,
     /// How far `snap` has moved it along the normal of the support, in metres.
     pub snapped_m: f64,
-}
-
-/// What an object rests on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum RestsOn {
-    /// The support.
-    Support,
-    /// The object with this index.
-    Object(usize),
-}
-
-impl Serialize for RestsOn {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self {
-            Self::Support => serializer.serialize_str("support"),
-            Self::Object(index) => serializer.serialize_u32(*index as u32),
-        }
-    }
 }
 
 /// Largest gap of an object that touches what is below it: metres, and relative to its size.
@@ -75,12 +59,16 @@ pub fn contacts(
             Contact { rests_on: None, gap_m: None, shared_volume: shared(i, bodies, camera), snapped_m: 0.0 };
         if let Some((ground, support)) = grounds.get(i).copied().flatten().zip(support) {
             let low = heights(body, support)[0];
-            let on = ground.on.and_then(|k| bodies[k].as_ref().map(|below| (k, below)));
-            let top = on.map_or(0.0, |(k, below)| heights(below, support)[1] + shifts[k]);
-            let gap = low - top;
-            let seen = if on.is_some() { gap } else { heights(body, &ground.plane)[0] };
+            let gap = match ground.on {
+                RestsOn::Support => low,
+                RestsOn::Level => heights(body, &ground.plane)[0],
+                RestsOn::Object(k) => {
+                    low - bodies[k].as_ref().map_or(0.0, |below| heights(below, support)[1] + shifts[k])
+                }
+            };
+            let seen = if ground.on == RestsOn::Support { heights(body, &ground.plane)[0] } else { gap };
             if seen.abs() <= TOUCHES[0] + TOUCHES[1] * diameter(body) {
-                contact.rests_on = Some(ground.on.map_or(RestsOn::Support, RestsOn::Object));
+                contact.rests_on = Some(ground.on);
                 if snap {
                     shifts[i] = -gap;
                     contact.snapped_m = -gap;

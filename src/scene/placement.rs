@@ -10,12 +10,14 @@ use crate::error::Result;
 use crate::evidence::observation::Observation;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::{Similarity, vec3, vector3};
-use crate::precise::Found;
+use crate::precise::mesh_pyramid::MeshPyramid;
 use crate::precise::pose::{CropPose, MeshFrame};
+use crate::precise::prepared_mesh::PreparedMesh;
 use crate::precise::rounds::Rounds;
 use crate::precise::score::Score;
 use crate::precise::surroundings::{Layer, Neighbourhood};
-use crate::report::{Alignment, Effort};
+use crate::precise::{Found, SearchSettings};
+use crate::report::{Alignment, Effort, Sim3};
 
 /// Numbers of a candidate in [`Placement::numbers`].
 const NUMBERS: usize = 21;
@@ -50,13 +52,17 @@ pub struct Body {
 }
 
 impl Body {
-    /// Measures the vertices of the mesh along the normal of the ground, in the pose of the alignment: colours may have
-    /// chosen another one than the search.
-    ///
-    /// # Errors
-    /// Those of [`Similarity::from_column_major`], which only a bug could cause.
-    pub fn measured(self, mesh: &Mesh, alignment: &Alignment, normal: DVec3) -> Result<Self> {
-        let camera_from_mesh = Similarity::from_column_major(&alignment.camera_from_mesh.matrix)?;
+    /// The space that a mesh takes in a pose of its normalised frame.
+    fn new(mesh: &MeshPyramid, pose: &CropPose, observation: &Observation) -> Self {
+        let pose = pose.similarity(&MeshFrame::NORMALIZED);
+        let points = mesh.outermost.iter().map(|p| vec3(&pose.apply(vector3(*p)))).collect();
+        let size = [observation.depth().width(), observation.depth().height()];
+        let layer = Rc::new(layer(&mesh.fine, &pose, &observation.camera(), size));
+        Self { points, layer, along: None }
+    }
+
+    /// With the extent of all vertices of the mesh along the normal of the ground.
+    fn measured(self, mesh: &Mesh, camera_from_mesh: &Similarity, normal: DVec3) -> Self {
         let normal = nalgebra::Vector3::from(normal.to_array());
         // n·(s·R·p + t), with n in the frame of the mesh.
         let direction =
@@ -64,7 +70,7 @@ impl Body {
         let heights = mesh.positions().iter().map(|p| direction.dot(p.as_dvec3()));
         let [low, high] = extremes(heights);
         let offset = normal.dot(&camera_from_mesh.translation);
-        Ok(Self { along: Some([low + offset, high + offset]), ..self })
+        Self { along: Some([low + offset, high + offset]), ..self }
     }
 }
 
@@ -73,17 +79,39 @@ impl Placement {
     pub fn new(rounds: &Rounds, confidence: f64, observation: &Observation) -> Option<Self> {
         let (found, search) = (&rounds.found, &rounds.search);
         let camera_from_mesh = found.first()?.pose.similarity(&search.mesh.frame);
-        let pose = found.first()?.pose.similarity(&MeshFrame::NORMALIZED);
-        let points = search.mesh.outermost.iter().map(|p| vec3(&pose.apply(vector3(*p)))).collect();
-        let size = [observation.depth().width(), observation.depth().height()];
-        let layer = Rc::new(layer(&search.mesh.fine, &pose, &observation.camera(), size));
         Some(Self {
             found: found.clone(),
             effort: search.effort(),
             renders: search.renders,
             confidence,
             camera_from_mesh,
-            body: Body { points, layer, along: None },
+            body: Body::new(&search.mesh, &found.first()?.pose, observation),
+        })
+    }
+
+    /// The space that the object takes in the pose of its alignment: colours may have chosen another one than the search.
+    /// With the normal of the ground, all vertices of the mesh are measured along it.
+    ///
+    /// # Errors
+    /// Those of [`Similarity::from_column_major`], which only a bug could cause.
+    pub fn body_of(
+        self,
+        alignment: &Alignment,
+        mesh: &PreparedMesh<'_>,
+        observation: &Observation,
+        normal: Option<DVec3>,
+    ) -> Result<Body> {
+        let camera_from_mesh = Similarity::from_column_major(&alignment.camera_from_mesh.matrix)?;
+        let mut body = self.body;
+        if Sim3::from(&self.camera_from_mesh) != alignment.camera_from_mesh
+            && let Some(pyramid) = mesh.pyramid(&SearchSettings::from(self.effort).grids)
+            && let Some(pose) = CropPose::of_similarity(&camera_from_mesh, &pyramid.frame)
+        {
+            body = Body::new(&pyramid, &pose, observation);
+        }
+        Ok(match normal {
+            Some(normal) => body.measured(mesh.mesh(), &camera_from_mesh, normal),
+            None => body,
         })
     }
 

@@ -1,6 +1,6 @@
 //! Support: which plane of the scene the objects stand on, and what each object may stand on.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 use serde::Serialize;
 
 use super::layers::extremes_along;
@@ -33,6 +33,27 @@ pub struct Support {
     pub confidence: f64,
 }
 
+/// What an object rests on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RestsOn {
+    /// The support.
+    Support,
+    /// A level surface at another height.
+    Level,
+    /// The object with this index.
+    Object(usize),
+}
+
+impl Serialize for RestsOn {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Support => serializer.serialize_str("support"),
+            Self::Level => serializer.serialize_str("level"),
+            Self::Object(index) => serializer.serialize_u32(*index as u32),
+        }
+    }
+}
+
 /// What an object may stand on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ground {
@@ -40,8 +61,8 @@ pub struct Ground {
     pub plane: Plane,
     /// The gap that halves the credit of the contact, metres.
     pub gap_m: f64,
-    /// The object whose top it is; `None` for the support.
-    pub on: Option<usize>,
+    /// What it belongs to.
+    pub on: RestsOn,
 }
 
 impl Ground {
@@ -78,8 +99,22 @@ const SIDEWAYS: f64 = 0.5;
 const LOCAL_READINGS: usize = 150;
 const LOCAL_BAND: f64 = 0.35;
 const MAX_BEND: [f64; 2] = [0.004, 0.012];
-/// Largest offset between what things stand on and what the sensor shows of it, metres.
-const MAX_OFFSET_M: f64 = 0.008;
+/// Distance from a body up to which a level surface may be the one that it stands on and least standard deviation of its
+/// readings in every direction, relative to the size of the body; and the thickness of its readings, relative to the
+/// largest bend.
+const LEVEL_REACH: f64 = 1.0;
+const LEVEL_WIDTH: f64 = 0.08;
+const LEVEL_HEIGHT: f64 = 0.7;
+/// Largest offset between what things stand on and what the sensor shows of it, and the steps in which it is sought,
+/// metres.
+const MAX_OFFSET_M: f64 = 0.012;
+const OFFSET_STEP_M: f64 = 0.000_25;
+/// Offset that costs one unit; and the error of an object's lowest point: metres, and relative to its size.
+const OFFSET: [f64; 3] = [0.005, 0.0015, 0.008];
+/// Distance from the plane up to which an object may tell of the offset, metres, and the weight of one that is certainly
+/// misplaced.
+const FARTHEST_M: f64 = 0.03;
+const UNSURE: f64 = 0.3;
 
 /// The support, and what each object may stand on.
 pub fn find_support(
@@ -105,9 +140,12 @@ pub fn find_support(
         let plane = plane.as_ref()?.raised(offset);
         let body = &placements[i].as_ref()?.body;
         let gap_m = gap_m(body);
-        Some(match below(i, &plane, placements) {
-            Some((on, top)) => Ground { plane: plane.raised(top), gap_m, on: Some(on) },
-            None => Ground { plane, gap_m, on: None },
+        if let Some((on, top)) = below(i, &plane, placements) {
+            return Some(Ground { plane: plane.raised(top), gap_m, on: RestsOn::Object(on) });
+        }
+        Some(match level_below(view, &support.plane, body) {
+            Some(height) => Ground { plane: support.plane.raised(height), gap_m, on: RestsOn::Level },
+            None => Ground { plane, gap_m, on: RestsOn::Support },
         })
     };
     let grounds = bent.iter().enumerate().map(ground).collect();
@@ -157,44 +195,112 @@ fn depth_of(body: &Body) -> f64 {
 
 /// How far the readings around a body are over the plane.
 fn bend(view: &View<'_>, plane: &Plane, body: &Body) -> f64 {
-    let layer = &body.layer;
-    let (width, height) = (view.depth.width(), view.depth.height());
-    let rows = layer.spans.len() / layer.width.max(1);
-    let band = (LOCAL_BAND * layer.width.max(rows) as f64) as usize + 8;
-    let columns = layer.origin[0].saturating_sub(band)..(layer.origin[0] + layer.width + band).min(width);
-    let lines = layer.origin[1].saturating_sub(band)..(layer.origin[1] + rows + band).min(height);
     let limit = MAX_BEND[0] + MAX_BEND[1] * depth_of(body);
     let mut heights = Vec::new();
-    for v in lines {
-        for u in columns.clone() {
-            let i = v * width + u;
-            let z = view.depth.data()[i];
-            if z > 0.0 && view.taken.data()[i] == 0 {
-                let h = plane.height(view.camera.back_project(u as f64, v as f64, f64::from(z)).as_dvec3());
-                if h.abs() < limit {
-                    heights.push(h as f32);
-                }
-            }
+    around(view, body, |point| {
+        let h = plane.height(point);
+        if h.abs() < limit {
+            heights.push(h as f32);
         }
-    }
+    });
     if heights.len() < LOCAL_READINGS {
         return 0.0;
     }
     median(heights.into_iter()).map_or(0.0, f64::from)
 }
 
-/// How far the objects stand over what the depth map shows of the plane, on average: sensors misplace tables.
+/// Visits the readings of the scene in the band around a body.
+fn around(view: &View<'_>, body: &Body, mut visit: impl FnMut(DVec3)) {
+    let layer = &body.layer;
+    let (width, height) = (view.depth.width(), view.depth.height());
+    let rows = layer.spans.len() / layer.width.max(1);
+    let band = (LOCAL_BAND * layer.width.max(rows) as f64) as usize + 8;
+    let columns = layer.origin[0].saturating_sub(band)..(layer.origin[0] + layer.width + band).min(width);
+    for v in layer.origin[1].saturating_sub(band)..(layer.origin[1] + rows + band).min(height) {
+        for u in columns.clone() {
+            let i = v * width + u;
+            let z = view.depth.data()[i];
+            if z > 0.0 && view.taken.data()[i] == 0 {
+                visit(view.camera.back_project(u as f64, v as f64, f64::from(z)).as_dvec3());
+            }
+        }
+    }
+}
+
+/// The height over the support of the level surface that a body is nearer to than to the support, if the depth map shows
+/// one below it.
+fn level_below(view: &View<'_>, plane: &Plane, body: &Body) -> Option<f64> {
+    let size = diameter(body);
+    let low = extent(body, plane)[0];
+    let tolerance = 1.5 * (TOUCH[0] + TOUCH[1] * size);
+    let slack = MAX_BEND[0] + MAX_BEND[1] * depth_of(body);
+    // Nearer to the surface than to the support, and within reach of it.
+    let reach = tolerance.min(0.5 * low);
+    if low - reach < slack {
+        return None;
+    }
+    let across = plane.normal.any_orthonormal_vector();
+    let along = plane.normal.cross(across);
+    let on_plane = |p: DVec3| DVec2::new(across.dot(p), along.dot(p));
+    let centre = on_plane(body.points.iter().map(|p| p.as_dvec3()).sum::<DVec3>() / body.points.len().max(1) as f64);
+    let mut near: Vec<(f64, DVec2)> = Vec::new();
+    around(view, body, |point| {
+        let (height, place) = (plane.height(point), on_plane(point) - centre);
+        if (height - low).abs() < reach + slack && place.length() < LEVEL_REACH * size {
+            near.push((height, place));
+        }
+    });
+    near.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // The window with the most readings.
+    let (mut best, mut first) = (0..0, 0);
+    for last in 0..near.len() {
+        while near[last].0 - near[first].0 > LEVEL_HEIGHT * slack {
+            first += 1;
+        }
+        if last + 1 - first > best.len() {
+            best = first..last + 1;
+        }
+    }
+    let surface = near.get(best)?;
+    if surface.len() < LOCAL_READINGS {
+        return None;
+    }
+    let height = surface[surface.len() / 2].0;
+    // A wall, or the side of a thing, fills the window as a strip.
+    let count = surface.len() as f64;
+    let mean = surface.iter().map(|(_, p)| *p).sum::<DVec2>() / count;
+    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+    for (_, place) in surface {
+        let p = *place - mean;
+        (xx, xy, yy) = (xx + p.x * p.x, xy + p.x * p.y, yy + p.y * p.y);
+    }
+    let (middle, half) = (0.5 * (xx + yy), (0.25 * (xx - yy) * (xx - yy) + xy * xy).sqrt());
+    let narrow = ((middle - half).max(0.0) / count).sqrt();
+    (narrow > LEVEL_WIDTH * size && (height - low).abs() < reach).then_some(height)
+}
+
+/// How far the objects stand over what the depth map shows of the plane: sensors misplace tables. The offset on which
+/// most objects agree; one that is off by itself hardly counts.
 fn common_offset(planes: &[Option<Plane>], placements: &[Option<Placement>]) -> f64 {
     let gap = |(plane, p): (&Option<Plane>, &Option<Placement>)| {
         let (plane, p) = plane.as_ref().zip(p.as_ref())?;
         let gap = extent(&p.body, plane)[0];
-        (gap.abs() < 2.0 * gap_m(&p.body) && p.confidence > 0.5).then_some(gap as f32)
+        let noise = OFFSET[1] + OFFSET[2] * diameter(&p.body);
+        // A half turn that shape does not tell makes a pose uncertain, but not its height.
+        (gap.abs() < FARTHEST_M).then_some((gap, noise, UNSURE + (1.0 - UNSURE) * p.confidence))
     };
-    let gaps: Vec<f32> = planes.iter().zip(placements).filter_map(gap).collect();
-    let count = gaps.len() as f64;
-    let middle = median(gaps.into_iter()).map_or(0.0, f64::from);
-    // As if one and a half objects had shown none.
-    (middle * count / (count + 1.5)).clamp(-MAX_OFFSET_M, MAX_OFFSET_M)
+    let gaps: Vec<(f64, f64, f64)> = planes.iter().zip(placements).filter_map(gap).collect();
+    let loss = |offset: f64| {
+        let prior = offset / OFFSET[0];
+        let off = |(gap, noise, weight): &(f64, f64, f64)| {
+            let q = (gap - offset) / noise;
+            weight * libm::log(1.0 + q * q)
+        };
+        prior * prior + gaps.iter().map(off).sum::<f64>()
+    };
+    let steps = (MAX_OFFSET_M / OFFSET_STEP_M) as i32;
+    let tried = (-steps..=steps).map(|k| f64::from(k) * OFFSET_STEP_M).map(|offset| (loss(offset), offset));
+    tried.fold((f64::INFINITY, 0.0), |best, next| if next.0 < best.0 { next } else { best }).1
 }
 
 /// The object that another one stands on, and the height of its top over the plane.

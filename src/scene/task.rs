@@ -80,11 +80,7 @@ pub fn align_scene(scene: &Scene<'_>, host: &mut dyn Host) -> Result<SceneAlignm
 ///
 /// # Errors
 /// Those of [`align_scene`].
-pub fn align_placed(
-    scene: &Scene<'_>,
-    found: Vec<Result<Placement>>,
-    host: &mut dyn Host,
-) -> Result<SceneAlignment> {
+pub fn align_placed(scene: &Scene<'_>, found: Vec<Result<Placement>>, host: &mut dyn Host) -> Result<SceneAlignment> {
     let Scene { depth, camera, objects, .. } = scene;
     let masks = masks_of(scene);
     let observation = |i: usize| observation_of(depth, camera, &masks, i);
@@ -153,8 +149,7 @@ pub fn observation_of(depth: &DepthMap, camera: &Pinhole, masks: &[&Mask], objec
 pub fn alone(observation: &Observation, object: &SceneObject<'_>, host: &mut dyn Host) -> Result<Placement> {
     // The metrics are those of the result.
     let options = AlignOptions { metrics: false, ..object.options.clone() };
-    let mut task = AlignTask::new(observation, &object.mesh, options, host)?;
-    searched(&mut task)
+    searched(&mut AlignTask::new(observation, &object.mesh, options, host)?.with_choice())
 }
 
 fn searched<'m, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>>(
@@ -202,12 +197,9 @@ pub fn together(
     let given = placement.given(known);
     let task = AlignTask::new(observation, &object.mesh, object.options.clone(), host)?;
     let mut task = task.with_given(given);
-    let Placement { body, .. } = searched(&mut task)?;
+    let placement = searched(&mut task)?;
     let alignment = task.finish()?;
-    let body = match normal {
-        Some(normal) => body.measured(object.mesh.mesh(), &alignment, normal)?,
-        None => body,
-    };
+    let body = placement.body_of(&alignment, &object.mesh, observation, normal)?;
     Ok((alignment, body))
 }
 

@@ -9,11 +9,13 @@ use sim3align::geometry::mesh::Mesh;
 use sim3align::geometry::pinhole::Pinhole;
 use sim3align::geometry::random::Random;
 use sim3align::geometry::rasteriser::Rasteriser;
-use sim3align::geometry::similarity::Similarity;
+use sim3align::geometry::similarity::{Similarity, vector3};
 use sim3align::precise::options::{AlignOptions, Quality};
 use sim3align::precise::prepared_mesh::PreparedMesh;
 use sim3align::progress::Silent;
+use sim3align::report::Alignment;
 use sim3align::scene::contact::RestsOn;
+use sim3align::scene::layers::{extremes, layer, volumes};
 use sim3align::scene::placement::{Placement, found_of};
 use sim3align::scene::support::SupportChoice;
 use sim3align::scene::task::{Scene, SceneAlignment, SceneObject, align_scene, alone};
@@ -53,11 +55,11 @@ fn thing(extent: [f32; 3], at: [f64; 3], turn: f64) -> Thing {
     Thing { mesh, world_from_mesh: Similarity { scale: 1.0, rotation, translation: Vector3::from(at) } }
 }
 
-/// The depth map of things on a floor, and their masks.
-fn seen(things: &[Thing], noise: f64) -> (DepthMap, Vec<Mask>) {
+/// The depth map of things and boards on a floor, which it shows at another height, and the masks of the things.
+fn seen(things: &[Thing], boards: &[Thing], floor_m: f64, noise: f64) -> (DepthMap, Vec<Mask>) {
     let camera = camera();
     let up = view().rotation * Vector3::new(0.0, -1.0, 0.0);
-    let d = -up.dot(&view().translation);
+    let d = -up.dot(&view().translation) - floor_m;
     let mut random = Random::new(7, 920);
     let mut depth: Vec<f32> = (0..WIDTH * HEIGHT)
         .map(|i| {
@@ -68,7 +70,7 @@ fn seen(things: &[Thing], noise: f64) -> (DepthMap, Vec<Mask>) {
         .collect();
     let mut owner = vec![0usize; depth.len()];
     let mut rasteriser = Rasteriser::new();
-    for (k, thing) in things.iter().enumerate() {
+    for (k, thing) in things.iter().chain(boards).enumerate() {
         rasteriser.render_depth(&thing.mesh, &view().compose(&thing.world_from_mesh), &camera, WIDTH, HEIGHT);
         for (i, z) in rasteriser.depth().iter().enumerate() {
             if *z > 0.0 && (depth[i] == 0.0 || *z < depth[i]) {
@@ -91,7 +93,15 @@ fn options() -> AlignOptions {
 }
 
 fn scene_of<'m>(things: &'m [Thing], support: SupportChoice, snap: bool) -> Scene<'m> {
-    let (depth, masks) = seen(things, 0.002);
+    scene_with(things, seen(things, &[], 0.0, 0.002), support, snap)
+}
+
+fn scene_with<'m>(
+    things: &'m [Thing],
+    (depth, masks): (DepthMap, Vec<Mask>),
+    support: SupportChoice,
+    snap: bool,
+) -> Scene<'m> {
     let object = |(thing, mask): (&'m Thing, Mask)| SceneObject {
         mask,
         mesh: PreparedMesh::borrowed(&thing.mesh),
@@ -204,4 +214,77 @@ fn an_object_that_fails_leaves_the_others() {
     assert!(aligned.objects[0].is_ok());
     let error = aligned.objects[1].as_ref().err().unwrap();
     assert_eq!(error.code.as_str(), "EMPTY_MASK");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_board_that_only_the_depth_map_shows_is_a_level() {
+    let things =
+        [thing([0.16, 0.1, 0.12], [-0.2, -0.05, 0.0], 0.4), thing([0.12, 0.1, 0.08], [0.15, -0.17, 0.06], -0.3)];
+    let translation = Vector3::new(0.15, -0.06, 0.06);
+    let board = Thing {
+        mesh: cuboid(Vec3::new(0.34, 0.12, 0.26)),
+        world_from_mesh: Similarity { translation, ..Similarity::identity() },
+    };
+    let boards = [board];
+    for snap in [false, true] {
+        let scene = scene_with(&things, seen(&things, &boards, 0.0, 0.002), SupportChoice::Auto, snap);
+        let aligned = align_scene(&scene, &mut Silent).unwrap();
+        let contacts: Vec<_> = aligned.objects.iter().map(|o| o.as_ref().unwrap().contact.clone()).collect();
+        assert_eq!(contacts[0].rests_on, Some(RestsOn::Support), "{contacts:?}");
+        assert_eq!(contacts[1].rests_on, Some(RestsOn::Level), "{contacts:?}");
+        // Over the board, not over the floor, which is 12 cm below.
+        let most = if snap { 1e-9 } else { 0.006 };
+        assert!(contacts[1].gap_m.unwrap().abs() < most, "{contacts:?}");
+    }
+    // The same object at the same height over the bare floor hangs.
+    let scene = scene_of(&things, SupportChoice::Auto, false);
+    let aligned = align_scene(&scene, &mut Silent).unwrap();
+    assert_eq!(aligned.objects[1].as_ref().unwrap().contact.rests_on, None);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_floor_that_the_depth_map_misplaces_does_not_move_what_stands_on_it() {
+    let things = [
+        thing([0.16, 0.1, 0.12], [-0.18, -0.05, 0.05], 0.4),
+        thing([0.1, 0.16, 0.08], [0.03, -0.08, 0.1], -0.3),
+        thing([0.12, 0.09, 0.1], [0.2, -0.045, -0.05], 1.1),
+    ];
+    for floor_m in [-0.008, 0.008] {
+        let scene = scene_with(&things, seen(&things, &[], floor_m, 0.002), SupportChoice::Auto, false);
+        let aligned = align_scene(&scene, &mut Silent).unwrap();
+        for (i, object) in aligned.objects.iter().enumerate() {
+            let contact = &object.as_ref().unwrap().contact;
+            assert_eq!(contact.rests_on, Some(RestsOn::Support), "{floor_m}, {i}: {contact:?}");
+            // Contacts are those to the floor that the depth map shows.
+            assert!((contact.gap_m.unwrap() + floor_m).abs() < 0.005, "{floor_m}, {i}: {contact:?}");
+        }
+    }
+}
+
+/// Colours may choose another pose than the search.
+#[wasm_bindgen_test(unsupported = test)]
+fn the_space_of_an_object_is_that_of_its_alignment() {
+    let things = &things()[..1];
+    let scene = scene_of(things, SupportChoice::None, false);
+    let object = &scene.objects[0];
+    let observation = Observation::new(scene.depth.clone(), object.mask.clone(), camera()).unwrap();
+    let placement: Placement = alone(&observation, object, &mut Silent).unwrap();
+    let mut alignment = align(&observation, &things[0].mesh, &options(), &mut Silent).unwrap();
+    let normal = DVec3::NEG_Y;
+    let body =
+        |alignment: &Alignment| placement.clone().body_of(alignment, &object.mesh, &observation, Some(normal)).unwrap();
+    assert_eq!(body(&alignment).layer, placement.body.layer);
+    // Turned over and moved away from the camera.
+    let mut turned = placement.camera_from_mesh;
+    turned.rotation *= Rotation3::from_axis_angle(&Vector3::x_axis(), core::f64::consts::PI);
+    turned.translation.z += 0.1;
+    alignment.camera_from_mesh = (&turned).into();
+    let body = body(&alignment);
+    let expected = layer(&things[0].mesh, &turned, &camera(), [WIDTH, HEIGHT]);
+    let [own, shared] = volumes(&body.layer, &expected, &camera());
+    assert!(shared > 0.97 * own, "{own} and {shared}");
+    let heights = things[0].mesh.positions().iter().map(|p| -turned.apply(vector3(*p)).y);
+    let [low, high] = body.along.unwrap();
+    let [lowest, highest] = extremes(heights);
+    assert!((low - lowest).abs() < 1e-6 && (high - highest).abs() < 1e-6, "{low}, {high}");
 }

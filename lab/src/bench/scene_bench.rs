@@ -13,7 +13,7 @@ use super::benchmark::{LOOSE, STRICT, Tolerance};
 use super::statistics::{cell, median};
 use crate::case_folder::case::{depth_and_camera, last_name, mask_in, mesh_in, name_of, truth_of};
 use crate::case_folder::json;
-use crate::scenes::{ClutteredScene, Prior};
+use crate::scenes::{Below, ClutteredScene, Prior, Stance};
 use sim3align::align::align;
 use sim3align::align::evaluate::Truth;
 use sim3align::evidence::observation::Observation;
@@ -61,6 +61,8 @@ pub struct BenchObject {
     pub truth: Option<Truth>,
     /// How it is held, if known.
     pub stance: Option<&'static str>,
+    /// What it rests on, if known; `Some(None)` for an object in the air.
+    pub below: Option<Option<RestsOn>>,
 }
 
 /// An object, aligned alone and together with the others.
@@ -77,6 +79,9 @@ pub struct ObjectRecord {
     pub together: Outcome,
     /// What it rests on.
     pub contact: Option<Contact>,
+    /// See [`BenchObject`].
+    #[serde(skip)]
+    pub below: Option<Option<RestsOn>>,
 }
 
 /// How well an object was aligned.
@@ -141,6 +146,15 @@ impl BenchScene {
             mesh: case.mesh.clone(),
             truth: Some(Truth { camera_from_mesh: case.camera_from_mesh, symmetry: case.symmetry }),
             stance: Some(pair.stance().as_str()),
+            below: match pair.below() {
+                Below::Table => Some(Some(RestsOn::Support)),
+                Below::Board => Some(Some(RestsOn::Level)),
+                Below::Air => Some(None),
+                Below::Object(k) => {
+                    // A thing without a mask is none that a result could name.
+                    scene.pairs.iter().position(|other| other.index == k).map(|k| Some(RestsOn::Object(k)))
+                }
+            },
         };
         Ok(Self {
             name: format!("{:03}-{}", scene.index, prior.as_str()),
@@ -199,7 +213,14 @@ impl BenchScene {
                 Err(error) => Outcome { error: Some(error.to_string()), ..Outcome::default() },
             };
             let contact = placed.as_ref().ok().map(|placed| placed.contact.clone());
-            ObjectRecord { name: object.name.clone(), stance: object.stance, alone, together, contact }
+            ObjectRecord {
+                name: object.name.clone(),
+                stance: object.stance,
+                alone,
+                together,
+                contact,
+                below: object.below,
+            }
         };
         let plane_errors = self.plane.zip(aligned.support).map(|(truth, found)| {
             let angle = truth.normal.dot(found.plane.normal).clamp(-1.0, 1.0).acos().to_degrees();
@@ -263,6 +284,7 @@ impl BenchObject {
             mesh: mesh_in(folder)?.mesh,
             truth: truth_of(folder)?.map(truth),
             stance: None,
+            below: None,
         })
     }
 }
@@ -271,7 +293,7 @@ impl BenchObject {
 pub fn table(scenes: &[SceneRecord]) -> String {
     let objects: Vec<&ObjectRecord> = scenes.iter().flat_map(|scene| &scene.objects).collect();
     let mut text = table_of("all", scenes, &objects);
-    for stance in ["stands", "leans", "hangs", "on top"] {
+    for stance in Stance::ALL.iter().map(|stance| stance.as_str()) {
         let held: Vec<&ObjectRecord> = objects.iter().copied().filter(|o| o.stance == Some(stance)).collect();
         if !held.is_empty() && held.len() < objects.len() {
             text += "\n";
@@ -289,11 +311,14 @@ fn table_of(name: &str, scenes: &[SceneRecord], objects: &[&ObjectRecord]) -> St
         (count(&|o| right(&o.alone) && !right(&o.together)), count(&|o| !right(&o.alone) && right(&o.together)));
     let shared = objects.iter().filter_map(|o| o.contact.as_ref()).map(|c| c.shared_volume).collect();
     let resting = count(&|o| o.contact.as_ref().is_some_and(|c| c.rests_on == Some(RestsOn::Support)));
+    let told = count(&|o| o.below.is_some_and(|below| o.contact.as_ref().is_some_and(|c| c.rests_on == below)));
+    let tellable = count(&|o| o.below.is_some());
+    let overlapping = count(&|o| o.contact.as_ref().is_some_and(|c| c.shared_volume > 0.005));
     let planes: Vec<[f64; 2]> = scenes.iter().filter_map(|scene| scene.plane_errors).collect();
     let time: f64 = scenes.iter().map(|s| s.seconds[1]).sum::<f64>() / scenes.iter().map(|s| s.seconds[0]).sum::<f64>();
     let number = |x: Option<f64>, unit: f64| cell(x.map(|x| unit * x), 2);
     format!(
-        "{name}: {} scenes, {} objects\n\n| | strict | loose | tilt ≤ 3° | median tilt, ° | median gap, mm | confidence where right, wrong |\n|---|---|---|---|---|---|---|\n| alone | {} |\n| together | {} |\n\nright alone and wrong together: {worse}; wrong alone and right together: {better}\non the support: {resting}; median shared volume: {} %; planes found: {}, median errors {}°, {} mm; time: {time:.2} ×\n",
+        "{name}: {} scenes, {} objects\n\n| | strict | loose | tilt ≤ 3° | median tilt, ° | median gap, mm | confidence where right, wrong |\n|---|---|---|---|---|---|---|\n| alone | {} |\n| together | {} |\n\nright alone and wrong together: {worse}; wrong alone and right together: {better}\non the support: {resting}; contact right: {told} of {tellable}; median shared volume: {} %, over .5 %: {overlapping}; planes found: {}, median errors {}°, {} mm; time: {time:.2} ×\n",
         scenes.len(),
         objects.len(),
         of(&|o| o.alone.clone()),

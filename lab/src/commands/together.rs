@@ -18,7 +18,8 @@ Usage: sim3align-lab together [--scenes N] [--cases DIR...] [options]
 Aligns every object of each scene alone and all of them together, and prints both next to the truth.
 
   --scenes N       N cluttered scenes; 100 are 338 pairs
-  --arranged N     N scenes of two to seven objects, which also lean, hang and stand on each other
+  --arranged N     N scenes of two to twelve objects, which also lean, hang, stand on each other and on boards, and
+                   lie in piles
   --from N         leaves out the scenes before this one
   --prior P        what made their meshes: detailed (default) or smooth
   --set-seed S     seed of the set, default 0

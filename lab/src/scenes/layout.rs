@@ -6,6 +6,7 @@ use glam::{DVec2, DVec3, Vec3};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::clutter;
+use super::heap::Below;
 use crate::cases::distortion::random_rotation;
 use crate::cases::draft::{Axis, Object};
 use crate::cases::families;
@@ -13,7 +14,6 @@ use crate::cases::scene::{put_down_turned, turned_axis};
 use crate::draws::between;
 use crate::draws::chance;
 use sim3align::evidence::sample::SurfaceMoments;
-use sim3align_geometry::cloud::Bounds;
 use sim3align_geometry::error::Result;
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::random::Random;
@@ -48,9 +48,16 @@ pub enum Stance {
     Hangs,
     /// It stands on another object.
     OnTop,
+    /// It stands on a board over the desk.
+    OnBoard,
+    /// It lies as it fell, on or against other objects.
+    InPile,
 }
 
 impl Stance {
+    /// All stances.
+    pub const ALL: &[Self] = &[Self::Stands, Self::Leans, Self::Hangs, Self::OnTop, Self::OnBoard, Self::InPile];
+
     /// Its name.
     pub fn as_str(self) -> &'static str {
         match self {
@@ -58,16 +65,20 @@ impl Stance {
             Self::Leans => "leans",
             Self::Hangs => "hangs",
             Self::OnTop => "on top",
+            Self::OnBoard => "on board",
+            Self::InPile => "in pile",
         }
     }
 
-    /// Six of ten stand.
-    fn draw(random: &mut Random) -> Self {
+    /// Half of them stand on the desk or, if there is one, on a board.
+    pub(super) fn draw(random: &mut Random, has_board: bool) -> Self {
         match random.uniform() {
-            u if u < 0.6 => Self::Stands,
-            u if u < 0.72 => Self::Leans,
-            u if u < 0.84 => Self::Hangs,
-            _ => Self::OnTop,
+            u if u < 0.25 && has_board => Self::OnBoard,
+            u if u < 0.5 => Self::Stands,
+            u if u < 0.6 => Self::Leans,
+            u if u < 0.7 => Self::Hangs,
+            u if u < 0.85 => Self::OnTop,
+            _ => Self::InPile,
         }
     }
 }
@@ -77,6 +88,10 @@ impl Stance {
 pub struct Placed {
     /// How it is held.
     pub stance: Stance,
+    /// What it touches below.
+    pub below: Below,
+    /// Whether the generator, which has not seen its underside, gives it another one.
+    pub is_invented: bool,
     /// The object in its own frame.
     pub object: Object,
     /// Its surface in the world's frame, resting on z = 0.
@@ -100,22 +115,24 @@ pub struct Layout {
     pub front: f64,
     /// How far behind the centre the wall is.
     pub wall: f64,
+    /// At which height the depth map shows the desk, metres; `None` if it shows nothing but the objects.
+    pub table: Option<f64>,
 }
 
 /// The convex hull of what a thing covers of the plane: its reach from the thing's origin in each direction.
 #[derive(Debug, Clone)]
-struct Footprint(Vec<f64>);
+pub(super) struct Footprint(Vec<f64>);
 
 /// Footprints at their places.
 #[derive(Debug, Default)]
-struct Floor(Vec<(Footprint, DVec2)>);
+pub(super) struct Floor(Vec<(Footprint, DVec2)>);
 
 fn directions() -> impl Iterator<Item = DVec2> {
     (0..DIRECTIONS).map(|k| unit(TAU * k as f64 / DIRECTIONS as f64))
 }
 
 impl Footprint {
-    fn of(mesh: &Mesh) -> Self {
+    pub(super) fn of(mesh: &Mesh) -> Self {
         let reach = |d: DVec2| {
             let along = mesh.positions().iter().map(|p| p.as_dvec3().truncate().dot(d));
             along.fold(f64::NEG_INFINITY, f64::max)
@@ -135,8 +152,18 @@ impl Footprint {
 }
 
 impl Floor {
+    /// Number of places taken.
+    pub(super) fn places(&self) -> usize {
+        self.0.len()
+    }
+
+    /// A place taken.
+    pub(super) fn place(&self, index: usize) -> DVec2 {
+        self.0[index].1
+    }
+
     /// The place nearest to `from`, in a direction, that is `gap` metres away from everything else; takes it.
-    fn take(&mut self, footprint: Footprint, from: DVec2, direction: DVec2, gap: f64) -> DVec2 {
+    pub(super) fn take(&mut self, footprint: Footprint, from: DVec2, direction: DVec2, gap: f64) -> DVec2 {
         let is_free = |at: DVec2| self.0.iter().all(|(other, place)| other.gap(&footprint, at - *place) >= gap);
         let steps = (FARTHEST_M / STEP_M) as usize;
         let places = (0..=steps).map(|i| from + direction * (STEP_M * i as f64));
@@ -147,33 +174,13 @@ impl Floor {
 }
 
 impl Layout {
-    /// This many objects and their surroundings.
-    ///
-    /// Unless `is_arranged`, all objects stand on the desk.
-    pub fn draw(
-        count: usize,
-        random: &mut Random,
-        object_random: &mut Random,
-        stances: &mut Random,
-        is_arranged: bool,
-    ) -> Result<Self> {
+    /// This many objects that stand on a desk, and their surroundings.
+    pub fn draw(count: usize, random: &mut Random, object_random: &mut Random) -> Result<Self> {
         let front = TAU * random.uniform();
         let mut floor = Floor::default();
         let mut objects: Vec<Placed> = Vec::new();
         for _ in 0..count {
             let (object, mesh, symmetry) = put_down(object_random)?;
-            let may_vary = is_arranged && !objects.is_empty();
-            let stance = if may_vary { Stance::draw(stances) } else { Stance::Stands };
-            let (mesh, symmetry) = match stance {
-                Stance::Stands => (mesh, symmetry),
-                Stance::Leans | Stance::Hangs => held(stance, &mesh, &symmetry, stances)?,
-                Stance::OnTop => {
-                    let below = &objects[stances.below(objects.len())].mesh;
-                    let mesh = on_top(&mesh, below)?;
-                    objects.push(Placed { stance, object, mesh, symmetry });
-                    continue;
-                }
-            };
             let from = match floor.0.len() {
                 0 => DVec2::ZERO,
                 n => floor.0[random.below(n)].1,
@@ -185,13 +192,12 @@ impl Layout {
                 TAU * random.uniform()
             };
             let place = floor.take(Footprint::of(&mesh), from, unit(side), between(random, 0.003, 0.02));
-            objects.push(Placed { stance, object, mesh: moved(&mesh, place)?, symmetry });
+            let mesh = moved(&mesh, place)?;
+            let (stance, below) = (Stance::Stands, Below::Table);
+            objects.push(Placed { stance, below, is_invented: false, object, mesh, symmetry });
         }
         let points = || objects.iter().flat_map(|placed| placed.mesh.positions());
-        let (low, high) = points().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)));
-        let centre = (low + high) * 0.5;
-        let reach = f64::from(points().fold(0.0f32, |far, p| far.max((*p - centre).length())));
-
+        let (centre, reach) = reach_of(&objects);
         let middle = centre.truncate().as_dvec2();
         let mut meshes = Vec::new();
         for _ in 0..2 + random.below(4) {
@@ -211,17 +217,25 @@ impl Layout {
         let depth = |p: &Vec3| (p.truncate().as_dvec2() - middle).dot(back);
         let deepest = points().chain(clutter.positions()).fold(0.0f64, |far, p| far.max(depth(p)));
         let wall = deepest + between(random, 0.02, 1.0);
-        Ok(Self { objects, clutter, centre, reach, front, wall })
+        Ok(Self { objects, clutter, centre, reach, front, wall, table: Some(0.0) })
     }
 }
 
-fn unit(angle: f64) -> DVec2 {
+/// The middle of the box of all objects, and how far they reach from it.
+pub(super) fn reach_of(objects: &[Placed]) -> (Vec3, f64) {
+    let points = || objects.iter().flat_map(|placed| placed.mesh.positions());
+    let (low, high) = points().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)));
+    let centre = (low + high) * 0.5;
+    (centre, f64::from(points().fold(0.0f32, |far, p| far.max((*p - centre).length()))))
+}
+
+pub(super) fn unit(angle: f64) -> DVec2 {
     let (sine, cosine) = libm::sincos(angle);
     DVec2::new(cosine, sine)
 }
 
 /// An object at rest above the origin: mostly as it is made to stand, some on any side that they come to lie on.
-fn put_down(random: &mut Random) -> Result<(Object, Mesh, Vec<Axis>)> {
+pub(super) fn put_down(random: &mut Random) -> Result<(Object, Mesh, Vec<Axis>)> {
     let object = families::draw_for_desk(random)?;
     let (tumbled, drawn) = (chance(random, TUMBLED), random_rotation(random));
     let heading = TAU * random.uniform();
@@ -237,7 +251,7 @@ fn put_down(random: &mut Random) -> Result<(Object, Mesh, Vec<Axis>)> {
 }
 
 /// A mesh tilted, or turned and lifted.
-fn held(stance: Stance, mesh: &Mesh, symmetry: &[Axis], random: &mut Random) -> Result<(Mesh, Vec<Axis>)> {
+pub(super) fn held(stance: Stance, mesh: &Mesh, symmetry: &[Axis], random: &mut Random) -> Result<(Mesh, Vec<Axis>)> {
     let (turn, lift) = if stance == Stance::Leans {
         let (sine, cosine) = libm::sincos(TAU * random.uniform());
         let axis = nalgebra::Unit::new_normalize(Vector3::new(cosine, sine, 0.0));
@@ -252,13 +266,7 @@ fn held(stance: Stance, mesh: &Mesh, symmetry: &[Axis], random: &mut Random) -> 
     Ok((Mesh::new(positions, mesh.triangles().to_vec())?, symmetry))
 }
 
-/// A mesh over the middle of another one, touching its highest point.
-fn on_top(mesh: &Mesh, below: &Mesh) -> Result<Mesh> {
-    let Some(bounds) = Bounds::of(below.positions()) else { return Ok(mesh.clone()) };
-    shifted(mesh, bounds.center().with_z(bounds.max.z))
-}
-
-fn moved(mesh: &Mesh, place: DVec2) -> Result<Mesh> {
+pub(super) fn moved(mesh: &Mesh, place: DVec2) -> Result<Mesh> {
     shifted(mesh, place.extend(0.0).as_vec3())
 }
 
@@ -266,7 +274,7 @@ fn shifted(mesh: &Mesh, offset: Vec3) -> Result<Mesh> {
     Mesh::new(mesh.positions().iter().map(|p| *p + offset).collect(), mesh.triangles().to_vec())
 }
 
-fn joined(meshes: &[Mesh]) -> Result<Mesh> {
+pub(super) fn joined(meshes: &[Mesh]) -> Result<Mesh> {
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
     for mesh in meshes {
         let first = positions.len() as u32;

@@ -6,18 +6,22 @@
 //! are the same for both. A pair depends on the seed of the set, its scene, its object and the prior alone. A scene
 //! that shows too little of one of its objects is drawn again.
 
+mod arranged;
 mod case;
 mod clutter;
 mod difficulty;
+mod heap;
 mod layout;
 mod melt;
 mod prior;
 mod scene;
 mod set;
+mod underside;
 mod view;
 
 pub use case::{DEPTH_SCALE, SceneCase};
 pub use difficulty::{Sight, difficulty, tier};
+pub use heap::Below;
 pub use layout::Stance;
 pub use prior::Prior;
 pub use scene::{ClutteredScene, LEAST_VISIBLE, MIN_MASK_PX, ScenePair};

@@ -4,6 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::layout::Placed;
 use super::melt::melted;
+use super::underside::invented_underside;
 use crate::cases::generator::{Generated, generate};
 use crate::cases::scene::Scene;
 use crate::cases::streams::{GENERATOR_STREAM, QUALITY_STREAM};
@@ -96,7 +97,16 @@ fn detailed(placed: &Placed, scene: &Scene, seed: u64) -> Result<Generated> {
         _ => Class::Plain,
     };
     let random = &mut Random::new(mixed([seed, 1]), GENERATOR_STREAM);
-    generate(&placed.object, &placed.mesh, &placed.symmetry, scene, (tier, class), random)
+    let generated = generate(&placed.object, &placed.mesh, &placed.symmetry, scene, (tier, class), random)?;
+    if !placed.is_invented {
+        return Ok(generated);
+    }
+    let random = &mut Random::new(mixed([seed, 3]), GENERATOR_STREAM);
+    let (mesh, tilt) = invented_underside(&generated.mesh, random)?;
+    let mut generated = Generated { mesh, ..generated };
+    generated.tags.push("invented-underside");
+    generated.parameters.push(("undersideTiltDeg", tilt.to_degrees()));
+    Ok(generated)
 }
 
 fn smooth(placed: &Placed, scene: &Scene, seed: u64) -> Result<Generated> {

@@ -2,6 +2,7 @@
 
 use super::case::{DEPTH_SCALE, SceneCase};
 use super::difficulty::{Sight, difficulty, tier};
+use super::heap::Below;
 use super::layout::{Layout, Placed, Stance};
 use super::prior::Prior;
 use super::view::{Seen, View};
@@ -82,16 +83,23 @@ impl ClutteredScene {
             let seed = mixed([set_seed, index as u64, attempt]);
             let things = &mut Random::new(seed, OBJECT_STREAM);
             let stances = &mut Random::new(seed, STANCE_STREAM);
-            let layout = Layout::draw(objects, &mut Random::new(seed, LAYOUT_STREAM), things, stances, is_arranged)?;
+            let random = &mut Random::new(seed, LAYOUT_STREAM);
+            let layout = if is_arranged {
+                Layout::arranged(objects, random, things, stances)?
+            } else {
+                Layout::draw(objects, random, things)?
+            };
             let view_random = &mut Random::new(seed, SCENE_STREAM);
-            // Every tenth scene or so may show an object that the border cuts.
-            let too_near = chance(view_random, 0.1);
+            // Every tenth scene or so may show an object that the border cuts; of the arranged ones, every fourth.
+            let too_near = chance(view_random, if is_arranged { 0.25 } else { 0.1 });
             let cut = if too_near { MOST_CUT } else { 0.0 };
             for view in 0..VIEWS {
                 let seen = View::draw(&layout, too_near, view_random)?.see(&layout);
-                if seen.shows_enough(&layout, cut, view_random)
-                    && let Some(scene) = Self::read(&layout, &seen, index, mixed([seed, view]))?
-                {
+                let shown = seen.shown_enough(&layout, cut, is_arranged, view_random);
+                let count = shown.iter().filter(|shown| **shown).count();
+                // What an arranged scene hardly shows is one of the things without a mask.
+                let is_enough = if is_arranged { count >= 2 && 3 * count >= 2 * objects } else { count == objects };
+                if is_enough && let Some(scene) = Self::read(&layout, &seen, &shown, index, mixed([seed, view]))? {
                     return Ok(scene);
                 }
             }
@@ -101,7 +109,7 @@ impl ClutteredScene {
     }
 
     /// Depth and masks of what a camera sees; `None` where they leave too little of an object.
-    fn read(layout: &Layout, seen: &Seen, index: usize, seed: u64) -> Result<Option<Self>> {
+    fn read(layout: &Layout, seen: &Seen, masked: &[bool], index: usize, seed: u64) -> Result<Option<Self>> {
         let quality = &mut Random::new(seed, QUALITY_STREAM);
         let shown: Vec<&[bool]> = seen.objects.iter().map(|object| object.visible.as_slice()).collect();
         let diagonals = layout.objects.iter().map(|placed| placed.object.diagonal() as f32);
@@ -111,15 +119,16 @@ impl ClutteredScene {
         let readings = Readings::of_several(&seen.together, &shown, (diagonal, GRAIN), cell, random)?;
         let depth = in_units(&readings.depth)?;
         let mut pairs = Vec::new();
-        for (k, (placed, view)) in layout.objects.iter().zip(&seen.objects).enumerate() {
+        let things = layout.objects.iter().zip(&seen.objects).enumerate();
+        for (k, (placed, view)) in things.filter(|(k, _)| masked[*k]) {
             let tier_of_mask = drawn_tier(quality);
             let class =
                 if tier_of_mask != Tier::Easy && chance(quality, 0.12) { Class::RaggedMask } else { Class::Plain };
             let random = &mut Random::new(mixed([seed, k as u64]), MASK_STREAM);
             let segmented = Segmented::draw(view, (tier_of_mask, class), random)?;
-            let masked = || segmented.mask.data().iter().zip(depth.data()).filter(|(m, _)| **m != 0);
-            let mask_px = masked().count();
-            let missing = masked().filter(|(_, z)| **z == 0.0).count() as f64 / mask_px.max(1) as f64;
+            let readings_in_mask = || segmented.mask.data().iter().zip(depth.data()).filter(|(m, _)| **m != 0);
+            let mask_px = readings_in_mask().count();
+            let missing = readings_in_mask().filter(|(_, z)| **z == 0.0).count() as f64 / mask_px.max(1) as f64;
             if mask_px < MIN_MASK_PX || missing > MOST_MISSING {
                 return Ok(None);
             }
@@ -217,6 +226,11 @@ impl ScenePair {
         self.placed.stance
     }
 
+    /// What it touches below.
+    pub fn below(&self) -> Below {
+        self.placed.below
+    }
+
     /// Visible share of the object's silhouette.
     pub fn visible(&self) -> f64 {
         self.view.visible_px() as f64 / self.view.silhouette_px.max(1) as f64
@@ -224,9 +238,10 @@ impl ScenePair {
 }
 
 impl Seen {
-    /// Whether it shows enough of every object to tell how it lies.
-    fn shows_enough(&self, layout: &Layout, most_cut: f64, random: &mut Random) -> bool {
-        self.objects.iter().zip(&layout.objects).all(|(view, placed)| {
+    /// Whether it shows enough of each object to tell how it lies; unless all are wanted, those after the first one that
+    /// it does not show enough of count as not shown.
+    fn shown_enough(&self, layout: &Layout, most_cut: f64, wants_all: bool, random: &mut Random) -> Vec<bool> {
+        let mut is_shown = |view: &Scene, placed: &Placed| {
             let pixels = view.visible_px();
             pixels >= MIN_MASK_PX
                 && pixels as f64 >= LEAST_VISIBLE * view.silhouette_px as f64
@@ -234,7 +249,15 @@ impl Seen {
                 && is_telling(view, &placed.mesh, Tier::Hard)
                 // A mug whose handle is out of sight: no case to count on, though one that occurs.
                 && (shows_key(placed, view) || chance(random, 0.15))
-        })
+        };
+        let mut shown = vec![false; self.objects.len()];
+        for (shown, (view, placed)) in shown.iter_mut().zip(self.objects.iter().zip(&layout.objects)) {
+            *shown = is_shown(view, placed);
+            if !*shown && !wants_all {
+                break;
+            }
+        }
+        shown
     }
 }
 

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use super::layout::Layout;
-use crate::cases::scene::{Scene, background, camera_at, count, hidden, put_before, shown};
+use crate::cases::scene::{Scene, background, camera_at, count, hidden, in_front, put_before, shown};
 use crate::draws::between;
 use sim3align_geometry::error::Result;
 use sim3align_geometry::mesh::Mesh;
@@ -79,12 +79,26 @@ impl View {
                 (rasteriser.depth().to_vec(), rasteriser.triangles().to_vec())
             })
             .collect();
-        let mut depth = background(pose, camera, *wall, WIDTH, HEIGHT);
+        let mut depth = layout.table.map_or_else(
+            || vec![0.0; WIDTH * HEIGHT],
+            |height| {
+                let raised = Similarity { translation: Vector3::new(0.0, 0.0, height), ..Similarity::identity() };
+                background(&pose.compose(&raised), camera, *wall, WIDTH, HEIGHT)
+            },
+        );
         put_before(&mut depth, &clutter);
         let mut together = vec![0.0; WIDTH * HEIGHT];
         for (object, _) in &alone {
             put_before(&mut depth, object);
             put_before(&mut together, object);
+        }
+        if layout.table.is_some_and(|height| height > 0.0) {
+            // The table that the depth map shows too high does not hide what stands on it.
+            for ((depth, clutter), object) in depth.iter_mut().zip(&clutter).zip(&together) {
+                if in_front(*object, *clutter) {
+                    *depth = *object;
+                }
+            }
         }
         let scene = |object_depth: &[f32], object_triangles: &[u32], others: &[f32], silhouette_px: usize| {
             let share = |px: usize| px as f64 / silhouette_px.max(1) as f64;

@@ -18,7 +18,7 @@ use sim3align_geometry::triangle_tree::TriangleTree;
 use sim3align_lab::bench::benchmark::BenchCase;
 use sim3align_lab::cases::tier::Tier;
 use sim3align_lab::scenes::{
-    ClutteredScene, LEAST_VISIBLE, MIN_MASK_PX, Prior, SceneCase, ScenePair, SceneSet, Sight, difficulty, tier,
+    Below, ClutteredScene, LEAST_VISIBLE, MIN_MASK_PX, Prior, SceneCase, ScenePair, SceneSet, Sight, difficulty, tier,
 };
 
 const SEED: u64 = 7;
@@ -88,8 +88,13 @@ fn a_pair_follows_from_the_sets_seed_its_place_and_the_prior_alone() {
     }
 }
 
-/// The number of a mesh's vertices within another one, by parity along rays upwards; the meshes' parts are closed.
+/// The number of a mesh's vertices within another one.
 fn vertices_within(inner: &Mesh, outer: &Mesh) -> usize {
+    points_within(inner, outer).len()
+}
+
+/// A mesh's vertices within another one, by parity along rays upwards; the meshes' parts are closed.
+fn points_within(inner: &Mesh, outer: &Mesh) -> Vec<glam::Vec3> {
     let triangles: Vec<_> = outer.triangles().iter().map(|t| outer.corners(*t).map(|p| p.as_dvec3())).collect();
     let bounds = Bounds::of(outer.positions()).unwrap();
     let is_within = |p: &glam::Vec3| {
@@ -111,7 +116,7 @@ fn vertices_within(inner: &Mesh, outer: &Mesh) -> usize {
             .sum();
         depth > 0
     };
-    inner.positions().iter().filter(|p| is_within(p)).count()
+    inner.positions().iter().copied().filter(|p| is_within(p)).collect()
 }
 
 #[test]
@@ -306,4 +311,57 @@ fn priors_have_names() {
     }
     assert_eq!(Prior::several("both").unwrap(), Prior::ALL);
     assert_eq!(Prior::several("sharp").unwrap_err().code, ErrorCode::InvalidOption);
+}
+
+/// Distance of the vertices of a mesh from the nearest point of another one, metres.
+fn distance(mesh: &Mesh, other: &Mesh) -> f32 {
+    let tree = TriangleTree::new(other);
+    let squared = mesh.positions().iter().map(|p| tree.nearest(*p).unwrap().distance_squared);
+    squared.fold(f32::INFINITY, f32::min).sqrt()
+}
+
+#[test]
+fn arranged_objects_are_held_as_their_scenes_say() {
+    let set = SceneSet::arranged(3, 7);
+    let mut stances = BTreeSet::new();
+    let mut invented = 0;
+    for index in 0..7 {
+        let scene = set.scene(index).unwrap();
+        assert!(scene.pairs.len() >= 2 && scene.pairs.len() <= set.pairs_of(index), "{index}");
+        let lowest = |mesh: &Mesh| mesh.positions().iter().fold(f32::INFINITY, |low, p| low.min(p.z));
+        for pair in &scene.pairs {
+            let (name, low) = (pair.name(), lowest(&pair.object));
+            stances.insert(pair.stance().as_str());
+            match pair.below() {
+                Below::Table => assert!(low.abs() < 1e-4, "{name}: {low}"),
+                Below::Air => assert!(low > 0.04, "{name}: {low}"),
+                Below::Board => {
+                    assert!(low > -1e-4, "{name}: {low}");
+                    assert!(distance(&pair.object, &scene.clutter) < 0.006, "{name}");
+                }
+                Below::Object(k) => {
+                    assert!(low > -1e-4, "{name}: {low}");
+                    if let Some(below) = scene.pairs.iter().find(|other| other.index == k) {
+                        assert!(distance(&pair.object, &below.object) < 0.01, "{name} on {}", below.name());
+                    }
+                }
+            }
+            let case = pair.case(Prior::Detailed).unwrap();
+            invented += usize::from(case.tags.contains(&"invented-underside"));
+        }
+        for (i, pair) in scene.pairs.iter().enumerate() {
+            for other in scene.pairs.iter().skip(i + 1) {
+                // What is dropped touches cells, not points.
+                let tree = TriangleTree::new(&other.object);
+                let depth = |p: glam::Vec3| tree.nearest(p).unwrap().distance_squared.sqrt();
+                let within = points_within(&pair.object, &other.object);
+                let deepest = within.into_iter().map(depth).fold(0.0, f32::max);
+                assert!(deepest < 0.005, "{index}: {} is {deepest} m in {}", pair.name(), other.name());
+            }
+        }
+        let again = set.scene(index).unwrap();
+        assert_eq!(again.pairs[0].observation.depth().data(), scene.pairs[0].observation.depth().data());
+    }
+    assert!(stances.len() >= 5, "{stances:?}");
+    assert!(invented > 0);
 }

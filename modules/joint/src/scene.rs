@@ -28,7 +28,7 @@ use sim3align::scene::contact::contacts;
 use sim3align::scene::placement::{Body, Placement, found_of};
 use sim3align::scene::plane::Plane;
 use sim3align::scene::planes::union_of;
-use sim3align::scene::support::{Ground, Support, SupportChoice, View, find_support};
+use sim3align::scene::support::{Ground, RestsOn, Support, SupportChoice, View, find_support};
 use sim3align::scene::task::placement_of;
 
 type Task = AlignTask<'static, Observation, Rc<PreparedMesh<'static>>>;
@@ -42,7 +42,7 @@ pub struct PlaceTask {
     /// Whether the step ends with the search.
     is_alone: bool,
     /// The mesh, and the normal of the ground.
-    measured: Option<(Rc<PreparedMesh<'static>>, DVec3)>,
+    measured: (Rc<PreparedMesh<'static>>, Option<DVec3>),
 }
 
 /// Begins to align an object of a scene alone or, with `known`, with what the others have told:
@@ -60,17 +60,18 @@ pub fn begin_place(
         // The metrics are those of the result.
         let options = if is_alone { AlignOptions { metrics: false, ..options } } else { options };
         let (observation, mesh) = (input::observation(input)?, mesh::mesh_of(input)?);
-        let mut measured = None;
+        let mut normal = None;
         let mut task = Task::new(observation, mesh.clone(), options, JsHost::new(on_progress))?;
         if !is_alone {
             let placement = placement(&of(known, "placement"))?;
             let ground = ground(&of(known, "ground"))?.map(|ground| ground.known());
-            measured = ground.map(|(normal, ..)| (mesh, normal));
+            normal = ground.map(|(normal, ..)| normal);
             let layers = Array::from(&of(known, "layers"));
             let layers = layers.iter().map(|l| Ok(Rc::new(layer(&l)?))).collect::<Result<_>>()?;
             task = task.with_given(placement.given(Neighbourhood { ground, layers }));
         }
-        Ok(PlaceTask { task: RefCell::new(task), placement: RefCell::default(), is_alone, measured })
+        let task = RefCell::new(if is_alone { task.with_choice() } else { task });
+        Ok(PlaceTask { task, placement: RefCell::default(), is_alone, measured: (mesh, normal) })
     };
     begin().map_err(|error| to_js(&error))
 }
@@ -95,9 +96,10 @@ impl PlaceTask {
         let done: Result<Option<Option<Alignment>>> = step();
         let Some(alignment) = done.map_err(|error| to_js(&error))? else { return Ok(JsValue::UNDEFINED) };
         let Some(mut placement) = self.placement.take() else { return Ok(JsValue::UNDEFINED) };
-        if let (Some(alignment), Some((mesh, normal))) = (&alignment, &self.measured) {
-            let measured = placement.body.measured(mesh.mesh(), alignment, *normal);
-            placement.body = measured.map_err(|error| to_js(&error))?;
+        if let Some(alignment) = &alignment {
+            let (mesh, normal) = &self.measured;
+            let body = placement.clone().body_of(alignment, mesh, task.observation(), *normal);
+            placement.body = body.map_err(|error| to_js(&error))?;
         }
         let placement = placement_object(&placement);
         let alignment = alignment.map_or(Ok(JsValue::UNDEFINED), |alignment| answer(Ok(alignment)))?;
@@ -233,8 +235,16 @@ fn ground(value: &JsValue) -> Result<Option<Ground>> {
     Ok(Some(Ground {
         plane: plane(value)?,
         gap_m: required_number(value, "ground", "gapM")?,
-        on: of(value, "on").as_f64().map(|on| on as usize),
+        on: rests_on(&of(value, "on")),
     }))
+}
+
+fn rests_on(value: &JsValue) -> RestsOn {
+    match (value.as_f64(), value.as_string().as_deref()) {
+        (Some(on), _) => RestsOn::Object(on as usize),
+        (None, Some("level")) => RestsOn::Level,
+        _ => RestsOn::Support,
+    }
 }
 
 fn placement_object(placement: &Placement) -> JsValue {
@@ -266,7 +276,11 @@ fn plane_fields(plane: &Plane) -> [(&'static str, JsValue); 2] {
 
 fn ground_object(ground: &Ground) -> JsValue {
     let [normal, d] = plane_fields(&ground.plane);
-    let on = ground.on.map_or(JsValue::NULL, |on| JsValue::from(on as f64));
+    let on = match ground.on {
+        RestsOn::Support => "support".into(),
+        RestsOn::Level => "level".into(),
+        RestsOn::Object(on) => JsValue::from(on as f64),
+    };
     object([normal, d, ("gapM", ground.gap_m.into()), ("on", on)])
 }
 

@@ -20,12 +20,12 @@ export interface Placement extends Layer {
   along: [number, number] | null;
 }
 
-/** The plane that an object may stand on; `on` is the object whose top it is. */
+/** The plane that an object may stand on; a number is the index of the object whose top it is. */
 export interface Ground {
   normal: [number, number, number];
   d: number;
   gapM: number;
-  on: number | null;
+  on: "support" | "level" | number;
 }
 
 /** What an object is told about the others. */
