@@ -91,7 +91,7 @@ const GAP: [f64; 3] = [0.002, 0.003, 0.015];
 /// size.
 const TOUCH: [f64; 2] = [0.01, 0.06];
 /// Least credit of all objects for a plane that is the support.
-const LEAST_CREDIT: f64 = 0.25;
+const LEAST_CREDIT: f64 = 0.15;
 /// Credit of a plane that faces sideways, relative to one that faces up in the image: cameras are mostly held upright.
 const SIDEWAYS: f64 = 0.5;
 /// Readings around an object that tell how far the plane is bent there, the width of their band relative to the box of

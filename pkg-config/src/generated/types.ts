@@ -1264,9 +1264,10 @@ diagnostics: EvaluationDiagnostics, };
  */
 export type Contact = { 
 /**
- * What it rests on: `"support"`, the index of another object, or `null` if it touches neither.
+ * What it rests on: `"support"`, the index of another object, `"level"` for a level surface at another height that
+ * the depth map shows, such as a shelf or a box without a mesh, or `null` if it touches none of them.
  */
-restsOn: "support" | number | null, 
+restsOn: "support" | "level" | number | null, 
 /**
  * Height of its lowest point over what is below it, in metres; negative where it enters it. `null` without a
  * support.
