@@ -56,18 +56,11 @@ const FALLS: f64 = -0.02;
 
 /// The attitudes of a mesh in its normalised frame.
 pub fn rests(mesh: &Mesh) -> Vec<Rest> {
-    let moments = SurfaceMoments::of(mesh);
-    let center = moments.centroid;
+    let center = SurfaceMoments::of(mesh).centroid;
     let extremes = extremes(mesh.positions(), center);
     let mut rests: Vec<Rest> = Vec::new();
-    // What is tall and stands on a small base falls over from almost everywhere.
-    let upright = SymmetricEigen::of(moments.covariance)
-        .vectors
-        .into_iter()
-        .chain(DMat3::IDENTITY.to_cols_array_2d().map(DVec3::from_array));
-    let starts = upright.flat_map(|axis| [axis, -axis]).chain((0..STARTS).map(|k| fibonacci_sphere(k, STARTS)));
-    for start in starts {
-        let down = rolled(&extremes, start);
+    for k in 0..STARTS {
+        let down = rolled(&extremes, fibonacci_sphere(k, STARTS));
         // Compared before the face is fitted, which takes longer.
         if rests.len() >= MOST || rests.iter().any(|known| (known.down - down).length() < APART) {
             continue;
