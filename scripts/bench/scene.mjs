@@ -59,7 +59,9 @@ async function measureMemory() {
     peaks.push({ name: isPrepared ? "prepared" : "arrays", before, peak: memory.buffer.byteLength });
   }
   const { objects, triangles, width, height } = large;
-  console.log(`\n${objects} objects of ${triangles} triangles, depth ${width}×${height}, one thread. MB = 10⁶ bytes.\n`);
+  console.log(
+    `\n${objects} objects of ${triangles} triangles, depth ${width}×${height}, one thread. MB = 10⁶ bytes.\n`,
+  );
   const rows = peaks.map(({ name, before, peak }) => [
     ...[name, megabytes(before), megabytes(peak), megabytes(limit)],
     peak <= limit ? "yes" : "NO",
