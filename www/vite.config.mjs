@@ -14,7 +14,6 @@ const { OPTIONS } = await import(pathToFileURL(join(repository, "pkg", "index.js
 const rowOf = (name) => OPTIONS.align.find((row) => row.name === name);
 const optionTable = {
   quality: rowOf("quality").choices,
-  knownExtentAxis: rowOf("knownExtentAxis").choices,
   maxSeed: rowOf("seed").max,
 };
 

@@ -65,7 +65,7 @@ test("all controls are reachable by keyboard and show their focus", async () => 
     assert.notEqual(found.outline, "none", `${found.label} does not show its focus`);
     reached.add(found.label);
   }
-  for (const name of ["sample", "theme", "effort", "align", "refine", "JSON", "depth-file", "wipe"]) {
+  for (const name of ["sample", "theme", "effort", "align", "refine", "JSON", "files", "edit-files", "wipe"]) {
     assert.ok(reached.has(name), `${name} is not among ${[...reached].join(", ")}`);
   }
   await opened.close();

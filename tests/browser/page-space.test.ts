@@ -162,7 +162,7 @@ test("the two views are linked", async () => {
     const opened = await site.open("#sample=desk", { reducedMotion: "reduce" });
     const { page } = opened;
     await ready(opened, "webgl");
-    await page.locator('.space canvas[aria-label*="placed meshes: 0, 1, 2"]').waitFor(PATIENCE);
+    await page.locator('.space canvas[aria-label*="placed meshes: Animal, Box, Teapot"]').waitFor(PATIENCE);
     await page.getByRole("button", { name: "Camera", exact: true }).click();
     const before = await still(page);
     await page.hover(".space canvas");

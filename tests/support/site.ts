@@ -1,7 +1,7 @@
 /** Tests of the built page in a browser. */
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import type { BrowserContextOptions, Page } from "playwright-core";
+import type { BrowserContextOptions, Locator, Page } from "playwright-core";
 import { PageTest } from "./browser.js";
 import { repository } from "./environment.js";
 
@@ -109,6 +109,19 @@ export class SitePage {
   async aligned(): Promise<void> {
     await this.says(/^Aligned/);
     await this.metric("iou");
+  }
+
+  /** Waits until a scene with this name is shown and aligned. */
+  async shows(scene: string): Promise<void> {
+    await this.page.locator(`main[data-scene="${scene}"]`).waitFor(PATIENCE);
+    await this.aligned();
+  }
+
+  /** The intake sheet, once its files are read. */
+  async sheet(): Promise<Locator> {
+    const sheet = this.page.locator(".intake");
+    await sheet.locator("footer [role=status]:not(:has-text('Reading'))").waitFor(PATIENCE);
+    return sheet;
   }
 
   /** Waits for a metric of the current pose. */

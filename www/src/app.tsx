@@ -6,11 +6,13 @@ import { HandPanel } from "./panels/hand-panel.js";
 import { Header } from "./panels/header.js";
 import { HelpDialog } from "./panels/help-dialog.js";
 import { InputPanel } from "./panels/input-panel.js";
+import { Intake } from "./panels/intake.js";
 import { ObjectsPanel } from "./panels/objects-panel.js";
 import { OptionsPanel } from "./panels/options-panel.js";
 import { ResultPanel } from "./panels/result-panel.js";
 import { RunBar } from "./panels/run-bar.js";
 import { largeView } from "./state/display.js";
+import { scene } from "./state/scene.js";
 import { listenToKeys } from "./ui/shortcuts.js";
 import { ImageView } from "./views/image-view.js";
 import { space } from "./views/space.js";
@@ -23,7 +25,7 @@ export function App() {
   return (
     <div class="frame">
       <Header />
-      <main class="page" data-large={large}>
+      <main class="page" data-large={large} data-scene={scene.value?.name ?? ""}>
         <SpaceView />
         <ImageView />
         <ResultPanel />
@@ -37,6 +39,7 @@ export function App() {
         </aside>
       </main>
       <HelpDialog />
+      <Intake />
       <DropOverlay />
     </div>
   );

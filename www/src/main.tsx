@@ -15,6 +15,7 @@ import "../style/layout.css";
 import "../style/controls.css";
 import "../style/views.css";
 import "../style/panels.css";
+import "../style/intake.css";
 
 const sample = sampleOf(readAddress().sample) ?? samples[0];
 updateAddress();

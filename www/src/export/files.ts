@@ -2,7 +2,7 @@
 import type { Metrics } from "sim3align";
 import { exportGlb, exportPly, placeGlb, type Sim3, toBop, toRowMajor } from "sim3align/conventions";
 import type { ObjectModel } from "../state/object-model.js";
-import { alignOptions } from "../state/options.js";
+import { options } from "../state/options.js";
 import type { Scene } from "../state/scene.js";
 
 /** The 16 numbers of a pose as a JSON array of four lines. */
@@ -56,7 +56,7 @@ export function jsonText(scene: Scene): string {
 const about = ({ camera, width, height }: Scene) => ({
   convention: "x_cam = scale · rotation · p_mesh + translation; OpenCV camera (x right, y down, z forward), metres",
   camera: { ...camera, width, height },
-  options: alignOptions(),
+  options: options.value,
 });
 
 /** BOP's `scene_gt.json`. BOP models are in millimetres, so each entry holds the factor for the mesh. */

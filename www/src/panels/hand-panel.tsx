@@ -5,7 +5,6 @@ import { isRunning, refine } from "../run/align.js";
 import { gizmo } from "../state/display.js";
 import { canRedo, canUndo, place, redo, undo } from "../state/history.js";
 import type { ObjectModel } from "../state/object-model.js";
-import { options, setOption } from "../state/options.js";
 import { type Nudge, nudged, rotationAbout } from "../state/pose.js";
 import { selected } from "../state/scene.js";
 import { Choices } from "../ui/controls.js";
@@ -54,8 +53,8 @@ function move(direction: Vector3): void {
 
 export function HandPanel() {
   const object = selected.value;
-  const { lockScale } = options.value;
-  const isReady = object !== null && !isRunning.value;
+  const lockScale = object !== null && object.knownScale.value !== null;
+  const isReady = object !== null && !isRunning.value && !object.isLocked.value;
   return (
     <details class="panel hand-panel" open>
       <summary>
@@ -120,7 +119,8 @@ export function HandPanel() {
       </details>
       <KnownSize object={object} />
       <div class="row">
-        <button type="button" id="refine" disabled={!isReady} aria-keyshortcuts="F" onClick={refine}>
+        {/* A disabled button would lose the focus while it runs. */}
+        <button type="button" id="refine" aria-disabled={!isReady} aria-keyshortcuts="F" onClick={refine}>
           Refine pose
         </button>
         <label class="check">
@@ -128,16 +128,26 @@ export function HandPanel() {
             id="lock-scale"
             type="checkbox"
             checked={lockScale}
-            onChange={({ currentTarget }) => setOption("lockScale", currentTarget.checked)}
+            disabled={object === null}
+            onChange={({ currentTarget }) => {
+              if (object === null) return;
+              object.knownScale.value = currentTarget.checked ? object.pose.peek().transform.scale : null;
+            }}
           />
           <span>Lock scale</span>
         </label>
       </div>
       <div class="row">
-        <button type="button" id="undo" disabled={!canUndo.value} aria-keyshortcuts="Control+Z" onClick={undo}>
+        <button type="button" id="undo" aria-disabled={!canUndo.value} aria-keyshortcuts="Control+Z" onClick={undo}>
           Undo
         </button>
-        <button type="button" id="redo" disabled={!canRedo.value} aria-keyshortcuts="Control+Shift+Z" onClick={redo}>
+        <button
+          type="button"
+          id="redo"
+          aria-disabled={!canRedo.value}
+          aria-keyshortcuts="Control+Shift+Z"
+          onClick={redo}
+        >
           Redo
         </button>
       </div>
@@ -145,13 +155,14 @@ export function HandPanel() {
   );
 }
 
-const sides = ["Width", "Height", "Depth"] as const;
+const sides = ["Width", "Height", "Depth", "Longest side"] as const;
 const sideChoices = sides.map((title, i) => [`${i}`, title] as const);
 
-/** Scales the mesh so that one side has a known length, and locks the scale. */
+/** Scales the mesh so that one side has a known length, which all alignments keep. */
 function KnownSize({ object }: { object: ObjectModel | null }) {
   const [side, setSide] = useState(1);
-  const presentM = object?.box.value.sizeM[side] ?? 0;
+  const unit = object?.side(side > 2 ? "longest" : (side as 0 | 1 | 2)) ?? 0;
+  const presentM = unit * (object?.pose.value.transform.scale ?? 0);
 
   const apply = (field: HTMLInputElement) => {
     const wantedM = field.valueAsNumber / 100;
@@ -160,7 +171,7 @@ function KnownSize({ object }: { object: ObjectModel | null }) {
     const scale = wantedM / presentM;
     const transform = nudged(object.box.peek().centreM, object.pose.peek().transform, { scale });
     place(object, { transform, source: "hand" });
-    setOption("lockScale", true);
+    object.knownScale.value = transform.scale;
   };
   return (
     <fieldset class="row known" disabled={object === null}>

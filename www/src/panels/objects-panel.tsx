@@ -15,7 +15,7 @@ function stateOf(run: Run, object: ObjectModel): string {
 export function ObjectsPanel() {
   const objects = scene.value?.objects ?? [];
   // While a scene is being read, its objects are listed already, so that the layout does not shift.
-  const awaited = isReading.value ? inputs.value.masks.slice(objects.length) : [];
+  const awaited = isReading.value ? inputs.value.objects.slice(objects.length) : [];
   if (objects.length + awaited.length < 2) return null;
   return (
     <section class="panel objects-panel" aria-labelledby="objects-title">
@@ -26,10 +26,10 @@ export function ObjectsPanel() {
             <ObjectButton object={object} />
           </li>
         ))}
-        {awaited.map(({ path, title }) => (
-          <li key={path}>
+        {awaited.map(({ name }) => (
+          <li key={name}>
             <button type="button" disabled>
-              <span class="name">{title ?? path}</span>
+              <span class="name">{name}</span>
             </button>
           </li>
         ))}

@@ -176,13 +176,13 @@ function Pose({ object }: { object: ObjectModel | null }) {
     ],
     ["Rotation", `${list(transform?.rotation)}${within(uncertainty?.rotationDeg, "°")}`],
   ];
-  const isKnown = object === null ? inputs.value.truths.length > 0 : object.truth !== null;
+  const isKnown = object === null ? inputs.value.objects.some(({ truth }) => truth !== null) : object.truth !== null;
   return (
     <dl class="facts">
-      {rows.map(([title, text]) => (
+      {rows.map(([title = "", text]) => (
         <div key={title}>
           <dt>{title}</dt>
-          <dd>{text}</dd>
+          <dd id={title.toLowerCase()}>{text}</dd>
         </div>
       ))}
       {isKnown && (

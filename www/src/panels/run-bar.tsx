@@ -30,7 +30,7 @@ export function RunBar() {
   const { preset, quality } = options.value;
   const objects = scene.value?.objects ?? [];
   // While a scene is being read, the buttons are those of its objects already, so that the layout does not shift.
-  const count = Math.max(objects.length, isReading.value ? inputs.value.masks.length : 0);
+  const count = Math.max(objects.length, isReading.value ? inputs.value.objects.length : 0);
   const running = isRunning.value;
   const run = selected.value?.run.value;
   const stage = run?.state === "running" && run.stage !== null ? stageTitles[run.stage] : "";

@@ -4,7 +4,6 @@ import { alignAll, alignSelected, cancel, isRunning, refine } from "../run/align
 import { applyAlternative } from "../run/alternatives.js";
 import { display3d, gizmo, isHelpOpen, largeView, layers, setLayer } from "../state/display.js";
 import { redo, undo } from "../state/history.js";
-import { options, setOption } from "../state/options.js";
 import { scene, select, selected } from "../state/scene.js";
 import { space } from "../views/space.js";
 
@@ -45,7 +44,7 @@ export const shortcuts: readonly Shortcut[] = [
   { key: "g", title: "G", about: "Handles to move", act: toggleHandles("translate") },
   { key: "r", title: "R", about: "Handles to rotate", act: toggleHandles("rotate") },
   { key: "s", title: "S", about: "Handles to scale", act: toggleHandles("scale") },
-  { key: "l", title: "L", about: "Lock the scale", act: () => setOption("lockScale", !options.peek().lockScale) },
+  { key: "l", title: "L", about: "Lock the scale", act: toggleScaleLock },
   { key: "Mod+z", title: "Ctrl Z", about: "Undo", act: undo },
   { key: "Mod+Z", title: "Ctrl Shift Z", about: "Redo", act: redo },
   { key: "Mod+y", title: "Ctrl Y", about: "Redo", act: redo },
@@ -64,6 +63,12 @@ export const shortcuts: readonly Shortcut[] = [
   { key: "0", title: "0 to 9", about: "The result (0) and its alternatives", act: () => {} },
   { key: "?", title: "?", about: "This help", act: toggleHelp },
 ];
+
+function toggleScaleLock(): void {
+  const object = selected.peek();
+  if (object === null) return;
+  object.knownScale.value = object.knownScale.peek() === null ? object.pose.peek().transform.scale : null;
+}
 
 function cancelOrHideHandles(): void {
   if (isRunning.peek()) cancel();

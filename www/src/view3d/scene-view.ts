@@ -1,5 +1,5 @@
 /** The 3D view: point cloud, meshes, gizmo and viewpoint. */
-import { DirectionalLight, Group, HemisphereLight, Vector3 } from "three/webgpu";
+import { DirectionalLight, Group, HemisphereLight, Sphere, Vector3 } from "three/webgpu";
 import { Animations } from "./animations.js";
 import { Cloud } from "./cloud.js";
 import { Frustum } from "./frustum.js";
@@ -231,21 +231,27 @@ export class SceneView implements View {
     this.update();
   }
 
-  focus(point: [number, number, number] = this.extent().centre): void {
+  frame(): void {
+    if (!this.viewpoint.isTouched) this.lookFrom(this.look);
+  }
+
+  focus(point: [number, number, number] = this.extent(this.selected).centre): void {
     this.viewpoint.focus(toThree(point));
     this.update();
   }
 
-  /** The extent of the selected object, of all objects, or of the scene. */
-  private extent(): Extent {
-    const model = this.selected === null ? undefined : this.models.get(this.selected);
-    if (model?.pose) {
-      const { position, scale } = model.pivot;
-      return { centre: position.toArray(), radius: scale.x * model.radius };
+  /** The extent of an object, or of all objects: of their meshes, or of their points if there are no meshes. */
+  private extent(id: string | null = null): Extent {
+    const wanted = this.objects.filter((object) => id === null || object.id === id);
+    const placed = wanted.flatMap((object) => this.models.get(object.id) ?? []).filter(({ pose }) => pose !== null);
+    const spheres = placed.map(({ pivot, radius }) => new Sphere(pivot.position.clone(), pivot.scale.x * radius));
+    const [first, ...others] = spheres;
+    if (first !== undefined) {
+      for (const other of others) first.union(other);
+      return { centre: first.center.toArray(), radius: first.radius };
     }
     if (!this.cloud) return { centre: [0, 0, 1], radius: 0.5 };
-    const masks = this.objects.filter(({ id }) => this.selected === null || id === this.selected);
-    return extentOf(this.cloud.points, (pixel) => masks.some(({ mask }) => mask[pixel]));
+    return extentOf(this.cloud.points, (pixel) => wanted.some(({ mask }) => mask[pixel]));
   }
 
   private highlight(): void {
@@ -273,7 +279,7 @@ export class SceneView implements View {
   private label(): string {
     if (!this.cloud) return "3D view, empty";
     const points = this.cloud.points.pixels.length.toLocaleString("en-GB");
-    const placed = [...this.models.values()].filter(({ pose }) => pose !== null).map(({ id }) => id);
+    const placed = this.objects.filter(({ id }) => this.models.get(id)?.pose).map(({ id, name }) => name ?? id);
     const meshes = placed.length === 0 ? "no mesh placed yet" : `placed meshes: ${placed.join(", ")}`;
     const from = lookNames[this.viewpoint.isCamera ? "camera" : this.look === "camera" ? "orbit" : this.look];
     return `3D view from ${from}: ${points} points of the scene, ${meshes}`;

@@ -18,6 +18,8 @@ export interface SceneInput {
 /** An object: its mask and its mesh. */
 export interface ObjectInput {
   id: string;
+  /** For the description of the view. */
+  name?: string | undefined;
   /** A CSS colour for the points of the mask, the outline, and a mesh without colours. */
   colour: string;
   /** One number per pixel of the depth map; not 0 is the object. */
@@ -86,6 +88,8 @@ export interface View {
   setGizmo(mode: GizmoMode | null): void;
   setDisplay(display: Display): void;
   lookFrom(which: Look): void;
+  /** Frames all objects at their present poses, unless the user has moved the viewpoint. */
+  frame(): void;
   /** Orbits around a point (OpenCV camera frame, metres), by default the centre of the selected object. */
   focus(point?: [number, number, number]): void;
   /** Marks a point (OpenCV camera frame, metres) with a ring; `null` removes it. */

@@ -6,8 +6,11 @@ import type { Look, SceneInput } from "./types.js";
 
 /** Viewpoints as angles from the depth camera in degrees: to the right, and up. */
 const directions: Record<Exclude<Look, "camera">, [number, number]> = { orbit: [28, 16], top: [0, 80], side: [82, 8] };
-/** Share of the smaller side of the view that the target fills, from above or from the side. */
-const fill = 0.55;
+/** Share of the smaller side of the view that the target fills. */
+const fill = 0.62;
+
+/** Wider lenses would show a target from very near. */
+const MAX_HALF_FOV_DEG = 35;
 
 /** The camera and its controls, in the frame of three.js: x right, y up, z towards the camera. */
 export class Viewpoint {
@@ -78,6 +81,24 @@ export class Viewpoint {
     this.camera.updateProjectionMatrix();
   }
 
+  /** The field of view of the smaller side of the canvas, degrees. */
+  private get fovDeg(): number {
+    const { width, height } = this.size;
+    const { elements } = this.camera.projectionMatrix;
+    const half = Math.atan(1 / (width < height ? (elements[0] ?? 1) : (elements[5] ?? 1)));
+    return (360 / Math.PI) * half;
+  }
+
+  /** Lets the viewpoint come close to what has this radius, however far the rest of the scene is. */
+  private reach(radius: number): void {
+    const near = Math.min(this.lens.near, 0.02 * radius);
+    this.controls.minDistance = Math.min(this.controls.minDistance, 0.2 * radius);
+    this.controls.maxDistance = Math.max(this.controls.maxDistance, 20 * radius);
+    if (near === this.lens.near) return;
+    this.lens.near = near;
+    this.updateLens();
+  }
+
   /** Looks at a target with a radius, in metres. */
   lookFrom(which: Look, target: Vector3, radius: number): void {
     const { camera, controls } = this;
@@ -92,8 +113,8 @@ export class Viewpoint {
       controls.target.set(0, 0, Math.min(target.z, -this.lens.near));
     } else {
       const [right, up] = directions[which].map((angle) => (angle * Math.PI) / 180) as [number, number];
-      const near = radius / (fill * Math.tan((Math.PI / 360) * camera.fov));
-      const distance = which === "orbit" ? target.length() : Math.min(target.length(), near);
+      const distance = radius / (fill * Math.sin((Math.PI / 360) * Math.min(this.fovDeg, 2 * MAX_HALF_FOV_DEG)));
+      this.reach(radius);
       const away = new Spherical().setFromVector3(target.clone().negate());
       const phi = Math.max(0.08, away.phi - up);
       camera.position.setFromSphericalCoords(distance, phi, away.theta + right).add(target);

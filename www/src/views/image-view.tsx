@@ -139,7 +139,7 @@ export function ImageView() {
       </div>
       <div class="image-foot">
         <label class="wipe">
-          <span>After</span>
+          <span>Before</span>
           <input
             id="wipe"
             type="range"
@@ -150,7 +150,7 @@ export function ImageView() {
             aria-label="Share of the view that shows the start poses"
             onInput={({ currentTarget }) => setLayer("wipe", currentTarget.valueAsNumber)}
           />
-          <span>Before</span>
+          <span>After</span>
         </label>
         {difference && limit !== null ? (
           <p class="legend">

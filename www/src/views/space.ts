@@ -54,8 +54,9 @@ export async function mountSpace(host: HTMLElement): Promise<void> {
   }
 }
 
-const objectInput = ({ id, colour, mask, mesh, glb }: ObjectModel): ObjectInput => ({
+const objectInput = ({ id, name, colour, mask, mesh, glb }: ObjectModel): ObjectInput => ({
   id,
+  name,
   colour,
   mask,
   mesh:
@@ -84,8 +85,6 @@ function subscribe(view: View, isDragging: () => boolean): void {
       if (scene.peek() !== whole) return;
       stopPoses = whole.objects.map((object) => followPose(view, object, isDragging));
       view.select(selected.peek()?.id ?? null);
-      // Several objects are all in view already.
-      if (whole.objects.length === 1) view.focus();
     }, console.error);
   });
   effect(() => {
@@ -107,6 +106,7 @@ function followPose(view: View, object: ObjectModel, isDragging: () => boolean):
     const isMoved = pose !== shown && pose.source !== "hand";
     const animate = isMoved ? { from: shown.transform.matrix, durationMs: ANIMATION_MS } : undefined;
     shown = pose;
-    view.setPose(object.id, pose.transform.matrix, animate).catch(console.error);
+    const shownAt = view.setPose(object.id, pose.transform.matrix, animate);
+    shownAt.then(() => isMoved && pose === object.pose.peek() && view.frame(), console.error);
   });
 }
