@@ -173,7 +173,7 @@ test("an image of a BOP data set is a scene of its own", async () => {
   await page.selectOption("#scene-choice", "0");
   await opened.sheet();
   await page.click("#intake-open");
-  await opened.shows("000048");
+  await opened.shows("000048 000001");
   await page.click("#next-scene");
   await opened.page.locator(".objects").waitFor(PATIENCE);
   assert.equal((await namesOf(opened)).length, 2);

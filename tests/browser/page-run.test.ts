@@ -59,7 +59,7 @@ test("the page responds during an alignment, and shows its progress", async () =
 test("several objects of one scene are aligned, each with its own result", async () => {
   const opened = await site.open("#sample=desk");
   const { page } = opened;
-  const rows = page.locator(".objects button");
+  const rows = page.locator(".objects .select");
   assert.equal(await rows.count(), 3);
   const seen = new Set<string>();
   for (let i = 0; i < 3; i++) {

@@ -72,8 +72,8 @@ export class SiteTest {
     return new SitePage(page, errors);
   }
 
-  /** Opens the page and waits until its sample is aligned. */
-  async open(address = "", context: BrowserContextOptions = {}): Promise<SitePage> {
+  /** Opens the page with a sample, by default that of one object, and waits until it is aligned. */
+  async open(address = "#sample=mug", context: BrowserContextOptions = {}): Promise<SitePage> {
     const site = await this.visit(address, context);
     await site.aligned();
     return site;

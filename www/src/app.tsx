@@ -6,17 +6,29 @@ import { HandPanel } from "./panels/hand-panel.js";
 import { Header } from "./panels/header.js";
 import { HelpDialog } from "./panels/help-dialog.js";
 import { InputPanel } from "./panels/input-panel.js";
-import { Intake } from "./panels/intake.js";
 import { ObjectsPanel } from "./panels/objects-panel.js";
 import { OptionsPanel } from "./panels/options-panel.js";
 import { ResultPanel } from "./panels/result-panel.js";
 import { RunBar } from "./panels/run-bar.js";
+import { StartPanel } from "./panels/start-panel.js";
 import { largeView } from "./state/display.js";
+import { draft } from "./state/draft.js";
 import { scene } from "./state/scene.js";
+import { video } from "./state/video.js";
+import { lazy } from "./ui/lazy.js";
 import { listenToKeys } from "./ui/shortcuts.js";
 import { ImageView } from "./views/image-view.js";
 import { space } from "./views/space.js";
 import { SpaceView } from "./views/space-view.js";
+
+const Intake = lazy(
+  () => draft.value !== null,
+  () => import("./intake/index.js").then(({ Sheet }) => Sheet),
+);
+const TimePanel = lazy(
+  () => video.value !== null,
+  () => import("./panels/time-panel.js").then(({ TimePanel }) => TimePanel),
+);
 
 export function App() {
   useEffect(listenToKeys, []);
@@ -28,11 +40,13 @@ export function App() {
       <main class="page" data-large={large} data-scene={scene.value?.name ?? ""}>
         <SpaceView />
         <ImageView />
-        <ResultPanel />
-        <aside class="side" aria-label="Settings">
+        <TimePanel />
+        <HandPanel />
+        <aside class="side" aria-label="Scene">
           <RunBar />
+          <StartPanel />
+          <ResultPanel />
           <ObjectsPanel />
-          <HandPanel />
           <ExportPanel />
           <InputPanel />
           <OptionsPanel />

@@ -1,13 +1,14 @@
 /** The cards of the view: depth map, photo, camera. */
 import type { ComponentChildren } from "preact";
 import { useMemo } from "preact/hooks";
+import { depthRange } from "../draw/colours.js";
 import { baseName, filesOf } from "../load/files.js";
 import type { CameraSource, Field } from "../load/inputs.js";
 import { type Draft, draftInputs } from "../state/draft.js";
 import { Choices } from "../ui/controls.js";
 import { significant } from "../ui/format.js";
 import { Picture } from "../ui/picture.js";
-import { ASSUMED_FOV_DEG, depthRange } from "./checks.js";
+import { ASSUMED_FOV_DEG } from "./checks.js";
 import { change, choose } from "./draft.js";
 import { describedBy, Problems, problemsFor } from "./problem-list.js";
 
@@ -85,7 +86,7 @@ const depthUnits = [
 export function DepthCard({ open, ground }: { open: Draft; ground: Uint8ClampedArray | null }) {
   const { depth: file, depthScale } = draftInputs(open);
   const depth = open.reading?.depth ?? null;
-  const range = useMemo(() => (depth === null ? null : depthRange(depth)), [depth]);
+  const range = useMemo(() => (depth === null ? null : depthRange(depth.data)), [depth]);
   const image = useMemo(
     () =>
       depth === null || ground === null

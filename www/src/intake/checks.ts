@@ -1,5 +1,5 @@
 /** What is missing, contradictory or implausible in the inputs of a scene. */
-import type { DepthImage } from "sim3align/formats";
+import { depthRange } from "../draw/colours.js";
 import { baseName } from "../load/files.js";
 import type { Inputs } from "../load/inputs.js";
 import { doubt, error, type Problem, type Remedy, withoutObject } from "../load/problems.js";
@@ -59,7 +59,7 @@ const useScale = (title: string, depthScale: number): Remedy => ({
 
 function ofDepth({ depthScale }: Inputs, { depth }: Reading): Problem[] {
   if (depth === null) return [];
-  const range = depthRange(depth);
+  const range = depthRange(depth.data);
   if (range === null) return [error("depth", "The depth map has no reading: every pixel is 0 or no number.")];
   const { medianM } = range;
   const [nearest, farthest] = PLAUSIBLE_DEPTH_M;
@@ -142,18 +142,4 @@ function ofObject(inputs: Inputs, { depth, camera }: Reading, { mask, mesh }: Re
     problems.push(doubt("depth", `${files.name} would be ${size} large. Is the unit of the depth map right?`, [], i));
   }
   return problems;
-}
-
-/** The range of the readings without outliers, metres; null if there is none. */
-export function depthRange({
-  data,
-}: Pick<DepthImage, "data">): { nearM: number; medianM: number; farM: number } | null {
-  const stride = Math.max(1, Math.floor(data.length / 20_000));
-  // A stride that divides the width would look at some columns only.
-  const step = stride > 1 && stride % 2 === 0 ? stride + 1 : stride;
-  let readings = data.filter((z, pixel) => pixel % step === 0 && z > 0 && Number.isFinite(z)).sort();
-  if (readings.length === 0) readings = data.filter((z) => z > 0 && Number.isFinite(z)).sort();
-  if (readings.length === 0) return null;
-  const at = (share: number) => readings[Math.floor(share * (readings.length - 1))] as number;
-  return { nearM: at(0.01), medianM: at(0.5), farM: at(0.99) };
 }

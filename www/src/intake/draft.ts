@@ -12,6 +12,7 @@ import { announce } from "../state/status.js";
 import { problemsOf } from "./checks.js";
 import { rolesOf } from "./roles.js";
 import { scenesOfTyped } from "./scenes.js";
+import { isVideo, videoOf } from "./video.js";
 
 /** The number of the last change. The results of earlier ones are discarded. */
 let lastChange = 0;
@@ -37,12 +38,18 @@ export async function propose(files: readonly NamedFile[]): Promise<void> {
 
 /** Proposes scenes, the first of which is looked at. */
 export function proposeScenes(scenes: readonly Inputs[]): Promise<void> {
-  return set({ scenes, index: 0, isEdit: false });
+  return set({ scenes, index: 0, isVideo: isVideo(scenes), isEdit: false });
+}
+
+/** Takes the scenes as the frames of one video, or as scenes of their own. */
+export async function asVideo(isOne: boolean): Promise<void> {
+  const open = draft.peek();
+  if (open !== null) await set({ ...open, isVideo: isOne }, false);
 }
 
 /** Makes the inputs of the scene that is shown a draft. */
 export function edit(inputs: Inputs): Promise<void> {
-  return set({ scenes: [{ ...inputs, files: filesOf(inputs) }], index: 0, isEdit: true });
+  return set({ scenes: [{ ...inputs, files: filesOf(inputs) }], index: 0, isVideo: false, isEdit: true });
 }
 
 /** Looks at another scene of the draft. */
@@ -99,6 +106,18 @@ export async function accept(): Promise<void> {
   if (opened === null) return;
   lastChange++;
   draft.value = null;
+  if (open.isVideo) {
+    queue.value = [];
+    const opening = await videoOf(open.scenes);
+    // Tracking starts with the first frame, whichever is looked at.
+    const frame = opening.frames[0] as Inputs;
+    const first = sceneOf(frame, await readInputs(frame), true);
+    if (first === null) return announce("The first frame could not be read.", "failed");
+    const { openVideo, trackAll } = await import("../run/video.js");
+    openVideo(opening, first);
+    await trackAll();
+    return;
+  }
   if (!open.isEdit) queue.value = open.scenes.filter((_, i) => i > open.index);
   show(opened, inputs);
   await alignAll();
@@ -141,7 +160,7 @@ async function set(next: Omit<Draft, "reading" | "problems">, opens = true): Pro
   const problems = problemsOf(inputs, reading);
   draft.value = { ...next, reading, problems };
   announce(problems[0]?.message ?? `${inputs.name} can be opened.`, problems.length > 0 ? "failed" : "done");
-  const isWhole = problems.length === 0 && next.scenes.length === 1;
+  const isWhole = problems.length === 0 && (next.scenes.length === 1 || next.isVideo);
   if (opens && isWhole && !next.isEdit && !hasWork()) await accept();
 }
 
@@ -152,7 +171,13 @@ const hasWork = () => scene.peek()?.objects.some(({ pose }) => pose.peek().sourc
 function refuse(message: string): void {
   const open = draft.peek();
   const problem: Problem = error("files", message);
-  const empty = { scenes: [{ ...shownInputs.peek(), ...emptied }], index: 0, reading: null, isEdit: false };
+  const empty = {
+    scenes: [{ ...shownInputs.peek(), ...emptied }],
+    index: 0,
+    reading: null,
+    isVideo: false,
+    isEdit: false,
+  };
   draft.value = { ...(open ?? empty), problems: [problem] };
   announce(message, "failed");
 }

@@ -68,6 +68,7 @@ function roleOfJson(file: NamedFile, bytes: Uint8Array): Role {
   if (has("cam_R_m2c")) return "truth";
   if (has("counts") && has("size")) return "mask";
   const name = baseName(file.path).toLowerCase();
+  if (has("camera_to_world")) return "pose";
   if (/^(meta|results?|scene_gt_info|package|pose|plane)\b/.test(name)) return "unused";
   if (/^(gt|truth)\b/.test(name)) return "truth";
   if (["fx", "K", "k", "cam_K", "intrinsic_matrix", "fovYDeg", "fov_y_deg", "camera_matrix"].some(has)) return "camera";

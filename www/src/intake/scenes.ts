@@ -24,7 +24,14 @@ export async function scenesOf(files: readonly NamedFile[]): Promise<Inputs[]> {
 /** The scenes of files with known roles. */
 export async function scenesOfTyped(typed: readonly Typed[]): Promise<Inputs[]> {
   const groups = await grouped(typed);
-  return Promise.all(groups.map(({ files, id }) => sceneFrom(files, id)));
+  const isSeries = groups.length > 1;
+  return Promise.all(
+    groups.map(async ({ files, id }) => {
+      const scene = await sceneFrom(files, id);
+      // Images of one folder differ by their ids.
+      return isSeries && id !== null ? { ...scene, name: `${scene.name} ${id}` } : scene;
+    }),
+  );
 }
 
 interface Group {

@@ -5,9 +5,10 @@ import { baseName, filesOf, type NamedFile } from "../load/files.js";
 import type { Inputs, Role } from "../load/inputs.js";
 import { type Draft, draft, draftInputs, isReady } from "../state/draft.js";
 import { CameraCard, DepthCard, PhotoCard } from "./cards.js";
-import { accept, assign, change, dismiss, look, propose } from "./draft.js";
+import { accept, assign, asVideo, change, dismiss, look, propose } from "./draft.js";
 import { ObjectRows } from "./object-rows.js";
 import { Problems } from "./problem-list.js";
+import { canBeVideo } from "./video.js";
 
 export function Sheet() {
   const dialog = useRef<HTMLDialogElement>(null);
@@ -38,6 +39,7 @@ export function Sheet() {
           onChange={({ currentTarget }) => change((now) => ({ ...now, name: currentTarget.value || now.name }))}
         />
         <SceneChoice open={open} />
+        <VideoChoice open={open} />
         <button type="button" id="intake-cancel" onClick={dismiss}>
           Cancel
         </button>
@@ -98,6 +100,21 @@ function SceneChoice({ open: { scenes, index } }: { open: Draft }) {
   );
 }
 
+function VideoChoice({ open }: { open: Draft }) {
+  if (!canBeVideo(open.scenes)) return null;
+  return (
+    <label class="check">
+      <input
+        id="as-video"
+        type="checkbox"
+        checked={open.isVideo}
+        onChange={({ currentTarget }) => asVideo(currentTarget.checked)}
+      />
+      <span>Frames of one video</span>
+    </label>
+  );
+}
+
 const roles: readonly (readonly [Role, string])[] = [
   ["depth", "Depth map"],
   ["photo", "Photo"],
@@ -107,6 +124,7 @@ const roles: readonly (readonly [Role, string])[] = [
   ["annotations", "COCO annotations"],
   ["mesh", "Mesh"],
   ["truth", "True pose"],
+  ["pose", "Pose of the camera"],
   ["resource", "Part of a mesh"],
   ["unused", "Not used"],
 ];

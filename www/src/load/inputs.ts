@@ -11,6 +11,7 @@ export type Role =
   | "annotations"
   | "mesh"
   | "truth"
+  | "pose"
   | "resource"
   | "unused";
 

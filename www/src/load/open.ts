@@ -2,6 +2,7 @@
 import { batch, signal } from "@preact/signals";
 import { layers, setLayer } from "../state/display.js";
 import { draft } from "../state/draft.js";
+import type { ObjectModel } from "../state/object-model.js";
 import { type Scene, scene } from "../state/scene.js";
 import { announce } from "../state/status.js";
 import type { NamedFile } from "./files.js";
@@ -23,12 +24,15 @@ export async function openSample(sample: Sample): Promise<boolean> {
   const call = ++lastCall;
   const next = sampleInputs(sample);
   isReading.value = true;
+  const before = inputs.peek();
+  if (scene.peek() === null) inputs.value = next;
   announce(`Reading ${next.name} …`, "working");
   const reading = await readInputs(next);
   if (call !== lastCall) return false;
   isReading.value = false;
   const opened = sceneOf(next, reading);
   if (opened === null) {
+    inputs.value = before;
     announce(`${next.name}: ${reading.problems.map(({ message }) => message).join(" ")}`, "failed");
     return false;
   }
@@ -47,6 +51,19 @@ export function show(opened: Scene, from: Inputs): void {
     const base = opened.rgba === null ? "depth" : "photo";
     if (layers.peek().base !== base) setLayer("base", base);
   });
+}
+
+/** Takes an object out of the scene. The others keep their poses. */
+export function removeObject(object: ObjectModel): void {
+  const [whole, from] = [scene.peek(), inputs.peek()];
+  const index = whole?.objects.indexOf(object) ?? -1;
+  if (whole === null || index < 0) return;
+  const without = <T>(list: readonly T[]) => list.filter((_, i) => i !== index);
+  show(
+    { ...whole, sample: null, objects: without(whole.objects) },
+    { ...from, sample: null, objects: without(from.objects) },
+  );
+  announce(`Removed ${object.name}.`);
 }
 
 const intake = () => import("../intake/draft.js");

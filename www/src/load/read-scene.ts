@@ -83,11 +83,13 @@ export async function readInputs(inputs: Inputs): Promise<Reading> {
   };
 }
 
-/** The scene, or null while a part is missing. */
-export function sceneOf(inputs: Inputs, { depth, camera, photo, objects, warnings }: Reading): Scene | null {
+/** The scene, or null while a part is missing. A frame of a video may lack its mask. */
+export function sceneOf(inputs: Inputs, reading: Reading, isFrame = false): Scene | null {
+  const { depth, camera, photo, objects, warnings } = reading;
   if (depth === null || camera === null) return null;
   const models: ObjectModel[] = [];
-  for (const [i, { mask, mesh, glb, truth }] of objects.entries()) {
+  for (const [i, { mask: ownMask, mesh, glb, truth }] of objects.entries()) {
+    const mask = ownMask ?? (isFrame && inputs.objects[i]?.mask === null ? new Uint8Array(depth.data.length) : null);
     if (mask === null || mesh === null) return null;
     const { name } = inputs.objects[i] as Inputs["objects"][number];
     const parts = { id: `${i}`, name, colour: colourOf(i), mask, mesh: mesh as MeshArrays, glb, truth };

@@ -1,15 +1,12 @@
 /** Adjusting the pose by hand: handles, nudges, known size, refine, undo and redo. */
-import { useState } from "preact/hooks";
 import type { Vector3 } from "sim3align/conventions";
 import { isRunning, refine } from "../run/align.js";
 import { gizmo } from "../state/display.js";
 import { canRedo, canUndo, place, redo, undo } from "../state/history.js";
-import type { ObjectModel } from "../state/object-model.js";
 import { type Nudge, nudged, rotationAbout } from "../state/pose.js";
 import { selected } from "../state/scene.js";
-import { Choices } from "../ui/controls.js";
-import { centimetres } from "../ui/format.js";
 import { space } from "../views/space.js";
+import { KnownSize } from "./known-size.js";
 
 const modes = [
   ["translate", "Move", "G"],
@@ -28,12 +25,12 @@ const moves: readonly [title: string, symbol: string, direction: Vector3][] = [
 ];
 
 const rotations: readonly [title: string, symbol: string, axis: Vector3, degrees: number][] = [
-  ["left", "↶ y", [0, 1, 0], 5],
-  ["right", "↷ y", [0, 1, 0], -5],
-  ["backwards", "↶ x", [1, 0, 0], 5],
-  ["forwards", "↷ x", [1, 0, 0], -5],
-  ["anticlockwise", "↶ z", [0, 0, 1], -5],
-  ["clockwise", "↷ z", [0, 0, 1], 5],
+  ["left", "↶", [0, 1, 0], 5],
+  ["right", "↷", [0, 1, 0], -5],
+  ["backwards", "⤒", [1, 0, 0], 5],
+  ["forwards", "⤓", [1, 0, 0], -5],
+  ["anticlockwise", "⟲", [0, 0, 1], -5],
+  ["clockwise", "⟳", [0, 0, 1], 5],
 ];
 
 /** Moves, rotates or scales the selected object. */
@@ -117,7 +114,7 @@ export function HandPanel() {
           </button>
         </fieldset>
       </details>
-      <KnownSize object={object} />
+      <KnownSize object={object} id="known-size" />
       <div class="row">
         {/* A disabled button would lose the focus while it runs. */}
         <button type="button" id="refine" aria-disabled={!isReady} aria-keyshortcuts="F" onClick={refine}>
@@ -152,42 +149,5 @@ export function HandPanel() {
         </button>
       </div>
     </details>
-  );
-}
-
-const sides = ["Width", "Height", "Depth", "Longest side"] as const;
-const sideChoices = sides.map((title, i) => [`${i}`, title] as const);
-
-/** Scales the mesh so that one side has a known length, which all alignments keep. */
-function KnownSize({ object }: { object: ObjectModel | null }) {
-  const [side, setSide] = useState(1);
-  const unit = object?.side(side > 2 ? "longest" : (side as 0 | 1 | 2)) ?? 0;
-  const presentM = unit * (object?.pose.value.transform.scale ?? 0);
-
-  const apply = (field: HTMLInputElement) => {
-    const wantedM = field.valueAsNumber / 100;
-    const isValid = wantedM > 0 && presentM > 0;
-    if (object === null || !isValid || centimetres(wantedM) === centimetres(presentM)) return;
-    const scale = wantedM / presentM;
-    const transform = nudged(object.box.peek().centreM, object.pose.peek().transform, { scale });
-    place(object, { transform, source: "hand" });
-    object.knownScale.value = transform.scale;
-  };
-  return (
-    <fieldset class="row known" disabled={object === null}>
-      <legend>Known size</legend>
-      <Choices label="Side" value={`${side}`} choices={sideChoices} onChoose={(value) => setSide(Number(value))} />
-      <input
-        id="known-size"
-        type="number"
-        min="0"
-        step="any"
-        inputMode="decimal"
-        aria-label={`${sides[side]} in centimetres`}
-        value={presentM > 0 ? centimetres(presentM) : ""}
-        onChange={({ currentTarget }) => apply(currentTarget)}
-      />
-      <span class="unit">cm</span>
-    </fieldset>
   );
 }

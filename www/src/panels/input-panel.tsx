@@ -1,6 +1,6 @@
 /** The input files of the scene that is shown. */
-import { baseName, filesOf } from "../load/files.js";
-import { editInputs, inputs, openFiles, openNext, queue } from "../load/open.js";
+import { baseName } from "../load/files.js";
+import { editInputs, inputs, openNext, queue } from "../load/open.js";
 import { scene } from "../state/scene.js";
 
 const unknownCamera = { file: "–", numbers: "entered", assumed: "assumed" };
@@ -22,9 +22,6 @@ export function InputPanel() {
       <summary>
         <h2>Files</h2>
       </summary>
-      <div class="row">
-        <FilePickers />
-      </div>
       {whole !== null && (
         <>
           <dl class="facts">
@@ -46,33 +43,5 @@ export function InputPanel() {
         </button>
       )}
     </details>
-  );
-}
-
-/** Buttons that choose files or a folder of a new scene. */
-function FilePickers() {
-  return (
-    <>
-      <label class="button">
-        <span>Open files</span>
-        <input
-          id="files"
-          class="visually-hidden"
-          type="file"
-          multiple
-          onChange={({ currentTarget }) => openFiles(filesOf(currentTarget))}
-        />
-      </label>
-      <label class="button">
-        <span>Open folder</span>
-        <input
-          id="folder"
-          class="visually-hidden"
-          type="file"
-          {...{ webkitdirectory: true }}
-          onChange={({ currentTarget }) => openFiles(filesOf(currentTarget))}
-        />
-      </label>
-    </>
   );
 }

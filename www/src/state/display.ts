@@ -31,10 +31,14 @@ export interface Display3d {
   cloud: boolean;
   mesh: boolean;
   wireframe: boolean;
+  dimensions: boolean;
   pointSize: number;
 }
 
-export const display3d = signal<Display3d>({ cloud: true, mesh: true, wireframe: false, pointSize: 1 });
+export const display3d = signal<Display3d>({
+  ...{ cloud: true, mesh: true, wireframe: false, dimensions: true },
+  pointSize: 1.2,
+});
 
 export const gizmo = signal<"translate" | "rotate" | "scale" | null>(null);
 

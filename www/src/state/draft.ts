@@ -11,6 +11,8 @@ export interface Draft {
   /** Null while the files are being read. */
   reading: Reading | null;
   problems: readonly Problem[];
+  /** Whether the scenes are the frames of one video. */
+  isVideo: boolean;
   /** Whether these are the inputs of the scene that is shown already. */
   isEdit: boolean;
 }

@@ -54,6 +54,8 @@ export class ObjectModel implements Readonly<ObjectParts> {
   readonly isShown = signal(true);
   /** Whether alignments of the whole scene, and handles, leave the pose unchanged. */
   readonly isLocked = signal(false);
+  /** Whether a person has accepted the present pose. */
+  readonly isAccepted = signal(false);
   /** The known scale in metres per mesh unit, which every alignment keeps; null if it is free. */
   readonly knownScale = signal<number | null>(null);
   readonly run = signal<Run>({ state: "idle" });
@@ -80,6 +82,10 @@ export class ObjectModel implements Readonly<ObjectParts> {
     this.bounds = boundsOf(parts.mesh);
     this.start = { transform: startPose(this.bounds, parts.visible), source: "start" };
     this.pose = signal<Pose>(this.start);
+    // Another pose has to be accepted anew.
+    this.pose.subscribe(() => {
+      this.isAccepted.value = false;
+    });
   }
 
   get name(): string {

@@ -1,5 +1,6 @@
 /** Keyboard shortcuts. The help lists this table. */
 
+import { accept, next } from "../panels/decision.js";
 import { alignAll, alignSelected, cancel, isRunning, refine } from "../run/align.js";
 import { applyAlternative } from "../run/alternatives.js";
 import { display3d, gizmo, isHelpOpen, largeView, layers, setLayer } from "../state/display.js";
@@ -22,7 +23,7 @@ const toggleHandles = (mode: "translate" | "rotate" | "scale") => () => {
 
 const lookFrom = (from: "camera" | "orbit" | "top" | "side") => () => {
   const state = space.peek();
-  if (state.kind === "ready") state.view.lookFrom(from);
+  if (state.kind === "ready") state.view.lookFrom(from, from === "camera");
 };
 
 function selectNeighbour(step: number): void {
@@ -48,6 +49,8 @@ export const shortcuts: readonly Shortcut[] = [
   { key: "Mod+z", title: "Ctrl Z", about: "Undo", act: undo },
   { key: "Mod+Z", title: "Ctrl Shift Z", about: "Redo", act: redo },
   { key: "Mod+y", title: "Ctrl Y", about: "Redo", act: redo },
+  { key: "Enter", title: "Enter", about: "Accept the pose", act: accept },
+  { key: "n", title: "N", about: "Next object or scene", act: next },
   { key: "[", title: "[", about: "Previous object", act: () => selectNeighbour(-1) },
   { key: "]", title: "]", about: "Next object", act: () => selectNeighbour(1) },
   { key: "c", title: "C", about: "Camera view", act: lookFrom("camera") },
@@ -97,6 +100,8 @@ function onKey(event: KeyboardEvent): void {
     document.querySelector("dialog[open], :popover-open") !== null
   )
     return;
+  // Enter presses the button that has the focus.
+  if (key === "Enter" && target !== document.body) return;
   const isMod = ctrlKey || metaKey;
   if (!isMod && /^\d$/.test(key)) {
     const object = selected.peek();

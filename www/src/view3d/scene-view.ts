@@ -2,8 +2,10 @@
 import { DirectionalLight, Group, HemisphereLight, Sphere, Vector3 } from "three/webgpu";
 import { Animations } from "./animations.js";
 import { Cloud } from "./cloud.js";
+import { Dimensions } from "./dimensions.js";
 import { Frustum } from "./frustum.js";
 import { Gizmo } from "./gizmo.js";
+import { Ground } from "./ground.js";
 import { Marker } from "./marker.js";
 import { Model } from "./model.js";
 import { Picker } from "./picker.js";
@@ -22,7 +24,7 @@ import type {
   View,
   ViewEvents,
 } from "./types.js";
-import { Viewpoint } from "./viewpoint.js";
+import { type Rect, Viewpoint } from "./viewpoint.js";
 
 const lookNames: Record<Look, string> = {
   camera: "the depth camera",
@@ -33,6 +35,9 @@ const lookNames: Record<Look, string> = {
 
 /** Screens resolve no more points, and software renderers draw no more in acceptable time. */
 const maxPoints = { hardware: 400_000, software: 80_000 };
+
+/** The sizes of so many objects are shown at once. */
+const FEW = 3;
 
 /** The implementation of the view. */
 export class SceneView implements View {
@@ -48,10 +53,17 @@ export class SceneView implements View {
   private scene: SceneInput | null = null;
   private cloud: Cloud | null = null;
   private frustum: Frustum | null = null;
+  private ground: Ground | null = null;
+  /** The other cameras. */
+  private readonly others: Frustum[] = [];
+  /** About the depth of the nearest surfaces, metres. */
+  private firstDepth = 1;
+  private readonly dimensions = new Map<string, Dimensions>();
   private objects: readonly ObjectInput[] = [];
   private selected: string | null = null;
   private gizmoMode: GizmoMode | null = null;
   private look: Look = "orbit";
+  private fits = false;
   private loading = 0;
   private display: Display = { cloud: true, mesh: true, wireframe: false, pointSize: 1.2, theme: "light" };
 
@@ -129,15 +141,19 @@ export class SceneView implements View {
   setScene(scene: SceneInput): void {
     this.cloud?.dispose();
     this.frustum?.dispose();
+    this.ground?.dispose();
     const { near, far, frustum } = colours(this.display.theme, this.host);
     this.scene = scene;
     this.cloud = new Cloud(scene, near, far, this.stage.isSoftware ? maxPoints.software : maxPoints.hardware);
     const depths = sortedDepths(this.cloud.points);
     const [first, last] = [quantile(depths, 0.01) || 1, quantile(depths, 0.99) || 1];
+    this.firstDepth = first;
     this.frustum = new Frustum(scene, 0.22 * first, frustum);
+    this.ground = scene.ground ? new Ground(scene, last) : null;
     this.root.add(this.cloud.object, this.frustum.object);
+    if (this.ground) this.root.add(this.ground.object);
     this.viewpoint.setScene(scene, first, last);
-    this.lookFrom(this.look);
+    this.lookFrom(this.look, this.fits);
     this.highlight();
   }
 
@@ -169,7 +185,7 @@ export class SceneView implements View {
     for (const id of [...this.poses.keys()]) if (!this.models.has(id)) this.poses.delete(id);
     this.objects = objects;
     if (this.selected !== null && !this.models.has(this.selected)) this.selected = null;
-    if (!this.viewpoint.isTouched) this.lookFrom(this.look);
+    this.frame();
     this.highlight();
   }
 
@@ -185,6 +201,7 @@ export class SceneView implements View {
       });
       this.update();
       await end;
+      this.update();
       return;
     }
     model.pose = pose;
@@ -197,6 +214,7 @@ export class SceneView implements View {
     if (!pose) return;
     this.animations.stop(model.id);
     this.poses.set(model.id, pose);
+    this.measure();
     this.stage.invalidate();
     this.events.onPose(model.id, pose, phase);
   }
@@ -224,15 +242,50 @@ export class SceneView implements View {
     this.update();
   }
 
-  lookFrom(which: Look): void {
+  lookFrom(which: Look, fits = false): void {
     this.look = which;
+    this.fits = fits;
     const { centre, radius } = this.extent();
-    this.viewpoint.lookFrom(which, toThree(centre), radius);
+    this.viewpoint.lookFrom(which, toThree(centre), radius, fits ? this.crop() : null);
+    this.update();
+  }
+
+  setCameras(poses: readonly Matrix[]): void {
+    for (const frustum of this.others.splice(0)) frustum.dispose();
+    if (!this.scene) return;
+    const { frustum: colour } = colours(this.display.theme, this.host);
+    for (const pose of poses) {
+      const frustum = new Frustum(this.scene, 0.1 * this.firstDepth, colour);
+      frustum.object.matrixAutoUpdate = false;
+      frustum.object.matrix.fromArray(Array.from(pose));
+      this.root.add(frustum.object);
+      this.others.push(frustum);
+    }
     this.update();
   }
 
   frame(): void {
-    if (!this.viewpoint.isTouched) this.lookFrom(this.look);
+    if (!this.viewpoint.isTouched) this.lookFrom(this.look, this.fits);
+  }
+
+  /** The part of the image that shows all masks and meshes. */
+  private crop(): Rect | null {
+    if (!this.scene) return null;
+    const { width, camera } = this.scene;
+    const rect = { left: Number.POSITIVE_INFINITY, top: Number.POSITIVE_INFINITY, right: -1, bottom: -1 };
+    const add = (u: number, v: number) => {
+      [rect.left, rect.right] = [Math.min(rect.left, u), Math.max(rect.right, u)];
+      [rect.top, rect.bottom] = [Math.min(rect.top, v), Math.max(rect.bottom, v)];
+    };
+    for (const { id, mask } of this.objects) {
+      mask.forEach((inside, pixel) => {
+        if (inside) add(pixel % width, Math.floor(pixel / width));
+      });
+      for (const { x, y, z } of this.models.get(id)?.corners() ?? []) {
+        if (z > 0) add((camera.fx * x) / z + camera.cx, (camera.fy * y) / z + camera.cy);
+      }
+    }
+    return rect.right < 0 ? null : rect;
   }
 
   focus(point: [number, number, number] = this.extent(this.selected).centre): void {
@@ -244,11 +297,10 @@ export class SceneView implements View {
   private extent(id: string | null = null): Extent {
     const wanted = this.objects.filter((object) => id === null || object.id === id);
     const placed = wanted.flatMap((object) => this.models.get(object.id) ?? []).filter(({ pose }) => pose !== null);
-    const spheres = placed.map(({ pivot, radius }) => new Sphere(pivot.position.clone(), pivot.scale.x * radius));
-    const [first, ...others] = spheres;
-    if (first !== undefined) {
-      for (const other of others) first.union(other);
-      return { centre: first.center.toArray(), radius: first.radius };
+    const corners = placed.flatMap((model) => model.corners() ?? []);
+    if (corners.length > 0) {
+      const { center, radius } = new Sphere().setFromPoints(corners);
+      return { centre: center.toArray(), radius };
     }
     if (!this.cloud) return { centre: [0, 0, 1], radius: 0.5 };
     return extentOf(this.cloud.points, (pixel) => wanted.some(({ mask }) => mask[pixel]));
@@ -263,16 +315,40 @@ export class SceneView implements View {
   private update(): void {
     const { display, selected, stage, viewpoint } = this;
     stage.background = colours(display.theme, this.host).background;
+    const showsGround = this.ground !== null && viewpoint.isCamera && display.cloud;
+    if (this.ground) this.ground.object.visible = showsGround;
     if (this.cloud) {
-      this.cloud.object.visible = display.cloud;
+      this.cloud.object.visible = display.cloud && !showsGround;
       this.cloud.setPointSize(display.pointSize);
     }
     if (this.frustum) this.frustum.object.visible = !viewpoint.isCamera;
-    for (const model of this.models.values()) model.show(display, model.id === selected);
+    for (const { object } of this.others) object.visible = !viewpoint.isCamera;
+    for (const model of this.models.values()) {
+      model.show(display, model.id === selected, display.hidden?.includes(model.id));
+    }
+    this.measure();
     const model = selected === null ? undefined : this.models.get(selected);
     this.gizmo?.set(model ?? null, this.gizmoMode);
     stage.canvas.setAttribute("aria-label", this.label());
     stage.invalidate();
+  }
+
+  /** Shows the sizes of a few objects, and of the selected one among many. */
+  private measure(): void {
+    const isFew = this.models.size <= FEW;
+    for (const [id, dimensions] of this.dimensions) {
+      if (this.models.has(id)) continue;
+      dimensions.dispose();
+      this.dimensions.delete(id);
+    }
+    for (const [id, model] of this.models) {
+      const dimensions = this.dimensions.get(id) ?? new Dimensions();
+      if (!this.dimensions.has(id)) this.root.add(dimensions.object);
+      this.dimensions.set(id, dimensions);
+      const isShown =
+        this.display.dimensions === true && (isFew || id === this.selected) && !this.animations.isRunning(id);
+      dimensions.show(isShown ? model : null);
+    }
   }
 
   /** A description for screen readers. */
@@ -300,11 +376,14 @@ export class SceneView implements View {
     this.pointer.dispose();
     this.gizmo.dispose();
     this.marker.dispose();
+    for (const dimensions of this.dimensions.values()) dimensions.dispose();
+    this.ground?.dispose();
     this.viewpoint.dispose();
     for (const model of this.models.values()) model.dispose();
     this.models.clear();
     this.cloud?.dispose();
     this.frustum?.dispose();
+    for (const frustum of this.others) frustum.dispose();
     this.stage.dispose();
   }
 }

@@ -11,6 +11,8 @@ export interface SceneInput {
   height: number;
   /** In pixels; pixel centres are at integers. */
   camera: { fx: number; fy: number; cx: number; cy: number };
+  /** The image behind the meshes in the view from the depth camera; none by default. */
+  ground?: Uint8ClampedArray | undefined;
   /** The photo at the size of the depth map. Without it, points are coloured by depth. */
   rgba?: Uint8ClampedArray | undefined;
 }
@@ -38,6 +40,10 @@ export interface Display {
   theme: "light" | "dark";
   /** Opacity of the meshes, 0 to 1. Default 1. */
   meshOpacity?: number | undefined;
+  /** Whether the sizes of the objects are shown. */
+  dimensions?: boolean | undefined;
+  /** The ids of the objects that are not shown. */
+  hidden?: readonly string[] | undefined;
 }
 
 /** Viewpoints: the depth camera, a three-quarter view, from above, from the right. */
@@ -87,7 +93,10 @@ export interface View {
   /** Shows the gizmo at the selected mesh; `null` hides it. */
   setGizmo(mode: GizmoMode | null): void;
   setDisplay(display: Display): void;
-  lookFrom(which: Look): void;
+  /** With `fits`, the view from the depth camera is zoomed to the objects. */
+  lookFrom(which: Look, fits?: boolean): void;
+  /** Shows where other cameras are: their poses in the frame of the depth camera, 16 numbers each, column-major. */
+  setCameras(poses: readonly Matrix[]): void;
   /** Frames all objects at their present poses, unless the user has moved the viewpoint. */
   frame(): void;
   /** Orbits around a point (OpenCV camera frame, metres), by default the centre of the selected object. */

@@ -7,7 +7,18 @@ import type { Look, SceneInput } from "./types.js";
 /** Viewpoints as angles from the depth camera in degrees: to the right, and up. */
 const directions: Record<Exclude<Look, "camera">, [number, number]> = { orbit: [28, 16], top: [0, 80], side: [82, 8] };
 /** Share of the smaller side of the view that the target fills. */
-const fill = 0.62;
+const fill = 0.8;
+
+/** A part of the image, in pixels. */
+export interface Rect {
+  left: number;
+  top: number;
+  right: number;
+  bottom: number;
+}
+
+/** Share of the view that the objects fill in the view from the depth camera. */
+const CROP_FILL = 0.72;
 
 /** Wider lenses would show a target from very near. */
 const MAX_HALF_FOV_DEG = 35;
@@ -23,6 +34,9 @@ export class Viewpoint {
   /** Whether the user started to move the camera since the last `lookFrom`. */
   private isHeld = false;
   private scene: SceneInput | null = null;
+  /** The part of the image that fills the view; `null` is all of it. */
+  private crop: Rect | null = null;
+  private target: Vector3 | null = null;
   private size = { width: 1, height: 1 };
   private readonly lens = { near: 0.01, far: 100 };
 
@@ -35,7 +49,7 @@ export class Viewpoint {
     });
     this.controls.addEventListener("change", () => {
       // A click alone moves nothing, and damping continues after the release.
-      if (this.isHeld) this.isCamera = false;
+      if (this.isHeld && this.isCamera) this.leaveCamera();
       this.isTouched ||= this.isHeld;
       onChange();
     });
@@ -71,10 +85,18 @@ export class Viewpoint {
     applyPinhole(this.camera, this.scene.camera, { ...image, ...this.lens });
     const { aspect, view } = this.camera;
     if (!view) return;
-    const scale = Math.min(width / image.width, height / image.height);
-    const [visibleWidth, visibleHeight] = [width / scale, height / scale];
-    const x = view.offsetX - (visibleWidth - image.width) / 2;
-    const y = view.offsetY - (visibleHeight - image.height) / 2;
+    const { left, top, right, bottom } = this.crop ?? { left: 0, top: 0, right: image.width, bottom: image.height };
+    const fill = this.crop === null ? 1 : CROP_FILL;
+    const scale = Math.min(1 / Math.max((right - left) / width, (bottom - top) / height, 1e-6)) * fill;
+    // No more than the image is shown at once.
+    const least = Math.min(width / image.width, height / image.height);
+    const [visibleWidth, visibleHeight] = [width / Math.max(scale, least), height / Math.max(scale, least)];
+    const centre = (low: number, high: number, visible: number, all: number) => {
+      const start = (low + high - visible) / 2;
+      return visible >= all ? (all - visible) / 2 : Math.min(Math.max(start, 0), all - visible);
+    };
+    const x = view.offsetX + centre(left, right, visibleWidth, image.width);
+    const y = view.offsetY + centre(top, bottom, visibleHeight, image.height);
     this.camera.setViewOffset(image.width, image.height, x, y, visibleWidth, visibleHeight);
     // setViewOffset resets the aspect to that of square pixels.
     this.camera.aspect = aspect;
@@ -100,8 +122,11 @@ export class Viewpoint {
   }
 
   /** Looks at a target with a radius, in metres. */
-  lookFrom(which: Look, target: Vector3, radius: number): void {
+  lookFrom(which: Look, target: Vector3, radius: number, crop: Rect | null = null): void {
     const { camera, controls } = this;
+    this.crop = which === "camera" ? crop : null;
+    this.target = target.clone();
+    this.updateLens();
     camera.up.set(0, 1, 0);
     // Ends the damping of the last movement.
     const isDamped = controls.enableDamping;
@@ -127,9 +152,21 @@ export class Viewpoint {
     this.isCamera = which === "camera";
   }
 
+  /** Turns the view from the depth camera into an orbit about the objects, which stay where they are in the view. */
+  private leaveCamera(): void {
+    this.isCamera = false;
+    if (this.crop === null || this.target === null || this.scene === null) return;
+    const { cx, cy } = this.scene.camera;
+    const [halfWidth, halfHeight] = [(this.crop.right - this.crop.left) / 2, (this.crop.bottom - this.crop.top) / 2];
+    this.crop = { left: cx - halfWidth, right: cx + halfWidth, top: cy - halfHeight, bottom: cy + halfHeight };
+    this.controls.target.copy(this.target);
+    this.camera.lookAt(this.target);
+    this.updateLens();
+  }
+
   /** Centres the view on a point and orbits around it. */
   focus(point: Vector3): void {
-    this.isCamera = false;
+    if (this.isCamera) this.leaveCamera();
     this.isTouched = true;
     const { camera, controls } = this;
     camera.position.add(point).sub(controls.target);

@@ -1,23 +1,19 @@
 /** The image view: photo or depth map, overlaid with masks, silhouettes and depth differences. */
 import { computed, effect, type ReadonlySignal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
-import { depthImage } from "../draw/colours.js";
+import { depthGradient, depthRange } from "../draw/colours.js";
 import { compose, type DrawnObject, differenceLimit, drawObject } from "../draw/composition.js";
 import { wholeImage, zoomToObjects } from "../draw/zoom.js";
 import { hoveredPixel, layers, setLayer } from "../state/display.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { objectAt, scene, select, selected } from "../state/scene.js";
+import { ground } from "./ground.js";
 import { space } from "./space.js";
 
-/** These depend on the scene only, so that they are not computed again when display settings change. */
-const depth = computed(() => (scene.value === null ? null : depthImage(scene.value.depthM)));
+/** Depends on the scene only, so that it is not computed again when display settings change. */
 const onObjects = computed(() => (scene.value === null ? wholeImage : zoomToObjects(scene.value)));
 
-/** The image below the overlays. */
-const base = computed(() => {
-  const rgba = scene.value?.rgba ?? null;
-  return layers.value.base === "photo" && rgba !== null ? rgba : depth.value;
-});
+const depthRangeOfScene = computed(() => (scene.value === null ? null : depthRange(scene.value.depthM)));
 
 /** The objects at their start poses. */
 const before = computed(() => {
@@ -29,9 +25,11 @@ const before = computed(() => {
 const renderings = computed<readonly ReadonlySignal<{ object: ObjectModel; drawn: DrawnObject }>[]>(() => {
   const whole = scene.value;
   if (whole === null) return [];
-  return whole.objects.map((object) =>
-    computed(() => ({ object, drawn: drawObject(whole, object, object.pose.value.transform.matrix) })),
-  );
+  return whole.objects
+    .filter(({ isShown }) => isShown.value)
+    .map((object) =>
+      computed(() => ({ object, drawn: drawObject(whole, object, object.pose.value.transform.matrix) })),
+    );
 });
 
 /** The objects at their current poses. */
@@ -49,7 +47,7 @@ export function imageSnapshot(): Promise<Blob | null> {
 }
 
 function draw(canvas: HTMLCanvasElement): void {
-  const [whole, picture] = [scene.value, base.value];
+  const [whole, picture] = [scene.value, ground.value];
   if (whole === null || picture === null) return;
   if (canvas.width !== whole.width || canvas.height !== whole.height) {
     canvas.width = whole.width;
@@ -77,7 +75,7 @@ export function ImageView() {
     canvas.current?.addEventListener("contextrestored", redraw);
     const stop = effect(() => {
       // Reading these signals subscribes to them. All changes within a frame cause one drawing.
-      void [scene.value, base.value, layers.value, zoom.value, after.value];
+      void [scene.value, ground.value, layers.value, zoom.value, after.value];
       cancelAnimationFrame(frame);
       frame = requestAnimationFrame(redraw);
     });
@@ -161,6 +159,7 @@ export function ImageView() {
         ) : (
           <Readout />
         )}
+        <DepthLegend />
       </div>
     </section>
   );
@@ -214,6 +213,19 @@ function Cross() {
   if (pixel === null || whole === null) return null;
   const [left, top] = [(100 * (pixel.x + 0.5)) / whole.width, (100 * (pixel.y + 0.5)) / whole.height];
   return <span class="cross" style={{ left: `${left}%`, top: `${top}%` }} />;
+}
+
+/** What the colours of the depth map mean. */
+function DepthLegend() {
+  const range = depthRangeOfScene.value;
+  if (layers.value.base !== "depth" || range === null) return null;
+  return (
+    <p class="legend" id="depth-legend">
+      <span>{range.nearM.toFixed(2)} m</span>
+      <span class="legend-bar" style={{ background: depthGradient }} />
+      <span>{range.farM.toFixed(2)} m</span>
+    </p>
+  );
 }
 
 /** Depth of the scene and of the mesh at the hovered pixel. */
