@@ -118,6 +118,7 @@ test("objects are hidden, locked, renamed and removed", async () => {
 test("what an object stands on is said, and the scene is saved as one GLB", async () => {
   const opened = await site.open("");
   const { page } = opened;
+  await page.click("#align-all");
   await page.locator(".contact", { hasText: /^Stands on the ground/ }).waitFor(PATIENCE);
   const { name, bytes } = await opened.saved("GLB of the scene");
   assert.equal(name, "scene.glb");

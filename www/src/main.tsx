@@ -4,7 +4,7 @@ import { loadFormats } from "sim3align/formats";
 import { App } from "./app.js";
 import { openSample } from "./load/open.js";
 import { sampleOf, samples } from "./load/samples.js";
-import { alignAll } from "./run/align.js";
+import { alignAll, alignEach } from "./run/align.js";
 import { aligner } from "./run/aligner.js";
 import { observePoses } from "./run/evaluate.js";
 import { readAddress, updateAddress } from "./state/permalink.js";
@@ -35,7 +35,7 @@ if (await opened) {
   performance.mark("opened");
   // The workers would take the time of the first frame.
   await new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
-  await alignAll();
+  await alignEach();
   performance.mark("aligned");
 }
 if (sample === undefined) announce("Choose input files.");

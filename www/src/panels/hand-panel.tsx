@@ -1,12 +1,13 @@
 /** Adjusting the pose by hand: handles, nudges, known size, refine, undo and redo. */
 import type { Vector3 } from "sim3align/conventions";
 import { isRunning, refine } from "../run/align.js";
-import { gizmo } from "../state/display.js";
+import { gizmo, gizmoSettings } from "../state/display.js";
 import { canRedo, canUndo, place, redo, undo } from "../state/history.js";
 import { type Nudge, nudged, rotationAbout } from "../state/pose.js";
 import { selected } from "../state/scene.js";
 import { space } from "../views/space.js";
 import { KnownSize } from "./known-size.js";
+import { Numbers } from "./numbers.js";
 
 const modes = [
   ["translate", "Move", "G"],
@@ -48,6 +49,10 @@ function move(direction: Vector3): void {
   nudge({ moveM: direction.map((x) => x * step) as Vector3 });
 }
 
+const set = (change: Partial<typeof gizmoSettings.value>) => {
+  gizmoSettings.value = { ...gizmoSettings.peek(), ...change };
+};
+
 export function HandPanel() {
   const object = selected.value;
   const lockScale = object !== null && object.knownScale.value !== null;
@@ -74,8 +79,29 @@ export function HandPanel() {
           </button>
         ))}
       </fieldset>
+      <div class="row">
+        <label class="check">
+          <input
+            id="snap"
+            type="checkbox"
+            checked={gizmoSettings.value.snaps}
+            onChange={({ currentTarget }) => set({ snaps: currentTarget.checked })}
+          />
+          <span>Snap</span>
+        </label>
+        <label class="check">
+          <input
+            id="local-axes"
+            type="checkbox"
+            checked={gizmoSettings.value.isLocal}
+            onChange={({ currentTarget }) => set({ isLocal: currentTarget.checked })}
+          />
+          <span>Axes of the mesh</span>
+        </label>
+      </div>
       <details class="more">
         <summary>Nudge</summary>
+        <Numbers object={object} isReady={isReady} />
         <fieldset class="steps" disabled={!isReady}>
           <legend>Move in the camera view</legend>
           {moves.map(([title, symbol, direction]) => (

@@ -54,6 +54,13 @@ export async function alignAll(): Promise<void> {
   else await run(objects, (whole, signal) => together(whole, objects, signal));
 }
 
+/** Aligns every object as if it were alone: sooner than together, and without the module that scenes need. */
+export async function alignEach(): Promise<void> {
+  const objects = scene.peek()?.objects ?? [];
+  if (objects.length < 2) return alignAll();
+  await run(objects, (whole, signal) => eachAlone(whole, objects, signal));
+}
+
 /** Searches around the current pose of the selected object only. */
 export async function refine(): Promise<void> {
   const object = selected.peek();
@@ -98,12 +105,18 @@ async function alone(whole: Scene, object: ObjectModel, search: "global" | "loca
   finish(object, alignment, search === "local" ? "refined" : "aligned");
 }
 
-/** Aligns objects side by side, each as if it were alone. */
+/** Aligns objects side by side, each as if it were alone. No scale of theirs is known yet. */
 async function eachAlone(whole: Scene, objects: readonly ObjectModel[], signal: AbortSignal): Promise<void> {
   const listeners = objects.map(progressOf);
   const inputs = objects.map((object) => inputOf(whole, object));
   const onProgress = (progress: Progress & { index: number }) => listeners[progress.index]?.(progress);
-  const results = (await aligner()).alignAll(inputs, { ...paperOptions(), signal, onProgress });
+  const shared = { signal, onProgress };
+  const ready = await aligner();
+  const [first] = objects;
+  const results =
+    options.peek().preset === "paper" || first === undefined
+      ? ready.alignAll(inputs, { ...paperOptions(), ...shared })
+      : ready.alignAll(inputs, { ...sceneOptions(), ...constraintsOf(first), ...shared });
   for await (const { index, alignment, error } of results) {
     const object = objects[index];
     if (object === undefined) continue;

@@ -2,19 +2,16 @@
 import {
   BufferAttribute,
   BufferGeometry,
-  CanvasTexture,
   Color,
   Group,
   LineBasicMaterial,
   LineSegments,
-  Sprite,
-  SpriteMaterial,
+  type Sprite,
   Vector3,
 } from "three/webgpu";
+import { labelOf, lengthText, removeLabel } from "./label.js";
 import type { Model } from "./model.js";
 
-/** The height of a label as a share of the view, for a field of view of 90°. */
-const LABEL = 0.03;
 /** The distance of a label from its line, as a share of the box's diagonal. */
 const APART = 0.07;
 
@@ -77,38 +74,4 @@ function edge(corners: readonly Vector3[], axis: number): readonly [Vector3, Vec
     return (0.35 * middle.x + middle.y) / middle.z - 0.8 * middle.z;
   };
   return pairs.reduce((best, pair) => (score(pair) > score(best) ? pair : best));
-}
-
-/** A length in centimetres, or metres from one metre on. */
-function lengthText(m: number): string {
-  return m >= 1 ? `${m.toFixed(2)} m` : `${(100 * m).toFixed(m < 0.1 ? 2 : 1)} cm`;
-}
-
-function labelOf(text: string): Sprite {
-  const canvas = document.createElement("canvas");
-  [canvas.width, canvas.height] = [256, 64];
-  const context = canvas.getContext("2d");
-  if (context !== null) {
-    context.font = "600 34px system-ui, sans-serif";
-    const width = context.measureText(text).width + 32;
-    context.fillStyle = "rgb(16 20 26 / 82%)";
-    context.beginPath();
-    context.roundRect((256 - width) / 2, 6, width, 52, 14);
-    context.fill();
-    context.fillStyle = "#ffffff";
-    context.textAlign = "center";
-    context.textBaseline = "middle";
-    context.fillText(text, 128, 33);
-  }
-  const map = new CanvasTexture(canvas);
-  const sprite = new Sprite(new SpriteMaterial({ map, sizeAttenuation: false, depthTest: false, depthWrite: false }));
-  sprite.scale.set(4 * LABEL, LABEL, 1);
-  sprite.renderOrder = 3;
-  return sprite;
-}
-
-function removeLabel(label: Sprite): void {
-  label.removeFromParent();
-  label.material.map?.dispose();
-  label.material.dispose();
 }

@@ -3,6 +3,7 @@ import { DirectionalLight, Group, HemisphereLight, Sphere, Vector3 } from "three
 import { Animations } from "./animations.js";
 import { Cloud } from "./cloud.js";
 import { Dimensions } from "./dimensions.js";
+import { Floor } from "./floor.js";
 import { Frustum } from "./frustum.js";
 import { Gizmo } from "./gizmo.js";
 import { Ground } from "./ground.js";
@@ -11,15 +12,18 @@ import { Model } from "./model.js";
 import { Picker } from "./picker.js";
 import { Pointer } from "./pointer.js";
 import { type Extent, extentOf, quantile, sortedDepths } from "./points.js";
+import { Ruler } from "./ruler.js";
 import type { Stage } from "./stage.js";
 import { colours } from "./theme.js";
 import type {
   Animation,
   Display,
   GizmoMode,
+  GizmoSettings,
   Look,
   Matrix,
   ObjectInput,
+  PlaneInput,
   SceneInput,
   View,
   ViewEvents,
@@ -36,6 +40,9 @@ const lookNames: Record<Look, string> = {
 /** Screens resolve no more points, and software renderers draw no more in acceptable time. */
 const maxPoints = { hardware: 400_000, software: 80_000 };
 
+/** What a key turns, and how much nearer it comes. */
+const [KEY_DEG, KEY_ZOOM] = [6, 1.15];
+
 /** The sizes of so many objects are shown at once. */
 const FEW = 3;
 
@@ -46,6 +53,10 @@ export class SceneView implements View {
   private readonly viewpoint: Viewpoint;
   private readonly gizmo: Gizmo;
   private readonly marker = new Marker();
+  private readonly ruler = new Ruler();
+  private floor: Floor | null = null;
+  private plane: PlaneInput | null = null;
+  private gizmoSettings: GizmoSettings = { isLocal: false, snaps: false };
   private readonly animations = new Animations();
   private readonly models = new Map<string, Model>();
   private readonly poses = new Map<string, Matrix | null>();
@@ -82,7 +93,9 @@ export class SceneView implements View {
       onPose: (model, phase) => this.moved(model, phase),
     });
     this.root.rotation.x = Math.PI;
-    this.root.add(this.marker.object);
+    this.root.add(this.marker.object, this.ruler.object);
+    stage.canvas.tabIndex = 0;
+    stage.canvas.addEventListener("keydown", (event) => this.onKey(event));
     // The light moves with the camera.
     const lamp = new DirectionalLight(0xffffff, 2.1);
     lamp.position.set(-0.4, 1, 0.8);
@@ -122,6 +135,7 @@ export class SceneView implements View {
       onClick: (place) => {
         if (this.gizmo.isBusy) return;
         const hit = picked(place);
+        if (hit && this.events.onPick?.(hit.point)) return;
         const { pixel } = hit ?? {};
         const index = pixel ? pixel.y * (this.scene?.width ?? 0) + pixel.x : -1;
         const id = hit?.id ?? this.objects.find(({ mask }) => mask[index])?.id ?? null;
@@ -214,7 +228,7 @@ export class SceneView implements View {
     if (!pose) return;
     this.animations.stop(model.id);
     this.poses.set(model.id, pose);
-    this.measure();
+    this.showSizes();
     this.stage.invalidate();
     this.events.onPose(model.id, pose, phase);
   }
@@ -225,8 +239,40 @@ export class SceneView implements View {
     this.highlight();
   }
 
-  setGizmo(mode: GizmoMode | null): void {
+  setGizmo(mode: GizmoMode | null, settings = this.gizmoSettings): void {
     this.gizmoMode = mode;
+    this.gizmoSettings = settings;
+    this.update();
+  }
+
+  setGround(plane: PlaneInput | null): void {
+    this.plane = plane;
+    this.floor?.dispose();
+    this.floor = null;
+    if (plane !== null) {
+      const { centre, radius } = this.extent();
+      this.floor = new Floor(plane, centre, radius, colours(this.display.theme, this.host).frustum);
+      this.root.add(this.floor.object);
+    }
+    this.update();
+  }
+
+  measure(points: readonly (readonly [number, number, number])[]): void {
+    this.ruler.show(points);
+    this.stage.invalidate();
+  }
+
+  /** Arrow keys orbit, plus and minus come nearer and go away. */
+  private onKey(event: KeyboardEvent): void {
+    const turns: Record<string, readonly [number, number]> = {
+      ...{ ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] },
+    };
+    const turn = turns[event.key];
+    const factor = event.key === "+" ? 1 / KEY_ZOOM : event.key === "-" ? KEY_ZOOM : 1;
+    if (event.ctrlKey || event.metaKey || event.altKey || (turn === undefined && factor === 1)) return;
+    event.preventDefault();
+    const [right, up] = turn ?? [0, 0];
+    this.viewpoint.orbit(right * KEY_DEG, up * KEY_DEG, factor);
     this.update();
   }
 
@@ -265,6 +311,8 @@ export class SceneView implements View {
   }
 
   frame(): void {
+    // The grid surrounds the objects where they are now.
+    if (this.plane !== null) this.setGround(this.plane);
     if (!this.viewpoint.isTouched) this.lookFrom(this.look, this.fits);
   }
 
@@ -326,15 +374,17 @@ export class SceneView implements View {
     for (const model of this.models.values()) {
       model.show(display, model.id === selected, display.hidden?.includes(model.id));
     }
-    this.measure();
+    this.showSizes();
     const model = selected === null ? undefined : this.models.get(selected);
+    if (this.floor) this.floor.object.visible = !viewpoint.isCamera;
     this.gizmo?.set(model ?? null, this.gizmoMode);
+    this.gizmo?.configure(this.gizmoSettings);
     stage.canvas.setAttribute("aria-label", this.label());
     stage.invalidate();
   }
 
   /** Shows the sizes of a few objects, and of the selected one among many. */
-  private measure(): void {
+  private showSizes(): void {
     const isFew = this.models.size <= FEW;
     for (const [id, dimensions] of this.dimensions) {
       if (this.models.has(id)) continue;
@@ -376,6 +426,8 @@ export class SceneView implements View {
     this.pointer.dispose();
     this.gizmo.dispose();
     this.marker.dispose();
+    this.ruler.dispose();
+    this.floor?.dispose();
     for (const dimensions of this.dimensions.values()) dimensions.dispose();
     this.ground?.dispose();
     this.viewpoint.dispose();

@@ -52,6 +52,20 @@ export type Look = "camera" | "orbit" | "top" | "side";
 /** The function of the gizmo. */
 export type GizmoMode = "translate" | "rotate" | "scale";
 
+/** How the gizmo moves. */
+export interface GizmoSettings {
+  /** Along the axes of the mesh instead of those of the view. */
+  isLocal: boolean;
+  /** In steps of 5° and of a hundredth of the object's size. */
+  snaps: boolean;
+}
+
+/** A plane n·x + d = 0 in the OpenCV camera frame, metres; n points up. */
+export interface PlaneInput {
+  normal: readonly [number, number, number];
+  d: number;
+}
+
 /** The start and duration of an animation. */
 export interface Animation {
   from: Matrix;
@@ -64,6 +78,8 @@ export interface ViewEvents {
   onPose(id: string, pose: Float64Array, phase: "drag" | "end"): void;
   /** A mesh or the points of a mask were clicked; `null` for neither. */
   onSelect(id: string | null): void;
+  /** A point of a mesh or of the scene was clicked. Returns whether the click meant only that. */
+  onPick?(point: [number, number, number]): boolean;
   /** The pixel of the depth map under the pointer. */
   onHover?(pixel: { x: number; y: number } | null): void;
 }
@@ -91,7 +107,11 @@ export interface View {
   setPose(id: string, pose: Matrix | null, animate?: Animation): Promise<void>;
   select(id: string | null): void;
   /** Shows the gizmo at the selected mesh; `null` hides it. */
-  setGizmo(mode: GizmoMode | null): void;
+  setGizmo(mode: GizmoMode | null, settings?: GizmoSettings): void;
+  /** Shows the ground as a grid; `null` hides it. */
+  setGround(plane: PlaneInput | null): void;
+  /** Shows the distance of two points (OpenCV camera frame, metres); fewer points hide it. */
+  measure(points: readonly (readonly [number, number, number])[]): void;
   setDisplay(display: Display): void;
   /** With `fits`, the view from the depth camera is zoomed to the objects. */
   lookFrom(which: Look, fits?: boolean): void;

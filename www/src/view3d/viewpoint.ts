@@ -164,6 +164,19 @@ export class Viewpoint {
     this.updateLens();
   }
 
+  /** Orbits by angles in degrees, and changes the distance by a factor. */
+  orbit(rightDeg: number, upDeg: number, factor: number): void {
+    if (this.isCamera) this.leaveCamera();
+    this.isTouched = true;
+    const { camera, controls } = this;
+    const away = new Spherical().setFromVector3(camera.position.clone().sub(controls.target));
+    away.theta += (rightDeg * Math.PI) / 180;
+    away.phi = Math.min(Math.max(away.phi - (upDeg * Math.PI) / 180, 0.02), Math.PI - 0.02);
+    away.radius *= factor;
+    camera.position.setFromSpherical(away).add(controls.target);
+    controls.update();
+  }
+
   /** Centres the view on a point and orbits around it. */
   focus(point: Vector3): void {
     if (this.isCamera) this.leaveCamera();

@@ -1,10 +1,10 @@
 /** The image view: photo or depth map, overlaid with masks, silhouettes and depth differences. */
-import { computed, effect, type ReadonlySignal } from "@preact/signals";
+import { computed, effect, type ReadonlySignal, signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
 import { depthGradient, depthRange } from "../draw/colours.js";
 import { compose, type DrawnObject, differenceLimit, drawObject } from "../draw/composition.js";
-import { wholeImage, zoomToObjects } from "../draw/zoom.js";
-import { hoveredPixel, layers, setLayer } from "../state/display.js";
+import { clampedZoom, wholeImage, type Zoom, zoomToObjects } from "../draw/zoom.js";
+import { hoveredPixel, layers, measure, setLayer } from "../state/display.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { objectAt, scene, select, selected } from "../state/scene.js";
 import { ground } from "./ground.js";
@@ -37,7 +37,15 @@ const after = computed<readonly DrawnObject[]>(() =>
   renderings.value.map(({ value: { object, drawn } }) => ({ ...drawn, isSelected: object === selected.value })),
 );
 
-const zoom = computed(() => (layers.value.zoom ? onObjects.value : wholeImage));
+/** The zoom that wheel and drag have set, for one scene and one setting of “Zoom”. */
+const ownZoom = signal<Zoom | null>(null);
+
+const zoom = computed(() => ownZoom.value ?? (layers.value.zoom ? onObjects.value : wholeImage));
+
+effect(() => {
+  void [scene.value, layers.value.zoom];
+  ownZoom.value = null;
+});
 
 let shownCanvas: HTMLCanvasElement | null = null;
 
@@ -128,7 +136,9 @@ export function ImageView() {
             aria-label={description()}
             width={whole?.width ?? 640}
             height={whole?.height ?? 480}
-            onPointerMove={(event) => hover(pixelOf(event))}
+            onPointerDown={startDrag}
+            onPointerMove={(event) => (event.buttons === 0 ? hover(pixelOf(event)) : drag(event))}
+            onWheel={wheel}
             onPointerLeave={() => hover(null)}
             onClick={focusOn}
           />
@@ -182,12 +192,47 @@ function pixelOf(event: MouseEvent): Pixel | null {
   return x >= 0 && y >= 0 && x < canvas.width && y < canvas.height ? { x, y } : null;
 }
 
+/** Where a drag began; whether the pointer has moved since. */
+let dragFrom: { clientX: number; clientY: number; zoom: Zoom } | null = null;
+let hasDragged = false;
+/** Smaller movements are clicks, in CSS pixels. */
+const CLICK_PX = 4;
+
+function startDrag({ clientX, clientY }: PointerEvent): void {
+  hasDragged = false;
+  dragFrom = { clientX, clientY, zoom: zoom.peek() };
+}
+
+/** Moves the part of the image that is shown. */
+function drag(event: PointerEvent): void {
+  if (dragFrom === null || dragFrom.zoom.factor <= 1) return;
+  const [dx, dy] = [event.clientX - dragFrom.clientX, event.clientY - dragFrom.clientY];
+  if (!hasDragged && Math.hypot(dx, dy) < CLICK_PX) return;
+  hasDragged = true;
+  const { width, height } = (event.currentTarget as HTMLCanvasElement).getBoundingClientRect();
+  const { factor, x, y } = dragFrom.zoom;
+  ownZoom.value = clampedZoom({ factor, x: x - dx / width, y: y - dy / height });
+}
+
+/** Zooms at the pointer. */
+function wheel(event: WheelEvent): void {
+  event.preventDefault();
+  const { left, top, width, height } = (event.currentTarget as HTMLCanvasElement).getBoundingClientRect();
+  const { factor, x, y } = zoom.peek();
+  const next = Math.min(Math.max(factor * Math.exp(-0.0015 * event.deltaY), 1), 24);
+  // What is under the pointer stays there.
+  const at = [(event.clientX - left) / width, (event.clientY - top) / height] as const;
+  const kept = (centre: number, share: number) => share + ((centre - share) * factor) / next;
+  ownZoom.value = clampedZoom({ factor: next, x: kept(x, at[0]), y: kept(y, at[1]) });
+}
+
 /** Selects the clicked object, and centres the 3D view on the clicked point. */
 function focusOn(event: MouseEvent): void {
   const [pixel, state] = [pixelOf(event), space.peek()];
-  if (pixel === null) return;
-  select(objectAt(pixel.x, pixel.y)?.id ?? null);
+  if (pixel === null || hasDragged) return;
   const point = pointAt(pixel);
+  if (point !== null && measure(point)) return;
+  select(objectAt(pixel.x, pixel.y)?.id ?? null);
   if (state.kind === "ready" && point !== null) state.view.focus(point);
 }
 

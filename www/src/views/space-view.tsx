@@ -2,7 +2,8 @@
 import { useEffect, useRef } from "preact/hooks";
 import { inputs } from "../load/open.js";
 import { samples, sampleUrl } from "../load/samples.js";
-import { type Display3d, display3d } from "../state/display.js";
+import { type Display3d, display3d, measured, showsBefore } from "../state/display.js";
+import { centimetres } from "../ui/format.js";
 import { Picture } from "../ui/picture.js";
 import { groundImage } from "./ground.js";
 import { isSettled, mountSpace, space } from "./space.js";
@@ -62,6 +63,29 @@ export function SpaceView() {
             />
           </label>
         </fieldset>
+        <fieldset disabled={state.kind !== "ready"}>
+          <legend class="visually-hidden">Compare and measure</legend>
+          <button
+            type="button"
+            aria-pressed={showsBefore.value}
+            onClick={() => {
+              showsBefore.value = !showsBefore.peek();
+            }}
+          >
+            Before
+          </button>
+          <button
+            type="button"
+            id="measure"
+            aria-pressed={measured.value !== null}
+            onClick={() => {
+              measured.value = measured.peek() === null ? [] : null;
+            }}
+          >
+            Measure
+          </button>
+          {measured.value !== null && <output id="measured">{measuredText(measured.value)}</output>}
+        </fieldset>
         <fieldset class="viewpoints" disabled={state.kind !== "ready"}>
           <legend class="visually-hidden">Viewpoint</legend>
           {viewpoints.map(([from, title]) => (
@@ -85,6 +109,14 @@ export function SpaceView() {
       </div>
     </section>
   );
+}
+
+/** The distance of the measured points, or what to do. */
+function measuredText(points: readonly (readonly [number, number, number])[]): string {
+  const [from, to] = points;
+  if (from === undefined) return "Click a point in either view.";
+  if (to === undefined) return "Click a second point.";
+  return `${centimetres(Math.hypot(...from.map((x, k) => x - (to[k] ?? 0))))} cm`;
 }
 
 /** The address of the photo of the sample that the page opens first. */

@@ -1,11 +1,20 @@
 /** Keeps the 3D view in sync with the state of the page. */
 import { effect, signal } from "@preact/signals";
 import { toSim3 } from "sim3align/conventions";
-import { display3d, effectiveTheme, gizmo, hoveredPixel } from "../state/display.js";
+import {
+  display3d,
+  effectiveTheme,
+  gizmo,
+  gizmoSettings,
+  hoveredPixel,
+  measure,
+  measured,
+  showsBefore,
+} from "../state/display.js";
 import { place } from "../state/history.js";
 import type { ObjectModel } from "../state/object-model.js";
 import type { Pose } from "../state/pose.js";
-import { type Scene, scene, select, selected } from "../state/scene.js";
+import { type Scene, scene, select, selected, support } from "../state/scene.js";
 import { frameIndex, video } from "../state/video.js";
 import type { ObjectInput, View } from "../view3d/types.js";
 import { ground } from "./ground.js";
@@ -43,6 +52,7 @@ export async function mountSpace(host: HTMLElement): Promise<void> {
           } else object.pose.value = pose;
         },
         onSelect: select,
+        onPick: measure,
         onHover: (pixel) => {
           hoveredPixel.value = pixel;
         },
@@ -113,7 +123,9 @@ function subscribe(view: View, isDragging: () => boolean): void {
     );
   });
   effect(() => view.select(selected.value?.id ?? null));
-  effect(() => view.setGizmo(gizmo.value));
+  effect(() => view.setGizmo(gizmo.value, gizmoSettings.value));
+  effect(() => view.setGround(support.value));
+  effect(() => view.measure(measured.value ?? []));
 }
 
 /** The pose of a camera in the frame of another, column-major; both are given as camera to world, row by row. */
@@ -137,7 +149,7 @@ function followPose(view: View, object: ObjectModel, isDragging: () => boolean):
   // If the view loads after the alignment, it still animates from the start pose.
   let shown: Pose = object.start;
   return effect(() => {
-    const pose = object.pose.value;
+    const pose = showsBefore.value ? object.start : object.pose.value;
     if (isDragging()) {
       shown = pose;
       return;
