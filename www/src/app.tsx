@@ -4,14 +4,13 @@ import { DropOverlay } from "./panels/drop-overlay.js";
 import { ExportPanel } from "./panels/export-panel.js";
 import { HandPanel } from "./panels/hand-panel.js";
 import { Header } from "./panels/header.js";
-import { HelpDialog } from "./panels/help-dialog.js";
 import { InputPanel } from "./panels/input-panel.js";
 import { ObjectsPanel } from "./panels/objects-panel.js";
 import { OptionsPanel } from "./panels/options-panel.js";
 import { ResultPanel } from "./panels/result-panel.js";
 import { RunBar } from "./panels/run-bar.js";
 import { StartPanel } from "./panels/start-panel.js";
-import { largeView } from "./state/display.js";
+import { isHelpOpen, largeView } from "./state/display.js";
 import { draft } from "./state/draft.js";
 import { scene } from "./state/scene.js";
 import { video } from "./state/video.js";
@@ -28,6 +27,11 @@ const Intake = lazy(
 const TimePanel = lazy(
   () => video.value !== null,
   () => import("./panels/time-panel.js").then(({ TimePanel }) => TimePanel),
+);
+
+const HelpDialog = lazy(
+  () => isHelpOpen.value,
+  () => import("./panels/help-dialog.js").then(({ HelpDialog }) => HelpDialog),
 );
 
 export function App() {

@@ -8,6 +8,7 @@ import { alignAll, alignEach } from "./run/align.js";
 import { aligner } from "./run/aligner.js";
 import { observePoses } from "./run/evaluate.js";
 import { readAddress, updateAddress } from "./state/permalink.js";
+import { hasSession } from "./state/session-flag.js";
 import { announce } from "./state/status.js";
 import { isSettled } from "./views/space.js";
 import "../style/theme.css";
@@ -17,7 +18,8 @@ import "../style/views.css";
 import "../style/panels.css";
 import "../style/intake.css";
 
-const sample = sampleOf(readAddress().sample) ?? samples[0];
+const named = sampleOf(readAddress().sample);
+const sample = named ?? samples[0];
 updateAddress();
 observePoses();
 // Needed when the files of the sample arrive.
@@ -26,7 +28,14 @@ aligner().then(
   () => performance.mark("aligner ready"),
   (error) => announce(String(error), "failed"),
 );
-const opened = sample === undefined ? Promise.resolve(false) : openSample(sample);
+/** The session goes before the first sample, but not before one that the address names. */
+async function restored(): Promise<boolean> {
+  if (!hasSession() || named !== undefined) return false;
+  return (await import("./session/index.js")).restoreSession();
+}
+
+const restoring = restored();
+const opened = restoring.then((isThere) => !isThere && sample !== undefined && openSample(sample));
 
 const root = document.getElementById("app");
 if (root !== null) render(<App />, root);
@@ -40,6 +49,7 @@ if (await opened) {
 }
 if (sample === undefined) announce("Choose input files.");
 isSettled.value = true;
+(await import("./session/index.js")).keepSession();
 
 addEventListener("hashchange", async () => {
   const next = sampleOf(readAddress().sample);

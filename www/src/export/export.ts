@@ -6,13 +6,28 @@ import { announce } from "../state/status.js";
 import { imageSnapshot } from "../views/image-view.js";
 import { space } from "../views/space.js";
 
-export type Format = "columns" | "rows" | "json" | "bop" | "video" | "scene" | "glb" | "ply" | "png" | "link";
+export type Format =
+  | "columns"
+  | "rows"
+  | "json"
+  | "bop"
+  | "session"
+  | "video"
+  | "scene"
+  | "glb"
+  | "ply"
+  | "png"
+  | "link";
 
 /** Copies or saves the object, or the whole scene for JSON and BOP. The writers of files are loaded on demand. */
 export async function exportAs(format: Format, scene: Scene, object: ObjectModel): Promise<void> {
   const name = fileName(object.name);
   if (format === "link") return copy(permalink(), "the link");
   if (format === "png") return saveImage(name);
+  if (format === "session") {
+    const file = await (await import("../session/index.js")).sessionFile();
+    return file === null ? undefined : download(`${fileName(scene.name)}.sim3align.zip`, file, "application/zip");
+  }
   const { bopText, glbBytes, jsonText, matrixText, plyBytes, sceneBytes, videoText } = await import("./files.js");
   switch (format) {
     case "columns":

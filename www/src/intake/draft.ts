@@ -6,6 +6,7 @@ import { queue, show, inputs as shownInputs } from "../load/open.js";
 import { error, type Problem } from "../load/problems.js";
 import { readInputs, sceneOf } from "../load/read-scene.js";
 import { alignAll } from "../run/align.js";
+import { openSession, SESSION_FILE } from "../session/index.js";
 import { type Draft, draft, draftInputs, isReady } from "../state/draft.js";
 import { scene } from "../state/scene.js";
 import { announce } from "../state/status.js";
@@ -22,7 +23,13 @@ export async function propose(files: readonly NamedFile[]): Promise<void> {
   const change = ++lastChange;
   let typed: Typed[];
   try {
-    typed = await rolesOf(await extractArchives(files));
+    const extracted = await extractArchives(files);
+    if (extracted.some(({ path }) => path === SESSION_FILE)) {
+      if (!(await openSession(extracted))) return refuse("The session is of another version of this page.");
+      draft.value = null;
+      return;
+    }
+    typed = await rolesOf(extracted);
   } catch (cause) {
     return refuse(cause instanceof Error ? cause.message : `${cause}`);
   }

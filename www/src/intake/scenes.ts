@@ -10,7 +10,7 @@ import {
   type TruthSource,
   type Typed,
 } from "../load/inputs.js";
-import { annotationsOf, labelValues } from "../load/masks.js";
+import { annotationsOf, labelValues } from "../load/label-masks.js";
 import { paired, wordsOf } from "./pairing.js";
 import { rolesOf } from "./roles.js";
 

@@ -11,6 +11,7 @@ const formats: readonly [format: Format, title: string][] = [
   ["columns", "Copy matrix (column-major)"],
   ["rows", "Copy matrix (row-major)"],
   ["ply", "PLY"],
+  ["session", "Session"],
   ["png", "PNG of the view"],
   ["link", "Copy link"],
 ];

@@ -1,7 +1,16 @@
 /** The input files of the scene that is shown. */
 import { baseName } from "../load/files.js";
-import { editInputs, inputs, openNext, queue } from "../load/open.js";
+import { editInputs, inputs, openNext, openSample, queue } from "../load/open.js";
+import { samples } from "../load/samples.js";
+import { alignAll } from "../run/align.js";
 import { scene } from "../state/scene.js";
+
+/** Forgets the scene, and shows the first sample again. */
+async function forget(): Promise<void> {
+  const [first] = samples;
+  await (await import("../session/index.js")).forgetSession();
+  if (first !== undefined && (await openSample(first))) await alignAll();
+}
 
 const unknownCamera = { file: "–", numbers: "entered", assumed: "assumed" };
 
@@ -32,9 +41,21 @@ export function InputPanel() {
               </div>
             ))}
           </dl>
-          <button type="button" id="edit-files" onClick={editInputs}>
-            Change …
-          </button>
+          <div class="row">
+            <button type="button" id="edit-files" onClick={editInputs}>
+              Change …
+            </button>
+            {whole.sample === null && (
+              <button
+                type="button"
+                id="forget"
+                title="Closes the scene, and forgets it in this browser"
+                onClick={forget}
+              >
+                Forget
+              </button>
+            )}
+          </div>
         </>
       )}
       {queue.value.length > 0 && (
