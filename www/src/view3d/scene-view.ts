@@ -2,17 +2,20 @@
 import { DirectionalLight, Group, HemisphereLight, Sphere, Vector3 } from "three/webgpu";
 import { Animations } from "./animations.js";
 import { Cloud } from "./cloud.js";
-import { Dimensions } from "./dimensions.js";
+import { cropOf } from "./crop.js";
+import { description } from "./description.js";
 import { Floor } from "./floor.js";
 import { Frustum } from "./frustum.js";
 import { Gizmo } from "./gizmo.js";
 import { Ground } from "./ground.js";
+import { listenToOrbitKeys } from "./keys.js";
 import { Marker } from "./marker.js";
 import { Model } from "./model.js";
 import { Picker } from "./picker.js";
 import { Pointer } from "./pointer.js";
 import { type Extent, extentOf, quantile, sortedDepths } from "./points.js";
 import { Ruler } from "./ruler.js";
+import { Sizes } from "./sizes.js";
 import type { Stage } from "./stage.js";
 import { colours } from "./theme.js";
 import type {
@@ -28,23 +31,10 @@ import type {
   View,
   ViewEvents,
 } from "./types.js";
-import { type Rect, Viewpoint } from "./viewpoint.js";
-
-const lookNames: Record<Look, string> = {
-  camera: "the depth camera",
-  orbit: "three quarters",
-  top: "above",
-  side: "the side",
-};
+import { Viewpoint } from "./viewpoint.js";
 
 /** Screens resolve no more points, and software renderers draw no more in acceptable time. */
 const maxPoints = { hardware: 400_000, software: 80_000 };
-
-/** What a key turns, and how much nearer it comes. */
-const [KEY_DEG, KEY_ZOOM] = [6, 1.15];
-
-/** The sizes of so many objects are shown at once. */
-const FEW = 3;
 
 /** The implementation of the view. */
 export class SceneView implements View {
@@ -69,7 +59,7 @@ export class SceneView implements View {
   private readonly others: Frustum[] = [];
   /** About the depth of the nearest surfaces, metres. */
   private firstDepth = 1;
-  private readonly dimensions = new Map<string, Dimensions>();
+  private readonly sizes = new Sizes(this.root);
   private objects: readonly ObjectInput[] = [];
   private selected: string | null = null;
   private gizmoMode: GizmoMode | null = null;
@@ -94,8 +84,7 @@ export class SceneView implements View {
     });
     this.root.rotation.x = Math.PI;
     this.root.add(this.marker.object, this.ruler.object);
-    stage.canvas.tabIndex = 0;
-    stage.canvas.addEventListener("keydown", (event) => this.onKey(event));
+    this.orbitByKeys(stage.canvas);
     // The light moves with the camera.
     const lamp = new DirectionalLight(0xffffff, 2.1);
     lamp.position.set(-0.4, 1, 0.8);
@@ -115,6 +104,7 @@ export class SceneView implements View {
         this.gizmo.connect(canvas);
         this.pointer.dispose();
         this.pointer = this.listen();
+        this.orbitByKeys(canvas);
       },
     });
     this.update();
@@ -122,6 +112,13 @@ export class SceneView implements View {
 
   get backend() {
     return this.stage.backend;
+  }
+
+  private orbitByKeys(canvas: HTMLCanvasElement): void {
+    listenToOrbitKeys(canvas, (...turn) => {
+      this.viewpoint.orbit(...turn);
+      this.update();
+    });
   }
 
   private listen(): Pointer {
@@ -262,20 +259,6 @@ export class SceneView implements View {
     this.stage.invalidate();
   }
 
-  /** Arrow keys orbit, plus and minus come nearer and go away. */
-  private onKey(event: KeyboardEvent): void {
-    const turns: Record<string, readonly [number, number]> = {
-      ...{ ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] },
-    };
-    const turn = turns[event.key];
-    const factor = event.key === "+" ? 1 / KEY_ZOOM : event.key === "-" ? KEY_ZOOM : 1;
-    if (event.ctrlKey || event.metaKey || event.altKey || (turn === undefined && factor === 1)) return;
-    event.preventDefault();
-    const [right, up] = turn ?? [0, 0];
-    this.viewpoint.orbit(right * KEY_DEG, up * KEY_DEG, factor);
-    this.update();
-  }
-
   setDisplay(display: Display): void {
     const isOther = display.theme !== this.display.theme;
     this.display = { ...display };
@@ -292,7 +275,12 @@ export class SceneView implements View {
     this.look = which;
     this.fits = fits;
     const { centre, radius } = this.extent();
-    this.viewpoint.lookFrom(which, toThree(centre), radius, fits ? this.crop() : null);
+    this.viewpoint.lookFrom(
+      which,
+      toThree(centre),
+      radius,
+      fits && this.scene ? cropOf(this.scene, this.objects, this.models) : null,
+    );
     this.update();
   }
 
@@ -314,26 +302,6 @@ export class SceneView implements View {
     // The grid surrounds the objects where they are now.
     if (this.plane !== null) this.setGround(this.plane);
     if (!this.viewpoint.isTouched) this.lookFrom(this.look, this.fits);
-  }
-
-  /** The part of the image that shows all masks and meshes. */
-  private crop(): Rect | null {
-    if (!this.scene) return null;
-    const { width, camera } = this.scene;
-    const rect = { left: Number.POSITIVE_INFINITY, top: Number.POSITIVE_INFINITY, right: -1, bottom: -1 };
-    const add = (u: number, v: number) => {
-      [rect.left, rect.right] = [Math.min(rect.left, u), Math.max(rect.right, u)];
-      [rect.top, rect.bottom] = [Math.min(rect.top, v), Math.max(rect.bottom, v)];
-    };
-    for (const { id, mask } of this.objects) {
-      mask.forEach((inside, pixel) => {
-        if (inside) add(pixel % width, Math.floor(pixel / width));
-      });
-      for (const { x, y, z } of this.models.get(id)?.corners() ?? []) {
-        if (z > 0) add((camera.fx * x) / z + camera.cx, (camera.fy * y) / z + camera.cy);
-      }
-    }
-    return rect.right < 0 ? null : rect;
   }
 
   focus(point: [number, number, number] = this.extent(this.selected).centre): void {
@@ -383,32 +351,18 @@ export class SceneView implements View {
     stage.invalidate();
   }
 
-  /** Shows the sizes of a few objects, and of the selected one among many. */
   private showSizes(): void {
-    const isFew = this.models.size <= FEW;
-    for (const [id, dimensions] of this.dimensions) {
-      if (this.models.has(id)) continue;
-      dimensions.dispose();
-      this.dimensions.delete(id);
-    }
-    for (const [id, model] of this.models) {
-      const dimensions = this.dimensions.get(id) ?? new Dimensions();
-      if (!this.dimensions.has(id)) this.root.add(dimensions.object);
-      this.dimensions.set(id, dimensions);
-      const isShown =
-        this.display.dimensions === true && (isFew || id === this.selected) && !this.animations.isRunning(id);
-      dimensions.show(isShown ? model : null);
-    }
+    const { display, animations } = this;
+    const isShown = (id: string) => display.dimensions === true && !animations.isRunning(id);
+    this.sizes.update(this.models, this.selected, isShown);
   }
 
   /** A description for screen readers. */
   private label(): string {
     if (!this.cloud) return "3D view, empty";
-    const points = this.cloud.points.pixels.length.toLocaleString("en-GB");
     const placed = this.objects.filter(({ id }) => this.models.get(id)?.pose).map(({ id, name }) => name ?? id);
-    const meshes = placed.length === 0 ? "no mesh placed yet" : `placed meshes: ${placed.join(", ")}`;
-    const from = lookNames[this.viewpoint.isCamera ? "camera" : this.look === "camera" ? "orbit" : this.look];
-    return `3D view from ${from}: ${points} points of the scene, ${meshes}`;
+    const from = this.viewpoint.isCamera ? "camera" : this.look === "camera" ? "orbit" : this.look;
+    return description(from, this.cloud.points.pixels.length, placed);
   }
 
   mark(point: [number, number, number] | null): void {
@@ -428,7 +382,7 @@ export class SceneView implements View {
     this.marker.dispose();
     this.ruler.dispose();
     this.floor?.dispose();
-    for (const dimensions of this.dimensions.values()) dimensions.dispose();
+    this.sizes.dispose();
     this.ground?.dispose();
     this.viewpoint.dispose();
     for (const model of this.models.values()) model.dispose();
