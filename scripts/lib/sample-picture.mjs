@@ -2,7 +2,7 @@
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
-import { crc32, deflateSync } from "node:zlib";
+import { deflateSync } from "node:zlib";
 import { packageDir } from "./paths.mjs";
 
 /** Pixels of the images per pixel of the picture. */
@@ -80,6 +80,19 @@ function reduced({ data, width, height }) {
     rgb[i] = Math.round(sum / (REDUCTION * REDUCTION));
   }
   return { data: rgb, width: w, height: h };
+}
+
+/**
+ * The checksum of a PNG chunk; Node's own is missing from its older versions.
+ * @param {Uint8Array} bytes
+ */
+function crc32(bytes) {
+  let crc = 0xffffffff;
+  for (const byte of bytes) {
+    crc ^= byte;
+    for (let bit = 0; bit < 8; bit++) crc = (crc >>> 1) ^ (crc & 1 ? 0xedb88320 : 0);
+  }
+  return (crc ^ 0xffffffff) >>> 0;
 }
 
 /**
