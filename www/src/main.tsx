@@ -40,16 +40,20 @@ const opened = restoring.then((isThere) => !isThere && sample !== undefined && o
 const root = document.getElementById("app");
 if (root !== null) render(<App />, root);
 
-if (await opened) {
-  performance.mark("opened");
-  // The workers would take the time of the first frame.
-  await new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
-  await alignEach();
-  performance.mark("aligned");
+/** Not at the top level: scripts that are loaded later wait until this one has run. */
+async function start(): Promise<void> {
+  if (await opened) {
+    performance.mark("opened");
+    // The workers would take the time of the first frame.
+    await new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
+    await alignEach();
+    performance.mark("aligned");
+  }
+  if (sample === undefined) announce("Choose input files.");
+  isSettled.value = true;
+  (await import("./session/index.js")).keepSession();
 }
-if (sample === undefined) announce("Choose input files.");
-isSettled.value = true;
-(await import("./session/index.js")).keepSession();
+start();
 
 addEventListener("hashchange", async () => {
   const next = sampleOf(readAddress().sample);
