@@ -16,12 +16,19 @@ const kindWords = new Set(
 
 /** The words of a name that tell the object. "IMG_2-coffeeCup.mask" and "coffee cup" share two. */
 export function wordsOf(path: string): string[] {
+  return split(path, /[^\p{L}\p{N}]+|(?<=\p{L})(?=\p{N})|(?<=\p{N})(?=\p{L})/u);
+}
+
+/** The name of an object, for people: digits stay where they are in a word. */
+export const titleOf = (path: string): string => split(path, /[^\p{L}\p{N}]+/u).join(" ");
+
+function split(path: string, at: RegExp): string[] {
   const parts = path.replace(/\.[^./]+$/, "").split("/");
   const words = (text: string) =>
     text
       .replace(/([a-z])([A-Z])/g, "$1 $2")
       .toLowerCase()
-      .split(/[^\p{L}\p{N}]+|(?<=\p{L})(?=\p{N})|(?<=\p{N})(?=\p{L})/u)
+      .split(at)
       .filter((word) => word !== "" && !kindWords.has(word))
       .map((word) => (/^\d+$/.test(word) ? `${Number(word)}` : word));
   const own = words(parts.at(-1) ?? "");

@@ -11,7 +11,7 @@ import {
   type Typed,
 } from "../load/inputs.js";
 import { annotationsOf, labelValues } from "../load/label-masks.js";
-import { paired, wordsOf } from "./pairing.js";
+import { paired, titleOf, wordsOf } from "./pairing.js";
 import { rolesOf } from "./roles.js";
 
 const folderOf = (path: string) => path.slice(0, path.lastIndexOf("/") + 1);
@@ -208,8 +208,8 @@ async function objectsOf(
 
 /** The name of an object from the path of its mask, or of its mesh where that is only a number. */
 function objectName(path: string, mesh: MeshSource | undefined, count: number, i: number): string {
-  const words = wordsOf(path).join(" ");
-  const others = mesh === undefined ? "" : wordsOf(mesh.file.path).join(" ");
+  const words = titleOf(path);
+  const others = mesh === undefined ? "" : titleOf(mesh.file.path);
   const name = /^[\d ]*$/.test(words) && /\p{L}/u.test(others) ? others : words;
   return /^[\d ]*$/.test(name) && count > 1 ? `Object ${name.split(" ").at(-1) || i + 1}` : name || "Object";
 }

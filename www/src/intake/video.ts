@@ -1,7 +1,7 @@
 /** Recognises the frames of a video among the scenes of a drop. */
 import type { Inputs } from "../load/inputs.js";
 import type { Video } from "../state/video.js";
-import { wordsOf } from "./pairing.js";
+import { titleOf } from "./pairing.js";
 
 /** Whether the scenes can be frames: they show one object each, and have one mesh file in common. */
 export function canBeVideo(scenes: readonly Inputs[]): boolean {
@@ -24,7 +24,7 @@ export function asFrames(scenes: readonly Inputs[]): Inputs[] {
   });
 }
 
-const nameOf = (path: string) => wordsOf(path).join(" ") || "Object";
+const nameOf = (path: string) => titleOf(path) || "Object";
 
 /** The video of these frames. */
 export async function videoOf(scenes: readonly Inputs[]): Promise<Video> {
