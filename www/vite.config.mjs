@@ -14,9 +14,15 @@ const { OPTIONS } = await import(pathToFileURL(join(repository, "pkg", "index.js
 const rowOf = (name) => OPTIONS.align.find((row) => row.name === name);
 const optionTable = {
   quality: rowOf("quality").choices,
-  knownExtentAxis: rowOf("knownExtentAxis").choices,
   maxSeed: rowOf("seed").max,
 };
+
+/** Scripts that are loaded when they are needed. */
+const later =
+  /\/src\/(intake|session|export|view3d)\/|\/src\/(run\/video|load\/label-masks|panels\/(time-panel|help-dialog))\./;
+
+/** Whether the page loads a module at first. @param {string} id */
+const isFirst = (id) => (id.startsWith(join(www, "src")) || id.includes("/preact/")) && !later.test(id);
 
 export default defineConfig({
   root: www,
@@ -43,6 +49,8 @@ export default defineConfig({
     modulePreload: { polyfill: false },
     // These browsers support light-dark(), which the theme switch needs untransformed.
     cssTarget: ["chrome123", "firefox120", "safari17.5"],
+    // What the page loads at first is one chunk: it compresses better than the parts that others share with it.
+    rolldownOptions: { output: { codeSplitting: { groups: [{ name: "page", test: isFirst }] } } },
     // three.js is one chunk, which the page loads last.
     chunkSizeWarningLimit: 1000,
   },

@@ -6,6 +6,7 @@ import { cached, digest, once } from "./cache.mjs";
 import { buildPackage } from "./package.mjs";
 import { at, packageDir, sampleDir } from "./paths.mjs";
 import { run } from "./run.mjs";
+import { pictureOf } from "./sample-picture.mjs";
 
 /** A folder for each sample, and `index.json`, which lists them. */
 export const pageSamplesDir = at("www", "samples");
@@ -17,8 +18,21 @@ export const pageSamplesDir = at("www", "samples");
 
 /**
  * A sample as `index.json` lists it: all its objects were seen by one camera.
- * @typedef {{ id: string, title: string, about: string, depth: string, camera: string, objects: SampleObject[] }} Sample
+ * @typedef {{ id: string, title: string, about: string, depth: string, camera: string, photo?: string, picture?: string,
+ *   objects: SampleObject[] }} Sample
  */
+
+/** A scene with a photo. It comes first: the page opens it. */
+const table = {
+  id: "table",
+  seed: 1,
+  title: "Table",
+  about: "Three objects and a photo.",
+  objects: ["teapot", "mug", "box"],
+};
+
+/** The samples that the page shows as pictures, beside the first one. */
+const pictured = ["desk", "hammer"];
 
 /** Samples of one object. */
 const kinds = [
@@ -81,12 +95,17 @@ const lab = (args) => run("cargo", ["run", "--quiet", "--package", "sim3align-la
 export async function generateSamples(folder) {
   rmSync(folder, { recursive: true, force: true });
   /** @type {Sample[]} */
-  const samples = [];
+  const samples = [await generateTable(folder)];
   for (const { id, seed, title, about } of kinds) {
     await lab(["case", join(folder, id), "--kind", id, "--seed", `${seed}`, "--depth", "png"]);
     samples.push({ id, title, about, ...sceneFiles(id), objects: [{ id, title, ...objectFiles(id) }] });
   }
   samples.push(await generateDesk(folder));
+  for (const sample of samples) {
+    if (sample.photo === undefined && !pictured.includes(sample.id)) continue;
+    sample.picture = `${sample.id}/picture.png`;
+    writeFileSync(join(folder, sample.picture), await pictureOf(folder, sample));
+  }
   writeFileSync(join(folder, "index.json"), `${JSON.stringify(samples, null, 2)}\n`);
 }
 
@@ -112,6 +131,21 @@ async function generateDesk(samples) {
   // Depth and camera are the same for all.
   for (const file of ["depth.png", "camera.json"]) cpSync(join(cases, names[0] ?? "", file), join(samples, id, file));
   return { id, title, about, ...sceneFiles(id), objects };
+}
+
+/**
+ * Generates the scene with a photo.
+ * @param {string} samples
+ * @returns {Promise<Sample>}
+ */
+async function generateTable(samples) {
+  const { id, seed, title, about } = table;
+  await lab(["case", join(samples, id), "--kind", "table", "--seed", `${seed}`]);
+  const objects = table.objects.map((name) => {
+    const title = `${name[0]?.toUpperCase()}${name.slice(1)}`;
+    return { id: name, title, ...objectFiles(`${id}/objects/${name}`) };
+  });
+  return { id, title, about, ...sceneFiles(id), photo: `${id}/rgb.png`, objects };
 }
 
 /** @param {string} folder */

@@ -65,7 +65,18 @@ test("all controls are reachable by keyboard and show their focus", async () => 
     assert.notEqual(found.outline, "none", `${found.label} does not show its focus`);
     reached.add(found.label);
   }
-  for (const name of ["sample", "theme", "effort", "align", "refine", "JSON", "depth-file", "wipe"]) {
+  for (const name of [
+    "sample",
+    "theme",
+    "effort",
+    "align",
+    "refine",
+    "JSON",
+    "files",
+    "edit-files",
+    "wipe",
+    "accept",
+  ]) {
     assert.ok(reached.has(name), `${name} is not among ${[...reached].join(", ")}`);
   }
   await opened.close();
@@ -74,7 +85,7 @@ test("all controls are reachable by keyboard and show their focus", async () => 
 test("explanations of metrics open by keyboard", async () => {
   const opened = await site.open();
   const { page } = opened;
-  const tip = page.getByRole("button", { name: "About IoU" });
+  const tip = page.getByRole("button", { name: "About Overlap (IoU)" });
   await tip.focus();
   await page.keyboard.press("Enter");
   const box = page.locator(".tip-box:popover-open");
@@ -98,7 +109,7 @@ test("keys open the help, which lists them, and Escape closes it", async () => {
 });
 
 test("the theme follows the switch, and is remembered", async () => {
-  const opened = await site.open("", { colorScheme: "light" });
+  const opened = await site.open("#sample=mug", { colorScheme: "light" });
   const { page } = opened;
   const paper = () => page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor);
   const light = await paper();

@@ -14,7 +14,7 @@ let opened: SitePage;
 before(async () => {
   site = await SiteTest.start();
   aligner = await createAligner();
-  opened = await site.open("", { permissions: ["clipboard-read", "clipboard-write"] });
+  opened = await site.open("#sample=mug", { permissions: ["clipboard-read", "clipboard-write"] });
 });
 after(() => site?.stop());
 
@@ -68,9 +68,9 @@ test("both matrices are the same pose", async () => {
     await opened.says(says);
     return JSON.parse(await opened.page.evaluate(() => navigator.clipboard.readText())) as number[];
   };
-  const columns = await copied("Matrix, columns", /column-major/);
+  const columns = await copied("Copy matrix (column-major)", /column-major/);
   assert.equal(await iouOf(columns), iou);
-  const rows = await copied("Matrix, rows", /row-major/);
+  const rows = await copied("Copy matrix (row-major)", /row-major/);
   assert.deepEqual(
     rows,
     columns.map((_, i) => columns[4 * (i % 4) + Math.floor(i / 4)]),

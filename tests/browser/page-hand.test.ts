@@ -29,7 +29,7 @@ test("nudges change the pose, with undo and redo", async () => {
   for (const _ of names) await page.click("#redo");
   await opened.isNow("hand");
   assert.equal(await opened.metric("iou"), moved);
-  assert.ok(await page.isDisabled("#redo"));
+  assert.equal(await page.getAttribute("#redo", "aria-disabled"), "true");
   await opened.close();
 });
 
@@ -48,7 +48,7 @@ test("refining restores a mesh that was moved", async () => {
   await opened.close();
 });
 
-test("a known size scales the mesh and stays locked while refining", async () => {
+test("a known size scales the mesh, and every alignment keeps it", async () => {
   const opened = await site.open();
   const { page } = opened;
   const [, height = 0] = await opened.dimensions();
@@ -61,5 +61,31 @@ test("a known size scales the mesh and stays locked while refining", async () =>
   await page.click("#refine");
   await opened.isNow("refined");
   assert.equal((await opened.dimensions())[1], Number(known));
+  await page.click("#align");
+  await opened.isNow("aligned");
+  assert.equal((await opened.dimensions())[1], Number(known));
+  await page.uncheck("#lock-scale");
+  await page.click("#align");
+  await page.locator("#cancel").waitFor({ state: "detached" });
+  await opened.aligned();
+  assert.equal((await opened.dimensions())[1], height);
+  await opened.close();
+});
+
+test("buttons keep the focus while they work, and when there is nothing left to redo", async () => {
+  const opened = await site.open();
+  const { page } = opened;
+  const focused = () => page.evaluate(() => document.activeElement?.id);
+  await page.focus("#refine");
+  await page.keyboard.press("Enter");
+  await opened.isNow("refined");
+  assert.equal(await focused(), "refine");
+  await page.keyboard.press("Control+z");
+  await opened.isNow("aligned");
+  await page.focus("#redo");
+  await page.keyboard.press("Enter");
+  await opened.isNow("refined");
+  assert.equal(await focused(), "redo");
+  assert.equal(await page.getAttribute("#redo", "aria-disabled"), "true");
   await opened.close();
 });

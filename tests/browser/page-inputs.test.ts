@@ -1,14 +1,26 @@
-/** The user's own files: chosen, dropped, zipped, invalid. */
+/** The user's own files: one drop is one scene, and only becomes it when everything fits. */
 import assert from "node:assert/strict";
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { zipSync } from "fflate";
 import { otherPose } from "../support/case-folder.js";
 import { required } from "../support/environment.js";
-import { cocoRle, npy, obj, png } from "../support/files.js";
+import { cocoRle, obj, png } from "../support/files.js";
+import {
+  cameraFile,
+  choose,
+  drop,
+  dropFolder,
+  type Files,
+  files,
+  HEIGHT,
+  maskPng,
+  pinhole,
+  seen,
+  WIDTH,
+} from "../support/page-files.js";
 import { mesh, render, truth } from "../support/scene.js";
-import { type SitePage, SiteTest } from "../support/site.js";
+import { PATIENCE, type SitePage, SiteTest } from "../support/site.js";
 
 let site: SiteTest;
 before(async () => {
@@ -16,150 +28,239 @@ before(async () => {
 });
 after(() => site?.stop());
 
-/** Files by name. */
-type Files = Record<string, Uint8Array>;
+/** A second object beside the first. */
+const other = render(mesh, otherPose(2), pinhole, WIDTH, HEIGHT);
+const depthPng = png(
+  Uint16Array.from(seen.depth, (z) => Math.round(1000 * z)),
+  WIDTH,
+  HEIGHT,
+);
+const meshFile = obj(mesh);
 
-const pinhole = { fx: 300, fy: 301, cx: 79.5, cy: 60 };
-const seen = render(mesh, truth, pinhole, 160, 120);
-const camera = Buffer.from(JSON.stringify({ ...pinhole, width: 160, height: 120 }));
-const files: Files = {
-  "depth.npy": npy(seen.depth, 120, 160),
-  "mask.png": png(
-    seen.mask.map((value) => 255 * value),
-    160,
-    120,
-  ),
-  "camera.json": camera,
-  "mesh.obj": obj(mesh),
-};
+const namesOf = (opened: SitePage) => opened.page.locator(".objects .name").allTextContents();
 
-/** Drops files on the page. */
-async function drop({ page }: SitePage, dropped: Files): Promise<void> {
-  const encoded = Object.entries(dropped).map(([name, bytes]) => [name, Buffer.from(bytes).toString("base64")]);
-  const data = await page.evaluateHandle((parts) => {
-    const transfer = new DataTransfer();
-    for (const [name = "", base64 = ""] of parts) {
-      const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
-      transfer.items.add(new File([bytes], name));
-    }
-    return transfer;
-  }, encoded);
-  await page.dispatchEvent("body", "dragenter", { dataTransfer: data });
-  assert.ok(await page.isVisible(".drop-here"));
-  await page.dispatchEvent("body", "drop", { dataTransfer: data });
-}
-
-async function aligns(opened: SitePage): Promise<void> {
-  await opened.says(/Ready to align/);
-  await opened.page.click("#align");
-  await opened.aligned();
-}
-
-test("dropped files make a scene, which is aligned to its true size", async () => {
+test("dropped files make a scene, which is aligned to its true size by itself", async () => {
   const opened = await site.open();
   await drop(opened, files);
-  await aligns(opened);
+  await opened.shows("Own files");
   assert.ok((await opened.metric("iou")) > 0.9);
-  const scale = Number.parseFloat((await opened.page.textContent(".facts dd")) ?? "");
+  const scale = Number.parseFloat((await opened.page.textContent("#scale")) ?? "");
   assert.ok(Math.abs(scale / truth.scale - 1) < 0.05, `${scale}`);
   assert.ok(!opened.page.url().includes("sample="), "a link that shows others another scene");
   await opened.close();
 });
 
-test("a zip of a folder with several masks and meshes makes several objects", async () => {
+test("masks and meshes are paired by name, in any order", async () => {
   const opened = await site.open();
-  const other = render(mesh, otherPose(2), pinhole, 160, 120);
-  const zipped = zipSync({
-    "scene/depth.png": png(
-      Uint16Array.from(seen.depth, (z) => Math.round(1000 * z)),
-      160,
-      120,
-    ),
-    "scene/camera.json": camera,
-    "scene/mask-left.json": Buffer.from(JSON.stringify(cocoRle(seen.mask, 160, 120))),
-    "scene/mask-right.png": png(other.mask, 160, 120),
-    "scene/mesh-left.obj": obj(mesh),
-    "scene/mesh-right.obj": obj(mesh),
-    "__MACOSX/scene/._depth.png": Uint8Array.of(1),
+  await dropFolder(opened, {
+    "desk/depth.png": depthPng,
+    "desk/camera.json": cameraFile,
+    "desk/b_mesh.obj": meshFile,
+    "desk/left-mug.obj": meshFile,
+    "desk/masks/B.png": maskPng(other.mask),
+    "desk/masks/mug_left.json": Buffer.from(JSON.stringify(cocoRle(seen.mask, WIDTH, HEIGHT))),
+    "__MACOSX/desk/._depth.png": Uint8Array.of(1),
   });
-  await drop(opened, { "scene.zip": zipped });
-  await opened.says(/^scene: .* 2 objects/);
-  assert.deepEqual(await opened.page.locator(".objects .name").allTextContents(), ["left", "right"]);
-  await opened.page.click("#align-all");
-  await opened.says(/^Aligned 2 objects/);
+  await opened.shows("desk");
+  assert.deepEqual(await namesOf(opened), ["b", "mug left"]);
   await opened.close();
 });
 
-test("an invalid file shows an error with a remedy at its field", async () => {
+test("two masks and one mesh are a question, which a click answers", async () => {
   const opened = await site.open();
   const { page } = opened;
-  const choose = (field: string, name: string, bytes: Uint8Array) =>
-    page.setInputFiles(`#${field}-file`, { name, mimeType: "", buffer: Buffer.from(bytes) });
-  const error = async (field: string) => {
-    await page.locator(`#${field}-error`).waitFor();
-    assert.equal(await page.getAttribute(`#${field}-file`, "aria-describedby"), `${field}-error`);
-    return (await page.textContent(`#${field}-error`)) ?? "";
-  };
-  await choose("depth", "depth.png", png(new Uint8Array(160 * 120).fill(9), 160, 120));
-  assert.match(await error("depth"), /8.bit.*expected.*16/i);
-  await choose("depth", "depth.npy", files["depth.npy"] as Uint8Array);
-  // The sample's camera and mask are of another size.
-  assert.match(await error("camera"), /160 × 120/);
-  await choose("camera", "camera.json", camera);
-  assert.match(await error("mask"), /640 × 480 pixels, expected 160 × 120, the size of the depth map.*Resize/);
-  await choose("mask", "mask.png", files["mask.png"] as Uint8Array);
-  await choose("mesh", "mesh.glb", Uint8Array.of(103, 108, 84, 70, 1));
-  assert.match(await error("mesh"), /expected/);
-  await choose("mesh", "mesh.obj", files["mesh.obj"] as Uint8Array);
-  await aligns(opened);
-  await choose("photo", "photo.jpg", Uint8Array.of(1, 2, 3));
-  assert.match(await error("photo"), /cannot decode/);
+  const { "mask.png": mask, ...rest } = files;
+  await drop(opened, { ...rest, "mask-a.png": mask as Uint8Array, "mask-b.png": maskPng(other.mask) });
+  const sheet = await opened.sheet();
+  assert.match((await sheet.textContent()) ?? "", /No mesh for b\./);
+  assert.ok(await page.isDisabled("#intake-open"));
+  assert.equal(await page.getAttribute("main", "data-scene"), "Mug");
+  await page.locator('[data-object="b"]').getByRole("button", { name: "Leave it out" }).click();
+  await sheet.getByRole("button", { name: "They do" }).click();
+  await opened.shows("Own files");
+  assert.equal(await page.locator(".objects").count(), 0);
   await opened.close();
 });
 
-test("errors of the alignment are shown at the field that they concern", async () => {
+test("meshes are paired anew by selecting and by dragging", async () => {
   const opened = await site.open();
-  await drop(opened, { ...files, "mask.png": png(new Uint8Array(160 * 120), 160, 120) });
-  await opened.says(/Ready to align/);
-  await opened.page.click("#align");
-  await opened.page.locator("#mask-error").waitFor();
-  assert.match((await opened.page.textContent("#mask-error")) ?? "", /mask|pixel/i);
+  const { page } = opened;
+  const { "mask.png": mask, "mesh.obj": _, ...rest } = files;
+  await drop(opened, {
+    ...rest,
+    ...{ "mask-a.png": mask as Uint8Array, "mask-b.png": maskPng(other.mask) },
+    ...{ "first.obj": meshFile, "second.obj": meshFile },
+  });
+  const sheet = await opened.sheet();
+  assert.match((await sheet.textContent()) ?? "", /Do mask-a.png and first.obj belong together\?/);
+  const shown = () =>
+    page.locator(".pair select").evaluateAll((all) => all.map((one) => (one as HTMLSelectElement).value));
+  assert.deepEqual(await shown(), ["0", "1"]);
+  await page.selectOption('[data-object="a"] select', "1");
+  await opened.sheet();
+  assert.deepEqual(await shown(), ["1", "0"]);
+  await page.dragAndDrop('[data-object="b"] .draggable', '[data-object="a"] .pair-mask >> nth=0');
+  await opened.sheet();
+  assert.deepEqual(await shown(), ["0", "1"]);
+  await page.click("#intake-open");
+  await opened.shows("Own files");
+  assert.deepEqual(await namesOf(opened), ["a", "b"]);
+  await opened.close();
+});
+
+test("a label map and COCO annotations hold several masks", async () => {
+  const opened = await site.open();
+  const { page } = opened;
+  const labels = seen.mask.map((inside, i) => (inside !== 0 ? 7 : other.mask[i] !== 0 ? 12 : 0));
+  const { "mask.png": _, "mesh.obj": mesh, ...rest } = files;
+  const meshes: Files = { "mesh-7.obj": mesh as Uint8Array, "obj_000012.obj": mesh as Uint8Array };
+  await drop(opened, { ...rest, ...meshes, "labels.png": png(labels, WIDTH, HEIGHT) });
+  await page.locator('main[data-scene="Own files"]').waitFor(PATIENCE);
+  assert.deepEqual(await namesOf(opened), ["Object 7", "Object 12"]);
+  const images = [{ id: 3, width: WIDTH, height: HEIGHT, file_name: "depth.jpg" }];
+  const [u, v] = [Math.round(pinhole.cx), Math.round(pinhole.cy)];
+  const square = [u - 12, v - 12, u + 12, v - 12, u + 12, v + 12, u - 12, v + 12];
+  const annotations = [
+    { image_id: 3, category_id: 1, segmentation: cocoRle(seen.mask, WIDTH, HEIGHT) },
+    { image_id: 3, category_id: 2, segmentation: [square] },
+    { image_id: 4, category_id: 2, segmentation: [square] },
+  ];
+  const categories = [
+    { id: 1, name: "cup" },
+    { id: 2, name: "blob" },
+  ];
+  const coco = Buffer.from(JSON.stringify({ images, annotations, categories }));
+  const named: Files = { "blob.obj": mesh as Uint8Array, "cup.obj": mesh as Uint8Array };
+  await dropFolder(opened, prefixed("coco/", { ...rest, ...named, "instances.json": coco }));
+  await page.locator('main[data-scene="coco"]').waitFor(PATIENCE);
+  assert.deepEqual(await namesOf(opened), ["cup", "blob"]);
+  await opened.close();
+});
+
+const prefixed = (folder: string, content: Files): Files =>
+  Object.fromEntries(Object.entries(content).map(([name, bytes]) => [`${folder}${name}`, bytes]));
+
+test("an image of a BOP data set is a scene of its own", async () => {
+  const opened = await site.open();
+  const { page } = opened;
+  const K = [pinhole.fx, 0, pinhole.cx, 0, pinhole.fy, pinhole.cy, 0, 0, 1];
+  const entry = { cam_K: K, depth_scale: 1 };
+  const pose = (obj_id: number) => ({ obj_id, cam_R_m2c: [1, 0, 0, 0, 1, 0, 0, 0, 1], cam_t_m2c: [0, 0, 500] });
+  const of = (json: unknown) => Buffer.from(JSON.stringify(json));
+  const mask = maskPng(seen.mask);
+  await dropFolder(opened, {
+    "000048/depth/000001.png": depthPng,
+    "000048/depth/000036.png": depthPng,
+    "000048/mask_visib/000001_000000.png": mask,
+    "000048/mask_visib/000036_000000.png": maskPng(other.mask),
+    "000048/mask_visib/000036_000001.png": mask,
+    "000048/mask/000036_000001.png": mask,
+    "000048/scene_camera.json": of({ 1: entry, 36: entry }),
+    "000048/scene_gt.json": of({ 1: [pose(5)], 36: [pose(2), pose(5)] }),
+    "models/obj_000002.obj": meshFile,
+    "models/obj_000005.obj": meshFile,
+  });
+  const sheet = await opened.sheet();
+  // Nothing of the sample remains, and nothing of it is replaced yet.
+  assert.equal(await page.getAttribute("main", "data-scene"), "Mug");
+  await page.selectOption("#scene-choice", "1");
+  await opened.sheet();
+  assert.match((await sheet.locator('[data-field="depth"]').textContent()) ?? "", /000036\.png/);
+  const meshes = await page
+    .locator(".pair select")
+    .evaluateAll((all) => all.map((one) => (one as HTMLSelectElement).selectedOptions[0]?.textContent));
+  assert.deepEqual(meshes, ["models/obj_000002.obj", "models/obj_000005.obj"]);
+  await page.selectOption("#scene-choice", "0");
+  await opened.sheet();
+  await page.click("#intake-open");
+  await opened.shows("000048 000001");
+  await page.click("#next-scene");
+  await opened.page.locator(".objects").waitFor(PATIENCE);
+  assert.equal((await namesOf(opened)).length, 2);
+  await opened.close();
+});
+
+test("case folders of one image are one scene, those of others are others", async () => {
+  const opened = await site.open();
+  const { page } = opened;
+  const farther = { ...files, "depth.npy": npyOf(Float32Array.from(seen.depth, (z) => z + 0.01)) };
+  await dropFolder(opened, { ...prefixed("a/", files), ...prefixed("b/", farther) });
+  await opened.sheet();
+  assert.equal(await page.locator("#scene-choice option").count(), 2);
+  assert.equal(await page.locator(".pair").count(), 1);
+  await page.click("#intake-cancel");
+  assert.equal(await page.getAttribute("main", "data-scene"), "Mug");
+  const second = { ...files, "mask.png": maskPng(other.mask) };
+  await dropFolder(opened, { ...prefixed("set/a/", files), ...prefixed("set/b/", second) });
+  await opened.page.locator(".objects").waitFor(PATIENCE);
+  assert.deepEqual(await namesOf(opened), ["a", "b"]);
+  await opened.close();
+});
+
+function npyOf(data: Float32Array): Uint8Array {
+  const header = (files["depth.npy"] as Uint8Array).length - 4 * data.length;
+  return Buffer.concat([(files["depth.npy"] as Uint8Array).subarray(0, header), new Uint8Array(data.buffer)]);
+}
+
+test("missing files are asked for, and can be added one by one", async () => {
+  const opened = await site.open();
+  const { page } = opened;
+  await drop(opened, { "mask.png": files["mask.png"] as Uint8Array });
+  const sheet = await opened.sheet();
+  assert.match((await sheet.textContent()) ?? "", /Depth map missing.*Camera missing.*Mesh missing/);
+  // The sample's files do not fill the gaps.
+  for (const name of ["fx", "fy", "cx", "cy"]) assert.equal(await page.inputValue(`#camera-${name}`), "");
+  await drop(opened, { "mesh.obj": files["mesh.obj"] as Uint8Array, "depth.npy": files["depth.npy"] as Uint8Array });
+  await opened.sheet();
+  await choose(opened, "mask", "mask.png", files["mask.png"] as Uint8Array);
+  await opened.sheet();
+  await choose(opened, "camera", "camera.json", cameraFile);
+  await opened.shows("Own files");
   await opened.close();
 });
 
 test("intrinsics can be entered, or assumed with a warning", async () => {
   const opened = await site.open();
   const { page } = opened;
-  await drop(opened, files);
-  await opened.says(/Ready to align/);
-  await page.click('[data-field="camera"] summary');
-  await page.fill("#camera-fov", "45");
-  await page.press("#camera-fov", "Enter");
-  await aligns(opened);
+  const { "camera.json": _, ...rest } = files;
+  await drop(opened, rest);
+  await opened.sheet();
+  await page.getByRole("button", { name: "Use 50° field of view" }).click();
+  await opened.shows("Own files");
   assert.match((await page.textContent(".warnings")) ?? "", /assumed/);
   const assumed = await opened.dimensions();
+  await page.click("#edit-files");
+  await opened.sheet();
   for (const [name, value] of Object.entries(pinhole)) {
     await page.fill(`#camera-${name}`, `${value}`);
     await page.press(`#camera-${name}`, "Enter");
-    await opened.says(/Ready to align/);
+    await opened.sheet();
   }
-  await aligns(opened);
-  assert.equal(await page.locator(".warnings").count(), 0);
+  await page.click("#intake-open");
+  await opened.aligned();
+  assert.doesNotMatch((await page.locator(".warnings").allTextContents()).join(), /assumed/);
   assert.notDeepEqual(await opened.dimensions(), assumed);
   await opened.close();
 });
 
-const cases = process.env.SIM3ALIGN_CASES;
-const isThere = cases !== undefined && existsSync(cases);
-test("a real case is dropped, shown and aligned", {
+const shared = process.env.SIM3ALIGN_CASES;
+const isThere = shared !== undefined && existsSync(shared);
+test("real cases are dropped, shown and aligned", {
   skip: isThere ? false : "SIM3ALIGN_CASES is not set",
 }, async () => {
-  const folder = readdirSync(required("SIM3ALIGN_CASES"), { withFileTypes: true }).find((entry) => entry.isDirectory());
-  const path = join(required("SIM3ALIGN_CASES"), folder?.name ?? "");
-  const names = readdirSync(path).filter((name) => !name.startsWith("."));
+  const root = required("SIM3ALIGN_CASES");
+  const isCase = (name: string) => existsSync(join(root, name, "camera.json"));
   const opened = await site.open();
-  await drop(opened, Object.fromEntries(names.map((name) => [name, readFileSync(join(path, name))])));
-  await aligns(opened);
-  assert.ok((await opened.metric("iou")) > 0.5);
+  for (const name of readdirSync(root).filter(isCase).slice(0, 3)) {
+    const own = readdirSync(join(root, name)).filter(
+      (file) => existsSync(join(root, name, file)) && file.includes("."),
+    );
+    await dropFolder(
+      opened,
+      Object.fromEntries(own.map((file) => [`${name}/${file}`, readFileSync(join(root, name, file))])),
+    );
+    await opened.shows(name);
+    assert.ok((await opened.metric("iou")) > 0.5, name);
+  }
   await opened.close();
 });

@@ -93,6 +93,7 @@ for (const [backend, flags] of backends) {
       const describe = (image: Pixels) => `${ratio(image)} of the pixels are drawn`;
       await seen(page, describe, (image) => ratio(image) > 0.01);
       await page.getByRole("button", { name: "Camera", exact: true }).click();
+      await show(page, "Sizes", false);
       await show(page, "Points", false);
       await show(page, "Mesh", false);
       await seen(page, describe, (image) => ratio(image) < 0.001);
@@ -162,7 +163,7 @@ test("the two views are linked", async () => {
     const opened = await site.open("#sample=desk", { reducedMotion: "reduce" });
     const { page } = opened;
     await ready(opened, "webgl");
-    await page.locator('.space canvas[aria-label*="placed meshes: 0, 1, 2"]').waitFor(PATIENCE);
+    await page.locator('.space canvas[aria-label*="placed meshes: Box, Teapot, Animal"]').waitFor(PATIENCE);
     await page.getByRole("button", { name: "Camera", exact: true }).click();
     const before = await still(page);
     await page.hover(".space canvas");
@@ -193,7 +194,7 @@ test("the two views are linked", async () => {
       (image) => changed(image, before).length === 0,
     );
     // A click in the image selects the object and centres the 3D view on it.
-    await page.locator(".objects button").nth(2).click();
+    await page.locator(".objects .select").nth(2).click();
     await page.locator(".image canvas").click();
     await page.getByRole("button", { name: "Top", exact: true }).click();
     await seen(

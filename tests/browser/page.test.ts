@@ -88,11 +88,11 @@ test("every sample can be chosen, and is aligned", async () => {
 });
 
 test("a link holds the sample and the options", async () => {
-  const first = await site.open("#sample=desk&quality=fast&seed=7&knownExtentAxis=y");
+  const first = await site.open("#sample=desk&quality=fast&seed=7&symmetry=none");
   assert.equal(await first.page.inputValue("#sample"), "desk");
   assert.equal(await first.page.inputValue("#effort"), "fast");
   assert.equal(await first.page.inputValue("#option-seed"), "7");
-  assert.equal(await first.page.inputValue("#option-knownExtentAxis"), "y");
+  assert.equal(await first.page.inputValue("#option-symmetry"), "none");
   await first.page.selectOption("#effort", "best");
   const { hash } = new URL(first.page.url());
   const names = await first.page.$$eval(".objects .name", (found) => found.map((name) => name.textContent));

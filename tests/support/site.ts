@@ -1,7 +1,7 @@
 /** Tests of the built page in a browser. */
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import type { BrowserContextOptions, Page } from "playwright-core";
+import type { BrowserContextOptions, Locator, Page } from "playwright-core";
 import { PageTest } from "./browser.js";
 import { repository } from "./environment.js";
 
@@ -72,8 +72,8 @@ export class SiteTest {
     return new SitePage(page, errors);
   }
 
-  /** Opens the page and waits until its sample is aligned. */
-  async open(address = "", context: BrowserContextOptions = {}): Promise<SitePage> {
+  /** Opens the page with a sample, by default that of one object, and waits until it is aligned. */
+  async open(address = "#sample=mug", context: BrowserContextOptions = {}): Promise<SitePage> {
     const site = await this.visit(address, context);
     await site.aligned();
     return site;
@@ -109,6 +109,19 @@ export class SitePage {
   async aligned(): Promise<void> {
     await this.says(/^Aligned/);
     await this.metric("iou");
+  }
+
+  /** Waits until a scene with this name is shown and aligned. */
+  async shows(scene: string): Promise<void> {
+    await this.page.locator(`main[data-scene="${scene}"]`).waitFor(PATIENCE);
+    await this.aligned();
+  }
+
+  /** The intake sheet, once its files are read. */
+  async sheet(): Promise<Locator> {
+    const sheet = this.page.locator(".intake");
+    await sheet.locator("footer [role=status]:not(:has-text('Reading'))").waitFor(PATIENCE);
+    return sheet;
   }
 
   /** Waits for a metric of the current pose. */

@@ -4,17 +4,35 @@ import { DropOverlay } from "./panels/drop-overlay.js";
 import { ExportPanel } from "./panels/export-panel.js";
 import { HandPanel } from "./panels/hand-panel.js";
 import { Header } from "./panels/header.js";
-import { HelpDialog } from "./panels/help-dialog.js";
 import { InputPanel } from "./panels/input-panel.js";
 import { ObjectsPanel } from "./panels/objects-panel.js";
 import { OptionsPanel } from "./panels/options-panel.js";
 import { ResultPanel } from "./panels/result-panel.js";
 import { RunBar } from "./panels/run-bar.js";
-import { largeView } from "./state/display.js";
+import { StartPanel } from "./panels/start-panel.js";
+import { isHelpOpen, largeView } from "./state/display.js";
+import { draft } from "./state/draft.js";
+import { scene } from "./state/scene.js";
+import { video } from "./state/video.js";
+import { lazy } from "./ui/lazy.js";
 import { listenToKeys } from "./ui/shortcuts.js";
 import { ImageView } from "./views/image-view.js";
 import { space } from "./views/space.js";
 import { SpaceView } from "./views/space-view.js";
+
+const Intake = lazy(
+  () => draft.value !== null,
+  () => import("./intake/index.js").then(({ Sheet }) => Sheet),
+);
+const TimePanel = lazy(
+  () => video.value !== null,
+  () => import("./panels/time-panel.js").then(({ TimePanel }) => TimePanel),
+);
+
+const HelpDialog = lazy(
+  () => isHelpOpen.value,
+  () => import("./panels/help-dialog.js").then(({ HelpDialog }) => HelpDialog),
+);
 
 export function App() {
   useEffect(listenToKeys, []);
@@ -23,20 +41,23 @@ export function App() {
   return (
     <div class="frame">
       <Header />
-      <main class="page" data-large={large}>
+      <main class="page" data-large={large} data-scene={scene.value?.name ?? ""}>
         <SpaceView />
         <ImageView />
-        <ResultPanel />
-        <aside class="side" aria-label="Settings">
+        <TimePanel />
+        <HandPanel />
+        <aside class="side" aria-label="Scene">
           <RunBar />
+          <StartPanel />
+          <ResultPanel />
           <ObjectsPanel />
-          <HandPanel />
           <ExportPanel />
           <InputPanel />
           <OptionsPanel />
         </aside>
       </main>
       <HelpDialog />
+      <Intake />
       <DropOverlay />
     </div>
   );

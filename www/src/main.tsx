@@ -4,10 +4,11 @@ import { loadFormats } from "sim3align/formats";
 import { App } from "./app.js";
 import { openSample } from "./load/open.js";
 import { sampleOf, samples } from "./load/samples.js";
-import { alignAll } from "./run/align.js";
+import { alignAll, alignEach } from "./run/align.js";
 import { aligner } from "./run/aligner.js";
 import { observePoses } from "./run/evaluate.js";
 import { readAddress, updateAddress } from "./state/permalink.js";
+import { hasSession } from "./state/session-flag.js";
 import { announce } from "./state/status.js";
 import { isSettled } from "./views/space.js";
 import "../style/theme.css";
@@ -15,8 +16,10 @@ import "../style/layout.css";
 import "../style/controls.css";
 import "../style/views.css";
 import "../style/panels.css";
+import "../style/intake.css";
 
-const sample = sampleOf(readAddress().sample) ?? samples[0];
+const named = sampleOf(readAddress().sample);
+const sample = named ?? samples[0];
 updateAddress();
 observePoses();
 // Needed when the files of the sample arrive.
@@ -25,18 +28,32 @@ aligner().then(
   () => performance.mark("aligner ready"),
   (error) => announce(String(error), "failed"),
 );
-const opened = sample === undefined ? Promise.resolve(false) : openSample(sample);
+/** The session goes before the first sample, but not before one that the address names. */
+async function restored(): Promise<boolean> {
+  if (!hasSession() || named !== undefined) return false;
+  return (await import("./session/index.js")).restoreSession();
+}
+
+const restoring = restored();
+const opened = restoring.then((isThere) => !isThere && sample !== undefined && openSample(sample));
 
 const root = document.getElementById("app");
 if (root !== null) render(<App />, root);
 
-if (await opened) {
-  performance.mark("opened");
-  await alignAll();
-  performance.mark("aligned");
+/** Not at the top level: scripts that are loaded later wait until this one has run. */
+async function start(): Promise<void> {
+  if (await opened) {
+    performance.mark("opened");
+    // The workers would take the time of the first frame.
+    await new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
+    await alignEach();
+    performance.mark("aligned");
+  }
+  if (sample === undefined) announce("Choose input files.");
+  isSettled.value = true;
+  (await import("./session/index.js")).keepSession();
 }
-if (sample === undefined) announce("Choose input files.");
-isSettled.value = true;
+start();
 
 addEventListener("hashchange", async () => {
   const next = sampleOf(readAddress().sample);

@@ -129,31 +129,51 @@ pub fn ply_points(points: &[Vec3]) -> Vec<u8> {
 
 /// A mesh as GLB: one node, one mesh, float positions and 32-bit indices.
 pub fn glb(mesh: &Mesh) -> Vec<u8> {
+    glb_colored(mesh, &[])
+}
+
+/// A mesh as GLB with the linear colours of its vertices; without any, like [`glb`].
+pub fn glb_colored(mesh: &Mesh, colors: &[[u8; 3]]) -> Vec<u8> {
     let positions = mesh.positions();
     let low = positions.iter().copied().fold(Vec3::INFINITY, Vec3::min);
     let high = positions.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
     let corners = mesh.triangles().as_flattened();
     let (position_bytes, index_bytes) = (12 * positions.len(), 4 * corners.len());
+    let color_bytes = 4 * colors.len();
+    let first_color = position_bytes + index_bytes;
+    let (attribute, accessor, view) = if colors.is_empty() {
+        Default::default()
+    } else {
+        let count = colors.len();
+        (
+            r#","COLOR_0":2"#.to_owned(),
+            format!(r#",{{"bufferView":2,"componentType":5121,"normalized":true,"count":{count},"type":"VEC4"}}"#),
+            format!(r#",{{"buffer":0,"byteOffset":{first_color},"byteLength":{color_bytes},"target":34962}}"#),
+        )
+    };
     let mut json = format!(
         concat!(
             r#"{{"asset":{{"version":"2.0","generator":"sim3align"}},"scene":0,"scenes":[{{"nodes":[0]}}],"#,
-            r#""nodes":[{{"mesh":0}}],"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"indices":1}}]}}],"#,
+            r#""nodes":[{{"mesh":0}}],"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0{}}},"indices":1}}]}}],"#,
             r#""accessors":[{{"bufferView":0,"componentType":5126,"count":{},"type":"VEC3","min":{:?},"max":{:?}}},"#,
-            r#"{{"bufferView":1,"componentType":5125,"count":{},"type":"SCALAR"}}],"#,
+            r#"{{"bufferView":1,"componentType":5125,"count":{},"type":"SCALAR"}}{}],"#,
             r#""bufferViews":[{{"buffer":0,"byteLength":{},"target":34962}},"#,
-            r#"{{"buffer":0,"byteOffset":{},"byteLength":{},"target":34963}}],"buffers":[{{"byteLength":{}}}]}}"#,
+            r#"{{"buffer":0,"byteOffset":{},"byteLength":{},"target":34963}}{}],"buffers":[{{"byteLength":{}}}]}}"#,
         ),
+        attribute,
         positions.len(),
         low.to_array(),
         high.to_array(),
         corners.len(),
+        accessor,
         position_bytes,
         position_bytes,
         index_bytes,
-        position_bytes + index_bytes,
+        view,
+        first_color + color_bytes,
     );
     json.extend(core::iter::repeat_n(' ', json.len().next_multiple_of(4) - json.len()));
-    let binary_bytes = position_bytes + index_bytes;
+    let binary_bytes = first_color + color_bytes;
     let mut bytes = Vec::with_capacity(28 + json.len() + binary_bytes);
     bytes.extend(b"glTF");
     for word in [2, 28 + json.len() + binary_bytes, json.len()] {
@@ -165,6 +185,7 @@ pub fn glb(mesh: &Mesh) -> Vec<u8> {
     bytes.extend(b"BIN\0");
     bytes.extend(positions.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes));
     bytes.extend(corners.iter().flat_map(|i| i.to_le_bytes()));
+    bytes.extend(colors.iter().flat_map(|[red, green, blue]| [*red, *green, *blue, 255]));
     bytes
 }
 

@@ -5,3 +5,4 @@
 pub mod case;
 pub mod depth;
 pub mod shape;
+pub mod table;

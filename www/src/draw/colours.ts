@@ -2,16 +2,23 @@
 
 export type Rgb = readonly [red: number, green: number, blue: number];
 
-/** From near to far. A single hue, so that overlays stand out. */
+/** From near to far: equal steps of depth are equal steps of lightness, and hues tell more of them apart. */
 const stops: readonly Rgb[] = [
-  [226, 232, 240],
-  [150, 165, 184],
-  [92, 108, 130],
-  [52, 64, 84],
-  [22, 28, 40],
+  [240, 232, 130],
+  [148, 212, 108],
+  [66, 182, 126],
+  [38, 146, 142],
+  [48, 108, 142],
+  [62, 66, 130],
+  [58, 20, 84],
 ];
 
+/** The colours of depths as a gradient of CSS, from near to far. */
+export const depthGradient = `linear-gradient(to right, ${stops.map((stop) => `rgb(${stop.join(" ")})`).join(", ")})`;
+
 const between = (a: number, b: number, share: number) => a + (b - a) * share;
+
+const NO_READING: Rgb = [34, 34, 40];
 
 /** The colour of a depth, as a share of the way from near to far. */
 function depthColour(share: number): Rgb {
@@ -21,21 +28,29 @@ function depthColour(share: number): Rgb {
   return [0, 1, 2].map((k) => between(a[k] as number, b[k] as number, place - i)) as unknown as Rgb;
 }
 
-/** A visualisation of a depth map with 256 levels: red, green, blue, alpha. Pixels without a reading are black. */
+/** A visualisation of a depth map with 256 levels: red, green, blue, alpha. Pixels without a reading are dark grey. */
 export function depthImage(depthM: Float32Array): Uint8ClampedArray<ArrayBuffer> {
-  const stride = Math.max(1, Math.floor(depthM.length / 20_000));
-  const readings = depthM.filter((z, pixel) => pixel % stride === 0 && z > 0 && Number.isFinite(z)).sort();
-  // Without outliers.
-  const near = readings[Math.floor(0.01 * readings.length)] ?? 0;
-  const far = readings[Math.floor(0.99 * readings.length)] ?? 1;
+  const { nearM: near, farM: far } = depthRange(depthM) ?? { nearM: 0, farM: 1 };
   const table = Array.from({ length: 256 }, (_, i) => depthColour(i / 255));
   const image = new Uint8ClampedArray(4 * depthM.length);
   depthM.forEach((z, pixel) => {
     const step = Math.round((255 * (z - near)) / (far - near || 1));
-    const [red, green, blue] = z > 0 ? (table[Math.min(Math.max(step, 0), 255)] as Rgb) : [0, 0, 0];
+    const [red, green, blue] = z > 0 ? (table[Math.min(Math.max(step, 0), 255)] as Rgb) : NO_READING;
     image.set([red, green, blue, 255], 4 * pixel);
   });
   return image;
+}
+
+/** The range of the readings without outliers, metres; null if there is none. */
+export function depthRange(depthM: Float32Array): { nearM: number; medianM: number; farM: number } | null {
+  // An odd step looks at all columns.
+  const step = 2 * Math.floor(depthM.length / 40_000) + 1;
+  const isReading = (z: number) => z > 0 && Number.isFinite(z);
+  let readings = depthM.filter((z, pixel) => pixel % step === 0 && isReading(z)).sort();
+  if (readings.length === 0) readings = depthM.filter(isReading).sort();
+  if (readings.length === 0) return null;
+  const at = (share: number) => readings[Math.floor(share * (readings.length - 1))] as number;
+  return { nearM: at(0.01), medianM: at(0.5), farM: at(0.99) };
 }
 
 /** Blue if the mesh is nearer than the measured depth, orange if it is farther, white if both agree. */

@@ -35,7 +35,7 @@ export function compose(
   base: Uint8ClampedArray,
   before: readonly DrawnObject[],
   after: readonly DrawnObject[],
-  { outline, silhouette, difference, wipe }: ImageLayers,
+  { base: shown, outline, silhouette, difference, wipe }: ImageLayers,
   zoom: Zoom,
 ): ImageData {
   const { width, height, depthM } = scene;
@@ -58,7 +58,8 @@ export function compose(
       const own = rgbOf(colour);
       const isEdge = edges(depth, width, height, thickness);
       const isBorder = edges(mask, width, height, thickness);
-      const fill = isSelected ? 0.45 : 0.3;
+      // Over a photo, a little is enough, and the object's own colours stay.
+      const fill = (isSelected ? 0.45 : 0.3) * (shown === "photo" ? 0.45 : 1);
       for (let v = 0; v < height; v++) {
         for (let u = left; u < right; u++) {
           const pixel = v * width + u;

@@ -28,13 +28,16 @@ export function zoomToObjects({ objects, width, height }: Scene): Zoom {
   const box = maskBox({ data: union, width, height });
   const factor = SHARE * Math.min(width / box.width, height / box.height);
   if (factor <= 1) return wholeImage;
-  const bounded = Math.min(factor, MAX_FACTOR);
-  // Nothing beyond the border of the image is shown.
-  const half = 0.5 / bounded;
+  return clampedZoom({
+    factor: Math.min(factor, MAX_FACTOR),
+    x: (box.left + box.width / 2) / width,
+    y: (box.top + box.height / 2) / height,
+  });
+}
+
+/** The nearest zoom that shows nothing beyond the border of the image. */
+export function clampedZoom({ factor, x, y }: Zoom): Zoom {
+  const half = 0.5 / factor;
   const clamped = (centre: number) => Math.min(Math.max(centre, half), 1 - half);
-  return {
-    factor: bounded,
-    x: clamped((box.left + box.width / 2) / width),
-    y: clamped((box.top + box.height / 2) / height),
-  };
+  return { factor, x: clamped(x), y: clamped(y) };
 }

@@ -6,14 +6,29 @@ import { announce } from "../state/status.js";
 import { imageSnapshot } from "../views/image-view.js";
 import { space } from "../views/space.js";
 
-export type Format = "columns" | "rows" | "json" | "bop" | "glb" | "ply" | "png" | "link";
+export type Format =
+  | "columns"
+  | "rows"
+  | "json"
+  | "bop"
+  | "session"
+  | "video"
+  | "scene"
+  | "glb"
+  | "ply"
+  | "png"
+  | "link";
 
 /** Copies or saves the object, or the whole scene for JSON and BOP. The writers of files are loaded on demand. */
 export async function exportAs(format: Format, scene: Scene, object: ObjectModel): Promise<void> {
   const name = fileName(object.name);
   if (format === "link") return copy(permalink(), "the link");
   if (format === "png") return saveImage(name);
-  const { bopText, glbBytes, jsonText, matrixText, plyBytes } = await import("./files.js");
+  if (format === "session") {
+    const file = await (await import("../session/index.js")).sessionFile();
+    return file === null ? undefined : download(`${fileName(scene.name)}.sim3align.zip`, file, "application/zip");
+  }
+  const { bopText, glbBytes, jsonText, matrixText, plyBytes, sceneBytes, videoText } = await import("./files.js");
   switch (format) {
     case "columns":
       return copy(matrixText(object, "columns"), "the matrix (column-major)");
@@ -23,6 +38,10 @@ export async function exportAs(format: Format, scene: Scene, object: ObjectModel
       return download(`${name}.json`, jsonText(scene), "application/json");
     case "bop":
       return download("scene_gt.json", bopText(scene), "application/json");
+    case "video":
+      return download(`${name}-frames.json`, videoText(object.name), "application/json");
+    case "scene":
+      return download("scene.glb", sceneBytes(scene), "model/gltf-binary");
     case "glb":
       return download(`${name}-placed.glb`, glbBytes(object), "model/gltf-binary");
     case "ply":

@@ -1,9 +1,10 @@
 /** Writers of results, in formats that other programs read. */
 import type { Metrics } from "sim3align";
-import { exportGlb, exportPly, placeGlb, type Sim3, toBop, toRowMajor } from "sim3align/conventions";
+import { exportGlb, exportPly, exportSceneGlb, placeGlb, type Sim3, toBop, toRowMajor } from "sim3align/conventions";
 import type { ObjectModel } from "../state/object-model.js";
-import { alignOptions } from "../state/options.js";
-import type { Scene } from "../state/scene.js";
+import { options } from "../state/options.js";
+import { type Scene, support } from "../state/scene.js";
+import { framePoses, video } from "../state/video.js";
 
 /** The 16 numbers of a pose as a JSON array of four lines. */
 export function matrixText({ pose }: ObjectModel, order: "columns" | "rows"): string {
@@ -47,6 +48,18 @@ function jsonEntry({ pose, box, precise, metrics }: ObjectModel): JsonEntry {
   };
 }
 
+/** The poses of a video, by the names of its frames; as `sim3align track --json` writes them. */
+export function videoText(name: string): string {
+  const frames = (video.value?.frames ?? []).map((frame, i) => {
+    const pose = framePoses.value[i];
+    return [
+      frame.name,
+      pose == null ? null : { ...plain(pose.transform), confidence: pose.confidence, state: pose.state },
+    ];
+  });
+  return JSON.stringify({ [name]: { frames: Object.fromEntries(frames) } }, null, 2);
+}
+
 /** The poses of all objects by name. The command line reads it with `--transform` and `--initial`. */
 export function jsonText(scene: Scene): string {
   const entries = scene.objects.map((object) => [keyOf(scene, object), jsonEntry(object)]);
@@ -56,7 +69,7 @@ export function jsonText(scene: Scene): string {
 const about = ({ camera, width, height }: Scene) => ({
   convention: "x_cam = scale · rotation · p_mesh + translation; OpenCV camera (x right, y down, z forward), metres",
   camera: { ...camera, width, height },
-  options: alignOptions(),
+  options: options.value,
 });
 
 /** BOP's `scene_gt.json`. BOP models are in millimetres, so each entry holds the factor for the mesh. */
@@ -72,6 +85,17 @@ export function bopText({ objects }: Scene): string {
 export function glbBytes({ pose, mesh, glb }: ObjectModel): Uint8Array {
   const { transform } = pose.value;
   return glb === null ? exportGlb(mesh, transform) : placeGlb(glb, transform);
+}
+
+/** All placed objects in one GLB, in metres, y up; on the ground at y = 0 if the support is known. */
+export function sceneBytes({ objects }: Scene): Uint8Array {
+  const placed = objects.filter(({ isPlaced }) => isPlaced);
+  const nodes = placed.map(({ name, mesh, glb, pose }) => ({
+    name,
+    mesh: glb ?? mesh,
+    transform: pose.value.transform,
+  }));
+  return exportSceneGlb(nodes, { support: support.value });
 }
 
 /** The mesh at its pose and metric scale as PLY, in the OpenCV camera frame. */

@@ -6,6 +6,8 @@ export interface NamedFile {
   /** What the file shows, if known. */
   title?: string;
   bytes(): Promise<Uint8Array>;
+  /** The first bytes, where they can be read alone. */
+  head?(length: number): Promise<Uint8Array>;
 }
 
 /** The part of a path after its last slash. */
@@ -20,6 +22,7 @@ export const stem = (path: string): string => baseName(path).replace(/\.[^.]+$/,
 export const fromFile = (file: File, path = file.webkitRelativePath || file.name): NamedFile => ({
   path,
   bytes: async () => new Uint8Array(await file.arrayBuffer()),
+  head: async (length) => new Uint8Array(await file.slice(0, length).arrayBuffer()),
 });
 
 /** The files of a file input. */

@@ -1,10 +1,30 @@
-/** The input files of a scene, and which field each belongs to. */
-import { baseName, extension, type NamedFile, stem } from "./files.js";
+/** The inputs of a scene: which file is what, and which mask belongs to which mesh. Nothing is read yet. */
+import type { NamedFile } from "./files.js";
 
-/** The camera: a file, intrinsics, or an assumed field of view. */
+/** What a file is used for; `resource` is a file that a mesh refers to. */
+export type Role =
+  | "depth"
+  | "photo"
+  | "camera"
+  | "mask"
+  | "labels"
+  | "annotations"
+  | "mesh"
+  | "truth"
+  | "pose"
+  | "resource"
+  | "unused";
+
+/** A file with its role. */
+export interface Typed {
+  file: NamedFile;
+  role: Role;
+}
+
+/** The camera: a file, intrinsics (`null` is still to be entered), or an assumed field of view. */
 export type CameraSource =
   | { kind: "file"; file: NamedFile }
-  | { kind: "numbers"; fx: number; fy: number; cx: number; cy: number }
+  | { kind: "numbers"; fx: number | null; fy: number | null; cx: number | null; cy: number | null }
   | { kind: "assumed"; fovYDeg: number };
 
 /** A mesh file and the files that it may refer to. */
@@ -13,20 +33,50 @@ export interface MeshSource {
   siblings: readonly NamedFile[];
 }
 
-/** The inputs. Nothing is read yet. */
+/** A mask: a file, one value of a label map, or one annotation of a COCO file. */
+export interface MaskSource {
+  file: NamedFile;
+  /** The value in a label map. */
+  label?: number;
+  /** The index of the annotation in a COCO file. */
+  annotation?: number;
+}
+
+/** A true pose: a file, or an entry of BOP's `scene_gt.json`. */
+export interface TruthSource {
+  file: NamedFile;
+  entry?: { imageId: string; index: number };
+}
+
+/** An object: its mask and its mesh, of which one may still be missing. */
+export interface ObjectFiles {
+  name: string;
+  mask: MaskSource | null;
+  mesh: MeshSource | null;
+  truth: TruthSource | null;
+  /** Whether mask and mesh certainly belong together. */
+  isSure: boolean;
+}
+
+/** The inputs. */
 export interface Inputs {
   name: string;
+  /** The id of the sample, or null for the user's own files. */
   sample: string | null;
   depth: NamedFile | null;
   /** Metres per unit of depth; null is the default of the reader. */
   depthScale: number | null;
   photo: NamedFile | null;
   camera: CameraSource | null;
-  masks: readonly NamedFile[];
+  /** The image in files that describe several. */
+  imageId: string | null;
+  objects: readonly ObjectFiles[];
+  /** All meshes that can be chosen for an object. */
   meshes: readonly MeshSource[];
-  truths: readonly NamedFile[];
   /** Whether masks of another size are resized to the depth map. */
   resizeMasks: boolean;
+  /** All files with their roles, also those that are not used. */
+  files: readonly Typed[];
 }
 
 export const noInputs: Inputs = {
@@ -36,62 +86,12 @@ export const noInputs: Inputs = {
   depthScale: null,
   photo: null,
   camera: null,
-  masks: [],
+  imageId: null,
+  objects: [],
   meshes: [],
-  truths: [],
   resizeMasks: false,
+  files: [],
 };
 
 /** The input fields. */
-export type Field = "depth" | "mask" | "mesh" | "camera" | "photo";
-
-const meshExtensions = ["glb", "gltf", "obj", "ply", "stl"];
-
-/** The kind of a file, by its name; null if it is not an input. */
-export function kindOf(path: string): Field | "truth" | null {
-  const name = baseName(path).toLowerCase();
-  const ending = extension(name);
-  if (meshExtensions.includes(ending)) return "mesh";
-  if (ending === "json") {
-    if (/^(gt|truth|scene_gt)\b/.test(name)) return "truth";
-    if (/mask|rle|coco/.test(name)) return "mask";
-    return /^(meta|results?)\b/.test(name) ? null : "camera";
-  }
-  if (ending === "npy") return /mask|seg/.test(name) ? "mask" : "depth";
-  if (ending === "jpg" || ending === "jpeg" || ending === "webp") return "photo";
-  if (ending !== "png") return null;
-  if (/mask|seg/.test(name)) return "mask";
-  return /depth/.test(name) || /^d(epth)?\d*\./.test(name) ? "depth" : "photo";
-}
-
-/** Assigns files to inputs by their names. Inputs without a new file are kept. */
-export function assignFiles(files: readonly NamedFile[], present: Inputs, name?: string): Inputs {
-  const of = (kind: Field | "truth") => files.filter(({ path }) => kindOf(path) === kind);
-  const [depth, camera, photo] = [of("depth")[0], of("camera")[0], of("photo")[0]];
-  const [masks, meshes] = [of("mask"), of("mesh")];
-  // A new depth map is a new scene.
-  const base = depth === undefined ? present : noInputs;
-  const sorted = (list: readonly NamedFile[]) => [...list].sort((a, b) => (a.path < b.path ? -1 : 1));
-  return {
-    ...base,
-    name: name ?? (base.name || folderOf(files) || "Own files"),
-    sample: null,
-    depth: depth ?? base.depth,
-    photo: photo ?? base.photo,
-    camera: camera === undefined ? base.camera : { kind: "file", file: camera },
-    masks: masks.length > 0 ? sorted(masks) : base.masks,
-    meshes: meshes.length > 0 ? sorted(meshes).map((file) => ({ file, siblings: files })) : base.meshes,
-    truths: meshes.length > 0 || masks.length > 0 ? sorted(of("truth")) : base.truths,
-  };
-}
-
-function folderOf(files: readonly NamedFile[]): string {
-  const parts = files[0]?.path.split("/") ?? [];
-  return parts.length > 1 ? (parts.at(-2) ?? "") : "";
-}
-
-/** The file for a mask: the one with the same suffix (`mask-cup.png`, `mesh-cup.glb`), or the only one. */
-export function matchingFile<T>(mask: NamedFile, others: readonly T[], pathOf: (other: T) => string): T | undefined {
-  const key = (path: string) => `${path.slice(0, -baseName(path).length)}${stem(path).replace(/^[a-z]+/i, "")}`;
-  return others.find((other) => key(pathOf(other)) === key(mask.path)) ?? (others.length === 1 ? others[0] : undefined);
-}
+export type Field = "files" | "depth" | "photo" | "camera" | "mask" | "mesh";

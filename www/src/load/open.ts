@@ -1,89 +1,87 @@
-/** Opens scenes: samples and the user's own files. */
-import { signal } from "@preact/signals";
+/** Opens scenes: samples at once, the user's own files by way of a draft. */
+import { batch, signal } from "@preact/signals";
 import { layers, setLayer } from "../state/display.js";
-import { scene } from "../state/scene.js";
+import { draft } from "../state/draft.js";
+import type { ObjectModel } from "../state/object-model.js";
+import { type Scene, scene } from "../state/scene.js";
 import { announce } from "../state/status.js";
-import { FieldError } from "./field-error.js";
-import { extractArchives, type NamedFile } from "./files.js";
-import { assignFiles, type Field, type Inputs, kindOf, noInputs } from "./inputs.js";
-import { readScene } from "./read-scene.js";
+import type { NamedFile } from "./files.js";
+import { type Inputs, noInputs } from "./inputs.js";
+import { readInputs, sceneOf } from "./read-scene.js";
 import { type Sample, sampleInputs } from "./samples.js";
 
-/** The chosen inputs, readable or not. */
+/** The inputs of the scene that is shown, or of the sample that is being read. */
 export const inputs = signal<Inputs>(noInputs);
-/** Errors of the inputs, by field. */
-export const fieldErrors = signal<{ readonly [F in Field]?: FieldError }>({});
 export const isReading = signal(false);
+/** Scenes of the last drop that are still to be looked at. */
+export const queue = signal<readonly Inputs[]>([]);
 
-/** The number of the last call of `open`. The results of earlier calls are discarded. */
+/** The number of the last call of `openSample`. The results of earlier calls are discarded. */
 let lastCall = 0;
 
-/** Reads the inputs and shows them. On failure, the field shows the error and the scene is unchanged. */
-export async function open(next: Inputs): Promise<boolean> {
+/** Reads a sample and shows it. On failure, the scene is unchanged. */
+export async function openSample(sample: Sample): Promise<boolean> {
   const call = ++lastCall;
-  inputs.value = next;
-  fieldErrors.value = {};
+  const next = sampleInputs(sample);
   isReading.value = true;
+  const before = inputs.peek();
+  if (scene.peek() === null) inputs.value = next;
   announce(`Reading ${next.name} …`, "working");
-  try {
-    const opened = await readScene(next);
-    if (call !== lastCall) return false;
+  const reading = await readInputs(next);
+  if (call !== lastCall) return false;
+  isReading.value = false;
+  const opened = sceneOf(next, reading);
+  if (opened === null) {
+    inputs.value = before;
+    announce(`${next.name}: ${reading.problems.map(({ message }) => message).join(" ")}`, "failed");
+    return false;
+  }
+  queue.value = [];
+  show(opened, next);
+  return true;
+}
+
+/** Makes a scene the one that is shown. */
+export function show(opened: Scene, from: Inputs): void {
+  lastCall++;
+  batch(() => {
+    isReading.value = false;
+    inputs.value = from;
     scene.value = opened;
-    if (opened.rgba === null && layers.peek().base === "photo") setLayer("base", "depth");
-    if (opened.rgba !== null && layers.peek().base === "depth") setLayer("base", "photo");
-    announce(
-      `${opened.name}: ${opened.width} × ${opened.height} pixels, ${countOf(opened.objects.length)}. Ready to align.`,
-    );
-    return true;
-  } catch (error) {
-    if (call !== lastCall) return false;
-    return fail(error instanceof FieldError ? error : new FieldError("depth", error));
-  } finally {
-    if (call === lastCall) isReading.value = false;
-  }
+    const base = opened.rgba === null ? "depth" : "photo";
+    if (layers.peek().base !== base) setLayer("base", base);
+  });
 }
 
-const countOf = (count: number) => (count === 1 ? "one object" : `${count} objects`);
-
-export const openSample = (sample: Sample): Promise<boolean> => open(sampleInputs(sample));
-
-/** Opens files. Without a field, they are assigned by their names. */
-export async function openFiles(files: readonly NamedFile[], field?: Field): Promise<boolean> {
-  let extracted: readonly NamedFile[];
-  try {
-    extracted = await extractArchives(files);
-  } catch (error) {
-    return fail(new FieldError(field ?? "depth", error));
-  }
-  const hasArchive = extracted.length !== files.length;
-  if (field !== undefined && !hasArchive) return open(withField(field, extracted, inputs.peek()));
-  if (!extracted.some(({ path }) => kindOf(path) !== null)) {
-    const names = extracted.slice(0, 3).map(({ path }) => path);
-    const error = new Error(`None of the files is an input (${names.join(", ") || "no files"}).`);
-    return fail(new FieldError("depth", error));
-  }
-  return open(assignFiles(extracted, inputs.peek()));
+/** Takes an object out of the scene. The others keep their poses. */
+export function removeObject(object: ObjectModel): void {
+  const [whole, from] = [scene.peek(), inputs.peek()];
+  const index = whole?.objects.indexOf(object) ?? -1;
+  if (whole === null || index < 0) return;
+  const without = <T>(list: readonly T[]) => list.filter((_, i) => i !== index);
+  show(
+    { ...whole, sample: null, objects: without(whole.objects) },
+    { ...from, sample: null, objects: without(from.objects) },
+  );
+  announce(`Removed ${object.name}.`);
 }
 
-function fail(error: FieldError): false {
-  fieldErrors.value = { [error.field]: error };
-  announce(`${error.field}: ${error.message} ${error.remedy}`, "failed");
-  return false;
+const intake = () => import("../intake/draft.js");
+
+/** Proposes files as a scene, or adds them to the draft. */
+export async function openFiles(files: readonly NamedFile[]): Promise<void> {
+  if (files.length === 0) return;
+  announce("Reading files …", "working");
+  await (await intake()).propose(files);
 }
 
-/** The inputs with the files of one field replaced. */
-function withField(field: Field, files: readonly NamedFile[], present: Inputs): Inputs {
-  const [file] = files;
-  if (file === undefined) return present;
-  const own = { ...present, sample: null, name: present.sample === null ? present.name : "Own files" };
-  if (field === "depth") return { ...own, depth: file };
-  if (field === "photo") return { ...own, photo: file };
-  if (field === "camera") return { ...own, camera: { kind: "file", file } };
-  if (field === "mask") return { ...own, masks: files, truths: [] };
-  const meshes = files.filter(({ path }) => kindOf(path) === "mesh");
-  return {
-    ...own,
-    meshes: (meshes.length > 0 ? meshes : files).map((mesh) => ({ file: mesh, siblings: files })),
-    truths: [],
-  };
+/** Makes the inputs of the scene that is shown a draft. */
+export async function editInputs(): Promise<void> {
+  if (draft.peek() === null) await (await intake()).edit(inputs.peek());
+}
+
+/** Opens the next scene of the drop. */
+export async function openNext(): Promise<void> {
+  const [next, ...rest] = queue.peek();
+  if (next !== undefined) await (await intake()).proposeScenes([next, ...rest]);
 }

@@ -1,186 +1,159 @@
-/** Reads the input files of a scene. */
-import { type MeshArrays, Sim3AlignError } from "sim3align";
-import { resizeMask } from "sim3align/conventions";
-import { externalResources, readCamera, readDepth, readMask, readMesh, readPose } from "sim3align/formats";
+/** Reads the input files of a scene. Each field is read by itself, so that all problems are known at once. */
+import type { MeshArrays } from "sim3align";
+import { type DepthImage, type MeshFromFile, readCamera, readDepth, readPose } from "sim3align/formats";
 import { ObjectModel, type ObjectParts } from "../state/object-model.js";
 import type { Scene } from "../state/scene.js";
-import { FieldError, forField } from "./field-error.js";
-import { baseName, extension, type NamedFile, stem } from "./files.js";
-import { type CameraSource, type Inputs, type MeshSource, matchingFile } from "./inputs.js";
+import type { NamedFile } from "./files.js";
+import type { CameraSource, Field, Inputs, TruthSource } from "./inputs.js";
+import { atSize, maskOf } from "./masks.js";
+import { meshOf } from "./meshes.js";
+import { readPhoto } from "./photo.js";
+import { error, messageOf, type Problem } from "./problems.js";
 import { visibleExtent } from "./visible-extent.js";
 
 /** Colours of objects, distinguishable on light and dark backgrounds and with most colour vision deficiencies. */
 const colours = ["#f08a24", "#3c9ee5", "#2fa36b", "#c65fd0", "#d64545", "#a58a00"];
 
-/**
- * Reads all inputs.
- * @throws {@link FieldError} for the first missing or invalid input
- */
-export async function readScene(inputs: Inputs): Promise<Scene> {
-  const { depth: depthFile, camera: cameraSource } = inputs;
-  const depthSource = required("depth", depthFile, "Choose a 16-bit PNG or an NPY file.");
-  const camera = required("camera", cameraSource, "Choose a file, or enter intrinsics or a field of view.");
-  if (inputs.masks.length === 0) required("mask", null, "Choose a PNG, NPY, or COCO RLE (JSON) file.");
-  if (inputs.meshes.length === 0) required("mesh", null, "Choose a GLB, glTF, OBJ, PLY or STL file.");
+export const colourOf = (index: number): string => colours[index % colours.length] ?? "#f08a24";
 
+type Intrinsics = Scene["camera"];
+
+/** An object, as far as it could be read. */
+export interface ReadObject {
+  mask: Uint8Array | null;
+  mesh: MeshFromFile | null;
+  glb: Uint8Array | null;
+  truth: ObjectParts["truth"];
+}
+
+/** The inputs, as far as they could be read. */
+export interface Reading {
+  depth: DepthImage | null;
+  camera: Intrinsics | null;
+  photo: { rgba: Uint8ClampedArray; width: number; height: number } | null;
+  objects: readonly ReadObject[];
+  /** Of the readers. */
+  problems: readonly Problem[];
+  warnings: readonly string[];
+}
+
+/** Reads all inputs that are there. */
+export async function readInputs(inputs: Inputs): Promise<Reading> {
+  const problems: Problem[] = [];
+  const attempt = async <T>(field: Field, read: () => Promise<T>, object?: number): Promise<T | null> => {
+    try {
+      return await read();
+    } catch (cause) {
+      problems.push(error(field, messageOf(cause), [], object));
+      return null;
+    }
+  };
+  const { depth: depthFile, camera: source, imageId } = inputs;
   // The camera file may state the unit of an integer depth map.
-  const cameraBytes = camera.kind === "file" ? await forField("camera", () => camera.file.bytes()) : null;
-  const integerDepthScale = await depthScaleOf(cameraBytes);
-  const depth = await forField("depth", async () =>
-    readDepth(await depthSource.bytes(), { depthScale: inputs.depthScale ?? undefined, integerDepthScale }),
-  );
-  const { width, height } = depth;
-  const [{ warnings, ...intrinsics }, rgba, objects] = await Promise.all([
-    forField("camera", () => intrinsicsOf(camera, cameraBytes, width, height)),
-    inputs.photo === null ? null : forField("photo", () => readPhoto(inputs.photo as NamedFile, width, height)),
-    readObjects(inputs, width, height),
-  ]);
-  return {
-    name: inputs.name,
-    sample: inputs.sample,
-    depthM: depth.data,
-    width,
-    height,
-    camera: intrinsics,
-    rgba,
-    objects: objects.map(
-      (parts) => new ObjectModel({ ...parts, visible: visibleExtent(depth, parts.mask, intrinsics) }),
+  const cameraBytes = source?.kind === "file" ? await attempt("camera", () => source.file.bytes()) : null;
+  const integerDepthScale = cameraBytes === null ? undefined : await depthScaleOf(cameraBytes, imageId);
+  const depthScale = inputs.depthScale ?? undefined;
+  const depth =
+    depthFile === null
+      ? null
+      : await attempt("depth", async () => readDepth(await depthFile.bytes(), { depthScale, integerDepthScale }));
+  const size = depth ?? { width: 0, height: 0 };
+  const [camera, photo, objects] = await Promise.all([
+    source === null || depth === null
+      ? null
+      : attempt("camera", () => intrinsicsOf(source, cameraBytes, size, imageId)),
+    inputs.photo === null || depth === null ? null : attempt("photo", () => readPhoto(inputs.photo as NamedFile, size)),
+    Promise.all(
+      inputs.objects.map(async ({ mask, mesh, truth }, i): Promise<ReadObject> => {
+        const [readMask, readMesh, readTruth] = await Promise.all([
+          mask === null || depth === null
+            ? null
+            : attempt("mask", async () => atSize(await maskOf(mask), size.width, size.height, inputs.resizeMasks), i),
+          mesh === null ? null : attempt("mesh", () => meshOf(mesh), i),
+          truthOf(truth),
+        ]);
+        return { mask: readMask, mesh: readMesh?.mesh ?? null, glb: readMesh?.glb ?? null, truth: readTruth };
+      }),
     ),
-    warnings,
+  ]);
+  const { warnings = [], ...intrinsics } = camera ?? {};
+  return {
+    ...{ depth, photo, objects, problems, warnings },
+    camera: camera === null ? null : (intrinsics as Intrinsics),
   };
 }
 
-function required<T>(field: FieldError["field"], value: T | null, remedy: string): T {
-  if (value !== null) return value;
-  throw new FieldError(field, new Error(`Missing. ${remedy}`));
+/** The scene, or null while a part is missing. A frame of a video may lack its mask. */
+export function sceneOf(inputs: Inputs, reading: Reading, isFrame = false): Scene | null {
+  const { depth, camera, photo, objects, warnings } = reading;
+  if (depth === null || camera === null) return null;
+  const models: ObjectModel[] = [];
+  for (const [i, { mask: ownMask, mesh, glb, truth }] of objects.entries()) {
+    const mask = ownMask ?? (isFrame && inputs.objects[i]?.mask === null ? new Uint8Array(depth.data.length) : null);
+    if (mask === null || mesh === null) return null;
+    const { name } = inputs.objects[i] as Inputs["objects"][number];
+    const parts = { id: `${i}`, name, colour: colourOf(i), mask, mesh: mesh as MeshArrays, glb, truth };
+    models.push(new ObjectModel({ ...parts, visible: visibleExtent(depth, mask, camera) }));
+  }
+  if (models.length === 0) return null;
+  const { data: depthM, width, height } = depth;
+  const { name, sample } = inputs;
+  return { ...{ name, sample, depthM, width, height, camera, warnings }, rgba: photo?.rgba ?? null, objects: models };
 }
 
 /** The depth scale of a camera file. Errors are left to the reading of the intrinsics, which needs the image size. */
-async function depthScaleOf(camera: Uint8Array | null): Promise<number | undefined> {
-  if (camera === null) return undefined;
-  return readCamera(camera).then(
+async function depthScaleOf(camera: Uint8Array, imageId: string | null): Promise<number | undefined> {
+  return readCamera(camera, imageId === null ? {} : { imageId }).then(
     ({ depthScale }) => depthScale,
     () => undefined,
   );
 }
 
-type Intrinsics = Scene["camera"] & { warnings: readonly string[] };
+/** A vertical field of view that a pinhole camera can have, degrees. */
+const FOV_RANGE = [1, 170] as const;
 
 async function intrinsicsOf(
   source: CameraSource,
   bytes: Uint8Array | null,
-  width: number,
-  height: number,
-): Promise<Intrinsics> {
+  { width, height }: { width: number; height: number },
+  imageId: string | null,
+): Promise<Intrinsics & { warnings: readonly string[] }> {
   if (source.kind === "assumed") {
-    const { fx, fy, cx, cy } = await readCamera({ fovYDeg: source.fovYDeg }, { width, height });
-    const warning = `The camera is assumed (vertical field of view ${source.fovYDeg}°), so the size is approximate.`;
+    const { fovYDeg } = source;
+    if (!(fovYDeg >= FOV_RANGE[0] && fovYDeg <= FOV_RANGE[1])) {
+      throw new Error(`The vertical field of view must be between ${FOV_RANGE[0]}° and ${FOV_RANGE[1]}°.`);
+    }
+    const { fx, fy, cx, cy } = await readCamera({ fovYDeg }, { width, height });
+    const warning = `The camera is assumed (vertical field of view ${fovYDeg}°), so the size is approximate.`;
     return { fx, fy, cx, cy, warnings: [warning] };
   }
-  const { fx, fy, cx, cy, warnings } =
-    source.kind === "numbers" ? { ...source, warnings: [] } : await readCamera(bytes as Uint8Array, { width, height });
+  if (source.kind === "numbers") return { ...entered(source), warnings: [] };
+  if (bytes === null) throw new Error("The camera file could not be read.");
+  const options = imageId === null ? { width, height } : { width, height, imageId };
+  const { fx, fy, cx, cy, warnings } = await readCamera(bytes, options);
   return { fx, fy, cx, cy, warnings };
 }
 
-async function readObjects(inputs: Inputs, width: number, height: number): Promise<Omit<ObjectParts, "visible">[]> {
-  const meshes = new Map<MeshSource, Promise<{ mesh: MeshArrays; glb: Uint8Array | null }>>();
-  const meshOf = (source: MeshSource) => {
-    const found = meshes.get(source) ?? forField("mesh", () => readMeshSource(source));
-    meshes.set(source, found);
-    return found;
-  };
-  const several = inputs.masks.length > 1;
-  return Promise.all(
-    inputs.masks.map(async (file, i) => {
-      const source = matchingFile(file, inputs.meshes, ({ file }) => file.path);
-      if (source === undefined) {
-        throw new FieldError(
-          "mesh",
-          new Error(
-            `No mesh matches ${baseName(file.path)}. Give both files the same suffix: mask-cup.png, mesh-cup.glb.`,
-          ),
-        );
-      }
-      const [mask, mesh, truth] = await Promise.all([
-        forField("mask", () => readMaskAt(file, width, height, inputs.resizeMasks)),
-        meshOf(source),
-        readTruth(matchingFile(file, inputs.truths, ({ path }) => path)),
-      ]);
-      const name = file.title ?? nameOf(file.path, several ? `Object ${i + 1}` : inputs.name);
-      return { id: `${i}`, name, colour: colours[i % colours.length] ?? "#f08a24", mask, ...mesh, truth };
-    }),
-  );
-}
-
-/** The name of an object from the path of its mask: `mask-cup.png` and `cup/mask.png` are both "cup". */
-function nameOf(path: string, otherwise: string): string {
-  const own = stem(path).replace(/^masks?[-_ ]*/i, "");
-  return own || path.split("/").at(-2) || otherwise;
-}
-
-async function readMaskAt(file: NamedFile, width: number, height: number, resize: boolean): Promise<Uint8Array> {
-  const mask = await readMask(await file.bytes());
-  if (mask.width === width && mask.height === height) return mask.data;
-  if (resize) return resizeMask(mask, { width, height }).data as Uint8Array;
-  throw new Sim3AlignError({
-    code: "SIZE_MISMATCH",
-    argument: "mask",
-    found: `${mask.width} × ${mask.height} pixels`,
-    expected: `${width} × ${height}, the size of the depth map`,
-    remedy: "Export the mask at the size of the depth map, or select “Resize masks”.",
-  });
-}
-
-async function readMeshSource({ file, siblings }: MeshSource): Promise<{ mesh: MeshArrays; glb: Uint8Array | null }> {
-  const bytes = await file.bytes();
-  const ending = extension(file.path);
-  if (ending !== "gltf" && ending !== "obj") {
-    return { mesh: await readMesh(bytes), glb: ending === "glb" ? bytes : null };
+/** Intrinsics that were typed. */
+function entered({ fx, fy, cx, cy }: Extract<CameraSource, { kind: "numbers" }>): Intrinsics {
+  if (fx === null || fy === null || cx === null || cy === null) {
+    const missing = Object.entries({ fx, fy, cx, cy }).flatMap(([name, value]) => (value === null ? [name] : []));
+    throw new Error(`Enter ${missing.join(", ")}, or choose a camera file.`);
   }
-  const resources: Record<string, Uint8Array> = {};
-  const addResources = async (file: Uint8Array) => {
-    const { shape, colors } = await externalResources(file);
-    for (const name of [...shape, ...colors].filter((name) => !(name in resources))) {
-      const found = siblings.find(({ path }) => path.endsWith(decoded(name)));
-      if (found === undefined) continue;
-      const content = await found.bytes();
-      resources[name] = content;
-      // The material libraries of an OBJ refer to textures.
-      if (name.endsWith(".mtl")) await addResources(content);
-    }
-  };
-  await addResources(bytes);
-  return { mesh: await readMesh(bytes, { format: ending, resources }), glb: null };
-}
-
-/** A name in a mesh file, which may be a URI. */
-function decoded(name: string): string {
-  try {
-    return decodeURIComponent(name);
-  } catch {
-    return name;
-  }
+  if (!(fx > 0 && fy > 0)) throw new Error("fx and fy must be greater than 0: focal lengths in pixels.");
+  return { fx, fy, cx, cy };
 }
 
 /** The true pose. It only serves for comparison, so an unreadable file counts as a missing one. */
-async function readTruth(file: NamedFile | undefined): Promise<ObjectParts["truth"]> {
-  if (file === undefined) return null;
-  return readPose(await file.bytes()).catch(() => null);
-}
-
-/** The pixels of a photo, decoded by the browser and resized: red, green, blue, alpha. */
-async function readPhoto(file: NamedFile, width: number, height: number): Promise<Uint8ClampedArray> {
-  const blob = new Blob([Uint8Array.from(await file.bytes())]);
-  const bitmap = await createImageBitmap(blob).catch(() => {
-    throw new Error("The browser cannot decode this image. Choose a JPEG, PNG or WebP file.");
-  });
-  const canvas = document.createElement("canvas");
-  canvas.width = width;
-  canvas.height = height;
-  const context = canvas.getContext("2d", { willReadFrequently: true });
-  if (context === null) throw new Error("The browser could not create a canvas for the photo.");
-  context.imageSmoothingQuality = "high";
-  context.drawImage(bitmap, 0, 0, width, height);
-  bitmap.close();
-  return context.getImageData(0, 0, width, height).data;
+async function truthOf(source: TruthSource | null): Promise<ObjectParts["truth"]> {
+  if (source === null) return null;
+  try {
+    const bytes = await source.file.bytes();
+    if (source.entry === undefined) return await readPose(bytes);
+    const { imageId, index } = source.entry;
+    const images = JSON.parse(new TextDecoder().decode(bytes)) as Record<string, object[]>;
+    return await readPose(images[imageId]?.[index] ?? {});
+  } catch {
+    return null;
+  }
 }

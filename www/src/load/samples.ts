@@ -10,6 +10,9 @@ export interface Sample {
   about: string;
   depth: string;
   camera: string;
+  photo?: string;
+  /** A small picture of it. */
+  picture?: string;
   objects: readonly { id: string; title: string; mask: string; mesh: string; truth: string }[];
 }
 
@@ -20,27 +23,37 @@ export const samples: readonly Sample[] = SAMPLES;
 
 export const sampleOf = (id: string | null): Sample | undefined => samples.find((sample) => sample.id === id);
 
+/** The address of a file of a sample. */
+export const sampleUrl = (path: string): string => new URL(`samples/${path}`, document.baseURI).href;
+
 /** A file of a sample. The download starts at once. */
-function fetched(path: string, title?: string): NamedFile {
-  const content = fetch(new URL(`samples/${path}`, document.baseURI)).then(async (response) => {
+function fetched(path: string): NamedFile {
+  const content = fetch(sampleUrl(path)).then(async (response) => {
     if (!response.ok) throw new Error(`${path} could not be loaded: HTTP ${response.status} ${response.statusText}.`);
     return new Uint8Array(await response.arrayBuffer());
   });
   // The reader of the file reports the error; without this line it would count as unhandled until then.
   content.catch(() => {});
-  return { path, bytes: () => content, ...(title === undefined ? {} : { title }) };
+  return { path, bytes: () => content };
 }
 
 /** The inputs of a sample. */
-export function sampleInputs({ id, title, depth, camera, objects }: Sample): Inputs {
+export function sampleInputs({ id, title, depth, camera, photo, objects }: Sample): Inputs {
+  const made = objects.map(({ title, mask, mesh, truth }) => ({
+    name: title,
+    mask: { file: fetched(mask) },
+    mesh: { file: fetched(mesh), siblings: [] },
+    truth: { file: fetched(truth) },
+    isSure: true,
+  }));
   return {
     ...noInputs,
     name: title,
     sample: id,
     depth: fetched(depth),
     camera: { kind: "file", file: fetched(camera) },
-    masks: objects.map(({ mask, title }) => fetched(mask, title)),
-    meshes: objects.map(({ mesh }) => ({ file: fetched(mesh), siblings: [] })),
-    truths: objects.map(({ truth }) => fetched(truth)),
+    photo: photo === undefined ? null : fetched(photo),
+    objects: made,
+    meshes: made.map(({ mesh }) => mesh),
   };
 }

@@ -31,6 +31,6 @@ export function DropOverlay() {
     return () => listening.abort();
   }, []);
   return isOver ? (
-    <p class="drop-here">Drop depth map, mask, mesh and camera, or a folder or zip archive with them</p>
+    <p class="drop-here">Drop depth map, masks, meshes and camera, or a folder or zip archive with them</p>
   ) : null;
 }

@@ -1,14 +1,17 @@
 /** Buttons that copy or save results. */
 import { exportAs, type Format } from "../export/export.js";
 import { scene, selected } from "../state/scene.js";
+import { video } from "../state/video.js";
 
 const formats: readonly [format: Format, title: string][] = [
-  ["columns", "Matrix, columns"],
-  ["rows", "Matrix, rows"],
+  ["glb", "GLB"],
+  ["scene", "GLB of the scene"],
   ["json", "JSON"],
   ["bop", "BOP JSON"],
-  ["glb", "GLB"],
+  ["columns", "Copy matrix (column-major)"],
+  ["rows", "Copy matrix (row-major)"],
   ["ply", "PLY"],
+  ["session", "Session"],
   ["png", "PNG of the view"],
   ["link", "Copy link"],
 ];
@@ -22,6 +25,11 @@ export function ExportPanel() {
       </summary>
       <fieldset class="exports" disabled={whole === null || !object?.isPlaced}>
         <legend class="visually-hidden">Poses, files and images</legend>
+        {video.value !== null && whole !== null && object !== null && (
+          <button type="button" onClick={() => exportAs("video", whole, object)}>
+            JSON of all frames
+          </button>
+        )}
         {formats.map(([format, title]) => (
           <button
             key={format}

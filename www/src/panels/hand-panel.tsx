@@ -1,16 +1,13 @@
 /** Adjusting the pose by hand: handles, nudges, known size, refine, undo and redo. */
-import { useState } from "preact/hooks";
 import type { Vector3 } from "sim3align/conventions";
 import { isRunning, refine } from "../run/align.js";
-import { gizmo } from "../state/display.js";
+import { gizmo, gizmoSettings } from "../state/display.js";
 import { canRedo, canUndo, place, redo, undo } from "../state/history.js";
-import type { ObjectModel } from "../state/object-model.js";
-import { options, setOption } from "../state/options.js";
 import { type Nudge, nudged, rotationAbout } from "../state/pose.js";
 import { selected } from "../state/scene.js";
-import { Choices } from "../ui/controls.js";
-import { centimetres } from "../ui/format.js";
 import { space } from "../views/space.js";
+import { KnownSize } from "./known-size.js";
+import { Numbers } from "./numbers.js";
 
 const modes = [
   ["translate", "Move", "G"],
@@ -29,12 +26,12 @@ const moves: readonly [title: string, symbol: string, direction: Vector3][] = [
 ];
 
 const rotations: readonly [title: string, symbol: string, axis: Vector3, degrees: number][] = [
-  ["left", "↶ y", [0, 1, 0], 5],
-  ["right", "↷ y", [0, 1, 0], -5],
-  ["backwards", "↶ x", [1, 0, 0], 5],
-  ["forwards", "↷ x", [1, 0, 0], -5],
-  ["anticlockwise", "↶ z", [0, 0, 1], -5],
-  ["clockwise", "↷ z", [0, 0, 1], 5],
+  ["left", "↶", [0, 1, 0], 5],
+  ["right", "↷", [0, 1, 0], -5],
+  ["backwards", "⤒", [1, 0, 0], 5],
+  ["forwards", "⤓", [1, 0, 0], -5],
+  ["anticlockwise", "⟲", [0, 0, 1], -5],
+  ["clockwise", "⟳", [0, 0, 1], 5],
 ];
 
 /** Moves, rotates or scales the selected object. */
@@ -52,10 +49,14 @@ function move(direction: Vector3): void {
   nudge({ moveM: direction.map((x) => x * step) as Vector3 });
 }
 
+const set = (change: Partial<typeof gizmoSettings.value>) => {
+  gizmoSettings.value = { ...gizmoSettings.peek(), ...change };
+};
+
 export function HandPanel() {
   const object = selected.value;
-  const { lockScale } = options.value;
-  const isReady = object !== null && !isRunning.value;
+  const lockScale = object !== null && object.knownScale.value !== null;
+  const isReady = object !== null && !isRunning.value && !object.isLocked.value;
   return (
     <details class="panel hand-panel" open>
       <summary>
@@ -78,8 +79,29 @@ export function HandPanel() {
           </button>
         ))}
       </fieldset>
+      <div class="row">
+        <label class="check">
+          <input
+            id="snap"
+            type="checkbox"
+            checked={gizmoSettings.value.snaps}
+            onChange={({ currentTarget }) => set({ snaps: currentTarget.checked })}
+          />
+          <span>Snap</span>
+        </label>
+        <label class="check">
+          <input
+            id="local-axes"
+            type="checkbox"
+            checked={gizmoSettings.value.isLocal}
+            onChange={({ currentTarget }) => set({ isLocal: currentTarget.checked })}
+          />
+          <span>Axes of the mesh</span>
+        </label>
+      </div>
       <details class="more">
         <summary>Nudge</summary>
+        <Numbers object={object} isReady={isReady} />
         <fieldset class="steps" disabled={!isReady}>
           <legend>Move in the camera view</legend>
           {moves.map(([title, symbol, direction]) => (
@@ -118,9 +140,10 @@ export function HandPanel() {
           </button>
         </fieldset>
       </details>
-      <KnownSize object={object} />
+      <KnownSize object={object} id="known-size" />
       <div class="row">
-        <button type="button" id="refine" disabled={!isReady} aria-keyshortcuts="F" onClick={refine}>
+        {/* A disabled button would lose the focus while it runs. */}
+        <button type="button" id="refine" aria-disabled={!isReady} aria-keyshortcuts="F" onClick={refine}>
           Refine pose
         </button>
         <label class="check">
@@ -128,55 +151,29 @@ export function HandPanel() {
             id="lock-scale"
             type="checkbox"
             checked={lockScale}
-            onChange={({ currentTarget }) => setOption("lockScale", currentTarget.checked)}
+            disabled={object === null}
+            onChange={({ currentTarget }) => {
+              if (object === null) return;
+              object.knownScale.value = currentTarget.checked ? object.pose.peek().transform.scale : null;
+            }}
           />
           <span>Lock scale</span>
         </label>
       </div>
       <div class="row">
-        <button type="button" id="undo" disabled={!canUndo.value} aria-keyshortcuts="Control+Z" onClick={undo}>
+        <button type="button" id="undo" aria-disabled={!canUndo.value} aria-keyshortcuts="Control+Z" onClick={undo}>
           Undo
         </button>
-        <button type="button" id="redo" disabled={!canRedo.value} aria-keyshortcuts="Control+Shift+Z" onClick={redo}>
+        <button
+          type="button"
+          id="redo"
+          aria-disabled={!canRedo.value}
+          aria-keyshortcuts="Control+Shift+Z"
+          onClick={redo}
+        >
           Redo
         </button>
       </div>
     </details>
-  );
-}
-
-const sides = ["Width", "Height", "Depth"] as const;
-const sideChoices = sides.map((title, i) => [`${i}`, title] as const);
-
-/** Scales the mesh so that one side has a known length, and locks the scale. */
-function KnownSize({ object }: { object: ObjectModel | null }) {
-  const [side, setSide] = useState(1);
-  const presentM = object?.box.value.sizeM[side] ?? 0;
-
-  const apply = (field: HTMLInputElement) => {
-    const wantedM = field.valueAsNumber / 100;
-    const isValid = wantedM > 0 && presentM > 0;
-    if (object === null || !isValid || centimetres(wantedM) === centimetres(presentM)) return;
-    const scale = wantedM / presentM;
-    const transform = nudged(object.box.peek().centreM, object.pose.peek().transform, { scale });
-    place(object, { transform, source: "hand" });
-    setOption("lockScale", true);
-  };
-  return (
-    <fieldset class="row known" disabled={object === null}>
-      <legend>Known size</legend>
-      <Choices label="Side" value={`${side}`} choices={sideChoices} onChoose={(value) => setSide(Number(value))} />
-      <input
-        id="known-size"
-        type="number"
-        min="0"
-        step="any"
-        inputMode="decimal"
-        aria-label={`${sides[side]} in centimetres`}
-        value={presentM > 0 ? centimetres(presentM) : ""}
-        onChange={({ currentTarget }) => apply(currentTarget)}
-      />
-      <span class="unit">cm</span>
-    </fieldset>
   );
 }

@@ -1,96 +1,68 @@
-/** The input files. */
-import { useEffect, useRef } from "preact/hooks";
-import { baseName, filesOf } from "../load/files.js";
-import { fieldErrors, inputs, open, openFiles } from "../load/open.js";
-import { Choices } from "../ui/controls.js";
-import { CameraField } from "./camera-field.js";
-import { FileField } from "./file-field.js";
+/** The input files of the scene that is shown. */
+import { baseName } from "../load/files.js";
+import { editInputs, inputs, openNext, openSample, queue } from "../load/open.js";
+import { samples } from "../load/samples.js";
+import { alignAll } from "../run/align.js";
+import { scene } from "../state/scene.js";
 
-/** Metres per unit of depth, as text. An empty text is the default of the reader. */
-const depthUnits = [
-  ["", "Auto"],
-  ["1", "metres"],
-  ["0.001", "millimetres"],
-  ["0.0001", "0.1 mm"],
-  ["0.00025", "0.25 mm"],
-] as const;
+/** Forgets the scene, and shows the first sample again. */
+async function forget(): Promise<void> {
+  const [first] = samples;
+  await (await import("../session/index.js")).forgetSession();
+  if (first !== undefined && (await openSample(first))) await alignAll();
+}
 
-const names = (files: readonly { path: string }[]) => files.map(({ path }) => baseName(path)).join(", ");
+const unknownCamera = { file: "–", numbers: "entered", assumed: "assumed" };
 
 export function InputPanel() {
-  const panel = useRef<HTMLDetailsElement>(null);
-  const errors = fieldErrors.value;
-  // Errors must be visible, however far the panel is scrolled.
-  useEffect(() => {
-    const wrong = panel.current?.querySelector('[data-wrong="true"]');
-    if (panel.current === null || wrong === null || wrong === undefined) return;
-    panel.current.open = true;
-    wrong.scrollIntoView({ block: "nearest" });
-  }, [errors]);
-  const { depth, masks, meshes, photo, depthScale, resizeMasks } = inputs.value;
+  const { depth, camera, photo, objects } = inputs.value;
+  const whole = scene.value;
+  const rows = [
+    ["Depth map", depth === null ? "–" : baseName(depth.path)],
+    [
+      "Camera",
+      camera === null ? "–" : camera.kind === "file" ? baseName(camera.file.path) : unknownCamera[camera.kind],
+    ],
+    ["Photo", photo === null ? "–" : baseName(photo.path)],
+    ["Objects", objects.map(({ name }) => name).join(", ")],
+  ] as const;
   return (
-    <details class="panel input-panel" id="inputs" open ref={panel}>
+    <details class="panel input-panel" id="inputs" open>
       <summary>
-        <h2>Input</h2>
+        <h2>Files</h2>
       </summary>
-      <p class="quiet">Drop files, a folder or a zip archive anywhere. They stay on this device.</p>
-      <div class="row">
-        <label class="button">
-          <span>Open folder</span>
-          <input
-            id="folder"
-            class="visually-hidden"
-            type="file"
-            {...{ webkitdirectory: true }}
-            onChange={({ currentTarget }) => openFiles(filesOf(currentTarget))}
-          />
-        </label>
-        <label class="button">
-          <span>Open zip or files</span>
-          <input
-            id="files"
-            class="visually-hidden"
-            type="file"
-            multiple
-            onChange={({ currentTarget }) => openFiles(filesOf(currentTarget))}
-          />
-        </label>
-      </div>
-      <FileField field="depth" title="Depth" chosen={depth === null ? "" : baseName(depth.path)} accept=".png,.npy">
-        <label class="field-inline sub" for="depth-scale">
-          <span>Unit</span>
-          <Choices
-            id="depth-scale"
-            value={`${depthScale ?? ""}` as (typeof depthUnits)[number][0]}
-            choices={depthUnits}
-            onChoose={(value) => open({ ...inputs.peek(), depthScale: value === "" ? null : Number(value) })}
-          />
-        </label>
-      </FileField>
-      <FileField field="mask" title="Mask" chosen={names(masks)} accept=".png,.npy,.json" multiple>
-        <label class="check sub">
-          <input
-            type="checkbox"
-            checked={resizeMasks}
-            onChange={({ currentTarget }) => open({ ...inputs.peek(), resizeMasks: currentTarget.checked })}
-          />
-          <span>Resize masks</span>
-        </label>
-      </FileField>
-      <FileField
-        field="mesh"
-        title="Mesh"
-        chosen={names(meshes.map(({ file }) => file))}
-        accept=".glb,.gltf,.obj,.ply,.stl,.bin"
-        multiple
-      />
-      <CameraField />
-      <FileField
-        field="photo"
-        title="Photo"
-        chosen={photo === null ? "" : baseName(photo.path)}
-        accept="image/png,image/jpeg,image/webp"
-      />
+      {whole !== null && (
+        <>
+          <dl class="facts">
+            {rows.map(([title, text]) => (
+              <div key={title}>
+                <dt>{title}</dt>
+                <dd title={text}>{text}</dd>
+              </div>
+            ))}
+          </dl>
+          <div class="row">
+            <button type="button" id="edit-files" onClick={editInputs}>
+              Change …
+            </button>
+            {whole.sample === null && (
+              <button
+                type="button"
+                id="forget"
+                title="Closes the scene, and forgets it in this browser"
+                onClick={forget}
+              >
+                Forget
+              </button>
+            )}
+          </div>
+        </>
+      )}
+      {queue.value.length > 0 && (
+        <button type="button" id="next-scene" onClick={openNext}>
+          Next scene ({queue.value.length} left)
+        </button>
+      )}
     </details>
   );
 }

@@ -1,8 +1,11 @@
-/** The list of objects. */
-import { inputs, isReading } from "../load/open.js";
+/** The outliner: the objects of the scene, each to be selected, shown, locked, renamed and removed. */
+import { useState } from "preact/hooks";
+import { editInputs, inputs, isReading, removeObject } from "../load/open.js";
+import { isRunning } from "../run/align.js";
 import type { ObjectModel, Run } from "../state/object-model.js";
 import { scene, select, selected } from "../state/scene.js";
 import { percent } from "../ui/format.js";
+import { Icon } from "../ui/icons.js";
 
 function stateOf(run: Run, object: ObjectModel): string {
   if (run.state === "waiting") return "waiting";
@@ -15,21 +18,24 @@ function stateOf(run: Run, object: ObjectModel): string {
 export function ObjectsPanel() {
   const objects = scene.value?.objects ?? [];
   // While a scene is being read, its objects are listed already, so that the layout does not shift.
-  const awaited = isReading.value ? inputs.value.masks.slice(objects.length) : [];
+  const awaited = isReading.value ? inputs.value.objects.slice(objects.length) : [];
   if (objects.length + awaited.length < 2) return null;
   return (
     <section class="panel objects-panel" aria-labelledby="objects-title">
-      <h2 id="objects-title">Objects</h2>
+      <div class="card-head">
+        <h2 id="objects-title">Objects</h2>
+        <button type="button" onClick={editInputs}>
+          Add or pair …
+        </button>
+      </div>
       <ul class="objects">
         {objects.map((object) => (
-          <li key={object.id}>
-            <ObjectButton object={object} />
-          </li>
+          <Row key={object.id} object={object} />
         ))}
-        {awaited.map(({ path, title }) => (
-          <li key={path}>
-            <button type="button" disabled>
-              <span class="name">{title ?? path}</span>
+        {awaited.map(({ name }) => (
+          <li key={name}>
+            <button type="button" class="select" disabled>
+              <span class="name">{name}</span>
             </button>
           </li>
         ))}
@@ -38,15 +44,87 @@ export function ObjectsPanel() {
   );
 }
 
-function ObjectButton({ object }: { object: ObjectModel }) {
-  const { id, name, colour, run } = object;
+function Row({ object }: { object: ObjectModel }) {
+  const { name, isShown, isLocked } = object;
+  const [isRenamed, setRenamed] = useState(false);
+  return (
+    <li data-shown={isShown.value}>
+      {isRenamed ? (
+        <input
+          class="rename"
+          aria-label={`New name of ${name}`}
+          value={name}
+          ref={(field) => field?.select()}
+          onKeyDown={({ key, currentTarget }) => (key === "Enter" || key === "Escape") && currentTarget.blur()}
+          onBlur={({ currentTarget }) => {
+            object.title.value = currentTarget.value.trim() || name;
+            setRenamed(false);
+          }}
+        />
+      ) : (
+        <ObjectButton object={object} onRename={() => setRenamed(true)} />
+      )}
+      <Toggle
+        label={`Show ${name}`}
+        isOn={isShown.value}
+        icon={isShown.value ? "shown" : "hidden"}
+        onToggle={() => toggle(isShown)}
+      />
+      <Toggle
+        label={`Lock ${name}`}
+        isOn={isLocked.value}
+        icon={isLocked.value ? "locked" : "unlocked"}
+        onToggle={() => toggle(isLocked)}
+      />
+      <button
+        type="button"
+        class="icon"
+        aria-label={`Remove ${name}`}
+        disabled={isRunning.value}
+        onClick={() => removeObject(object)}
+      >
+        ×
+      </button>
+    </li>
+  );
+}
+
+const toggle = (state: { value: boolean }) => {
+  state.value = !state.value;
+};
+
+interface ToggleProps {
+  label: string;
+  isOn: boolean;
+  icon: Parameters<typeof Icon>[0]["name"];
+  onToggle(): void;
+}
+
+function Toggle({ label, isOn, icon, onToggle }: ToggleProps) {
+  return (
+    <button type="button" class="icon" aria-label={label} aria-pressed={isOn} title={label} onClick={onToggle}>
+      <Icon name={icon} />
+    </button>
+  );
+}
+
+function ObjectButton({ object, onRename }: { object: ObjectModel; onRename(): void }) {
+  const { id, name, colour, run, isAccepted } = object;
   const confidence = object.precise?.confidence ?? null;
   return (
-    <button type="button" aria-pressed={selected.value === object} onClick={() => select(id)}>
+    <button
+      type="button"
+      class="select"
+      aria-pressed={selected.value === object}
+      title="Double-click to rename"
+      onClick={() => select(id)}
+      onDblClick={onRename}
+      onKeyDown={({ key }) => key === "F2" && onRename()}
+    >
       <span class="swatch" style={{ background: colour }} />
       <span class="name">{name}</span>
       <span class="state">{stateOf(run.value, object)}</span>
-      <span class="confidence">{confidence === null ? "" : percent(confidence)}</span>
+      <span class="confidence">{isAccepted.value ? "✓" : confidence === null ? "" : percent(confidence)}</span>
     </button>
   );
 }

@@ -2,7 +2,7 @@
 import { choices, defaultOptions, MAX_SEED, type Options, options, setOption } from "../state/options.js";
 import { Choices, Tip } from "../ui/controls.js";
 
-type ChoiceName = "knownExtentAxis" | "up" | "symmetry";
+type ChoiceName = "up" | "symmetry";
 
 interface SelectProps<K extends ChoiceName> {
   name: K;
@@ -11,13 +11,6 @@ interface SelectProps<K extends ChoiceName> {
   /** Titles of the values. */
   titles: { readonly [V in Options[K]]: string };
 }
-
-const axis: SelectProps<"knownExtentAxis"> = {
-  name: "knownExtentAxis",
-  title: "Measured along",
-  about: "The side of the mesh's bounding box that the known length measures.",
-  titles: { longest: "longest side", x: "x (width)", y: "y (height)", z: "z (depth)" },
-};
 
 const up: SelectProps<"up"> = {
   name: "up",
@@ -52,7 +45,7 @@ function Select<K extends ChoiceName>({ name, title, about, titles }: SelectProp
 }
 
 interface NumberProps {
-  name: "knownExtentCm" | "scaleMin" | "scaleMax" | "seed";
+  name: "scaleMin" | "scaleMax" | "seed";
   title: string;
   about: string;
   unit?: string;
@@ -89,16 +82,13 @@ export function OptionsPanel() {
   return (
     <details class="panel options-panel" id="options">
       <summary>
-        <h2>Prior knowledge</h2>
+        <h2>Constraints</h2>
       </summary>
-      {isPaper && <p class="quiet">The baseline uses only the seed.</p>}
-      <NumberField
-        name="knownExtentCm"
-        title="Real length"
-        about="The length of the object in reality. It determines the scale."
-        unit="cm"
-      />
-      <Select {...axis} />
+      {isPaper ? (
+        <p class="quiet">The baseline uses only the seed.</p>
+      ) : (
+        <p class="quiet">For all objects. A known size of one object is set by hand.</p>
+      )}
       <NumberField
         name="scaleMin"
         title="Minimum scale"

@@ -30,7 +30,7 @@ export function RunBar() {
   const { preset, quality } = options.value;
   const objects = scene.value?.objects ?? [];
   // While a scene is being read, the buttons are those of its objects already, so that the layout does not shift.
-  const count = Math.max(objects.length, isReading.value ? inputs.value.masks.length : 0);
+  const count = Math.max(objects.length, isReading.value ? inputs.value.objects.length : 0);
   const running = isRunning.value;
   const run = selected.value?.run.value;
   const stage = run?.state === "running" && run.stage !== null ? stageTitles[run.stage] : "";
@@ -40,7 +40,7 @@ export function RunBar() {
     <section class="run" aria-label="Run">
       <div class="run-row">
         <label class="field-inline grow" for="effort">
-          <span>Effort</span>
+          <span>Quality</span>
           <Choices
             id="effort"
             value={preset === "paper" ? "paper" : quality}
@@ -53,12 +53,24 @@ export function RunBar() {
             Cancel
           </button>
         ) : (
-          <button type="button" id="align" class="primary" disabled={objects.length === 0} onClick={alignSelected}>
+          <button
+            type="button"
+            id="align"
+            class={count > 1 ? "" : "primary"}
+            disabled={objects.length === 0}
+            onClick={alignSelected}
+          >
             Align
           </button>
         )}
         {count > 1 && (
-          <button type="button" id="align-all" disabled={running || objects.length === 0} onClick={alignAll}>
+          <button
+            type="button"
+            id="align-all"
+            class="primary"
+            disabled={running || objects.length === 0}
+            onClick={alignAll}
+          >
             Align all {count}
           </button>
         )}

@@ -1,16 +1,14 @@
 /** Aligns objects and reports their progress. */
-import { computed, signal } from "@preact/signals";
-import type { Progress } from "sim3align";
+import { batch, computed, signal } from "@preact/signals";
+import type { Progress, SceneObjectInput } from "sim3align";
 import { toSim3 } from "sim3align/conventions";
-import { FieldError, fieldOf } from "../load/field-error.js";
-import { fieldErrors } from "../load/open.js";
 import { place } from "../state/history.js";
 import type { AnyAlignment, ObjectModel } from "../state/object-model.js";
-import { alignOptions, type CallOptions, refineOptions } from "../state/options.js";
+import { alignOptions, constraintsOf, options, paperOptions, sceneOptions } from "../state/options.js";
 import type { PoseSource } from "../state/pose.js";
-import { type Scene, scene, selected } from "../state/scene.js";
+import { type Scene, scene, selected, support } from "../state/scene.js";
 import { announce, type Status, status } from "../state/status.js";
-import { aligner, inputOf } from "./aligner.js";
+import { aligner, inputOf, viewOf } from "./aligner.js";
 
 const controller = signal<AbortController | null>(null);
 
@@ -30,79 +28,127 @@ export function cancel(): void {
 // Running alignments belong to the previous scene.
 let current = scene.peek();
 scene.subscribe((next) => {
-  if (next !== current) cancel();
+  if (next === current) return;
   current = next;
+  cancel();
+  // The support is that of the previous scene.
+  support.value = null;
 });
 
 /** Aligns the selected object from scratch. */
 export async function alignSelected(): Promise<void> {
   const object = selected.peek();
-  if (object !== null) await alignObjects([object], alignOptions(), "aligned");
+  if (object === null || object.isLocked.peek()) return;
+  await run([object], (whole, signal) => alone(whole, object, "global", signal));
 }
 
-/** Aligns every object of the scene. */
+/** Aligns every object of the scene, except those whose poses are locked. */
 export async function alignAll(): Promise<void> {
-  await alignObjects(scene.peek()?.objects ?? [], alignOptions(), "aligned");
+  const whole = scene.peek();
+  const objects = whole?.objects.filter(({ isLocked }) => !isLocked.peek()) ?? [];
+  const [only] = objects;
+  if (whole?.objects.length === 1 && only !== undefined) {
+    await run(objects, (whole, signal) => alone(whole, only, "global", signal));
+  } else if (options.peek().preset === "paper")
+    await run(objects, (whole, signal) => eachAlone(whole, objects, signal));
+  else await run(objects, (whole, signal) => together(whole, objects, signal));
+}
+
+/** Aligns every object as if it were alone: sooner than together, and without the module that scenes need. */
+export async function alignEach(): Promise<void> {
+  const objects = scene.peek()?.objects ?? [];
+  if (objects.length < 2) return alignAll();
+  await run(objects, (whole, signal) => eachAlone(whole, objects, signal));
 }
 
 /** Searches around the current pose of the selected object only. */
 export async function refine(): Promise<void> {
   const object = selected.peek();
-  if (object === null) return;
-  await alignObjects([object], refineOptions(object.pose.peek().transform), "refined");
+  if (object === null || object.isLocked.peek()) return;
+  await run([object], (whole, signal) => alone(whole, object, "local", signal));
 }
 
-async function alignObjects(objects: readonly ObjectModel[], chosen: CallOptions, source: PoseSource): Promise<void> {
+type Work = (whole: Scene, signal: AbortSignal) => Promise<void>;
+
+/** Runs an alignment of objects; another one that is running goes first. */
+async function run(objects: readonly ObjectModel[], work: Work): Promise<void> {
   const whole = scene.peek();
   if (whole === null || objects.length === 0 || controller.peek() !== null) return;
   const abort = new AbortController();
   controller.value = abort;
-  fieldErrors.value = {};
   for (const { run } of whole.objects) run.value = { state: "idle" };
   for (const { run } of objects) run.value = { state: "waiting" };
   announce(objects.length === 1 ? "Aligning …" : `Aligning ${objects.length} objects …`, "working");
+  const started = performance.now();
   try {
-    await runAll(whole, objects, { ...chosen, signal: abort.signal }, source);
+    await work(whole, abort.signal);
   } catch (error) {
     for (const { run } of objects) {
       if (run.peek().state === "done" || run.peek().state === "failed") continue;
       run.value = abort.signal.aborted ? { state: "cancelled" } : { state: "failed", error: error as Error };
     }
-    if (!abort.signal.aborted) showInField(error);
   } finally {
     controller.value = null;
-    status.value = summary(objects, abort.signal.aborted);
+    status.value = summary(objects, abort.signal.aborted, performance.now() - started);
   }
 }
 
-async function runAll(
-  whole: Scene,
-  objects: readonly ObjectModel[],
-  chosen: CallOptions,
-  source: PoseSource,
-): Promise<void> {
-  const inputs = objects.map((object) => inputOf(whole, object));
-  const [first] = inputs;
-  const [only] = objects;
-  if (objects.length === 1 && first !== undefined && only !== undefined) {
-    const onProgress = progressOf(only);
-    finish(only, await (await aligner()).align(first, { ...chosen, onProgress }), source);
-    return;
-  }
+/** Aligns one object. */
+async function alone(whole: Scene, object: ObjectModel, search: "global" | "local", signal: AbortSignal) {
+  const input = inputOf(whole, object);
+  const shared = { signal, onProgress: progressOf(object) };
+  const isPaper = search === "global" && options.peek().preset === "paper";
+  const ready = await aligner();
+  const alignment = isPaper
+    ? await ready.align(input, { ...paperOptions(), ...shared })
+    : await ready.align(input, { ...alignOptions(object, search), ...shared });
+  finish(object, alignment, search === "local" ? "refined" : "aligned");
+}
+
+/** Aligns objects side by side, each as if it were alone. No scale of theirs is known yet. */
+async function eachAlone(whole: Scene, objects: readonly ObjectModel[], signal: AbortSignal): Promise<void> {
   const listeners = objects.map(progressOf);
-  const results = (await aligner()).alignAll(inputs, {
-    ...chosen,
-    onProgress: (progress) => listeners[progress.index]?.(progress),
-  });
+  const inputs = objects.map((object) => inputOf(whole, object));
+  const onProgress = (progress: Progress & { index: number }) => listeners[progress.index]?.(progress);
+  const shared = { signal, onProgress };
+  const ready = await aligner();
+  const [first] = objects;
+  const results =
+    options.peek().preset === "paper" || first === undefined
+      ? ready.alignAll(inputs, { ...paperOptions(), ...shared })
+      : ready.alignAll(inputs, { ...sceneOptions(), ...constraintsOf(first), ...shared });
   for await (const { index, alignment, error } of results) {
     const object = objects[index];
     if (object === undefined) continue;
-    if (alignment !== undefined) finish(object, alignment, source);
-    else {
-      object.run.value = { state: "failed", error };
-      showInField(error);
-    }
+    if (alignment !== undefined) finish(object, alignment, "aligned");
+    else object.run.value = { state: "failed", error };
   }
+}
+
+/** Aligns objects together: they hide one another, share no space, and stand on something. */
+async function together(whole: Scene, objects: readonly ObjectModel[], signal: AbortSignal): Promise<void> {
+  const inputs = whole.objects.map((object): SceneObjectInput => {
+    const { mask, mesh } = object;
+    // A locked pose counts for the others.
+    const pose = object.isLocked.peek() ? object.pose.peek().transform : null;
+    const kept = pose === null ? {} : ({ search: "local", initial: pose, scale: pose.scale } as const);
+    return { mask, mesh, ...constraintsOf(object), ...kept };
+  });
+  const listeners = whole.objects.map((object) => (objects.includes(object) ? progressOf(object) : null));
+  const onProgress = (progress: Progress & { index: number }) => {
+    if (!signal.aborted) listeners[progress.index]?.(progress);
+  };
+  const input = { ...viewOf(whole), objects: inputs };
+  const result = await (await aligner()).alignScene(input, { ...sceneOptions(), signal, onProgress });
+  batch(() => {
+    support.value = result.support;
+    result.objects.forEach((found, i) => {
+      const object = whole.objects[i];
+      if (object === undefined || !objects.includes(object)) return;
+      if (found.error === undefined) finish(object, found, "aligned");
+      else object.run.value = { state: "failed", error: found.error };
+    });
+  });
 }
 
 const progressOf =
@@ -117,20 +163,13 @@ function finish(object: ObjectModel, alignment: AnyAlignment, source: PoseSource
   place(object, { transform: toSim3(alignment), source });
 }
 
-/** Shows an error at the input field that it concerns, if any. */
-function showInField(error: unknown): void {
-  const field = fieldOf(error);
-  if (field !== null) fieldErrors.value = { ...fieldErrors.peek(), [field]: new FieldError(field, error) };
-}
-
-function summary(objects: readonly ObjectModel[], isAborted: boolean): Status {
+function summary(objects: readonly ObjectModel[], isAborted: boolean, ms: number): Status {
   if (isAborted) return { text: "Cancelled. The pose is unchanged.", kind: "done" };
   const failed = objects.flatMap(({ name, run }) => {
     const state = run.peek();
     return state.state === "failed" ? [`${name}: ${state.error.message}`] : [];
   });
   if (failed.length > 0) return { text: failed.join(" "), kind: "failed" };
-  if (objects.length > 1) return { text: `Aligned ${objects.length} objects.`, kind: "done" };
-  const ms = objects[0]?.alignment.peek()?.diagnostics.timingsMs.total ?? 0;
-  return { text: `Aligned in ${(ms / 1000).toFixed(2)} s.`, kind: "done" };
+  const what = objects.length > 1 ? `${objects.length} objects ` : "";
+  return { text: `Aligned ${what}in ${(ms / 1000).toFixed(2)} s.`, kind: "done" };
 }

@@ -17,13 +17,14 @@ export function aligner(): Promise<Aligner> {
   return created;
 }
 
-/** The input of `align` and `evaluate` for an object. */
-export const inputOf = ({ depthM, width, height, camera, rgba }: Scene, { mask, mesh }: ObjectModel): AlignInput => ({
+/** What all objects of a scene share. */
+export const viewOf = ({ depthM, width, height, camera, rgba }: Scene) => ({
   depth: depthM,
   width,
   height,
   camera,
-  mask,
-  mesh,
-  ...(rgba === null ? {} : { image: rgba }),
+  ...(rgba === null ? {} : { image: { data: rgba, width, height } }),
 });
+
+/** The input of `align` and `evaluate` for an object. */
+export const inputOf = (scene: Scene, { mask, mesh }: ObjectModel): AlignInput => ({ ...viewOf(scene), mask, mesh });

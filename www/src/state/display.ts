@@ -31,12 +31,33 @@ export interface Display3d {
   cloud: boolean;
   mesh: boolean;
   wireframe: boolean;
+  dimensions: boolean;
   pointSize: number;
 }
 
-export const display3d = signal<Display3d>({ cloud: true, mesh: true, wireframe: false, pointSize: 1 });
+export const display3d = signal<Display3d>({
+  ...{ cloud: true, mesh: true, wireframe: false, dimensions: true },
+  pointSize: 1.6,
+});
 
 export const gizmo = signal<"translate" | "rotate" | "scale" | null>(null);
+
+/** How the handles move: along the axes of the mesh, and in steps. */
+export const gizmoSettings = signal({ isLocal: false, snaps: false });
+
+/** The points that are being measured, OpenCV camera frame, metres; null while nothing is measured. */
+export const measured = signal<readonly (readonly [number, number, number])[] | null>(null);
+
+/** Adds a point to what is measured. A third one begins anew. Returns whether anything is measured. */
+export function measure(point: readonly [number, number, number]): boolean {
+  const points = measured.peek();
+  if (points === null) return false;
+  measured.value = points.length >= 2 ? [point] : [...points, point];
+  return true;
+}
+
+/** Whether the 3D view shows the poses before any alignment. */
+export const showsBefore = signal(false);
 
 /** The view that has the larger area. */
 export const largeView = signal<"space" | "image">("space");

@@ -1,6 +1,6 @@
 /** An object of a scene: its mask, its mesh, and the state of its alignment. */
 import { computed, type Signal, signal } from "@preact/signals";
-import type { AlignmentByPreset, MeshArrays, Metrics, PoseErrors, Preset, Sim3AlignError, Stage } from "sim3align";
+import type { AlignmentByPreset, Contact, MeshArrays, Metrics, PoseErrors, Sim3AlignError, Stage } from "sim3align";
 import type { Sim3Like, Vector3 } from "sim3align/conventions";
 import { type Bounds, boundsOf, type PlacedBox, type Pose, placed, startPose } from "./pose.js";
 
@@ -13,8 +13,13 @@ export type Run =
   | { readonly state: "cancelled" }
   | { readonly state: "failed"; readonly error: Sim3AlignError | Error };
 
-/** The result of an alignment, with any preset. */
-export type AnyAlignment = AlignmentByPreset[Preset];
+/** The result of an alignment, with any preset. The result of a scene also says what the object rests on. */
+export type AnyAlignment = (PreciseAlignment | Omit<AlignmentByPreset["paper"], "input">) & {
+  readonly contact?: Contact;
+};
+
+/** The result with the preset `precise`. */
+export type PreciseAlignment = Omit<AlignmentByPreset["precise"], "input">;
 
 /** The inputs of an object. */
 export interface ObjectParts {
@@ -35,7 +40,6 @@ export interface ObjectParts {
 /** An object of a scene. The inputs are constant; signals hold the state. */
 export class ObjectModel implements Readonly<ObjectParts> {
   readonly id: string;
-  readonly name: string;
   readonly colour: string;
   readonly mask: Uint8Array;
   readonly mesh: MeshArrays;
@@ -46,6 +50,14 @@ export class ObjectModel implements Readonly<ObjectParts> {
   /** The pose before any alignment. */
   readonly start: Pose;
 
+  readonly title: Signal<string>;
+  readonly isShown = signal(true);
+  /** Whether alignments of the whole scene, and handles, leave the pose unchanged. */
+  readonly isLocked = signal(false);
+  /** Whether a person has accepted the present pose. */
+  readonly isAccepted = signal(false);
+  /** The known scale in metres per mesh unit, which every alignment keeps; null if it is free. */
+  readonly knownScale = signal<number | null>(null);
   readonly run = signal<Run>({ state: "idle" });
   /** The last alignment, also after the pose was changed by hand. */
   readonly alignment = signal<AnyAlignment | null>(null);
@@ -60,7 +72,7 @@ export class ObjectModel implements Readonly<ObjectParts> {
 
   constructor(parts: ObjectParts) {
     this.id = parts.id;
-    this.name = parts.name;
+    this.title = signal(parts.name);
     this.colour = parts.colour;
     this.mask = parts.mask;
     this.mesh = parts.mesh;
@@ -70,6 +82,20 @@ export class ObjectModel implements Readonly<ObjectParts> {
     this.bounds = boundsOf(parts.mesh);
     this.start = { transform: startPose(this.bounds, parts.visible), source: "start" };
     this.pose = signal<Pose>(this.start);
+    // Another pose has to be accepted anew.
+    this.pose.subscribe(() => {
+      this.isAccepted.value = false;
+    });
+  }
+
+  get name(): string {
+    return this.title.value;
+  }
+
+  /** The length of a side at scale 1, or of the longest one, in mesh units. */
+  side(which: 0 | 1 | 2 | "longest"): number {
+    const { sides } = this.bounds;
+    return which === "longest" ? Math.max(...sides) : sides[which];
   }
 
   /** Whether the object has a pose other than the start pose. */
@@ -78,7 +104,7 @@ export class ObjectModel implements Readonly<ObjectParts> {
   }
 
   /** The last alignment, if it is one of the preset `precise`. */
-  get precise(): AlignmentByPreset["precise"] | null {
+  get precise(): PreciseAlignment | null {
     const alignment = this.alignment.value;
     return alignment !== null && "confidence" in alignment ? alignment : null;
   }

@@ -47,8 +47,7 @@ function parsedOptions(parameters: URLSearchParams): Options {
     const allowed: readonly string[] | undefined = (choices as Partial<Record<string, readonly string[]>>)[name];
     if (allowed !== undefined) {
       if (allowed.includes(text)) parsed[name] = text;
-    } else if (name === "lockScale") parsed[name] = text === "true";
-    else if (text !== "" && Number(text) >= 0 && Number.isFinite(Number(text))) parsed[name] = Number(text);
+    } else if (text !== "" && Number(text) >= 0 && Number.isFinite(Number(text))) parsed[name] = Number(text);
   }
   return parsed as unknown as Options;
 }

@@ -3,7 +3,7 @@ import type { MeshArrays } from "sim3align";
 import { applyToPoints, compose, type Sim3, toSim3, type Vector3 } from "sim3align/conventions";
 
 /** The origin of a pose. */
-export type PoseSource = "start" | "aligned" | "alternative" | "refined" | "hand";
+export type PoseSource = "start" | "aligned" | "alternative" | "refined" | "hand" | "tracked";
 
 /** A pose and its origin. Immutable. */
 export interface Pose {

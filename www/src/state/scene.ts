@@ -1,6 +1,6 @@
 /** The scene: a depth map with its camera, an optional photo, and the objects in it. */
 import { computed, signal } from "@preact/signals";
-import type { PinholeCamera } from "sim3align";
+import type { PinholeCamera, Support } from "sim3align";
 import type { ObjectModel } from "./object-model.js";
 
 export interface Scene {
@@ -21,6 +21,9 @@ export interface Scene {
 
 export const scene = signal<Scene | null>(null);
 
+/** The plane on which the objects of the scene stand, once it is known. */
+export const support = signal<Support | null>(null);
+
 const selectedId = signal<string | null>(null);
 
 /** The object that panels and handles apply to. */
@@ -37,5 +40,5 @@ export function select(id: string | null): void {
 export function objectAt(x: number, y: number): ObjectModel | null {
   const current = scene.value;
   if (current === null) return null;
-  return current.objects.find(({ mask }) => mask[y * current.width + x] !== 0) ?? null;
+  return current.objects.find(({ mask, isShown }) => isShown.value && mask[y * current.width + x] !== 0) ?? null;
 }

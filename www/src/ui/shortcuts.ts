@@ -1,10 +1,10 @@
 /** Keyboard shortcuts. The help lists this table. */
 
+import { accept, next } from "../panels/decision.js";
 import { alignAll, alignSelected, cancel, isRunning, refine } from "../run/align.js";
 import { applyAlternative } from "../run/alternatives.js";
 import { display3d, gizmo, isHelpOpen, largeView, layers, setLayer } from "../state/display.js";
 import { redo, undo } from "../state/history.js";
-import { options, setOption } from "../state/options.js";
 import { scene, select, selected } from "../state/scene.js";
 import { space } from "../views/space.js";
 
@@ -23,7 +23,7 @@ const toggleHandles = (mode: "translate" | "rotate" | "scale") => () => {
 
 const lookFrom = (from: "camera" | "orbit" | "top" | "side") => () => {
   const state = space.peek();
-  if (state.kind === "ready") state.view.lookFrom(from);
+  if (state.kind === "ready") state.view.lookFrom(from, from === "camera");
 };
 
 function selectNeighbour(step: number): void {
@@ -45,10 +45,12 @@ export const shortcuts: readonly Shortcut[] = [
   { key: "g", title: "G", about: "Handles to move", act: toggleHandles("translate") },
   { key: "r", title: "R", about: "Handles to rotate", act: toggleHandles("rotate") },
   { key: "s", title: "S", about: "Handles to scale", act: toggleHandles("scale") },
-  { key: "l", title: "L", about: "Lock the scale", act: () => setOption("lockScale", !options.peek().lockScale) },
+  { key: "l", title: "L", about: "Lock the scale", act: toggleScaleLock },
   { key: "Mod+z", title: "Ctrl Z", about: "Undo", act: undo },
   { key: "Mod+Z", title: "Ctrl Shift Z", about: "Redo", act: redo },
   { key: "Mod+y", title: "Ctrl Y", about: "Redo", act: redo },
+  { key: "Enter", title: "Enter", about: "Accept the pose", act: accept },
+  { key: "n", title: "N", about: "Next object or scene", act: next },
   { key: "[", title: "[", about: "Previous object", act: () => selectNeighbour(-1) },
   { key: "]", title: "]", about: "Next object", act: () => selectNeighbour(1) },
   { key: "c", title: "C", about: "Camera view", act: lookFrom("camera") },
@@ -64,6 +66,12 @@ export const shortcuts: readonly Shortcut[] = [
   { key: "0", title: "0 to 9", about: "The result (0) and its alternatives", act: () => {} },
   { key: "?", title: "?", about: "This help", act: toggleHelp },
 ];
+
+function toggleScaleLock(): void {
+  const object = selected.peek();
+  if (object === null) return;
+  object.knownScale.value = object.knownScale.peek() === null ? object.pose.peek().transform.scale : null;
+}
 
 function cancelOrHideHandles(): void {
   if (isRunning.peek()) cancel();
@@ -92,6 +100,8 @@ function onKey(event: KeyboardEvent): void {
     document.querySelector("dialog[open], :popover-open") !== null
   )
     return;
+  // Enter presses the button that has the focus.
+  if (key === "Enter" && target !== document.body) return;
   const isMod = ctrlKey || metaKey;
   if (!isMod && /^\d$/.test(key)) {
     const object = selected.peek();

@@ -2,7 +2,7 @@
 import type { Metrics, Stage } from "sim3align";
 import { percent, significant } from "./format.js";
 
-interface MetricText {
+export interface MetricText {
   name: keyof Metrics;
   title: string;
   better: "higher" | "lower";
@@ -15,17 +15,9 @@ const mm = (value: number) => `${significant(value, 3)} mm`;
 export const metricTexts: readonly MetricText[] = [
   {
     name: "iou",
-    title: "IoU",
+    title: "Overlap (IoU)",
     better: "higher",
     about: "Overlap of the mask and the mesh's silhouette (intersection over union); 100 % is identical.",
-    show: percent,
-  },
-  {
-    name: "boundaryF",
-    title: "Boundary F",
-    better: "higher",
-    about:
-      "Agreement of the outlines of mask and silhouette within a few pixels: harmonic mean of precision and recall.",
     show: percent,
   },
   {
@@ -41,6 +33,14 @@ export const metricTexts: readonly MetricText[] = [
     better: "lower",
     about: "Mean distance from the measured points to the mesh (one-way chamfer distance).",
     show: mm,
+  },
+  {
+    name: "boundaryF",
+    title: "Boundary F",
+    better: "higher",
+    about:
+      "Agreement of the outlines of mask and silhouette within a few pixels: harmonic mean of precision and recall.",
+    show: percent,
   },
   {
     name: "chamferMm",

@@ -50,6 +50,10 @@ export class Animations {
     return this.running.size > 0;
   }
 
+  isRunning(name: string): boolean {
+    return this.running.has(name);
+  }
+
   stopAll(): void {
     for (const name of [...this.running.keys()]) this.stop(name);
   }

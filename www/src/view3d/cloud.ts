@@ -24,8 +24,9 @@ import {
 import { type Points, pointsOf, type Rgb, tonesOf } from "./points.js";
 import type { ObjectInput, SceneInput } from "./types.js";
 
-/** Share of the object's colour in the colour of its points. */
+/** Share of the object's colour in the colour of its points; with a photo, its own colours stay. */
 const highlight = { selected: 0.55, others: 0.38 };
+const highlightOfPhoto = { selected: 0.28, others: 0.2 };
 
 /** The sRGB components of a colour, 0 to 1. */
 export const rgbOf = (color: Color): Rgb => {
@@ -97,7 +98,8 @@ export class Cloud {
     const tones = this.base.slice();
     const { pixels } = this.points;
     for (const { id, colour, mask } of objects) {
-      const share = id === selected ? highlight.selected : highlight.others;
+      const shares = this.scene.rgba ? highlightOfPhoto : highlight;
+      const share = id === selected ? shares.selected : shares.others;
       const rgb = rgbOf(new Color(colour));
       for (let i = 0; i < pixels.length; i++) {
         if (!mask[pixels[i] as number]) continue;

@@ -2,10 +2,13 @@
 import { TransformControls } from "three/addons/controls/TransformControls.js";
 import type { PerspectiveCamera, Scene, Vector3 } from "three/webgpu";
 import type { Model } from "./model.js";
-import type { GizmoMode } from "./types.js";
+import type { GizmoMode, GizmoSettings } from "./types.js";
 
 /** Largest scale factor of one drag, up or down, so that a slip does not lose the mesh. */
 const maxFactor = 20;
+
+/** Steps of rotations, and of movements as a share of the object's size. */
+const [STEP_DEG, STEP_SHARE] = [5, 0.01];
 
 /** Events of a gizmo. */
 export interface GizmoEvents {
@@ -52,6 +55,16 @@ export class Gizmo {
     if (mode !== null) this.controls.setMode(mode);
     if (next) this.controls.attach(next.pivot);
     else this.controls.detach();
+    this.events.onChange();
+  }
+
+  /** Sets the axes and the steps. */
+  configure({ isLocal, snaps }: GizmoSettings): void {
+    this.controls.setSpace(isLocal ? "local" : "world");
+    this.controls.setRotationSnap(snaps ? (STEP_DEG * Math.PI) / 180 : null);
+    const size = this.model === null ? 0 : 2 * this.model.radius * this.model.pivot.scale.x;
+    this.controls.setTranslationSnap(snaps && size > 0 ? STEP_SHARE * size : null);
+    this.controls.setScaleSnap(snaps ? STEP_SHARE : null);
     this.events.onChange();
   }
 

@@ -35,6 +35,7 @@ export class Model {
   readonly radius: number;
   private readonly outlines = new Group();
   private readonly materials: Material[] = [];
+  private readonly box: Box3;
   private isPlaced = false;
 
   private constructor(
@@ -43,9 +44,9 @@ export class Model {
     readonly colour: Color,
   ) {
     content.updateMatrixWorld(true);
-    const box = new Box3().setFromObject(content, true);
-    box.getCenter(this.centre);
-    this.radius = box.getSize(new Vector3()).length() / 2;
+    this.box = new Box3().setFromObject(content, true);
+    this.box.getCenter(this.centre);
+    this.radius = this.box.getSize(new Vector3()).length() / 2;
     const frame = new Group();
     frame.position.copy(this.centre).negate();
     frame.add(content, this.outlines);
@@ -140,10 +141,22 @@ export class Model {
     applyToObject3D(this.pivot, matrixOf(shifted(poseOf(pose), this.centre)), { frame: "opencv" });
   }
 
+  /** The corners of the bounding box in the OpenCV camera frame, bit k of an index for axis k; `null` while it is hidden. */
+  corners(): Vector3[] | null {
+    if (!this.pivot.visible) return null;
+    const { min, max } = this.box;
+    return [0, 1, 2, 3, 4, 5, 6, 7].map((bits) => {
+      const side = (k: number, low: number, high: number) => ((bits & (1 << k)) === 0 ? low : high);
+      const corner = new Vector3(side(0, min.x, max.x), side(1, min.y, max.y), side(2, min.z, max.z));
+      const { position, quaternion, scale } = this.pivot;
+      return corner.sub(this.centre).multiply(scale).applyQuaternion(quaternion).add(position);
+    });
+  }
+
   /** Applies display settings and the highlight. */
-  show(display: Display, isSelected: boolean): void {
+  show(display: Display, isSelected: boolean, isHidden = false): void {
     const opacity = Math.min(1, Math.max(0, display.meshOpacity ?? 1));
-    this.pivot.visible = this.isPlaced && display.mesh;
+    this.pivot.visible = this.isPlaced && display.mesh && !isHidden;
     this.outlines.visible = isSelected && !display.wireframe && opacity === 1;
     for (const material of this.materials) {
       if (!(material as MeshStandardMaterial).isMeshStandardMaterial) continue;

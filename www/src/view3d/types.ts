@@ -11,6 +11,8 @@ export interface SceneInput {
   height: number;
   /** In pixels; pixel centres are at integers. */
   camera: { fx: number; fy: number; cx: number; cy: number };
+  /** The image behind the meshes in the view from the depth camera; none by default. */
+  ground?: Uint8ClampedArray | undefined;
   /** The photo at the size of the depth map. Without it, points are coloured by depth. */
   rgba?: Uint8ClampedArray | undefined;
 }
@@ -18,6 +20,8 @@ export interface SceneInput {
 /** An object: its mask and its mesh. */
 export interface ObjectInput {
   id: string;
+  /** For the description of the view. */
+  name?: string | undefined;
   /** A CSS colour for the points of the mask, the outline, and a mesh without colours. */
   colour: string;
   /** One number per pixel of the depth map; not 0 is the object. */
@@ -36,6 +40,10 @@ export interface Display {
   theme: "light" | "dark";
   /** Opacity of the meshes, 0 to 1. Default 1. */
   meshOpacity?: number | undefined;
+  /** Whether the sizes of the objects are shown. */
+  dimensions?: boolean | undefined;
+  /** The ids of the objects that are not shown. */
+  hidden?: readonly string[] | undefined;
 }
 
 /** Viewpoints: the depth camera, a three-quarter view, from above, from the right. */
@@ -43,6 +51,20 @@ export type Look = "camera" | "orbit" | "top" | "side";
 
 /** The function of the gizmo. */
 export type GizmoMode = "translate" | "rotate" | "scale";
+
+/** How the gizmo moves. */
+export interface GizmoSettings {
+  /** Along the axes of the mesh instead of those of the view. */
+  isLocal: boolean;
+  /** In steps of 5° and of a hundredth of the object's size. */
+  snaps: boolean;
+}
+
+/** A plane n·x + d = 0 in the OpenCV camera frame, metres; n points up. */
+export interface PlaneInput {
+  normal: readonly [number, number, number];
+  d: number;
+}
 
 /** The start and duration of an animation. */
 export interface Animation {
@@ -56,6 +78,8 @@ export interface ViewEvents {
   onPose(id: string, pose: Float64Array, phase: "drag" | "end"): void;
   /** A mesh or the points of a mask were clicked; `null` for neither. */
   onSelect(id: string | null): void;
+  /** A point of a mesh or of the scene was clicked. Returns whether the click meant only that. */
+  onPick?(point: [number, number, number]): boolean;
   /** The pixel of the depth map under the pointer. */
   onHover?(pixel: { x: number; y: number } | null): void;
 }
@@ -83,9 +107,18 @@ export interface View {
   setPose(id: string, pose: Matrix | null, animate?: Animation): Promise<void>;
   select(id: string | null): void;
   /** Shows the gizmo at the selected mesh; `null` hides it. */
-  setGizmo(mode: GizmoMode | null): void;
+  setGizmo(mode: GizmoMode | null, settings?: GizmoSettings): void;
+  /** Shows the ground as a grid; `null` hides it. */
+  setGround(plane: PlaneInput | null): void;
+  /** Shows the distance of two points (OpenCV camera frame, metres); fewer points hide it. */
+  measure(points: readonly (readonly [number, number, number])[]): void;
   setDisplay(display: Display): void;
-  lookFrom(which: Look): void;
+  /** With `fits`, the view from the depth camera is zoomed to the objects. */
+  lookFrom(which: Look, fits?: boolean): void;
+  /** Shows where other cameras are: their poses in the frame of the depth camera, 16 numbers each, column-major. */
+  setCameras(poses: readonly Matrix[]): void;
+  /** Frames all objects at their present poses, unless the user has moved the viewpoint. */
+  frame(): void;
   /** Orbits around a point (OpenCV camera frame, metres), by default the centre of the selected object. */
   focus(point?: [number, number, number]): void;
   /** Marks a point (OpenCV camera frame, metres) with a ring; `null` removes it. */

@@ -6,8 +6,22 @@ import type { Look, SceneInput } from "./types.js";
 
 /** Viewpoints as angles from the depth camera in degrees: to the right, and up. */
 const directions: Record<Exclude<Look, "camera">, [number, number]> = { orbit: [28, 16], top: [0, 80], side: [82, 8] };
-/** Share of the smaller side of the view that the target fills, from above or from the side. */
-const fill = 0.55;
+/** Share of the smaller side of the view that the target fills. */
+const fill = 0.8;
+
+/** A part of the image, in pixels. */
+export interface Rect {
+  left: number;
+  top: number;
+  right: number;
+  bottom: number;
+}
+
+/** Share of the view that the objects fill in the view from the depth camera. */
+const CROP_FILL = 0.72;
+
+/** Wider lenses would show a target from very near. */
+const MAX_HALF_FOV_DEG = 35;
 
 /** The camera and its controls, in the frame of three.js: x right, y up, z towards the camera. */
 export class Viewpoint {
@@ -20,6 +34,9 @@ export class Viewpoint {
   /** Whether the user started to move the camera since the last `lookFrom`. */
   private isHeld = false;
   private scene: SceneInput | null = null;
+  /** The part of the image that fills the view; `null` is all of it. */
+  private crop: Rect | null = null;
+  private target: Vector3 | null = null;
   private size = { width: 1, height: 1 };
   private readonly lens = { near: 0.01, far: 100 };
 
@@ -32,7 +49,7 @@ export class Viewpoint {
     });
     this.controls.addEventListener("change", () => {
       // A click alone moves nothing, and damping continues after the release.
-      if (this.isHeld) this.isCamera = false;
+      if (this.isHeld && this.isCamera) this.leaveCamera();
       this.isTouched ||= this.isHeld;
       onChange();
     });
@@ -68,19 +85,48 @@ export class Viewpoint {
     applyPinhole(this.camera, this.scene.camera, { ...image, ...this.lens });
     const { aspect, view } = this.camera;
     if (!view) return;
-    const scale = Math.min(width / image.width, height / image.height);
-    const [visibleWidth, visibleHeight] = [width / scale, height / scale];
-    const x = view.offsetX - (visibleWidth - image.width) / 2;
-    const y = view.offsetY - (visibleHeight - image.height) / 2;
+    const { left, top, right, bottom } = this.crop ?? { left: 0, top: 0, right: image.width, bottom: image.height };
+    const fill = this.crop === null ? 1 : CROP_FILL;
+    const scale = Math.min(1 / Math.max((right - left) / width, (bottom - top) / height, 1e-6)) * fill;
+    // No more than the image is shown at once.
+    const least = Math.min(width / image.width, height / image.height);
+    const [visibleWidth, visibleHeight] = [width / Math.max(scale, least), height / Math.max(scale, least)];
+    const centre = (low: number, high: number, visible: number, all: number) => {
+      const start = (low + high - visible) / 2;
+      return visible >= all ? (all - visible) / 2 : Math.min(Math.max(start, 0), all - visible);
+    };
+    const x = view.offsetX + centre(left, right, visibleWidth, image.width);
+    const y = view.offsetY + centre(top, bottom, visibleHeight, image.height);
     this.camera.setViewOffset(image.width, image.height, x, y, visibleWidth, visibleHeight);
     // setViewOffset resets the aspect to that of square pixels.
     this.camera.aspect = aspect;
     this.camera.updateProjectionMatrix();
   }
 
+  /** The field of view of the smaller side of the canvas, degrees. */
+  private get fovDeg(): number {
+    const { width, height } = this.size;
+    const { elements } = this.camera.projectionMatrix;
+    const half = Math.atan(1 / (width < height ? (elements[0] ?? 1) : (elements[5] ?? 1)));
+    return (360 / Math.PI) * half;
+  }
+
+  /** Lets the viewpoint come close to what has this radius, however far the rest of the scene is. */
+  private reach(radius: number): void {
+    const near = Math.min(this.lens.near, 0.02 * radius);
+    this.controls.minDistance = Math.min(this.controls.minDistance, 0.2 * radius);
+    this.controls.maxDistance = Math.max(this.controls.maxDistance, 20 * radius);
+    if (near === this.lens.near) return;
+    this.lens.near = near;
+    this.updateLens();
+  }
+
   /** Looks at a target with a radius, in metres. */
-  lookFrom(which: Look, target: Vector3, radius: number): void {
+  lookFrom(which: Look, target: Vector3, radius: number, crop: Rect | null = null): void {
     const { camera, controls } = this;
+    this.crop = which === "camera" ? crop : null;
+    this.target = target.clone();
+    this.updateLens();
     camera.up.set(0, 1, 0);
     // Ends the damping of the last movement.
     const isDamped = controls.enableDamping;
@@ -92,8 +138,8 @@ export class Viewpoint {
       controls.target.set(0, 0, Math.min(target.z, -this.lens.near));
     } else {
       const [right, up] = directions[which].map((angle) => (angle * Math.PI) / 180) as [number, number];
-      const near = radius / (fill * Math.tan((Math.PI / 360) * camera.fov));
-      const distance = which === "orbit" ? target.length() : Math.min(target.length(), near);
+      const distance = radius / (fill * Math.sin((Math.PI / 360) * Math.min(this.fovDeg, 2 * MAX_HALF_FOV_DEG)));
+      this.reach(radius);
       const away = new Spherical().setFromVector3(target.clone().negate());
       const phi = Math.max(0.08, away.phi - up);
       camera.position.setFromSphericalCoords(distance, phi, away.theta + right).add(target);
@@ -106,9 +152,34 @@ export class Viewpoint {
     this.isCamera = which === "camera";
   }
 
+  /** Turns the view from the depth camera into an orbit about the objects, which stay where they are in the view. */
+  private leaveCamera(): void {
+    this.isCamera = false;
+    if (this.crop === null || this.target === null || this.scene === null) return;
+    const { cx, cy } = this.scene.camera;
+    const [halfWidth, halfHeight] = [(this.crop.right - this.crop.left) / 2, (this.crop.bottom - this.crop.top) / 2];
+    this.crop = { left: cx - halfWidth, right: cx + halfWidth, top: cy - halfHeight, bottom: cy + halfHeight };
+    this.controls.target.copy(this.target);
+    this.camera.lookAt(this.target);
+    this.updateLens();
+  }
+
+  /** Orbits by angles in degrees, and changes the distance by a factor. */
+  orbit(rightDeg: number, upDeg: number, factor: number): void {
+    if (this.isCamera) this.leaveCamera();
+    this.isTouched = true;
+    const { camera, controls } = this;
+    const away = new Spherical().setFromVector3(camera.position.clone().sub(controls.target));
+    away.theta += (rightDeg * Math.PI) / 180;
+    away.phi = Math.min(Math.max(away.phi - (upDeg * Math.PI) / 180, 0.02), Math.PI - 0.02);
+    away.radius *= factor;
+    camera.position.setFromSpherical(away).add(controls.target);
+    controls.update();
+  }
+
   /** Centres the view on a point and orbits around it. */
   focus(point: Vector3): void {
-    this.isCamera = false;
+    if (this.isCamera) this.leaveCamera();
     this.isTouched = true;
     const { camera, controls } = this;
     camera.position.add(point).sub(controls.target);

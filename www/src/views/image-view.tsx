@@ -1,23 +1,19 @@
 /** The image view: photo or depth map, overlaid with masks, silhouettes and depth differences. */
-import { computed, effect, type ReadonlySignal } from "@preact/signals";
+import { computed, effect, type ReadonlySignal, signal } from "@preact/signals";
 import { useEffect, useRef } from "preact/hooks";
-import { depthImage } from "../draw/colours.js";
+import { depthGradient, depthRange } from "../draw/colours.js";
 import { compose, type DrawnObject, differenceLimit, drawObject } from "../draw/composition.js";
-import { wholeImage, zoomToObjects } from "../draw/zoom.js";
-import { hoveredPixel, layers, setLayer } from "../state/display.js";
+import { clampedZoom, wholeImage, type Zoom, zoomToObjects } from "../draw/zoom.js";
+import { hoveredPixel, layers, measure, setLayer } from "../state/display.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { objectAt, scene, select, selected } from "../state/scene.js";
+import { ground } from "./ground.js";
 import { space } from "./space.js";
 
-/** These depend on the scene only, so that they are not computed again when display settings change. */
-const depth = computed(() => (scene.value === null ? null : depthImage(scene.value.depthM)));
+/** Depends on the scene only, so that it is not computed again when display settings change. */
 const onObjects = computed(() => (scene.value === null ? wholeImage : zoomToObjects(scene.value)));
 
-/** The image below the overlays. */
-const base = computed(() => {
-  const rgba = scene.value?.rgba ?? null;
-  return layers.value.base === "photo" && rgba !== null ? rgba : depth.value;
-});
+const depthRangeOfScene = computed(() => (scene.value === null ? null : depthRange(scene.value.depthM)));
 
 /** The objects at their start poses. */
 const before = computed(() => {
@@ -29,9 +25,11 @@ const before = computed(() => {
 const renderings = computed<readonly ReadonlySignal<{ object: ObjectModel; drawn: DrawnObject }>[]>(() => {
   const whole = scene.value;
   if (whole === null) return [];
-  return whole.objects.map((object) =>
-    computed(() => ({ object, drawn: drawObject(whole, object, object.pose.value.transform.matrix) })),
-  );
+  return whole.objects
+    .filter(({ isShown }) => isShown.value)
+    .map((object) =>
+      computed(() => ({ object, drawn: drawObject(whole, object, object.pose.value.transform.matrix) })),
+    );
 });
 
 /** The objects at their current poses. */
@@ -39,7 +37,15 @@ const after = computed<readonly DrawnObject[]>(() =>
   renderings.value.map(({ value: { object, drawn } }) => ({ ...drawn, isSelected: object === selected.value })),
 );
 
-const zoom = computed(() => (layers.value.zoom ? onObjects.value : wholeImage));
+/** The zoom that wheel and drag have set, for one scene and one setting of “Zoom”. */
+const ownZoom = signal<Zoom | null>(null);
+
+const zoom = computed(() => ownZoom.value ?? (layers.value.zoom ? onObjects.value : wholeImage));
+
+effect(() => {
+  void [scene.value, layers.value.zoom];
+  ownZoom.value = null;
+});
 
 let shownCanvas: HTMLCanvasElement | null = null;
 
@@ -49,7 +55,7 @@ export function imageSnapshot(): Promise<Blob | null> {
 }
 
 function draw(canvas: HTMLCanvasElement): void {
-  const [whole, picture] = [scene.value, base.value];
+  const [whole, picture] = [scene.value, ground.value];
   if (whole === null || picture === null) return;
   if (canvas.width !== whole.width || canvas.height !== whole.height) {
     canvas.width = whole.width;
@@ -77,7 +83,7 @@ export function ImageView() {
     canvas.current?.addEventListener("contextrestored", redraw);
     const stop = effect(() => {
       // Reading these signals subscribes to them. All changes within a frame cause one drawing.
-      void [scene.value, base.value, layers.value, zoom.value, after.value];
+      void [scene.value, ground.value, layers.value, zoom.value, after.value];
       cancelAnimationFrame(frame);
       frame = requestAnimationFrame(redraw);
     });
@@ -130,7 +136,9 @@ export function ImageView() {
             aria-label={description()}
             width={whole?.width ?? 640}
             height={whole?.height ?? 480}
-            onPointerMove={(event) => hover(pixelOf(event))}
+            onPointerDown={startDrag}
+            onPointerMove={(event) => (event.buttons === 0 ? hover(pixelOf(event)) : drag(event))}
+            onWheel={wheel}
             onPointerLeave={() => hover(null)}
             onClick={focusOn}
           />
@@ -139,7 +147,7 @@ export function ImageView() {
       </div>
       <div class="image-foot">
         <label class="wipe">
-          <span>After</span>
+          <span>Before</span>
           <input
             id="wipe"
             type="range"
@@ -150,7 +158,7 @@ export function ImageView() {
             aria-label="Share of the view that shows the start poses"
             onInput={({ currentTarget }) => setLayer("wipe", currentTarget.valueAsNumber)}
           />
-          <span>Before</span>
+          <span>After</span>
         </label>
         {difference && limit !== null ? (
           <p class="legend">
@@ -161,6 +169,7 @@ export function ImageView() {
         ) : (
           <Readout />
         )}
+        <DepthLegend />
       </div>
     </section>
   );
@@ -183,12 +192,47 @@ function pixelOf(event: MouseEvent): Pixel | null {
   return x >= 0 && y >= 0 && x < canvas.width && y < canvas.height ? { x, y } : null;
 }
 
+/** Where a drag began; whether the pointer has moved since. */
+let dragFrom: { clientX: number; clientY: number; zoom: Zoom } | null = null;
+let hasDragged = false;
+/** Smaller movements are clicks, in CSS pixels. */
+const CLICK_PX = 4;
+
+function startDrag({ clientX, clientY }: PointerEvent): void {
+  hasDragged = false;
+  dragFrom = { clientX, clientY, zoom: zoom.peek() };
+}
+
+/** Moves the part of the image that is shown. */
+function drag(event: PointerEvent): void {
+  if (dragFrom === null || dragFrom.zoom.factor <= 1) return;
+  const [dx, dy] = [event.clientX - dragFrom.clientX, event.clientY - dragFrom.clientY];
+  if (!hasDragged && Math.hypot(dx, dy) < CLICK_PX) return;
+  hasDragged = true;
+  const { width, height } = (event.currentTarget as HTMLCanvasElement).getBoundingClientRect();
+  const { factor, x, y } = dragFrom.zoom;
+  ownZoom.value = clampedZoom({ factor, x: x - dx / width, y: y - dy / height });
+}
+
+/** Zooms at the pointer. */
+function wheel(event: WheelEvent): void {
+  event.preventDefault();
+  const { left, top, width, height } = (event.currentTarget as HTMLCanvasElement).getBoundingClientRect();
+  const { factor, x, y } = zoom.peek();
+  const next = Math.min(Math.max(factor * Math.exp(-0.0015 * event.deltaY), 1), 24);
+  // What is under the pointer stays there.
+  const at = [(event.clientX - left) / width, (event.clientY - top) / height] as const;
+  const kept = (centre: number, share: number) => share + ((centre - share) * factor) / next;
+  ownZoom.value = clampedZoom({ factor: next, x: kept(x, at[0]), y: kept(y, at[1]) });
+}
+
 /** Selects the clicked object, and centres the 3D view on the clicked point. */
 function focusOn(event: MouseEvent): void {
   const [pixel, state] = [pixelOf(event), space.peek()];
-  if (pixel === null) return;
-  select(objectAt(pixel.x, pixel.y)?.id ?? null);
+  if (pixel === null || hasDragged) return;
   const point = pointAt(pixel);
+  if (point !== null && measure(point)) return;
+  select(objectAt(pixel.x, pixel.y)?.id ?? null);
   if (state.kind === "ready" && point !== null) state.view.focus(point);
 }
 
@@ -214,6 +258,19 @@ function Cross() {
   if (pixel === null || whole === null) return null;
   const [left, top] = [(100 * (pixel.x + 0.5)) / whole.width, (100 * (pixel.y + 0.5)) / whole.height];
   return <span class="cross" style={{ left: `${left}%`, top: `${top}%` }} />;
+}
+
+/** What the colours of the depth map mean. */
+function DepthLegend() {
+  const range = depthRangeOfScene.value;
+  if (layers.value.base !== "depth" || range === null) return null;
+  return (
+    <p class="legend" id="depth-legend">
+      <span>{range.nearM.toFixed(2)} m</span>
+      <span class="legend-bar" style={{ background: depthGradient }} />
+      <span>{range.farM.toFixed(2)} m</span>
+    </p>
+  );
 }
 
 /** Depth of the scene and of the mesh at the hovered pixel. */

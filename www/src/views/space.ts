@@ -1,12 +1,23 @@
 /** Keeps the 3D view in sync with the state of the page. */
 import { effect, signal } from "@preact/signals";
 import { toSim3 } from "sim3align/conventions";
-import { display3d, effectiveTheme, gizmo, hoveredPixel } from "../state/display.js";
+import {
+  display3d,
+  effectiveTheme,
+  gizmo,
+  gizmoSettings,
+  hoveredPixel,
+  measure,
+  measured,
+  showsBefore,
+} from "../state/display.js";
 import { place } from "../state/history.js";
 import type { ObjectModel } from "../state/object-model.js";
 import type { Pose } from "../state/pose.js";
-import { type Scene, scene, select, selected } from "../state/scene.js";
+import { type Scene, scene, select, selected, support } from "../state/scene.js";
+import { frameIndex, video } from "../state/video.js";
 import type { ObjectInput, View } from "../view3d/types.js";
+import { ground } from "./ground.js";
 
 /** The state of the 3D view. */
 export type SpaceState = { kind: "loading" } | { kind: "ready"; view: View } | { kind: "none"; reason: string };
@@ -41,6 +52,7 @@ export async function mountSpace(host: HTMLElement): Promise<void> {
           } else object.pose.value = pose;
         },
         onSelect: select,
+        onPick: measure,
         onHover: (pixel) => {
           hoveredPixel.value = pixel;
         },
@@ -48,27 +60,37 @@ export async function mountSpace(host: HTMLElement): Promise<void> {
       options,
     );
     space.value = { kind: "ready", view };
+    view.lookFrom("camera", true);
     subscribe(view, () => dragged !== undefined);
   } catch (error) {
     space.value = { kind: "none", reason: error instanceof Error ? error.message : String(error) };
   }
 }
 
-const objectInput = ({ id, colour, mask, mesh, glb }: ObjectModel): ObjectInput => ({
-  id,
-  colour,
-  mask,
-  mesh:
+const objectInput = ({ id, name, colour, mask, mesh, glb }: ObjectModel): ObjectInput => ({
+  ...{ id, name, colour, mask },
+  mesh: viewMesh(mesh, glb),
+});
+
+/** The meshes of the view. The frames of a video have one in common, which is loaded once. */
+const viewMeshes = new WeakMap<object, ObjectInput["mesh"]>();
+
+function viewMesh(mesh: ObjectModel["mesh"], glb: Uint8Array | null): ObjectInput["mesh"] {
+  const known = viewMeshes.get(mesh);
+  if (known !== undefined) return known;
+  const made =
     glb !== null
       ? { glb }
       : {
           positions: mesh.positions,
           indices: Uint32Array.from(mesh.indices ?? { length: mesh.positions.length / 3 }, (x, i) => x ?? i),
-        },
-});
+        };
+  viewMeshes.set(mesh, made);
+  return made;
+}
 
 const sceneInput = ({ depthM, width, height, camera, rgba }: Scene) => ({
-  ...{ depthM, width, height, camera },
+  ...{ depthM, width, height, camera, ground: ground.peek() ?? undefined },
   ...(rgba === null ? {} : { rgba }),
 });
 
@@ -84,29 +106,58 @@ function subscribe(view: View, isDragging: () => boolean): void {
       if (scene.peek() !== whole) return;
       stopPoses = whole.objects.map((object) => followPose(view, object, isDragging));
       view.select(selected.peek()?.id ?? null);
-      // Several objects are all in view already.
-      if (whole.objects.length === 1) view.focus();
     }, console.error);
   });
   effect(() => {
-    view.setDisplay({ ...display3d.value, theme: effectiveTheme() });
+    const hidden = (scene.value?.objects ?? []).filter(({ isShown }) => !isShown.value).map(({ id }) => id);
+    view.setDisplay({ ...display3d.value, hidden, theme: effectiveTheme() });
+  });
+  effect(() => {
+    const cameras = video.value?.cameras ?? null;
+    const own = cameras?.[frameIndex.value];
+    void scene.value;
+    view.setCameras(
+      cameras === null || own === undefined
+        ? []
+        : cameras.filter((one) => one !== own).map((one) => seenFrom(own, one)),
+    );
   });
   effect(() => view.select(selected.value?.id ?? null));
-  effect(() => view.setGizmo(gizmo.value));
+  effect(() => view.setGizmo(gizmo.value, gizmoSettings.value));
+  effect(() => view.setGround(support.value));
+  effect(() => view.measure(measured.value ?? []));
+}
+
+/** The pose of a camera in the frame of another, column-major; both are given as camera to world, row by row. */
+function seenFrom(own: readonly number[], other: readonly number[]): number[] {
+  const at = (m: readonly number[], row: number, column: number) => m[4 * row + column] ?? 0;
+  const result = new Array<number>(16).fill(0);
+  result[15] = 1;
+  // The inverse of a rigid motion: Rᵀ (x − t).
+  for (const row of [0, 1, 2]) {
+    for (const column of [0, 1, 2, 3]) {
+      for (const k of [0, 1, 2]) {
+        const moved = column === 3 ? at(other, k, 3) - at(own, k, 3) : at(other, k, column);
+        result[4 * column + row] = (result[4 * column + row] ?? 0) + at(own, k, row) * moved;
+      }
+    }
+  }
+  return result;
 }
 
 function followPose(view: View, object: ObjectModel, isDragging: () => boolean): () => void {
   // If the view loads after the alignment, it still animates from the start pose.
   let shown: Pose = object.start;
   return effect(() => {
-    const pose = object.pose.value;
+    const pose = showsBefore.value ? object.start : object.pose.value;
     if (isDragging()) {
       shown = pose;
       return;
     }
-    const isMoved = pose !== shown && pose.source !== "hand";
+    const isMoved = pose !== shown && pose.source !== "hand" && pose.source !== "tracked";
     const animate = isMoved ? { from: shown.transform.matrix, durationMs: ANIMATION_MS } : undefined;
     shown = pose;
-    view.setPose(object.id, pose.transform.matrix, animate).catch(console.error);
+    const shownAt = view.setPose(object.id, pose.transform.matrix, animate);
+    shownAt.then(() => isMoved && pose === object.pose.peek() && view.frame(), console.error);
   });
 }

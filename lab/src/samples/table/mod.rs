@@ -1,0 +1,233 @@
+//! A generated photo scene for the page: a teapot, a mug and a carton on a table, with a photo, a depth map, masks, and the
+//! coloured meshes that a generator would make of them.
+
+mod light;
+mod paint;
+mod surface;
+
+use std::path::Path;
+
+use glam::Vec3;
+use nalgebra::{Matrix3, Rotation3, Vector3};
+use serde_json::json;
+
+use self::light::Light;
+use self::paint::Paint;
+use self::surface::Surface;
+use crate::case_folder::contents::case_files;
+use crate::case_folder::write::{glb_colored, rgb_png};
+use crate::cases::distortion::hallucinate;
+use crate::cases::families::draw_from;
+use crate::cases::scene::{background, camera_at, put_before, put_down_turned};
+use crate::draws::mixed;
+use crate::files::write;
+use crate::scenes::DEPTH_SCALE;
+use sim3align::evidence::observation::Observation;
+use sim3align_geometry::error::{Error, ErrorCode, Result};
+use sim3align_geometry::image::{DepthMap, Mask};
+use sim3align_geometry::mesh::Mesh;
+use sim3align_geometry::pinhole::Pinhole;
+use sim3align_geometry::random::Random;
+use sim3align_geometry::rasteriser::Rasteriser;
+use sim3align_geometry::similarity::{Similarity, vec3, vector3};
+
+const WIDTH: usize = 640;
+const HEIGHT: usize = 480;
+/// Rays per pixel and direction of the photo.
+const RAYS: usize = 2;
+/// Triangles are split until no edge is longer: the colours of vertices then show the print.
+const MAX_EDGE_M: f32 = 0.008;
+/// Where the wall is, behind the origin.
+const WALL_M: f64 = 0.42;
+/// Half the range of the noise of the depth map, as a share of depth.
+const NOISE: f64 = 0.0006;
+const SHAPE_STREAM: u64 = 0x7461_626c;
+const NOISE_STREAM: u64 = 0x6e6f_6973;
+
+/// An object of the scene: its family, its paint, its place on the table in metres, and its heading in degrees.
+struct Place(&'static str, Paint, [f64; 2], f64);
+
+const PLACES: [Place; 3] = [
+    Place("teapot", Paint::Glazed, [-0.075, 0.035], 205.0),
+    Place("mug", Paint::Striped, [0.105, -0.06], 35.0),
+    Place("box", Paint::Carton, [0.125, 0.1], -24.0),
+];
+
+/// An object at its place.
+struct Placed {
+    family: &'static str,
+    paint: Paint,
+    /// In the world frame: metres, z up, the table at z = 0.
+    surface: Surface,
+    world_from_object: Similarity,
+}
+
+/// The scene.
+pub struct TableScene {
+    seed: u64,
+    camera: Pinhole,
+    camera_from_world: Similarity,
+    objects: Vec<Placed>,
+}
+
+impl TableScene {
+    /// The scene of a seed, which varies the shapes; the same seed gives the same bits.
+    ///
+    /// # Errors
+    /// Only in case of a bug in the generator.
+    pub fn new(seed: u64) -> Result<Self> {
+        let mut objects = Vec::new();
+        for (index, Place(family, paint, at, heading)) in PLACES.into_iter().enumerate() {
+            let random = &mut Random::new(mixed([seed, index as u64]), SHAPE_STREAM);
+            let object = draw_from(family, random)?.ok_or_else(|| {
+                let found = format!("no family {family}");
+                Error::new(ErrorCode::Internal, "family", found, "a known family", "Please report it.")
+            })?;
+            let (mesh, _) = put_down_turned(&object, &Matrix3::identity())?;
+            let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), f64::to_radians(heading)).into_inner();
+            let world_from_object = Similarity::from_parts(1.0, turn, Vector3::new(at[0], at[1], 0.0))?;
+            let surface = Surface::new(&surface::split(&mesh, MAX_EDGE_M)?, &world_from_object)?;
+            objects.push(Placed { family, paint, surface, world_from_object });
+        }
+        let eye = Vector3::new(-0.05, -0.62, 0.36);
+        let forward = (Vector3::new(0.02, 0.02, 0.06) - eye).normalize();
+        let camera = Pinhole::new(700.0, 700.0, 0.5 * WIDTH as f64 - 0.5, 0.5 * HEIGHT as f64 - 0.5)?;
+        Ok(Self { seed, camera, camera_from_world: camera_at(&eye, &forward, 0.0)?, objects })
+    }
+
+    /// The photo, 8-bit sRGB.
+    fn photo(&self) -> Result<Vec<[u8; 3]>> {
+        let (width, height) = (RAYS * WIDTH, RAYS * HEIGHT);
+        let camera = finer(&self.camera, RAYS)?;
+        let light = Light::new(self.objects.iter().map(|object| object.surface.mesh()))?;
+        let world_from_camera = self.camera_from_world.inverse();
+        let mut rasteriser = Rasteriser::new();
+        let mut nearest = background(&self.camera_from_world, &camera, (-Vector3::y(), WALL_M), width, height);
+        let mut hit: Vec<Option<(usize, u32)>> = vec![None; width * height];
+        for (index, object) in self.objects.iter().enumerate() {
+            rasteriser.render(object.surface.mesh(), &self.camera_from_world, &camera, width, height);
+            for (i, (&z, &triangle)) in rasteriser.depth().iter().zip(rasteriser.triangles()).enumerate() {
+                if z > 0.0 && (nearest[i] == 0.0 || z < nearest[i]) {
+                    (nearest[i], hit[i]) = (z, Some((index, triangle)));
+                }
+            }
+        }
+        let eye = world_from_camera.translation;
+        let shade = |i: usize| {
+            let (u, v) = ((i % width) as f64, (i / width) as f64);
+            let z = f64::from(nearest[i]);
+            let seen = Vector3::new((u - camera.cx) / camera.fx * z, (v - camera.cy) / camera.fy * z, z);
+            let point = world_from_camera.apply(seen);
+            let (albedo, normal, gloss) = match hit[i] {
+                Some((index, triangle)) => {
+                    let object = &self.objects[index];
+                    let (place, normal) = object.surface.at(triangle, &point);
+                    (object.paint.at(&place, &object.surface.size()), normal, object.paint.gloss())
+                }
+                None if point.z < 0.002 => (paint::table(&point), Vector3::z(), 0.06),
+                None => (paint::wall(&point), -Vector3::y(), 0.0),
+            };
+            light.shade(albedo, gloss, &point, &normal, &(eye - point).normalize())
+        };
+        let mean = |u: usize, v: usize| {
+            let rays = (0..RAYS * RAYS).map(|k| (RAYS * v + k / RAYS) * width + RAYS * u + k % RAYS);
+            rays.map(shade).sum::<Vector3<f64>>() / (RAYS * RAYS) as f64
+        };
+        let pixels = (0..WIDTH * HEIGHT).map(|i| light::encoded(mean(i % WIDTH, i / WIDTH)));
+        Ok(pixels.collect())
+    }
+
+    /// The files of the scene: `depth.png`, `camera.json` and `rgb.png`, and `objects/NAME/` with `mask.png`, `mesh.glb` and
+    /// `gt.json`; paths and contents.
+    ///
+    /// # Errors
+    /// Only in case of a bug in the generator.
+    pub fn files(&self) -> Result<Vec<(String, Vec<u8>)>> {
+        let mut rasteriser = Rasteriser::new();
+        let alone: Vec<(Vec<f32>, Vec<u32>)> = self
+            .objects
+            .iter()
+            .map(|object| {
+                rasteriser.render(object.surface.mesh(), &self.camera_from_world, &self.camera, WIDTH, HEIGHT);
+                (rasteriser.depth().to_vec(), rasteriser.triangles().to_vec())
+            })
+            .collect();
+        let mut depth = background(&self.camera_from_world, &self.camera, (-Vector3::y(), WALL_M), WIDTH, HEIGHT);
+        alone.iter().for_each(|(object, _)| put_before(&mut depth, object));
+        let is_seen = |k: usize, i: usize| alone[k].0[i] > 0.0 && alone[k].0[i] <= depth[i];
+        let random = &mut Random::new(self.seed, NOISE_STREAM);
+        let noisy = depth.iter().map(|z| z * (1.0 + NOISE * (random.uniform() + random.uniform() - 1.0)) as f32);
+        let readings = DepthMap::from_metres(WIDTH, HEIGHT, noisy.collect())?;
+        let mut files = vec![("rgb.png".to_owned(), rgb_png(&self.photo()?, WIDTH, HEIGHT)?)];
+        for (k, object) in self.objects.iter().enumerate() {
+            let mask = (0..WIDTH * HEIGHT).map(|i| u8::from(is_seen(k, i))).collect();
+            let mask = Mask::new("mask", WIDTH, HEIGHT, mask)?;
+            let (mesh, colors, world_from_mesh) = self.generated(k, &alone[k].1, |i| is_seen(k, i))?;
+            let note = format!("generated: {} on a table, seed {}", object.family, self.seed);
+            let truth = json!({ "symmetry": "none", "note": note });
+            let observation = Observation::new(readings.clone(), mask, self.camera)?;
+            let pose = self.camera_from_world.compose(&world_from_mesh);
+            for (name, bytes) in case_files(&observation, &mesh, &pose, truth, Some(DEPTH_SCALE))? {
+                let bytes = if name == "mesh.glb" { glb_colored(&mesh, &colors) } else { bytes };
+                match name {
+                    "depth.png" | "camera.json" if k > 0 => {}
+                    "depth.png" | "camera.json" => files.push((name.to_owned(), bytes)),
+                    _ => files.push((format!("objects/{}/{name}", object.family), bytes)),
+                }
+            }
+        }
+        Ok(files)
+    }
+
+    /// What a generator makes of an object: its mesh in a frame of its own, the linear colours of its vertices, and its
+    /// true pose in the world.
+    fn generated(
+        &self,
+        k: usize,
+        triangles: &[u32],
+        is_seen: impl Fn(usize) -> bool,
+    ) -> Result<(Mesh, Vec<[u8; 3]>, Similarity)> {
+        let Placed { paint, surface, world_from_object, .. } = &self.objects[k];
+        let mut seen = vec![false; surface.mesh().positions().len()];
+        for &triangle in (0..).zip(triangles).filter(|(i, _)| is_seen(*i)).map(|(_, triangle)| triangle) {
+            surface.mesh().triangles()[triangle as usize].iter().for_each(|&vertex| seen[vertex as usize] = true);
+        }
+        let object = surface.in_object()?;
+        let invented = hallucinate(&object, &seen, 0.012, mixed([self.seed, k as u64]))?;
+        let (mesh, object_from_mesh) = upright(&invented)?;
+        let places = object.positions().iter().map(|p| Vector3::new(p.x, p.y, p.z).cast::<f64>());
+        let colors = places.map(|place| light::bytes(paint.at(&place, &surface.size()))).collect();
+        Ok((mesh, colors, world_from_object.compose(&object_from_mesh)))
+    }
+
+    /// Writes the files to a folder.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidArgument`] if a file cannot be written, and those of [`TableScene::files`].
+    pub fn write(&self, folder: &Path) -> Result<()> {
+        for (path, bytes) in self.files()? {
+            write(&folder.join(path), &bytes)?;
+        }
+        Ok(())
+    }
+}
+
+/// The mesh as most generators deliver it, centred, its box's longest side 1, with y up; and the way back,
+/// `object_from_mesh`.
+fn upright(mesh: &Mesh) -> Result<(Mesh, Similarity)> {
+    let low = mesh.positions().iter().copied().fold(Vec3::INFINITY, Vec3::min);
+    let high = mesh.positions().iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
+    let scale = f64::from((high - low).max_element());
+    let turn = Matrix3::new(1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0);
+    let object_from_mesh = Similarity::from_parts(scale, turn, vector3(0.5 * (low + high)))?;
+    let back = object_from_mesh.inverse();
+    let positions = mesh.positions().iter().map(|p| vec3(&back.apply(vector3(*p)))).collect();
+    Ok((Mesh::new(positions, mesh.triangles().to_vec())?, object_from_mesh))
+}
+
+/// The camera of an image with more pixels.
+fn finer(camera: &Pinhole, times: usize) -> Result<Pinhole> {
+    let times = times as f64;
+    let centre = |c: f64| (c + 0.5) * times - 0.5;
+    Pinhole::new(camera.fx * times, camera.fy * times, centre(camera.cx), centre(camera.cy))
+}

@@ -1,0 +1,210 @@
+/** Wrong inputs: each says at its own field what is wrong and what helps, and nothing runs meanwhile. */
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { npy, png } from "../support/files.js";
+import {
+  cameraFile,
+  choose,
+  drop,
+  type Files,
+  files,
+  HEIGHT,
+  maskPng,
+  pinhole,
+  seen,
+  WIDTH,
+} from "../support/page-files.js";
+import { type SitePage, SiteTest } from "../support/site.js";
+
+let site: SiteTest;
+before(async () => {
+  site = await SiteTest.start();
+});
+after(() => site?.stop());
+
+/** The problems that the sheet shows, by field. */
+async function problems(opened: SitePage): Promise<Record<string, string>> {
+  const sheet = await opened.sheet();
+  const alerts = await sheet
+    .locator("[role=alert]")
+    .evaluateAll((all) => all.map(({ id, textContent }) => [id, textContent ?? ""]));
+  return Object.fromEntries(alerts.map(([id = "", text]) => [id.replace(/-error(-\d+)?$/, ""), text ?? ""]));
+}
+
+const of = (json: unknown) => Buffer.from(JSON.stringify(json));
+const pixels = WIDTH * HEIGHT;
+const eightBit = png(new Uint8Array(pixels).fill(9), WIDTH, HEIGHT);
+
+test("a rejected file leaves the scene, its files and its name as they were", async () => {
+  const opened = await site.open();
+  const { page } = opened;
+  await drop(opened, files);
+  await opened.shows("Own files");
+  const dimensions = await opened.dimensions();
+  for (const [field, name, bytes] of [
+    ["depth", "grey.png", eightBit],
+    ["mesh", "notes.glb", Buffer.from("no mesh")],
+  ] as const) {
+    await page.click("#edit-files");
+    await opened.sheet();
+    await choose(opened, field, name, bytes);
+    const found = await problems(opened);
+    assert.deepEqual(Object.keys(found), [field], JSON.stringify(found));
+    assert.ok(await page.isDisabled("#intake-open"));
+    await page.keyboard.press("Escape");
+    await page.locator(".intake").waitFor({ state: "detached" });
+    assert.doesNotMatch((await page.textContent("#inputs")) ?? "", new RegExp(name));
+  }
+  // Keys do not run anything behind the sheet either.
+  await page.click("#edit-files");
+  await opened.sheet();
+  await choose(opened, "depth", "grey.png", eightBit);
+  await problems(opened);
+  await page.locator("#depth-file").press("a");
+  assert.equal(await page.locator("#cancel").count(), 0);
+  await page.keyboard.press("Escape");
+  await page.click("#align");
+  await opened.aligned();
+  assert.deepEqual(await opened.dimensions(), dimensions);
+  assert.match((await page.textContent("#inputs")) ?? "", /depth\.npy.*camera\.json/);
+  await opened.close();
+});
+
+const wrong: readonly (readonly [title: string, changed: Files, field: string, says: RegExp])[] = [
+  ["an 8-bit depth map", { "depth.npy": new Uint8Array(), "depth.png": eightBit }, "depth", /8.bit.*expected.*16/i],
+  ["no reading at all", { "depth.npy": npy(new Float32Array(pixels), HEIGHT, WIDTH) }, "depth", /no reading/],
+  [
+    "millimetres for metres",
+    {
+      "depth.npy": npy(
+        seen.depth.map((z) => 1000 * z),
+        HEIGHT,
+        WIDTH,
+      ),
+    },
+    "depth",
+    /millimetres/,
+  ],
+  ["an empty mask", { "mask.png": maskPng(new Uint8Array(pixels)) }, "mask", /empty/],
+  ["a mask of everything", { "mask.png": maskPng(new Uint8Array(pixels).fill(1)) }, "mask", /whole image/],
+  [
+    "a mask of another size",
+    { "mask.png": png(new Uint8Array(64).fill(255), 8, 8) },
+    "mask",
+    /8 × 8 pixels; expected 160 × 120/,
+  ],
+  [
+    "a mask without depth",
+    {
+      "mask.png": maskPng(seen.mask),
+      "depth.npy": npy(
+        seen.depth.map((z, i) => (seen.mask[i] === 0 ? z || 1 : 0)),
+        HEIGHT,
+        WIDTH,
+      ),
+    },
+    "mask",
+    /No pixel of the mask has a depth/,
+  ],
+  ["a focal length of 0", { "camera.json": of({ ...pinhole, fx: 0 }) }, "camera", /fx/],
+  ["a matrix with a row missing", { "camera.json": of({ K: [300, 0, 80, 0, 300, 60] }) }, "camera", /3 × 3/],
+  [
+    "intrinsics of another image",
+    { "camera.json": of({ ...pinhole, width: 640, height: 480 }) },
+    "camera",
+    /160 × 120/,
+  ],
+  ["a field of view of 500°", { "camera.json": of({ fovYDeg: 500 }) }, "camera", /field of view|fov/i],
+  [
+    "a damaged mesh",
+    { "mesh.obj": new Uint8Array(), "mesh.glb": Uint8Array.of(103, 108, 84, 70, 1) },
+    "mesh",
+    /expected/,
+  ],
+  [
+    "a square photo",
+    { "photo.png": png(new Uint8Array(400).fill(90), 20, 20) },
+    "photo",
+    /20 × 20, the depth map 160 × 120/,
+  ],
+  ["a damaged photo", { "photo.jpg": Uint8Array.of(1, 2, 3) }, "photo", /cannot decode/],
+];
+
+for (const [title, changed, field, says] of wrong) {
+  test(`${title} is an error of the field ${field} alone`, async () => {
+    const opened = await site.open();
+    const dropped = Object.entries({ ...files, ...changed }).filter(([, bytes]) => bytes.length > 0);
+    await drop(opened, Object.fromEntries(dropped));
+    const found = await problems(opened);
+    assert.deepEqual(Object.keys(found), [field], JSON.stringify(found));
+    assert.match(found[field] ?? "", says);
+    assert.doesNotMatch(found[field] ?? "", /cut short/);
+    assert.ok(await opened.page.isDisabled("#intake-open"));
+    const ids = (await opened.page.getAttribute(`#${field}-file`, "aria-describedby")) ?? "";
+    assert.match(ids, new RegExp(`^${field}-error`));
+    assert.equal(await opened.page.getAttribute("main", "data-scene"), "Mug");
+    await opened.close();
+  });
+}
+
+test("remedies are buttons", async () => {
+  const opened = await site.open();
+  const { page } = opened;
+  const small = png(
+    new Uint8Array(pixels / 4).map(
+      (_, i) => 255 * (seen.mask[2 * (i % (WIDTH / 2)) + 2 * WIDTH * Math.floor(i / (WIDTH / 2))] ?? 0),
+    ),
+    WIDTH / 2,
+    HEIGHT / 2,
+  );
+  await drop(opened, {
+    ...files,
+    "mask.png": small,
+    "depth.npy": npy(
+      seen.depth.map((z) => 1000 * z),
+      HEIGHT,
+      WIDTH,
+    ),
+    "photo.png": png(new Uint8Array(400).fill(90), 20, 20),
+  });
+  await opened.sheet();
+  for (const name of ["Leave out the photo", "Use millimetres"]) {
+    await page.getByRole("button", { name }).click();
+    await opened.sheet();
+  }
+  // Not `check`: the sheet closes with the click.
+  await page.click("#resize-masks");
+  await opened.shows("Own files");
+  await opened.close();
+});
+
+test("a damaged archive and unknown files say so, at no other field", async () => {
+  const opened = await site.open();
+  const { page } = opened;
+  await drop(opened, { "scene.zip": Buffer.from("PK no archive") });
+  assert.match((await problems(opened)).files ?? "", /scene\.zip is not a readable zip archive/);
+  await page.keyboard.press("Escape");
+  await drop(opened, { "notes.txt": Buffer.from("hello") });
+  assert.match((await problems(opened)).files ?? "", /None of the files is an input \(notes\.txt\)/);
+  await opened.close();
+});
+
+test("numbers out of range are errors of the camera", async () => {
+  const opened = await site.open();
+  const { page } = opened;
+  await drop(opened, files);
+  await opened.shows("Own files");
+  await page.click("#edit-files");
+  await opened.sheet();
+  await page.fill("#camera-fov", "500");
+  await page.press("#camera-fov", "Enter");
+  assert.match((await problems(opened)).camera ?? "", /between 1° and 170°/);
+  await page.fill("#camera-fx", "-3");
+  await page.press("#camera-fx", "Enter");
+  assert.match((await problems(opened)).camera ?? "", /Enter|greater than 0/);
+  assert.deepEqual(Object.keys(await problems(opened)), ["camera"]);
+  await choose(opened, "camera", "camera.json", cameraFile);
+  await opened.sheet();
+  assert.ok(await page.isEnabled("#intake-open"));
+  await opened.close();
+});

@@ -1,0 +1,142 @@
+/** The decision about results: accept, fix, next; what helps when unsure; the objects of a scene. */
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { drop, files } from "../support/page-files.js";
+import { PATIENCE, SiteTest } from "../support/site.js";
+
+let site: SiteTest;
+before(async () => {
+  site = await SiteTest.start();
+});
+after(() => site?.stop());
+
+test("accepting goes on to the next object, and another pose has to be accepted anew", async () => {
+  const opened = await site.open("#sample=desk");
+  const { page } = opened;
+  const chosen = async () => (await page.textContent(".objects [aria-pressed=true] .name")) ?? "";
+  const seen: string[] = [];
+  for (let i = 0; i < 3; i++) {
+    seen.push(await chosen());
+    await page.click("#accept");
+  }
+  assert.equal(new Set(seen).size, 3);
+  await opened.says(/All objects are accepted/);
+  assert.equal(await page.locator(".objects .confidence", { hasText: "✓" }).count(), 3);
+  await page.locator(".objects .select").first().click();
+  assert.match((await page.textContent("#accept")) ?? "", /Accepted/);
+  await page.click(".hand-panel .more summary");
+  await page.getByRole("button", { name: "Move left", exact: true }).click();
+  assert.equal(await page.textContent("#accept"), "Accept");
+  await page.click("#next");
+  await page.keyboard.press("n");
+  assert.equal(await chosen(), seen[0]);
+  await opened.close();
+});
+
+test("Fix shows the handles, with the focus on them", async () => {
+  const opened = await site.open();
+  const { page } = opened;
+  await page.click("#fix");
+  assert.equal(await page.evaluate(() => document.activeElement?.closest(".hand-panel") !== null), true);
+  await opened.close();
+});
+
+test("an unsure result says what helps, and a known size is tried at once", async () => {
+  const opened = await site.open("#sample=hammer&quality=fast");
+  const { page } = opened;
+  // The mesh of another object: nothing fits.
+  await page.click("#edit-files");
+  const sheet = await opened.sheet();
+  await page.setInputFiles("#mesh-file", {
+    ...{ name: "other.obj", mimeType: "" },
+    buffer: Buffer.from(files["mesh.obj"] as Uint8Array),
+  });
+  await opened.sheet();
+  await sheet.locator("#intake-open").click();
+  await opened.shows("Own files");
+  await page.locator(".remedies").waitFor(PATIENCE);
+  await page.selectOption('.remedies [aria-label="Side"]', "3");
+  await page.fill("#remedy-size", "20");
+  await page.press("#remedy-size", "Enter");
+  await page.locator("#cancel").waitFor({ state: "detached", ...PATIENCE });
+  await opened.aligned();
+  assert.equal(Math.max(...(await opened.dimensions())), 20);
+  assert.ok(await page.isChecked("#lock-scale"));
+  await opened.close();
+});
+
+test("alternatives are pictures of their poses", async () => {
+  const opened = await site.open("#sample=desk&symmetry=none");
+  const { page } = opened;
+  // Alone, the box could be turned; the others tell how it stands.
+  await page.click("#align");
+  await page.locator("#cancel").waitFor({ state: "detached", ...PATIENCE });
+  await opened.aligned();
+  const pictures = page.locator(".alternatives canvas");
+  assert.ok((await pictures.count()) > 1);
+  const content = await pictures.evaluateAll((all) => all.map((one) => (one as HTMLCanvasElement).toDataURL()));
+  assert.equal(new Set(content).size, content.length);
+  await opened.close();
+});
+
+test("objects are hidden, locked, renamed and removed", async () => {
+  const opened = await site.open("#sample=desk");
+  const { page } = opened;
+  const rows = page.locator(".objects li");
+  const before = await opened.imagePixels();
+  await page.getByRole("button", { name: "Show Teapot" }).click();
+  const hidden = await opened.imagePixels();
+  assert.notDeepEqual(hidden.data, before.data);
+  await page.getByRole("button", { name: "Show Teapot" }).click();
+  assert.deepEqual((await opened.imagePixels()).data, before.data);
+
+  await page.locator(".objects .select", { hasText: "Box" }).dblclick();
+  await page.keyboard.type("Tea box");
+  await page.keyboard.press("Enter");
+  assert.equal(await rows.nth(0).locator(".name").textContent(), "Tea box");
+  const json = JSON.parse(`${(await opened.saved("JSON")).bytes}`) as object;
+  assert.ok("Tea box" in json);
+
+  // A locked pose stays where a person has put it.
+  await page.click(".hand-panel .more summary");
+  await page.getByRole("button", { name: "Move left", exact: true }).click();
+  await opened.isNow("hand");
+  const moved = await page.textContent("#centre");
+  await page.getByRole("button", { name: "Lock Tea box" }).click();
+  await page.click("#align-all");
+  await opened.says(/^Aligned 2 objects/);
+  assert.equal(await page.textContent("#centre"), moved);
+  assert.equal(await opened.source(), "hand");
+
+  await page.getByRole("button", { name: "Remove Animal" }).click();
+  assert.equal(await rows.count(), 2);
+  assert.equal(await page.textContent("#centre"), moved);
+  assert.ok(!page.url().includes("sample="), "a link to another scene");
+  await opened.close();
+});
+
+test("what an object stands on is said, and the scene is saved as one GLB", async () => {
+  const opened = await site.open("");
+  const { page } = opened;
+  await page.click("#align-all");
+  await page.locator(".contact", { hasText: /^Stands on the ground/ }).waitFor(PATIENCE);
+  const { name, bytes } = await opened.saved("GLB of the scene");
+  assert.equal(name, "scene.glb");
+  const length = bytes.readUInt32LE(12);
+  const { nodes } = JSON.parse(bytes.subarray(20, 20 + length).toString()) as { nodes: { name?: string }[] };
+  for (const object of ["Teapot", "Mug", "Box"])
+    assert.ok(
+      nodes.some((node) => node.name === object),
+      object,
+    );
+  await opened.close();
+});
+
+test("a stranger goes from a dropped folder to a GLB with one click", async () => {
+  const opened = await site.open("");
+  await drop(opened, files);
+  await opened.shows("Own files");
+  const { bytes } = await opened.saved("GLB");
+  assert.equal(bytes.subarray(0, 4).toString(), "glTF");
+  await opened.close();
+});

@@ -1,0 +1,86 @@
+/** Nothing is lost: the scene, hand work and decisions survive a reload, and are saved and opened as one file. */
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { drop, files } from "../support/page-files.js";
+import { PATIENCE, type SitePage, SiteTest } from "../support/site.js";
+
+let site: SiteTest;
+before(async () => {
+  site = await SiteTest.start();
+});
+after(() => site?.stop());
+
+/** Opens own files, moves the mesh by hand, and accepts the pose. */
+async function worked(opened: SitePage): Promise<string> {
+  const { page } = opened;
+  await drop(opened, files);
+  await opened.shows("Own files");
+  await page.click(".hand-panel .more summary");
+  await page.getByRole("button", { name: "Move left", exact: true }).click();
+  await page.check("#lock-scale");
+  await opened.isNow("hand");
+  await page.click("#accept");
+  return (await page.textContent("#centre")) ?? "";
+}
+
+/** Whether leaving the page would ask. */
+const asks = ({ page }: SitePage) =>
+  page.evaluate(() => !dispatchEvent(new Event("beforeunload", { cancelable: true })));
+
+/** Waits until the browser has kept everything. */
+async function kept(opened: SitePage): Promise<void> {
+  const end = Date.now() + PATIENCE.timeout;
+  while (await asks(opened)) {
+    assert.ok(Date.now() < end, "the session is not stored");
+    await opened.page.waitForTimeout(100);
+  }
+}
+
+/** That the scene is as `worked` has left it. */
+async function isAsLeft(opened: SitePage, centre: string): Promise<void> {
+  const { page } = opened;
+  await page.locator('main[data-scene="Own files"]').waitFor(PATIENCE);
+  await opened.isNow("hand");
+  assert.equal(await page.textContent("#centre"), centre);
+  assert.ok(await page.isChecked("#lock-scale"));
+  assert.match((await page.textContent("#accept")) ?? "", /Accepted/);
+  assert.ok((await opened.metric("iou")) > 0.3);
+}
+
+test("a reload restores the scene, the pose and the decision; unstored work asks before it is left", async () => {
+  const opened = await site.open();
+  const { page } = opened;
+  const centre = await worked(opened);
+  await kept(opened);
+  // Changes of this moment are not stored yet.
+  await page.getByRole("button", { name: "Move right", exact: true }).click();
+  await page.click("#undo");
+  await page.click("#accept");
+  await kept(opened);
+  await page.reload();
+  await isAsLeft(opened, centre);
+  // The restored scene can be aligned, and its files can be changed.
+  await page.click("#align");
+  await opened.aligned();
+  await page.click("#edit-files");
+  await opened.sheet();
+  await page.click("#intake-cancel");
+  await page.click("#forget");
+  await page.locator('main[data-scene="Table"]').waitFor(PATIENCE);
+  await page.reload();
+  await opened.shows("Table");
+  await opened.close();
+});
+
+test("a session is saved and opened as one file", async () => {
+  const opened = await site.open();
+  const { page } = opened;
+  const centre = await worked(opened);
+  const { name, bytes } = await opened.saved("Session");
+  assert.equal(name, "own-files.sim3align.zip");
+  await page.selectOption("#sample", "mug");
+  await opened.shows("Mug");
+  await drop(opened, { [name]: bytes });
+  await isAsLeft(opened, centre);
+  await opened.close();
+});

@@ -1,0 +1,168 @@
+/** The views: framing, ground, keyboard, measuring, before and after, numbers, wheel and drag in the image. */
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { npy } from "../support/files.js";
+import { dropFolder, files, HEIGHT, pinhole, WIDTH } from "../support/page-files.js";
+import { mesh, render, truth } from "../support/scene.js";
+import { PATIENCE, type SitePage, SiteTest } from "../support/site.js";
+
+let site: SiteTest;
+before(async () => {
+  site = await SiteTest.start(["!--enable-unsafe-webgpu"]);
+});
+after(() => site?.stop());
+
+const ready = ({ page }: SitePage) => page.locator('.view-host[data-backend="webgl"] canvas').waitFor(PATIENCE);
+
+/** The box of the pixels that differ from the background, as shares of the view: left, top, right, bottom. */
+async function drawn({ page }: SitePage): Promise<[number, number, number, number]> {
+  const png = await page.locator(".space .view-host").screenshot();
+  return page.evaluate(async (base64) => {
+    const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+    const bitmap = await createImageBitmap(new Blob([bytes]));
+    const { width, height } = bitmap;
+    const context = new OffscreenCanvas(width, height).getContext("2d");
+    context?.drawImage(bitmap, 0, 0);
+    const { data } = context?.getImageData(0, 0, width, height) ?? { data: new Uint8ClampedArray() };
+    let [left, top, right, bottom] = [1, 1, 0, 0];
+    // Without the border, which may cover a part of a pixel.
+    const edge = 3;
+    const ground = 4 * (edge * width + edge);
+    for (let i = 0; i < width * height; i++) {
+      const [x, y] = [i % width, Math.floor(i / width)];
+      if (x < edge || y < edge || x >= width - edge || y >= height - edge) continue;
+      if ([0, 1, 2].every((k) => Math.abs((data[4 * i + k] ?? 0) - (data[ground + k] ?? 0)) <= 24)) continue;
+      [left, right] = [Math.min(left, x / width), Math.max(right, x / width)];
+      [top, bottom] = [Math.min(top, y / height), Math.max(bottom, y / height)];
+    }
+    return [left, top, right, bottom] as [number, number, number, number];
+  }, png.toString("base64"));
+}
+
+/** What is wrong with where an object is drawn. */
+function faultOf(box: [number, number, number, number]): string | null {
+  const [left, top, right, bottom] = box;
+  const text = box.map((x) => x.toFixed(2)).join(", ");
+  if (bottom - top < 0.25 && right - left < 0.25) return `small: ${text}`;
+  if (left < 0.02 || top < 0.02 || right > 0.98 || bottom > 0.98) return `cut: ${text}`;
+  const isAside = Math.abs((left + right) / 2 - 0.5) > 0.25 || Math.abs((top + bottom) / 2 - 0.5) > 0.25;
+  return isAside ? `aside: ${text}` : null;
+}
+
+const show = ({ page }: SitePage, name: string, isShown: boolean) =>
+  page.locator(".space").getByLabel(name, { exact: true }).setChecked(isShown);
+
+const look = ({ page }: SitePage, name: string) => page.getByRole("button", { name, exact: true }).click();
+
+test("objects of every size and distance are framed, before and after an alignment", async () => {
+  const opened = await site.open("#sample=mug", { reducedMotion: "reduce" });
+  await ready(opened);
+  for (const name of ["Points", "Sizes"]) await show(opened, name, false);
+  for (const factor of [1, 30, 0.1]) {
+    if (factor !== 1) {
+      const pose = { ...truth, scale: factor * truth.scale, translation: truth.translation.map((x) => factor * x) };
+      const seen = render(mesh, pose as typeof truth, pinhole, WIDTH, HEIGHT, 1.5 * factor);
+      const name = `times ${factor}`;
+      const own = { ...files, "depth.npy": npy(seen.depth, HEIGHT, WIDTH) };
+      const inFolder = Object.entries(own).map(([file, bytes]) => [`${name}/${file}`, bytes]);
+      await dropFolder(opened, Object.fromEntries(inFolder));
+      await opened.shows(name);
+    }
+    for (const from of ["Camera", "Three-quarter", "Top", "Side"]) {
+      await look(opened, from);
+      // Software renderers may need some time for a frame.
+      for (let attempt = 0; ; attempt++) {
+        const wrong = faultOf(await drawn(opened));
+        if (wrong === null) break;
+        assert.ok(attempt < 40, `${factor} × the size from ${from}: ${wrong}`);
+        await opened.page.waitForTimeout(200);
+      }
+    }
+  }
+  await opened.close();
+});
+
+test("the 3D view is orbited by keys, and shows the poses before", async () => {
+  const opened = await site.open("#sample=mug", { reducedMotion: "reduce" });
+  const { page } = opened;
+  await ready(opened);
+  await look(opened, "Three-quarter");
+  await page.locator(".space canvas").focus();
+  const picture = async () => (await page.locator(".space .view-host").screenshot()).toString("base64");
+  const first = await picture();
+  await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("+");
+  await page.waitForTimeout(300);
+  const turned = await picture();
+  assert.notEqual(turned, first);
+  await look(opened, "Before");
+  await page.waitForTimeout(300);
+  assert.notEqual(await picture(), turned);
+  assert.equal(await opened.source(), "aligned");
+  await look(opened, "Before");
+  await opened.close();
+});
+
+test("two clicks measure a distance", async () => {
+  const opened = await site.open();
+  const { page } = opened;
+  await ready(opened);
+  await page.click("#measure");
+  assert.match((await page.textContent("#measured")) ?? "", /Click a point/);
+  const canvas = page.locator(".image canvas");
+  const { width, height } = (await canvas.boundingBox()) ?? { width: 0, height: 0 };
+  await canvas.click({ position: { x: 0.5 * width, y: 0.45 * height } });
+  await canvas.click({ position: { x: 0.5 * width, y: 0.55 * height } });
+  const length = Number.parseFloat((await page.textContent("#measured")) ?? "");
+  assert.ok(length > 0.5 && length < 12, `${length} cm on a mug`);
+  await page.click("#measure");
+  assert.equal(await page.locator("#measured").count(), 0);
+  await opened.close();
+});
+
+test("the pose is entered in numbers, as steps that can be undone", async () => {
+  const opened = await site.open();
+  const { page } = opened;
+  await page.click(".hand-panel .more summary");
+  const at = Number(await page.inputValue("#centre-x"));
+  await page.fill("#centre-x", `${at + 2}`);
+  await page.press("#centre-x", "Enter");
+  await opened.isNow("hand");
+  assert.ok(Math.abs(Number(await page.inputValue("#centre-x")) - at - 2) < 0.011);
+  const rotation = await page.textContent("#rotation");
+  await page.fill("#turn-deg", "90");
+  await page.press("#turn-deg", "Enter");
+  await page.waitForFunction((old) => document.querySelector("#rotation")?.textContent !== old, rotation);
+  assert.ok(Math.abs(Number(await page.inputValue("#centre-x")) - at - 2) < 0.011, "a turn moves the centre");
+  await page.click("#undo");
+  await page.click("#undo");
+  await opened.isNow("aligned");
+  assert.equal(Number(await page.inputValue("#centre-x")), at);
+  await opened.close();
+});
+
+test("the wheel zooms the image at the pointer, and a drag moves it without selecting", async () => {
+  const opened = await site.open("#sample=desk");
+  const { page } = opened;
+  const picture = page.locator(".picture");
+  const zoom = async () => Number(await picture.evaluate((one) => getComputedStyle(one).getPropertyValue("--zoom")));
+  const x = async () => Number(await picture.evaluate((one) => getComputedStyle(one).getPropertyValue("--x")));
+  await page.uncheck("#layer-zoom");
+  assert.equal(await zoom(), 1);
+  const host = (await page.locator(".image .view-host").boundingBox()) ?? { x: 0, y: 0, width: 0, height: 0 };
+  const [u, v] = [host.x + host.width / 2, host.y + host.height / 2];
+  await page.mouse.move(u, v);
+  await page.mouse.wheel(0, -800);
+  await page.waitForFunction(
+    () => Number(getComputedStyle(document.querySelector(".picture") as Element).getPropertyValue("--zoom")) > 2,
+  );
+  const before = await x();
+  const chosen = await page.textContent(".objects [aria-pressed=true] .name");
+  await page.mouse.down();
+  await page.mouse.move(u - 60, v, { steps: 4 });
+  await page.mouse.up();
+  assert.ok((await x()) > before, `${await x()}, was ${before}`);
+  assert.equal(await page.textContent(".objects [aria-pressed=true] .name"), chosen);
+  await page.check("#layer-zoom");
+  await opened.close();
+});

@@ -1,0 +1,101 @@
+/** Small pictures of meshes and masks. */
+import type { MeshArrays } from "sim3align";
+import { boundsOf } from "../state/pose.js";
+import { type Rgb, rgbOf } from "./colours.js";
+import { renderDepth } from "./rasteriser.js";
+
+/** Towards the viewer, from above and from the left: where the light of thumbnails comes from. */
+const LIGHT = [-0.4, -0.6, -0.69] as const;
+/** How far a mesh is turned about its up axis and towards the viewer, radians. */
+const [TURN, TILT] = [0.6, 0.35];
+
+/** A mesh from three quarters, upright as in glTF, shaded in one colour. */
+export function meshThumbnail(mesh: MeshArrays, size: number, colour: string): ImageData {
+  const { centre, sides } = boundsOf(mesh);
+  const radius = Math.hypot(...sides) / 2 || 1;
+  const focal = 4 * size;
+  // The sphere around the mesh fills the picture.
+  const distance = (2.2 * focal * radius) / size;
+  const [s, c, a, b] = [Math.sin(TURN), Math.cos(TURN), Math.sin(TILT), Math.cos(TILT)];
+  // Rows of the rotation from the mesh (y up) to the camera (y down, z forward).
+  const rows = [
+    [c, 0, -s],
+    [-a * s, -b, -a * c],
+    [-b * s, a, -b * c],
+  ] as const;
+  const offset = rows.map(
+    (row, i) => (i === 2 ? distance : 0) - row.reduce((sum, x, k) => sum + x * (centre[k] ?? 0), 0),
+  );
+  const at = (row: number, column: number) => rows[row]?.[column] ?? 0;
+  const matrix = [0, 1, 2].flatMap((column) => [at(0, column), at(1, column), at(2, column), 0]);
+  const camera = { fx: focal, fy: focal, cx: size / 2, cy: size / 2 };
+  const depth = renderDepth(mesh, [...matrix, ...offset, 1], { width: size, height: size, camera });
+  return shaded(depth, size, camera, rgbOf(colour));
+}
+
+/** A depth map, shaded by the slope of its surface. Transparent where there is none. */
+export function shaded(
+  depth: Float32Array,
+  width: number,
+  { fx, fy }: { fx: number; fy: number },
+  [red, green, blue]: Rgb,
+): ImageData {
+  const height = depth.length / width;
+  const image = new ImageData(width, height);
+  for (let v = 0; v < height; v++) {
+    for (let u = 0; u < width; u++) {
+      const pixel = v * width + u;
+      const z = depth[pixel] as number;
+      if (z === 0) continue;
+      const slope = (before: number, after: number, focal: number) => {
+        const [a, b] = [depth[before] || z, depth[after] || z];
+        return ((b - a) * focal) / (2 * z);
+      };
+      const dx = slope(u > 0 ? pixel - 1 : pixel, u + 1 < width ? pixel + 1 : pixel, fx);
+      const dy = slope(v > 0 ? pixel - width : pixel, v + 1 < height ? pixel + width : pixel, fy);
+      // The normal of the surface, towards the viewer.
+      const length = Math.hypot(dx, dy, 1);
+      const lambert = (dx * LIGHT[0] + dy * LIGHT[1] - LIGHT[2]) / length;
+      const light = 0.35 + 0.75 * Math.max(0, lambert);
+      image.data.set([red * light, green * light, blue * light, 255], 4 * pixel);
+    }
+  }
+  return image;
+}
+
+/** An image in which everything but a mask is faded, cropped to the mask. */
+export function maskThumbnail(
+  rgba: Uint8ClampedArray,
+  mask: Uint8Array,
+  width: number,
+  size: number,
+  colour: string,
+): ImageData {
+  const height = mask.length / width;
+  let [left, top, right, bottom] = [width, height, 0, 0];
+  mask.forEach((inside, pixel) => {
+    if (inside === 0) return;
+    const [u, v] = [pixel % width, Math.floor(pixel / width)];
+    [left, right] = [Math.min(left, u), Math.max(right, u)];
+    [top, bottom] = [Math.min(top, v), Math.max(bottom, v)];
+  });
+  if (right < left) [left, top, right, bottom] = [0, 0, width - 1, height - 1];
+  const side = 1.25 * Math.max(right - left + 1, bottom - top + 1);
+  const [u0, v0] = [(left + right - side) / 2, (top + bottom - side) / 2];
+  const own = rgbOf(colour);
+  const image = new ImageData(size, size);
+  for (let y = 0; y < size; y++) {
+    for (let x = 0; x < size; x++) {
+      const [u, v] = [Math.round(u0 + ((x + 0.5) * side) / size), Math.round(v0 + ((y + 0.5) * side) / size)];
+      if (u < 0 || v < 0 || u >= width || v >= height) continue;
+      const pixel = v * width + u;
+      const inside = mask[pixel] !== 0;
+      const mixed = own.map((part, k) => {
+        const seen = rgba[4 * pixel + k] ?? 0;
+        return inside ? 0.65 * seen + 0.35 * part : 0.3 * seen;
+      });
+      image.data.set([...mixed, 255], 4 * (y * size + x));
+    }
+  }
+  return image;
+}

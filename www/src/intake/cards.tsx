@@ -1,0 +1,202 @@
+/** The cards of the view: depth map, photo, camera. */
+import type { ComponentChildren } from "preact";
+import { useMemo } from "preact/hooks";
+import { depthRange } from "../draw/colours.js";
+import { baseName, filesOf } from "../load/files.js";
+import type { CameraSource, Field } from "../load/inputs.js";
+import { type Draft, draftInputs } from "../state/draft.js";
+import { Choices } from "../ui/controls.js";
+import { significant } from "../ui/format.js";
+import { Picture } from "../ui/picture.js";
+import { ASSUMED_FOV_DEG } from "./checks.js";
+import { change, choose } from "./draft.js";
+import { describedBy, Problems, problemsFor } from "./problem-list.js";
+
+interface CardProps {
+  field: Exclude<Field, "files">;
+  title: string;
+  /** The name of the chosen file. */
+  chosen: string;
+  accept: string;
+  multiple?: boolean;
+  children?: ComponentChildren;
+}
+
+/** A card with a file input. */
+function Card({ field, title, chosen, accept, children }: CardProps) {
+  const isWrong = problemsFor(field).some(({ kind }) => kind === "error");
+  return (
+    <div class="card" data-field={field} data-wrong={isWrong}>
+      <div class="card-head">
+        <h3>{title}</h3>
+        <FileButton field={field} title={title} accept={accept} isWrong={isWrong} />
+      </div>
+      <p class="path" title={chosen}>
+        {chosen || "–"}
+      </p>
+      {children}
+      <Problems field={field} general />
+    </div>
+  );
+}
+
+interface FileButtonProps {
+  field: Exclude<Field, "files">;
+  title: string;
+  accept: string;
+  isWrong: boolean;
+  multiple?: boolean;
+}
+
+/** A button that chooses files for a field. */
+export function FileButton({ field, title, accept, isWrong, multiple = false }: FileButtonProps) {
+  return (
+    <label class="button">
+      <span>
+        Choose<span class="visually-hidden"> {title.toLowerCase()}</span>
+      </span>
+      <input
+        id={`${field}-file`}
+        class="visually-hidden"
+        type="file"
+        accept={accept}
+        multiple={multiple}
+        aria-invalid={isWrong}
+        aria-describedby={describedBy(field)}
+        onChange={async ({ currentTarget }) => {
+          const files = filesOf(currentTarget);
+          // Otherwise choosing the same file again, for example after correcting it, would fire no event.
+          currentTarget.value = "";
+          await choose(field, files);
+        }}
+      />
+    </label>
+  );
+}
+
+/** Metres per unit of depth, as text. An empty text is the default of the reader. */
+const depthUnits = [
+  ["", "Auto"],
+  ["1", "metres"],
+  ["0.001", "millimetres"],
+  ["0.0001", "0.1 mm"],
+  ["0.00025", "0.25 mm"],
+] as const;
+
+export function DepthCard({ open, ground }: { open: Draft; ground: Uint8ClampedArray | null }) {
+  const { depth: file, depthScale } = draftInputs(open);
+  const depth = open.reading?.depth ?? null;
+  const range = useMemo(() => (depth === null ? null : depthRange(depth.data)), [depth]);
+  const image = useMemo(
+    () =>
+      depth === null || ground === null
+        ? null
+        : new ImageData(Uint8ClampedArray.from(ground), depth.width, depth.height),
+    [depth, ground],
+  );
+  return (
+    <Card field="depth" title="Depth map" chosen={file === null ? "" : baseName(file.path)} accept=".png,.npy">
+      <Picture image={image} label="Depth map" class="shot" />
+      <p class="quiet">
+        {depth !== null && `${depth.width} × ${depth.height}`}
+        {range !== null && `, ${range.nearM.toFixed(2)} to ${range.farM.toFixed(2)} m`}
+      </p>
+      <label class="field-inline" for="depth-scale">
+        <span>Unit</span>
+        <Choices
+          id="depth-scale"
+          value={`${depthScale ?? ""}` as (typeof depthUnits)[number][0]}
+          choices={depthUnits}
+          onChoose={(value) => change((now) => ({ ...now, depthScale: value === "" ? null : Number(value) }))}
+        />
+      </label>
+    </Card>
+  );
+}
+
+export function PhotoCard({ open }: { open: Draft }) {
+  const { photo: file } = draftInputs(open);
+  const { photo, depth } = open.reading ?? { photo: null, depth: null };
+  const image = useMemo(
+    () =>
+      photo === null || depth === null
+        ? null
+        : new ImageData(Uint8ClampedArray.from(photo.rgba), depth.width, depth.height),
+    [photo, depth],
+  );
+  return (
+    <Card
+      field="photo"
+      title="Photo"
+      chosen={file === null ? "optional" : baseName(file.path)}
+      accept="image/png,image/jpeg,image/webp"
+    >
+      <Picture image={image} label="Photo" class="shot" />
+      <p class="quiet">{photo !== null && `${photo.width} × ${photo.height}`}</p>
+      {file !== null && (
+        <button type="button" onClick={() => change((now) => ({ ...now, photo: null }))}>
+          Leave out
+        </button>
+      )}
+    </Card>
+  );
+}
+
+const intrinsics = ["fx", "fy", "cx", "cy"] as const;
+
+function chosenCamera(camera: CameraSource | null): string {
+  if (camera === null) return "";
+  return camera.kind === "file"
+    ? baseName(camera.file.path)
+    : camera.kind === "assumed"
+      ? `${camera.fovYDeg}° assumed`
+      : "entered";
+}
+
+export function CameraCard({ open }: { open: Draft }) {
+  const { camera } = draftInputs(open);
+  const read = open.reading?.camera ?? null;
+  const depth = open.reading?.depth ?? null;
+  const shown = camera?.kind === "numbers" ? camera : read;
+  const fovDeg = read !== null && depth !== null ? (360 / Math.PI) * Math.atan(depth.height / (2 * read.fy)) : null;
+  const enter = (name: (typeof intrinsics)[number], value: number) =>
+    change((now) => {
+      const { fx, fy, cx, cy } = shown ?? { fx: null, fy: null, cx: null, cy: null };
+      const entered = { ...{ fx, fy, cx, cy }, [name]: Number.isNaN(value) ? null : value };
+      return { ...now, camera: { kind: "numbers", ...entered } };
+    });
+  return (
+    <Card field="camera" title="Camera" chosen={chosenCamera(camera)} accept=".json,.yaml,.yml">
+      <div class="camera-numbers">
+        {intrinsics.map((name) => (
+          <label key={name} class="field-inline">
+            <span>{name}</span>
+            <input
+              id={`camera-${name}`}
+              type="number"
+              step="any"
+              inputMode="decimal"
+              value={shown?.[name] == null ? "" : significant(shown[name], 7)}
+              onChange={({ currentTarget }) => enter(name, currentTarget.valueAsNumber)}
+            />
+          </label>
+        ))}
+        <label class="field-inline wide">
+          <span>Vertical field of view</span>
+          <input
+            id="camera-fov"
+            type="number"
+            step="any"
+            inputMode="decimal"
+            placeholder={`${ASSUMED_FOV_DEG}`}
+            value={camera?.kind === "assumed" ? camera.fovYDeg : fovDeg === null ? "" : significant(fovDeg, 3)}
+            onChange={({ currentTarget: { valueAsNumber } }) =>
+              change((now) => ({ ...now, camera: { kind: "assumed", fovYDeg: valueAsNumber || ASSUMED_FOV_DEG } }))
+            }
+          />
+          <span class="unit">°</span>
+        </label>
+      </div>
+    </Card>
+  );
+}

@@ -1,0 +1,145 @@
+/** What is missing, contradictory or implausible in the inputs of a scene. */
+import { depthRange } from "../draw/colours.js";
+import { baseName } from "../load/files.js";
+import type { Inputs } from "../load/inputs.js";
+import { doubt, error, type Problem, type Remedy, withoutObject } from "../load/problems.js";
+import type { Reading, ReadObject } from "../load/read-scene.js";
+import { visibleExtent } from "../load/visible-extent.js";
+
+/** A typical vertical field of view of phones and laptops. */
+export const ASSUMED_FOV_DEG = 50;
+
+/** Median depths that objects on which meshes are placed have, metres. */
+const PLAUSIBLE_DEPTH_M = [0.02, 80] as const;
+/** Sizes of objects, metres. */
+const PLAUSIBLE_SIZE_M = [0.002, 100] as const;
+/** Vertical fields of view of cameras, degrees. */
+const PLAUSIBLE_FOV_DEG = [4, 140] as const;
+/** A mask with a larger share of the image shows no single object. */
+const MOST_OF_IMAGE = 0.97;
+/** Ratios of width and height that differ more show different fields of view. */
+const ASPECT_TOLERANCE = 0.02;
+
+/** All problems: those of the readers, and those that only the whole shows. */
+export function problemsOf(inputs: Inputs, reading: Reading): Problem[] {
+  const depth = ofDepth(inputs, reading);
+  // What a wrong depth map does to the objects is not their fault.
+  const seen = depth.length === 0 ? reading : { ...reading, depth: null };
+  return [
+    ...reading.problems,
+    ...missing(inputs),
+    ...depth,
+    ...ofCamera(reading),
+    ...ofPhoto(reading),
+    ...reading.objects.flatMap((object, i) => ofObject(inputs, seen, object, i)),
+  ];
+}
+
+function missing({ depth, camera, objects }: Inputs): Problem[] {
+  const assumed: Remedy = {
+    title: `Use ${ASSUMED_FOV_DEG}° field of view`,
+    apply: (inputs) => ({ ...inputs, camera: { kind: "assumed", fovYDeg: ASSUMED_FOV_DEG } }),
+  };
+  return [
+    ...(depth === null ? [error("depth", "Depth map missing. Choose a 16-bit PNG or an NPY file.")] : []),
+    ...(camera === null ? [error("camera", "Camera missing. Choose a file, or enter the intrinsics.", [assumed])] : []),
+    ...(objects.some(({ mask }) => mask !== null)
+      ? []
+      : [error("mask", "Mask missing. Choose a PNG, NPY or COCO JSON file.")]),
+    ...(objects.some(({ mesh }) => mesh !== null)
+      ? []
+      : [error("mesh", "Mesh missing. Choose a GLB, glTF, OBJ, PLY or STL file.")]),
+  ];
+}
+
+const useScale = (title: string, depthScale: number): Remedy => ({
+  title,
+  apply: (inputs) => ({ ...inputs, depthScale }),
+});
+
+function ofDepth({ depthScale }: Inputs, { depth }: Reading): Problem[] {
+  if (depth === null) return [];
+  const range = depthRange(depth.data);
+  if (range === null) return [error("depth", "The depth map has no reading: every pixel is 0 or no number.")];
+  const { medianM } = range;
+  const [nearest, farthest] = PLAUSIBLE_DEPTH_M;
+  // A unit that was chosen is believed.
+  if (depthScale !== null || (medianM >= nearest && medianM <= farthest)) return [];
+  const shown = Number(medianM.toPrecision(3));
+  const keep = useScale("Keep metres", 1);
+  return medianM > farthest
+    ? [
+        error("depth", `Half of the scene is beyond ${shown} m: probably the unit is millimetres.`, [
+          useScale("Use millimetres", 0.001),
+          keep,
+        ]),
+      ]
+    : [
+        error("depth", `Half of the scene is nearer than ${shown} m: probably the unit is another.`, [
+          useScale("Use metres", 1),
+        ]),
+      ];
+}
+
+function ofCamera({ camera, depth }: Reading): Problem[] {
+  if (camera === null || depth === null) return [];
+  const fovDeg = (360 / Math.PI) * Math.atan(depth.height / (2 * camera.fy));
+  const [narrow, wide] = PLAUSIBLE_FOV_DEG;
+  const isOutside = camera.cx < 0 || camera.cy < 0 || camera.cx > depth.width || camera.cy > depth.height;
+  return [
+    ...(fovDeg < narrow || fovDeg > wide
+      ? [
+          doubt(
+            "camera",
+            `The vertical field of view is ${fovDeg.toFixed(1)}°. Are fx and fy in pixels of the depth map?`,
+          ),
+        ]
+      : []),
+    ...(isOutside ? [doubt("camera", "The principal point (cx, cy) is outside the image.")] : []),
+  ];
+}
+
+function ofPhoto({ photo, depth }: Reading): Problem[] {
+  if (photo === null || depth === null) return [];
+  const ratio = (photo.width * depth.height) / (photo.height * depth.width);
+  if (Math.abs(Math.log(ratio)) <= ASPECT_TOLERANCE) return [];
+  const sizes = `${photo.width} × ${photo.height}, the depth map ${depth.width} × ${depth.height}`;
+  const leaveOut: Remedy = { title: "Leave out the photo", apply: (inputs) => ({ ...inputs, photo: null }) };
+  return [error("photo", `The photo is ${sizes}: they do not show the same view.`, [leaveOut])];
+}
+
+function ofObject(inputs: Inputs, { depth, camera }: Reading, { mask, mesh }: ReadObject, i: number): Problem[] {
+  const files = inputs.objects[i];
+  if (files === undefined) return [];
+  const leaveOut: Remedy = { title: "Leave it out", apply: withoutObject(i) };
+  const several = inputs.objects.length > 1;
+  const problems: Problem[] = [];
+  if (files.mask === null && several) problems.push(error("mask", `No mask for ${files.name}.`, [leaveOut], i));
+  if (files.mesh === null && several) problems.push(error("mesh", `No mesh for ${files.name}.`, [leaveOut], i));
+  if (files.mesh !== null && files.mask !== null && !files.isSure) {
+    const names = `${baseName(files.mask.file.path)} and ${baseName(files.mesh.file.path)}`;
+    const right: Remedy = {
+      title: "They do",
+      apply: (now) => ({ ...now, objects: now.objects.map((one, k) => (k === i ? { ...one, isSure: true } : one)) }),
+    };
+    problems.push(doubt("mesh", `Do ${names} belong together? Their names do not say so.`, [right], i));
+  }
+  if (mask === null || depth === null) return problems;
+  const count = mask.reduce((sum, inside) => sum + (inside === 0 ? 0 : 1), 0);
+  if (count === 0)
+    return [...problems, error("mask", "The mask is empty: no pixel is marked.", several ? [leaveOut] : [], i)];
+  if (count > MOST_OF_IMAGE * mask.length) {
+    return [...problems, error("mask", "The mask covers the whole image. It should mark the object only.", [], i)];
+  }
+  if (!mask.some((inside, pixel) => inside !== 0 && (depth.data[pixel] ?? 0) > 0)) {
+    return [...problems, error("mask", "No pixel of the mask has a depth reading.", several ? [leaveOut] : [], i)];
+  }
+  if (camera === null || mesh === null) return problems;
+  const { sizeM } = visibleExtent(depth, mask, camera);
+  const [smallest, largest] = PLAUSIBLE_SIZE_M;
+  if (sizeM < smallest || sizeM > largest) {
+    const size = sizeM < 1 ? `${Number((1000 * sizeM).toPrecision(2))} mm` : `${Number(sizeM.toPrecision(2))} m`;
+    problems.push(doubt("depth", `${files.name} would be ${size} large. Is the unit of the depth map right?`, [], i));
+  }
+  return problems;
+}

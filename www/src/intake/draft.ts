@@ -1,0 +1,217 @@
+/** Makes and changes the draft. A draft without any problem becomes the scene by itself. */
+
+import { extractArchives, type NamedFile } from "../load/files.js";
+import type { Inputs, Role, Typed } from "../load/inputs.js";
+import { queue, show, inputs as shownInputs } from "../load/open.js";
+import { error, type Problem } from "../load/problems.js";
+import { readInputs, sceneOf } from "../load/read-scene.js";
+import { alignAll } from "../run/align.js";
+import { openSession, SESSION_FILE } from "../session/index.js";
+import { type Draft, draft, draftInputs, isReady } from "../state/draft.js";
+import { scene } from "../state/scene.js";
+import { announce } from "../state/status.js";
+import { problemsOf } from "./checks.js";
+import { rolesOf } from "./roles.js";
+import { scenesOfTyped } from "./scenes.js";
+import { isVideo, videoOf } from "./video.js";
+
+/** The number of the last change. The results of earlier ones are discarded. */
+let lastChange = 0;
+
+/** Proposes files as one or several scenes. Files without a depth map are added to a draft that is open. */
+export async function propose(files: readonly NamedFile[]): Promise<void> {
+  const change = ++lastChange;
+  let typed: Typed[];
+  try {
+    const extracted = await extractArchives(files);
+    if (extracted.some(({ path }) => path === SESSION_FILE)) {
+      if (!(await openSession(extracted))) return refuse("The session is of another version of this page.");
+      draft.value = null;
+      return;
+    }
+    typed = await rolesOf(extracted);
+  } catch (cause) {
+    return refuse(cause instanceof Error ? cause.message : `${cause}`);
+  }
+  if (change !== lastChange) return;
+  if (typed.every(({ role }) => role === "unused" || role === "resource")) {
+    const names = typed.slice(0, 3).map(({ file }) => file.path);
+    return refuse(`None of the files is an input (${names.join(", ") || "no files"}).`);
+  }
+  const open = draft.peek();
+  if (open !== null && !typed.some(({ role }) => role === "depth")) return add(open, typed);
+  await proposeScenes(await scenesOfTyped(typed));
+}
+
+/** Proposes scenes, the first of which is looked at. */
+export function proposeScenes(scenes: readonly Inputs[]): Promise<void> {
+  return set({ scenes, index: 0, isVideo: isVideo(scenes), isEdit: false });
+}
+
+/** Takes the scenes as the frames of one video, or as scenes of their own. */
+export async function asVideo(isOne: boolean): Promise<void> {
+  const open = draft.peek();
+  if (open !== null) await set({ ...open, isVideo: isOne }, false);
+}
+
+/** Makes the inputs of the scene that is shown a draft. */
+export function edit(inputs: Inputs): Promise<void> {
+  return set({ scenes: [{ ...inputs, files: filesOf(inputs) }], index: 0, isVideo: false, isEdit: true });
+}
+
+/** Looks at another scene of the draft. */
+export async function look(index: number): Promise<void> {
+  const open = draft.peek();
+  if (open !== null) await set({ ...open, index });
+}
+
+/** Changes the inputs of the draft. If that completes it, it opens by itself only where `opens` says so. */
+export async function change(apply: (inputs: Inputs) => Inputs, opens = false): Promise<void> {
+  const open = draft.peek();
+  if (open === null) return;
+  const changed = apply(draftInputs(open));
+  await set({ ...open, scenes: open.scenes.map((one, i) => (i === open.index ? changed : one)) }, opens);
+}
+
+/** Files for a field of the draft, whatever their names. */
+export async function choose(role: Exclude<Role, "unused">, files: readonly NamedFile[]): Promise<void> {
+  const [file] = files;
+  const open = draft.peek();
+  if (file === undefined || open === null) return;
+  const inputs = draftInputs(open);
+  if (role === "depth" || role === "photo" || role === "camera") {
+    const kept = inputs.files.filter((one) => one.role !== role);
+    const camera = { kind: "file", file } as const;
+    const own = { ...inputs, ...ownName(inputs), files: [...kept, { file, role }] };
+    return change(() => ({ ...own, [role]: role === "camera" ? camera : file }), true);
+  }
+  const known = await rolesOf(files);
+  const typed = known.map((one) => ({ file: one.file, role: fits(one.role, role) ? one.role : role }));
+  const replaced: readonly Role[] =
+    role === "mask" ? ["mask", "labels", "annotations", "truth"] : ["mesh", "resource", "truth"];
+  await rebuild([...inputs.files.filter((one) => !replaced.includes(one.role)), ...typed]);
+}
+
+/** Whether the role that a name suggests is one that the field takes. */
+function fits(role: Role, field: Role): boolean {
+  return role === field || (field === "mask" ? role === "labels" || role === "annotations" : role === "resource");
+}
+
+/** Gives a file another role. */
+export async function assign(file: NamedFile, role: Role): Promise<void> {
+  const open = draft.peek();
+  if (open === null) return;
+  await rebuild(draftInputs(open).files.map((one) => (one.file === file ? { file, role } : one)));
+}
+
+/** Makes the draft the scene that is shown, and aligns it. */
+export async function accept(): Promise<void> {
+  const open = draft.peek();
+  if (open === null || !isReady(open) || open.reading === null) return;
+  const inputs = draftInputs(open);
+  const opened = sceneOf(inputs, open.reading);
+  if (opened === null) return;
+  lastChange++;
+  draft.value = null;
+  if (open.isVideo) {
+    queue.value = [];
+    const opening = await videoOf(open.scenes);
+    // Tracking starts with the first frame, whichever is looked at.
+    const frame = opening.frames[0] as Inputs;
+    const first = sceneOf(frame, await readInputs(frame), true);
+    if (first === null) return announce("The first frame could not be read.", "failed");
+    const { openVideo, trackAll } = await import("../run/video.js");
+    openVideo(opening, first);
+    await trackAll();
+    return;
+  }
+  if (!open.isEdit) queue.value = open.scenes.filter((_, i) => i > open.index);
+  show(opened, inputs);
+  await alignAll();
+}
+
+/** Discards the draft. */
+export function dismiss(): void {
+  lastChange++;
+  draft.value = null;
+  announce("Nothing was changed.");
+}
+
+async function add(open: Draft, typed: readonly Typed[]): Promise<void> {
+  const single: readonly Role[] = ["photo", "camera"];
+  const isReplaced = (one: Typed) => single.includes(one.role) && typed.some(({ role }) => role === one.role);
+  await rebuild([...draftInputs(open).files.filter((one) => !isReplaced(one)), ...typed]);
+}
+
+/** Makes the scene anew from its files. What was entered stays. */
+async function rebuild(files: readonly Typed[]): Promise<void> {
+  const open = draft.peek();
+  if (open === null) return;
+  const before = draftInputs(open);
+  const [after] = await scenesOfTyped(files);
+  if (after === undefined) return;
+  const { depthScale, resizeMasks } = before;
+  const camera = before.camera?.kind === "file" ? after.camera : (after.camera ?? before.camera);
+  await change(() => ({ ...after, depthScale, resizeMasks, camera, ...ownName(before) }), true);
+}
+
+/** A sample with other files is no sample. */
+const ownName = ({ sample, name }: Inputs) => ({ sample: null, name: sample === null ? name : "Own files" });
+
+async function set(next: Omit<Draft, "reading" | "problems">, opens = true): Promise<void> {
+  const change = ++lastChange;
+  draft.value = { ...next, reading: null, problems: [] };
+  const inputs = next.scenes[next.index] as Inputs;
+  const reading = await readInputs(inputs);
+  if (change !== lastChange) return;
+  const problems = problemsOf(inputs, reading);
+  draft.value = { ...next, reading, problems };
+  announce(problems[0]?.message ?? `${inputs.name} can be opened.`, problems.length > 0 ? "failed" : "done");
+  const isWhole = problems.length === 0 && (next.scenes.length === 1 || next.isVideo);
+  if (opens && isWhole && !next.isEdit && !hasWork()) await accept();
+}
+
+/** Whether the scene that is shown has poses that were set by hand, which a new scene would discard. */
+const hasWork = () => scene.peek()?.objects.some(({ pose }) => pose.peek().source === "hand") === true;
+
+/** Shows what is wrong with the files as a whole. */
+function refuse(message: string): void {
+  const open = draft.peek();
+  const problem: Problem = error("files", message);
+  const empty = {
+    scenes: [{ ...shownInputs.peek(), ...emptied }],
+    index: 0,
+    reading: null,
+    isVideo: false,
+    isEdit: false,
+  };
+  draft.value = { ...(open ?? empty), problems: [problem] };
+  announce(message, "failed");
+}
+
+const emptied = {
+  name: "New scene",
+  sample: null,
+  depth: null,
+  photo: null,
+  camera: null,
+  objects: [],
+  meshes: [],
+  files: [],
+};
+
+/** The files of inputs with their roles, also of a sample. */
+function filesOf(inputs: Inputs): Typed[] {
+  if (inputs.files.length > 0) return [...inputs.files];
+  const typed: (Typed | null)[] = [
+    inputs.depth && { file: inputs.depth, role: "depth" },
+    inputs.photo && { file: inputs.photo, role: "photo" },
+    inputs.camera?.kind === "file" ? { file: inputs.camera.file, role: "camera" } : null,
+    ...inputs.objects.flatMap(({ mask, mesh, truth }): (Typed | null)[] => [
+      mask && { file: mask.file, role: "mask" },
+      mesh && { file: mesh.file, role: "mesh" },
+      truth && { file: truth.file, role: "truth" },
+    ]),
+  ];
+  return typed.filter((one) => one !== null);
+}

@@ -1,0 +1,2 @@
+/** The intake, which is loaded when the first files arrive. */
+export { Sheet } from "./sheet.js";

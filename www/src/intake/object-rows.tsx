@@ -1,0 +1,193 @@
+/** The objects of a draft: each mask with its mesh. Meshes are paired anew by selecting or dragging. */
+import { useMemo } from "preact/hooks";
+import { maskThumbnail, meshThumbnail } from "../draw/thumbnails.js";
+import { baseName } from "../load/files.js";
+import type { Inputs, MeshSource, ObjectFiles } from "../load/inputs.js";
+import { withoutObject } from "../load/problems.js";
+import { colourOf, type ReadObject } from "../load/read-scene.js";
+import { type Draft, draftInputs } from "../state/draft.js";
+import { Picture } from "../ui/picture.js";
+import { FileButton } from "./cards.js";
+import { change } from "./draft.js";
+import { Problems, problemsFor } from "./problem-list.js";
+
+/** Width and height of a thumbnail in pixels. */
+const SIZE = 112;
+
+const emptyObject: ReadObject = { mask: null, mesh: null, glb: null, truth: null };
+
+export function ObjectRows({ open, ground }: { open: Draft; ground: Uint8ClampedArray | null }) {
+  const inputs = draftInputs(open);
+  const isWrong = (field: "mask" | "mesh") => problemsFor(field).some(({ kind }) => kind === "error");
+  return (
+    <section class="pairs" aria-labelledby="pairs-title">
+      <div class="card-head">
+        <h3 id="pairs-title">Objects: mask and mesh</h3>
+        <span class="field-inline">
+          <span>Masks</span>
+          <FileButton field="mask" title="Masks" accept=".png,.npy,.json" isWrong={isWrong("mask")} multiple />
+        </span>
+        <span class="field-inline">
+          <span>Meshes</span>
+          <FileButton
+            field="mesh"
+            title="Meshes"
+            accept=".glb,.gltf,.obj,.ply,.stl,.bin,.mtl"
+            isWrong={isWrong("mesh")}
+            multiple
+          />
+        </span>
+      </div>
+      <div data-field="mask" data-wrong={isWrong("mask")}>
+        <Problems field="mask" general />
+        <Resize open={open} />
+      </div>
+      <div data-field="mesh" data-wrong={isWrong("mesh")}>
+        <Problems field="mesh" general />
+      </div>
+      <ul>
+        {inputs.objects.map((object, i) => (
+          <Row
+            key={`${i} ${object.mask?.file.path} ${object.mask?.label}`}
+            {...{ inputs, object, i, ground }}
+            read={open.reading?.objects[i] ?? emptyObject}
+            width={open.reading?.depth?.width ?? 1}
+          />
+        ))}
+      </ul>
+    </section>
+  );
+}
+
+/** Masks of another size than the depth map can be resized. */
+function Resize({ open }: { open: Draft }) {
+  const { resizeMasks } = draftInputs(open);
+  const isNeeded =
+    resizeMasks || open.problems.some(({ field, message }) => field === "mask" && /pixels/.test(message));
+  if (!isNeeded) return null;
+  return (
+    <label class="check">
+      <input
+        id="resize-masks"
+        type="checkbox"
+        checked={resizeMasks}
+        onChange={({ currentTarget }) => change((now) => ({ ...now, resizeMasks: currentTarget.checked }), true)}
+      />
+      <span>Resize masks to the depth map</span>
+    </label>
+  );
+}
+
+interface RowProps {
+  inputs: Inputs;
+  object: ObjectFiles;
+  read: ReadObject;
+  i: number;
+  ground: Uint8ClampedArray | null;
+  width: number;
+}
+
+function Row({ inputs, object, read, i, ground, width }: RowProps) {
+  const { mask, mesh } = read;
+  const colour = colourOf(i);
+  const seen = useMemo(
+    () => (mask === null || ground === null ? null : maskThumbnail(ground, mask, width, SIZE, colour)),
+    [mask, ground, width, colour],
+  );
+  const shape = useMemo(() => (mesh === null ? null : meshThumbnail(mesh, SIZE, colour)), [mesh, colour]);
+  const rename = (name: string) =>
+    change((now) => ({
+      ...now,
+      objects: now.objects.map((one, k) => (k === i ? { ...one, name: name || one.name } : one)),
+    }));
+  const triangles = mesh === null ? null : mesh.indices.length / 3;
+  return (
+    <li
+      class="pair"
+      data-object={object.name}
+      onDragOver={(event) => event.dataTransfer?.types.includes(DRAGGED) && event.preventDefault()}
+      onDrop={(event) => {
+        const from = event.dataTransfer?.getData(DRAGGED);
+        if (from === undefined || from === "") return;
+        event.preventDefault();
+        const dropped = inputs.objects[Number(from)]?.mesh;
+        if (dropped != null) change(withMesh(i, dropped));
+      }}
+    >
+      <Picture image={seen} label={`Mask of ${object.name}`} />
+      <div class="pair-mask">
+        <input
+          aria-label={`Name of object ${i + 1}`}
+          value={object.name}
+          onChange={({ currentTarget }) => rename(currentTarget.value)}
+        />
+        <span class="path" title={object.mask?.file.path}>
+          {maskTitle(object)}
+        </span>
+      </div>
+      <span class="arrow" aria-hidden="true">
+        ↔
+      </span>
+      <fieldset
+        class="draggable"
+        aria-label={`Mesh of ${object.name}, to be dragged`}
+        draggable={object.mesh !== null}
+        onDragStart={(event) => event.dataTransfer?.setData(DRAGGED, `${i}`)}
+      >
+        <Picture image={shape} label={`Mesh for ${object.name}`} />
+      </fieldset>
+      <div class="pair-mask">
+        <MeshSelect inputs={inputs} object={object} i={i} />
+        <span class="quiet">{triangles !== null && `${triangles.toLocaleString("en-GB")} triangles`}</span>
+      </div>
+      <button type="button" aria-label={`Leave out ${object.name}`} onClick={() => change(withoutObject(i))}>
+        ×
+      </button>
+      <div class="pair-problems">
+        <Problems field="mask" object={i} />
+        <Problems field="mesh" object={i} />
+        <Problems field="depth" object={i} />
+      </div>
+    </li>
+  );
+}
+
+/** The type of what is dragged: the index of the object whose mesh it is. */
+const DRAGGED = "application/x-sim3align-mesh";
+
+function maskTitle({ mask }: ObjectFiles): string {
+  if (mask === null) return "no mask";
+  const name = baseName(mask.file.path);
+  if (mask.label !== undefined) return `${name}, value ${mask.label}`;
+  return mask.annotation === undefined ? name : `${name}, annotation ${mask.annotation + 1}`;
+}
+
+function MeshSelect({ inputs: { meshes }, object, i }: { inputs: Inputs; object: ObjectFiles; i: number }) {
+  const chosen = object.mesh === null ? -1 : meshes.indexOf(object.mesh);
+  return (
+    <select
+      aria-label={`Mesh of ${object.name}`}
+      value={`${chosen}`}
+      onChange={({ currentTarget }) => change(withMesh(i, meshes[Number(currentTarget.value)] ?? null))}
+    >
+      <option value="-1">no mesh</option>
+      {meshes.map(({ file }, k) => (
+        <option key={file.path} value={`${k}`}>
+          {baseName(file.path) === file.path ? file.path : file.path.split("/").slice(-2).join("/")}
+        </option>
+      ))}
+    </select>
+  );
+}
+
+/** Gives an object a mesh. If another object had it, both exchange theirs. */
+const withMesh =
+  (index: number, mesh: MeshSource | null) =>
+  (inputs: Inputs): Inputs => {
+    const before = inputs.objects[index]?.mesh ?? null;
+    const other = mesh === null ? -1 : inputs.objects.findIndex((one, i) => i !== index && one.mesh === mesh);
+    const objects = inputs.objects.map((one, i) =>
+      i === index ? { ...one, mesh, isSure: true } : i === other ? { ...one, mesh: before, isSure: true } : one,
+    );
+    return { ...inputs, objects: objects.filter(({ mask, mesh }) => mask !== null || mesh !== null) };
+  };

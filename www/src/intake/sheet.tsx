@@ -1,0 +1,168 @@
+/** The intake sheet: what each file of a draft is used for, what is missing, and what helps. */
+import { useEffect, useMemo, useRef } from "preact/hooks";
+import { depthImage } from "../draw/colours.js";
+import { baseName, filesOf, type NamedFile } from "../load/files.js";
+import type { Inputs, Role } from "../load/inputs.js";
+import { type Draft, draft, draftInputs, isReady } from "../state/draft.js";
+import { CameraCard, DepthCard, PhotoCard } from "./cards.js";
+import { accept, assign, asVideo, change, dismiss, look, propose } from "./draft.js";
+import { ObjectRows } from "./object-rows.js";
+import { Problems } from "./problem-list.js";
+import { canBeVideo } from "./video.js";
+
+export function Sheet() {
+  const dialog = useRef<HTMLDialogElement>(null);
+  const open = draft.value;
+  useEffect(() => {
+    if (dialog.current?.open === false) dialog.current.showModal();
+  }, []);
+  const depth = open?.reading?.depth ?? null;
+  const ground = useMemo(() => (depth === null ? null : depthImage(depth.data)), [depth]);
+  if (open === null) return null;
+  const inputs = draftInputs(open);
+  return (
+    <dialog
+      ref={dialog}
+      class="intake"
+      aria-labelledby="intake-title"
+      onCancel={(event) => {
+        event.preventDefault();
+        dismiss();
+      }}
+    >
+      <header>
+        <h2 id="intake-title">{open.isEdit ? "Files" : "New scene"}</h2>
+        <input
+          class="scene-name"
+          aria-label="Name of the scene"
+          value={inputs.name}
+          onChange={({ currentTarget }) => change((now) => ({ ...now, name: currentTarget.value || now.name }))}
+        />
+        <SceneChoice open={open} />
+        <VideoChoice open={open} />
+        <button type="button" id="intake-cancel" onClick={dismiss}>
+          Cancel
+        </button>
+      </header>
+      <div class="intake-body">
+        <Problems field="files" />
+        <section aria-label="View" class="cards">
+          <DepthCard open={open} ground={ground} />
+          <PhotoCard open={open} />
+          <CameraCard open={open} />
+        </section>
+        <ObjectRows open={open} ground={open.reading?.photo?.rgba ?? ground} />
+        <FileRoles inputs={inputs} />
+      </div>
+      <footer>
+        <label class="button">
+          <span>Add files</span>
+          <input
+            id="more-files"
+            class="visually-hidden"
+            type="file"
+            multiple
+            onChange={({ currentTarget }) => propose(filesOf(currentTarget))}
+          />
+        </label>
+        <p class="quiet" role="status">
+          {summary(open)}
+        </p>
+        <button type="button" id="intake-open" class="primary" disabled={!isReady(open)} onClick={accept}>
+          {open.isEdit ? "Apply and align" : "Align"}
+        </button>
+      </footer>
+    </dialog>
+  );
+}
+
+function summary({ reading, problems }: Draft): string {
+  if (reading === null && problems.length === 0) return "Reading …";
+  const [errors, doubts] = [problems.filter(({ kind }) => kind === "error").length, problems.length];
+  if (errors > 0) return errors === 1 ? "One thing is missing or wrong." : `${errors} things are missing or wrong.`;
+  return doubts > 0 ? "Check what is marked, then align." : "Everything fits.";
+}
+
+function SceneChoice({ open: { scenes, index } }: { open: Draft }) {
+  if (scenes.length < 2) return null;
+  return (
+    <label class="field-inline">
+      <span>Scene</span>
+      <select id="scene-choice" value={`${index}`} onChange={({ currentTarget }) => look(Number(currentTarget.value))}>
+        {scenes.map((one, i) => (
+          <option key={`${i} ${one.name}`} value={`${i}`}>
+            {i + 1} of {scenes.length}: {one.name}
+            {one.depth === null ? "" : ` (${baseName(one.depth.path)})`}
+          </option>
+        ))}
+      </select>
+    </label>
+  );
+}
+
+function VideoChoice({ open }: { open: Draft }) {
+  if (!canBeVideo(open.scenes)) return null;
+  return (
+    <label class="check">
+      <input
+        id="as-video"
+        type="checkbox"
+        checked={open.isVideo}
+        onChange={({ currentTarget }) => asVideo(currentTarget.checked)}
+      />
+      <span>Frames of one video</span>
+    </label>
+  );
+}
+
+const roles: readonly (readonly [Role, string])[] = [
+  ["depth", "Depth map"],
+  ["photo", "Photo"],
+  ["camera", "Camera"],
+  ["mask", "Mask"],
+  ["labels", "Label map"],
+  ["annotations", "COCO annotations"],
+  ["mesh", "Mesh"],
+  ["truth", "True pose"],
+  ["pose", "Pose of the camera"],
+  ["resource", "Part of a mesh"],
+  ["unused", "Not used"],
+];
+
+function FileRoles({ inputs: { files } }: { inputs: Inputs }) {
+  if (files.length === 0) return null;
+  const unused = files.filter(({ role }) => role === "unused").length;
+  return (
+    <details class="file-roles">
+      <summary>
+        {files.length} files{unused > 0 && `, ${unused} not used`}
+      </summary>
+      <ul>
+        {files.slice(0, 200).map(({ file, role }) => (
+          <li key={file.path}>
+            <span class="path" title={file.path}>
+              {file.path}
+            </span>
+            <RoleSelect file={file} role={role} />
+          </li>
+        ))}
+      </ul>
+    </details>
+  );
+}
+
+function RoleSelect({ file, role }: { file: NamedFile; role: Role }) {
+  return (
+    <select
+      aria-label={`Use of ${baseName(file.path)}`}
+      value={role}
+      onChange={({ currentTarget }) => assign(file, currentTarget.value as Role)}
+    >
+      {roles.map(([value, title]) => (
+        <option key={value} value={value}>
+          {title}
+        </option>
+      ))}
+    </select>
+  );
+}

@@ -1,0 +1,50 @@
+/** Recognises the frames of a video among the scenes of a drop. */
+import type { Inputs } from "../load/inputs.js";
+import type { Video } from "../state/video.js";
+import { titleOf } from "./pairing.js";
+
+/** Whether the scenes can be frames: they show one object each, and have one mesh file in common. */
+export function canBeVideo(scenes: readonly Inputs[]): boolean {
+  const [first] = scenes;
+  const file = first?.objects[0]?.mesh?.file;
+  if (scenes.length < 2 || file === undefined) return false;
+  return scenes.every(({ objects }) => objects.length === 1 && objects[0]?.mesh?.file === file);
+}
+
+/** Whether the names also say that they are: folders or files of frames, or numbers. */
+export function isVideo(scenes: readonly Inputs[]): boolean {
+  return canBeVideo(scenes) && scenes.every(({ depth }) => /frame|\d{3,}/i.test(depth?.path ?? ""));
+}
+
+/** The frames of a video, whose object is named after its mesh. */
+export function asFrames(scenes: readonly Inputs[]): Inputs[] {
+  return scenes.map((scene) => {
+    const objects = scene.objects.map((object) => ({ ...object, name: nameOf(object.mesh?.file.path ?? "") }));
+    return { ...scene, objects };
+  });
+}
+
+const nameOf = (path: string) => titleOf(path) || "Object";
+
+/** The video of these frames. */
+export async function videoOf(scenes: readonly Inputs[]): Promise<Video> {
+  const frames = asFrames(scenes);
+  const cameras = await Promise.all(frames.map(cameraOf));
+  const known = cameras.filter((camera) => camera !== null);
+  return { frames, cameras: known.length === frames.length ? known : null };
+}
+
+/** The pose of a frame's camera: `camera_to_world`, four rows of four, in `pose.json`. */
+async function cameraOf({ files }: Inputs): Promise<readonly number[] | null> {
+  const file = files.find(({ role }) => role === "pose")?.file;
+  if (file === undefined) return null;
+  try {
+    const { camera_to_world } = JSON.parse(new TextDecoder().decode(await file.bytes())) as {
+      camera_to_world: unknown;
+    };
+    const numbers = [camera_to_world].flat(3).map(Number);
+    return numbers.length === 16 && numbers.every(Number.isFinite) ? numbers : null;
+  } catch {
+    return null;
+  }
+}

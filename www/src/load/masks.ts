@@ -1,0 +1,38 @@
+/** Reads masks. */
+import { Sim3AlignError } from "sim3align";
+import { resizeMask } from "sim3align/conventions";
+import { readMask } from "sim3align/formats";
+import type { NamedFile } from "./files.js";
+import type { MaskSource } from "./inputs.js";
+
+/** A mask, 1 is the object, at its own size. */
+export interface ReadMask {
+  data: Uint8Array;
+  width: number;
+  height: number;
+}
+
+/** Masks that were read. */
+const read = new WeakMap<NamedFile, Promise<ReadMask>>();
+
+/** The mask of a source. Label maps and annotations are read by a script of their own. */
+export async function maskOf(source: MaskSource): Promise<ReadMask> {
+  const { file, label, annotation } = source;
+  if (label !== undefined || annotation !== undefined) return (await import("./label-masks.js")).maskFrom(source);
+  const mask = read.get(file) ?? file.bytes().then(readMask);
+  read.set(file, mask);
+  return mask;
+}
+
+/** The mask at the size of the depth map. */
+export function atSize(mask: ReadMask, width: number, height: number, resize: boolean): Uint8Array {
+  if (mask.width === width && mask.height === height) return mask.data;
+  if (resize) return resizeMask(mask, { width, height }).data as Uint8Array;
+  throw new Sim3AlignError({
+    code: "SIZE_MISMATCH",
+    argument: "mask",
+    found: `${mask.width} × ${mask.height} pixels`,
+    expected: `${width} × ${height}, the size of the depth map`,
+    remedy: "Export the mask at the size of the depth map, or resize it.",
+  });
+}

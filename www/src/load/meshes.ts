@@ -1,0 +1,50 @@
+/** Reads mesh files, each once, with the files that they refer to. */
+import { externalResources, type MeshFromFile, readMesh } from "sim3align/formats";
+import { extension } from "./files.js";
+import type { MeshSource } from "./inputs.js";
+
+/** A mesh, and its bytes if it is a GLB. */
+export interface LoadedMesh {
+  mesh: MeshFromFile;
+  glb: Uint8Array | null;
+}
+
+const loaded = new WeakMap<MeshSource, Promise<LoadedMesh>>();
+
+/** The mesh of a source. */
+export function meshOf(source: MeshSource): Promise<LoadedMesh> {
+  const mesh = loaded.get(source) ?? load(source);
+  loaded.set(source, mesh);
+  return mesh;
+}
+
+async function load({ file, siblings }: MeshSource): Promise<LoadedMesh> {
+  const bytes = await file.bytes();
+  const ending = extension(file.path);
+  if (ending !== "gltf" && ending !== "obj") {
+    return { mesh: await readMesh(bytes), glb: ending === "glb" ? bytes : null };
+  }
+  const resources: Record<string, Uint8Array> = {};
+  const addResources = async (file: Uint8Array) => {
+    const { shape, colors } = await externalResources(file);
+    for (const name of [...shape, ...colors].filter((name) => !(name in resources))) {
+      const found = siblings.find(({ path }) => path.endsWith(decoded(name)));
+      if (found === undefined) continue;
+      const content = await found.bytes();
+      resources[name] = content;
+      // The material libraries of an OBJ refer to textures.
+      if (name.endsWith(".mtl")) await addResources(content);
+    }
+  };
+  await addResources(bytes);
+  return { mesh: await readMesh(bytes, { format: ending, resources }), glb: null };
+}
+
+/** A name in a mesh file, which may be a URI. */
+function decoded(name: string): string {
+  try {
+    return decodeURIComponent(name);
+  } catch {
+    return name;
+  }
+}

@@ -1,0 +1,61 @@
+/** The result and its alternatives, as pictures. */
+import { computed } from "@preact/signals";
+import { useMemo } from "preact/hooks";
+import { poseThumbnail } from "../draw/pose-thumbnail.js";
+import { applyAlternative, shownAlternative } from "../run/alternatives.js";
+import type { ObjectModel } from "../state/object-model.js";
+import { scene } from "../state/scene.js";
+import { Tip } from "../ui/controls.js";
+import { Picture } from "../ui/picture.js";
+import { ground } from "../views/ground.js";
+
+/** Width and height of a picture in pixels. */
+const SIZE = 88;
+const MOST = 5;
+
+const scenery = computed(() => {
+  const [whole, rgba] = [scene.value, ground.value];
+  return whole === null || rgba === null
+    ? null
+    : { rgba, width: whole.width, height: whole.height, camera: whole.camera };
+});
+
+export function Alternatives({ object }: { object: ObjectModel | null }) {
+  const best = object?.precise ?? null;
+  const alternatives = best?.alternatives.slice(0, MOST) ?? [];
+  if (object === null || best === null) return null;
+  if (alternatives.length === 0) return <p class="quiet">No plausible alternatives.</p>;
+  const shown = shownAlternative(object);
+  return (
+    <fieldset class="alternatives">
+      <legend>
+        Alternatives
+        <Tip label="alternatives">
+          Other poses that explain the observation nearly as well, best first. Objects that look similar from several
+          sides have several. The angle is the rotation from the result.
+        </Tip>
+      </legend>
+      {[best, ...alternatives].map((pose, i) => (
+        <button
+          key={`${i} ${pose.matrix[0]}`}
+          type="button"
+          class="choice"
+          aria-pressed={shown === i - 1}
+          onClick={() => applyAlternative(object, i - 1)}
+        >
+          <PosePicture object={object} matrix={pose.matrix} />
+          <span>{i === 0 ? "Best" : `${(alternatives[i - 1]?.turnDeg ?? 0).toFixed(0)}°`}</span>
+        </button>
+      ))}
+    </fieldset>
+  );
+}
+
+function PosePicture({ object, matrix }: { object: ObjectModel; matrix: ArrayLike<number> }) {
+  const around = scenery.value;
+  const image = useMemo(() => {
+    const { mesh, mask, colour } = object;
+    return around === null ? null : poseThumbnail({ mesh, matrix, mask, colour }, around, SIZE);
+  }, [object, matrix, around]);
+  return <Picture image={image} label="" class="thumb" />;
+}

@@ -1,0 +1,53 @@
+/** A known length of an object. It is one fact of the object, wherever it is entered. */
+import { useState } from "preact/hooks";
+import { place } from "../state/history.js";
+import type { ObjectModel } from "../state/object-model.js";
+import { nudged } from "../state/pose.js";
+import { Choices } from "../ui/controls.js";
+import { centimetres } from "../ui/format.js";
+
+const sides = ["Width", "Height", "Depth", "Longest side"] as const;
+const sideChoices = sides.map((title, i) => [`${i}`, title] as const);
+
+interface KnownSizeProps {
+  object: ObjectModel | null;
+  /** Of the number field. */
+  id: string;
+  /** Runs after the size was set. */
+  onSet?(): void;
+}
+
+/** Scales the mesh so that one side has a known length, which all alignments keep. */
+export function KnownSize({ object, id, onSet }: KnownSizeProps) {
+  const [side, setSide] = useState(1);
+  const unit = object?.side(side > 2 ? "longest" : (side as 0 | 1 | 2)) ?? 0;
+  const presentM = unit * (object?.pose.value.transform.scale ?? 0);
+
+  const apply = (field: HTMLInputElement) => {
+    const wantedM = field.valueAsNumber / 100;
+    const isValid = wantedM > 0 && presentM > 0;
+    if (object === null || !isValid || centimetres(wantedM) === centimetres(presentM)) return;
+    const scale = wantedM / presentM;
+    const transform = nudged(object.box.peek().centreM, object.pose.peek().transform, { scale });
+    place(object, { transform, source: "hand" });
+    object.knownScale.value = transform.scale;
+    onSet?.();
+  };
+  return (
+    <fieldset class="row known" disabled={object === null}>
+      <legend>Known size</legend>
+      <Choices label="Side" value={`${side}`} choices={sideChoices} onChoose={(value) => setSide(Number(value))} />
+      <input
+        id={id}
+        type="number"
+        min="0"
+        step="any"
+        inputMode="decimal"
+        aria-label={`${sides[side]} in centimetres`}
+        value={presentM > 0 ? centimetres(presentM) : ""}
+        onChange={({ currentTarget }) => apply(currentTarget)}
+      />
+      <span class="unit">cm</span>
+    </fieldset>
+  );
+}

@@ -1,0 +1,67 @@
+/** The pose in numbers: the centre, and turns about the axes of the camera. */
+
+import { useState } from "preact/hooks";
+import type { Vector3 } from "sim3align/conventions";
+import { place } from "../state/history.js";
+import type { ObjectModel } from "../state/object-model.js";
+import { type Nudge, nudged, rotationAbout } from "../state/pose.js";
+import { Choices } from "../ui/controls.js";
+
+const axes = ["x", "y", "z"] as const;
+const axisChoices = axes.map((axis) => [axis, axis] as const);
+const unit = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] } satisfies Record<(typeof axes)[number], Vector3>;
+
+interface NumbersProps {
+  object: ObjectModel | null;
+  isReady: boolean;
+}
+
+export function Numbers({ object, isReady }: NumbersProps) {
+  const [axis, setAxis] = useState<(typeof axes)[number]>("y");
+  const centre = object?.box.value.centreM;
+  const apply = (change: Nudge) => {
+    if (object === null) return;
+    const { centreM } = object.box.peek();
+    place(object, { transform: nudged(centreM, object.pose.peek().transform, change), source: "hand" });
+  };
+  const move = (k: number, toM: number) => {
+    const from = object?.box.peek().centreM[k] ?? 0;
+    if (Number.isFinite(toM) && toM !== from)
+      apply({ moveM: [0, 1, 2].map((i) => (i === k ? toM - from : 0)) as Vector3 });
+  };
+  return (
+    <fieldset class="numbers" disabled={!isReady}>
+      <legend>Centre in the camera's frame, cm</legend>
+      {axes.map((name, k) => (
+        <label key={name} class="field-inline">
+          <span>{name}</span>
+          <input
+            id={`centre-${name}`}
+            type="number"
+            step="0.1"
+            inputMode="decimal"
+            value={centre === undefined ? "" : (100 * (centre[k] ?? 0)).toFixed(2)}
+            onChange={({ currentTarget }) => move(k, currentTarget.valueAsNumber / 100)}
+          />
+        </label>
+      ))}
+      <span class="field-inline turn">
+        <label for="turn-deg">Turn by</label>
+        <input
+          id="turn-deg"
+          type="number"
+          step="any"
+          inputMode="decimal"
+          placeholder="90"
+          onChange={({ currentTarget }) => {
+            const degrees = currentTarget.valueAsNumber;
+            currentTarget.value = "";
+            if (Number.isFinite(degrees)) apply({ rotation: rotationAbout(unit[axis], degrees) });
+          }}
+        />
+        <span>° about</span>
+        <Choices label="Axis" value={axis} choices={axisChoices} onChoose={(chosen) => setAxis(chosen)} />
+      </span>
+    </fieldset>
+  );
+}

@@ -1,0 +1,51 @@
+/** What helps where a result is unsure: it stands beside the result, not in an explanation. */
+import { alignSelected, isRunning } from "../run/align.js";
+import type { ObjectModel } from "../state/object-model.js";
+import { type Options, options, setOption } from "../state/options.js";
+import { fix } from "./decision.js";
+import { KnownSize } from "./known-size.js";
+
+/** Above this confidence, no remedy is needed. */
+const SURE = 0.9;
+
+const ups: readonly (readonly [Options["up"], string])[] = [
+  ["y", "y is up"],
+  ["z", "z is up"],
+];
+
+export function Remedies({ object }: { object: ObjectModel | null }) {
+  const confidence = object?.precise?.confidence ?? 1;
+  const source = object?.pose.value.source;
+  const isAsked = confidence < SURE && (source === "aligned" || source === "refined");
+  if (object === null || !isAsked || object.isAccepted.value) return null;
+  const alternatives = object.precise?.alternatives.length ?? 0;
+  const align = (change: () => void) => () => {
+    change();
+    alignSelected();
+  };
+  return (
+    <div class="remedies">
+      <p>Not sure. {alternatives > 0 ? "Choose a pose below, or say what you know:" : "Say what you know:"}</p>
+      <KnownSize object={object} id="remedy-size" onSet={alignSelected} />
+      <fieldset class="row" disabled={isRunning.value}>
+        <legend>It stands upright, and the camera was level</legend>
+        {ups.map(([up, title]) => (
+          <button
+            key={up}
+            type="button"
+            aria-pressed={options.value.up === up}
+            onClick={align(() => setOption("up", options.peek().up === up ? "unknown" : up))}
+          >
+            {title}
+          </button>
+        ))}
+      </fieldset>
+      <p>
+        Or move it roughly into place, then refine.{" "}
+        <button type="button" onClick={fix}>
+          Move by hand
+        </button>
+      </p>
+    </div>
+  );
+}

@@ -1,0 +1,79 @@
+/** Where to begin: the user's own files, or a sample. */
+import { filesOf } from "../load/files.js";
+import { openFiles, openSample } from "../load/open.js";
+import { sampleOf, samples, sampleUrl } from "../load/samples.js";
+import { alignAll } from "../run/align.js";
+import { scene } from "../state/scene.js";
+
+async function choose(id: string): Promise<void> {
+  const sample = sampleOf(id);
+  if (sample !== undefined && (await openSample(sample))) await alignAll();
+}
+
+/** The samples that are shown as pictures. */
+const pictured = samples.filter(({ picture }) => picture !== undefined);
+
+export function StartPanel() {
+  const shown = scene.value?.sample ?? "";
+  return (
+    <section class="panel start" aria-label="Open" data-own={scene.value !== null && shown === ""}>
+      <label class="button primary drop">
+        <span>Drop your files</span>
+        <small>Depth map, masks, meshes and camera</small>
+        <input
+          id="files"
+          class="visually-hidden"
+          type="file"
+          multiple
+          onChange={({ currentTarget }) => {
+            const files = filesOf(currentTarget);
+            currentTarget.value = "";
+            openFiles(files);
+          }}
+        />
+      </label>
+      <div class="row spread">
+        <label class="button">
+          <span>Open a folder</span>
+          <input
+            id="folder"
+            class="visually-hidden"
+            type="file"
+            {...{ webkitdirectory: true }}
+            onChange={({ currentTarget }) => openFiles(filesOf(currentTarget))}
+          />
+        </label>
+        <span class="quiet">Nothing leaves this device.</span>
+      </div>
+      <ul class="samples">
+        {pictured.map(({ id, title, about, picture = "" }) => (
+          <li key={id}>
+            <button type="button" data-sample={id} aria-pressed={shown === id} title={about} onClick={() => choose(id)}>
+              <img src={sampleUrl(picture)} alt="" width="160" height="120" />
+              <span>{title}</span>
+            </button>
+          </li>
+        ))}
+      </ul>
+      <label class="field-inline more-samples">
+        <span>Samples</span>
+        <select
+          id="sample"
+          value={shown}
+          onChange={async ({ currentTarget }) => {
+            await choose(currentTarget.value);
+            // If it could not be loaded, the scene that is shown is still the one before.
+            currentTarget.value = scene.peek()?.sample ?? "";
+          }}
+        >
+          {shown === "" && <option value="">Own files</option>}
+          {samples.map(({ id, title }) => (
+            <option key={id} value={id}>
+              {title}
+            </option>
+          ))}
+        </select>
+      </label>
+    </section>
+  );
+}

@@ -1,0 +1,93 @@
+/** The time axis of a video. */
+import { useEffect } from "preact/hooks";
+import { correctFrame, isTracking, showFrame, stopTracking, trackAll } from "../run/video.js";
+import { selected } from "../state/scene.js";
+import { type FramePose, frameIndex, framePoses, trackedCount, video } from "../state/video.js";
+import { percent } from "../ui/format.js";
+
+/** Time between frames while they are played. */
+const FRAME_MS = 120;
+
+const stateTitles = { tracking: "tracked", uncertain: "uncertain", lost: "lost" };
+
+function titleOf(pose: FramePose | null): string {
+  if (pose === null) return "not tracked";
+  return `${pose.isCorrected ? "corrected" : stateTitles[pose.state]}, ${percent(pose.confidence)}`;
+}
+
+export function TimePanel() {
+  const opened = video.value;
+  if (opened === null) return null;
+  const count = opened.frames.length;
+  const index = frameIndex.value;
+  const poses = framePoses.value;
+  const source = selected.value?.pose.value.source;
+  const canCorrect = !isTracking.value && poses[index] != null && source !== "tracked" && source !== "start";
+  return (
+    <section class="panel time" aria-label="Frames">
+      <button type="button" aria-label="Previous frame" disabled={index === 0} onClick={() => showFrame(index - 1)}>
+        ‹
+      </button>
+      <Play count={count} />
+      <button type="button" aria-label="Next frame" disabled={index + 1 >= count} onClick={() => showFrame(index + 1)}>
+        ›
+      </button>
+      <div class="axis">
+        <input
+          id="frame"
+          type="range"
+          min="0"
+          max={count - 1}
+          value={index}
+          aria-label="Frame"
+          aria-valuetext={`${index + 1} of ${count}, ${titleOf(poses[index] ?? null)}`}
+          onInput={({ currentTarget }) => showFrame(currentTarget.valueAsNumber)}
+        />
+        <div class="strip" aria-hidden="true">
+          {poses.map((pose, i) => (
+            <span
+              key={opened.frames[i]?.name}
+              data-state={pose === null ? "none" : pose.isCorrected ? "corrected" : pose.state}
+            />
+          ))}
+        </div>
+      </div>
+      <span class="frame-name" id="frame-name">
+        {index + 1}/{count} · {titleOf(poses[index] ?? null)}
+      </span>
+      {isTracking.value ? (
+        <button type="button" id="stop-tracking" onClick={stopTracking}>
+          Stop
+        </button>
+      ) : (
+        <button type="button" id="track" class={trackedCount.value < count ? "primary" : ""} onClick={trackAll}>
+          {trackedCount.value === 0 ? "Track" : "Track again"}
+        </button>
+      )}
+      <button type="button" id="correct" disabled={!canCorrect} onClick={correctFrame}>
+        Use this pose
+      </button>
+    </section>
+  );
+}
+
+function Play({ count }: { count: number }) {
+  useEffect(() => stopPlaying, []);
+  return (
+    <button type="button" aria-label="Play" disabled={isTracking.value} onClick={() => play(count)}>
+      ▶
+    </button>
+  );
+}
+
+let timer: ReturnType<typeof setTimeout> | undefined;
+
+const stopPlaying = () => clearTimeout(timer);
+
+/** Shows the frames one after the other; from the last one, from the beginning. */
+async function play(count: number): Promise<void> {
+  stopPlaying();
+  const next = frameIndex.peek() + 1 < count ? frameIndex.peek() + 1 : 0;
+  await showFrame(next);
+  if (next + 1 < count) timer = setTimeout(() => play(count), FRAME_MS);
+}

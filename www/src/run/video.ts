@@ -1,0 +1,146 @@
+/** Shows and tracks the frames of a video. */
+import { signal } from "@preact/signals";
+import type { Tracker } from "sim3align";
+import { toSim3 } from "sim3align/conventions";
+import type { Inputs } from "../load/inputs.js";
+import { inputs, show } from "../load/open.js";
+import { readInputs, sceneOf } from "../load/read-scene.js";
+import { constraintsOf, options } from "../state/options.js";
+import { type Scene, scene } from "../state/scene.js";
+import { announce } from "../state/status.js";
+import { type FramePose, frameIndex, framePoses, setFramePose, type Video, video } from "../state/video.js";
+import { aligner } from "./aligner.js";
+
+const controller = signal<AbortController | null>(null);
+export const isTracking = signal(false);
+
+/** The tracker of the last run, which corrections need. */
+let tracker: Tracker | null = null;
+
+/** Opens a video at its first frame, which has been read. */
+export function openVideo(opened: Video, first: Scene): void {
+  closeVideo();
+  video.value = opened;
+  framePoses.value = opened.frames.map(() => null);
+  frameIndex.value = 0;
+  show(first, opened.frames[0] as Inputs);
+}
+
+/** Forgets the video, for another scene. */
+export function closeVideo(): void {
+  stopTracking();
+  tracker?.close();
+  tracker = null;
+  video.value = null;
+  framePoses.value = [];
+}
+
+export function stopTracking(): void {
+  controller.peek()?.abort();
+}
+
+/** The number of the last call of `showFrame`. The results of earlier ones are discarded. */
+let lastCall = 0;
+
+/** Shows a frame with its pose. */
+export async function showFrame(index: number): Promise<void> {
+  const frame = video.peek()?.frames[index];
+  if (frame === undefined || index === frameIndex.peek()) return;
+  const call = ++lastCall;
+  const opened = await readFrame(frame);
+  if (call === lastCall && opened !== null) put(index, frame, opened);
+}
+
+async function readFrame(frame: Inputs): Promise<Scene | null> {
+  const reading = await readInputs(frame);
+  const opened = sceneOf(frame, reading, true);
+  if (opened === null) {
+    announce(`${frame.name}: ${reading.problems[0]?.message ?? "a part is missing"}`, "failed");
+  }
+  return opened;
+}
+
+function put(index: number, frame: Inputs, opened: Scene): void {
+  const [object] = opened.objects;
+  const before = scene.peek()?.objects[0];
+  const pose = framePoses.peek()[index];
+  if (object !== undefined && pose != null) object.pose.value = { transform: pose.transform, source: "tracked" };
+  if (object !== undefined && before !== undefined) object.knownScale.value = before.knownScale.peek();
+  frameIndex.value = index;
+  show(opened, frame);
+}
+
+/** Tracks the object through all frames, and shows them as they come. */
+export async function trackAll(): Promise<void> {
+  const [opened, first] = [video.peek(), scene.peek()?.objects[0]];
+  if (opened === null || first === undefined || isTracking.peek()) return;
+  const abort = new AbortController();
+  controller.value = abort;
+  isTracking.value = true;
+  const started = performance.now();
+  try {
+    tracker?.close();
+    const { scale } = constraintsOf(first);
+    const { quality, seed } = options.peek();
+    // A pose that a person has set in the first frame is where tracking begins.
+    const initial = frameIndex.peek() === 0 && first.pose.peek().source === "hand" ? first.pose.peek().transform : null;
+    const limits = scale === undefined ? {} : { scale };
+    tracker = await (await aligner()).track(first.mesh, { quality, seed, initial, ...limits });
+    for (const [index, frame] of opened.frames.entries()) {
+      if (abort.signal.aborted || video.peek() !== opened) return announce("Stopped.");
+      announce(`Tracking frame ${index + 1} of ${opened.frames.length} …`, "working");
+      const read = await readFrame(frame);
+      const object = read?.objects[0];
+      if (read === null || object === undefined) return;
+      const { depthM, width, height, camera } = read;
+      const mask = frame.objects[0]?.mask == null ? {} : { mask: object.mask };
+      const found = await tracker.next({ depth: depthM, width, height, camera, ...mask });
+      if (video.peek() !== opened) return;
+      const { confidence, state } = found;
+      setFramePose(index, { transform: toSim3(found), confidence, state, isCorrected: false });
+      put(index, frame, read);
+    }
+    const lost = framePoses.peek().filter((pose) => pose?.state === "lost").length;
+    const seconds = ((performance.now() - started) / 1000).toFixed(1);
+    announce(`Tracked ${opened.frames.length} frames in ${seconds} s${lost > 0 ? `; lost in ${lost}` : ""}.`);
+  } catch (error) {
+    announce(error instanceof Error ? error.message : `${error}`, "failed");
+  } finally {
+    isTracking.value = false;
+    controller.value = null;
+  }
+}
+
+/** Takes the pose that is shown as right, and carries the difference to the frames before and after. */
+export async function correctFrame(): Promise<void> {
+  const object = scene.peek()?.objects[0];
+  const index = frameIndex.peek();
+  if (tracker === null || object === undefined || framePoses.peek()[index] == null) return;
+  const { transform } = object.pose.peek();
+  try {
+    const changed = await tracker.correct(transform, index);
+    const poses: (FramePose | null)[] = [...framePoses.peek()];
+    for (const found of changed) {
+      const before = poses[found.frame];
+      if (before == null) continue;
+      const isOwn = found.frame === index;
+      poses[found.frame] = {
+        transform: toSim3(found),
+        confidence: isOwn ? 1 : before.confidence,
+        state: isOwn ? "tracking" : before.state,
+        isCorrected: isOwn || before.isCorrected,
+      };
+    }
+    framePoses.value = poses;
+    object.pose.value = { transform, source: "tracked" };
+    announce(`Corrected ${changed.length} frames.`);
+  } catch (error) {
+    announce(error instanceof Error ? error.message : `${error}`, "failed");
+  }
+}
+
+// Another scene ends the video.
+inputs.subscribe((shown) => {
+  const opened = video.peek();
+  if (opened !== null && !opened.frames.includes(shown)) closeVideo();
+});

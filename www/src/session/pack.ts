@@ -1,0 +1,141 @@
+/** A session as plain data: the files of a scene, and what was done with its objects. */
+import { toSim3 } from "sim3align/conventions";
+import { baseName, type NamedFile } from "../load/files.js";
+import type { CameraSource, Inputs, MaskSource, MeshSource, Role, TruthSource } from "../load/inputs.js";
+import type { AnyAlignment, ObjectModel } from "../state/object-model.js";
+import { type Options, options } from "../state/options.js";
+import type { PoseSource } from "../state/pose.js";
+import type { Scene } from "../state/scene.js";
+
+/** The version of the form of the data. Others are not read. */
+const VERSION = 1;
+
+/** A file by its index. */
+type Ref = number;
+
+interface PackedObject {
+  name: string;
+  mask: (Omit<MaskSource, "file"> & { file: Ref }) | null;
+  mesh: Ref | null;
+  truth: (Omit<TruthSource, "file"> & { file: Ref }) | null;
+  /** Of the object at the time; missing until it was shown. */
+  state: PackedState;
+}
+
+interface PackedState {
+  matrix: readonly number[];
+  source: PoseSource;
+  isAccepted: boolean;
+  isShown: boolean;
+  isLocked: boolean;
+  knownScale: number | null;
+  alignment: AnyAlignment | null;
+}
+
+/** A session without its files. */
+export interface Packed {
+  version: number;
+  name: string;
+  depth: Ref | null;
+  depthScale: number | null;
+  photo: Ref | null;
+  camera: Exclude<CameraSource, { kind: "file" }> | { kind: "file"; file: Ref } | null;
+  imageId: string | null;
+  resizeMasks: boolean;
+  objects: PackedObject[];
+  roles: { file: Ref; role: Role }[];
+  options: Options;
+}
+
+/** The session of a scene, and its files in the order of their indices. */
+export function packed(inputs: Inputs, scene: Scene): { session: Packed; files: NamedFile[] } {
+  const files: NamedFile[] = [];
+  const ref = (file: NamedFile): Ref => {
+    const known = files.indexOf(file);
+    return known >= 0 ? known : files.push(file) - 1;
+  };
+  const optional = (file: NamedFile | null): Ref | null => (file === null ? null : ref(file));
+  const { camera } = inputs;
+  const objects = inputs.objects.map(({ name, mask, mesh, truth }, i): PackedObject => {
+    for (const sibling of mesh?.siblings ?? []) if (isResource(sibling.path)) ref(sibling);
+    return {
+      name: scene.objects[i]?.name ?? name,
+      mask: mask && { ...mask, file: ref(mask.file) },
+      mesh: mesh && ref(mesh.file),
+      truth: truth && { ...truth, file: ref(truth.file) },
+      state: stateOf(scene.objects[i] as ObjectModel),
+    };
+  });
+  const session: Packed = {
+    version: VERSION,
+    name: inputs.name,
+    depth: optional(inputs.depth),
+    depthScale: inputs.depthScale,
+    photo: optional(inputs.photo),
+    camera: camera?.kind === "file" ? { kind: "file", file: ref(camera.file) } : camera,
+    imageId: inputs.imageId,
+    resizeMasks: inputs.resizeMasks,
+    objects,
+    roles: [],
+    options: options.peek(),
+  };
+  session.roles = inputs.files.flatMap(({ file, role }) => (files.includes(file) ? [{ file: ref(file), role }] : []));
+  return { session, files };
+}
+
+/** Files that meshes refer to. */
+const isResource = (path: string) => /\.(bin|mtl|png|jpe?g|webp)$/i.test(baseName(path));
+
+function stateOf({ pose, isAccepted, isShown, isLocked, knownScale, alignment }: ObjectModel): PackedState {
+  const { transform, source } = pose.value;
+  return {
+    ...{ matrix: [...transform.matrix], source },
+    ...{ isAccepted: isAccepted.value, isShown: isShown.value, isLocked: isLocked.value },
+    ...{ knownScale: knownScale.value, alignment: alignment.value },
+  };
+}
+
+/** The inputs of a session; null for one of another version. */
+export function unpacked(session: Packed, files: readonly NamedFile[]): Inputs | null {
+  if (session.version !== VERSION) return null;
+  const at = (ref: Ref): NamedFile => files[ref] as NamedFile;
+  const optional = (ref: Ref | null) => (ref === null ? null : at(ref));
+  const { camera } = session;
+  const meshes = new Map<Ref, MeshSource>();
+  for (const { mesh } of session.objects) if (mesh !== null) meshes.set(mesh, { file: at(mesh), siblings: files });
+  return {
+    name: session.name,
+    sample: null,
+    depth: optional(session.depth),
+    depthScale: session.depthScale,
+    photo: optional(session.photo),
+    camera: camera?.kind === "file" ? { kind: "file", file: at(camera.file) } : camera,
+    imageId: session.imageId,
+    resizeMasks: session.resizeMasks,
+    objects: session.objects.map(({ name, mask, mesh, truth }) => ({
+      name,
+      mask: mask && { ...mask, file: at(mask.file) },
+      mesh: mesh === null ? null : (meshes.get(mesh) ?? null),
+      truth: truth && { ...truth, file: at(truth.file) },
+      isSure: true,
+    })),
+    meshes: [...meshes.values()],
+    files: session.roles.map(({ file, role }) => ({ file: at(file), role })),
+  };
+}
+
+/** Gives the objects of a scene the poses and settings of a session. */
+export function applyState({ objects, options: chosen }: Packed, scene: Scene): void {
+  options.value = { ...options.peek(), ...chosen };
+  scene.objects.forEach((object, i) => {
+    const state = objects[i]?.state;
+    if (state === undefined) return;
+    object.alignment.value = state.alignment;
+    object.run.value = { state: state.alignment === null ? "idle" : "done" };
+    object.pose.value = { transform: toSim3(state.matrix), source: state.source };
+    object.isAccepted.value = state.isAccepted;
+    object.isShown.value = state.isShown;
+    object.isLocked.value = state.isLocked;
+    object.knownScale.value = state.knownScale;
+  });
+}

@@ -1,0 +1,27 @@
+/** The draft: the inputs of a scene that is not shown yet. Nothing else of the page refers to them. */
+import { signal } from "@preact/signals";
+import type { Inputs } from "../load/inputs.js";
+import type { Problem } from "../load/problems.js";
+import type { Reading } from "../load/read-scene.js";
+
+export interface Draft {
+  /** The scenes of the drop, of which one is looked at. */
+  scenes: readonly Inputs[];
+  index: number;
+  /** Null while the files are being read. */
+  reading: Reading | null;
+  problems: readonly Problem[];
+  /** Whether the scenes are the frames of one video. */
+  isVideo: boolean;
+  /** Whether these are the inputs of the scene that is shown already. */
+  isEdit: boolean;
+}
+
+export const draft = signal<Draft | null>(null);
+
+/** The inputs that the draft is about. */
+export const draftInputs = ({ scenes, index }: Draft): Inputs => scenes[index] as Inputs;
+
+/** Whether the draft can become the scene. */
+export const isReady = ({ reading, problems }: Draft): boolean =>
+  reading !== null && !problems.some(({ kind }) => kind === "error");

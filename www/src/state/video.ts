@@ -1,0 +1,35 @@
+/** The video: frames with one object, and its tracked poses. */
+import { computed, signal } from "@preact/signals";
+import type { TrackState } from "sim3align";
+import type { Sim3 } from "sim3align/conventions";
+import type { Inputs } from "../load/inputs.js";
+
+/** The pose of a frame. */
+export interface FramePose {
+  readonly transform: Sim3;
+  readonly confidence: number;
+  readonly state: TrackState;
+  /** Whether a person has set it. */
+  readonly isCorrected: boolean;
+}
+
+export interface Video {
+  readonly frames: readonly Inputs[];
+  /** Of the cameras of all frames, camera to world, row by row; null if one is unknown. */
+  readonly cameras: readonly (readonly number[])[] | null;
+}
+
+export const video = signal<Video | null>(null);
+
+/** The index of the frame that is shown. */
+export const frameIndex = signal(0);
+
+/** The poses of the frames, as far as they were tracked. */
+export const framePoses = signal<readonly (FramePose | null)[]>([]);
+
+/** How many frames are tracked. */
+export const trackedCount = computed(() => framePoses.value.filter((pose) => pose !== null).length);
+
+export function setFramePose(index: number, pose: FramePose): void {
+  framePoses.value = framePoses.peek().map((other, i) => (i === index ? pose : other));
+}

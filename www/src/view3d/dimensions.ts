@@ -1,0 +1,77 @@
+/** Dimension lines: the sides of an object's bounding box, with their lengths. */
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  type Sprite,
+  Vector3,
+} from "three/webgpu";
+import { labelOf, lengthText, removeLabel } from "./label.js";
+import type { Model } from "./model.js";
+
+/** The distance of a label from its line, as a share of the box's diagonal. */
+const APART = 0.07;
+
+/** The lines and labels of one object, in the OpenCV camera frame. */
+export class Dimensions {
+  readonly object = new Group();
+  private readonly lines: LineSegments<BufferGeometry, LineBasicMaterial>;
+  private readonly labels: Sprite[] = [];
+  private shown = "";
+
+  constructor() {
+    const material = new LineBasicMaterial({ color: new Color(0xffffff), depthTest: false });
+    this.lines = new LineSegments(new BufferGeometry(), material);
+    this.lines.renderOrder = 2;
+    this.object.add(this.lines);
+    this.object.visible = false;
+  }
+
+  /** Shows the size of a model at its present pose; `null` hides the lines. */
+  show(model: Model | null): void {
+    const corners = model?.corners() ?? null;
+    this.object.visible = corners !== null;
+    if (corners === null) return;
+    const key = corners.map((corner) => corner.toArray().map((x) => x.toFixed(5))).join();
+    if (key === this.shown) return;
+    this.shown = key;
+    for (const label of this.labels.splice(0)) removeLabel(label);
+    const positions: number[] = [];
+    const centre = corners.reduce((sum, corner) => sum.add(corner), new Vector3()).divideScalar(corners.length);
+    const diagonal = (corners[0] as Vector3).distanceTo(corners[7] as Vector3);
+    for (const axis of [0, 1, 2]) {
+      const [from, to] = edge(corners, axis);
+      positions.push(...from.toArray(), ...to.toArray());
+      const middle = from.clone().lerp(to, 0.5);
+      const outwards = middle.clone().sub(centre).normalize();
+      const label = labelOf(lengthText(from.distanceTo(to)));
+      label.position.copy(middle).addScaledVector(outwards, APART * diagonal);
+      this.labels.push(label);
+      this.object.add(label);
+    }
+    this.lines.geometry.dispose();
+    this.lines.geometry = new BufferGeometry();
+    this.lines.geometry.setAttribute("position", new BufferAttribute(Float32Array.from(positions), 3));
+  }
+
+  dispose(): void {
+    for (const label of this.labels.splice(0)) removeLabel(label);
+    this.object.removeFromParent();
+    this.lines.geometry.dispose();
+    this.lines.material.dispose();
+  }
+}
+
+/** Of the four edges along an axis, the one nearest to the viewer's lower right. Bit k of a corner is its side on axis k. */
+function edge(corners: readonly Vector3[], axis: number): readonly [Vector3, Vector3] {
+  const starts = [0, 1, 2, 3, 4, 5, 6, 7].filter((corner) => (corner & (1 << axis)) === 0);
+  const pairs = starts.map((start) => [corners[start], corners[start | (1 << axis)]] as [Vector3, Vector3]);
+  const score = ([from, to]: readonly [Vector3, Vector3]) => {
+    const middle = from.clone().lerp(to, 0.5);
+    return (0.35 * middle.x + middle.y) / middle.z - 0.8 * middle.z;
+  };
+  return pairs.reduce((best, pair) => (score(pair) > score(best) ? pair : best));
+}

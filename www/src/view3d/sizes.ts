@@ -1,0 +1,33 @@
+/** The dimension lines of all objects. */
+import type { Group } from "three/webgpu";
+import { Dimensions } from "./dimensions.js";
+import type { Model } from "./model.js";
+
+/** The sizes of so many objects are shown at once, and of the selected one among more. */
+const FEW = 3;
+
+export class Sizes {
+  private readonly dimensions = new Map<string, Dimensions>();
+
+  constructor(private readonly root: Group) {}
+
+  /** Shows the sizes of those models that `isShown` allows. */
+  update(models: ReadonlyMap<string, Model>, selected: string | null, isShown: (id: string) => boolean): void {
+    for (const [id, dimensions] of this.dimensions) {
+      if (models.has(id)) continue;
+      dimensions.dispose();
+      this.dimensions.delete(id);
+    }
+    for (const [id, model] of models) {
+      const dimensions = this.dimensions.get(id) ?? new Dimensions();
+      if (!this.dimensions.has(id)) this.root.add(dimensions.object);
+      this.dimensions.set(id, dimensions);
+      dimensions.show((models.size <= FEW || id === selected) && isShown(id) ? model : null);
+    }
+  }
+
+  dispose(): void {
+    for (const dimensions of this.dimensions.values()) dimensions.dispose();
+    this.dimensions.clear();
+  }
+}
