@@ -54,8 +54,7 @@ async function measureMemory() {
     const meshes = await Promise.all(scene.objects.map(({ mesh }) => prepare(mesh)));
     const objects = scene.objects.map(({ mask }, i) => ({ mask, mesh: meshes[i] }));
     const result = await aligner.alignScene({ ...scene, objects });
-    const failed = result.objects.find(({ error }) => error !== undefined);
-    if (failed !== undefined) throw failed.error;
+    for (const { error } of result.objects) if (error !== undefined) throw error;
     peaks.push({ name: isPrepared ? "prepared" : "arrays", before, peak: memory.buffer.byteLength });
   }
   const { objects, triangles, width, height } = large;

@@ -164,7 +164,12 @@ function contactText(object: ObjectModel): string | null {
   if (contact === undefined || object.pose.value.source !== "aligned") return null;
   const { restsOn, gapM } = contact;
   if (restsOn === null) return "Touches nothing: it hangs, leans or floats.";
-  const what = restsOn === "support" ? "the ground" : (scene.value?.objects[restsOn]?.name ?? "another object");
+  const what =
+    restsOn === "support"
+      ? "the ground"
+      : restsOn === "level"
+        ? "a level above the ground"
+        : (scene.value?.objects[restsOn]?.name ?? "another object");
   const gap = gapM === null ? "" : `, ${significant(Math.abs(1000 * gapM), 2)} mm ${gapM < 0 ? "sunk in" : "above it"}`;
   return `Stands on ${what}${gap}.`;
 }
