@@ -19,7 +19,7 @@ import { explain, script } from "./lib/step.mjs";
  */
 const fuzzers = {
   javascript: { title: "Arguments and pools of the package", run: fuzzJavaScript },
-  core: { title: "Readers, align, evaluate and register, native", run: fuzzCore },
+  core: { title: "Readers, align, views, trackers, evaluate and register, native", run: fuzzCore },
 };
 
 await script(async () => {

@@ -95,7 +95,7 @@ const copy = at("target", "examples");
 const examplesDir = join(copy, "examples");
 
 /** Files that working in the examples' folder leaves there. */
-const made = new Set(["node_modules", "sample", "dist", "annotation"]);
+const made = new Set(["node_modules", "sample", "dist", "annotation", "annotations"]);
 const isSource = (/** @type {string} */ path) => !made.has(basename(path));
 
 async function installExamples() {

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use super::observation::Observation;
-use super::photo::Photo;
+use super::observation::{Observation, check_mask_size, check_pixels};
+use super::photo::{Photo, check_photo};
 use crate::error::Result;
 use crate::geometry::image::{DepthMap, Mask};
 use crate::geometry::pinhole::Pinhole;
@@ -22,6 +22,20 @@ pub struct Frame {
 }
 
 impl Frame {
+    /// Checks what holds for every frame, also for one without a mask.
+    ///
+    /// # Errors
+    /// [`ErrorCode::SizeMismatch`](crate::error::ErrorCode::SizeMismatch),
+    /// [`ErrorCode::FileTooLarge`](crate::error::ErrorCode::FileTooLarge),
+    /// [`ErrorCode::InvalidCamera`](crate::error::ErrorCode::InvalidCamera).
+    pub fn check(&self) -> Result<()> {
+        self.mask.as_ref().map_or(Ok(()), |mask| check_mask_size(&self.depth, mask))?;
+        check_pixels(&self.depth)?;
+        let (width, height) = (self.depth.width(), self.depth.height());
+        self.camera.check_field_of_view(width, height)?;
+        self.photo.as_ref().map_or(Ok(()), |photo| check_photo(photo, [width, height]))
+    }
+
     /// The observation of the frame; `None` without a mask.
     ///
     /// # Errors

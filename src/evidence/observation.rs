@@ -249,7 +249,7 @@ pub fn check_mask_size(depth: &DepthMap, mask: &Mask) -> Result<()> {
     ))
 }
 
-fn check_pixels(depth: &DepthMap) -> Result<()> {
+pub(super) fn check_pixels(depth: &DepthMap) -> Result<()> {
     let (width, height) = (depth.width(), depth.height());
     if depth.data().len() <= MAX_PIXELS {
         return Ok(());

@@ -12,8 +12,7 @@ use super::sight::{Seen, Sight, agreement, shown};
 use super::size::Size;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::frame::Frame;
-use crate::evidence::observation::{Observation, check_mask_size};
-use crate::evidence::photo::check_photo;
+use crate::evidence::observation::Observation;
 use crate::evidence::sample::Sampling;
 use crate::geometry::rotations::angle_between;
 use crate::geometry::similarity::Similarity;
@@ -122,10 +121,10 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
     ///
     /// # Errors
     /// [`ErrorCode::InvalidArgument`] for a first frame without a mask and without `initial`; [`ErrorCode::NoConsensus`] if
-    /// the object is not found in the first frame, and those of [`Observation::new`] there; [`ErrorCode::SizeMismatch`]
-    /// and [`ErrorCode::InvalidCamera`] in all frames. The tracker remains usable.
+    /// the object is not found in the first frame, and those of [`Observation::new`] there; those of
+    /// [`Frame::check`] in all frames. The tracker remains usable.
     pub fn next(&mut self, frame: &Frame, host: &mut dyn Host) -> Result<TrackedFrame> {
-        check(frame)?;
+        frame.check()?;
         let seen = match self.last {
             Some(last) => self.follow(frame, last, host),
             None => Some(self.first(frame, host)?),
@@ -375,12 +374,4 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             self.history.push((pose, self.stretch));
         }
     }
-}
-
-/// Checks what holds for every frame.
-fn check(frame: &Frame) -> Result<()> {
-    frame.camera.check_field_of_view(frame.depth.width(), frame.depth.height())?;
-    let size = [frame.depth.width(), frame.depth.height()];
-    frame.photo.as_ref().map_or(Ok(()), |photo| check_photo(photo, size))?;
-    frame.mask.as_ref().map_or(Ok(()), |mask| check_mask_size(&frame.depth, mask))
 }

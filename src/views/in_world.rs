@@ -144,8 +144,8 @@ pub fn in_world(
                 confidence,
                 role: roles[k],
                 world_from_camera,
-                rotation_sd_deg: 0.0,
-                position_sd_m: 0.0,
+                rotation_sd_deg: Some(0.0),
+                position_sd_m: Some(0.0),
                 score: shown(k).unwrap_or_default(),
                 color: color.as_ref().filter(|_| views[k].frame.photo.is_some()).map(|color| color.report),
             }

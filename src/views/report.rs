@@ -54,10 +54,11 @@ pub struct CameraPose {
     /// World from camera: a transform of scale 1.
     #[serde(flatten)]
     pub world_from_camera: Sim3,
-    /// Standard deviation of its rotation, in degrees; 0 for given camera poses and for the camera that is the world.
-    pub rotation_sd_deg: f64,
-    /// Standard deviation of its position, in metres; 0 as above.
-    pub position_sd_m: f64,
+    /// Standard deviation of its rotation, in degrees; 0 for given camera poses and for the camera that is the world, `null`
+    /// where the views do not determine it.
+    pub rotation_sd_deg: Option<f64>,
+    /// Standard deviation of its position, in metres; 0 and `null` as above.
+    pub position_sd_m: Option<f64>,
 }
 
 /// The object in one of the views.

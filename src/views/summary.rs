@@ -51,9 +51,9 @@ pub struct SummaryView {
     /// The camera.
     pub world_from_camera: Similarity,
     /// See [`CameraPose`].
-    pub rotation_sd_deg: f64,
+    pub rotation_sd_deg: Option<f64>,
     /// See [`CameraPose`].
-    pub position_sd_m: f64,
+    pub position_sd_m: Option<f64>,
     /// The score in the view.
     pub score: Score,
     /// What colour contributed.

@@ -50,7 +50,8 @@ impl<'h, 'm, M: Borrow<PreparedMesh<'m>>> ViewsTask<'h, M> {
     ///
     /// # Errors
     /// [`ErrorCode::InvalidOption`]; [`ErrorCode::InvalidArgument`] for no view or too many, for camera poses of some views
-    /// only, and where masks are missing; and those of [`Observation::new`], whose argument names the view.
+    /// only, and where masks are missing; and those of [`Frame::check`](crate::evidence::frame::Frame::check) and
+    /// [`Observation::new`], whose argument names the view.
     pub fn new(views: Vec<View>, mesh: M, options: ViewsOptions, host: impl Host + 'h) -> Result<Self> {
         options.validate()?;
         if views.is_empty() || views.len() > MAX_VIEWS {
@@ -71,7 +72,7 @@ impl<'h, 'm, M: Borrow<PreparedMesh<'m>>> ViewsTask<'h, M> {
             return Err(no_mask());
         }
         let observe = |(k, view): (usize, &View)| {
-            view.frame.observation().map_err(|error| {
+            view.frame.check().and_then(|()| view.frame.observation()).map_err(|error| {
                 let argument = format!("views[{k}].{}", error.argument);
                 error.about(argument)
             })

@@ -119,8 +119,8 @@ pub fn unrelated(searched: &[SearchedView]) -> Result<Summary> {
             confidence,
             role: if *agrees { ViewRole::Used } else { ViewRole::Contradicting },
             world_from_camera: Similarity::identity(),
-            rotation_sd_deg: 0.0,
-            position_sd_m: 0.0,
+            rotation_sd_deg: Some(0.0),
+            position_sd_m: Some(0.0),
             score: found.score,
             color: color.map(|color| color.report),
         });
@@ -129,17 +129,19 @@ pub fn unrelated(searched: &[SearchedView]) -> Result<Summary> {
     let world_from_mesh = views[first].camera_from_mesh;
     for (k, view) in views.iter_mut().enumerate().filter(|(k, _)| *k != first) {
         let relative = world_from_mesh.compose(&view.camera_from_mesh.inverse());
+        view.world_from_camera = Similarity { scale: 1.0, ..relative };
         let sd = |part: fn(&Conditioning) -> f64| {
-            let [a, b] = [first, k].map(|k| held[k].as_ref().map_or(f64::INFINITY, part));
-            (a * a + b * b).sqrt()
+            let (a, b) = (held[first].as_ref().map(part)?, held[k].as_ref().map(part)?);
+            Some((a * a + b * b).sqrt())
         };
         let turn = sd(|held| held.rotation.0);
         let moved = sd(|held| held.lateral_m.max(held.distance_m));
-        // The camera swings about the object as far as the rotation of the object is uncertain.
-        let swing = turn * view.camera_from_mesh.translation.norm();
-        view.world_from_camera = Similarity { scale: 1.0, ..relative };
-        view.rotation_sd_deg = turn.to_degrees();
-        view.position_sd_m = (moved * moved + swing * swing).sqrt();
+        view.rotation_sd_deg = turn.map(f64::to_degrees);
+        view.position_sd_m = turn.zip(moved).map(|(turn, moved)| {
+            // The camera swings about the object as far as the rotation of the object is uncertain.
+            let swing = turn * view.camera_from_mesh.translation.norm();
+            (moved * moved + swing * swing).sqrt()
+        });
     }
     let used = || views.iter().filter(|view| view.role == ViewRole::Used);
     let confidence = used().map(|view| view.confidence).fold(1.0, f64::min);

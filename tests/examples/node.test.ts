@@ -5,7 +5,7 @@ import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { type Alignment, createAligner } from "sim3align";
-import { fromBop } from "sim3align/conventions";
+import { compose, fromBop, invert, type Sim3, toSim3 } from "sim3align/conventions";
 import { readMesh } from "sim3align/formats";
 import { otherPose, writeCase } from "../support/case-folder.js";
 import { repository, sampleDir } from "../support/environment.js";
@@ -117,6 +117,71 @@ test("05-annotation-loop brings a dragged object back, keeps the known size, and
     });
   }
 });
+
+/** The angle between two rotations, quaternions, degrees. */
+const turnBetween = (a: readonly number[], b: readonly number[]) =>
+  (2 * Math.acos(Math.min(1, Math.abs(a.reduce((sum, x, i) => sum + x * (b[i] ?? 0), 0)))) * 180) / Math.PI;
+
+test("08-two-cameras finds the object in the world, and the cameras from the object", async () => {
+  const { status, stdout, stderr } = await runExample("08-two-cameras/align-views.mjs");
+  assert.equal(status, 0, stderr);
+  const { alone, known, oneMask, unknown } = JSON.parse(stdout);
+  const { cameras, frames, mesh, truth } = await import(join(examplesDir, "08-two-cameras", "table.mjs"));
+  assert.deepEqual([known.world, oneMask.world, unknown.world], ["given", "given", "camera"]);
+  for (const [name, { poses }] of Object.entries({ alone, known, oneMask, unknown } as Record<string, typeof known>)) {
+    assert.equal(poses.length, name === "alone" ? 1 : 2);
+    for (const [k, pose] of poses.entries()) {
+      const inCamera = compose(invert({ matrix: cameras[k] }), { matrix: truth });
+      const { errors } = await aligner.evaluate({ mesh, ...frames[k] }, pose, { truth: inCamera });
+      const what = `${name}, camera ${k}: ${JSON.stringify(errors)}`;
+      assert.ok(errors !== null && errors.rotationErrorDeg < 3 && errors.scaleError < 0.02, what);
+      assert.ok(errors.translationErrorM < 0.002, what);
+    }
+  }
+  const world = toSim3({ matrix: truth });
+  for (const { pose } of [known, oneMask]) {
+    assert.ok(turnBetween(pose.rotation, world.rotation) < 3, JSON.stringify(pose));
+    assert.ok(Math.abs(pose.scale / world.scale - 1) < 0.01, JSON.stringify(pose));
+    const off = Math.hypot(...pose.translation.map((x: number, i: number) => x - (world.translation[i] ?? 0)));
+    assert.ok(off < 0.003, JSON.stringify(pose));
+  }
+  const second = compose(invert({ matrix: cameras[0] }), { matrix: cameras[1] });
+  const { rotation, translation, rotationSdDeg, positionSdM } = unknown.secondCamera;
+  assert.ok(turnBetween(rotation, second.rotation) < 3);
+  assert.ok(Math.hypot(...translation.map((x: number, i: number) => x - (second.translation[i] ?? 0))) < 0.03);
+  assert.ok(rotationSdDeg > 0 && rotationSdDeg < 5 && positionSdM > 0 && positionSdM < 0.05);
+});
+
+test("09-video-annotation tracks from one mask, and a correction reaches the frames before and after it", async () => {
+  const out = join(newFolder(), "annotations");
+  const { status, stdout, stderr } = await runExample("09-video-annotation/annotate-video.mjs", [out]);
+  assert.equal(status, 0, stderr);
+  assert.match(stdout, /40 frames, 21 of them corrected/);
+  const { FRAMES, frameAt, mesh } = await import(join(examplesDir, "09-video-annotation", "video.mjs"));
+  const annotated = Array.from({ length: FRAMES }, (_, k) =>
+    JSON.parse(readFileSync(join(out, `frame_${String(k).padStart(2, "0")}.json`), "utf8")),
+  );
+  assert.deepEqual(JSON.parse(readFileSync(join(out, "poses.json"), "utf8")), annotated.map(poseOf));
+
+  // The same without the correction.
+  using tracker = await aligner.track(mesh);
+  let sizeErrors = [0, 0];
+  for (const [k, annotation] of annotated.entries()) {
+    const { truth: inCamera, mask, ...frame } = frameAt(k);
+    assert.deepEqual([annotation.frame, annotation.state, annotation.isCorrected], [k, "tracking", k <= 20]);
+    const { errors } = await aligner.evaluate({ mesh, mask, ...frame }, poseOf(annotation), { truth: inCamera });
+    assert.ok(errors !== null && errors.rotationErrorDeg < 5, `frame ${k}: ${JSON.stringify(errors)}`);
+    assert.ok(errors.translationErrorM < 0.005 && errors.scaleError < 0.02, `frame ${k}: ${JSON.stringify(errors)}`);
+    const without = await tracker.next(k === 0 ? { ...frame, mask } : frame);
+    const [error, errorWithout] = [annotation, without].map(({ scale }) => Math.abs(scale / inCamera.scale - 1));
+    sizeErrors = [(sizeErrors[0] ?? 0) + (error ?? 0), (sizeErrors[1] ?? 0) + (errorWithout ?? 0)];
+    if (k === 20) assert.ok((error ?? 1) < 1e-9, "the corrected frame has the annotator's pose");
+    if (k < 20) assert.notEqual(annotation.scale, without.scale, `frame ${k} was corrected`);
+  }
+  assert.ok((sizeErrors[0] ?? 1) < 0.6 * (sizeErrors[1] ?? 0), `${sizeErrors}`);
+});
+
+const poseOf = ({ scale, rotation, translation }: Sim3) => ({ scale, rotation, translation });
 
 /** As transformers.js' `Tensor`: everything but what onnxruntime has made is behind getters. */
 class Tensor {

@@ -120,10 +120,10 @@ fn unknown_cameras_share_one_size_and_follow_from_the_object() {
         let camera = Similarity::from_column_major(&view.camera.world_from_camera.matrix).unwrap();
         let placed = camera.compose(pose);
         assert!((placed.translation - poses[0].translation).norm() < 1e-9, "the object is in one place");
-        assert!(view.camera.rotation_sd_deg >= 0.0 && view.camera.position_sd_m.is_finite());
+        assert!(view.camera.rotation_sd_deg >= Some(0.0) && view.camera.position_sd_m.is_some_and(f64::is_finite));
     }
-    assert_eq!(found.views[0].camera.rotation_sd_deg, 0.0);
-    assert!(found.views[1].camera.rotation_sd_deg > 0.0);
+    assert_eq!(found.views[0].camera.rotation_sd_deg, Some(0.0));
+    assert!(found.views[1].camera.rotation_sd_deg > Some(0.0));
 }
 
 /// Objects whose print alone tells how they are turned, in three views with photos.
@@ -187,8 +187,12 @@ fn a_photo_of_another_shape_is_refused_by_its_view() {
     let mut views = views_of(&sequence);
     views[1].frame.photo = Some(Arc::new(Photo::filled(30, 90, [9; 3])));
     let options = options(&sequence);
-    let error = align_views(views, &sequence.prepared(), &options, &mut Silent).unwrap_err();
-    assert_eq!((error.code, error.argument.as_ref()), (ErrorCode::SizeMismatch, "views[1].image"));
+    for has_mask in [true, false] {
+        let mut views = views.clone();
+        views[1].frame.mask = views[1].frame.mask.take().filter(|_| has_mask);
+        let error = align_views(views, &sequence.prepared(), &options, &mut Silent).unwrap_err();
+        assert_eq!((error.code, error.argument.as_ref()), (ErrorCode::SizeMismatch, "views[1].image"));
+    }
 }
 
 #[wasm_bindgen_test(unsupported = test)]
@@ -219,6 +223,11 @@ fn what_is_refused() {
     let mut mixed = views.clone();
     mixed[1].world_from_camera = None;
     assert_eq!(refused(mixed).code, ErrorCode::InvalidArgument);
+    let mut impossible = views.clone();
+    impossible[1].frame.mask = None;
+    impossible[1].frame.camera.fx = 1e-3;
+    let error = refused(impossible);
+    assert_eq!((error.code, error.argument.as_ref()), (ErrorCode::InvalidCamera, "views[1].camera"));
     let mut unmasked = views.clone();
     unmasked.iter_mut().for_each(|view| view.frame.mask = None);
     assert_eq!(refused(unmasked).code, ErrorCode::InvalidArgument);

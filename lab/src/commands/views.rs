@@ -15,6 +15,7 @@ use sim3align_geometry::similarity::Similarity;
 use sim3align_lab::bench::benchmark::STRICT;
 use sim3align_lab::bench::statistics::{cell, median};
 use sim3align_lab::sequences::Sequence;
+use sim3align_lab::sequences::faulty_mask::{grown, holed};
 use sim3align_lab::sequences::rig::RigSet;
 
 use super::Failure;
@@ -22,25 +23,49 @@ use super::sequence_rows::{each_row, outcomes};
 
 const USAGE: &str = "\
 Usage: sim3align-lab views [--generated N] [--from I] [--seed S] [--views V] [--threads T] [--printed]
-       [--no-color] [--verbose] [FOLDER...]
+       [--no-color] [--mask-px N] [--holes] [--verbose] [FOLDER...]
 
 Aligns each case with one view, with all views and known camera poses, and with all views and unknown ones, and prints the
 fraction of strictly correct poses and the errors of the size. FOLDER holds a mesh and folders frame_*.
---from: index of the first generated case. --printed: objects whose print alone tells how they are turned; --no-color: without their photos.";
+--from: index of the first generated case. --printed: objects whose print alone tells how they are turned; --no-color: without their photos.
+--mask-px: makes all masks wider by N pixels, narrower if negative. --holes: with holes in the mask of the second view.";
+
+/// What is taken from the frames, or done to them.
+#[derive(Clone, Copy)]
+struct Fault {
+    with_color: bool,
+    mask_px: i32,
+    holes: bool,
+}
+
+impl Fault {
+    /// A view as it is given to the call.
+    fn of(self, index: usize, view: &View) -> View {
+        let mut view = view.clone();
+        view.frame.photo = view.frame.photo.filter(|_| self.with_color);
+        if let Some(mask) = &mut view.frame.mask {
+            *mask = grown(mask, self.mask_px);
+            if self.holes && index == 1 {
+                *mask = holed(mask);
+            }
+        }
+        view
+    }
+}
 
 struct Arguments {
     generated: Range<usize>,
     set: RigSet,
     threads: usize,
     verbose: bool,
-    with_color: bool,
+    fault: Fault,
     folders: Vec<String>,
 }
 
 fn parse(mut parser: lexopt::Parser) -> core::result::Result<Option<Arguments>, lexopt::Error> {
     let set = RigSet { seed: 1, views: None, is_printed: false };
-    let mut parsed =
-        Arguments { generated: 0..0, set, threads: 1, verbose: false, with_color: true, folders: Vec::new() };
+    let fault = Fault { with_color: true, mask_px: 0, holes: false };
+    let mut parsed = Arguments { generated: 0..0, set, threads: 1, verbose: false, fault, folders: Vec::new() };
     while let Some(argument) = parser.next()? {
         match argument {
             Long("help") | Short('h') => return Ok(None),
@@ -50,7 +75,9 @@ fn parse(mut parser: lexopt::Parser) -> core::result::Result<Option<Arguments>, 
             Long("views") => parsed.set.views = Some(parser.value()?.parse()?),
             Long("threads") => parsed.threads = parser.value()?.parse()?,
             Long("printed") => parsed.set.is_printed = true,
-            Long("no-color") => parsed.with_color = false,
+            Long("no-color") => parsed.fault.with_color = false,
+            Long("mask-px") => parsed.fault.mask_px = parser.value()?.parse()?,
+            Long("holes") => parsed.fault.holes = true,
             Long("verbose") => parsed.verbose = true,
             Value(folder) => parsed.folders.push(folder.string()?),
             _ => return Err(argument.unexpected()),
@@ -83,17 +110,17 @@ fn errors_of(sequence: &Sequence, k: usize, pose: &Sim3) -> Result<Option<PoseEr
     pose_errors(&sequence.mesh, &similarity(pose)?, truth, &sequence.symmetry).map(Some)
 }
 
-fn run(sequence: &Sequence, with_color: bool, verbose: bool) -> Result<Vec<Outcome>> {
+fn run(sequence: &Sequence, fault: Fault, verbose: bool) -> Result<Vec<Outcome>> {
     let mut outcomes = Vec::new();
     for (row, name) in ROWS.into_iter().enumerate() {
         let views: Vec<View> = sequence
             .frames
             .iter()
             .take(if row == 0 { 1 } else { usize::MAX })
-            .map(|frame| {
-                let mut view = frame.view.clone();
+            .enumerate()
+            .map(|(k, frame)| {
+                let mut view = fault.of(k, &frame.view);
                 view.world_from_camera = view.world_from_camera.filter(|_| row == 1);
-                view.frame.photo = view.frame.photo.filter(|_| with_color);
                 view
             })
             .collect();
@@ -161,9 +188,9 @@ pub fn main(arguments: lexopt::Parser) -> core::result::Result<(), Failure> {
         Ok(None) => return Err(Failure::Help(USAGE)),
         Err(error) => return Err(Failure::Usage(error, USAGE)),
     };
-    let Arguments { generated, set, threads, verbose, with_color, folders } = arguments;
+    let Arguments { generated, set, threads, verbose, fault, folders } = arguments;
     let outcomes =
-        outcomes(folders, generated, threads, |index| set.case(index), |sequence| run(sequence, with_color, verbose))?;
+        outcomes(folders, generated, threads, |index| set.case(index), |sequence| run(sequence, fault, verbose))?;
     println!(
         "| row | cases | n | strict % | size error median % | ≤ .5 % | ≤ 2 % | confidence ≥ .9 and wrong | wrong views found | right views left out | ms |"
     );

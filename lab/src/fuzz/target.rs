@@ -4,7 +4,7 @@ use sim3align_geometry::error::{Error, ErrorCode};
 
 use super::choices::Choices;
 use super::memory::{peak_bytes, reset_peak};
-use super::targets::{align, evaluate, readers, register};
+use super::targets::{align, evaluate, joint, readers, register};
 use crate::cpu_time::CpuTimer;
 
 /// Time and memory that a call with default options may take.
@@ -68,10 +68,12 @@ pub struct Target {
 }
 
 /// All targets.
-pub const TARGETS: [Target; 6] = [
+pub const TARGETS: [Target; 8] = [
     Target { name: "readers", weight: 2, batch: 200_000, generate: readers::call },
     Target { name: "align", weight: 4, batch: 200, generate: align::small },
     Target { name: "align-large", weight: 2, batch: 5, generate: align::large },
+    Target { name: "views", weight: 2, batch: 100, generate: joint::views },
+    Target { name: "track", weight: 2, batch: 100, generate: joint::track },
     Target { name: "evaluate", weight: 1, batch: 300, generate: evaluate::call },
     Target { name: "register", weight: 1, batch: 50, generate: register::call },
     Target { name: "estimate-sim3", weight: 1, batch: 2_000, generate: register::estimate },

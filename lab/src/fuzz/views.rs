@@ -1,6 +1,10 @@
 //! Observations: images of every shape, masks of a pixel, a row, a line or everything, cameras of many decades.
 
+use std::sync::Arc;
+
+use sim3align::evidence::frame::Frame;
 use sim3align::evidence::observation::Observation;
+use sim3align::evidence::photo::Photo;
 use sim3align_geometry::error::Result;
 use sim3align_geometry::image::{DepthMap, Mask};
 use sim3align_geometry::pinhole::Pinhole;
@@ -22,15 +26,60 @@ const MAX_PIXELS: usize = 1 << 24;
 
 /// An observation, and a description of it.
 pub fn view(c: &mut Choices, size: Size) -> (String, Result<Observation>) {
+    let (words, parts) = parts(c, size);
+    (words, parts.and_then(|(depth, mask, camera)| Observation::new(depth, mask, camera)))
+}
+
+type Parts = (DepthMap, Mask, Pinhole);
+
+fn parts(c: &mut Choices, size: Size) -> (String, Result<Parts>) {
     let [width, height] = image_size(c, size);
     let (camera_words, camera) = camera(c, [width, height]);
     let (mask_words, mask) = mask(c, [width, height]);
     let (depth_words, depth) = depth(c, [width, height]);
     let words = format!("{width} × {height}, mask {mask_words}, depth {depth_words}, camera {camera_words}");
-    let observation = camera.and_then(|camera| {
-        Observation::new(DepthMap::from_metres(width, height, depth)?, Mask::new("mask", width, height, mask)?, camera)
+    let parts = camera.and_then(|camera| {
+        Ok((DepthMap::from_metres(width, height, depth)?, Mask::new("mask", width, height, mask)?, camera))
     });
-    (words, observation)
+    (words, parts)
+}
+
+/// A frame of several, also one without a mask, with an empty one or one of another size, or with a photo of any size.
+pub fn frame(c: &mut Choices, size: Size) -> (String, Result<Frame>) {
+    let (mut words, parts) = parts(c, size);
+    let masked = if c.once_in(4) { c.below(4) } else { 0 };
+    let photo = photo(c);
+    words += ["", ", without the mask", ", mask emptied", ", mask of another size"][masked];
+    if let Some(photo) = &photo {
+        words += &format!(", photo of {} × {}", photo.width(), photo.height());
+    }
+    let frame = parts.map(|(depth, mask, camera)| {
+        let mask = match masked {
+            0 => Some(mask),
+            1 => None,
+            2 => Some(Mask::filled(mask.width(), mask.height(), 0)),
+            _ => Some(Mask::filled(mask.width() + 1, mask.height(), 1)),
+        };
+        // Half of the photos have the shape of the depth map.
+        let photo = photo.map(|photo| match photo.width() {
+            1 => Photo::filled(depth.width(), depth.height(), photo.data()[0]),
+            _ => photo,
+        });
+        Frame { depth, camera, mask, photo: photo.map(Arc::new) }
+    });
+    (words, frame)
+}
+
+/// A photo of a colour or of noise; one of a single column stands for one of the size of the depth map.
+fn photo(c: &mut Choices) -> Option<Photo> {
+    if !c.once_in(3) {
+        return None;
+    }
+    let (width, height) = if c.once_in(2) { (c.size(1, 2000), c.size(1, 200)) } else { (1, 1) };
+    let mut random = c.noise();
+    let mut channel = || (256.0 * random.uniform()) as u8;
+    let data = (0..width * height).map(|_| [channel(), channel(), channel()]).collect();
+    Photo::new("image", width, height, data).ok()
 }
 
 fn image_size(c: &mut Choices, size: Size) -> [usize; 2] {

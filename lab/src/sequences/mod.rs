@@ -1,5 +1,6 @@
 //! Several frames of one object: generated rigs of cameras, generated videos, and case folders with frames.
 
+pub mod faulty_mask;
 pub mod folder;
 pub mod rig;
 mod stage;

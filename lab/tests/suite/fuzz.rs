@@ -54,6 +54,16 @@ fn align_of_large_inputs_has_no_fault() {
 }
 
 #[test]
+fn views_have_no_fault() {
+    no_fault("views", 300, 15);
+}
+
+#[test]
+fn trackers_have_no_fault() {
+    no_fault("track", 100, 10);
+}
+
+#[test]
 fn evaluate_has_no_fault() {
     no_fault("evaluate", 200, 50);
 }
@@ -98,7 +108,7 @@ fn the_same_choices_describe_the_same_input() {
 
 #[test]
 fn the_plainest_input_has_a_result() {
-    for name in ["align", "align-large", "evaluate"] {
+    for name in ["align", "align-large", "views", "track", "evaluate"] {
         let target = Target::of_name(name).unwrap();
         assert_eq!(execute(target, &mut Choices::of(Vec::new()), name.into()), Answer::Result, "{name}");
     }

@@ -957,13 +957,14 @@ positionM: number, };
  */
 export type CameraPose = { 
 /**
- * Standard deviation of its rotation, in degrees; 0 for given camera poses and for the camera that is the world.
+ * Standard deviation of its rotation, in degrees; 0 for given camera poses and for the camera that is the world, `null`
+ * where the views do not determine it.
  */
-rotationSdDeg: number, 
+rotationSdDeg: number | null, 
 /**
- * Standard deviation of its position, in metres; 0 as above.
+ * Standard deviation of its position, in metres; 0 and `null` as above.
  */
-positionSdM: number, 
+positionSdM: number | null, 
 /**
  * s, target units per source unit; for `align`, metres per mesh unit.
  */

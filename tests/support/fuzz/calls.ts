@@ -1,6 +1,6 @@
 /** Calls with odd arguments. Each must settle, with a result or with an error of a kind that callers can handle. */
 import assert from "node:assert/strict";
-import { type Aligner, createAligner, OPTIONS, type OptionRow, Sim3AlignError } from "sim3align";
+import { type Aligner, createAligner, OPTIONS, type OptionRow, Sim3AlignError, type Tracker } from "sim3align";
 import { externalResources, readCamera, readCase, readDepth, readMask, readMesh, readPose } from "sim3align/formats";
 import type { Random } from "../random.js";
 import { columnMajor, truth } from "../scene.js";
@@ -48,7 +48,7 @@ const isOfProxy = (error: unknown) =>
 
 /** Options that may be valid. */
 function options(random: Random, method: keyof typeof OPTIONS): Fields {
-  const given: Fields = method === "align" ? { quality: "fast" } : {};
+  const given: Fields = ["align", "alignViews", "track"].includes(method) ? { quality: "fast" } : {};
   for (const { name, default: value, choices } of OPTIONS[method] as readonly OptionRow[]) {
     const chance = random.between(0, 1);
     if (chance < 0.04) given[name] = oddValue(random);
@@ -91,6 +91,39 @@ function outcomeValue(holder: Fields, name: string): never {
   }
 }
 
+/** A frame of several, with or without mask, photo and the pose of its camera. */
+function frame(random: Random, isPosed: boolean): Fields {
+  const { mesh: _, ...given } = randomPicture(random);
+  if (random.between(0, 1) < 0.2) delete given.mask;
+  const size = pick(random, [
+    [16, 12],
+    [32, 24],
+    [5, 7],
+  ] as const);
+  const image = { data: new Uint8Array(3 * size[0] * size[1]).fill(90), width: size[0], height: size[1] };
+  if (random.between(0, 1) < 0.2) given.image = image;
+  if (isPosed && random.between(0, 1) < 0.5) given.cameraToWorld = pose(random, 1);
+  return given;
+}
+
+/** A pose in one of its forms. */
+function pose(random: Random, scale: number): object {
+  const translation = truth.translation.map((x) => x * random.between(0.9, 1.1)) as typeof truth.translation;
+  const moved = { ...truth, scale, translation };
+  return pick<object>(random, [moved, { matrix: columnMajor(moved) }, Float64Array.from(columnMajor(moved))]);
+}
+
+/** A frame for a tracker, or a correction. */
+function trackerStep(random: Random): (tracker: Tracker) => unknown {
+  if (random.between(0, 1) < 0.7) {
+    const [given, own] = [argument(random, frame(random, false)), random.between(0, 1) < 0.9 ? [] : [oddValue(random)]];
+    return (tracker) => tracker.next(given as never, ...(own as never[]));
+  }
+  const given = argument(random, pose(random, truth.scale));
+  const number = pick(random, [undefined, 0, 1, 99, oddValue(random)]);
+  return (tracker) => tracker.correct(given as never, number as never);
+}
+
 const readers = [readDepth, readMask, readMesh, readCamera, readPose, readCase, externalResources];
 
 const calls: readonly Call[] = [
@@ -112,6 +145,35 @@ const calls: readonly Call[] = [
     const [source, target, own] = [cloud(random), cloud(random), options(random, "estimateSim3")];
     const pairs = random.between(0, 1) < 0.5 ? (oddValue(random) as never) : new Uint32Array(12);
     return () => aligner.estimateSim3(source, target, pairs, own);
+  },
+  ...Array<Call>(2).fill((aligner, random) => {
+    const views = Array.from({ length: random.whole(0, 3) }, () => argument(random, frame(random, true)));
+    const { mesh } = randomPicture(random);
+    const given = argument(random, { mesh, views: random.between(0, 1) < 0.05 ? oddValue(random) : views });
+    const own = argument(random, { ...options(random, "alignViews") });
+    return () => aligner.alignViews(given as never, own);
+  }),
+  (aligner, random, allowed) => {
+    const mesh = outcomeValue(argument(random, randomPicture(random)) ?? {}, "mesh");
+    const own = argument(random, { ...options(random, "track") });
+    const steps = Array.from({ length: random.whole(1, 4) }, () => trackerStep(random));
+    return async () => {
+      const tracker = await aligner.track(mesh, own);
+      let last: Outcome = { result: undefined };
+      try {
+        for (const step of steps) {
+          const outcome = await outcomeOf(() => step(tracker));
+          if ("error" in outcome) {
+            checkError(outcome.error, [], allowed);
+            last = outcome;
+          }
+        }
+      } finally {
+        tracker.close();
+      }
+      // Errors leave the tracker usable; the last one is the same with workers and without.
+      if ("error" in last) throw last.error;
+    };
   },
   (aligner, random) => {
     const mesh = outcomeValue(argument(random, randomPicture(random)) ?? {}, "mesh");

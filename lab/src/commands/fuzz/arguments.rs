@@ -10,14 +10,15 @@ pub const USAGE: &str = "\
 Usage: sim3align-lab fuzz [options]
        sim3align-lab fuzz --replay FILE
 
-Calls readers, align, evaluate, register and estimateSim3 with inputs drawn from a seed, in processes of their own. A
-fault is a panic, an abort, an error without code or words, a result that is not finite, or a call with default options
+Calls readers, align, alignViews, trackers, evaluate, register and estimateSim3 with inputs drawn from a seed, in processes
+of their own. A fault is a panic, an abort, an error without code or words, a result that is not finite, or a call with default options
 beyond a ceiling. The choices that lead to it are made as few as possible, and kept in a file.
 
   --minutes N        how long, default 10
   --executions N     instead of a time: so many calls of each target, readers 1000 times as many
   --seed N           0 to 4294967295, default 0
-  --target T,…       only these: readers, align, align-large, evaluate, register, estimate-sim3
+  --target T,…       only these: readers, align, align-large, views, track, evaluate,
+                     register, estimate-sim3
   --jobs N           processes at a time, default: all processors
   --seconds S        ceiling of a call's computing time, default 6
   --megabytes M      ceiling of a call's memory, default 512

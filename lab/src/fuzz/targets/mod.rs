@@ -2,5 +2,6 @@
 
 pub mod align;
 pub mod evaluate;
+pub mod joint;
 pub mod readers;
 pub mod register;
