@@ -125,16 +125,16 @@ async function resumed(output: Output, batch: Batch, names: ReadonlySet<string>)
 
 /** Aligns the only case, on this thread unless the flags ask for workers. */
 async function alignOne(cases: readonly CaseToDo[], flags: BatchFlags, batch: Batch): Promise<void> {
+  const [only] = cases;
+  if (only === undefined) return;
   const aligner = await createAligner({ workers: flags.workers === "auto" ? 0 : (flags.workers ?? 0) });
   const progress = new ProgressLine(process.stderr, 1);
-  for (const each of cases) {
-    progress.begin(each.name);
-    const outcome = await alignCase(aligner, each, flags, (state) => progress.update(state)).finally(() => {
-      progress.clear();
-      aligner.dispose();
-    });
-    batch.add(outcome, []);
-  }
+  progress.begin(only.name);
+  const outcome = await alignCase(aligner, only, flags, (state) => progress.update(state)).finally(() => {
+    progress.clear();
+    aligner.dispose();
+  });
+  batch.add(outcome, []);
 }
 
 /** Aligns cases side by side. Each is read when its turn comes. */
