@@ -3,8 +3,9 @@ import { existsSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { homedir } from "node:os";
 import { join, sep } from "node:path";
 import { writeApiDocs } from "../lib/api-docs.mjs";
+import { checkApiReport } from "../lib/api-report.mjs";
 import { at, installDir, packageDir, repository, siteDir } from "../lib/paths.mjs";
-import { nodeProgram, run } from "../lib/run.mjs";
+import { attempt, nodeProgram, run } from "../lib/run.mjs";
 import { buildSite } from "../lib/site.mjs";
 import { runChecks } from "../lib/step.mjs";
 import { kilobytes, sizes, wasmFile, wasmModules } from "../lib/wasm.mjs";
@@ -57,9 +58,23 @@ export async function checkPackage() {
     ["tsc --strict, resolution node16", () => compileStrictly("node16")],
     ["tsc --strict, resolution bundler", () => compileStrictly("bundler")],
     ["package.json names files that exist", checkNamedFiles],
+    ["npm publish --dry-run, without a correction", checkPublishing],
+    ["the API report is up to date", checkApiReport],
     ["the API reference, without a warning", writeApiDocs],
     ["size of the tarball", (say) => holdSize("The tarball", size, limits.tarball, say)],
   ]);
+}
+
+/** npm corrects a faulty manifest while it publishes, and says so in warnings only. */
+async function checkPublishing() {
+  // With a tag, npm does not ask the registry for the versions that are there.
+  const args = ["publish", packageDir, "--dry-run", "--access", "public", "--tag", "latest"];
+  const { output, reason } = await attempt("npm", args);
+  const corrected = output.split("\n").filter((line) => /auto-corrected|errors corrected|invalid|cleaned/.test(line));
+  if (reason || corrected.length > 0) {
+    const found = reason || corrected.join("\n");
+    throw new Error(`npm publish --dry-run: ${found}\nRemedy: \`npm pkg fix\` in pkg-config names what to correct.`);
+  }
 }
 
 function checkNamedFiles() {

@@ -4,7 +4,7 @@ import { spawn, spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, readFileSync, symlinkSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { files, folder, results, run, writeCase } from "../support/command-line.js";
+import { endless, files, folder, interrupted, results, run, writeCase } from "../support/command-line.js";
 import { commandLine } from "../support/environment.js";
 import { rotationRows, truth } from "../support/scene.js";
 
@@ -13,39 +13,14 @@ for (const name of ["one", "two", "three"]) writeCase(name, { ...files, "gt.json
 writeCase("empty", {});
 
 const quick = ["--quality", "fast"];
-
-/** Runs the command line until it has written some text to stdout, and then interrupts it. */
-function interrupted(text: RegExp, signal: NodeJS.Signals, ...args: string[]) {
-  const child = spawn(process.execPath, [commandLine, ...args], { cwd: folder });
-  let [stdout, stderr] = ["", ""];
-  child.stdout.on("data", (chunk) => {
-    stdout += chunk;
-    if (text.test(stdout)) child.kill(signal);
-  });
-  child.stderr.on("data", (chunk) => {
-    stderr += chunk;
-  });
-  return new Promise<{ signal: string | null; stdout: string; stderr: string }>((resolve) => {
-    child.on("close", (_, ended) => resolve({ signal: ended, stdout, stderr }));
-  });
-}
-
-/** A case that never ends: nobody writes to its depth map. */
-function endless(name: string): string {
-  writeCase(name, {
-    "mask.png": files["mask.png"],
-    "mesh.glb": files["mesh.glb"],
-    "camera.json": files["camera.json"],
-  });
-  assert.equal(spawnSync("mkfifo", [join(folder, name, "depth.npy")]).status, 0);
-  return name;
-}
+/** In the order of the command line. */
+const inOrder = [...quick, "--workers", "1"];
 
 for (const signal of ["SIGINT", "SIGTERM"] as const) {
   test(`${signal} after two of four cases: their rows and their JSON are there`, async () => {
     const names = ["one", "two", endless(`endless-${signal}`), "three"];
     writeFileSync(join(folder, "part.json"), "what was there before");
-    const ended = await interrupted(/^two .*\n/m, signal, "align", ...names, ...quick, "--json", "part.json");
+    const ended = await interrupted(/^two .*\n/m, signal, "align", ...names, ...inOrder, "--json", "part.json");
     assert.equal(ended.signal, signal, ended.stderr);
     assert.deepEqual(Object.keys(results("part.json")), ["one", "two"]);
     assert.ok(results("part.json").two.errors.scaleError < 0.05);
@@ -69,16 +44,16 @@ test("an interruption before the first result leaves the file as it was", async 
 });
 
 test("the JSON of many cases is the text that JSON.stringify writes", () => {
-  const { status } = run("align", "one", "empty", "two", ...quick, "--json", "many.json");
+  const { status } = run("align", "one", "empty", "two", ...inOrder, "--json", "many.json");
   assert.equal(status, 1);
   const text = readFileSync(join(folder, "many.json"), "utf8");
   assert.equal(text, `${JSON.stringify(JSON.parse(text), null, 2)}\n`);
-  const { stdout } = run("align", "one", "empty", "two", ...quick, "--json", "-");
+  const { stdout } = run("align", "one", "empty", "two", ...inOrder, "--json", "-");
   assert.deepEqual(Object.keys(JSON.parse(stdout)), ["one", "empty", "two"]);
 });
 
 test("the JSON is written to pipes, too", () => {
-  const command = `"${process.execPath}" "${commandLine}" align one two --quality fast --json /dev/fd/3 3>&1 >/dev/null | cat`;
+  const command = `"${process.execPath}" "${commandLine}" align one two --quality fast --workers 1 --json /dev/fd/3 3>&1 >/dev/null | cat`;
   const { stdout, stderr } = spawnSync("sh", ["-c", command], { cwd: folder, encoding: "utf8" });
   assert.deepEqual(Object.keys(JSON.parse(stdout)), ["one", "two"], stderr);
 });
@@ -107,7 +82,7 @@ for (const command of [
 test("a case that is given twice is aligned once, with a message", () => {
   symlinkSync("one", join(folder, "link"));
   const given = ["one", "./one/", "two", "link", join(folder, "two")];
-  const { status, stdout, stderr } = run("align", ...given, ...quick, "--json", "twice.json");
+  const { status, stdout, stderr } = run("align", ...given, ...inOrder, "--json", "twice.json");
   assert.equal(status, 0, stderr);
   assert.deepEqual(Object.keys(results("twice.json")), ["one", "two"]);
   assert.match(stderr, /skipped, given twice: \.\/one\/, link, .*two/);
@@ -116,7 +91,7 @@ test("a case that is given twice is aligned once, with a message", () => {
 
 test("a reader that closes stdout ends the run, unless there is JSON to write", () => {
   const sh = (command: string) => spawnSync("sh", ["-c", command], { cwd: folder, encoding: "utf8" });
-  const program = `"${process.execPath}" "${commandLine}" align one two three empty --quality fast`;
+  const program = `"${process.execPath}" "${commandLine}" align one two three empty --quality fast --workers 1`;
   assert.match(sh(`${program} | head -n 1`).stdout, /^case .*\n$/);
   sh(`${program} --json closed.json | head -n 1`);
   assert.deepEqual(Object.keys(results("closed.json")), ["one", "two", "three", "empty"]);

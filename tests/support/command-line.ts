@@ -1,5 +1,6 @@
 /** The command line, run as its users run it, in a folder of cases. */
-import { spawnSync } from "node:child_process";
+import assert from "node:assert/strict";
+import { spawn, spawnSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -21,6 +22,22 @@ export function run(...args: string[]): { status: number | null; stdout: string;
     encoding: "utf8",
   });
   return { status, stdout, stderr };
+}
+
+/** Runs the command line until it has written some text to stdout, and then sends it a signal. */
+export function interrupted(text: RegExp, signal: NodeJS.Signals, ...args: string[]) {
+  const child = spawn(process.execPath, [commandLine, ...args], { cwd: folder });
+  let [stdout, stderr] = ["", ""];
+  child.stdout.on("data", (chunk) => {
+    stdout += chunk;
+    if (text.test(stdout)) child.kill(signal);
+  });
+  child.stderr.on("data", (chunk) => {
+    stderr += chunk;
+  });
+  return new Promise<{ signal: string | null; stdout: string; stderr: string }>((resolve) => {
+    child.on("close", (_, ended) => resolve({ signal: ended, stdout, stderr }));
+  });
 }
 
 /** Writes the files of a case, and returns its name. */
@@ -50,3 +67,11 @@ export const files = {
 
 /** The results that --json wrote. */
 export const results = (path: string) => JSON.parse(readFileSync(join(folder, path), "utf8"));
+
+/** A case that never ends: nobody writes to its depth map. */
+export function endless(name: string): string {
+  const { "depth.npy": _, ...others } = files;
+  writeCase(name, others);
+  assert.equal(spawnSync("mkfifo", [join(folder, name, "depth.npy")]).status, 0);
+  return name;
+}

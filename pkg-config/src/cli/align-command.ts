@@ -1,48 +1,32 @@
 /** `sim3align align`: aligns cases and prints the results. */
+import { availableParallelism } from "node:os";
 import { Command, Option } from "commander";
-import { type CaseOnDisk, frameNames, readFrames } from "../case-folder.js";
-import {
-  type Aligner,
-  type AlignInput,
-  createAligner,
-  OPTIONS,
-  type OptionRow,
-  type OptionsOf,
-  type Preset,
-  type Progress,
-  Sim3AlignError,
-  type ViewsOptions,
-} from "../index.js";
-import { withoutUndefined } from "../values.js";
-import {
-  addCaseOptions,
-  type CaseFlags,
-  caseFolderHelp,
-  caseSettings,
-  conventionsHelp,
-  statusHelp,
-} from "./case-options.js";
+import { createAligner } from "../index.js";
+import { type AlignFlags, alignCase, paper, precise, shared } from "./align-case.js";
+import { Batch } from "./batch.js";
+import { addCaseOptions, caseFolderHelp, caseSettings, conventionsHelp, statusHelp } from "./case-options.js";
+import { casePaths } from "./case-paths.js";
 import { type CaseToDo, casesOf, type FileFlags } from "./cases.js";
+import { concurrently } from "./concurrent.js";
+import { csvHeadings } from "./csv-file.js";
 import { onInterruption } from "./interruption.js";
-import { addOptionFlags, givenOptions } from "./option-flags.js";
-import { failure, type Outcome, outcomeJson, type Success } from "./outcome.js";
-import { Output } from "./output.js";
-import { camera, jsonObject } from "./parse.js";
+import { addOptionFlags } from "./option-flags.js";
+import { Output, type OutputFlags } from "./output.js";
+import { camera, jsonObject, MAX_WORKERS, workers } from "./parse.js";
 import { ProgressLine } from "./progress-line.js";
-import { details, notes, Summary, viewsDetails } from "./report.js";
-import { readTransform, transformFileHelp } from "./transform-file.js";
-import { UsageError } from "./usage-error.js";
+import { Summary } from "./report.js";
+import { transformFileHelp } from "./transform-file.js";
 
-interface AlignFlags extends CaseFlags, FileFlags, Readonly<Record<string, unknown>> {
-  json?: string;
-  options?: Record<string, unknown>;
-  preset?: Preset;
+interface BatchFlags extends AlignFlags, FileFlags, OutputFlags {
+  list?: string;
+  workers?: number | "auto";
 }
 
-const shared = OPTIONS.align.filter(({ name }) => OPTIONS.paper.some((row) => row.name === name));
-const isShared = ({ name }: OptionRow) => shared.some((row) => row.name === name);
-const precise: readonly OptionRow[] = OPTIONS.align.filter((row) => !isShared(row));
-const paper: readonly OptionRow[] = OPTIONS.paper.filter((row) => !isShared(row));
+/** Cases that are read while several workers are busy. One worker aligns the cases in their order. */
+const READ_AHEAD = 2;
+
+/** The columns, in lines that fit the help. */
+const columnsHelp = csvHeadings.join(", ").replace(/(.{80,100}), /g, "$1,\n  ");
 
 const help = `${caseFolderHelp}
 ${conventionsHelp}
@@ -53,18 +37,31 @@ Output
   IoU, boundary F, centre drift, Chamfer distance, fitness, depth error and time; with gt.json also the errors against
   it. A single case is shown in detail. The confidence is the probability that the pose is right, 0 to 1. An alternative
   is another pose that explains the observation nearly as well.
-  The row of a case, and its entry in the file of --json, are written when the case is done: an interruption loses
-  nothing.
+  Rows and entries are written when a case is done, in the order in which the cases end; with --workers 1, in that of the
+  command line. An interruption loses nothing: the files hold what is done.
   --json writes { "<case>": { scale, rotation, translation, matrix, quaternion, confidence, alternatives, uncertainty,
   metrics, warnings, timingsMs, diagnostics } }; a case that failed has { error: { code, argument, found, expected,
   remedy, message } }. With --preset paper, confidence and uncertainty are null and alternatives is empty.
   A case with frames has { scale, rotation, translation, …, frames: { "<frame>": { scale, rotation, translation, …,
   confidence, role, camera } } }: its own pose is world from mesh, if the camera poses are known; those of the frames are
   camera from mesh.
+  --jsonl writes the same entries, a line each: { "case": "<case>", … }. It is the record of a batch: after an
+  interruption, of whatever kind, the same command with --resume aligns what is missing. A line that was cut off is removed.
+  Cases that failed count as done; remove their lines to align them again. --json and --csv are then written anew from it.
+  --csv writes the columns ${columnsHelp}.
+
+Batches
+  The cases are aligned side by side; the results do not depend on --workers. Each is read when its turn comes: memory
+  grows with the number of workers, not with that of the cases. A pattern in quotes is expanded by this program:
+  * and ? within a name, [abc], {a,b}, and ** for folders at any depth, of which those with a mesh are cases. Paths in a
+  list are relative to the current folder, and stand for themselves; empty lines and lines that begin with # are skipped.
+  A terminal shows a bar with rate, time left and failures; elsewhere, a batch of 20 or more prints a line per tenth.
 
 Examples
   sim3align align cases/mug
   sim3align align cases/* --json results.json
+  sim3align align 'cases/**' --jsonl results.jsonl --csv results.csv --resume
+  find cases -name mesh.glb -printf '%h\\n' | sim3align align --list - --workers 4 --jsonl -
   sim3align align views/mug
   sim3align align cases/mug --known-extent 0.095 --known-extent-axis y
   sim3align align cases/mug --initial annotated.json --search local
@@ -80,13 +77,18 @@ export function alignCommand(): Command {
   const command = new Command("align")
     .summary("align the mesh of each case to its depth map")
     .description("Aligns the mesh of each case to its masked depth map.")
-    .argument("[case...]", "case folders")
+    .argument("[case...]", "case folders, or patterns such as 'cases/*'")
+    .option("--list <file>", 'a file with the path of a case folder per line; "-" is stdin')
     .option("--depth <file>", "depth map (.npy or 16-bit .png), instead of a case folder")
     .option("--mask <file>", "mask (.png, .npy, or .json with COCO RLE)")
     .option("--mesh <file>", "mesh (.glb, .gltf, .obj, .ply or .stl)")
     .option("--camera <file|fx,fy,cx,cy|fov:deg>", "camera: a file, intrinsics or a vertical field of view", camera)
     .option("--image <file>", "photo (.png or .jpg) with the field of view of the depth map")
     .option("--json <file>", 'write the results as JSON; "-" is stdout')
+    .option("--jsonl <file>", 'write a line of JSON for each case when it is done; "-" is stdout')
+    .option("--resume", "go on: skip the cases in the file of --jsonl, and append to it")
+    .option("--csv <file>", 'write a table of comma-separated values; "-" is stdout')
+    .option("--workers <n|auto>", "cases aligned at a time (1 to 64; default auto: one per core)", workers)
     .addOption(new Option("--preset <name>", "method (default precise)").choices(["precise", "paper"]));
   addOptionFlags(addCaseOptions(command), shared);
   command.option("--options <json>", "further options of align() as JSON; flags take precedence", jsonObject);
@@ -95,115 +97,62 @@ export function alignCommand(): Command {
   return command.addHelpText("after", help).action(run);
 }
 
-async function run(folders: string[], flags: AlignFlags): Promise<void> {
-  const cases = casesOf(folders, flags, caseSettings(flags));
-  const output = new Output(flags.json);
-  const aligner = await createAligner();
-  const progress = new ProgressLine(process.stderr, cases.length);
-  const summary = cases.length === 1 ? undefined : new Summary(cases, output.style);
-  const outcomes: Outcome[] = [];
-  const end = () => {
-    progress.clear();
-    output.results?.end();
-    output.lines(remarks(outcomes, output));
-  };
-  const stop = onInterruption(() => {
-    end();
-    const place = flags.json === undefined || flags.json === "-" ? "" : `; they are in ${flags.json}`;
-    console.error(`interrupted: ${outcomes.length} of ${cases.length} cases are done${place}`);
-  });
-  for (const each of cases) {
-    progress.begin(each.name);
-    const outcome = await alignCase(aligner, each, flags, progress);
-    progress.clear();
-    outcomes.push(outcome);
-    output.results?.add(outcome.name, outcomeJson(outcome));
-    if (summary !== undefined) output.lines(summary.lines(outcome));
-    if (output.isClosed) break;
-  }
+async function run(args: string[], flags: BatchFlags): Promise<void> {
+  const cases = casesOf(await casePaths(args, flags.list), flags, caseSettings(flags));
+  const output = new Output(flags);
+  const batch = new Batch(cases.length, output, flags);
+  const done = await resumed(output, batch, new Set(cases.map(({ name }) => name)));
+  const left = cases.filter(({ name }) => !done.has(name));
+  if (flags.resume) console.error(`resumed: ${done.size} of ${cases.length} cases are in ${flags.jsonl}`);
+  const stop = onInterruption(() => batch.interrupt());
+  if (cases.length === 1) await alignOne(left, flags, batch);
+  else await alignMany(left, flags, batch, output);
   stop();
-  end();
-  if (outcomes.some((outcome) => "error" in outcome)) process.exitCode = 1;
+  batch.end();
+  if (batch.hasFailure) process.exitCode = 1;
 }
 
-/** What follows the table: details of a single case, or the warnings and failures of all. */
-function remarks(outcomes: readonly Outcome[], { style }: Output): string[] {
-  const [only] = outcomes;
-  if (outcomes.length === 1 && only !== undefined && !("error" in only)) {
-    return "views" in only ? viewsDetails(only, style) : details(only, style);
+/** Adds the entries of an interrupted batch to the output. Returns the names of those that belong to this one. */
+async function resumed(output: Output, batch: Batch, names: ReadonlySet<string>): Promise<ReadonlySet<string>> {
+  const done = new Set<string>();
+  for await (const { name, entry } of output.resumed()) {
+    if (!names.has(name)) continue;
+    done.add(name);
+    batch.skip("error" in entry);
   }
-  const lines = notes(outcomes, style);
-  return outcomes.length === 1 || lines.length === 0 ? lines : ["", ...lines];
+  return done;
 }
 
-async function alignCase(
-  aligner: Aligner,
-  { name, folder, read }: CaseToDo,
-  flags: AlignFlags,
-  progress: ProgressLine,
-): Promise<Outcome> {
-  let files: CaseOnDisk["files"] = {};
+/** Aligns the only case, on this thread unless the flags ask for workers. */
+async function alignOne(cases: readonly CaseToDo[], flags: BatchFlags, batch: Batch): Promise<void> {
+  const [only] = cases;
+  if (only === undefined) return;
+  const aligner = await createAligner({ workers: flags.workers === "auto" ? 0 : (flags.workers ?? 0) });
+  const progress = new ProgressLine(process.stderr, 1);
+  progress.begin(only.name);
+  const outcome = await alignCase(aligner, only, flags, (state) => progress.update(state)).finally(() => {
+    progress.clear();
+    aligner.dispose();
+  });
+  batch.add(outcome, []);
+}
+
+/** Aligns cases side by side. Each is read when its turn comes. */
+async function alignMany(cases: readonly CaseToDo[], flags: BatchFlags, batch: Batch, output: Output): Promise<void> {
+  if (cases.length === 0) return;
+  const { workers = "auto" } = flags;
+  const size = Math.min(workers === "auto" ? availableParallelism() : workers, cases.length, MAX_WORKERS);
+  const aligner = await createAligner({ workers: size });
+  const summary = new Summary(cases, output.style);
+  batch.begin(cases.length);
   try {
-    if (folder !== undefined && (await frameNames(folder)).length > 0) {
-      return await alignFrames(aligner, name, folder, flags, progress);
+    const align = (each: CaseToDo) => alignCase(aligner, each, flags, undefined);
+    for await (const outcome of concurrently(cases, size === 1 ? 1 : size + READ_AHEAD, align)) {
+      batch.add(outcome, summary.lines(outcome));
+      if (output.isClosed) break;
     }
-    const { input, truth, ...read_ } = await read();
-    files = read_.files;
-    const options = await alignOptions(flags, name);
-    const alignment = await aligner.align(input, { ...options, onProgress: (state) => progress.update(state) });
-    const success: Success = { name, alignment, errors: null };
-    if (truth === null) return success;
-    const { transform, symmetry } = truth;
-    const { errors } = await aligner.evaluate(input, alignment, { truth: transform, symmetry });
-    return { ...success, errors };
-  } catch (error) {
-    if (error instanceof UsageError) throw error;
-    if (isAboutOptions(error)) throw new UsageError(error.message);
-    return failure(name, error, files);
+  } finally {
+    batch.clear();
+    aligner.dispose();
   }
-}
-
-/** Aligns a case of several views. Without the camera poses of all frames, those of some do not help. */
-async function alignFrames(
-  aligner: Aligner,
-  name: string,
-  folder: string,
-  flags: AlignFlags,
-  progress: ProgressLine,
-): Promise<Outcome> {
-  const { mesh, frames } = await readFrames(folder, caseSettings(flags));
-  const isKnown = frames.every(({ input }) => input.cameraToWorld !== undefined);
-  const views = frames.map(({ input }) => (isKnown ? input : { ...input, cameraToWorld: undefined }));
-  const { preset, ...options } = await alignOptions(flags, name);
-  if (preset === "paper") throw new UsageError(`${name} has several frames, for which --preset paper has no method.`);
-  const onProgress = (state: Progress) => progress.update(state);
-  const alignment = await aligner.alignViews({ mesh, views }, { ...(options as ViewsOptions), onProgress });
-  const errors = await Promise.all(
-    frames.map(async ({ input, truth }, k) => {
-      const pose = alignment.views[k];
-      if (truth === null || pose === undefined || input.mask === undefined) return null;
-      const { cameraToWorld, ...frame } = input;
-      const { transform, symmetry } = truth;
-      const found = await aligner.evaluate({ ...frame, mesh } as AlignInput, pose, { truth: transform, symmetry });
-      return found.errors;
-    }),
-  );
-  return { name, views: alignment, frames: frames.map((frame) => frame.name), errors };
-}
-
-/** Whether all cases would fail with this error. The initial pose may differ from case to case. */
-export function isAboutOptions(error: unknown): error is Sim3AlignError {
-  if (!(error instanceof Sim3AlignError)) return false;
-  return error.argument.startsWith("options") && !error.argument.startsWith("options.initial");
-}
-
-/** The options set by `--options` and by flags. */
-async function alignOptions(flags: AlignFlags, name: string): Promise<OptionsOf<Preset, boolean>> {
-  const given: Record<string, unknown> = {
-    ...flags.options,
-    ...givenOptions(flags, [...shared, ...precise, ...paper]),
-    ...withoutUndefined({ preset: flags.preset }),
-  };
-  if (typeof given.initial === "string") given.initial = await readTransform("initial", given.initial, name);
-  return given as unknown as OptionsOf<Preset, boolean>;
 }

@@ -52,4 +52,5 @@ Frames and units
 
 /** The meaning of the exit status, for --help. */
 export const statusHelp = `
-Exit status: 0 all cases done, 1 some case failed (the others are done), 2 the command line is wrong.`;
+Exit status: 0 all cases done, 1 some case failed (the others are done), 2 the command line is wrong, 130 interrupted
+by Ctrl-C.`;

@@ -57,13 +57,17 @@ function casesIn(paths: readonly string[], settings: CaseSettings): CaseToDo[] {
   if (folders.length === 0) throw new UsageError(`No case folder among ${paths.join(", ")}.`);
   const files = paths.filter(isFile);
   if (files.length > 0) console.error(`skipped, not a folder: ${files.join(", ")}`);
-  const names = folders.map((folder) => basename(resolve(folder)));
-  return folders.map((folder, i) => {
-    const name = names[i] ?? folder;
-    const isUnique = names.indexOf(name) === names.lastIndexOf(name);
+  const counts = new Map<string, number>();
+  const nameOf = (folder: string) => basename(resolve(folder));
+  for (const folder of folders) counts.set(nameOf(folder), (counts.get(nameOf(folder)) ?? 0) + 1);
+  return folders.map((folder) => {
+    const name = nameOf(folder);
     return {
-      name: isUnique ? name : folder,
-      hasTruth: hasTruth(folder),
+      name: counts.get(name) === 1 ? name : folder,
+      // Read when it is asked for: among thousands of cases, the first ones tell.
+      get hasTruth() {
+        return hasTruth(folder);
+      },
       folder,
       read: () => readCaseFolder(folder, settings),
     };

@@ -46,10 +46,10 @@ export function evaluateCommand(): Command {
 }
 
 async function run(folder: string, flags: EvaluateFlags): Promise<void> {
-  const output = new Output(flags.json);
+  const output = new Output(flags);
   const [name, result] = await evaluateCase(folder, flags);
-  output.results?.add(name, evaluationJson(result));
-  output.results?.end();
+  output.add(name, evaluationJson(result));
+  output.end();
   if ("error" in result) {
     output.lines([output.style.red("failed ") + failureText(result)]);
     process.exitCode = 1;

@@ -1,33 +1,90 @@
 /** Output of the commands. */
+import { resolve } from "node:path";
+import { CsvFile } from "./csv-file.js";
+import { JsonlFile, type NamedEntry } from "./jsonl-file.js";
 import { ResultsFile } from "./results-file.js";
 import { Style } from "./style.js";
+import { UsageError } from "./usage-error.js";
 
-/** Writes tables to stdout and JSON to a file, or only JSON to stdout. */
+/** The flags that name files; "-" is stdout. */
+export interface OutputFlags {
+  json?: string;
+  jsonl?: string;
+  csv?: string;
+  /** Whether the cases in the file of `jsonl` are done. */
+  resume?: boolean;
+}
+
+/** Writes the entries of cases to files, and tables to stdout; to stderr, if stdout gets entries. */
 export class Output {
-  /** The JSON, if requested. */
-  readonly results: ResultsFile | undefined;
+  readonly #json: ResultsFile | undefined;
+  readonly #jsonl: JsonlFile | undefined;
+  readonly #csv: CsvFile | undefined;
   readonly #tables: NodeJS.WriteStream;
   /** Text style of the tables. */
   readonly style: Style;
   #isClosed = false;
 
-  /** @throws {@link UsageError} if the JSON cannot be written */
-  constructor(jsonPath: string | undefined) {
-    this.results = jsonPath === undefined ? undefined : new ResultsFile(jsonPath);
-    this.#tables = jsonPath === "-" ? process.stderr : process.stdout;
+  /** @throws {@link UsageError} if a file cannot be written */
+  constructor({ json, jsonl, csv, resume = false }: OutputFlags) {
+    checkDistinct({ json, jsonl, csv });
+    if (resume && jsonl === undefined) throw new UsageError("--resume needs --jsonl FILE, the record of what is done.");
+    this.#json = json === undefined ? undefined : new ResultsFile(json);
+    this.#jsonl = jsonl === undefined ? undefined : new JsonlFile(jsonl, resume);
+    this.#csv = csv === undefined ? undefined : new CsvFile(csv);
+    this.#tables = [json, jsonl, csv].includes("-") ? process.stderr : process.stdout;
     this.style = new Style(this.#tables);
     this.#tables.on("error", () => {
       this.#isClosed = true;
     });
   }
 
-  /** Whether nothing will be read any more: "| head" has ended, and there is no JSON. */
+  /** Whether nothing will be read any more: "| head" has ended, and there is no file. */
   get isClosed(): boolean {
-    return this.#isClosed && this.results === undefined;
+    return this.#isClosed && this.#json === undefined && this.#jsonl === undefined && this.#csv === undefined;
+  }
+
+  /**
+   * Adds the entry of a case.
+   * @param isFinal whether no other entry will replace it; others are written to the file of `json` only
+   */
+  add(name: string, entry: object, isFinal = true): void {
+    // First the record from which the others can be written again.
+    if (isFinal) this.#jsonl?.add(name, entry);
+    this.#json?.add(name, entry, isFinal);
+    if (isFinal) this.#csv?.add(name, entry);
+  }
+
+  /** The entries of an interrupted batch, which this adds to the files other than that of `jsonl`. */
+  async *resumed(): AsyncGenerator<NamedEntry, void, undefined> {
+    for await (const named of this.#jsonl?.entries() ?? []) {
+      this.#json?.add(named.name, named.entry);
+      this.#csv?.add(named.name, named.entry);
+      yield named;
+    }
+  }
+
+  /** Writes what is not written yet, and closes the files. */
+  end(): void {
+    this.#json?.end();
+    this.#jsonl?.end();
+    this.#csv?.end();
   }
 
   /** Writes human-readable lines. */
   lines(lines: readonly string[]): void {
     this.#tables.write(lines.map((line) => `${line}\n`).join(""));
+  }
+}
+
+/** @throws {@link UsageError} if two flags name one file */
+function checkDistinct(flags: Readonly<Record<string, string | undefined>>): void {
+  const owners = new Map<string, string>();
+  for (const [flag, path] of Object.entries(flags)) {
+    if (path === undefined) continue;
+    const file = path === "-" ? path : resolve(path);
+    const other = owners.get(file);
+    if (other !== undefined) throw new UsageError(`--${other} and --${flag} name the same file: ${path}.`);
+    owners.set(file, flag);
   }
 }

@@ -2,10 +2,21 @@
 import { InvalidArgumentError } from "commander";
 import type { CameraInput, ScaleOption, SymmetryOption } from "../index.js";
 
+/** Upper limit of the number of workers. */
+export const MAX_WORKERS = 64;
+
 /** Parses a number. */
 export function number(text: string): number {
   const value = Number(text);
   if (text.trim() === "" || Number.isNaN(value)) throw new InvalidArgumentError("Not a number.");
+  return value;
+}
+
+/** Parses the number of workers. */
+export function workers(text: string): number | "auto" {
+  if (text === "auto") return text;
+  const value = /^\d+$/.test(text) ? Number(text) : 0;
+  if (value < 1 || value > MAX_WORKERS) throw new InvalidArgumentError(`Expected 1 to ${MAX_WORKERS}, or "auto".`);
   return value;
 }
 

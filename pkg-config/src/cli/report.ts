@@ -26,7 +26,7 @@ export class Summary {
   /** @param cases all cases of the table; the errors have columns if a case has a true pose */
   constructor(cases: readonly { name: string; hasTruth: boolean }[], style: Style) {
     this.#hasTruth = cases.some(({ hasTruth }) => hasTruth);
-    const width = Math.max(...cases.map(({ name }) => textWidth(name)));
+    const width = cases.reduce((widest, { name }) => Math.max(widest, textWidth(name)), 0);
     const all = this.#hasTruth ? [...columns, ...errorColumns] : columns;
     this.#columns = all.map((column, i) => (i === 0 ? { ...column, width } : column));
     this.#style = style;

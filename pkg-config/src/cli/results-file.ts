@@ -1,7 +1,6 @@
 /** The JSON of the results, which is complete after each case: an interruption loses no result. */
-import { accessSync, closeSync, constants, openSync, statSync, writeSync } from "node:fs";
-import { dirname } from "node:path";
-import { UsageError } from "./usage-error.js";
+import { closeSync, openSync } from "node:fs";
+import { checkWritable, writeAll } from "./writable.js";
 
 const END = "\n}\n";
 
@@ -22,7 +21,7 @@ export class ResultsFile {
    */
   constructor(path: string) {
     this.#path = path;
-    this.#isIncremental = path !== "-" && checkWritable(path);
+    this.#isIncremental = path !== "-" && checkWritable("--json", path);
   }
 
   /**
@@ -57,25 +56,5 @@ export class ResultsFile {
     const file = openSync(this.#path, "w");
     writeAll(file, Buffer.from(text), null);
     closeSync(file);
-  }
-}
-
-function writeAll(file: number, bytes: Buffer, position: number | null): void {
-  for (let written = 0; written < bytes.length; ) {
-    written += writeSync(file, bytes, written, bytes.length - written, position === null ? null : position + written);
-  }
-}
-
-/** Checks that a file can be written, without writing it; whether it is, or will be, an ordinary file. */
-function checkWritable(path: string): boolean {
-  try {
-    const found = statSync(path, { throwIfNoEntry: false });
-    if (found?.isDirectory()) throw new UsageError(`--json ${path}: this is a folder; pass the name of a file.`);
-    if (found === undefined && !statSync(dirname(path)).isDirectory()) throw new Error(`${dirname(path)} is no folder`);
-    accessSync(found === undefined ? dirname(path) : path, constants.W_OK);
-    return found === undefined || found.isFile();
-  } catch (error) {
-    if (error instanceof UsageError) throw error;
-    throw new UsageError(`--json ${path}: the file cannot be written: ${(error as Error).message}.`);
   }
 }

@@ -70,7 +70,7 @@ export function sceneCommand(): Command {
 
 async function run(folders: string[], flags: SceneFlags): Promise<void> {
   if (flags.glb !== undefined && folders.length > 1) throw new UsageError("--glb takes a single scene.");
-  const output = new Output(flags.json);
+  const output = new Output(flags);
   const support = await supportOf(flags.support);
   const aligner = await createAligner();
   const progress = new ProgressLine(process.stderr, folders.length);
@@ -89,7 +89,7 @@ async function run(folders: string[], flags: SceneFlags): Promise<void> {
       progress.clear();
       const outcomes = outcomesOf(result, errors);
       hasFailed ||= outcomes.some((outcome) => "error" in outcome);
-      output.results?.add(scene.name, sceneJson(result, outcomes));
+      output.add(scene.name, sceneJson(result, outcomes));
       output.lines(lines(scene.name, result, outcomes, errors));
       if (flags.glb !== undefined) writeFileSync(flags.glb, await glbOf(scene, result));
     } catch (error) {
@@ -97,12 +97,12 @@ async function run(folders: string[], flags: SceneFlags): Promise<void> {
       progress.clear();
       hasFailed = true;
       const outcome = failure(folder, error);
-      output.results?.add(folder, outcomeJson(outcome));
+      output.add(folder, outcomeJson(outcome));
       output.lines([output.style.red("failed ") + failureText(outcome)]);
     }
     if (output.isClosed) break;
   }
-  output.results?.end();
+  output.end();
   if (hasFailed) process.exitCode = 1;
 }
 

@@ -3,7 +3,7 @@ import { basename, join, resolve } from "node:path";
 import { Command } from "commander";
 import { type CaseSettings, frameNames, meshIn, readFrame, readMeshFile } from "../case-folder.js";
 import { type Aligner, createAligner, OPTIONS, type Tracker, type TrackOptions } from "../index.js";
-import { isAboutOptions } from "./align-command.js";
+import { isAboutOptions } from "./align-case.js";
 import {
   addCaseOptions,
   type CaseFlags,
@@ -57,16 +57,16 @@ const columns: readonly Column[] = [
 ];
 
 async function run(folders: string[], flags: TrackFlags): Promise<void> {
-  const output = new Output(flags.json);
+  const output = new Output(flags);
   const aligner = await createAligner();
-  const stop = onInterruption(() => output.results?.end());
+  const stop = onInterruption(() => output.end());
   let hasFailed = false;
   for (const folder of folders) {
     hasFailed = !(await trackVideo(aligner, folder, flags, output)) || hasFailed;
     if (output.isClosed) break;
   }
   stop();
-  output.results?.end();
+  output.end();
   if (hasFailed) process.exitCode = 1;
 }
 
@@ -104,7 +104,7 @@ async function trackVideo(aligner: Aligner, folder: string, flags: TrackFlags, o
         row.push(failed.error.code, "–", "–", "–");
       }
       row.push(fixed(performance.now() - began, 0));
-      output.results?.add(name, trackJson(frames), k + 1 === names.length);
+      output.add(name, trackJson(frames), k + 1 === names.length);
       output.lines([tableLine(columns, row)]);
       if (output.isClosed) break;
     }
@@ -113,7 +113,7 @@ async function trackVideo(aligner: Aligner, folder: string, flags: TrackFlags, o
     if (error instanceof UsageError) throw error;
     if (isAboutOptions(error)) throw new UsageError(error.message);
     const failed = failure(name, error, files);
-    output.results?.add(name, outcomeJson(failed));
+    output.add(name, outcomeJson(failed));
     output.lines([output.style.red("failed ") + failureText(failed)]);
     return false;
   } finally {

@@ -1,0 +1,107 @@
+/** Aligns a case, with the options of the command line. */
+import { type CaseOnDisk, frameNames, readFrames } from "../case-folder.js";
+import {
+  type Aligner,
+  type AlignInput,
+  OPTIONS,
+  type OptionRow,
+  type OptionsOf,
+  type Preset,
+  type Progress,
+  Sim3AlignError,
+  type ViewsOptions,
+} from "../index.js";
+import { withoutUndefined } from "../values.js";
+import { type CaseFlags, caseSettings } from "./case-options.js";
+import type { CaseToDo } from "./cases.js";
+import { givenOptions } from "./option-flags.js";
+import { failure, type Outcome, type Success } from "./outcome.js";
+import { readTransform } from "./transform-file.js";
+import { UsageError } from "./usage-error.js";
+
+/** The flags of the options. */
+export interface AlignFlags extends CaseFlags, Readonly<Record<string, unknown>> {
+  options?: Record<string, unknown>;
+  preset?: Preset;
+}
+
+/** The options of both presets, and those of one. */
+export const shared = OPTIONS.align.filter(({ name }) => OPTIONS.paper.some((row) => row.name === name));
+const isShared = ({ name }: OptionRow) => shared.some((row) => row.name === name);
+export const precise: readonly OptionRow[] = OPTIONS.align.filter((row) => !isShared(row));
+export const paper: readonly OptionRow[] = OPTIONS.paper.filter((row) => !isShared(row));
+
+/** Aligns a case. Only errors that concern all cases are thrown, as {@link UsageError}. */
+export async function alignCase(
+  aligner: Aligner,
+  { name, folder, read }: CaseToDo,
+  flags: AlignFlags,
+  onProgress: ((progress: Progress) => void) | undefined,
+): Promise<Outcome> {
+  let files: CaseOnDisk["files"] = {};
+  try {
+    if (folder !== undefined && (await frameNames(folder)).length > 0) {
+      return await alignFrames(aligner, name, folder, flags, onProgress);
+    }
+    const { input, truth, ...read_ } = await read();
+    files = read_.files;
+    const options = await alignOptions(flags, name);
+    const alignment = await aligner.align(input, withoutUndefined({ ...options, onProgress }));
+    const success: Success = { name, alignment, errors: null };
+    if (truth === null) return success;
+    const { transform, symmetry } = truth;
+    const { errors } = await aligner.evaluate(input, alignment, { truth: transform, symmetry });
+    return { ...success, errors };
+  } catch (error) {
+    if (error instanceof UsageError) throw error;
+    if (isAboutOptions(error)) throw new UsageError(error.message);
+    return failure(name, error, files);
+  }
+}
+
+/** Aligns a case of several views. Without the camera poses of all frames, those of some do not help. */
+async function alignFrames(
+  aligner: Aligner,
+  name: string,
+  folder: string,
+  flags: AlignFlags,
+  onProgress: ((progress: Progress) => void) | undefined,
+): Promise<Outcome> {
+  const { mesh, frames } = await readFrames(folder, caseSettings(flags));
+  const isKnown = frames.every(({ input }) => input.cameraToWorld !== undefined);
+  const views = frames.map(({ input }) => (isKnown ? input : { ...input, cameraToWorld: undefined }));
+  const { preset, ...options } = await alignOptions(flags, name);
+  if (preset === "paper") throw new UsageError(`${name} has several frames, for which --preset paper has no method.`);
+  const alignment = await aligner.alignViews(
+    { mesh, views },
+    withoutUndefined({ ...(options as ViewsOptions), onProgress }),
+  );
+  const errors = await Promise.all(
+    frames.map(async ({ input, truth }, k) => {
+      const pose = alignment.views[k];
+      if (truth === null || pose === undefined || input.mask === undefined) return null;
+      const { cameraToWorld, ...frame } = input;
+      const { transform, symmetry } = truth;
+      const found = await aligner.evaluate({ ...frame, mesh } as AlignInput, pose, { truth: transform, symmetry });
+      return found.errors;
+    }),
+  );
+  return { name, views: alignment, frames: frames.map((frame) => frame.name), errors };
+}
+
+/** Whether all cases would fail with this error. The initial pose may differ from case to case. */
+export function isAboutOptions(error: unknown): error is Sim3AlignError {
+  if (!(error instanceof Sim3AlignError)) return false;
+  return error.argument.startsWith("options") && !error.argument.startsWith("options.initial");
+}
+
+/** The options set by `--options` and by flags. */
+async function alignOptions(flags: AlignFlags, name: string): Promise<OptionsOf<Preset, boolean>> {
+  const given: Record<string, unknown> = {
+    ...flags.options,
+    ...givenOptions(flags, [...shared, ...precise, ...paper]),
+    ...withoutUndefined({ preset: flags.preset }),
+  };
+  if (typeof given.initial === "string") given.initial = await readTransform("initial", given.initial, name);
+  return given as unknown as OptionsOf<Preset, boolean>;
+}

@@ -1,0 +1,107 @@
+/** The report of the exported types: what it lists, and what it leaves out. */
+import assert from "node:assert/strict";
+import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { dirname, join } from "node:path";
+import { after, test } from "node:test";
+import { pathToFileURL } from "node:url";
+import { installDir, repository } from "../support/environment.js";
+
+const module = pathToFileURL(join(repository, "scripts", "lib", "api-report.mjs")).href;
+const { apiReport }: { apiReport(folder: string): string } = await import(module);
+
+const folder = mkdtempSync(join(tmpdir(), "sim3align-api-"));
+after(() => rmSync(folder, { recursive: true, force: true }));
+
+const files: Record<string, string> = {
+  "package.json": JSON.stringify({ exports: { ".": { types: "./index.d.ts" }, "./package.json": "./package.json" } }),
+  "index.d.ts": `/** The entry. */
+export { create as make, type Options } from "./parts/create.js";
+export * from "./all.js";
+`,
+  "all.d.ts": "export declare const LIMIT = 3;\n",
+  "parts/create.d.ts": `import type { Mesh } from "../mesh.js";
+import type { Worker } from "node:worker_threads";
+/** Words about the options. */
+export interface Options {
+    /** Words about the mesh. */
+    mesh?: Mesh;
+    worker: Worker;
+}
+interface Unused {
+    a: 1;
+}
+export declare function create(): Options;
+export declare function create(options: Options): Own;
+type Own = {
+    own: Options;
+};
+export {};
+`,
+  "mesh.d.ts": "export interface Mesh {\n    positions: Float32Array;\n}\nexport interface Other {\n}\n",
+};
+
+/** The report of these files, of which one may differ. */
+function reportOf(changed: Record<string, string> = {}): string {
+  for (const [path, text] of Object.entries({ ...files, ...changed })) {
+    mkdirSync(dirname(join(folder, path)), { recursive: true });
+    writeFileSync(join(folder, path), text);
+  }
+  return apiReport(folder);
+}
+
+test("the report has the names of each entry, and all that they refer to, without comments", () => {
+  const [, ...lines] = reportOf().split("\n\n");
+  assert.equal(
+    lines.join("\n\n"),
+    `entry .
+  LIMIT
+  Options
+  make
+
+file all.d.ts
+
+export declare const LIMIT = 3;
+
+file mesh.d.ts
+
+export interface Mesh {
+    positions: Float32Array;
+}
+
+file parts/create.d.ts
+
+export interface Options {
+    mesh?: Mesh;
+    worker: Worker;
+}
+
+type Own = {
+    own: Options;
+};
+
+export declare function create(): Options;
+export declare function create(options: Options): Own;
+`,
+  );
+});
+
+test("changes of types that are referred to show, those of comments and of other types do not", () => {
+  const before = reportOf();
+  const mesh = files["mesh.d.ts"] ?? "";
+  assert.notEqual(reportOf({ "mesh.d.ts": mesh.replace("Float32Array", "Float64Array") }), before);
+  assert.equal(reportOf({ "mesh.d.ts": mesh.replace("Other {", "Other {\n    more: string;") }), before);
+  assert.equal(reportOf({ "mesh.d.ts": `/** Words. */\n${mesh}` }), before);
+  assert.notEqual(reportOf({ "all.d.ts": "export declare const LIMIT = 4;\n" }), before);
+});
+
+test("a statement that is not understood is an error, not a gap", () => {
+  assert.throws(() => reportOf({ "all.d.ts": 'export * as all from "./mesh.js";\n' }), /is not understood/);
+});
+
+test("the package's report has its methods, options and errors", () => {
+  const report = apiReport(join(installDir, "node_modules", "sim3align"));
+  for (const text of ["alignScene(scene: SceneInput", "interface AlignOptions", "type ErrorCode =", "entry ./three"]) {
+    assert.ok(report.includes(text), text);
+  }
+});

@@ -1,0 +1,58 @@
+/** What is checked before a version is published, and how it is published. */
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+import { pathToFileURL } from "node:url";
+import { repository } from "../support/environment.js";
+
+interface ReleaseModule {
+  releaseNotes(tag: string, version: string, changelog: string): string;
+  sectionOf(changelog: string, version: string): string | undefined;
+  distributionTag(version: string): string;
+}
+
+const module = pathToFileURL(join(repository, "scripts", "lib", "release.mjs")).href;
+const { distributionTag, releaseNotes, sectionOf }: ReleaseModule = await import(module);
+
+const changelog =
+  "# Changelog\n\n## [Unreleased]\n\n## [1.1.0] - 2030-01-02\n\n### Added\n\n- New.\n\n## [1.0.0]\n\n- Old.\n";
+
+test("the notes of a release are the section of its version", () => {
+  assert.equal(releaseNotes("v1.1.0", "1.1.0", changelog), "### Added\n\n- New.");
+  assert.equal(releaseNotes("v1.0.0", "1.0.0", changelog), "- Old.");
+});
+
+test("a release needs its version's tag and section, and leaves nothing unreleased", () => {
+  assert.throws(
+    () => releaseNotes("v1.0.0", "1.1.0", changelog),
+    /The tag is v1\.0\.0, the package has version 1\.1\.0/,
+  );
+  assert.throws(() => releaseNotes("1.1.0", "1.1.0", changelog), /tag v1\.1\.0/);
+  assert.throws(() => releaseNotes("v1.2.0", "1.2.0", changelog), /says nothing of 1\.2\.0/);
+  assert.throws(() => releaseNotes("v1.1", "1.1", changelog), /says nothing of 1\.1\./);
+  const unreleased = changelog.replace("[Unreleased]\n", "[Unreleased]\n\n- Later.\n");
+  assert.throws(() => releaseNotes("v1.1.0", "1.1.0", unreleased), /unreleased changes/);
+});
+
+test("prereleases are installed on request only", () => {
+  assert.equal(distributionTag("1.0.0"), "latest");
+  assert.equal(distributionTag("1.1.0-rc.1"), "next");
+});
+
+test("the changelog has a section of the unreleased changes or of the version", () => {
+  const text = readFileSync(join(repository, "CHANGELOG.md"), "utf8");
+  const { version } = JSON.parse(readFileSync(join(repository, "pkg-config", "package.json"), "utf8"));
+  assert.ok(sectionOf(text, "Unreleased") || sectionOf(text, version));
+});
+
+test("the workflow publishes with provenance, and only after the checks", () => {
+  const workflow = readFileSync(join(repository, ".github", "workflows", "release.yml"), "utf8");
+  const steps = ["scripts/release.mjs", ".ci/run", "npm pack", "npm publish"].map((text) => workflow.indexOf(text));
+  assert.ok(
+    steps.every((at, i) => at > (steps[i - 1] ?? 0)),
+    `${steps}`,
+  );
+  assert.match(workflow, /npm publish .*--provenance/);
+  assert.match(workflow, /id-token: write/);
+});
