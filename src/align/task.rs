@@ -327,19 +327,11 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
         clean: Option<Rc<CleanObservation>>,
         stages: &mut Stopwatch<'h>,
     ) -> Result<State> {
-        let settings = self
-            .efforts
-            .iter()
-            .find(|settings| settings.effort == given.effort)
-            .ok_or_else(over)?
-            .again(given.confidence >= SURE);
+        let is_sure = given.confidence >= SURE;
+        let settings = self.efforts.iter().find(|settings| settings.effort == given.effort).ok_or_else(over)?;
+        let settings = settings.again(is_sure);
         let (observation, mesh) = (self.observation.borrow(), self.mesh.borrow());
-        let told = Told {
-            found: &given.found,
-            renders: given.renders,
-            is_sure: given.confidence >= SURE,
-            known: given.known.clone(),
-        };
+        let told = Told { found: &given.found, renders: given.renders, is_sure, known: given.known.clone() };
         let rounds = resume(observation, mesh, clean, told, &self.options, &settings, stages)?;
         Ok(State::Resumed(clouds, Box::new(rounds)))
     }

@@ -8,9 +8,9 @@ use wasm_bindgen::JsValue;
 
 use super::object::{get, to_colors, to_f32s, to_u32s, wrong_type};
 use crate::error::Result;
-use crate::evidence::sample::check_triangles;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::mesh::Mesh;
+use crate::geometry::surface::check_triangles;
 use crate::geometry::surface_colors::SurfaceColors;
 use crate::precise::prepared_mesh::PreparedMesh;
 

@@ -3,11 +3,11 @@
 use super::extents::{Extents, initial_scale};
 use super::observation::Observation;
 pub use super::sample::Sampling;
-use super::sample::sample_surface;
 use super::{Evidence, Normals};
 use crate::error::Result;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::mesh::Mesh;
+use crate::geometry::surface::sample_surface;
 use crate::progress::{Stage, Stopwatch};
 
 /// Both clouds and their extents; the normals are estimated when they are first needed.

@@ -12,9 +12,10 @@ use crate::error::Result;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::mesh::Mesh;
+use crate::geometry::surface::sample_surface;
 use normals::{Neighborhood, Orientation, estimate_some_normals};
 use observation::Observation;
-use sample::{Sampling, sample_surface};
+use sample::Sampling;
 
 /// Neighbours for the normal estimation of observed points.
 pub const NORMAL_NEIGHBORS: usize = 30;

@@ -1,7 +1,5 @@
 //! Sampling (paper §3.1): how many points represent the observation and the surface of the generated mesh.
 
-pub use crate::geometry::surface::*;
-
 /// Sampling of both clouds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Sampling {

@@ -7,10 +7,10 @@ use super::searchable;
 use super::surface::Mean;
 use super::symmetry::{Symmetry, mesh_diagonal};
 use crate::error::{Error, ErrorCode, Result};
-use crate::evidence::sample::{SurfaceMoments, sample_surface};
 use crate::geometry::cloud::Bounds;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::{Similarity, vec3, vector3};
+use crate::geometry::surface::{SurfaceMoments, sample_surface};
 use crate::geometry::triangle_tree::TriangleTree;
 
 /// Number of surface samples for ADD-S.

@@ -4,11 +4,11 @@ use glam::DVec3;
 use nalgebra::{Unit, UnitQuaternion, Vector3};
 
 use crate::error::{Error, ErrorCode, Result};
-use crate::evidence::sample::{SurfaceMoments, sample_surface};
 use crate::geometry::angle::sin_cos;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::order::quantile;
 use crate::geometry::similarity::{vec3, vector3};
+use crate::geometry::surface::{SurfaceMoments, sample_surface};
 use crate::geometry::triangle_tree::TriangleTree;
 use crate::number::numbers;
 

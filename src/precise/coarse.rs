@@ -6,14 +6,10 @@ use super::anchors::Anchor;
 use super::objective::Objective;
 use super::pose::CropPose;
 use super::ranking::Scored;
-use super::render::{Canvas, Model};
+use super::render::Canvas;
 use super::score::Score;
-use crate::geometry::cloud::farthest_along;
 use crate::geometry::order::median;
-use crate::geometry::rotations::fibonacci_sphere;
 
-/// Number of directions along which extreme vertices of the mesh are kept, for bounding boxes.
-const DIRECTIONS: usize = 128;
 /// Iterations of the fit of a perspective box; each gains an order of magnitude.
 const BOX_ROUNDS: usize = 3;
 
@@ -116,13 +112,4 @@ impl Coarse<'_> {
         }
         (CropPose { rotation, size: libm::log(size), place, distance: libm::log(self.median_m) }, sides)
     }
-}
-
-/// The extreme vertices along evenly spread directions: almost all that a bounding box can touch.
-pub fn outermost(model: &Model) -> Vec<Vec3> {
-    let farthest = |k| farthest_along(&model.positions, fibonacci_sphere(k, DIRECTIONS).as_vec3());
-    let mut kept: Vec<usize> = (0..DIRECTIONS).filter_map(farthest).collect();
-    let mut seen = vec![false; model.positions.len()];
-    kept.retain(|&i| !core::mem::replace(&mut seen[i], true));
-    kept.iter().map(|&i| model.positions[i]).collect()
 }

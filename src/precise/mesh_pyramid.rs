@@ -2,13 +2,17 @@
 
 use glam::Vec3;
 
-use super::coarse::outermost;
 use super::pose::MeshFrame;
 use super::recipe::{FINE, FINEST, GRIDS, Grid};
 use super::render::Model;
 use super::turns::Turns;
+use crate::geometry::cloud::farthest_along;
 use crate::geometry::decimate::decimate;
 use crate::geometry::mesh::Mesh;
+use crate::geometry::rotations::fibonacci_sphere;
+
+/// Number of directions along which extreme vertices of the mesh are kept, for bounding boxes.
+const DIRECTIONS: usize = 128;
 
 /// A mesh in its normalised frame, decimated for every grid of the search.
 pub struct MeshPyramid {
@@ -18,7 +22,7 @@ pub struct MeshPyramid {
     pub fine: Mesh,
     /// The model rendered on each grid.
     pub models: [Model; GRIDS],
-    /// Extreme vertices of the fine mesh; see [`outermost`].
+    /// The extreme vertices of the fine mesh: almost all that a bounding box can touch.
     pub outermost: Vec<Vec3>,
     /// The turns in which the object may look alike.
     pub turns: Turns,
@@ -37,4 +41,13 @@ impl MeshPyramid {
         let models = meshes.each_ref().map(Model::new);
         Some(Self { frame, outermost: outermost(&models[FINE]), turns: Turns::new(&fine), models, fine })
     }
+}
+
+/// The extreme vertices along evenly spread directions.
+pub fn outermost(model: &Model) -> Vec<Vec3> {
+    let farthest = |k| farthest_along(&model.positions, fibonacci_sphere(k, DIRECTIONS).as_vec3());
+    let mut kept: Vec<usize> = (0..DIRECTIONS).filter_map(farthest).collect();
+    let mut seen = vec![false; model.positions.len()];
+    kept.retain(|&i| !core::mem::replace(&mut seen[i], true));
+    kept.iter().map(|&i| model.positions[i]).collect()
 }

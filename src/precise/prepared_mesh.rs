@@ -8,8 +8,8 @@ use super::mesh_pyramid::MeshPyramid;
 use super::options::Quality;
 use super::recipe::{GRIDS, Grid, SearchSettings};
 use crate::error::Result;
-use crate::evidence::sample::check_shape;
 use crate::geometry::mesh::Mesh;
+use crate::geometry::surface::check_shape;
 use crate::geometry::surface_colors::SurfaceColors;
 
 /// A mesh with cached derived data: the result of its validation, and its decimations. Both are computed on first use.

@@ -6,11 +6,11 @@
 
 use glam::{DMat3, DVec3, Vec3};
 
-use crate::evidence::sample::SurfaceMoments;
 use crate::geometry::angle::sin_cos;
 use crate::geometry::cloud::farthest_along;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::rotations::fibonacci_sphere;
+use crate::geometry::surface::SurfaceMoments;
 use crate::geometry::symmetric_eigen::SymmetricEigen;
 
 /// A stable attitude of a mesh on a plane, in the normalised frame of the mesh.

@@ -5,9 +5,9 @@ use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use glam::{DQuat, DVec3};
 
 use super::pose::CropPose;
-use crate::evidence::sample::SurfaceMoments;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::rotations::exp;
+use crate::geometry::surface::SurfaceMoments;
 
 /// Angles of the turns about an axis, radians.
 const ANGLES: [f64; 3] = [PI, FRAC_PI_2, -FRAC_PI_2];

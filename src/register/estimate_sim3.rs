@@ -6,6 +6,7 @@ use super::normalized_pair::{Fit, NormalizedPair};
 use super::options::EstimateSim3Options;
 use super::pose_selector::about_clouds;
 use super::registration::PLAN;
+use super::report::Registration;
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::similarity::vector3;
 use crate::options::Options;
@@ -13,7 +14,7 @@ use crate::options::scale::ScaleOption;
 use crate::progress::{Host, Stage, Stopwatch};
 use crate::register::matching::Match;
 use crate::register::ransac::{Guard, GuardMode, RansacSettings, ransac, reweighted};
-use crate::report::{Counts, Registration};
+use crate::report::Counts;
 
 /// Estimates the similarity that most correspondences agree with. Clouds are interleaved x, y, z; `correspondences` are
 /// interleaved pairs of point indices, source then target.

@@ -18,6 +18,7 @@ mod pose_scorer;
 mod pose_selector;
 pub mod ransac;
 mod registration;
+pub mod report;
 mod rigid;
 pub mod settings;
 pub mod support;

@@ -1,12 +1,13 @@
 //! The normalised frames in which two clouds are compared: centred, and of about the same size.
 
+use super::report::{Registration, RegistrationDiagnostics};
 use crate::error::Result;
 use crate::evidence::extents::{Extents, initial_scale, target_from_source};
 use crate::geometry::similarity::Similarity;
 use crate::options::scale::ScaleOption;
 use crate::progress::Stopwatch;
 use crate::register::umeyama::ScaleMode;
-use crate::report::{Counts, Registration, RegistrationDiagnostics};
+use crate::report::Counts;
 
 /// Bounds of a free scale relative to the ratio of the bounding boxes. Wide, because clutter can enlarge a box
 /// arbitrarily.

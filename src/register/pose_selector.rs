@@ -5,6 +5,7 @@ use glam::Vec3;
 use super::feature_registration::{Estimate, FeatureRegistration};
 use super::normalized_pair::{Fit, NormalizedPair};
 use super::options::RegisterOptions;
+use super::report::Registration;
 use super::settings::{RegistrationSettings, given_voxel_size};
 use crate::error::{Error, ErrorCode, Result, Text};
 use crate::evidence::NORMAL_NEIGHBORS;
@@ -15,7 +16,6 @@ use crate::geometry::similarity::Similarity;
 use crate::geometry::voxel_grid::voxel_size_leaving;
 use crate::options::scale::ScaleOption;
 use crate::progress::{Stage, Stopwatch};
-use crate::report::Registration;
 
 /// Default number of voxels along the diagonal of the target's bounding box.
 const DIVISIONS: f64 = 30.0;

@@ -6,6 +6,7 @@ use super::input::{check_cloud, finite_points, subsample};
 use super::normalized_pair::NormalizedPair;
 use super::options::RegisterOptions;
 use super::pose_selector::PoseSelector;
+use super::report::Registration;
 use super::rigid::register_rigid;
 use crate::error::Result;
 use crate::evidence::observation::MIN_POINTS;
@@ -13,7 +14,6 @@ use crate::geometry::random::Random;
 use crate::options::Options;
 use crate::options::scale::ScaleOption;
 use crate::progress::{Host, Stage, Stopwatch};
-use crate::report::Registration;
 
 /// Random stream of the subsampling.
 const STREAM: u64 = 5;

@@ -5,8 +5,7 @@ use serde::Serialize;
 use super::layers::volumes;
 use super::placement::Body;
 use super::plane::Plane;
-pub use super::support::RestsOn;
-use super::support::{Ground, diameter, extent};
+use super::support::{Ground, RestsOn};
 use crate::geometry::pinhole::Pinhole;
 
 /// What an object stands on, and whose volume it shares.
@@ -67,7 +66,7 @@ pub fn contacts(
                 }
             };
             let seen = if ground.on == RestsOn::Support { heights(body, &ground.plane)[0] } else { gap };
-            if seen.abs() <= TOUCHES[0] + TOUCHES[1] * diameter(body) {
+            if seen.abs() <= TOUCHES[0] + TOUCHES[1] * body.diameter() {
                 contact.rests_on = Some(ground.on);
                 if snap {
                     shifts[i] = -gap;
@@ -83,7 +82,7 @@ pub fn contacts(
 
 /// The lowest and the highest point of a body over a plane.
 fn heights(body: &Body, plane: &Plane) -> [f64; 2] {
-    body.along.map_or_else(|| extent(body, plane), |along| along.map(|h| h + plane.d))
+    body.along.map_or_else(|| body.extent(plane), |along| along.map(|h| h + plane.d))
 }
 
 /// The share of the volume of an object that is inside others.

@@ -7,6 +7,7 @@
 
 pub mod contact;
 pub mod layers;
+pub mod local;
 pub mod placement;
 pub mod plane;
 pub mod planes;

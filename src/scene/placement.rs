@@ -4,10 +4,12 @@ use std::rc::Rc;
 
 use glam::{DVec3, Vec3};
 
-use super::layers::{extremes, layer};
+use super::layers::{extremes, extremes_along, layer};
+use super::plane::Plane;
 use crate::align::task::Given;
 use crate::error::Result;
 use crate::evidence::observation::Observation;
+use crate::geometry::cloud::Bounds;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::{Similarity, vec3, vector3};
 use crate::precise::mesh_pyramid::MeshPyramid;
@@ -59,6 +61,22 @@ impl Body {
         let size = [observation.depth().width(), observation.depth().height()];
         let layer = Rc::new(layer(&mesh.fine, &pose, &observation.camera(), size));
         Self { points, layer, along: None }
+    }
+
+    /// The lowest and the highest point over a plane, metres.
+    pub fn extent(&self, plane: &Plane) -> [f64; 2] {
+        extremes_along(&self.points, plane.normal).map(|h| h + plane.d)
+    }
+
+    /// The diagonal of its box, metres.
+    pub fn diameter(&self) -> f64 {
+        Bounds::of(&self.points).map_or(0.0, |b| f64::from(b.diagonal()))
+    }
+
+    /// The mean depth of its points, metres.
+    pub fn depth_m(&self) -> f64 {
+        let sum: f64 = self.points.iter().map(|p| f64::from(p.z)).sum();
+        sum / self.points.len().max(1) as f64
     }
 
     /// With the extent of all vertices of the mesh along the normal of the ground.

@@ -1,15 +1,16 @@
 //! Support: which plane of the scene the objects stand on, and what each object may stand on.
 
-use glam::{DVec2, DVec3, Vec3};
+use core::f64::consts::TAU;
+
+use glam::{DVec3, Vec3};
 use serde::Serialize;
 
 use super::layers::extremes_along;
+use super::local::{View, bend, level_below, touch_m};
 use super::placement::{Body, Placement};
 use super::plane::Plane;
 use super::planes::{FoundPlane, find_planes};
-use crate::geometry::image::{DepthMap, Mask};
-use crate::geometry::order::median;
-use crate::geometry::pinhole::Pinhole;
+use crate::geometry::angle::sin_cos;
 
 /// What is known of the support.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -72,39 +73,12 @@ impl Ground {
     }
 }
 
-/// The images that the support is found in.
-#[derive(Debug, Clone, Copy)]
-pub struct View<'a> {
-    /// The depth map.
-    pub depth: &'a DepthMap,
-    /// Its camera.
-    pub camera: &'a Pinhole,
-    /// The pixels of all objects, and their rims.
-    pub taken: &'a Mask,
-    /// Seed of the draws.
-    pub seed: u64,
-}
-
 /// Gap that halves the credit of the contact: metres, metres per metre of depth, and relative to the size of the object.
 const GAP: [f64; 3] = [0.002, 0.003, 0.015];
-/// Distance of the lowest point from the plane that halves the credit of standing on it: metres, and relative to the
-/// size.
-const TOUCH: [f64; 2] = [0.01, 0.06];
 /// Least credit of all objects for a plane that is the support.
 const LEAST_CREDIT: f64 = 0.15;
 /// Credit of a plane that faces sideways, relative to one that faces up in the image: cameras are mostly held upright.
 const SIDEWAYS: f64 = 0.5;
-/// Readings around an object that tell how far the plane is bent there, the width of their band relative to the box of
-/// the object, and the largest bend, metres and metres per metre of depth.
-const LOCAL_READINGS: usize = 150;
-const LOCAL_BAND: f64 = 0.35;
-const MAX_BEND: [f64; 2] = [0.004, 0.012];
-/// Distance from a body up to which a level surface may be the one that it stands on and least standard deviation of its
-/// readings in every direction, relative to the size of the body; and the thickness of its readings, relative to the
-/// largest bend.
-const LEVEL_REACH: f64 = 1.0;
-const LEVEL_WIDTH: f64 = 0.08;
-const LEVEL_HEIGHT: f64 = 0.7;
 /// Largest offset between what things stand on and what the sensor shows of it, and the steps in which it is sought,
 /// metres.
 const MAX_OFFSET_M: f64 = 0.012;
@@ -158,7 +132,7 @@ fn chosen(planes: &[FoundPlane], placements: &[Option<Placement>]) -> Option<Sup
     let all: f64 = objects.clone().map(|p| 0.2 + p.confidence).sum();
     let credit = |found: &FoundPlane| {
         let touching = |p: &Placement| {
-            let gap = extent(&p.body, &found.plane)[0] / (TOUCH[0] + TOUCH[1] * diameter(&p.body));
+            let gap = p.body.extent(&found.plane)[0] / (touch_m(&p.body));
             (0.2 + p.confidence) / (1.0 + gap * gap)
         };
         let up = found.plane.normal.dot(DVec3::NEG_Y).max(0.0);
@@ -174,109 +148,8 @@ fn chosen(planes: &[FoundPlane], placements: &[Option<Placement>]) -> Option<Sup
     (confidence >= LEAST_CREDIT).then_some(Support { plane: best.1.plane, confidence })
 }
 
-/// The lowest and the highest point of a body over a plane.
-pub fn extent(body: &Body, plane: &Plane) -> [f64; 2] {
-    extremes_along(&body.points, plane.normal).map(|h| h + plane.d)
-}
-
-/// The longest side of a body's box, about its diameter.
-pub fn diameter(body: &Body) -> f64 {
-    crate::geometry::cloud::Bounds::of(&body.points).map_or(0.0, |b| f64::from(b.diagonal()))
-}
-
 fn gap_m(body: &Body) -> f64 {
-    GAP[0] + GAP[1] * depth_of(body) + GAP[2] * diameter(body)
-}
-
-fn depth_of(body: &Body) -> f64 {
-    let sum: f64 = body.points.iter().map(|p| f64::from(p.z)).sum();
-    sum / body.points.len().max(1) as f64
-}
-
-/// How far the readings around a body are over the plane.
-fn bend(view: &View<'_>, plane: &Plane, body: &Body) -> f64 {
-    let limit = MAX_BEND[0] + MAX_BEND[1] * depth_of(body);
-    let mut heights = Vec::new();
-    around(view, body, |point| {
-        let h = plane.height(point);
-        if h.abs() < limit {
-            heights.push(h as f32);
-        }
-    });
-    if heights.len() < LOCAL_READINGS {
-        return 0.0;
-    }
-    median(heights.into_iter()).map_or(0.0, f64::from)
-}
-
-/// Visits the readings of the scene in the band around a body.
-fn around(view: &View<'_>, body: &Body, mut visit: impl FnMut(DVec3)) {
-    let layer = &body.layer;
-    let (width, height) = (view.depth.width(), view.depth.height());
-    let rows = layer.spans.len() / layer.width.max(1);
-    let band = (LOCAL_BAND * layer.width.max(rows) as f64) as usize + 8;
-    let columns = layer.origin[0].saturating_sub(band)..(layer.origin[0] + layer.width + band).min(width);
-    for v in layer.origin[1].saturating_sub(band)..(layer.origin[1] + rows + band).min(height) {
-        for u in columns.clone() {
-            let i = v * width + u;
-            let z = view.depth.data()[i];
-            if z > 0.0 && view.taken.data()[i] == 0 {
-                visit(view.camera.back_project(u as f64, v as f64, f64::from(z)).as_dvec3());
-            }
-        }
-    }
-}
-
-/// The height over the support of the level surface that a body is nearer to than to the support, if the depth map shows
-/// one below it.
-fn level_below(view: &View<'_>, plane: &Plane, body: &Body) -> Option<f64> {
-    let size = diameter(body);
-    let low = extent(body, plane)[0];
-    let tolerance = 1.5 * (TOUCH[0] + TOUCH[1] * size);
-    let slack = MAX_BEND[0] + MAX_BEND[1] * depth_of(body);
-    // Nearer to the surface than to the support, and within reach of it.
-    let reach = tolerance.min(0.5 * low);
-    if low - reach < slack {
-        return None;
-    }
-    let across = plane.normal.any_orthonormal_vector();
-    let along = plane.normal.cross(across);
-    let on_plane = |p: DVec3| DVec2::new(across.dot(p), along.dot(p));
-    let centre = on_plane(body.points.iter().map(|p| p.as_dvec3()).sum::<DVec3>() / body.points.len().max(1) as f64);
-    let mut near: Vec<(f64, DVec2)> = Vec::new();
-    around(view, body, |point| {
-        let (height, place) = (plane.height(point), on_plane(point) - centre);
-        if (height - low).abs() < reach + slack && place.length() < LEVEL_REACH * size {
-            near.push((height, place));
-        }
-    });
-    near.sort_by(|a, b| a.0.total_cmp(&b.0));
-    // The window with the most readings.
-    let (mut best, mut first) = (0..0, 0);
-    for last in 0..near.len() {
-        while near[last].0 - near[first].0 > LEVEL_HEIGHT * slack {
-            first += 1;
-        }
-        if last + 1 - first > best.len() {
-            best = first..last + 1;
-        }
-    }
-    let surface = near.get(best)?;
-    if surface.len() < LOCAL_READINGS {
-        return None;
-    }
-    let height = surface[surface.len() / 2].0;
-    // A wall, or the side of a thing, fills the window as a strip.
-    let count = surface.len() as f64;
-    let mean = surface.iter().map(|(_, p)| *p).sum::<DVec2>() / count;
-    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
-    for (_, place) in surface {
-        let p = *place - mean;
-        (xx, xy, yy) = (xx + p.x * p.x, xy + p.x * p.y, yy + p.y * p.y);
-    }
-    let (middle, half) = (0.5 * (xx + yy), (0.25 * (xx - yy) * (xx - yy) + xy * xy).sqrt());
-    let narrow = ((middle - half).max(0.0) / count).sqrt();
-    (narrow > LEVEL_WIDTH * size && (height - low).abs() < reach).then_some(height)
+    GAP[0] + GAP[1] * body.depth_m() + GAP[2] * body.diameter()
 }
 
 /// How far the objects stand over what the depth map shows of the plane: sensors misplace tables. The offset on which
@@ -284,8 +157,8 @@ fn level_below(view: &View<'_>, plane: &Plane, body: &Body) -> Option<f64> {
 fn common_offset(planes: &[Option<Plane>], placements: &[Option<Placement>]) -> f64 {
     let gap = |(plane, p): (&Option<Plane>, &Option<Placement>)| {
         let (plane, p) = plane.as_ref().zip(p.as_ref())?;
-        let gap = extent(&p.body, plane)[0];
-        let noise = OFFSET[1] + OFFSET[2] * diameter(&p.body);
+        let gap = p.body.extent(plane)[0];
+        let noise = OFFSET[1] + OFFSET[2] * p.body.diameter();
         // A half turn that shape does not tell makes a pose uncertain, but not its height.
         (gap.abs() < FARTHEST_M).then_some((gap, noise, UNSURE + (1.0 - UNSURE) * p.confidence))
     };
@@ -306,12 +179,12 @@ fn common_offset(planes: &[Option<Plane>], placements: &[Option<Placement>]) -> 
 /// The object that another one stands on, and the height of its top over the plane.
 fn below(i: usize, plane: &Plane, placements: &[Option<Placement>]) -> Option<(usize, f64)> {
     let body = &placements[i].as_ref()?.body;
-    let tolerance = TOUCH[0] + TOUCH[1] * diameter(body);
-    let low = extent(body, plane)[0];
+    let tolerance = touch_m(body);
+    let low = body.extent(plane)[0];
     let mut best: Option<(f64, usize, f64)> = None;
     for (k, other) in placements.iter().enumerate() {
         let Some(other) = other.as_ref().filter(|_| k != i) else { continue };
-        let top = extent(&other.body, plane)[1];
+        let top = other.body.extent(plane)[1];
         let apart = (low - top).abs();
         // Nearer to the top of the other than to the plane.
         let is_near = apart < 1.5 * tolerance && apart < low && best.is_none_or(|(least, ..)| apart < least);
@@ -328,7 +201,7 @@ fn is_over(body: &Body, other: &Body, plane: &Plane) -> bool {
     let across = plane.normal.any_orthonormal_vector();
     let along = plane.normal.cross(across);
     (0..24).all(|k| {
-        let (sin, cos) = crate::geometry::angle::sin_cos(core::f64::consts::TAU * f64::from(k) / 24.0);
+        let (sin, cos) = sin_cos(TAU * f64::from(k) / 24.0);
         let direction = across * cos + along * sin;
         let [_, reach] = extremes_along(&other.points, direction);
         direction.dot(center.as_dvec3()) <= reach

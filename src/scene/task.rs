@@ -4,9 +4,10 @@ use core::borrow::Borrow;
 use std::rc::Rc;
 
 use super::contact::{Contact, contacts};
+use super::local::View;
 use super::placement::{Body, Placement};
 use super::planes::union_of;
-use super::support::{Ground, Support, SupportChoice, View, find_support};
+use super::support::{Ground, Support, SupportChoice, find_support};
 use crate::align::task::AlignTask;
 use crate::error::Result;
 use crate::evidence::observation::Observation;

@@ -28,16 +28,23 @@ pub struct Known {
     pub before: Option<(Option<f64>, DQuat)>,
 }
 
+/// How far what was found stands out from the other poses that a search over all rotations has found.
+#[derive(Debug, Clone, Copy)]
+pub struct Lead {
+    /// The difference between the scores of the pose and of the best other one.
+    pub margin: f64,
+    /// Probability that it is the right one of the turns in which only colours differ.
+    pub turn_certainty: f64,
+}
+
 /// A found object.
 pub struct Detection {
     /// The pose.
     pub found: Found,
     /// The frame.
     pub observation: Rc<CleanObservation>,
-    /// The difference between the scores of the pose and of the best other one.
-    pub margin: f64,
-    /// Probability that it is the right one of the turns in which only colours differ.
-    pub turn_certainty: f64,
+    /// Its lead over other poses.
+    pub lead: Lead,
 }
 
 impl Detection {
@@ -77,7 +84,7 @@ impl Detection {
         let judgment = by_color(&rounds, observation, mesh);
         let (found, margin) = chosen(&rounds, judgment.as_ref(), known)?;
         let turn_certainty = judgment.map_or(1.0, |judgment| judgment.certainty);
-        Ok(Self { found, observation: rounds.search.observation, margin, turn_certainty })
+        Ok(Self { found, observation: rounds.search.observation, lead: Lead { margin, turn_certainty } })
     }
 }
 

@@ -2,6 +2,7 @@
 
 pub mod detection;
 pub mod evidence;
+pub mod history;
 pub mod motion;
 pub mod options;
 pub mod report;

@@ -4,6 +4,7 @@ use std::rc::Rc;
 
 use glam::Vec3;
 
+use super::detection::Lead;
 use super::evidence::{Evidence, of_mask, of_pose};
 use crate::evidence::frame::Frame;
 use crate::geometry::pinhole::Pinhole;
@@ -27,12 +28,32 @@ pub struct Seen {
     pub found: Found,
     /// The evidence.
     pub evidence: Evidence,
-    /// Whether all rotations were searched.
-    pub is_detected: bool,
+    /// The lead over other poses, if all rotations were searched.
+    pub lead: Option<Lead>,
     /// Share of the silhouette that is seen; 1 with a mask, which states what is seen.
     pub visible: f32,
     /// Whether the mask was predicted.
     pub is_predicted: bool,
+}
+
+impl Seen {
+    /// The share of the object that the frame shows: of its vertices, those inside the image, times the share of its
+    /// silhouette in the image that the mask covers.
+    pub fn shown(&self, frame: &Frame) -> f32 {
+        let pose = &self.found.pose;
+        let (scale, translation) = pose.scale_translation();
+        let Pinhole { fx, fy, cx, cy } = frame.camera;
+        let [width, height] = [frame.depth.width() as f64, frame.depth.height() as f64];
+        let search = &self.evidence.search;
+        let is_inside = |position: &&Vec3| {
+            let point = pose.rotation * position.as_dvec3() * scale + translation;
+            let (u, v) = (fx * point.x / point.z + cx + 0.5, fy * point.y / point.z + cy + 0.5);
+            point.z > 0.0 && u >= 0.0 && v >= 0.0 && u < width && v < height
+        };
+        let vertices = search.mesh.fine.positions();
+        let inside = vertices.iter().filter(is_inside).count() as f32 / vertices.len().max(1) as f32;
+        inside * if self.is_predicted { self.visible } else { visible(search, pose) }
+    }
 }
 
 /// Finds the object near expected poses.
@@ -69,7 +90,7 @@ impl Sight {
             }
         }
         let visible = if has_mask { 1.0 } else { visible(&evidence.search, &found.pose) };
-        Some(Seen { found, evidence, is_detected: false, visible, is_predicted: !has_mask })
+        Some(Seen { found, evidence, lead: None, visible, is_predicted: !has_mask })
     }
 
     /// The best of several poses, refined at their size. `by_depth`: the outline is that of another pose, and does not count.
@@ -97,23 +118,6 @@ impl Sight {
 /// What a fit is measured by: the agreement of silhouette and depth.
 pub fn agreement(score: &Score) -> f32 {
     score.overlap * score.depth
-}
-
-/// The share of the object that a frame shows: of its vertices, those inside the image, times the share of its silhouette
-/// in the image that the mask covers.
-pub fn shown(frame: &Frame, evidence: &Evidence, pose: &CropPose) -> f32 {
-    let (scale, translation) = pose.scale_translation();
-    let Pinhole { fx, fy, cx, cy } = frame.camera;
-    let [width, height] = [frame.depth.width() as f64, frame.depth.height() as f64];
-    let mesh = &evidence.search.mesh;
-    let is_inside = |position: &&Vec3| {
-        let point = pose.rotation * position.as_dvec3() * scale + translation;
-        let (u, v) = (fx * point.x / point.z + cx + 0.5, fy * point.y / point.z + cy + 0.5);
-        point.z > 0.0 && u >= 0.0 && v >= 0.0 && u < width && v < height
-    };
-    let vertices = mesh.fine.positions();
-    let inside = vertices.iter().filter(is_inside).count() as f32 / vertices.len().max(1) as f32;
-    inside * visible(&evidence.search, pose)
 }
 
 /// The share of the silhouette, inside the image, that the mask covers.

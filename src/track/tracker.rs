@@ -3,12 +3,13 @@
 use core::borrow::Borrow;
 use glam::DQuat;
 
-use super::detection::{Detection, Known};
+use super::detection::{Detection, Known, Lead};
 use super::evidence::Evidence;
+use super::history::History;
 use super::motion::{MAX_TURN, Motion};
 use super::options::TrackOptions;
 use super::report::{CorrectedFrame, TrackState, TrackedFrame};
-use super::sight::{Seen, Sight, agreement, shown};
+use super::sight::{Seen, Sight, agreement};
 use super::size::Size;
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::frame::Frame;
@@ -55,8 +56,6 @@ const ENOUGH: f32 = 0.5;
 const MOST: f32 = 0.8;
 /// Standard deviation of the size of a correction, relative.
 const CORRECTION_SD: f64 = 0.005;
-/// Maximum number of frames that a correction carries back.
-const HISTORY: usize = 100_000;
 
 /// A tracker of one object. It owns or borrows its mesh.
 pub struct Tracker<M> {
@@ -73,16 +72,9 @@ pub struct Tracker<M> {
     usual: Option<f32>,
     /// The rotation in the last frame that was certain and showed enough.
     certain: Option<DQuat>,
-    /// The difference between the scores of the pose and of the best other one, where the object was found.
-    margin: f64,
-    /// Probability that the turn in which it was found is right, if only colours tell.
-    turn_certainty: f64,
-    /// The poses of all frames, and the number of the stretch of frames that each belongs to: a new one begins where the
-    /// object was found anew.
-    history: Vec<(WorldPose, usize)>,
-    stretch: usize,
-    /// Number of frames so far.
-    frames: usize,
+    /// The lead over other poses, where the object was found.
+    lead: Lead,
+    history: History,
 }
 
 impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
@@ -109,11 +101,8 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             state: TrackState::Lost,
             usual: None,
             certain: None,
-            margin: 0.0,
-            turn_certainty: 1.0,
-            history: Vec::new(),
-            stretch: 0,
-            frames: 0,
+            lead: Lead { margin: 0.0, turn_certainty: 1.0 },
+            history: History::default(),
         })
     }
 
@@ -139,46 +128,28 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
     /// [`ErrorCode::InvalidArgument`] for a frame that has not been tracked, [`ErrorCode::InvalidTransform`] for a pose
     /// behind the camera.
     pub fn correct(&mut self, pose: &Similarity, frame: Option<usize>) -> Result<Vec<CorrectedFrame>> {
-        let count = self.history.len();
+        let count = self.history.known();
         let index = frame.unwrap_or(count.wrapping_sub(1));
-        let Some(&(wrong, stretch)) = self.history.get(index) else {
-            return Err(Error::new(
+        let unknown = || {
+            Error::new(
                 ErrorCode::InvalidArgument,
                 "frame",
                 format!("frame {} of {count}", number(index as f64)),
                 "the number of a frame that was tracked",
                 "Call next() with the frame first.",
-            ));
+            )
         };
+        if index >= count {
+            return Err(unknown());
+        }
         let fixed = precise::seen_from(pose, &self.sight.mesh.frame, (ErrorCode::InvalidTransform, "pose"))?;
         let fixed = PlacedCamera::AT_ORIGIN.place(&fixed);
-        // In the frame of the mesh, so that what was tracked of its motion stays.
-        let turn = (wrong.rotation.conjugate() * fixed.rotation).normalize();
-        let shift = wrong.rotation.conjugate() * (fixed.center - wrong.center);
-        let stretch_ratio = fixed.log_scale - wrong.log_scale;
-        let mut changed = Vec::new();
-        for (k, (pose, of)) in self.history.iter_mut().enumerate() {
-            if *of != stretch {
-                continue;
-            }
-            *pose = if k == index {
-                fixed
-            } else {
-                WorldPose {
-                    rotation: (pose.rotation * turn).normalize(),
-                    log_scale: pose.log_scale + stretch_ratio,
-                    center: pose.center + pose.rotation * shift,
-                }
-            };
-            let camera_from_mesh = (&pose.similarity(&self.sight.mesh.frame)).into();
-            changed.push(CorrectedFrame { camera_from_mesh, frame: k });
-        }
-        if stretch == self.stretch {
-            self.last = self.history.last().map(|(pose, _)| *pose);
+        let (changed, is_present) = self.history.correct(index, fixed, &self.sight.mesh.frame).ok_or_else(unknown)?;
+        if is_present {
+            self.last = self.history.last();
             self.state = TrackState::Tracking;
             self.usual = None;
-            self.margin = f64::from(NOISE);
-            self.turn_certainty = 1.0;
+            self.lead = Lead { margin: f64::from(NOISE), turn_certainty: 1.0 };
             self.certain = self.last.map(|pose| pose.rotation);
             let evidence = SizeEvidence { log_scale: fixed.log_scale, sd: CORRECTION_SD, score: 0.0 };
             self.size.correct(fixed.rotation, evidence);
@@ -187,7 +158,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
     }
 
     /// The pose in the first frame.
-    fn first(&mut self, frame: &Frame, host: &mut dyn Host) -> Result<Seen> {
+    fn first(&self, frame: &Frame, host: &mut dyn Host) -> Result<Seen> {
         let has_mask = frame.mask.as_ref().is_some_and(|mask| mask.data().iter().any(|m| *m != 0));
         if let (Some(initial), false) = (&self.options.initial, has_mask) {
             let pose = CropPose::of_similarity(initial, &self.sight.mesh.frame).ok_or_else(no_candidate)?;
@@ -206,7 +177,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
     }
 
     /// The pose in a frame after the first; `None` if the object is lost.
-    fn follow(&mut self, frame: &Frame, last: WorldPose, host: &mut dyn Host) -> Option<Seen> {
+    fn follow(&self, frame: &Frame, last: WorldPose, host: &mut dyn Host) -> Option<Seen> {
         let size = self.size.value();
         let sized = |pose: WorldPose| size.map_or(pose, |(log_scale, _)| WorldPose { log_scale, ..pose });
         let expected = [self.motion.carried(&last), last].map(sized);
@@ -223,7 +194,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         }
         // An object that leaves the image, or passes behind another, is not where all rotations should be searched: little
         // of it may look like anything.
-        let is_leaving = |seen: &Seen| shown(frame, &seen.evidence, &seen.found.pose) < ENOUGH;
+        let is_leaving = |seen: &Seen| seen.shown(frame) < ENOUGH;
         if self.state != TrackState::Lost && near.as_ref().is_some_and(is_leaving) {
             return near.filter(|seen| self.fit(seen) >= LOST && seen.visible >= SEEN[1]);
         }
@@ -233,7 +204,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         let anew = observation.and_then(|observation| self.detect(&observation, Some(before), host).ok());
         let is_told = |seen: &Seen| {
             let has_turned = angle_between(seen.found.pose.rotation, before) > MAX_TURN;
-            shown(frame, &seen.evidence, &seen.found.pose) >= if has_turned { MOST } else { ENOUGH }
+            seen.shown(frame) >= if has_turned { MOST } else { ENOUGH }
         };
         let anew = anew.filter(is_told);
         let best = if fit(&anew, self) > 1.1 * fit(&near, self) { anew } else { near };
@@ -242,19 +213,17 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
     }
 
     /// Searches all rotations, with what is known if the object was seen before in this rotation.
-    fn detect(&mut self, observation: &Observation, before: Option<DQuat>, host: &mut dyn Host) -> Result<Seen> {
+    fn detect(&self, observation: &Observation, before: Option<DQuat>, host: &mut dyn Host) -> Result<Seen> {
         let log_scale = self.size.value().map(|(log_scale, _)| log_scale);
         let known = Known { prior: self.prior, before: before.map(|before| (log_scale, before)) };
         let options = self.options.of_detection();
         let detection = Detection::search(observation, self.mesh.borrow(), &options, &known, host)?;
-        self.margin = detection.margin;
-        self.turn_certainty = detection.turn_certainty;
         // With the settings of the frames after it, so that scores compare.
         let search = Search::new(detection.observation, self.sight.mesh.clone(), self.sight.settings);
         let found = Found { score: search.score(&detection.found.pose), ..detection.found };
         let photo = observation.photo().map(|photo| cells(photo, &search));
         let evidence = Evidence { search, photo };
-        Ok(Seen { found, evidence, is_detected: true, visible: 1.0, is_predicted: false })
+        Ok(Seen { found, evidence, lead: Some(detection.lead), visible: 1.0, is_predicted: false })
     }
 
     /// The agreement of a pose relative to that of earlier frames, about 1 for one as good.
@@ -266,20 +235,21 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
     /// Updates size, motion and state, and reports.
     fn conclude(&mut self, frame: &Frame, seen: Option<Seen>) -> Result<TrackedFrame> {
         let Some(seen) = seen else { return Ok(self.lost()) };
-        let fit = self.fit(&seen);
-        let Seen { mut found, evidence, is_detected, visible, is_predicted } = seen;
+        let is_certain = self.fit(&seen) >= UNCERTAIN && seen.visible >= SEEN[0];
+        let shows_enough = is_certain && seen.shown(frame) >= ENOUGH;
+        let Seen { mut found, evidence, lead, is_predicted, .. } = seen;
+        let is_detected = lead.is_some();
         let search = &evidence.search;
-        let is_certain = fit >= UNCERTAIN && visible >= SEEN[0];
         self.state = if is_certain { TrackState::Tracking } else { TrackState::Uncertain };
         let before = self.last;
-        if is_detected {
-            self.stretch += 1;
+        if let Some(lead) = lead {
+            self.lead = lead;
             self.motion = Motion::REST;
         }
         if is_certain {
             let usual = self.usual.unwrap_or_else(|| agreement(&found.score));
             self.usual = Some(usual + NEW * (agreement(&found.score) - usual));
-            if shown(frame, &evidence, &found.pose) >= ENOUGH {
+            if shows_enough {
                 self.certain = Some(found.pose.rotation);
             }
             self.roll(&evidence, &mut found);
@@ -289,13 +259,13 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         if let (Some(before), false) = (before, is_detected) {
             self.motion = Motion::between(&before, &pose);
         }
-        self.remember(pose);
+        self.remember(pose, is_detected);
         let confidence = {
             let (conditioning, _) = search.conditioning(&found.pose);
             let scale_sd = self.size.value().map_or(1.0, |(_, sd)| sd);
             let conditioning = conditioning
                 .map(|held| precise::conditioning::Conditioning { scale: scale_sd.min(held.scale), ..held });
-            sureness(&found, self.margin, conditioning.as_ref()) * self.turn_certainty
+            sureness(&found, self.lead.margin, conditioning.as_ref()) * self.lead.turn_certainty
         };
         let camera_from_mesh = pose.similarity(&self.sight.mesh.frame);
         let measured = match frame.observation() {
@@ -307,7 +277,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         };
         Ok(TrackedFrame {
             camera_from_mesh: (&camera_from_mesh).into(),
-            frame: self.frames - 1,
+            frame: self.history.frames() - 1,
             state: self.state,
             confidence,
             scale_sd: self.size.value().map_or(0.0, |(_, sd)| sd),
@@ -352,10 +322,10 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         self.state = TrackState::Lost;
         self.motion = Motion::REST;
         let pose = expected.unwrap_or(WorldPose { rotation: DQuat::IDENTITY, log_scale: 0.0, center: glam::DVec3::Z });
-        self.remember(pose);
+        self.remember(pose, false);
         TrackedFrame {
             camera_from_mesh: (&pose.similarity(&self.sight.mesh.frame)).into(),
-            frame: self.frames - 1,
+            frame: self.history.frames() - 1,
             state: self.state,
             confidence: 0.0,
             scale_sd: self.size.value().map_or(0.0, |(_, sd)| sd),
@@ -367,11 +337,8 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         }
     }
 
-    fn remember(&mut self, pose: WorldPose) {
+    fn remember(&mut self, pose: WorldPose, is_anew: bool) {
         self.last = Some(pose);
-        self.frames += 1;
-        if self.history.len() < HISTORY {
-            self.history.push((pose, self.stretch));
-        }
+        self.history.add(pose, is_anew);
     }
 }

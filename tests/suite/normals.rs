@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 use sim3align::evidence::normals::{Neighborhood, Orientation, estimate_normals};
-use sim3align::evidence::sample::sample_surface;
 use sim3align::geometry::kd_tree::KdTree;
 use sim3align::geometry::random::Random;
+use sim3align::geometry::surface::sample_surface;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::shapes::sphere;

@@ -11,8 +11,9 @@ use sim3align::precise::options::{AlignOptions, ExtentAxis, Quality, SearchScope
 use sim3align::progress::Silent;
 use sim3align::register::options::Icp;
 use sim3align::register::options::{EstimateSim3Options, RegisterOptions};
+use sim3align::register::report::Registration;
 use sim3align::register::{estimate_sim3, register};
-use sim3align::report::{Alignment, PaperAlignment, Registration};
+use sim3align::report::{Alignment, PaperAlignment};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::support::{Draw, blob};

@@ -9,7 +9,7 @@ use sim3align::progress::Silent;
 use sim3align::register::estimate_sim3;
 use sim3align::register::options::{EstimateSim3Options, RegisterOptions};
 use sim3align::register::register;
-use sim3align::report::Registration;
+use sim3align::register::report::Registration;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::support::{Draw, blob, mug};

@@ -2,9 +2,9 @@
 
 use glam::{Mat3, Vec3};
 use sim3align::error::ErrorCode;
-use sim3align::evidence::sample::{SurfaceMoments, check_shape, sample_surface};
 use sim3align::geometry::mesh::Mesh;
 use sim3align::geometry::random::Random;
+use sim3align::geometry::surface::{SurfaceMoments, check_shape, sample_surface};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::shapes::{cuboid, inverted, mapped, sphere};

@@ -16,11 +16,11 @@ use sim3align::precise::options::{AlignOptions, Quality};
 use sim3align::precise::prepared_mesh::PreparedMesh;
 use sim3align::progress::Silent;
 use sim3align::report::{Alignment, Effort};
-use sim3align::scene::contact::RestsOn;
 use sim3align::scene::layers::{extremes, layer, volumes};
+use sim3align::scene::local::View;
 use sim3align::scene::placement::{Body, Placement, found_of};
 use sim3align::scene::planes::union_of;
-use sim3align::scene::support::{SupportChoice, View, find_support};
+use sim3align::scene::support::{RestsOn, SupportChoice, find_support};
 use sim3align::scene::task::{Scene, SceneAlignment, SceneObject, align_scene, alone};
 use wasm_bindgen_test::wasm_bindgen_test;
 

@@ -16,8 +16,9 @@ use sim3align::paper::options::PaperOptions;
 use sim3align::progress::{Silent, Stage};
 use sim3align::register::estimate_sim3;
 use sim3align::register::options::EstimateSim3Options;
+use sim3align::register::report::Registration;
 use sim3align::report::Solution;
-use sim3align::report::{AnyAlignment, Counts, Registration};
+use sim3align::report::{AnyAlignment, Counts};
 use sim3align_geometry::error::{Error, ErrorCode, Result, Text};
 use sim3align_geometry::similarity::Similarity;
 

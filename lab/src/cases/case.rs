@@ -27,7 +27,7 @@ use crate::cases::distortion::canonicalise;
 use crate::draws::{chance, mixed};
 use crate::files::{NamedFile, write_files};
 use sim3align::evidence::observation::Observation;
-use sim3align::evidence::sample::SurfaceMoments;
+use sim3align::geometry::surface::SurfaceMoments;
 use sim3align::metrics::symmetry::{Symmetry, SymmetryAxis};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::mesh::Mesh;

@@ -7,7 +7,7 @@ use glam::{DMat3, DVec3};
 use super::draft::Axis;
 use super::scene::Scene;
 use crate::draws::{between, chance, mixed, normal};
-use sim3align::evidence::sample::SurfaceMoments;
+use sim3align::geometry::surface::SurfaceMoments;
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::random::Random;
 use sim3align_geometry::rasteriser::NO_TRIANGLE;

@@ -9,7 +9,7 @@ use super::tier::{Class, Tier};
 use crate::case_folder::write::{JpegSettings, rgb_jpeg, rgb_png, textured_obj};
 use crate::draws::{between, chance, normal};
 use crate::files::NamedFile;
-use sim3align::evidence::sample::sample_surface;
+use sim3align::geometry::surface::sample_surface;
 use sim3align_formats::mesh::{ColoredMesh, MeshFormat, MeshReadOptions, read_colored_mesh};
 use sim3align_geometry::error::Result;
 use sim3align_geometry::mesh::Mesh;

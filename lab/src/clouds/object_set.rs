@@ -14,7 +14,7 @@ use crate::case_folder::write::ply_points;
 use crate::files::write;
 use crate::scenes::{ClutteredScene, SceneSet};
 use sim3align::evidence::observation::Observation;
-use sim3align::evidence::sample::sample_surface;
+use sim3align::geometry::surface::sample_surface;
 use sim3align_geometry::cloud::Bounds;
 use sim3align_geometry::error::Result;
 use sim3align_geometry::kd_tree::KdTree;

@@ -13,7 +13,7 @@ use crate::cases::families;
 use crate::cases::scene::{put_down_turned, turned_axis};
 use crate::draws::between;
 use crate::draws::chance;
-use sim3align::evidence::sample::SurfaceMoments;
+use sim3align::geometry::surface::SurfaceMoments;
 use sim3align_geometry::error::Result;
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::random::Random;

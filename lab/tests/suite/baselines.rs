@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 use nalgebra::{Rotation3, Vector3};
-use sim3align::evidence::sample::sample_surface;
+use sim3align::geometry::surface::sample_surface;
 use sim3align::paper::options::PaperOptions;
 use sim3align::progress::Silent;
 use sim3align::register::icp::IcpMetric;

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use nalgebra::{Rotation3, Unit, Vector3};
 use sim3align::align::method::Method;
 use sim3align::evidence::clouds::Sampling;
-use sim3align::evidence::sample::{SurfaceMoments, check_shape};
+use sim3align::geometry::surface::{SurfaceMoments, check_shape};
 use sim3align::metrics::evaluate;
 use sim3align::metrics::pose_error::{PoseErrors, pose_errors};
 use sim3align::metrics::silhouette::iou;

@@ -5,7 +5,7 @@ use std::fs;
 use nalgebra::{Rotation3, Vector3};
 use sim3align::align::{align, align_paper};
 use sim3align::evidence::clouds::Sampling;
-use sim3align::evidence::sample::check_shape;
+use sim3align::geometry::surface::check_shape;
 use sim3align::metrics::evaluate;
 use sim3align::paper::options::PaperOptions;
 use sim3align::precise::options::{AlignOptions, Quality};

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use sim3align::evidence::clouds::Sampling;
-use sim3align::evidence::sample::{SurfaceMoments, check_shape};
+use sim3align::geometry::surface::{SurfaceMoments, check_shape};
 use sim3align::metrics::symmetry::Symmetry;
 use sim3align::metrics::{Metrics, evaluate};
 use sim3align_geometry::cloud::Bounds;

@@ -18,9 +18,10 @@ use sim3align::precise::options::{AlignOptions, ExtentAxis, Quality, SearchScope
 use sim3align::progress::Stage;
 use sim3align::register::options::Icp;
 use sim3align::register::options::{EstimateSim3Options, RegisterOptions};
+use sim3align::register::report::{Registration, RegistrationDiagnostics};
 use sim3align::report::{
-    Alignment, Alternative, Counts, Diagnostics, PaperAlignment, PreciseDiagnostics, Registration,
-    RegistrationDiagnostics, ScoreTerms, Sim3, Uncertainty, Warning, WarningCode,
+    Alignment, Alternative, Counts, Diagnostics, PaperAlignment, PreciseDiagnostics, ScoreTerms, Sim3, Uncertainty,
+    Warning, WarningCode,
 };
 use sim3align::report::{ColorReport, ColorVerdict, Effort, Preset};
 use sim3align::scene::contact::Contact;

@@ -25,10 +25,11 @@ use sim3align::precise::prepared_mesh::PreparedMesh;
 use sim3align::precise::surroundings::{Layer, Neighbourhood};
 use sim3align::report::{Alignment, Effort};
 use sim3align::scene::contact::contacts;
+use sim3align::scene::local::View;
 use sim3align::scene::placement::{Body, Placement, found_of};
 use sim3align::scene::plane::Plane;
 use sim3align::scene::planes::union_of;
-use sim3align::scene::support::{Ground, RestsOn, Support, SupportChoice, View, find_support};
+use sim3align::scene::support::{Ground, RestsOn, Support, SupportChoice, find_support};
 use sim3align::scene::task::placement_of;
 
 type Task = AlignTask<'static, Observation, Rc<PreparedMesh<'static>>>;

@@ -4,7 +4,7 @@ use sim3align::progress::Silent;
 use sim3align::register::estimate_sim3;
 use sim3align::register::options::{EstimateSim3Options, RegisterOptions};
 use sim3align::register::register;
-use sim3align::report::Registration;
+use sim3align::register::report::Registration;
 use sim3align_geometry::error::Result;
 
 use super::align::check_pose;
