@@ -73,7 +73,7 @@ export async function freshCore() {
 
 /**
  * The memory of a WebAssembly module of the package, in a new instance.
- * @param {"core" | "formats" | "joint"} name
+ * @param {"core" | "formats" | "joint" | "registration"} name
  * @returns {Promise<WebAssembly.Memory>}
  */
 export async function freshMemory(name) {

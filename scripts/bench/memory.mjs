@@ -83,7 +83,8 @@ async function measurePeaks(meshes) {
   );
   const peaks = [];
   for (const options of [...(await qualities()).map((quality) => ({ quality })), { preset: "paper" }]) {
-    const { aligner, memory } = await freshCore();
+    const { aligner, memory: core } = await freshCore();
+    const memory = "preset" in options ? await freshMemory("registration") : core;
     const before = memory.buffer.byteLength;
     await aligner.align(input, options);
     peaks.push({ name: Object.values(options).join(), before, peak: memory.buffer.byteLength });
