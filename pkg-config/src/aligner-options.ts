@@ -108,11 +108,13 @@ export function checkedSignal(signal: unknown): AbortSignal | undefined {
   throw invalidArgument("options.signal", signal, "an AbortSignal", "Pass the signal of an AbortController.");
 }
 
+/** Upper limit of the number of workers. */
+export const MAX_WORKERS = 64;
+
 /** The number of workers. */
 export function checkedWorkers(workers: unknown = 0): number | "auto" {
-  if (workers === "auto" || (Number.isInteger(workers) && (workers as number) >= 0 && (workers as number) <= 64)) {
-    return workers as number | "auto";
-  }
+  const isCount = Number.isInteger(workers) && (workers as number) >= 0 && (workers as number) <= MAX_WORKERS;
+  if (workers === "auto" || isCount) return workers as number | "auto";
   const remedy = "Omit it to run on the calling thread.";
-  throw invalidArgument("workers", workers, 'an integer from 0 to 64, or "auto"', remedy);
+  throw invalidArgument("workers", workers, `an integer from 0 to ${MAX_WORKERS}, or "auto"`, remedy);
 }

@@ -371,5 +371,5 @@ async function guarded<T>({ signal, progress }: Call, run: () => Promise<T>): Pr
   }
 }
 
-/** The arrays of a prepared mesh are not moved to a worker. */
+/** Copies the arrays of a prepared mesh: a job without its id would move them to the worker. */
 const withCopiedMesh = (data: unknown) => ({ ...(data as object), mesh: copied((data as { mesh: unknown }).mesh) });

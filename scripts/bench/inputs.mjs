@@ -64,20 +64,22 @@ function declaredSymmetry(folder) {
     : symmetryAxes.map(({ axis, fold }) => (Number.isInteger(fold) ? { axis, fold } : { axis }));
 }
 
-/** The core, and its memory, in a new instance. */
+/** An aligner, and the memory of the core, in a new instance. */
 export async function freshCore() {
-  const [{ createAligner }, glue] = await Promise.all(["index.js", "wasm/core.js"].map(packageModule));
+  const { createAligner } = await packageModule("index.js");
   const aligner = await createAligner();
-  glue.__wbg_reset_state();
-  /** @type {WebAssembly.Memory} */
-  const memory = (await glue.default()).memory;
-  return { aligner, memory };
+  return { aligner, memory: await freshMemory("core") };
 }
 
-/** The memory of the module of the file readers, in a new instance. @returns {Promise<WebAssembly.Memory>} */
-export async function freshFormats() {
-  const [{ formatsModule }, glue] = await Promise.all(["formats-module.js", "wasm/formats.js"].map(packageModule));
-  await formatsModule.load();
+/**
+ * The memory of a WebAssembly module of the package, in a new instance.
+ * @param {"core" | "formats" | "joint" | "registration"} name
+ * @returns {Promise<WebAssembly.Memory>}
+ */
+export async function freshMemory(name) {
+  const files = [name === "core" ? "core.js" : `${name}-module.js`, `wasm/${name}.js`];
+  const [loader, glue] = await Promise.all(files.map(packageModule));
+  await loader[`${name}Module`].load();
   glue.__wbg_reset_state();
   return (await glue.default()).memory;
 }

@@ -4,20 +4,18 @@
  */
 import { buildPackage } from "../lib/package.mjs";
 import { command, count } from "./command.mjs";
-import { bumpyRing, freshCore, pictureOf } from "./inputs.mjs";
-import { fixed, markdownTable } from "./table.mjs";
+import { bumpyRing, freshCore, freshMemory, pictureOf } from "./inputs.mjs";
+import { fixed, markdownTable, megabytes } from "./table.mjs";
 
 /** @typedef {import("./inputs.mjs").TypedCase} TypedCase */
 
-/** Limit of the core's memory, in bytes: 300 MB. */
+/** Limit of the memory of the core and the joint module together, in bytes: 300 MB. */
 const limit = 300_000_000;
 /** Objects and triangles of each that the limit holds for, and the size of the image. */
 const large = { objects: 12, triangles: 100_000, width: 1280, height: 960 };
 /** The scene that is timed, and the most that it may take, relative to its objects one by one. */
 const timed = { objects: 5, triangles: 20_000, width: 640, height: 480 };
 const mostTime = 1.3;
-
-const megabytes = (/** @type {number} */ bytes) => fixed(bytes / 1e6, 1);
 
 /**
  * Bumpy rings side by side before a wall, each with a mesh of its own.
@@ -48,14 +46,17 @@ async function measureMemory() {
   const scene = sceneOf(large);
   const peaks = [];
   for (const isPrepared of [false, true]) {
-    const { aligner, memory } = await freshCore();
-    const before = memory.buffer.byteLength;
+    const { aligner, memory: core } = await freshCore();
+    // Scenes are aligned in the joint module; the core prepares meshes.
+    const joint = await freshMemory("joint");
+    const used = () => core.buffer.byteLength + joint.buffer.byteLength;
+    const before = used();
     const prepare = async (/** @type {TypedCase["mesh"]} */ mesh) => (isPrepared ? aligner.prepareMesh(mesh) : mesh);
     const meshes = await Promise.all(scene.objects.map(({ mesh }) => prepare(mesh)));
     const objects = scene.objects.map(({ mask }, i) => ({ mask, mesh: meshes[i] }));
     const result = await aligner.alignScene({ ...scene, objects });
     for (const { error } of result.objects) if (error !== undefined) throw error;
-    peaks.push({ name: isPrepared ? "prepared" : "arrays", before, peak: memory.buffer.byteLength });
+    peaks.push({ name: isPrepared ? "prepared" : "arrays", before, peak: used() });
   }
   const { objects, triangles, width, height } = large;
   console.log(

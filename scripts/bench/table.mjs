@@ -27,6 +27,9 @@ export function fixed(value, digits = 0) {
   return Number.isFinite(value) ? value.toFixed(digits) : "∞";
 }
 
+/** Bytes as MB of 10⁶ bytes. @param {number} bytes */
+export const megabytes = (bytes) => fixed(bytes / 1e6, 1);
+
 /**
  * A share in per cent.
  * @param {number} value

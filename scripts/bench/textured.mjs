@@ -1,5 +1,6 @@
 /** Textured meshes and photos as files, for measurements. */
-import { deflateSync } from "node:zlib";
+import { rgbPng } from "../lib/png.mjs";
+import { packageModule } from "./inputs.mjs";
 
 /** Width of the blocks of one colour in {@link blocksPng}, pixels. */
 const block = 16;
@@ -18,45 +19,21 @@ export function blocksPng([width = 1, height = 1]) {
       rows.writeUIntBE((Math.imul(at + 1, 2_654_435_761) >>> 8) & 0xffffff, v * (1 + 3 * width) + 1 + 3 * u, 3);
     }
   }
-  const header = Buffer.alloc(13);
-  header.writeUInt32BE(width, 0);
-  header.writeUInt32BE(height, 4);
-  // 8 bits, RGB.
-  header.set([8, 2], 8);
-  const chunk = (/** @type {string} */ kind, /** @type {Buffer} */ data) => {
-    const body = Buffer.concat([Buffer.from(kind), data]);
-    const [length, sum] = [Buffer.alloc(4), Buffer.alloc(4)];
-    length.writeUInt32BE(data.length);
-    sum.writeUInt32BE(crc32(body));
-    return Buffer.concat([length, body, sum]);
-  };
-  const signature = Buffer.from([0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a]);
-  const pixels = chunk("IDAT", deflateSync(rows, { level: 1 }));
-  return new Uint8Array(Buffer.concat([signature, chunk("IHDR", header), pixels, chunk("IEND", Buffer.alloc(0))]));
-}
-
-/** The checksum of PNG's chunks, which zlib of Node 20.0 lacks. @param {Buffer} bytes */
-function crc32(bytes) {
-  const table = Int32Array.from({ length: 256 }, (_, byte) => {
-    for (let bit = 0; bit < 8; bit++) byte = byte & 1 ? (byte >>> 1) ^ 0xedb88320 : byte >>> 1;
-    return byte;
-  });
-  let crc = -1;
-  for (const byte of bytes) crc = (crc >>> 8) ^ (table[(crc ^ byte) & 255] ?? 0);
-  return ~crc >>> 0;
+  return rgbPng(rows, width, height, 1);
 }
 
 /**
  * A GLB of a mesh with a texture, whose coordinates are x and y.
  * @param {import("./inputs.mjs").Mesh} mesh
  * @param {Uint8Array} png
- * @returns {Uint8Array}
+ * @returns {Promise<Uint8Array>}
  */
-export function texturedGlb({ positions, indices }, png) {
+export async function texturedGlb({ positions, indices }, png) {
+  const { glbOfParts } = await packageModule("conventions/glb.js");
   const count = positions.length / 3;
   const coordinates = new Float32Array(2 * count).map((_, i) => (positions[3 * (i >> 1) + (i % 2)] ?? 0) + 0.5);
-  const views = [positions, coordinates, indices, png].map(({ buffer, byteOffset, byteLength }) =>
-    Buffer.from(buffer, byteOffset, byteLength),
+  const views = [positions, coordinates, indices, png].map(
+    ({ buffer, byteOffset, byteLength }) => new Uint8Array(buffer, byteOffset, byteLength),
   );
   let end = 0;
   const bufferViews = views.map(({ length }) => {
@@ -80,16 +57,7 @@ export function texturedGlb({ positions, indices }, png) {
     bufferViews,
     buffers: [{ byteLength: end }],
   };
-  const padded = (/** @type {Buffer} */ bytes, /** @type {string} */ fill) =>
-    Buffer.concat([bytes, Buffer.alloc((4 - (bytes.length % 4)) % 4, fill)]);
-  const text = padded(Buffer.from(JSON.stringify(json)), " ");
-  const binary = Buffer.concat(views.map((view) => padded(view, "\0")));
-  const word = (/** @type {number} */ value) => {
-    const bytes = Buffer.alloc(4);
-    bytes.writeUInt32LE(value);
-    return bytes;
-  };
-  const total = 28 + text.length + binary.length;
-  const parts = [Buffer.from("glTF"), word(2), word(total), word(text.length), Buffer.from("JSON"), text];
-  return new Uint8Array(Buffer.concat([...parts, word(binary.length), Buffer.from("BIN\0"), binary]));
+  const binary = new Uint8Array(end);
+  for (const [i, { byteOffset }] of bufferViews.entries()) binary.set(views[i] ?? [], byteOffset);
+  return glbOfParts({ json, binary });
 }

@@ -4,7 +4,7 @@ import { dirname, join, relative, sep } from "node:path";
 import { at, packageDir } from "./paths.mjs";
 
 /** The committed report. */
-export const apiReportFile = at("docs", "api-report.txt");
+const apiReportFile = at("docs", "api-report.txt");
 
 /**
  * A file of declarations, as the compiler writes them: every statement begins in the first column.

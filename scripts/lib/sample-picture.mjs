@@ -2,8 +2,8 @@
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
-import { deflateSync } from "node:zlib";
 import { packageDir } from "./paths.mjs";
+import { rgbPng } from "./png.mjs";
 
 /** Pixels of the images per pixel of the picture. */
 const REDUCTION = 4;
@@ -27,7 +27,7 @@ export async function pictureOf(folder, { depth, camera, photo, objects }) {
   const file = (/** @type {string} */ path) => Uint8Array.from(readFileSync(join(folder, path)));
   const rgb =
     photo === undefined
-      ? await shaded(
+      ? shaded(
           await formats.readDepth(file(depth), { depthScale: JSON.parse(`${Buffer.from(file(camera))}`).depthScale }),
           await Promise.all(objects.map(({ mask }) => formats.readMask(file(mask)))),
         )
@@ -39,9 +39,9 @@ export async function pictureOf(folder, { depth, camera, photo, objects }) {
  * A depth map, lit from the upper left, with each object in its colour.
  * @param {Pixels} depth
  * @param {readonly Pixels[]} masks
- * @returns {Promise<Pixels>}
+ * @returns {Pixels}
  */
-async function shaded({ data, width, height }, masks) {
+function shaded({ data, width, height }, masks) {
   const rgb = new Uint8Array(3 * width * height);
   const at = (/** @type {number} */ u, /** @type {number} */ v) =>
     data[Math.min(Math.max(v, 0), height - 1) * width + Math.min(Math.max(u, 0), width - 1)] || 0;
@@ -83,19 +83,6 @@ function reduced({ data, width, height }) {
 }
 
 /**
- * The checksum of a PNG chunk; Node's own is missing from its older versions.
- * @param {Uint8Array} bytes
- */
-function crc32(bytes) {
-  let crc = 0xffffffff;
-  for (const byte of bytes) {
-    crc ^= byte;
-    for (let bit = 0; bit < 8; bit++) crc = (crc >>> 1) ^ (crc & 1 ? 0xedb88320 : 0);
-  }
-  return (crc ^ 0xffffffff) >>> 0;
-}
-
-/**
  * An 8-bit RGB PNG.
  * @param {Pixels} image
  */
@@ -109,22 +96,5 @@ function png({ data, width, height }) {
       rows[v * (1 + 3 * width) + 1 + x] = (data[3 * v * width + x] ?? 0) - left;
     }
   }
-  const header = Buffer.alloc(13);
-  header.writeUInt32BE(width, 0);
-  header.writeUInt32BE(height, 4);
-  header.set([8, 2], 8);
-  const chunk = (/** @type {string} */ type, /** @type {Buffer} */ content) => {
-    const typed = Buffer.concat([Buffer.from(type, "latin1"), content]);
-    const [length, check] = [Buffer.alloc(4), Buffer.alloc(4)];
-    length.writeUInt32BE(content.length);
-    check.writeUInt32BE(crc32(typed));
-    return Buffer.concat([length, typed, check]);
-  };
-  const signature = Buffer.from("\x89PNG\r\n\x1a\n", "latin1");
-  return Buffer.concat([
-    signature,
-    chunk("IHDR", header),
-    chunk("IDAT", deflateSync(rows, { level: 9 })),
-    chunk("IEND", Buffer.alloc(0)),
-  ]);
+  return rgbPng(rows, width, height, 9);
 }

@@ -1,9 +1,7 @@
 /** The progress of a batch, on terminals and elsewhere. */
 import assert from "node:assert/strict";
-import { join } from "node:path";
 import { test } from "node:test";
-import { pathToFileURL } from "node:url";
-import { installDir } from "../support/environment.js";
+import { internalModule } from "../support/internals.js";
 
 interface Progress {
   draw(): void;
@@ -13,10 +11,8 @@ interface Progress {
 
 type Stream = { isTTY: boolean; columns: number; write(text: string): void };
 
-const file = join(installDir, "node_modules", "sim3align", "cli", "batch-progress.js");
-const { BatchProgress } = (await import(pathToFileURL(file).href)) as {
-  BatchProgress: new (stream: Stream, total: number, now: () => number) => Progress;
-};
+const { BatchProgress }: { BatchProgress: new (stream: Stream, total: number, now: () => number) => Progress } =
+  await internalModule("cli/batch-progress.js");
 
 /** What a batch shows whose cases take two seconds each, of which some fail. */
 function shown(total: number, failures: readonly number[], isTTY: boolean, columns = 100): string[] {

@@ -218,6 +218,14 @@ test("--jsonl - and --csv - write to stdout as cases end, the table goes to stde
   assert.match(csv.stdout, /^case,error,confidence,.*\n.*\n.*\n$/);
 });
 
+test("stdout has no record: a file of the name - is not read", () => {
+  writeFileSync(inFolder("-"), "something else\n");
+  const { status, stdout } = run("align", "empty", "--jsonl", "-");
+  rmSync(inFolder("-"));
+  assert.equal(status, 1);
+  assert.equal(JSON.parse(stdout).case, "empty");
+});
+
 test("Ctrl-C keeps what is done, says how to go on, and ends the program as the signal does", async () => {
   rmSync(inFolder("stopped.jsonl"), { force: true });
   const args = ["align", "a", "b", endless("endless"), "c", ...quick, "--jsonl", "stopped.jsonl"];

@@ -10,7 +10,7 @@ import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { PLYLoader } from "three/addons/loaders/PLYLoader.js";
 import { repository } from "../support/environment.js";
 import { rejectsWith } from "../support/errors.js";
-import { glbOf } from "../support/files.js";
+import { glbJson, glbOf } from "../support/files.js";
 import { assertValid } from "../support/gltf-validator.js";
 import { assertNear, forSeeds, Random } from "../support/random.js";
 import { mesh, truth, view } from "../support/scene.js";
@@ -22,12 +22,6 @@ const soup = { positions: Float32Array.from(mesh.positions.subarray(0, 27)) };
 interface Primitive {
   targets: object[];
 }
-
-/** What a GLB says about its content. */
-const documentOf = (glb: Uint8Array) =>
-  JSON.parse(
-    new TextDecoder().decode(glb.subarray(20, 20 + new DataView(glb.buffer, glb.byteOffset).getUint32(12, true))),
-  );
 
 /** All vertices below an object, where the scene has them. */
 function vertices(object: Group): number[] {
@@ -145,14 +139,14 @@ test("a scene of several GLB files: morph targets and compressed primitives keep
   const merged = exportSceneGlb([morphing, morphing]);
   await assertValid(merged);
   const targets = (glb: Uint8Array) =>
-    documentOf(glb).meshes.map(({ primitives: [primitive] }: { primitives: Primitive[] }) => primitive?.targets);
+    glbJson(glb).meshes.map(({ primitives: [primitive] }: { primitives: Primitive[] }) => primitive?.targets);
   assert.deepEqual(targets(merged), [[{ POSITION: 1 }], [{ POSITION: 3 }]]);
 
   const draco = { bufferView: 1, attributes: { POSITION: 7 } };
   const [primitive] = json.meshes[0]?.primitives ?? [];
   const primitives = [{ ...primitive, extensions: { KHR_draco_mesh_compression: draco } }];
   const compressed = { mesh: glbOf({ ...json, meshes: [{ primitives }] }, new Uint8Array(72)), transform: truth };
-  const [, second] = documentOf(exportSceneGlb([compressed, compressed])).meshes;
+  const [, second] = glbJson(exportSceneGlb([compressed, compressed])).meshes;
   const moved = { bufferView: 3, attributes: { POSITION: 7 } };
   assert.deepEqual(second.primitives[0].extensions, { KHR_draco_mesh_compression: moved });
   assert.deepEqual(second.primitives[0].attributes, { POSITION: 2 });

@@ -1,6 +1,6 @@
 /** Photos of views and of the frames of a video: the print tells the turn that shape leaves open. */
 import assert from "node:assert/strict";
-import { test } from "node:test";
+import { after, test } from "node:test";
 import { createAligner, type FrameInput, type MeshArrays, type ViewInput } from "sim3align";
 import { rejectsWith } from "../support/errors.js";
 import { printedBox } from "../support/printed-box.js";
@@ -17,6 +17,9 @@ const errors = (poses: readonly { rotation: readonly number[] }[]) =>
   poses.map(({ rotation }, k) => turnBetween(rotation, (frames[k] as typeof first).pose.rotation));
 
 const aligners = await Promise.all([createAligner(), createAligner({ workers: 1 })]);
+after(() => {
+  for (const aligner of aligners) aligner.dispose();
+});
 
 for (const [name, isKnown] of [
   ["known camera poses", true],
@@ -87,8 +90,4 @@ test("a photo of another shape is named", async () => {
   const tracker = await aligner.track(mesh);
   await rejectsWith(() => tracker.next(wrong), { code: "SIZE_MISMATCH", argument: "image", message: /field of view/ });
   tracker.close();
-});
-
-test("aligners are closed", () => {
-  for (const aligner of aligners) aligner.dispose();
 });

@@ -4,7 +4,7 @@ import { after, test } from "node:test";
 import { createAligner, type SceneAlignment, type SceneInput, type SceneResult } from "sim3align";
 import { exportSceneGlb } from "sim3align/conventions";
 import { rejectsWith } from "../support/errors.js";
-import { cocoRle, png } from "../support/files.js";
+import { cocoRle, glbJson, png } from "../support/files.js";
 import { assertValid } from "../support/gltf-validator.js";
 import { withoutTimes } from "../support/results.js";
 import { transformed } from "../support/scene.js";
@@ -251,9 +251,7 @@ test("a scene is exported as one GLB with the support as ground", async () => {
   const bytes = exportSceneGlb(objects, { support: expected.support, camera });
   const { totalTriangleCount } = await assertValid(bytes);
   assert.equal(totalTriangleCount, standingMesh.indices.length + 2);
-  const json = JSON.parse(
-    new TextDecoder().decode(bytes.subarray(20, 20 + new DataView(bytes.buffer).getUint32(12, true))),
-  );
+  const json = glbJson(bytes);
   const names = json.nodes.map(({ name }: { name?: string }) => name);
   for (const name of ["object 0", "object 1", "object 2", "camera", "support", "view"]) {
     assert.ok(names.includes(name), name);

@@ -109,6 +109,12 @@ export function glbOf(json: object, buffer: Uint8Array): Uint8Array {
   return Buffer.concat([header, text, binary]);
 }
 
+/** The JSON of a GLB file. */
+export const glbJson = (glb: Uint8Array) =>
+  JSON.parse(
+    new TextDecoder().decode(glb.subarray(20, 20 + new DataView(glb.buffer, glb.byteOffset).getUint32(12, true))),
+  );
+
 /** A GLB file of a mesh under one node. */
 export const glb = (mesh: Mesh, node: object = {}) => glbOf(gltfJson(mesh, node), gltfBuffer(mesh));
 

@@ -36,7 +36,7 @@ export async function alignCase(
   aligner: Aligner,
   { name, folder, read }: CaseToDo,
   flags: AlignFlags,
-  onProgress: ((progress: Progress) => void) | undefined,
+  onProgress?: (progress: Progress) => void,
 ): Promise<Outcome> {
   let files: CaseOnDisk["files"] = {};
   try {
@@ -65,7 +65,7 @@ async function alignFrames(
   name: string,
   folder: string,
   flags: AlignFlags,
-  onProgress: ((progress: Progress) => void) | undefined,
+  onProgress?: (progress: Progress) => void,
 ): Promise<Outcome> {
   const { mesh, frames } = await readFrames(folder, caseSettings(flags));
   const isKnown = frames.every(({ input }) => input.cameraToWorld !== undefined);

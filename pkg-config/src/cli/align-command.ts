@@ -1,6 +1,7 @@
 /** `sim3align align`: aligns cases and prints the results. */
 import { availableParallelism } from "node:os";
 import { Command, Option } from "commander";
+import { MAX_WORKERS } from "../aligner-options.js";
 import { createAligner } from "../index.js";
 import { type AlignFlags, alignCase, paper, precise, shared } from "./align-case.js";
 import { Batch } from "./batch.js";
@@ -12,7 +13,7 @@ import { csvHeadings } from "./csv-file.js";
 import { onInterruption } from "./interruption.js";
 import { addOptionFlags } from "./option-flags.js";
 import { Output, type OutputFlags } from "./output.js";
-import { camera, jsonObject, MAX_WORKERS, workers } from "./parse.js";
+import { camera, jsonObject, workers } from "./parse.js";
 import { ProgressLine } from "./progress-line.js";
 import { Summary } from "./report.js";
 import { transformFileHelp } from "./transform-file.js";
@@ -101,9 +102,12 @@ async function run(args: string[], flags: BatchFlags): Promise<void> {
   const cases = casesOf(await casePaths(args, flags.list), flags, caseSettings(flags));
   const output = new Output(flags);
   const batch = new Batch(cases.length, output, flags);
-  const done = await resumed(output, batch, new Set(cases.map(({ name }) => name)));
-  const left = cases.filter(({ name }) => !done.has(name));
-  if (flags.resume) console.error(`resumed: ${done.size} of ${cases.length} cases are in ${flags.jsonl}`);
+  let left = cases;
+  if (flags.resume) {
+    const done = await resumed(output, batch, new Set(cases.map(({ name }) => name)));
+    left = cases.filter(({ name }) => !done.has(name));
+    console.error(`resumed: ${done.size} of ${cases.length} cases are in ${flags.jsonl}`);
+  }
   const stop = onInterruption(() => batch.interrupt());
   if (cases.length === 1) await alignOne(left, flags, batch);
   else await alignMany(left, flags, batch, output);
@@ -146,7 +150,7 @@ async function alignMany(cases: readonly CaseToDo[], flags: BatchFlags, batch: B
   const summary = new Summary(cases, output.style);
   batch.begin(cases.length);
   try {
-    const align = (each: CaseToDo) => alignCase(aligner, each, flags, undefined);
+    const align = (each: CaseToDo) => alignCase(aligner, each, flags);
     for await (const outcome of concurrently(cases, size === 1 ? 1 : size + READ_AHEAD, align)) {
       batch.add(outcome, summary.lines(outcome));
       if (output.isClosed) break;

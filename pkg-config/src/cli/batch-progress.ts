@@ -1,13 +1,14 @@
 /** The progress of many cases. */
+import { type LineStream, StatusLine } from "./status-line.js";
 
-const eraseLine = "\r\u001b[2K";
 const BAR_WIDTH = 24;
 /** Other streams than terminals get a line for each tenth of a batch that is at least this long. */
 const LONG = 20;
 
 /** Shows a bar on terminals, and prints some lines elsewhere. */
 export class BatchProgress {
-  readonly #stream: Pick<NodeJS.WriteStream, "isTTY" | "columns" | "write">;
+  readonly #stream: LineStream;
+  readonly #line: StatusLine;
   readonly #total: number;
   readonly #now: () => number;
   readonly #begin: number;
@@ -15,8 +16,9 @@ export class BatchProgress {
   #failed = 0;
 
   /** @param now a clock, milliseconds */
-  constructor(stream: Pick<NodeJS.WriteStream, "isTTY" | "columns" | "write">, total: number, now: () => number) {
+  constructor(stream: LineStream, total: number, now: () => number) {
     this.#stream = stream;
+    this.#line = new StatusLine(stream);
     this.#total = total;
     this.#now = now;
     this.#begin = now();
@@ -24,15 +26,14 @@ export class BatchProgress {
 
   /** Draws the bar, if there is one. */
   draw(): void {
-    if (!this.#stream.isTTY) return;
     const full = Math.round((BAR_WIDTH * this.#done) / this.#total);
     const bar = "█".repeat(full) + "░".repeat(BAR_WIDTH - full);
-    this.#stream.write(eraseLine + `${bar} ${this.#state()}`.slice(0, Math.max(10, (this.#stream.columns || 80) - 1)));
+    this.#line.show(`${bar} ${this.#state()}`);
   }
 
   /** Clears the bar before other output. */
   clear(): void {
-    if (this.#stream.isTTY) this.#stream.write(eraseLine);
+    this.#line.clear();
   }
 
   /** Counts a case that is done. Its row may be written between `clear` and this. */

@@ -1,5 +1,5 @@
 /** The results as JSON Lines: the record of a batch, from which it can be resumed. */
-import { closeSync, createReadStream, openSync, readSync, statSync, truncateSync, writeSync } from "node:fs";
+import { appendFileSync, closeSync, createReadStream, openSync, readSync, statSync, truncateSync } from "node:fs";
 import { createInterface } from "node:readline";
 import { isRecord } from "../values.js";
 import { LineFile } from "./line-file.js";
@@ -68,9 +68,13 @@ export class JsonlFile {
     if (text === "") return;
     const last = parsed(text);
     if (last === undefined && !text.startsWith(START.slice(0, text.length))) throw this.#foreign(number + 1);
-    if (last === undefined) truncateSync(this.#path, start);
-    else terminate(this.#path);
-    if (last !== undefined && !seen.has(last.name)) yield last;
+    if (last === undefined) {
+      truncateSync(this.#path, start);
+      return;
+    }
+    // Only the line break is missing.
+    appendFileSync(this.#path, "\n");
+    if (!seen.has(last.name)) yield last;
   }
 
   #foreign(line: number): UsageError {
@@ -110,11 +114,4 @@ function lastLine(path: string, size: number): { start: number; text: string } {
   } finally {
     closeSync(file);
   }
-}
-
-/** Adds the line break that the last line lacks. */
-function terminate(path: string): void {
-  const file = openSync(path, "a");
-  writeSync(file, "\n");
-  closeSync(file);
 }

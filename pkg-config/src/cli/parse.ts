@@ -1,9 +1,7 @@
 /** Parsers for flag values. Invalid values are usage errors. */
 import { InvalidArgumentError } from "commander";
+import { MAX_WORKERS } from "../aligner-options.js";
 import type { CameraInput, ScaleOption, SymmetryOption } from "../index.js";
-
-/** Upper limit of the number of workers. */
-export const MAX_WORKERS = 64;
 
 /** Parses a number. */
 export function number(text: string): number {

@@ -1,17 +1,16 @@
 /** A progress line, on terminals only. */
 import type { Progress } from "../options.js";
-
-const eraseLine = "\r\u001b[2K";
+import { type LineStream, StatusLine } from "./status-line.js";
 
 /** Shows the progress of several cases. */
 export class ProgressLine {
-  readonly #stream: NodeJS.WriteStream;
+  readonly #line: StatusLine;
   readonly #total: number;
   #index = 0;
   #name = "";
 
-  constructor(stream: NodeJS.WriteStream, total: number) {
-    this.#stream = stream;
+  constructor(stream: LineStream, total: number) {
+    this.#line = new StatusLine(stream);
     this.#total = total;
   }
 
@@ -29,12 +28,10 @@ export class ProgressLine {
 
   /** Clears the line before other output. */
   clear(): void {
-    if (this.#stream.isTTY) this.#stream.write(eraseLine);
+    this.#line.clear();
   }
 
   #show(state: string): void {
-    if (!this.#stream.isTTY) return;
-    const line = `[${this.#index}/${this.#total}] ${this.#name}  ${state}`;
-    this.#stream.write(eraseLine + line.slice(0, Math.max(10, (this.#stream.columns || 80) - 1)));
+    this.#line.show(`[${this.#index}/${this.#total}] ${this.#name}  ${state}`);
   }
 }

@@ -30,13 +30,13 @@ function encoder(isFloat: boolean, space: ColorSpace): (value: number) => number
 }
 
 /**
- * The linear light halfway between adjacent sRGB codes. Rounded to 32 bits: `Math.pow` may differ by the last of 53
- * bits between engines.
+ * The linear light of an sRGB value, 0 to 1. Rounded to 32 bits: `Math.pow` may differ by the last of 53 bits between
+ * engines.
  */
-const bounds = Array.from({ length: 255 }, (_, code) => {
-  const x = (code + 0.5) / 255;
-  return Math.fround(x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
-});
+export const linear = (x: number) => Math.fround(x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
+
+/** The linear light halfway between adjacent sRGB codes. */
+const bounds = Array.from({ length: 255 }, (_, code) => linear((code + 0.5) / 255));
 
 /** The sRGB code of linear light. */
 function encoded(light: number): number {
@@ -54,7 +54,16 @@ export type Photo = PixelArray<Uint8Array>;
 
 /** A photo for the core, averaged to a smaller one if it is large, as the readers of files do. */
 export function photoOf(data: ColorArray, channels: number, width: number, height: number): Photo {
-  const [newWidth, newHeight] = reducedSize(width, height);
+  return averaged(data, channels, [width, height], reducedSize(width, height));
+}
+
+/** An image without its alpha, averaged to a size that is the same or smaller. */
+export function averaged(
+  data: ColorArray,
+  channels: number,
+  [width, height]: readonly [number, number],
+  [newWidth, newHeight]: readonly [number, number],
+): Photo {
   if (newWidth === width && newHeight === height) return { data: rgbOf(data, channels), width, height };
   const sums = new Uint32Array(3 * newWidth * newHeight);
   const counts = new Uint32Array(newWidth * newHeight);

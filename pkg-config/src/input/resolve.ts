@@ -18,8 +18,8 @@ export interface ResolvedInput {
   warnings: FileWarnings;
 }
 
-/** The properties of an input that describe its image. */
-export const imageProperties = [
+/** The properties of a frame: those of an input but the mesh. */
+export const frameProperties: readonly string[] = [
   "depth",
   "depthScale",
   "pointMap",
@@ -28,13 +28,13 @@ export const imageProperties = [
   "camera",
   "cameraFile",
   "imageId",
+  "mask",
+  "resizeMask",
+  "image",
 ];
 
 /** The remedy for misspelt properties. */
 export const spelling = "Check the spelling. Options belong in the second argument.";
-
-/** The properties of a frame: those of an input but the mesh. */
-export const frameProperties: readonly string[] = [...imageProperties, "mask", "resizeMask", "image"];
 
 const properties = [...frameProperties, "mesh"];
 

@@ -5,7 +5,7 @@ import type { MeshArrays } from "../input/types.js";
 import { failure, finiteNumbers, oneOf } from "../values.js";
 import { surfaceSamples } from "./surface-samples.js";
 import { type Texels, texelsOf } from "./texels.js";
-import type { AttributeLike, GeometryLike, MeshTree, PlacedObject } from "./types.js";
+import { type AttributeLike, type GeometryLike, isObject, type MeshTree, type PlacedObject } from "./types.js";
 
 /** The triangles so far, and the colours of the vertices: linear red, green and blue. */
 interface Arrays {
@@ -86,7 +86,6 @@ export function meshInputFromThree(
   return { ...mesh, colors: Float32Array.from(arrays.colors), colorSpace: "linear" };
 }
 
-const isObject = (value: unknown): value is Record<string, unknown> => typeof value === "object" && value !== null;
 const isGeometry = (value: unknown): value is GeometryLike => isObject(value) && isObject(value.attributes);
 const isTree = (value: unknown): value is MeshTree => isObject(value) && typeof value.traverse === "function";
 

@@ -1,6 +1,8 @@
 /** Colours at points of a surface. */
+import { dot } from "../conventions/rotation.js";
 import { rgbOf } from "../input/colors.js";
 import type { ColorSamples } from "../prepared-mesh.js";
+import type { Vector3 } from "../values.js";
 
 /** Number of points: as many as those of mesh files. */
 const COUNT = 32_768;
@@ -51,16 +53,13 @@ export function surfaceSamples(
   return { ...samples, colors: rgbOf(colors, 3, "linear") };
 }
 
-type Vector = [number, number, number];
-const dot = (a: Vector, b: Vector) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-
 /** The corners of a triangle, and its normal with the length of twice its area. */
 function triangleOf(positions: Float32Array, indices: Uint32Array, t: number) {
   const [a, b, c] = [0, 1, 2].map((corner) => {
     const first = 3 * (indices[3 * t + corner] as number);
-    return [positions[first], positions[first + 1], positions[first + 2]] as Vector;
-  }) as [Vector, Vector, Vector];
-  const [u, v] = [b, c].map((p) => p.map((x, axis) => x - (a[axis] as number))) as [Vector, Vector];
-  const normal: Vector = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    return [positions[first], positions[first + 1], positions[first + 2]] as Vector3;
+  }) as [Vector3, Vector3, Vector3];
+  const [u, v] = [b, c].map((p) => p.map((x, axis) => x - (a[axis] as number))) as [Vector3, Vector3];
+  const normal: Vector3 = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
   return { a, b, c, normal };
 }

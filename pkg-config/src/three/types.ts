@@ -1,5 +1,10 @@
 /** The parts of three.js classes that this module uses. Any object of these shapes works. */
 
+/** An object whose properties are not known. */
+export type Fields = Record<string, unknown>;
+
+export const isObject = (value: unknown): value is Fields => typeof value === "object" && value !== null;
+
 /** A writable `Vector3`. */
 export interface Vector3Like {
   set(x: number, y: number, z: number): unknown;
