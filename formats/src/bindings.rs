@@ -6,11 +6,12 @@ use serde::Serialize;
 use serde_wasm_bindgen::Serializer;
 use wasm_bindgen::prelude::*;
 
+use crate::colored_mesh::ColoredMesh;
 use crate::depth::{DepthReadOptions, read_depth as depth_from_bytes};
 use crate::guard::MAX_BUFFER_BYTES;
 use crate::mask::read_mask as mask_from_bytes;
 use crate::mesh::{
-    ColoredMesh, MeshFormat, MeshReadOptions, external_resources as resources_of, read_colored_mesh as mesh_from_bytes,
+    MeshFormat, MeshReadOptions, external_resources as resources_of, read_colored_mesh as mesh_from_bytes,
     read_mesh as read_mesh_shape,
 };
 use crate::photo::read_photo;

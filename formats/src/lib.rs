@@ -5,10 +5,11 @@
 
 pub mod bindings;
 mod color;
+pub mod colored_mesh;
 mod cursor;
 mod data_uri;
 pub mod depth;
-pub mod gltf;
+mod gltf;
 pub mod guard;
 mod jpeg;
 pub mod mask;

@@ -2,12 +2,12 @@
 
 use core::fmt;
 
+use crate::colored_mesh::{ColoredMesh, Content};
 use crate::guard::{beginning, unsupported};
-use crate::resources::Resources;
+use crate::resources::{ExternalResources, Resources};
 use crate::{gltf, obj, ply, stl, text};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::surface_colors::SurfaceColors;
 
 /// The supported mesh formats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,33 +83,6 @@ impl fmt::Debug for MeshReadOptions<'_> {
     }
 }
 
-/// A mesh and its colours.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ColoredMesh {
-    /// The mesh.
-    pub mesh: Mesh,
-    /// The colours of its surface; `None` if the file has none, or none that can be read.
-    pub colors: Option<SurfaceColors>,
-    /// Why the colours can't be read; the mesh can be used without them.
-    pub problem: Option<Error>,
-}
-
-impl From<Mesh> for ColoredMesh {
-    /// The mesh without colours.
-    fn from(mesh: Mesh) -> Self {
-        Self { mesh, colors: None, problem: None }
-    }
-}
-
-/// The files that a mesh file refers to, by the URIs or names in it.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct ExternalResources {
-    /// Without these, the mesh can't be read: the buffers of a `.gltf`.
-    pub shape: Vec<String>,
-    /// Without these, it has no colours: the images of base colours, and the libraries of an `.obj` with their textures.
-    pub colors: Vec<String>,
-}
-
 /// The distinct files that a mesh file refers to. Of an `.obj`, these are its libraries; given the content of a library,
 /// its textures.
 ///
@@ -125,13 +98,6 @@ pub fn external_resources(bytes: &[u8]) -> Result<ExternalResources> {
         }
         _ => Ok(ExternalResources::default()),
     }
-}
-
-/// The parts of a mesh file to read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Content {
-    Shape,
-    ShapeAndColors,
 }
 
 /// Reads the shape of a mesh: all parts merged, node transforms applied, in the unit and axes of the file. Unused

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
+use crate::colored_mesh::{ColoredMesh, Content};
 use crate::guard::{MAX_VERTICES, corrupt, too_large};
-use crate::mesh::{ColoredMesh, Content};
 use crate::mesh_builder::MeshBuilder;
 use crate::mtl::MaterialLibrary;
 use crate::resources::{Resources, distinct, external};

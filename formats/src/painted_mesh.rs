@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use crate::color::{WHITE, linear, srgb};
-use crate::mesh::ColoredMesh;
+use crate::colored_mesh::ColoredMesh;
 use crate::texture::{Texture, Wrap};
 use sim3align_geometry::error::{Error, Result};
 use sim3align_geometry::mesh::Mesh;

@@ -2,9 +2,9 @@
 
 use glam::{DVec3, Vec3};
 
+use crate::colored_mesh::{ColoredMesh, Content};
 use crate::cursor::Cursor;
 use crate::guard::{MAX_VERTICES, corrupt, too_large};
-use crate::mesh::{ColoredMesh, Content};
 use crate::mesh_builder::MeshBuilder;
 use crate::ply_header::{Element, Encoding, Header, Scalar};
 use crate::text::{number, quoted};

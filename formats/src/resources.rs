@@ -9,6 +9,15 @@ use sim3align_geometry::error::{Error, ErrorCode, Result};
 /// Returns the content of a file that a mesh file refers to, by the URI or name in it.
 pub type Resources<'a> = &'a dyn Fn(&str) -> Option<Vec<u8>>;
 
+/// The files that a mesh file refers to, by the URIs or names in it.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct ExternalResources {
+    /// Without these, the mesh can't be read: the buffers of a `.gltf`.
+    pub shape: Vec<String>,
+    /// Without these, it has no colours: the images of base colours, and the libraries of an `.obj` with their textures.
+    pub colors: Vec<String>,
+}
+
 /// The bytes at a URI, in it or in a file. `what` refers to it in errors.
 pub(crate) fn at_uri(
     uri: &str,

@@ -3,7 +3,8 @@
 use glam::Vec3;
 use sim3align::error::{Error, ErrorCode};
 use sim3align::geometry::surface_colors::{COLOR_SAMPLES, Rgb, SurfaceColors};
-use sim3align_formats::mesh::{ColoredMesh, MeshReadOptions, read_colored_mesh, read_mesh};
+use sim3align_formats::colored_mesh::ColoredMesh;
+use sim3align_formats::mesh::{MeshReadOptions, read_colored_mesh, read_mesh};
 use sim3align_lab::case_folder::write;
 use wasm_bindgen_test::wasm_bindgen_test;
 

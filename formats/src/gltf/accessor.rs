@@ -6,8 +6,8 @@ use ::gltf::json::validation::Checked;
 use glam::Vec3;
 
 use crate::color::srgb;
-use crate::gltf::Document;
 use crate::gltf::buffers::Buffers;
+use crate::gltf::document::Document;
 use crate::guard::{MAX_TRIANGLES, MAX_VERTICES, corrupt, too_large};
 use sim3align_geometry::error::Result;
 use sim3align_geometry::surface_colors::Rgb;

@@ -5,11 +5,11 @@ use ::gltf::json::mesh::{Mode, Semantic};
 use ::gltf::json::validation::Checked;
 use glam::{DMat4, DQuat, DVec3};
 
-use crate::gltf::Document;
+use crate::colored_mesh::ColoredMesh;
 use crate::gltf::accessor::AccessorReader;
+use crate::gltf::document::Document;
 use crate::gltf::materials::Materials;
 use crate::guard::corrupt;
-use crate::mesh::ColoredMesh;
 use crate::mesh_builder::MeshBuilder;
 use crate::painted_mesh::PaintedMesh;
 use sim3align_geometry::error::{Error, ErrorCode, Result};

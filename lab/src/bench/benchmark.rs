@@ -89,7 +89,8 @@ pub struct Record {
     pub truth_score: Option<f64>,
     /// Ratio of the true to the initial scale, s / s_init.
     pub truth_scale_ratio: Option<f64>,
-    /// CPU time of `align`, which a busy machine changes little; NaN, `null` in JSON, where another program did not say what it took.
+    /// CPU time of `align`, which a busy machine changes little; NaN, `null` in JSON, where another program did not say
+    /// what it took.
     pub seconds: f64,
 }
 

@@ -3,22 +3,32 @@
 use serde_json::{Value, json};
 
 use super::write;
+use crate::files::NamedFile;
 use sim3align::evidence::observation::Observation;
 use sim3align::metrics::symmetry::Symmetry;
 use sim3align_geometry::error::Result;
+use sim3align_geometry::image::{DepthMap, Mask};
 use sim3align_geometry::mesh::Mesh;
+use sim3align_geometry::pinhole::Pinhole;
 use sim3align_geometry::similarity::Similarity;
 
-/// Names and contents of the files. `truth` holds the fields of `gt.json` other than the pose. Depth is written as
-/// floats (NPY, metres) or, given `depth_scale` (metres per unit), as integers (16-bit PNG).
+/// The files of a case: those of its mesh and, if it has one, of its photo, and those of the view, the mask and the
+/// truth. See [`view_files`] and [`truth_file`].
 pub(crate) fn case_files(
     observation: &Observation,
-    mesh: &Mesh,
+    mut files: Vec<NamedFile>,
     camera_from_mesh: &Similarity,
-    mut truth: Value,
+    truth: Value,
     depth_scale: Option<f64>,
-) -> Result<Vec<(&'static str, Vec<u8>)>> {
-    let (camera, depth) = (observation.camera(), observation.depth());
+) -> Result<Vec<NamedFile>> {
+    files.extend(view_files(observation.depth(), observation.camera(), depth_scale)?);
+    files.extend([mask_file(observation.mask())?, truth_file(camera_from_mesh, truth)]);
+    Ok(files)
+}
+
+/// Depth and `camera.json`. Depth is written as floats (NPY, metres) or, given `depth_scale` (metres per unit), as
+/// integers (16-bit PNG).
+pub(crate) fn view_files(depth: &DepthMap, camera: Pinhole, depth_scale: Option<f64>) -> Result<[NamedFile; 2]> {
     let mut camera_json = json!({
         "fx": camera.fx, "fy": camera.fy, "cx": camera.cx, "cy": camera.cy,
         "width": depth.width(), "height": depth.height(),
@@ -30,19 +40,28 @@ pub(crate) fn case_files(
             ("depth.png", write::depth_png(depth, scale)?)
         }
     };
+    Ok([depth_file, ("camera.json", format!("{camera_json:#}\n").into_bytes())])
+}
+
+/// `mask.png`.
+pub(crate) fn mask_file(mask: &Mask) -> Result<NamedFile> {
+    Ok(("mask.png", write::mask_png(mask)?))
+}
+
+/// `mesh.glb`, without colours.
+pub(crate) fn glb_file(mesh: &Mesh) -> NamedFile {
+    ("mesh.glb", write::glb(mesh))
+}
+
+/// `gt.json`. `truth` holds its fields other than the pose.
+pub(crate) fn truth_file(camera_from_mesh: &Similarity, mut truth: Value) -> NamedFile {
     let Similarity { scale, rotation, translation } = camera_from_mesh;
     let row = |i: usize| [rotation[(i, 0)], rotation[(i, 1)], rotation[(i, 2)]];
     truth["available"] = json!(true);
     truth["scale"] = json!(scale);
     truth["rotation"] = json!([row(0), row(1), row(2)]);
     truth["translation"] = json!([translation.x, translation.y, translation.z]);
-    Ok(vec![
-        depth_file,
-        ("mask.png", write::mask_png(observation.mask())?),
-        ("camera.json", format!("{camera_json:#}\n").into_bytes()),
-        ("mesh.glb", write::glb(mesh)),
-        ("gt.json", format!("{truth:#}\n").into_bytes()),
-    ])
+    ("gt.json", format!("{truth:#}\n").into_bytes())
 }
 
 /// The symmetry in `gt.json`: as a word that all readers understand, and exactly as `symmetryAxes`.

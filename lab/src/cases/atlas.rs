@@ -15,6 +15,7 @@ const MARGIN: usize = 4;
 pub struct Atlas {
     /// Width and height of the texture.
     pub size: usize,
+    triangles: usize,
     columns: usize,
     /// Width of a cell.
     cell: usize,
@@ -27,7 +28,7 @@ impl Atlas {
         let size = SIZES[usize::from(triangles > FEW)];
         let columns = triangles.isqrt() + usize::from(triangles.isqrt().pow(2) < triangles);
         let cell = (size / columns.max(1) / STEP * STEP).max(STEP);
-        Self { size, columns, cell, margin: (cell / 8).clamp(1, MARGIN) }
+        Self { size, triangles, columns, cell, margin: (cell / 8).clamp(1, MARGIN) }
     }
 
     /// Length of the two shorter sides of a triangle, texels.
@@ -35,20 +36,23 @@ impl Atlas {
         self.cell - 2 * self.margin
     }
 
-    /// Texture coordinates of the corners of a triangle, 0 to 1 from the upper left corner.
-    pub fn coordinates(&self, triangle: usize) -> [[f64; 2]; 3] {
-        let [u, v] = self.corner(triangle).map(|x| x + self.margin);
+    /// Texture coordinates of the corners of each triangle, 0 to 1 from the upper left corner.
+    pub fn coordinates(&self) -> Vec<[[f64; 2]; 3]> {
         let side = self.side();
-        [[u, v], [u + side, v], [u, v + side]].map(|corner| corner.map(|x| x as f64 / self.size as f64))
+        let of_triangle = |triangle| {
+            let [u, v] = self.corner(triangle).map(|x| x + self.margin);
+            [[u, v], [u + side, v], [u, v + side]].map(|corner| corner.map(|x| x as f64 / self.size as f64))
+        };
+        (0..self.triangles).map(of_triangle).collect()
     }
 
     /// Paints the cells. `color_at` returns the colour at a point of a triangle, given the weights of its second and third
     /// corner; in the margin, one is negative or their sum exceeds 1.
-    pub fn paint(&self, triangles: usize, color_at: &mut dyn FnMut(usize, [f64; 2]) -> Rgb) -> Vec<Rgb> {
+    pub fn paint(&self, color_at: &mut dyn FnMut(usize, [f64; 2]) -> Rgb) -> Vec<Rgb> {
         let mut texels = vec![[128; 3]; self.size * self.size];
         let side = self.side() as f64;
         let beyond = 1.0 + 2.0 * self.margin as f64 / side;
-        for triangle in 0..triangles {
+        for triangle in 0..self.triangles {
             let [left, top] = self.corner(triangle);
             for row in 0..self.cell {
                 for column in 0..self.cell {

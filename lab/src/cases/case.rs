@@ -11,7 +11,7 @@ use super::generator::generate;
 use super::holes::Shown;
 use super::mask::Segmented;
 use super::photo::take;
-use super::print::Print;
+use super::print::{Print, PrintKind};
 use super::readings::Readings;
 use super::scans::Scan;
 use super::scene::{Scene, put_down, turned_axis};
@@ -22,7 +22,7 @@ use super::streams::{
 };
 use super::texture::paint;
 use super::tier::{CaseSet, Class, Tier};
-use crate::case_folder::contents::{case_files, parameters_json, symmetry_json};
+use crate::case_folder::contents::{case_files, glb_file, parameters_json, symmetry_json};
 use crate::cases::distortion::canonicalise;
 use crate::draws::{chance, mixed};
 use crate::files::{NamedFile, write_files};
@@ -162,7 +162,7 @@ impl EvaluationSet {
         let (mut colors, mut color_files, mut of_photo) = (None, Vec::new(), None);
         let random = &mut Random::new(seed, COLOR_STREAM);
         let is_told = class.is_told_by_color();
-        if let Some(kind) = class.print(chance(random, 0.5)) {
+        if let Some(kind) = PrintKind::of(class, chance(random, 0.5)) {
             let print = Print::draw(&placed, &symmetry, kind, random);
             if is_told && !print.tells(&placed, &symmetry, &scene) {
                 return Ok(None);
@@ -237,11 +237,9 @@ impl EvaluationCase {
             "tags": self.tags,
             "parameters": parameters,
         });
-        let mut files = case_files(&self.observation, &self.mesh, &self.camera_from_mesh, truth, None)?;
-        if !self.color_files.is_empty() {
-            files.retain(|(name, _)| *name != "mesh.glb");
-            files.extend(self.color_files.iter().cloned());
-        }
+        let mesh_files =
+            if self.color_files.is_empty() { vec![glb_file(&self.mesh)] } else { self.color_files.clone() };
+        let mut files = case_files(&self.observation, mesh_files, &self.camera_from_mesh, truth, None)?;
         files.push(("meta.json", format!("{meta:#}\n").into_bytes()));
         Ok(files)
     }

@@ -5,7 +5,7 @@ use super::scans::Scan;
 use super::tier::{Class, Tier};
 use super::{figures, kitchen, tools};
 use crate::draws::chance;
-use sim3align_geometry::error::Result;
+use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::random::Random;
 
 /// A family: its name, its maker, and whether it is thin, or almost the same turned half round.
@@ -98,10 +98,13 @@ pub(crate) fn draw_for_desk(random: &mut Random) -> Result<Object> {
     families[random.below(families.len())].object(random)
 }
 
-/// Draws an object of a family by name; `None` for an unknown family.
+/// Draws an object of a family by name.
 ///
 /// # Errors
-/// Those of [`Mesh::new`], which only a bug in the generator could cause.
-pub(crate) fn draw_from(name: &str, random: &mut Random) -> Result<Option<Object>> {
-    FAMILIES.iter().find(|Family(family, ..)| *family == name).map(|family| family.object(random)).transpose()
+/// Only in case of a bug in the generator, such as an unknown name.
+pub(crate) fn draw_from(name: &str, random: &mut Random) -> Result<Object> {
+    let family = FAMILIES.iter().find(|Family(family, ..)| *family == name).ok_or_else(|| {
+        Error::new(ErrorCode::Internal, "family", "none", format!("one named {name}"), "Please report it.")
+    })?;
+    family.object(random)
 }

@@ -173,7 +173,7 @@ pub fn take(
 }
 
 /// The camera of the same field of view with another number of pixels.
-fn resized(camera: &Pinhole, by: f64) -> Pinhole {
+pub fn resized(camera: &Pinhole, by: f64) -> Pinhole {
     let centre = |c: f64| by * (c + 0.5) - 0.5;
     Pinhole { fx: by * camera.fx, fy: by * camera.fy, cx: centre(camera.cx), cy: centre(camera.cy) }
 }

@@ -6,12 +6,14 @@ use glam::{DMat3, DVec3};
 
 use super::draft::Axis;
 use super::scene::Scene;
+use super::tier::Class;
 use crate::draws::{between, chance, mixed, normal};
 use sim3align::geometry::surface::SurfaceMoments;
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::random::Random;
 use sim3align_geometry::rasteriser::NO_TRIANGLE;
 use sim3align_geometry::similarity::vec3;
+use sim3align_geometry::surface_colors::Rgb;
 
 /// Sides of a label: those of a box, or one that goes round.
 const SIDES: usize = 6;
@@ -32,6 +34,18 @@ pub enum PrintKind {
     Speckled,
     /// One colour.
     Uniform,
+}
+
+impl PrintKind {
+    /// The print of a class of coloured cases; a class with two kinds has the `second` in some of its cases.
+    pub fn of(class: Class, second: bool) -> Option<Self> {
+        class.is_colored().then_some(match class {
+            Class::Blotted if second => Self::TwoTone,
+            Class::Blotted => Self::Speckled,
+            Class::OneColor => Self::Uniform,
+            _ => Self::Label,
+        })
+    }
 }
 
 /// The linear albedo of a surface, 0 to 1 in red, green and blue.
@@ -222,6 +236,11 @@ pub fn encoded(linear: DVec3) -> DVec3 {
         if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * libm::pow(x, 1.0 / 2.4) - 0.055 }
     };
     DVec3::new(encode(linear.x), encode(linear.y), encode(linear.z))
+}
+
+/// sRGB-encoded bytes of linear values.
+pub fn srgb(linear: DVec3) -> Rgb {
+    (encoded(linear) * 255.0).round().to_array().map(|x| x as u8)
 }
 
 /// Smooth noise, 0 to 1, that varies over a unit.

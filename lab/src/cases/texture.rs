@@ -4,13 +4,14 @@
 use glam::{DMat3, DVec3};
 
 use super::atlas::Atlas;
-use super::print::{Print, PrintKind, color, encoded};
+use super::print::{Print, PrintKind, color, srgb};
 use super::tier::{Class, Tier};
 use crate::case_folder::write::{JpegSettings, rgb_jpeg, rgb_png, textured_obj};
 use crate::draws::{between, chance, normal};
 use crate::files::NamedFile;
 use sim3align::geometry::surface::sample_surface;
-use sim3align_formats::mesh::{ColoredMesh, MeshFormat, MeshReadOptions, read_colored_mesh};
+use sim3align_formats::colored_mesh::ColoredMesh;
+use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, read_colored_mesh};
 use sim3align_geometry::error::Result;
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::random::Random;
@@ -84,8 +85,7 @@ impl Painter<'_> {
         let albedo = (self.mix * self.albedo(point, normal, random).0).max(DVec3::ZERO);
         let (share, light) = self.baked;
         let shaded = albedo * (1.0 - share * (0.5 - 0.5 * normal.dot(light)));
-        let shaded = DVec3::from_array(shaded.to_array().map(|x| libm::pow(x, self.gamma)));
-        (encoded(shaded) * 255.0).round().to_array().map(|x| x as u8)
+        srgb(DVec3::from_array(shaded.to_array().map(|x| libm::pow(x, self.gamma))))
     }
 }
 
@@ -149,19 +149,18 @@ pub fn paint(
     }
     let atlas = Atlas::new(mesh.triangles().len());
     let facing = if mesh.signed_volume6() < 0.0 { -1.0 } else { 1.0 };
-    let texels = atlas.paint(mesh.triangles().len(), &mut |triangle, [second, third]| {
+    let texels = atlas.paint(&mut |triangle, [second, third]| {
         let [a, b, c] = mesh.corners(mesh.triangles()[triangle]).map(|p| p.as_dvec3());
         let normal = (b - a).cross(c - a).normalize_or_zero() * facing;
         painter.color(in_world(a + (b - a) * second + (c - a) * third), turned(normal), random)
     });
-    let coordinates: Vec<_> = (0..mesh.triangles().len()).map(|triangle| atlas.coordinates(triangle)).collect();
     let texture = if chance(random, 0.5) {
         ("texture.jpg", rgb_jpeg(&texels, atlas.size, atlas.size, JpegSettings::draw(random, LOWEST_QUALITY))?)
     } else {
         ("texture.png", rgb_png(&texels, atlas.size, atlas.size)?)
     };
     let library = format!("newmtl print\nmap_Kd {}\n", texture.0);
-    let mesh_file = ("mesh.obj", textured_obj(mesh, &coordinates, "mesh.mtl"));
+    let mesh_file = ("mesh.obj", textured_obj(mesh, &atlas.coordinates(), "mesh.mtl"));
     let files = vec![mesh_file, ("mesh.mtl", library.into_bytes()), texture];
     let resources = |wanted: &str| files.iter().find(|(name, _)| *name == wanted).map(|(_, bytes)| bytes.clone());
     let options = MeshReadOptions { format: Some(MeshFormat::Obj), resources: Some(&resources) };

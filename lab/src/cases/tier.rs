@@ -1,6 +1,5 @@
 //! Sets of cases, tiers of difficulty, and classes of cases.
 
-use super::print::PrintKind;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 
 /// A set of classes that are generated together. The sets share no random numbers.
@@ -259,17 +258,12 @@ impl Class {
 
     /// Whether the shape is symmetric, so that at most its print tells how it is turned.
     pub(super) fn is_symmetric(self) -> bool {
-        COLORS.contains(&self) && self != Self::PrintedShape
+        self.is_colored() && self != Self::PrintedShape
     }
 
-    /// The print of a class of coloured cases.
-    pub(super) fn print(self, second: bool) -> Option<PrintKind> {
-        COLORS.contains(&self).then_some(match self {
-            Self::Blotted if second => PrintKind::TwoTone,
-            Self::Blotted => PrintKind::Speckled,
-            Self::OneColor => PrintKind::Uniform,
-            _ => PrintKind::Label,
-        })
+    /// Whether its objects are coloured.
+    pub(super) fn is_colored(self) -> bool {
+        COLORS.contains(&self)
     }
 
     /// Whether colour alone determines which turn of a symmetric shape is right.

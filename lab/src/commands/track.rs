@@ -24,7 +24,8 @@ Usage: sim3align-lab track [--generated N] [--from I] [--frames F] [--seed S] [-
 
 Tracks each video with the masks of all frames, and with that of the first frame alone, and prints errors, flips,
 losses, and the time of a frame. FOLDER holds a mesh and folders frame_*.
---from: index of the first generated case. --printed: objects whose print alone tells how they are turned; --no-color: without their photos.";
+--from: index of the first generated video. --printed: objects whose print alone tells how they are turned;
+--no-color: without their photos.";
 
 struct Arguments {
     generated: Range<usize>,

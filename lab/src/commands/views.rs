@@ -27,7 +27,8 @@ Usage: sim3align-lab views [--generated N] [--from I] [--seed S] [--views V] [--
 
 Aligns each case with one view, with all views and known camera poses, and with all views and unknown ones, and prints the
 fraction of strictly correct poses and the errors of the size. FOLDER holds a mesh and folders frame_*.
---from: index of the first generated case. --printed: objects whose print alone tells how they are turned; --no-color: without their photos.
+--from: index of the first generated case. --printed: objects whose print alone tells how they are turned;
+--no-color: without their photos.
 --mask-px: makes all masks wider by N pixels, narrower if negative. --holes: with holes in the mask of the second view.";
 
 /// What is taken from the frames, or done to them.

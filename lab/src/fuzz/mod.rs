@@ -4,6 +4,7 @@
 //! short even if the input has a million triangles. It can be drawn from a seed, read from a file, taken from a
 //! coverage-guided fuzzer, and minimised without knowledge of the input.
 
+pub mod call;
 pub mod choices;
 pub mod memory;
 pub mod minimise;

@@ -6,9 +6,9 @@ use serde_json::json;
 
 use super::depth::View;
 use super::shape::Kind;
-use crate::case_folder::contents::case_files;
+use crate::case_folder::contents::{case_files, glb_file};
 use crate::cases::distortion::{canonicalise, hallucinate};
-use crate::files::write_files;
+use crate::files::{NamedFile, write_files};
 use sim3align::evidence::observation::Observation;
 use sim3align_geometry::error::Result;
 use sim3align_geometry::mesh::Mesh;
@@ -62,11 +62,11 @@ impl SampleCase {
     ///
     /// # Errors
     /// [`ErrorCode::Internal`] if an encoder fails.
-    pub fn files(&self, depth_scale: Option<f64>) -> Result<Vec<(&'static str, Vec<u8>)>> {
+    pub fn files(&self, depth_scale: Option<f64>) -> Result<Vec<NamedFile>> {
         let note =
             format!("generated: {}, seed {}; the side that was not seen is invented", self.kind.as_str(), self.seed);
         let truth = json!({ "symmetry": self.kind.symmetry(), "note": note });
-        case_files(&self.observation, &self.mesh, &self.camera_from_mesh, truth, depth_scale)
+        case_files(&self.observation, vec![glb_file(&self.mesh)], &self.camera_from_mesh, truth, depth_scale)
     }
 
     /// Writes the case folder, and creates it if necessary. For `depth_scale` see [`SampleCase::files`].

@@ -3,9 +3,9 @@
 use core::f64::consts::TAU;
 
 use glam::Vec3;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
-use crate::cases::scene::{count, hidden, in_front, put_before};
+use crate::cases::scene::{camera_at, count, hidden, put_before, shown};
 use crate::draws::between;
 use sim3align_geometry::error::Result;
 use sim3align_geometry::image::{DepthMap, Image, Mask};
@@ -82,13 +82,11 @@ impl View {
         let aim =
             Vector3::new(between(random, -0.02, 0.02), between(random, -0.02, 0.02), between(random, -0.01, 0.01));
         let forward = (middle + aim - eye).normalize();
-        let right = forward.cross(&Vector3::z()).normalize();
-        let rotation = Matrix3::from_rows(&[right.transpose(), forward.cross(&right).transpose(), forward.transpose()]);
         let focal = between(random, 590.0, 610.0);
         let (cx, cy) = (between(random, 316.0, 323.0), between(random, 236.0, 243.0));
         Ok(Self {
             camera: Pinhole::new(focal, focal, cx, cy)?,
-            camera_from_object: Similarity::from_parts(1.0, rotation, -(rotation * eye))?,
+            camera_from_object: camera_at(&eye, &forward, 0.0)?,
             wall: (towards, between(random, 0.25, 0.45)),
         })
     }
@@ -135,14 +133,10 @@ impl View {
             others.copy_from_slice(rasteriser.depth());
         }
         rasteriser.render(mesh, &self.camera_from_object, &self.camera, WIDTH, HEIGHT);
-        let visible: Vec<bool> = rasteriser.depth().iter().zip(&others).map(|(&z, &o)| in_front(z, o)).collect();
+        let visible = shown(rasteriser.depth(), &others);
         let mask = Image::new("mask", WIDTH, HEIGHT, visible.iter().map(|&visible| u8::from(visible)).collect())?;
-        let mut vertices = vec![false; mesh.positions().len()];
-        for (&id, _) in rasteriser.triangles().iter().zip(visible).filter(|(_, visible)| *visible) {
-            for vertex in mesh.triangles()[id as usize] {
-                vertices[vertex as usize] = true;
-            }
-        }
+        let seen = rasteriser.triangles().iter().zip(visible).filter(|(_, visible)| *visible);
+        let vertices = corners_of(mesh, seen.map(|(&triangle, _)| triangle));
         let mut random = Random::new(seed, DEPTH_STREAM);
         put_before(&mut others, rasteriser.depth());
         let mut depth = self.with_flying_pixels(&others, &mut random);
@@ -197,6 +191,15 @@ impl View {
             })
             .collect()
     }
+}
+
+/// For each vertex of a mesh, whether it is a corner of one of these triangles.
+pub fn corners_of(mesh: &Mesh, triangles: impl Iterator<Item = u32>) -> Vec<bool> {
+    let mut corners = vec![false; mesh.positions().len()];
+    for triangle in triangles {
+        mesh.triangles()[triangle as usize].iter().for_each(|&vertex| corners[vertex as usize] = true);
+    }
+    corners
 }
 
 /// Which row of pixels along the silhouette a pixel is in, and, outside, the object's depth beside it.

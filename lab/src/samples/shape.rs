@@ -105,9 +105,7 @@ impl Kind {
 
 /// One of the evaluation set's objects as it is made to lie or stand, turned about the vertical, radians.
 fn lying(family: &'static str, heading: f64, random: &mut Random) -> Result<Mesh> {
-    let object = families::draw_from(family, random)?.ok_or_else(|| {
-        Error::new(ErrorCode::Internal, "family", "none", format!("one named {family}"), "Please report it.")
-    })?;
+    let object = families::draw_from(family, random)?;
     let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), heading);
     Ok(put_down_turned(&object, turn.matrix())?.0)
 }

@@ -6,8 +6,10 @@ use glam::{DAffine3, DVec2, DVec3, Vec3};
 use nalgebra::Rotation3;
 
 use super::clutter;
-use super::heap::{Below, Heap, Shape};
-use super::layout::{Floor, Footprint, Layout, Placed, Stance, held, joined, moved, put_down, reach_of, unit};
+use super::heap::{Below, Heap};
+use super::layout::{
+    Floor, Footprint, Layout, Placed, Stance, deepest, held, joined, moved, put_down, reach_of, shifted, unit,
+};
 use crate::cases::draft::Axis;
 use crate::cases::scene::turned_axis;
 use crate::cases::solid::Solid;
@@ -73,7 +75,7 @@ impl Layout {
             let placed = world.place(stance, thing, &objects, random, stances)?;
             let (stance, Thing { mesh, symmetry, below }) = placed;
             if stance != Stance::Hangs {
-                world.heap.put(shape(&mesh, &points(&mesh)), Below::Object(k));
+                world.heap.put(&mesh, Below::Object(k));
             }
             let is_invented = chance(stances, INVENTED);
             objects.push(Placed { stance, below, is_invented, object, mesh, symmetry });
@@ -95,10 +97,7 @@ impl Layout {
             }
         }
         let clutter = joined(&meshes)?;
-        let back = -unit(front);
-        let depth = |p: &Vec3| (p.truncate().as_dvec2() - middle).dot(back);
-        let points = objects.iter().flat_map(|placed| placed.mesh.positions()).chain(clutter.positions());
-        let wall = points.fold(0.0f64, |far, p| far.max(depth(p))) + between(random, 0.02, 1.0);
+        let wall = deepest(&objects, &clutter, middle, -unit(front)) + between(random, 0.02, 1.0);
         let table =
             (!is_bare).then(|| between(stances, -OFFSET_M, OFFSET_M) * f64::from(u8::from(chance(stances, 0.7))));
         Ok(Self { objects, clutter, centre, reach, front, wall, table })
@@ -122,21 +121,19 @@ impl World {
                 let (middle, radius) = middle_of(&base.mesh);
                 if stance == Stance::OnTop {
                     let mesh = moved(&thing.mesh, middle)?;
-                    let (lift, below) = self.heap.drop(shape(&mesh, &points(&mesh)));
-                    let mesh = lifted(&mesh, lift)?;
+                    let (lift, below) = self.heap.drop(&mesh);
+                    let mesh = shifted(&mesh, up(lift))?;
                     return Ok((stance, Thing { mesh, below, ..thing }));
                 }
                 let off = unit(TAU * stances.uniform()) * (radius * between(stances, 0.3, 1.2));
                 // Tilted first, so that it does not come to lie as it stood.
                 let (tilted, symmetry) = held(Stance::Leans, &thing.mesh, &thing.symmetry, stances)?;
                 let mesh = moved(&tilted, middle + off)?;
-                let (settled, turn, below) = self.heap.settle(shape(&mesh, &points(&mesh)), stances);
+                let (mesh, turn, below) = self.heap.settle(&mesh, stances)?;
                 let turn = Rotation3::from(nalgebra::UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(
                     turn.w, turn.x, turn.y, turn.z,
                 )));
                 let symmetry = symmetry.iter().map(|&(axis, fold)| (turned_axis(turn.matrix(), axis), fold)).collect();
-                let positions = settled.iter().map(|p| p.as_vec3()).collect();
-                let mesh = Mesh::new(positions, thing.mesh.triangles().to_vec())?;
                 Ok((stance, Thing { mesh, symmetry, below }))
             }
             Stance::OnBoard => {
@@ -148,7 +145,7 @@ impl World {
                 if (place - board.middle).length() + middle_of(&thing.mesh).1 > board.half {
                     return self.place(Stance::Stands, thing, objects, random, stances);
                 }
-                let mesh = lifted(&moved(&thing.mesh, place)?, board.height)?;
+                let mesh = shifted(&moved(&thing.mesh, place)?, up(board.height))?;
                 Ok((stance, Thing { mesh, below: Below::Board, ..thing }))
             }
             Stance::Stands | Stance::Leans | Stance::Hangs | Stance::OnTop | Stance::InPile => {
@@ -156,8 +153,7 @@ impl World {
                     Stance::Leans | Stance::Hangs => held(stance, &thing.mesh, &thing.symmetry, stances)?,
                     _ => (thing.mesh, thing.symmetry),
                 };
-                let places = self.floor.places();
-                let from = if places == 0 { DVec2::ZERO } else { self.floor.place(random.below(places)) };
+                let from = self.floor.any_place(random);
                 let side = self.front + PI * f64::from(u8::from(chance(random, 0.3))) + between(random, -1.3, 1.3);
                 let place = self.floor.take(Footprint::of(&mesh), from, unit(side), between(random, 0.003, 0.02));
                 let below = if stance == Stance::Hangs { Below::Air } else { Below::Table };
@@ -179,23 +175,14 @@ impl World {
         let gap = between(random, 0.02, 0.08);
         let middle = self.floor.take(Footprint::of(&mesh), DVec2::ZERO, -unit(self.front), gap);
         let mesh = moved(&mesh, middle)?;
-        self.heap.put(shape(&mesh, &points(&mesh)), Below::Board);
+        self.heap.put(&mesh, Below::Board);
         self.shelf = Some((Board { middle, half: half.y, height }, Floor::default()));
         Ok(mesh)
     }
 }
 
-fn points(mesh: &Mesh) -> Vec<DVec3> {
-    mesh.positions().iter().map(|p| p.as_dvec3()).collect()
-}
-
-fn shape<'a>(mesh: &'a Mesh, points: &'a [DVec3]) -> Shape<'a> {
-    Shape { points, triangles: mesh.triangles() }
-}
-
-fn lifted(mesh: &Mesh, height: f64) -> Result<Mesh> {
-    let up = Vec3::Z * height as f32;
-    Mesh::new(mesh.positions().iter().map(|p| *p + up).collect(), mesh.triangles().to_vec())
+fn up(height: f64) -> Vec3 {
+    Vec3::Z * height as f32
 }
 
 /// The middle of the box of a mesh on the plane, and half of its diagonal there.

@@ -6,9 +6,9 @@ use serde_json::json;
 
 use super::prior::Prior;
 use crate::bench::benchmark::BenchCase;
-use crate::case_folder::contents::{case_files, parameters_json, symmetry_json};
+use crate::case_folder::contents::{case_files, glb_file, parameters_json, symmetry_json};
 use crate::cases::tier::Tier;
-use crate::files::write_files;
+use crate::files::{NamedFile, write_files};
 use sim3align::align::evaluate::Truth;
 use sim3align::evidence::observation::Observation;
 use sim3align::metrics::symmetry::Symmetry;
@@ -58,7 +58,7 @@ impl SceneCase {
     ///
     /// # Errors
     /// [`sim3align_geometry::error::ErrorCode::Internal`] if an encoder fails.
-    pub fn files(&self) -> Result<Vec<(&'static str, Vec<u8>)>> {
+    pub fn files(&self) -> Result<Vec<NamedFile>> {
         let truth = symmetry_json(&self.symmetry, &format!("{}, {}", self.name, self.prior.as_str()));
         let meta = json!({
             "tier": self.tier.as_str(),
@@ -67,7 +67,8 @@ impl SceneCase {
             "tags": self.tags,
             "parameters": self.parameters(),
         });
-        let mut files = case_files(&self.observation, &self.mesh, &self.camera_from_mesh, truth, Some(DEPTH_SCALE))?;
+        let mesh_files = vec![glb_file(&self.mesh)];
+        let mut files = case_files(&self.observation, mesh_files, &self.camera_from_mesh, truth, Some(DEPTH_SCALE))?;
         files.push(("meta.json", format!("{meta:#}\n").into_bytes()));
         Ok(files)
     }

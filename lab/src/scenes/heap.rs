@@ -1,8 +1,10 @@
 //! A heap: the tops of everything that stands somewhere, as heights over a plane, onto which objects are dropped.
 
-use glam::{DVec2, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 
 use crate::draws::between;
+use sim3align_geometry::error::Result;
+use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::random::Random;
 use sim3align_geometry::rotations::exp;
 
@@ -36,15 +38,6 @@ pub struct Heap {
     tops: Vec<(f64, Below)>,
 }
 
-/// The triangles of an object, and its points relative to its centre.
-#[derive(Debug, Clone, Copy)]
-pub struct Shape<'a> {
-    /// The points.
-    pub points: &'a [DVec3],
-    /// The triangles.
-    pub triangles: &'a [[u32; 3]],
-}
-
 impl Default for Heap {
     fn default() -> Self {
         Self { tops: vec![(0.0, Below::Table); CELLS * CELLS] }
@@ -53,8 +46,8 @@ impl Default for Heap {
 
 impl Heap {
     /// Puts an object where it is.
-    pub fn put(&mut self, shape: Shape<'_>, below: Below) {
-        cover(shape, |cell, z| {
+    pub fn put(&mut self, mesh: &Mesh, below: Below) {
+        cover(&points_of(mesh), mesh.triangles(), |cell, z| {
             if let Some(top) = self.tops.get_mut(cell)
                 && z > top.0
             {
@@ -64,9 +57,13 @@ impl Heap {
     }
 
     /// How far an object must be moved up to touch what is below it, and what that is.
-    pub fn drop(&self, shape: Shape<'_>) -> (f64, Below) {
+    pub fn drop(&self, mesh: &Mesh) -> (f64, Below) {
+        self.lift_of(&points_of(mesh), mesh.triangles())
+    }
+
+    fn lift_of(&self, points: &[DVec3], triangles: &[[u32; 3]]) -> (f64, Below) {
         let mut best = (f64::NEG_INFINITY, Below::Table);
-        cover(shape, |cell, z| {
+        cover(points, triangles, |cell, z| {
             if let Some((top, below)) = self.tops.get(cell) {
                 let clearance = if *below == Below::Table { 0.0 } else { CLEARANCE };
                 if top + clearance - z > best.0 {
@@ -77,51 +74,55 @@ impl Heap {
         best
     }
 
-    /// Drops an object, and lets it tumble to where its centre is lower. Returns its points and what it rests on.
-    pub fn settle(&self, shape: Shape<'_>, random: &mut Random) -> (Vec<DVec3>, glam::DQuat, Below) {
-        let lifted = |points: &[DVec3]| {
-            let (lift, below) = self.drop(Shape { points, ..shape });
-            (lift, below, points.iter().map(|p| *p + DVec3::Z * lift).collect::<Vec<_>>())
+    /// Drops an object, and lets it tumble to where its centre is lower. Also returns how it has turned, and what it
+    /// rests on.
+    pub fn settle(&self, mesh: &Mesh, random: &mut Random) -> Result<(Mesh, DQuat, Below)> {
+        let dropped = |points: Vec<DVec3>| {
+            let (lift, below) = self.lift_of(&points, mesh.triangles());
+            let points: Vec<DVec3> = points.iter().map(|p| *p + DVec3::Z * lift).collect();
+            (below, mean(&points), points)
         };
-        let (mut lift, mut below, mut best) = lifted(shape.points);
-        let mut turned = glam::DQuat::IDENTITY;
+        let (mut below, mut center, mut best) = dropped(points_of(mesh));
+        let mut turned = DQuat::IDENTITY;
         for k in 0..TRIES {
             let size = 1.0 - k as f64 / TRIES as f64;
             let mut draw = |most: f64| between(random, -most, most) * size;
             let turn = exp(DVec3::new(draw(TURN), draw(TURN), draw(TURN)));
             let shift = DVec2::new(draw(SHIFT), draw(SHIFT)).extend(0.0);
-            let center = mean(&best);
-            let tried: Vec<DVec3> = best.iter().map(|p| turn * (*p - center) + center + shift).collect();
-            let next = lifted(&tried);
-            if mean(&next.2).z < mean(&best).z {
-                (lift, below, best) = next;
+            let next = dropped(best.iter().map(|p| turn * (*p - center) + center + shift).collect());
+            if next.1.z < center.z {
+                (below, center, best) = next;
                 turned = (turn * turned).normalize();
             }
         }
-        debug_assert!(lift.is_finite());
-        (best, turned, below)
+        let settled = Mesh::new(best.iter().map(|p| p.as_vec3()).collect(), mesh.triangles().to_vec())?;
+        Ok((settled, turned, below))
     }
+}
+
+fn points_of(mesh: &Mesh) -> Vec<DVec3> {
+    mesh.positions().iter().map(|p| p.as_dvec3()).collect()
 }
 
 fn mean(points: &[DVec3]) -> DVec3 {
     points.iter().sum::<DVec3>() / points.len().max(1) as f64
 }
 
-/// Visits the cells that the triangles and the vertices of an object cover, with the height there.
-fn cover(shape: Shape<'_>, mut visit: impl FnMut(usize, f64)) {
+/// Visits the cells that the vertices and the triangles of an object cover, with the height there.
+fn cover(points: &[DVec3], triangles: &[[u32; 3]], mut visit: impl FnMut(usize, f64)) {
     let at = |p: DVec3| (p.truncate() + DVec2::splat(0.5 * SIDE)) / CELL;
     let cell = |x: f64, y: f64| {
         let is_inside = |v: f64| v >= 0.0 && v < CELLS as f64;
         (is_inside(x) && is_inside(y)).then_some(y as usize * CELLS + x as usize)
     };
-    for p in shape.points {
+    for p in points {
         let q = at(*p);
         if let Some(cell) = cell(q.x, q.y) {
             visit(cell, p.z);
         }
     }
-    for triangle in shape.triangles {
-        let [a, b, c] = triangle.map(|i| shape.points[i as usize]);
+    for triangle in triangles {
+        let [a, b, c] = triangle.map(|i| points[i as usize]);
         let [p, q, r] = [at(a), at(b), at(c)];
         let area = (q - p).perp_dot(r - p);
         if area == 0.0 {

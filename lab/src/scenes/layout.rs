@@ -152,14 +152,12 @@ impl Footprint {
 }
 
 impl Floor {
-    /// Number of places taken.
-    pub(super) fn places(&self) -> usize {
-        self.0.len()
-    }
-
-    /// A place taken.
-    pub(super) fn place(&self, index: usize) -> DVec2 {
-        self.0[index].1
+    /// Any of the places taken; the origin if there is none.
+    pub(super) fn any_place(&self, random: &mut Random) -> DVec2 {
+        match self.0.len() {
+            0 => DVec2::ZERO,
+            n => self.0[random.below(n)].1,
+        }
     }
 
     /// The place nearest to `from`, in a direction, that is `gap` metres away from everything else; takes it.
@@ -181,10 +179,7 @@ impl Layout {
         let mut objects: Vec<Placed> = Vec::new();
         for _ in 0..count {
             let (object, mesh, symmetry) = put_down(object_random)?;
-            let from = match floor.0.len() {
-                0 => DVec2::ZERO,
-                n => floor.0[random.below(n)].1,
-            };
+            let from = floor.any_place(random);
             // Mostly behind or before another, seen from the camera.
             let side = if chance(random, IN_A_LINE) {
                 front + if chance(random, 0.5) { PI } else { 0.0 } + between(random, -0.6, 0.6)
@@ -196,7 +191,6 @@ impl Layout {
             let (stance, below) = (Stance::Stands, Below::Table);
             objects.push(Placed { stance, below, is_invented: false, object, mesh, symmetry });
         }
-        let points = || objects.iter().flat_map(|placed| placed.mesh.positions());
         let (centre, reach) = reach_of(&objects);
         let middle = centre.truncate().as_dvec2();
         let mut meshes = Vec::new();
@@ -214,11 +208,16 @@ impl Layout {
         }
         let clutter = joined(&meshes)?;
         // Behind everything.
-        let depth = |p: &Vec3| (p.truncate().as_dvec2() - middle).dot(back);
-        let deepest = points().chain(clutter.positions()).fold(0.0f64, |far, p| far.max(depth(p)));
-        let wall = deepest + between(random, 0.02, 1.0);
+        let wall = deepest(&objects, &clutter, middle, back) + between(random, 0.02, 1.0);
         Ok(Self { objects, clutter, centre, reach, front, wall, table: Some(0.0) })
     }
+}
+
+/// How far objects and clutter reach backwards from the middle.
+pub(super) fn deepest(objects: &[Placed], clutter: &Mesh, middle: DVec2, back: DVec2) -> f64 {
+    let depth = |p: &Vec3| (p.truncate().as_dvec2() - middle).dot(back);
+    let points = objects.iter().flat_map(|placed| placed.mesh.positions()).chain(clutter.positions());
+    points.fold(0.0f64, |far, p| far.max(depth(p)))
 }
 
 /// The middle of the box of all objects, and how far they reach from it.
@@ -270,7 +269,7 @@ pub(super) fn moved(mesh: &Mesh, place: DVec2) -> Result<Mesh> {
     shifted(mesh, place.extend(0.0).as_vec3())
 }
 
-fn shifted(mesh: &Mesh, offset: Vec3) -> Result<Mesh> {
+pub(super) fn shifted(mesh: &Mesh, offset: Vec3) -> Result<Mesh> {
     Mesh::new(mesh.positions().iter().map(|p| *p + offset).collect(), mesh.triangles().to_vec())
 }
 

@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
+use sim3align_lab::fuzz::call::Answer;
 use sim3align_lab::fuzz::choices::Choices;
 use sim3align_lab::fuzz::memory::{CountingAllocator, peak_bytes, reset_peak};
 use sim3align_lab::fuzz::minimise::minimise;
-use sim3align_lab::fuzz::target::{Answer, Ceilings, Execution, TARGETS, Target};
+use sim3align_lab::fuzz::target::{Ceilings, Execution, TARGETS, Target};
 
 /// For the memory of the calls.
 #[global_allocator]

@@ -10,9 +10,9 @@ pub const USAGE: &str = "\
 Usage: sim3align-lab fuzz [options]
        sim3align-lab fuzz --replay FILE
 
-Calls readers, align, alignViews, trackers, evaluate, register and estimateSim3 with inputs drawn from a seed, in processes
-of their own. A fault is a panic, an abort, an error without code or words, a result that is not finite, or a call with default options
-beyond a ceiling. The choices that lead to it are made as few as possible, and kept in a file.
+Calls readers, align, alignViews, trackers, evaluate, register and estimateSim3 with inputs drawn from a seed, in
+processes of their own. A fault is a panic, an abort, an error without code or words, a result that is not finite, or a
+call with default options beyond a ceiling. The choices that lead to it are made as few as possible, and kept in a file.
 
   --minutes N        how long, default 10
   --executions N     instead of a time: so many calls of each target, readers 1000 times as many

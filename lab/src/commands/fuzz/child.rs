@@ -9,8 +9,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use sim3align_lab::cpu_time::{CpuTimer, of_main_thread};
+use sim3align_lab::fuzz::call::Answer;
 use sim3align_lab::fuzz::choices::Choices;
-use sim3align_lab::fuzz::target::{Answer, Ceilings, Execution, Target};
+use sim3align_lab::fuzz::target::{Ceilings, Execution, Target};
 
 use super::super::Failure;
 use super::arguments::Arguments;

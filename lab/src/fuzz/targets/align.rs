@@ -11,10 +11,10 @@ use sim3align::report::{Alignment, AnyAlignment, Sim3};
 use sim3align_geometry::error::Result;
 use sim3align_geometry::mesh::Mesh;
 
+use crate::fuzz::call::{Answer, Call, finite, typed};
 use crate::fuzz::choices::Choices;
 use crate::fuzz::meshes::mesh;
 use crate::fuzz::options::options;
-use crate::fuzz::target::{Answer, Call, finite, typed};
 use crate::fuzz::views::{Size, view};
 
 /// Small images and meshes, mostly with little work.

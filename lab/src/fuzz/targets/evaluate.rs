@@ -3,10 +3,10 @@
 use sim3align::align::evaluate::{EvaluateOptions, Evaluation, evaluate};
 use sim3align_geometry::error::Result;
 
+use crate::fuzz::call::{Answer, Call, finite, typed};
 use crate::fuzz::choices::Choices;
 use crate::fuzz::meshes::mesh;
 use crate::fuzz::options::{options, transform};
-use crate::fuzz::target::{Answer, Call, finite, typed};
 use crate::fuzz::views::{Size, view};
 
 /// Any view, mesh and pose.

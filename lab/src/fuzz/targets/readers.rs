@@ -6,8 +6,8 @@ use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, external_resources, r
 use sim3align_formats::photo::{MAX_PHOTO_PIXELS, read_photo};
 use sim3align_geometry::surface_colors::COLOR_SAMPLES;
 
+use crate::fuzz::call::{Answer, Call, typed};
 use crate::fuzz::choices::Choices;
-use crate::fuzz::target::{Answer, Call, typed};
 
 macro_rules! files {
     ($($name:literal),+ $(,)?) => {

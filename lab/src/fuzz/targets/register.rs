@@ -8,10 +8,10 @@ use sim3align::register::report::Registration;
 use sim3align_geometry::error::Result;
 
 use super::align::check_pose;
+use crate::fuzz::call::{Answer, Call, finite, typed};
 use crate::fuzz::choices::Choices;
 use crate::fuzz::clouds::pair;
 use crate::fuzz::options::options;
-use crate::fuzz::target::{Answer, Call, finite, typed};
 
 /// `register`.
 pub fn call(c: &mut Choices) -> Call {

@@ -1,9 +1,10 @@
 //! The light of the scene: a lamp with soft shadows, and the sky.
 
+use glam::DVec3;
 use nalgebra::Vector3;
 
 use crate::cases::print;
-use crate::cases::scene::camera_at;
+use crate::cases::scene::{camera_at, put_before};
 use sim3align_geometry::error::Result;
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::pinhole::Pinhole;
@@ -41,11 +42,7 @@ impl Light {
         let mut rasteriser = Rasteriser::new();
         for mesh in meshes {
             rasteriser.render_depth(mesh, &lamp_from_world, &lens, MAP, MAP);
-            for (z, &own) in shadow.iter_mut().zip(rasteriser.depth()) {
-                if own > 0.0 && (*z == 0.0 || own < *z) {
-                    *z = own;
-                }
-            }
+            put_before(&mut shadow, rasteriser.depth());
         }
         Ok(Self { shadow, lamp_from_world, lens, lamp })
     }
@@ -92,8 +89,7 @@ impl Light {
 
 /// sRGB-encoded bytes of a linear colour.
 pub fn encoded(linear: Vector3<f64>) -> [u8; 3] {
-    let encoded = print::encoded(glam::DVec3::from_array(linear.into()));
-    (encoded * 255.0).round().to_array().map(|x| x as u8)
+    print::srgb(DVec3::from_array(linear.into()))
 }
 
 /// Bytes of a linear colour, as the vertices of a glTF mesh have them.

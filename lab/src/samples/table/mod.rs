@@ -14,16 +14,17 @@ use serde_json::json;
 use self::light::Light;
 use self::paint::Paint;
 use self::surface::Surface;
-use crate::case_folder::contents::case_files;
+use super::depth::corners_of;
+use crate::case_folder::contents::{mask_file, truth_file, view_files};
 use crate::case_folder::write::{glb_colored, rgb_png};
 use crate::cases::distortion::hallucinate;
 use crate::cases::families::draw_from;
+use crate::cases::photo::resized;
 use crate::cases::scene::{background, camera_at, put_before, put_down_turned};
 use crate::draws::mixed;
 use crate::files::write;
 use crate::scenes::DEPTH_SCALE;
-use sim3align::evidence::observation::Observation;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
+use sim3align_geometry::error::Result;
 use sim3align_geometry::image::{DepthMap, Mask};
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::pinhole::Pinhole;
@@ -79,10 +80,7 @@ impl TableScene {
         let mut objects = Vec::new();
         for (index, Place(family, paint, at, heading)) in PLACES.into_iter().enumerate() {
             let random = &mut Random::new(mixed([seed, index as u64]), SHAPE_STREAM);
-            let object = draw_from(family, random)?.ok_or_else(|| {
-                let found = format!("no family {family}");
-                Error::new(ErrorCode::Internal, "family", found, "a known family", "Please report it.")
-            })?;
+            let object = draw_from(family, random)?;
             let (mesh, _) = put_down_turned(&object, &Matrix3::identity())?;
             let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), f64::to_radians(heading)).into_inner();
             let world_from_object = Similarity::from_parts(1.0, turn, Vector3::new(at[0], at[1], 0.0))?;
@@ -98,7 +96,7 @@ impl TableScene {
     /// The photo, 8-bit sRGB.
     fn photo(&self) -> Result<Vec<[u8; 3]>> {
         let (width, height) = (RAYS * WIDTH, RAYS * HEIGHT);
-        let camera = finer(&self.camera, RAYS)?;
+        let camera = resized(&self.camera, RAYS as f64);
         let light = Light::new(self.objects.iter().map(|object| object.surface.mesh()))?;
         let world_from_camera = self.camera_from_world.inverse();
         let mut rasteriser = Rasteriser::new();
@@ -159,22 +157,17 @@ impl TableScene {
         let noisy = depth.iter().map(|z| z * (1.0 + NOISE * (random.uniform() + random.uniform() - 1.0)) as f32);
         let readings = DepthMap::from_metres(WIDTH, HEIGHT, noisy.collect())?;
         let mut files = vec![("rgb.png".to_owned(), rgb_png(&self.photo()?, WIDTH, HEIGHT)?)];
+        let view = view_files(&readings, self.camera, Some(DEPTH_SCALE))?;
+        files.extend(view.map(|(name, bytes)| (name.to_owned(), bytes)));
         for (k, object) in self.objects.iter().enumerate() {
             let mask = (0..WIDTH * HEIGHT).map(|i| u8::from(is_seen(k, i))).collect();
             let mask = Mask::new("mask", WIDTH, HEIGHT, mask)?;
             let (mesh, colors, world_from_mesh) = self.generated(k, &alone[k].1, |i| is_seen(k, i))?;
             let note = format!("generated: {} on a table, seed {}", object.family, self.seed);
             let truth = json!({ "symmetry": "none", "note": note });
-            let observation = Observation::new(readings.clone(), mask, self.camera)?;
             let pose = self.camera_from_world.compose(&world_from_mesh);
-            for (name, bytes) in case_files(&observation, &mesh, &pose, truth, Some(DEPTH_SCALE))? {
-                let bytes = if name == "mesh.glb" { glb_colored(&mesh, &colors) } else { bytes };
-                match name {
-                    "depth.png" | "camera.json" if k > 0 => {}
-                    "depth.png" | "camera.json" => files.push((name.to_owned(), bytes)),
-                    _ => files.push((format!("objects/{}/{name}", object.family), bytes)),
-                }
-            }
+            let own = [mask_file(&mask)?, ("mesh.glb", glb_colored(&mesh, &colors)), truth_file(&pose, truth)];
+            files.extend(own.map(|(name, bytes)| (format!("objects/{}/{name}", object.family), bytes)));
         }
         Ok(files)
     }
@@ -188,10 +181,8 @@ impl TableScene {
         is_seen: impl Fn(usize) -> bool,
     ) -> Result<(Mesh, Vec<[u8; 3]>, Similarity)> {
         let Placed { paint, surface, world_from_object, .. } = &self.objects[k];
-        let mut seen = vec![false; surface.mesh().positions().len()];
-        for &triangle in (0..).zip(triangles).filter(|(i, _)| is_seen(*i)).map(|(_, triangle)| triangle) {
-            surface.mesh().triangles()[triangle as usize].iter().for_each(|&vertex| seen[vertex as usize] = true);
-        }
+        let seen = triangles.iter().enumerate().filter(|(i, _)| is_seen(*i));
+        let seen = corners_of(surface.mesh(), seen.map(|(_, &triangle)| triangle));
         let object = surface.in_object()?;
         let invented = hallucinate(&object, &seen, 0.012, mixed([self.seed, k as u64]))?;
         let (mesh, object_from_mesh) = upright(&invented)?;
@@ -223,11 +214,4 @@ fn upright(mesh: &Mesh) -> Result<(Mesh, Similarity)> {
     let back = object_from_mesh.inverse();
     let positions = mesh.positions().iter().map(|p| vec3(&back.apply(vector3(*p)))).collect();
     Ok((Mesh::new(positions, mesh.triangles().to_vec())?, object_from_mesh))
-}
-
-/// The camera of an image with more pixels.
-fn finer(camera: &Pinhole, times: usize) -> Result<Pinhole> {
-    let times = times as f64;
-    let centre = |c: f64| (c + 0.5) * times - 0.5;
-    Pinhole::new(camera.fx * times, camera.fy * times, centre(camera.cx), centre(camera.cy))
 }

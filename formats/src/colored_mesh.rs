@@ -1,0 +1,30 @@
+//! What is read of a mesh file: a mesh and its colours.
+
+use sim3align_geometry::error::Error;
+use sim3align_geometry::mesh::Mesh;
+use sim3align_geometry::surface_colors::SurfaceColors;
+
+/// A mesh and its colours.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ColoredMesh {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// The colours of its surface; `None` if the file has none, or none that can be read.
+    pub colors: Option<SurfaceColors>,
+    /// Why the colours can't be read; the mesh can be used without them.
+    pub problem: Option<Error>,
+}
+
+impl From<Mesh> for ColoredMesh {
+    /// The mesh without colours.
+    fn from(mesh: Mesh) -> Self {
+        Self { mesh, colors: None, problem: None }
+    }
+}
+
+/// The parts of a mesh file to read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Content {
+    Shape,
+    ShapeAndColors,
+}

@@ -1,0 +1,113 @@
+//! The parts of the JSON that define the triangles, and what makes a file unreadable.
+
+use ::gltf::json;
+use serde::Deserialize;
+
+use crate::guard::{corrupt, too_large, unsupported};
+use sim3align_geometry::error::{Error, ErrorCode, Result};
+
+/// Maximum number of objects in the JSON: each takes much more memory than its two characters.
+const MAX_JSON_OBJECTS: usize = 1 << 20;
+
+const DRACO: &str = "KHR_draco_mesh_compression";
+
+const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
+
+/// Supported required extensions: they are applied, or do not affect the shape.
+const SUPPORTED_EXTENSIONS: &str = "KHR_mesh_quantization, KHR_materials_*, KHR_texture_*, EXT_texture_*, \
+    MSFT_texture_dds, KHR_lights_punctual, KHR_animation_pointer and KHR_xmp_json_ld";
+
+/// The parts of a glTF file that define its triangles.
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Document {
+    #[serde(default)]
+    pub accessors: Vec<json::Accessor>,
+    #[serde(default)]
+    pub buffers: Vec<json::Buffer>,
+    #[serde(default)]
+    pub buffer_views: Vec<json::buffer::View>,
+    #[serde(default)]
+    pub meshes: Vec<json::Mesh>,
+    #[serde(default)]
+    pub nodes: Vec<json::Node>,
+    #[serde(default)]
+    pub scenes: Vec<Scene>,
+    pub scene: Option<usize>,
+    #[serde(default)]
+    extensions_used: Vec<String>,
+    #[serde(default)]
+    extensions_required: Vec<String>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct Scene {
+    #[serde(default)]
+    pub nodes: Vec<usize>,
+}
+
+impl Document {
+    pub fn parse(json: &[u8]) -> Result<Self> {
+        let objects = json.iter().filter(|&&b| b == b'{').count();
+        if objects > MAX_JSON_OBJECTS {
+            return Err(too_large("mesh", format!("{objects} JSON objects"), format!("at most {MAX_JSON_OBJECTS}")));
+        }
+        json::deserialize::from_slice(json)
+            .map_err(|error| corrupt("mesh", format!("glTF JSON that can't be read: {error}"), "glTF 2.0"))
+    }
+
+    fn uses(&self, extension: &str) -> bool {
+        self.extensions_used.iter().chain(&self.extensions_required).any(|name| name == extension)
+    }
+
+    /// Whether geometry without data is Draco-compressed.
+    pub fn refuse_draco(&self) -> Result<()> {
+        if self.uses(DRACO) { Err(compressed(DRACO)) } else { Ok(()) }
+    }
+
+    /// Whether geometry without data is meshopt-compressed.
+    pub fn refuse_meshopt(&self) -> Result<()> {
+        MESHOPT.iter().find(|name| self.uses(name)).map_or(Ok(()), |name| Err(compressed(name)))
+    }
+
+    /// Rejects required extensions that may change the shape. Compression is checked when data are missing, because
+    /// files may contain an uncompressed fallback.
+    pub fn check_extensions(&self) -> Result<()> {
+        let harmless = |name: &str| {
+            name.starts_with("KHR_materials_")
+                || name.starts_with("KHR_texture_")
+                || name.starts_with("EXT_texture_")
+                || [
+                    "KHR_mesh_quantization",
+                    "MSFT_texture_dds",
+                    "KHR_lights_punctual",
+                    "KHR_animation_pointer",
+                    "KHR_xmp_json_ld",
+                    DRACO,
+                    MESHOPT[0],
+                    MESHOPT[1],
+                ]
+                .contains(&name)
+        };
+        let unknown: Vec<&str> = self.extensions_required.iter().map(String::as_str).filter(|n| !harmless(n)).collect();
+        if unknown.is_empty() {
+            return Ok(());
+        }
+        Err(unsupported(
+            "mesh",
+            format!("required extension {}", unknown.join(", ")),
+            format!("none but {SUPPORTED_EXTENSIONS}"),
+            "Export the mesh without it.",
+        ))
+    }
+}
+
+fn compressed(extension: &str) -> Error {
+    Error::new(
+        ErrorCode::CompressedMesh,
+        "mesh",
+        format!("geometry compressed with {extension}"),
+        "uncompressed or quantised geometry",
+        "Decompress it with glTF-Transform: npx @gltf-transform/cli copy in.glb out.glb.",
+    )
+}

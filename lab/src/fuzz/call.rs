@@ -1,0 +1,41 @@
+//! Calls of the fuzzer, and the criteria for faults in their answers.
+
+use sim3align_geometry::error::{Error, ErrorCode};
+
+/// A call prepared by a generator.
+pub struct Call {
+    /// The call. A fault is described by the error.
+    pub run: Box<dyn FnOnce() -> Result<Answer, String>>,
+    /// A short description of the arguments.
+    pub description: String,
+    /// Whether the ceilings apply: not to options that ask for more work than the defaults.
+    pub is_bounded: bool,
+}
+
+/// The kind of answer to a call without fault.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Answer {
+    /// A result.
+    Result,
+    /// A typed error.
+    Error(ErrorCode),
+}
+
+/// The answer for an error, or its fault: an error of the package itself, one without words, or one about an argument
+/// that the call does not take.
+pub(super) fn typed(error: &Error, takes_transform: bool) -> Result<Answer, String> {
+    let empty = error.argument.is_empty() || error.found.is_empty() || error.expected.is_empty();
+    let foreign = error.code == ErrorCode::InvalidTransform && !takes_transform;
+    if empty || foreign || error.code == ErrorCode::Internal || error.remedy.is_empty() {
+        return Err(format!("untyped: {} {error}", error.code.as_str()));
+    }
+    Ok(Answer::Error(error.code))
+}
+
+/// A fault for a number that no result may contain.
+pub(super) fn finite(name: &str, numbers: &[f64]) -> Result<(), String> {
+    if numbers.iter().all(|x| x.is_finite()) {
+        return Ok(());
+    }
+    Err(format!("result: {name} is {numbers:?}"))
+}
