@@ -9,6 +9,7 @@ import {
   type Files,
   files,
   HEIGHT,
+  jsonFile,
   maskPng,
   pinhole,
   seen,
@@ -31,7 +32,6 @@ async function problems(opened: SitePage): Promise<Record<string, string>> {
   return Object.fromEntries(alerts.map(([id = "", text]) => [id.replace(/-error(-\d+)?$/, ""), text ?? ""]));
 }
 
-const of = (json: unknown) => Buffer.from(JSON.stringify(json));
 const pixels = WIDTH * HEIGHT;
 const eightBit = png(new Uint8Array(pixels).fill(9), WIDTH, HEIGHT);
 
@@ -106,15 +106,15 @@ const wrong: readonly (readonly [title: string, changed: Files, field: string, s
     "mask",
     /No pixel of the mask has a depth/,
   ],
-  ["a focal length of 0", { "camera.json": of({ ...pinhole, fx: 0 }) }, "camera", /fx/],
-  ["a matrix with a row missing", { "camera.json": of({ K: [300, 0, 80, 0, 300, 60] }) }, "camera", /3 × 3/],
+  ["a focal length of 0", { "camera.json": jsonFile({ ...pinhole, fx: 0 }) }, "camera", /fx/],
+  ["a matrix with a row missing", { "camera.json": jsonFile({ K: [300, 0, 80, 0, 300, 60] }) }, "camera", /3 × 3/],
   [
     "intrinsics of another image",
-    { "camera.json": of({ ...pinhole, width: 640, height: 480 }) },
+    { "camera.json": jsonFile({ ...pinhole, width: 640, height: 480 }) },
     "camera",
     /160 × 120/,
   ],
-  ["a field of view of 500°", { "camera.json": of({ fovYDeg: 500 }) }, "camera", /field of view|fov/i],
+  ["a field of view of 500°", { "camera.json": jsonFile({ fovYDeg: 500 }) }, "camera", /field of view|fov/i],
   [
     "a damaged mesh",
     { "mesh.obj": new Uint8Array(), "mesh.glb": Uint8Array.of(103, 108, 84, 70, 1) },

@@ -1,7 +1,7 @@
 /** The decision about results: accept, fix, next; what helps when unsure; the objects of a scene. */
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { drop, files } from "../support/page-files.js";
+import { choose, drop, files } from "../support/page-files.js";
 import { PATIENCE, SiteTest } from "../support/site.js";
 
 let site: SiteTest;
@@ -47,10 +47,7 @@ test("an unsure result says what helps, and a known size is tried at once", asyn
   // The mesh of another object: nothing fits.
   await page.click("#edit-files");
   const sheet = await opened.sheet();
-  await page.setInputFiles("#mesh-file", {
-    ...{ name: "other.obj", mimeType: "" },
-    buffer: Buffer.from(files["mesh.obj"] as Uint8Array),
-  });
+  await choose(opened, "mesh", "other.obj", files["mesh.obj"] as Uint8Array);
   await opened.sheet();
   await sheet.locator("#intake-open").click();
   await opened.shows("Own files");

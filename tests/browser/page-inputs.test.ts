@@ -5,7 +5,7 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { otherPose } from "../support/case-folder.js";
 import { required } from "../support/environment.js";
-import { cocoRle, obj, png } from "../support/files.js";
+import { cocoRle, npy, obj, png } from "../support/files.js";
 import {
   cameraFile,
   choose,
@@ -14,6 +14,8 @@ import {
   type Files,
   files,
   HEIGHT,
+  inFolder,
+  jsonFile,
   maskPng,
   pinhole,
   seen,
@@ -58,7 +60,7 @@ test("masks and meshes are paired by name, in any order", async () => {
     "desk/b_mesh.obj": meshFile,
     "desk/left-mug.obj": meshFile,
     "desk/masks/B.png": maskPng(other.mask),
-    "desk/masks/mug_left.json": Buffer.from(JSON.stringify(cocoRle(seen.mask, WIDTH, HEIGHT))),
+    "desk/masks/mug_left.json": jsonFile(cocoRle(seen.mask, WIDTH, HEIGHT)),
     "__MACOSX/desk/._depth.png": Uint8Array.of(1),
   });
   await opened.shows("desk");
@@ -129,16 +131,13 @@ test("a label map and COCO annotations hold several masks", async () => {
     { id: 1, name: "cup" },
     { id: 2, name: "blob" },
   ];
-  const coco = Buffer.from(JSON.stringify({ images, annotations, categories }));
+  const coco = jsonFile({ images, annotations, categories });
   const named: Files = { "blob.obj": mesh as Uint8Array, "cup.obj": mesh as Uint8Array };
-  await dropFolder(opened, prefixed("coco/", { ...rest, ...named, "instances.json": coco }));
+  await dropFolder(opened, inFolder("coco", { ...rest, ...named, "instances.json": coco }));
   await page.locator('main[data-scene="coco"]').waitFor(PATIENCE);
   assert.deepEqual(await namesOf(opened), ["cup", "blob"]);
   await opened.close();
 });
-
-const prefixed = (folder: string, content: Files): Files =>
-  Object.fromEntries(Object.entries(content).map(([name, bytes]) => [`${folder}${name}`, bytes]));
 
 test("an image of a BOP data set is a scene of its own", async () => {
   const opened = await site.open();
@@ -146,7 +145,6 @@ test("an image of a BOP data set is a scene of its own", async () => {
   const K = [pinhole.fx, 0, pinhole.cx, 0, pinhole.fy, pinhole.cy, 0, 0, 1];
   const entry = { cam_K: K, depth_scale: 1 };
   const pose = (obj_id: number) => ({ obj_id, cam_R_m2c: [1, 0, 0, 0, 1, 0, 0, 0, 1], cam_t_m2c: [0, 0, 500] });
-  const of = (json: unknown) => Buffer.from(JSON.stringify(json));
   const mask = maskPng(seen.mask);
   await dropFolder(opened, {
     "000048/depth/000001.png": depthPng,
@@ -155,8 +153,8 @@ test("an image of a BOP data set is a scene of its own", async () => {
     "000048/mask_visib/000036_000000.png": maskPng(other.mask),
     "000048/mask_visib/000036_000001.png": mask,
     "000048/mask/000036_000001.png": mask,
-    "000048/scene_camera.json": of({ 1: entry, 36: entry }),
-    "000048/scene_gt.json": of({ 1: [pose(5)], 36: [pose(2), pose(5)] }),
+    "000048/scene_camera.json": jsonFile({ 1: entry, 36: entry }),
+    "000048/scene_gt.json": jsonFile({ 1: [pose(5)], 36: [pose(2), pose(5)] }),
     "models/obj_000002.obj": meshFile,
     "models/obj_000005.obj": meshFile,
   });
@@ -183,24 +181,26 @@ test("an image of a BOP data set is a scene of its own", async () => {
 test("case folders of one image are one scene, those of others are others", async () => {
   const opened = await site.open();
   const { page } = opened;
-  const farther = { ...files, "depth.npy": npyOf(Float32Array.from(seen.depth, (z) => z + 0.01)) };
-  await dropFolder(opened, { ...prefixed("a/", files), ...prefixed("b/", farther) });
+  const farther = {
+    ...files,
+    "depth.npy": npy(
+      seen.depth.map((z) => z + 0.01),
+      HEIGHT,
+      WIDTH,
+    ),
+  };
+  await dropFolder(opened, { ...inFolder("a", files), ...inFolder("b", farther) });
   await opened.sheet();
   assert.equal(await page.locator("#scene-choice option").count(), 2);
   assert.equal(await page.locator(".pair").count(), 1);
   await page.click("#intake-cancel");
   assert.equal(await page.getAttribute("main", "data-scene"), "Mug");
   const second = { ...files, "mask.png": maskPng(other.mask) };
-  await dropFolder(opened, { ...prefixed("set/a/", files), ...prefixed("set/b/", second) });
+  await dropFolder(opened, { ...inFolder("set/a", files), ...inFolder("set/b", second) });
   await opened.page.locator(".objects").waitFor(PATIENCE);
   assert.deepEqual(await namesOf(opened), ["a", "b"]);
   await opened.close();
 });
-
-function npyOf(data: Float32Array): Uint8Array {
-  const header = (files["depth.npy"] as Uint8Array).length - 4 * data.length;
-  return Buffer.concat([(files["depth.npy"] as Uint8Array).subarray(0, header), new Uint8Array(data.buffer)]);
-}
 
 test("missing files are asked for, and can be added one by one", async () => {
   const opened = await site.open();

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { Page } from "playwright-core";
 import { SOFTWARE_WEBGPU } from "../support/browser.js";
-import { PATIENCE, type Pixels, type SitePage, SiteTest } from "../support/site.js";
+import { PATIENCE, type Pixels, type SitePage, SiteTest, spacePixels } from "../support/site.js";
 
 const backends: readonly ["webgpu" | "webgl", string[]][] = [
   ["webgpu", SOFTWARE_WEBGPU],
@@ -19,7 +19,7 @@ const backends: readonly ["webgpu" | "webgl", string[]][] = [
 async function seen(page: Page, describe: (image: Pixels) => string, condition: (image: Pixels) => boolean) {
   const end = Date.now() + PATIENCE.timeout;
   for (;;) {
-    const image = await capture(page);
+    const image = await spacePixels(page);
     if (condition(image)) return image;
     if (Date.now() > end) {
       const state = await page.locator(".space").evaluate((space) => space.querySelector(".view-host")?.outerHTML);
@@ -40,22 +40,6 @@ async function still(page: Page): Promise<Pixels> {
       return isStill;
     },
   );
-}
-
-/** A screenshot of the 3D view. */
-async function capture(page: Page): Promise<Pixels> {
-  const png = await page.locator(".space .view-host").screenshot();
-  const decoded = (await page.evaluate(async (base64) => {
-    const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
-    const bitmap = await createImageBitmap(new Blob([bytes]));
-    const { width, height } = bitmap;
-    const context = new OffscreenCanvas(width, height).getContext("2d");
-    context?.drawImage(bitmap, 0, 0);
-    const { data } = context?.getImageData(0, 0, width, height) ?? { data: new Uint8ClampedArray() };
-    const rows = Array.from({ length: height }, (_, v) => data.subarray(4 * v * width, 4 * (v + 1) * width));
-    return { width, height, text: btoa(rows.map((row) => String.fromCharCode(...row)).join("")) };
-  }, png.toString("base64"))) as { width: number; height: number; text: string };
-  return { ...decoded, data: Buffer.from(decoded.text, "base64") };
 }
 
 /** The pixels that differ clearly from a reference. */

@@ -2,7 +2,16 @@
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { npy, obj } from "../support/files.js";
-import { cameraFile, dropFolder, type Files, HEIGHT, maskPng, pinhole, WIDTH } from "../support/page-files.js";
+import {
+  cameraFile,
+  dropFolder,
+  type Files,
+  HEIGHT,
+  jsonFile,
+  maskPng,
+  pinhole,
+  WIDTH,
+} from "../support/page-files.js";
 import { mesh, type Pose, render, truth } from "../support/scene.js";
 import { PATIENCE, type SitePage, SiteTest } from "../support/site.js";
 
@@ -35,7 +44,7 @@ function frames(hasMasks: boolean): Files {
       [0, 0, 1, 0],
       [0, 0, 0, 1],
     ];
-    files[`${folder}pose.json`] = Buffer.from(JSON.stringify({ camera_to_world: rows }));
+    files[`${folder}pose.json`] = jsonFile({ camera_to_world: rows });
     if (hasMasks || i === 0) files[`${folder}mask.png`] = maskPng(seen.mask);
   }
   return files;

@@ -2,9 +2,9 @@
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { npy } from "../support/files.js";
-import { dropFolder, files, HEIGHT, pinhole, WIDTH } from "../support/page-files.js";
+import { dropFolder, files, HEIGHT, inFolder, pinhole, WIDTH } from "../support/page-files.js";
 import { mesh, render, truth } from "../support/scene.js";
-import { PATIENCE, type SitePage, SiteTest } from "../support/site.js";
+import { PATIENCE, type SitePage, SiteTest, spacePixels } from "../support/site.js";
 
 let site: SiteTest;
 before(async () => {
@@ -16,27 +16,19 @@ const ready = ({ page }: SitePage) => page.locator('.view-host[data-backend="web
 
 /** The box of the pixels that differ from the background, as shares of the view: left, top, right, bottom. */
 async function drawn({ page }: SitePage): Promise<[number, number, number, number]> {
-  const png = await page.locator(".space .view-host").screenshot();
-  return page.evaluate(async (base64) => {
-    const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
-    const bitmap = await createImageBitmap(new Blob([bytes]));
-    const { width, height } = bitmap;
-    const context = new OffscreenCanvas(width, height).getContext("2d");
-    context?.drawImage(bitmap, 0, 0);
-    const { data } = context?.getImageData(0, 0, width, height) ?? { data: new Uint8ClampedArray() };
-    let [left, top, right, bottom] = [1, 1, 0, 0];
-    // Without the border, which may cover a part of a pixel.
-    const edge = 3;
-    const ground = 4 * (edge * width + edge);
-    for (let i = 0; i < width * height; i++) {
-      const [x, y] = [i % width, Math.floor(i / width)];
-      if (x < edge || y < edge || x >= width - edge || y >= height - edge) continue;
-      if ([0, 1, 2].every((k) => Math.abs((data[4 * i + k] ?? 0) - (data[ground + k] ?? 0)) <= 24)) continue;
-      [left, right] = [Math.min(left, x / width), Math.max(right, x / width)];
-      [top, bottom] = [Math.min(top, y / height), Math.max(bottom, y / height)];
-    }
-    return [left, top, right, bottom] as [number, number, number, number];
-  }, png.toString("base64"));
+  const { width, height, data } = await spacePixels(page);
+  let [left, top, right, bottom] = [1, 1, 0, 0];
+  // Without the border, which may cover a part of a pixel.
+  const edge = 3;
+  const ground = 4 * (edge * width + edge);
+  for (let i = 0; i < width * height; i++) {
+    const [x, y] = [i % width, Math.floor(i / width)];
+    if (x < edge || y < edge || x >= width - edge || y >= height - edge) continue;
+    if ([0, 1, 2].every((k) => Math.abs((data[4 * i + k] ?? 0) - (data[ground + k] ?? 0)) <= 24)) continue;
+    [left, right] = [Math.min(left, x / width), Math.max(right, x / width)];
+    [top, bottom] = [Math.min(top, y / height), Math.max(bottom, y / height)];
+  }
+  return [left, top, right, bottom];
 }
 
 /** What is wrong with where an object is drawn. */
@@ -63,9 +55,7 @@ test("objects of every size and distance are framed, before and after an alignme
       const pose = { ...truth, scale: factor * truth.scale, translation: truth.translation.map((x) => factor * x) };
       const seen = render(mesh, pose as typeof truth, pinhole, WIDTH, HEIGHT, 1.5 * factor);
       const name = `times ${factor}`;
-      const own = { ...files, "depth.npy": npy(seen.depth, HEIGHT, WIDTH) };
-      const inFolder = Object.entries(own).map(([file, bytes]) => [`${name}/${file}`, bytes]);
-      await dropFolder(opened, Object.fromEntries(inFolder));
+      await dropFolder(opened, inFolder(name, { ...files, "depth.npy": npy(seen.depth, HEIGHT, WIDTH) }));
       await opened.shows(name);
     }
     for (const from of ["Camera", "Three-quarter", "Top", "Side"]) {

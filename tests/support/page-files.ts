@@ -13,7 +13,10 @@ export const pinhole = { fx: 300, fy: 301, cx: 79.5, cy: 60 };
 export const [WIDTH, HEIGHT] = [160, 120];
 export const seen = render(mesh, truth, pinhole, WIDTH, HEIGHT);
 
-export const cameraFile = Buffer.from(JSON.stringify({ ...pinhole, width: WIDTH, height: HEIGHT }));
+/** A JSON file. */
+export const jsonFile = (content: unknown) => Buffer.from(JSON.stringify(content));
+
+export const cameraFile = jsonFile({ ...pinhole, width: WIDTH, height: HEIGHT });
 
 /** A mask as a PNG of 0 and 255. */
 export const maskPng = (mask: Uint8Array) =>
@@ -30,6 +33,10 @@ export const files: Files = {
   "camera.json": cameraFile,
   "mesh.obj": obj(mesh),
 };
+
+/** The files, in a folder. */
+export const inFolder = (folder: string, content: Files): Files =>
+  Object.fromEntries(Object.entries(content).map(([name, bytes]) => [`${folder}/${name}`, bytes]));
 
 /** Drops files on the page. */
 export async function drop({ page }: SitePage, dropped: Files): Promise<void> {

@@ -201,3 +201,19 @@ export class SitePage {
     await this.page.close();
   }
 }
+
+/** A screenshot of the 3D view. */
+export async function spacePixels(page: Page): Promise<Pixels> {
+  const png = await page.locator(".space .view-host").screenshot();
+  const decoded = (await page.evaluate(async (base64) => {
+    const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+    const bitmap = await createImageBitmap(new Blob([bytes]));
+    const { width, height } = bitmap;
+    const context = new OffscreenCanvas(width, height).getContext("2d");
+    context?.drawImage(bitmap, 0, 0);
+    const { data } = context?.getImageData(0, 0, width, height) ?? { data: new Uint8ClampedArray() };
+    const rows = Array.from({ length: height }, (_, v) => data.subarray(4 * v * width, 4 * (v + 1) * width));
+    return { width, height, text: btoa(rows.map((row) => String.fromCharCode(...row)).join("")) };
+  }, png.toString("base64"))) as { width: number; height: number; text: string };
+  return { ...decoded, data: Buffer.from(decoded.text, "base64") };
+}

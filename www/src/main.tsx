@@ -28,14 +28,14 @@ aligner().then(
   () => performance.mark("aligner ready"),
   (error) => announce(String(error), "failed"),
 );
-/** The session goes before the first sample, but not before one that the address names. */
+
+/** A session takes precedence over the first sample, but not over one that the address names. */
 async function restored(): Promise<boolean> {
   if (!hasSession() || named !== undefined) return false;
   return (await import("./session/index.js")).restoreSession();
 }
 
-const restoring = restored();
-const opened = restoring.then((isThere) => !isThere && sample !== undefined && openSample(sample));
+const opened = restored().then((isThere) => !isThere && sample !== undefined && openSample(sample));
 
 const root = document.getElementById("app");
 if (root !== null) render(<App />, root);

@@ -1,5 +1,6 @@
 /** Small pictures of meshes and masks. */
 import type { MeshArrays } from "sim3align";
+import { maskBox } from "sim3align/conventions";
 import { boundsOf } from "../state/pose.js";
 import { type Rgb, rgbOf } from "./colours.js";
 import { renderDepth } from "./rasteriser.js";
@@ -63,6 +64,22 @@ export function shaded(
   return image;
 }
 
+/** A square in an image, in pixels. */
+interface Square {
+  u0: number;
+  v0: number;
+  side: number;
+}
+
+/** The square around a mask, or around the image if the mask is empty; `margin` is a multiple of the box. */
+export function squareAround(mask: Uint8Array, width: number, margin: number): Square {
+  const height = mask.length / width;
+  const isEmpty = mask.every((inside) => inside === 0);
+  const box = isEmpty ? { left: 0, top: 0, width, height } : maskBox({ data: mask, width, height });
+  const side = margin * Math.max(box.width, box.height);
+  return { u0: box.left + (box.width - side) / 2, v0: box.top + (box.height - side) / 2, side };
+}
+
 /** An image in which everything but a mask is faded, cropped to the mask. */
 export function maskThumbnail(
   rgba: Uint8ClampedArray,
@@ -72,21 +89,12 @@ export function maskThumbnail(
   colour: string,
 ): ImageData {
   const height = mask.length / width;
-  let [left, top, right, bottom] = [width, height, 0, 0];
-  mask.forEach((inside, pixel) => {
-    if (inside === 0) return;
-    const [u, v] = [pixel % width, Math.floor(pixel / width)];
-    [left, right] = [Math.min(left, u), Math.max(right, u)];
-    [top, bottom] = [Math.min(top, v), Math.max(bottom, v)];
-  });
-  if (right < left) [left, top, right, bottom] = [0, 0, width - 1, height - 1];
-  const side = 1.25 * Math.max(right - left + 1, bottom - top + 1);
-  const [u0, v0] = [(left + right - side) / 2, (top + bottom - side) / 2];
+  const { u0, v0, side } = squareAround(mask, width, 1.25);
   const own = rgbOf(colour);
   const image = new ImageData(size, size);
   for (let y = 0; y < size; y++) {
     for (let x = 0; x < size; x++) {
-      const [u, v] = [Math.round(u0 + ((x + 0.5) * side) / size), Math.round(v0 + ((y + 0.5) * side) / size)];
+      const [u, v] = [Math.floor(u0 + ((x + 0.5) * side) / size), Math.floor(v0 + ((y + 0.5) * side) / size)];
       if (u < 0 || v < 0 || u >= width || v >= height) continue;
       const pixel = v * width + u;
       const inside = mask[pixel] !== 0;

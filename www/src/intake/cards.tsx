@@ -8,7 +8,7 @@ import { type Draft, draftInputs } from "../state/draft.js";
 import { Choices } from "../ui/controls.js";
 import { significant } from "../ui/format.js";
 import { Picture } from "../ui/picture.js";
-import { ASSUMED_FOV_DEG } from "./checks.js";
+import { ASSUMED_FOV_DEG, fovYDegOf } from "./checks.js";
 import { change, choose } from "./draft.js";
 import { describedBy, Problems, problemsFor } from "./problem-list.js";
 
@@ -18,7 +18,6 @@ interface CardProps {
   /** The name of the chosen file. */
   chosen: string;
   accept: string;
-  multiple?: boolean;
   children?: ComponentChildren;
 }
 
@@ -158,7 +157,7 @@ export function CameraCard({ open }: { open: Draft }) {
   const read = open.reading?.camera ?? null;
   const depth = open.reading?.depth ?? null;
   const shown = camera?.kind === "numbers" ? camera : read;
-  const fovDeg = read !== null && depth !== null ? (360 / Math.PI) * Math.atan(depth.height / (2 * read.fy)) : null;
+  const fovDeg = read !== null && depth !== null ? fovYDegOf(read, depth) : null;
   const enter = (name: (typeof intrinsics)[number], value: number) =>
     change((now) => {
       const { fx, fy, cx, cy } = shown ?? { fx: null, fy: null, cx: null, cy: null };

@@ -9,7 +9,7 @@ import { visibleExtent } from "../load/visible-extent.js";
 /** A typical vertical field of view of phones and laptops. */
 export const ASSUMED_FOV_DEG = 50;
 
-/** Median depths that objects on which meshes are placed have, metres. */
+/** Median depths of scenes, metres. */
 const PLAUSIBLE_DEPTH_M = [0.02, 80] as const;
 /** Sizes of objects, metres. */
 const PLAUSIBLE_SIZE_M = [0.002, 100] as const;
@@ -69,21 +69,25 @@ function ofDepth({ depthScale }: Inputs, { depth }: Reading): Problem[] {
   const keep = useScale("Keep metres", 1);
   return medianM > farthest
     ? [
-        error("depth", `Half of the scene is beyond ${shown} m: probably the unit is millimetres.`, [
+        error("depth", `Half of the scene is beyond ${shown} m: the unit is probably millimetres.`, [
           useScale("Use millimetres", 0.001),
           keep,
         ]),
       ]
     : [
-        error("depth", `Half of the scene is nearer than ${shown} m: probably the unit is another.`, [
+        error("depth", `Half of the scene is nearer than ${shown} m: the unit is probably wrong.`, [
           useScale("Use metres", 1),
         ]),
       ];
 }
 
+/** The vertical field of view, degrees. */
+export const fovYDegOf = ({ fy }: { fy: number }, { height }: { height: number }): number =>
+  (360 / Math.PI) * Math.atan(height / (2 * fy));
+
 function ofCamera({ camera, depth }: Reading): Problem[] {
   if (camera === null || depth === null) return [];
-  const fovDeg = (360 / Math.PI) * Math.atan(depth.height / (2 * camera.fy));
+  const fovDeg = fovYDegOf(camera, depth);
   const [narrow, wide] = PLAUSIBLE_FOV_DEG;
   const isOutside = camera.cx < 0 || camera.cy < 0 || camera.cx > depth.width || camera.cy > depth.height;
   return [
@@ -139,7 +143,7 @@ function ofObject(inputs: Inputs, { depth, camera }: Reading, { mask, mesh }: Re
   const [smallest, largest] = PLAUSIBLE_SIZE_M;
   if (sizeM < smallest || sizeM > largest) {
     const size = sizeM < 1 ? `${Number((1000 * sizeM).toPrecision(2))} mm` : `${Number(sizeM.toPrecision(2))} m`;
-    problems.push(doubt("depth", `${files.name} would be ${size} large. Is the unit of the depth map right?`, [], i));
+    problems.push(doubt("depth", `${files.name} would be ${size} in size. Is the unit of the depth map right?`, [], i));
   }
   return problems;
 }

@@ -1,8 +1,8 @@
 /** Makes and changes the draft. A draft without any problem becomes the scene by itself. */
 
 import { extractArchives, type NamedFile } from "../load/files.js";
-import type { Inputs, Role, Typed } from "../load/inputs.js";
-import { queue, show, inputs as shownInputs } from "../load/open.js";
+import { type Inputs, noInputs, type Role, type Typed } from "../load/inputs.js";
+import { queue, show } from "../load/open.js";
 import { error, type Problem } from "../load/problems.js";
 import { readInputs, sceneOf } from "../load/read-scene.js";
 import { alignAll } from "../run/align.js";
@@ -25,7 +25,7 @@ export async function propose(files: readonly NamedFile[]): Promise<void> {
   try {
     const extracted = await extractArchives(files);
     if (extracted.some(({ path }) => path === SESSION_FILE)) {
-      if (!(await openSession(extracted))) return refuse("The session is of another version of this page.");
+      if (!(await openSession(extracted))) return refuse("The session was saved by another version of this page.");
       draft.value = null;
       return;
     }
@@ -179,7 +179,7 @@ function refuse(message: string): void {
   const open = draft.peek();
   const problem: Problem = error("files", message);
   const empty = {
-    scenes: [{ ...shownInputs.peek(), ...emptied }],
+    scenes: [{ ...noInputs, name: "New scene" }],
     index: 0,
     reading: null,
     isVideo: false,
@@ -188,17 +188,6 @@ function refuse(message: string): void {
   draft.value = { ...(open ?? empty), problems: [problem] };
   announce(message, "failed");
 }
-
-const emptied = {
-  name: "New scene",
-  sample: null,
-  depth: null,
-  photo: null,
-  camera: null,
-  objects: [],
-  meshes: [],
-  files: [],
-};
 
 /** The files of inputs with their roles, also of a sample. */
 function filesOf(inputs: Inputs): Typed[] {

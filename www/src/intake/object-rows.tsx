@@ -62,8 +62,7 @@ export function ObjectRows({ open, ground }: { open: Draft; ground: Uint8Clamped
 /** Masks of another size than the depth map can be resized. */
 function Resize({ open }: { open: Draft }) {
   const { resizeMasks } = draftInputs(open);
-  const isNeeded =
-    resizeMasks || open.problems.some(({ field, message }) => field === "mask" && /pixels/.test(message));
+  const isNeeded = resizeMasks || open.problems.some(({ field, code }) => field === "mask" && code === "SIZE_MISMATCH");
   if (!isNeeded) return null;
   return (
     <label class="check">

@@ -1,4 +1,5 @@
 /** Pairs masks with meshes by their names. */
+import { folderOf } from "../load/files.js";
 
 /** A pair of indices; `isSure` if the names, or the lack of any other choice, leave no doubt. */
 export interface Match {
@@ -43,8 +44,6 @@ function agreement(a: readonly string[], b: readonly string[]): number {
   // Names in which each has words of its own agree less than those of which one contains the other.
   return shared / Math.max(Math.min(a.length, b.length), 1) - 0.01 * (a.length + b.length - 2 * shared);
 }
-
-const folderOf = (path: string) => path.slice(0, path.lastIndexOf("/") + 1);
 
 /**
  * Pairs each mask with at most one mesh, the best pairs first; the order of the files does not matter.

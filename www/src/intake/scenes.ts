@@ -1,5 +1,5 @@
 /** Divides the files of a drop into scenes: one depth map each, with the files that belong to it. */
-import { baseName, type NamedFile, stem } from "../load/files.js";
+import { baseName, folderOf, type NamedFile, stem } from "../load/files.js";
 import {
   type Inputs,
   type MaskSource,
@@ -12,16 +12,8 @@ import {
 } from "../load/inputs.js";
 import { annotationsOf, labelValues } from "../load/label-masks.js";
 import { paired, titleOf, wordsOf } from "./pairing.js";
-import { rolesOf } from "./roles.js";
-
-const folderOf = (path: string) => path.slice(0, path.lastIndexOf("/") + 1);
 
 /** The scenes of a drop; at least one, which lacks what the files lack. */
-export async function scenesOf(files: readonly NamedFile[]): Promise<Inputs[]> {
-  return scenesOfTyped(await rolesOf(files));
-}
-
-/** The scenes of files with known roles. */
 export async function scenesOfTyped(typed: readonly Typed[]): Promise<Inputs[]> {
   const groups = await grouped(typed);
   const isSeries = groups.length > 1;

@@ -1,4 +1,5 @@
 /** Recognises the frames of a video among the scenes of a drop. */
+import { type Sim3, toSim3 } from "sim3align/conventions";
 import type { Inputs } from "../load/inputs.js";
 import type { Video } from "../state/video.js";
 import { titleOf } from "./pairing.js";
@@ -17,7 +18,7 @@ export function isVideo(scenes: readonly Inputs[]): boolean {
 }
 
 /** The frames of a video, whose object is named after its mesh. */
-export function asFrames(scenes: readonly Inputs[]): Inputs[] {
+function asFrames(scenes: readonly Inputs[]): Inputs[] {
   return scenes.map((scene) => {
     const objects = scene.objects.map((object) => ({ ...object, name: nameOf(object.mesh?.file.path ?? "") }));
     return { ...scene, objects };
@@ -35,15 +36,15 @@ export async function videoOf(scenes: readonly Inputs[]): Promise<Video> {
 }
 
 /** The pose of a frame's camera: `camera_to_world`, four rows of four, in `pose.json`. */
-async function cameraOf({ files }: Inputs): Promise<readonly number[] | null> {
+async function cameraOf({ files }: Inputs): Promise<Sim3 | null> {
   const file = files.find(({ role }) => role === "pose")?.file;
   if (file === undefined) return null;
   try {
     const { camera_to_world } = JSON.parse(new TextDecoder().decode(await file.bytes())) as {
       camera_to_world: unknown;
     };
-    const numbers = [camera_to_world].flat(3).map(Number);
-    return numbers.length === 16 && numbers.every(Number.isFinite) ? numbers : null;
+    const rows = [camera_to_world].flat(3).map(Number);
+    return toSim3(rows.map((_, i) => rows[4 * (i % 4) + Math.floor(i / 4)] as number));
   } catch {
     return null;
   }

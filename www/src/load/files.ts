@@ -3,8 +3,6 @@
 /** A file and its path in the folder or archive that it came from. */
 export interface NamedFile {
   path: string;
-  /** What the file shows, if known. */
-  title?: string;
   bytes(): Promise<Uint8Array>;
   /** The first bytes, where they can be read alone. */
   head?(length: number): Promise<Uint8Array>;
@@ -12,6 +10,9 @@ export interface NamedFile {
 
 /** The part of a path after its last slash. */
 export const baseName = (path: string): string => path.slice(path.lastIndexOf("/") + 1);
+
+/** The part of a path up to its last slash, which it includes; empty without a folder. */
+export const folderOf = (path: string): string => path.slice(0, path.lastIndexOf("/") + 1);
 
 /** The extension in lower case, without the dot. */
 export const extension = (path: string): string => /\.([^./]+)$/.exec(path)?.[1]?.toLowerCase() ?? "";

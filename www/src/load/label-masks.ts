@@ -4,6 +4,7 @@ import { readDepth } from "sim3align/formats";
 import { extension, type NamedFile, stem } from "./files.js";
 import type { MaskSource } from "./inputs.js";
 import type { ReadMask } from "./masks.js";
+import { once } from "./once.js";
 
 /** A label map: 0 is no object. */
 interface Labels {
@@ -34,15 +35,7 @@ export async function labelValues(file: NamedFile): Promise<number[]> {
   return values.map(([value]) => value).sort((a, b) => a - b);
 }
 
-const labelMaps = new WeakMap<NamedFile, Promise<Labels>>();
-
-function labelsOf(file: NamedFile): Promise<Labels> {
-  const known = labelMaps.get(file) ?? decodedLabels(file);
-  labelMaps.set(file, known);
-  return known;
-}
-
-async function decodedLabels(file: NamedFile): Promise<Labels> {
+const labelsOf = once(async (file: NamedFile): Promise<Labels> => {
   const bytes = await file.bytes();
   const isDeep = extension(file.path) === "npy" || (bytes[24] === 16 && bytes[25] === 0);
   const { data, width, height } = isDeep
@@ -51,7 +44,7 @@ async function decodedLabels(file: NamedFile): Promise<Labels> {
   const counts = new Map<number, number>();
   for (const value of data) counts.set(value, (counts.get(value) ?? 0) + 1);
   return { data, width, height, counts };
-}
+});
 
 /** The colours of an image as numbers: an 8-bit grey value g is g · 0x10101, so it is divided back. */
 async function coloursOf(bytes: Uint8Array): Promise<Omit<Labels, "counts">> {
@@ -80,21 +73,13 @@ interface Coco {
   categories?: { id: number; name: string }[];
 }
 
-const cocos = new WeakMap<NamedFile, Promise<Coco>>();
-
-function cocoOf(file: NamedFile): Promise<Coco> {
-  const known = cocos.get(file) ?? parsedCoco(file);
-  cocos.set(file, known);
-  return known;
-}
-
-async function parsedCoco(file: NamedFile): Promise<Coco> {
+const cocoOf = once(async (file: NamedFile): Promise<Coco> => {
   const content = JSON.parse(new TextDecoder().decode(await file.bytes())) as Coco;
   if (!Array.isArray(content.images) || !Array.isArray(content.annotations)) {
     throw new Error("This JSON file has no images and annotations in COCO's format.");
   }
   return content;
-}
+});
 
 /** The annotations of the image of a photo or depth map: their indices and categories. */
 export async function annotationsOf(file: NamedFile, imageNames: readonly string[]) {

@@ -4,6 +4,7 @@ import { resizeMask } from "sim3align/conventions";
 import { readMask } from "sim3align/formats";
 import type { NamedFile } from "./files.js";
 import type { MaskSource } from "./inputs.js";
+import { once } from "./once.js";
 
 /** A mask, 1 is the object, at its own size. */
 export interface ReadMask {
@@ -12,16 +13,13 @@ export interface ReadMask {
   height: number;
 }
 
-/** Masks that were read. */
-const read = new WeakMap<NamedFile, Promise<ReadMask>>();
+const plainMask = once((file: NamedFile): Promise<ReadMask> => file.bytes().then(readMask));
 
 /** The mask of a source. Label maps and annotations are read by a script of their own. */
 export async function maskOf(source: MaskSource): Promise<ReadMask> {
   const { file, label, annotation } = source;
   if (label !== undefined || annotation !== undefined) return (await import("./label-masks.js")).maskFrom(source);
-  const mask = read.get(file) ?? file.bytes().then(readMask);
-  read.set(file, mask);
-  return mask;
+  return plainMask(file);
 }
 
 /** The mask at the size of the depth map. */

@@ -2,6 +2,7 @@
 import { externalResources, type MeshFromFile, readMesh } from "sim3align/formats";
 import { extension } from "./files.js";
 import type { MeshSource } from "./inputs.js";
+import { once } from "./once.js";
 
 /** A mesh, and its bytes if it is a GLB. */
 export interface LoadedMesh {
@@ -9,14 +10,8 @@ export interface LoadedMesh {
   glb: Uint8Array | null;
 }
 
-const loaded = new WeakMap<MeshSource, Promise<LoadedMesh>>();
-
 /** The mesh of a source. */
-export function meshOf(source: MeshSource): Promise<LoadedMesh> {
-  const mesh = loaded.get(source) ?? load(source);
-  loaded.set(source, mesh);
-  return mesh;
-}
+export const meshOf = once(load);
 
 async function load({ file, siblings }: MeshSource): Promise<LoadedMesh> {
   const bytes = await file.bytes();

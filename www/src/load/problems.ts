@@ -1,5 +1,5 @@
 /** What is wrong with an input, the field that says so, and what helps. */
-import { Sim3AlignError } from "sim3align";
+import { type ErrorCode, Sim3AlignError } from "sim3align";
 import type { Field, Inputs } from "./inputs.js";
 
 /** A change of the inputs that resolves a problem. */
@@ -17,6 +17,8 @@ export interface Problem {
   /** Errors have to be resolved; doubts only have to be seen. */
   kind: "error" | "doubt";
   remedies: readonly Remedy[];
+  /** The code of the reader's error. */
+  code?: ErrorCode;
 }
 
 export const error = (field: Field, message: string, remedies: readonly Remedy[] = [], object?: number): Problem => ({
@@ -29,8 +31,13 @@ export const doubt = (field: Field, message: string, remedies: readonly Remedy[]
   kind: "doubt",
 });
 
-/** What an error of a reader says. */
-export function messageOf(cause: unknown): string {
+/** The problem that an error of a reader is. */
+export const errorOf = (field: Field, cause: unknown, object?: number): Problem => ({
+  ...error(field, messageOf(cause), [], object),
+  ...(cause instanceof Sim3AlignError ? { code: cause.code } : {}),
+});
+
+function messageOf(cause: unknown): string {
   if (!(cause instanceof Sim3AlignError)) return cause instanceof Error ? cause.message : `${cause}`;
   const { argument, found, expected, remedy } = cause;
   // The part of a file, such as the fx of a camera.

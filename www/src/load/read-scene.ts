@@ -7,8 +7,8 @@ import type { NamedFile } from "./files.js";
 import type { CameraSource, Field, Inputs, TruthSource } from "./inputs.js";
 import { atSize, maskOf } from "./masks.js";
 import { meshOf } from "./meshes.js";
-import { readPhoto } from "./photo.js";
-import { error, messageOf, type Problem } from "./problems.js";
+import { type Photo, readPhoto } from "./photo.js";
+import { errorOf, type Problem } from "./problems.js";
 import { visibleExtent } from "./visible-extent.js";
 
 /** Colours of objects, distinguishable on light and dark backgrounds and with most colour vision deficiencies. */
@@ -30,9 +30,9 @@ export interface ReadObject {
 export interface Reading {
   depth: DepthImage | null;
   camera: Intrinsics | null;
-  photo: { rgba: Uint8ClampedArray; width: number; height: number } | null;
+  photo: Photo | null;
   objects: readonly ReadObject[];
-  /** Of the readers. */
+  /** Found by the readers. */
   problems: readonly Problem[];
   warnings: readonly string[];
 }
@@ -44,7 +44,7 @@ export async function readInputs(inputs: Inputs): Promise<Reading> {
     try {
       return await read();
     } catch (cause) {
-      problems.push(error(field, messageOf(cause), [], object));
+      problems.push(errorOf(field, cause, object));
       return null;
     }
   };

@@ -1,6 +1,7 @@
 /** Details of the result: all metrics, the pose and the times of the stages. */
 import type { Stage } from "sim3align";
 import type { ObjectModel } from "../state/object-model.js";
+import { isResult } from "../state/pose.js";
 import { Tip } from "../ui/controls.js";
 import { orDash, significant } from "../ui/format.js";
 import { type MetricText, metricTexts, stageTitles } from "../ui/texts.js";
@@ -51,9 +52,7 @@ function MetricTable({ object, metrics: texts, id }: MetricTableProps) {
 }
 
 function Pose({ object }: { object: ObjectModel | null }) {
-  const source = object?.pose.value.source;
-  const isResult = source === "aligned" || source === "refined";
-  const uncertainty = isResult ? object?.precise?.uncertainty : null;
+  const uncertainty = isResult(object?.pose.value.source) ? object?.precise?.uncertainty : null;
   // One standard deviation.
   const within = (value: number | undefined, unit: string) =>
     value === undefined ? "" : ` ± ${significant(value, 2)}${unit}`;

@@ -2,8 +2,8 @@
 import type { Vector3 } from "sim3align/conventions";
 import { isRunning, refine } from "../run/align.js";
 import { gizmo, gizmoSettings } from "../state/display.js";
-import { canRedo, canUndo, place, redo, undo } from "../state/history.js";
-import { type Nudge, nudged, rotationAbout } from "../state/pose.js";
+import { canRedo, canUndo, nudge, redo, undo } from "../state/history.js";
+import { type Nudge, rotationAbout } from "../state/pose.js";
 import { selected } from "../state/scene.js";
 import { space } from "../views/space.js";
 import { KnownSize } from "./known-size.js";
@@ -25,6 +25,11 @@ const moves: readonly [title: string, symbol: string, direction: Vector3][] = [
   ["farther", "⊗", [0, 0, 1]],
 ];
 
+const settings = [
+  ["snap", "snaps", "Snap"],
+  ["local-axes", "isLocal", "Axes of the mesh"],
+] as const;
+
 const rotations: readonly [title: string, symbol: string, axis: Vector3, degrees: number][] = [
   ["left", "↶", [0, 1, 0], 5],
   ["right", "↷", [0, 1, 0], -5],
@@ -35,10 +40,9 @@ const rotations: readonly [title: string, symbol: string, axis: Vector3, degrees
 ];
 
 /** Moves, rotates or scales the selected object. */
-function nudge(change: Nudge): void {
+function nudgeSelected(change: Nudge): void {
   const object = selected.peek();
-  if (object === null) return;
-  place(object, { transform: nudged(object.box.peek().centreM, object.pose.peek().transform, change), source: "hand" });
+  if (object !== null) nudge(object, change);
 }
 
 function move(direction: Vector3): void {
@@ -46,12 +50,8 @@ function move(direction: Vector3): void {
   if (object === null) return;
   // Visible, but small compared with the mask.
   const step = Math.hypot(...object.box.peek().sizeM) / 50;
-  nudge({ moveM: direction.map((x) => x * step) as Vector3 });
+  nudge(object, { moveM: direction.map((x) => x * step) as Vector3 });
 }
-
-const set = (change: Partial<typeof gizmoSettings.value>) => {
-  gizmoSettings.value = { ...gizmoSettings.peek(), ...change };
-};
 
 export function HandPanel() {
   const object = selected.value;
@@ -80,24 +80,19 @@ export function HandPanel() {
         ))}
       </fieldset>
       <div class="row">
-        <label class="check">
-          <input
-            id="snap"
-            type="checkbox"
-            checked={gizmoSettings.value.snaps}
-            onChange={({ currentTarget }) => set({ snaps: currentTarget.checked })}
-          />
-          <span>Snap</span>
-        </label>
-        <label class="check">
-          <input
-            id="local-axes"
-            type="checkbox"
-            checked={gizmoSettings.value.isLocal}
-            onChange={({ currentTarget }) => set({ isLocal: currentTarget.checked })}
-          />
-          <span>Axes of the mesh</span>
-        </label>
+        {settings.map(([id, name, title]) => (
+          <label key={id} class="check">
+            <input
+              id={id}
+              type="checkbox"
+              checked={gizmoSettings.value[name]}
+              onChange={({ currentTarget }) => {
+                gizmoSettings.value = { ...gizmoSettings.peek(), [name]: currentTarget.checked };
+              }}
+            />
+            <span>{title}</span>
+          </label>
+        ))}
       </div>
       <details class="more">
         <summary>Nudge</summary>
@@ -124,7 +119,7 @@ export function HandPanel() {
               type="button"
               aria-label={`Rotate ${title}`}
               title={title}
-              onClick={() => nudge({ rotation: rotationAbout(axis, degrees) })}
+              onClick={() => nudgeSelected({ rotation: rotationAbout(axis, degrees) })}
             >
               {symbol}
             </button>
@@ -132,10 +127,10 @@ export function HandPanel() {
         </fieldset>
         <fieldset class="steps" disabled={!isReady || lockScale}>
           <legend>Scale by 2 %</legend>
-          <button type="button" aria-label="Smaller" onClick={() => nudge({ scale: 1 / 1.02 })}>
+          <button type="button" aria-label="Smaller" onClick={() => nudgeSelected({ scale: 1 / 1.02 })}>
             −
           </button>
-          <button type="button" aria-label="Larger" onClick={() => nudge({ scale: 1.02 })}>
+          <button type="button" aria-label="Larger" onClick={() => nudgeSelected({ scale: 1.02 })}>
             +
           </button>
         </fieldset>
@@ -152,10 +147,7 @@ export function HandPanel() {
             type="checkbox"
             checked={lockScale}
             disabled={object === null}
-            onChange={({ currentTarget }) => {
-              if (object === null) return;
-              object.knownScale.value = currentTarget.checked ? object.pose.peek().transform.scale : null;
-            }}
+            onChange={({ currentTarget }) => object?.lockScale(currentTarget.checked)}
           />
           <span>Lock scale</span>
         </label>

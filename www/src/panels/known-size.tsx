@@ -1,8 +1,7 @@
 /** A known length of an object. It is one fact of the object, wherever it is entered. */
 import { useState } from "preact/hooks";
-import { place } from "../state/history.js";
+import { nudge } from "../state/history.js";
 import type { ObjectModel } from "../state/object-model.js";
-import { nudged } from "../state/pose.js";
 import { Choices } from "../ui/controls.js";
 import { centimetres } from "../ui/format.js";
 
@@ -20,17 +19,15 @@ interface KnownSizeProps {
 /** Scales the mesh so that one side has a known length, which all alignments keep. */
 export function KnownSize({ object, id, onSet }: KnownSizeProps) {
   const [side, setSide] = useState(1);
-  const unit = object?.side(side > 2 ? "longest" : (side as 0 | 1 | 2)) ?? 0;
-  const presentM = unit * (object?.pose.value.transform.scale ?? 0);
+  const sizeM = object?.box.value.sizeM ?? [0, 0, 0];
+  const presentM = sizeM[side] ?? Math.max(...sizeM);
 
   const apply = (field: HTMLInputElement) => {
     const wantedM = field.valueAsNumber / 100;
     const isValid = wantedM > 0 && presentM > 0;
     if (object === null || !isValid || centimetres(wantedM) === centimetres(presentM)) return;
-    const scale = wantedM / presentM;
-    const transform = nudged(object.box.peek().centreM, object.pose.peek().transform, { scale });
-    place(object, { transform, source: "hand" });
-    object.knownScale.value = transform.scale;
+    nudge(object, { scale: wantedM / presentM });
+    object.lockScale(true);
     onSet?.();
   };
   return (

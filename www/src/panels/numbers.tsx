@@ -2,9 +2,9 @@
 
 import { useState } from "preact/hooks";
 import type { Vector3 } from "sim3align/conventions";
-import { place } from "../state/history.js";
+import { nudge } from "../state/history.js";
 import type { ObjectModel } from "../state/object-model.js";
-import { type Nudge, nudged, rotationAbout } from "../state/pose.js";
+import { type Nudge, rotationAbout } from "../state/pose.js";
 import { Choices } from "../ui/controls.js";
 
 const axes = ["x", "y", "z"] as const;
@@ -20,9 +20,7 @@ export function Numbers({ object, isReady }: NumbersProps) {
   const [axis, setAxis] = useState<(typeof axes)[number]>("y");
   const centre = object?.box.value.centreM;
   const apply = (change: Nudge) => {
-    if (object === null) return;
-    const { centreM } = object.box.peek();
-    place(object, { transform: nudged(centreM, object.pose.peek().transform, change), source: "hand" });
+    if (object !== null) nudge(object, change);
   };
   const move = (k: number, toM: number) => {
     const from = object?.box.peek().centreM[k] ?? 0;

@@ -1,12 +1,13 @@
-/** What helps where a result is unsure: it stands beside the result, not in an explanation. */
+/** What helps if a result is unsure, beside the result instead of in an explanation. */
 import { alignSelected, isRunning } from "../run/align.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { type Options, options, setOption } from "../state/options.js";
+import { isResult } from "../state/pose.js";
 import { fix } from "./decision.js";
 import { KnownSize } from "./known-size.js";
 
-/** Above this confidence, no remedy is needed. */
-const SURE = 0.9;
+/** From this confidence on, no remedy is needed. */
+export const SURE = 0.9;
 
 const ups: readonly (readonly [Options["up"], string])[] = [
   ["y", "y is up"],
@@ -15,8 +16,7 @@ const ups: readonly (readonly [Options["up"], string])[] = [
 
 export function Remedies({ object }: { object: ObjectModel | null }) {
   const confidence = object?.precise?.confidence ?? 1;
-  const source = object?.pose.value.source;
-  const isAsked = confidence < SURE && (source === "aligned" || source === "refined");
+  const isAsked = confidence < SURE && isResult(object?.pose.value.source);
   if (object === null || !isAsked || object.isAccepted.value) return null;
   const alternatives = object.precise?.alternatives.length ?? 0;
   const align = (change: () => void) => () => {

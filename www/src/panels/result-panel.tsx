@@ -14,7 +14,7 @@ import { centimetres, orDash, percent, significant } from "../ui/format.js";
 import { Alternatives } from "./alternatives.js";
 import { Decision } from "./decision.js";
 import { Details, MainMetrics } from "./details.js";
-import { Remedies } from "./remedies.js";
+import { Remedies, SURE } from "./remedies.js";
 
 export function ResultPanel() {
   const chosen = selected.value;
@@ -92,7 +92,7 @@ function Confidence({ object }: { object: ObjectModel | null }) {
       </p>
     );
   }
-  const level = confidence >= 0.9 ? "high" : confidence >= 0.7 ? "medium" : "low";
+  const level = confidence >= SURE ? "high" : confidence >= 0.7 ? "medium" : "low";
   const advice = { high: "Likely correct", medium: "Check it", low: "Unreliable: fix it" }[level];
   return (
     <p class="badge" data-level={level}>

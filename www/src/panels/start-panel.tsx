@@ -55,7 +55,7 @@ export function StartPanel() {
           </li>
         ))}
       </ul>
-      <label class="field-inline more-samples">
+      <label class="field-inline">
         <span>Samples</span>
         <select
           id="sample"

@@ -70,7 +70,7 @@ export async function refine(): Promise<void> {
 
 type Work = (whole: Scene, signal: AbortSignal) => Promise<void>;
 
-/** Runs an alignment of objects; another one that is running goes first. */
+/** Runs an alignment of objects, unless another one is running. */
 async function run(objects: readonly ObjectModel[], work: Work): Promise<void> {
   const whole = scene.peek();
   if (whole === null || objects.length === 0 || controller.peek() !== null) return;

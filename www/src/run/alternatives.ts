@@ -2,6 +2,7 @@
 import { toSim3 } from "sim3align/conventions";
 import { place } from "../state/history.js";
 import type { ObjectModel } from "../state/object-model.js";
+import { isResult } from "../state/pose.js";
 
 /** Sets the pose to an alternative, or with −1 to the result. */
 export function applyAlternative(object: ObjectModel, index: number): void {
@@ -20,5 +21,5 @@ export function applyAlternative(object: ObjectModel, index: number): void {
 export function shownAlternative(object: ObjectModel): number | null {
   const { source, alternative } = object.pose.value;
   if (source === "alternative") return alternative ?? null;
-  return source === "aligned" || source === "refined" ? -1 : null;
+  return isResult(source) ? -1 : null;
 }

@@ -2,6 +2,7 @@
 import { effect } from "@preact/signals";
 import { toSim3 } from "sim3align/conventions";
 import type { ObjectModel } from "../state/object-model.js";
+import { isResult } from "../state/pose.js";
 import { type Scene, scene } from "../state/scene.js";
 import { aligner, inputOf } from "./aligner.js";
 
@@ -27,8 +28,10 @@ function observe(whole: Scene, object: ObjectModel): () => void {
     abort = new AbortController();
     clearTimeout(timer);
     const alignment = object.alignment.peek();
-    const isResult = alignment !== null && (pose.source === "aligned" || pose.source === "refined");
-    const isSame = isResult && toSim3(alignment).matrix.every((x, i) => x === pose.transform.matrix[i]);
+    const isSame =
+      alignment !== null &&
+      isResult(pose.source) &&
+      toSim3(alignment).matrix.every((x, i) => x === pose.transform.matrix[i]);
     object.metrics.value = isSame ? alignment.metrics : null;
     object.errors.value = null;
     if (pose.source === "start" || (isSame && object.truth === null)) return;

@@ -1,5 +1,5 @@
 /** Shows and tracks the frames of a video. */
-import { signal } from "@preact/signals";
+import { computed, signal } from "@preact/signals";
 import type { Tracker } from "sim3align";
 import { toSim3 } from "sim3align/conventions";
 import type { Inputs } from "../load/inputs.js";
@@ -12,7 +12,7 @@ import { type FramePose, frameIndex, framePoses, setFramePose, type Video, video
 import { aligner } from "./aligner.js";
 
 const controller = signal<AbortController | null>(null);
-export const isTracking = signal(false);
+export const isTracking = computed(() => controller.value !== null);
 
 /** The tracker of the last run, which corrections need. */
 let tracker: Tracker | null = null;
@@ -27,7 +27,7 @@ export function openVideo(opened: Video, first: Scene): void {
 }
 
 /** Forgets the video, for another scene. */
-export function closeVideo(): void {
+function closeVideo(): void {
   stopTracking();
   tracker?.close();
   tracker = null;
@@ -76,7 +76,6 @@ export async function trackAll(): Promise<void> {
   if (opened === null || first === undefined || isTracking.peek()) return;
   const abort = new AbortController();
   controller.value = abort;
-  isTracking.value = true;
   const started = performance.now();
   try {
     tracker?.close();
@@ -104,14 +103,13 @@ export async function trackAll(): Promise<void> {
     const seconds = ((performance.now() - started) / 1000).toFixed(1);
     announce(`Tracked ${opened.frames.length} frames in ${seconds} s${lost > 0 ? `; lost in ${lost}` : ""}.`);
   } catch (error) {
-    announce(error instanceof Error ? error.message : `${error}`, "failed");
+    fail(error);
   } finally {
-    isTracking.value = false;
     controller.value = null;
   }
 }
 
-/** Takes the pose that is shown as right, and carries the difference to the frames before and after. */
+/** Takes the pose that is shown as the right one, and carries the difference to the frames before and after. */
 export async function correctFrame(): Promise<void> {
   const object = scene.peek()?.objects[0];
   const index = frameIndex.peek();
@@ -135,9 +133,11 @@ export async function correctFrame(): Promise<void> {
     object.pose.value = { transform, source: "tracked" };
     announce(`Corrected ${changed.length} frames.`);
   } catch (error) {
-    announce(error instanceof Error ? error.message : `${error}`, "failed");
+    fail(error);
   }
 }
+
+const fail = (error: unknown) => announce(error instanceof Error ? error.message : `${error}`, "failed");
 
 // Another scene ends the video.
 inputs.subscribe((shown) => {

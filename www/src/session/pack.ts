@@ -7,7 +7,7 @@ import { type Options, options } from "../state/options.js";
 import type { PoseSource } from "../state/pose.js";
 import type { Scene } from "../state/scene.js";
 
-/** The version of the form of the data. Others are not read. */
+/** The version of the format. Other versions are not read. */
 const VERSION = 1;
 
 /** A file by its index. */
@@ -18,10 +18,10 @@ interface PackedObject {
   mask: (Omit<MaskSource, "file"> & { file: Ref }) | null;
   mesh: Ref | null;
   truth: (Omit<TruthSource, "file"> & { file: Ref }) | null;
-  /** Of the object at the time; missing until it was shown. */
   state: PackedState;
 }
 
+/** What was done with an object. */
 interface PackedState {
   matrix: readonly number[];
   source: PoseSource;

@@ -1,7 +1,7 @@
 /** Undo and redo of poses. */
 import { computed, signal } from "@preact/signals";
 import type { ObjectModel } from "./object-model.js";
-import type { Pose } from "./pose.js";
+import { type Nudge, nudged, type Pose } from "./pose.js";
 import { scene, select } from "./scene.js";
 
 interface Step {
@@ -24,6 +24,11 @@ export function place(object: ObjectModel, after: Pose, before = object.pose.pee
   object.pose.value = after;
   undoSteps.value = [...undoSteps.peek().slice(1 - MAX_STEPS), { object, before, after }];
   redoSteps.value = [];
+}
+
+/** Changes the pose of an object by hand. */
+export function nudge(object: ObjectModel, change: Nudge): void {
+  place(object, { transform: nudged(object.box.peek().centreM, object.pose.peek().transform, change), source: "hand" });
 }
 
 export function undo(): void {

@@ -92,10 +92,9 @@ export class ObjectModel implements Readonly<ObjectParts> {
     return this.title.value;
   }
 
-  /** The length of a side at scale 1, or of the longest one, in mesh units. */
-  side(which: 0 | 1 | 2 | "longest"): number {
-    const { sides } = this.bounds;
-    return which === "longest" ? Math.max(...sides) : sides[which];
+  /** Makes the present scale the known one, or no scale. */
+  lockScale(isLocked: boolean): void {
+    this.knownScale.value = isLocked ? this.pose.peek().transform.scale : null;
   }
 
   /** Whether the object has a pose other than the start pose. */

@@ -63,18 +63,19 @@ export function setOption<K extends keyof Options>(name: K, value: Options[K]): 
 }
 
 /** The options of the baseline. */
-export function paperOptions({ seed } = options.peek()): Omit<PaperOptions, "metrics"> {
-  return { preset: "paper", seed };
+export function paperOptions(): Omit<PaperOptions, "metrics"> {
+  return { preset: "paper", seed: options.peek().seed };
 }
 
 /** The options of every object of a scene. */
-export function sceneOptions({ quality, seed } = options.peek()): CallOptions {
+export function sceneOptions(): CallOptions {
+  const { quality, seed } = options.peek();
   return { quality, seed };
 }
 
 /** What is known of an object: every alignment, from scratch or from its pose, obeys it. */
-export function constraintsOf(object: ObjectModel, chosen = options.peek()): CallOptions {
-  const { scaleMin, scaleMax, up, symmetry } = chosen;
+export function constraintsOf(object: ObjectModel): CallOptions {
+  const { scaleMin, scaleMax, up, symmetry } = options.peek();
   const known = object.knownScale.peek();
   const hasBounds = scaleMin !== null || scaleMax !== null;
   return {
@@ -85,7 +86,7 @@ export function constraintsOf(object: ObjectModel, chosen = options.peek()): Cal
 }
 
 /** The options of an alignment of one object: from scratch, or around its pose only. */
-export function alignOptions(object: ObjectModel, search: "global" | "local" = "global"): CallOptions {
+export function alignOptions(object: ObjectModel, search: "global" | "local"): CallOptions {
   const local = search === "local" ? { search, initial: object.pose.peek().transform } : {};
   return { ...sceneOptions(), ...constraintsOf(object), ...local };
 }

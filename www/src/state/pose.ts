@@ -13,6 +13,9 @@ export interface Pose {
   readonly alternative?: number;
 }
 
+/** Whether a pose is as an alignment has found it. */
+export const isResult = (source: PoseSource | undefined): boolean => source === "aligned" || source === "refined";
+
 /** A bounding box along the mesh's axes, in the mesh's frame and unit. */
 export interface Bounds {
   readonly centre: Vector3;

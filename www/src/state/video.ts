@@ -15,8 +15,8 @@ export interface FramePose {
 
 export interface Video {
   readonly frames: readonly Inputs[];
-  /** Of the cameras of all frames, camera to world, row by row; null if one is unknown. */
-  readonly cameras: readonly (readonly number[])[] | null;
+  /** The poses of the cameras of all frames, camera to world; null if one is unknown. */
+  readonly cameras: readonly Sim3[] | null;
 }
 
 export const video = signal<Video | null>(null);

@@ -1,4 +1,4 @@
-/** Components that are loaded when they are wanted first. */
+/** Components that are loaded when they are first wanted. */
 import { signal } from "@preact/signals";
 import type { ComponentType } from "preact";
 import { useEffect } from "preact/hooks";

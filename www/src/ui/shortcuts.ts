@@ -69,8 +69,7 @@ export const shortcuts: readonly Shortcut[] = [
 
 function toggleScaleLock(): void {
   const object = selected.peek();
-  if (object === null) return;
-  object.knownScale.value = object.knownScale.peek() === null ? object.pose.peek().transform.scale : null;
+  object?.lockScale(object.knownScale.peek() === null);
 }
 
 function cancelOrHideHandles(): void {

@@ -19,7 +19,8 @@ const APART = 0.07;
 export class Dimensions {
   readonly object = new Group();
   private readonly lines: LineSegments<BufferGeometry, LineBasicMaterial>;
-  private readonly labels: Sprite[] = [];
+  /** By axis. Drawing a text takes time, so the label of a length stays until the length changes. */
+  private readonly labels: { text: string; sprite: Sprite }[] = [];
   private shown = "";
 
   constructor() {
@@ -38,7 +39,6 @@ export class Dimensions {
     const key = corners.map((corner) => corner.toArray().map((x) => x.toFixed(5))).join();
     if (key === this.shown) return;
     this.shown = key;
-    for (const label of this.labels.splice(0)) removeLabel(label);
     const positions: number[] = [];
     const centre = corners.reduce((sum, corner) => sum.add(corner), new Vector3()).divideScalar(corners.length);
     const diagonal = (corners[0] as Vector3).distanceTo(corners[7] as Vector3);
@@ -47,18 +47,26 @@ export class Dimensions {
       positions.push(...from.toArray(), ...to.toArray());
       const middle = from.clone().lerp(to, 0.5);
       const outwards = middle.clone().sub(centre).normalize();
-      const label = labelOf(lengthText(from.distanceTo(to)));
+      const label = this.label(axis, lengthText(from.distanceTo(to)));
       label.position.copy(middle).addScaledVector(outwards, APART * diagonal);
-      this.labels.push(label);
-      this.object.add(label);
     }
     this.lines.geometry.dispose();
     this.lines.geometry = new BufferGeometry();
     this.lines.geometry.setAttribute("position", new BufferAttribute(Float32Array.from(positions), 3));
   }
 
+  private label(axis: number, text: string): Sprite {
+    const shown = this.labels[axis];
+    if (shown?.text === text) return shown.sprite;
+    if (shown !== undefined) removeLabel(shown.sprite);
+    const sprite = labelOf(text);
+    this.labels[axis] = { text, sprite };
+    this.object.add(sprite);
+    return sprite;
+  }
+
   dispose(): void {
-    for (const label of this.labels.splice(0)) removeLabel(label);
+    for (const { sprite } of this.labels.splice(0)) removeLabel(sprite);
     this.object.removeFromParent();
     this.lines.geometry.dispose();
     this.lines.material.dispose();

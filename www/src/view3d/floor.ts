@@ -8,8 +8,6 @@ const LINES = 10;
 /** A grid around what stands on a plane, in the OpenCV camera frame. */
 export class Floor {
   readonly object: LineSegments<BufferGeometry, LineBasicMaterial>;
-  /** The distance of neighbouring lines, metres. */
-  readonly spacingM: number;
 
   constructor({ normal, d }: PlaneInput, centre: readonly [number, number, number], radiusM: number, color: Color) {
     const up = new Vector3(...normal).normalize();
@@ -18,12 +16,12 @@ export class Floor {
     // Along the image's x axis, as far as the plane allows.
     const along = new Vector3(1, 0, 0).addScaledVector(up, -up.x).normalize();
     const across = new Vector3().crossVectors(up, along);
-    this.spacingM = roundStep((4 * radiusM) / LINES);
-    const half = this.spacingM * Math.ceil((2 * radiusM) / this.spacingM);
+    const spacingM = roundStep((4 * radiusM) / LINES);
+    const half = spacingM * Math.ceil((2 * radiusM) / spacingM);
     const positions: number[] = [];
     const add = (a: number, b: number) =>
       positions.push(...foot.clone().addScaledVector(along, a).addScaledVector(across, b));
-    for (let x = -half; x <= half + 1e-9; x += this.spacingM) {
+    for (let x = -half; x <= half + 1e-9; x += spacingM) {
       add(x, -half);
       add(x, half);
       add(-half, x);
@@ -43,7 +41,7 @@ export class Floor {
 }
 
 /** The largest of 1, 2 and 5 times a power of ten that is not above a length. */
-export function roundStep(length: number): number {
+function roundStep(length: number): number {
   const power = 10 ** Math.floor(Math.log10(length));
   return power * (length >= 5 * power ? 5 : length >= 2 * power ? 2 : 1);
 }

@@ -3,11 +3,13 @@ import {
   BufferAttribute,
   BufferGeometry,
   DataTexture,
+  DoubleSide,
   LinearFilter,
   Mesh,
   MeshBasicMaterial,
   SRGBColorSpace,
 } from "three/webgpu";
+import { imageCorners } from "./frustum.js";
 import type { SceneInput } from "./types.js";
 
 /** A rectangle that covers exactly the image of the depth camera. */
@@ -15,30 +17,20 @@ export class Ground {
   readonly object: Mesh<BufferGeometry, MeshBasicMaterial>;
   private readonly texture: DataTexture;
 
-  constructor({ camera, width, height, ground }: SceneInput, depthM: number) {
-    this.texture = new DataTexture(
-      Uint8Array.from(ground ?? new Uint8Array(4)),
-      ground ? width : 1,
-      ground ? height : 1,
-    );
+  constructor(scene: SceneInput, image: Uint8ClampedArray, depthM: number) {
+    this.texture = new DataTexture(Uint8Array.from(image), scene.width, scene.height);
     this.texture.colorSpace = SRGBColorSpace;
     this.texture.minFilter = LinearFilter;
     this.texture.magFilter = LinearFilter;
     this.texture.needsUpdate = true;
     const geometry = new BufferGeometry();
-    const [left, top, right, bottom] = [-0.5, -0.5, width - 0.5, height - 0.5];
-    const corner = (u: number, v: number) => [
-      ((u - camera.cx) / camera.fx) * depthM,
-      ((v - camera.cy) / camera.fy) * depthM,
-      depthM,
-    ];
-    const corners = [corner(left, top), corner(right, top), corner(right, bottom), corner(left, bottom)];
-    geometry.setAttribute("position", new BufferAttribute(Float32Array.from(corners.flat()), 3));
+    const corners = imageCorners(scene, depthM).flat();
+    geometry.setAttribute("position", new BufferAttribute(Float32Array.from(corners), 3));
     geometry.setAttribute("uv", new BufferAttribute(Float32Array.of(0, 0, 1, 0, 1, 1, 0, 1), 2));
-    // Both sides are drawn, whatever the winding.
-    geometry.setIndex([0, 1, 2, 0, 2, 3, 0, 2, 1, 0, 3, 2]);
+    geometry.setIndex([0, 1, 2, 0, 2, 3]);
     const material = new MeshBasicMaterial({
       map: this.texture,
+      side: DoubleSide,
       depthTest: false,
       depthWrite: false,
       toneMapped: false,

@@ -1,6 +1,6 @@
 /** Keys of the canvas: arrows orbit, plus and minus come nearer and go away. */
 
-/** What a key turns in degrees, and how much nearer it comes. */
+/** How far a key turns the view, degrees, and the factor by which it changes the distance. */
 const [KEY_DEG, KEY_ZOOM] = [6, 1.15];
 
 const turns: Readonly<Record<string, readonly [right: number, up: number]>> = {

@@ -160,7 +160,7 @@ export class SceneView implements View {
     const [first, last] = [quantile(depths, 0.01) || 1, quantile(depths, 0.99) || 1];
     this.firstDepth = first;
     this.frustum = new Frustum(scene, 0.22 * first, frustum);
-    this.ground = scene.ground ? new Ground(scene, last) : null;
+    this.ground = scene.ground ? new Ground(scene, scene.ground, last) : null;
     this.root.add(this.cloud.object, this.frustum.object);
     if (this.ground) this.root.add(this.ground.object);
     this.viewpoint.setScene(scene, first, last);

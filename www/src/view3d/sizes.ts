@@ -3,7 +3,7 @@ import type { Group } from "three/webgpu";
 import { Dimensions } from "./dimensions.js";
 import type { Model } from "./model.js";
 
-/** The sizes of so many objects are shown at once, and of the selected one among more. */
+/** Up to this many objects all show their sizes; of more, only the selected one does. */
 const FEW = 3;
 
 export class Sizes {

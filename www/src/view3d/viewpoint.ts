@@ -87,10 +87,10 @@ export class Viewpoint {
     if (!view) return;
     const { left, top, right, bottom } = this.crop ?? { left: 0, top: 0, right: image.width, bottom: image.height };
     const fill = this.crop === null ? 1 : CROP_FILL;
-    const scale = Math.min(1 / Math.max((right - left) / width, (bottom - top) / height, 1e-6)) * fill;
     // No more than the image is shown at once.
     const least = Math.min(width / image.width, height / image.height);
-    const [visibleWidth, visibleHeight] = [width / Math.max(scale, least), height / Math.max(scale, least)];
+    const scale = Math.max(least, fill / Math.max((right - left) / width, (bottom - top) / height, 1e-6));
+    const [visibleWidth, visibleHeight] = [width / scale, height / scale];
     const centre = (low: number, high: number, visible: number, all: number) => {
       const start = (low + high - visible) / 2;
       return visible >= all ? (all - visible) / 2 : Math.min(Math.max(start, 0), all - visible);

@@ -1,6 +1,6 @@
 /** Keeps the 3D view in sync with the state of the page. */
 import { effect, signal } from "@preact/signals";
-import { toSim3 } from "sim3align/conventions";
+import { compose, invert, toSim3 } from "sim3align/conventions";
 import {
   display3d,
   effectiveTheme,
@@ -119,30 +119,13 @@ function subscribe(view: View, isDragging: () => boolean): void {
     view.setCameras(
       cameras === null || own === undefined
         ? []
-        : cameras.filter((one) => one !== own).map((one) => seenFrom(own, one)),
+        : cameras.filter((one) => one !== own).map((one) => compose(invert(own), one).matrix),
     );
   });
   effect(() => view.select(selected.value?.id ?? null));
   effect(() => view.setGizmo(gizmo.value, gizmoSettings.value));
   effect(() => view.setGround(support.value));
   effect(() => view.measure(measured.value ?? []));
-}
-
-/** The pose of a camera in the frame of another, column-major; both are given as camera to world, row by row. */
-function seenFrom(own: readonly number[], other: readonly number[]): number[] {
-  const at = (m: readonly number[], row: number, column: number) => m[4 * row + column] ?? 0;
-  const result = new Array<number>(16).fill(0);
-  result[15] = 1;
-  // The inverse of a rigid motion: Rᵀ (x − t).
-  for (const row of [0, 1, 2]) {
-    for (const column of [0, 1, 2, 3]) {
-      for (const k of [0, 1, 2]) {
-        const moved = column === 3 ? at(other, k, 3) - at(own, k, 3) : at(other, k, column);
-        result[4 * column + row] = (result[4 * column + row] ?? 0) + at(own, k, row) * moved;
-      }
-    }
-  }
-  return result;
 }
 
 function followPose(view: View, object: ObjectModel, isDragging: () => boolean): () => void {
