@@ -2,8 +2,7 @@
 //! Generative Reconstructions via Partial Monocular Observations".
 //!
 //! Every module imports only from those below it in this list: [`bindings`], [`track`], [`views`], [`scene`], [`align`],
-//! [`precise`], [`paper`],
-//! [`register`], [`report`], [`options`], [`metrics`], [`evidence`], [`progress`], [`geometry`].
+//! [`precise`], [`paper`], [`register`], [`report`], [`options`], [`metrics`], [`evidence`], [`progress`], [`geometry`].
 
 pub mod align;
 pub mod bindings;

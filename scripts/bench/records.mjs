@@ -38,7 +38,7 @@ export const isWithin = (errors, tolerance) =>
 /** @typedef {Record<string, number | null>} Metrics by name, as `src/metrics/mod.rs` has them */
 
 /**
- * `Alignment` or `PaperAlignment` of `src/report.rs`, as far as tables need it. What only `precise` reports is missing
+ * `Alignment` or `PaperAlignment` of `src/report/`, as far as tables need it. What only `precise` reports is missing
  * from the others.
  * @typedef {object} BenchAlignment
  * @property {number[]} matrix camera from mesh, column by column

@@ -1,0 +1,132 @@
+//! Alignments.
+
+use serde::Serialize;
+
+use super::diagnostics::{Counts, Diagnostics, PreciseDiagnostics};
+use super::pose::{Alternative, Sim3, Uncertainty};
+use super::warning::Warning;
+use crate::geometry::similarity::Similarity;
+use crate::metrics::Metrics;
+
+/// The result of `align`: camera from mesh, x_cam = s·R·p_mesh + t (OpenCV camera: x right, y down, z forward; metres).
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "camelCase")]
+pub struct Alignment {
+    /// The transform.
+    #[serde(flatten)]
+    pub camera_from_mesh: Sim3,
+    /// Probability that the pose is right (scale within 5 %, rotation within 10° up to symmetry, translation within 5 %
+    /// of the diameter), calibrated on generated cases. It assumes that the mesh is the object's.
+    pub confidence: f64,
+    /// Other poses that explain the observation nearly as well, best first: flips, and turns under which the object
+    /// looks alike though the mesh does not.
+    pub alternatives: Vec<Alternative>,
+    /// How well the observation determines each part of the pose; `null` where the search could not tell.
+    pub uncertainty: Option<Uncertainty>,
+    /// Agreement of the posed mesh with the observation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "types", ts(as = "Metrics"))]
+    pub metrics: Option<Metrics>,
+    /// Conditions that the caller should know about; the result stands.
+    pub warnings: Vec<Warning>,
+    /// Everything else: initial scale, score, counts, timings.
+    pub diagnostics: PreciseDiagnostics,
+}
+
+/// The result of `align` with `preset: "paper"`: camera from mesh, x_cam = s·R·p_mesh + t (OpenCV camera: x right, y
+/// down, z forward; metres).
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "camelCase")]
+pub struct PaperAlignment {
+    /// The transform.
+    #[serde(flatten)]
+    pub camera_from_mesh: Sim3,
+    /// Agreement of the posed mesh with the observation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "types", ts(as = "Metrics"))]
+    pub metrics: Option<Metrics>,
+    /// Conditions that the caller should know about; the result stands.
+    pub warnings: Vec<Warning>,
+    /// Everything else: initial scale, counts, timings.
+    pub diagnostics: Diagnostics,
+}
+
+/// The result of an alignment by either preset.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum AnyAlignment {
+    /// Of the preset `precise`.
+    Precise(Box<Alignment>),
+    /// Of the preset `paper`.
+    Paper(Box<PaperAlignment>),
+}
+
+impl AnyAlignment {
+    /// The transform.
+    pub fn camera_from_mesh(&self) -> &Sim3 {
+        match self {
+            Self::Precise(found) => &found.camera_from_mesh,
+            Self::Paper(found) => &found.camera_from_mesh,
+        }
+    }
+
+    /// Alternative poses; only `precise` has them.
+    pub fn alternatives(&self) -> &[Alternative] {
+        match self {
+            Self::Precise(found) => &found.alternatives,
+            Self::Paper(_) => &[],
+        }
+    }
+
+    /// The metrics, unless they were not asked for.
+    pub fn metrics(&self) -> Option<Metrics> {
+        match self {
+            Self::Precise(found) => found.metrics,
+            Self::Paper(found) => found.metrics,
+        }
+    }
+
+    /// What all presets report.
+    pub fn diagnostics(&self) -> &Diagnostics {
+        match self {
+            Self::Precise(found) => &found.diagnostics.common,
+            Self::Paper(found) => &found.diagnostics,
+        }
+    }
+}
+
+impl From<Alignment> for AnyAlignment {
+    fn from(alignment: Alignment) -> Self {
+        Self::Precise(Box::new(alignment))
+    }
+}
+
+impl From<PaperAlignment> for AnyAlignment {
+    fn from(alignment: PaperAlignment) -> Self {
+        Self::Paper(Box::new(alignment))
+    }
+}
+
+/// The pose that a method found.
+#[derive(Debug, Clone, Copy)]
+pub struct Solution {
+    /// The pose.
+    pub camera_from_mesh: Similarity,
+    /// Whether the scale was held at a bound.
+    pub clamped: bool,
+    /// Whether the refinement converged.
+    pub converged: bool,
+    /// Root mean square residual of the refinement, in metres.
+    pub residual_m: f64,
+    /// Sizes of the problem and events during the run.
+    pub counts: Counts,
+}
+
+impl Solution {
+    /// A pose of which nothing else is known.
+    pub fn of_pose(camera_from_mesh: Similarity) -> Self {
+        Self { camera_from_mesh, clamped: false, converged: true, residual_m: 0.0, counts: Counts::default() }
+    }
+}

@@ -1,0 +1,73 @@
+//! Poses as results state them.
+
+use serde::Serialize;
+
+use crate::geometry::similarity::Similarity;
+
+/// A similarity y = s·R·x + t in the forms that applications use.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "camelCase")]
+pub struct Sim3 {
+    /// s, target units per source unit; for `align`, metres per mesh unit.
+    pub scale: f64,
+    /// R as a unit quaternion [x, y, z, w], w ≥ 0 (three.js, glTF).
+    pub rotation: [f64; 4],
+    /// R as three rows of three.
+    pub rotation_matrix: [[f64; 3]; 3],
+    /// t, in target units; for `align`, metres.
+    pub translation: [f64; 3],
+    /// The 4×4 matrix, 16 numbers **column by column** (three.js `Matrix4.elements`, glTF `node.matrix`, WebGPU).
+    #[cfg_attr(feature = "types", ts(type = "number[]"))]
+    pub matrix: [f64; 16],
+}
+
+impl From<&Similarity> for Sim3 {
+    fn from(similarity: &Similarity) -> Self {
+        let row = |i: usize| similarity.rotation.matrix().row(i).transpose().into();
+        Self {
+            scale: similarity.scale,
+            rotation: similarity.quaternion_xyzw(),
+            rotation_matrix: [row(0), row(1), row(2)],
+            translation: similarity.translation.into(),
+            matrix: similarity.to_column_major(),
+        }
+    }
+}
+
+/// Another pose that explains the observation: a transform like the alignment's own.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "camelCase")]
+pub struct Alternative {
+    /// The transform from the mesh's frame to the camera's.
+    #[serde(flatten)]
+    pub camera_from_mesh: Sim3,
+    /// Its score, which compares with the alignment's `diagnostics.score`.
+    pub score: f64,
+    /// The angle between its rotation and the alignment's, in degrees, 0 to 180.
+    pub turn_deg: f64,
+    /// By how much its colours agree less with the photo than the alignment's, as a difference of correlations; present
+    /// where colours were compared.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "types", ts(optional))]
+    pub color_margin: Option<f64>,
+}
+
+/// Standard deviations of the pose's parts, as the observation determines them. Parts that a single view leaves open,
+/// such as the turn of a round object about its axis, have large ones.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "camelCase")]
+pub struct Uncertainty {
+    /// Of the scale, relative: 0.01 is one per cent.
+    pub scale: f64,
+    /// Of the rotation about the least determined axis, in degrees.
+    pub rotation_deg: f64,
+    /// That axis: a unit vector in the camera's frame.
+    pub rotation_axis: [f64; 3],
+    /// Of the mesh centre's position across the line of sight, in metres.
+    pub lateral_m: f64,
+    /// Of the mesh centre's distance from the camera, in metres.
+    pub distance_m: f64,
+}

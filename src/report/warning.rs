@@ -1,0 +1,49 @@
+//! Warnings.
+
+use serde::Serialize;
+
+/// A condition that the caller should know about; the result stands.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+pub struct Warning {
+    /// The kind of warning, stable across releases.
+    pub code: WarningCode,
+    /// What was found, and what to do about it.
+    pub message: String,
+}
+
+/// The kinds of warning.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "SCREAMING_SNAKE_CASE")]
+#[non_exhaustive]
+pub enum WarningCode {
+    /// Depths so large that they look like millimetres passed as metres.
+    DepthLooksLikeMillimetres,
+    /// Depths so small that they look like metres taken as millimetres.
+    DepthLooksTooSmall,
+    /// The mask covers the whole image: it is probably inverted, or no mask.
+    MaskCoversImage,
+    /// The mask touches the image border: part of the object is outside the view.
+    MaskTouchesBorder,
+    /// Less than half of the mask has a depth reading.
+    SparseDepth,
+    /// The scale was held at a bound of `scale` or of the guard.
+    ScaleClamped,
+    /// The scale fell below 0.3 of the initial scale.
+    ScaleCollapsed,
+    /// The refinement ended before it converged.
+    NotConverged,
+    /// Even the best pose explains the observation poorly: the mesh may be of another object.
+    MeshDoubtful,
+    /// A view contradicts the others and does not count (`alignViews`).
+    ViewContradicts,
+    /// A view shows too little where the object should be, and does not count (`alignViews`).
+    ViewShowsNothing,
+    /// The camera file has lens distortion, which the pinhole model leaves out. The package's camera reader warns of
+    /// it.
+    CameraNotPinhole,
+    /// The colours of the mesh file cannot be read, such as a texture in an unsupported format: the mesh is aligned by its
+    /// shape alone. The package's mesh reader warns of it.
+    ColorsNotRead,
+}
