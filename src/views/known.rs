@@ -10,6 +10,8 @@ use crate::precise::grid::CropGrid;
 use crate::precise::pose::CropPose;
 use crate::precise::ranking::{Scored, distinct};
 use crate::precise::recipe::{COARSE, FINE, FINEST, MIDDLE};
+use crate::precise::refine::Refiner;
+use crate::precise::render::Canvas;
 use crate::precise::search::Search;
 
 /// Share of a view's own best score below which a pose contradicts the view, and the one that a view adds at least, so that
@@ -122,12 +124,19 @@ pub fn on_fine_grids<'a>(parts: &[Part<'a>], lock_scale: bool) -> Joint<'a> {
 pub fn with_fused_size(parts: &[Part<'_>], pose: WorldPose, renders: &mut usize) -> Option<(WorldPose, f64)> {
     let mut joint = on_fine_grids(parts, false);
     let (size, moved) = SizeEvidence::fused(&mut joint, &pose, [SILHOUETTE_ERROR, DEPTH_ERROR])?;
-    // Each view by itself, which does not depend on errors of the camera poses.
-    let views: Vec<SizeEvidence> = joint
-        .views
-        .iter()
-        .filter_map(|view| SizeEvidence::at(view.objective, &view.camera.see(&moved)?, SILHOUETTE_ERROR))
-        .collect();
+    // Each view by itself, where its own evidence puts the object: that does not depend on errors of the camera poses.
+    let mut canvas = Canvas::default();
+    let (mut views, mut apart) = (Vec::new(), 0.0);
+    for view in &joint.views {
+        let Some(seen) = view.camera.see(&moved) else { continue };
+        let alone = Refiner { objective: view.objective, lock_scale: true }.refine(&mut canvas, seen, STEPS[1]);
+        *renders += alone.renders;
+        apart += view.camera.place(&alone.pose).center.distance_squared(moved.center);
+        views.extend(SizeEvidence::at(view.objective, &alone.pose, SILHOUETTE_ERROR));
+    }
+    // What the cameras are off, the distances between the sides that they see are off.
+    let apart = (apart / joint.views.len().max(1) as f64).sqrt() * libm::exp(-moved.log_scale);
+    let size = size.with_error(apart);
     let (log_scale, sd) = match mean(views.into_iter()) {
         Some((log_scale, sd)) => mean([size, SizeEvidence { log_scale, sd, ..size }].into_iter())?,
         None => (size.log_scale, size.sd),

@@ -21,7 +21,7 @@ use crate::support::{Draw, fingerprint};
 
 /// Case 0 of a set is easy and has exact camera poses, case 5 is hard and has a wrong view.
 fn rig(seed: u64, views: usize, index: usize) -> Sequence {
-    RigSet { seed, views: Some(views), is_printed: false }.case(index).unwrap()
+    RigSet { seed, views: Some(views), is_printed: false, is_small: false }.case(index).unwrap()
 }
 
 fn views_of(sequence: &Sequence) -> Vec<View> {
@@ -96,7 +96,7 @@ fn a_view_that_shows_nothing_is_blind() {
 
 #[wasm_bindgen_test(unsupported = test)]
 fn a_wrong_view_is_left_out() {
-    let sequence = rig(44, 4, 5);
+    let sequence = rig(46, 4, 5);
     let wrong = sequence.frames.iter().position(|frame| frame.is_wrong).unwrap();
     let found = align(&sequence, views_of(&sequence));
     assert_right(&sequence, &found, "with a wrong view");
@@ -128,7 +128,7 @@ fn unknown_cameras_share_one_size_and_follow_from_the_object() {
 
 /// Objects whose print alone tells how they are turned, in three views with photos.
 fn printed(seed: u64) -> Sequence {
-    RigSet { seed, views: Some(3), is_printed: true }.case(0).unwrap()
+    RigSet { seed, views: Some(3), is_printed: true, is_small: false }.case(0).unwrap()
 }
 
 fn without_photos(mut views: Vec<View>) -> Vec<View> {

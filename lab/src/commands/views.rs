@@ -22,13 +22,13 @@ use super::Failure;
 use super::sequence_rows::{each_row, outcomes};
 
 const USAGE: &str = "\
-Usage: sim3align-lab views [--generated N] [--from I] [--seed S] [--views V] [--threads T] [--printed]
+Usage: sim3align-lab views [--generated N] [--from I] [--seed S] [--views V] [--threads T] [--printed] [--small]
        [--no-color] [--mask-px N] [--holes] [--verbose] [FOLDER...]
 
 Aligns each case with one view, with all views and known camera poses, and with all views and unknown ones, and prints the
 fraction of strictly correct poses and the errors of the size. FOLDER holds a mesh and folders frame_*.
 --from: index of the first generated case. --printed: objects whose print alone tells how they are turned;
---no-color: without their photos.
+--no-color: without their photos. --small: objects of 5 cm, 60 cm from the cameras.
 --mask-px: makes all masks wider by N pixels, narrower if negative. --holes: with holes in the mask of the second view.";
 
 /// What is taken from the frames, or done to them.
@@ -64,7 +64,7 @@ struct Arguments {
 }
 
 fn parse(mut parser: lexopt::Parser) -> core::result::Result<Option<Arguments>, lexopt::Error> {
-    let set = RigSet { seed: 1, views: None, is_printed: false };
+    let set = RigSet { seed: 1, views: None, is_printed: false, is_small: false };
     let fault = Fault { with_color: true, mask_px: 0, holes: false };
     let mut parsed = Arguments { generated: 0..0, set, threads: 1, verbose: false, fault, folders: Vec::new() };
     while let Some(argument) = parser.next()? {
@@ -76,6 +76,7 @@ fn parse(mut parser: lexopt::Parser) -> core::result::Result<Option<Arguments>, 
             Long("views") => parsed.set.views = Some(parser.value()?.parse()?),
             Long("threads") => parsed.threads = parser.value()?.parse()?,
             Long("printed") => parsed.set.is_printed = true,
+            Long("small") => parsed.set.is_small = true,
             Long("no-color") => parsed.fault.with_color = false,
             Long("mask-px") => parsed.fault.mask_px = parser.value()?.parse()?,
             Long("holes") => parsed.fault.holes = true,
@@ -94,6 +95,8 @@ struct Outcome {
     kind: String,
     strict: bool,
     scale: f64,
+    /// The error of the size with its sign, in the first view.
+    bias: f64,
     confidence: f64,
     /// Wrong views found, wrong views, and right views left out.
     left_out: [usize; 3],
@@ -141,6 +144,7 @@ fn run(sequence: &Sequence, fault: Fault, verbose: bool) -> Result<Vec<Outcome>>
         };
         let mut strict = true;
         let mut scale: f64 = 0.0;
+        let mut bias = None;
         let mut left_out = [0; 3];
         for (k, (view, frame)) in found.views.iter().zip(&sequence.frames).enumerate() {
             let is_out = view.role == ViewRole::Contradicting;
@@ -153,12 +157,14 @@ fn run(sequence: &Sequence, fault: Fault, verbose: bool) -> Result<Vec<Outcome>>
             let Some(errors) = errors_of(sequence, k, &view.camera_from_mesh)?.filter(|_| !skipped) else { continue };
             strict &= STRICT.holds(&errors);
             scale = scale.max(errors.scale_error);
+            let ratio = view.camera_from_mesh.scale / frame.camera_from_mesh.map_or(1.0, |t| t.scale);
+            bias.get_or_insert(ratio - 1.0);
             if verbose {
                 println!(
                     "{} {name} {}: scale {:+.2} % rotation {:.2}° translation {:.2} % confidence {:.3} score {:.3} {:?}",
                     sequence.name,
                     frame.name,
-                    100.0 * (view.camera_from_mesh.scale / frame.camera_from_mesh.map_or(1.0, |t| t.scale) - 1.0),
+                    100.0 * (ratio - 1.0),
                     errors.rotation_error_deg,
                     100.0 * errors.translation_error_relative,
                     view.confidence,
@@ -177,7 +183,16 @@ fn run(sequence: &Sequence, fault: Fault, verbose: bool) -> Result<Vec<Outcome>>
             );
         }
         let kind = sequence.kind.clone();
-        outcomes.push(Outcome { row, kind, strict, scale, confidence: found.confidence, left_out, ms });
+        outcomes.push(Outcome {
+            row,
+            kind,
+            strict,
+            scale,
+            bias: bias.unwrap_or_default(),
+            confidence: found.confidence,
+            left_out,
+            ms,
+        });
     }
     Ok(outcomes)
 }
@@ -193,9 +208,9 @@ pub fn main(arguments: lexopt::Parser) -> core::result::Result<(), Failure> {
     let outcomes =
         outcomes(folders, generated, threads, |index| set.case(index), |sequence| run(sequence, fault, verbose))?;
     println!(
-        "| row | cases | n | strict % | size error median % | ≤ .5 % | ≤ 2 % | confidence ≥ .9 and wrong | wrong views found | right views left out | ms |"
+        "| row | cases | n | strict % | size error median % | bias % | ≤ .5 % | ≤ 2 % | confidence ≥ .9 and wrong | wrong views found | right views left out | ms |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|---|---|");
     each_row(
         &ROWS,
         &outcomes,
@@ -205,10 +220,11 @@ pub fn main(arguments: lexopt::Parser) -> core::result::Result<(), Failure> {
             let within = |limit: f64| share(of.iter().filter(|o| o.scale <= limit).count());
             let sum = |i: usize| of.iter().map(|o| o.left_out[i]).sum::<usize>();
             println!(
-                "| {name} | {kind} | {} | {:.1} | {} | {:.1} | {:.1} | {} | {} of {} | {} | {} |",
+                "| {name} | {kind} | {} | {:.1} | {} | {} | {:.1} | {:.1} | {} | {} of {} | {} | {} |",
                 of.len(),
                 share(of.iter().filter(|o| o.strict).count()),
                 cell(median(of.iter().map(|o| 100.0 * o.scale).collect()), 2),
+                cell(median(of.iter().map(|o| 100.0 * o.bias).collect()), 2),
                 within(0.005),
                 within(0.02),
                 of.iter().filter(|o| o.confidence >= 0.9 && !o.strict).count(),

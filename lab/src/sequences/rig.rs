@@ -18,6 +18,10 @@ const DRAWS: u64 = 64;
 /// Fewest visible pixels of the object in a view, and the smallest visible fraction.
 const MIN_PX: usize = 1500;
 const MIN_VISIBLE: f64 = 0.6;
+/// The diagonal of small objects and the distance from which they are seen, metres, and the fewest pixels of them.
+const SMALL: f64 = 0.05;
+const SMALL_DISTANCE: f64 = 0.6;
+const SMALL_PX: usize = 300;
 /// Errors of noisy camera poses: degrees and metres.
 const NOISE: [f64; 2] = [0.5, 0.003];
 
@@ -30,6 +34,8 @@ pub struct RigSet {
     pub views: Option<usize>,
     /// Whether only the print of the objects tells how they are turned, and the frames have photos.
     pub is_printed: bool,
+    /// Whether the objects are 5 cm large, 60 cm from the cameras.
+    pub is_small: bool,
 }
 
 impl RigSet {
@@ -50,7 +56,11 @@ impl RigSet {
     fn draw(&self, index: usize, seed: u64) -> Result<Option<Sequence>> {
         let random = &mut Random::new(seed, STREAM);
         let tier = Tier::of(index);
-        let stage = Stage::draw(tier, self.is_printed, random)?;
+        let mut stage = Stage::draw(tier, self.is_printed, self.is_small.then_some(SMALL), random)?;
+        if self.is_small {
+            stage.distance = SMALL_DISTANCE;
+        }
+        let least = if self.is_small { SMALL_PX } else { MIN_PX };
         let count = self.views.unwrap_or_else(|| 2 + random.below(7));
         // Between neighbouring cameras.
         let baseline = between(random, 5.0, 180.0);
@@ -67,7 +77,7 @@ impl RigSet {
             let past = Vector3::new(off(), off(), off());
             let camera = stage.look([heading, elevation, between(random, -8.0, 8.0)], distance, past)?;
             let scene = stage.shot(&camera, None);
-            if scene.visible_px() < MIN_PX || 1.0 - scene.hidden < MIN_VISIBLE {
+            if scene.visible_px() < least || 1.0 - scene.hidden < MIN_VISIBLE {
                 return Ok(None);
             }
             scenes.push(scene);

@@ -68,9 +68,14 @@ pub struct Made {
 
 impl Stage {
     /// A stage with an object of any family that fits on a desk; `is_printed`: with one whose shape does not tell how it is
-    /// turned, but for its print.
-    pub fn draw(tier: Tier, is_printed: bool, random: &mut Random) -> Result<Self> {
-        let object = if is_printed { families::draw_symmetric(random)? } else { families::draw_for_desk(random)? };
+    /// turned, but for its print. `diagonal_m`: the size that it is brought to.
+    pub fn draw(tier: Tier, is_printed: bool, diagonal_m: Option<f64>, random: &mut Random) -> Result<Self> {
+        let mut object = if is_printed { families::draw_symmetric(random)? } else { families::draw_for_desk(random)? };
+        if let Some(diagonal) = diagonal_m {
+            let factor = (diagonal / object.diagonal()) as f32;
+            let positions = object.mesh.positions().iter().map(|p| *p * factor).collect();
+            object.mesh = Mesh::new(positions, object.mesh.triangles().to_vec())?;
+        }
         let (placed, symmetry) = put_down(&object, tier, random)?;
         let print = is_printed.then(|| Print::draw(&placed, &symmetry, PrintKind::Label, random));
         let (width, height) = (SIZE[0] as f64, SIZE[1] as f64);

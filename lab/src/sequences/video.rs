@@ -101,7 +101,7 @@ impl VideoSet {
         let random = &mut Random::new(seed, STREAM);
         let motion = Motion::ALL[index % Motion::ALL.len()];
         let tier = if (index / Motion::ALL.len()).is_multiple_of(2) { Tier::Easy } else { Tier::Medium };
-        let stage = Stage::draw(tier, self.is_printed, random)?;
+        let stage = Stage::draw(tier, self.is_printed, None, random)?;
         let diagonal = stage.object.diagonal();
         let (heading, elevation) = (between(random, 0.0, 360.0), between(random, 25.0, 45.0));
         let turn = sign(random) * between(random, 20.0, 60.0);
