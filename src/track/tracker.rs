@@ -45,6 +45,8 @@ const STEPS: [usize; 2] = [6, 3];
 const FITS: f32 = 0.85;
 const UNCERTAIN: f32 = 0.7;
 const LOST: f32 = 0.45;
+/// The ratio of the fits at which a pose found anew counts instead of one that continues what was tracked.
+const BETTER: f32 = 1.1;
 /// Weight of a frame in the usual fit.
 const NEW: f32 = 0.1;
 /// Share of the silhouette that must be seen in a frame without a mask, for it to be certain, and not to be lost.
@@ -206,10 +208,25 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             let has_turned = angle_between(seen.found.pose.rotation, before) > MAX_TURN;
             seen.shown(frame) >= if has_turned { MOST } else { ENOUGH }
         };
-        let anew = anew.filter(is_told);
-        let best = if fit(&anew, self) > 1.1 * fit(&near, self) { anew } else { near };
+        let anew = anew.filter(is_told).map(|seen| self.unturned(frame, seen, before));
+        let best = if fit(&anew, self) > BETTER * fit(&near, self) { anew } else { near };
         let least = if self.state == TrackState::Lost { UNCERTAIN } else { LOST };
         best.filter(|seen| self.fit(seen) >= least && seen.visible >= SEEN[1])
+    }
+
+    /// What was found, in the rotation of before where that fits nearly as well: an object rarely turns over unseen, and a
+    /// part of it that comes out behind another may look like its other end.
+    fn unturned(&self, frame: &Frame, seen: Seen, before: DQuat) -> Seen {
+        if angle_between(seen.found.pose.rotation, before) <= MAX_TURN {
+            return seen;
+        }
+        let expected = CropPose { rotation: before, ..seen.found.pose };
+        // The more of it is hidden, the less its fit says.
+        let is_near = |other: &Seen| (BETTER + other.found.score.hidden) * self.fit(other) >= self.fit(&seen);
+        match self.sight.around(frame, &[expected], true) {
+            Some(other) if is_near(&other) => Seen { lead: seen.lead, ..other },
+            _ => seen,
+        }
     }
 
     /// Searches all rotations, with what is known if the object was seen before in this rotation.
