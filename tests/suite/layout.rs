@@ -141,10 +141,10 @@ fn icp_finds_the_turn_that_the_shape_shows() {
 /// ICP with the closed form of Umeyama in each iteration, over all samples, until it stands still.
 fn icp_oracle(mesh: &Mesh, estimate: &Similarity, truth: &Similarity) -> f64 {
     let tree = TriangleTree::new(mesh);
-    let points = sample_surface(mesh, 3000, 5).unwrap().points;
+    let points = sample_surface(mesh, 1000, 5).unwrap().points;
     let start = truth.inverse().compose(estimate);
     let mut total = Similarity::identity();
-    for _ in 0..2000 {
+    for _ in 0..500 {
         let pairs: Vec<Pair> = points
             .iter()
             .map(|p| {
