@@ -556,7 +556,7 @@ translationErrorRelative: number,
 addSMm: number, };
 
 /**
- * Errors of layout of an estimate relative to the true pose, up to the symmetry of the object as in [`PoseErrors`].
+ * Errors of layout of an estimate relative to the true pose, up to the symmetry of the object as the pose errors.
  */
 export type LayoutErrors = { 
 /**
