@@ -3,6 +3,7 @@
 import { readFileSync } from "node:fs";
 import { Command, CommanderError } from "commander";
 import { alignCommand } from "./cli/align-command.js";
+import { bopCommand } from "./cli/bop-command.js";
 import { statusHelp } from "./cli/case-options.js";
 import { evaluateCommand } from "./cli/evaluate-command.js";
 import { sceneCommand } from "./cli/scene-command.js";
@@ -18,6 +19,7 @@ Examples
   sim3align scene scenes/desk --glb desk.glb     align all objects of a scene; write it as one file
   sim3align track videos/mug                     track an object through the frames of a video
   sim3align evaluate cases/mug --transform results.json
+  sim3align bop bop/lmo --split test --evaluate  align the targets of a BOP dataset, and score them
 
 See "sim3align align --help" for the layout of a case folder, and for the frames and units of the results.
 ${statusHelp}`;
@@ -29,6 +31,7 @@ const program = new Command("sim3align")
   .addCommand(trackCommand())
   .addCommand(evaluateCommand())
   .addCommand(sceneCommand())
+  .addCommand(bopCommand())
   .addHelpText("after", help);
 
 for (const command of [program, ...program.commands]) {

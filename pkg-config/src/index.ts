@@ -32,6 +32,7 @@ export type {
   ExtentAxis,
   GuardMode,
   Icp,
+  LayoutErrors,
   Metrics,
   PoseErrors,
   PreciseDiagnostics,

@@ -1,12 +1,13 @@
-/** The registration module: the WebAssembly module with `register`, `estimateSim3` and the preset `paper`. */
+/** The registration module: the WebAssembly module with `register`, `estimateSim3`, the preset `paper` and errors of BOP. */
 import type { Cloud, CoreListener } from "./core.js";
-import type { PaperAlignment, Registration } from "./generated/types.js";
+import type { BopErrors, PaperAlignment, Registration } from "./generated/types.js";
 import type { CoreInput } from "./input/core-input.js";
 import { type Glue, type LoadedModule, WasmModule } from "./wasm-module.js";
 
 /** The functions of the module. They validate their arguments and throw errors with codes. */
 export interface Registrar extends Glue {
   alignPaper(input: CoreInput, options: object, onProgress: CoreListener | undefined): PaperAlignment;
+  bopErrors(input: object, estimates: readonly object[], truths: readonly object[]): BopErrors[];
   register(source: Cloud, target: Cloud, options: object): Registration;
   estimateSim3(source: Cloud, target: Cloud, correspondences: Uint32Array, options: object): Registration;
 }

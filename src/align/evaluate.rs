@@ -10,7 +10,8 @@ use crate::evidence::extents::{Extents, initial_scale};
 use crate::evidence::observation::Observation;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::Similarity;
-use crate::metrics::pose_error::{PoseErrors, pose_errors};
+use crate::metrics::layout::LayoutErrors;
+use crate::metrics::pose_error::{PoseComparison, PoseErrors};
 use crate::metrics::symmetry::Symmetry;
 use crate::metrics::{self, Metrics};
 use crate::options::{Options, options};
@@ -64,6 +65,8 @@ pub struct Evaluation {
     pub metrics: Metrics,
     /// The errors against the truth; `null` where no truth was given.
     pub errors: Option<PoseErrors>,
+    /// The errors of layout against the truth; `null` where no truth was given.
+    pub layout: Option<LayoutErrors>,
     /// Conditions that the caller should know about; the result stands.
     pub warnings: Vec<Warning>,
     /// How the scale compares with the initial one.
@@ -124,11 +127,16 @@ pub fn evaluate_prepared(
     let reconstructed = Extents::of("mesh", &evidence.reconstructed.points)?;
     let initial_scale = initial_scale(&observed, &reconstructed);
     let scale_ratio = camera_from_mesh.scale / initial_scale;
-    let errors =
-        options.truth.map(|truth| pose_errors(mesh, camera_from_mesh, &truth, &options.symmetry)).transpose()?;
+    let compared = options.truth.map(|truth| {
+        let comparison = PoseComparison::new(mesh, camera_from_mesh, &truth, &options.symmetry)?;
+        let errors = comparison.errors()?;
+        Ok((errors, LayoutErrors::of(&comparison, &errors)?))
+    });
+    let (errors, layout) = compared.transpose()?.unzip();
     Ok(Evaluation {
         metrics,
         errors,
+        layout,
         warnings: warnings::about_observation(observation),
         diagnostics: EvaluationDiagnostics { initial_scale, scale_ratio, collapsed: is_collapsed(scale_ratio) },
     })

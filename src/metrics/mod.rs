@@ -1,5 +1,8 @@
 //! Metrics: agreement of a transform with the observation (as in the paper), and errors relative to the true pose.
 
+pub mod bop;
+pub mod layout;
+pub mod oriented_box;
 pub mod pose_error;
 pub mod silhouette;
 pub mod surface;

@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
+import { plyText } from "../support/bop-dataset.js";
 import { folder, results, run, writeCase } from "../support/command-line.js";
 import { npy, png } from "../support/files.js";
 import { assertValid } from "../support/gltf-validator.js";
@@ -75,7 +76,10 @@ test("an image of BOP is a scene", () => {
   }
   mkdirSync(join(folder, "bop", "models"), { recursive: true });
   for (const [i, pose] of poses.slice(0, 2).entries()) {
-    writeFileSync(join(folder, "bop", "models", `obj_00000${i + 1}.ply`), ply(1000 * pose.scale));
+    writeFileSync(
+      join(folder, "bop", "models", `obj_00000${i + 1}.ply`),
+      plyText({ ...standingMesh, positions: standingMesh.positions.map((x) => 1000 * pose.scale * x) }),
+    );
   }
   const { status, stderr } = run("scene", scene, "--quality", "fast", "--json", "b.json");
   assert.equal(status, 0, stderr);
@@ -85,24 +89,6 @@ test("an image of BOP is a scene", () => {
     assert.ok(object.errors.scaleError < 0.05);
   }
 });
-
-/** The mesh as a text PLY, scaled. */
-function ply(scale: number): string {
-  const { positions, indices } = standingMesh;
-  const rows = (values: ArrayLike<number>, prefix = "") =>
-    Array.from(
-      { length: values.length / 3 },
-      (_, i) => `${prefix}${[0, 1, 2].map((k) => values[3 * i + k]).join(" ")}`,
-    );
-  return [
-    "ply\nformat ascii 1.0",
-    `element vertex ${positions.length / 3}\nproperty float x\nproperty float y\nproperty float z`,
-    `element face ${indices.length / 3}\nproperty list uchar int vertex_indices\nend_header`,
-    ...rows(positions.map((x) => scale * x)),
-    ...rows(indices, "3 "),
-    "",
-  ].join("\n");
-}
 
 test("a scene that cannot be read fails alone", () => {
   writeCase("no-depth", { "camera.json": camera });

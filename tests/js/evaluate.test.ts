@@ -49,6 +49,22 @@ test("a wrong pose has the errors that were put into it", async () => {
   assert.ok((metrics.depthMaeMm ?? 0) > (perfect.metrics.depthMaeMm ?? 0));
 });
 
+test("layout says how well the object occupies its place", async () => {
+  const perfect = (await aligner.evaluate(input, truth, { truth })).layout;
+  assert.ok(perfect?.isFound && perfect.isCadAligned);
+  assert.ok(Math.abs(perfect.boxIou - 1) < 1e-9 && perfect.icpRotationDeg < 0.01 && perfect.addSRelative < 1e-5);
+  // ICP undoes the turn; the box and the surface are off by it.
+  const { layout, errors } = await aligner.evaluate(input, turned(15), { truth });
+  assert.ok(layout !== null && errors !== null);
+  assert.ok(Math.abs(layout.icpRotationDeg - 15) < 0.5, `icpRotationDeg ${layout.icpRotationDeg}`);
+  assert.ok(layout.boxIou > 0.4 && layout.boxIou < 0.95 && layout.isFound && layout.isCadAligned);
+  // 28 cm aside, nothing is in common.
+  const away = await aligner.evaluate(input, { ...truth, translation: [0.3, 0, 0.7] }, { truth });
+  assert.ok(away.layout !== null);
+  assert.deepEqual([away.layout.boxIou, away.layout.isFound, away.layout.isCadAligned], [0, false, false]);
+  assert.equal((await aligner.evaluate(input, truth)).layout, null);
+});
+
 test("all forms of a transform are the same transform", async () => {
   const reference = await aligner.evaluate(input, truth, { truth });
   const rows = rotationRows(truth.rotation);

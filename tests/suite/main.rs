@@ -6,6 +6,7 @@
 pub mod align;
 pub mod align_task;
 pub mod angle;
+pub mod bop;
 pub mod density;
 pub mod determinism;
 pub mod distance_transform;
@@ -25,6 +26,7 @@ pub mod hostile;
 pub mod icp;
 pub mod image;
 pub mod kd_tree;
+pub mod layout;
 pub mod matching;
 pub mod mesh;
 pub mod metrics;

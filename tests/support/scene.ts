@@ -170,7 +170,7 @@ export const input = scene(mesh);
 export const brick = scene(cuboid(1, 0.7, 0.4));
 
 /** A cuboid around the origin. */
-function cuboid(x: number, y: number, z: number): Mesh {
+export function cuboid(x: number, y: number, z: number): Mesh {
   const corners = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((i) => [i & 1 ? x : -x, i & 2 ? y : -y, i & 4 ? z : -z]);
   const sides = ["0132", "4576", "0451", "2376", "0264", "1375"].map((side) => Array.from(side, Number));
   const indices = sides.flatMap(([a = 0, b = 0, c = 0, d = 0]) => [a, b, c, a, c, d]);

@@ -17,7 +17,8 @@ use sim3align::align::method::Method;
 use sim3align::align::task::AlignTask;
 use sim3align::evidence::observation::Observation;
 use sim3align::metrics::Metrics;
-use sim3align::metrics::pose_error::{PoseErrors, pose_errors};
+use sim3align::metrics::layout::LayoutErrors;
+use sim3align::metrics::pose_error::{PoseComparison, PoseErrors};
 use sim3align::metrics::symmetry::{Symmetry, SymmetryAxis};
 use sim3align::precise::clean::CleanObservation;
 use sim3align::precise::efforts;
@@ -81,6 +82,8 @@ pub struct Record {
     pub error: Option<String>,
     /// Errors relative to the true pose, if available.
     pub errors: Option<PoseErrors>,
+    /// Errors of layout relative to the true pose, if available.
+    pub layout: Option<LayoutErrors>,
     /// Index of the first alternative within [`STRICT`], if any.
     pub right_alternative: Option<usize>,
     /// Metrics of the true pose.
@@ -312,16 +315,24 @@ pub(super) fn record_of(case: &BenchCase, outcome: core::result::Result<AnyAlign
     };
     let evaluated = case.truth.as_ref().map(|truth| {
         let scored = evaluate(&case.observation, &case.mesh, &truth.camera_from_mesh, &EvaluateOptions::default());
-        let errors = |pose: &Sim3| {
-            let pose = Similarity::from_column_major(&pose.matrix).ok()?;
-            pose_errors(&case.mesh, &pose, &truth.camera_from_mesh, &truth.symmetry).ok()
+        let compared = |pose: &Sim3| -> Result<_> {
+            let pose = Similarity::from_column_major(&pose.matrix)?;
+            let comparison = PoseComparison::new(&case.mesh, &pose, &truth.camera_from_mesh, &truth.symmetry)?;
+            let errors = comparison.errors()?;
+            Ok((comparison, errors))
         };
-        let is_right = |other: &Alternative| errors(&other.camera_from_mesh).is_some_and(|e| STRICT.holds(&e));
+        let is_right =
+            |other: &Alternative| compared(&other.camera_from_mesh).is_ok_and(|(_, errors)| STRICT.holds(&errors));
+        let of_answer = |answer: &AnyAlignment| -> Result<_> {
+            let (comparison, errors) = compared(answer.camera_from_mesh())?;
+            Ok((errors, LayoutErrors::of(&comparison, &errors)?))
+        };
         let alternatives = alignment.as_ref().map_or(&[][..], AnyAlignment::alternatives);
         let right_alternative = alternatives.iter().position(is_right);
-        (scored.ok(), alignment.as_ref().and_then(|a| errors(a.camera_from_mesh())), right_alternative)
+        (scored.ok(), alignment.as_ref().and_then(|answer| of_answer(answer).ok()), right_alternative)
     });
     let (scored, errors, right_alternative) = evaluated.unwrap_or_default();
+    let (errors, layout) = errors.unzip();
     Record {
         name: case.name.clone(),
         tier: case.tier.clone(),
@@ -332,6 +343,7 @@ pub(super) fn record_of(case: &BenchCase, outcome: core::result::Result<AnyAlign
         alignment,
         error,
         errors,
+        layout,
         right_alternative,
         truth_metrics: scored.as_ref().map(|scored| scored.metrics),
         truth_score: None,

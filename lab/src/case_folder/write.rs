@@ -127,6 +127,27 @@ pub fn ply_points(points: &[Vec3]) -> Vec<u8> {
     bytes
 }
 
+/// A mesh as binary PLY: float x, y, z, and triangles.
+pub fn ply_mesh(mesh: &Mesh) -> Vec<u8> {
+    let (vertices, triangles) = (mesh.positions(), mesh.triangles());
+    let mut bytes = format!(
+        concat!(
+            "ply\nformat binary_little_endian 1.0\nelement vertex {}\n",
+            "property float x\nproperty float y\nproperty float z\n",
+            "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+        ),
+        vertices.len(),
+        triangles.len(),
+    )
+    .into_bytes();
+    bytes.extend(vertices.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes));
+    for triangle in triangles {
+        bytes.push(3);
+        bytes.extend(triangle.iter().flat_map(|i| i.to_le_bytes()));
+    }
+    bytes
+}
+
 /// A mesh as GLB: one node, one mesh, float positions and 32-bit indices.
 pub fn glb(mesh: &Mesh) -> Vec<u8> {
     glb_colored(mesh, &[])

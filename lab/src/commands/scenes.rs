@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use lexopt::prelude::*;
 use sim3align_geometry::error::Error;
-use sim3align_lab::scenes::{Prior, SCENES, SceneSet};
+use sim3align_lab::scenes::{Prior, SCENES, SceneSet, write_bop};
 
 use super::Failure;
 
 const USAGE: &str = "\
-Usage: sim3align-lab scenes OUT_DIR [--scenes N] [--set-seed S] [--prior P] [--threads N]
+Usage: sim3align-lab scenes OUT_DIR [--scenes N] [--set-seed S] [--prior P] [--bop] [--threads N]
 
 Writes cluttered scenes as case folders OUT_DIR/PRIOR/SCENE-OBJECT-FAMILY: depth.png, mask.png, camera.json, mesh.glb,
 gt.json and meta.json. Folders that exist are left alone: a run that was stopped goes on.
@@ -17,6 +17,8 @@ gt.json and meta.json. Folders that exist are left alone: a run that was stopped
   --scenes N    how many, default 100, which are 338 pairs
   --set-seed S  default 0
   --prior P     what made the meshes: detailed, smooth or both (default)
+  --bop         write one dataset in the layout of BOP instead, OUT_DIR/models and OUT_DIR/test: a scene is an image, and
+                each object its own model, without the errors of a prior
   --threads N   default: all
   --help        this text";
 
@@ -24,12 +26,14 @@ struct Arguments {
     folder: PathBuf,
     set: SceneSet,
     priors: Vec<Prior>,
+    is_bop: bool,
     threads: usize,
 }
 
 /// `None` if help is requested.
 fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Error> {
     let (mut folder, mut scenes, mut set_seed, mut priors) = (None, SCENES, 0, Prior::ALL.to_vec());
+    let mut is_bop = false;
     let mut threads = std::thread::available_parallelism().map_or(1, usize::from);
     while let Some(argument) = parser.next()? {
         match argument {
@@ -41,25 +45,31 @@ fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Error>
             Long("prior") => {
                 priors = Prior::several(&parser.value()?.string()?).map_err(|error: Error| error.to_string())?;
             }
+            Long("bop") => is_bop = true,
             Long("threads") => threads = parser.value()?.parse()?,
             _ => return Err(argument.unexpected()),
         }
     }
     let folder = folder.ok_or("no folder to write to")?;
-    Ok(Some(Arguments { folder, set: SceneSet::new(set_seed, scenes), priors, threads }))
+    Ok(Some(Arguments { folder, set: SceneSet::new(set_seed, scenes), priors, is_bop, threads }))
 }
 
 /// Runs the command.
 pub fn main(arguments: lexopt::Parser) -> Result<(), Failure> {
-    let Arguments { folder, set, priors, threads } = match parse(arguments) {
+    let Arguments { folder, set, priors, is_bop, threads } = match parse(arguments) {
         Ok(Some(arguments)) => arguments,
         Ok(None) => return Err(Failure::Help(USAGE)),
         Err(error) => return Err(Failure::Usage(error, USAGE)),
     };
     let all = set.scenes();
-    let written = set.write(&folder, &priors, threads, |done| {
+    let progress = |done| {
         let end = if done == all { "\n" } else { "" };
         eprint!("\r{done} of {all} scenes {end}");
-    });
+    };
+    let written = if is_bop {
+        write_bop(&set, &folder, threads, progress)
+    } else {
+        set.write(&folder, &priors, threads, progress)
+    };
     written.map_err(|error| Failure::Failed(error.to_string()))
 }

@@ -7,6 +7,7 @@
 //! that shows too little of one of its objects is drawn again.
 
 mod arranged;
+mod bop_folder;
 mod case;
 mod clutter;
 mod difficulty;
@@ -19,6 +20,7 @@ mod set;
 mod underside;
 mod view;
 
+pub use bop_folder::write_bop;
 pub use case::{DEPTH_SCALE, SceneCase};
 pub use difficulty::{Sight, difficulty, tier};
 pub use heap::Below;

@@ -17,6 +17,7 @@ use crate::cases::streams::{
 use crate::cases::tier::{Class, Tier};
 use crate::draws::{chance, mixed};
 use sim3align::evidence::observation::Observation;
+use sim3align::metrics::symmetry::{Symmetry, SymmetryAxis};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::image::DepthMap;
 use sim3align_geometry::mesh::Mesh;
@@ -219,6 +220,14 @@ impl ScenePair {
     /// The pair's name, and that of its folder.
     pub fn name(&self) -> String {
         format!("{:03}-{}-{}", self.scene, self.index, self.family)
+    }
+
+    /// The axes of symmetry of the object, in its frame.
+    pub fn symmetry(&self) -> Vec<SymmetryAxis> {
+        match declared(&self.placed.symmetry, &Similarity::identity()) {
+            Symmetry::Declared(axes) => axes,
+            _ => Vec::new(),
+        }
     }
 
     /// How the object is held.

@@ -4,6 +4,7 @@
 mod baselines;
 mod baselines_agreement;
 mod baselines_solvers;
+mod bop_folder;
 mod colors;
 mod evaluation;
 mod fuzz;

@@ -9,6 +9,8 @@ use std::path::Path;
 use serde_json::{Value, json};
 use sim3align::align::evaluate::{EvaluateOptions, Evaluation, EvaluationDiagnostics};
 use sim3align::metrics::Metrics;
+use sim3align::metrics::bop::BopErrors;
+use sim3align::metrics::layout::LayoutErrors;
 use sim3align::metrics::pose_error::PoseErrors;
 use sim3align::metrics::symmetry::Symmetry;
 use sim3align::options::scale::ScaleOption;
@@ -183,6 +185,8 @@ fn types() -> String {
         declaration::<Sim3>(&config),
         declaration::<Metrics>(&config),
         declaration::<PoseErrors>(&config),
+        declaration::<LayoutErrors>(&config),
+        declaration::<BopErrors>(&config),
         declaration::<Counts>(&config),
         declaration::<ScoreTerms>(&config),
         declaration::<ColorReport>(&config),

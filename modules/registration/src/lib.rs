@@ -1,5 +1,8 @@
-//! The exports of the registration module: `register`, `estimateSim3` and the preset `paper`, which all match descriptors.
+//! The exports of the registration module: `register`, `estimateSim3` and the preset `paper`, which all match descriptors,
+//! and the pose errors of BOP.
 //! Each reads its arguments, calls the crate `sim3align`, and returns a plain object.
+
+pub mod bop;
 
 use js_sys::Function;
 use sim3align::align;

@@ -18,7 +18,8 @@ import { ProgressLine } from "./progress-line.js";
 import { Summary } from "./report.js";
 import { transformFileHelp } from "./transform-file.js";
 
-interface BatchFlags extends AlignFlags, FileFlags, OutputFlags {
+/** The flags of a batch. */
+export interface BatchFlags extends AlignFlags, FileFlags, OutputFlags {
   list?: string;
   workers?: number | "auto";
 }
@@ -100,9 +101,13 @@ export function alignCommand(): Command {
 
 async function run(args: string[], flags: BatchFlags): Promise<void> {
   const cases = casesOf(await casePaths(args, flags.list), flags, caseSettings(flags));
-  const output = new Output(flags);
+  await alignBatch(cases, flags, new Output(flags));
+}
+
+/** Aligns cases, and writes and prints their results. */
+export async function alignBatch(cases: readonly CaseToDo[], flags: BatchFlags, output: Output): Promise<void> {
   const batch = new Batch(cases.length, output, flags);
-  let left = cases;
+  let left: readonly CaseToDo[] = cases;
   if (flags.resume) {
     const done = await resumed(output, batch, new Set(cases.map(({ name }) => name)));
     left = cases.filter(({ name }) => !done.has(name));

@@ -15,23 +15,32 @@ export interface OutputFlags {
   resume?: boolean;
 }
 
+/** What gets the entries of cases, in another format. */
+export interface EntrySink {
+  add(name: string, entry: object): void;
+  /** Writes what is not written yet. */
+  end(): void;
+}
+
 /** Writes the entries of cases to files, and tables to stdout; to stderr, if stdout gets entries. */
 export class Output {
   readonly #json: ResultsFile | undefined;
   readonly #jsonl: JsonlFile | undefined;
   readonly #csv: CsvFile | undefined;
+  readonly #sinks: readonly EntrySink[];
   readonly #tables: NodeJS.WriteStream;
   /** Text style of the tables. */
   readonly style: Style;
   #isClosed = false;
 
   /** @throws {@link UsageError} if a file cannot be written */
-  constructor({ json, jsonl, csv, resume = false }: OutputFlags) {
+  constructor({ json, jsonl, csv, resume = false }: OutputFlags, sinks: readonly EntrySink[] = []) {
     checkDistinct({ json, jsonl, csv });
     if (resume && jsonl === undefined) throw new UsageError("--resume needs --jsonl FILE, the record of what is done.");
     this.#json = json === undefined ? undefined : new ResultsFile(json);
     this.#jsonl = jsonl === undefined ? undefined : new JsonlFile(jsonl, resume);
     this.#csv = csv === undefined ? undefined : new CsvFile(csv);
+    this.#sinks = sinks;
     this.#tables = [json, jsonl, csv].includes("-") ? process.stderr : process.stdout;
     this.style = new Style(this.#tables);
     this.#tables.on("error", () => {
@@ -41,7 +50,7 @@ export class Output {
 
   /** Whether nothing will be read any more: "| head" has ended, and there is no file. */
   get isClosed(): boolean {
-    return this.#isClosed && this.#json === undefined && this.#jsonl === undefined && this.#csv === undefined;
+    return this.#isClosed && [this.#json, this.#jsonl, this.#csv, ...this.#sinks].every((file) => file === undefined);
   }
 
   /**
@@ -52,7 +61,9 @@ export class Output {
     // First the record from which the others can be written again.
     if (isFinal) this.#jsonl?.add(name, entry);
     this.#json?.add(name, entry, isFinal);
-    if (isFinal) this.#csv?.add(name, entry);
+    if (!isFinal) return;
+    this.#csv?.add(name, entry);
+    for (const sink of this.#sinks) sink.add(name, entry);
   }
 
   /** The entries of an interrupted batch, which this adds to the files other than that of `jsonl`. */
@@ -60,6 +71,7 @@ export class Output {
     for await (const named of this.#jsonl?.entries() ?? []) {
       this.#json?.add(named.name, named.entry);
       this.#csv?.add(named.name, named.entry);
+      for (const sink of this.#sinks) sink.add(named.name, named.entry);
       yield named;
     }
   }
@@ -69,6 +81,7 @@ export class Output {
     this.#json?.end();
     this.#jsonl?.end();
     this.#csv?.end();
+    for (const sink of this.#sinks) sink.end();
   }
 
   /** Writes human-readable lines. */

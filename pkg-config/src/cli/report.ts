@@ -1,5 +1,5 @@
 /** Human-readable tables of results. */
-import type { AlignResult, Evaluation, Metrics, PoseErrors, Warning } from "../index.js";
+import type { AlignResult, Evaluation, LayoutErrors, Metrics, PoseErrors, Warning } from "../index.js";
 import { fixed, significant } from "./number.js";
 import { failureText, type Outcome, type Success, type ViewsSuccess } from "./outcome.js";
 import type { Style } from "./style.js";
@@ -202,7 +202,7 @@ function countRows({ diagnostics: { preset, counts } }: AlignResult): Row[] {
 
 /** Details of an evaluated case. */
 export function evaluationDetails(name: string, evaluation: Evaluation, style: Style): string[] {
-  const { metrics, errors, warnings, diagnostics } = evaluation;
+  const { metrics, errors, layout, warnings, diagnostics } = evaluation;
   const { scaleRatio, initialScale, collapsed } = diagnostics;
   return [
     style.bold(`${name}: evaluation`),
@@ -215,6 +215,7 @@ export function evaluationDetails(name: string, evaluation: Evaluation, style: S
     "",
     ...metricsSection(metrics, style),
     ...errorsSection(errors, style),
+    ...layoutSection(layout, style),
     ...warningsSection(warnings, style),
   ];
 }
@@ -249,6 +250,21 @@ function errorsSection(errors: PoseErrors | null, style: Style): string[] {
         `${fixed(1000 * translationErrorM, 2)} mm, ${fixed(100 * translationErrorRelative, 2)} % of the diameter`,
       ],
       ["ADD-S", `${fixed(addSMm, 2)} mm`],
+    ]),
+  ];
+}
+
+function layoutSection(layout: LayoutErrors | null, style: Style): string[] {
+  if (layout === null) return [];
+  const { boxIou, icpRotationDeg, addSRelative, isFound, isCadAligned } = layout;
+  return [
+    "",
+    style.bold("Layout"),
+    ...pairs([
+      ["3D IoU", fixed(boxIou, 4)],
+      ["ICP-Rot", `${fixed(icpRotationDeg, 2)}°`],
+      ["ADD-S", `${fixed(100 * addSRelative, 2)} % of the diameter${isFound ? "" : ", not found"}`],
+      ["20 cm, 20°, 20 %", isCadAligned ? "aligned" : "not aligned"],
     ]),
   ];
 }

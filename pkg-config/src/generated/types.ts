@@ -556,6 +556,63 @@ translationErrorRelative: number,
 addSMm: number, };
 
 /**
+ * Errors of layout of an estimate relative to the true pose, up to the symmetry of the object as the pose errors.
+ */
+export type LayoutErrors = { 
+/**
+ * 3D IoU: volume of the intersection over volume of the union of the mesh's bounding box under both transforms, 0 to
+ * 1, higher is better. The boxes are in the axes of the mesh, and the volumes are exact.
+ */
+boxIou: number, 
+/**
+ * ICP-Rot (SAM 3D Objects 2025), degrees, 0 to 180: the rotation that ICP (Besl and McKay 1992, rigid,
+ * point-to-point) needs to bring the surface under the estimated pose onto that under the true one. Half turns of
+ * shapes that look alike afterwards do not count, whether they are declared as symmetries or not.
+ */
+icpRotationDeg: number, 
+/**
+ * ADD-S in both directions, relative to the diameter (SAM 3D Objects 2025): the mean of both mean distances from the
+ * surface under one pose to that under the other, divided by the largest distance between two points of the true
+ * object.
+ */
+addSRelative: number, 
+/**
+ * Whether `addSRelative` is below 0.1; ADD-S@0.1 is the share of such objects.
+ */
+isFound: boolean, 
+/**
+ * Whether a CAD model counts as aligned (Scan2CAD, Avetisyan et al. 2019): translation within 20 cm, rotation within
+ * 20°, scale within 20 %.
+ */
+isCadAligned: boolean, };
+
+/**
+ * Errors of an estimated pose relative to a true one.
+ */
+export type BopErrors = { 
+/**
+ * Visible Surface Discrepancy, 0 to 1, for each misalignment tolerance: .05, .1 … .5 of the diameter.
+ */
+vsd: [number, number, number, number, number, number, number, number, number, number], 
+/**
+ * Maximum Symmetry-Aware Surface Distance, millimetres.
+ */
+mssdMm: number, 
+/**
+ * Maximum Symmetry-Aware Projection Distance, pixels; `null` if a vertex is not in front of the camera.
+ */
+mspdPx: number | null, 
+/**
+ * ADD: mean distance between the same vertices under both poses, millimetres.
+ */
+addMm: number, 
+/**
+ * ADD-S, also called ADI: mean distance from the vertices under the true pose to the nearest vertices under the
+ * estimated pose, millimetres.
+ */
+addSMm: number, };
+
+/**
  * Sizes of the problem and events during the run. `precise` counts points and renders, the other methods everything
  * but renders; what a method does not count is 0.
  */
@@ -1251,6 +1308,10 @@ metrics: Metrics,
  * The errors against the truth; `null` where no truth was given.
  */
 errors: PoseErrors | null, 
+/**
+ * The errors of layout against the truth; `null` where no truth was given.
+ */
+layout: LayoutErrors | null, 
 /**
  * Conditions that the caller should know about; the result stands.
  */

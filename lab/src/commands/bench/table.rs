@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use sim3align::metrics::Metrics;
+use sim3align::metrics::layout::LayoutErrors;
 use sim3align::metrics::pose_error::PoseErrors;
 use sim3align_lab::bench::benchmark::{LOOSE, Record, STRICT};
 use sim3align_lab::bench::statistics::{cell, mean, median};
@@ -44,10 +45,45 @@ pub fn report(rows: &[(String, Vec<&Record>)], failures: usize) -> String {
         out,
         "\nStrict: scale within 5 %, rotation within 10° up to symmetry, translation (of the middle of the mesh's box) within 5 % of its diagonal; loose: 10 %, 20°, 10 %. Errors and seconds are medians, metrics means over the answered cases; *truth* is the true pose's own row."
     );
+    layout(&mut out, &groups, rows);
     for (name, records) in rows {
         list_failures(&mut out, name, records, failures);
     }
     out
+}
+
+/// The table of layout metrics. An unanswered case overlaps nothing, is turned by half, and is not found.
+fn layout(out: &mut String, groups: &[(String, Vec<usize>)], rows: &[(String, Vec<&Record>)]) {
+    let known = |record: &&Record| record.truth_metrics.is_some();
+    if !rows.iter().any(|(_, records)| records.iter().any(known)) {
+        return;
+    }
+    let _ = writeln!(out, "\n| layout | row | n | 3D IoU | ICP-Rot ° | ADD-S | ADD-S@0.1 | 20 cm, 20°, 20 % |");
+    let _ = writeln!(out, "|---|---|---|---|---|---|---|---|");
+    for (group, members) in groups {
+        for (name, records) in rows {
+            let records: Vec<&Record> = members.iter().map(|&i| records[i]).filter(known).collect();
+            let column = |missing: Option<f64>, of: fn(&LayoutErrors) -> f64| {
+                let value = |record: &&Record| record.layout.as_ref().map(of).or(missing);
+                mean(&records.iter().filter_map(value).collect::<Vec<_>>())
+            };
+            let share = |of| column(Some(0.0), of).map(|share| 100.0 * share);
+            let _ = writeln!(
+                out,
+                "| {group} | {name} | {} | {} | {} | {} | {} % | {} % |",
+                records.len(),
+                cell(column(Some(0.0), |l| l.box_iou), 3),
+                cell(column(Some(180.0), |l| l.icp_rotation_deg), 1),
+                cell(column(None, |l| l.add_s_relative), 4),
+                cell(share(|l| f64::from(l.is_found)), 1),
+                cell(share(|l| f64::from(l.is_cad_aligned)), 1),
+            );
+        }
+    }
+    let _ = writeln!(
+        out,
+        "\n3D IoU of oriented boxes, ICP-Rot and ADD-S relative to the diameter are means, ADD-S over the answered cases; ADD-S@0.1 and the rule of 20 cm, 20° and 20 % are shares."
+    );
 }
 
 /// Groups the indices of records by key, in the order of first occurrence.
