@@ -19,7 +19,7 @@ table { border-collapse: separate; border-spacing: 0; width: 100%; font-variant-
 thead th { position: sticky; top: 0; z-index: 1; background: #eef1f4; text-align: left; font-weight: 600; padding: 0 8px;
   height: 38px; border-bottom: 1px solid #dfe3e8; white-space: nowrap; }
 thead button { all: unset; cursor: pointer; } thead button:focus-visible, tbody button:focus-visible { outline: 2px solid #1660c4; outline-offset: 2px; }
-th[aria-sort="ascending"] button::after { content: " ▲"; font-size: 10px; } th[aria-sort="descending"] button::after { content: " ▼"; font-size: 10px; }
+th[aria-sort="ascending"] button::after { content: " ▲" / ""; font-size: 10px; } th[aria-sort="descending"] button::after { content: " ▼" / ""; font-size: 10px; }
 tbody tr { height: 48px; cursor: pointer; } tbody tr:hover { background: #f3f6fa; }
 tbody tr[aria-selected="true"] { background: #e3eefb; }
 tbody td, tbody th { padding: 0 8px; height: 48px; border-bottom: 1px solid #eceff2; text-align: left; font-weight: 400;

@@ -35,7 +35,6 @@ const common: readonly Column[] = [
   number("iou", "IoU", "Overlap of silhouette and mask", (row) => row.iou, 3),
   number("boundaryF", "Boundary F", "Agreement of the outlines", (row) => row.boundaryF, 3),
   number("depthMaeMm", "Depth, mm", "Mean absolute difference of depth", (row) => row.depthMaeMm, 2),
-  number("chamferMm", "Chamfer, mm", "Distance between the surfaces", (row) => row.chamferMm, 2),
 ];
 
 const errors: readonly Column[] = [

@@ -127,7 +127,7 @@ export class Detail {
       "aria-label":
         "The mesh and the observed points in 3D. Drag or use the arrow keys to turn, the wheel or plus and minus to zoom.",
     });
-    body.append(legend);
+    body.querySelector(".layers")?.after(legend);
     this.#space = SpaceView.of(canvas, space);
     if (this.#space !== undefined)
       body.append(element("section", { "aria-label": "3D" }, element("h3", {}, "3D"), canvas));

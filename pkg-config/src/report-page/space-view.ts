@@ -18,6 +18,8 @@ void main() {
   result = vec4(vec3(0.94, 0.54, 0.14) * (0.35 + 0.65 * abs(dot(normal, toViewer))), 1.0);
 }`;
 
+/** Distance of the viewer, in sizes of the object, and steps of the coordinates per size; see `spaceOf`. */
+const [FRAMED, STEPS_OF_SIZE] = [2.3, 12_800];
 /** Radians per pixel of a drag, and per key. */
 const [DRAG, KEY] = [0.008, 0.12];
 
@@ -43,7 +45,7 @@ export class SpaceView {
   private constructor(canvas: HTMLCanvasElement, gl: WebGL2RenderingContext, space: SpaceJson) {
     this.#canvas = canvas;
     this.#gl = gl;
-    this.#distance = Math.hypot(...space.center);
+    this.#distance = FRAMED * STEPS_OF_SIZE * space.stepM;
     this.#program = program(gl);
     const metres = (text: string) => Float32Array.from(new Int16Array(bytes(text).buffer), (x) => x * space.stepM);
     const triangles = new Uint16Array(bytes(space.triangles).buffer);
