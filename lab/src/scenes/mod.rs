@@ -10,6 +10,7 @@ mod arranged;
 mod case;
 mod clutter;
 mod difficulty;
+mod folder;
 mod heap;
 mod layout;
 mod melt;
