@@ -4,9 +4,10 @@
 use glam::DVec3;
 use js_sys::{Array, Float64Array, Object as JsObject, Reflect, Uint32Array};
 use sim3align::bindings::error::to_js;
-use sim3align::bindings::object::{get, required_number, wrong_type};
-use sim3align::bindings::{mesh, transform};
+use sim3align::bindings::object::{get, required_number, to_f32s, to_u32s, wrong_type};
+use sim3align::bindings::transform;
 use sim3align::error::Result;
+use sim3align::geometry::mesh::Mesh;
 use sim3align_physics::part::ConvexPart;
 use sim3align_physics::scene::{Object, On, Settings, Settled, settle};
 use wasm_bindgen::prelude::*;
@@ -33,9 +34,13 @@ pub fn settle_bodies(objects: &JsValue, settings: &JsValue) -> core::result::Res
 
 fn read(object: &JsValue) -> Result<Object> {
     let of = |name| get(object, name).unwrap_or(JsValue::UNDEFINED);
-    let on = of("on");
+    let (on, mesh) = (of("on"), of("mesh"));
+    let part = |name| get(&mesh, name).unwrap_or(JsValue::UNDEFINED);
     Ok(Object {
-        mesh: mesh::mesh(&of("mesh"))?.mesh().clone(),
+        mesh: Mesh::from_flat(
+            &to_f32s(&part("positions"), "mesh.positions")?,
+            Some(&to_u32s(&part("indices"), "mesh.indices")?),
+        )?,
         world_from_mesh: transform::similarity(&of("transform"), "transform")?,
         on: match (on.as_f64(), on.is_string()) {
             (Some(index), _) => On::Object(index as usize),

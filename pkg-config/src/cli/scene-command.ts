@@ -11,9 +11,9 @@ import { type Failure, failure, failureText, type Outcome, outcomeJson } from ".
 import { Output } from "./output.js";
 import { addPictureFlags, type PictureFlags, Pictures } from "./pictures.js";
 import { ProgressLine } from "./progress-line.js";
-import { UsageError } from "./usage-error.js";
 import { addSceneFileFlags, checkSceneFiles, type SceneFileFlags, writeSceneFiles } from "./scene-files.js";
 import { type Column, headings, tableLine } from "./table.js";
+import { UsageError } from "./usage-error.js";
 
 interface SceneFlags extends CaseFlags, PictureFlags, SceneFileFlags {
   json?: string;

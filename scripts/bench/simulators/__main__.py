@@ -87,11 +87,11 @@ def in_pybullet(folder, seconds):
 
 
 def in_usd(path):
-    from pxr import Usd, UsdGeom, UsdPhysics, UsdUtils
+    from pxr import Usd, UsdGeom, UsdPhysics, UsdValidation
 
-    checker = UsdUtils.ComplianceChecker(arkit=False, skipARKitRootLayerCheck=True)
-    checker.CheckCompliance(path)
     stage = Usd.Stage.Open(path)
+    validators = UsdValidation.ValidationRegistry().GetOrLoadAllValidators()
+    complaints = UsdValidation.ValidationContext(validators).Validate(stage)
     bodies = []
     cache = UsdGeom.XformCache()
     for prim in stage.GetDefaultPrim().GetChildren():
@@ -116,7 +116,7 @@ def in_usd(path):
         "metresPerUnit": UsdGeom.GetStageMetersPerUnit(stage),
         "cameras": sum(1 for p in stage.Traverse() if p.IsA(UsdGeom.Camera)),
         "scenes": sum(1 for p in stage.Traverse() if p.IsA(UsdPhysics.Scene)),
-        "complaints": checker.GetErrors() + checker.GetFailedChecks(),
+        "complaints": [complaint.GetMessage() for complaint in complaints],
     }
 
 
