@@ -16,7 +16,7 @@ const help = `
 Examples
   sim3align align cases/mug                      align one case and show everything about it
   sim3align align cases/* --json results.json    align several cases; print a table and write a JSON file
-  sim3align scene scenes/desk --glb desk.glb     align all objects of a scene; write it as one file
+  sim3align scene scenes/desk --scene-glb desk.glb     align all objects of a scene; write it as one file
   sim3align track videos/mug                     track an object through the frames of a video
   sim3align evaluate cases/mug --transform results.json
   sim3align bop bop/lmo --split test --evaluate  align the targets of a BOP dataset, and score them

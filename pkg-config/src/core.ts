@@ -1,4 +1,5 @@
 /** The interface of the core WebAssembly module. */
+import type { Pinhole } from "./formats/pinhole.js";
 import type * as Results from "./generated/types.js";
 import type { CoreInput } from "./input/core-input.js";
 import type { CoreMesh } from "./prepared-mesh.js";
@@ -25,6 +26,11 @@ export interface Task<T> {
 export interface Core extends Glue {
   beginAlign(input: CoreInput, options: object, onProgress: CoreListener | undefined): Task<Results.Alignment>;
   evaluate(input: CoreInput, transform: unknown, options: object): Results.Evaluation;
+  /** The depth of a mesh at a pose, metres; 0 where no mesh is. */
+  renderDepth(
+    view: { mesh: CoreMesh; width: number; height: number; camera: Pinhole },
+    transform: unknown,
+  ): Float32Array;
   prepareMesh(mesh: CoreMesh): void;
   dropMesh(id: number): void;
   version(): string;

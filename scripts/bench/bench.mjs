@@ -7,12 +7,13 @@ import { join, resolve } from "node:path";
 import { digest } from "../lib/cache.mjs";
 import { buildLab, runLab } from "../lib/lab.mjs";
 import { at } from "../lib/paths.mjs";
+import { pythonWith } from "../lib/python.mjs";
 import { duration, step } from "../lib/step.mjs";
 import { command, count } from "./command.mjs";
 import { datasets, generalJobs, generalTable, importJob, ownJob, peersJob } from "./jobs.mjs";
 import { report } from "./paper/report.mjs";
 import { tableSpecs } from "./paper/rows.mjs";
-import { installPeers, meshMethods, versionsOf } from "./peers.mjs";
+import { meshMethods, versionsOf } from "./peers.mjs";
 import { environment, openResults } from "./results.mjs";
 
 /**
@@ -62,7 +63,7 @@ async function benchmark(options) {
   const name = options.cases === undefined ? `scenes-${scenes}-seed-${options.setSeed}` : "cases";
   const out = resolve(options.out ?? at("benches", "results", name));
   await step("Programs", buildLab);
-  if (options.peers) await installPeers(options.python);
+  if (options.peers) await pythonWith("peers", options.python);
   /** @type {Record<string, string>} */
   const folders = options.cases === undefined ? await writeScenes(scenes, options.setSeed) : { given: options.cases };
   const clouds = await datasets(options);

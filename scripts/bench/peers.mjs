@@ -2,11 +2,10 @@
 import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { availableParallelism } from "node:os";
 import { basename, join, resolve } from "node:path";
-import { cached, digest } from "../lib/cache.mjs";
 import { buildPackage } from "../lib/package.mjs";
 import { at } from "../lib/paths.mjs";
+import { pythonWith } from "../lib/python.mjs";
 import { run } from "../lib/run.mjs";
-import { step } from "../lib/step.mjs";
 import { readTypedCase } from "./inputs.mjs";
 
 /** @typedef {{ method: string, case: string, seconds: number | null, error?: string }} Answered */
@@ -62,25 +61,6 @@ export function caseFolders(folders) {
 }
 
 /**
- * The Python of an environment with the libraries, below `target/bench`.
- * @param {string} [program] the Python that makes it
- */
-export async function installPeers(program = "python3") {
-  const requirements = at("scripts", "bench", "peers", "requirements.txt");
-  const folder = at("target", "bench", "peers");
-  const python = process.platform === "win32" ? join(folder, "Scripts", "python.exe") : join(folder, "bin", "python");
-  await step("Python libraries", () =>
-    cached(join(folder, "installed-from"), digest([requirements]), [python], async () => {
-      rmSync(folder, { recursive: true, force: true });
-      const remedy = "install Python 3.11 or 3.12 with venv, name it with --python, and check that PyPI can be reached";
-      await run(program, ["-m", "venv", folder], { remedy });
-      await run(python, ["-m", "pip", "install", "--quiet", "--requirement", requirements], { remedy });
-    }),
-  );
-  return python;
-}
-
-/**
  * Runs the methods; installs them first where that has not been done.
  * @param {PeersRun} options
  */
@@ -111,7 +91,7 @@ export const testPeers = (python) => runPython(["--self-test"], python, console.
  */
 async function runPython(args, program, onLine) {
   const env = { PYTHONPATH: at("scripts", "bench"), PYTHONDONTWRITEBYTECODE: "1" };
-  await run(await installPeers(program), ["-m", "peers", ...args], { env, onLine, echo: "errors" });
+  await run(await pythonWith("peers", program), ["-m", "peers", ...args], { env, onLine, echo: "errors" });
 }
 
 /**

@@ -28,7 +28,9 @@ export async function bundleInline() {
   // Few callers need the other modules: they stay files of their own.
   mkdirSync(join(packageDir, "inline"), { recursive: true });
   for (const [name, module] of Object.entries(base64)) {
-    if (name !== "core") writeFileSync(join(packageDir, "inline", `${name}.js`), `${exported(module)}\n`);
+    // Nor is the module of `sim3align/simulators` one of this entry.
+    if (name !== "core" && name !== "physics")
+      writeFileSync(join(packageDir, "inline", `${name}.js`), `${exported(module)}\n`);
   }
   rmSync(join(packageDir, "inlined.d.ts"), { force: true });
   await build({

@@ -6,6 +6,7 @@ import { join } from "node:path";
 import { once } from "./cache.mjs";
 import { bundleInline } from "./inline.mjs";
 import { at, glueDir, packageDir, skinDir } from "./paths.mjs";
+import { bundleReportPage } from "./report-page.mjs";
 import { attempt, nodeProgram, run } from "./run.mjs";
 import { wasmBindgenVersion } from "./setup.mjs";
 import { step } from "./step.mjs";
@@ -21,6 +22,7 @@ export const buildPackage = once(async () => {
     await run(node, [tsc, "--project", skinDir], { remedy: "correct what the compiler names, in pkg-config/src" });
     copyFiles();
     await bundleInline();
+    await bundleReportPage();
     await writeBuildInfo(version);
     say(`pkg/ holds sim3align ${version}`);
   });

@@ -29,6 +29,7 @@ export const wasmModules = [
   { name: "joint", crate: "sim3align-joint", budget: 212_000 },
   { name: "registration", crate: "sim3align-registration", budget: 120_000 },
   { name: "formats", crate: "sim3align-formats", budget: 260_000 },
+  { name: "physics", crate: "sim3align-module-physics", budget: 70_000 },
 ];
 
 const optimise = ["-O3", "--strip-debug", "--strip-producers", "--strip-target-features"];

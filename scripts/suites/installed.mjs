@@ -6,6 +6,7 @@ import { nodeCounts, noTests, withStatus } from "../lib/counts.mjs";
 import { print } from "../lib/output.mjs";
 import { at, installDir, packageDir, repository, sampleDir } from "../lib/paths.mjs";
 import { chromium, chromiumRemedy, redisServer } from "../lib/programs.mjs";
+import { installedPython } from "../lib/python.mjs";
 import { attempt, nodeProgram, run } from "../lib/run.mjs";
 import { copySample } from "../lib/sample.mjs";
 import { buildSite } from "../lib/site.mjs";
@@ -72,7 +73,10 @@ async function nodeTest(folder, env = {}) {
   return withStatus(nodeCounts(output), reason === "");
 }
 
-export const javaScript = () => nodeTest("js");
+export async function javaScript() {
+  const python = await installedPython("simulators");
+  return nodeTest("js", python === undefined ? {} : { SIM3ALIGN_SIMULATORS: python });
+}
 
 /** Counts where a program is missing: skipped on a developer's machine, failed in continuous integration. */
 export const missing = () => ({ ...noTests(), ...(process.env.CI ? { failed: 1 } : { skipped: 1 }) });

@@ -9,7 +9,10 @@ import { runChecks } from "../lib/step.mjs";
 import { wasmModules } from "../lib/wasm.mjs";
 
 /** Crates of the workspace besides the aligner. */
-const crates = ["formats", "geometry", "lab", "modules/core", "modules/joint", "modules/registration"];
+const crates = [
+  ...["formats", "geometry", "lab", "modules/core", "modules/joint", "modules/physics", "modules/registration"],
+  "physics",
+];
 
 export async function lint() {
   await setUp();

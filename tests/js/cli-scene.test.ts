@@ -24,7 +24,16 @@ for (const [i, mask] of masks.entries()) {
 }
 
 test("a scene folder gives JSON, a table and a GLB", async () => {
-  const { status, stdout, stderr } = run("scene", "table", "--quality", "fast", "--json", "s.json", "--glb", "s.glb");
+  const { status, stdout, stderr } = run(
+    "scene",
+    "table",
+    "--quality",
+    "fast",
+    "--json",
+    "s.json",
+    "--scene-glb",
+    "s.glb",
+  );
   assert.equal(status, 0, stderr);
   assert.match(stdout, /table: support n = .*thing-0.*support.*thing-2/s);
   const { table } = results("s.json");
@@ -98,5 +107,5 @@ test("a scene that cannot be read fails alone", () => {
   const written = results("f.json");
   assert.equal(written["no-depth"].error.code, "FILE_NOT_FOUND");
   assert.equal(Object.keys(written.table.objects).length, 3);
-  assert.equal(run("scene", "table", "no-depth", "--glb", "two.glb").status, 2);
+  assert.equal(run("scene", "table", "no-depth", "--scene-glb", "two.glb").status, 2);
 });

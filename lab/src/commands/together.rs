@@ -1,6 +1,6 @@
 //! `together`: aligns the objects of scenes alone and together.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use lexopt::prelude::*;
 use sim3align::precise::options::AlignOptions;
@@ -28,6 +28,7 @@ Aligns every object of each scene alone and all of them together, and prints bot
   --snap           puts objects exactly onto what they touch
   --objects        prints every object
   --json FILE      keeps all records
+  --write DIR      writes the generated scenes as scene folders instead of aligning them
   --threads N      default: all
   --help           this text";
 
@@ -48,6 +49,7 @@ struct Arguments {
     snap: bool,
     objects: bool,
     json: Option<PathBuf>,
+    write: Option<PathBuf>,
     threads: usize,
 }
 
@@ -64,6 +66,7 @@ fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Error>
         snap: false,
         objects: false,
         json: None,
+        write: None,
         threads: std::thread::available_parallelism().map_or(1, usize::from),
     };
     while let Some(argument) = parser.next()? {
@@ -84,6 +87,7 @@ fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Error>
             Long("snap") => arguments.snap = true,
             Long("objects") => arguments.objects = true,
             Long("json") => arguments.json = Some(parser.value()?.into()),
+            Long("write") => arguments.write = Some(parser.value()?.into()),
             Long("threads") => arguments.threads = parser.value()?.parse()?,
             _ => return Err(argument.unexpected()),
         }
@@ -107,6 +111,9 @@ pub fn main(parser: lexopt::Parser) -> Result<(), Failure> {
         .into_iter()
         .flat_map(|(set, count)| (arguments.from..count).map(move |index| Source::Generated(set, index)));
     let sources: Vec<Source> = arguments.cases.iter().cloned().map(Source::Folder).chain(generated).collect();
+    if let Some(folder) = &arguments.write {
+        return write(&sources, arguments.prior, folder, arguments.threads);
+    }
     let run = |source: &Source| {
         let scene = match source {
             Source::Folder(path) => BenchScene::read(path)?,
@@ -128,6 +135,17 @@ pub fn main(parser: lexopt::Parser) -> Result<(), Failure> {
         std::fs::write(path, text).map_err(|error| Failure::Failed(error.to_string()))?;
     }
     Ok(())
+}
+
+/// Writes the generated scenes as `folder`/SCENE, from 000; the arranged ones after the others.
+fn write(sources: &[Source], prior: Prior, folder: &Path, threads: usize) -> Result<(), Failure> {
+    let numbered: Vec<_> = sources.iter().enumerate().collect();
+    let write = |(number, source): &(usize, &Source)| match source {
+        Source::Folder(_) => Ok(()),
+        Source::Generated(set, index) => set.scene(*index)?.write(prior, &folder.join(format!("{number:03}"))),
+    };
+    let written = parallel_map(threads, &numbered, write, |_| {});
+    written.map(drop).map_err(|error: Error| Failure::Failed(error.to_string()))
 }
 
 fn print_objects(scene: &SceneRecord) {

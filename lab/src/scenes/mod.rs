@@ -11,6 +11,7 @@ mod bop_folder;
 mod case;
 mod clutter;
 mod difficulty;
+mod folder;
 mod heap;
 mod layout;
 mod melt;

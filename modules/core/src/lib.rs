@@ -2,4 +2,5 @@
 
 pub mod aligner;
 pub mod mesh;
+pub mod render;
 pub mod task;

@@ -12,14 +12,17 @@ import { concurrently } from "./concurrent.js";
 import { csvHeadings } from "./csv-file.js";
 import { onInterruption } from "./interruption.js";
 import { addOptionFlags } from "./option-flags.js";
+import { outcomeJson } from "./outcome.js";
 import { Output, type OutputFlags } from "./output.js";
 import { camera, jsonObject, workers } from "./parse.js";
+import { drawEntry } from "./picture-inputs.js";
+import { addPictureFlags, type PictureFlags, Pictures } from "./pictures.js";
 import { ProgressLine } from "./progress-line.js";
 import { Summary } from "./report.js";
 import { transformFileHelp } from "./transform-file.js";
 
 /** The flags of a batch. */
-export interface BatchFlags extends AlignFlags, FileFlags, OutputFlags {
+export interface BatchFlags extends AlignFlags, FileFlags, OutputFlags, PictureFlags {
   list?: string;
   workers?: number | "auto";
 }
@@ -51,6 +54,10 @@ Output
   interruption, of whatever kind, the same command with --resume aligns what is missing. A line that was cut off is removed.
   Cases that failed count as done; remove their lines to align them again. --json and --csv are then written anew from it.
   --csv writes the columns ${columnsHelp}.
+  --report writes a folder with index.html, which a browser opens from disk: a table to sort and filter, and for each case
+  its picture with mask, mesh and depth difference, its alternatives, and a view in 3D. Cases with frames have a row per frame.
+  --overlay writes <case>.png, the whole image with the mask and the mesh; --glb writes <case>.glb, the posed mesh in the
+  frame of a glTF camera at the origin. Other characters than a-z, 0-9, ".", "_" and "-" change the name of the file.
 
 Batches
   The cases are aligned side by side; the results do not depend on --workers. Each is read when its turn comes: memory
@@ -64,6 +71,7 @@ Examples
   sim3align align cases/* --json results.json
   sim3align align 'cases/**' --jsonl results.jsonl --csv results.csv --resume
   find cases -name mesh.glb -printf '%h\\n' | sim3align align --list - --workers 4 --jsonl -
+  sim3align align 'cases/**' --jsonl results.jsonl --report report --resume
   sim3align align views/mug
   sim3align align cases/mug --known-extent 0.095 --known-extent-axis y
   sim3align align cases/mug --initial annotated.json --search local
@@ -92,7 +100,7 @@ export function alignCommand(): Command {
     .option("--csv <file>", 'write a table of comma-separated values; "-" is stdout')
     .option("--workers <n|auto>", "cases aligned at a time (1 to 64; default auto: one per core)", workers)
     .addOption(new Option("--preset <name>", "method (default precise)").choices(["precise", "paper"]));
-  addOptionFlags(addCaseOptions(command), shared);
+  addOptionFlags(addCaseOptions(addPictureFlags(command)), shared);
   command.option("--options <json>", "further options of align() as JSON; flags take precedence", jsonObject);
   addOptionFlags(command.optionsGroup("Options of --preset precise:"), precise);
   addOptionFlags(command.optionsGroup("Options of --preset paper:"), paper);
@@ -106,34 +114,53 @@ async function run(args: string[], flags: BatchFlags): Promise<void> {
 
 /** Aligns cases, and writes and prints their results. */
 export async function alignBatch(cases: readonly CaseToDo[], flags: BatchFlags, output: Output): Promise<void> {
-  const batch = new Batch(cases.length, output, flags);
+  const pictures = await Pictures.open(flags);
+  const batch = new Batch(cases.length, output, pictures, flags);
   let left: readonly CaseToDo[] = cases;
   if (flags.resume) {
-    const done = await resumed(output, batch, new Set(cases.map(({ name }) => name)));
+    const done = await resumed(output, batch, pictures, cases, flags);
     left = cases.filter(({ name }) => !done.has(name));
     console.error(`resumed: ${done.size} of ${cases.length} cases are in ${flags.jsonl}`);
   }
   const stop = onInterruption(() => batch.interrupt());
-  if (cases.length === 1) await alignOne(left, flags, batch);
-  else await alignMany(left, flags, batch, output);
+  if (cases.length === 1) await alignOne(left, flags, batch, pictures);
+  else await alignMany(left, flags, batch, output, pictures);
   stop();
   batch.end();
   if (batch.hasFailure) process.exitCode = 1;
 }
 
-/** Adds the entries of an interrupted batch to the output. Returns the names of those that belong to this one. */
-async function resumed(output: Output, batch: Batch, names: ReadonlySet<string>): Promise<ReadonlySet<string>> {
+/**
+ * Adds the entries of an interrupted batch to the output, and draws what was not drawn. Returns the names of those that
+ * belong to this one.
+ */
+async function resumed(
+  output: Output,
+  batch: Batch,
+  pictures: Pictures,
+  cases: readonly CaseToDo[],
+  flags: BatchFlags,
+): Promise<ReadonlySet<string>> {
+  const known = new Map(cases.map((each) => [each.name, each]));
   const done = new Set<string>();
   for await (const { name, entry } of output.resumed()) {
-    if (!names.has(name)) continue;
+    const each = known.get(name);
+    if (each === undefined) continue;
     done.add(name);
+    await drawEntry(pictures, each, entry, flags, true);
     batch.skip("error" in entry);
+    batch.picture(name, entry);
   }
   return done;
 }
 
 /** Aligns the only case, on this thread unless the flags ask for workers. */
-async function alignOne(cases: readonly CaseToDo[], flags: BatchFlags, batch: Batch): Promise<void> {
+async function alignOne(
+  cases: readonly CaseToDo[],
+  flags: BatchFlags,
+  batch: Batch,
+  pictures: Pictures,
+): Promise<void> {
   const [only] = cases;
   if (only === undefined) return;
   const aligner = await createAligner({ workers: flags.workers === "auto" ? 0 : (flags.workers ?? 0) });
@@ -143,11 +170,18 @@ async function alignOne(cases: readonly CaseToDo[], flags: BatchFlags, batch: Ba
     progress.clear();
     aligner.dispose();
   });
+  await drawEntry(pictures, only, outcomeJson(outcome), flags);
   batch.add(outcome, []);
 }
 
 /** Aligns cases side by side. Each is read when its turn comes. */
-async function alignMany(cases: readonly CaseToDo[], flags: BatchFlags, batch: Batch, output: Output): Promise<void> {
+async function alignMany(
+  cases: readonly CaseToDo[],
+  flags: BatchFlags,
+  batch: Batch,
+  output: Output,
+  pictures: Pictures,
+): Promise<void> {
   if (cases.length === 0) return;
   const { workers = "auto" } = flags;
   const size = Math.min(workers === "auto" ? availableParallelism() : workers, cases.length, MAX_WORKERS);
@@ -155,7 +189,12 @@ async function alignMany(cases: readonly CaseToDo[], flags: BatchFlags, batch: B
   const summary = new Summary(cases, output.style);
   batch.begin(cases.length);
   try {
-    const align = (each: CaseToDo) => alignCase(aligner, each, flags);
+    const align = async (each: CaseToDo) => {
+      const outcome = await alignCase(aligner, each, flags);
+      // Before the record: a case that is there needs no other pictures.
+      await drawEntry(pictures, each, outcomeJson(outcome), flags);
+      return outcome;
+    };
     for await (const outcome of concurrently(cases, size === 1 ? 1 : size + READ_AHEAD, align)) {
       batch.add(outcome, summary.lines(outcome));
       if (output.isClosed) break;

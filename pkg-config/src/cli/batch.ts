@@ -2,6 +2,7 @@
 import { BatchProgress } from "./batch-progress.js";
 import { type Outcome, outcomeJson } from "./outcome.js";
 import type { Output, OutputFlags } from "./output.js";
+import { type Pictures, shownIn } from "./pictures.js";
 import { details, notes, viewsDetails } from "./report.js";
 
 /** Writes the result of each case when it is done, and what concerns all of them at the end. */
@@ -9,15 +10,17 @@ export class Batch {
   readonly #total: number;
   readonly #output: Output;
   readonly #flags: OutputFlags;
+  readonly #pictures: Pictures;
   /** Printed at the end: details of a single case, or warnings and failures. */
   readonly #remarks: string[] = [];
   #progress: BatchProgress | undefined;
   #done = 0;
   #failed = 0;
 
-  constructor(total: number, output: Output, flags: OutputFlags) {
+  constructor(total: number, output: Output, pictures: Pictures, flags: OutputFlags) {
     this.#total = total;
     this.#output = output;
+    this.#pictures = pictures;
     this.#flags = flags;
   }
 
@@ -44,11 +47,18 @@ export class Batch {
   add(outcome: Outcome, rows: readonly string[]): void {
     const isFailure = "error" in outcome;
     this.skip(isFailure);
-    this.#output.add(outcome.name, outcomeJson(outcome));
+    const entry = outcomeJson(outcome);
+    this.#output.add(outcome.name, entry);
+    this.picture(outcome.name, entry);
     this.#remarks.push(...remarks(outcome, this.#total === 1, this.#output));
     this.#progress?.clear();
     this.#output.lines(rows);
     this.#progress?.add(isFailure);
+  }
+
+  /** Adds the rows of a case to the report. */
+  picture(name: string, entry: object): void {
+    for (const shown of shownIn(name, entry)) this.#pictures.record(shown.name, shown.entry);
   }
 
   /** Clears the progress. */
@@ -60,6 +70,7 @@ export class Batch {
   end(): void {
     this.clear();
     this.#output.end();
+    this.#pictures.end();
     const isSeparate = this.#total > 1 && this.#remarks.length > 0;
     this.#output.lines(isSeparate ? ["", ...this.#remarks] : this.#remarks);
   }

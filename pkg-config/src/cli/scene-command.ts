@@ -1,26 +1,22 @@
 /** `sim3align scene`: aligns the objects of scenes and prints what stands where. */
-import { writeFileSync } from "node:fs";
 import { Command, Option } from "commander";
 import { read } from "../case-folder.js";
-import { exportSceneGlb, type SceneGlbObject } from "../conventions/scene-glb.js";
-import { parseCameraFile } from "../formats/camera-file.js";
 import { parsedJson } from "../formats/json.js";
-import { formatsModule } from "../formats-module.js";
-import { createAligner, type PoseErrors, type SceneInput, type SceneResult } from "../index.js";
-import { readMesh } from "../input/mesh.js";
+import { type AlignInput, createAligner, type PoseErrors, type SceneInput, type SceneResult } from "../index.js";
 import { readSceneFolder, type SceneOnDisk, type SceneSettings } from "../scene-folder.js";
 import { withoutUndefined } from "../values.js";
 import { addCaseOptions, type CaseFlags, caseSettings, conventionsHelp, statusHelp } from "./case-options.js";
 import { fixed } from "./number.js";
 import { type Failure, failure, failureText, type Outcome, outcomeJson } from "./outcome.js";
 import { Output } from "./output.js";
+import { addPictureFlags, type PictureFlags, Pictures } from "./pictures.js";
 import { ProgressLine } from "./progress-line.js";
+import { addSceneFileFlags, checkSceneFiles, type SceneFileFlags, writeSceneFiles } from "./scene-files.js";
 import { type Column, headings, tableLine } from "./table.js";
 import { UsageError } from "./usage-error.js";
 
-interface SceneFlags extends CaseFlags {
+interface SceneFlags extends CaseFlags, PictureFlags, SceneFileFlags {
   json?: string;
-  glb?: string;
   snap?: boolean;
   support?: string;
   models?: string;
@@ -31,7 +27,7 @@ const help = `
 A scene folder holds
   depth.npy or depth.png, camera.json   as a case folder, see "sim3align align --help"
   objects/NAME/mask.png, .npy or .json  the mask of each object
-  objects/NAME/mesh.glb, …              its mesh; textures are kept by --glb
+  objects/NAME/mesh.glb, …              its mesh; textures are kept by --scene-glb
   objects/NAME/gt.json (optional)       its true pose
 A scene in the layout of BOP (depth/, mask_visib/, scene_camera.json, scene_gt.json, and models in models/, ../models or
 ../../models) is one as well; --image-id selects the image.
@@ -43,34 +39,39 @@ Output
   against it.
   --json writes { "<scene>": { "objects": { "<object>": as a case of "align --json", with "contact" },
   "support": { "normal", "d", "confidence" } | null, "metrics", "warnings" } }; a scene that failed has { "error" }.
-  --glb writes the scene of a single folder: nodes by name, materials and textures, the camera, and the support as ground,
-  y up, in metres.
+  --report, --overlay and --glb write pictures and posed meshes of each object, see "sim3align align --help".
+  --scene-glb writes the scene of a single folder: nodes by name, materials and textures, the camera, and the support as
+  ground, y up, in metres.
+  --mjcf, --urdf and --usd write it for simulators, z up: bodies with mass and convex parts, the support as ground, the camera.
+  What rests on the support or on another object is put at rest; what leans, hangs or stands on anything else is fixed.
 
 Examples
   sim3align scene scenes/desk
   sim3align scene scenes/* --json results.json
-  sim3align scene scenes/desk --snap --glb desk.glb
+  sim3align scene scenes/desk --snap --scene-glb desk.glb
+  sim3align scene scenes/desk --mjcf desk-mujoco --usd desk.usda
+  sim3align scene scenes/* --report report
   sim3align scene bop/test/000048 --image-id 1 --json -
 ${statusHelp}`;
 
 /** The command. */
 export function sceneCommand(): Command {
-  const command = new Command("scene")
+  const command = addSceneFileFlags(new Command("scene"))
     .summary("align all objects of each scene, and what they stand on")
     .description("Aligns the objects of each scene together: one depth map, a mask and a mesh per object.")
     .argument("<scene...>", "scene folders")
     .option("--json <file>", 'write the results as JSON; "-" is stdout')
-    .option("--glb <file>", "write the scene as one GLB file")
     .option("--snap", "put objects exactly onto what they touch")
     .option("--support <auto|none|file>", 'what objects stand on: found, nothing, or a JSON file { "normal", "d" }')
     .option("--models <folder>", "the models of a BOP scene")
     .addOption(new Option("--quality <name>", "work of the search").choices(["auto", "fast", "balanced", "best"]));
-  return addCaseOptions(command).addHelpText("after", help).action(run);
+  return addCaseOptions(addPictureFlags(command)).addHelpText("after", help).action(run);
 }
 
 async function run(folders: string[], flags: SceneFlags): Promise<void> {
-  if (flags.glb !== undefined && folders.length > 1) throw new UsageError("--glb takes a single scene.");
+  checkSceneFiles(flags, folders.length);
   const output = new Output(flags);
+  const pictures = await Pictures.open(flags);
   const support = await supportOf(flags.support);
   const aligner = await createAligner();
   const progress = new ProgressLine(process.stderr, folders.length);
@@ -89,20 +90,28 @@ async function run(folders: string[], flags: SceneFlags): Promise<void> {
       progress.clear();
       const outcomes = outcomesOf(result, errors);
       hasFailed ||= outcomes.some((outcome) => "error" in outcome);
+      for (const [i, outcome] of outcomes.entries()) {
+        const name = `${scene.name}/${outcome.name}`;
+        const entry = outcomeJson(outcome) as Readonly<Record<string, unknown>>;
+        await pictures.draw({ name, entry, input: inputOf(scene, i) });
+        pictures.record(name, entry);
+      }
       output.add(scene.name, sceneJson(result, outcomes));
       output.lines(lines(scene.name, result, outcomes, errors));
-      if (flags.glb !== undefined) writeFileSync(flags.glb, await glbOf(scene, result));
+      output.lines(await writeSceneFiles(scene, result, flags));
     } catch (error) {
       if (error instanceof UsageError) throw error;
       progress.clear();
       hasFailed = true;
       const outcome = failure(folder, error);
       output.add(folder, outcomeJson(outcome));
+      pictures.record(folder, outcomeJson(outcome) as Readonly<Record<string, unknown>>);
       output.lines([output.style.red("failed ") + failureText(outcome)]);
     }
     if (output.isClosed) break;
   }
   output.end();
+  pictures.end();
   if (hasFailed) process.exitCode = 1;
 }
 
@@ -119,20 +128,26 @@ async function errorsOf(
   { objects }: SceneResult,
 ): Promise<(PoseErrors | null)[]> {
   const errors: (PoseErrors | null)[] = [];
-  const { objects: inputs, labels: _, occluders: __, support: ___, ...view } = scene.input;
   for (const [i, object] of objects.entries()) {
     const truth = scene.truths[i];
-    const input = inputs[i];
+    const input = inputOf(scene, i);
     if (object.error !== undefined || truth === null || truth === undefined || input === undefined) {
       errors.push(null);
       continue;
     }
-    const { mask, mesh, resizeMask } = input;
-    const own = { ...view, mask, mesh, ...withoutUndefined({ resizeMask }) } as Parameters<typeof aligner.evaluate>[0];
     const { transform, symmetry } = truth;
-    errors.push((await aligner.evaluate(own, object, { truth: transform, symmetry })).errors);
+    errors.push((await aligner.evaluate(input, object, { truth: transform, symmetry })).errors);
   }
   return errors;
+}
+
+/** The input of one object. */
+function inputOf({ input: scene }: SceneOnDisk, index: number): AlignInput | undefined {
+  const { objects, labels: _, occluders: __, support: ___, ...view } = scene;
+  const object = objects[index];
+  if (object === undefined) return undefined;
+  const { mask, mesh, resizeMask } = object;
+  return { ...view, mask, mesh, ...withoutUndefined({ resizeMask }) } as AlignInput;
 }
 
 const outcomesOf = ({ objects }: SceneResult, errors: readonly (PoseErrors | null)[]): Outcome[] =>
@@ -196,30 +211,4 @@ function lines(
   });
   const notes = warnings.map(({ code, message }) => `${code}: ${message}`);
   return [`${name}: ${plane}`, headings(columns), ...rows, ...notes];
-}
-
-/** The scene as one file. Only GLB files keep their materials. */
-async function glbOf({ input }: SceneOnDisk, { objects, support }: SceneResult): Promise<Uint8Array> {
-  const placed: SceneGlbObject[] = [];
-  for (const [i, object] of objects.entries()) {
-    const given = input.objects[i]?.mesh;
-    if (object.error !== undefined || given === undefined) continue;
-    const { bytes, format } = given as { bytes: Uint8Array; format?: string };
-    const mesh = format === "glb" ? bytes : (await readMesh(given, () => formatsModule.load(), false)).mesh;
-    placed.push({ name: object.name, mesh, transform: object });
-  }
-  const camera = cameraOf(input);
-  return exportSceneGlb(placed, { support, ...(camera === undefined ? {} : { camera }) });
-}
-
-function cameraOf(input: SceneInput): { fy: number; width: number; height: number } | undefined {
-  const { cameraFile, imageId } = input as { cameraFile?: Uint8Array; imageId?: string };
-  if (cameraFile === undefined) return undefined;
-  try {
-    const { fy, cx, cy, width, height } = parseCameraFile(cameraFile, withoutUndefined({ imageId }));
-    // A file without size: the principal point is about the middle.
-    return { fy, width: width ?? 2 * cx + 1, height: height ?? 2 * cy + 1 };
-  } catch {
-    return undefined;
-  }
 }

@@ -1,10 +1,12 @@
 /** Export of a whole scene as one GLB. */
 import { invalidArgument } from "../error.js";
 import type { MeshArrays } from "../input/types.js";
+import type { Plane } from "../scene/types.js";
 import type { Sim3Like } from "../sim3.js";
-import { finite, flattened, isRecord, optionsOf, positive, record, type Vector3, vector3 } from "../values.js";
+import { flattened, isRecord, optionsOf, positive, record, type Vector3 } from "../values.js";
 import { bounds, bytesOf, glbOfParts, partsOf } from "./glb.js";
 import { type GltfNode, toGltfNode } from "./gltf-node.js";
+import { groundFrame, meanOf, minus } from "./ground-frame.js";
 import { MergedGltf } from "./merged-gltf.js";
 import { meshOf } from "./mesh.js";
 import { dot, quaternionOf } from "./rotation.js";
@@ -71,36 +73,11 @@ export function exportSceneGlb(objects: readonly SceneGlbObject[], options: Scen
   return glbOfParts(merged.finish(roots));
 }
 
-const scaled = (a: Vector3, s: number): Vector3 => [a[0] * s, a[1] * s, a[2] * s];
-const minus = (a: Vector3, b: Vector3): Vector3 => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-const cross = (a: Vector3, b: Vector3): Vector3 => [
-  a[1] * b[2] - a[2] * b[1],
-  a[2] * b[0] - a[0] * b[2],
-  a[0] * b[1] - a[1] * b[0],
-];
-const unit = (a: Vector3): Vector3 => scaled(a, 1 / Math.sqrt(dot(a, a)));
-
-function meanOf(points: readonly Vector3[]): Vector3 {
-  const sum = points.reduce<Vector3>((a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]], [0, 0, 0]);
-  return scaled(sum, 1 / Math.max(points.length, 1));
-}
-
 /** The turn and the shift from the OpenCV camera frame to that of the file. */
 function worldFromCamera(support: SceneGlbOptions["support"] & (object | null), centers: readonly Vector3[]) {
   if (support === null) return { rotation: [1, 0, 0, 0], translation: [0, 0, 0] };
-  record("options.support", support, "{ normal, d }");
-  const normal = vector3("options.support.normal", support.normal);
-  const length = positive("the length of options.support.normal", Math.sqrt(dot(normal, normal)));
-  const d = finite("options.support.d", support.d) / length;
-  const up = scaled(normal, 1 / length);
-  // The camera's right stays right, unless it looks along the ground sideways.
-  const along: Vector3 = Math.abs(up[0]) < 0.9 ? [1, 0, 0] : [0, 0, -1];
-  const right = unit(minus(along, scaled(up, dot(along, up))));
-  const back = cross(right, up);
-  const rows = [right, up, back] as const;
-  const center = meanOf(centers);
-  const foot = minus(center, scaled(up, dot(up, center) + d));
-  const [x, y, z] = rows.map((row) => -dot(row, foot)) as Vector3;
+  const { right, up, back, origin } = groundFrame(support as Plane, centers);
+  const [x, y, z] = [right, up, back].map((row) => -dot(row, origin)) as Vector3;
   return { rotation: quaternionOf([...right, ...up, ...back]), translation: [x, y, z] };
 }
 

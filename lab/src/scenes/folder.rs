@@ -1,0 +1,28 @@
+//! Scene folders: the objects of a scene together.
+
+use std::path::Path;
+
+use super::prior::Prior;
+use super::scene::ClutteredScene;
+use crate::files::write_files;
+use sim3align_geometry::error::Result;
+
+/// The files that the objects of a scene share.
+const SHARED: [&str; 2] = ["depth.png", "camera.json"];
+
+impl ClutteredScene {
+    /// Writes the scene as `depth.png`, `camera.json` and `objects/NAME/` with `mask.png`, `mesh.glb` and `gt.json`.
+    ///
+    /// # Errors
+    /// Those of [`super::SceneCase::write`].
+    pub fn write(&self, prior: Prior, folder: &Path) -> Result<()> {
+        for pair in &self.pairs {
+            let case = pair.case(prior)?;
+            let (shared, own): (Vec<_>, Vec<_>) =
+                case.files()?.into_iter().partition(|(name, _)| SHARED.contains(name));
+            write_files(folder, &shared)?;
+            write_files(&folder.join("objects").join(&case.name), &own)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,91 @@
+//! The export of the module for simulators. It reads its arguments, calls the crate `sim3align-physics`, and returns plain
+//! objects.
+
+use glam::DVec3;
+use js_sys::{Array, Float64Array, Object as JsObject, Reflect, Uint32Array};
+use sim3align::bindings::error::to_js;
+use sim3align::bindings::object::{get, required_number, to_f32s, to_u32s, wrong_type};
+use sim3align::bindings::transform;
+use sim3align::error::Result;
+use sim3align::geometry::mesh::Mesh;
+use sim3align_physics::part::ConvexPart;
+use sim3align_physics::scene::{Object, On, Settings, Settled, settle};
+use wasm_bindgen::prelude::*;
+
+/// Bodies at rest: `([{ mesh, transform, on }], { density, parts, turnDeg, moveM }) → [body]`. Transforms are world from mesh,
+/// z up; `on` is `"support"`, the index of an object, or `null`.
+#[wasm_bindgen(js_name = settleBodies, skip_typescript)]
+pub fn settle_bodies(objects: &JsValue, settings: &JsValue) -> core::result::Result<JsValue, JsValue> {
+    let run = || {
+        let number = |name| required_number(settings, "options", name);
+        let settings = Settings {
+            density: number("density")?,
+            parts: number("parts")? as usize,
+            turn_deg: number("turnDeg")?,
+            move_m: number("moveM")?,
+        };
+        let list = Array::is_array(objects).then(|| Array::from(objects));
+        let list = list.ok_or_else(|| wrong_type("objects", objects, "an array", "Pass the objects."))?;
+        let objects: Vec<Object> = list.iter().map(|object| read(&object)).collect::<Result<_>>()?;
+        Ok(settle(&objects, &settings).iter().map(body).collect::<Array>())
+    };
+    run().map(Into::into).map_err(|error: sim3align::error::Error| to_js(&error))
+}
+
+fn read(object: &JsValue) -> Result<Object> {
+    let of = |name| get(object, name).unwrap_or(JsValue::UNDEFINED);
+    let (on, mesh) = (of("on"), of("mesh"));
+    let part = |name| get(&mesh, name).unwrap_or(JsValue::UNDEFINED);
+    Ok(Object {
+        mesh: Mesh::from_flat(
+            &to_f32s(&part("positions"), "mesh.positions")?,
+            Some(&to_u32s(&part("indices"), "mesh.indices")?),
+        )?,
+        world_from_mesh: transform::similarity(&of("transform"), "transform")?,
+        on: match (on.as_f64(), on.is_string()) {
+            (Some(index), _) => On::Object(index as usize),
+            (None, true) => On::Ground,
+            (None, false) => On::Nothing,
+        },
+    })
+}
+
+fn body(settled: &Settled) -> JsValue {
+    let Settled { body, is_free, moved_m, turned_deg, inside } = settled;
+    let parts: Array = body.parts.iter().map(part).collect();
+    let inside: Array = inside.iter().map(|i| JsValue::from(*i as f64)).collect();
+    object(&[
+        ("parts", parts.into()),
+        ("rotation", Float64Array::from(body.pose.rotation.to_array().as_slice()).into()),
+        ("translation", vector(body.pose.translation)),
+        ("mass", body.mass.mass.into()),
+        ("center", vector(body.mass.center)),
+        ("moments", vector(body.mass.moments)),
+        ("axes", Float64Array::from(body.mass.axes.to_array().as_slice()).into()),
+        ("isFree", (*is_free).into()),
+        ("movedM", (*moved_m).into()),
+        ("turnedDeg", (*turned_deg).into()),
+        ("inside", inside.into()),
+    ])
+}
+
+fn part(part: &ConvexPart) -> JsValue {
+    let positions: Vec<f64> = part.positions.iter().flat_map(|p| p.to_array()).collect();
+    object(&[
+        ("positions", Float64Array::from(positions.as_slice()).into()),
+        ("indices", Uint32Array::from(part.triangles.as_flattened()).into()),
+    ])
+}
+
+fn vector(v: DVec3) -> JsValue {
+    Float64Array::from(v.to_array().as_slice()).into()
+}
+
+fn object(properties: &[(&str, JsValue)]) -> JsValue {
+    let object = JsObject::new();
+    for (name, value) in properties {
+        // A fresh object is extensible: setting a property on it cannot fail.
+        let _ = Reflect::set(&object, &(*name).into(), value);
+    }
+    object.into()
+}

@@ -1,0 +1,106 @@
+/** The flags that write pictures and posed meshes. */
+import { writeFile } from "node:fs/promises";
+import { join } from "node:path";
+import type { Command } from "commander";
+import { exportGlb, placeGlb } from "../conventions/glb.js";
+import type { AlignInput, MeshArrays } from "../input/types.js";
+import { drawCase, drawOverlay } from "../pictures/case-pictures.js";
+import { Shot } from "../pictures/shot.js";
+import { isRecord } from "../values.js";
+import { alternativesOf, fileName, makeFolder, ReportFolder } from "./report-folder.js";
+
+/** Values of the flags. */
+export interface PictureFlags {
+  report?: string;
+  overlay?: string;
+  glb?: string;
+}
+
+/** A pose to be shown: its name, its JSON entry and, if it can be drawn, what it was found in. */
+export interface Shown {
+  name: string;
+  entry: Readonly<Record<string, unknown>>;
+  input?: AlignInput | undefined;
+}
+
+/** The poses in the JSON entry of a case: one, or one for each of its frames. */
+export function shownIn(name: string, entry: object): Shown[] {
+  const { frames, ...own } = entry as Readonly<Record<string, unknown>>;
+  if (!isRecord(frames)) return [{ name, entry: own }];
+  return Object.entries(frames).map(([frame, pose]) => ({
+    name: `${name}/${frame}`,
+    entry: pose as Readonly<Record<string, unknown>>,
+  }));
+}
+
+/** Adds the flags to a command. */
+export const addPictureFlags = (command: Command): Command =>
+  command
+    .option("--report <folder>", "write a page with a table, pictures and a 3D view of each case")
+    .option("--overlay <folder>", "write a PNG of each case: the image, the mask and the mesh")
+    .option("--glb <folder>", "write the posed mesh of each case as a GLB file");
+
+/** Writes what the flags ask for. */
+export class Pictures {
+  readonly #flags: PictureFlags;
+  readonly #report: ReportFolder | undefined;
+
+  private constructor(flags: PictureFlags, report: ReportFolder | undefined) {
+    this.#flags = flags;
+    this.#report = report;
+  }
+
+  /** @throws {@link UsageError} if a folder cannot be written */
+  static async open({ report, overlay, glb }: PictureFlags): Promise<Pictures> {
+    if (overlay !== undefined) makeFolder("--overlay", overlay);
+    if (glb !== undefined) makeFolder("--glb", glb);
+    return new Pictures(
+      { ...(overlay && { overlay }), ...(glb && { glb }) },
+      report === undefined ? undefined : await ReportFolder.open(report),
+    );
+  }
+
+  /** Whether an input has to be read for pictures. */
+  get isWanted(): boolean {
+    return this.#report !== undefined || this.#flags.overlay !== undefined || this.#flags.glb !== undefined;
+  }
+
+  /** Whether the pictures of the report are there. */
+  has(name: string): boolean {
+    return this.#report?.has(name) ?? true;
+  }
+
+  /** Writes the pictures of a pose. */
+  async draw({ name, entry, input }: Shown): Promise<void> {
+    if (!this.isWanted || input === undefined || !Array.isArray(entry.matrix)) return;
+    const matrix = entry.matrix as number[];
+    const { overlay, glb } = this.#flags;
+    const shot = await Shot.of(input);
+    try {
+      if (this.#report !== undefined) {
+        const others = alternativesOf(entry).map((other) => other.matrix as number[]);
+        await this.#report.write(name, entry, await drawCase(shot, matrix, others));
+      }
+      if (overlay !== undefined)
+        await writeFile(join(overlay, `${fileName(name)}.png`), await drawOverlay(shot, matrix));
+      if (glb !== undefined) await writeFile(join(glb, `${fileName(name)}.glb`), posed(input, shot, matrix));
+    } finally {
+      await shot.dispose();
+    }
+  }
+
+  /** Adds a row to the report. */
+  record(name: string, entry: Readonly<Record<string, unknown>>): void {
+    this.#report?.add(name, entry);
+  }
+
+  end(): void {
+    this.#report?.end();
+  }
+}
+
+/** The posed mesh: a GLB keeps its materials. */
+function posed({ mesh }: AlignInput, shot: Shot, matrix: readonly number[]): Uint8Array {
+  if (isRecord(mesh) && mesh.format === "glb") return placeGlb(mesh.bytes as Uint8Array, { matrix });
+  return exportGlb(shot.mesh as MeshArrays, { matrix });
+}

@@ -1,0 +1,154 @@
+/** Files of a whole scene: GLB, and the formats of simulators. */
+import { mkdirSync, writeFileSync } from "node:fs";
+import { dirname, join } from "node:path";
+import type { Command } from "commander";
+import { exportSceneGlb, type SceneGlbObject } from "../conventions/scene-glb.js";
+import { parseCameraFile } from "../formats/camera-file.js";
+import { formatsModule } from "../formats-module.js";
+import type { SceneInput, SceneResult } from "../index.js";
+import { readMesh } from "../input/mesh.js";
+import type { MeshArrays } from "../input/types.js";
+import type { SceneOnDisk } from "../scene-folder.js";
+import { type TextFiles, toMjcf } from "../simulators/mjcf.js";
+import { SIMULATOR_DEFAULTS, type SimulatorObject, type SimulatorScene, simulatorScene } from "../simulators/scene.js";
+import { toUrdf } from "../simulators/urdf.js";
+import { toUsd } from "../simulators/usd.js";
+import { withoutUndefined } from "../values.js";
+import { fixed } from "./number.js";
+import { number } from "./parse.js";
+import { makeFolder } from "./report-folder.js";
+import { UsageError } from "./usage-error.js";
+import { checkWritable } from "./writable.js";
+
+/** Values of the flags. */
+export interface SceneFileFlags {
+  sceneGlb?: string;
+  mjcf?: string;
+  urdf?: string;
+  usd?: string;
+  density?: number;
+  parts?: number;
+}
+
+/** Adds the flags to a command. */
+export const addSceneFileFlags = (command: Command): Command =>
+  command
+    .option("--scene-glb <file>", "write the scene as one GLB file")
+    .option("--mjcf <folder>", "write the scene for MuJoCo: scene.xml and meshes")
+    .option("--urdf <folder>", "write the scene as URDF: a file per object, scene.json, load.py for PyBullet")
+    .option("--usd <file>", "write the scene as USD with physics (.usda)")
+    .option("--density <kg/m³>", `mass per volume for simulators (default ${SIMULATOR_DEFAULTS.density})`, number)
+    .option(
+      "--parts <n>",
+      `most convex parts of an object for simulators; 1 is its hull (default ${SIMULATOR_DEFAULTS.maxParts})`,
+      number,
+    );
+
+/**
+ * Checks the flags before the first scene.
+ * @throws {@link UsageError}
+ */
+export function checkSceneFiles({ sceneGlb, mjcf, urdf, usd }: SceneFileFlags, scenes: number): void {
+  const files = { "scene-glb": sceneGlb, mjcf, urdf, usd };
+  const given = Object.entries(files).find(([, path]) => path !== undefined);
+  if (given !== undefined && scenes > 1) throw new UsageError(`--${given[0]} takes a single scene.`);
+  for (const [flag, path] of [
+    ["--scene-glb", sceneGlb],
+    ["--usd", usd],
+  ] as const) {
+    if (path !== undefined) checkWritable(flag, path);
+  }
+  for (const [flag, path] of [
+    ["--mjcf", mjcf],
+    ["--urdf", urdf],
+  ] as const) {
+    if (path !== undefined) makeFolder(flag, path);
+  }
+}
+
+/** Writes the files. Returns lines that say which bodies are fixed, and how far others were moved. */
+export async function writeSceneFiles(
+  scene: SceneOnDisk,
+  result: SceneResult,
+  flags: SceneFileFlags,
+): Promise<string[]> {
+  const { sceneGlb, mjcf, urdf, usd, density, parts } = flags;
+  const camera = cameraOf(scene.input);
+  if (sceneGlb !== undefined) writeFileSync(sceneGlb, await glbOf(scene, result, camera));
+  if (mjcf === undefined && urdf === undefined && usd === undefined) return [];
+  const { support } = result;
+  const options = { support, ...withoutUndefined({ camera, density, maxParts: parts }) };
+  const simulated = await simulatorScene(await simulatorObjects(scene, result), options);
+  if (mjcf !== undefined) writeTexts(mjcf, toMjcf(simulated));
+  if (urdf !== undefined) writeTexts(urdf, toUrdf(simulated));
+  if (usd !== undefined) writeFileSync(usd, toUsd(simulated));
+  return linesOf(simulated);
+}
+
+function linesOf({ bodies }: SimulatorScene): string[] {
+  return bodies.map(({ name, isFixed, mass, movedM, turnedDeg, parts }) => {
+    const state = isFixed
+      ? "fixed"
+      : `free, moved ${fixed(1000 * movedM, 1)} mm and turned ${fixed(turnedDeg, 1)}° to rest`;
+    return `${name}: ${fixed(mass, 3)} kg, ${parts.length} convex parts, ${state}`;
+  });
+}
+
+function writeTexts(folder: string, files: TextFiles): void {
+  for (const [path, text] of Object.entries(files)) {
+    const file = join(folder, path);
+    mkdirSync(dirname(file), { recursive: true });
+    writeFileSync(file, text);
+  }
+}
+
+/** The aligned objects with their meshes and colours. Indices of contacts count aligned objects only. */
+async function simulatorObjects({ input }: SceneOnDisk, { objects }: SceneResult): Promise<SimulatorObject[]> {
+  const places = new Map<number, number>();
+  for (const [i, object] of objects.entries()) if (object.error === undefined) places.set(i, places.size);
+  const found: SimulatorObject[] = [];
+  for (const [i, object] of objects.entries()) {
+    const given = input.objects[i]?.mesh;
+    if (object.error !== undefined || given === undefined) continue;
+    const { mesh } = await readMesh(given, () => formatsModule.load(), true);
+    const { restsOn } = object.contact;
+    const on = typeof restsOn === "number" ? (places.get(restsOn) ?? null) : restsOn;
+    found.push({ name: object.name, mesh: mesh as MeshArrays, transform: object, restsOn: on });
+  }
+  return found;
+}
+
+interface ImageCamera {
+  fy: number;
+  width: number;
+  height: number;
+}
+
+/** The scene as one file. Only GLB files keep their materials. */
+async function glbOf(
+  { input }: SceneOnDisk,
+  { objects, support }: SceneResult,
+  camera: ImageCamera | undefined,
+): Promise<Uint8Array> {
+  const placed: SceneGlbObject[] = [];
+  for (const [i, object] of objects.entries()) {
+    const given = input.objects[i]?.mesh;
+    if (object.error !== undefined || given === undefined) continue;
+    const { bytes, format } = given as { bytes: Uint8Array; format?: string };
+    const mesh = format === "glb" ? bytes : (await readMesh(given, () => formatsModule.load(), false)).mesh;
+    placed.push({ name: object.name, mesh, transform: object });
+  }
+  return exportSceneGlb(placed, { support, ...(camera === undefined ? {} : { camera }) });
+}
+
+function cameraOf(input: SceneInput): ImageCamera | undefined {
+  const { cameraFile, imageId } = input as { cameraFile?: Uint8Array; imageId?: string };
+  if (cameraFile === undefined) return undefined;
+  try {
+    const { fy, cx, cy, width, height } = parseCameraFile(cameraFile, withoutUndefined({ imageId }));
+    // A file without size: the principal point is about the middle.
+    return { fy, width: width ?? 2 * cx + 1, height: height ?? 2 * cy + 1 };
+  } catch {
+    return undefined;
+  }
+}

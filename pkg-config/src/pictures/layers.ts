@@ -1,0 +1,140 @@
+/** Layers of pictures: what was seen, and what is drawn over it. */
+import { depthColour, differenceColour, MASK, MESH, type Rgb } from "./colours.js";
+import type { Picture } from "./png.js";
+import type { Shot } from "./shot.js";
+import type { View } from "./view.js";
+
+/** Towards the viewer, from above and from the left. */
+const LIGHT = [-0.4, -0.6, -0.69] as const;
+
+/** What was seen: the photo or, without one, the depth in colours. */
+export function ground(shot: Shot, view: View): Picture {
+  const { photo, width: columns, height: rows } = shot;
+  return photo === undefined ? depthGround(shot, view) : photoGround(photo, columns, rows, view);
+}
+
+function photoGround(photo: Picture, columns: number, rows: number, view: View): Picture {
+  const { width, height } = view;
+  const data = new Uint8Array(3 * width * height);
+  const [scaleX, scaleY] = [photo.width / columns, photo.height / rows];
+  // Pixels of the photo per pixel of the view: their mean.
+  const count = Math.min(Math.max(1, Math.round(scaleX / view.zoom)), 8);
+  for (let y = 0; y < height; y++) {
+    for (let x = 0; x < width; x++) {
+      const sum = [0, 0, 0];
+      let seen = 0;
+      for (let k = 0; k < count * count; k++) {
+        const [dx, dy] = [((k % count) + 0.5) / count, (Math.floor(k / count) + 0.5) / count];
+        const u = Math.floor((view.left + (x + dx) / view.zoom) * scaleX);
+        const v = Math.floor((view.top + (y + dy) / view.zoom) * scaleY);
+        if (u < 0 || v < 0 || u >= photo.width || v >= photo.height) continue;
+        seen++;
+        for (let c = 0; c < 3; c++) sum[c] = (sum[c] as number) + (photo.data[3 * (v * photo.width + u) + c] as number);
+      }
+      data.set(seen === 0 ? depthColour(null) : sum.map((part) => Math.round(part / seen)), 3 * (y * width + x));
+    }
+  }
+  return { data, width, height };
+}
+
+function depthGround(shot: Shot, view: View): Picture {
+  const { width, height } = view;
+  const depth = view.sampled(shot.depth, shot.width, shot.height);
+  const readings = depth.filter((z) => z > 0).sort();
+  const at = (share: number) => readings[Math.floor(share * (readings.length - 1))] ?? 0;
+  const [near, far] = [at(0.01), at(0.99)];
+  const data = new Uint8Array(3 * width * height);
+  depth.forEach((z, i) => {
+    // A few levels, of which small files are made.
+    data.set(depthColour(z > 0 ? Math.round((200 * (z - near)) / (far - near || 1)) / 200 : null), 3 * i);
+  });
+  return { data, width, height };
+}
+
+/** The pixels of a shape that are at most `thickness` pixels from its outside. */
+function outline(shape: ArrayLike<number>, width: number, height: number, thickness: number): (i: number) => boolean {
+  const isOutside = (u: number, v: number) => u < 0 || v < 0 || u >= width || v >= height || !shape[v * width + u];
+  return (i) => {
+    if (!shape[i]) return false;
+    const [u, v] = [i % width, Math.floor(i / width)];
+    for (let d = 1; d <= thickness; d++) {
+      if (isOutside(u - d, v) || isOutside(u + d, v) || isOutside(u, v - d) || isOutside(u, v + d)) return true;
+    }
+    return false;
+  };
+}
+
+/** A layer: each pixel has a colour and an opacity of 0 to 255, or `null`. */
+function layer(view: View, colourOf: (i: number) => readonly [...Rgb, number] | null): Picture {
+  const { width, height } = view;
+  const data = new Uint8Array(4 * width * height);
+  for (let i = 0; i < width * height; i++) {
+    const colour = colourOf(i);
+    if (colour !== null) data.set(colour, 4 * i);
+  }
+  return { data, width, height };
+}
+
+/** The outlines of the mask and of the mesh. */
+export function outlines(mask: Float32Array, mesh: Float32Array, view: View): Picture {
+  const { width, height } = view;
+  const thickness = Math.max(2, Math.round(width / 320));
+  const isMask = outline(mask, width, height, thickness);
+  const isMesh = outline(mesh, width, height, thickness);
+  return layer(view, (i) => (isMesh(i) ? [...MESH, 255] : isMask(i) ? [...MASK, 255] : null));
+}
+
+/** The mask, as a tint. */
+export const maskTint = (mask: Float32Array, view: View): Picture =>
+  layer(view, (i) => (mask[i] ? [60, 158, 229, 110] : null));
+
+/** The mesh, shaded by the slope of its surface. */
+export function shaded(mesh: Float32Array, view: View, { fx, fy }: { fx: number; fy: number }): Picture {
+  const { width, height } = view;
+  return layer(view, (i) => {
+    const z = mesh[i] as number;
+    if (z === 0) return null;
+    const [u, v] = [i % width, Math.floor(i / width)];
+    const slope = (before: number, after: number, focal: number) =>
+      (((mesh[after] || z) - (mesh[before] || z)) * focal) / (2 * z);
+    const dx = slope(u > 0 ? i - 1 : i, u + 1 < width ? i + 1 : i, fx);
+    const dy = slope(v > 0 ? i - width : i, v + 1 < height ? i + width : i, fy);
+    const lambert = (dx * LIGHT[0] + dy * LIGHT[1] - LIGHT[2]) / Math.hypot(dx, dy, 1);
+    const light = 0.35 + 0.75 * Math.max(0, lambert);
+    const [red, green, blue] = MESH.map((part) => 8 * Math.round(Math.min(255, part * light) / 8)) as [
+      number,
+      number,
+      number,
+    ];
+    return [Math.min(255, red), Math.min(255, green), Math.min(255, blue), 235];
+  });
+}
+
+/** The difference of the mesh's depth and the measured one, in the mask. */
+export function residual(
+  { mask, measured, mesh }: { mask: Float32Array; measured: Float32Array; mesh: Float32Array },
+  view: View,
+  limitM: number,
+): Picture {
+  return layer(view, (i) => {
+    const [drawn, seen] = [mesh[i] as number, measured[i] as number];
+    if (!mask[i] || drawn === 0 || seen === 0) return null;
+    const steps = Math.round((16 * (drawn - seen)) / limitM) / 16;
+    return [...differenceColour(steps, 1), 255] as const;
+  });
+}
+
+/** A layer over a picture, as one picture. */
+export function over(below: Picture, ...layers: readonly Picture[]): Picture {
+  const data = Uint8Array.from(below.data);
+  for (const { data: above } of layers) {
+    for (let i = 0; i < data.length / 3; i++) {
+      const share = (above[4 * i + 3] as number) / 255;
+      if (share === 0) continue;
+      for (let k = 0; k < 3; k++) {
+        data[3 * i + k] = (data[3 * i + k] as number) * (1 - share) + (above[4 * i + k] as number) * share;
+      }
+    }
+  }
+  return { data, width: below.width, height: below.height };
+}

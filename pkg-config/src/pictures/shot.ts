@@ -1,0 +1,58 @@
+/** A shot: an observation and a mesh, decoded for pictures of a pose. */
+import { coreModule } from "../core.js";
+import type { Pinhole } from "../formats/pinhole.js";
+import { nearest } from "../formats/pixels.js";
+import { formatsModule } from "../formats-module.js";
+import type { Photo } from "../input/colors.js";
+import { resolveInput } from "../input/resolve.js";
+import type { AlignInput } from "../input/types.js";
+import { type CoreMesh, nextMeshId } from "../prepared-mesh.js";
+import type { View } from "./view.js";
+
+/** What pictures show. Its mesh is kept by the core until it is disposed. */
+export class Shot {
+  private constructor(
+    /** Metres, row by row; 0 is no reading. */
+    readonly depth: Float32Array,
+    readonly width: number,
+    readonly height: number,
+    readonly camera: Pinhole,
+    /** Of the size of the depth map. */
+    readonly mask: Uint8Array,
+    readonly photo: Photo | undefined,
+    readonly mesh: CoreMesh,
+  ) {}
+
+  /**
+   * Decodes an input with depth and a camera.
+   * @throws {@link Sim3AlignError} as `align`
+   */
+  static async of(input: AlignInput): Promise<Shot> {
+    const { core } = await resolveInput(input, () => formatsModule.load(), nextMeshId());
+    const { depth = new Float32Array(), mask, mesh, image } = core;
+    const [width, height] = [Number(core.width), Number(core.height)];
+    const [columns, rows] = [core.maskWidth ?? width, core.maskHeight ?? height];
+    const scale = Number(core.depthScale ?? (depth instanceof Uint16Array ? 0.001 : 1));
+    const metres = Float32Array.from(depth, (z) => (z > 0 && Number.isFinite(z) ? z * scale : 0));
+    const inside = Uint8Array.from({ length: width * height }, (_, i) => {
+      const [u, v] = [i % width, Math.floor(i / width)];
+      return mask[nearest(v, height, rows) * columns + nearest(u, width, columns)] === 0 ? 0 : 1;
+    });
+    return new Shot(metres, width, height, core.camera as Pinhole, inside, image, mesh);
+  }
+
+  /** The depth of the mesh at a pose in a view, metres; 0 where no mesh is. */
+  async render(view: View, matrix: readonly number[]): Promise<Float32Array> {
+    const core = await coreModule.load();
+    const { width, height } = view;
+    return core.call((c) =>
+      c.renderDepth({ mesh: this.mesh, width, height, camera: view.camera(this.camera) }, matrix),
+    );
+  }
+
+  /** Frees what the core keeps of the mesh. */
+  async dispose(): Promise<void> {
+    const { id } = this.mesh;
+    if (id !== undefined) (await coreModule.load()).call((c) => c.dropMesh(id));
+  }
+}

@@ -1,0 +1,129 @@
+/** The mesh and the observed points for a view in 3D, in a form that is small in a file. */
+import { moved, similarityOf } from "../conventions/similarity.js";
+import { depthColour } from "./colours.js";
+import type { Picture } from "./png.js";
+import type { Shot } from "./shot.js";
+import type { View } from "./view.js";
+
+/** Cells along the longest side of a mesh; vertices in a cell are joined. */
+const CELLS = 44;
+/** Steps of a coordinate along the longest side of what is shown. */
+const STEPS = 32_000;
+const MAX_POINTS = 9000;
+
+/** Arrays in base64, little endian. */
+export interface SpaceJson {
+  /** The middle, camera frame, metres; coordinates are relative to it. */
+  center: [number, number, number];
+  /** Metres per step of the coordinates. */
+  stepM: number;
+  /** Int16, x, y, z per vertex. */
+  vertices: string;
+  /** Uint16, three per triangle. */
+  triangles: string;
+  /** Int16, x, y, z per point. */
+  points: string;
+  /** Red, green, blue per point. */
+  colours: string;
+}
+
+const base64 = (array: Int16Array | Uint16Array | Uint8Array) =>
+  Buffer.from(array.buffer, array.byteOffset, array.byteLength).toString("base64");
+
+/** The posed mesh, simplified, and the points of a view in the colours of a picture of it. */
+export function spaceOf(shot: Shot, view: View, picture: Picture, matrix: readonly number[]): SpaceJson {
+  const mesh = simplified(shot, matrix);
+  const bounds = [0, 1, 2].map((axis) => {
+    let [low, high] = [Number.POSITIVE_INFINITY, Number.NEGATIVE_INFINITY];
+    for (let i = axis; i < mesh.vertices.length; i += 3) {
+      low = Math.min(low, mesh.vertices[i] as number);
+      high = Math.max(high, mesh.vertices[i] as number);
+    }
+    return [low, high] as const;
+  });
+  const center = bounds.map(([low, high]) => (low + high) / 2) as SpaceJson["center"];
+  const size = Math.max(...bounds.map(([low, high]) => high - low), 1e-6);
+  // Points farther than two sizes from the object are left out.
+  const stepM = (2.5 * size) / STEPS;
+  const quantised = (numbers: ArrayLike<number>) =>
+    Int16Array.from(numbers, (x, i) => Math.round((x - (center[i % 3] as number)) / stepM));
+  const { points, colours } = observed(shot, view, picture, center, 2 * size);
+  return {
+    ...{ center, stepM, vertices: base64(quantised(mesh.vertices)), triangles: base64(mesh.triangles) },
+    ...{ points: base64(quantised(points)), colours: base64(Uint8Array.from(colours)) },
+  };
+}
+
+/** The posed mesh with one vertex per occupied cell of a grid. */
+function simplified({ mesh }: Shot, matrix: readonly number[]): { vertices: Float64Array; triangles: Uint16Array } {
+  const { positions } = mesh;
+  const indices = mesh.indices ?? Uint32Array.from({ length: positions.length / 3 }, (_, i) => i);
+  const pose = similarityOf({ matrix });
+  const low = [0, 1, 2].map((axis) => extreme(positions, axis, Math.min));
+  const high = [0, 1, 2].map((axis) => extreme(positions, axis, Math.max));
+  const cell = Math.max(...high.map((x, axis) => x - (low[axis] as number)), 1e-30) / CELLS;
+  const cells = new Map<number, number>();
+  const sums: number[] = [];
+  const places = new Uint32Array(positions.length / 3);
+  for (let i = 0; i < places.length; i++) {
+    const at = [0, 1, 2].map((axis) =>
+      Math.floor(((positions[3 * i + axis] as number) - (low[axis] as number)) / cell),
+    );
+    const key = ((at[0] as number) * (CELLS + 1) + (at[1] as number)) * (CELLS + 1) + (at[2] as number);
+    let place = cells.get(key);
+    if (place === undefined) {
+      place = cells.size;
+      cells.set(key, place);
+      sums.push(0, 0, 0, 0);
+    }
+    places[i] = place;
+    for (let axis = 0; axis < 3; axis++)
+      sums[4 * place + axis] = (sums[4 * place + axis] as number) + (positions[3 * i + axis] as number);
+    sums[4 * place + 3] = (sums[4 * place + 3] as number) + 1;
+  }
+  const vertices = new Float64Array(3 * cells.size);
+  for (let k = 0; k < cells.size; k++) {
+    const count = sums[4 * k + 3] as number;
+    const [x = 0, y = 0, z = 0] = [0, 1, 2].map((axis) => (sums[4 * k + axis] as number) / count);
+    vertices.set(moved(pose, [x, y, z]), 3 * k);
+  }
+  const seen = new Set<string>();
+  const triangles: number[] = [];
+  for (let t = 0; t + 2 < indices.length; t += 3) {
+    const [a = 0, b = 0, c = 0] = [0, 1, 2].map((k) => places[indices[t + k] as number] as number);
+    if (a === b || b === c || c === a || Math.max(a, b, c) > 0xffff) continue;
+    const key = [a, b, c].sort((i, j) => i - j).join();
+    if (seen.has(key)) continue;
+    seen.add(key);
+    triangles.push(a, b, c);
+  }
+  return { vertices, triangles: Uint16Array.from(triangles) };
+}
+
+function extreme(positions: Float32Array, axis: number, of: (a: number, b: number) => number): number {
+  let found = positions[axis] as number;
+  for (let i = axis; i < positions.length; i += 3) found = of(found, positions[i] as number);
+  return found;
+}
+
+/** The observed points of a view near a place. */
+function observed(shot: Shot, view: View, picture: Picture, center: readonly number[], reachM: number) {
+  const { fx, fy, cx, cy } = view.camera(shot.camera);
+  const depth = view.sampled(shot.depth, shot.width, shot.height);
+  const near: number[] = [];
+  depth.forEach((z, i) => {
+    if (z === 0) return;
+    const [x, y] = [((i % view.width) - cx) * (z / fx), (Math.floor(i / view.width) - cy) * (z / fy)];
+    if (Math.hypot(x - (center[0] ?? 0), y - (center[1] ?? 0), z - (center[2] ?? 0)) < reachM) near.push(i);
+  });
+  const points: number[] = [];
+  const colours: number[] = [];
+  const step = Math.max(1, near.length / MAX_POINTS);
+  for (let k = 0; k < near.length; k += step) {
+    const i = near[Math.floor(k)] as number;
+    const z = depth[i] as number;
+    points.push(((i % view.width) - cx) * (z / fx), (Math.floor(i / view.width) - cy) * (z / fy), z);
+    colours.push(...(picture.data.subarray(3 * i, 3 * i + 3) ?? depthColour(null)));
+  }
+  return { points, colours };
+}

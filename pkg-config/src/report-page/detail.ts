@@ -1,0 +1,180 @@
+/** The details of a case: pictures with layers, alternatives, numbers, and the view in 3D. */
+import { byId, decimals, element } from "./dom.js";
+import { SpaceView } from "./space-view.js";
+import type { ReportDetails, ReportHost, ReportRow } from "./types.js";
+
+/** The layers over the picture, from below, and whether each is shown at first. */
+const layers = [
+  ["mask", "Mask", false],
+  ["mesh", "Mesh", false],
+  ["residual", "Depth difference", false],
+  ["outlines", "Outlines", true],
+] as const;
+
+const isShown = new Map<string, boolean>(layers.map(([name, , isOn]) => [name, isOn]));
+
+/** Loads the details of a case once: a script, because pages from disk may not fetch. */
+function loaded(host: ReportHost, folder: string): Promise<ReportDetails> {
+  const known = host.details[folder];
+  if (known !== undefined) return Promise.resolve(known);
+  return new Promise((resolve, reject) => {
+    const script = element("script", { src: `cases/${folder}/details.js` });
+    script.addEventListener("load", () => {
+      script.remove();
+      const details = host.details[folder];
+      if (details === undefined) reject(new Error("The file of this case is damaged."));
+      else resolve(details);
+    });
+    script.addEventListener("error", () => reject(new Error("The file of this case is missing.")));
+    document.head.append(script);
+  });
+}
+
+/** The panel of details. */
+export class Detail {
+  readonly #host: ReportHost;
+  readonly #panel = byId("detail");
+  #space: SpaceView | undefined;
+  #row: ReportRow | undefined;
+
+  constructor(host: ReportHost) {
+    this.#host = host;
+  }
+
+  /** Shows a case. */
+  show(row: ReportRow): void {
+    this.#row = row;
+    this.#space?.dispose();
+    this.#space = undefined;
+    const body = element("div");
+    this.#panel.replaceChildren(element("h2", {}, row.name), body);
+    if (row.error !== undefined)
+      body.append(element("p", { class: "problem" }, `${row.error.code}: ${row.error.message}`));
+    if (row.warnings.length > 0) {
+      const items = row.warnings.map(({ code, message }) =>
+        element("li", {}, element("strong", {}, code), ` ${message}`),
+      );
+      body.append(element("ul", { class: "warnings", "aria-label": "Warnings" }, ...items));
+    }
+    const { folder } = row;
+    if (folder === undefined) {
+      if (row.error === undefined) body.append(element("p", {}, "This case has no pictures."));
+      return;
+    }
+    body.prepend(this.#picture(folder));
+    loaded(this.#host, folder).then(
+      (details) => {
+        // Another case may have been selected since.
+        if (this.#row === row) this.#fill(body, row, folder, details);
+      },
+      (error: Error) => {
+        if (this.#row === row) body.append(element("p", { class: "problem" }, error.message));
+      },
+    );
+  }
+
+  #picture(folder: string): HTMLElement {
+    const image = (name: string, alt: string) =>
+      element("img", {
+        src: `cases/${folder}/${name}.png`,
+        alt,
+        width: 440,
+        height: 330,
+        "data-layer": name,
+        decoding: "async",
+      });
+    const stack = element("div", { class: "stack" }, image("ground", "What was seen, around the object"));
+    const boxes = layers.map(([name, label]) => {
+      const drawn = image(name, `${label} over the picture`);
+      drawn.hidden = !isShown.get(name);
+      stack.append(drawn);
+      const box = element("input", { type: "checkbox", id: `layer-${name}` });
+      box.checked = !drawn.hidden;
+      box.addEventListener("change", () => {
+        drawn.hidden = !box.checked;
+        isShown.set(name, box.checked);
+      });
+      return element("label", {}, box, ` ${label}`);
+    });
+    return element(
+      "section",
+      { "aria-label": "Picture" },
+      stack,
+      element("div", { class: "layers", role: "group", "aria-label": "Layers" }, ...boxes),
+    );
+  }
+
+  #fill(
+    body: HTMLElement,
+    row: ReportRow,
+    folder: string,
+    { limitMm, isPhoto, alternatives, matrix, space }: ReportDetails,
+  ): void {
+    const legend = element(
+      "p",
+      { class: "legend" },
+      `Over the ${isPhoto ? "photo" : "depth map"}: `,
+      element("span", { class: "key mesh" }, "mesh"),
+      element("span", { class: "key mask" }, "mask"),
+      element("span", { class: "key near" }, `mesh ${limitMm} mm nearer`),
+      element("span", { class: "key far" }, `${limitMm} mm farther`),
+    );
+    const canvas = element("canvas", {
+      width: 440,
+      height: 300,
+      tabindex: 0,
+      role: "img",
+      "aria-label":
+        "The mesh and the observed points in 3D. Drag or use the arrow keys to turn, the wheel or plus and minus to zoom.",
+    });
+    body.querySelector(".layers")?.after(legend);
+    this.#space = SpaceView.of(canvas, space);
+    if (this.#space !== undefined)
+      body.append(element("section", { "aria-label": "3D" }, element("h3", {}, "3D"), canvas));
+    if (alternatives.length > 0) {
+      const figures = alternatives.map(({ file, turnDeg, score }) =>
+        element(
+          "figure",
+          {},
+          element("img", {
+            src: `cases/${folder}/${file}`,
+            alt: `The mesh turned by ${turnDeg.toFixed(0)} degrees`,
+            width: 160,
+            height: 120,
+            loading: "lazy",
+          }),
+          element("figcaption", {}, `turned ${turnDeg.toFixed(0)}°, score ${score.toFixed(3)}`),
+        ),
+      );
+      body.append(
+        element(
+          "section",
+          { "aria-label": "Alternatives" },
+          element("h3", {}, "Alternatives"),
+          element("div", { class: "alternatives" }, ...figures),
+        ),
+      );
+    }
+    const numbers: [string, string][] = [
+      ["Confidence", decimals(row.confidence, 3)],
+      ["Scale", row.scale === null ? "–" : `${row.scale.toPrecision(6)} m per unit`],
+      ["Silhouette IoU", decimals(row.iou, 4)],
+      ["Boundary F", decimals(row.boundaryF, 4)],
+      ["Depth difference", `${decimals(row.depthMaeMm, 2)} mm`],
+      ["Chamfer distance", `${decimals(row.chamferMm, 2)} mm`],
+    ];
+    const entries = numbers.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, value)]);
+    const rows = [0, 1, 2, 3].map((i) =>
+      [0, 1, 2, 3].map((j) => (matrix[4 * j + i] ?? 0).toFixed(6).padStart(11)).join(" "),
+    );
+    body.append(
+      element(
+        "section",
+        { "aria-label": "Numbers" },
+        element("h3", {}, "Numbers"),
+        element("dl", {}, ...entries),
+        element("pre", { tabindex: 0, "aria-label": "Camera from mesh, rows" }, rows.join("\n")),
+      ),
+    );
+  }
+}

@@ -1,0 +1,29 @@
+/** Elements of the page. */
+
+type Child = Node | string | null;
+
+/** An element with attributes and children. Text is never parsed as HTML. */
+export function element<K extends keyof HTMLElementTagNameMap>(
+  tag: K,
+  attributes: Readonly<Record<string, string | number | boolean | undefined>> = {},
+  ...children: Child[]
+): HTMLElementTagNameMap[K] {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (value === undefined || value === false) continue;
+    made.setAttribute(name, value === true ? "" : String(value));
+  }
+  made.append(...children.filter((child) => child !== null));
+  return made;
+}
+
+/** The element of the page with this id. */
+export function byId<T extends HTMLElement>(id: string): T {
+  const found = document.getElementById(id);
+  if (found === null) throw new Error(`The page has no #${id}.`);
+  return found as T;
+}
+
+/** A number with this many decimals; a missing one is a dash. */
+export const decimals = (value: number | null | undefined, digits: number): string =>
+  value === null || value === undefined ? "–" : value.toFixed(digits);

@@ -1,0 +1,182 @@
+/** The table: sorted, filtered, and with elements for the rows in sight only. */
+import { type Column, columnsOf } from "./columns.js";
+import { byId, element } from "./dom.js";
+import type { ReportRow } from "./types.js";
+
+/** Height of a row, pixels; the style sheet has the same. */
+const ROW = 48;
+/** Rows beyond those in sight, above and below. */
+const SPARE = 6;
+
+/** Which rows are shown. */
+export interface Filter {
+  text: string;
+  /** Only cases of a confidence up to this; failures count as 0. */
+  upTo: number;
+  /** Only failures, cases with warnings, or cases with alternatives. */
+  only: string;
+}
+
+/** The table, whose rows can be selected. */
+export class Table {
+  readonly #all: readonly ReportRow[];
+  readonly #columns: readonly Column[];
+  readonly #onSelect: (row: ReportRow) => void;
+  readonly #scroller = byId("scroller");
+  readonly #body = byId("rows");
+  #rows: ReportRow[] = [];
+  #selected: ReportRow | undefined;
+  #sort = { id: "confidence", isDescending: false };
+  #filter: Filter = { text: "", upTo: 1, only: "all" };
+
+  constructor(rows: readonly ReportRow[], onSelect: (row: ReportRow) => void) {
+    this.#all = rows;
+    this.#columns = columnsOf(rows);
+    this.#onSelect = onSelect;
+    this.#drawHead();
+    this.#scroller.addEventListener("scroll", () => this.#draw(), { passive: true });
+    new ResizeObserver(() => this.#draw()).observe(this.#scroller);
+    this.#body.addEventListener("click", (event) => {
+      const index = (event.target as Element).closest("tr")?.dataset.index;
+      if (index !== undefined) this.select(this.#rows[Number(index)]);
+    });
+    this.#scroller.addEventListener("keydown", (event) => {
+      const step = { ArrowDown: 1, ArrowUp: -1, PageDown: 10, PageUp: -10 }[event.key];
+      if (step === undefined || this.#rows.length === 0) return;
+      event.preventDefault();
+      const at = this.#selected === undefined ? -1 : this.#rows.indexOf(this.#selected);
+      this.select(this.#rows[Math.min(Math.max(at + step, 0), this.#rows.length - 1)]);
+      this.#show();
+    });
+    this.#update();
+  }
+
+  /** Shows the rows that pass a filter. */
+  filter(filter: Filter): void {
+    this.#filter = filter;
+    this.#scroller.scrollTop = 0;
+    this.#update();
+  }
+
+  /** Selects a row; without one, the first. */
+  select(row: ReportRow | undefined = this.#rows[0]): void {
+    if (row === undefined) return;
+    this.#selected = row;
+    this.#draw();
+    this.#onSelect(row);
+  }
+
+  #update(): void {
+    const { text, upTo, only } = this.#filter;
+    const wanted = text.toLowerCase();
+    const passes = (row: ReportRow) =>
+      (wanted === "" ||
+        `${row.name} ${row.error?.code ?? ""} ${row.warnings.map((w) => w.code).join(" ")}`
+          .toLowerCase()
+          .includes(wanted)) &&
+      (row.confidence ?? 0) <= upTo &&
+      (only !== "failures" || row.error !== undefined) &&
+      (only !== "warnings" || row.warnings.length > 0) &&
+      (only !== "alternatives" || row.alternatives > 0);
+    const { id, isDescending } = this.#sort;
+    const key = (this.#columns.find((column) => column.id === id) ?? (this.#columns[0] as Column)).key;
+    this.#rows = this.#all.filter(passes).sort((a, b) => compared(key(a), key(b), isDescending));
+    // Failures are the least certain of all.
+    if (id === "confidence" && !isDescending) {
+      this.#rows.sort((a, b) => Number(b.error !== undefined) - Number(a.error !== undefined));
+    }
+    byId("count").textContent = `${this.#rows.length} of ${this.#all.length} cases`;
+    byId("table").setAttribute("aria-rowcount", String(this.#rows.length + 1));
+    this.#draw();
+  }
+
+  #drawHead(): void {
+    const cells = this.#columns.map((column) => {
+      const button = element("button", { type: "button", title: column.title }, column.heading);
+      button.addEventListener("click", () => {
+        const isSame = this.#sort.id === column.id;
+        this.#sort = { id: column.id, isDescending: isSame ? !this.#sort.isDescending : false };
+        this.#drawHead();
+        this.#update();
+        byId("head").querySelector<HTMLElement>(`[data-id="${column.id}"] button`)?.focus();
+      });
+      const order = this.#sort.id !== column.id ? "none" : this.#sort.isDescending ? "descending" : "ascending";
+      return element("th", { scope: "col", "data-id": column.id, "aria-sort": order }, button);
+    });
+    byId("head").replaceChildren(
+      element("tr", { "aria-rowindex": 1 }, element("th", { scope: "col" }, "Picture"), ...cells),
+    );
+  }
+
+  /** Scrolls to the selected row. */
+  #show(): void {
+    if (this.#selected === undefined) return;
+    const top = this.#rows.indexOf(this.#selected) * ROW;
+    const { scrollTop, clientHeight } = this.#scroller;
+    const head = byId("head").clientHeight;
+    if (top < scrollTop) this.#scroller.scrollTop = top;
+    else if (top + ROW + head > scrollTop + clientHeight) this.#scroller.scrollTop = top + ROW + head - clientHeight;
+  }
+
+  /** Makes elements for the rows in sight. */
+  #draw(): void {
+    const first = Math.max(0, Math.floor(this.#scroller.scrollTop / ROW) - SPARE);
+    const count = Math.ceil(this.#scroller.clientHeight / ROW) + 2 * SPARE;
+    const end = Math.min(this.#rows.length, first + count);
+    const width = this.#columns.length + 1;
+    const spacer = (rows: number) =>
+      element(
+        "tr",
+        { "aria-hidden": true },
+        element("td", { colspan: width, class: "spacer", style: `height:${rows * ROW}px` }),
+      );
+    const rows = this.#rows.slice(first, end).map((row, i) => this.#row(row, first + i));
+    this.#body.replaceChildren(
+      ...(first > 0 ? [spacer(first)] : []),
+      ...rows,
+      ...(end < this.#rows.length ? [spacer(this.#rows.length - end)] : []),
+    );
+  }
+
+  #row(row: ReportRow, index: number): HTMLTableRowElement {
+    const cells = this.#columns.map((column) => {
+      const text = column.text(row);
+      if (column.id === "name") {
+        return element("th", { scope: "row", title: text }, element("button", { type: "button", tabindex: -1 }, text));
+      }
+      if (column.id !== "confidence")
+        return element("td", { class: column.id === "warnings" ? "words" : "", title: text }, text);
+      if (row.error !== undefined) return element("td", {}, element("span", { class: "failed" }, "failed"));
+      const bar = element("span", { class: "bar", style: `--share:${row.confidence ?? 0}` });
+      return element("td", {}, bar, text);
+    });
+    const picture =
+      row.folder === undefined
+        ? null
+        : element("img", {
+            src: `cases/${row.folder}/thumbnail.png`,
+            alt: "",
+            loading: "lazy",
+            decoding: "async",
+            width: 56,
+            height: 42,
+          });
+    const made = element(
+      "tr",
+      { "data-index": index, "aria-rowindex": index + 2 },
+      element("td", {}, picture),
+      ...cells,
+    );
+    if (row === this.#selected) made.setAttribute("aria-selected", "true");
+    return made;
+  }
+}
+
+function compared(a: number | string | null, b: number | string | null, isDescending: boolean): number {
+  if (a === null || b === null) return Number(a === null) - Number(b === null);
+  const order =
+    typeof a === "string" || typeof b === "string"
+      ? String(a).localeCompare(String(b), "en", { numeric: true })
+      : a - b;
+  return isDescending ? -order : order;
+}

@@ -1,0 +1,82 @@
+/** Scenes as MJCF, the format of MuJoCo. */
+import { wxyzFromXyzw } from "../conventions/rotation.js";
+import type { SimulatorBody, SimulatorScene } from "./scene.js";
+import { objOf, spaced } from "./text.js";
+
+/** Files by their paths, as text. */
+export type TextFiles = Record<string, string>;
+
+/**
+ * A scene as MJCF: `scene.xml`, and a mesh in `meshes/` for each body and each of its convex parts.
+ *
+ * @example
+ * for (const [path, text] of Object.entries(toMjcf(scene))) await writeFile(path, text);
+ */
+export function toMjcf({ bodies, hasGround, camera }: SimulatorScene): TextFiles {
+  const files: TextFiles = {};
+  const assets: string[] = [];
+  for (const { name, mesh, parts } of bodies) {
+    files[`meshes/${name}.obj`] = objOf(mesh);
+    // Its inertia is not used: surfaces of generated meshes need not be closed.
+    assets.push(`<mesh name="${name}" file="${name}.obj" inertia="shell"/>`);
+    for (const [k, part] of parts.entries()) {
+      files[`meshes/${name}_${k}.obj`] = objOf(part);
+      assets.push(`<mesh name="${name}_${k}" file="${name}_${k}.obj"/>`);
+    }
+  }
+  const world: string[] = [`<light directional="true" pos="0 0 3" dir="0.3 0.4 -1"/>`];
+  if (hasGround) {
+    assets.push(
+      `<texture name="ground" type="2d" builtin="checker" rgb1=".8 .82 .84" rgb2=".74 .76 .78" width="256" height="256"/>`,
+      `<material name="ground" texture="ground" texrepeat="10 10" texuniform="true"/>`,
+    );
+    world.push(`<geom name="ground" type="plane" size="2 2 0.05" material="ground"/>`);
+  }
+  if (camera !== null) {
+    const [x, y, z, w] = camera.rotation;
+    // Cameras of MuJoCo look along −z, with y up: half a turn about x.
+    const quaternion = wxyzFromXyzw([w, z, -y, -x]);
+    world.push(
+      `<camera name="camera" pos="${spaced(camera.position)}" quat="${spaced(quaternion)}" fovy="${spaced([camera.fovYDeg])}" resolution="${Math.round(camera.width)} ${Math.round(camera.height)}"/>`,
+    );
+  }
+  world.push(...bodies.flatMap(bodyLines));
+  const excluded = bodies.flatMap(({ name, inside }, i) =>
+    inside.filter((k) => k > i).map((k) => `<exclude body1="${name}" body2="${bodies[k]?.name}"/>`),
+  );
+  files["scene.xml"] = `<mujoco model="scene">
+  <compiler angle="radian" meshdir="meshes"/>
+  <option integrator="implicitfast" cone="elliptic" impratio="10">
+    <flag multiccd="enable"/>
+  </option>
+  <default>
+    <default class="visual">
+      <geom type="mesh" contype="0" conaffinity="0" group="2" mass="0"/>
+    </default>
+    <default class="collision">
+      <geom type="mesh" group="3" condim="6" friction="0.8 0.005 0.001"/>
+    </default>
+  </default>
+${section("asset", assets)}
+${section("worldbody", world)}
+${excluded.length > 0 ? `${section("contact", excluded)}\n` : ""}</mujoco>
+`;
+  return files;
+}
+
+function bodyLines(body: SimulatorBody): string[] {
+  const { name, position, rotation, isFixed, parts, colour } = body;
+  const pose = `pos="${spaced(position)}" quat="${spaced(wxyzFromXyzw(rotation))}"`;
+  const inertial = `<inertial pos="${spaced(body.centerOfMass)}" quat="${spaced(wxyzFromXyzw(body.principalAxes))}" mass="${spaced([body.mass])}" diaginertia="${spaced(body.principalMoments)}"/>`;
+  return [
+    `<body name="${name}" ${pose}>`,
+    ...(isFixed ? [] : ["  <freejoint/>"]),
+    ...(parts.length > 0 ? [`  ${inertial}`] : []),
+    `  <geom class="visual" mesh="${name}" rgba="${spaced([...colour, 1])}"/>`,
+    ...parts.map((_, k) => `  <geom class="collision" mesh="${name}_${k}"/>`),
+    "</body>",
+  ];
+}
+
+const section = (tag: string, lines: readonly string[]) =>
+  `  <${tag}>\n${lines.map((line) => `    ${line}\n`).join("")}  </${tag}>`;

@@ -1,0 +1,37 @@
+/** The physics module: the WebAssembly module that makes bodies at rest. */
+import { type Glue, WasmModule } from "../wasm-module.js";
+
+/** A convex surface. */
+export interface ConvexPart {
+  /** Interleaved x, y, z, metres, in the frame of the body. */
+  positions: Float64Array;
+  /** Three vertex indices per triangle, counter-clockwise from outside. */
+  indices: Uint32Array;
+}
+
+/** A body, as the module returns it. */
+export interface SettledBody {
+  parts: ConvexPart[];
+  rotation: Float64Array;
+  translation: Float64Array;
+  mass: number;
+  center: Float64Array;
+  moments: Float64Array;
+  axes: Float64Array;
+  isFree: boolean;
+  movedM: number;
+  turnedDeg: number;
+  inside: number[];
+}
+
+/** The functions of the module. */
+export interface Physics extends Glue {
+  settleBodies(objects: readonly object[], settings: object): SettledBody[];
+}
+
+/** The module, shared by all scenes of this realm. */
+export const physicsModule = new WasmModule<Physics>(
+  "physics",
+  () => new URL("../wasm/physics_bg.wasm", import.meta.url),
+  async () => (await import("../wasm/physics.js")) as unknown as Physics,
+);

@@ -1,0 +1,246 @@
+/** Scenes for simulators: rigid bodies at rest, the ground and the camera, in a frame with z up. */
+import { groundFrame } from "../conventions/ground-frame.js";
+import { meshOf } from "../conventions/mesh.js";
+import { entry, type Matrix3, product, quaternionOf, turned } from "../conventions/rotation.js";
+import { composed, type Similarity, sim3Of, similarityOf } from "../conventions/similarity.js";
+import { invalidArgument } from "../error.js";
+import type { MeshArrays } from "../input/types.js";
+import type { WasmSource } from "../platform.js";
+import type { Plane } from "../scene/types.js";
+import type { Sim3Like } from "../sim3.js";
+import {
+  flattened,
+  isRecord,
+  isTypedArray,
+  optionsOf,
+  positive,
+  type Quaternion,
+  record,
+  type Vector3,
+  whole,
+} from "../values.js";
+import { type ConvexPart, physicsModule } from "./physics-module.js";
+
+/** An object of a scene for a simulator. */
+export interface SimulatorObject {
+  /** Its name, from which that of its body is made. */
+  name?: string | undefined;
+  /** The aligned mesh; `readMesh` of `sim3align/formats` reads files, with their colours. */
+  mesh: MeshArrays;
+  /** OpenCV camera from mesh, metres: an object of the result of `alignScene`. */
+  transform: Sim3Like;
+  /**
+   * What it rests on: the support, another object by its index in this list, or nothing that is exported. Default: that of
+   * `contact` in the transform, and the support for a transform without one.
+   */
+  restsOn?: "support" | "level" | number | null | undefined;
+}
+
+/** Options of {@link simulatorScene}. */
+export interface SimulatorOptions {
+  /** The plane that the objects stand on, as `support` of the result: the ground, z = 0. Without one, all bodies are fixed. */
+  support?: Plane | null | undefined;
+  /** The camera: its intrinsics, and the size of its image in pixels. */
+  camera?: { fy: number; width: number; height: number } | undefined;
+  /** Mass per volume of the convex parts, kg/m³. Default {@link SIMULATOR_DEFAULTS}: household things are mostly hollow. */
+  density?: number | undefined;
+  /** Most convex parts of a body; 1 is the convex hull. */
+  maxParts?: number | undefined;
+  /** Largest angle by which a body is turned so that it rests, degrees. */
+  maxTurnDeg?: number | undefined;
+  /** Largest distance by which the centre of mass of a body is moved so that it rests, metres. */
+  maxMoveM?: number | undefined;
+  /** The physics module, if it is not at `wasm/physics_bg.wasm` beside this script. Only the first one is used. */
+  physicsWasm?: WasmSource | undefined;
+}
+
+/** Defaults of {@link SimulatorOptions}. */
+export const SIMULATOR_DEFAULTS = { density: 400, maxParts: 16, maxTurnDeg: 12, maxMoveM: 0.02 } as const;
+
+/** A rigid body. Its frame is that of its mesh, in metres. */
+export interface SimulatorBody {
+  /** A name of letters, digits and underscores, unique in the scene. */
+  name: string;
+  /** World from body, metres. */
+  position: Vector3;
+  /** World from body, x, y, z, w. */
+  rotation: Quaternion;
+  /** Whether it is fixed to the world: it rests on nothing in the scene, or would not rest at its place. */
+  isFixed: boolean;
+  /** Kilograms. */
+  mass: number;
+  /** In the frame of the body, metres. */
+  centerOfMass: Vector3;
+  /** Moments of inertia about the principal axes, kg·m². */
+  principalMoments: Vector3;
+  /** Body from principal axes, x, y, z, w. */
+  principalAxes: Quaternion;
+  /** Convex parts for collisions. */
+  parts: ConvexPart[];
+  /** The surface, metres. */
+  mesh: { positions: Float32Array; indices: Uint32Array };
+  /** The mean colour, red, green and blue, 0 to 1, sRGB-encoded. */
+  colour: Vector3;
+  /** How far its centre of mass was moved from the pose of the transform, metres. */
+  movedM: number;
+  /** How far it was turned, degrees. */
+  turnedDeg: number;
+  /** Indices of the bodies that it is partly inside of: collisions with these are left out where a format can say so. */
+  inside: number[];
+}
+
+/** A scene for simulators: metres, kilograms, z up, the ground at z = 0. */
+export interface SimulatorScene {
+  bodies: SimulatorBody[];
+  hasGround: boolean;
+  /** World from camera (x right, y down, z forward), and its vertical field of view. */
+  camera: { position: Vector3; rotation: Quaternion; fovYDeg: number; width: number; height: number } | null;
+}
+
+/**
+ * Makes a scene for simulators. Each object becomes a rigid body with convex parts for collisions (V-HACD), and mass and
+ * inertia of a density. An object that rests on the support or on another object is turned and moved a little, so that it
+ * rests there by itself; one that leans, hangs, or stands on what is no object is fixed.
+ *
+ * @example
+ * const { objects, support } = await aligner.alignScene(scene);
+ * const simulated = await simulatorScene([{ name: "mug", mesh, transform: objects[0] }], { support });
+ * const files = toMjcf(simulated);
+ * @throws {@link Sim3AlignError} for an invalid mesh, transform or option, and `NOT_INITIALISED`
+ */
+export async function simulatorScene(
+  objects: readonly SimulatorObject[],
+  options: SimulatorOptions = {},
+): Promise<SimulatorScene> {
+  const { support = null, camera, physicsWasm, ...given } = optionsOf(options);
+  const list = flattened(objects);
+  if (list === null) {
+    throw invalidArgument("objects", objects, "an array of { mesh, transform }", "Pass one of these per object.");
+  }
+  const settings = settingsOf(given);
+  const named = list.map((object, i) => record(`objects[${i}]`, object, "{ mesh, transform }"));
+  const own = named as unknown as SimulatorObject[];
+  const poses = own.map(({ transform }) => similarityOf(transform));
+  const frame = groundFrame(
+    support,
+    poses.map(({ translation }) => translation),
+  );
+  const worldFromCamera = zUp(frame);
+  const meshes = own.map(({ mesh }) => meshWithIndices(mesh));
+  const module = await physicsModule.load(physicsWasm);
+  const sent = poses.map((pose, i) => ({
+    mesh: meshes[i],
+    transform: sim3Of(composed(worldFromCamera, pose)).matrix,
+    on: support === null ? null : groundOf(own[i] as SimulatorObject, list.length),
+  }));
+  const settled = module.call((physics) => physics.settleBodies(sent, settings));
+  const names = uniqueNames(own.map(({ name }, i) => name ?? `object_${i}`));
+  const bodies = settled.map((body, i): SimulatorBody => {
+    const { positions, indices } = meshes[i] as (typeof meshes)[number];
+    const { scale } = poses[i] as Similarity;
+    return {
+      name: names[i] as string,
+      position: Array.from(body.translation) as Vector3,
+      rotation: Array.from(body.rotation) as Quaternion,
+      isFixed: !body.isFree,
+      mass: body.mass,
+      centerOfMass: Array.from(body.center) as Vector3,
+      principalMoments: Array.from(body.moments) as Vector3,
+      principalAxes: Array.from(body.axes) as Quaternion,
+      parts: body.parts,
+      mesh: { positions: positions.map((x) => x * scale), indices },
+      colour: meanColour((own[i] as SimulatorObject).mesh),
+      movedM: body.movedM,
+      turnedDeg: body.turnedDeg,
+      inside: body.inside,
+    };
+  });
+  return {
+    bodies,
+    hasGround: support !== null,
+    camera: camera === undefined ? null : cameraOf(camera, worldFromCamera),
+  };
+}
+
+function settingsOf(given: Omit<SimulatorOptions, "support" | "camera">): object {
+  const { density, maxParts, maxTurnDeg, maxMoveM } = { ...SIMULATOR_DEFAULTS, ...given };
+  return {
+    density: positive("options.density", density),
+    parts: Math.min(whole("options.maxParts", maxParts, 1), 64),
+    turnDeg: positive("options.maxTurnDeg", maxTurnDeg),
+    moveM: positive("options.maxMoveM", maxMoveM),
+  };
+}
+
+/** World from camera, with z up. */
+function zUp({ right, up, back, origin }: ReturnType<typeof groundFrame>): Similarity {
+  const away: Vector3 = [-back[0], -back[1], -back[2]];
+  const rotation = [...right, ...away, ...up] as unknown as Matrix3;
+  const [x, y, z] = turned(rotation, origin);
+  return { scale: 1, rotation, translation: [-x, -y, -z] };
+}
+
+function cameraOf(given: unknown, worldFromCamera: Similarity): SimulatorScene["camera"] {
+  const camera = record("options.camera", given, "{ fy, width, height }");
+  const number = (name: string) => positive(`options.camera.${name}`, camera[name]);
+  const [fy, width, height] = [number("fy"), number("width"), number("height")];
+  const fovYDeg = (2 * Math.atan(height / (2 * fy)) * 180) / Math.PI;
+  const { translation, rotation } = worldFromCamera;
+  return { position: translation, rotation: quaternionOf(rotation), fovYDeg, width, height };
+}
+
+/** What an object rests on, for the module. */
+function groundOf({ restsOn, transform }: SimulatorObject, count: number): "support" | number | null {
+  const contact = isRecord(transform) ? (transform as Record<string, unknown>).contact : undefined;
+  const on = restsOn === undefined ? (isRecord(contact) ? contact.restsOn : "support") : restsOn;
+  if (on === "support") return on;
+  return typeof on === "number" && Number.isInteger(on) && on >= 0 && on < count ? on : null;
+}
+
+function meshWithIndices(mesh: unknown): { positions: Float32Array; indices: Uint32Array } {
+  const { positions, indices } = meshOf("mesh", mesh);
+  return {
+    positions,
+    indices:
+      indices === null ? Uint32Array.from({ length: positions.length / 3 }, (_, i) => i) : Uint32Array.from(indices),
+  };
+}
+
+/** Names of letters, digits and underscores, each once. */
+function uniqueNames(given: readonly string[]): string[] {
+  const seen = new Set<string>();
+  return given.map((name) => {
+    const plain = `${name}`.replace(/[^A-Za-z0-9]+/g, "_").replace(/^(?=\d|$)/, "_");
+    let own = plain;
+    for (let k = 2; seen.has(own.toLowerCase()); k++) own = `${plain}_${k}`;
+    seen.add(own.toLowerCase());
+    return own;
+  });
+}
+
+const GREY: Vector3 = [0.7, 0.7, 0.7];
+
+function meanColour(mesh: SimulatorObject["mesh"]): Vector3 {
+  const colors = mesh.samples?.colors ?? (mesh as { colors?: unknown }).colors;
+  if (!isTypedArray<Uint8Array>(colors, "Uint8Array") || colors.length === 0 || colors.length % 3 !== 0) return GREY;
+  const sum: Vector3 = [0, 0, 0];
+  colors.forEach((part, i) => {
+    sum[(i % 3) as 0] += part;
+  });
+  return sum.map((part) => (3 * part) / colors.length / 255) as Vector3;
+}
+
+/** The inertia about the centre of mass, in the axes of the body: rows. */
+export function inertiaOf({ principalMoments, principalAxes: [x, y, z, w] }: SimulatorBody): Matrix3 {
+  const axes: Matrix3 = [
+    ...[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+    ...[2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+    ...[2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+  ] as unknown as Matrix3;
+  const [a, b, c] = principalMoments;
+  const scaled = [0, 1, 2].flatMap((i) =>
+    [a, b, c].map((m, j) => m * entry(axes, i as 0, j as 0)),
+  ) as unknown as Matrix3;
+  const transposed = [0, 1, 2].flatMap((i) => [0, 1, 2].map((j) => entry(axes, j as 0, i as 0))) as unknown as Matrix3;
+  return product(scaled, transposed);
+}

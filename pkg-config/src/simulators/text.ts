@@ -1,0 +1,19 @@
+/** Numbers and meshes as text. */
+
+/** A number with seven digits. */
+const short = (x: number) => String(Number(x.toPrecision(7)));
+
+/** Numbers with spaces between them. */
+export const spaced = (numbers: ArrayLike<number>): string => Array.from(numbers, short).join(" ");
+
+/** A mesh as Wavefront OBJ. */
+export function objOf({ positions, indices }: { positions: ArrayLike<number>; indices: ArrayLike<number> }): string {
+  const lines: string[] = [];
+  for (let i = 0; i + 2 < positions.length; i += 3) {
+    lines.push(`v ${spaced([positions[i] as number, positions[i + 1] as number, positions[i + 2] as number])}`);
+  }
+  for (let i = 0; i + 2 < indices.length; i += 3) {
+    lines.push(`f ${[0, 1, 2].map((k) => (indices[i + k] as number) + 1).join(" ")}`);
+  }
+  return `${lines.join("\n")}\n`;
+}

@@ -1,0 +1,149 @@
+/** Scenes as USD, with the schemas of UsdPhysics. */
+import type { SimulatorBody, SimulatorScene } from "./scene.js";
+import { spaced } from "./text.js";
+
+const tuple = (numbers: ArrayLike<number>) => `(${spaced(numbers).replaceAll(" ", ", ")})`;
+/** Quaternions of USD begin with w. */
+const quaternion = ([x = 0, y = 0, z = 0, w = 1]: ArrayLike<number> & Iterable<number>) => tuple([w, x, y, z]);
+
+/** Reach of the ground, metres. */
+const REACH = 5;
+
+/**
+ * A scene as the text of a USD file (`.usda`): metres, z up, rigid bodies with mass and convex colliders, the ground, and
+ * the camera. Bodies that are fixed are colliders only.
+ */
+export function toUsd({ bodies, hasGround, camera }: SimulatorScene): string {
+  const prims: string[] = [
+    `def PhysicsScene "physics"
+{
+    vector3f physics:gravityDirection = (0, 0, -1)
+    float physics:gravityMagnitude = 9.81
+}`,
+    `def DistantLight "light"
+{
+    float inputs:intensity = 1500
+    double3 xformOp:rotateXYZ = (25, 20, 0)
+    uniform token[] xformOpOrder = ["xformOp:rotateXYZ"]
+}`,
+  ];
+  if (hasGround) {
+    const corners = [
+      [-REACH, -REACH, 0],
+      [REACH, -REACH, 0],
+      [REACH, REACH, 0],
+      [-REACH, REACH, 0],
+    ].flat();
+    const square = { positions: corners, indices: [0, 1, 2, 0, 2, 3] };
+    prims.push(
+      mesh(
+        "ground",
+        square,
+        [0.75, 0.77, 0.79],
+        ["PhysicsCollisionAPI", "PhysicsMeshCollisionAPI"],
+        [`uniform token physics:approximation = "none"`],
+      ),
+    );
+  }
+  if (camera !== null) {
+    const [x, y, z, w] = camera.rotation;
+    // Apertures are in tenths of a unit; cameras look along −z, with y up: half a turn about x.
+    const vertical = 24;
+    const focal = vertical / 2 / Math.tan((camera.fovYDeg * Math.PI) / 360);
+    prims.push(`def Camera "camera"
+{
+    float focalLength = ${spaced([focal])}
+    float horizontalAperture = ${spaced([(vertical * camera.width) / camera.height])}
+    float verticalAperture = ${vertical}
+    float2 clippingRange = (0.01, 100)
+${placement(camera.position, [w, z, -y, -x])}
+}`);
+  }
+  const names = bodies.map(({ name }) => name);
+  prims.push(...bodies.map((body) => bodyPrim(body, names)));
+  return `#usda 1.0
+(
+    defaultPrim = "World"
+    kilogramsPerUnit = 1
+    metersPerUnit = 1
+    upAxis = "Z"
+)
+
+def Xform "World"
+{
+${indented(prims.join("\n\n"))}
+}
+`;
+}
+
+function bodyPrim(body: SimulatorBody, names: readonly string[]): string {
+  const { name, isFixed, inside, position, rotation, parts, colour } = body;
+  const filtered = inside.map((k) => `</World/${names[k]}>`);
+  const schemas = [
+    ...(isFixed ? [] : ["PhysicsRigidBodyAPI", "PhysicsMassAPI"]),
+    ...(filtered.length > 0 ? ["PhysicsFilteredPairsAPI"] : []),
+  ];
+  const mass = [
+    `float physics:mass = ${spaced([body.mass])}`,
+    `point3f physics:centerOfMass = ${tuple(body.centerOfMass)}`,
+    `float3 physics:diagonalInertia = ${tuple(body.principalMoments)}`,
+    `quatf physics:principalAxes = ${quaternion(body.principalAxes)}`,
+  ];
+  const properties = [
+    ...(isFixed ? [] : mass),
+    ...(filtered.length > 0 ? [`rel physics:filteredPairs = [${filtered.join(", ")}]`] : []),
+  ].map((line) => `    ${line}\n`);
+  const colliders = parts.map((part, k) =>
+    mesh(
+      `collider_${k}`,
+      part,
+      colour,
+      ["PhysicsCollisionAPI", "PhysicsMeshCollisionAPI"],
+      [`uniform token physics:approximation = "convexHull"`, `uniform token purpose = "guide"`],
+    ),
+  );
+  const applied =
+    schemas.length === 0 ? "" : ` (\n    prepend apiSchemas = [${schemas.map((s) => `"${s}"`).join(", ")}]\n)`;
+  return `def Xform "${name}"${applied}
+{
+${properties.join("")}${placement(position, rotation)}
+
+${indented([mesh("surface", body.mesh, colour, [], []), ...colliders].join("\n\n"))}
+}`;
+}
+
+const placement = (position: ArrayLike<number>, rotation: ArrayLike<number> & Iterable<number>) =>
+  `    double3 xformOp:translate = ${tuple(position)}
+    quatd xformOp:orient = ${quaternion(rotation)}
+    uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:orient"]`;
+
+function mesh(
+  name: string,
+  { positions, indices }: { positions: ArrayLike<number>; indices: ArrayLike<number> },
+  colour: readonly number[],
+  schemas: readonly string[],
+  properties: readonly string[],
+): string {
+  const points = Array.from({ length: positions.length / 3 }, (_, i) =>
+    [0, 1, 2].map((k) => positions[3 * i + k] as number),
+  );
+  const bounds = [Math.min, Math.max].map((of) =>
+    [0, 1, 2].map((k) => points.reduce((all, p) => of(all, p[k] as number), points[0]?.[k] ?? 0)),
+  );
+  // Colours of USD are proportional to light.
+  const linear = colour.map((x) => (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4));
+  const applied =
+    schemas.length === 0 ? "" : ` (\n    prepend apiSchemas = [${schemas.map((s) => `"${s}"`).join(", ")}]\n)`;
+  return `def Mesh "${name}"${applied}
+{
+${properties.map((line) => `    ${line}\n`).join("")}    uniform bool doubleSided = 1
+    float3[] extent = [${bounds.map(tuple).join(", ")}]
+    int[] faceVertexCounts = [${Array.from({ length: indices.length / 3 }, () => 3).join(", ")}]
+    int[] faceVertexIndices = [${Array.from(indices).join(", ")}]
+    point3f[] points = [${points.map(tuple).join(", ")}]
+    color3f[] primvars:displayColor = [${tuple(linear)}]
+    uniform token subdivisionScheme = "none"
+}`;
+}
+
+const indented = (text: string) => text.replace(/^(?=.)/gm, "    ");

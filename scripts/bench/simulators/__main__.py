@@ -1,0 +1,137 @@
+"""Loads exported scenes into simulators, and prints a line of JSON for each: `python -m simulators SECONDS FOLDER...`.
+
+A folder holds `mjcf/scene.xml`, `urdf/` and `scene.usda`; what is missing is left out. After SECONDS of physics, each body
+has its state: whether it is fixed, how far its centre of mass has moved (metres) and how far it has turned (degrees).
+"""
+
+import importlib.util
+import json
+import os
+import sys
+
+import numpy as np
+
+
+def turned(before, after):
+    """The angle between quaternions, degrees; the order of the parts does not matter."""
+    cosine = abs(np.dot(before, after)) / (np.linalg.norm(before) * np.linalg.norm(after))
+    return float(np.degrees(2 * np.arccos(min(1.0, cosine))))
+
+
+def in_mujoco(path, seconds):
+    import mujoco
+
+    model = mujoco.MjModel.from_xml_path(path)
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    before = (data.xipos.copy(), data.xquat.copy())
+    while data.time < seconds:
+        mujoco.mj_step(model, data)
+    bodies = []
+    for i in range(1, model.nbody):
+        geoms = [g for g in range(model.ngeom) if model.geom_bodyid[g] == i and model.geom_contype[g] != 0]
+        bodies.append(
+            {
+                "name": model.body(i).name,
+                "fixed": int(model.body_dofnum[i]) == 0,
+                "mass": float(model.body_mass[i]),
+                "parts": len(geoms),
+                "movedM": float(np.linalg.norm(data.xipos[i] - before[0][i])),
+                "turnedDeg": turned(before[1][i], data.xquat[i]),
+            }
+        )
+    cameras = [
+        {
+            "position": data.cam_xpos[i].tolist(),
+            "axes": data.cam_xmat[i].tolist(),
+            "fovYDeg": float(model.cam_fovy[i]),
+        }
+        for i in range(model.ncam)
+    ]
+    planes = int(np.sum(model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE))
+    return {"bodies": bodies, "cameras": cameras, "planes": planes}
+
+
+def in_pybullet(folder, seconds):
+    import pybullet
+
+    spec = importlib.util.spec_from_file_location("load", os.path.join(folder, "load.py"))
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    client = pybullet.connect(pybullet.DIRECT)
+    try:
+        ids = module.load(client)
+        state = lambda i: tuple(np.array(x) for x in pybullet.getBasePositionAndOrientation(i, physicsClientId=client))
+        before = {name: state(i) for name, i in ids.items()}
+        for _ in range(int(round(240 * seconds))):
+            pybullet.stepSimulation(physicsClientId=client)
+        bodies = []
+        for name, i in ids.items():
+            if name == "ground":
+                continue
+            after = state(i)
+            mass = pybullet.getDynamicsInfo(i, -1, physicsClientId=client)[0]
+            bodies.append(
+                {
+                    "name": name,
+                    "fixed": mass == 0,
+                    "mass": mass,
+                    "parts": len(pybullet.getCollisionShapeData(i, -1, physicsClientId=client)),
+                    "movedM": float(np.linalg.norm(after[0] - before[name][0])),
+                    "turnedDeg": turned(before[name][1], after[1]),
+                }
+            )
+        return {"bodies": bodies, "ground": "ground" in ids}
+    finally:
+        pybullet.disconnect(client)
+
+
+def in_usd(path):
+    from pxr import Usd, UsdGeom, UsdPhysics, UsdValidation
+
+    stage = Usd.Stage.Open(path)
+    validators = UsdValidation.ValidationRegistry().GetOrLoadAllValidators()
+    complaints = UsdValidation.ValidationContext(validators).Validate(stage)
+    bodies = []
+    cache = UsdGeom.XformCache()
+    for prim in stage.GetDefaultPrim().GetChildren():
+        if prim.GetTypeName() != "Xform":
+            continue
+        colliders = [p for p in prim.GetChildren() if p.HasAPI(UsdPhysics.CollisionAPI)]
+        is_free = prim.HasAPI(UsdPhysics.RigidBodyAPI)
+        mass = UsdPhysics.MassAPI(prim)
+        bodies.append(
+            {
+                "name": prim.GetName(),
+                "fixed": not is_free,
+                "mass": mass.GetMassAttr().Get() if is_free else None,
+                "centerOfMass": list(mass.GetCenterOfMassAttr().Get()) if is_free else None,
+                "parts": len(colliders),
+                "position": list(cache.GetLocalToWorldTransform(prim).ExtractTranslation()),
+            }
+        )
+    return {
+        "bodies": bodies,
+        "upAxis": str(UsdGeom.GetStageUpAxis(stage)),
+        "metresPerUnit": UsdGeom.GetStageMetersPerUnit(stage),
+        "cameras": sum(1 for p in stage.Traverse() if p.IsA(UsdGeom.Camera)),
+        "scenes": sum(1 for p in stage.Traverse() if p.IsA(UsdPhysics.Scene)),
+        "complaints": [complaint.GetMessage() for complaint in complaints],
+    }
+
+
+def main():
+    seconds = float(sys.argv[1])
+    for folder in sys.argv[2:]:
+        result = {"folder": folder}
+        for name, path, run in [
+            ("mujoco", os.path.join(folder, "mjcf", "scene.xml"), lambda p: in_mujoco(p, seconds)),
+            ("pybullet", os.path.join(folder, "urdf"), lambda p: in_pybullet(p, seconds)),
+            ("usd", os.path.join(folder, "scene.usda"), in_usd),
+        ]:
+            if os.path.exists(path):
+                result[name] = run(path)
+        print(json.dumps(result), flush=True)
+
+
+main()

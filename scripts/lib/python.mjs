@@ -1,0 +1,42 @@
+/** Environments of Python, below `target/bench`. */
+import { existsSync, rmSync } from "node:fs";
+import { join } from "node:path";
+import { cached, digest } from "./cache.mjs";
+import { at } from "./paths.mjs";
+import { run } from "./run.mjs";
+import { step } from "./step.mjs";
+
+/** @param {string} folder */
+const pythonIn = (folder) =>
+  process.platform === "win32" ? join(folder, "Scripts", "python.exe") : join(folder, "bin", "python");
+
+/**
+ * The Python of an environment with the packages of `scripts/bench/NAME/requirements.txt`, which is made where it is missing.
+ * @param {string} name
+ * @param {string} [program] the Python that makes it
+ */
+export async function pythonWith(name, program = "python3") {
+  const requirements = at("scripts", "bench", name, "requirements.txt");
+  const folder = at("target", "bench", name);
+  const python = pythonIn(folder);
+  await step("Python libraries", () =>
+    cached(join(folder, "installed-from"), digest([requirements]), [python], async () => {
+      rmSync(folder, { recursive: true, force: true });
+      const remedy = "install Python 3.11 or 3.12 with venv, name it with --python, and check that PyPI can be reached";
+      await run(program, ["-m", "venv", folder], { remedy });
+      await run(python, ["-m", "pip", "install", "--quiet", "--requirement", requirements], { remedy });
+    }),
+  );
+  return python;
+}
+
+/**
+ * The Python of an environment that is there; made in continuous integration only (`CI` set).
+ * @param {string} name
+ * @returns {Promise<string | undefined>}
+ */
+export async function installedPython(name) {
+  if (process.env.CI) return pythonWith(name);
+  const python = pythonIn(at("target", "bench", name));
+  return existsSync(python) ? python : undefined;
+}
