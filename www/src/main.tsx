@@ -7,10 +7,9 @@ import { sampleOf, samples } from "./load/samples.js";
 import { alignAll, alignEach } from "./run/align.js";
 import { aligner } from "./run/aligner.js";
 import { observePoses } from "./run/evaluate.js";
+import { page } from "./state/page.js";
 import { readAddress, updateAddress } from "./state/permalink.js";
 import { hasSession } from "./state/session-flag.js";
-import { announce } from "./state/status.js";
-import { isSettled } from "./views/space.js";
 import "../style/theme.css";
 import "../style/layout.css";
 import "../style/controls.css";
@@ -18,10 +17,12 @@ import "../style/views.css";
 import "../style/panels.css";
 import "../style/intake.css";
 
+const { announce, isSettled } = page;
+
 const named = sampleOf(readAddress().sample);
 const sample = named ?? samples[0];
 updateAddress();
-observePoses();
+observePoses(page);
 // Needed when the files of the sample arrive.
 loadFormats().catch(() => {});
 aligner().then(
@@ -46,7 +47,7 @@ async function start(): Promise<void> {
     performance.mark("opened");
     // The workers would take the time of the first frame.
     await new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
-    await alignEach();
+    await alignEach(page);
     performance.mark("aligned");
   }
   if (sample === undefined) announce("Choose input files.");
@@ -57,5 +58,5 @@ start();
 
 addEventListener("hashchange", async () => {
   const next = sampleOf(readAddress().sample);
-  if (next !== undefined && (await openSample(next))) await alignAll();
+  if (next !== undefined && (await openSample(next))) await alignAll(page);
 });

@@ -2,18 +2,18 @@
 
 import { extractArchives, type NamedFile } from "../load/files.js";
 import { type Inputs, noInputs, type Role, type Typed } from "../load/inputs.js";
-import { queue, show } from "../load/open.js";
 import { error, type Problem } from "../load/problems.js";
 import { readInputs, sceneOf } from "../load/read-scene.js";
 import { alignAll } from "../run/align.js";
 import { openSession, SESSION_FILE } from "../session/index.js";
 import { type Draft, draft, draftInputs, isReady } from "../state/draft.js";
-import { scene } from "../state/scene.js";
-import { announce } from "../state/status.js";
+import { page } from "../state/page.js";
 import { problemsOf } from "./checks.js";
 import { rolesOf } from "./roles.js";
 import { scenesOfTyped } from "./scenes.js";
 import { isVideo, videoOf } from "./video.js";
+
+const { announce, queue, scene, show } = page;
 
 /** The number of the last change. The results of earlier ones are discarded. */
 let lastChange = 0;
@@ -127,7 +127,7 @@ export async function accept(): Promise<void> {
   }
   if (!open.isEdit) queue.value = open.scenes.filter((_, i) => i > open.index);
   show(opened, inputs);
-  await alignAll();
+  await alignAll(page);
 }
 
 /** Discards the draft. */

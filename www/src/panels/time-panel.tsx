@@ -1,9 +1,11 @@
 /** The time axis of a video. */
 import { useEffect } from "preact/hooks";
 import { correctFrame, isTracking, showFrame, stopTracking, trackAll } from "../run/video.js";
-import { selected } from "../state/scene.js";
-import { type FramePose, frameIndex, framePoses, trackedCount, video } from "../state/video.js";
+import { page } from "../state/page.js";
+import type { FramePose } from "../state/video.js";
 import { percent } from "../ui/format.js";
+
+const { frameIndex, framePoses, selected, trackedCount, video } = page;
 
 /** Time between frames while they are played. */
 const FRAME_MS = 120;

@@ -3,13 +3,13 @@ import { computed, signal } from "@preact/signals";
 import type { Tracker } from "sim3align";
 import { toSim3 } from "sim3align/conventions";
 import type { Inputs } from "../load/inputs.js";
-import { inputs, show } from "../load/open.js";
 import { readInputs, sceneOf } from "../load/read-scene.js";
-import { constraintsOf, options } from "../state/options.js";
-import { type Scene, scene } from "../state/scene.js";
-import { announce } from "../state/status.js";
-import { type FramePose, frameIndex, framePoses, setFramePose, type Video, video } from "../state/video.js";
+import { page } from "../state/page.js";
+import type { Scene } from "../state/scene.js";
+import type { FramePose, Video } from "../state/video.js";
 import { aligner } from "./aligner.js";
+
+const { announce, constraintsOf, frameIndex, framePoses, inputs, options, scene, setFramePose, show, video } = page;
 
 const controller = signal<AbortController | null>(null);
 export const isTracking = computed(() => controller.value !== null);

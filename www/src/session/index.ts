@@ -1,14 +1,13 @@
 /** The session: kept in the browser while the user works, and saved and opened as one file. */
 import { effect } from "@preact/signals";
 import type { NamedFile } from "../load/files.js";
-import { inputs, show } from "../load/open.js";
 import { readInputs, sceneOf } from "../load/read-scene.js";
-import { scene } from "../state/scene.js";
+import { page } from "../state/page.js";
 import { hasSession } from "../state/session-flag.js";
-import { announce } from "../state/status.js";
-import { video } from "../state/video.js";
 import { applyState, type Packed, packed, unpacked } from "./pack.js";
 import { clearSession, storedSession, storeFiles, storeSession } from "./store.js";
+
+const { announce, inputs, options, scene, show, video } = page;
 
 /** Poses change with every frame of a drag. */
 const DEBOUNCE_MS = 250;
@@ -27,7 +26,7 @@ export function keepSession(): void {
     clearTimeout(timer);
     if (whole === null || whole.sample !== null || video.value !== null) return;
     // Reading the signals of the objects subscribes to them.
-    const { session, files } = packed(from, whole);
+    const { session, files } = packed(from, whole, options.value);
     isStored = false;
     timer = setTimeout(async () => {
       try {
@@ -68,7 +67,7 @@ async function open(session: Packed, files: readonly NamedFile[]): Promise<boole
   const reading = await readInputs(from);
   const opened = sceneOf(from, reading);
   if (opened === null) return false;
-  applyState(session, opened);
+  applyState(session, opened, page);
   show(opened, from);
   announce(`Restored ${from.name}.`);
   return true;
@@ -79,7 +78,7 @@ export async function sessionFile(): Promise<Uint8Array | null> {
   const whole = scene.peek();
   if (whole === null) return null;
   const { zipSync } = await import("fflate");
-  const { session, files } = packed(inputs.peek(), whole);
+  const { session, files } = packed(inputs.peek(), whole, options.peek());
   const entries: Record<string, Uint8Array> = { [SESSION_FILE]: new TextEncoder().encode(JSON.stringify(session)) };
   // The indices keep files with equal paths apart.
   for (const [i, { path, bytes }] of files.entries()) entries[`${i}/${path}`] = await bytes();

@@ -3,9 +3,10 @@ import { toSim3 } from "sim3align/conventions";
 import { baseName, type NamedFile } from "../load/files.js";
 import type { CameraSource, Inputs, MaskSource, MeshSource, Role, TruthSource } from "../load/inputs.js";
 import type { AnyAlignment, ObjectModel } from "../state/object-model.js";
-import { type Options, options } from "../state/options.js";
+import type { Options } from "../state/options.js";
 import type { PoseSource } from "../state/pose.js";
 import type { Scene } from "../state/scene.js";
+import type { Workspace } from "../state/workspace.js";
 
 /** The version of the format. Other versions are not read. */
 const VERSION = 1;
@@ -48,7 +49,7 @@ export interface Packed {
 }
 
 /** The session of a scene, and its files in the order of their indices. */
-export function packed(inputs: Inputs, scene: Scene): { session: Packed; files: NamedFile[] } {
+export function packed(inputs: Inputs, scene: Scene, options: Options): { session: Packed; files: NamedFile[] } {
   const files: NamedFile[] = [];
   const ref = (file: NamedFile): Ref => {
     const known = files.indexOf(file);
@@ -77,7 +78,7 @@ export function packed(inputs: Inputs, scene: Scene): { session: Packed; files: 
     resizeMasks: inputs.resizeMasks,
     objects,
     roles: [],
-    options: options.peek(),
+    options,
   };
   session.roles = inputs.files.flatMap(({ file, role }) => (files.includes(file) ? [{ file: ref(file), role }] : []));
   return { session, files };
@@ -125,7 +126,11 @@ export function unpacked(session: Packed, files: readonly NamedFile[]): Inputs |
 }
 
 /** Gives the objects of a scene the poses and settings of a session. */
-export function applyState({ objects, options: chosen }: Packed, scene: Scene): void {
+export function applyState(
+  { objects, options: chosen }: Pick<Packed, "objects" | "options">,
+  scene: Scene,
+  { options }: Workspace,
+): void {
   options.value = { ...options.peek(), ...chosen };
   scene.objects.forEach((object, i) => {
     const state = objects[i]?.state;
