@@ -2,7 +2,7 @@
 import { render } from "preact";
 import { loadFormats } from "sim3align/formats";
 import { App } from "./app.js";
-import { openSample } from "./load/open.js";
+import { openFiles, openSample } from "./load/open.js";
 import { sampleOf, samples } from "./load/samples.js";
 import { alignAll, alignEach } from "./run/align.js";
 import { aligner } from "./run/aligner.js";
@@ -30,13 +30,29 @@ aligner().then(
   (error) => announce(String(error), "failed"),
 );
 
-/** A session takes precedence over the first sample, but not over one that the address names. */
+/** The scene that the address names. */
+const address = new URLSearchParams(location.search).get("case");
+
+/** A session takes precedence over the first sample, but not over what the address names. */
 async function restored(): Promise<boolean> {
-  if (!hasSession() || named !== undefined) return false;
+  if (!hasSession() || named !== undefined || address !== null) return false;
   return (await import("./session/index.js")).restoreSession();
 }
 
-const opened = restored().then((isThere) => !isThere && sample !== undefined && openSample(sample));
+/** Opens the scene at an address, as if its files were dropped. */
+async function openAddress(url: string): Promise<void> {
+  announce("Loading …", "working");
+  try {
+    await openFiles(await (await import("./load/case-url.js")).filesAt(url));
+  } catch (error) {
+    announce(error instanceof Error ? error.message : `${error}`, "failed");
+  }
+}
+
+const opened =
+  address === null
+    ? restored().then((isThere) => !isThere && sample !== undefined && openSample(sample))
+    : openAddress(address).then(() => false);
 
 const root = document.getElementById("app");
 if (root !== null) render(<App />, root);

@@ -5,7 +5,8 @@ import { type Inputs, noInputs, type Role, type Typed } from "../load/inputs.js"
 import { error, type Problem } from "../load/problems.js";
 import { readInputs, sceneOf } from "../load/read-scene.js";
 import { alignAll } from "../run/align.js";
-import { openSession, SESSION_FILE } from "../session/index.js";
+import { openSession } from "../session/index.js";
+import { SESSION_FILE } from "../session/pack.js";
 import { type Draft, draft, draftInputs, isReady } from "../state/draft.js";
 import { page } from "../state/page.js";
 import { problemsOf } from "./checks.js";

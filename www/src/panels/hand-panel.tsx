@@ -58,7 +58,7 @@ export function HandPanel() {
   const lockScale = object !== null && object.knownScale.value !== null;
   const isReady = object !== null && !isRunning.value && !object.isLocked.value;
   return (
-    <details class="panel hand-panel" open>
+    <details class="panel hand-panel" part="hand" open>
       <summary>
         <h2>By hand</h2>
       </summary>

@@ -21,7 +21,7 @@ export function ObjectsPanel() {
   const awaited = isReading.value ? inputs.value.objects.slice(objects.length) : [];
   if (objects.length + awaited.length < 2) return null;
   return (
-    <section class="panel objects-panel" aria-labelledby="objects-title">
+    <section class="panel objects-panel" part="objects" aria-labelledby="objects-title">
       <div class="card-head">
         <h2 id="objects-title">Objects</h2>
         {files !== null && (
@@ -47,12 +47,12 @@ export function ObjectsPanel() {
 }
 
 function Row({ object }: { object: ObjectModel }) {
-  const { isRunning, removeObject } = useWorkspace();
+  const { isReadonly, isRunning, removeObject } = useWorkspace();
   const { name, isShown, isLocked } = object;
   const [isRenamed, setRenamed] = useState(false);
   return (
     <li data-shown={isShown.value}>
-      {isRenamed ? (
+      {isRenamed && !isReadonly.value ? (
         <input
           class="rename"
           aria-label={`New name of ${name}`}
@@ -73,21 +73,25 @@ function Row({ object }: { object: ObjectModel }) {
         icon={isShown.value ? "shown" : "hidden"}
         onToggle={() => toggle(isShown)}
       />
-      <Toggle
-        label={`Lock ${name}`}
-        isOn={isLocked.value}
-        icon={isLocked.value ? "locked" : "unlocked"}
-        onToggle={() => toggle(isLocked)}
-      />
-      <button
-        type="button"
-        class="icon"
-        aria-label={`Remove ${name}`}
-        disabled={isRunning.value}
-        onClick={() => removeObject(object)}
-      >
-        ×
-      </button>
+      {!isReadonly.value && (
+        <>
+          <Toggle
+            label={`Lock ${name}`}
+            isOn={isLocked.value}
+            icon={isLocked.value ? "locked" : "unlocked"}
+            onToggle={() => toggle(isLocked)}
+          />
+          <button
+            type="button"
+            class="icon"
+            aria-label={`Remove ${name}`}
+            disabled={isRunning.value}
+            onClick={() => removeObject(object)}
+          >
+            ×
+          </button>
+        </>
+      )}
     </li>
   );
 }

@@ -84,7 +84,7 @@ export function OptionsPanel() {
   const { options } = useWorkspace();
   const isPaper = options.value.preset === "paper";
   return (
-    <details class="panel options-panel" id="options">
+    <details class="panel options-panel" part="options" id="options">
       <summary>
         <h2>Constraints</h2>
       </summary>

@@ -16,12 +16,17 @@ import { Details, MainMetrics } from "./details.js";
 import { Remedies, SURE } from "./remedies.js";
 
 export function ResultPanel() {
-  const { selected } = useWorkspace();
+  const { isReadonly, selected } = useWorkspace();
   const chosen = selected.value;
   const run = chosen?.run.value;
   const object = chosen?.isPlaced ? chosen : null;
   return (
-    <section class="result panel" aria-labelledby="result-title" data-source={chosen?.pose.value.source ?? "none"}>
+    <section
+      class="result panel"
+      part="result"
+      aria-labelledby="result-title"
+      data-source={chosen?.pose.value.source ?? "none"}
+    >
       <h2 id="result-title">
         {chosen === null ? (
           "Result"
@@ -33,9 +38,13 @@ export function ResultPanel() {
       </h2>
       <Size object={object} />
       {run?.state === "failed" && <Failure error={run.error} />}
-      <Decision object={object} />
-      <Remedies object={object} />
-      <Alternatives object={object} />
+      {!isReadonly.value && (
+        <>
+          <Decision object={object} />
+          <Remedies object={object} />
+          <Alternatives object={object} />
+        </>
+      )}
       <MainMetrics object={object} />
       <Truth object={object} />
       <Warnings object={object} />

@@ -38,7 +38,7 @@ export function RunBar() {
   const { text, kind } = status.value;
   const percent = Math.round(100 * fraction.value);
   return (
-    <section class="run" aria-label="Run">
+    <section class="run" part="run" aria-label="Run">
       <div class="run-row">
         <label class="field-inline grow" for="effort">
           <span>Quality</span>

@@ -4,16 +4,13 @@ import type { NamedFile } from "../load/files.js";
 import { readInputs, sceneOf } from "../load/read-scene.js";
 import { page } from "../state/page.js";
 import { hasSession } from "../state/session-flag.js";
-import { applyState, type Packed, packed, unpacked } from "./pack.js";
+import { applyState, type Packed, packed, SESSION_FILE, sessionParts, unpacked } from "./pack.js";
 import { clearSession, storedSession, storeFiles, storeSession } from "./store.js";
 
 const { announce, inputs, options, scene, show, video } = page;
 
 /** Poses change with every frame of a drag. */
 const DEBOUNCE_MS = 250;
-/** The name of the session in a file. */
-export const SESSION_FILE = "sim3align-session.json";
-
 /** Whether all changes are stored. */
 let isStored = true;
 
@@ -87,13 +84,6 @@ export async function sessionFile(): Promise<Uint8Array | null> {
 
 /** Opens a session file, given as the files in it. Returns whether it is one that can be opened. */
 export async function openSession(files: readonly NamedFile[]): Promise<boolean> {
-  const own = files.find(({ path }) => path === SESSION_FILE);
-  if (own === undefined) return false;
-  const session = JSON.parse(new TextDecoder().decode(await own.bytes())) as Packed;
-  const rest: NamedFile[] = [];
-  for (const { path, bytes } of files) {
-    const [, index, name] = /^(\d+)\/(.*)$/.exec(path) ?? [];
-    if (index !== undefined && name !== undefined) rest[Number(index)] = { path: name, bytes };
-  }
-  return open(session, rest);
+  const parts = await sessionParts(files);
+  return parts !== null && open(parts.session, parts.files);
 }

@@ -11,6 +11,9 @@ import type { Workspace } from "../state/workspace.js";
 /** The version of the format. Other versions are not read. */
 const VERSION = 1;
 
+/** The name of the session in a file. */
+export const SESSION_FILE = "sim3align-session.json";
+
 /** A file by its index. */
 type Ref = number;
 
@@ -23,7 +26,7 @@ interface PackedObject {
 }
 
 /** What was done with an object. */
-interface PackedState {
+export interface PackedState {
   matrix: readonly number[];
   source: PoseSource;
   isAccepted: boolean;
@@ -87,7 +90,8 @@ export function packed(inputs: Inputs, scene: Scene, options: Options): { sessio
 /** Files that meshes refer to. */
 const isResource = (path: string) => /\.(bin|mtl|png|jpe?g|webp)$/i.test(baseName(path));
 
-function stateOf({ pose, isAccepted, isShown, isLocked, knownScale, alignment }: ObjectModel): PackedState {
+/** What was done with an object. */
+export function stateOf({ pose, isAccepted, isShown, isLocked, knownScale, alignment }: ObjectModel): PackedState {
   const { transform, source } = pose.value;
   return {
     ...{ matrix: [...transform.matrix], source },
@@ -127,7 +131,7 @@ export function unpacked(session: Packed, files: readonly NamedFile[]): Inputs |
 
 /** Gives the objects of a scene the poses and settings of a session. */
 export function applyState(
-  { objects, options: chosen }: Pick<Packed, "objects" | "options">,
+  { objects, options: chosen }: { objects: readonly { state: PackedState }[]; options: Partial<Options> },
   scene: Scene,
   { options }: Workspace,
 ): void {
@@ -143,4 +147,19 @@ export function applyState(
     object.isLocked.value = state.isLocked;
     object.knownScale.value = state.knownScale;
   });
+}
+
+/** The session in the files of an archive, and the files that it refers to; null if there is none. */
+export async function sessionParts(
+  files: readonly NamedFile[],
+): Promise<{ session: Packed; files: NamedFile[] } | null> {
+  const own = files.find(({ path }) => path === SESSION_FILE);
+  if (own === undefined) return null;
+  const session = JSON.parse(new TextDecoder().decode(await own.bytes())) as Packed;
+  const rest: NamedFile[] = [];
+  for (const { path, bytes } of files) {
+    const [, index, name] = /^(\d+)\/(.*)$/.exec(path) ?? [];
+    if (index !== undefined && name !== undefined) rest[Number(index)] = { path: name, bytes };
+  }
+  return { session, files: rest };
 }

@@ -1,7 +1,5 @@
-/** The theme of the page, and whether its help is open. */
+/** The theme of the page. */
 import { effect, signal } from "@preact/signals";
-
-export const isHelpOpen = signal(false);
 
 export type Theme = "system" | "light" | "dark";
 

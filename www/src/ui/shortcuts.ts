@@ -3,7 +3,7 @@
 import { accept, next } from "../panels/decision.js";
 import { alignAll, alignSelected, refine } from "../run/align.js";
 import { applyAlternative } from "../run/alternatives.js";
-import { isHelpOpen } from "../state/theme.js";
+import { isHelpOpen } from "../state/help.js";
 import type { Workspace } from "../state/workspace.js";
 
 interface Shortcut {
@@ -135,9 +135,9 @@ function onKey(workspace: Workspace, event: KeyboardEvent): void {
   shortcut.act(workspace);
 }
 
-/** Starts listening for keys. Call the returned function to stop. */
-export function listenToKeys(workspace: Workspace): () => void {
-  const listener = (event: KeyboardEvent) => onKey(workspace, event);
-  addEventListener("keydown", listener);
-  return () => removeEventListener("keydown", listener);
+/** Starts listening for keys, by default anywhere on the page. Call the returned function to stop. */
+export function listenToKeys(workspace: Workspace, root: EventTarget = globalThis): () => void {
+  const listener = (event: Event) => onKey(workspace, event as KeyboardEvent);
+  root.addEventListener("keydown", listener);
+  return () => root.removeEventListener("keydown", listener);
 }

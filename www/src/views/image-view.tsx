@@ -58,7 +58,7 @@ export function ImageView() {
   const { factor, x, y } = zoom.value;
   const limit = selected.value === null ? null : 1000 * differenceLimit(selected.value);
   return (
-    <section class="view image" aria-labelledby="image-title">
+    <section class="view image" part="image" aria-labelledby="image-title">
       <div class="view-head">
         <h2 id="image-title">Image</h2>
         <fieldset>

@@ -38,7 +38,7 @@ export function SpaceView() {
   const state = space.value;
   const { pointSize } = display3d.value;
   return (
-    <section class="view space" aria-labelledby="space-title" data-state={state.kind}>
+    <section class="view space" part="space" aria-labelledby="space-title" data-state={state.kind}>
       <div class="view-head">
         <h2 id="space-title">3D</h2>
         <fieldset disabled={state.kind !== "ready"}>
