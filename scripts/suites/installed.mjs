@@ -5,7 +5,7 @@ import { cached, digest, filesBelow, once } from "../lib/cache.mjs";
 import { nodeCounts, noTests, withStatus } from "../lib/counts.mjs";
 import { print } from "../lib/output.mjs";
 import { at, installDir, packageDir, repository, sampleDir } from "../lib/paths.mjs";
-import { chromium, chromiumRemedy, redisServer } from "../lib/programs.mjs";
+import { chromium, chromiumRemedy, firefox, redisServer } from "../lib/programs.mjs";
 import { attempt, nodeProgram, run } from "../lib/run.mjs";
 import { copySample } from "../lib/sample.mjs";
 import { buildSite } from "../lib/site.mjs";
@@ -80,7 +80,7 @@ export const missing = () => ({ ...noTests(), ...(process.env.CI ? { failed: 1 }
 /** @param {string} folder of tests that show pages */
 export async function inBrowser(folder) {
   const path = await chromium();
-  if (path) return nodeTest(folder, { CHROMIUM_PATH: path });
+  if (path) return nodeTest(folder, { CHROMIUM_PATH: path, FIREFOX_PATH: await firefox() });
   print(`No Chromium. Remedy: ${chromiumRemedy}.\n`);
   return missing();
 }
