@@ -4,7 +4,7 @@ import { basename, join } from "node:path";
 import { cached, digest, filesBelow, once } from "../lib/cache.mjs";
 import { nodeCounts, noTests, withStatus } from "../lib/counts.mjs";
 import { print } from "../lib/output.mjs";
-import { at, installDir, packageDir, repository, sampleDir } from "../lib/paths.mjs";
+import { at, installDir, packageDir, repository, sampleDir, siteDir } from "../lib/paths.mjs";
 import { chromium, chromiumRemedy, firefox, redisServer } from "../lib/programs.mjs";
 import { attempt, nodeProgram, run } from "../lib/run.mjs";
 import { copySample } from "../lib/sample.mjs";
@@ -117,11 +117,13 @@ async function installExamples() {
   });
   cpSync(at("examples"), examplesDir, { recursive: true, filter: isSource });
   cpSync(sampleDir, join(examplesDir, "sample", "mug"), { recursive: true });
+  cpSync(join(siteDir, "element"), join(examplesDir, "sample", "element"), { recursive: true });
 }
 
 /** The examples, each as its user runs it. */
 export async function examples() {
   await install();
+  await buildSite();
   await step("install the examples", installExamples);
   const [chromiumPath = "", redisPath = ""] = [await chromium(), await redisServer()];
   const env = { SIM3ALIGN_EXAMPLES: examplesDir, CHROMIUM_PATH: chromiumPath, REDIS_SERVER_PATH: redisPath };
