@@ -1,6 +1,6 @@
 /** Scenes that a host gives to the element: as arrays or encoded files in memory, as files, or by an address. */
 import type { CameraInput, EncodedBytes, MeshArrays, PixelArray } from "sim3align";
-import { type DepthImage, type MeshFromFile, readCamera, readDepth, readMask, readMesh } from "sim3align/formats";
+import { type DepthImage, type MeshFromFile, readCamera } from "sim3align/formats";
 import { rolesOf } from "../intake/roles.js";
 import { scenesOfTyped } from "../intake/scenes.js";
 import { filesAt } from "../load/case-url.js";
@@ -9,6 +9,7 @@ import { type Inputs, noInputs } from "../load/inputs.js";
 import { atSize } from "../load/masks.js";
 import { type Photo, photoFrom } from "../load/photo.js";
 import { type ReadObject, readInputs, sceneOf } from "../load/read-scene.js";
+import { readDepth, readMask, readMesh } from "../load/reader.js";
 import { type Packed, sessionParts, unpacked } from "../session/pack.js";
 import type { Scene } from "../state/scene.js";
 

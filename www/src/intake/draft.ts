@@ -159,14 +159,18 @@ async function rebuild(files: readonly Typed[]): Promise<void> {
 /** A sample with other files is no sample. */
 const ownName = ({ sample, name }: Inputs) => ({ sample: null, name: sample === null ? name : "Own files" });
 
-async function set(next: Omit<Draft, "reading" | "problems">, opens = true): Promise<void> {
+async function set(next: Omit<Draft, "reading" | "problems" | "progress">, opens = true): Promise<void> {
   const change = ++lastChange;
-  draft.value = { ...next, reading: null, problems: [] };
+  let progress = { done: 0, total: 0 };
+  draft.value = { ...next, reading: null, problems: [], progress };
   const inputs = next.scenes[next.index] as Inputs;
-  const reading = await readInputs(inputs);
+  const reading = await readInputs(inputs, (now) => {
+    progress = now;
+    if (change === lastChange) draft.value = { ...next, reading: null, problems: [], progress };
+  });
   if (change !== lastChange) return;
   const problems = problemsOf(inputs, reading);
-  draft.value = { ...next, reading, problems };
+  draft.value = { ...next, reading, problems, progress };
   announce(problems[0]?.message ?? `${inputs.name} can be opened.`, problems.length > 0 ? "failed" : "done");
   const isWhole = problems.length === 0 && (next.scenes.length === 1 || next.isVideo);
   if (opens && isWhole && !next.isEdit && !hasWork()) await accept();
@@ -185,6 +189,7 @@ function refuse(message: string): void {
     reading: null,
     isVideo: false,
     isEdit: false,
+    progress: { done: 0, total: 0 },
   };
   draft.value = { ...(open ?? empty), problems: [problem] };
   announce(message, "failed");

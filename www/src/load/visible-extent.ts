@@ -12,14 +12,14 @@ export function visibleExtent(
   mask: Uint8Array,
   { fx, fy, cx, cy }: Scene["camera"],
 ): ObjectParts["visible"] {
-  const pixels: number[] = [];
-  mask.forEach((inside, pixel) => {
-    if (inside !== 0 && (data[pixel] ?? 0) > 0) pixels.push(pixel);
-  });
-  const stride = Math.max(1, Math.ceil(pixels.length / MAX_READINGS));
+  const isReading = (pixel: number) => mask[pixel] !== 0 && (data[pixel] as number) > 0;
+  let count = 0;
+  for (let pixel = 0; pixel < mask.length; pixel++) if (isReading(pixel)) count++;
+  const stride = Math.max(1, Math.ceil(count / MAX_READINGS));
   const [xs, ys, zs]: [number[], number[], number[]] = [[], [], []];
-  for (let i = 0; i < pixels.length; i += stride) {
-    const pixel = pixels[i] ?? 0;
+  let i = 0;
+  for (let pixel = 0; pixel < mask.length; pixel++) {
+    if (!isReading(pixel) || i++ % stride !== 0) continue;
     const z = data[pixel] ?? 0;
     xs.push((((pixel % width) - cx) * z) / fx);
     ys.push(((Math.floor(pixel / width) - cy) * z) / fy);

@@ -6,9 +6,7 @@ import { isResult } from "../state/pose.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { fix } from "./decision.js";
 import { KnownSize } from "./known-size.js";
-
-/** From this confidence on, no remedy is needed. */
-export const SURE = 0.9;
+import { SURE } from "./sureness.js";
 
 const ups: readonly (readonly [Options["up"], string])[] = [
   ["y", "y is up"],

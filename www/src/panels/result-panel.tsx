@@ -13,7 +13,8 @@ import { useWorkspace } from "../ui/workspace.js";
 import { Alternatives } from "./alternatives.js";
 import { Decision } from "./decision.js";
 import { Details, MainMetrics } from "./details.js";
-import { Remedies, SURE } from "./remedies.js";
+import { Remedies } from "./remedies.js";
+import { SURE, warningsOf } from "./sureness.js";
 
 export function ResultPanel() {
   const { isReadonly, selected } = useWorkspace();
@@ -155,7 +156,7 @@ function Warnings({ object }: { object: ObjectModel | null }) {
   const warnings = [
     ...(hidden > 0.05 ? [`The overlap is low because ${percent(hidden)} of the object is behind something else.`] : []),
     ...(scene.value?.warnings ?? []),
-    ...(object?.alignment.value?.warnings.map(({ message }) => message) ?? []),
+    ...(object === null ? [] : warningsOf(object).map(({ message }) => message)),
   ];
   return (
     <>
