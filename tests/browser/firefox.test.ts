@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { createAligner } from "sim3align";
+import { work } from "../bundlers/work.js";
 import { repository } from "../support/environment.js";
 import { FirefoxTest, skipFirefox } from "../support/firefox.js";
 import { input, mesh } from "../support/scene.js";
@@ -16,26 +17,22 @@ before(async () => {
 });
 after(() => firefox?.stop());
 
-const sceneModule = "/install-test/tests/support/scene.js";
-const packageModule = "/install-test/node_modules/sim3align/index.js";
+/** The installed package, below the served folder. */
+const installed = "/install-test/node_modules/sim3align";
 
-test("align has the same bits in Firefox as in Node, with and without workers", { skip }, async () => {
-  const { matrix, confidence } = await (await createAligner()).align(input);
-  const { page, errors } = await firefox.open("install-test/node_modules/sim3align/package.json");
-  const found = (await page.evaluate(`(async () => {
-    const { createAligner } = await import("${packageModule}");
-    const { input } = await import("${sceneModule}");
-    const all = [];
-    for (const workers of [0, 2]) {
-      const aligner = await createAligner({ workers });
-      const { matrix, confidence } = await aligner.align(input);
-      all.push([...matrix, confidence]);
-      aligner.dispose();
-    }
-    return all;
-  })()`)) as number[][];
-  assert.equal(found.length, 2);
-  for (const each of found) assert.deepEqual(each, [...matrix, confidence]);
+test("the package has the same bits in Firefox as in Node, in both entries, with and without workers", {
+  skip,
+}, async () => {
+  const expected = await work(createAligner);
+  const { page, errors } = await firefox.open(`${installed.slice(1)}/package.json`);
+  for (const entry of ["index", "inline"]) {
+    const found = (await page.evaluate(`(async () => {
+      const { createAligner } = await import("${installed}/${entry}.js");
+      const { work } = await import("/install-test/tests/bundlers/work.js");
+      return JSON.stringify(await work(createAligner));
+    })()`)) as string;
+    assert.deepEqual(JSON.parse(found), expected, entry);
+  }
   assert.deepEqual(errors, []);
   await page.close();
 });

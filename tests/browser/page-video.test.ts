@@ -76,6 +76,7 @@ for (const hasMasks of [true, false]) {
       const x = await centreX(opened);
       assert.ok(Math.abs(x - first - moved) < 0.3 * expected, `frame ${frame}: ${x}, first ${first}`);
     }
+    assert.deepEqual(await opened.violations(), []);
     await opened.close();
   });
 }

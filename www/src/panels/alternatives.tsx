@@ -2,6 +2,7 @@
 import { computed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
 import { poseThumbnail } from "../draw/pose-thumbnail.js";
+import { drawnScene } from "../draw/reduced.js";
 import { once } from "../load/once.js";
 import { applyAlternative, shownAlternative } from "../run/alternatives.js";
 import type { ObjectModel } from "../state/object-model.js";
@@ -18,9 +19,7 @@ const MOST = 5;
 const sceneryOf = once((workspace: Workspace) =>
   computed(() => {
     const [whole, rgba] = [workspace.scene.value, groundOf(workspace).ground.value];
-    return whole === null || rgba === null
-      ? null
-      : { rgba, width: whole.width, height: whole.height, camera: whole.camera };
+    return whole === null || rgba === null ? null : { ...drawnScene(whole), rgba };
   }),
 );
 
@@ -59,8 +58,9 @@ export function Alternatives({ object }: { object: ObjectModel | null }) {
 function PosePicture({ object, matrix }: { object: ObjectModel; matrix: ArrayLike<number> }) {
   const around = sceneryOf(useWorkspace()).value;
   const image = useMemo(() => {
-    const { mesh, mask, colour } = object;
-    return around === null ? null : poseThumbnail({ mesh, matrix, mask, colour }, around, SIZE);
+    const { mesh, colour } = object;
+    if (around === null) return null;
+    return poseThumbnail({ mesh, matrix, mask: around.maskOf(object), colour }, around, SIZE);
   }, [object, matrix, around]);
   return <Picture image={image} label="" class="thumb" />;
 }

@@ -97,6 +97,7 @@ export class SceneView implements View {
         const isMoving = this.animations.step();
         const isDamping = controls.update();
         this.cloud?.prepare(camera, height);
+        this.sizes.spread(camera);
         return isMoving || isDamping;
       },
       onCanvas: (canvas) => {

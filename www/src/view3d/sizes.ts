@@ -1,6 +1,7 @@
 /** The dimension lines of all objects. */
-import type { Group } from "three/webgpu";
+import type { Group, PerspectiveCamera } from "three/webgpu";
 import { Dimensions } from "./dimensions.js";
+import { spreadLabels } from "./label.js";
 import type { Model } from "./model.js";
 
 /** Up to this many objects all show their sizes; of more, only the selected one does. */
@@ -24,6 +25,14 @@ export class Sizes {
       this.dimensions.set(id, dimensions);
       dimensions.show((models.size <= FEW || id === selected) && isShown(id) ? model : null);
     }
+  }
+
+  /** Keeps the labels apart, as seen from the camera. */
+  spread(camera: PerspectiveCamera): void {
+    spreadLabels(
+      [...this.dimensions.values()].flatMap(({ shownLabels }) => shownLabels),
+      camera,
+    );
   }
 
   dispose(): void {

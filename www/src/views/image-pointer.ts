@@ -48,7 +48,7 @@ export function pointerOf(workspace: Workspace) {
 
   /** Selects the clicked object, and centres the 3D view on the clicked point. */
   function focusOn(event: MouseEvent): void {
-    const [pixel, state] = [pixelOf(event), space.peek()];
+    const [pixel, state] = [pixelOf(scene.peek(), event), space.peek()];
     if (pixel === null || hasDragged) return;
     const point = pointAt(scene.peek(), pixel);
     if (point !== null && measure(point)) return;
@@ -69,16 +69,17 @@ export function pointerOf(workspace: Workspace) {
     wheel,
     hover,
     /** Reads the pixel under the pointer or, with a button pressed, drags the image. */
-    move: (event: PointerEvent) => (event.buttons === 0 ? hover(pixelOf(event)) : drag(event)),
+    move: (event: PointerEvent) => (event.buttons === 0 ? hover(pixelOf(scene.peek(), event)) : drag(event)),
   };
 }
 
-function pixelOf(event: MouseEvent): Pixel | null {
-  const canvas = event.currentTarget as HTMLCanvasElement;
-  const { left, top, width, height } = canvas.getBoundingClientRect();
-  const x = Math.floor(((event.clientX - left) * canvas.width) / width);
-  const y = Math.floor(((event.clientY - top) * canvas.height) / height);
-  return x >= 0 && y >= 0 && x < canvas.width && y < canvas.height ? { x, y } : null;
+/** The pixel of the scene under the pointer. */
+function pixelOf(whole: Scene | null, event: MouseEvent): Pixel | null {
+  if (whole === null) return null;
+  const { left, top, width, height } = (event.currentTarget as HTMLCanvasElement).getBoundingClientRect();
+  const x = Math.floor(((event.clientX - left) * whole.width) / width);
+  const y = Math.floor(((event.clientY - top) * whole.height) / height);
+  return x >= 0 && y >= 0 && x < whole.width && y < whole.height ? { x, y } : null;
 }
 
 /** The back-projected depth reading of a pixel: camera frame, metres. */

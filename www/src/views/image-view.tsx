@@ -29,7 +29,7 @@ export function ImageView() {
   const workspace = useWorkspace();
   const { imageCanvas, layers, scene, selected, setLayer } = workspace;
   const { ground } = groundOf(workspace);
-  const { after, draw, zoom } = imageOf(workspace);
+  const { after, draw, drawn, zoom } = imageOf(workspace);
   const { hover, focusOn, startDrag, move, wheel } = useMemo(() => pointerOf(workspace), [workspace]);
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => {
@@ -92,8 +92,8 @@ export function ImageView() {
             ref={canvas}
             role="img"
             aria-label={descriptionOf(workspace)}
-            width={whole?.width ?? 640}
-            height={whole?.height ?? 480}
+            width={drawn.value?.width ?? 640}
+            height={drawn.value?.height ?? 480}
             onPointerDown={startDrag}
             onPointerMove={move}
             onWheel={wheel}
@@ -171,9 +171,7 @@ function Readout() {
   if (pixel === null || whole === null) return <p class="readout quiet">Hover over the image to read its depth.</p>;
   const at = pixel.y * whole.width + pixel.x;
   const measured = whole.depthM[at] ?? 0;
-  const mesh = Math.min(
-    ...imageOf(workspace).after.value.map(({ depth }) => (depth[at] || Number.POSITIVE_INFINITY) as number),
-  );
+  const mesh = imageOf(workspace).meshDepthAt(pixel);
   const difference = measured > 0 && Number.isFinite(mesh) ? 1000 * (mesh - measured) : null;
   return (
     <p class="readout">

@@ -2,6 +2,7 @@
 import { computed, effect, type ReadonlySignal, signal } from "@preact/signals";
 import { depthRange } from "../draw/colours.js";
 import { compose, type DrawnObject, drawObject } from "../draw/composition.js";
+import { drawnScene } from "../draw/reduced.js";
 import { wholeImage, type Zoom, zoomToObjects } from "../draw/zoom.js";
 import { once } from "../load/once.js";
 import type { ObjectModel } from "../state/object-model.js";
@@ -15,24 +16,27 @@ export const imageOf = once((workspace: Workspace) => {
   /** Depends on the scene only, so that it is not computed again when display settings change. */
   const onObjects = computed(() => (scene.value === null ? wholeImage : zoomToObjects(scene.value)));
 
+  /** The scene at the size that is drawn. */
+  const drawn = computed(() => (scene.value === null ? null : drawnScene(scene.value)));
+
   const depthRangeOfScene = computed(() => (scene.value === null ? null : depthRange(scene.value.depthM)));
 
   /** The objects at their start poses. */
   const before = computed(() => {
-    const whole = scene.value;
-    return whole === null
+    const [whole, view] = [scene.value, drawn.value];
+    return whole === null || view === null
       ? []
-      : whole.objects.map((object) => drawObject(whole, object, object.start.transform.matrix));
+      : whole.objects.map((object) => drawObject(view, object, object.start.transform.matrix));
   });
 
   /** One signal per object, so that a changed pose renders one mesh only. */
   const renderings = computed<readonly ReadonlySignal<{ object: ObjectModel; drawn: DrawnObject }>[]>(() => {
-    const whole = scene.value;
-    if (whole === null) return [];
+    const [whole, view] = [scene.value, drawn.value];
+    if (whole === null || view === null) return [];
     return whole.objects
       .filter(({ isShown }) => isShown.value)
       .map((object) =>
-        computed(() => ({ object, drawn: drawObject(whole, object, object.pose.value.transform.matrix) })),
+        computed(() => ({ object, drawn: drawObject(view, object, object.pose.value.transform.matrix) })),
       );
   });
 
@@ -52,16 +56,24 @@ export const imageOf = once((workspace: Workspace) => {
   });
 
   function draw(canvas: HTMLCanvasElement): void {
-    const [whole, picture] = [scene.value, groundOf(workspace).ground.value];
-    if (whole === null || picture === null) return;
-    if (canvas.width !== whole.width || canvas.height !== whole.height) {
-      canvas.width = whole.width;
-      canvas.height = whole.height;
+    const [view, picture] = [drawn.value, groundOf(workspace).ground.value];
+    if (view === null || picture === null) return;
+    if (canvas.width !== view.width || canvas.height !== view.height) {
+      canvas.width = view.width;
+      canvas.height = view.height;
     }
     const shown = layers.value;
-    const image = compose(whole, picture, shown.wipe > 0 ? before.value : [], after.value, shown, zoom.value);
+    const image = compose(view, picture, shown.wipe > 0 ? before.value : [], after.value, shown, zoom.value);
     canvas.getContext("2d")?.putImageData(image, 0, 0);
   }
 
-  return { after, depthRangeOfScene, draw, ownZoom, zoom };
+  /** The depth of the nearest mesh at a pixel of the scene, metres; infinite where there is none. */
+  function meshDepthAt({ x, y }: { x: number; y: number }): number {
+    const { width = 1, height = 1, step = 1, offset = 0 } = drawn.value ?? {};
+    const at = (pixel: number, size: number) => Math.min(Math.max(Math.round((pixel - offset) / step), 0), size - 1);
+    const place = at(y, height) * width + at(x, width);
+    return Math.min(...after.value.map(({ depth }) => (depth[place] || Number.POSITIVE_INFINITY) as number));
+  }
+
+  return { after, depthRangeOfScene, draw, drawn, meshDepthAt, ownZoom, zoom };
 });

@@ -1,12 +1,12 @@
 /** Keeps the 3D view in sync with the state of the page. */
 import { effect } from "@preact/signals";
 import { compose, invert, toSim3 } from "sim3align/conventions";
+import { depthImage } from "../draw/colours.js";
 import type { ObjectModel } from "../state/object-model.js";
 import type { Pose } from "../state/pose.js";
 import type { Scene } from "../state/scene.js";
 import type { Workspace } from "../state/workspace.js";
 import type { ObjectInput, View } from "../view3d/types.js";
-import { groundOf } from "./ground.js";
 
 /** Duration of the animation from one pose to the next. */
 const ANIMATION_MS = 900;
@@ -77,8 +77,9 @@ function viewMesh(mesh: ObjectModel["mesh"], glb: Uint8Array | null): ObjectInpu
   return made;
 }
 
-const sceneInput = (workspace: Workspace, { depthM, width, height, camera, rgba }: Scene) => ({
-  ...{ depthM, width, height, camera, ground: groundOf(workspace).ground.peek() ?? undefined },
+const sceneInput = ({ layers }: Workspace, { depthM, width, height, camera, rgba }: Scene) => ({
+  ...{ depthM, width, height, camera },
+  ground: rgba !== null && layers.peek().base === "photo" ? rgba : depthImage(depthM),
   ...(rgba === null ? {} : { rgba }),
 });
 
