@@ -24,6 +24,25 @@ const later =
 /** Whether the page loads a module at first. @param {string} id */
 const isFirst = (id) => (id.startsWith(join(www, "src")) || id.includes("/preact/")) && !later.test(id);
 
+/**
+ * The modules that the first alignment needs are downloaded beside the script, not after it.
+ * @type {import("vite").Plugin}
+ */
+const preloadedModules = {
+  name: "preloaded-modules",
+  transformIndexHtml: {
+    order: "post",
+    handler: (_, { bundle = {} }) =>
+      Object.keys(bundle)
+        .filter((name) => /(core|formats)_bg[^/]*\.wasm$/.test(name))
+        .map((name) => ({
+          tag: "link",
+          attrs: { rel: "preload", as: "fetch", href: `./${name}`, crossorigin: true },
+          injectTo: "head",
+        })),
+  },
+};
+
 /** What the page and the element have in common. @type {import("vite").UserConfig} */
 export const shared = {
   root: www,
@@ -57,6 +76,7 @@ export const shared = {
 
 export default defineConfig({
   ...shared,
+  plugins: [preloadedModules],
   build: {
     ...shared.build,
     // What the page loads at first is one chunk: it compresses better than the parts that others share with it.

@@ -1,5 +1,5 @@
 /** The dimension lines of all objects. */
-import type { Group, PerspectiveCamera } from "three/webgpu";
+import type { Group, PerspectiveCamera, Sprite } from "three/webgpu";
 import { Dimensions } from "./dimensions.js";
 import { spreadLabels } from "./label.js";
 import type { Model } from "./model.js";
@@ -27,11 +27,12 @@ export class Sizes {
     }
   }
 
-  /** Keeps the labels apart, as seen from the camera. */
-  spread(camera: PerspectiveCamera): void {
+  /** Keeps the labels apart from one another and from others, as seen from the camera in a view of this height in CSS pixels. */
+  spread(camera: PerspectiveCamera, viewPx: number, others: readonly Sprite[]): void {
     spreadLabels(
-      [...this.dimensions.values()].flatMap(({ shownLabels }) => shownLabels),
+      [...others, ...[...this.dimensions.values()].flatMap(({ shownLabels }) => shownLabels)],
       camera,
+      viewPx,
     );
   }
 
