@@ -59,7 +59,8 @@ export const shared = {
     SAMPLES: existsSync(samples) ? readFileSync(samples, "utf8") : "[]",
     OPTION_TABLE: JSON.stringify(optionTable),
   },
-  worker: { format: "es" },
+  // What workers load later has names of its own.
+  worker: { format: "es", rolldownOptions: { output: { chunkFileNames: "assets/in-worker-[name]-[hash].js" } } },
   logLevel: "warn",
   build: {
     outDir: join(repository, "target", "www"),

@@ -36,7 +36,7 @@ const siteFolder = join(repository, "target");
 
 let browser: PageTest;
 before(async () => {
-  browser = await PageTest.start(siteFolder);
+  browser = await PageTest.start(siteFolder, ["!--enable-unsafe-webgpu"]);
 });
 after(() => browser?.stop());
 
