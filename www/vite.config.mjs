@@ -19,12 +19,32 @@ const optionTable = {
 
 /** Scripts that are loaded when they are needed. */
 const later =
-  /\/src\/(intake|session|export|view3d)\/|\/src\/(run\/video|load\/label-masks|panels\/(time-panel|help-dialog))\./;
+  /\/src\/(intake|session|export|view3d)\/|\/src\/(run\/video|load\/(label-masks|case-url)|panels\/(time-panel|help-dialog))\./;
 
 /** Whether the page loads a module at first. @param {string} id */
 const isFirst = (id) => (id.startsWith(join(www, "src")) || id.includes("/preact/")) && !later.test(id);
 
-export default defineConfig({
+/**
+ * The modules that the first alignment needs are downloaded beside the script, not after it.
+ * @type {import("vite").Plugin}
+ */
+const preloadedModules = {
+  name: "preloaded-modules",
+  transformIndexHtml: {
+    order: "post",
+    handler: (_, { bundle = {} }) =>
+      Object.keys(bundle)
+        .filter((name) => /(core|formats)_bg[^/]*\.wasm$/.test(name))
+        .map((name) => ({
+          tag: "link",
+          attrs: { rel: "preload", as: "fetch", href: `./${name}`, crossorigin: true },
+          injectTo: "head",
+        })),
+  },
+};
+
+/** What the page and the element have in common. @type {import("vite").UserConfig} */
+export const shared = {
   root: www,
   // The site works from any path.
   base: "./",
@@ -39,7 +59,8 @@ export default defineConfig({
     SAMPLES: existsSync(samples) ? readFileSync(samples, "utf8") : "[]",
     OPTION_TABLE: JSON.stringify(optionTable),
   },
-  worker: { format: "es" },
+  // What workers load later has names of its own.
+  worker: { format: "es", rolldownOptions: { output: { chunkFileNames: "assets/in-worker-[name]-[hash].js" } } },
   logLevel: "warn",
   build: {
     outDir: join(repository, "target", "www"),
@@ -49,9 +70,17 @@ export default defineConfig({
     modulePreload: { polyfill: false },
     // These browsers support light-dark(), which the theme switch needs untransformed.
     cssTarget: ["chrome123", "firefox120", "safari17.5"],
-    // What the page loads at first is one chunk: it compresses better than the parts that others share with it.
-    rolldownOptions: { output: { codeSplitting: { groups: [{ name: "page", test: isFirst }] } } },
     // three.js is one chunk, which the page loads last.
     chunkSizeWarningLimit: 1000,
+  },
+};
+
+export default defineConfig({
+  ...shared,
+  plugins: [preloadedModules],
+  build: {
+    ...shared.build,
+    // What the page loads at first is one chunk: it compresses better than the parts that others share with it.
+    rolldownOptions: { output: { codeSplitting: { groups: [{ name: "page", test: isFirst }] } } },
   },
 });

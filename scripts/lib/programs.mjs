@@ -1,4 +1,4 @@
-/** Programs of the system that tests need: Chromium and Redis. */
+/** Programs of the system that tests need: Chromium, Firefox and Redis. */
 import { existsSync } from "node:fs";
 import { delimiter, join } from "node:path";
 import { once } from "./cache.mjs";
@@ -23,6 +23,14 @@ const chromiumProgram = {
     "C:\\Program Files\\Google\\Chrome\\Application\\chrome.exe",
   ],
   debianPackage: "chromium",
+};
+
+/** @type {SystemProgram} */
+const firefoxProgram = {
+  variable: "FIREFOX_PATH",
+  names: ["firefox-esr", "firefox"],
+  elsewhere: ["/Applications/Firefox.app/Contents/MacOS/firefox", "C:\\Program Files\\Mozilla Firefox\\firefox.exe"],
+  debianPackage: "firefox-esr",
 };
 
 /** @type {SystemProgram} */
@@ -66,9 +74,18 @@ export const chromiumRemedy = `install Chromium (Debian and Ubuntu: apt-get inst
 /** Chromium's path, or undefined where there is none. */
 export const chromium = once(() => locate(chromiumProgram));
 
-/** The path of Redis' server, or undefined where there is none. It waits for Chromium: apt-get runs once at a time. */
-export const redisServer = once(async () => {
+/**
+ * Firefox's path, or undefined where there is none: tests in it are then skipped, because some distributions have no
+ * package of it. It waits for Chromium: apt-get runs once at a time.
+ */
+export const firefox = once(async () => {
   await chromium();
+  return locate(firefoxProgram).catch(() => undefined);
+});
+
+/** The path of Redis' server, or undefined where there is none. */
+export const redisServer = once(async () => {
+  await firefox();
   return locate(redisProgram);
 });
 

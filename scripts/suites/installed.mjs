@@ -4,8 +4,8 @@ import { basename, join } from "node:path";
 import { cached, digest, filesBelow, once } from "../lib/cache.mjs";
 import { nodeCounts, noTests, withStatus } from "../lib/counts.mjs";
 import { print } from "../lib/output.mjs";
-import { at, installDir, packageDir, repository, sampleDir } from "../lib/paths.mjs";
-import { chromium, chromiumRemedy, redisServer } from "../lib/programs.mjs";
+import { at, installDir, packageDir, repository, sampleDir, siteDir } from "../lib/paths.mjs";
+import { chromium, chromiumRemedy, firefox, redisServer } from "../lib/programs.mjs";
 import { installedPython } from "../lib/python.mjs";
 import { attempt, nodeProgram, run } from "../lib/run.mjs";
 import { copySample } from "../lib/sample.mjs";
@@ -84,7 +84,7 @@ export const missing = () => ({ ...noTests(), ...(process.env.CI ? { failed: 1 }
 /** @param {string} folder of tests that show pages */
 export async function inBrowser(folder) {
   const path = await chromium();
-  if (path) return nodeTest(folder, { CHROMIUM_PATH: path });
+  if (path) return nodeTest(folder, { CHROMIUM_PATH: path, FIREFOX_PATH: await firefox() });
   print(`No Chromium. Remedy: ${chromiumRemedy}.\n`);
   return missing();
 }
@@ -121,11 +121,13 @@ async function installExamples() {
   });
   cpSync(at("examples"), examplesDir, { recursive: true, filter: isSource });
   cpSync(sampleDir, join(examplesDir, "sample", "mug"), { recursive: true });
+  cpSync(join(siteDir, "element"), join(examplesDir, "sample", "element"), { recursive: true });
 }
 
 /** The examples, each as its user runs it. */
 export async function examples() {
   await install();
+  await buildSite();
   await step("install the examples", installExamples);
   const [chromiumPath = "", redisPath = ""] = [await chromium(), await redisServer()];
   const env = { SIM3ALIGN_EXAMPLES: examplesDir, CHROMIUM_PATH: chromiumPath, REDIS_SERVER_PATH: redisPath };

@@ -1,7 +1,7 @@
 /** Checks of the package before it is used: its form, its declarations, its sizes. */
 import { existsSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { homedir } from "node:os";
-import { join, sep } from "node:path";
+import { dirname, join, sep } from "node:path";
 import { writeApiDocs } from "../lib/api-docs.mjs";
 import { checkApiReport } from "../lib/api-report.mjs";
 import { at, installDir, packageDir, repository, siteDir } from "../lib/paths.mjs";
@@ -12,7 +12,7 @@ import { kilobytes, sizes, wasmFile, wasmModules } from "../lib/wasm.mjs";
 import { install, pack } from "./installed.mjs";
 
 /** Limits in bytes; the tarball holds the WebAssembly twice, the second time in `inline.js`. */
-const limits = { tarball: 2_050_000, pageScript: 90_000 };
+const limits = { tarball: 2_050_000, pageScript: 90_000, elementScript: 70_000 };
 
 /** How users' compilers find declarations. */
 const resolutions = { node16: { module: "node16" }, bundler: { module: "esnext", moduleResolution: "bundler" } };
@@ -98,6 +98,7 @@ export function checkSizes() {
         ]),
     ),
     ["size of the page's script, gzipped, without the 3D library", checkPage],
+    ["size of the element's script, gzipped, without the 3D library", checkElement],
     ["the modules export different functions", () => checkSeparation(modules.map(({ file }) => file))],
     ["the modules hold no path of the machine that built them", () => checkPaths(modules.map(({ file }) => file))],
   ]);
@@ -116,6 +117,23 @@ async function checkPage(say) {
   if (first.length === 0 || later.length !== 2) throw new Error(`Other scripts than expected: ${first}, ${later}.`);
   const bytes = [...first, ...later].reduce((total, name) => total + sizes(join(assets, name)).gzip, 0);
   holdSize("The page's script", bytes, limits.pageScript, say);
+}
+
+/**
+ * The script of `<sim3-align>`, and what it imports at once.
+ * @param {(note: string) => void} say
+ */
+async function checkElement(say) {
+  await buildSite();
+  const folder = join(siteDir, "element");
+  const found = new Set([join(folder, "sim3-align.js")]);
+  for (const file of found) {
+    const imports = readFileSync(file, "utf8").matchAll(/(?:\bfrom|\bimport) ?"(\.[^"]+)"/g);
+    for (const [, name = ""] of imports) found.add(join(dirname(file), name));
+  }
+  const bytes = [...found].reduce((total, file) => total + sizes(file).gzip, 0);
+  if (found.size < 2) throw new Error(`${folder} is not as expected: its script imports nothing.`);
+  holdSize("The element's script", bytes, limits.elementScript, say);
 }
 
 /** Exports that several modules have: each frees the meshes that it has cached. */

@@ -1,27 +1,15 @@
 /** Accessibility: axe, keyboard, phones, light and dark themes, layout shifts. */
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
-import { join } from "node:path";
 import { after, before, test } from "node:test";
 import type { BrowserContextOptions } from "playwright-core";
-import { repository } from "../support/environment.js";
-import { PATIENCE, type SitePage, SiteTest } from "../support/site.js";
+import { drop, files } from "../support/page-files.js";
+import { PATIENCE, SiteTest } from "../support/site.js";
 
 let site: SiteTest;
 before(async () => {
   site = await SiteTest.start();
 });
 after(() => site?.stop());
-
-const axe = readFileSync(join(repository, "node_modules", "axe-core", "axe.min.js"), "utf8");
-
-/** The violations that axe finds, one line per rule. */
-async function violations({ page }: SitePage): Promise<string[]> {
-  await page.evaluate(axe);
-  const run = `axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"] })`;
-  const found = (await page.evaluate(run)) as { violations: { id: string; nodes: { html: string }[] }[] };
-  return found.violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html.slice(0, 160)).join(" | ")}`);
-}
 
 const phone = { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true } satisfies BrowserContextOptions;
 const views: readonly [string, BrowserContextOptions][] = [
@@ -38,12 +26,26 @@ for (const [name, context] of views) {
     for (const summary of await page.locator("details:not([open]) > summary").all()) {
       if (await summary.isVisible()) await summary.click();
     }
-    assert.deepEqual(await violations(opened), []);
+    assert.deepEqual(await opened.violations(), []);
     await page.locator(".head").getByRole("button", { name: "Help" }).click();
-    assert.deepEqual(await violations(opened), []);
+    assert.deepEqual(await opened.violations(), []);
     await page.keyboard.press("Escape");
     const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
     assert.ok(overflow <= 0, `the page is ${overflow} pixels wider than the window`);
+    await opened.close();
+  });
+}
+
+for (const [name, context] of views) {
+  test(`axe finds nothing on the intake sheet, on ${name}`, async () => {
+    const opened = await site.open("#sample=mug", context);
+    const { "camera.json": _, ...rest } = files;
+    const { "mesh.obj": mesh, "mask.png": mask } = rest;
+    // Two objects whose names do not tell that they belong together, and no camera.
+    await drop(opened, { ...rest, "mask-b.png": mask as Uint8Array, "other.obj": mesh as Uint8Array });
+    const sheet = await opened.sheet();
+    await sheet.locator(".file-roles summary").click();
+    assert.deepEqual(await opened.violations(), []);
     await opened.close();
   });
 }

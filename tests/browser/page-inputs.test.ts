@@ -264,3 +264,22 @@ test("real cases are dropped, shown and aligned", {
   }
   await opened.close();
 });
+
+test("a large file is read in a worker: the sheet tells how far, and the page stays usable", async () => {
+  const opened = await site.open();
+  const { page } = opened;
+  // While the gate is closed, nothing that a worker has read arrives.
+  await opened.closeWorkerGate();
+  const padding = Buffer.from("# a comment that fills the file\n".repeat(1 << 16));
+  await drop(opened, { ...files, "mesh.obj": Buffer.concat([padding, Buffer.from(files["mesh.obj"] as Uint8Array)]) });
+  const status = page.locator(".intake footer [role=status]");
+  await status.filter({ hasText: /Reading … [1-9]\d* of \d+/ }).waitFor(PATIENCE);
+  const isDone = page.locator('main[data-scene="Own files"]').waitFor({ timeout: 1500 });
+  await assert.rejects(isDone, "the mesh was read in the thread of the page");
+  assert.match((await status.textContent()) ?? "", /Reading/);
+  await page.locator(".intake .file-roles summary").click();
+  assert.ok((await page.locator(".intake .file-roles").getAttribute("open")) !== null);
+  await opened.openWorkerGate();
+  await opened.shows("Own files");
+  await opened.close();
+});

@@ -76,6 +76,7 @@ for (const hasMasks of [true, false]) {
       const x = await centreX(opened);
       assert.ok(Math.abs(x - first - moved) < 0.3 * expected, `frame ${frame}: ${x}, first ${first}`);
     }
+    assert.deepEqual(await opened.violations(), []);
     await opened.close();
   });
 }
@@ -120,6 +121,35 @@ test("images without names of frames are scenes of their own, unless a click mak
   await opened.sheet();
   await page.click("#intake-open");
   await opened.says(/^Tracked/);
+  await opened.close();
+});
+
+test("frames of known cameras are aligned together, as views of an object that has not moved", async () => {
+  const opened = await site.open();
+  const { page } = opened;
+  const views = frames(true);
+  // The object moves in the camera as the camera moves the other way.
+  for (let i = 0; i < COUNT; i++) {
+    const [x, , , t] = [1, 0, 0, -0.02 * truth.translation[2] * i];
+    const rows = [
+      [x, 0, 0, t],
+      [0, 1, 0, 0],
+      [0, 0, 1, 0],
+      [0, 0, 0, 1],
+    ];
+    views[`toy/frame_0${i}/pose.json`] = jsonFile({ camera_to_world: rows });
+  }
+  await dropFolder(opened, views);
+  await opened.says(/^Tracked/);
+  await page.click("#align-frames");
+  await opened.says(new RegExp(`^Aligned ${COUNT} views together, 9\\d %`));
+  const step = 0.02 * truth.translation[2];
+  await goTo(opened, 0);
+  const first = await centreX(opened);
+  await goTo(opened, COUNT - 1);
+  const last = await centreX(opened);
+  // One pose in the world: the views differ exactly as their cameras do.
+  assert.ok(Math.abs(last - first - step * (COUNT - 1)) < 0.0011, `from ${first} to ${last}, steps of ${step}`);
   await opened.close();
 });
 

@@ -113,3 +113,47 @@ for (const kind of ["built", "served by Vite"]) {
     assert.deepEqual(errors, []);
   });
 }
+
+const reactFolder = join(examplesDir, "10-react");
+
+test("10-react draws the mesh where the photo shows it, at any size, and follows the element", { skip }, async () => {
+  execFileSync(process.execPath, [vite, "build", "--logLevel", "warn"], { cwd: reactFolder });
+  const { page, errors } = await opened(join(reactFolder, "dist"), "");
+  const mask = await readMask(readFileSync(join(sampleDir, "mask.png")));
+  /** The overlap of the drawn mesh, which is orange, with the mask. */
+  const overlap = async () => {
+    const isOrange = await page.evaluate(
+      async ([width, height]) => {
+        // Two frames: one for the pose or the size, one for the drawing.
+        await new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
+        const drawn = document.querySelector(".photo canvas") as HTMLCanvasElement;
+        const canvas = document.createElement("canvas");
+        [canvas.width, canvas.height] = [width, height];
+        const context = canvas.getContext("2d") as CanvasRenderingContext2D;
+        context.drawImage(drawn, 0, 0, width, height);
+        const { data } = context.getImageData(0, 0, width, height);
+        return Array.from({ length: width * height }, (_, i) => ((data[4 * i] ?? 0) > 100 ? 1 : 0));
+      },
+      [mask.width, mask.height] as const,
+    );
+    const count = (test: (i: number) => boolean) => isOrange.filter((_, i) => test(i)).length;
+    const both = count((i) => isOrange[i] === 1 && mask.data[i] !== 0);
+    return both / count((i) => isOrange[i] === 1 || mask.data[i] !== 0);
+  };
+  const settled = async (test: (iou: number) => boolean) => {
+    let iou = await overlap();
+    for (let i = 0; i < 20 && !test(iou); i++) iou = await overlap();
+    assert.ok(test(iou), `IoU of the drawn mesh and the mask: ${iou}`);
+  };
+  await settled((iou) => iou > 0.85);
+  await page.setViewportSize({ width: 420, height: 900 });
+  await page.waitForFunction(() => (document.querySelector(".photo canvas") as HTMLCanvasElement).clientWidth < 420);
+  await settled((iou) => iou > 0.85);
+  // A change of the pose in the element moves the mesh in the canvas.
+  await page.evaluate(() => {
+    const element = document.querySelector("sim3-align") as unknown as { pose: { scale: number } };
+    element.pose = { ...element.pose, scale: 0.7 * element.pose.scale };
+  });
+  await settled((iou) => iou < 0.7);
+  assert.deepEqual(errors, []);
+});

@@ -1,5 +1,6 @@
 /** Tests of the built page in a browser. */
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import type { BrowserContextOptions, Locator, Page } from "playwright-core";
 import { PageTest } from "./browser.js";
@@ -193,6 +194,14 @@ export class SitePage {
     const parts: Buffer[] = [];
     for await (const part of await download.createReadStream()) parts.push(part as Buffer);
     return { name: download.suggestedFilename(), bytes: Buffer.concat(parts) };
+  }
+
+  /** The violations that axe finds, one line per rule. */
+  async violations(): Promise<string[]> {
+    await this.page.evaluate(readFileSync(join(repository, "node_modules", "axe-core", "axe.min.js"), "utf8"));
+    const run = `axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"] })`;
+    const found = (await this.page.evaluate(run)) as { violations: { id: string; nodes: { html: string }[] }[] };
+    return found.violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html.slice(0, 160)).join(" | ")}`);
   }
 
   /** Closes the page, which must not have logged errors. */

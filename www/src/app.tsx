@@ -10,15 +10,16 @@ import { OptionsPanel } from "./panels/options-panel.js";
 import { ResultPanel } from "./panels/result-panel.js";
 import { RunBar } from "./panels/run-bar.js";
 import { StartPanel } from "./panels/start-panel.js";
-import { isHelpOpen, largeView } from "./state/display.js";
 import { draft } from "./state/draft.js";
-import { scene } from "./state/scene.js";
-import { video } from "./state/video.js";
+import { isHelpOpen } from "./state/help.js";
+import { page } from "./state/page.js";
 import { lazy } from "./ui/lazy.js";
 import { listenToKeys } from "./ui/shortcuts.js";
+import { WorkspaceProvider } from "./ui/workspace.js";
 import { ImageView } from "./views/image-view.js";
-import { space } from "./views/space.js";
 import { SpaceView } from "./views/space-view.js";
+
+const { largeView, scene, space, video } = page;
 
 const Intake = lazy(
   () => draft.value !== null,
@@ -35,30 +36,32 @@ const HelpDialog = lazy(
 );
 
 export function App() {
-  useEffect(listenToKeys, []);
+  useEffect(() => listenToKeys(page), []);
   // Without a 3D view, the image view is the large one.
   const large = space.value.kind === "none" ? "image" : largeView.value;
   return (
-    <div class="frame">
-      <Header />
-      <main class="page" data-large={large} data-scene={scene.value?.name ?? ""}>
-        <SpaceView />
-        <ImageView />
-        <TimePanel />
-        <HandPanel />
-        <aside class="side" aria-label="Scene">
-          <RunBar />
-          <StartPanel />
-          <ResultPanel />
-          <ObjectsPanel />
-          <ExportPanel />
-          <InputPanel />
-          <OptionsPanel />
-        </aside>
-      </main>
-      <HelpDialog />
-      <Intake />
-      <DropOverlay />
-    </div>
+    <WorkspaceProvider value={page}>
+      <div class="frame">
+        <Header />
+        <main class="page" data-large={large} data-scene={scene.value?.name ?? ""}>
+          <SpaceView />
+          <ImageView />
+          <TimePanel />
+          <HandPanel />
+          <aside class="side" aria-label="Scene">
+            <RunBar />
+            <StartPanel />
+            <ResultPanel />
+            <ObjectsPanel />
+            <ExportPanel />
+            <InputPanel />
+            <OptionsPanel />
+          </aside>
+        </main>
+        <HelpDialog />
+        <Intake />
+        <DropOverlay />
+      </div>
+    </WorkspaceProvider>
   );
 }

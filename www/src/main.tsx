@@ -2,15 +2,14 @@
 import { render } from "preact";
 import { loadFormats } from "sim3align/formats";
 import { App } from "./app.js";
-import { openSample } from "./load/open.js";
+import { openFiles, openSample } from "./load/open.js";
 import { sampleOf, samples } from "./load/samples.js";
 import { alignAll, alignEach } from "./run/align.js";
 import { aligner } from "./run/aligner.js";
 import { observePoses } from "./run/evaluate.js";
+import { page } from "./state/page.js";
 import { readAddress, updateAddress } from "./state/permalink.js";
 import { hasSession } from "./state/session-flag.js";
-import { announce } from "./state/status.js";
-import { isSettled } from "./views/space.js";
 import "../style/theme.css";
 import "../style/layout.css";
 import "../style/controls.css";
@@ -18,10 +17,12 @@ import "../style/views.css";
 import "../style/panels.css";
 import "../style/intake.css";
 
+const { announce, isSettled } = page;
+
 const named = sampleOf(readAddress().sample);
 const sample = named ?? samples[0];
 updateAddress();
-observePoses();
+observePoses(page);
 // Needed when the files of the sample arrive.
 loadFormats().catch(() => {});
 aligner().then(
@@ -29,13 +30,29 @@ aligner().then(
   (error) => announce(String(error), "failed"),
 );
 
-/** A session takes precedence over the first sample, but not over one that the address names. */
+/** The scene that the address names. */
+const address = new URLSearchParams(location.search).get("case");
+
+/** A session takes precedence over the first sample, but not over what the address names. */
 async function restored(): Promise<boolean> {
-  if (!hasSession() || named !== undefined) return false;
+  if (!hasSession() || named !== undefined || address !== null) return false;
   return (await import("./session/index.js")).restoreSession();
 }
 
-const opened = restored().then((isThere) => !isThere && sample !== undefined && openSample(sample));
+/** Opens the scene at an address, as if its files were dropped. */
+async function openAddress(url: string): Promise<void> {
+  announce("Loading …", "working");
+  try {
+    await openFiles(await (await import("./load/case-url.js")).filesAt(url));
+  } catch (error) {
+    announce(error instanceof Error ? error.message : `${error}`, "failed");
+  }
+}
+
+const opened =
+  address === null
+    ? restored().then((isThere) => !isThere && sample !== undefined && openSample(sample))
+    : openAddress(address).then(() => false);
 
 const root = document.getElementById("app");
 if (root !== null) render(<App />, root);
@@ -46,7 +63,7 @@ async function start(): Promise<void> {
     performance.mark("opened");
     // The workers would take the time of the first frame.
     await new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
-    await alignEach();
+    await alignEach(page);
     performance.mark("aligned");
   }
   if (sample === undefined) announce("Choose input files.");
@@ -57,5 +74,5 @@ start();
 
 addEventListener("hashchange", async () => {
   const next = sampleOf(readAddress().sample);
-  if (next !== undefined && (await openSample(next))) await alignAll();
+  if (next !== undefined && (await openSample(next))) await alignAll(page);
 });

@@ -31,13 +31,19 @@ function depthColour(share: number): Rgb {
 /** A visualisation of a depth map with 256 levels: red, green, blue, alpha. Pixels without a reading are dark grey. */
 export function depthImage(depthM: Float32Array): Uint8ClampedArray<ArrayBuffer> {
   const { nearM: near, farM: far } = depthRange(depthM) ?? { nearM: 0, farM: 1 };
-  const table = Array.from({ length: 256 }, (_, i) => depthColour(i / 255));
+  const colours = Array.from({ length: 256 }, (_, i) => depthColour(i / 255));
+  // One number per pixel, in the order of bytes that the machine has.
+  const table = new Uint32Array(
+    Uint8ClampedArray.from([...colours, NO_READING].flatMap((rgb) => [...rgb, 255])).buffer,
+  );
   const image = new Uint8ClampedArray(4 * depthM.length);
-  depthM.forEach((z, pixel) => {
-    const step = Math.round((255 * (z - near)) / (far - near || 1));
-    const [red, green, blue] = z > 0 ? (table[Math.min(Math.max(step, 0), 255)] as Rgb) : NO_READING;
-    image.set([red, green, blue, 255], 4 * pixel);
-  });
+  const pixels = new Uint32Array(image.buffer);
+  const scale = 255 / (far - near || 1);
+  for (let pixel = 0; pixel < depthM.length; pixel++) {
+    const z = depthM[pixel] as number;
+    const step = z > 0 ? Math.min(Math.max(Math.round((z - near) * scale), 0), 255) : 256;
+    pixels[pixel] = table[step] as number;
+  }
   return image;
 }
 
@@ -45,9 +51,16 @@ export function depthImage(depthM: Float32Array): Uint8ClampedArray<ArrayBuffer>
 export function depthRange(depthM: Float32Array): { nearM: number; medianM: number; farM: number } | null {
   // An odd step looks at all columns.
   const step = 2 * Math.floor(depthM.length / 40_000) + 1;
-  const isReading = (z: number) => z > 0 && Number.isFinite(z);
-  let readings = depthM.filter((z, pixel) => pixel % step === 0 && isReading(z)).sort();
-  if (readings.length === 0) readings = depthM.filter(isReading).sort();
+  const every = (step: number) => {
+    const found: number[] = [];
+    for (let pixel = 0; pixel < depthM.length; pixel += step) {
+      const z = depthM[pixel] as number;
+      if (z > 0 && Number.isFinite(z)) found.push(z);
+    }
+    return Float32Array.from(found).sort();
+  };
+  let readings = every(step);
+  if (readings.length === 0) readings = every(1);
   if (readings.length === 0) return null;
   const at = (share: number) => readings[Math.floor(share * (readings.length - 1))] as number;
   return { nearM: at(0.01), medianM: at(0.5), farM: at(0.99) };

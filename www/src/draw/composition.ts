@@ -1,9 +1,10 @@
 /** Composes the image of the image view. */
 import type { ImageLayers } from "../state/display.js";
 import type { ObjectModel } from "../state/object-model.js";
-import type { Scene } from "../state/scene.js";
+import { type Box, boxAround, boxOf } from "./box.js";
 import { differenceColour, type Rgb, rgbOf } from "./colours.js";
 import { renderDepth } from "./rasteriser.js";
+import type { DrawnScene } from "./reduced.js";
 import type { Zoom } from "./zoom.js";
 
 /** An object, rendered at a pose. */
@@ -13,14 +14,19 @@ export interface DrawnObject {
   /** Metres; 0 outside the silhouette. */
   depth: Float32Array;
   isSelected: boolean;
+  /** Around mask and silhouette; null if both are empty. */
+  box: Box | null;
   /** The depth difference that saturates the colour, metres. */
   limitM: number;
 }
 
 /** Renders an object at a pose. */
-export function drawObject(scene: Scene, object: ObjectModel, matrix: ArrayLike<number>): DrawnObject {
-  const { mask, mesh, colour } = object;
-  return { mask, colour, isSelected: false, depth: renderDepth(mesh, matrix, scene), limitM: differenceLimit(object) };
+export function drawObject(scene: DrawnScene, object: ObjectModel, matrix: ArrayLike<number>): DrawnObject {
+  const { mesh, colour } = object;
+  const mask = scene.maskOf(object);
+  const depth = renderDepth(mesh, matrix, scene);
+  const box = boxAround(boxOf(mask, scene.width), boxOf(depth, scene.width));
+  return { mask, colour, isSelected: false, depth, box, limitM: differenceLimit(object) };
 }
 
 /** A fiftieth of the object's size, in round millimetres: a difference that is visible to the eye. */
@@ -31,7 +37,7 @@ export function differenceLimit({ visible }: ObjectModel): number {
 
 /** Draws `before` left of the wipe and `after` right of it. */
 export function compose(
-  scene: Scene,
+  scene: DrawnScene,
   base: Uint8ClampedArray,
   before: readonly DrawnObject[],
   after: readonly DrawnObject[],
@@ -54,14 +60,15 @@ export function compose(
   return image;
 
   function paint(objects: readonly DrawnObject[], left: number, right: number): void {
-    for (const { mask, colour, depth, isSelected, limitM } of objects) {
+    for (const { mask, colour, depth, box, isSelected, limitM } of objects) {
+      if (box === null) continue;
       const own = rgbOf(colour);
       const isEdge = edges(depth, width, height, thickness);
       const isBorder = edges(mask, width, height, thickness);
       // Over a photo, a little is enough, and the object's own colours stay.
       const fill = (isSelected ? 0.45 : 0.3) * (shown === "photo" ? 0.45 : 1);
-      for (let v = 0; v < height; v++) {
-        for (let u = left; u < right; u++) {
+      for (let v = box.top; v < box.bottom; v++) {
+        for (let u = Math.max(left, box.left); u < Math.min(right, box.right); u++) {
           const pixel = v * width + u;
           const [mesh, measured] = [depth[pixel] as number, depthM[pixel] as number];
           if (mesh > 0 && difference && mask[pixel] !== 0 && measured > 0) {

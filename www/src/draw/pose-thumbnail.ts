@@ -1,5 +1,6 @@
 /** A small picture of a mesh at a pose, in the image that it was seen in. */
 import type { MeshArrays } from "sim3align";
+import { albedoOf } from "./albedo.js";
 import { rgbOf } from "./colours.js";
 import { renderDepth } from "./rasteriser.js";
 import { shaded, squareAround } from "./thumbnails.js";
@@ -33,7 +34,7 @@ export function poseThumbnail({ mesh, matrix, mask, colour }: PoseThumbnail, gro
     ...{ cx: (camera.cx + 0.5 - u0) * zoom - 0.5, cy: (camera.cy + 0.5 - v0) * zoom - 0.5 },
   };
   const depth = renderDepth(mesh, matrix, { width: size, height: size, camera: lens });
-  const drawn = shaded(depth, size, lens, rgbOf(colour));
+  const drawn = shaded(depth, size, lens, rgbOf(colour), albedoOf(mesh, matrix, depth, size, lens));
   for (let y = 0; y < size; y++) {
     for (let x = 0; x < size; x++) {
       const at = 4 * (y * size + x);
@@ -42,7 +43,7 @@ export function poseThumbnail({ mesh, matrix, mask, colour }: PoseThumbnail, gro
       const isMesh = (drawn.data[at + 3] ?? 0) > 0;
       for (let k = 0; k < 3; k++) {
         const seen = inside ? (rgba[4 * (v * width + u) + k] ?? 0) : 0;
-        drawn.data[at + k] = isMesh ? 0.75 * (drawn.data[at + k] ?? 0) + 0.25 * seen : seen;
+        drawn.data[at + k] = isMesh ? 0.85 * (drawn.data[at + k] ?? 0) + 0.15 * seen : seen;
       }
       drawn.data[at + 3] = 255;
     }

@@ -1,7 +1,7 @@
 /** Small pictures of meshes and masks. */
 import type { MeshArrays } from "sim3align";
-import { maskBox } from "sim3align/conventions";
 import { boundsOf } from "../state/pose.js";
+import { boxOf } from "./box.js";
 import { type Rgb, rgbOf } from "./colours.js";
 import { renderDepth } from "./rasteriser.js";
 
@@ -34,12 +34,13 @@ export function meshThumbnail(mesh: MeshArrays, size: number, colour: string): I
   return shaded(depth, size, camera, rgbOf(colour));
 }
 
-/** A depth map, shaded by the slope of its surface. Transparent where there is none. */
+/** A depth map, shaded by the slope of its surface, in the colours of `albedo` or its own. Transparent where there is none. */
 export function shaded(
   depth: Float32Array,
   width: number,
   { fx, fy }: { fx: number; fy: number },
-  [red, green, blue]: Rgb,
+  own: Rgb,
+  albedo: (pixel: number) => Rgb | null = () => null,
 ): ImageData {
   const height = depth.length / width;
   const image = new ImageData(width, height);
@@ -58,6 +59,7 @@ export function shaded(
       const length = Math.hypot(dx, dy, 1);
       const lambert = (dx * LIGHT[0] + dy * LIGHT[1] - LIGHT[2]) / length;
       const light = 0.35 + 0.75 * Math.max(0, lambert);
+      const [red, green, blue] = albedo(pixel) ?? own;
       image.data.set([red * light, green * light, blue * light, 255], 4 * pixel);
     }
   }
@@ -74,10 +76,9 @@ interface Square {
 /** The square around a mask, or around the image if the mask is empty; `margin` is a multiple of the box. */
 export function squareAround(mask: Uint8Array, width: number, margin: number): Square {
   const height = mask.length / width;
-  const isEmpty = mask.every((inside) => inside === 0);
-  const box = isEmpty ? { left: 0, top: 0, width, height } : maskBox({ data: mask, width, height });
-  const side = margin * Math.max(box.width, box.height);
-  return { u0: box.left + (box.width - side) / 2, v0: box.top + (box.height - side) / 2, side };
+  const { left, top, right, bottom } = boxOf(mask, width) ?? { left: 0, top: 0, right: width, bottom: height };
+  const side = margin * Math.max(right - left, bottom - top);
+  return { u0: (left + right - side) / 2, v0: (top + bottom - side) / 2, side };
 }
 
 /** An image in which everything but a mask is faded, cropped to the mask. */

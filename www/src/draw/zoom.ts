@@ -1,6 +1,7 @@
 /** Zooms the image view to the objects. */
-import { maskBox } from "sim3align/conventions";
 import type { Scene } from "../state/scene.js";
+import { type Box, boxAround, boxOf } from "./box.js";
+import { drawnScene } from "./reduced.js";
 
 /** Share of the view that the objects fill. */
 const SHARE = 0.62;
@@ -17,21 +18,17 @@ export interface Zoom {
 export const wholeImage: Zoom = { factor: 1, x: 0.5, y: 0.5 };
 
 /** The zoom that shows all objects of the scene. */
-export function zoomToObjects({ objects, width, height }: Scene): Zoom {
-  const union = new Uint8Array(width * height);
-  for (const { mask } of objects) {
-    mask.forEach((inside, pixel) => {
-      if (inside !== 0) union[pixel] = 1;
-    });
-  }
-  if (!union.includes(1)) return wholeImage;
-  const box = maskBox({ data: union, width, height });
-  const factor = SHARE * Math.min(width / box.width, height / box.height);
+export function zoomToObjects(scene: Scene): Zoom {
+  const { width, height, maskOf } = drawnScene(scene);
+  const boxes = scene.objects.map((object) => boxOf(maskOf(object), width));
+  const box = boxes.reduce<Box | null>(boxAround, null);
+  if (box === null) return wholeImage;
+  const factor = SHARE * Math.min(width / (box.right - box.left), height / (box.bottom - box.top));
   if (factor <= 1) return wholeImage;
   return clampedZoom({
     factor: Math.min(factor, MAX_FACTOR),
-    x: (box.left + box.width / 2) / width,
-    y: (box.top + box.height / 2) / height,
+    x: (box.left + box.right) / 2 / width,
+    y: (box.top + box.bottom) / 2 / height,
   });
 }
 

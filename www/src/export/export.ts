@@ -1,10 +1,11 @@
 /** Copies and saves results. */
 import type { ObjectModel } from "../state/object-model.js";
+import { page } from "../state/page.js";
 import { permalink } from "../state/permalink.js";
 import type { Scene } from "../state/scene.js";
-import { announce } from "../state/status.js";
 import { imageSnapshot } from "../views/image-view.js";
-import { space } from "../views/space.js";
+
+const { announce, space } = page;
 
 export type Format =
   | "columns"
@@ -52,7 +53,7 @@ export async function exportAs(format: Format, scene: Scene, object: ObjectModel
 /** Saves the 3D view or, without one, the image view. */
 async function saveImage(name: string): Promise<void> {
   const state = space.peek();
-  const image = state.kind === "ready" ? await state.view.snapshot() : await imageSnapshot();
+  const image = state.kind === "ready" ? await state.view.snapshot() : await imageSnapshot(page);
   if (image === null) announce("There is no image yet.", "failed");
   else download(`${name}-view.png`, image, "image/png");
 }

@@ -2,9 +2,10 @@
 import type { Metrics } from "sim3align";
 import { exportGlb, exportPly, exportSceneGlb, placeGlb, type Sim3, toBop, toRowMajor } from "sim3align/conventions";
 import type { ObjectModel } from "../state/object-model.js";
-import { options } from "../state/options.js";
-import { type Scene, support } from "../state/scene.js";
-import { framePoses, video } from "../state/video.js";
+import { page } from "../state/page.js";
+import type { Scene } from "../state/scene.js";
+
+const { framePoses, options, support, video } = page;
 
 /** The 16 numbers of a pose as a JSON array of four lines. */
 export function matrixText({ pose }: ObjectModel, order: "columns" | "rows"): string {

@@ -129,13 +129,13 @@ function ofObject(inputs: Inputs, { depth, camera }: Reading, { mask, mesh }: Re
     problems.push(doubt("mesh", `Do ${names} belong together? Their names do not say so.`, [right], i));
   }
   if (mask === null || depth === null) return problems;
-  const count = mask.reduce((sum, inside) => sum + (inside === 0 ? 0 : 1), 0);
+  const { count, readings } = counted(mask, depth.data);
   if (count === 0)
     return [...problems, error("mask", "The mask is empty: no pixel is marked.", several ? [leaveOut] : [], i)];
   if (count > MOST_OF_IMAGE * mask.length) {
     return [...problems, error("mask", "The mask covers the whole image. It should mark the object only.", [], i)];
   }
-  if (!mask.some((inside, pixel) => inside !== 0 && (depth.data[pixel] ?? 0) > 0)) {
+  if (readings === 0) {
     return [...problems, error("mask", "No pixel of the mask has a depth reading.", several ? [leaveOut] : [], i)];
   }
   if (camera === null || mesh === null) return problems;
@@ -146,4 +146,15 @@ function ofObject(inputs: Inputs, { depth, camera }: Reading, { mask, mesh }: Re
     problems.push(doubt("depth", `${files.name} would be ${size} in size. Is the unit of the depth map right?`, [], i));
   }
   return problems;
+}
+
+/** The pixels of a mask, and those with a depth reading. */
+function counted(mask: Uint8Array, depthM: Float32Array): { count: number; readings: number } {
+  let [count, readings] = [0, 0];
+  for (let pixel = 0; pixel < mask.length; pixel++) {
+    if (mask[pixel] === 0) continue;
+    count++;
+    if ((depthM[pixel] as number) > 0) readings++;
+  }
+  return { count, readings };
 }

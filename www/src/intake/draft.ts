@@ -2,18 +2,19 @@
 
 import { extractArchives, type NamedFile } from "../load/files.js";
 import { type Inputs, noInputs, type Role, type Typed } from "../load/inputs.js";
-import { queue, show } from "../load/open.js";
 import { error, type Problem } from "../load/problems.js";
 import { readInputs, sceneOf } from "../load/read-scene.js";
 import { alignAll } from "../run/align.js";
-import { openSession, SESSION_FILE } from "../session/index.js";
+import { openSession } from "../session/index.js";
+import { SESSION_FILE } from "../session/pack.js";
 import { type Draft, draft, draftInputs, isReady } from "../state/draft.js";
-import { scene } from "../state/scene.js";
-import { announce } from "../state/status.js";
+import { page } from "../state/page.js";
 import { problemsOf } from "./checks.js";
 import { rolesOf } from "./roles.js";
 import { scenesOfTyped } from "./scenes.js";
 import { isVideo, videoOf } from "./video.js";
+
+const { announce, queue, scene, show } = page;
 
 /** The number of the last change. The results of earlier ones are discarded. */
 let lastChange = 0;
@@ -127,7 +128,7 @@ export async function accept(): Promise<void> {
   }
   if (!open.isEdit) queue.value = open.scenes.filter((_, i) => i > open.index);
   show(opened, inputs);
-  await alignAll();
+  await alignAll(page);
 }
 
 /** Discards the draft. */
@@ -158,14 +159,18 @@ async function rebuild(files: readonly Typed[]): Promise<void> {
 /** A sample with other files is no sample. */
 const ownName = ({ sample, name }: Inputs) => ({ sample: null, name: sample === null ? name : "Own files" });
 
-async function set(next: Omit<Draft, "reading" | "problems">, opens = true): Promise<void> {
+async function set(next: Omit<Draft, "reading" | "problems" | "progress">, opens = true): Promise<void> {
   const change = ++lastChange;
-  draft.value = { ...next, reading: null, problems: [] };
+  let progress = { done: 0, total: 0 };
+  draft.value = { ...next, reading: null, problems: [], progress };
   const inputs = next.scenes[next.index] as Inputs;
-  const reading = await readInputs(inputs);
+  const reading = await readInputs(inputs, (now) => {
+    progress = now;
+    if (change === lastChange) draft.value = { ...next, reading: null, problems: [], progress };
+  });
   if (change !== lastChange) return;
   const problems = problemsOf(inputs, reading);
-  draft.value = { ...next, reading, problems };
+  draft.value = { ...next, reading, problems, progress };
   announce(problems[0]?.message ?? `${inputs.name} can be opened.`, problems.length > 0 ? "failed" : "done");
   const isWhole = problems.length === 0 && (next.scenes.length === 1 || next.isVideo);
   if (opens && isWhole && !next.isEdit && !hasWork()) await accept();
@@ -184,6 +189,7 @@ function refuse(message: string): void {
     reading: null,
     isVideo: false,
     isEdit: false,
+    progress: { done: 0, total: 0 },
   };
   draft.value = { ...(open ?? empty), problems: [problem] };
   announce(message, "failed");

@@ -76,8 +76,8 @@ export function Sheet() {
   );
 }
 
-function summary({ reading, problems }: Draft): string {
-  if (reading === null && problems.length === 0) return "Reading …";
+function summary({ reading, problems, progress: { done, total } }: Draft): string {
+  if (reading === null && problems.length === 0) return total === 0 ? "Reading …" : `Reading … ${done} of ${total}`;
   const [errors, doubts] = [problems.filter(({ kind }) => kind === "error").length, problems.length];
   if (errors > 0) return errors === 1 ? "One thing is missing or wrong." : `${errors} things are missing or wrong.`;
   return doubts > 0 ? "Check what is marked, then align." : "Everything fits.";

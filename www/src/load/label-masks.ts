@@ -1,10 +1,10 @@
 /** Masks from the values of label maps, and from the annotations of COCO files. */
 import { fromCocoRle } from "sim3align/conventions";
-import { readDepth } from "sim3align/formats";
 import { extension, type NamedFile, stem } from "./files.js";
 import type { MaskSource } from "./inputs.js";
 import type { ReadMask } from "./masks.js";
 import { once } from "./once.js";
+import { readDepth } from "./reader.js";
 
 /** A label map: 0 is no object. */
 interface Labels {

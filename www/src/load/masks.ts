@@ -1,10 +1,10 @@
 /** Reads masks. */
 import { Sim3AlignError } from "sim3align";
 import { resizeMask } from "sim3align/conventions";
-import { readMask } from "sim3align/formats";
 import type { NamedFile } from "./files.js";
 import type { MaskSource } from "./inputs.js";
 import { once } from "./once.js";
+import { readMask } from "./reader.js";
 
 /** A mask, 1 is the object, at its own size. */
 export interface ReadMask {

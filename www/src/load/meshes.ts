@@ -1,8 +1,9 @@
 /** Reads mesh files, each once, with the files that they refer to. */
-import { externalResources, type MeshFromFile, readMesh } from "sim3align/formats";
+import { externalResources, type MeshFromFile } from "sim3align/formats";
 import { extension } from "./files.js";
 import type { MeshSource } from "./inputs.js";
 import { once } from "./once.js";
+import { readMesh } from "./reader.js";
 
 /** A mesh, and its bytes if it is a GLB. */
 export interface LoadedMesh {

@@ -1,23 +1,17 @@
 /** Opens scenes: samples at once, the user's own files by way of a draft. */
-import { batch, signal } from "@preact/signals";
-import { layers, setLayer } from "../state/display.js";
 import { draft } from "../state/draft.js";
-import type { ObjectModel } from "../state/object-model.js";
-import { type Scene, scene } from "../state/scene.js";
-import { announce } from "../state/status.js";
+import { page } from "../state/page.js";
 import type { NamedFile } from "./files.js";
-import { type Inputs, noInputs } from "./inputs.js";
 import { readInputs, sceneOf } from "./read-scene.js";
 import { type Sample, sampleInputs } from "./samples.js";
 
-/** The inputs of the scene that is shown, or of the sample that is being read. */
-export const inputs = signal<Inputs>(noInputs);
-export const isReading = signal(false);
-/** Scenes of the last drop that are still to be looked at. */
-export const queue = signal<readonly Inputs[]>([]);
+const { announce, inputs, isReading, queue, scene, show } = page;
 
 /** The number of the last call of `openSample`. The results of earlier calls are discarded. */
 let lastCall = 0;
+scene.subscribe(() => {
+  lastCall++;
+});
 
 /** Reads a sample and shows it. On failure, the scene is unchanged. */
 export async function openSample(sample: Sample): Promise<boolean> {
@@ -41,31 +35,6 @@ export async function openSample(sample: Sample): Promise<boolean> {
   return true;
 }
 
-/** Makes a scene the one that is shown. */
-export function show(opened: Scene, from: Inputs): void {
-  lastCall++;
-  batch(() => {
-    isReading.value = false;
-    inputs.value = from;
-    scene.value = opened;
-    const base = opened.rgba === null ? "depth" : "photo";
-    if (layers.peek().base !== base) setLayer("base", base);
-  });
-}
-
-/** Takes an object out of the scene. The others keep their poses. */
-export function removeObject(object: ObjectModel): void {
-  const [whole, from] = [scene.peek(), inputs.peek()];
-  const index = whole?.objects.indexOf(object) ?? -1;
-  if (whole === null || index < 0) return;
-  const without = <T>(list: readonly T[]) => list.filter((_, i) => i !== index);
-  show(
-    { ...whole, sample: null, objects: without(whole.objects) },
-    { ...from, sample: null, objects: without(from.objects) },
-  );
-  announce(`Removed ${object.name}.`);
-}
-
 const intake = () => import("../intake/draft.js");
 
 /** Proposes files as a scene, or adds them to the draft. */
@@ -85,3 +54,5 @@ export async function openNext(): Promise<void> {
   const [next, ...rest] = queue.peek();
   if (next !== undefined) await (await intake()).proposeScenes([next, ...rest]);
 }
+
+page.fileActions.value = { edit: editInputs, next: openNext };

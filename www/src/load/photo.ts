@@ -10,8 +10,12 @@ export interface Photo {
 
 /** The pixels of a photo, decoded by the browser and resized: red, green, blue, alpha. */
 export async function readPhoto(file: NamedFile, size: { width: number; height: number }): Promise<Photo> {
-  const blob = new Blob([Uint8Array.from(await file.bytes())]);
-  const bitmap = await createImageBitmap(blob).catch(() => {
+  return photoFrom(new Blob([Uint8Array.from(await file.bytes())]), size);
+}
+
+/** The pixels of an image, resized. */
+export async function photoFrom(source: Blob | ImageData, size: { width: number; height: number }): Promise<Photo> {
+  const bitmap = await createImageBitmap(source).catch(() => {
     throw new Error("The browser cannot decode this image. Choose a JPEG, PNG or WebP file.");
   });
   const { width, height } = bitmap;

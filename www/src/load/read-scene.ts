@@ -1,6 +1,6 @@
 /** Reads the input files of a scene. Each field is read by itself, so that all problems are known at once. */
 import type { MeshArrays } from "sim3align";
-import { type DepthImage, type MeshFromFile, readCamera, readDepth, readPose } from "sim3align/formats";
+import { type DepthImage, type MeshFromFile, readCamera, readPose } from "sim3align/formats";
 import { ObjectModel, type ObjectParts } from "../state/object-model.js";
 import type { Scene } from "../state/scene.js";
 import type { NamedFile } from "./files.js";
@@ -9,6 +9,7 @@ import { atSize, maskOf } from "./masks.js";
 import { meshOf } from "./meshes.js";
 import { type Photo, readPhoto } from "./photo.js";
 import { errorOf, type Problem } from "./problems.js";
+import { readDepth } from "./reader.js";
 import { visibleExtent } from "./visible-extent.js";
 
 /** Colours of objects, distinguishable on light and dark backgrounds and with most colour vision deficiencies. */
@@ -37,15 +38,29 @@ export interface Reading {
   warnings: readonly string[];
 }
 
+/** How many of the parts of a scene are read. */
+export interface ReadingProgress {
+  done: number;
+  total: number;
+}
+
 /** Reads all inputs that are there. */
-export async function readInputs(inputs: Inputs): Promise<Reading> {
+export async function readInputs(
+  inputs: Inputs,
+  onProgress: (progress: ReadingProgress) => void = () => {},
+): Promise<Reading> {
   const problems: Problem[] = [];
+  const progress = { done: 0, total: 0 };
   const attempt = async <T>(field: Field, read: () => Promise<T>, object?: number): Promise<T | null> => {
+    progress.total++;
     try {
       return await read();
     } catch (cause) {
       problems.push(errorOf(field, cause, object));
       return null;
+    } finally {
+      progress.done++;
+      onProgress({ ...progress });
     }
   };
   const { depth: depthFile, camera: source, imageId } = inputs;

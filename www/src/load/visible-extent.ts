@@ -5,6 +5,8 @@ import type { Scene } from "../state/scene.js";
 
 /** Upper bound on the readings that are used. */
 const MAX_READINGS = 4000;
+/** Of larger images, only every third pixel or fewer is looked at. */
+const MOST_PIXELS = 2_100_000;
 
 /** The centre of the readings in a mask and the diagonal of their bounding box without outliers; metres. */
 export function visibleExtent(
@@ -12,14 +14,16 @@ export function visibleExtent(
   mask: Uint8Array,
   { fx, fy, cx, cy }: Scene["camera"],
 ): ObjectParts["visible"] {
-  const pixels: number[] = [];
-  mask.forEach((inside, pixel) => {
-    if (inside !== 0 && (data[pixel] ?? 0) > 0) pixels.push(pixel);
-  });
-  const stride = Math.max(1, Math.ceil(pixels.length / MAX_READINGS));
+  const isReading = (pixel: number) => mask[pixel] !== 0 && (data[pixel] as number) > 0;
+  // An odd step looks at all columns.
+  const step = 2 * Math.floor(mask.length / MOST_PIXELS) + 1;
+  let count = 0;
+  for (let pixel = 0; pixel < mask.length; pixel += step) if (isReading(pixel)) count++;
+  const stride = Math.max(1, Math.ceil(count / MAX_READINGS));
   const [xs, ys, zs]: [number[], number[], number[]] = [[], [], []];
-  for (let i = 0; i < pixels.length; i += stride) {
-    const pixel = pixels[i] ?? 0;
+  let i = 0;
+  for (let pixel = 0; pixel < mask.length; pixel += step) {
+    if (!isReading(pixel) || i++ % stride !== 0) continue;
     const z = data[pixel] ?? 0;
     xs.push((((pixel % width) - cx) * z) / fx);
     ys.push(((Math.floor(pixel / width) - cy) * z) / fy);

@@ -2,25 +2,29 @@
 import { computed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
 import { poseThumbnail } from "../draw/pose-thumbnail.js";
+import { drawnScene } from "../draw/reduced.js";
+import { once } from "../load/once.js";
 import { applyAlternative, shownAlternative } from "../run/alternatives.js";
 import type { ObjectModel } from "../state/object-model.js";
-import { scene } from "../state/scene.js";
+import type { Workspace } from "../state/workspace.js";
 import { Tip } from "../ui/controls.js";
 import { Picture } from "../ui/picture.js";
-import { ground } from "../views/ground.js";
+import { useWorkspace } from "../ui/workspace.js";
+import { groundOf } from "../views/ground.js";
 
 /** Width and height of a picture in pixels. */
 const SIZE = 88;
 const MOST = 5;
 
-const scenery = computed(() => {
-  const [whole, rgba] = [scene.value, ground.value];
-  return whole === null || rgba === null
-    ? null
-    : { rgba, width: whole.width, height: whole.height, camera: whole.camera };
-});
+const sceneryOf = once((workspace: Workspace) =>
+  computed(() => {
+    const [whole, rgba] = [workspace.scene.value, groundOf(workspace).ground.value];
+    return whole === null || rgba === null ? null : { ...drawnScene(whole), rgba };
+  }),
+);
 
 export function Alternatives({ object }: { object: ObjectModel | null }) {
+  const workspace = useWorkspace();
   const best = object?.precise ?? null;
   const alternatives = best?.alternatives.slice(0, MOST) ?? [];
   if (object === null || best === null) return null;
@@ -41,7 +45,7 @@ export function Alternatives({ object }: { object: ObjectModel | null }) {
           type="button"
           class="choice"
           aria-pressed={shown === i - 1}
-          onClick={() => applyAlternative(object, i - 1)}
+          onClick={() => applyAlternative(workspace, object, i - 1)}
         >
           <PosePicture object={object} matrix={pose.matrix} />
           <span>{i === 0 ? "Best" : `${(alternatives[i - 1]?.turnDeg ?? 0).toFixed(0)}°`}</span>
@@ -52,10 +56,11 @@ export function Alternatives({ object }: { object: ObjectModel | null }) {
 }
 
 function PosePicture({ object, matrix }: { object: ObjectModel; matrix: ArrayLike<number> }) {
-  const around = scenery.value;
+  const around = sceneryOf(useWorkspace()).value;
   const image = useMemo(() => {
-    const { mesh, mask, colour } = object;
-    return around === null ? null : poseThumbnail({ mesh, matrix, mask, colour }, around, SIZE);
+    const { mesh, colour } = object;
+    if (around === null) return null;
+    return poseThumbnail({ mesh, matrix, mask: around.maskOf(object), colour }, around, SIZE);
   }, [object, matrix, around]);
   return <Picture image={image} label="" class="thumb" />;
 }

@@ -1,24 +1,24 @@
 /** The decision about a result: accept it, fix it, go on to the next one. */
-import { openNext, queue } from "../load/open.js";
-import { gizmo } from "../state/display.js";
 import type { ObjectModel } from "../state/object-model.js";
-import { scene, select, selected } from "../state/scene.js";
-import { announce } from "../state/status.js";
+import type { Workspace } from "../state/workspace.js";
+import { useWorkspace } from "../ui/workspace.js";
 
 /** Accepts the pose of the selected object, and selects the next one that is open. */
-export function accept(): void {
+export function accept(workspace: Workspace): void {
+  const { announce, select, selected } = workspace;
   const object = selected.peek();
   if (object === null || !object.isPlaced) return;
   object.isAccepted.value = true;
-  const next = nextOpen(object);
+  const next = nextOpen(workspace, object);
   announce(`Accepted ${object.name}.${next === null ? " All objects are accepted." : ""}`);
   if (next !== null) select(next.id);
 }
 
 /** Shows the handles and the controls of the selected object. */
-export function fix(): void {
+export function fix({ gizmo }: Workspace, { currentTarget }: Event): void {
   gizmo.value = gizmo.peek() ?? "translate";
-  const panel = document.querySelector<HTMLDetailsElement>(".hand-panel");
+  const root = (currentTarget as Element).getRootNode() as Document | ShadowRoot;
+  const panel = root.querySelector<HTMLDetailsElement>(".hand-panel");
   if (panel === null) return;
   panel.open = true;
   panel.scrollIntoView({ block: "nearest" });
@@ -28,16 +28,17 @@ export function fix(): void {
 }
 
 /** Selects the next object that is not accepted yet, or else the next one; after the last one, opens the next scene. */
-export async function next(): Promise<void> {
+export function next(workspace: Workspace): void {
+  const { fileActions, queue, scene, select, selected } = workspace;
   const objects = scene.peek()?.objects ?? [];
   const object = selected.peek();
   if (object === null) return;
-  const open = nextOpen(object);
-  if (open === null && queue.peek().length > 0) return openNext();
-  select((open ?? objects[(objects.indexOf(object) + 1) % objects.length])?.id ?? null);
+  const open = nextOpen(workspace, object);
+  if (open === null && queue.peek().length > 0) fileActions.peek()?.next();
+  else select((open ?? objects[(objects.indexOf(object) + 1) % objects.length])?.id ?? null);
 }
 
-function nextOpen(object: ObjectModel): ObjectModel | null {
+function nextOpen({ scene }: Workspace, object: ObjectModel): ObjectModel | null {
   const objects = scene.peek()?.objects ?? [];
   const from = objects.indexOf(object);
   const after = [...objects.slice(from + 1), ...objects.slice(0, from)];
@@ -45,18 +46,26 @@ function nextOpen(object: ObjectModel): ObjectModel | null {
 }
 
 export function Decision({ object }: { object: ObjectModel | null }) {
+  const workspace = useWorkspace();
+  const { queue, scene } = workspace;
   const isAccepted = object?.isAccepted.value === true;
   const hasNext = (scene.value?.objects.length ?? 0) > 1 || queue.value.length > 0;
   return (
     <fieldset class="decision" disabled={object === null}>
       <legend class="visually-hidden">Decision</legend>
-      <button type="button" id="accept" aria-pressed={isAccepted} aria-keyshortcuts="Enter" onClick={accept}>
+      <button
+        type="button"
+        id="accept"
+        aria-pressed={isAccepted}
+        aria-keyshortcuts="Enter"
+        onClick={() => accept(workspace)}
+      >
         {isAccepted ? "✓ Accepted" : "Accept"}
       </button>
-      <button type="button" id="fix" onClick={fix}>
+      <button type="button" id="fix" onClick={(event) => fix(workspace, event)}>
         Fix
       </button>
-      <button type="button" id="next" disabled={!hasNext} aria-keyshortcuts="N" onClick={next}>
+      <button type="button" id="next" disabled={!hasNext} aria-keyshortcuts="N" onClick={() => next(workspace)}>
         Next
       </button>
     </fieldset>

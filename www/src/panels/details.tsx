@@ -5,6 +5,7 @@ import { isResult } from "../state/pose.js";
 import { Tip } from "../ui/controls.js";
 import { orDash, significant } from "../ui/format.js";
 import { type MetricText, metricTexts, stageTitles } from "../ui/texts.js";
+import { quietWarningsOf } from "./sureness.js";
 
 /** The metrics that are always shown. */
 const MAIN = 3;
@@ -19,6 +20,12 @@ export function Details({ object }: { object: ObjectModel | null }) {
       <summary>Details</summary>
       <MetricTable object={object} metrics={metricTexts.slice(MAIN)} id="more-metrics" />
       <Pose object={object} />
+      {object !== null &&
+        quietWarningsOf(object).map(({ code, message }) => (
+          <p key={code} class="quiet">
+            {message}
+          </p>
+        ))}
       {object !== null && <StageTimes object={object} />}
     </details>
   );

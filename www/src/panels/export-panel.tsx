@@ -1,7 +1,8 @@
 /** Buttons that copy or save results. */
 import { exportAs, type Format } from "../export/export.js";
-import { scene, selected } from "../state/scene.js";
-import { video } from "../state/video.js";
+import { page } from "../state/page.js";
+
+const { scene, selected, video } = page;
 
 const formats: readonly [format: Format, title: string][] = [
   ["glb", "GLB"],

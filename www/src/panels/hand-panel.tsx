@@ -1,11 +1,9 @@
 /** Adjusting the pose by hand: handles, nudges, known size, refine, undo and redo. */
 import type { Vector3 } from "sim3align/conventions";
-import { isRunning, refine } from "../run/align.js";
-import { gizmo, gizmoSettings } from "../state/display.js";
-import { canRedo, canUndo, nudge, redo, undo } from "../state/history.js";
+import { refine } from "../run/align.js";
 import { type Nudge, rotationAbout } from "../state/pose.js";
-import { selected } from "../state/scene.js";
-import { space } from "../views/space.js";
+import type { Workspace } from "../state/workspace.js";
+import { useWorkspace } from "../ui/workspace.js";
 import { KnownSize } from "./known-size.js";
 import { Numbers } from "./numbers.js";
 
@@ -40,12 +38,12 @@ const rotations: readonly [title: string, symbol: string, axis: Vector3, degrees
 ];
 
 /** Moves, rotates or scales the selected object. */
-function nudgeSelected(change: Nudge): void {
+function nudgeSelected({ nudge, selected }: Workspace, change: Nudge): void {
   const object = selected.peek();
   if (object !== null) nudge(object, change);
 }
 
-function move(direction: Vector3): void {
+function move({ nudge, selected }: Workspace, direction: Vector3): void {
   const object = selected.peek();
   if (object === null) return;
   // Visible, but small compared with the mask.
@@ -54,11 +52,13 @@ function move(direction: Vector3): void {
 }
 
 export function HandPanel() {
+  const workspace = useWorkspace();
+  const { canRedo, canUndo, gizmo, gizmoSettings, isRunning, redo, selected, space, undo } = workspace;
   const object = selected.value;
   const lockScale = object !== null && object.knownScale.value !== null;
   const isReady = object !== null && !isRunning.value && !object.isLocked.value;
   return (
-    <details class="panel hand-panel" open>
+    <details class="panel hand-panel" part="hand" open>
       <summary>
         <h2>By hand</h2>
       </summary>
@@ -105,7 +105,7 @@ export function HandPanel() {
               type="button"
               aria-label={`Move ${title}`}
               title={title}
-              onClick={() => move(direction)}
+              onClick={() => move(workspace, direction)}
             >
               {symbol}
             </button>
@@ -119,7 +119,7 @@ export function HandPanel() {
               type="button"
               aria-label={`Rotate ${title}`}
               title={title}
-              onClick={() => nudgeSelected({ rotation: rotationAbout(axis, degrees) })}
+              onClick={() => nudgeSelected(workspace, { rotation: rotationAbout(axis, degrees) })}
             >
               {symbol}
             </button>
@@ -127,10 +127,10 @@ export function HandPanel() {
         </fieldset>
         <fieldset class="steps" disabled={!isReady || lockScale}>
           <legend>Scale by 2 %</legend>
-          <button type="button" aria-label="Smaller" onClick={() => nudgeSelected({ scale: 1 / 1.02 })}>
+          <button type="button" aria-label="Smaller" onClick={() => nudgeSelected(workspace, { scale: 1 / 1.02 })}>
             −
           </button>
-          <button type="button" aria-label="Larger" onClick={() => nudgeSelected({ scale: 1.02 })}>
+          <button type="button" aria-label="Larger" onClick={() => nudgeSelected(workspace, { scale: 1.02 })}>
             +
           </button>
         </fieldset>
@@ -138,7 +138,13 @@ export function HandPanel() {
       <KnownSize object={object} id="known-size" />
       <div class="row">
         {/* A disabled button would lose the focus while it runs. */}
-        <button type="button" id="refine" aria-disabled={!isReady} aria-keyshortcuts="F" onClick={refine}>
+        <button
+          type="button"
+          id="refine"
+          aria-disabled={!isReady}
+          aria-keyshortcuts="F"
+          onClick={() => refine(workspace)}
+        >
           Refine pose
         </button>
         <label class="check">

@@ -1,5 +1,5 @@
 /** The header: title, claim, theme and help. */
-import { type Theme, theme } from "../state/display.js";
+import { type Theme, theme } from "../state/theme.js";
 import { Choices } from "../ui/controls.js";
 import { toggleHelp } from "../ui/shortcuts.js";
 

@@ -1,6 +1,6 @@
 /** The help dialog. */
 import { useEffect, useRef } from "preact/hooks";
-import { isHelpOpen } from "../state/display.js";
+import { isHelpOpen } from "../state/help.js";
 import { shortcuts } from "../ui/shortcuts.js";
 
 export function HelpDialog() {

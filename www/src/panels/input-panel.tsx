@@ -1,15 +1,17 @@
 /** The input files of the scene that is shown. */
 import { baseName } from "../load/files.js";
-import { editInputs, inputs, openNext, openSample, queue } from "../load/open.js";
+import { editInputs, openNext, openSample } from "../load/open.js";
 import { samples } from "../load/samples.js";
 import { alignAll } from "../run/align.js";
-import { scene } from "../state/scene.js";
+import { page } from "../state/page.js";
+
+const { inputs, queue, scene } = page;
 
 /** Forgets the scene, and shows the first sample again. */
 async function forget(): Promise<void> {
   const [first] = samples;
   await (await import("../session/index.js")).forgetSession();
-  if (first !== undefined && (await openSample(first))) await alignAll();
+  if (first !== undefined && (await openSample(first))) await alignAll(page);
 }
 
 const unknownCamera = { file: "–", numbers: "entered", assumed: "assumed" };

@@ -1,9 +1,9 @@
 /** A known length of an object. It is one fact of the object, wherever it is entered. */
 import { useState } from "preact/hooks";
-import { nudge } from "../state/history.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { Choices } from "../ui/controls.js";
 import { centimetres } from "../ui/format.js";
+import { useWorkspace } from "../ui/workspace.js";
 
 const sides = ["Width", "Height", "Depth", "Longest side"] as const;
 const sideChoices = sides.map((title, i) => [`${i}`, title] as const);
@@ -18,6 +18,7 @@ interface KnownSizeProps {
 
 /** Scales the mesh so that one side has a known length, which all alignments keep. */
 export function KnownSize({ object, id, onSet }: KnownSizeProps) {
+  const { nudge } = useWorkspace();
   const [side, setSide] = useState(1);
   const sizeM = object?.box.value.sizeM ?? [0, 0, 0];
   const presentM = sizeM[side] ?? Math.max(...sizeM);

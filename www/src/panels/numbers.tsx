@@ -2,10 +2,10 @@
 
 import { useState } from "preact/hooks";
 import type { Vector3 } from "sim3align/conventions";
-import { nudge } from "../state/history.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { type Nudge, rotationAbout } from "../state/pose.js";
 import { Choices } from "../ui/controls.js";
+import { useWorkspace } from "../ui/workspace.js";
 
 const axes = ["x", "y", "z"] as const;
 const axisChoices = axes.map((axis) => [axis, axis] as const);
@@ -17,6 +17,7 @@ interface NumbersProps {
 }
 
 export function Numbers({ object, isReady }: NumbersProps) {
+  const { nudge } = useWorkspace();
   const [axis, setAxis] = useState<(typeof axes)[number]>("y");
   const centre = object?.box.value.centreM;
   const apply = (change: Nudge) => {

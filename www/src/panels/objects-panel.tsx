@@ -1,11 +1,9 @@
 /** The outliner: the objects of the scene, each to be selected, shown, locked, renamed and removed. */
 import { useState } from "preact/hooks";
-import { editInputs, inputs, isReading, removeObject } from "../load/open.js";
-import { isRunning } from "../run/align.js";
 import type { ObjectModel, Run } from "../state/object-model.js";
-import { scene, select, selected } from "../state/scene.js";
 import { percent } from "../ui/format.js";
 import { Icon } from "../ui/icons.js";
+import { useWorkspace } from "../ui/workspace.js";
 
 function stateOf(run: Run, object: ObjectModel): string {
   if (run.state === "waiting") return "waiting";
@@ -16,17 +14,21 @@ function stateOf(run: Run, object: ObjectModel): string {
 }
 
 export function ObjectsPanel() {
+  const { fileActions, inputs, isReading, scene } = useWorkspace();
+  const files = fileActions.value;
   const objects = scene.value?.objects ?? [];
   // While a scene is being read, its objects are listed already, so that the layout does not shift.
   const awaited = isReading.value ? inputs.value.objects.slice(objects.length) : [];
   if (objects.length + awaited.length < 2) return null;
   return (
-    <section class="panel objects-panel" aria-labelledby="objects-title">
+    <section class="panel objects-panel" part="objects" aria-labelledby="objects-title">
       <div class="card-head">
         <h2 id="objects-title">Objects</h2>
-        <button type="button" onClick={editInputs}>
-          Add or pair …
-        </button>
+        {files !== null && (
+          <button type="button" onClick={files.edit}>
+            Add or pair …
+          </button>
+        )}
       </div>
       <ul class="objects">
         {objects.map((object) => (
@@ -45,11 +47,12 @@ export function ObjectsPanel() {
 }
 
 function Row({ object }: { object: ObjectModel }) {
+  const { isReadonly, isRunning, removeObject } = useWorkspace();
   const { name, isShown, isLocked } = object;
   const [isRenamed, setRenamed] = useState(false);
   return (
     <li data-shown={isShown.value}>
-      {isRenamed ? (
+      {isRenamed && !isReadonly.value ? (
         <input
           class="rename"
           aria-label={`New name of ${name}`}
@@ -70,21 +73,25 @@ function Row({ object }: { object: ObjectModel }) {
         icon={isShown.value ? "shown" : "hidden"}
         onToggle={() => toggle(isShown)}
       />
-      <Toggle
-        label={`Lock ${name}`}
-        isOn={isLocked.value}
-        icon={isLocked.value ? "locked" : "unlocked"}
-        onToggle={() => toggle(isLocked)}
-      />
-      <button
-        type="button"
-        class="icon"
-        aria-label={`Remove ${name}`}
-        disabled={isRunning.value}
-        onClick={() => removeObject(object)}
-      >
-        ×
-      </button>
+      {!isReadonly.value && (
+        <>
+          <Toggle
+            label={`Lock ${name}`}
+            isOn={isLocked.value}
+            icon={isLocked.value ? "locked" : "unlocked"}
+            onToggle={() => toggle(isLocked)}
+          />
+          <button
+            type="button"
+            class="icon"
+            aria-label={`Remove ${name}`}
+            disabled={isRunning.value}
+            onClick={() => removeObject(object)}
+          >
+            ×
+          </button>
+        </>
+      )}
     </li>
   );
 }
@@ -109,6 +116,7 @@ function Toggle({ label, isOn, icon, onToggle }: ToggleProps) {
 }
 
 function ObjectButton({ object, onRename }: { object: ObjectModel; onRename(): void }) {
+  const { select, selected } = useWorkspace();
   const { id, name, colour, run, isAccepted } = object;
   const confidence = object.precise?.confidence ?? null;
   return (

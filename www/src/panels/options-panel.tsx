@@ -1,6 +1,7 @@
 /** Options of the alignment: prior knowledge about the object, and the seed. */
-import { choices, defaultOptions, MAX_SEED, type Options, options, setOption } from "../state/options.js";
+import { choices, defaultOptions, MAX_SEED, type Options } from "../state/options.js";
 import { Choices, Tip } from "../ui/controls.js";
+import { useWorkspace } from "../ui/workspace.js";
 
 type ChoiceName = "up" | "symmetry";
 
@@ -28,6 +29,7 @@ const symmetry: SelectProps<"symmetry"> = {
 };
 
 function Select<K extends ChoiceName>({ name, title, about, titles }: SelectProps<K>) {
+  const { options, setOption } = useWorkspace();
   const id = `option-${name}`;
   const values: readonly Options[K][] = choices[name];
   return (
@@ -52,6 +54,7 @@ interface NumberProps {
 }
 
 function NumberField({ name, title, about, unit = "" }: NumberProps) {
+  const { options, setOption } = useWorkspace();
   const id = `option-${name}`;
   return (
     <div class="option">
@@ -78,9 +81,10 @@ function NumberField({ name, title, about, unit = "" }: NumberProps) {
 }
 
 export function OptionsPanel() {
+  const { options } = useWorkspace();
   const isPaper = options.value.preset === "paper";
   return (
-    <details class="panel options-panel" id="options">
+    <details class="panel options-panel" part="options" id="options">
       <summary>
         <h2>Constraints</h2>
       </summary>

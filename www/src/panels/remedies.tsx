@@ -1,13 +1,12 @@
 /** What helps if a result is unsure, beside the result instead of in an explanation. */
-import { alignSelected, isRunning } from "../run/align.js";
+import { alignSelected } from "../run/align.js";
 import type { ObjectModel } from "../state/object-model.js";
-import { type Options, options, setOption } from "../state/options.js";
+import type { Options } from "../state/options.js";
 import { isResult } from "../state/pose.js";
+import { useWorkspace } from "../ui/workspace.js";
 import { fix } from "./decision.js";
 import { KnownSize } from "./known-size.js";
-
-/** From this confidence on, no remedy is needed. */
-export const SURE = 0.9;
+import { SURE } from "./sureness.js";
 
 const ups: readonly (readonly [Options["up"], string])[] = [
   ["y", "y is up"],
@@ -15,18 +14,20 @@ const ups: readonly (readonly [Options["up"], string])[] = [
 ];
 
 export function Remedies({ object }: { object: ObjectModel | null }) {
+  const workspace = useWorkspace();
+  const { isRunning, options, setOption } = workspace;
   const confidence = object?.precise?.confidence ?? 1;
   const isAsked = confidence < SURE && isResult(object?.pose.value.source);
   if (object === null || !isAsked || object.isAccepted.value) return null;
   const alternatives = object.precise?.alternatives.length ?? 0;
   const align = (change: () => void) => () => {
     change();
-    alignSelected();
+    alignSelected(workspace);
   };
   return (
     <div class="remedies">
       <p>Not sure. {alternatives > 0 ? "Choose a pose below, or say what you know:" : "Say what you know:"}</p>
-      <KnownSize object={object} id="remedy-size" onSet={alignSelected} />
+      <KnownSize object={object} id="remedy-size" onSet={() => alignSelected(workspace)} />
       <fieldset class="row" disabled={isRunning.value}>
         <legend>It stands upright, and the camera was level</legend>
         {ups.map(([up, title]) => (
@@ -42,7 +43,7 @@ export function Remedies({ object }: { object: ObjectModel | null }) {
       </fieldset>
       <p>
         Or move it roughly into place, then refine.{" "}
-        <button type="button" onClick={fix}>
+        <button type="button" onClick={(event) => fix(workspace, event)}>
           Move by hand
         </button>
       </p>

@@ -4,24 +4,30 @@
  */
 import type { PoseErrors } from "sim3align";
 import { hiddenShare } from "../draw/hidden.js";
-import { editInputs, inputs } from "../load/open.js";
 import { fieldOf } from "../load/problems.js";
 import type { ObjectModel } from "../state/object-model.js";
-import { scene, selected } from "../state/scene.js";
-import { frameIndex, framePoses } from "../state/video.js";
+import type { Scene } from "../state/scene.js";
 import { Tip } from "../ui/controls.js";
 import { centimetres, orDash, percent, significant } from "../ui/format.js";
+import { useWorkspace } from "../ui/workspace.js";
 import { Alternatives } from "./alternatives.js";
 import { Decision } from "./decision.js";
 import { Details, MainMetrics } from "./details.js";
-import { Remedies, SURE } from "./remedies.js";
+import { Remedies } from "./remedies.js";
+import { SURE, warningsOf } from "./sureness.js";
 
 export function ResultPanel() {
+  const { isReadonly, selected } = useWorkspace();
   const chosen = selected.value;
   const run = chosen?.run.value;
   const object = chosen?.isPlaced ? chosen : null;
   return (
-    <section class="result panel" aria-labelledby="result-title" data-source={chosen?.pose.value.source ?? "none"}>
+    <section
+      class="result panel"
+      part="result"
+      aria-labelledby="result-title"
+      data-source={chosen?.pose.value.source ?? "none"}
+    >
       <h2 id="result-title">
         {chosen === null ? (
           "Result"
@@ -33,9 +39,13 @@ export function ResultPanel() {
       </h2>
       <Size object={object} />
       {run?.state === "failed" && <Failure error={run.error} />}
-      <Decision object={object} />
-      <Remedies object={object} />
-      <Alternatives object={object} />
+      {!isReadonly.value && (
+        <>
+          <Decision object={object} />
+          <Remedies object={object} />
+          <Alternatives object={object} />
+        </>
+      )}
       <MainMetrics object={object} />
       <Truth object={object} />
       <Warnings object={object} />
@@ -45,11 +55,12 @@ export function ResultPanel() {
 }
 
 function Failure({ error }: { error: Error }) {
+  const files = useWorkspace().fileActions.value;
   return (
     <p class="error" role="alert">
       {error.message}{" "}
-      {fieldOf(error) !== null && (
-        <button type="button" onClick={editInputs}>
+      {files !== null && fieldOf(error) !== null && (
+        <button type="button" onClick={files.edit}>
           Change files …
         </button>
       )}
@@ -81,6 +92,7 @@ function Size({ object }: { object: ObjectModel | null }) {
 }
 
 function Confidence({ object }: { object: ObjectModel | null }) {
+  const { frameIndex, framePoses } = useWorkspace();
   const isTracked = object?.pose.value.source === "tracked";
   const tracked = isTracked ? (framePoses.value[frameIndex.value]?.confidence ?? null) : null;
   const confidence = tracked ?? object?.precise?.confidence ?? null;
@@ -116,6 +128,7 @@ function reasonForNoConfidence(object: ObjectModel | null): string | null {
 
 /** Errors of the pose compared with the true one, if that is known. */
 function Truth({ object }: { object: ObjectModel | null }) {
+  const { inputs } = useWorkspace();
   const isKnown = object === null ? inputs.value.objects.some(({ truth }) => truth !== null) : object.truth !== null;
   if (!isKnown) return null;
   return (
@@ -136,13 +149,14 @@ const errorText = ({ scaleError, rotationErrorDeg, translationErrorM }: PoseErro
 const LOW_IOU = 0.85;
 
 function Warnings({ object }: { object: ObjectModel | null }) {
+  const { scene } = useWorkspace();
   const iou = object?.metrics.value?.iou ?? 1;
   const hidden = object !== null && scene.value !== null && iou < LOW_IOU ? hiddenShare(scene.value, object) : 0;
-  const contact = object === null ? null : contactText(object);
+  const contact = object === null ? null : contactText(scene.value, object);
   const warnings = [
     ...(hidden > 0.05 ? [`The overlap is low because ${percent(hidden)} of the object is behind something else.`] : []),
     ...(scene.value?.warnings ?? []),
-    ...(object?.alignment.value?.warnings.map(({ message }) => message) ?? []),
+    ...(object === null ? [] : warningsOf(object).map(({ message }) => message)),
   ];
   return (
     <>
@@ -159,7 +173,7 @@ function Warnings({ object }: { object: ObjectModel | null }) {
 }
 
 /** What the object rests on, if the alignment of the scene says so. */
-function contactText(object: ObjectModel): string | null {
+function contactText(whole: Scene | null, object: ObjectModel): string | null {
   const contact = object.alignment.value?.contact;
   if (contact === undefined || object.pose.value.source !== "aligned") return null;
   const { restsOn, gapM } = contact;
@@ -169,7 +183,7 @@ function contactText(object: ObjectModel): string | null {
       ? "the ground"
       : restsOn === "level"
         ? "a level above the ground"
-        : (scene.value?.objects[restsOn]?.name ?? "another object");
+        : (whole?.objects[restsOn]?.name ?? "another object");
   const gap = gapM === null ? "" : `, ${significant(Math.abs(1000 * gapM), 2)} mm ${gapM < 0 ? "sunk in" : "above it"}`;
   return `Stands on ${what}${gap}.`;
 }

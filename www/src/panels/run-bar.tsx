@@ -1,11 +1,10 @@
 /** Align, cancel and progress. */
-import { inputs, isReading } from "../load/open.js";
-import { alignAll, alignSelected, cancel, fraction, isRunning } from "../run/align.js";
-import { choices, defaultOptions, type Options, options, setOption } from "../state/options.js";
-import { scene, selected } from "../state/scene.js";
-import { status } from "../state/status.js";
+import { alignAll, alignSelected } from "../run/align.js";
+import { choices, defaultOptions, type Options } from "../state/options.js";
+import type { Workspace } from "../state/workspace.js";
 import { Choices } from "../ui/controls.js";
 import { stageTitles } from "../ui/texts.js";
+import { useWorkspace } from "../ui/workspace.js";
 
 const qualityTitles: { readonly [Q in Options["quality"]]: string } = {
   auto: "Automatic",
@@ -20,13 +19,15 @@ const efforts: readonly (readonly [value: string, title: string])[] = [
   ["paper", "Paper (baseline)"],
 ];
 
-function chooseEffort(value: string): void {
+function chooseEffort({ setOption }: Workspace, value: string): void {
   const quality = choices.quality.find((quality) => quality === value);
   setOption("preset", quality === undefined ? "paper" : "precise");
   setOption("quality", quality ?? defaultOptions.quality);
 }
 
 export function RunBar() {
+  const workspace = useWorkspace();
+  const { cancel, fraction, inputs, isReading, isRunning, options, scene, selected, status } = workspace;
   const { preset, quality } = options.value;
   const objects = scene.value?.objects ?? [];
   // While a scene is being read, the buttons are those of its objects already, so that the layout does not shift.
@@ -37,7 +38,7 @@ export function RunBar() {
   const { text, kind } = status.value;
   const percent = Math.round(100 * fraction.value);
   return (
-    <section class="run" aria-label="Run">
+    <section class="run" part="run" aria-label="Run">
       <div class="run-row">
         <label class="field-inline grow" for="effort">
           <span>Quality</span>
@@ -45,7 +46,7 @@ export function RunBar() {
             id="effort"
             value={preset === "paper" ? "paper" : quality}
             choices={efforts}
-            onChoose={chooseEffort}
+            onChoose={(value) => chooseEffort(workspace, value)}
           />
         </label>
         {running ? (
@@ -58,7 +59,7 @@ export function RunBar() {
             id="align"
             class={count > 1 ? "" : "primary"}
             disabled={objects.length === 0}
-            onClick={alignSelected}
+            onClick={() => alignSelected(workspace)}
           >
             Align
           </button>
@@ -69,7 +70,7 @@ export function RunBar() {
             id="align-all"
             class="primary"
             disabled={running || objects.length === 0}
-            onClick={alignAll}
+            onClick={() => alignAll(workspace)}
           >
             Align all {count}
           </button>

@@ -3,11 +3,13 @@ import { filesOf } from "../load/files.js";
 import { openFiles, openSample } from "../load/open.js";
 import { sampleOf, samples, sampleUrl } from "../load/samples.js";
 import { alignAll } from "../run/align.js";
-import { scene } from "../state/scene.js";
+import { page } from "../state/page.js";
+
+const { scene } = page;
 
 async function choose(id: string): Promise<void> {
   const sample = sampleOf(id);
-  if (sample !== undefined && (await openSample(sample))) await alignAll();
+  if (sample !== undefined && (await openSample(sample))) await alignAll(page);
 }
 
 /** The samples that are shown as pictures. */

@@ -1,9 +1,11 @@
 /** The time axis of a video. */
 import { useEffect } from "preact/hooks";
-import { correctFrame, isTracking, showFrame, stopTracking, trackAll } from "../run/video.js";
-import { selected } from "../state/scene.js";
-import { type FramePose, frameIndex, framePoses, trackedCount, video } from "../state/video.js";
+import { alignFrames, correctFrame, isTracking, showFrame, stopTracking, trackAll } from "../run/video.js";
+import { page } from "../state/page.js";
+import type { FramePose } from "../state/video.js";
 import { percent } from "../ui/format.js";
+
+const { frameIndex, framePoses, selected, trackedCount, video } = page;
 
 /** Time between frames while they are played. */
 const FRAME_MS = 120;
@@ -62,6 +64,17 @@ export function TimePanel() {
       ) : (
         <button type="button" id="track" class={trackedCount.value < count ? "primary" : ""} onClick={trackAll}>
           {trackedCount.value === 0 ? "Track" : "Track again"}
+        </button>
+      )}
+      {opened.cameras !== null && (
+        <button
+          type="button"
+          id="align-frames"
+          disabled={isTracking.value}
+          title="The object has not moved: all views of the known cameras together give one pose"
+          onClick={alignFrames}
+        >
+          Align as views
         </button>
       )}
       <button type="button" id="correct" disabled={!canCorrect} onClick={correctFrame}>

@@ -1,77 +1,55 @@
 /** Aligns objects and reports their progress. */
-import { batch, computed, signal } from "@preact/signals";
+import { batch } from "@preact/signals";
 import type { Progress, SceneObjectInput } from "sim3align";
 import { toSim3 } from "sim3align/conventions";
-import { place } from "../state/history.js";
 import type { AnyAlignment, ObjectModel } from "../state/object-model.js";
-import { alignOptions, constraintsOf, options, paperOptions, sceneOptions } from "../state/options.js";
 import type { PoseSource } from "../state/pose.js";
-import { type Scene, scene, selected, support } from "../state/scene.js";
-import { announce, type Status, status } from "../state/status.js";
+import type { Scene } from "../state/scene.js";
+import type { Status } from "../state/status.js";
+import type { Workspace } from "../state/workspace.js";
 import { aligner, inputOf, viewOf } from "./aligner.js";
 
-const controller = signal<AbortController | null>(null);
-
-export const isRunning = computed(() => controller.value !== null);
-
-/** Progress of all objects that are being aligned, 0 to 1. */
-export const fraction = computed(() => {
-  const runs = (scene.value?.objects ?? []).map(({ run }) => run.value).filter(({ state }) => state !== "idle");
-  const parts = runs.map((run) => (run.state === "running" ? run.fraction : run.state === "waiting" ? 0 : 1));
-  return parts.length === 0 ? 0 : parts.reduce((sum, part) => sum + part, 0) / parts.length;
-});
-
-export function cancel(): void {
-  controller.peek()?.abort();
-}
-
-// Running alignments belong to the previous scene.
-let current = scene.peek();
-scene.subscribe((next) => {
-  if (next === current) return;
-  current = next;
-  cancel();
-  // The support is that of the previous scene.
-  support.value = null;
-});
-
 /** Aligns the selected object from scratch. */
-export async function alignSelected(): Promise<void> {
-  const object = selected.peek();
+export async function alignSelected(workspace: Workspace): Promise<void> {
+  const object = workspace.selected.peek();
   if (object === null || object.isLocked.peek()) return;
-  await run([object], (whole, signal) => alone(whole, object, "global", signal));
+  await run(workspace, [object], (whole, signal) => alone(workspace, whole, object, "global", signal));
 }
 
 /** Aligns every object of the scene, except those whose poses are locked. */
-export async function alignAll(): Promise<void> {
-  const whole = scene.peek();
+export async function alignAll(workspace: Workspace): Promise<void> {
+  const whole = workspace.scene.peek();
   const objects = whole?.objects.filter(({ isLocked }) => !isLocked.peek()) ?? [];
   const [only] = objects;
   if (whole?.objects.length === 1 && only !== undefined) {
-    await run(objects, (whole, signal) => alone(whole, only, "global", signal));
-  } else if (options.peek().preset === "paper")
-    await run(objects, (whole, signal) => eachAlone(whole, objects, signal));
-  else await run(objects, (whole, signal) => together(whole, objects, signal));
+    await run(workspace, objects, (whole, signal) => alone(workspace, whole, only, "global", signal));
+  } else if (workspace.options.peek().preset === "paper")
+    await run(workspace, objects, (whole, signal) => eachAlone(workspace, whole, objects, signal));
+  else await run(workspace, objects, (whole, signal) => together(workspace, whole, objects, signal));
 }
 
 /** Aligns every object as if it were alone: sooner than together, and without the module that scenes need. */
-export async function alignEach(): Promise<void> {
-  const objects = scene.peek()?.objects ?? [];
-  if (objects.length < 2) return alignAll();
-  await run(objects, (whole, signal) => eachAlone(whole, objects, signal));
+export async function alignEach(workspace: Workspace): Promise<void> {
+  const objects = workspace.scene.peek()?.objects ?? [];
+  if (objects.length < 2) return alignAll(workspace);
+  await run(workspace, objects, (whole, signal) => eachAlone(workspace, whole, objects, signal));
 }
 
 /** Searches around the current pose of the selected object only. */
-export async function refine(): Promise<void> {
-  const object = selected.peek();
+export async function refine(workspace: Workspace): Promise<void> {
+  const object = workspace.selected.peek();
   if (object === null || object.isLocked.peek()) return;
-  await run([object], (whole, signal) => alone(whole, object, "local", signal));
+  await run(workspace, [object], (whole, signal) => alone(workspace, whole, object, "local", signal));
 }
 
 type Work = (whole: Scene, signal: AbortSignal) => Promise<void>;
 
 /** Runs an alignment of objects, unless another one is running. */
-async function run(objects: readonly ObjectModel[], work: Work): Promise<void> {
+async function run(
+  { scene, controller, announce, status }: Workspace,
+  objects: readonly ObjectModel[],
+  work: Work,
+): Promise<void> {
   const whole = scene.peek();
   if (whole === null || objects.length === 0 || controller.peek() !== null) return;
   const abort = new AbortController();
@@ -94,7 +72,14 @@ async function run(objects: readonly ObjectModel[], work: Work): Promise<void> {
 }
 
 /** Aligns one object. */
-async function alone(whole: Scene, object: ObjectModel, search: "global" | "local", signal: AbortSignal) {
+async function alone(
+  workspace: Workspace,
+  whole: Scene,
+  object: ObjectModel,
+  search: "global" | "local",
+  signal: AbortSignal,
+): Promise<void> {
+  const { alignOptions, options, paperOptions } = workspace;
   const input = inputOf(whole, object);
   const shared = { signal, onProgress: progressOf(object) };
   const isPaper = search === "global" && options.peek().preset === "paper";
@@ -102,11 +87,17 @@ async function alone(whole: Scene, object: ObjectModel, search: "global" | "loca
   const alignment = isPaper
     ? await ready.align(input, { ...paperOptions(), ...shared })
     : await ready.align(input, { ...alignOptions(object, search), ...shared });
-  finish(object, alignment, search === "local" ? "refined" : "aligned");
+  finish(workspace, object, alignment, search === "local" ? "refined" : "aligned");
 }
 
 /** Aligns objects side by side, each as if it were alone. No scale of theirs is known yet. */
-async function eachAlone(whole: Scene, objects: readonly ObjectModel[], signal: AbortSignal): Promise<void> {
+async function eachAlone(
+  workspace: Workspace,
+  whole: Scene,
+  objects: readonly ObjectModel[],
+  signal: AbortSignal,
+): Promise<void> {
+  const { constraintsOf, options, paperOptions, sceneOptions } = workspace;
   const listeners = objects.map(progressOf);
   const inputs = objects.map((object) => inputOf(whole, object));
   const onProgress = (progress: Progress & { index: number }) => listeners[progress.index]?.(progress);
@@ -120,13 +111,19 @@ async function eachAlone(whole: Scene, objects: readonly ObjectModel[], signal: 
   for await (const { index, alignment, error } of results) {
     const object = objects[index];
     if (object === undefined) continue;
-    if (alignment !== undefined) finish(object, alignment, "aligned");
+    if (alignment !== undefined) finish(workspace, object, alignment, "aligned");
     else object.run.value = { state: "failed", error };
   }
 }
 
 /** Aligns objects together: they hide one another, share no space, and stand on something. */
-async function together(whole: Scene, objects: readonly ObjectModel[], signal: AbortSignal): Promise<void> {
+async function together(
+  workspace: Workspace,
+  whole: Scene,
+  objects: readonly ObjectModel[],
+  signal: AbortSignal,
+): Promise<void> {
+  const { constraintsOf, sceneOptions, support } = workspace;
   const inputs = whole.objects.map((object): SceneObjectInput => {
     const { mask, mesh } = object;
     // A locked pose counts for the others.
@@ -145,7 +142,7 @@ async function together(whole: Scene, objects: readonly ObjectModel[], signal: A
     result.objects.forEach((found, i) => {
       const object = whole.objects[i];
       if (object === undefined || !objects.includes(object)) return;
-      if (found.error === undefined) finish(object, found, "aligned");
+      if (found.error === undefined) finish(workspace, object, found, "aligned");
       else object.run.value = { state: "failed", error: found.error };
     });
   });
@@ -157,7 +154,7 @@ const progressOf =
     run.value = { state: "running", stage, fraction };
   };
 
-function finish(object: ObjectModel, alignment: AnyAlignment, source: PoseSource): void {
+function finish({ place }: Workspace, object: ObjectModel, alignment: AnyAlignment, source: PoseSource): void {
   object.alignment.value = alignment;
   object.run.value = { state: "done" };
   place(object, { transform: toSim3(alignment), source });

@@ -1,11 +1,11 @@
 /** Shows the alternatives of an alignment. */
 import { toSim3 } from "sim3align/conventions";
-import { place } from "../state/history.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { isResult } from "../state/pose.js";
+import type { Workspace } from "../state/workspace.js";
 
 /** Sets the pose to an alternative, or with −1 to the result. */
-export function applyAlternative(object: ObjectModel, index: number): void {
+export function applyAlternative({ place }: Workspace, object: ObjectModel, index: number): void {
   const alignment = object.alignment.peek();
   if (alignment === null) return;
   const chosen = index < 0 ? alignment : object.precise?.alternatives[index];

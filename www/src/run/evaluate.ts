@@ -3,20 +3,25 @@ import { effect } from "@preact/signals";
 import { toSim3 } from "sim3align/conventions";
 import type { ObjectModel } from "../state/object-model.js";
 import { isResult } from "../state/pose.js";
-import { type Scene, scene } from "../state/scene.js";
+import type { Scene } from "../state/scene.js";
+import type { Workspace } from "../state/workspace.js";
 import { aligner, inputOf } from "./aligner.js";
 
 /** A pose is evaluated once it has been unchanged for this time: a drag changes it with every frame. */
 const DEBOUNCE_MS = 120;
 
-/** Observes the poses of all objects of the current scene. */
-export function observePoses(): void {
+/** Observes the poses of all objects of the current scene. Call the returned function to stop. */
+export function observePoses({ scene }: Workspace): () => void {
   let stop: (() => void)[] = [];
-  effect(() => {
+  const stopAll = effect(() => {
     const whole = scene.value;
     for (const stopOne of stop) stopOne();
     stop = whole === null ? [] : whole.objects.map((object) => observe(whole, object));
   });
+  return () => {
+    stopAll();
+    for (const stopOne of stop) stopOne();
+  };
 }
 
 function observe(whole: Scene, object: ObjectModel): () => void {

@@ -1,15 +1,15 @@
 /** Shows and tracks the frames of a video. */
 import { computed, signal } from "@preact/signals";
-import type { Tracker } from "sim3align";
+import type { Tracker, ViewInput } from "sim3align";
 import { toSim3 } from "sim3align/conventions";
 import type { Inputs } from "../load/inputs.js";
-import { inputs, show } from "../load/open.js";
 import { readInputs, sceneOf } from "../load/read-scene.js";
-import { constraintsOf, options } from "../state/options.js";
-import { type Scene, scene } from "../state/scene.js";
-import { announce } from "../state/status.js";
-import { type FramePose, frameIndex, framePoses, setFramePose, type Video, video } from "../state/video.js";
-import { aligner } from "./aligner.js";
+import { page } from "../state/page.js";
+import type { Scene } from "../state/scene.js";
+import type { FramePose, Video } from "../state/video.js";
+import { aligner, viewOf } from "./aligner.js";
+
+const { announce, constraintsOf, frameIndex, framePoses, inputs, options, scene, setFramePose, show, video } = page;
 
 const controller = signal<AbortController | null>(null);
 export const isTracking = computed(() => controller.value !== null);
@@ -104,6 +104,46 @@ export async function trackAll(): Promise<void> {
     announce(`Tracked ${opened.frames.length} frames in ${seconds} s${lost > 0 ? `; lost in ${lost}` : ""}.`);
   } catch (error) {
     fail(error);
+  } finally {
+    controller.value = null;
+  }
+}
+
+/** Aligns the object in all frames together, as views of cameras whose poses are known: it has not moved. */
+export async function alignFrames(): Promise<void> {
+  const [opened, first] = [video.peek(), scene.peek()?.objects[0]];
+  const cameras = opened?.cameras ?? null;
+  if (opened === null || cameras === null || first === undefined || isTracking.peek()) return;
+  const abort = new AbortController();
+  controller.value = abort;
+  try {
+    const views: ViewInput[] = [];
+    for (const [index, frame] of opened.frames.entries()) {
+      announce(`Reading view ${index + 1} of ${opened.frames.length} …`, "working");
+      const read = await readFrame(frame);
+      const object = read?.objects[0];
+      const cameraToWorld = cameras[index];
+      if (read === null || object === undefined || cameraToWorld === undefined) return;
+      const mask = frame.objects[0]?.mask == null ? {} : { mask: object.mask };
+      views.push({ ...viewOf(read), ...mask, cameraToWorld });
+    }
+    announce(`Aligning ${views.length} views together …`, "working");
+    const { scale } = constraintsOf(first);
+    const { quality, seed } = options.peek();
+    const limits = scale === undefined ? {} : { scale };
+    const settings = { quality, seed, ...limits, signal: abort.signal };
+    const found = await (await aligner()).alignViews({ mesh: first.mesh, views }, settings);
+    if (video.peek() !== opened) return;
+    framePoses.value = found.views.map((view): FramePose => {
+      const state = view.confidence >= 0.5 ? "tracking" : "uncertain";
+      return { transform: toSim3(view), confidence: view.confidence, state, isCorrected: false };
+    });
+    const [shown, pose] = [scene.peek()?.objects[0], framePoses.peek()[frameIndex.peek()]];
+    if (shown !== undefined && pose != null) shown.pose.value = { transform: pose.transform, source: "tracked" };
+    announce(`Aligned ${views.length} views together, ${Math.round(100 * found.confidence)} %.`);
+  } catch (error) {
+    if (abort.signal.aborted) announce("Stopped.");
+    else fail(error);
   } finally {
     controller.value = null;
   }

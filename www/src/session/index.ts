@@ -1,20 +1,16 @@
 /** The session: kept in the browser while the user works, and saved and opened as one file. */
 import { effect } from "@preact/signals";
 import type { NamedFile } from "../load/files.js";
-import { inputs, show } from "../load/open.js";
 import { readInputs, sceneOf } from "../load/read-scene.js";
-import { scene } from "../state/scene.js";
+import { page } from "../state/page.js";
 import { hasSession } from "../state/session-flag.js";
-import { announce } from "../state/status.js";
-import { video } from "../state/video.js";
-import { applyState, type Packed, packed, unpacked } from "./pack.js";
+import { applyState, type Packed, packed, SESSION_FILE, sessionParts, unpacked } from "./pack.js";
 import { clearSession, storedSession, storeFiles, storeSession } from "./store.js";
+
+const { announce, inputs, options, scene, show, video } = page;
 
 /** Poses change with every frame of a drag. */
 const DEBOUNCE_MS = 250;
-/** The name of the session in a file. */
-export const SESSION_FILE = "sim3align-session.json";
-
 /** Whether all changes are stored. */
 let isStored = true;
 
@@ -27,7 +23,7 @@ export function keepSession(): void {
     clearTimeout(timer);
     if (whole === null || whole.sample !== null || video.value !== null) return;
     // Reading the signals of the objects subscribes to them.
-    const { session, files } = packed(from, whole);
+    const { session, files } = packed(from, whole, options.value);
     isStored = false;
     timer = setTimeout(async () => {
       try {
@@ -68,7 +64,7 @@ async function open(session: Packed, files: readonly NamedFile[]): Promise<boole
   const reading = await readInputs(from);
   const opened = sceneOf(from, reading);
   if (opened === null) return false;
-  applyState(session, opened);
+  applyState(session, opened, page);
   show(opened, from);
   announce(`Restored ${from.name}.`);
   return true;
@@ -79,7 +75,7 @@ export async function sessionFile(): Promise<Uint8Array | null> {
   const whole = scene.peek();
   if (whole === null) return null;
   const { zipSync } = await import("fflate");
-  const { session, files } = packed(inputs.peek(), whole);
+  const { session, files } = packed(inputs.peek(), whole, options.peek());
   const entries: Record<string, Uint8Array> = { [SESSION_FILE]: new TextEncoder().encode(JSON.stringify(session)) };
   // The indices keep files with equal paths apart.
   for (const [i, { path, bytes }] of files.entries()) entries[`${i}/${path}`] = await bytes();
@@ -88,13 +84,6 @@ export async function sessionFile(): Promise<Uint8Array | null> {
 
 /** Opens a session file, given as the files in it. Returns whether it is one that can be opened. */
 export async function openSession(files: readonly NamedFile[]): Promise<boolean> {
-  const own = files.find(({ path }) => path === SESSION_FILE);
-  if (own === undefined) return false;
-  const session = JSON.parse(new TextDecoder().decode(await own.bytes())) as Packed;
-  const rest: NamedFile[] = [];
-  for (const { path, bytes } of files) {
-    const [, index, name] = /^(\d+)\/(.*)$/.exec(path) ?? [];
-    if (index !== undefined && name !== undefined) rest[Number(index)] = { path: name, bytes };
-  }
-  return open(session, rest);
+  const parts = await sessionParts(files);
+  return parts !== null && open(parts.session, parts.files);
 }

@@ -3,12 +3,16 @@ import { toSim3 } from "sim3align/conventions";
 import { baseName, type NamedFile } from "../load/files.js";
 import type { CameraSource, Inputs, MaskSource, MeshSource, Role, TruthSource } from "../load/inputs.js";
 import type { AnyAlignment, ObjectModel } from "../state/object-model.js";
-import { type Options, options } from "../state/options.js";
+import type { Options } from "../state/options.js";
 import type { PoseSource } from "../state/pose.js";
 import type { Scene } from "../state/scene.js";
+import type { Workspace } from "../state/workspace.js";
 
 /** The version of the format. Other versions are not read. */
 const VERSION = 1;
+
+/** The name of the session in a file. */
+export const SESSION_FILE = "sim3align-session.json";
 
 /** A file by its index. */
 type Ref = number;
@@ -22,7 +26,7 @@ interface PackedObject {
 }
 
 /** What was done with an object. */
-interface PackedState {
+export interface PackedState {
   matrix: readonly number[];
   source: PoseSource;
   isAccepted: boolean;
@@ -48,7 +52,7 @@ export interface Packed {
 }
 
 /** The session of a scene, and its files in the order of their indices. */
-export function packed(inputs: Inputs, scene: Scene): { session: Packed; files: NamedFile[] } {
+export function packed(inputs: Inputs, scene: Scene, options: Options): { session: Packed; files: NamedFile[] } {
   const files: NamedFile[] = [];
   const ref = (file: NamedFile): Ref => {
     const known = files.indexOf(file);
@@ -77,7 +81,7 @@ export function packed(inputs: Inputs, scene: Scene): { session: Packed; files: 
     resizeMasks: inputs.resizeMasks,
     objects,
     roles: [],
-    options: options.peek(),
+    options,
   };
   session.roles = inputs.files.flatMap(({ file, role }) => (files.includes(file) ? [{ file: ref(file), role }] : []));
   return { session, files };
@@ -86,7 +90,8 @@ export function packed(inputs: Inputs, scene: Scene): { session: Packed; files: 
 /** Files that meshes refer to. */
 const isResource = (path: string) => /\.(bin|mtl|png|jpe?g|webp)$/i.test(baseName(path));
 
-function stateOf({ pose, isAccepted, isShown, isLocked, knownScale, alignment }: ObjectModel): PackedState {
+/** What was done with an object. */
+export function stateOf({ pose, isAccepted, isShown, isLocked, knownScale, alignment }: ObjectModel): PackedState {
   const { transform, source } = pose.value;
   return {
     ...{ matrix: [...transform.matrix], source },
@@ -125,7 +130,11 @@ export function unpacked(session: Packed, files: readonly NamedFile[]): Inputs |
 }
 
 /** Gives the objects of a scene the poses and settings of a session. */
-export function applyState({ objects, options: chosen }: Packed, scene: Scene): void {
+export function applyState(
+  { objects, options: chosen }: { objects: readonly { state: PackedState }[]; options: Partial<Options> },
+  scene: Scene,
+  { options }: Workspace,
+): void {
   options.value = { ...options.peek(), ...chosen };
   scene.objects.forEach((object, i) => {
     const state = objects[i]?.state;
@@ -138,4 +147,19 @@ export function applyState({ objects, options: chosen }: Packed, scene: Scene): 
     object.isLocked.value = state.isLocked;
     object.knownScale.value = state.knownScale;
   });
+}
+
+/** The session in the files of an archive, and the files that it refers to; null if there is none. */
+export async function sessionParts(
+  files: readonly NamedFile[],
+): Promise<{ session: Packed; files: NamedFile[] } | null> {
+  const own = files.find(({ path }) => path === SESSION_FILE);
+  if (own === undefined) return null;
+  const session = JSON.parse(new TextDecoder().decode(await own.bytes())) as Packed;
+  const rest: NamedFile[] = [];
+  for (const { path, bytes } of files) {
+    const [, index, name] = /^(\d+)\/(.*)$/.exec(path) ?? [];
+    if (index !== undefined && name !== undefined) rest[Number(index)] = { path: name, bytes };
+  }
+  return { session, files: rest };
 }

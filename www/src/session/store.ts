@@ -8,13 +8,18 @@ const STORE = "session";
 /** A file in the database. */
 interface StoredFile {
   path: string;
-  bytes: Uint8Array;
+  /** As a `Blob`, which the browser stores without copying it in this thread. */
+  content: Blob;
 }
 
 function database(): Promise<IDBDatabase> {
   return new Promise((resolve, reject) => {
-    const request = indexedDB.open(NAME, 1);
-    request.onupgradeneeded = () => request.result.createObjectStore(STORE);
+    const request = indexedDB.open(NAME, 2);
+    request.onupgradeneeded = () => {
+      // What another version has stored is not read.
+      if (request.result.objectStoreNames.contains(STORE)) request.result.deleteObjectStore(STORE);
+      request.result.createObjectStore(STORE);
+    };
     request.onsuccess = () => resolve(request.result);
     request.onerror = () => reject(request.error);
   });
@@ -37,7 +42,9 @@ async function transact<T>(mode: IDBTransactionMode, work: (store: IDBObjectStor
 /** Stores the files of a new scene. */
 export async function storeFiles(files: readonly NamedFile[]): Promise<void> {
   const read = await Promise.all(
-    files.map(async ({ path, bytes }): Promise<StoredFile> => ({ path, bytes: await bytes() })),
+    files.map(
+      async ({ path, bytes }): Promise<StoredFile> => ({ path, content: new Blob([Uint8Array.from(await bytes())]) }),
+    ),
   );
   await transact("readwrite", (store) => [store.put(read, "files")]);
 }
@@ -50,7 +57,10 @@ export async function storeSession(session: Packed): Promise<void> {
 export async function storedSession(): Promise<{ session: Packed; files: NamedFile[] } | null> {
   const [text, stored] = await transact<unknown>("readonly", (store) => [store.get("session"), store.get("files")]);
   if (typeof text !== "string" || !Array.isArray(stored)) return null;
-  const files = (stored as StoredFile[]).map(({ path, bytes }) => ({ path, bytes: async () => bytes }));
+  const files = (stored as StoredFile[]).map(({ path, content }) => ({
+    path,
+    bytes: async () => new Uint8Array(await content.arrayBuffer()),
+  }));
   return { session: JSON.parse(text) as Packed, files };
 }
 

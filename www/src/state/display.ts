@@ -1,5 +1,5 @@
 /** Display settings. */
-import { effect, signal } from "@preact/signals";
+import { signal } from "@preact/signals";
 
 /** Layers of the image view. */
 export interface ImageLayers {
@@ -13,19 +13,6 @@ export interface ImageLayers {
   wipe: number;
 }
 
-export const layers = signal<ImageLayers>({
-  base: "photo",
-  outline: true,
-  silhouette: true,
-  difference: false,
-  zoom: true,
-  wipe: 0,
-});
-
-export const setLayer = <K extends keyof ImageLayers>(name: K, value: ImageLayers[K]): void => {
-  layers.value = { ...layers.peek(), [name]: value };
-};
-
 /** Layers of the 3D view. */
 export interface Display3d {
   cloud: boolean;
@@ -35,69 +22,55 @@ export interface Display3d {
   pointSize: number;
 }
 
-export const display3d = signal<Display3d>({
-  ...{ cloud: true, mesh: true, wireframe: false, dimensions: true },
-  pointSize: 1.6,
-});
+/** The state of the display. */
+export function displayState() {
+  const layers = signal<ImageLayers>({
+    base: "photo",
+    outline: true,
+    silhouette: true,
+    difference: false,
+    zoom: true,
+    wipe: 0,
+  });
 
-export const gizmo = signal<"translate" | "rotate" | "scale" | null>(null);
+  const setLayer = <K extends keyof ImageLayers>(name: K, value: ImageLayers[K]): void => {
+    layers.value = { ...layers.peek(), [name]: value };
+  };
 
-/** How the handles move: along the axes of the mesh, and in steps. */
-export const gizmoSettings = signal({ isLocal: false, snaps: false });
+  const display3d = signal<Display3d>({
+    ...{ cloud: true, mesh: true, wireframe: false, dimensions: true },
+    pointSize: 1.6,
+  });
 
-/** The points that are being measured, OpenCV camera frame, metres; null while nothing is measured. */
-export const measured = signal<readonly (readonly [number, number, number])[] | null>(null);
+  const gizmo = signal<"translate" | "rotate" | "scale" | null>(null);
 
-/** Adds a point to what is measured. A third one begins anew. Returns whether anything is measured. */
-export function measure(point: readonly [number, number, number]): boolean {
-  const points = measured.peek();
-  if (points === null) return false;
-  measured.value = points.length >= 2 ? [point] : [...points, point];
-  return true;
+  /** How the handles move: along the axes of the mesh, and in steps. */
+  const gizmoSettings = signal({ isLocal: false, snaps: false });
+
+  /** The points that are being measured, OpenCV camera frame, metres; null while nothing is measured. */
+  const measured = signal<readonly (readonly [number, number, number])[] | null>(null);
+
+  /** Adds a point to what is measured. A third one begins anew. Returns whether anything is measured. */
+  function measure(point: readonly [number, number, number]): boolean {
+    const points = measured.peek();
+    if (points === null) return false;
+    measured.value = points.length >= 2 ? [point] : [...points, point];
+    return true;
+  }
+
+  /** Whether the 3D view shows the poses before any alignment. */
+  const showsBefore = signal(false);
+
+  /** The view that has the larger area. */
+  const largeView = signal<"space" | "image">("space");
+
+  /** The pixel of the depth map under the pointer, in either view. */
+  const hoveredPixel = signal<{ x: number; y: number } | null>(null);
+
+  return {
+    ...{ layers, setLayer, display3d, gizmo, gizmoSettings, measured, measure },
+    ...{ showsBefore, largeView, hoveredPixel },
+  };
 }
 
-/** Whether the 3D view shows the poses before any alignment. */
-export const showsBefore = signal(false);
-
-/** The view that has the larger area. */
-export const largeView = signal<"space" | "image">("space");
-
-/** The pixel of the depth map under the pointer, in either view. */
-export const hoveredPixel = signal<{ x: number; y: number } | null>(null);
-
-export const isHelpOpen = signal(false);
-
-export type Theme = "system" | "light" | "dark";
-
-const THEME_KEY = "sim3align-theme";
-
-function storedTheme(): Theme {
-  try {
-    const theme = localStorage.getItem(THEME_KEY);
-    return theme === "light" || theme === "dark" ? theme : "system";
-  } catch {
-    // Storage may be blocked.
-    return "system";
-  }
-}
-
-export const theme = signal<Theme>(storedTheme());
-
-const darkQuery = matchMedia("(prefers-color-scheme: dark)");
-const systemIsDark = signal(darkQuery.matches);
-darkQuery.addEventListener("change", ({ matches }) => {
-  systemIsDark.value = matches;
-});
-
-/** The theme in effect. */
-export const effectiveTheme = () => (theme.value === "system" ? (systemIsDark.value ? "dark" : "light") : theme.value);
-
-effect(() => {
-  document.documentElement.style.colorScheme = theme.value === "system" ? "light dark" : theme.value;
-  try {
-    if (theme.value === "system") localStorage.removeItem(THEME_KEY);
-    else localStorage.setItem(THEME_KEY, theme.value);
-  } catch {
-    // Storage is blocked: the theme is lost when the page closes.
-  }
-});
+export type DisplayState = ReturnType<typeof displayState>;

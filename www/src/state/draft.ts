@@ -2,7 +2,7 @@
 import { signal } from "@preact/signals";
 import type { Inputs } from "../load/inputs.js";
 import type { Problem } from "../load/problems.js";
-import type { Reading } from "../load/read-scene.js";
+import type { Reading, ReadingProgress } from "../load/read-scene.js";
 
 export interface Draft {
   /** The scenes of the drop, of which one is looked at. */
@@ -10,6 +10,8 @@ export interface Draft {
   index: number;
   /** Null while the files are being read. */
   reading: Reading | null;
+  /** How much of it is read. */
+  progress: ReadingProgress;
   problems: readonly Problem[];
   /** Whether the scenes are the frames of one video. */
   isVideo: boolean;

@@ -56,37 +56,42 @@ export const choices: { readonly [K in ChoiceName]: readonly Options[K][] } = {
 /** The largest seed. */
 export const MAX_SEED = OPTION_TABLE.maxSeed;
 
-export const options = signal<Options>(defaultOptions);
+/** The options of the alignments of a scene. */
+export function optionsState() {
+  const options = signal<Options>(defaultOptions);
 
-export function setOption<K extends keyof Options>(name: K, value: Options[K]): void {
-  options.value = { ...options.peek(), [name]: value };
-}
+  function setOption<K extends keyof Options>(name: K, value: Options[K]): void {
+    options.value = { ...options.peek(), [name]: value };
+  }
 
-/** The options of the baseline. */
-export function paperOptions(): Omit<PaperOptions, "metrics"> {
-  return { preset: "paper", seed: options.peek().seed };
-}
+  /** The options of the baseline. */
+  function paperOptions(): Omit<PaperOptions, "metrics"> {
+    return { preset: "paper", seed: options.peek().seed };
+  }
 
-/** The options of every object of a scene. */
-export function sceneOptions(): CallOptions {
-  const { quality, seed } = options.peek();
-  return { quality, seed };
-}
+  /** The options of every object of a scene. */
+  function sceneOptions(): CallOptions {
+    const { quality, seed } = options.peek();
+    return { quality, seed };
+  }
 
-/** What is known of an object: every alignment, from scratch or from its pose, obeys it. */
-export function constraintsOf(object: ObjectModel): CallOptions {
-  const { scaleMin, scaleMax, up, symmetry } = options.peek();
-  const known = object.knownScale.peek();
-  const hasBounds = scaleMin !== null || scaleMax !== null;
-  return {
-    symmetry,
-    ...(known !== null ? { scale: known } : hasBounds ? { scale: [scaleMin ?? 1e-9, scaleMax ?? 1e9] } : {}),
-    ...(up === "unknown" ? {} : { cameraUp: [0, -1, 0], meshUp: up === "y" ? [0, 1, 0] : [0, 0, 1] }),
-  };
-}
+  /** What is known of an object: every alignment, from scratch or from its pose, obeys it. */
+  function constraintsOf(object: ObjectModel): CallOptions {
+    const { scaleMin, scaleMax, up, symmetry } = options.peek();
+    const known = object.knownScale.peek();
+    const hasBounds = scaleMin !== null || scaleMax !== null;
+    return {
+      symmetry,
+      ...(known !== null ? { scale: known } : hasBounds ? { scale: [scaleMin ?? 1e-9, scaleMax ?? 1e9] } : {}),
+      ...(up === "unknown" ? {} : { cameraUp: [0, -1, 0], meshUp: up === "y" ? [0, 1, 0] : [0, 0, 1] }),
+    };
+  }
 
-/** The options of an alignment of one object: from scratch, or around its pose only. */
-export function alignOptions(object: ObjectModel, search: "global" | "local"): CallOptions {
-  const local = search === "local" ? { search, initial: object.pose.peek().transform } : {};
-  return { ...sceneOptions(), ...constraintsOf(object), ...local };
+  /** The options of an alignment of one object: from scratch, or around its pose only. */
+  function alignOptions(object: ObjectModel, search: "global" | "local"): CallOptions {
+    const local = search === "local" ? { search, initial: object.pose.peek().transform } : {};
+    return { ...sceneOptions(), ...constraintsOf(object), ...local };
+  }
+
+  return { options, setOption, paperOptions, sceneOptions, constraintsOf, alignOptions };
 }

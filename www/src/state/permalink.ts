@@ -1,7 +1,9 @@
 /** The page's address holds the sample and the options, so that a link reproduces both. */
 import { computed, effect } from "@preact/signals";
-import { choices, defaultOptions, type Options, options } from "./options.js";
-import { scene } from "./scene.js";
+import { choices, defaultOptions, type Options } from "./options.js";
+import { page } from "./page.js";
+
+const { options, scene } = page;
 
 /** Applies the options of the address, and returns the sample that it names. */
 export function readAddress(): { sample: string | null } {

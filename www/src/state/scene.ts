@@ -19,26 +19,33 @@ export interface Scene {
   readonly warnings: readonly string[];
 }
 
-export const scene = signal<Scene | null>(null);
+/** The state of a scene: what is shown, and which object is selected. */
+export function sceneState() {
+  const scene = signal<Scene | null>(null);
 
-/** The plane on which the objects of the scene stand, once it is known. */
-export const support = signal<Support | null>(null);
+  /** The plane on which the objects of the scene stand, once it is known. */
+  const support = signal<Support | null>(null);
 
-const selectedId = signal<string | null>(null);
+  const selectedId = signal<string | null>(null);
 
-/** The object that panels and handles apply to. */
-export const selected = computed<ObjectModel | null>(() => {
-  const objects = scene.value?.objects ?? [];
-  return objects.find(({ id }) => id === selectedId.value) ?? objects[0] ?? null;
-});
+  /** The object that panels and handles apply to. */
+  const selected = computed<ObjectModel | null>(() => {
+    const objects = scene.value?.objects ?? [];
+    return objects.find(({ id }) => id === selectedId.value) ?? objects[0] ?? null;
+  });
 
-export function select(id: string | null): void {
-  if (id !== null) selectedId.value = id;
+  function select(id: string | null): void {
+    if (id !== null) selectedId.value = id;
+  }
+
+  /** The object whose mask contains the pixel. */
+  function objectAt(x: number, y: number): ObjectModel | null {
+    const current = scene.value;
+    if (current === null) return null;
+    return current.objects.find(({ mask, isShown }) => isShown.value && mask[y * current.width + x] !== 0) ?? null;
+  }
+
+  return { scene, support, selected, select, objectAt };
 }
 
-/** The object whose mask contains the pixel. */
-export function objectAt(x: number, y: number): ObjectModel | null {
-  const current = scene.value;
-  if (current === null) return null;
-  return current.objects.find(({ mask, isShown }) => isShown.value && mask[y * current.width + x] !== 0) ?? null;
-}
+export type SceneState = ReturnType<typeof sceneState>;

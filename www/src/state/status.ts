@@ -6,8 +6,15 @@ export interface Status {
   kind: "working" | "done" | "failed";
 }
 
-export const status = signal<Status>({ text: "Loading …", kind: "working" });
+/** The state of the status line. */
+export function statusState() {
+  const status = signal<Status>({ text: "Loading …", kind: "working" });
 
-export const announce = (text: string, kind: Status["kind"] = "done"): void => {
-  status.value = { text, kind };
-};
+  const announce = (text: string, kind: Status["kind"] = "done"): void => {
+    status.value = { text, kind };
+  };
+
+  return { status, announce };
+}
+
+export type StatusState = ReturnType<typeof statusState>;

@@ -19,17 +19,22 @@ export interface Video {
   readonly cameras: readonly Sim3[] | null;
 }
 
-export const video = signal<Video | null>(null);
+/** The state of a video. */
+export function videoState() {
+  const video = signal<Video | null>(null);
 
-/** The index of the frame that is shown. */
-export const frameIndex = signal(0);
+  /** The index of the frame that is shown. */
+  const frameIndex = signal(0);
 
-/** The poses of the frames, as far as they were tracked. */
-export const framePoses = signal<readonly (FramePose | null)[]>([]);
+  /** The poses of the frames, as far as they were tracked. */
+  const framePoses = signal<readonly (FramePose | null)[]>([]);
 
-/** How many frames are tracked. */
-export const trackedCount = computed(() => framePoses.value.filter((pose) => pose !== null).length);
+  /** How many frames are tracked. */
+  const trackedCount = computed(() => framePoses.value.filter((pose) => pose !== null).length);
 
-export function setFramePose(index: number, pose: FramePose): void {
-  framePoses.value = framePoses.peek().map((other, i) => (i === index ? pose : other));
+  function setFramePose(index: number, pose: FramePose): void {
+    framePoses.value = framePoses.peek().map((other, i) => (i === index ? pose : other));
+  }
+
+  return { video, frameIndex, framePoses, trackedCount, setFramePose };
 }

@@ -1,12 +1,10 @@
 /** Keyboard shortcuts. The help lists this table. */
 
 import { accept, next } from "../panels/decision.js";
-import { alignAll, alignSelected, cancel, isRunning, refine } from "../run/align.js";
+import { alignAll, alignSelected, refine } from "../run/align.js";
 import { applyAlternative } from "../run/alternatives.js";
-import { display3d, gizmo, isHelpOpen, largeView, layers, setLayer } from "../state/display.js";
-import { redo, undo } from "../state/history.js";
-import { scene, select, selected } from "../state/scene.js";
-import { space } from "../views/space.js";
+import { isHelpOpen } from "../state/help.js";
+import type { Workspace } from "../state/workspace.js";
 
 interface Shortcut {
   /** `KeyboardEvent.key`, after "Mod+" if it is pressed with Control or Command. */
@@ -14,28 +12,36 @@ interface Shortcut {
   /** The key as the help shows it. */
   title: string;
   about: string;
-  act(): unknown;
+  act(workspace: Workspace): unknown;
 }
 
-const toggleHandles = (mode: "translate" | "rotate" | "scale") => () => {
-  gizmo.value = gizmo.peek() === mode ? null : mode;
-};
+const toggleHandles =
+  (mode: "translate" | "rotate" | "scale") =>
+  ({ gizmo }: Workspace) => {
+    gizmo.value = gizmo.peek() === mode ? null : mode;
+  };
 
-const lookFrom = (from: "camera" | "orbit" | "top" | "side") => () => {
-  const state = space.peek();
-  if (state.kind === "ready") state.view.lookFrom(from, from === "camera");
-};
+const lookFrom =
+  (from: "camera" | "orbit" | "top" | "side") =>
+  ({ space }: Workspace) => {
+    const state = space.peek();
+    if (state.kind === "ready") state.view.lookFrom(from, from === "camera");
+  };
 
-function selectNeighbour(step: number): void {
-  const objects = scene.peek()?.objects ?? [];
-  const current = selected.peek();
-  const index = current === null ? 0 : objects.indexOf(current);
-  select(objects[(index + step + objects.length) % objects.length]?.id ?? null);
-}
+const selectNeighbour =
+  (step: number) =>
+  ({ scene, select, selected }: Workspace): void => {
+    const objects = scene.peek()?.objects ?? [];
+    const current = selected.peek();
+    const index = current === null ? 0 : objects.indexOf(current);
+    select(objects[(index + step + objects.length) % objects.length]?.id ?? null);
+  };
 
-const toggle3d = (name: "cloud" | "mesh" | "wireframe") => () => {
-  display3d.value = { ...display3d.peek(), [name]: !display3d.peek()[name] };
-};
+const toggle3d =
+  (name: "cloud" | "mesh" | "wireframe") =>
+  ({ display3d }: Workspace) => {
+    display3d.value = { ...display3d.peek(), [name]: !display3d.peek()[name] };
+  };
 
 export const shortcuts: readonly Shortcut[] = [
   { key: "a", title: "A", about: "Align the selected object", act: alignSelected },
@@ -46,33 +52,48 @@ export const shortcuts: readonly Shortcut[] = [
   { key: "r", title: "R", about: "Handles to rotate", act: toggleHandles("rotate") },
   { key: "s", title: "S", about: "Handles to scale", act: toggleHandles("scale") },
   { key: "l", title: "L", about: "Lock the scale", act: toggleScaleLock },
-  { key: "Mod+z", title: "Ctrl Z", about: "Undo", act: undo },
-  { key: "Mod+Z", title: "Ctrl Shift Z", about: "Redo", act: redo },
-  { key: "Mod+y", title: "Ctrl Y", about: "Redo", act: redo },
+  { key: "Mod+z", title: "Ctrl Z", about: "Undo", act: ({ undo }) => undo() },
+  { key: "Mod+Z", title: "Ctrl Shift Z", about: "Redo", act: ({ redo }) => redo() },
+  { key: "Mod+y", title: "Ctrl Y", about: "Redo", act: ({ redo }) => redo() },
   { key: "Enter", title: "Enter", about: "Accept the pose", act: accept },
   { key: "n", title: "N", about: "Next object or scene", act: next },
-  { key: "[", title: "[", about: "Previous object", act: () => selectNeighbour(-1) },
-  { key: "]", title: "]", about: "Next object", act: () => selectNeighbour(1) },
+  { key: "[", title: "[", about: "Previous object", act: selectNeighbour(-1) },
+  { key: "]", title: "]", about: "Next object", act: selectNeighbour(1) },
   { key: "c", title: "C", about: "Camera view", act: lookFrom("camera") },
   { key: "o", title: "O", about: "Three-quarter view", act: lookFrom("orbit") },
   { key: "t", title: "T", about: "Top view", act: lookFrom("top") },
   { key: "w", title: "W", about: "Wireframe", act: toggle3d("wireframe") },
   { key: "p", title: "P", about: "Show or hide the points", act: toggle3d("cloud") },
   { key: "m", title: "M", about: "Show or hide the mesh", act: toggle3d("mesh") },
-  { key: "d", title: "D", about: "Depth difference", act: () => setLayer("difference", !layers.peek().difference) },
-  { key: "b", title: "B", about: "Before or after", act: () => setLayer("wipe", layers.peek().wipe < 0.5 ? 1 : 0) },
-  { key: "z", title: "Z", about: "Zoom to the objects", act: () => setLayer("zoom", !layers.peek().zoom) },
+  {
+    key: "d",
+    title: "D",
+    about: "Depth difference",
+    act: ({ layers, setLayer }) => setLayer("difference", !layers.peek().difference),
+  },
+  {
+    key: "b",
+    title: "B",
+    about: "Before or after",
+    act: ({ layers, setLayer }) => setLayer("wipe", layers.peek().wipe < 0.5 ? 1 : 0),
+  },
+  {
+    key: "z",
+    title: "Z",
+    about: "Zoom to the objects",
+    act: ({ layers, setLayer }) => setLayer("zoom", !layers.peek().zoom),
+  },
   { key: "v", title: "V", about: "Swap the views", act: swapViews },
   { key: "0", title: "0 to 9", about: "The result (0) and its alternatives", act: () => {} },
   { key: "?", title: "?", about: "This help", act: toggleHelp },
 ];
 
-function toggleScaleLock(): void {
+function toggleScaleLock({ selected }: Workspace): void {
   const object = selected.peek();
   object?.lockScale(object.knownScale.peek() === null);
 }
 
-function cancelOrHideHandles(): void {
+function cancelOrHideHandles({ cancel, gizmo, isRunning }: Workspace): void {
   if (isRunning.peek()) cancel();
   else gizmo.value = null;
 }
@@ -81,7 +102,7 @@ export function toggleHelp(): void {
   isHelpOpen.value = !isHelpOpen.peek();
 }
 
-function swapViews(): void {
+function swapViews({ largeView }: Workspace): void {
   largeView.value = largeView.peek() === "space" ? "image" : "space";
 }
 
@@ -90,7 +111,7 @@ const isTyping = (target: EventTarget | null) =>
   target instanceof HTMLElement &&
   target.matches('input:not([type="checkbox"], [type="radio"], [type="range"]), select, textarea');
 
-function onKey(event: KeyboardEvent): void {
+function onKey(workspace: Workspace, event: KeyboardEvent): void {
   const { key, ctrlKey, metaKey, altKey, target } = event;
   if (
     altKey ||
@@ -103,19 +124,20 @@ function onKey(event: KeyboardEvent): void {
   if (key === "Enter" && target !== document.body) return;
   const isMod = ctrlKey || metaKey;
   if (!isMod && /^\d$/.test(key)) {
-    const object = selected.peek();
-    if (object !== null) applyAlternative(object, Number(key) - 1);
+    const object = workspace.selected.peek();
+    if (object !== null) applyAlternative(workspace, object, Number(key) - 1);
     return;
   }
   const shortcut = shortcuts.find(({ key: own }) => own === `${isMod ? "Mod+" : ""}${key}`);
   if (shortcut === undefined) return;
   // Escape also closes dialogs and popovers.
   if (key !== "Escape") event.preventDefault();
-  shortcut.act();
+  shortcut.act(workspace);
 }
 
-/** Starts listening for keys. Call the returned function to stop. */
-export function listenToKeys(): () => void {
-  addEventListener("keydown", onKey);
-  return () => removeEventListener("keydown", onKey);
+/** Starts listening for keys, by default anywhere on the page. Call the returned function to stop. */
+export function listenToKeys(workspace: Workspace, root: EventTarget = globalThis): () => void {
+  const listener = (event: Event) => onKey(workspace, event as KeyboardEvent);
+  root.addEventListener("keydown", listener);
+  return () => root.removeEventListener("keydown", listener);
 }

@@ -1,4 +1,5 @@
 /** The part of the image that shows the objects. */
+import { boxOf } from "../draw/box.js";
 import type { Model } from "./model.js";
 import type { ObjectInput, SceneInput } from "./types.js";
 import type { Rect } from "./viewpoint.js";
@@ -15,9 +16,11 @@ export function cropOf(
     [rect.top, rect.bottom] = [Math.min(rect.top, v), Math.max(rect.bottom, v)];
   };
   for (const { id, mask } of objects) {
-    mask.forEach((inside, pixel) => {
-      if (inside) add(pixel % width, Math.floor(pixel / width));
-    });
+    const box = boxOf(mask, width);
+    if (box !== null) {
+      add(box.left, box.top);
+      add(box.right - 1, box.bottom - 1);
+    }
     for (const { x, y, z } of models.get(id)?.corners() ?? []) {
       if (z > 0) add((camera.fx * x) / z + camera.cx, (camera.fy * y) / z + camera.cy);
     }

@@ -65,6 +65,11 @@ export class Dimensions {
     return sprite;
   }
 
+  /** The labels that are shown. */
+  get shownLabels(): readonly Sprite[] {
+    return this.object.visible ? this.labels.map(({ sprite }) => sprite) : [];
+  }
+
   dispose(): void {
     for (const { sprite } of this.labels.splice(0)) removeLabel(sprite);
     this.object.removeFromParent();

@@ -1,8 +1,8 @@
 /** Labels of lengths in the view. */
-import { CanvasTexture, Sprite, SpriteMaterial } from "three/webgpu";
+import { CanvasTexture, type PerspectiveCamera, Sprite, SpriteMaterial, Vector3 } from "three/webgpu";
 
-/** The height of a label as a share of the view, for a field of view of 90°. */
-const LABEL = 0.03;
+/** The height of a label in CSS pixels, with some space around its text. */
+const LABEL_PX = 28;
 
 /** A length in centimetres, or metres from one metre on. */
 export function lengthText(m: number): string {
@@ -14,9 +14,12 @@ export function labelOf(text: string): Sprite {
   const canvas = document.createElement("canvas");
   [canvas.width, canvas.height] = [256, 64];
   const context = canvas.getContext("2d");
+  /** The share of the canvas that the text takes. */
+  let share = 1;
   if (context !== null) {
     context.font = "600 34px system-ui, sans-serif";
     const width = context.measureText(text).width + 32;
+    share = Math.min(width / 256, 1);
     context.fillStyle = "rgb(16 20 26 / 82%)";
     context.beginPath();
     context.roundRect((256 - width) / 2, 6, width, 52, 14);
@@ -28,9 +31,44 @@ export function labelOf(text: string): Sprite {
   }
   const map = new CanvasTexture(canvas);
   const sprite = new Sprite(new SpriteMaterial({ map, sizeAttenuation: false, depthTest: false, depthWrite: false }));
-  sprite.scale.set(4 * LABEL, LABEL, 1);
   sprite.renderOrder = 3;
+  sprite.userData.share = share;
   return sprite;
+}
+
+/**
+ * Keeps labels apart and in sight, as seen from the camera, in one size on the screen.
+ * @param viewPx the height of the view in CSS pixels
+ */
+export function spreadLabels(labels: readonly Sprite[], camera: PerspectiveCamera, viewPx: number): void {
+  const [across = 1, , , , , down = 1] = camera.projectionMatrix.elements;
+  // In the units of the view, which is 2 high and 2 wide.
+  const height = (2 * LABEL_PX) / Math.max(viewPx, 1);
+  const lowest = -1 + height / 2;
+  const seen = labels.map((label) => ({ label, at: label.getWorldPosition(new Vector3()).project(camera) }));
+  const placed: { x: number; y: number; width: number }[] = [];
+  for (const { label, at } of seen.sort((a, b) => b.at.y - a.at.y)) {
+    label.scale.set((4 * height) / down, height / down, 1);
+    const canvasWidth = label.scale.x * across;
+    const width = canvasWidth * (label.userData.share as number);
+    const isInView = Math.abs(at.x) < 1.2 && Math.abs(at.y) < 1.2;
+    const edge = Math.max(1 - width / 2, 0);
+    const x = isInView ? Math.min(Math.max(at.x, -edge), edge) : at.x;
+    const start = isInView ? Math.min(Math.max(at.y, lowest), -lowest) : at.y;
+    /** The first free place from the start, in steps of one label. */
+    const free = (step: number) => {
+      let y = start;
+      const overlaps = () =>
+        placed.find((other) => Math.abs(other.x - x) < (other.width + width) / 2 && Math.abs(other.y - y) < height);
+      // Each step leaves one of the others behind, so there are at most as many.
+      for (let other = overlaps(); other !== undefined; other = overlaps()) y = other.y + step;
+      return y;
+    };
+    const below = free(-1.02 * height);
+    const y = isInView && below < lowest ? free(1.02 * height) : below;
+    label.center.set(0.5 + (at.x - x) / canvasWidth, 0.5 + (at.y - y) / height);
+    placed.push({ x, y, width });
+  }
 }
 
 export function removeLabel(label: Sprite): void {

@@ -37,6 +37,11 @@ export class Ruler {
     this.object.add(this.label);
   }
 
+  /** The labels that are shown. */
+  get shownLabels(): readonly Sprite[] {
+    return this.label === null ? [] : [this.label];
+  }
+
   dispose(): void {
     this.show([]);
     this.object.removeFromParent();

@@ -97,6 +97,7 @@ export class SceneView implements View {
         const isMoving = this.animations.step();
         const isDamping = controls.update();
         this.cloud?.prepare(camera, height);
+        this.sizes.spread(camera, stage.canvas.clientHeight, this.ruler.shownLabels);
         return isMoving || isDamping;
       },
       onCanvas: (canvas) => {

@@ -1,6 +1,7 @@
 /** The dimension lines of all objects. */
-import type { Group } from "three/webgpu";
+import type { Group, PerspectiveCamera, Sprite } from "three/webgpu";
 import { Dimensions } from "./dimensions.js";
+import { spreadLabels } from "./label.js";
 import type { Model } from "./model.js";
 
 /** Up to this many objects all show their sizes; of more, only the selected one does. */
@@ -24,6 +25,15 @@ export class Sizes {
       this.dimensions.set(id, dimensions);
       dimensions.show((models.size <= FEW || id === selected) && isShown(id) ? model : null);
     }
+  }
+
+  /** Keeps the labels apart from one another and from others, as seen from the camera in a view of this height in CSS pixels. */
+  spread(camera: PerspectiveCamera, viewPx: number, others: readonly Sprite[]): void {
+    spreadLabels(
+      [...others, ...[...this.dimensions.values()].flatMap(({ shownLabels }) => shownLabels)],
+      camera,
+      viewPx,
+    );
   }
 
   dispose(): void {

@@ -39,8 +39,16 @@ interface Adapter {
 
 const software = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 
+/** Where a device fails, asking for another one can end the graphics of all views, so the answer is kept. */
+let asked: Promise<Graphics | null> | null = null;
+
+function webGpu(): Promise<Graphics | null> {
+  asked ??= askForWebGpu();
+  return asked;
+}
+
 /** Checks for an adapter first, because requesting a device without one logs a warning. */
-async function webGpu(): Promise<Graphics | null> {
+async function askForWebGpu(): Promise<Graphics | null> {
   try {
     const { gpu } = navigator as { gpu?: { requestAdapter(): Promise<Adapter | null> } };
     const adapter = await gpu?.requestAdapter();
@@ -188,6 +196,7 @@ export class Stage {
     if (this.isDisposed) return;
     const [lost, label] = [this.renderer, this.canvas.getAttribute("aria-label")];
     this.renderer = null;
+    asked = null;
     const old = this.canvas;
     try {
       this.countLoss();

@@ -1,12 +1,12 @@
 /** The frame of the 3D view: its canvas and its controls. */
 import { useEffect, useRef } from "preact/hooks";
-import { inputs } from "../load/open.js";
 import { samples, sampleUrl } from "../load/samples.js";
-import { type Display3d, display3d, measured, showsBefore } from "../state/display.js";
+import type { Display3d } from "../state/display.js";
 import { centimetres } from "../ui/format.js";
 import { Picture } from "../ui/picture.js";
-import { groundImage } from "./ground.js";
-import { isSettled, mountSpace, space } from "./space.js";
+import { useWorkspace } from "../ui/workspace.js";
+import { groundOf } from "./ground.js";
+import { mountSpace } from "./space.js";
 
 const switches: readonly [name: "cloud" | "mesh" | "wireframe" | "dimensions", title: string][] = [
   ["cloud", "Points"],
@@ -22,20 +22,23 @@ const viewpoints = [
   ["side", "Side"],
 ] as const;
 
-const set = (change: Partial<Display3d>) => {
-  display3d.value = { ...display3d.peek(), ...change };
-};
-
 export function SpaceView() {
+  const workspace = useWorkspace();
+  const { display3d, isSettled, measured, showsBefore, space } = workspace;
+  const set = (change: Partial<Display3d>) => {
+    display3d.value = { ...display3d.peek(), ...change };
+  };
   const host = useRef<HTMLDivElement>(null);
   const isWanted = isSettled.value;
   useEffect(() => {
-    if (isWanted && host.current !== null) mountSpace(host.current);
-  }, [isWanted]);
+    const shown = new AbortController();
+    if (isWanted && host.current !== null) mountSpace(workspace, host.current, shown.signal);
+    return () => shown.abort();
+  }, [workspace, isWanted]);
   const state = space.value;
   const { pointSize } = display3d.value;
   return (
-    <section class="view space" aria-labelledby="space-title" data-state={state.kind}>
+    <section class="view space" part="space" aria-labelledby="space-title" data-state={state.kind}>
       <div class="view-head">
         <h2 id="space-title">3D</h2>
         <fieldset disabled={state.kind !== "ready"}>
@@ -120,15 +123,16 @@ function measuredText(points: readonly (readonly [number, number, number])[]): s
 }
 
 /** The address of the photo of the sample that the page opens first. */
-function firstPhoto(): string | null {
-  const photo = samples.find(({ id }) => id === inputs.value.sample)?.photo;
+function firstPhoto(sampleId: string | null): string | null {
+  const photo = samples.find(({ id }) => id === sampleId)?.photo;
   return photo === undefined ? null : sampleUrl(photo);
 }
 
 /** The photo or the depth map, until the 3D view is there. */
 function Preview() {
-  const image = groundImage.value;
-  const photo = firstPhoto();
+  const workspace = useWorkspace();
+  const image = groundOf(workspace).groundImage.value;
+  const photo = firstPhoto(workspace.inputs.value.sample);
   if (image === null && photo !== null) return <img class="preview" src={photo} alt="" />;
   return image === null ? (
     <p class="view-note">Reading …</p>

@@ -1,37 +1,19 @@
 /** Keeps the 3D view in sync with the state of the page. */
-import { effect, signal } from "@preact/signals";
+import { effect } from "@preact/signals";
 import { compose, invert, toSim3 } from "sim3align/conventions";
-import {
-  display3d,
-  effectiveTheme,
-  gizmo,
-  gizmoSettings,
-  hoveredPixel,
-  measure,
-  measured,
-  showsBefore,
-} from "../state/display.js";
-import { place } from "../state/history.js";
+import { depthImage } from "../draw/colours.js";
 import type { ObjectModel } from "../state/object-model.js";
 import type { Pose } from "../state/pose.js";
-import { type Scene, scene, select, selected, support } from "../state/scene.js";
-import { frameIndex, video } from "../state/video.js";
+import type { Scene } from "../state/scene.js";
+import type { Workspace } from "../state/workspace.js";
 import type { ObjectInput, View } from "../view3d/types.js";
-import { ground } from "./ground.js";
-
-/** The state of the 3D view. */
-export type SpaceState = { kind: "loading" } | { kind: "ready"; view: View } | { kind: "none"; reason: string };
-
-export const space = signal<SpaceState>({ kind: "loading" });
-
-/** Whether the first alignment has ended. The 3D view loads afterwards, so that it does not slow the alignment down. */
-export const isSettled = signal(false);
 
 /** Duration of the animation from one pose to the next. */
 const ANIMATION_MS = 900;
 
-/** Creates the 3D view and subscribes it to the state. */
-export async function mountSpace(host: HTMLElement): Promise<void> {
+/** Creates the 3D view and subscribes it to the state, until the signal aborts. */
+export async function mountSpace(workspace: Workspace, host: HTMLElement, signal: AbortSignal): Promise<void> {
+  const { hoveredPixel, measure, place, scene, select, space } = workspace;
   /** The object that is being dragged, with its pose before. */
   let dragged: { object: ObjectModel; from: Pose } | undefined;
   try {
@@ -59,9 +41,15 @@ export async function mountSpace(host: HTMLElement): Promise<void> {
       },
       options,
     );
+    if (signal.aborted) return view.dispose();
     space.value = { kind: "ready", view };
     view.lookFrom("camera", true);
-    subscribe(view, () => dragged !== undefined);
+    const stop = subscribe(workspace, view, () => dragged !== undefined);
+    signal.addEventListener("abort", () => {
+      stop();
+      space.value = { kind: "loading" };
+      view.dispose();
+    });
   } catch (error) {
     space.value = { kind: "none", reason: error instanceof Error ? error.message : String(error) };
   }
@@ -89,30 +77,35 @@ function viewMesh(mesh: ObjectModel["mesh"], glb: Uint8Array | null): ObjectInpu
   return made;
 }
 
-const sceneInput = ({ depthM, width, height, camera, rgba }: Scene) => ({
-  ...{ depthM, width, height, camera, ground: ground.peek() ?? undefined },
+const sceneInput = ({ layers }: Workspace, { depthM, width, height, camera, rgba }: Scene) => ({
+  ...{ depthM, width, height, camera },
+  ground: rgba !== null && layers.peek().base === "photo" ? rgba : depthImage(depthM),
   ...(rgba === null ? {} : { rgba }),
 });
 
-function subscribe(view: View, isDragging: () => boolean): void {
+function subscribe(workspace: Workspace, view: View, isDragging: () => boolean): () => void {
+  const { display3d, frameIndex, gizmo, gizmoSettings, measured, scene, selected, support, theme, video } = workspace;
+  const stops: (() => void)[] = [];
+  const follow = (apply: () => void) => stops.push(effect(apply));
   let stopPoses: (() => void)[] = [];
-  effect(() => {
+  let isStopped = false;
+  follow(() => {
     const whole = scene.value;
     for (const stop of stopPoses) stop();
     stopPoses = [];
     if (whole === null) return;
-    view.setScene(sceneInput(whole));
+    view.setScene(sceneInput(workspace, whole));
     view.setObjects(whole.objects.map(objectInput)).then(() => {
-      if (scene.peek() !== whole) return;
-      stopPoses = whole.objects.map((object) => followPose(view, object, isDragging));
+      if (isStopped || scene.peek() !== whole) return;
+      stopPoses = whole.objects.map((object) => followPose(workspace, view, object, isDragging));
       view.select(selected.peek()?.id ?? null);
     }, console.error);
   });
-  effect(() => {
+  follow(() => {
     const hidden = (scene.value?.objects ?? []).filter(({ isShown }) => !isShown.value).map(({ id }) => id);
-    view.setDisplay({ ...display3d.value, hidden, theme: effectiveTheme() });
+    view.setDisplay({ ...display3d.value, hidden, theme: theme.value });
   });
-  effect(() => {
+  follow(() => {
     const cameras = video.value?.cameras ?? null;
     const own = cameras?.[frameIndex.value];
     void scene.value;
@@ -122,13 +115,22 @@ function subscribe(view: View, isDragging: () => boolean): void {
         : cameras.filter((one) => one !== own).map((one) => compose(invert(own), one).matrix),
     );
   });
-  effect(() => view.select(selected.value?.id ?? null));
-  effect(() => view.setGizmo(gizmo.value, gizmoSettings.value));
-  effect(() => view.setGround(support.value));
-  effect(() => view.measure(measured.value ?? []));
+  follow(() => view.select(selected.value?.id ?? null));
+  follow(() => view.setGizmo(gizmo.value, gizmoSettings.value));
+  follow(() => view.setGround(support.value));
+  follow(() => view.measure(measured.value ?? []));
+  return () => {
+    isStopped = true;
+    for (const stop of [...stops, ...stopPoses]) stop();
+  };
 }
 
-function followPose(view: View, object: ObjectModel, isDragging: () => boolean): () => void {
+function followPose(
+  { showsBefore }: Workspace,
+  view: View,
+  object: ObjectModel,
+  isDragging: () => boolean,
+): () => void {
   // If the view loads after the alignment, it still animates from the start pose.
   let shown: Pose = object.start;
   return effect(() => {

@@ -1,0 +1,340 @@
+/** The custom element `<sim3-align>`, its page for iframes, and scenes by address. */
+import assert from "node:assert/strict";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { pathToFileURL } from "node:url";
+import { zipSync } from "fflate";
+import type { Page } from "playwright-core";
+import { createAligner } from "sim3align";
+import { PageTest } from "../support/browser.js";
+import { repository } from "../support/environment.js";
+import { type Files, files, HEIGHT, inFolder, jsonFile, pinhole, seen, WIDTH } from "../support/page-files.js";
+import { mesh } from "../support/scene.js";
+import { PATIENCE } from "../support/site.js";
+
+/** The element as a host's script sees it. */
+interface Element extends HTMLElement {
+  scene: unknown;
+  pose: { scale: number; matrix: number[]; translation: number[] } | null;
+  options: Record<string, unknown>;
+  readonly: boolean;
+  session: { objects: { name: string }[] };
+  results: { name: string; pose: { matrix: number[] } | null; confidence: number | null; isAccepted: boolean }[];
+  align(): Promise<Element["results"]>;
+}
+
+/** What the tests leave in the page. */
+declare global {
+  interface Window {
+    told: { of: string; type: string; detail: Record<string, unknown> }[];
+    arrays: object;
+  }
+}
+
+const serving = join(repository, "scripts", "lib", "static-server.mjs");
+const siteFolder = join(repository, "target");
+
+let browser: PageTest;
+before(async () => {
+  browser = await PageTest.start(siteFolder, ["!--enable-unsafe-webgpu"]);
+});
+after(() => browser?.stop());
+
+/** A page of a host, with the script of the element and a record of all events. */
+async function host(html: string): Promise<{ page: Page; errors: string[] }> {
+  const opened = await browser.open("www/element/frame.html");
+  const { page } = opened;
+  await page.setContent(html);
+  const given = {
+    ...{ depth: Array.from(seen.depth), mask: Array.from(seen.mask), camera: pinhole, width: WIDTH, height: HEIGHT },
+    ...{ positions: Array.from(mesh.positions), indices: Array.from(mesh.indices) },
+  };
+  await page.evaluate((scene) => {
+    window.told = [];
+    window.arrays = {
+      name: "Blob",
+      depth: Float32Array.from(scene.depth),
+      width: scene.width,
+      height: scene.height,
+      camera: scene.camera,
+      objects: [
+        {
+          name: "blob",
+          mask: Uint8Array.from(scene.mask),
+          mesh: { positions: Float32Array.from(scene.positions), indices: Uint32Array.from(scene.indices) },
+        },
+      ],
+    };
+    for (const element of document.querySelectorAll("sim3-align")) {
+      for (const type of ["ready", "progress", "align", "posechange", "accept", "error"]) {
+        element.addEventListener(type, (event) =>
+          window.told.push({ of: element.id, type, detail: (event as CustomEvent).detail }),
+        );
+      }
+    }
+  }, given);
+  await page.evaluate(`import("/www/element/sim3-align.js")`);
+  return opened;
+}
+
+/** Waits until an element has told of an event. */
+const told = (page: Page, of: string, type: string) =>
+  page.waitForFunction(
+    ([id, name]) => window.told.find((one) => one.of === id && one.type === name)?.detail,
+    [of, type] as const,
+    PATIENCE,
+  );
+
+/** The files of the scene, at an address. */
+async function serveFiles(page: Page, path: string, served: Files): Promise<void> {
+  const isServed = (url: URL) => url.pathname.startsWith(`/${path}/`);
+  await page.route(isServed, (route) => {
+    const body = served[new URL(route.request().url()).pathname.slice(path.length + 2)];
+    return body === undefined ? route.fulfill({ status: 404 }) : route.fulfill({ body: Buffer.from(body) });
+  });
+}
+
+test("an element aligns what it is given to the same bits as Node, and says so", async () => {
+  const { page, errors } = await host(`<sim3-align id="a"></sim3-align>`);
+  const input = { ...seen, camera: pinhole, mesh };
+  const direct = await (await createAligner()).align({ ...input, depth: seen.depth, mask: seen.mask });
+  await page.evaluate(() => {
+    (document.querySelector("#a") as Element).scene = window.arrays;
+  });
+  const aligned = await (await told(page, "a", "align")).jsonValue();
+  const { objects } = aligned as { objects: Element["results"] };
+  assert.deepEqual(objects[0]?.pose?.matrix, [...direct.matrix]);
+  assert.equal(objects[0]?.confidence, direct.confidence);
+  const types = await page.evaluate(() => window.told.map(({ type }) => type));
+  assert.equal(types[0], "ready");
+  assert.ok(types.includes("progress"));
+  assert.equal(types.filter((type) => type === "posechange").length, 1);
+  assert.ok(!types.includes("error"));
+  assert.deepEqual(await page.evaluate(() => (document.querySelector("#a") as Element).pose?.matrix), [
+    ...direct.matrix,
+  ]);
+  // The element has no effect on the page around it.
+  assert.equal(await page.evaluate(() => document.documentElement.style.colorScheme), "");
+  await page.locator("#a .space:not([data-state=loading])").waitFor(PATIENCE);
+  await page.evaluate(() => document.querySelector("#a")?.remove());
+  assert.deepEqual(errors, []);
+  await page.close();
+});
+
+test("instances on one page are independent: scene, pose, undo, options, decision", async () => {
+  const { page, errors } = await host(`<sim3-align id="a"></sim3-align><sim3-align id="b" manual></sim3-align>`);
+  await page.evaluate(() => {
+    for (const id of ["a", "b"]) (document.querySelector(`#${id}`) as Element).scene = { ...window.arrays, name: id };
+    (document.querySelector("#b") as Element).options = { quality: "fast", seed: 7 };
+  });
+  await told(page, "a", "align");
+  await told(page, "b", "ready");
+  const states = () =>
+    page.evaluate(() =>
+      ["a", "b"].map((id) => {
+        const element = document.querySelector(`#${id}`) as Element;
+        const root = element.shadowRoot as ShadowRoot;
+        const undo = root.querySelector("#undo")?.getAttribute("aria-disabled");
+        return {
+          scene: root.querySelector(".embedded")?.getAttribute("data-scene"),
+          source: root.querySelector(".result")?.getAttribute("data-source"),
+          options: [element.options.quality, element.options.seed],
+          isAccepted: element.results[0]?.isAccepted,
+          undo,
+        };
+      }),
+    );
+  await page.locator("#a #accept").click();
+  await told(page, "a", "accept");
+  assert.deepEqual(await states(), [
+    { scene: "a", source: "aligned", options: ["auto", 0], isAccepted: true, undo: "false" },
+    { scene: "b", source: "start", options: ["fast", 7], isAccepted: false, undo: "true" },
+  ]);
+  // The other way round: undoing in one leaves the other.
+  await page.locator("#b #align").click();
+  await told(page, "b", "align");
+  await page.locator("#b #undo").click();
+  assert.deepEqual(
+    (await states()).map(({ source }) => source),
+    ["aligned", "start"],
+  );
+  assert.deepEqual(errors, []);
+  await page.close();
+});
+
+test("pose and session are set and read, and survive a transfer as JSON", async () => {
+  const { page } = await host(`<sim3-align id="a"></sim3-align><sim3-align id="b"></sim3-align>`);
+  const pose = { scale: 0.1, rotation: [1, 0, 0, 0], translation: [0.01, 0.02, 0.7] };
+  const isSet = await page.evaluate((pose) => {
+    const element = document.querySelector("#a") as Element;
+    // Before the scene is there; with a pose, nothing is aligned.
+    Object.assign(element, { pose, scene: window.arrays });
+    return element.pose;
+  }, pose);
+  assert.equal(isSet, null);
+  await told(page, "a", "posechange");
+  await page.locator("#a #accept").click();
+  await told(page, "a", "accept");
+  const session = await page.evaluate(() => JSON.stringify((document.querySelector("#a") as Element).session));
+  await page.evaluate((json) => {
+    Object.assign(document.querySelector("#b") as Element, { session: JSON.parse(json), scene: window.arrays });
+  }, session);
+  await told(page, "b", "ready");
+  const restored = await page.evaluate(() => {
+    const { pose, results, session } = document.querySelector("#b") as Element;
+    return { pose, isAccepted: results[0]?.isAccepted, session: JSON.stringify(session) };
+  });
+  assert.equal(restored.pose?.scale, pose.scale);
+  assert.deepEqual(restored.pose?.translation, pose.translation);
+  assert.equal(restored.isAccepted, true);
+  assert.equal(restored.session, session);
+  const types = await page.evaluate(() => window.told.map(({ type }) => type));
+  assert.ok(!types.includes("align"));
+  await page.close();
+});
+
+test("read-only, nothing can be changed, and tokens and parts style the element", async () => {
+  const style = `<style>sim3-align { --accent: rgb(1 2 3); } sim3-align::part(result) { outline: 3px solid red; }</style>`;
+  const { page } = await host(`${style}<sim3-align id="a" readonly></sim3-align>`);
+  await page.evaluate(() => {
+    (document.querySelector("#a") as Element).scene = window.arrays;
+  });
+  await told(page, "a", "ready");
+  assert.equal(await page.locator("#a :is(#align, #accept, #refine, .hand-panel)").count(), 0);
+  const outline = await page.locator("#a .result").evaluate((panel) => getComputedStyle(panel).outlineWidth);
+  assert.equal(outline, "3px");
+  assert.equal(
+    await page.locator("#a .result").evaluate((panel) => getComputedStyle(panel).getPropertyValue("--accent")),
+    "rgb(1 2 3)",
+  );
+  await page.evaluate(() => {
+    (document.querySelector("#a") as Element).readonly = false;
+  });
+  await page.locator("#a #align").waitFor(PATIENCE);
+  await page.close();
+});
+
+test("src names a zip archive, a session or an index, and what cannot be opened is an error event", async () => {
+  const { page } = await host(
+    ["zip", "index", "bad", "gone"].map((id) => `<sim3-align id="${id}" manual></sim3-align>`).join(""),
+  );
+  await serveFiles(page, "cases", {
+    ...files,
+    "case.zip": zipSync(inFolder("mug", files)),
+    "index.json": jsonFile({ files: Object.keys(files) }),
+    "bad.txt": Buffer.from("no case"),
+  });
+  const sources = { zip: "case.zip", index: "index.json", bad: "bad.txt", gone: "gone.zip" };
+  await page.evaluate((sources) => {
+    for (const [id, name] of Object.entries(sources))
+      document.querySelector(`#${id}`)?.setAttribute("src", `/cases/${name}`);
+  }, sources);
+  const names = await Promise.all(
+    ["zip", "index"].map(async (id) => ((await (await told(page, id, "ready")).jsonValue()) as { name: string }).name),
+  );
+  assert.deepEqual(names, ["mug", "cases"]);
+  const messages = await Promise.all(
+    ["bad", "gone"].map(async (id) =>
+      String(((await (await told(page, id, "error")).jsonValue()) as { message: string }).message),
+    ),
+  );
+  assert.match(messages[0] ?? "", /neither a zip archive nor an index/);
+  assert.match(messages[1] ?? "", /HTTP 404/);
+  await page.close();
+});
+
+test("an iframe is controlled by messages of its parent's origin, and of no other", async () => {
+  const { serve } = (await import(pathToFileURL(serving).href)) as {
+    serve(folder: string): Promise<{ url: string; close(): Promise<void> }>;
+  };
+  const other = await serve(siteFolder);
+  const { page } = await browser.open("www/element/frame.html?readonly");
+  try {
+    const framed = async (origin: string) => {
+      await page.setContent("<iframe width=900 height=600></iframe>");
+      await page.evaluate(
+        ([url, own]) => {
+          window.told = [];
+          addEventListener("message", ({ data, origin }) =>
+            window.told.push({ of: origin, type: data.type, detail: data }),
+          );
+          const frame = document.querySelector("iframe") as HTMLIFrameElement;
+          frame.src = `${url}www/element/frame.html${own === "" ? "" : `?origin=${encodeURIComponent(own)}`}`;
+          return new Promise((resolve) => {
+            frame.onload = resolve;
+          });
+        },
+        [other.url, origin] as const,
+      );
+    };
+    const from = new URL(other.url).origin;
+    await framed(new URL(page.url()).origin);
+    await told(page, from, "sim3align:loaded");
+    await page.evaluate(
+      ([scene, origin]) => {
+        const { contentWindow } = document.querySelector("iframe") as HTMLIFrameElement;
+        const { depth, mask, positions, indices, ...rest } = scene;
+        const given = {
+          ...rest,
+          depth: Float32Array.from(depth),
+          objects: [
+            {
+              name: "blob",
+              mask: Uint8Array.from(mask),
+              mesh: { positions: Float32Array.from(positions), indices: Uint32Array.from(indices) },
+            },
+          ],
+        };
+        contentWindow?.postMessage({ type: "sim3align:load", scene: given }, origin);
+      },
+      [
+        {
+          ...{ depth: Array.from(seen.depth), mask: Array.from(seen.mask), camera: pinhole },
+          ...{ width: WIDTH, height: HEIGHT, positions: Array.from(mesh.positions), indices: Array.from(mesh.indices) },
+        },
+        from,
+      ] as const,
+    );
+    await told(page, from, "sim3align:align");
+    await page.evaluate((origin) => {
+      const { contentWindow } = document.querySelector("iframe") as HTMLIFrameElement;
+      contentWindow?.postMessage({ type: "sim3align:get", id: 5 }, origin);
+      contentWindow?.postMessage({ type: "sim3align:nonsense", id: 6 }, origin);
+    }, from);
+    const answer = (await (await told(page, from, "sim3align:results")).jsonValue()) as {
+      id: number;
+      results: Element["results"];
+    };
+    assert.equal(answer.id, 5);
+    assert.equal(answer.results[0]?.name, "blob");
+    assert.ok((answer.results[0]?.confidence ?? 0) > 0.5);
+    const refused = (await (await told(page, from, "sim3align:error")).jsonValue()) as { id: number };
+    assert.equal(refused.id, 6);
+    // Without its parent's origin, the frame trusts its own only: it neither tells nor listens.
+    await framed("");
+    const frame = page.frames().find((one) => one.url().startsWith(other.url));
+    await frame?.waitForSelector("sim3-align");
+    await page.evaluate((origin) => {
+      const { contentWindow } = document.querySelector("iframe") as HTMLIFrameElement;
+      contentWindow?.postMessage({ type: "sim3align:load", readonly: true }, origin);
+    }, from);
+    await frame?.evaluate(() => new Promise((resolve) => setTimeout(resolve, 0)));
+    assert.equal(await frame?.evaluate(() => document.querySelector("sim3-align")?.hasAttribute("readonly")), false);
+    assert.deepEqual(await page.evaluate(() => window.told), []);
+  } finally {
+    await page.close();
+    await other.close();
+  }
+});
+
+test("?case= opens a scene on the page, and an address that fails says why", async () => {
+  const { page } = await browser.open("www/element/frame.html?readonly");
+  await serveFiles(page, "cases", { "case.zip": zipSync(inFolder("mug", files)) });
+  const visit = (path: string) => page.goto(new URL(path, page.url()).href);
+  await visit("/www/index.html?case=/cases/case.zip");
+  await page.locator('main[data-scene="mug"]').waitFor(PATIENCE);
+  await page.locator("#status:has-text('Aligned')").waitFor(PATIENCE);
+  await visit("/www/index.html?case=/cases/none.zip");
+  await page.locator("#status:has-text('HTTP 404')").waitFor(PATIENCE);
+  await page.close();
+});

@@ -1,0 +1,63 @@
+/** What an element says about its objects, as plain data. */
+import type { Metrics } from "sim3align";
+import { type PackedState, stateOf } from "../session/pack.js";
+import type { ObjectModel } from "../state/object-model.js";
+import type { Options } from "../state/options.js";
+import type { PoseSource } from "../state/pose.js";
+import type { Workspace } from "../state/workspace.js";
+
+/** A pose: OpenCV camera from mesh, metres. */
+export interface PlainPose {
+  scale: number;
+  /** Unit quaternion x, y, z, w. */
+  rotation: number[];
+  translation: number[];
+  /** 16 numbers, column-major. */
+  matrix: number[];
+}
+
+/** The result of an object. */
+export interface ObjectResult {
+  name: string;
+  /** Null before the first alignment. */
+  pose: PlainPose | null;
+  source: PoseSource;
+  /** Sides of the bounding box along x, y and z of the mesh, metres. */
+  sizeM: number[];
+  /** Of an aligned pose only. */
+  confidence: number | null;
+  isAccepted: boolean;
+  metrics: Metrics | null;
+}
+
+/** Hand work and results, without the files of the scene. Plain data. */
+export interface ElementSession {
+  version: 1;
+  options: Options;
+  objects: { name: string; state: PackedState }[];
+}
+
+export const plainPose = ({ pose }: ObjectModel): PlainPose => {
+  const { scale, rotation, translation, matrix } = pose.peek().transform;
+  return { scale, rotation: [...rotation], translation: [...translation], matrix: [...matrix] };
+};
+
+export function resultOf(object: ObjectModel): ObjectResult {
+  const { source } = object.pose.peek();
+  const isFound = source === "aligned" || source === "refined";
+  return {
+    name: object.name,
+    pose: source === "start" ? null : plainPose(object),
+    source,
+    sizeM: [...object.box.peek().sizeM],
+    confidence: isFound ? (object.precise?.confidence ?? null) : null,
+    isAccepted: object.isAccepted.peek(),
+    metrics: object.metrics.peek(),
+  };
+}
+
+export function sessionOf({ options, scene }: Workspace): ElementSession {
+  const objects = (scene.peek()?.objects ?? []).map((object) => ({ name: object.name, state: stateOf(object) }));
+  // Plain data only, as after a transfer as JSON.
+  return JSON.parse(JSON.stringify({ version: 1, options: options.peek(), objects })) as ElementSession;
+}

@@ -1,0 +1,34 @@
+/** Whether objects are being aligned, and how far. */
+import { computed, signal } from "@preact/signals";
+import type { SceneState } from "./scene.js";
+
+/** The state of the alignments of a scene. */
+export function runningState({ scene, support }: SceneState) {
+  /** Aborts the alignment that is running; null while there is none. */
+  const controller = signal<AbortController | null>(null);
+
+  const isRunning = computed(() => controller.value !== null);
+
+  /** Progress of all objects that are being aligned, 0 to 1. */
+  const fraction = computed(() => {
+    const runs = (scene.value?.objects ?? []).map(({ run }) => run.value).filter(({ state }) => state !== "idle");
+    const parts = runs.map((run) => (run.state === "running" ? run.fraction : run.state === "waiting" ? 0 : 1));
+    return parts.length === 0 ? 0 : parts.reduce((sum, part) => sum + part, 0) / parts.length;
+  });
+
+  function cancel(): void {
+    controller.peek()?.abort();
+  }
+
+  // Running alignments belong to the previous scene.
+  let current = scene.peek();
+  scene.subscribe((next) => {
+    if (next === current) return;
+    current = next;
+    cancel();
+    // The support is that of the previous scene.
+    support.value = null;
+  });
+
+  return { controller, isRunning, fraction, cancel };
+}

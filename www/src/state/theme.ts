@@ -1,0 +1,37 @@
+/** The theme of the page. */
+import { effect, signal } from "@preact/signals";
+
+export type Theme = "system" | "light" | "dark";
+
+const THEME_KEY = "sim3align-theme";
+
+function storedTheme(): Theme {
+  try {
+    const theme = localStorage.getItem(THEME_KEY);
+    return theme === "light" || theme === "dark" ? theme : "system";
+  } catch {
+    // Storage may be blocked.
+    return "system";
+  }
+}
+
+export const theme = signal<Theme>(storedTheme());
+
+const darkQuery = matchMedia("(prefers-color-scheme: dark)");
+const systemIsDark = signal(darkQuery.matches);
+darkQuery.addEventListener("change", ({ matches }) => {
+  systemIsDark.value = matches;
+});
+
+/** The theme in effect. */
+export const effectiveTheme = () => (theme.value === "system" ? (systemIsDark.value ? "dark" : "light") : theme.value);
+
+effect(() => {
+  document.documentElement.style.colorScheme = theme.value === "system" ? "light dark" : theme.value;
+  try {
+    if (theme.value === "system") localStorage.removeItem(THEME_KEY);
+    else localStorage.setItem(THEME_KEY, theme.value);
+  } catch {
+    // Storage is blocked: the theme is lost when the page closes.
+  }
+});

@@ -1,0 +1,43 @@
+/** A workspace: a scene, and all that is done with it. The page has one, and every `<sim3-align>` its own. */
+import { type ReadonlySignal, signal } from "@preact/signals";
+import type { View } from "../view3d/types.js";
+import { displayState } from "./display.js";
+import { historyState } from "./history.js";
+import { openedState } from "./opened.js";
+import { optionsState } from "./options.js";
+import { runningState } from "./running.js";
+import { sceneState } from "./scene.js";
+import { statusState } from "./status.js";
+import { videoState } from "./video.js";
+
+/** The state of the 3D view. */
+export type SpaceState = { kind: "loading" } | { kind: "ready"; view: View } | { kind: "none"; reason: string };
+
+/** What surrounds a workspace. */
+interface Surroundings {
+  theme: ReadonlySignal<"light" | "dark">;
+}
+
+export type Workspace = ReturnType<typeof createWorkspace>;
+
+export function createWorkspace({ theme }: Surroundings) {
+  const [scene, display, status] = [sceneState(), displayState(), statusState()];
+  return {
+    ...scene,
+    ...display,
+    ...status,
+    ...historyState(scene),
+    ...optionsState(),
+    ...runningState(scene),
+    ...openedState(scene, display, status),
+    ...videoState(),
+    theme,
+    /** Whether poses can be looked at only. */
+    isReadonly: signal(false),
+    space: signal<SpaceState>({ kind: "loading" }),
+    /** Whether the first alignment has ended. The 3D view loads afterwards, so that it does not slow the alignment down. */
+    isSettled: signal(false),
+    /** The canvas of the image view. */
+    imageCanvas: signal<HTMLCanvasElement | null>(null),
+  };
+}

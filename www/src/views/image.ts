@@ -1,0 +1,79 @@
+/** What the image view draws: the scene with its objects, zoomed. */
+import { computed, effect, type ReadonlySignal, signal } from "@preact/signals";
+import { depthRange } from "../draw/colours.js";
+import { compose, type DrawnObject, drawObject } from "../draw/composition.js";
+import { drawnScene } from "../draw/reduced.js";
+import { wholeImage, type Zoom, zoomToObjects } from "../draw/zoom.js";
+import { once } from "../load/once.js";
+import type { ObjectModel } from "../state/object-model.js";
+import type { Workspace } from "../state/workspace.js";
+import { groundOf } from "./ground.js";
+
+/** The image of a workspace. */
+export const imageOf = once((workspace: Workspace) => {
+  const { layers, scene, selected } = workspace;
+
+  /** Depends on the scene only, so that it is not computed again when display settings change. */
+  const onObjects = computed(() => (scene.value === null ? wholeImage : zoomToObjects(scene.value)));
+
+  /** The scene at the size that is drawn. */
+  const drawn = computed(() => (scene.value === null ? null : drawnScene(scene.value)));
+
+  const depthRangeOfScene = computed(() => (scene.value === null ? null : depthRange(scene.value.depthM)));
+
+  /** The objects at their start poses. */
+  const before = computed(() => {
+    const [whole, view] = [scene.value, drawn.value];
+    return whole === null || view === null
+      ? []
+      : whole.objects.map((object) => drawObject(view, object, object.start.transform.matrix));
+  });
+
+  /** One signal per object, so that a changed pose renders one mesh only. */
+  const renderings = computed<readonly ReadonlySignal<{ object: ObjectModel; drawn: DrawnObject }>[]>(() => {
+    const [whole, view] = [scene.value, drawn.value];
+    if (whole === null || view === null) return [];
+    return whole.objects
+      .filter(({ isShown }) => isShown.value)
+      .map((object) =>
+        computed(() => ({ object, drawn: drawObject(view, object, object.pose.value.transform.matrix) })),
+      );
+  });
+
+  /** The objects at their current poses. */
+  const after = computed<readonly DrawnObject[]>(() =>
+    renderings.value.map(({ value: { object, drawn } }) => ({ ...drawn, isSelected: object === selected.value })),
+  );
+
+  /** The zoom that wheel and drag have set, for one scene and one setting of “Zoom”. */
+  const ownZoom = signal<Zoom | null>(null);
+
+  const zoom = computed(() => ownZoom.value ?? (layers.value.zoom ? onObjects.value : wholeImage));
+
+  effect(() => {
+    void [scene.value, layers.value.zoom];
+    ownZoom.value = null;
+  });
+
+  function draw(canvas: HTMLCanvasElement): void {
+    const [view, picture] = [drawn.value, groundOf(workspace).ground.value];
+    if (view === null || picture === null) return;
+    if (canvas.width !== view.width || canvas.height !== view.height) {
+      canvas.width = view.width;
+      canvas.height = view.height;
+    }
+    const shown = layers.value;
+    const image = compose(view, picture, shown.wipe > 0 ? before.value : [], after.value, shown, zoom.value);
+    canvas.getContext("2d")?.putImageData(image, 0, 0);
+  }
+
+  /** The depth of the nearest mesh at a pixel of the scene, metres; infinite where there is none. */
+  function meshDepthAt({ x, y }: { x: number; y: number }): number {
+    const { width = 1, height = 1, step = 1, offset = 0 } = drawn.value ?? {};
+    const at = (pixel: number, size: number) => Math.min(Math.max(Math.round((pixel - offset) / step), 0), size - 1);
+    const place = at(y, height) * width + at(x, width);
+    return Math.min(...after.value.map(({ depth }) => (depth[place] || Number.POSITIVE_INFINITY) as number));
+  }
+
+  return { after, depthRangeOfScene, draw, drawn, meshDepthAt, ownZoom, zoom };
+});
