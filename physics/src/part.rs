@@ -43,7 +43,7 @@ impl ConvexPart {
     pub fn hull(points: &[DVec3]) -> Option<Self> {
         let bounds = Bounds::of(&points.iter().map(|p| p.as_vec3()).collect::<Vec<_>>())?;
         let (center, size) = (bounds.center().as_dvec3(), f64::from(bounds.diagonal()));
-        if !(size > 0.0) {
+        if size.is_nan() || size <= 0.0 {
             return None;
         }
         let unit: Vec<Vector> = points.iter().map(|p| vector(((*p - center) / size).as_vec3())).collect();
