@@ -31,12 +31,13 @@ export async function pythonWith(name, program = "python3") {
 }
 
 /**
- * The Python of an environment that is there; made in continuous integration only (`CI` set).
+ * The Python of an environment that is there; made in continuous integration only (`CI` set), if the packages are to be had
+ * for its Python.
  * @param {string} name
  * @returns {Promise<string | undefined>}
  */
 export async function installedPython(name) {
-  if (process.env.CI) return pythonWith(name);
+  if (process.env.CI) return pythonWith(name).catch(() => undefined);
   const python = pythonIn(at("target", "bench", name));
   return existsSync(python) ? python : undefined;
 }
