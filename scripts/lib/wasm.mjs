@@ -104,6 +104,9 @@ async function writeModule(module, say) {
  */
 const llvm = ["-inline-threshold=50", "-disable-lsr"].map((option) => `-Cllvm-args=${option}`);
 
+/** Every engine that has the other features has this one; unlike relaxed SIMD, its results are the same everywhere. */
+const simd = ["-Ctarget-feature=+simd128"];
+
 /** Flags that keep the builder's paths out of the modules: the compiler writes the places of possible panics into them. */
 async function rustFlags() {
   // Unpacks the sources below a folder that cargo names after the registry.
@@ -112,7 +115,7 @@ async function rustFlags() {
   const folders = existsSync(sources) ? readdirSync(sources) : [];
   const mappings = [...folders.map((folder) => `${join(sources, folder)}=crates`), `${repository}=.`];
   const given = process.env.RUSTFLAGS?.split(" ").filter(Boolean) ?? [];
-  return [...given, ...llvm, ...mappings.map((mapping) => `--remap-path-prefix=${mapping}`)].join("\x1f");
+  return [...given, ...simd, ...llvm, ...mappings.map((mapping) => `--remap-path-prefix=${mapping}`)].join("\x1f");
 }
 
 /** @returns {string} */

@@ -11,8 +11,13 @@ use crate::geometry::order::quantile;
 use crate::geometry::rotations::angle_between;
 use crate::geometry::triangle_tree::TriangleTree;
 use crate::metrics::symmetry::{AUTO_MEAN, AUTO_TAIL, Symmetry};
-use crate::report::Alternative;
+use crate::report::{Alternative, Effort};
 
+/// Factor of [`NOISE`] within which alternatives score after a search with much effort, which has been unsure: its best pose
+/// is wrong more often, and the right one then scores less than in other cases.
+const UNSURE: f32 = 2.0;
+/// Maximum number of alternatives that shape tells from the best pose.
+const MOST: usize = 8;
 /// Minimum rotation between different poses, radians.
 const MIN_TURN: f64 = 0.26;
 /// Maximum distances between the surfaces of equivalent placements, relative to the tolerance of automatic symmetry: low
@@ -37,14 +42,18 @@ pub(crate) fn alternatives(
 ) -> Result<Vec<Alternative>> {
     let Some((best, others)) = found.split_first() else { return Ok(Vec::new()) };
     let turn = |a: &Found, b: &Found| angle_between(a.pose.rotation, b.pose.rotation);
+    let noise = if search.effort() == Effort::Best { UNSURE * NOISE } else { NOISE };
     let likely: Vec<&Found> =
-        others.iter().filter(|o| o.score.total > best.score.total - NOISE && turn(best, o) > MIN_TURN).collect();
+        others.iter().filter(|o| o.score.total > best.score.total - noise && turn(best, o) > MIN_TURN).collect();
     if likely.is_empty() {
         return Ok(Vec::new());
     }
     let likeness = Likeness::new(search, mesh, symmetry)?;
     let mut kept = vec![best];
     for other in likely {
+        if kept.len() > MOST {
+            break;
+        }
         if kept.iter().all(|k| turn(k, other) > MIN_TURN && !likeness.same(k, other)) {
             kept.push(other);
         }

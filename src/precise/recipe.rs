@@ -96,11 +96,17 @@ const fn rounds(effort: Effort) -> [Round; ROUNDS] {
         Round { task: Place,  grid: COARSE, work: 1,                    keep: [ 20,  64,  160][q], apart: 0.21,  done: 0.62 },
         Round { task: Refine, grid: MIDDLE, work: [  4,    4,    5][q], keep: [  6,  20,   40][q], apart: 0.105, done: 0.78 },
         Round { task: Refine, grid: MIDDLE, work: [  5,    8,   15][q], keep: [  3,   6,   10][q], apart: 0.105, done: 0.89 },
-        Round { task: Turn,   grid: MIDDLE, work: [  4,    5,    6][q], keep: [  3,   3,    6][q], apart: 0.21,  done: 0.92 },
+        Round { task: Turn,   grid: MIDDLE, work: [  4,    5,    8][q], keep: [  3,   3,   12][q], apart: 0.21,  done: 0.92 },
         Round { task: Refine, grid: FINE,   work: [  8,   12,   20][q], keep: [  1,   1,    2][q], apart: 0.105, done: 0.97 },
         Round { task: Refine, grid: FINEST, work: [  4,    6,   12][q], keep: 0,                   apart: 0.0,   done: 1.0 },
     ]
 }
+
+/// Number of the best poses that are turned, by effort: of one pose, the half and quarter turns; of more, those and the
+/// rolls about every axis that explain the image best.
+const TURNED: [usize; 3] = [1, 1, 3];
+/// Number of turns that are refined where more than one pose is turned.
+const ROLLS: usize = 24;
 
 /// Minimum number of rotations of a search whose work is limited.
 pub const MIN_ROTATIONS: usize = 60;
@@ -132,6 +138,8 @@ pub struct SearchSettings {
     pub anchors: bool,
     /// Whether refinement keeps the scale of the rotation grid.
     pub lock_scale: bool,
+    /// Number of the best poses that are turned.
+    pub turned: usize,
     /// Maximum work of a round, relative to the cells of the mask and the triangles of all its renders. Ordinary inputs
     /// take about five times as much, a thin diagonal object fifty times.
     pub max_load: u64,
@@ -147,6 +155,7 @@ impl From<Effort> for SearchSettings {
             occlusion: true,
             anchors: true,
             lock_scale: false,
+            turned: TURNED[effort as usize],
             max_load: MAX_LOAD[0],
         }
     }
@@ -162,7 +171,7 @@ impl SearchSettings {
     /// are comparable, and the rounds of the least effort or, where that search was unsure, of the next one.
     pub fn again(self, is_sure: bool) -> Self {
         let effort = if is_sure || self.effort == Effort::Fast { Effort::Fast } else { Effort::Balanced };
-        Self { rounds: rounds(effort), ..self }
+        Self { rounds: rounds(effort), turned: TURNED[effort as usize], ..self }
     }
 
     /// The work of the search, in units of the work budget.
@@ -174,10 +183,15 @@ impl SearchSettings {
             + COST[2] * (second.keep * fine.work) as f64
     }
 
+    /// Number of turns that are refined.
+    pub fn turns(&self) -> usize {
+        if self.turned > 1 { ROLLS } else { TURNS }
+    }
+
     /// The part of the work that a budget does not scale.
     fn cost_of_turns(&self) -> f64 {
         let [.., turn, fine, _] = self.rounds;
-        COST[1] * (TURNS * turn.work) as f64 + COST[2] * (turn.keep * fine.work) as f64
+        COST[1] * (self.turns() * turn.work) as f64 + COST[2] * (turn.keep * fine.work) as f64
     }
 
     /// The settings with rotations and candidates scaled to a budget of work. Work is counted, not timed, so that results

@@ -274,7 +274,7 @@ impl Rounds {
         }
         self.index += 1;
         if self.index == TURNING {
-            let turned = self.poses.first().map_or_else(Vec::new, |best| self.search.mesh.turns.of(best));
+            let turned = self.search.turned(&self.poses);
             self.unturned = core::mem::replace(&mut self.poses, turned);
         }
         if self.index == FIRST_REFINEMENT {

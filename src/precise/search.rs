@@ -18,11 +18,17 @@ use super::refine::{Refined, Refiner};
 use super::render::Canvas;
 use super::score::Score;
 use super::surroundings::Surroundings;
+use crate::geometry::rotations::angle_between;
 use crate::report::Effort;
 
 /// Rotations tried around a given pose, radians, and the number that are refined.
 const NEIGHBORHOOD: [f64; 2] = [0.17, 0.4];
 const NEIGHBORS: usize = 7;
+
+/// Number of rolls about each principal axis, and of each half turn followed by a roll, and the minimum rotation between
+/// those that are refined, radians.
+const ROLLS: usize = 24;
+const APART: f64 = 0.3;
 
 /// A search: the observation and the mesh, prepared.
 pub struct Search {
@@ -115,6 +121,25 @@ impl Search {
         let mut poses = vec![pose];
         poses.extend(distinct(near, NEIGHBORS, 0.5 * NEIGHBORHOOD[0]).iter().map(|c| c.pose));
         poses
+    }
+
+    /// The turns of the best of these poses that should be refined.
+    pub(crate) fn turned(&mut self, poses: &[CropPose]) -> Vec<CropPose> {
+        let Some(best) = poses.first() else { return Vec::new() };
+        let mesh = Rc::clone(&self.mesh);
+        if self.settings.turned <= 1 {
+            return mesh.turns.of(best);
+        }
+        let mut turned = mesh.turns.about_axes(best, ROLLS);
+        turned.extend(poses.iter().take(self.settings.turned).flat_map(|pose| mesh.turns.of(pose)));
+        let grid = self.grid(COARSE);
+        let stage = Coarse { objective: self.objective(COARSE, &grid), median_m: self.observation.median_m };
+        let mut canvas = Canvas::default();
+        let tried: Vec<Candidate> = turned.iter().map(|pose| stage.at_its_distance(&mut canvas, *pose)).collect();
+        self.renders += tried.len();
+        let is_new = |turned: &Candidate| poses.iter().all(|pose| angle_between(pose.rotation, turned.rotation()) > APART);
+        let tried = tried.into_iter().filter(is_new).collect();
+        distinct(tried, self.settings.turns(), APART).iter().map(|candidate| candidate.pose).collect()
     }
 
     /// The evidence on one of the grids; see also `fine`.

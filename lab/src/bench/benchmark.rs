@@ -86,6 +86,8 @@ pub struct Record {
     pub layout: Option<LayoutErrors>,
     /// Index of the first alternative within [`STRICT`], if any.
     pub right_alternative: Option<usize>,
+    /// Index of the first alternative within [`LOOSE`], if any.
+    pub near_alternative: Option<usize>,
     /// Metrics of the true pose.
     pub truth_metrics: Option<Metrics>,
     /// Score of the true pose by the objective of the search.
@@ -321,17 +323,19 @@ pub(super) fn record_of(case: &BenchCase, outcome: core::result::Result<AnyAlign
             let errors = comparison.errors()?;
             Ok((comparison, errors))
         };
-        let is_right =
-            |other: &Alternative| compared(&other.camera_from_mesh).is_ok_and(|(_, errors)| STRICT.holds(&errors));
         let of_answer = |answer: &AnyAlignment| -> Result<_> {
             let (comparison, errors) = compared(answer.camera_from_mesh())?;
             Ok((errors, LayoutErrors::of(&comparison, &errors)?))
         };
         let alternatives = alignment.as_ref().map_or(&[][..], AnyAlignment::alternatives);
-        let right_alternative = alternatives.iter().position(is_right);
-        (scored.ok(), alignment.as_ref().and_then(|answer| of_answer(answer).ok()), right_alternative)
+        let [right, near] = [STRICT, LOOSE].map(|tolerance| {
+            let is_within =
+                |other: &Alternative| compared(&other.camera_from_mesh).is_ok_and(|(_, errors)| tolerance.holds(&errors));
+            alternatives.iter().position(is_within)
+        });
+        (scored.ok(), alignment.as_ref().and_then(|answer| of_answer(answer).ok()), right, near)
     });
-    let (scored, errors, right_alternative) = evaluated.unwrap_or_default();
+    let (scored, errors, right_alternative, near_alternative) = evaluated.unwrap_or_default();
     let (errors, layout) = errors.unzip();
     Record {
         name: case.name.clone(),
@@ -345,6 +349,7 @@ pub(super) fn record_of(case: &BenchCase, outcome: core::result::Result<AnyAlign
         errors,
         layout,
         right_alternative,
+        near_alternative,
         truth_metrics: scored.as_ref().map(|scored| scored.metrics),
         truth_score: None,
         truth_scale_ratio: scored.map(|scored| scored.diagnostics.scale_ratio),
