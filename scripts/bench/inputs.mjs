@@ -48,7 +48,7 @@ export async function readTypedCase(folder) {
   return {
     name,
     input: { depth: metres, width, height, mask, camera, mesh: { positions: mesh.positions, indices } },
-    truth: truth && { matrix: truth.matrix, symmetry: declaredSymmetry(folder) ?? truth.symmetry },
+    truth: truth && { matrix: truth.transform.matrix, symmetry: declaredSymmetry(folder) ?? truth.symmetry },
   };
 }
 

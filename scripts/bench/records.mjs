@@ -30,6 +30,8 @@ export const isWithin = (errors, tolerance) =>
  * @property {Record<string, number>} parameters
  * @property {BenchAlignment | null} alignment
  * @property {PoseErrors | null} errors
+ * @property {number | null} rightAlternative index of the first alternative within the strict tolerance
+ * @property {number | null} nearAlternative and within the loose one
  * @property {Metrics | null} truthMetrics
  * @property {number | null} truthScore
  * @property {number} seconds

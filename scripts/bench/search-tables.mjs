@@ -87,6 +87,32 @@ function reliabilityLine(name, group, of) {
   return [name, group.length, percent(group.length / of), fixed(confidence, 3), percent(right)];
 }
 
+/** A rotation error from which on a pose is off by a turn, degrees. */
+const turnDeg = 45;
+
+/**
+ * How often the alternatives hold the true pose where the pose is off by a turn, and how many alternatives poses have.
+ * @param {readonly BenchRecord[]} all
+ */
+export function alternativesTable(all) {
+  const records = judged(all).filter(({ alignment }) => alignment !== null);
+  const turned = records.filter(({ errors }) => (errors?.rotationErrorDeg ?? 0) > turnDeg);
+  const placed = turned.filter(({ errors }) => isWithin(errors, { ...loose, rotationDeg: 180 }));
+  const groups = /** @type {const} */ ([
+    ["all", records],
+    ["within tolerance (loose)", records.filter(({ errors }) => isWithin(errors, loose))],
+    [`rotation off by more than ${turnDeg}°`, turned],
+    ["of these, size and position within tolerance (loose)", placed],
+  ]);
+  const rows = groups.map(([name, group]) => {
+    const lists = group.map(({ alignment }) => alignment?.alternatives?.length ?? 0);
+    const listed = (/** @type {"rightAlternative" | "nearAlternative"} */ which) =>
+      group === turned || group === placed ? group.filter((record) => record[which] !== null).length : "";
+    return [name, group.length, listed("rightAlternative"), listed("nearAlternative"), fixed(mean(lists), 2)];
+  });
+  return markdownTable(["poses", "n", "true pose listed, strict", "loose", "mean number of alternatives"], rows);
+}
+
 /**
  * Wrong poses by the kind of failure, in all and by tier.
  * @param {readonly BenchRecord[]} all

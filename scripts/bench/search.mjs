@@ -4,7 +4,7 @@
  */
 import { command, count } from "./command.mjs";
 import { benchmarkRows } from "./records.mjs";
-import { ablationTable, failureTable, reliabilityTable } from "./search-tables.mjs";
+import { ablationTable, alternativesTable, failureTable, reliabilityTable } from "./search-tables.mjs";
 
 const everything = "everything:";
 const ablations = [
@@ -27,7 +27,8 @@ async function reliability(options) {
   const rows = await benchmarkRows(options, [everything]);
   const chosen = options.row === undefined ? rows[0] : rows.find(({ row }) => row === options.row);
   if (!chosen) throw new Error(`No such row. There are ${rows.map(({ row }) => row).join(", ")}.`);
-  console.log(`\n${chosen.row}\n\n${reliabilityTable(chosen.records)}\n\n${failureTable(chosen.records)}\n\n${notes}`);
+  const tables = [reliabilityTable, failureTable, alternativesTable].map((table) => table(chosen.records));
+  console.log(`\n${[chosen.row, ...tables, notes].join("\n\n")}`);
 }
 
 const name = process.argv[2] === "reliability" ? "reliability" : "ablation";
@@ -35,6 +36,7 @@ process.argv.splice(2, 1);
 await command(`bench:${name}`, (program) => {
   program
     .option("--cases <n>", "generated cases", count, 240)
+    .option("--set <name>", "the generated set: general (default), sensors or colors")
     .option("--set-seed <s>", "seed of the generated set", Number, 0)
     .option("--meshes <dir>", "show the GLB files of a folder in a third of the cases")
     .option("--threads <n>", "all by default", count)

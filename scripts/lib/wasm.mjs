@@ -104,7 +104,7 @@ async function writeModule(module, say) {
  */
 const llvm = ["-inline-threshold=50", "-disable-lsr"].map((option) => `-Cllvm-args=${option}`);
 
-/** Every engine that has the other features has this one; unlike relaxed SIMD, its results are the same everywhere. */
+/** In Chrome 91, Firefox 89 and Safari 16.4. Unlike those of relaxed SIMD, the results are the same everywhere. */
 const simd = ["-Ctarget-feature=+simd128"];
 
 /** Flags that keep the builder's paths out of the modules: the compiler writes the places of possible panics into them. */

@@ -11,13 +11,13 @@ use crate::geometry::order::quantile;
 use crate::geometry::rotations::angle_between;
 use crate::geometry::triangle_tree::TriangleTree;
 use crate::metrics::symmetry::{AUTO_MEAN, AUTO_TAIL, Symmetry};
-use crate::report::{Alternative, Effort};
+use crate::report::Alternative;
 
-/// Factor of [`NOISE`] within which alternatives score after a search with much effort, which has been unsure: its best pose
-/// is wrong more often, and the right one then scores less than in other cases.
-const UNSURE: f32 = 2.0;
+/// Scores below the best pose down to which poses are alternatives: if it is sure, and if it is not. Unsure poses are wrong
+/// more often, and the right one then scores less than in other cases.
+pub(crate) const MARGINS: [f32; 2] = [NOISE, 3.0 * NOISE];
 /// Maximum number of alternatives that shape tells from the best pose.
-const MOST: usize = 8;
+const MOST: usize = 12;
 /// Minimum rotation between different poses, radians.
 const MIN_TURN: f64 = 0.26;
 /// Maximum distances between the surfaces of equivalent placements, relative to the tolerance of automatic symmetry: low
@@ -32,19 +32,19 @@ const SAME_TURN: f64 = 0.17;
 const MAX_RIVALS: usize = 4;
 const CLEAR: f64 = 0.5;
 
-/// The poses after the first whose scores are within noise of it. Poses near it or near each other, and placements
+/// The poses after the first whose scores are within `margin` of it. Poses near it or near each other, and placements
 /// equivalent under the symmetry of the object, are excluded.
 pub(crate) fn alternatives(
     found: &[Found],
     search: &Search,
     mesh: &Mesh,
     symmetry: &Symmetry,
+    margin: f32,
 ) -> Result<Vec<Alternative>> {
     let Some((best, others)) = found.split_first() else { return Ok(Vec::new()) };
     let turn = |a: &Found, b: &Found| angle_between(a.pose.rotation, b.pose.rotation);
-    let noise = if search.effort() == Effort::Best { UNSURE * NOISE } else { NOISE };
     let likely: Vec<&Found> =
-        others.iter().filter(|o| o.score.total > best.score.total - noise && turn(best, o) > MIN_TURN).collect();
+        others.iter().filter(|o| o.score.total > best.score.total - margin && turn(best, o) > MIN_TURN).collect();
     if likely.is_empty() {
         return Ok(Vec::new());
     }

@@ -70,7 +70,8 @@ impl Coarse<'_> {
     pub fn at_its_distance(&self, canvas: &mut Canvas, pose: CropPose) -> Candidate {
         let Objective { model, grid, scoring, prior, surroundings } = &self.objective;
         canvas.draw(model, &pose, grid);
-        let ratios = canvas.inverse_depth.iter().zip(&grid.depth).map(|(w, z)| w * z).filter(|r| *r > 0.0);
+        let rows = canvas.rows(grid).map(|(_, row)| canvas.inverse_depth[row.clone()].iter().zip(&grid.depth[row]));
+        let ratios = rows.flatten().map(|(w, z)| w * z).filter(|r| *r > 0.0);
         let stretch = median(ratios).unwrap_or(1.0);
         let distant = CropPose { distance: pose.distance + libm::log(f64::from(stretch)), ..pose };
         let pose = prior.held(distant);

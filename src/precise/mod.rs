@@ -46,7 +46,7 @@ use crate::geometry::similarity::Similarity;
 use crate::precise::options::{AlignOptions, ExtentAxis, SearchScope};
 use crate::progress::{Stage, Stopwatch};
 use crate::report::{Alternative, ColorReport, Counts, Effort, ScoreTerms, Solution, Uncertainty};
-use alternatives::{add_rivals, alternatives};
+use alternatives::{MARGINS, add_rivals, alternatives};
 use clean::CleanObservation;
 use color::Judgment;
 use confidence::confidence;
@@ -55,7 +55,7 @@ use pose::{CropPose, MeshFrame};
 use prepared_mesh::PreparedMesh;
 use prior::Prior;
 pub use recipe::SearchSettings;
-use recipe::Task;
+use recipe::{SURE, Task};
 use rounds::Rounds;
 pub use search::{Found, Search};
 use surroundings::{Neighbourhood, Surroundings};
@@ -243,8 +243,12 @@ pub fn conclude(
         found.to_mut().insert(0, chosen);
     }
     let best = found.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
-    let mut alternatives = alternatives(&found, search, mesh, &options.symmetry)?;
-    color.into_iter().for_each(|color| add_rivals(&mut alternatives, best, &color.rivals, search));
+    let listed = |margin: f32| {
+        let mut list = alternatives(&found, search, mesh, &options.symmetry, margin)?;
+        color.into_iter().for_each(|color| add_rivals(&mut list, best, &color.rivals, search));
+        Ok::<_, Error>(list)
+    };
+    let mut others = listed(MARGINS[0])?;
     let (conditioning, residual_m) = search.conditioning(&best.pose);
     let solution = Solution {
         camera_from_mesh: best.pose.similarity(&search.mesh.frame),
@@ -256,9 +260,13 @@ pub fn conclude(
     // The confidence is fitted to how sharply the image determines a pose. The ground makes every pose sharp, right or
     // wrong; what it tells is which of several poses is the better one.
     let by_image = if search.is_surrounded() { search.conditioning_by_image(&best.pose) } else { conditioning };
+    let confidence = confidence(best, &others, by_image.as_ref()) * color.map_or(1.0, |color| color.certainty);
+    if confidence < SURE {
+        others = listed(MARGINS[1])?;
+    }
     let certainty = Certainty {
-        confidence: confidence(best, &alternatives, by_image.as_ref()) * color.map_or(1.0, |color| color.certainty),
-        alternatives,
+        confidence,
+        alternatives: others,
         uncertainty: conditioning.map(|c| Uncertainty {
             scale: c.scale,
             rotation_deg: c.rotation.0.to_degrees(),

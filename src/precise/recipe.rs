@@ -96,7 +96,7 @@ const fn rounds(effort: Effort) -> [Round; ROUNDS] {
         Round { task: Place,  grid: COARSE, work: 1,                    keep: [ 20,  64,  160][q], apart: 0.21,  done: 0.62 },
         Round { task: Refine, grid: MIDDLE, work: [  4,    4,    5][q], keep: [  6,  20,   40][q], apart: 0.105, done: 0.78 },
         Round { task: Refine, grid: MIDDLE, work: [  5,    8,   15][q], keep: [  3,   6,   10][q], apart: 0.105, done: 0.89 },
-        Round { task: Turn,   grid: MIDDLE, work: [  4,    5,    8][q], keep: [  3,   3,   12][q], apart: 0.21,  done: 0.92 },
+        Round { task: Turn,   grid: MIDDLE, work: [  4,    5,    8][q], keep: [  3,   3,   16][q], apart: 0.21,  done: 0.92 },
         Round { task: Refine, grid: FINE,   work: [  8,   12,   20][q], keep: [  1,   1,    2][q], apart: 0.105, done: 0.97 },
         Round { task: Refine, grid: FINEST, work: [  4,    6,   12][q], keep: 0,                   apart: 0.0,   done: 1.0 },
     ]

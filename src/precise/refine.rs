@@ -102,9 +102,9 @@ impl Refiner<'_> {
         let half = self.objective.scoring.outline_cells;
         let wants_outline = outline_weight > 0.0 || overlap_weight > 0.0;
         let unknown_weight = grid.unknown_weight(weights.unknown);
-        for v in 0..grid.height {
-            for u in 0..grid.width {
-                let i = v * grid.width + u;
+        for (v, row) in canvas.rows(grid) {
+            for i in row {
+                let u = i - v * grid.width;
                 let w = canvas.inverse_depth[i];
                 if w <= 0.0 {
                     continue;

@@ -3,7 +3,11 @@
 //! Unlike the [`Rasteriser`](crate::geometry::rasteriser::Rasteriser) of the metrics, which clips and uses f64, this
 //! one uses f32 and skips triangles close to the camera. Both decide coverage in integers.
 
+use core::ops::Range;
+
 use glam::{Mat3, Vec3};
+use wide::bytemuck::cast;
+use wide::{f32x4, i32x4, u32x4};
 
 use super::grid::CropGrid;
 use super::pose::CropPose;
@@ -69,6 +73,8 @@ pub struct Canvas {
     pub lost: f32,
     /// Cells, vertices and triangles visited by all renders so far: what they cost.
     pub work: u64,
+    /// Columns and rows of the box around the projected vertices: all other cells are empty.
+    pub drawn: [Range<usize>; 2],
     vertices: Vec<Vertex>,
 }
 
@@ -111,6 +117,12 @@ impl Canvas {
         self.work += (grid.mask.len() + visited + model.positions.len() + model.triangles.len()) as u64;
     }
 
+    /// The rows in which cells may be drawn, and the indices of these cells.
+    pub fn rows(&self, grid: &CropGrid) -> impl Iterator<Item = (usize, Range<usize>)> + use<> {
+        let ([columns, rows], width) = (self.drawn.clone(), grid.width);
+        rows.map(move |v| (v, v * width + columns.start..v * width + columns.end))
+    }
+
     /// Transforms the vertices to the camera frame and projects them onto the grid.
     fn project(&mut self, model: &Model, grid: &CropGrid) {
         let linear = self.rotation * self.scale;
@@ -119,6 +131,7 @@ impl Canvas {
         let (cx, cy) = (grid.center[0] as f32, grid.center[1] as f32);
         let (right, bottom) = (grid.width as f32 - 0.5, grid.height as f32 - 0.5);
         let mut lost = 0u32;
+        let (mut low, mut high) = ([i32::MAX; 2], [i32::MIN; 2]);
         self.vertices.clear();
         self.vertices.extend(model.positions.iter().map(|p| {
             let p = linear * *p + self.translation;
@@ -128,10 +141,23 @@ impl Canvas {
             lost += u32::from(!inside || p.z < near);
             // The comparison is written so that NaN fails.
             let w = if p.z >= near { w } else { 0.0 };
-            Vertex { u: snap(u), v: snap(v), w }
+            let (u, v) = (snap(u), snap(v));
+            (low, high) = ([low[0].min(u), low[1].min(v)], [high[0].max(u), high[1].max(v)]);
+            Vertex { u, v, w }
         }));
+        self.drawn = [0, 1].map(|axis| {
+            let size = [grid.width, grid.height][axis];
+            let end = ((high[axis].max(-STEPS) >> SHIFT) + 1) as usize;
+            (first_cell(low[axis]) as usize).min(size)..end.min(size)
+        });
         self.lost = lost as f32 / model.positions.len().max(1) as f32;
     }
+}
+
+/// The first cell whose centre is at least this many steps from the first one's.
+#[inline]
+fn first_cell(low: i32) -> i32 {
+    (low.max(0).min(FARTHEST as i32) + STEPS - 1) >> SHIFT
 }
 
 /// Renders a triangle and returns about the number of cells that it visits. Takes slices instead of the canvas, so that
@@ -145,10 +171,9 @@ fn fill(
     [a, b, c]: [Vertex; 3],
 ) -> usize {
     // The first and last cell whose centre is in the box of the triangle.
-    let first = |low: i32| (low.max(0) + STEPS - 1) >> SHIFT;
     let last = |high: i32, size: usize| (high >> SHIFT).min(size as i32 - 1);
-    let (u0, u1) = (first(a.u.min(b.u).min(c.u)), last(a.u.max(b.u).max(c.u), width));
-    let (v0, v1) = (first(a.v.min(b.v).min(c.v)), last(a.v.max(b.v).max(c.v), height));
+    let (u0, u1) = (first_cell(a.u.min(b.u).min(c.u)), last(a.u.max(b.u).max(c.u), width));
+    let (v0, v1) = (first_cell(a.v.min(b.v).min(c.v)), last(a.v.max(b.v).max(c.v), height));
     if u0 > u1 || v0 > v1 || a.w * b.w * c.w == 0.0 {
         return 0;
     }
@@ -208,8 +233,9 @@ fn fill(
     visited
 }
 
-/// Like [`fill`], with the same result, for a triangle whose box is small: in 32 bits and without a branch per cell, so that
-/// compilers turn the lanes into vector instructions.
+/// Like [`fill`], with the same result, for a triangle whose box is small: in 32 bits, four cells of a row at
+/// once, and without a branch per cell. A lane computes what [`fill`] does, so that the bits are the same where there are no
+/// vector instructions.
 #[inline]
 fn fill_small(
     inverse_depth: &mut [f32],
@@ -228,34 +254,33 @@ fn fill_small(
         area = -area;
         core::mem::swap(&mut b, &mut c);
     }
-    let (b_du, b_dv) = (c.v - a.v, a.u - c.u);
-    let (c_du, c_dv) = (a.v - b.v, b.u - a.u);
+    let (b_du, b_row) = (c.v - a.v, a.u - c.u);
+    let (c_du, c_row) = (a.v - b.v, b.u - a.u);
     let inverse = 1.0 / area as f32;
     let (wb, wc) = ((b.w - a.w) * inverse, (c.w - a.w) * inverse);
+    let lanes = |edge: i32, growth: i32| i32x4::new([0, 1, 2, 3].map(|lane| edge + lane * (growth * STEPS)));
+    let ([b_dv, c_dv], total) = ([b_row, c_row].map(|growth| i32x4::splat(growth * STEPS)), i32x4::splat(area));
+    let [w_a, wb, wc] = [a.w, wb, wc].map(f32x4::splat);
     // Cells beside the box are outside the triangle or, where the grid ends, begin before it.
     let last = (width - LANES) as i32;
     let mut from = u0;
     while from <= u1 {
         let first = from.min(last);
         let (du, dv) = (first * STEPS - a.u, v0 * STEPS - a.v);
-        let lanes = |edge: i32, growth: i32| [0, 1, 2, 3].map(|lane| edge + lane * (growth * STEPS));
-        let mut eb = lanes(b_du * du + b_dv * dv, b_du);
-        let mut ec = lanes(c_du * du + c_dv * dv, c_du);
-        let start = v0 as usize * width + first as usize;
-        for row in 0..(v1 - v0) as usize + 1 {
-            let at = start + row * width;
+        let mut b = lanes(b_du * du + b_row * dv, b_du);
+        let mut c = lanes(c_du * du + c_row * dv, c_du);
+        let mut at = v0 as usize * width + first as usize;
+        for _ in v0..=v1 {
             let cells = inverse_depth.get_mut(at..).and_then(|cells| cells.first_chunk_mut::<LANES>());
             let drawn = drawn.get_mut(at..).and_then(|drawn| drawn.first_chunk_mut::<LANES>());
             let Some((cells, drawn)) = cells.zip(drawn) else { break };
-            for lane in 0..LANES {
-                let (b, c) = (eb[lane], ec[lane]);
-                let w = a.w + b as f32 * wb + c as f32 * wc;
-                let is_drawn = ((b | c | (area - b - c)) >= 0) & (w > cells[lane]);
-                cells[lane] = if is_drawn { w } else { cells[lane] };
-                drawn[lane] = if is_drawn { id } else { drawn[lane] };
-            }
-            eb = eb.map(|edge| edge + b_dv * STEPS);
-            ec = ec.map(|edge| edge + c_dv * STEPS);
+            let w = w_a + f32x4::from_i32x4(b) * wb + f32x4::from_i32x4(c) * wc;
+            let (far, other) = (f32x4::new(*cells), u32x4::new(*drawn));
+            let is_inside: i32x4 = (b | c | (total - b - c)).simd_gt(i32x4::splat(-1));
+            let is_drawn = is_inside & cast::<f32x4, i32x4>(w.simd_gt(far));
+            *cells = cast::<i32x4, f32x4>(is_drawn).bitselect(w, far).to_array();
+            *drawn = cast::<i32x4, u32x4>(is_drawn).bitselect(u32x4::splat(id), other).to_array();
+            (b, c, at) = (b + b_dv, c + c_dv, at + width);
         }
         from += LANES as i32;
     }

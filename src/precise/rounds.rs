@@ -20,6 +20,8 @@ use crate::geometry::similarity::Similarity;
 /// Score below the best pose at which a turn of it is not refined, and at which a refined one is not ranked.
 const FAR: f32 = 0.8;
 const NEAR: f32 = 0.3;
+/// The same as the second, where several poses are turned: after an unsure search, whose best pose is more often wrong.
+const UNSURE: f32 = 0.5;
 
 /// Rotation by which a search may refine a pose of another one, radians.
 const SAME: f64 = 0.25;
@@ -247,7 +249,8 @@ impl Rounds {
             TURNING => {
                 // Of the same grid, so that their scores are comparable.
                 self.best = best_of(&[best.as_slice(), self.best.as_slice()].concat(), 1);
-                let least = best.first().map_or(0.0, |best| best.score.total) - NEAR;
+                let near = if self.search.settings.turned > 1 { UNSURE } else { NEAR };
+                let least = best.first().map_or(0.0, |best| best.score.total) - near;
                 let alike = outcomes.into_iter().filter(|turned| turned.score.total > least).collect();
                 self.poses = core::mem::take(&mut self.unturned);
                 self.poses.extend(poses_of(&distinct(alike, round.keep, round.apart)));
@@ -274,7 +277,7 @@ impl Rounds {
         }
         self.index += 1;
         if self.index == TURNING {
-            let turned = self.search.turned(&self.poses);
+            let turned = self.search.turned(&self.poses, &self.anchors);
             self.unturned = core::mem::replace(&mut self.poses, turned);
         }
         if self.index == FIRST_REFINEMENT {

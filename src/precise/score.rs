@@ -138,12 +138,12 @@ impl Scoring {
         let to_mesh = canvas.rotation.transpose();
         let wants_outline = self.weights.outline > 0.0;
         let unknown_weight = grid.unknown_weight(self.weights.unknown);
-        for v in 0..grid.height {
+        for (v, row) in canvas.rows(grid) {
             // By rows, so that bounds are checked once per row instead of once per cell.
-            let row = v * width..(v + 1) * width;
+            let begin = row.start - v * width;
             let (drawn, mask) = (&canvas.inverse_depth[row.clone()], &grid.mask[row.clone()]);
             let (depth, scene) = (&grid.depth[row.clone()], &grid.scene[row]);
-            for (u, (((w, mask), observed), scene)) in (0..).zip(drawn.iter().zip(mask).zip(depth).zip(scene)) {
+            for (u, (((w, mask), observed), scene)) in (begin..).zip(drawn.iter().zip(mask).zip(depth).zip(scene)) {
                 let (w, mask, observed, scene) = (*w, *mask, *observed, *scene);
                 if w <= 0.0 {
                     continue;

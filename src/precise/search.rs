@@ -4,6 +4,7 @@ use std::rc::Rc;
 
 use glam::DQuat;
 
+use super::anchors::Anchor;
 use super::clean::CleanObservation;
 use super::coarse::{Candidate, Coarse};
 use super::conditioning::Conditioning;
@@ -123,19 +124,24 @@ impl Search {
         poses
     }
 
-    /// The turns of the best of these poses that should be refined.
-    pub(crate) fn turned(&mut self, poses: &[CropPose]) -> Vec<CropPose> {
+    /// The turns of the best of these poses that should be refined. `anchors` are sizes and positions for the half and quarter
+    /// turns: a part that something hides is elsewhere after a turn.
+    pub(crate) fn turned(&mut self, poses: &[CropPose], anchors: &[Anchor]) -> Vec<CropPose> {
         let Some(best) = poses.first() else { return Vec::new() };
         let mesh = Rc::clone(&self.mesh);
         if self.settings.turned <= 1 {
             return mesh.turns.of(best);
         }
-        let mut turned = mesh.turns.about_axes(best, ROLLS);
-        turned.extend(poses.iter().take(self.settings.turned).flat_map(|pose| mesh.turns.of(pose)));
+        let rolled = mesh.turns.about_axes(best, ROLLS);
+        let turned: Vec<CropPose> = poses.iter().take(self.settings.turned).flat_map(|pose| mesh.turns.of(pose)).collect();
         let grid = self.grid(COARSE);
         let stage = Coarse { objective: self.objective(COARSE, &grid), median_m: self.observation.median_m };
         let mut canvas = Canvas::default();
-        let tried: Vec<Candidate> = turned.iter().map(|pose| stage.at_its_distance(&mut canvas, *pose)).collect();
+        let mut tried: Vec<Candidate> =
+            rolled.iter().chain(&turned).map(|pose| stage.at_its_distance(&mut canvas, *pose)).collect();
+        for pose in turned {
+            stage.try_anchors(&mut canvas, &mesh.outermost, pose.rotation, anchors, &mut tried);
+        }
         self.renders += tried.len();
         let is_new = |turned: &Candidate| poses.iter().all(|pose| angle_between(pose.rotation, turned.rotation()) > APART);
         let tried = tried.into_iter().filter(is_new).collect();
