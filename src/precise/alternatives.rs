@@ -13,9 +13,9 @@ use crate::geometry::triangle_tree::TriangleTree;
 use crate::metrics::symmetry::{AUTO_MEAN, AUTO_TAIL, Symmetry};
 use crate::report::Alternative;
 
-/// Scores below the best pose down to which poses are alternatives: if it is sure, and if it is not. Unsure poses are wrong
-/// more often, and the right one then scores less than in other cases.
-pub(crate) const MARGINS: [f32; 2] = [NOISE, 3.0 * NOISE];
+/// Score below an unsure best pose down to which poses are alternatives. It is wrong more often than others, and the right pose
+/// then scores less.
+pub(crate) const UNSURE: f32 = 3.0 * NOISE;
 /// Maximum number of alternatives that shape tells from the best pose.
 const MOST: usize = 12;
 /// Minimum rotation between different poses, radians.
@@ -32,9 +32,19 @@ const SAME_TURN: f64 = 0.17;
 const MAX_RIVALS: usize = 4;
 const CLEAR: f64 = 0.5;
 
-/// The poses after the first whose scores are within `margin` of it. Poses near it or near each other, and placements
+/// The poses after the first whose scores are within noise of it. Poses near it or near each other, and placements
 /// equivalent under the symmetry of the object, are excluded.
 pub(crate) fn alternatives(
+    found: &[Found],
+    search: &Search,
+    mesh: &Mesh,
+    symmetry: &Symmetry,
+) -> Result<Vec<Alternative>> {
+    within(found, search, mesh, symmetry, NOISE)
+}
+
+/// Like [`alternatives`], for poses whose scores are within `margin` of the first one.
+pub(crate) fn within(
     found: &[Found],
     search: &Search,
     mesh: &Mesh,

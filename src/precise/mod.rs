@@ -46,7 +46,7 @@ use crate::geometry::similarity::Similarity;
 use crate::precise::options::{AlignOptions, ExtentAxis, SearchScope};
 use crate::progress::{Stage, Stopwatch};
 use crate::report::{Alternative, ColorReport, Counts, Effort, ScoreTerms, Solution, Uncertainty};
-use alternatives::{MARGINS, add_rivals, alternatives};
+use alternatives::{UNSURE, add_rivals};
 use clean::CleanObservation;
 use color::Judgment;
 use confidence::confidence;
@@ -57,6 +57,7 @@ use prior::Prior;
 pub use recipe::SearchSettings;
 use recipe::{SURE, Task};
 use rounds::Rounds;
+use score::NOISE;
 pub use search::{Found, Search};
 use surroundings::{Neighbourhood, Surroundings};
 
@@ -244,11 +245,11 @@ pub fn conclude(
     }
     let best = found.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
     let listed = |margin: f32| {
-        let mut list = alternatives(&found, search, mesh, &options.symmetry, margin)?;
+        let mut list = alternatives::within(&found, search, mesh, &options.symmetry, margin)?;
         color.into_iter().for_each(|color| add_rivals(&mut list, best, &color.rivals, search));
         Ok::<_, Error>(list)
     };
-    let mut others = listed(MARGINS[0])?;
+    let mut others = listed(NOISE)?;
     let (conditioning, residual_m) = search.conditioning(&best.pose);
     let solution = Solution {
         camera_from_mesh: best.pose.similarity(&search.mesh.frame),
@@ -262,7 +263,7 @@ pub fn conclude(
     let by_image = if search.is_surrounded() { search.conditioning_by_image(&best.pose) } else { conditioning };
     let confidence = confidence(best, &others, by_image.as_ref()) * color.map_or(1.0, |color| color.certainty);
     if confidence < SURE {
-        others = listed(MARGINS[1])?;
+        others = listed(UNSURE)?;
     }
     let certainty = Certainty {
         confidence,
