@@ -133,7 +133,8 @@ impl Search {
             return mesh.turns.of(best);
         }
         let rolled = mesh.turns.about_axes(best, ROLLS);
-        let turned: Vec<CropPose> = poses.iter().take(self.settings.turned).flat_map(|pose| mesh.turns.of(pose)).collect();
+        let turned: Vec<CropPose> =
+            poses.iter().take(self.settings.turned).flat_map(|pose| mesh.turns.of(pose)).collect();
         let grid = self.grid(COARSE);
         let stage = Coarse { objective: self.objective(COARSE, &grid), median_m: self.observation.median_m };
         let mut canvas = Canvas::default();
@@ -143,7 +144,8 @@ impl Search {
             stage.try_anchors(&mut canvas, &mesh.outermost, pose.rotation, anchors, &mut tried);
         }
         self.renders += tried.len();
-        let is_new = |turned: &Candidate| poses.iter().all(|pose| angle_between(pose.rotation, turned.rotation()) > APART);
+        let is_new =
+            |turned: &Candidate| poses.iter().all(|pose| angle_between(pose.rotation, turned.rotation()) > APART);
         let tried = tried.into_iter().filter(is_new).collect();
         distinct(tried, self.settings.turns(), APART).iter().map(|candidate| candidate.pose).collect()
     }
