@@ -329,8 +329,9 @@ pub(super) fn record_of(case: &BenchCase, outcome: core::result::Result<AnyAlign
         };
         let alternatives = alignment.as_ref().map_or(&[][..], AnyAlignment::alternatives);
         let [right, near] = [STRICT, LOOSE].map(|tolerance| {
-            let is_within =
-                |other: &Alternative| compared(&other.camera_from_mesh).is_ok_and(|(_, errors)| tolerance.holds(&errors));
+            let is_within = |other: &Alternative| {
+                compared(&other.camera_from_mesh).is_ok_and(|(_, errors)| tolerance.holds(&errors))
+            };
             alternatives.iter().position(is_within)
         });
         (scored.ok(), alignment.as_ref().and_then(|answer| of_answer(answer).ok()), right, near)
