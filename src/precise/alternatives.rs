@@ -25,8 +25,6 @@ const MIN_TURN: f64 = 0.26;
 const SAME_SURFACE: f64 = 0.7;
 /// Number of vertices compared to decide whether two placements of the mesh coincide.
 const SAMPLES: usize = 300;
-/// Minimum rotation between the alternatives to an unsure pose that are listed first, radians.
-const UNLIKE: f64 = 0.6;
 /// Maximum deviation of a rotation from a declared symmetry, radians.
 const SAME_TURN: f64 = 0.17;
 /// Maximum number of alternatives that only their colours tell from the best pose, and the margin from which on colour has
@@ -61,22 +59,16 @@ pub(crate) fn within(
         return Ok(Vec::new());
     }
     let likeness = Likeness::new(search, mesh, symmetry)?;
-    let mut kept: Vec<&Found> = Vec::new();
-    // Of rolls that the image hardly tells apart, a list of neighbours would hold a few only.
-    let aparts = if margin > NOISE { &[UNLIKE, MIN_TURN][..] } else { &[MIN_TURN] };
-    for &apart in aparts {
-        for &other in &likely {
-            let is_far = |k: &&Found| turn(k, other) > apart;
-            if kept.len() < MOST
-                && kept.iter().all(is_far)
-                && !kept.iter().chain([&best]).any(|k| likeness.same(k, other))
-            {
-                kept.push(other);
-            }
+    let mut kept = vec![best];
+    for other in likely {
+        if kept.len() > MOST {
+            break;
+        }
+        if kept.iter().all(|k| turn(k, other) > MIN_TURN && !likeness.same(k, other)) {
+            kept.push(other);
         }
     }
-    let listed = likely.iter().filter(|other| kept.iter().any(|k| core::ptr::eq(*k, **other)));
-    Ok(listed.map(|other| alternative(best, other, None, search)).collect())
+    Ok(kept.iter().skip(1).map(|other| alternative(best, other, None, search)).collect())
 }
 
 /// A pose as an alternative to the best one.
