@@ -108,6 +108,9 @@ const TURNED: [usize; 3] = [1, 1, 3];
 /// Number of turns that are refined where more than one pose is turned.
 const ROLLS: usize = 24;
 
+/// Maximum number of steps per turn, and of turns that are ranked, of a search whose work is limited: turns are not scaled.
+const LIMITED_TURNS: [usize; 2] = [6, 6];
+
 /// Minimum number of rotations of a search whose work is limited.
 pub const MIN_ROTATIONS: usize = 60;
 
@@ -197,10 +200,12 @@ impl SearchSettings {
     /// The settings with rotations and candidates scaled to a budget of work. Work is counted, not timed, so that results
     /// do not depend on the machine.
     pub fn within(self, budget: f64) -> Self {
-        let turns = self.cost_of_turns();
-        let share = ((budget - turns) / (self.cost() - turns)).clamp(0.02, 20.0);
+        let mut within = Self { max_load: MAX_LOAD[1], turned: 1, ..self };
+        let turn = &mut within.rounds[TURNING];
+        (turn.work, turn.keep) = (turn.work.min(LIMITED_TURNS[0]), turn.keep.min(LIMITED_TURNS[1]));
+        let turns = within.cost_of_turns();
+        let share = ((budget - turns) / (within.cost() - turns)).clamp(0.02, 20.0);
         let scaled = |count: usize, least: usize| ((count as f64 * share) as usize).max(least);
-        let mut within = Self { max_load: MAX_LOAD[1], ..self };
         within.rounds[0].work = scaled(self.rotations(), MIN_ROTATIONS);
         for (round, least) in within.rounds.iter_mut().zip([30, 6, 3, 2]) {
             round.keep = scaled(round.keep, least);
