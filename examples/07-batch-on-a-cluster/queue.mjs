@@ -1,7 +1,8 @@
-// Names and functions that producer, workers and collector share.
+// Names and functions that all programs of this example share.
 import { createHash } from "node:crypto";
-import { readFile } from "node:fs/promises";
+import { readdir, readFile } from "node:fs/promises";
 import { createRequire } from "node:module";
+import { sep } from "node:path";
 import { Redis } from "ioredis";
 
 export const queueName = "sim3align";
@@ -10,38 +11,52 @@ export const resultsKey = "sim3align:results";
 
 const { version } = createRequire(import.meta.url)("sim3align/package.json");
 
-/** @returns {Redis} */
-export const connect = () =>
-  new Redis(process.env.REDIS_URL ?? "redis://127.0.0.1:6379", { maxRetriesPerRequest: null });
+/** A connection that waits for Redis as long as it takes, and sends again what got no answer. */
+export function connect() {
+  const connection = new Redis(process.env.REDIS_URL ?? "redis://127.0.0.1:6379", { maxRetriesPerRequest: null });
+  connection.on("error", report);
+  return connection;
+}
+
+/** @param {Error & { code?: string }} error of the connection, which is made again, or of a lock that was lost with it */
+export const report = ({ code, message }) => console.error("warning:", message || code);
+
+/** The files that results depend on; others, such as gt.json, may change. */
+const isInput = /(^|\/)(depth\.(npy|png)|mask\.png|camera\.json|rgb\.(png|jpg)|mesh\.(glb|obj|ply))$/;
 
 /**
- * Reads the files of a case without decoding them. In a cluster, the folder is on storage that all machines can read.
+ * The input files of a folder, relative to it. In a cluster, the folder is on storage that all machines can read.
  * @param {string} folder
  */
-export async function readCase(folder) {
-  const [depth, mask, cameraFile, mesh] = await Promise.all(
-    [["depth.npy", "depth.png"], ["mask.png"], ["camera.json"], ["mesh.glb", "mesh.obj", "mesh.ply"]].map((names) =>
-      firstOf(names.map((name) => `${folder}/${name}`)),
-    ),
-  );
-  return { depth, mask, cameraFile, mesh };
+export async function inputsIn(folder) {
+  const names = await readdir(folder, { recursive: true });
+  return names
+    .map((name) => name.replaceAll(sep, "/"))
+    .filter((name) => isInput.test(name))
+    .sort();
 }
 
-/** @param {string[]} paths */
-async function firstOf([path, ...others]) {
-  return readFile(path ?? "").catch((error) => {
-    if (others.length === 0) throw error;
-    return firstOf(others);
-  });
+/** What a folder is: by the folders in it, a scene, a video or a single case.
+ * @param {string[]} names
+ * @returns {"case" | "scene" | "video"}
+ */
+export function kindOf(names) {
+  if (names.some((name) => name.startsWith("objects/"))) return "scene";
+  return names.some((name) => name.startsWith("frame_")) ? "video" : "case";
 }
 
 /**
- * The id depends on files, options and version only, so a case that is queued twice is aligned once.
- * @param {Awaited<ReturnType<typeof readCase>>} files
+ * The id depends on files, options and version only, so a folder that is queued twice is aligned once. Files are read
+ * one after the other: a video may be larger than the memory.
+ * @param {string} folder
+ * @param {string[]} names
  * @param {object} options
  */
-export function jobIdOf(files, options) {
+export async function jobIdOf(folder, names, options) {
   const hash = createHash("sha256").update(JSON.stringify([version, Object.entries(options).sort()]));
-  for (const [name, bytes] of Object.entries(files)) hash.update(`${name} ${bytes.length}\n`).update(bytes);
+  for (const name of names) {
+    const bytes = await readFile(`${folder}/${name}`);
+    hash.update(`${name} ${bytes.length}\n`).update(bytes);
+  }
   return hash.digest("hex");
 }

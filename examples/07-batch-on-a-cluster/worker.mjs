@@ -2,7 +2,8 @@
 import { availableParallelism } from "node:os";
 import { UnrecoverableError, Worker } from "bullmq";
 import { createAligner, Sim3AlignError } from "sim3align";
-import { connect, jobIdOf, queueName, readCase, resultsKey } from "./queue.mjs";
+import { connect, inputsIn, jobIdOf, kindOf, queueName, report, resultsKey } from "./queue.mjs";
+import { perform } from "./work.mjs";
 
 const threads = Number(process.env.THREADS ?? availableParallelism());
 // After this time without renewal of its lock, a job is taken over by another worker. Alignments run in their own threads,
@@ -18,28 +19,21 @@ const worker = new Worker(
   queueName,
   async ({ id = "", data: { folder, options } }) => {
     // A worker stored the result and was killed before it completed the job.
-    if (await connection.hexists(resultsKey, id)) return;
-    const input = await readCase(folder);
+    if (await connection.hexists(resultsKey, id)) return "was stored";
+    const names = await inputsIn(folder);
     // If the files have changed since, the id would belong to another case.
-    if (jobIdOf(input, options) !== id) throw new UnrecoverableError("files or version have changed since");
-    const { matrix, scale, confidence, alternatives, metrics, warnings } = await aligner
-      .align(input, /** @type {import("sim3align").AlignOptions} */ (options))
-      .catch((error) => {
-        const isFinal = error instanceof Sim3AlignError && !retryable.has(error.code);
-        throw isFinal ? new UnrecoverableError(`${error.code}: ${error.message}`) : error;
-      });
-    const record = {
-      folder,
-      matrix,
-      scale,
-      confidence,
-      alternatives: alternatives.length,
-      metrics,
-      warnings,
-    };
+    if ((await jobIdOf(folder, names, options)) !== id) {
+      throw new UnrecoverableError("files or version have changed since");
+    }
+    const kind = kindOf(names);
+    const result = await perform[kind](aligner, { path: folder, names }, options).catch((error) => {
+      const isFinal = error instanceof Sim3AlignError && !retryable.has(error.code);
+      throw isFinal ? new UnrecoverableError(`${error.code}: ${error.message}`) : error;
+    });
     // Keep the first result: if two workers did the same job, their results are bit-identical.
-    const isFirst = await connection.hsetnx(resultsKey, id, JSON.stringify(record));
+    const isFirst = await connection.hsetnx(resultsKey, id, JSON.stringify({ kind, folder, ...result }));
     if (isFirst) console.log("stored", id);
+    return "done";
   },
   {
     connection,
@@ -52,7 +46,7 @@ const worker = new Worker(
 );
 worker.on("active", ({ id }) => console.log("active", id));
 worker.on("failed", (job, error) => console.log("failed", job?.id, error.message));
-worker.on("error", (error) => console.error(error.message));
+worker.on("error", report);
 
 // On shutdown, finishes the running jobs.
 for (const signal of ["SIGTERM", "SIGINT"]) {

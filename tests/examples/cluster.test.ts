@@ -2,12 +2,12 @@
 import assert from "node:assert/strict";
 import { type ChildProcess, spawn } from "node:child_process";
 import { EventEmitter, once } from "node:events";
-import { readFileSync, renameSync } from "node:fs";
+import { readFileSync, renameSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
 import { after, test } from "node:test";
 import { createAligner } from "sim3align";
-import { otherPose, writeCase } from "../support/case-folder.js";
+import { otherPose, writeCase, writeScene, writeVideo } from "../support/case-folder.js";
 import { examplesDir, newFolder, program, runExample } from "../support/examples.js";
 import { RedisServer } from "../support/redis.js";
 
@@ -63,6 +63,35 @@ const redisProgram = program(
   "install it (Debian and Ubuntu: apt-get install redis-server)",
 );
 
+interface Line {
+  id: string;
+  kind: "case" | "scene" | "video";
+  folder: string;
+  matrix: number[];
+  confidence: number;
+  objects: { name: string; matrix: number[] }[];
+  frames: { name: string; state: string; matrix: number[] }[];
+  error?: string;
+  attempts: number;
+}
+
+/** Runs a program of the example to its end, and returns what it prints. */
+async function ran(script: string, args: string[], env: NodeJS.ProcessEnv): Promise<string[]> {
+  const { status, stdout, stderr } = await runExample(`${name}/${script}`, args, env);
+  assert.equal(status, 0, stderr);
+  return stdout.trim().split("\n");
+}
+
+/** Queues folders, and returns the ids of their jobs. */
+const produced = async (args: string[], env: NodeJS.ProcessEnv) =>
+  (await ran("producer.mjs", args, env)).map((line) => line.split(" ")[0] ?? "");
+
+async function collected(env: NodeJS.ProcessEnv): Promise<{ results: Line[]; failures: Line[] }> {
+  const lines = (await ran("collect.mjs", [], env)).map((line): Line => JSON.parse(line));
+  const isFailure = ({ error }: Line) => error !== undefined;
+  return { results: lines.filter((line) => !isFailure(line)), failures: lines.filter(isFailure) };
+}
+
 test("07: all results are there once, though a worker is killed in the middle of a job", {
   skip: redisProgram.skip,
   timeout: 240_000,
@@ -74,15 +103,7 @@ test("07: all results are there once, though a worker is killed in the middle of
   const parent = newFolder();
   const folders = Array.from({ length: CASES }, (_, i) => writeCase(parent, `case-${i}`, { pose: otherPose(i) }));
   const atFault = writeCase(parent, "at-fault", { isEmpty: true });
-  const produce = async (cases: string[]) => {
-    const script = `${name}/producer.mjs`;
-    const { status, stdout, stderr } = await runExample(script, ["--options", JSON.stringify(OPTIONS), ...cases], env);
-    assert.equal(status, 0, stderr);
-    return stdout
-      .trim()
-      .split("\n")
-      .map((line) => line.split(" ")[0] ?? "");
-  };
+  const produce = (cases: string[]) => produced(["--options", JSON.stringify(OPTIONS), ...cases], env);
   const ids = await produce([...folders, atFault]);
   assert.equal(new Set(ids).size, CASES + 1);
   // Asked for again, and from a copy of the same files: the same jobs.
@@ -103,10 +124,8 @@ test("07: all results are there once, though a worker is killed in the middle of
   await survivor.untilSaid("failed", (failed) => failed.includes(lateId));
   renameSync(`${late}-away`, late);
 
-  const { status, stdout, stderr } = await runExample(`${name}/collect.mjs`, [], env);
-  assert.equal(status, 0, stderr);
-  const { results, failures } = JSON.parse(stdout);
-  assert.deepEqual(results.map(({ id }: { id: string }) => id).sort(), ids.slice(0, CASES).sort());
+  const { results, failures } = await collected(env);
+  assert.deepEqual(results.map(({ id }) => id).sort(), ids.slice(0, CASES).sort());
   const stored = [...victim.said("stored"), ...survivor.said("stored")];
   assert.deepEqual(stored.sort(), ids.slice(0, CASES).sort(), "each result was stored once");
   assert.ok(survivor.said("active").includes(lost[0] ?? ""), "the survivor took over what was lost");
@@ -130,11 +149,83 @@ test("07: all results are there once, though a worker is killed in the middle of
   // Bad input is not tried again; what is away is.
   assert.ok(survivor.said("active").filter((id) => id === lateId).length >= 2);
   assert.equal(failures.length, 1);
-  assert.equal(failures[0].folder, atFault);
-  assert.equal(failures[0].attempts, 1);
-  assert.match(failures[0].reason, /^EMPTY_MASK: /);
+  assert.equal(failures[0]?.folder, atFault);
+  assert.equal(failures[0]?.attempts, 1);
+  assert.match(failures[0]?.error ?? "", /^EMPTY_MASK: /);
 
   const ended = once(survivor.child, "exit");
   survivor.child.kill("SIGTERM");
   assert.deepEqual(await ended, [0, null], "a worker ends by itself when it is asked to");
+});
+
+test("07: cases, scenes and videos survive a Redis server that is killed, and the capacity is told", {
+  skip: redisProgram.skip,
+  timeout: 240_000,
+}, async () => {
+  const redis = await RedisServer.start(redisProgram.path, newFolder());
+  started.push(() => redis.stop());
+  const env = { REDIS_URL: redis.url, THREADS: "1", LOCK_MS: "2000" };
+  const parent = newFolder();
+  const cases = [0, 1, 2, 3].map((i) => writeCase(parent, `case-${i}`, { pose: otherPose(i) }));
+  const [scene, video] = [writeScene(parent, "scene"), writeVideo(parent, "video", 3)];
+  const list = join(parent, "list.txt");
+  writeFileSync(list, `${[scene, video].join("\n")}\n`);
+  const ids = await produced([...cases, "--list", list], env);
+  assert.equal(new Set(ids).size, 6);
+
+  const worker = new WorkerProcess(env);
+  await worker.untilSaid("stored", ({ length }) => length === 1);
+  await redis.stop("SIGKILL");
+  assert.ok(worker.said("stored").length < ids.length, "Redis was killed in the middle");
+  // It begins without Redis, and waits.
+  const collecting = collected(env);
+  await redis.startAgain();
+
+  const { results, failures } = await collecting;
+  assert.deepEqual(failures, []);
+  assert.deepEqual(results.map(({ id }) => id).sort(), [...ids].sort());
+  assert.deepEqual(new Set(worker.said("stored")).size, worker.said("stored").length);
+  const kinds = Object.fromEntries(results.map((result) => [result.folder, result.kind]));
+  assert.deepEqual(
+    [cases[0], scene, video].map((folder) => kinds[folder ?? ""]),
+    ["case", "scene", "video"],
+  );
+
+  // The same bits as direct calls.
+  const read = (folder: string, file: string) => readFileSync(join(folder, file));
+  const view = (folder: string) => ({ depth: read(folder, "depth.npy"), cameraFile: read(folder, "camera.json") });
+  const aligner = await createAligner({ workers: 1 });
+  const of = (folder: string) => results.find((result) => result.folder === folder);
+  const objects = ["left", "right"].map((name) => {
+    const own = join(scene, "objects", name);
+    return { name, mask: read(own, "mask.png"), mesh: read(own, "mesh.obj") };
+  });
+  const together = await aligner.alignScene({ ...view(scene), objects });
+  const poses = together.objects.map((object) => object.error === undefined && [object.name, [...object.matrix]]);
+  assert.deepEqual(
+    of(scene)?.objects.map(({ name, matrix }) => [name, matrix]),
+    poses,
+  );
+  const tracker = await aligner.track(read(video, "mesh.obj"));
+  for (const [i, frame] of (of(video)?.frames ?? []).entries()) {
+    const own = join(video, `frame_${i}`);
+    const mask = i === 0 ? { mask: read(own, "mask.png") } : {};
+    const tracked = await tracker.next({ ...view(own), ...mask });
+    assert.deepEqual([frame.name, frame.state, frame.matrix], [`frame_${i}`, tracked.state, [...tracked.matrix]]);
+  }
+  assert.equal(of(video)?.frames.length, 3);
+  aligner.dispose();
+
+  const told = await ran("capacity.mjs", ["--jobs", "1000000", "--hours", "10", "--threads", "4", "--price", "2"], env);
+  const figure = (name: string) => {
+    const line = told.find((line) => line.startsWith(name)) ?? assert.fail(`no ${name} in ${told.join("; ")}`);
+    return Number(/^\d+(\.\d+)?/.exec(line.slice(36))?.[0]);
+  };
+  const hours = figure("machine hours");
+  assert.ok(hours > 0);
+  // Enough machines for ten hours; both threads and machines are rounded up, and the hours to a tenth.
+  const machines = figure("machines, ");
+  assert.ok(machines > hours / 10 - 0.01 && machines < hours / 10 + 1.26, `${machines} machines, ${hours} hours`);
+  assert.ok(Math.abs(figure("cost") - 2 * hours) < 0.2);
+  assert.ok(figure("memory of Redis") > 0);
 });
