@@ -20,8 +20,14 @@ queue.on("error", report);
 // The last ones. What a worker found stored took no time.
 const completed = await queue.getCompleted(0, 999);
 const done = completed.filter(({ returnvalue }) => returnvalue === "done");
-const stored = await connection.hlen(resultsKey);
-const memory = Number(/used_memory_dataset:(\d+)/.exec(await connection.info("memory"))?.[1]);
+/** Bytes of Redis for a key and its value. */
+const bytesOf = async (key) => Number(await connection.call("MEMORY", "USAGE", key, "SAMPLES", "100"));
+// A result, the job, and its place in the list of those that are completed.
+const jobBytes = await Promise.all(done.slice(0, 100).map(({ id = "" }) => bytesOf(queue.toKey(id))));
+const memory =
+  (await bytesOf(resultsKey)) / (await connection.hlen(resultsKey)) +
+  jobBytes.reduce((a, b) => a + b, 0) / jobBytes.length +
+  (await bytesOf(queue.toKey("completed"))) / (await queue.getCompletedCount());
 await queue.close();
 connection.disconnect();
 if (done.length === 0) {
@@ -42,6 +48,6 @@ const lines = {
   "machines, for the jobs in the time": `${machines} (${needed} threads for ${jobs} jobs in ${hours} h)`,
   "machine hours": machineHours.toFixed(1),
   ...(values.price === undefined ? {} : { cost: (machineHours * Number(values.price)).toFixed(2) }),
-  "memory of Redis": `${((memory / stored) * (jobs / 2 ** 30)).toFixed(1)} GB`,
+  "memory of Redis": `${((memory * jobs) / 2 ** 30).toFixed(1)} GB`,
 };
 for (const [name, value] of Object.entries(lines)) console.log(`${name.padEnd(36)}${value}`);

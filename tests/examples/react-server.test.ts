@@ -1,0 +1,109 @@
+/** The example of React with workers and server rendering, built by Vite, in Chromium. */
+import assert from "node:assert/strict";
+import { type ChildProcess, execFileSync, spawn } from "node:child_process";
+import { once } from "node:events";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { createInterface } from "node:readline";
+import { after, before, test } from "node:test";
+import { createAligner } from "sim3align";
+import { PageTest } from "../support/browser.js";
+import { sampleDir } from "../support/environment.js";
+import { examplesDir, program } from "../support/examples.js";
+
+const folder = join(examplesDir, "11-react-server");
+const { skip } = program("CHROMIUM_PATH", "Chromium", "install it (Debian and Ubuntu: apt-get install chromium)");
+
+let server: ChildProcess;
+let url = "";
+let expected: number[] = [];
+before(async () => {
+  const vite = join(examplesDir, "node_modules", "vite", "bin", "vite.js");
+  const build = (...args: string[]) =>
+    execFileSync(process.execPath, [vite, "build", "--logLevel", "warn", ...args], { cwd: folder });
+  build();
+  build("--ssr", "entry-server.jsx", "--outDir", "dist/server");
+  server = spawn(process.execPath, ["server.mjs"], {
+    cwd: folder,
+    env: { ...process.env, PORT: "0" },
+    stdio: ["ignore", "pipe", "inherit"],
+  });
+  assert.ok(server.stdout);
+  [url = ""] = await once(createInterface({ input: server.stdout }), "line");
+  const [depth, mask, cameraFile, mesh] = ["depth.npy", "mask.png", "camera.json", "mesh.glb"].map((name) =>
+    readFileSync(join(sampleDir, name)),
+  );
+  assert.ok(depth && mask && cameraFile && mesh);
+  const aligner = await createAligner();
+  expected = [...(await aligner.align({ depth, mask, cameraFile, mesh }, { quality: "fast" })).matrix];
+});
+after(async () => {
+  server.kill();
+  if (server.exitCode === null) await once(server, "exit");
+});
+
+test("11-react-server renders in Node with the result of an alignment on the server", async () => {
+  const html = await (await fetch(url)).text();
+  const [, shown = ""] = /<output id="first">([^<]*)<\/output>/.exec(html) ?? [];
+  assert.deepEqual(JSON.parse(shown), expected);
+  // What needs a browser has not begun.
+  assert.match(html, /<p id="status" data-state="idle"><\/p>/);
+});
+
+test("11-react-server, in Chromium: hydrated, aligned in workers with progress, cancelled when it goes", {
+  skip,
+}, async () => {
+  const browser = await PageTest.start(folder);
+  try {
+    // Counts the workers, and keeps what arrives after a component has gone.
+    const { page, errors } = await browser.open(url, {}, () => {
+      const seen = { workers: 0, ended: 0, fractions: [] as number[] };
+      const Original = Worker;
+      Object.assign(window, {
+        seen,
+        Worker: class extends Original {
+          constructor(script: string | URL, options?: WorkerOptions) {
+            super(script, options);
+            seen.workers += 1;
+          }
+          override terminate() {
+            seen.ended += 1;
+            super.terminate();
+          }
+        },
+      });
+      new MutationObserver(() => {
+        const bar = document.querySelector("progress");
+        if (bar !== null) seen.fractions.push(bar.value);
+      }).observe(document, { subtree: true, childList: true, attributes: true });
+    });
+    type Seen = { seen: { workers: number; ended: number; fractions: number[] } };
+    const seen = () => page.evaluate(() => (window as unknown as Seen).seen);
+    await page.click("#align");
+    await page.waitForSelector("#result", { timeout: 120_000 });
+    assert.deepEqual(JSON.parse((await page.textContent("#result")) ?? ""), expected);
+    assert.deepEqual(JSON.parse((await page.textContent("#first")) ?? ""), expected);
+    const first = await seen();
+    assert.ok(first.workers > 0, "aligned in workers");
+    assert.ok(new Set(first.fractions).size > 2, `progress was shown: ${first.fractions}`);
+
+    // Goes while it runs: an abort ends the worker of the call, and a new one replaces it.
+    await page.click("#toggle");
+    await page.click("#toggle");
+    await page.waitForSelector('#status[data-state="running"] progress');
+    await page.waitForFunction(() => (document.querySelector("progress")?.value ?? 0) > 0);
+    const { ended } = await seen();
+    await page.click("#toggle");
+    await page.waitForFunction((before) => (window as unknown as Seen).seen.ended > before, ended);
+    assert.equal(await page.$("#status"), null);
+
+    // The next one runs to its end, with the same bits.
+    await page.click("#toggle");
+    await page.waitForSelector("#result", { timeout: 120_000 });
+    assert.deepEqual(JSON.parse((await page.textContent("#result")) ?? ""), expected);
+    // None of hydration, and none of a component that has gone.
+    assert.deepEqual(errors, []);
+  } finally {
+    await browser.stop();
+  }
+});
