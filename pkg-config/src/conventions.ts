@@ -8,6 +8,7 @@
  */
 export { type BopExport, type BopPose, fromBop, toBop } from "./conventions/bop.js";
 export { type Cuboid, type CuboidOptions, type MeshAxis, toCuboid } from "./conventions/cuboid.js";
+export { type CvatCuboid, fromCvatCuboid, toCvatCuboid } from "./conventions/cvat-cuboid.js";
 export { type CvatMaskElement, fromCvatRle } from "./conventions/cvat-rle.js";
 export { depthFromDisparity } from "./conventions/disparity.js";
 export {

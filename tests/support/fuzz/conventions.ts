@@ -40,6 +40,8 @@ const table: readonly (readonly [name: keyof typeof conventions, ...args: Argume
   ["toBop", "transform", "options"],
   ["fromBop", () => ({ cam_R_m2c: [1, 0, 0, 0, 1, 0, 0, 0, 1], cam_t_m2c: [1, 2, 900] }), () => ({ scale: 0.001 })],
   ["toCuboid", () => ({ sizeM: [1, 2, 3], centerM: [0, 0, 2], rotation: [0, 0, 0, 1] }), () => ({ frame: "ros" })],
+  ["toCvatCuboid", () => ({ center: [0, 0, 2], size: [1, 2, 3], quaternion: [0, 0, 0, 1] })],
+  ["fromCvatCuboid", () => [0, 0, 2, 0.1, 0.2, 0.3, 1, 2, 3, 0, 0, 0, 0, 0, 0, 0]],
   ["fromCvatRle", () => [3, 4, 5, 2, 0, 7, 1, 2, 6, 3], () => ({ ...image })],
   ["fromCvatRle", () => ({ rle: "3,4,5", left: 1, top: 1, width: 4, height: 3 }), () => ({ ...image })],
   ["depthFromDisparity", "depth", () => ({ scale: 2, shift: 0.1 })],
