@@ -74,8 +74,11 @@ async function nodeTest(folder, env = {}) {
 }
 
 export async function javaScript() {
-  const python = await installedPython("simulators");
-  return nodeTest("js", python === undefined ? {} : { SIM3ALIGN_SIMULATORS: python });
+  const [simulators, notebooks] = [await installedPython("simulators"), await installedPython("notebooks")];
+  return nodeTest("js", {
+    ...(simulators === undefined ? {} : { SIM3ALIGN_SIMULATORS: simulators }),
+    ...(notebooks === undefined ? {} : { SIM3ALIGN_NOTEBOOKS: notebooks }),
+  });
 }
 
 /** Counts where a program is missing: skipped on a developer's machine, failed in continuous integration. */

@@ -1,0 +1,92 @@
+/** The Python of the guides: a notebook's cell that runs the command line, and Rerun, which reads its record. */
+import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
+import { chmodSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { delimiter, dirname, join } from "node:path";
+import { test } from "node:test";
+import { files, folder, writeCase } from "../support/command-line.js";
+import { commandLine, repository } from "../support/environment.js";
+
+const python = process.env.SIM3ALIGN_NOTEBOOKS ?? "";
+const skip =
+  python === "" && "No Python with the packages of scripts/bench/notebooks/requirements.txt; see CONTRIBUTING.md.";
+
+const guide = readFileSync(join(repository, "docs", "guides", "datasets.md"), "utf8");
+const blocks = [...guide.matchAll(/^```python\n([\s\S]*?)^```$/gm)].map(([, block = ""]) => block);
+
+/** Runs a program of the environment in the folder of the cases. `npx sim3align` is the package under test. */
+function runIn(program: string, ...args: string[]): string {
+  const bin = join(folder, "bin");
+  mkdirSync(bin, { recursive: true });
+  const npx = join(bin, "npx");
+  writeFileSync(npx, `#!/bin/sh\nshift\nexec "${process.execPath}" "${commandLine}" "$@"\n`);
+  chmodSync(npx, 0o755);
+  const env = { ...process.env, PATH: [bin, process.env.PATH].join(delimiter) };
+  const { status, stdout, stderr } = spawnSync(program, args, { cwd: folder, env, encoding: "utf8" });
+  assert.equal(status, 0, stderr);
+  return stdout;
+}
+
+/** Runs the blocks as the cells of a notebook, and prints what they print. */
+const notebook = `
+import json, sys
+import nbformat
+from nbclient import NotebookClient
+
+cells = [nbformat.v4.new_code_cell(source) for source in json.load(open(sys.argv[1]))]
+book = nbformat.v4.new_notebook(cells=cells)
+NotebookClient(book, timeout=120, kernel_name="python3").execute()
+for cell in book.cells:
+    for output in cell.outputs:
+        print(output.get("text", ""), end="")
+`;
+
+test("a cell of a notebook runs the command line, and says what came of each case", { skip }, () => {
+  writeCase("cases/blob", files);
+  const { "mesh.glb": _, ...others } = files;
+  writeCase("cases/broken", { ...others, "mesh.glb": new Uint8Array(3) });
+  const [cell = ""] = blocks;
+  writeFileSync(join(folder, "notebook.py"), notebook);
+  // Run twice: the second time, everything is there.
+  writeFileSync(join(folder, "cells.json"), JSON.stringify([cell, cell]));
+  const lines = runIn(python, "notebook.py", "cells.json").trim().split("\n").sort();
+  const record = readFileSync(join(folder, "results.jsonl"), "utf8").trim().split("\n");
+  assert.equal(record.length, 2);
+  const [result, failed] = record.map((line) => JSON.parse(line)).sort((a, b) => (a.case < b.case ? -1 : 1));
+  const aligned = `blob confidence ${result.confidence.toFixed(2)}, scale ${result.scale.toFixed(4)}`;
+  const broken = `broken ${failed.error.code}`;
+  assert.deepEqual(lines, [aligned, aligned, broken, broken]);
+});
+
+test("Rerun shows the record: camera, depth, mesh and pose", { skip }, () => {
+  writeFileSync(join(folder, "show.py"), blocks[1] ?? assert.fail("the guide has no second block of Python"));
+  runIn(python, "show.py");
+  const rerun = join(dirname(python), "rerun");
+  runIn(rerun, "rrd", "verify", "results.rrd");
+  const printed = runIn(rerun, "rrd", "print", "-vvv", "results.rrd");
+  for (const entity of ["/blob/camera", "/blob/camera/depth", "/blob/mesh", "/blob/confidence"]) {
+    assert.ok(printed.includes(entity), `${entity} is there`);
+  }
+  assert.ok(!printed.includes("/broken"), "what failed is left out");
+  const [line = ""] = readFileSync(join(folder, "results.jsonl"), "utf8")
+    .split("\n")
+    .filter((line) => line.includes('"case":"blob"'));
+  const { translation, matrix } = JSON.parse(line) as { translation: number[]; matrix: number[] };
+  // Rerun stores 32 bits, and matrices column by column, as the record has them. It prints the first numbers of a long list.
+  const text = printed.replace(/[\s│]+/g, "");
+  const linear = [0, 1, 2, 4, 5, 6].map((i) => matrix[i] ?? 0);
+  for (const numbers of [translation, linear]) {
+    const shown = numbers.map((number) => shortest(number)).join();
+    assert.ok(text.includes(shown), `${shown} is in ${printed.slice(0, 4000)}`);
+  }
+});
+
+/** The shortest decimals that give the same 32-bit number. */
+function shortest(number: number): string {
+  const single = Math.fround(number);
+  for (let digits = 1; digits < 10; digits++) {
+    const text = `${Number(single.toPrecision(digits))}`;
+    if (Math.fround(Number(text)) === single) return text;
+  }
+  return `${single}`;
+}
