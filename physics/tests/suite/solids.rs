@@ -64,7 +64,7 @@ pub fn cylinder(radius: f64, height: f64, around: u32) -> Mesh {
 pub fn sphere(radius: f64, rings: u32) -> Mesh {
     let at = |i: u32| {
         let (sine, cosine) = libm::sincos(core::f64::consts::PI * f64::from(i) / f64::from(rings));
-        [if i % rings == 0 { 0.0 } else { radius * sine }, -radius * cosine]
+        [if i.is_multiple_of(rings) { 0.0 } else { radius * sine }, -radius * cosine]
     };
     turned(&(0..=rings).map(at).collect::<Vec<_>>(), 2 * rings)
 }
