@@ -19,6 +19,7 @@ export const buildSite = once(async () => {
       // The second one writes to a folder of the first one's output.
       for (const config of ["vite.config.mjs", "vite.element.config.mjs"])
         await run(node, [vite, "build", "--config", at("www", config)]);
+      cpSync(at("www", "src", "element", "sim3-align.d.ts"), join(siteDir, "element", "sim3-align.d.ts"));
       cpSync(at("www", "samples"), join(siteDir, "samples"), { recursive: true });
     });
     say(isNew ? "target/www" : "target/www, up to date");

@@ -56,7 +56,10 @@ function checkCommands() {
 function checkTests() {
   const sources = filesBelow(["src", ...crates.map((name) => join(name, "src"))].map((folder) => at(folder)));
   const found = sources.filter((file) => /^\s*#\[(test|cfg\(test\))\]/m.test(readFileSync(file, "utf8")));
-  if (found.length > 0) throw new Error(`${found.join(", ")}: never run. Remedy: move the tests to tests/suite.`);
+  if (found.length > 0)
+    throw new Error(
+      `${found.join(", ")}: never run. Remedy: move the tests to tests/suite, of the repository or of the crate.`,
+    );
 }
 
 /** Type checks of what the build does not compile; they need the built package's declarations. */

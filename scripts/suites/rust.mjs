@@ -25,9 +25,12 @@ export async function native() {
 
 export async function wasm() {
   await wasmBindgen();
-  return cargoTest(["--target", wasmTarget, "--package", "sim3align", "--test", "suite"], {
-    CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER: wasmBindgenProgram("wasm-bindgen-test-runner"),
-  });
+  return cargoTest(
+    ["--target", wasmTarget, "--package", "sim3align", "--package", "sim3align-physics", "--test", "suite"],
+    {
+      CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER: wasmBindgenProgram("wasm-bindgen-test-runner"),
+    },
+  );
 }
 
 /** The generator writes the committed samples, byte by byte. */

@@ -1,9 +1,10 @@
 /** `sim3align bop`: results, resume, detections, and scores next to those of the official toolkit. */
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
-import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { before, test } from "node:test";
+import { readMesh } from "sim3align/formats";
 import { height, images, resultsText, width, writeBop } from "../support/bop-dataset.js";
 import { folder, results, run } from "../support/command-line.js";
 import { repository } from "../support/environment.js";
@@ -163,7 +164,7 @@ test("targets are aligned at their size, and the results file is that of the lea
   assert.equal(withoutTimes(readFileSync(join(folder, "sim3align_tudl-test_part.csv"), "utf8")), withoutTimes(before));
 });
 
-test("detections take the place of masks", () => {
+test("detections take the place of masks, and pictures show the poses", async () => {
   const at = (path: string) => masks.get(join("test", path)) as Uint8Array;
   const detection = (image: number, id: number, score: number, path: string) => ({
     ...{ scene_id: 1, image_id: image, category_id: id, score, time: 0.5 },
@@ -178,9 +179,33 @@ test("detections take the place of masks", () => {
       detection(0, 1, 0.5, "000000_000000.png"),
     ]),
   );
-  const found = bop("--masks", "detections.json", "--quality", "fast", "--csv", "cnos", "--json", "d.json");
+  const pictures = ["--report", "pictures", "--overlay", "overlay", "--glb", "posed"];
+  const flags = ["--quality", "fast", "--csv", "cnos", "--json", "d.json", ...pictures];
+  const found = bop("--masks", "detections.json", ...flags);
   assert.equal(found.status, 0, found.stderr);
-  assert.deepEqual(Object.keys(results("d.json")).sort(), ["1/0/1-0", "1/7/2-0", "1/7/2-1"]);
+  const entries = results("d.json");
+  const names = ["1/0/1-0", "1/7/2-0", "1/7/2-1"];
+  assert.deepEqual(Object.keys(entries).sort(), names);
+  // The pictures that the flags ask for: of every pose.
+  assert.doesNotMatch(found.stderr, /no pictures/);
+  for (const [made, extension] of [
+    ["overlay", ".png"],
+    ["posed", ".glb"],
+  ] as const) {
+    const files = readdirSync(join(folder, made)).sort();
+    assert.equal(files.length, names.length);
+    for (const [i, file] of files.entries()) {
+      assert.ok(file.startsWith(names[i]?.replaceAll("/", "-") ?? "?") && file.endsWith(extension), file);
+    }
+  }
+  const [file = ""] = readdirSync(join(folder, "posed")).sort();
+  // The posed mesh is in metres, in the frame of a glTF camera: y up, z backward.
+  const { positions } = await readMesh(readFileSync(join(folder, "posed", file)));
+  const depths = positions.filter((_, i) => i % 3 === 2);
+  const { translation } = entries["1/0/1-0"];
+  near((Math.min(...depths) + Math.max(...depths)) / 2, -translation[2], 0.05, "the depth of the posed mesh");
+  const table = readFileSync(join(folder, "pictures", "rows.js"), "utf8");
+  for (const name of names) assert.match(table, new RegExp(`"name":"${name}","folder"`));
   const rows = readFileSync(join(folder, "sim3align_tudl-test_cnos.csv"), "utf8").trimEnd().split("\n").slice(1);
   const own = rows.map((row) => row.split(",").map(Number));
   for (const [, image = 0, , score = 1, , , time = 0] of own) {

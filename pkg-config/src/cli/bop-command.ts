@@ -20,6 +20,7 @@ import { fixed } from "./number.js";
 import { addOptionFlags } from "./option-flags.js";
 import { Output } from "./output.js";
 import { jsonObject, workers } from "./parse.js";
+import { addPictureFlags } from "./pictures.js";
 import { StatusLine } from "./status-line.js";
 import { pairs } from "./table.js";
 import { UsageError } from "./usage-error.js";
@@ -55,8 +56,8 @@ Masks
 Output
   The results file METHOD_DATASET-SPLIT.csv, or METHOD_DATASET-SPLIT_NAME.csv with --csv NAME, in the current folder: scene_id,
   im_id, obj_id, score, R, t in millimetres, and the time, which is the sum over the objects of the image. The score is the
-  confidence, multiplied by that of the detection. --jsonl, --resume, --json and --workers work as those of "align": cases are
-  called SCENE/IMAGE/OBJECT-INSTANCE.
+  confidence, multiplied by that of the detection. --jsonl, --resume, --json, --workers, --report, --overlay and --glb work
+  as those of "align": cases are called SCENE/IMAGE/OBJECT-INSTANCE.
   --evaluate compares the results, or those of a file, with the true poses: average recalls of VSD, MSSD and MSPD, their mean,
   and recall of ADD and ADD-S below a tenth of the diameter. --scores writes them as JSON, with the errors of each pose.
 
@@ -88,7 +89,7 @@ export function bopCommand(): Command {
     .option("--resume", "go on: skip the poses in the file of --jsonl, and append to it")
     .option("--workers <n|auto>", "poses aligned at a time (1 to 64; default auto: one per core)", workers)
     .option("--no-image", "do not read the photos: align by shape alone");
-  addOptionFlags(command, options);
+  addOptionFlags(addPictureFlags(command), options);
   command.option("--options <json>", "further options of align() as JSON; flags take precedence", jsonObject);
   return command.addHelpText("after", help).action(run);
 }

@@ -16,9 +16,10 @@ import { createWorkspace } from "../state/workspace.js";
 import { listenToKeys } from "../ui/shortcuts.js";
 import { WorkspaceProvider } from "../ui/workspace.js";
 import { Embedded } from "./embedded.js";
-import { type ElementEvents, errorDetail, sendEvents } from "./events.js";
-import type { GivenInput } from "./given.js";
-import { type ElementSession, type ObjectResult, type PlainPose, plainPose, resultOf, sessionOf } from "./results.js";
+import { errorDetail, sendEvents } from "./events.js";
+import { type ElementSession, plainPose, resultOf, sessionOf } from "./results.js";
+import type * as host from "./sim3-align.js";
+import type { ElementEvents, GivenInput, ObjectResult, PlainPose } from "./sim3-align.js";
 
 /** All instances share the sheets. */
 const sheets = [theme, views, controls, panels, own].map((text) => {
@@ -30,7 +31,7 @@ const sheets = [theme, views, controls, panels, own].map((text) => {
 const darkQuery = matchMedia("(prefers-color-scheme: dark)");
 
 /** A scene with its objects, to be aligned and corrected. `docs/guides/embedding.md` describes it. */
-export class Sim3AlignElement extends HTMLElement {
+export class Sim3AlignElement extends HTMLElement implements host.Sim3AlignElement {
   static readonly observedAttributes = ["src", "readonly", "theme"];
 
   readonly #theme = signal<"light" | "dark">("light");

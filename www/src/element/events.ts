@@ -3,23 +3,8 @@ import { effect, untracked } from "@preact/signals";
 import { Sim3AlignError } from "sim3align";
 import type { ObjectModel } from "../state/object-model.js";
 import type { Workspace } from "../state/workspace.js";
-import { type ObjectResult, type PlainPose, plainPose, resultOf } from "./results.js";
-
-/** The details of the events. */
-export interface ElementEvents {
-  /** A scene is shown. */
-  ready: { name: string; objects: string[] };
-  /** 0 to 1, while objects are being aligned. */
-  progress: { fraction: number };
-  /** An alignment or a refinement has ended. */
-  align: { objects: ObjectResult[] };
-  /** A pose has changed: by an alignment, by hand (with every step of a drag), or by an alternative. */
-  posechange: { name: string; pose: PlainPose; source: string };
-  /** A person has accepted a pose, or a change has made it open again. */
-  accept: ObjectResult;
-  /** A scene could not be read, or an object not be aligned. */
-  error: { message: string; name: string | null; code: string | null };
-}
+import { plainPose, resultOf } from "./results.js";
+import type { ElementEvents } from "./sim3-align.js";
 
 export type Send = <K extends keyof ElementEvents>(type: K, detail: ElementEvents[K]) => void;
 

@@ -1,5 +1,5 @@
 /** Scenes that a host gives to the element: as arrays or encoded files in memory, as files, or by an address. */
-import type { CameraInput, EncodedBytes, MeshArrays, PixelArray } from "sim3align";
+import type { EncodedBytes, PixelArray } from "sim3align";
 import { type DepthImage, type MeshFromFile, readCamera } from "sim3align/formats";
 import { rolesOf } from "../intake/roles.js";
 import { scenesOfTyped } from "../intake/scenes.js";
@@ -12,34 +12,7 @@ import { type ReadObject, readInputs, sceneOf } from "../load/read-scene.js";
 import { readDepth, readMask, readMesh } from "../load/reader.js";
 import { type Packed, sessionParts, unpacked } from "../session/pack.js";
 import type { Scene } from "../state/scene.js";
-
-/** An object of a given scene. */
-export interface GivenObject {
-  /** “Object 1” and so on by default. */
-  name?: string | undefined;
-  /** One byte per pixel of the depth map, not 0 is the object; or an encoded PNG or NPY file. */
-  mask: Uint8Array | Uint8ClampedArray | PixelArray<Uint8Array> | EncodedBytes;
-  /** Arrays, or an encoded GLB, PLY, STL or OBJ file. */
-  mesh: MeshArrays | EncodedBytes;
-}
-
-/** A scene in memory. */
-export interface GivenScene {
-  name?: string | undefined;
-  /** z-depth: metres, or 16-bit integers times `depthScale`, with `width` and `height`; or an encoded PNG or NPY file. */
-  depth: Float32Array | Uint16Array | EncodedBytes;
-  width?: number | undefined;
-  height?: number | undefined;
-  /** Metres per unit of depth. By default, integers are millimetres, and floats metres. */
-  depthScale?: number | undefined;
-  camera: CameraInput;
-  /** The photo of the depth map's view: an image file or pixels (red, green, blue, alpha). */
-  image?: Blob | ImageData | undefined;
-  objects: readonly GivenObject[];
-}
-
-/** What the property `scene` accepts. */
-export type GivenInput = GivenScene | Blob | readonly File[] | string;
+import type { GivenInput, GivenObject, GivenScene } from "./sim3-align.js";
 
 /** A scene that can be shown, and what was done with it before. */
 export interface Opened {

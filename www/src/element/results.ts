@@ -1,34 +1,9 @@
 /** What an element says about its objects, as plain data. */
-import type { Metrics } from "sim3align";
 import { type PackedState, stateOf } from "../session/pack.js";
 import type { ObjectModel } from "../state/object-model.js";
 import type { Options } from "../state/options.js";
-import type { PoseSource } from "../state/pose.js";
 import type { Workspace } from "../state/workspace.js";
-
-/** A pose: OpenCV camera from mesh, metres. */
-export interface PlainPose {
-  scale: number;
-  /** Unit quaternion x, y, z, w. */
-  rotation: number[];
-  translation: number[];
-  /** 16 numbers, column-major. */
-  matrix: number[];
-}
-
-/** The result of an object. */
-export interface ObjectResult {
-  name: string;
-  /** Null before the first alignment. */
-  pose: PlainPose | null;
-  source: PoseSource;
-  /** Sides of the bounding box along x, y and z of the mesh, metres. */
-  sizeM: number[];
-  /** Of an aligned pose only. */
-  confidence: number | null;
-  isAccepted: boolean;
-  metrics: Metrics | null;
-}
+import type { ObjectResult, PlainPose } from "./sim3-align.js";
 
 /** Hand work and results, without the files of the scene. Plain data. */
 export interface ElementSession {
