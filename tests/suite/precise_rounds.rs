@@ -196,17 +196,23 @@ fn a_search_within_a_budget_costs_as_much() {
         for budget in [150.0, 500.0, 1500.0] {
             let within = settings.within(budget);
             // Counts are rounded down, and grow twentyfold at most.
-            // Turns are always tried.
-            let turns = 0.12 * (TURNS * settings.rounds[TURNING].work) as f64
-                + 0.4 * (settings.rounds[TURNING].keep * settings.rounds[RANKING].work) as f64;
-            let most = 20.0 * (cost(&settings) - turns) + turns;
+            // Turns are always tried, but only a few of them.
+            let mut limited = settings;
+            let turn = &mut limited.rounds[TURNING];
+            (turn.work, turn.keep) = (turn.work.min(6), turn.keep.min(6));
+            let turns = 0.12 * (TURNS * turn.work) as f64 + 0.4 * (turn.keep * limited.rounds[RANKING].work) as f64;
+            let most = 20.0 * (cost(&limited) - turns) + turns;
             let share = cost(&within) / f64::min(budget, most);
             assert!((0.85..=1.0001).contains(&share), "{budget}: {within:?} costs {}", cost(&within));
-            let SearchSettings { rounds, max_load, .. } = settings;
-            let unchanged = SearchSettings { rounds, max_load, ..within };
-            assert_eq!(unchanged, settings, "{budget}: nothing but the rounds and the bound on their work");
+            let SearchSettings { rounds, max_load, turned, .. } = settings;
+            let unchanged = SearchSettings { rounds, max_load, turned, ..within };
+            assert_eq!(
+                unchanged, settings,
+                "{budget}: nothing but the rounds, the bound on their work, and the turned poses"
+            );
+            assert_eq!(within.turned, 1, "{budget}: further poses are turned beyond any budget only");
             assert!(within.max_load < settings.max_load);
-            assert!(within.rounds.iter().skip(1).zip(&settings.rounds[1..]).all(|(a, b)| a.work == b.work), "{budget}");
+            assert!(within.rounds.iter().skip(1).zip(&limited.rounds[1..]).all(|(a, b)| a.work == b.work), "{budget}");
         }
         let least = settings.within(1e-9).rounds;
         assert!(least[0].work >= 60 && least[..4].iter().zip([30, 6, 3, 2]).all(|(round, keep)| round.keep >= keep));
