@@ -27,6 +27,8 @@ options! {
         /// The object's symmetry: the rotation error is the smallest over it. `"auto"` detects half turns about the mesh's
         /// principal axes, `"auto-revolution"` also axes of revolution.
         symmetry: Symmetry = Symmetry::None, Symmetry;
+        /// Whether to compute `layout` where `truth` is given. Without it, the call takes a fraction of the time.
+        layout: bool = true, Flag;
         /// Seed of all random draws. The same input and seed give the same bits.
         seed: u32 = 0, Count(0..=u32::MAX);
         /// Upper bound on the depth readings used. Above it, an even random subset is drawn.
@@ -65,7 +67,7 @@ pub struct Evaluation {
     pub metrics: Metrics,
     /// The errors against the truth; `null` where no truth was given.
     pub errors: Option<PoseErrors>,
-    /// The errors of layout against the truth; `null` where no truth was given.
+    /// The errors of layout against the truth; `null` where no truth was given, or `layout` is false.
     pub layout: Option<LayoutErrors>,
     /// Conditions that the caller should know about; the result stands.
     pub warnings: Vec<Warning>,
@@ -130,13 +132,14 @@ pub fn evaluate_prepared(
     let compared = options.truth.map(|truth| {
         let comparison = PoseComparison::new(mesh, camera_from_mesh, &truth, &options.symmetry)?;
         let errors = comparison.errors()?;
-        Ok((errors, LayoutErrors::of(&comparison, &errors)?))
+        let layout = options.layout.then(|| LayoutErrors::of(&comparison, &errors)).transpose()?;
+        Ok((errors, layout))
     });
     let (errors, layout) = compared.transpose()?.unzip();
     Ok(Evaluation {
         metrics,
         errors,
-        layout,
+        layout: layout.flatten(),
         warnings: warnings::about_observation(observation),
         diagnostics: EvaluationDiagnostics { initial_scale, scale_ratio, collapsed: is_collapsed(scale_ratio) },
     })

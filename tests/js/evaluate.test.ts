@@ -63,6 +63,9 @@ test("layout says how well the object occupies its place", async () => {
   assert.ok(away.layout !== null);
   assert.deepEqual([away.layout.boxIou, away.layout.isFound, away.layout.isCadAligned], [0, false, false]);
   assert.equal((await aligner.evaluate(input, truth)).layout, null);
+  const without = await aligner.evaluate(input, turned(15), { truth, layout: false });
+  assert.equal(without.layout, null);
+  assert.deepEqual(without.errors, errors);
 });
 
 test("all forms of a transform are the same transform", async () => {

@@ -50,7 +50,7 @@ export async function alignCase(
     const success: Success = { name, alignment, errors: null };
     if (truth === null) return success;
     const { transform, symmetry } = truth;
-    const { errors } = await aligner.evaluate(input, alignment, { truth: transform, symmetry });
+    const { errors } = await aligner.evaluate(input, alignment, { truth: transform, symmetry, layout: false });
     return { ...success, errors };
   } catch (error) {
     if (error instanceof UsageError) throw error;
@@ -82,7 +82,11 @@ async function alignFrames(
       if (truth === null || pose === undefined || input.mask === undefined) return null;
       const { cameraToWorld, ...frame } = input;
       const { transform, symmetry } = truth;
-      const found = await aligner.evaluate({ ...frame, mesh } as AlignInput, pose, { truth: transform, symmetry });
+      const found = await aligner.evaluate({ ...frame, mesh } as AlignInput, pose, {
+        truth: transform,
+        symmetry,
+        layout: false,
+      });
       return found.errors;
     }),
   );

@@ -81,6 +81,7 @@ export const TRACK_DEFAULTS = {
 export const EVALUATE_DEFAULTS = {
   truth: null,
   symmetry: "none",
+  layout: true,
   seed: 0,
   maxObservedPoints: 20000,
   surfaceSamples: 10000,
@@ -523,6 +524,13 @@ export const OPTIONS = {
       isNullable: false,
       default: "none",
       summary: "The object's symmetry: the rotation error is the smallest over it",
+    },
+    {
+      name: "layout",
+      kind: "boolean",
+      isNullable: false,
+      default: true,
+      summary: "Whether to compute `layout` where `truth` is given",
     },
     {
       name: "seed",

@@ -310,6 +310,11 @@ export interface EvaluateOptions {
    */
   symmetry?: SymmetryOption | undefined;
   /**
+   * Whether to compute `layout` where `truth` is given. Without it, the call takes a fraction of the time. Default
+   * `true`.
+   */
+  layout?: boolean | undefined;
+  /**
    * Seed of all random draws. The same input and seed give the same bits. Takes a whole number from 0 to 4294967295.
    * Default `0`.
    */
@@ -1309,7 +1314,7 @@ metrics: Metrics,
  */
 errors: PoseErrors | null, 
 /**
- * The errors of layout against the truth; `null` where no truth was given.
+ * The errors of layout against the truth; `null` where no truth was given, or `layout` is false.
  */
 layout: LayoutErrors | null, 
 /**
