@@ -40,35 +40,49 @@ pub(crate) fn alternatives(
     mesh: &Mesh,
     symmetry: &Symmetry,
 ) -> Result<Vec<Alternative>> {
-    within(found, search, mesh, symmetry, NOISE)
+    Listing { found, search, mesh, symmetry, likeness: None }.within(NOISE)
 }
 
-/// Like [`alternatives`], for poses whose scores are within `margin` of the first one.
-pub(crate) fn within(
-    found: &[Found],
-    search: &Search,
-    mesh: &Mesh,
-    symmetry: &Symmetry,
-    margin: f32,
-) -> Result<Vec<Alternative>> {
-    let Some((best, others)) = found.split_first() else { return Ok(Vec::new()) };
-    let turn = |a: &Found, b: &Found| angle_between(a.pose.rotation, b.pose.rotation);
-    let likely: Vec<&Found> =
-        others.iter().filter(|o| o.score.total > best.score.total - margin && turn(best, o) > MIN_TURN).collect();
-    if likely.is_empty() {
-        return Ok(Vec::new());
-    }
-    let likeness = Likeness::new(search, mesh, symmetry)?;
-    let mut kept = vec![best];
-    for other in likely {
-        if kept.len() > MOST {
-            break;
+/// The poses of a search, to be listed as alternatives within several margins.
+pub(crate) struct Listing<'a> {
+    /// The poses, best first.
+    pub found: &'a [Found],
+    /// The search that found them.
+    pub search: &'a Search,
+    /// The mesh, for its symmetry.
+    pub mesh: &'a Mesh,
+    /// The symmetry.
+    pub symmetry: &'a Symmetry,
+    /// What tells placements apart, once it was needed.
+    pub likeness: Option<Likeness>,
+}
+
+impl Listing<'_> {
+    /// As [`alternatives`], of the poses whose scores are within `margin` of the first one.
+    pub fn within(&mut self, margin: f32) -> Result<Vec<Alternative>> {
+        let Some((best, others)) = self.found.split_first() else { return Ok(Vec::new()) };
+        let turn = |a: &Found, b: &Found| angle_between(a.pose.rotation, b.pose.rotation);
+        let likely: Vec<&Found> =
+            others.iter().filter(|o| o.score.total > best.score.total - margin && turn(best, o) > MIN_TURN).collect();
+        if likely.is_empty() {
+            return Ok(Vec::new());
         }
-        if kept.iter().all(|k| turn(k, other) > MIN_TURN && !likeness.same(k, other)) {
-            kept.push(other);
+        let likeness = match self.likeness.take() {
+            Some(known) => known,
+            None => Likeness::new(self.search, self.mesh, self.symmetry)?,
+        };
+        let likeness = self.likeness.insert(likeness);
+        let mut kept = vec![best];
+        for other in likely {
+            if kept.len() > MOST {
+                break;
+            }
+            if kept.iter().all(|k| turn(k, other) > MIN_TURN && !likeness.same(k, other)) {
+                kept.push(other);
+            }
         }
+        Ok(kept.iter().skip(1).map(|other| alternative(best, other, None, self.search)).collect())
     }
-    Ok(kept.iter().skip(1).map(|other| alternative(best, other, None, search)).collect())
 }
 
 /// A pose as an alternative to the best one.
@@ -102,7 +116,7 @@ pub(crate) fn add_rivals(alternatives: &mut Vec<Alternative>, best: &Found, riva
 }
 
 /// The criterion for equivalent placements of the mesh.
-enum Likeness {
+pub(crate) enum Likeness {
     /// No two are equivalent.
     Never,
     /// Equivalent if the rotation between them is one of these.

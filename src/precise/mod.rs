@@ -46,7 +46,7 @@ use crate::geometry::similarity::Similarity;
 use crate::precise::options::{AlignOptions, ExtentAxis, SearchScope};
 use crate::progress::{Stage, Stopwatch};
 use crate::report::{Alternative, ColorReport, Counts, Effort, ScoreTerms, Solution, Uncertainty};
-use alternatives::{UNSURE, add_rivals};
+use alternatives::{Listing, UNSURE, add_rivals};
 use clean::CleanObservation;
 use color::Judgment;
 use confidence::confidence;
@@ -244,8 +244,9 @@ pub fn conclude(
         found.to_mut().insert(0, chosen);
     }
     let best = found.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
-    let listed = |margin: f32| {
-        let mut list = alternatives::within(&found, search, mesh, &options.symmetry, margin)?;
+    let mut listing = Listing { found: &found, search, mesh, symmetry: &options.symmetry, likeness: None };
+    let mut listed = |margin: f32| {
+        let mut list = listing.within(margin)?;
         color.into_iter().for_each(|color| add_rivals(&mut list, best, &color.rivals, search));
         Ok::<_, Error>(list)
     };
