@@ -1,4 +1,4 @@
-//! What is read of a mesh file: a mesh and its colours.
+//! The content of a mesh file: a mesh and its colours.
 
 use sim3align_geometry::error::Error;
 use sim3align_geometry::mesh::Mesh;

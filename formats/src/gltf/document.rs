@@ -60,12 +60,12 @@ impl Document {
         self.extensions_used.iter().chain(&self.extensions_required).any(|name| name == extension)
     }
 
-    /// Whether geometry without data is Draco-compressed.
+    /// Fails if the file uses Draco: geometry without data is then compressed with it.
     pub fn refuse_draco(&self) -> Result<()> {
         if self.uses(DRACO) { Err(compressed(DRACO)) } else { Ok(()) }
     }
 
-    /// Whether geometry without data is meshopt-compressed.
+    /// The same for meshopt.
     pub fn refuse_meshopt(&self) -> Result<()> {
         MESHOPT.iter().find(|name| self.uses(name)).map_or(Ok(()), |name| Err(compressed(name)))
     }
