@@ -21,7 +21,13 @@ export interface BopTarget {
   count: number;
 }
 
-/** What `models_info.json` says of a model, in millimetres. */
+/** The image of a target or of a result, as a key. */
+export const imageKey = ({ sceneId, imageId }: Pick<BopTarget, "sceneId" | "imageId">) => `${sceneId}/${imageId}`;
+
+/** The object and the image of a target, of a detection or of a result, as a key. */
+export const targetKey = (target: Omit<BopTarget, "count">) => `${imageKey(target)}/${target.objectId}`;
+
+/** What `models_info.json` says, in millimetres. */
 export interface BopModelInfo {
   diameterMm: number;
   /** Discrete symmetries: 16 numbers each, row by row. */

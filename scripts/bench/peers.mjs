@@ -4,8 +4,7 @@ import { availableParallelism } from "node:os";
 import { basename, join, resolve } from "node:path";
 import { buildPackage } from "../lib/package.mjs";
 import { at } from "../lib/paths.mjs";
-import { pythonWith } from "../lib/python.mjs";
-import { run } from "../lib/run.mjs";
+import { runPython } from "../lib/python.mjs";
 import { readTypedCase } from "./inputs.mjs";
 
 /** @typedef {{ method: string, case: string, seconds: number | null, error?: string }} Answered */
@@ -74,7 +73,7 @@ export async function runPeers({ cases, pairs, out, methods, python, onAnswer, .
     await writeInputs(caseFolders(cases ?? []), inputs);
     args.push("--cases", inputs);
   }
-  await runPython(args, python, (line) => onAnswer?.(JSON.parse(line)));
+  await runPython("peers", args, python, (line) => onAnswer?.(JSON.parse(line)));
   rmSync(inputs, { recursive: true, force: true });
 }
 
@@ -82,17 +81,7 @@ export async function runPeers({ cases, pairs, out, methods, python, onAnswer, .
  * Fails where a method does not recover motions that are known.
  * @param {string} [python]
  */
-export const testPeers = (python) => runPython(["--self-test"], python, console.log);
-
-/**
- * @param {readonly string[]} args
- * @param {string | undefined} program
- * @param {(line: string) => void} onLine
- */
-async function runPython(args, program, onLine) {
-  const env = { PYTHONPATH: at("scripts", "bench"), PYTHONDONTWRITEBYTECODE: "1" };
-  await run(await pythonWith("peers", program), ["-m", "peers", ...args], { env, onLine, echo: "errors" });
-}
+export const testPeers = (python) => runPython("peers", ["--self-test"], python, console.log);
 
 /**
  * Writes cases as the files of bare numbers that the Python package reads.

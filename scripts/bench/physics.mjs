@@ -7,8 +7,8 @@ import { join, resolve } from "node:path";
 import { runLab } from "../lib/lab.mjs";
 import { buildPackage } from "../lib/package.mjs";
 import { at, packageDir } from "../lib/paths.mjs";
-import { pythonWith } from "../lib/python.mjs";
-import { attempt, run } from "../lib/run.mjs";
+import { pythonWith, runPython } from "../lib/python.mjs";
+import { attempt } from "../lib/run.mjs";
 import { command, count } from "./command.mjs";
 import { markdownTable } from "./table.mjs";
 
@@ -40,7 +40,8 @@ async function main({ scenes, arranged, setSeed, folders, quality, jobs, python,
     folders === undefined
       ? await generated(root, { scenes, arranged, setSeed })
       : { given: folders.map((f) => resolve(f)) };
-  const program = await pythonWith("simulators", python);
+  // Before the scenes are exported, which takes long.
+  await pythonWith("simulators", python);
   for (const [name, list] of Object.entries(sets)) {
     const exported = join(root, "exported", name);
     await exportAll(list, exported, quality, jobs);
@@ -49,11 +50,7 @@ async function main({ scenes, arranged, setSeed, folders, quality, jobs, python,
       .map((scene) => join(exported, scene));
     /** @type {Simulated[]} */
     const results = [];
-    await run(program, ["-m", "simulators", `${SECONDS}`, ...made], {
-      env: { PYTHONPATH: at("scripts", "bench"), PYTHONDONTWRITEBYTECODE: "1" },
-      onLine: (line) => results.push(JSON.parse(line)),
-      echo: "errors",
-    });
+    await runPython("simulators", [`${SECONDS}`, ...made], python, (line) => results.push(JSON.parse(line)));
     console.log(`\n${name}: ${list.length} scenes, ${made.length} exported\n\n${tableOf(results)}`);
     if (bodies) for (const result of results) printBodies(result);
   }

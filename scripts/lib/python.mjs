@@ -31,6 +31,18 @@ export async function pythonWith(name, program = "python3") {
 }
 
 /**
+ * Runs the Python package `scripts/bench/NAME` in its environment.
+ * @param {string} name
+ * @param {readonly string[]} args
+ * @param {string | undefined} program the Python that makes the environment
+ * @param {(line: string) => void} onLine
+ */
+export async function runPython(name, args, program, onLine) {
+  const env = { PYTHONPATH: at("scripts", "bench"), PYTHONDONTWRITEBYTECODE: "1" };
+  await run(await pythonWith(name, program), ["-m", name, ...args], { env, onLine, echo: "errors" });
+}
+
+/**
  * The Python of an environment that is there; made in continuous integration only (`CI` set), if the packages are to be had
  * for its Python.
  * @param {string} name

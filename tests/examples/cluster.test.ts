@@ -75,6 +75,13 @@ interface Line {
   attempts: number;
 }
 
+/** Starts Redis, and returns it with the environment of the example's programs. */
+async function startedRedis(): Promise<{ redis: RedisServer; env: NodeJS.ProcessEnv }> {
+  const redis = await RedisServer.start(redisProgram.path, newFolder());
+  started.push(() => redis.stop());
+  return { redis, env: { REDIS_URL: redis.url, THREADS: "1", LOCK_MS: "2000" } };
+}
+
 /** Runs a program of the example to its end, and returns what it prints. */
 async function ran(script: string, args: string[], env: NodeJS.ProcessEnv): Promise<string[]> {
   const { status, stdout, stderr } = await runExample(`${name}/${script}`, args, env);
@@ -96,9 +103,7 @@ test("07: all results are there once, though a worker is killed in the middle of
   skip: redisProgram.skip,
   timeout: 240_000,
 }, async () => {
-  const redis = await RedisServer.start(redisProgram.path, newFolder());
-  started.push(() => redis.stop());
-  const env = { REDIS_URL: redis.url, THREADS: "1", LOCK_MS: "2000" };
+  const { env } = await startedRedis();
 
   const parent = newFolder();
   const folders = Array.from({ length: CASES }, (_, i) => writeCase(parent, `case-${i}`, { pose: otherPose(i) }));
@@ -162,9 +167,7 @@ test("07: cases, scenes and videos survive a Redis server that is killed, and th
   skip: redisProgram.skip,
   timeout: 240_000,
 }, async () => {
-  const redis = await RedisServer.start(redisProgram.path, newFolder());
-  started.push(() => redis.stop());
-  const env = { REDIS_URL: redis.url, THREADS: "1", LOCK_MS: "2000" };
+  const { redis, env } = await startedRedis();
   const parent = newFolder();
   const cases = [0, 1, 2, 3].map((i) => writeCase(parent, `case-${i}`, { pose: otherPose(i) }));
   const [scene, video] = [writeScene(parent, "scene"), writeVideo(parent, "video", 3)];

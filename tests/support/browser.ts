@@ -1,8 +1,7 @@
 /** A browser and a static server for its pages. */
-import { join } from "node:path";
-import { pathToFileURL } from "node:url";
 import { type Browser, type BrowserContextOptions, chromium, type Page } from "playwright-core";
 import { repository } from "./environment.js";
+import { type Server, serve } from "./static-server.js";
 
 const flags = [
   "--no-sandbox",
@@ -27,11 +26,6 @@ export const SOFTWARE = [
 /** Software rendering with WebGPU and WebGL 2. */
 export const SOFTWARE_WEBGPU = [...SOFTWARE, "--enable-features=Vulkan", "--use-vulkan=swiftshader"];
 
-interface Server {
-  url: string;
-  close(): Promise<void>;
-}
-
 /** A browser and a server of a folder. */
 export class PageTest {
   private constructor(
@@ -47,8 +41,6 @@ export class PageTest {
   static async start(folder = repository, more: readonly string[] = []): Promise<PageTest> {
     const executablePath = process.env.CHROMIUM_PATH;
     if (executablePath === undefined) throw new Error('CHROMIUM_PATH is not set: run the tests by "npm test".');
-    const module = pathToFileURL(join(repository, "scripts", "lib", "static-server.mjs")).href;
-    const { serve } = (await import(module)) as { serve(folder: string): Promise<Server> };
     const args = [
       ...flags.filter((flag) => !more.includes(`!${flag}`)),
       ...more.filter((flag) => !flag.startsWith("!")),

@@ -1,8 +1,6 @@
 /** Firefox, driven by WebDriver BiDi, and a static server for its pages. */
-import { join } from "node:path";
-import { pathToFileURL } from "node:url";
 import puppeteer, { type Browser, type Page } from "puppeteer-core";
-import { repository } from "./environment.js";
+import { type Server, serve } from "./static-server.js";
 
 const executablePath = process.env.FIREFOX_PATH;
 
@@ -10,11 +8,6 @@ const executablePath = process.env.FIREFOX_PATH;
 export const skipFirefox: string | false = executablePath
   ? false
   : "No Firefox. Remedy: install it (Debian: apt-get install firefox-esr), or name it in FIREFOX_PATH.";
-
-interface Server {
-  url: string;
-  close(): Promise<void>;
-}
 
 /** Firefox and a server of a folder. */
 export class FirefoxTest {
@@ -25,8 +18,6 @@ export class FirefoxTest {
 
   static async start(folder: string): Promise<FirefoxTest> {
     if (!executablePath) throw new Error(skipFirefox || "");
-    const module = pathToFileURL(join(repository, "scripts", "lib", "static-server.mjs")).href;
-    const { serve } = (await import(module)) as { serve(folder: string): Promise<Server> };
     // The browser first, because it may fail to launch, and a running server would keep the process alive.
     const browser = await puppeteer.launch({ browser: "firefox", executablePath, headless: true, timeout: 120_000 });
     return new FirefoxTest(browser, await serve(folder));

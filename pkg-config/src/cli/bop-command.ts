@@ -1,18 +1,17 @@
 /** `sim3align bop`: aligns the targets of a BOP dataset, writes the results file of its leaderboard, and scores it. */
 import { writeFileSync } from "node:fs";
 import { Command } from "commander";
-import { BopDataset, type BopModelInfo, type BopTarget, mostVisible } from "../bop-dataset.js";
-import { bopId, bopMaskPath, readBopImage, readBopModel } from "../bop-folder.js";
+import { BopDataset, type BopModelInfo, type BopTarget, mostVisible, targetKey } from "../bop-dataset.js";
+import { bopId, bopMaskPath, readBopImage } from "../bop-folder.js";
 import { type CaseOnDisk, read } from "../case-folder.js";
 import { fromBop } from "../conventions/bop.js";
 import type { KnownPose } from "../conventions/pose-file.js";
-import { formatsModule } from "../formats-module.js";
 import type { AlignInput } from "../index.js";
-import { readMesh } from "../input/mesh.js";
 import { precise, shared } from "./align-case.js";
 import { alignBatch, type BatchFlags } from "./align-command.js";
 import { Detections } from "./bop-detections.js";
 import { type BopEvaluation, evaluateBop } from "./bop-evaluation.js";
+import { BopModels } from "./bop-models.js";
 import { type BopInstance, BopResultsFile, METRES_PER_UNIT, readResults, resultsName } from "./bop-results.js";
 import { conventionsHelp, statusHelp } from "./case-options.js";
 import type { CaseToDo } from "./cases.js";
@@ -116,9 +115,9 @@ async function run(folder: string, flags: BopFlags): Promise<void> {
 /** A case for each instance of each target; and what they are, by their names. */
 async function casesOf(dataset: BopDataset, targets: readonly BopTarget[], flags: BopFlags) {
   const detections = flags.masks === "gt" ? undefined : new Detections(flags.masks);
-  const models = new Models(flags.models ?? (await dataset.models()));
-  const info = await dataset.info().catch(() => new Map<number, BopModelInfo>());
   const withPhoto = flags.image !== false;
+  const models = new BopModels(flags.models ?? (await dataset.models()), withPhoto);
+  const info = await dataset.info().catch(() => new Map<number, BopModelInfo>());
   const instances = new Map<string, BopInstance>();
   const cases: CaseToDo[] = [];
   const add = (
@@ -129,12 +128,12 @@ async function casesOf(dataset: BopDataset, targets: readonly BopTarget[], flags
     truth: KnownPose | null,
   ) => {
     const { sceneId, imageId, objectId } = target;
-    const name = `${sceneId}/${imageId}/${objectId}-${instance}`;
+    const name = `${targetKey(target)}-${instance}`;
     const { score: detectionScore, seconds: detectionSeconds } = detected;
     instances.set(name, { sceneId, imageId, objectId, detectionScore, detectionSeconds });
     const read = async (): Promise<CaseOnDisk> => {
       const image = await readBopImage(await dataset.scene(sceneId), bopId(imageId), withPhoto);
-      const input = { ...image, mask: await maskOf(), mesh: await models.mesh(objectId, withPhoto) } as AlignInput;
+      const input = { ...image, mask: await maskOf(), mesh: await models.mesh(objectId) } as AlignInput;
       return { name, input, files: {}, truth };
     };
     cases.push({ name, hasTruth: truth !== null, read });
@@ -147,9 +146,9 @@ async function casesOf(dataset: BopDataset, targets: readonly BopTarget[], flags
     }
     const scene = await dataset.scene(target.sceneId);
     const image = bopId(target.imageId);
+    const symmetry = symmetryOf(info.get(target.objectId));
     for (const place of mostVisible(scene, target)) {
       const entry = scene.truths.get(image)?.[place];
-      const symmetry = symmetryOf(info.get(target.objectId));
       const truth = entry === undefined ? null : { transform: fromBop(entry), symmetry };
       const maskOf = () => read("mask", bopMaskPath(scene, image, place));
       add(target, place, { score: 1, seconds: 0 }, maskOf, truth);
@@ -164,30 +163,6 @@ function symmetryOf(info: BopModelInfo | undefined): KnownPose["symmetry"] {
   return info.continuous.length > 0 ? "auto-revolution" : "auto";
 }
 
-/** The models of a dataset, each read once. */
-class Models {
-  readonly #folder: string;
-  readonly #meshes = new Map<number, Promise<object>>();
-
-  constructor(folder: string) {
-    this.#folder = folder;
-  }
-
-  mesh(objectId: number, withColors: boolean): Promise<object> {
-    const known = this.#meshes.get(objectId);
-    if (known !== undefined) return known;
-    const reading = this.#read(objectId, withColors);
-    this.#meshes.set(objectId, reading);
-    return reading;
-  }
-
-  async #read(objectId: number, withColors: boolean): Promise<object> {
-    const file = await readBopModel(this.#folder, objectId);
-    const { mesh, warnings } = await readMesh(file, () => formatsModule.load(), withColors);
-    return { ...mesh, warnings };
-  }
-}
-
 /** Scores a results file, and prints and writes the scores. */
 async function score(dataset: BopDataset, targets: readonly BopTarget[], path: string, flags: BopFlags): Promise<void> {
   const status = new StatusLine(process.stderr);
@@ -197,7 +172,7 @@ async function score(dataset: BopDataset, targets: readonly BopTarget[], path: s
   const text = `${JSON.stringify(evaluation, null, 2)}\n`;
   if (flags.scores === "-") process.stdout.write(text);
   else if (flags.scores !== undefined) writeFileSync(flags.scores, text);
-  const lines = [`${path}`, ...scoreLines(evaluation)].map((line) => `${line}\n`).join("");
+  const lines = [path, ...scoreLines(evaluation)].map((line) => `${line}\n`).join("");
   (flags.scores === "-" ? process.stderr : process.stdout).write(lines);
 }
 

@@ -1,14 +1,13 @@
 /** 2D detections in the format of BOP: masks of objects that a detector found, such as those of CNOS. */
-import { readFileSync } from "node:fs";
-import type { BopTarget } from "../bop-dataset.js";
+import { type BopTarget, targetKey } from "../bop-dataset.js";
 import { isNumber } from "../formats/json.js";
 import type { CocoRle } from "../input/types.js";
 import { failure, isRecord } from "../values.js";
-import { best } from "./bop-scores.js";
-import { UsageError } from "./usage-error.js";
+import { best, grouped } from "./bop-scores.js";
+import { textOf } from "./parse.js";
 
 /** A detection. */
-export interface Detection {
+export interface Detection extends Omit<BopTarget, "count"> {
   /** The mask. */
   mask: CocoRle;
   score: number;
@@ -18,7 +17,7 @@ export interface Detection {
 
 /** The detections of a file. */
 export class Detections {
-  readonly #of = new Map<string, Detection[]>();
+  readonly #byTarget: ReadonlyMap<string, Detection[]>;
 
   /**
    * Reads a list of `{ scene_id, image_id, category_id, score, segmentation }`, the masks in COCO's run-length encoding.
@@ -28,33 +27,29 @@ export class Detections {
   constructor(path: string) {
     const entries = jsonOf(path);
     if (!Array.isArray(entries)) throw noDetection("JSON that is no list");
-    for (const [i, entry] of entries.entries()) {
-      const { scene_id, image_id, category_id, score, segmentation, time } = isRecord(entry) ? entry : {};
-      const ids = [scene_id, image_id, category_id];
-      if (!ids.every(Number.isSafeInteger) || !isNumber(score) || !isRecord(segmentation))
-        throw noDetection(`entry ${i}`);
-      const key = ids.join("/");
-      const seconds = isNumber(time) && time > 0 ? time : 0;
-      const others = this.#of.get(key) ?? [];
-      // The runs are checked when the mask is used.
-      others.push({ mask: segmentation as unknown as CocoRle, score, seconds });
-      this.#of.set(key, others);
-    }
+    this.#byTarget = grouped(entries.map(detectionOf), targetKey);
   }
 
   /** The detections of a target with the highest scores, at most as many as there are instances. */
-  of({ sceneId, imageId, objectId, count }: BopTarget): Detection[] {
-    return best(this.#of.get(`${sceneId}/${imageId}/${objectId}`) ?? [], count);
+  of(target: BopTarget): Detection[] {
+    return best(this.#byTarget.get(targetKey(target)) ?? [], target.count);
   }
 }
 
-function jsonOf(path: string): unknown {
-  let text: string;
-  try {
-    text = readFileSync(path, "utf8");
-  } catch (error) {
-    throw new UsageError(`--masks ${path}: the file cannot be read: ${(error as Error).message}.`);
+function detectionOf(entry: unknown, index: number): Detection {
+  const { scene_id, image_id, category_id, score, segmentation, time } = isRecord(entry) ? entry : {};
+  const ids = [scene_id, image_id, category_id];
+  if (!ids.every(Number.isSafeInteger) || !isNumber(score) || !isRecord(segmentation)) {
+    throw noDetection(`entry ${index}`);
   }
+  const [sceneId, imageId, objectId] = ids as [number, number, number];
+  const seconds = isNumber(time) && time > 0 ? time : 0;
+  // The runs are checked when the mask is used.
+  return { sceneId, imageId, objectId, mask: segmentation as unknown as CocoRle, score, seconds };
+}
+
+function jsonOf(path: string): unknown {
+  const text = textOf("--masks", path);
   try {
     return JSON.parse(text);
   } catch (error) {

@@ -1,11 +1,12 @@
 /** The results file of BOP's leaderboard. */
-import { readFileSync, writeFileSync } from "node:fs";
-import type { BopTarget } from "../bop-dataset.js";
+import { writeFileSync } from "node:fs";
+import { type BopTarget, imageKey } from "../bop-dataset.js";
 import { type Matrix3, rotationOf } from "../conventions/rotation.js";
 import { sim3Of } from "../conventions/similarity.js";
 import type { Sim3 } from "../sim3.js";
 import { failure } from "../values.js";
 import type { EntrySink } from "./output.js";
+import { textOf } from "./parse.js";
 import { UsageError } from "./usage-error.js";
 import { checkWritable } from "./writable.js";
 
@@ -23,10 +24,7 @@ export interface BopInstance extends Omit<BopTarget, "count"> {
 }
 
 /** A row of a results file. */
-export interface BopResult {
-  sceneId: number;
-  imageId: number;
-  objectId: number;
+export interface BopResult extends Omit<BopTarget, "count"> {
   score: number;
   /** Camera from model, metres. */
   pose: Sim3;
@@ -60,7 +58,7 @@ export class BopResultsFile implements EntrySink {
    * @throws {@link UsageError} if the file cannot be written
    */
   constructor(path: string, instances: ReadonlyMap<string, BopInstance>) {
-    if (path !== "-") checkWritable("--csv", path);
+    checkWritable("--csv", path);
     this.#path = path;
     this.#instances = instances;
   }
@@ -68,7 +66,7 @@ export class BopResultsFile implements EntrySink {
   add(name: string, entry: object): void {
     const instance = this.#instances.get(name);
     if (instance === undefined) return;
-    const image = imageOf(instance);
+    const image = imageKey(instance);
     const { timingsMs, confidence, rotation, translation, scale } = entry as {
       timingsMs?: { total: number };
       confidence?: number | null;
@@ -94,15 +92,11 @@ export class BopResultsFile implements EntrySink {
   end(): void {
     const lines = [...this.#instances].flatMap(([name, instance]) => {
       const row = this.#rows.get(name);
-      return row === undefined ? [] : [[...row, this.#seconds.get(imageOf(instance)) ?? -1].join(",")];
+      return row === undefined ? [] : [[...row, this.#seconds.get(imageKey(instance)) ?? -1].join(",")];
     });
-    const text = [HEADER, ...lines, ""].join("\n");
-    if (this.#path === "-") process.stdout.write(text);
-    else writeFileSync(this.#path, text);
+    writeFileSync(this.#path, [HEADER, ...lines, ""].join("\n"));
   }
 }
-
-const imageOf = ({ sceneId, imageId }: BopInstance) => `${sceneId}/${imageId}`;
 
 /**
  * Reads a results file.
@@ -110,13 +104,7 @@ const imageOf = ({ sceneId, imageId }: BopInstance) => `${sceneId}/${imageId}`;
  * @throws {@link Sim3AlignError} `CORRUPT_FILE` for other content
  */
 export function readResults(path: string): BopResult[] {
-  let text: string;
-  try {
-    text = readFileSync(path, "utf8");
-  } catch (error) {
-    throw new UsageError(`--evaluate ${path}: the file cannot be read: ${(error as Error).message}.`);
-  }
-  const lines = text.split(/\r?\n/);
+  const lines = textOf("--evaluate", path).split(/\r?\n/);
   return lines.flatMap((line, i) =>
     line.trim() === "" || (i === 0 && line.includes(HEADER)) ? [] : [resultOf(line, i)],
   );

@@ -11,15 +11,13 @@ const ADD_SHARE = 0.1;
 
 /** The estimates of an object in an image, next to its true poses. */
 export interface ObjectErrors {
-  sceneId: number;
-  imageId: number;
   objectId: number;
   imageWidth: number;
   diameterMm: number;
   /** Whether each true pose is to be found; the others may be matched by none. */
   isTarget: readonly boolean[];
-  /** The estimates, with their errors relative to each true pose. */
-  estimates: readonly { score: number; errors: readonly BopErrors[] }[];
+  /** The errors of each estimate relative to each true pose; the estimate with the highest score first. */
+  estimates: readonly (readonly BopErrors[])[];
 }
 
 /** Recalls of a dataset, 0 to 1; `null` without targets. */
@@ -70,6 +68,18 @@ export function scoresOf(objects: readonly ObjectErrors[]): BopScores {
 export const best = <T extends { score: number }>(estimates: readonly T[], count: number): T[] =>
   [...estimates].sort((a, b) => b.score - a.score).slice(0, count);
 
+/** Items by their keys, in their order. */
+export function grouped<T, K>(items: readonly T[], keyOf: (item: T) => K): Map<K, T[]> {
+  const groups = new Map<K, T[]>();
+  for (const item of items) {
+    const key = keyOf(item);
+    const group = groups.get(key);
+    if (group === undefined) groups.set(key, [item]);
+    else group.push(item);
+  }
+  return groups;
+}
+
 /**
  * Number of targets that are found: each estimate, in the order of the scores, takes the free target with the smallest error
  * below the threshold.
@@ -80,7 +90,7 @@ function matches(
   threshold: number,
 ): number {
   const taken = new Set<number>();
-  for (const { errors } of best(estimates, estimates.length)) {
+  for (const errors of estimates) {
     let nearest = -1;
     let smallest = threshold;
     for (const [truth, error] of errors.entries()) {

@@ -26,7 +26,6 @@ export interface EntrySink {
 export class Output {
   readonly #json: ResultsFile | undefined;
   readonly #jsonl: JsonlFile | undefined;
-  readonly #csv: CsvFile | undefined;
   readonly #sinks: readonly EntrySink[];
   readonly #tables: NodeJS.WriteStream;
   /** Text style of the tables. */
@@ -39,8 +38,7 @@ export class Output {
     if (resume && jsonl === undefined) throw new UsageError("--resume needs --jsonl FILE, the record of what is done.");
     this.#json = json === undefined ? undefined : new ResultsFile(json);
     this.#jsonl = jsonl === undefined ? undefined : new JsonlFile(jsonl, resume);
-    this.#csv = csv === undefined ? undefined : new CsvFile(csv);
-    this.#sinks = sinks;
+    this.#sinks = csv === undefined ? sinks : [new CsvFile(csv), ...sinks];
     this.#tables = [json, jsonl, csv].includes("-") ? process.stderr : process.stdout;
     this.style = new Style(this.#tables);
     this.#tables.on("error", () => {
@@ -50,7 +48,7 @@ export class Output {
 
   /** Whether nothing will be read any more: "| head" has ended, and there is no file. */
   get isClosed(): boolean {
-    return this.#isClosed && [this.#json, this.#jsonl, this.#csv, ...this.#sinks].every((file) => file === undefined);
+    return this.#isClosed && this.#json === undefined && this.#jsonl === undefined && this.#sinks.length === 0;
   }
 
   /**
@@ -62,7 +60,6 @@ export class Output {
     if (isFinal) this.#jsonl?.add(name, entry);
     this.#json?.add(name, entry, isFinal);
     if (!isFinal) return;
-    this.#csv?.add(name, entry);
     for (const sink of this.#sinks) sink.add(name, entry);
   }
 
@@ -70,7 +67,6 @@ export class Output {
   async *resumed(): AsyncGenerator<NamedEntry, void, undefined> {
     for await (const named of this.#jsonl?.entries() ?? []) {
       this.#json?.add(named.name, named.entry);
-      this.#csv?.add(named.name, named.entry);
       for (const sink of this.#sinks) sink.add(named.name, named.entry);
       yield named;
     }
@@ -80,7 +76,6 @@ export class Output {
   end(): void {
     this.#json?.end();
     this.#jsonl?.end();
-    this.#csv?.end();
     for (const sink of this.#sinks) sink.end();
   }
 

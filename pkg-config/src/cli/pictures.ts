@@ -7,7 +7,8 @@ import type { AlignInput, MeshArrays } from "../input/types.js";
 import { drawCase, drawOverlay } from "../pictures/case-pictures.js";
 import { Shot } from "../pictures/shot.js";
 import { isRecord } from "../values.js";
-import { alternativesOf, fileName, makeFolder, ReportFolder } from "./report-folder.js";
+import { alternativesOf, fileName, ReportFolder } from "./report-folder.js";
+import { makeFolder } from "./writable.js";
 
 /** Values of the flags. */
 export interface PictureFlags {
@@ -51,13 +52,11 @@ export class Pictures {
   }
 
   /** @throws {@link UsageError} if a folder cannot be written */
-  static async open({ report, overlay, glb }: PictureFlags): Promise<Pictures> {
+  static async open(flags: PictureFlags): Promise<Pictures> {
+    const { report, overlay, glb } = flags;
     if (overlay !== undefined) makeFolder("--overlay", overlay);
     if (glb !== undefined) makeFolder("--glb", glb);
-    return new Pictures(
-      { ...(overlay && { overlay }), ...(glb && { glb }) },
-      report === undefined ? undefined : await ReportFolder.open(report),
-    );
+    return new Pictures(flags, report === undefined ? undefined : await ReportFolder.open(report));
   }
 
   /** Whether an input has to be read for pictures. */

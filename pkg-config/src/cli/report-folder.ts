@@ -1,6 +1,6 @@
 /** A report: a page, its rows, and a folder of pictures for each case. */
 import { createHash } from "node:crypto";
-import { existsSync, mkdirSync, readdirSync, statSync } from "node:fs";
+import { existsSync, readdirSync } from "node:fs";
 import { mkdir, rename, writeFile } from "node:fs/promises";
 import { basename, join, resolve } from "node:path";
 import type { CasePictures } from "../pictures/case-pictures.js";
@@ -9,6 +9,7 @@ import { isRecord } from "../values.js";
 import { LineFile } from "./line-file.js";
 import { reportHtml } from "./report-html.js";
 import { UsageError } from "./usage-error.js";
+import { makeFolder } from "./writable.js";
 
 type Entry = Readonly<Record<string, unknown>>;
 
@@ -67,19 +68,6 @@ export class ReportFolder {
 
   end(): void {
     this.#rows.end();
-  }
-}
-
-/**
- * Creates a folder for output.
- * @throws {@link UsageError}
- */
-export function makeFolder(flag: string, path: string): void {
-  try {
-    if (statSync(path, { throwIfNoEntry: false })?.isFile()) throw new Error("it is a file");
-    mkdirSync(path, { recursive: true });
-  } catch (error) {
-    throw new UsageError(`${flag} ${path}: the folder cannot be made: ${(error as Error).message}.`);
   }
 }
 

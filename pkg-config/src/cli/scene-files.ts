@@ -16,9 +16,8 @@ import { toUsd } from "../simulators/usd.js";
 import { withoutUndefined } from "../values.js";
 import { fixed } from "./number.js";
 import { number } from "./parse.js";
-import { makeFolder } from "./report-folder.js";
 import { UsageError } from "./usage-error.js";
-import { checkWritable } from "./writable.js";
+import { checkWritable, makeFolder } from "./writable.js";
 
 /** Values of the flags. */
 export interface SceneFileFlags {

@@ -1,5 +1,5 @@
-/** Output files, checked before the work whose results they get. */
-import { accessSync, constants, statSync, writeSync } from "node:fs";
+/** Output files and folders, checked before the work whose results they get. */
+import { accessSync, constants, mkdirSync, statSync, writeSync } from "node:fs";
 import { dirname } from "node:path";
 import { UsageError } from "./usage-error.js";
 
@@ -19,6 +19,20 @@ export function checkWritable(flag: string, path: string): boolean {
   } catch (error) {
     if (error instanceof UsageError) throw error;
     throw new UsageError(`${flag} ${path}: the file cannot be written: ${(error as Error).message}.`);
+  }
+}
+
+/**
+ * Creates a folder for output.
+ * @param flag the flag that names the folder, for errors
+ * @throws {@link UsageError}
+ */
+export function makeFolder(flag: string, path: string): void {
+  try {
+    if (statSync(path, { throwIfNoEntry: false })?.isFile()) throw new Error("it is a file");
+    mkdirSync(path, { recursive: true });
+  } catch (error) {
+    throw new UsageError(`${flag} ${path}: the folder cannot be made: ${(error as Error).message}.`);
   }
 }
 

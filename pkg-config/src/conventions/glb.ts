@@ -118,12 +118,13 @@ export const bytesOf = (array: Float32Array | Uint32Array) =>
   new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
 
 /** The least and the largest coordinates, as accessors of positions need them. */
-export function bounds(vertices: Float32Array): { min: number[]; max: number[] } {
+export function bounds(vertices: ArrayLike<number>): { min: number[]; max: number[] } {
   const [min, max] = [Array<number>(3).fill(Number.POSITIVE_INFINITY), Array<number>(3).fill(Number.NEGATIVE_INFINITY)];
-  vertices.forEach((x, i) => {
+  for (let i = 0; i < vertices.length; i++) {
+    const x = vertices[i] as number;
     min[i % 3] = Math.min(min[i % 3] ?? x, x);
     max[i % 3] = Math.max(max[i % 3] ?? x, x);
-  });
+  }
   return { min, max };
 }
 

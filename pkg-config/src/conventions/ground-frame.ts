@@ -1,15 +1,9 @@
 /** The frame of a scene: the ground, and the directions over it. */
-import type { Plane } from "../scene/types.js";
 import { finite, positive, record, type Vector3, vector3 } from "../values.js";
-import { dot } from "./rotation.js";
+import { cross, dot } from "./rotation.js";
 
 export const scaled = (a: Vector3, s: number): Vector3 => [a[0] * s, a[1] * s, a[2] * s];
 export const minus = (a: Vector3, b: Vector3): Vector3 => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-const cross = (a: Vector3, b: Vector3): Vector3 => [
-  a[1] * b[2] - a[2] * b[1],
-  a[2] * b[0] - a[0] * b[2],
-  a[0] * b[1] - a[1] * b[0],
-];
 const unit = (a: Vector3): Vector3 => scaled(a, 1 / Math.sqrt(dot(a, a)));
 
 /** The mean of points; the origin of none. */
@@ -33,7 +27,10 @@ export interface GroundFrame {
  * The frame of a scene on a plane. Without one, up is that of the image, and the origin is the camera.
  * @throws {@link Sim3AlignError} for an invalid plane
  */
-export function groundFrame(support: Plane | null, centers: readonly Vector3[]): GroundFrame {
+export function groundFrame(
+  support: { normal: ArrayLike<number>; d: number } | null,
+  centers: readonly Vector3[],
+): GroundFrame {
   if (support === null) return { right: [1, 0, 0], up: [0, -1, 0], back: [0, 0, -1], origin: [0, 0, 0] };
   record("options.support", support, "{ normal, d }");
   const normal = vector3("options.support.normal", support.normal);

@@ -7,6 +7,13 @@ export type Matrix3 = readonly [number, number, number, number, number, number, 
 /** The dot product. */
 export const dot = (a: Readonly<Vector3>, b: Readonly<Vector3>): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
+/** The cross product. */
+export const cross = (a: Readonly<Vector3>, b: Readonly<Vector3>): Vector3 => [
+  a[1] * b[2] - a[2] * b[1],
+  a[2] * b[0] - a[0] * b[2],
+  a[0] * b[1] - a[1] * b[0],
+];
+
 /** A matrix whose entries are computed from row and column. */
 const matrixOf = (entry: (row: 0 | 1 | 2, column: 0 | 1 | 2) => number): Matrix3 => [
   ...([entry(0, 0), entry(0, 1), entry(0, 2)] as const),
@@ -84,13 +91,15 @@ export function rotationFromQuaternion(argument: string, quaternion: unknown): M
     const remedy = "The identity is x, y, z, w = 0, 0, 0, 1.";
     throw failure("INVALID_TRANSFORM", argument, `[${numbers.join(", ")}]`, "a quaternion other than 0", remedy);
   }
-  const [x, y, z, w] = numbers.map((q) => q / length) as Quaternion;
-  return [
-    ...([1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)] as const),
-    ...([2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)] as const),
-    ...([2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)] as const),
-  ];
+  return rotationOfUnit(numbers.map((q) => q / length) as Quaternion);
 }
+
+/** The rotation matrix of a unit quaternion. */
+export const rotationOfUnit = ([x, y, z, w]: Quaternion): Matrix3 => [
+  ...([1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)] as const),
+  ...([2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)] as const),
+  ...([2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)] as const),
+];
 
 /** A rotation as a unit quaternion x, y, z, w with w ≥ 0. */
 export function quaternionOf(m: Matrix3): Quaternion {

@@ -1,7 +1,6 @@
 /** Export of a whole scene as one GLB. */
 import { invalidArgument } from "../error.js";
 import type { MeshArrays } from "../input/types.js";
-import type { Plane } from "../scene/types.js";
 import type { Sim3Like } from "../sim3.js";
 import { flattened, isRecord, optionsOf, positive, record, type Vector3 } from "../values.js";
 import { bounds, bytesOf, glbOfParts, partsOf } from "./glb.js";
@@ -74,9 +73,8 @@ export function exportSceneGlb(objects: readonly SceneGlbObject[], options: Scen
 }
 
 /** The turn and the shift from the OpenCV camera frame to that of the file. */
-function worldFromCamera(support: SceneGlbOptions["support"] & (object | null), centers: readonly Vector3[]) {
-  if (support === null) return { rotation: [1, 0, 0, 0], translation: [0, 0, 0] };
-  const { right, up, back, origin } = groundFrame(support as Plane, centers);
+function worldFromCamera(support: Parameters<typeof groundFrame>[0], centers: readonly Vector3[]) {
+  const { right, up, back, origin } = groundFrame(support, centers);
   const [x, y, z] = [right, up, back].map((row) => -dot(row, origin)) as Vector3;
   return { rotation: quaternionOf([...right, ...up, ...back]), translation: [x, y, z] };
 }

@@ -29,11 +29,11 @@ function encoder(isFloat: boolean, space: ColorSpace): (value: number) => number
   return isFloat ? (value) => Math.max(0, Math.min(255, Math.floor(value * 255 + 0.5))) || 0 : (value) => value;
 }
 
-/**
- * The linear light of an sRGB value, 0 to 1. Rounded to 32 bits: `Math.pow` may differ by the last of 53 bits between
- * engines.
- */
-export const linear = (x: number) => Math.fround(x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
+/** The linear light of an sRGB value, 0 to 1. `Math.pow` may differ by the last of 53 bits between engines. */
+export const lightOf = (x: number) => (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
+
+/** The same, rounded to 32 bits, in which all engines agree. */
+export const linear = (x: number) => Math.fround(lightOf(x));
 
 /** The linear light halfway between adjacent sRGB codes. */
 const bounds = Array.from({ length: 255 }, (_, code) => linear((code + 0.5) / 255));

@@ -6,7 +6,7 @@ import { type SpaceJson, spaceOf } from "./space.js";
 import { boxOf, View } from "./view.js";
 
 /** Size of the pictures, pixels. */
-export const PICTURE = { width: 440, height: 330 };
+const PICTURE = { width: 440, height: 330 };
 const THUMBNAIL = { width: 160, height: 120 };
 /** The surroundings that a picture shows, as a multiple of the object's box. */
 const MARGIN = 1.5;
@@ -47,13 +47,14 @@ export async function drawCase(shot: Shot, pose: Matrix, alternatives: readonly 
     view.left,
     view.top,
   );
+  const smallGround = ground(shot, small);
   for (const [k, other] of alternatives.entries()) {
     const drawn = await shot.render(small, other);
-    pictures[`alternative-${k + 1}`] = over(ground(shot, small), shaded(drawn, small, small.camera(shot.camera)));
+    pictures[`alternative-${k + 1}`] = over(smallGround, shaded(drawn, small, small.camera(shot.camera)));
   }
   const thumbnail = await shot.render(small, pose);
   const smallMask = small.sampled(mask, width, height);
-  pictures.thumbnail = over(ground(shot, small), outlines(smallMask, thumbnail, small));
+  pictures.thumbnail = over(smallGround, outlines(smallMask, thumbnail, small));
   const encoded = Object.entries(pictures).map(
     async ([name, picture]) => [`${name}.png`, await pngOf(picture)] as const,
   );
@@ -61,7 +62,7 @@ export async function drawCase(shot: Shot, pose: Matrix, alternatives: readonly 
     files: Object.fromEntries(await Promise.all(encoded)),
     limitMm: 1000 * limitM,
     isPhoto: shot.photo !== undefined,
-    space: spaceOf(shot, view, seen, pose),
+    space: spaceOf(shot, pose, { view, measured, picture: seen }),
   };
 }
 

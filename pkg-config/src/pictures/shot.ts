@@ -1,7 +1,8 @@
 /** A shot: an observation and a mesh, decoded for pictures of a pose. */
+import { resizeMask } from "../conventions/resize.js";
 import { coreModule } from "../core.js";
 import type { Pinhole } from "../formats/pinhole.js";
-import { nearest } from "../formats/pixels.js";
+import type { MaskPixels } from "../formats/pixels.js";
 import { formatsModule } from "../formats-module.js";
 import type { Photo } from "../input/colors.js";
 import { resolveInput } from "../input/resolve.js";
@@ -17,8 +18,8 @@ export class Shot {
     readonly width: number,
     readonly height: number,
     readonly camera: Pinhole,
-    /** Of the size of the depth map. */
-    readonly mask: Uint8Array,
+    /** Of the size of the depth map; not 0 in the object. */
+    readonly mask: MaskPixels,
     readonly photo: Photo | undefined,
     readonly mesh: CoreMesh,
   ) {}
@@ -31,13 +32,10 @@ export class Shot {
     const { core } = await resolveInput(input, () => formatsModule.load(), nextMeshId());
     const { depth = new Float32Array(), mask, mesh, image } = core;
     const [width, height] = [Number(core.width), Number(core.height)];
-    const [columns, rows] = [core.maskWidth ?? width, core.maskHeight ?? height];
     const scale = Number(core.depthScale ?? (depth instanceof Uint16Array ? 0.001 : 1));
     const metres = Float32Array.from(depth, (z) => (z > 0 && Number.isFinite(z) ? z * scale : 0));
-    const inside = Uint8Array.from({ length: width * height }, (_, i) => {
-      const [u, v] = [i % width, Math.floor(i / width)];
-      return mask[nearest(v, height, rows) * columns + nearest(u, width, columns)] === 0 ? 0 : 1;
-    });
+    const given = { data: mask, width: core.maskWidth ?? width, height: core.maskHeight ?? height };
+    const { data: inside } = resizeMask(given, { width, height });
     return new Shot(metres, width, height, core.camera as Pinhole, inside, image, mesh);
   }
 

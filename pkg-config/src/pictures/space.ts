@@ -1,6 +1,7 @@
 /** The mesh and the observed points for a view in 3D, in a form that is small in a file. */
+import { bounds } from "../conventions/glb.js";
+import { minus } from "../conventions/ground-frame.js";
 import { moved, similarityOf } from "../conventions/similarity.js";
-import { depthColour } from "./colours.js";
 import type { Picture } from "./png.js";
 import type { Shot } from "./shot.js";
 import type { View } from "./view.js";
@@ -30,24 +31,24 @@ export interface SpaceJson {
 const base64 = (array: Int16Array | Uint16Array | Uint8Array) =>
   Buffer.from(array.buffer, array.byteOffset, array.byteLength).toString("base64");
 
+/** What a view shows: the depth in it, metres, and a picture of it. */
+interface Seen {
+  view: View;
+  measured: Float32Array;
+  picture: Picture;
+}
+
 /** The posed mesh, simplified, and the points of a view in the colours of a picture of it. */
-export function spaceOf(shot: Shot, view: View, picture: Picture, matrix: readonly number[]): SpaceJson {
+export function spaceOf(shot: Shot, matrix: readonly number[], seen: Seen): SpaceJson {
   const mesh = simplified(shot, matrix);
-  const bounds = [0, 1, 2].map((axis) => {
-    let [low, high] = [Number.POSITIVE_INFINITY, Number.NEGATIVE_INFINITY];
-    for (let i = axis; i < mesh.vertices.length; i += 3) {
-      low = Math.min(low, mesh.vertices[i] as number);
-      high = Math.max(high, mesh.vertices[i] as number);
-    }
-    return [low, high] as const;
-  });
-  const center = bounds.map(([low, high]) => (low + high) / 2) as SpaceJson["center"];
-  const size = Math.max(...bounds.map(([low, high]) => high - low), 1e-6);
+  const { min, max } = bounds(mesh.vertices);
+  const center = min.map((low, axis) => (low + (max[axis] as number)) / 2) as SpaceJson["center"];
+  const size = Math.max(...min.map((low, axis) => (max[axis] as number) - low), 1e-6);
   // Points farther than two sizes from the object are left out.
   const stepM = (2.5 * size) / STEPS;
   const quantised = (numbers: ArrayLike<number>) =>
     Int16Array.from(numbers, (x, i) => Math.round((x - (center[i % 3] as number)) / stepM));
-  const { points, colours } = observed(shot, view, picture, center, 2 * size);
+  const { points, colours } = observed(shot, seen, center, 2 * size);
   return {
     ...{ center, stepM, vertices: base64(quantised(mesh.vertices)), triangles: base64(mesh.triangles) },
     ...{ points: base64(quantised(points)), colours: base64(Uint8Array.from(colours)) },
@@ -59,8 +60,7 @@ function simplified({ mesh }: Shot, matrix: readonly number[]): { vertices: Floa
   const { positions } = mesh;
   const indices = mesh.indices ?? Uint32Array.from({ length: positions.length / 3 }, (_, i) => i);
   const pose = similarityOf({ matrix });
-  const low = [0, 1, 2].map((axis) => extreme(positions, axis, Math.min));
-  const high = [0, 1, 2].map((axis) => extreme(positions, axis, Math.max));
+  const { min: low, max: high } = bounds(positions);
   const cell = Math.max(...high.map((x, axis) => x - (low[axis] as number)), 1e-30) / CELLS;
   const cells = new Map<number, number>();
   const sums: number[] = [];
@@ -100,30 +100,26 @@ function simplified({ mesh }: Shot, matrix: readonly number[]): { vertices: Floa
   return { vertices, triangles: Uint16Array.from(triangles) };
 }
 
-function extreme(positions: Float32Array, axis: number, of: (a: number, b: number) => number): number {
-  let found = positions[axis] as number;
-  for (let i = axis; i < positions.length; i += 3) found = of(found, positions[i] as number);
-  return found;
-}
-
 /** The observed points of a view near a place. */
-function observed(shot: Shot, view: View, picture: Picture, center: readonly number[], reachM: number) {
+function observed(shot: Shot, { view, measured, picture }: Seen, center: SpaceJson["center"], reachM: number) {
   const { fx, fy, cx, cy } = view.camera(shot.camera);
-  const depth = view.sampled(shot.depth, shot.width, shot.height);
+  const pointAt = (i: number): [x: number, y: number, z: number] => {
+    const z = measured[i] as number;
+    return [((i % view.width) - cx) * (z / fx), (Math.floor(i / view.width) - cy) * (z / fy), z];
+  };
   const near: number[] = [];
-  depth.forEach((z, i) => {
+  measured.forEach((z, i) => {
     if (z === 0) return;
-    const [x, y] = [((i % view.width) - cx) * (z / fx), (Math.floor(i / view.width) - cy) * (z / fy)];
-    if (Math.hypot(x - (center[0] ?? 0), y - (center[1] ?? 0), z - (center[2] ?? 0)) < reachM) near.push(i);
+    const [dx, dy, dz] = minus(pointAt(i), center);
+    if (Math.hypot(dx, dy, dz) < reachM) near.push(i);
   });
   const points: number[] = [];
   const colours: number[] = [];
   const step = Math.max(1, near.length / MAX_POINTS);
   for (let k = 0; k < near.length; k += step) {
     const i = near[Math.floor(k)] as number;
-    const z = depth[i] as number;
-    points.push(((i % view.width) - cx) * (z / fx), (Math.floor(i / view.width) - cy) * (z / fy), z);
-    colours.push(...(picture.data.subarray(3 * i, 3 * i + 3) ?? depthColour(null)));
+    points.push(...pointAt(i));
+    colours.push(...picture.data.subarray(3 * i, 3 * i + 3));
   }
   return { points, colours };
 }

@@ -5,13 +5,12 @@ type Child = Node | string | null;
 /** An element with attributes and children. Text is never parsed as HTML. */
 export function element<K extends keyof HTMLElementTagNameMap>(
   tag: K,
-  attributes: Readonly<Record<string, string | number | boolean | undefined>> = {},
+  attributes: Readonly<Record<string, string | number | undefined>> = {},
   ...children: Child[]
 ): HTMLElementTagNameMap[K] {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
-    if (value === undefined || value === false) continue;
-    made.setAttribute(name, value === true ? "" : String(value));
+    if (value !== undefined) made.setAttribute(name, String(value));
   }
   made.append(...children.filter((child) => child !== null));
   return made;

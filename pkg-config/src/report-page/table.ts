@@ -127,7 +127,7 @@ export class Table {
     const spacer = (rows: number) =>
       element(
         "tr",
-        { "aria-hidden": true },
+        { "aria-hidden": "true" },
         element("td", { colspan: width, class: "spacer", style: `height:${rows * ROW}px` }),
       );
     const rows = this.#rows.slice(first, end).map((row, i) => this.#row(row, first + i));

@@ -1,7 +1,7 @@
 /** Scenes as MJCF, the format of MuJoCo. */
 import { wxyzFromXyzw } from "../conventions/rotation.js";
-import type { SimulatorBody, SimulatorScene } from "./scene.js";
-import { objOf, spaced } from "./text.js";
+import { overlappingPairs, type SimulatorBody, type SimulatorScene, viewRotation } from "./scene.js";
+import { meshFiles, spaced } from "./text.js";
 
 /** Files by their paths, as text. */
 export type TextFiles = Record<string, string>;
@@ -13,17 +13,11 @@ export type TextFiles = Record<string, string>;
  * for (const [path, text] of Object.entries(toMjcf(scene))) await writeFile(path, text);
  */
 export function toMjcf({ bodies, hasGround, camera }: SimulatorScene): TextFiles {
-  const files: TextFiles = {};
-  const assets: string[] = [];
-  for (const { name, mesh, parts } of bodies) {
-    files[`meshes/${name}.obj`] = objOf(mesh);
+  const assets = bodies.flatMap(({ name, parts }) => [
     // Its inertia is not used: surfaces of generated meshes need not be closed.
-    assets.push(`<mesh name="${name}" file="${name}.obj" inertia="shell"/>`);
-    for (const [k, part] of parts.entries()) {
-      files[`meshes/${name}_${k}.obj`] = objOf(part);
-      assets.push(`<mesh name="${name}_${k}" file="${name}_${k}.obj"/>`);
-    }
-  }
+    `<mesh name="${name}" file="${name}.obj" inertia="shell"/>`,
+    ...parts.map((_, k) => `<mesh name="${name}_${k}" file="${name}_${k}.obj"/>`),
+  ]);
   const world: string[] = [`<light directional="true" pos="0 0 3" dir="0.3 0.4 -1"/>`];
   if (hasGround) {
     assets.push(
@@ -33,18 +27,14 @@ export function toMjcf({ bodies, hasGround, camera }: SimulatorScene): TextFiles
     world.push(`<geom name="ground" type="plane" size="2 2 0.05" material="ground"/>`);
   }
   if (camera !== null) {
-    const [x, y, z, w] = camera.rotation;
-    // Cameras of MuJoCo look along −z, with y up: half a turn about x.
-    const quaternion = wxyzFromXyzw([w, z, -y, -x]);
+    const quaternion = wxyzFromXyzw(viewRotation(camera));
     world.push(
       `<camera name="camera" pos="${spaced(camera.position)}" quat="${spaced(quaternion)}" fovy="${spaced([camera.fovYDeg])}" resolution="${Math.round(camera.width)} ${Math.round(camera.height)}"/>`,
     );
   }
   world.push(...bodies.flatMap(bodyLines));
-  const excluded = bodies.flatMap(({ name, inside }, i) =>
-    inside.filter((k) => k > i).map((k) => `<exclude body1="${name}" body2="${bodies[k]?.name}"/>`),
-  );
-  files["scene.xml"] = `<mujoco model="scene">
+  const excluded = overlappingPairs(bodies).map(([one, other]) => `<exclude body1="${one}" body2="${other}"/>`);
+  const text = `<mujoco model="scene">
   <compiler angle="radian" meshdir="meshes"/>
   <option integrator="implicitfast" cone="elliptic" impratio="10">
     <flag multiccd="enable"/>
@@ -61,7 +51,7 @@ ${section("asset", assets)}
 ${section("worldbody", world)}
 ${excluded.length > 0 ? `${section("contact", excluded)}\n` : ""}</mujoco>
 `;
-  return files;
+  return { ...meshFiles(bodies), "scene.xml": text };
 }
 
 function bodyLines(body: SimulatorBody): string[] {

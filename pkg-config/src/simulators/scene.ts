@@ -1,7 +1,7 @@
 /** Scenes for simulators: rigid bodies at rest, the ground and the camera, in a frame with z up. */
 import { groundFrame } from "../conventions/ground-frame.js";
 import { meshOf } from "../conventions/mesh.js";
-import { entry, type Matrix3, product, quaternionOf, turned } from "../conventions/rotation.js";
+import { type Matrix3, product, quaternionOf, rotationOfUnit, transposed, turned } from "../conventions/rotation.js";
 import { composed, type Similarity, sim3Of, similarityOf } from "../conventions/similarity.js";
 import { invalidArgument } from "../error.js";
 import type { MeshArrays } from "../input/types.js";
@@ -231,16 +231,22 @@ function meanColour(mesh: SimulatorObject["mesh"]): Vector3 {
 }
 
 /** The inertia about the centre of mass, in the axes of the body: rows. */
-export function inertiaOf({ principalMoments, principalAxes: [x, y, z, w] }: SimulatorBody): Matrix3 {
-  const axes: Matrix3 = [
-    ...[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-    ...[2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-    ...[2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-  ] as unknown as Matrix3;
-  const [a, b, c] = principalMoments;
-  const scaled = [0, 1, 2].flatMap((i) =>
-    [a, b, c].map((m, j) => m * entry(axes, i as 0, j as 0)),
-  ) as unknown as Matrix3;
-  const transposed = [0, 1, 2].flatMap((i) => [0, 1, 2].map((j) => entry(axes, j as 0, i as 0))) as unknown as Matrix3;
-  return product(scaled, transposed);
+export function inertiaOf({ principalMoments, principalAxes }: SimulatorBody): Matrix3 {
+  const axes = rotationOfUnit(principalAxes);
+  const scaled = axes.map((x, i) => x * (principalMoments[i % 3] as number)) as unknown as Matrix3;
+  return product(scaled, transposed(axes));
 }
+
+/** World from the view of MuJoCo's and USD's cameras, which look along −z, with y up: half a turn about x. */
+export const viewRotation = ({ rotation: [x, y, z, w] }: SimulatorScene["camera"] & object): Quaternion => [
+  w,
+  z,
+  -y,
+  -x,
+];
+
+/** The pairs of bodies of which one is partly inside the other, by name. */
+export const overlappingPairs = (bodies: readonly SimulatorBody[]): [one: string, other: string][] =>
+  bodies.flatMap(({ name, inside }, i) =>
+    inside.flatMap((k): [string, string][] => (k > i ? [[name, (bodies[k] as SimulatorBody).name]] : [])),
+  );

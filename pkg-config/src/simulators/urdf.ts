@@ -1,8 +1,8 @@
 /** Scenes as URDF: a file per body, and a list of their poses. */
 import { entry } from "../conventions/rotation.js";
 import type { TextFiles } from "./mjcf.js";
-import { inertiaOf, type SimulatorBody, type SimulatorScene } from "./scene.js";
-import { objOf, spaced } from "./text.js";
+import { inertiaOf, overlappingPairs, type SimulatorBody, type SimulatorScene } from "./scene.js";
+import { meshFiles, spaced } from "./text.js";
 
 /** A program that loads the files into PyBullet. */
 const loader = `"""Loads the scene into PyBullet: \`python load.py\` shows it; load(client) returns the bodies by name."""
@@ -43,25 +43,17 @@ if __name__ == "__main__":
  * x, y, z, w, z up), and `load.py` for PyBullet.
  */
 export function toUrdf({ bodies, hasGround, camera }: SimulatorScene): TextFiles {
-  const files: TextFiles = { "load.py": loader };
-  for (const body of bodies) {
-    const { name, mesh, parts } = body;
-    files[`meshes/${name}.obj`] = objOf(mesh);
-    for (const [k, part] of parts.entries()) files[`meshes/${name}_${k}.obj`] = objOf(part);
-    files[`${name}.urdf`] = urdfOf(body);
-  }
+  const files: TextFiles = { "load.py": loader, ...meshFiles(bodies) };
+  for (const body of bodies) files[`${body.name}.urdf`] = urdfOf(body);
   if (hasGround) files["ground.urdf"] = ground;
   const entries = bodies.map(({ name, position, rotation, isFixed }) => ({
     ...{ name, file: `${name}.urdf`, position, quaternion: rotation, fixed: isFixed },
   }));
   const floor = { name: "ground", file: "ground.urdf", position: [0, 0, 0], quaternion: [0, 0, 0, 1], fixed: true };
-  const withoutCollision = bodies.flatMap(({ name, inside }, i) =>
-    inside.filter((k) => k > i).map((k) => [name, bodies[k]?.name]),
-  );
   const scene = {
     gravity: [0, 0, -9.81],
     bodies: hasGround ? [floor, ...entries] : entries,
-    withoutCollision,
+    withoutCollision: overlappingPairs(bodies),
     camera:
       camera === null
         ? null
@@ -95,12 +87,12 @@ function urdfOf(body: SimulatorBody): string {
 }
 
 const plate = `<origin xyz="0 0 -0.5" rpy="0 0 0"/><geometry><box size="10 10 1"/></geometry>`;
-const ground = `${robot("ground", [
+const ground = robot("ground", [
   contact,
   `<inertial><mass value="0"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial>`,
   `<visual>${plate}<material name="grey"><color rgba="0.8 0.82 0.84 1"/></material></visual>`,
   `<collision>${plate}</collision>`,
-])}`;
+]);
 
 function robot(name: string, lines: readonly string[]): string {
   return `<?xml version="1.0"?>\n<robot name="${name}">\n  <link name="${name}">\n${lines.map((line) => `    ${line}\n`).join("")}  </link>\n</robot>\n`;

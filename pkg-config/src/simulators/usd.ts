@@ -1,10 +1,13 @@
 /** Scenes as USD, with the schemas of UsdPhysics. */
-import type { SimulatorBody, SimulatorScene } from "./scene.js";
+import { bounds } from "../conventions/glb.js";
+import { wxyzFromXyzw } from "../conventions/rotation.js";
+import { lightOf } from "../input/colors.js";
+import { type SimulatorBody, type SimulatorScene, viewRotation } from "./scene.js";
 import { spaced } from "./text.js";
 
 const tuple = (numbers: ArrayLike<number>) => `(${spaced(numbers).replaceAll(" ", ", ")})`;
 /** Quaternions of USD begin with w. */
-const quaternion = ([x = 0, y = 0, z = 0, w = 1]: ArrayLike<number> & Iterable<number>) => tuple([w, x, y, z]);
+const quaternion = (xyzw: ArrayLike<number>) => tuple(wxyzFromXyzw(xyzw));
 
 /** Reach of the ground, metres. */
 const REACH = 5;
@@ -46,8 +49,7 @@ export function toUsd({ bodies, hasGround, camera }: SimulatorScene): string {
     );
   }
   if (camera !== null) {
-    const [x, y, z, w] = camera.rotation;
-    // Apertures are in tenths of a unit; cameras look along −z, with y up: half a turn about x.
+    // Apertures are in tenths of a unit.
     const vertical = 24;
     const focal = vertical / 2 / Math.tan((camera.fovYDeg * Math.PI) / 360);
     prims.push(`def Camera "camera"
@@ -56,7 +58,7 @@ export function toUsd({ bodies, hasGround, camera }: SimulatorScene): string {
     float horizontalAperture = ${spaced([(vertical * camera.width) / camera.height])}
     float verticalAperture = ${vertical}
     float2 clippingRange = (0.01, 100)
-${placement(camera.position, [w, z, -y, -x])}
+${placement(camera.position, viewRotation(camera))}
 }`);
   }
   const names = bodies.map(({ name }) => name);
@@ -102,9 +104,7 @@ function bodyPrim(body: SimulatorBody, names: readonly string[]): string {
       [`uniform token physics:approximation = "convexHull"`, `uniform token purpose = "guide"`],
     ),
   );
-  const applied =
-    schemas.length === 0 ? "" : ` (\n    prepend apiSchemas = [${schemas.map((s) => `"${s}"`).join(", ")}]\n)`;
-  return `def Xform "${name}"${applied}
+  return `def Xform "${name}"${applied(schemas)}
 {
 ${properties.join("")}${placement(position, rotation)}
 
@@ -112,7 +112,11 @@ ${indented([mesh("surface", body.mesh, colour, [], []), ...colliders].join("\n\n
 }`;
 }
 
-const placement = (position: ArrayLike<number>, rotation: ArrayLike<number> & Iterable<number>) =>
+/** The schemas of a prim, which stand after its name. */
+const applied = (schemas: readonly string[]) =>
+  schemas.length === 0 ? "" : ` (\n    prepend apiSchemas = [${schemas.map((s) => `"${s}"`).join(", ")}]\n)`;
+
+const placement = (position: ArrayLike<number>, rotation: ArrayLike<number>) =>
   `    double3 xformOp:translate = ${tuple(position)}
     quatd xformOp:orient = ${quaternion(rotation)}
     uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:orient"]`;
@@ -127,21 +131,17 @@ function mesh(
   const points = Array.from({ length: positions.length / 3 }, (_, i) =>
     [0, 1, 2].map((k) => positions[3 * i + k] as number),
   );
-  const bounds = [Math.min, Math.max].map((of) =>
-    [0, 1, 2].map((k) => points.reduce((all, p) => of(all, p[k] as number), points[0]?.[k] ?? 0)),
-  );
+  const { min, max } = bounds(positions);
   // Colours of USD are proportional to light.
-  const linear = colour.map((x) => (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4));
-  const applied =
-    schemas.length === 0 ? "" : ` (\n    prepend apiSchemas = [${schemas.map((s) => `"${s}"`).join(", ")}]\n)`;
-  return `def Mesh "${name}"${applied}
+  const light = colour.map(lightOf);
+  return `def Mesh "${name}"${applied(schemas)}
 {
 ${properties.map((line) => `    ${line}\n`).join("")}    uniform bool doubleSided = 1
-    float3[] extent = [${bounds.map(tuple).join(", ")}]
+    float3[] extent = [${tuple(min)}, ${tuple(max)}]
     int[] faceVertexCounts = [${Array.from({ length: indices.length / 3 }, () => 3).join(", ")}]
     int[] faceVertexIndices = [${Array.from(indices).join(", ")}]
     point3f[] points = [${points.map(tuple).join(", ")}]
-    color3f[] primvars:displayColor = [${tuple(linear)}]
+    color3f[] primvars:displayColor = [${tuple(light)}]
     uniform token subdivisionScheme = "none"
 }`;
 }

@@ -1,5 +1,5 @@
 /** Colours at points of a surface. */
-import { dot } from "../conventions/rotation.js";
+import { cross, dot } from "../conventions/rotation.js";
 import { rgbOf } from "../input/colors.js";
 import type { ColorSamples } from "../prepared-mesh.js";
 import type { Vector3 } from "../values.js";
@@ -60,6 +60,5 @@ function triangleOf(positions: Float32Array, indices: Uint32Array, t: number) {
     return [positions[first], positions[first + 1], positions[first + 2]] as Vector3;
   }) as [Vector3, Vector3, Vector3];
   const [u, v] = [b, c].map((p) => p.map((x, axis) => x - (a[axis] as number))) as [Vector3, Vector3];
-  const normal: Vector3 = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-  return { a, b, c, normal };
+  return { a, b, c, normal: cross(u, v) };
 }
