@@ -2,7 +2,6 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { pathToFileURL } from "node:url";
 import { zipSync } from "fflate";
 import type { Page } from "playwright-core";
 import { createAligner } from "sim3align";
@@ -11,11 +10,13 @@ import { repository } from "../support/environment.js";
 import { type Files, files, HEIGHT, inFolder, jsonFile, pinhole, seen, WIDTH } from "../support/page-files.js";
 import { mesh } from "../support/scene.js";
 import { PATIENCE } from "../support/site.js";
+import { serve } from "../support/static-server.js";
 
 /** The element as a host's script sees it. */
 interface Element extends HTMLElement {
   scene: unknown;
   pose: { scale: number; matrix: number[]; translation: number[] } | null;
+  selected: string | null;
   options: Record<string, unknown>;
   readonly: boolean;
   session: { objects: { name: string }[] };
@@ -31,7 +32,6 @@ declare global {
   }
 }
 
-const serving = join(repository, "scripts", "lib", "static-server.mjs");
 const siteFolder = join(repository, "target");
 
 let browser: PageTest;
@@ -40,17 +40,13 @@ before(async () => {
 });
 after(() => browser?.stop());
 
-/** A page of a host, with the script of the element and a record of all events. */
-async function host(html: string): Promise<{ page: Page; errors: string[] }> {
-  const opened = await browser.open("www/element/frame.html");
-  const { page } = opened;
-  await page.setContent(html);
+/** Leaves the scene in the page, as arrays. */
+async function giveArrays(page: Page): Promise<void> {
   const given = {
     ...{ depth: Array.from(seen.depth), mask: Array.from(seen.mask), camera: pinhole, width: WIDTH, height: HEIGHT },
     ...{ positions: Array.from(mesh.positions), indices: Array.from(mesh.indices) },
   };
   await page.evaluate((scene) => {
-    window.told = [];
     window.arrays = {
       name: "Blob",
       depth: Float32Array.from(scene.depth),
@@ -65,6 +61,17 @@ async function host(html: string): Promise<{ page: Page; errors: string[] }> {
         },
       ],
     };
+  }, given);
+}
+
+/** A page of a host, with the script of the element and a record of all events. */
+async function host(html: string): Promise<{ page: Page; errors: string[] }> {
+  const opened = await browser.open("www/element/frame.html");
+  const { page } = opened;
+  await page.setContent(html);
+  await giveArrays(page);
+  await page.evaluate(() => {
+    window.told = [];
     for (const element of document.querySelectorAll("sim3-align")) {
       for (const type of ["ready", "progress", "align", "posechange", "accept", "error"]) {
         element.addEventListener(type, (event) =>
@@ -72,7 +79,7 @@ async function host(html: string): Promise<{ page: Page; errors: string[] }> {
         );
       }
     }
-  }, given);
+  });
   await page.evaluate(`import("/www/element/sim3-align.js")`);
   return opened;
 }
@@ -162,6 +169,19 @@ test("instances on one page are independent: scene, pose, undo, options, decisio
   await page.close();
 });
 
+test("properties that were set before the script was loaded become those of the element", async () => {
+  const { page } = await browser.open("www/samples/index.json");
+  await page.setContent(`<sim3-align id="a" manual></sim3-align>`);
+  await giveArrays(page);
+  await page.evaluate(() => {
+    Object.assign(document.querySelector("#a") as Element, { selected: "none", scene: window.arrays });
+  });
+  await page.evaluate(`import("/www/element/sim3-align.js")`);
+  await page.locator('#a .embedded[data-scene="Blob"]').waitFor(PATIENCE);
+  assert.equal(await page.evaluate(() => (document.querySelector("#a") as Element).selected), "blob");
+  await page.close();
+});
+
 test("pose and session are set and read, and survive a transfer as JSON", async () => {
   const { page } = await host(`<sim3-align id="a"></sim3-align><sim3-align id="b"></sim3-align>`);
   const pose = { scale: 0.1, rotation: [1, 0, 0, 0], translation: [0.01, 0.02, 0.7] };
@@ -244,9 +264,6 @@ test("src names a zip archive, a session or an index, and what cannot be opened 
 });
 
 test("an iframe is controlled by messages of its parent's origin, and of no other", async () => {
-  const { serve } = (await import(pathToFileURL(serving).href)) as {
-    serve(folder: string): Promise<{ url: string; close(): Promise<void> }>;
-  };
   const other = await serve(siteFolder);
   const { page } = await browser.open("www/element/frame.html?readonly");
   try {
@@ -270,31 +287,11 @@ test("an iframe is controlled by messages of its parent's origin, and of no othe
     const from = new URL(other.url).origin;
     await framed(new URL(page.url()).origin);
     await told(page, from, "sim3align:loaded");
-    await page.evaluate(
-      ([scene, origin]) => {
-        const { contentWindow } = document.querySelector("iframe") as HTMLIFrameElement;
-        const { depth, mask, positions, indices, ...rest } = scene;
-        const given = {
-          ...rest,
-          depth: Float32Array.from(depth),
-          objects: [
-            {
-              name: "blob",
-              mask: Uint8Array.from(mask),
-              mesh: { positions: Float32Array.from(positions), indices: Uint32Array.from(indices) },
-            },
-          ],
-        };
-        contentWindow?.postMessage({ type: "sim3align:load", scene: given }, origin);
-      },
-      [
-        {
-          ...{ depth: Array.from(seen.depth), mask: Array.from(seen.mask), camera: pinhole },
-          ...{ width: WIDTH, height: HEIGHT, positions: Array.from(mesh.positions), indices: Array.from(mesh.indices) },
-        },
-        from,
-      ] as const,
-    );
+    await giveArrays(page);
+    await page.evaluate((origin) => {
+      const { contentWindow } = document.querySelector("iframe") as HTMLIFrameElement;
+      contentWindow?.postMessage({ type: "sim3align:load", scene: window.arrays }, origin);
+    }, from);
     await told(page, from, "sim3align:align");
     await page.evaluate((origin) => {
       const { contentWindow } = document.querySelector("iframe") as HTMLIFrameElement;

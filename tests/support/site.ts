@@ -1,8 +1,8 @@
 /** Tests of the built page in a browser. */
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import type { BrowserContextOptions, Locator, Page } from "playwright-core";
+import { violations } from "./axe.js";
 import { PageTest } from "./browser.js";
 import { repository } from "./environment.js";
 
@@ -197,11 +197,8 @@ export class SitePage {
   }
 
   /** The violations that axe finds, one line per rule. */
-  async violations(): Promise<string[]> {
-    await this.page.evaluate(readFileSync(join(repository, "node_modules", "axe-core", "axe.min.js"), "utf8"));
-    const run = `axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"] })`;
-    const found = (await this.page.evaluate(run)) as { violations: { id: string; nodes: { html: string }[] }[] };
-    return found.violations.map(({ id, nodes }) => `${id}: ${nodes.map(({ html }) => html.slice(0, 160)).join(" | ")}`);
+  violations(): Promise<string[]> {
+    return violations(this.page);
   }
 
   /** Closes the page, which must not have logged errors. */

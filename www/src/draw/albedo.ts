@@ -1,18 +1,13 @@
 /** The colours of a mesh in a small picture, from the coloured points of its surface. */
 import type { MeshArrays } from "sim3align";
+import type { Scene } from "../state/scene.js";
 import type { Rgb } from "./colours.js";
+import { projected } from "./rasteriser.js";
 
 /** A point is seen if it is at most this much behind what is drawn, as a share of its distance. */
 const BEHIND = 0.01;
 /** Pixels between points take the colour of a neighbour at most this far away. */
 const NEAR_PX = 3;
-
-interface Lens {
-  fx: number;
-  fy: number;
-  cx: number;
-  cy: number;
-}
 
 /**
  * The colour of each pixel of a square picture, or null where no coloured point is near.
@@ -24,21 +19,19 @@ export function albedoOf(
   matrix: ArrayLike<number>,
   depth: Float32Array,
   size: number,
-  { fx, fy, cx, cy }: Lens,
+  camera: Scene["camera"],
 ): (pixel: number) => Rgb | null {
   if (samples == null) return () => null;
   const { positions, colors } = samples;
-  const m = (i: number) => matrix[i] as number;
+  const points = projected(positions, matrix, camera);
   const sums = new Float32Array(4 * depth.length);
   for (let i = 0; i + 2 < positions.length; i += 3) {
-    const [x, y, z] = [positions[i] as number, positions[i + 1] as number, positions[i + 2] as number];
-    const w = m(2) * x + m(6) * y + m(10) * z + m(14);
-    const u = Math.round((fx * (m(0) * x + m(4) * y + m(8) * z + m(12))) / w + cx);
-    const v = Math.round((fy * (m(1) * x + m(5) * y + m(9) * z + m(13))) / w + cy);
-    if (!(w > 0) || u < 0 || v < 0 || u >= size || v >= size) continue;
+    const [u, v] = [Math.round(points[i] as number), Math.round(points[i + 1] as number)];
+    const z = 1 / (points[i + 2] as number);
+    if (!Number.isFinite(z) || u < 0 || v < 0 || u >= size || v >= size) continue;
     const pixel = v * size + u;
     const drawn = depth[pixel] as number;
-    if (drawn === 0 || w > drawn * (1 + BEHIND)) continue;
+    if (drawn === 0 || z > drawn * (1 + BEHIND)) continue;
     for (let k = 0; k < 3; k++) sums[4 * pixel + k] = (sums[4 * pixel + k] as number) + (colors[i + k] as number);
     sums[4 * pixel + 3] = (sums[4 * pixel + 3] as number) + 1;
   }

@@ -1,4 +1,5 @@
 /** Colour maps of depths and differences. */
+import { once } from "../load/once.js";
 
 export type Rgb = readonly [red: number, green: number, blue: number];
 
@@ -28,8 +29,11 @@ function depthColour(share: number): Rgb {
   return [0, 1, 2].map((k) => between(a[k] as number, b[k] as number, place - i)) as unknown as Rgb;
 }
 
-/** A visualisation of a depth map with 256 levels: red, green, blue, alpha. Pixels without a reading are dark grey. */
-export function depthImage(depthM: Float32Array): Uint8ClampedArray<ArrayBuffer> {
+/**
+ * A visualisation of a depth map with 256 levels: red, green, blue, alpha. Pixels without a reading are dark grey.
+ * The intake sheet, the image view and the 3D view share the image of a depth map, so it must not be changed.
+ */
+export const depthImage = once((depthM: Float32Array): Uint8ClampedArray<ArrayBuffer> => {
   const { nearM: near, farM: far } = depthRange(depthM) ?? { nearM: 0, farM: 1 };
   const colours = Array.from({ length: 256 }, (_, i) => depthColour(i / 255));
   // One number per pixel, in the order of bytes that the machine has.
@@ -45,7 +49,7 @@ export function depthImage(depthM: Float32Array): Uint8ClampedArray<ArrayBuffer>
     pixels[pixel] = table[step] as number;
   }
   return image;
-}
+});
 
 /** The range of the readings without outliers, metres; null if there is none. */
 export function depthRange(depthM: Float32Array): { nearM: number; medianM: number; farM: number } | null {

@@ -25,7 +25,7 @@ export function drawObject(scene: DrawnScene, object: ObjectModel, matrix: Array
   const { mesh, colour } = object;
   const mask = scene.maskOf(object);
   const depth = renderDepth(mesh, matrix, scene);
-  const box = boxAround(boxOf(mask, scene.width), boxOf(depth, scene.width));
+  const box = boxAround(scene.maskBoxOf(object), boxOf(depth, scene.width));
   return { mask, colour, isSelected: false, depth, box, limitM: differenceLimit(object) };
 }
 

@@ -5,8 +5,12 @@ import type { Scene } from "../state/scene.js";
 /** Triangles with a nearer vertex are skipped instead of clipped: no depth camera measures there. */
 const NEAR_M = 1e-3;
 
-/** Projects vertices: u and v in pixels, and 1/z, which is linear in the image. 1/z is 0 for skipped vertices. */
-function projected(positions: Float32Array, m: ArrayLike<number>, { fx, fy, cx, cy }: Scene["camera"]): Float64Array {
+/** Projects points: u and v in pixels, and 1/z, which is linear in the image. 1/z is 0 for points that are too near. */
+export function projected(
+  positions: Float32Array,
+  m: ArrayLike<number>,
+  { fx, fy, cx, cy }: Scene["camera"],
+): Float64Array {
   const at = (i: number) => m[i] ?? 0;
   const [m0, m1, m2, m4, m5, m6] = [at(0), at(1), at(2), at(4), at(5), at(6)];
   const [m8, m9, m10, m12, m13, m14] = [at(8), at(9), at(10), at(12), at(13), at(14)];

@@ -1,6 +1,6 @@
 /** Zooms the image view to the objects. */
 import type { Scene } from "../state/scene.js";
-import { type Box, boxAround, boxOf } from "./box.js";
+import { type Box, boxAround } from "./box.js";
 import { drawnScene } from "./reduced.js";
 
 /** Share of the view that the objects fill. */
@@ -19,9 +19,8 @@ export const wholeImage: Zoom = { factor: 1, x: 0.5, y: 0.5 };
 
 /** The zoom that shows all objects of the scene. */
 export function zoomToObjects(scene: Scene): Zoom {
-  const { width, height, maskOf } = drawnScene(scene);
-  const boxes = scene.objects.map((object) => boxOf(maskOf(object), width));
-  const box = boxes.reduce<Box | null>(boxAround, null);
+  const { width, height, maskBoxOf } = drawnScene(scene);
+  const box = scene.objects.map(maskBoxOf).reduce<Box | null>(boxAround, null);
   if (box === null) return wholeImage;
   const factor = SHARE * Math.min(width / (box.right - box.left), height / (box.bottom - box.top));
   if (factor <= 1) return wholeImage;

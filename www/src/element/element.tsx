@@ -52,7 +52,7 @@ export class Sim3AlignElement extends HTMLElement implements host.Sim3AlignEleme
 
   connectedCallback(): void {
     // Properties that were set before the element was defined hide those of the class.
-    for (const name of ["scene", "pose", "options", "readonly", "session"] as const) {
+    for (const name of ["scene", "pose", "selected", "options", "readonly", "session"] as const) {
       if (!Object.hasOwn(this, name)) continue;
       const value = this[name];
       delete (this as Record<string, unknown>)[name];
@@ -138,7 +138,7 @@ export class Sim3AlignElement extends HTMLElement implements host.Sim3AlignEleme
     known.value = { ...known.peek(), ...options };
   }
 
-  /** Whether the scene can be looked at only. */
+  /** Whether the scene can only be viewed. */
   get readonly(): boolean {
     return this.hasAttribute("readonly");
   }
@@ -147,7 +147,7 @@ export class Sim3AlignElement extends HTMLElement implements host.Sim3AlignEleme
     this.toggleAttribute("readonly", is);
   }
 
-  /** What is known of all objects. */
+  /** The results of all objects. */
   get results(): ObjectResult[] {
     return (this.#workspace.scene.peek()?.objects ?? []).map(resultOf);
   }
@@ -193,8 +193,9 @@ export class Sim3AlignElement extends HTMLElement implements host.Sim3AlignEleme
       if (!isGiven && !this.readonly && !this.hasAttribute("manual")) await alignAll(this.#workspace);
     } catch (cause) {
       if (!isCurrent()) return;
-      announce(cause instanceof Error ? cause.message : `${cause}`, "failed");
-      this.#send("error", errorDetail(cause));
+      const detail = errorDetail(cause);
+      announce(detail.message, "failed");
+      this.#send("error", detail);
     }
     isSettled.value = true;
   }

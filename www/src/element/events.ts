@@ -19,7 +19,6 @@ export const errorDetail = (cause: unknown, name: string | null = null): Element
 export function sendEvents(workspace: Workspace, send: Send): () => void {
   const { fraction, isRunning, scene } = workspace;
   let wasRunning = false;
-  let ofObjects: (() => void)[] = [];
   const stops = [
     effect(() => {
       if (isRunning.value) send("progress", { fraction: fraction.value });
@@ -31,12 +30,14 @@ export function sendEvents(workspace: Workspace, send: Send): () => void {
       if (hasEnded) untracked(() => sendEnd(workspace, send));
     }),
     effect(() => {
-      for (const stop of ofObjects) stop();
-      ofObjects = (scene.value?.objects ?? []).flatMap((object) => untracked(() => sendChanges(object, send)));
+      const ofObjects = (scene.value?.objects ?? []).flatMap((object) => untracked(() => sendChanges(object, send)));
+      return () => {
+        for (const stop of ofObjects) stop();
+      };
     }),
   ];
   return () => {
-    for (const stop of [...stops, ...ofObjects]) stop();
+    for (const stop of stops) stop();
   };
 }
 

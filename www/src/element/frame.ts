@@ -1,4 +1,5 @@
 /** The page for iframes: one `<sim3-align>` that a parent page controls by messages. `docs/guides/embedding.md` lists them. */
+import { errorDetail } from "./events.js";
 import { Sim3AlignElement } from "./index.js";
 
 /** The names of the messages to the parent, without their prefix. */
@@ -59,9 +60,7 @@ async function answer(request: Request): Promise<void> {
 
 addEventListener("message", ({ source, origin: from, data }: MessageEvent<Partial<Request> | null>) => {
   if (source !== parent || from !== origin || typeof data?.type !== "string" || !data.type.startsWith(PREFIX)) return;
-  answer(data as Request).catch((cause: Error) =>
-    send("error", { id: data.id, detail: { message: cause.message, name: null, code: null } }),
-  );
+  answer(data as Request).catch((cause) => send("error", { id: data.id, detail: errorDetail(cause) }));
 });
 
 document.body.append(element);

@@ -7,7 +7,7 @@ import { filesAt } from "../load/case-url.js";
 import { extractArchives, fromFile, type NamedFile } from "../load/files.js";
 import { type Inputs, noInputs } from "../load/inputs.js";
 import { atSize } from "../load/masks.js";
-import { type Photo, photoFrom } from "../load/photo.js";
+import { photoFrom } from "../load/photo.js";
 import { type ReadObject, readInputs, sceneOf } from "../load/read-scene.js";
 import { readDepth, readMask, readMesh } from "../load/reader.js";
 import { type Packed, sessionParts, unpacked } from "../session/pack.js";
@@ -66,7 +66,7 @@ async function fromMemory(given: GivenScene): Promise<Opened> {
     objects: names.map((name) => ({ name, mask: null, mesh: null, truth: null, isSure: true })),
   };
   const camera = { fx, fy, cx, cy };
-  const scene = sceneOf(inputs, { depth, camera, photo: photo as Photo | null, objects, problems: [], warnings: [] });
+  const scene = sceneOf(inputs, { depth, camera, photo, objects, problems: [], warnings: [] });
   if (scene === null) throw new Error("A scene has at least one object.");
   return { scene, inputs, session: null };
 }

@@ -58,7 +58,7 @@ export interface ObjectResult {
 export interface ElementOptions {
   preset: Preset;
   quality: Quality;
-  /** Bounds of the scale, metres per mesh unit. */
+  /** Bounds of the scale, metres per mesh unit; null is none. */
   scaleMin: number | null;
   scaleMax: number | null;
   /** The mesh axis that points up, for a level camera and an object that stands upright. */
@@ -86,7 +86,7 @@ export interface ElementEvents {
   posechange: { name: string; pose: PlainPose; source: string };
   /** A person has accepted a pose, or a change has made it open again. */
   accept: ObjectResult;
-  /** A scene could not be read, or an object not be aligned. */
+  /** A scene could not be read, or an object could not be aligned. */
   error: { message: string; name: string | null; code: string | null };
 }
 
@@ -107,9 +107,9 @@ export declare class Sim3AlignElement extends HTMLElement {
   /** The options of the alignments. Those that are not set keep their values. */
   get options(): ElementOptions;
   set options(options: Partial<ElementOptions>);
-  /** Whether the scene can be looked at only. */
+  /** Whether the scene can only be viewed. */
   readonly: boolean;
-  /** What is known of all objects. */
+  /** The results of all objects. */
   get results(): ObjectResult[];
   /** Poses, decisions and options as plain data, to be kept and set again with the same scene. */
   get session(): ElementSession;

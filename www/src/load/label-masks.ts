@@ -48,7 +48,7 @@ const labelsOf = once(async (file: NamedFile): Promise<Labels> => {
 
 /** The colours of an image as numbers: an 8-bit grey value g is g · 0x10101, so it is divided back. */
 async function coloursOf(bytes: Uint8Array): Promise<Omit<Labels, "counts">> {
-  const bitmap = await createImageBitmap(new Blob([Uint8Array.from(bytes)]), {
+  const bitmap = await createImageBitmap(new Blob([bytes as Uint8Array<ArrayBuffer>]), {
     colorSpaceConversion: "none",
     premultiplyAlpha: "none",
   });

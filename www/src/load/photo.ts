@@ -10,7 +10,7 @@ export interface Photo {
 
 /** The pixels of a photo, decoded by the browser and resized: red, green, blue, alpha. */
 export async function readPhoto(file: NamedFile, size: { width: number; height: number }): Promise<Photo> {
-  return photoFrom(new Blob([Uint8Array.from(await file.bytes())]), size);
+  return photoFrom(new Blob([(await file.bytes()) as Uint8Array<ArrayBuffer>]), size);
 }
 
 /** The pixels of an image, resized. */

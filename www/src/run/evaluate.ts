@@ -12,16 +12,13 @@ const DEBOUNCE_MS = 120;
 
 /** Observes the poses of all objects of the current scene. Call the returned function to stop. */
 export function observePoses({ scene }: Workspace): () => void {
-  let stop: (() => void)[] = [];
-  const stopAll = effect(() => {
+  return effect(() => {
     const whole = scene.value;
-    for (const stopOne of stop) stopOne();
-    stop = whole === null ? [] : whole.objects.map((object) => observe(whole, object));
+    const stops = whole === null ? [] : whole.objects.map((object) => observe(whole, object));
+    return () => {
+      for (const stop of stops) stop();
+    };
   });
-  return () => {
-    stopAll();
-    for (const stopOne of stop) stopOne();
-  };
 }
 
 function observe(whole: Scene, object: ObjectModel): () => void {

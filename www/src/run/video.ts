@@ -9,7 +9,8 @@ import type { Scene } from "../state/scene.js";
 import type { FramePose, Video } from "../state/video.js";
 import { aligner, viewOf } from "./aligner.js";
 
-const { announce, constraintsOf, frameIndex, framePoses, inputs, options, scene, setFramePose, show, video } = page;
+const { announce, constraintsOf, frameIndex, framePoses, inputs, scene, sceneOptions, setFramePose, show, video } =
+  page;
 
 const controller = signal<AbortController | null>(null);
 export const isTracking = computed(() => controller.value !== null);
@@ -80,11 +81,10 @@ export async function trackAll(): Promise<void> {
   try {
     tracker?.close();
     const { scale } = constraintsOf(first);
-    const { quality, seed } = options.peek();
     // A pose that a person has set in the first frame is where tracking begins.
     const initial = frameIndex.peek() === 0 && first.pose.peek().source === "hand" ? first.pose.peek().transform : null;
     const limits = scale === undefined ? {} : { scale };
-    tracker = await (await aligner()).track(first.mesh, { quality, seed, initial, ...limits });
+    tracker = await (await aligner()).track(first.mesh, { ...sceneOptions(), initial, ...limits });
     for (const [index, frame] of opened.frames.entries()) {
       if (abort.signal.aborted || video.peek() !== opened) return announce("Stopped.");
       announce(`Tracking frame ${index + 1} of ${opened.frames.length} …`, "working");
@@ -129,9 +129,8 @@ export async function alignFrames(): Promise<void> {
     }
     announce(`Aligning ${views.length} views together …`, "working");
     const { scale } = constraintsOf(first);
-    const { quality, seed } = options.peek();
     const limits = scale === undefined ? {} : { scale };
-    const settings = { quality, seed, ...limits, signal: abort.signal };
+    const settings = { ...sceneOptions(), ...limits, signal: abort.signal };
     const found = await (await aligner()).alignViews({ mesh: first.mesh, views }, settings);
     if (video.peek() !== opened) return;
     framePoses.value = found.views.map((view): FramePose => {

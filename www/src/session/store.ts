@@ -42,9 +42,10 @@ async function transact<T>(mode: IDBTransactionMode, work: (store: IDBObjectStor
 /** Stores the files of a new scene. */
 export async function storeFiles(files: readonly NamedFile[]): Promise<void> {
   const read = await Promise.all(
-    files.map(
-      async ({ path, bytes }): Promise<StoredFile> => ({ path, content: new Blob([Uint8Array.from(await bytes())]) }),
-    ),
+    files.map(async ({ path, bytes }): Promise<StoredFile> => {
+      const content = (await bytes()) as Uint8Array<ArrayBuffer>;
+      return { path, content: new Blob([content]) };
+    }),
   );
   await transact("readwrite", (store) => [store.put(read, "files")]);
 }

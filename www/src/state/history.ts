@@ -1,5 +1,5 @@
 /** Undo and redo of poses. */
-import { computed, signal } from "@preact/signals";
+import { computed, type Signal, signal } from "@preact/signals";
 import type { ObjectModel } from "./object-model.js";
 import { type Nudge, nudged, type Pose } from "./pose.js";
 import type { SceneState } from "./scene.js";
@@ -36,32 +36,21 @@ export function historyState({ scene, select }: SceneState) {
     });
   }
 
-  function undo(): void {
-    const step = undoSteps.peek().at(-1);
+  /** Moves the last step from one list to the other, and shows the pose on one side of it. */
+  function move(from: Signal<readonly Step[]>, to: Signal<readonly Step[]>, side: "before" | "after"): void {
+    const step = from.peek().at(-1);
     if (step === undefined) return;
-    undoSteps.value = undoSteps.peek().slice(0, -1);
-    redoSteps.value = [...redoSteps.peek(), step];
-    show(step.object, step.before);
+    from.value = from.peek().slice(0, -1);
+    to.value = [...to.peek(), step];
+    select(step.object.id);
+    step.object.pose.value = step[side];
   }
 
-  function redo(): void {
-    const step = redoSteps.peek().at(-1);
-    if (step === undefined) return;
-    redoSteps.value = redoSteps.peek().slice(0, -1);
-    undoSteps.value = [...undoSteps.peek(), step];
-    show(step.object, step.after);
-  }
+  const undo = () => move(undoSteps, redoSteps, "before");
+  const redo = () => move(redoSteps, undoSteps, "after");
 
-  function show(object: ObjectModel, pose: Pose): void {
-    select(object.id);
-    object.pose.value = pose;
-  }
-
-  /** A new scene has new objects, so the steps of the previous one are cleared. */
-  let current = scene.peek();
-  scene.subscribe((next) => {
-    if (next === current) return;
-    current = next;
+  // A new scene has new objects, so the steps of the previous one are cleared.
+  scene.subscribe(() => {
     undoSteps.value = [];
     redoSteps.value = [];
   });

@@ -1,30 +1,14 @@
 /** Options of an alignment that the page offers. */
 import { signal } from "@preact/signals";
-import {
-  ALIGN_DEFAULTS,
-  type AlignOptions,
-  PAPER_DEFAULTS,
-  type PaperOptions,
-  type Preset,
-  type Quality,
-} from "sim3align";
+import { ALIGN_DEFAULTS, type AlignOptions, PAPER_DEFAULTS, type PaperOptions, type Quality } from "sim3align";
+import type { ElementOptions } from "../element/sim3-align.js";
 import type { ObjectModel } from "./object-model.js";
 
 /** The options of `align` that the page sets. */
 export type CallOptions = Omit<AlignOptions, "metrics" | "onProgress" | "signal">;
 
 /** The state of the form. `null` is an empty field. */
-export interface Options {
-  preset: Preset;
-  quality: Quality;
-  /** Bounds of the scale, metres per mesh unit. */
-  scaleMin: number | null;
-  scaleMax: number | null;
-  /** The mesh axis that points up, for a level camera and an object that stands upright. */
-  up: "unknown" | "y" | "z";
-  symmetry: "auto" | "auto-revolution" | "none";
-  seed: number;
-}
+export type Options = ElementOptions;
 
 export const defaultOptions: Options = {
   preset: ALIGN_DEFAULTS.preset,

@@ -21,10 +21,7 @@ export function runningState({ scene, support }: SceneState) {
   }
 
   // Running alignments belong to the previous scene.
-  let current = scene.peek();
-  scene.subscribe((next) => {
-    if (next === current) return;
-    current = next;
+  scene.subscribe(() => {
     cancel();
     // The support is that of the previous scene.
     support.value = null;
