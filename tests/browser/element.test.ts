@@ -170,8 +170,11 @@ test("instances on one page are independent: scene, pose, undo, options, decisio
 });
 
 test("properties that were set before the script was loaded become those of the element", async () => {
-  const { page } = await browser.open("www/samples/index.json");
-  await page.setContent(`<sim3-align id="a" manual></sim3-align>`);
+  const { page } = await browser.open("www/element/frame.html");
+  // A page of the same origin that has not loaded the script.
+  const body = `<!doctype html><sim3-align id="a" manual></sim3-align>`;
+  await page.route("**/blank.html", (route) => route.fulfill({ contentType: "text/html", body }));
+  await page.goto(new URL("blank.html", page.url()).href);
   await giveArrays(page);
   await page.evaluate(() => {
     Object.assign(document.querySelector("#a") as Element, { selected: "none", scene: window.arrays });
