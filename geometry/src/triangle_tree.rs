@@ -75,13 +75,14 @@ impl TriangleTree {
     }
 
     /// Calls `visit` with the index of each of `count` points and the nearest point of the surface to it. Where searches
-    /// are costly, because most triangles overlap, it leaves points out, evenly over the list.
+    /// are costly, because most triangles overlap, it leaves points out, evenly over the list. Returns the cost: the number
+    /// of triangles and nodes visited.
     pub fn nearest_of_each(
         &self,
         count: usize,
         point: impl Fn(usize) -> Vec3,
         mut visit: impl FnMut(usize, Option<SurfacePoint>),
-    ) {
+    ) -> usize {
         // Consecutive points are usually close to each other, so that each search starts at the previous result.
         let mut hint = Hint::default();
         let (mut index, mut step) = (0, 1);
@@ -92,6 +93,7 @@ impl TriangleTree {
             }
             index += step;
         }
+        hint.visits
     }
 
     /// Replaces the best triangle if this one is nearer.

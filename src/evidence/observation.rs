@@ -112,33 +112,6 @@ impl Observation {
         self.camera
     }
 
-    /// The observation at every second (third, …) pixel along both sides, with at most `pixels` pixels; `None` if it has
-    /// no more than that.
-    pub fn reduced(&self, pixels: usize) -> Option<Self> {
-        if self.depth.data().len() <= pixels {
-            return None;
-        }
-        let size = [self.depth.width(), self.depth.height()];
-        let step = (2..).find(|step| size.map(|side| side.div_ceil(*step)).iter().product::<usize>() <= pixels)?;
-        let [width, height] = size.map(|side| side.div_ceil(step));
-        let at = |i: usize| i / width * step * size[0] + i % width * step;
-        let depths = (0..width * height).map(|i| self.depth.data()[at(i)]).collect();
-        let mask = (0..width * height).map(|i| self.mask.data()[at(i)]).collect();
-        let others = self.others.as_ref().map(|others| (0..width * height).map(|i| others.data()[at(i)]).collect());
-        let Pinhole { fx, fy, cx, cy } = self.camera;
-        let [fx, fy, cx, cy] = [fx, fy, cx, cy].map(|x| x / step as f64);
-        Some(Self {
-            depth: Image::new("depth", width, height, depths).ok()?,
-            mask: Image::new("mask", width, height, mask).ok()?,
-            camera: Pinhole { fx, fy, cx, cy },
-            photo: self.photo.clone(),
-            others: match others {
-                Some(others) => Some(Arc::new(Image::new("mask", width, height, others).ok()?)),
-                None => None,
-            },
-        })
-    }
-
     /// P_obs: x = D(u,v)·K⁻¹\[u,v,1\]ᵀ for every reading in the mask, row-major, in the camera frame (metres).
     /// More than `max_points` are subsampled: one random reading from each of `max_points` equal intervals.
     pub fn cloud(&self, max_points: usize, seed: u64) -> Cloud {

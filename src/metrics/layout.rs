@@ -26,6 +26,9 @@ const CAD_SCALE: f64 = 0.2;
 const ICP_STRIDE: usize = 8;
 /// Limit on the iterations of ICP; near a minimum, 10 to 40 are usual.
 const ICP_ITERATIONS: usize = 100;
+/// Limit on the triangles and nodes of the surface that ICP visits, more than five times those of any object. Only
+/// triangles that all overlap reach it.
+const ICP_VISITS: usize = 1 << 25;
 /// ICP has converged if no iteration moves the object by more than this part of its diameter.
 const ICP_TOLERANCE: f64 = 1e-5;
 /// Damping of the steps, which leaves directions alone that nothing constrains.
@@ -97,11 +100,15 @@ fn icp_rotation(comparison: &PoseComparison, diameter: f64) -> f64 {
     let mut moved = start;
     let mut turn = Similarity::identity();
     let points: Vec<Vector3<f64>> = comparison.samples.iter().step_by(ICP_STRIDE).map(|p| vector3(*p)).collect();
+    let mut visits = 0;
     for _ in 0..ICP_ITERATIONS {
+        if visits > ICP_VISITS {
+            break;
+        }
         let landed: Vec<Vector3<f64>> = points.iter().map(|p| moved.apply(*p)).collect();
         let middle = landed.iter().sum::<Vector3<f64>>() / landed.len() as f64;
         let mut equations = NormalEquations::new();
-        comparison.tree.nearest_of_each(
+        visits += comparison.tree.nearest_of_each(
             landed.len(),
             |i| vec3(&landed[i]),
             |i, nearest| {

@@ -48,9 +48,9 @@ pub struct Appearance {
 impl PhotoCells {
     /// The means of the photo on the cells of a grid. `image` is the size in pixels of the depth map, which shows this
     /// region of the photo.
-    pub fn new(photo: &Photo, region: &PhotoRegion, image: [usize; 2], grid: &CropGrid) -> Self {
+    pub fn new(photo: &Photo, region: &PhotoRegion, image: [f64; 2], grid: &CropGrid) -> Self {
         let sizes = [photo.width(), photo.height()];
-        let ratio: [f64; 2] = core::array::from_fn(|k| sizes[k] as f64 * region.size[k] / image[k] as f64);
+        let ratio: [f64; 2] = core::array::from_fn(|k| sizes[k] as f64 * region.size[k] / image[k]);
         let corner: [f64; 2] = core::array::from_fn(|k| sizes[k] as f64 * region.corner[k]);
         let samples: [usize; 2] =
             core::array::from_fn(|k| ((grid.cell[k] * ratio[k]).ceil() as usize).clamp(1, MAX_SAMPLES));

@@ -11,9 +11,11 @@ use crate::geometry::image::{Mask, bounds_of};
 use crate::geometry::order::{self, quantile};
 use crate::geometry::pinhole::Pinhole;
 
-/// Maximum number of pixels, a little more than those of a 4K image. Larger ones are thinned out: the finest grid has
-/// some thousand cells in the mask.
-const MAX_PIXELS: usize = 1 << 23;
+/// Number of mask pixels that are enough: 16 samples in each of the 7000 cells of the finest grid. Of a mask with four
+/// times as many, every second row and column is used, and so on.
+const ENOUGH_PIXELS: usize = 16 * 7000;
+/// Maximum number of pixels around the mask, which may consist of specks that are far apart.
+const MAX_PIXELS: usize = 1 << 22;
 /// Margin around the mask, relative to its longer side.
 const MARGIN: f64 = 0.45;
 /// Holes smaller than this fraction of the mask are errors of the mask and are filled.
@@ -30,7 +32,8 @@ const RIM_JUMP: [f64; 2] = [0.15, 0.01];
 /// Number of depths used to find the densest window.
 const WINDOW_SAMPLES: usize = 4096;
 
-/// The observation around its mask, without doubtful pixels.
+/// The observation around its mask, without doubtful pixels, and thinned out where it has more of them than any grid uses.
+/// Pixels are those that remain.
 #[derive(Debug, Clone)]
 pub struct CleanObservation {
     /// The camera of the whole image.
@@ -41,8 +44,8 @@ pub struct CleanObservation {
     pub width: usize,
     /// Height of the crop in pixels.
     pub height: usize,
-    /// Size of the whole image.
-    pub image: [usize; 2],
+    /// Size of the whole image in pixels, a fraction where that is not a multiple of the thinning.
+    pub image: [f64; 2],
     /// Signed distance to the outline of the object, pixels, negative inside.
     pub outline: Vec<f32>,
     /// Outward shift of the outline of the mask, pixels (see [`rim_offset`]).
@@ -64,13 +67,11 @@ pub struct CleanObservation {
 impl CleanObservation {
     /// Cleans the mask and the depth map.
     pub fn new(observation: &Observation) -> Self {
-        let reduced = observation.reduced(MAX_PIXELS);
-        let observation = reduced.as_ref().unwrap_or(observation);
         let mut crop = Crop::new(observation);
         let others = observation.others().map(|others| crop.cut(others));
         crop.close_pin_holes(others.as_deref());
         crop.drop_islands(others.as_deref());
-        let mut clean = crop.into_clean(observation);
+        let mut clean = crop.into_clean();
         let extent_m = (0..2).map(|axis| clean.bounds[axis][1] - clean.bounds[axis][0]).fold(0.0, f64::max)
             / clean.camera.fx
             * clean.median_m;
@@ -116,11 +117,60 @@ impl CleanObservation {
 /// The raw images around the mask.
 struct Crop {
     camera: Pinhole,
+    thinning: Thinning,
+    image: [f64; 2],
     origin: [usize; 2],
     width: usize,
     height: usize,
     mask: Vec<bool>,
     scene: Vec<f32>,
+}
+
+/// Every `step`-th row and column of an image. The first one is such that the remaining pixels are, to half a pixel, in the
+/// centres of the blocks that they stand for.
+#[derive(Debug, Clone, Copy)]
+struct Thinning {
+    step: usize,
+    first: usize,
+}
+
+impl Thinning {
+    /// The thinning for a mask with `around` pixels in and around it.
+    fn of(mask: &Mask, around: usize) -> Self {
+        let pixels = mask.data().iter().filter(|m| **m != 0).count();
+        let of_step = |step: usize| Self { step, first: (step - 1) / 2 };
+        let thinned = of_step((pixels / ENOUGH_PIXELS).isqrt().max(1));
+        // A pattern, such as every second row, would vanish or fill the image.
+        let step = thinned.step;
+        let remaining = thinned
+            .indices(mask.height())
+            .flat_map(|v| thinned.indices(mask.width()).filter(move |&u| mask.get(u, v).is_some_and(|m| m != 0)));
+        if (pixels / 2..=2 * pixels).contains(&(remaining.count() * step * step)) {
+            return thinned;
+        }
+        of_step((1..).find(|step| around / (step * step) <= MAX_PIXELS).unwrap_or(1))
+    }
+
+    /// The image positions of the remaining pixels along a side of this length.
+    fn indices(self, side: usize) -> impl Iterator<Item = usize> {
+        (self.first..side).step_by(self.step)
+    }
+
+    /// Number of pixels that remain of a side.
+    fn count(self, side: usize) -> usize {
+        side.saturating_sub(self.first).div_ceil(self.step)
+    }
+
+    /// The image position of a remaining pixel along one side.
+    fn at(self, index: usize) -> usize {
+        self.first + index * self.step
+    }
+
+    fn camera(self, camera: Pinhole) -> Pinhole {
+        let [first, step] = [self.first, self.step].map(|x| x as f64);
+        let Pinhole { fx, fy, cx, cy } = camera;
+        Pinhole { fx: fx / step, fy: fy / step, cx: (cx - first) / step, cy: (cy - first) / step }
+    }
 }
 
 impl Crop {
@@ -131,15 +181,25 @@ impl Crop {
         let margin = (MARGIN * longer_side(&bounds)) as usize + 4;
         let origin = bounds.map(|[low, _]| low.saturating_sub(margin));
         let end = [0, 1].map(|axis| (bounds[axis][1] + margin + 1).min(size[axis]));
-        let (width, height) = (end[0] - origin[0], end[1] - origin[1]);
-        let rows = || (origin[1]..end[1]).map(|v| v * size[0] + origin[0]..v * size[0] + end[0]);
+        let thinning = Thinning::of(mask, (end[0] - origin[0]) * (end[1] - origin[1]));
+        let end = [0, 1].map(|axis| end[axis].div_ceil(thinning.step).min(thinning.count(size[axis])));
+        let origin = origin.map(|first| first / thinning.step);
+        let [width, height] = [0, 1].map(|axis| end[axis].saturating_sub(origin[axis]));
+        let pixels = || {
+            (origin[1]..end[1]).flat_map(move |v| {
+                let row = thinning.at(v) * size[0];
+                (origin[0]..end[0]).map(move |u| row + thinning.at(u))
+            })
+        };
         Self {
-            camera: observation.camera(),
+            camera: thinning.camera(observation.camera()),
+            thinning,
+            image: size.map(|side| side as f64 / thinning.step as f64),
             origin,
             width,
             height,
-            mask: rows().flat_map(|row| mask.data()[row].iter().map(|&m| m != 0)).collect(),
-            scene: rows().flat_map(|row| depth.data()[row].iter().copied()).collect(),
+            mask: pixels().map(|i| mask.data()[i] != 0).collect(),
+            scene: pixels().map(|i| depth.data()[i]).collect(),
         }
     }
 
@@ -151,7 +211,7 @@ impl Crop {
     fn cut(&self, others: &Mask) -> Vec<bool> {
         let pixel = |i: usize| {
             let (u, v) = (i % self.width + self.origin[0], i / self.width + self.origin[1]);
-            !self.mask[i] && others.get(u, v).is_some_and(|other| other != 0)
+            !self.mask[i] && others.get(self.thinning.at(u), self.thinning.at(v)).is_some_and(|other| other != 0)
         };
         (0..self.mask.len()).map(pixel).collect()
     }
@@ -213,7 +273,7 @@ impl Crop {
         mask
     }
 
-    fn into_clean(self, observation: &Observation) -> CleanObservation {
+    fn into_clean(self) -> CleanObservation {
         let pixels = self.count();
         let bounds = bounds_of(&self.mask, self.width, |set| *set);
         let extent_px = longer_side(&bounds);
@@ -231,13 +291,12 @@ impl Crop {
         let depth: Vec<f32> = trusted.iter().zip(&self.scene).map(|(&t, &z)| if t { z } else { 0.0 }).collect();
         let median_m = quantile(depth.iter().copied().filter(|z| *z > 0.0), 0.5).map_or(median, f64::from);
         let diagonal_m = self.diagonal(&depth).max(1e-3 * median_m);
-        let size = [observation.mask().width(), observation.mask().height()];
         CleanObservation {
             camera: self.camera,
             origin: self.origin,
             width: self.width,
             height: self.height,
-            image: size,
+            image: self.image,
             bounds: [0, 1].map(|axis| bounds[axis].map(|x| (x + self.origin[axis]) as f64)),
             outline,
             rim_offset: 0.0,

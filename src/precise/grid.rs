@@ -246,8 +246,8 @@ struct Sum {
 
 impl Sum {
     fn add(&mut self, observation: &CleanObservation, u: i64, v: i64) {
-        let inside_image =
-            (0..observation.image[0] as i64).contains(&u) && (0..observation.image[1] as i64).contains(&v);
+        let [width, height] = observation.image;
+        let inside_image = u >= 0 && v >= 0 && (u as f64) < width && (v as f64) < height;
         self.outside += f32::from(u8::from(!inside_image));
         // Outside the crop: the distance at the nearest pixel of the crop, plus the distance to that pixel.
         let (u, v) = (u - observation.origin[0] as i64, v - observation.origin[1] as i64);

@@ -122,6 +122,49 @@ fn the_object_is_where_most_readings_of_one_depth_are() {
     assert_eq!(clean.depth.iter().filter(|z| **z > 0.0).count(), 21 * 46);
 }
 
+/// A slanted plane, seen in a mask of this size in a large image.
+fn large([wide, high]: [usize; 2], is_set: impl Fn(usize, usize) -> bool) -> (Observation, impl Fn(glam::Vec3) -> f64) {
+    let (width, height) = (1502, 1101);
+    let camera = Pinhole::new(3000.0, 2900.0, 700.3, 540.1).unwrap();
+    // n·p = 1 on the plane.
+    let depth_at = |ray: glam::Vec3| 1.0 / ray.as_dvec3().dot(DVec3::new(0.8, -0.5, 1.2));
+    let pixels = || (0..width * height).map(|i| (i % width, i / width));
+    let depth = pixels().map(|(u, v)| depth_at(camera.back_project(u as f64, v as f64, 1.0)) as f32);
+    let inside = |u, v| (40..40 + wide).contains(&u) && (40..40 + high).contains(&v) && is_set(u, v);
+    let mask = pixels().map(|(u, v)| u8::from(inside(u, v))).collect();
+    let depth = DepthMap::from_metres(width, height, depth.collect()).unwrap();
+    (Observation::new(depth, Mask::new("mask", width, height, mask).unwrap(), camera).unwrap(), depth_at)
+}
+
+/// Thinned observations show the same surface in the same place: the plane is off by .3 mm for a pixel.
+#[wasm_bindgen_test(unsupported = test)]
+fn large_masks_are_thinned_without_moving() {
+    for (size, step) in [([500, 700], 1), ([900, 600], 2), ([1400, 1000], 3)] {
+        let (observation, depth_at) = large(size, |_, _| true);
+        let clean = CleanObservation::new(&observation);
+        let pixels = clean.pixels * step * step;
+        let expected = observation.mask().data().iter().filter(|m| **m != 0).count();
+        assert!(pixels.abs_diff(expected) * 50 < expected, "{pixels} for {expected} pixels");
+        assert_eq!(clean.image, [1502.0, 1101.0].map(|side| side / step as f64));
+        let grid = CropGrid::new(&clean, 3000);
+        let cells = (0..grid.width * grid.height).filter(|&i| grid.depth[i] > 0.0 && grid.outline[i] < -2.0);
+        let errors = cells.map(|i| {
+            let ray = grid.ray((i % grid.width) as f32, (i / grid.width) as f32);
+            f64::from(grid.depth[i]) - depth_at(ray)
+        });
+        let (count, sum, worst) =
+            errors.fold((0, 0.0, 0.0f64), |(n, sum, worst), e| (n + 1, sum + e, worst.max(e.abs())));
+        assert!(count > 2000, "{size:?}: {count} cells");
+        // Within a cell, the samples are those of the nearest pixels.
+        let cell_m = grid.cell[0] * 0.3e-3;
+        assert!((sum / f64::from(count)).abs() < 3e-5, "{size:?}: {} m", sum / f64::from(count));
+        assert!(worst < 0.2 * cell_m * step as f64, "{size:?}: {worst} m in cells of {cell_m} m");
+    }
+    // Every second row and column of this mask has all of its pixels, or none.
+    let (observation, _) = large([1400, 1000], |u, v| u % 2 == 0 && v % 2 == 0 || u % 97 == 0);
+    assert_eq!(CleanObservation::new(&observation).image, [1502.0, 1101.0]);
+}
+
 /// A mask at the image's left border, and depths with holes.
 fn at_the_border(draw: &mut Draw) -> CleanObservation {
     let holes: Vec<usize> = (0..900).map(|_| draw.below(WIDTH * HEIGHT)).collect();

@@ -1,5 +1,7 @@
 //! The generated set of coloured objects: each class shows its effect, and colour decides where shape does not.
 
+use std::sync::OnceLock;
+
 use sim3align::align::evaluate::{EvaluateOptions, evaluate_prepared};
 use sim3align::align::task::AlignTask;
 use sim3align::metrics::pose_error::pose_errors;
@@ -16,10 +18,14 @@ use sim3align_lab::cases::tier::{CaseSet, Class, Tier};
 /// Every class of every tier.
 const LOOKED_AT: usize = 24;
 
-fn of_class(class: Class) -> Vec<EvaluationCase> {
-    let set = EvaluationSet::new(11).of(CaseSet::Colors);
-    let indices = (0..LOOKED_AT).filter(|&index| CaseSet::Colors.class(index) == class);
-    indices.map(|index| set.case(index).unwrap()).collect()
+/// A case of the set that the tests look at. Their photos take seconds to render, so that the tests share them.
+fn case(index: usize) -> &'static EvaluationCase {
+    static CASES: [OnceLock<EvaluationCase>; LOOKED_AT] = [const { OnceLock::new() }; LOOKED_AT];
+    CASES[index].get_or_init(|| EvaluationSet::new(11).of(CaseSet::Colors).case(index).unwrap())
+}
+
+fn of_class(class: Class) -> impl Iterator<Item = &'static EvaluationCase> {
+    (0..LOOKED_AT).filter(move |&index| CaseSet::Colors.class(index) == class).map(case)
 }
 
 fn agreement(case: &EvaluationCase, pose: &Similarity) -> f64 {
@@ -32,7 +38,7 @@ fn agreement(case: &EvaluationCase, pose: &Similarity) -> f64 {
 fn the_print_agrees_at_the_true_pose_and_only_where_it_is_the_objects() {
     for class in [Class::Printed, Class::Blotted, Class::PrintedShape] {
         for case in of_class(class) {
-            let true_pose = agreement(&case, &case.camera_from_mesh);
+            let true_pose = agreement(case, &case.camera_from_mesh);
             let least = case.tier.pick(0.7, 0.5, 0.2);
             // A shape with a print may turn its blank side to the camera.
             assert!(
@@ -44,7 +50,7 @@ fn the_print_agrees_at_the_true_pose_and_only_where_it_is_the_objects() {
     }
     for class in [Class::WrongColors, Class::OneColor] {
         for case in of_class(class) {
-            let true_pose = agreement(&case, &case.camera_from_mesh);
+            let true_pose = agreement(case, &case.camera_from_mesh);
             assert!(true_pose < 0.3, "{}: {true_pose}", case.name());
         }
     }
@@ -64,24 +70,24 @@ fn a_grey_photo_has_no_colour_and_others_have() {
 #[test]
 fn what_the_print_tells_has_no_symmetry_and_what_it_does_not_has_that_of_its_shape() {
     for class in [Class::Printed, Class::Blotted, Class::GreyPhoto] {
-        assert!(of_class(class).iter().all(|case| case.symmetry == Symmetry::None));
+        assert!(of_class(class).all(|case| case.symmetry == Symmetry::None));
     }
     for class in [Class::OneColor, Class::WrongColors] {
-        assert!(of_class(class).iter().all(|case| case.symmetry != Symmetry::None));
+        assert!(of_class(class).all(|case| case.symmetry != Symmetry::None));
     }
 }
 
 #[test]
 fn the_set_depends_on_its_seed_alone() {
-    let case = |seed| EvaluationSet::new(seed).of(CaseSet::Colors).case(1).unwrap();
-    assert_eq!(case(3).observation, case(3).observation);
-    assert_eq!(case(3).colors, case(3).colors);
-    assert_ne!(case(3).colors, case(4).colors);
+    let [one, same, other] = [3, 3, 4].map(|seed| EvaluationSet::new(seed).of(CaseSet::Colors).case(1).unwrap());
+    assert_eq!(one.observation, same.observation);
+    assert_eq!(one.colors, same.colors);
+    assert_ne!(one.colors, other.colors);
 }
 
 #[test]
 fn colour_finds_the_right_turn() {
-    for case in of_class(Class::Printed).iter().filter(|case| case.tier != Tier::Hard) {
+    for case in of_class(Class::Printed).filter(|case| case.tier != Tier::Hard) {
         let mesh = PreparedMesh::borrowed(&case.mesh).with_colors(case.colors.clone());
         let task = AlignTask::new(&case.observation, mesh, AlignOptions::default(), Silent).unwrap();
         let found = task.finish().unwrap();
@@ -93,8 +99,7 @@ fn colour_finds_the_right_turn() {
 
 #[test]
 fn photos_have_several_sizes_and_formats_and_are_read_from_files() {
-    let cases: Vec<EvaluationCase> =
-        (0..LOOKED_AT).map(|index| EvaluationSet::new(11).of(CaseSet::Colors).case(index).unwrap()).collect();
+    let cases: Vec<&EvaluationCase> = (0..LOOKED_AT).map(case).collect();
     let parameter = |case: &EvaluationCase, name| case.parameters.iter().find(|p| p.0 == name).unwrap().1;
     for case in &cases {
         let (photo, depth) = (case.observation.photo().unwrap(), case.observation.depth());
@@ -117,11 +122,11 @@ fn photos_have_several_sizes_and_formats_and_are_read_from_files() {
 fn a_written_case_has_the_same_photo_mesh_and_colours() {
     let folder = std::env::temp_dir().join(format!("sim3align-colors-{}", std::process::id()));
     for index in 0..6 {
-        let case = EvaluationSet::new(11).of(CaseSet::Colors).case(index).unwrap();
+        let case = case(index);
         case.write(&folder).unwrap();
         let read = BenchCase::read(&folder);
         std::fs::remove_dir_all(&folder).unwrap();
-        let (read, made) = (read.unwrap(), BenchCase::from(case));
+        let (read, made) = (read.unwrap(), BenchCase::from(case.clone()));
         assert_eq!(read.observation.photo(), made.observation.photo());
         assert_eq!(read.observation.depth(), made.observation.depth());
         assert_eq!((read.mesh, read.colors), (made.mesh, made.colors));
