@@ -1,48 +1,89 @@
 //! Connected components of binary images.
 
+use core::ops::Range;
+
 /// A connected component (four neighbours).
 pub struct Component {
-    /// Indices of the pixels, row-major.
-    pub pixels: Vec<u32>,
+    /// The pixels as runs of indices within rows, row-major.
+    runs: Vec<Range<u32>>,
     /// Whether a pixel is on the border of the image.
     pub touches_border: bool,
 }
 
+impl Component {
+    /// Number of pixels.
+    pub fn count(&self) -> usize {
+        self.runs.iter().map(Range::len).sum()
+    }
+
+    /// Indices of the pixels, row-major.
+    pub fn pixels(&self) -> impl Iterator<Item = usize> {
+        self.runs.iter().flat_map(|run| run.start as usize..run.end as usize)
+    }
+
+    /// Sets the pixels of an image of the same size.
+    pub fn set(&self, image: &mut [bool]) {
+        self.runs.iter().for_each(|run| image[run.start as usize..run.end as usize].fill(true));
+    }
+}
+
 /// The connected components of the set pixels of an image, in the order of their first pixels.
+///
+/// Runs of pixels are joined with those that they touch in the row above (union-find), so that the time is one pass over
+/// the image.
 pub fn components(set: &[bool], width: usize, height: usize) -> Vec<Component> {
-    let mut seen = vec![false; set.len()];
-    let mut list = Vec::new();
-    for start in 0..set.len() {
-        if !set[start] || seen[start] {
-            continue;
+    let mut runs: Vec<Range<u32>> = Vec::new();
+    // An earlier run of the same component; itself in the first one.
+    let mut parents: Vec<u32> = Vec::new();
+    let mut above = 0..0;
+    for (v, row) in set.chunks_exact(width.max(1)).enumerate() {
+        let first = runs.len();
+        let mut from = 0;
+        while let Some(start) = row[from..].iter().position(|set| *set).map(|skipped| from + skipped) {
+            let end = row[start..].iter().position(|set| !*set).map_or(width, |length| start + length);
+            let id = runs.len() as u32;
+            parents.push(id);
+            runs.push((v * width + start) as u32..(v * width + end) as u32);
+            // The runs above are disjoint and in order: those that end before this one touch no later one.
+            let column = |index: u32| index as usize - (v - 1) * width;
+            while above.start < above.end && column(runs[above.start].end) <= start {
+                above.start += 1;
+            }
+            let touching = above.clone().take_while(|&other| column(runs[other].start) < end);
+            touching.for_each(|other| join(&mut parents, other as u32, id));
+            from = end;
         }
-        seen[start] = true;
-        let mut component = Component { pixels: vec![start as u32], touches_border: false };
-        let mut next = 0;
-        while let Some(&i) = component.pixels.get(next) {
-            next += 1;
-            let (u, v) = (i as usize % width, i as usize / width);
-            component.touches_border |= u == 0 || v == 0 || u + 1 == width || v + 1 == height;
-            let mut visit = |j: usize| {
-                if set[j] && !seen[j] {
-                    seen[j] = true;
-                    component.pixels.push(j as u32);
-                }
-            };
-            if u > 0 {
-                visit(i as usize - 1);
-            }
-            if u + 1 < width {
-                visit(i as usize + 1);
-            }
-            if v > 0 {
-                visit(i as usize - width);
-            }
-            if v + 1 < height {
-                visit(i as usize + width);
-            }
+        above = first..runs.len();
+    }
+    let mut list: Vec<Component> = Vec::new();
+    let mut of_root = vec![u32::MAX; runs.len()];
+    for (id, run) in runs.into_iter().enumerate() {
+        let root = root(&mut parents, id as u32) as usize;
+        if of_root[root] == u32::MAX {
+            of_root[root] = list.len() as u32;
+            list.push(Component { runs: Vec::new(), touches_border: false });
         }
-        list.push(component);
+        let component = &mut list[of_root[root] as usize];
+        let [first, end] = [run.start, run.end].map(|i| i as usize);
+        component.touches_border |=
+            first < width || first + width >= width * height || first % width == 0 || end % width == 0;
+        component.runs.push(run);
     }
     list
+}
+
+/// The first run of the component of a run.
+fn root(parents: &mut [u32], mut id: u32) -> u32 {
+    while parents[id as usize] != id {
+        let above = parents[parents[id as usize] as usize];
+        parents[id as usize] = above;
+        id = above;
+    }
+    id
+}
+
+/// Joins the components of two runs. The earlier first run stays the root.
+fn join(parents: &mut [u32], a: u32, b: u32) {
+    let [a, b] = [root(parents, a), root(parents, b)];
+    parents[a.max(b) as usize] = a.min(b);
 }

@@ -6,61 +6,106 @@ pub const NO_PIXEL: u32 = u32::MAX;
 /// Squared distance of every pixel to the nearest set pixel, in pixels², row-major; [`NO_PIXEL`] everywhere if
 /// none is set. `set` holds `width` × `height` values.
 ///
-/// Two scans in integers, linear in the number of pixels (Meijster, Roerdink and Hesselink 2000): down and up
-/// the columns, then along each row the lower envelope of the columns' parabolas.
+/// Two scans, linear in the number of pixels (Meijster, Roerdink and Hesselink 2000): down and up the columns, then along
+/// each row the lower envelope of the columns' parabolas.
 pub fn squared_distances(set: &[bool], width: usize, height: usize) -> Vec<u32> {
-    let mut distances = vec![NO_PIXEL; set.len()];
     if width == 0 || height == 0 || set.len() != width * height || !set.contains(&true) {
-        return distances;
+        return vec![NO_PIXEL; set.len()];
     }
-    let in_column = column_distances(set, width, height);
-    // The parabolas of the envelope, each with the first column where it is the lowest.
-    let mut envelope: Vec<(i64, i64)> = Vec::with_capacity(width);
-    for (row, out) in in_column.chunks_exact(width).zip(distances.chunks_exact_mut(width)) {
-        let squared = |x: i64| i64::from(row[x as usize]) * i64::from(row[x as usize]);
-        let value = |x: i64, from: i64| (x - from) * (x - from) + squared(from);
+    let mut distances = column_distances(set, width, height);
+    // The squared distances in the columns, which are the heights of the parabolas.
+    let mut heights = vec![0i64; width];
+    // The columns whose parabolas form the envelope, each with the first column where it is the lowest.
+    let mut envelope: Vec<(i32, i32)> = Vec::with_capacity(width);
+    let columns = width as i32;
+    for row in distances.chunks_exact_mut(width) {
+        heights.iter_mut().zip(row.iter()).for_each(|(h, d)| *h = i64::from(*d) * i64::from(*d));
+        let value = |x: i32, from: i32| {
+            let apart = i64::from(x - from);
+            apart * apart + heights[from as usize]
+        };
         envelope.clear();
-        for x in 0..width as i64 {
+        for x in 0..columns {
             while envelope.last().is_some_and(|&(top, start)| value(start, top) > value(start, x)) {
                 envelope.pop();
             }
             let start = envelope.last().map_or(0, |&(top, _)| {
-                // The first column where x is lower than top.
-                (x * x - top * top + squared(x) - squared(top)).div_euclid(2 * (x - top)) + 1
+                let rise = heights[x as usize] - heights[top as usize];
+                // Most pixels of a filled area.
+                if rise == 0 && x == top + 1 {
+                    return x;
+                }
+                // The first column where x is lower than top, which is right of the start of top. f64 holds both integers
+                // exactly and divides faster; quotients of this size are never rounded up to the next integer.
+                let [x, top] = [x, top].map(i64::from);
+                let last = (x * x - top * top + rise) as f64 / (2 * (x - top)) as f64;
+                if last < f64::from(columns) { last as i32 + 1 } else { columns }
             });
-            if start < width as i64 {
+            if start < columns {
                 envelope.push((x, start));
             }
         }
-        for x in (0..width as i64).rev() {
-            while envelope.len() > 1 && envelope.last().is_some_and(|&(_, start)| start > x) {
-                envelope.pop();
+        let mut end = columns;
+        for &(top, start) in envelope.iter().rev() {
+            for (x, out) in (start..end).zip(&mut row[start as usize..end as usize]) {
+                *out = value(x, top).min(i64::from(NO_PIXEL - 1)) as u32;
             }
-            if let Some(&(top, _)) = envelope.last() {
-                out[x as usize] = u32::try_from(value(x, top)).unwrap_or(NO_PIXEL - 1);
-            }
+            end = start;
         }
     }
     distances
 }
 
-/// Distance to the nearest set pixel of the same column. A column without one gets a value larger than any distance in
-/// the image.
-fn column_distances(set: &[bool], width: usize, height: usize) -> Vec<u32> {
-    let far = (width + height) as u32;
-    let mut distances = vec![far; set.len()];
-    let mut scan = |rows: &mut dyn Iterator<Item = usize>| {
-        let mut above: Option<usize> = None;
-        for v in rows {
-            for u in 0..width {
-                let i = v * width + u;
-                let carried = above.map_or(far, |a| (distances[a * width + u] + 1).min(far));
-                distances[i] = if set[i] { 0 } else { distances[i].min(carried) };
+/// Whether each pixel is at most `radius` pixels from a set pixel. The same as a comparison of [`squared_distances`], but
+/// several times as fast.
+pub fn within(radius: u32, set: &[bool], width: usize, height: usize) -> Vec<bool> {
+    let mut near = vec![false; set.len()];
+    if width == 0 || height == 0 || set.len() != width * height {
+        return near;
+    }
+    let far = far(width, height);
+    // Half the width of the disc, by rows from its centre.
+    let squared = u64::from(radius) * u64::from(radius);
+    let half = |row: u32| (squared - u64::from(row) * u64::from(row)).isqrt() as usize;
+    let halves: Vec<usize> = (0..=radius.min(far - 1)).map(half).collect();
+    // Number of discs that begin in each column, less those that have ended.
+    let mut change = vec![0i32; width + 1];
+    for (row, near) in column_distances(set, width, height).chunks_exact(width).zip(near.chunks_exact_mut(width)) {
+        change.fill(0);
+        for (u, distance) in row.iter().enumerate() {
+            if let Some(half) = halves.get(*distance as usize) {
+                change[u.saturating_sub(*half)] += 1;
+                change[(u + half + 1).min(width)] -= 1;
             }
-            above = Some(v);
         }
+        let mut open = 0;
+        for (near, change) in near.iter_mut().zip(&change) {
+            open += change;
+            *near = open > 0;
+        }
+    }
+    near
+}
+
+/// A distance larger than any in the image.
+fn far(width: usize, height: usize) -> u32 {
+    (width + height) as u32
+}
+
+/// Distance to the nearest set pixel of the same column; [`far`] in a column without one.
+fn column_distances(set: &[bool], width: usize, height: usize) -> Vec<u32> {
+    let far = far(width, height);
+    let mut distances: Vec<u32> = set.iter().map(|set| if *set { 0 } else { far }).collect();
+    let carry = |from: &[u32], to: &mut [u32]| {
+        to.iter_mut().zip(from).for_each(|(to, from)| *to = (*to).min(*from + 1));
     };
-    scan(&mut (0..height));
-    scan(&mut (0..height).rev());
+    for v in 1..height {
+        let (above, below) = distances.split_at_mut(v * width);
+        carry(&above[(v - 1) * width..], &mut below[..width]);
+    }
+    for v in (1..height).rev() {
+        let (above, below) = distances.split_at_mut(v * width);
+        carry(&below[..width], &mut above[(v - 1) * width..]);
+    }
     distances
 }

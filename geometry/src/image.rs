@@ -16,6 +16,41 @@ pub type DepthMap = Image<f32>;
 /// A mask: non-zero pixels are the object.
 pub type Mask = Image<u8>;
 
+/// A rectangle of pixels of an image; empty by default.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Window {
+    /// The first column and row.
+    pub first: [usize; 2],
+    /// Width and height.
+    pub size: [usize; 2],
+}
+
+impl Window {
+    /// A whole image.
+    pub fn whole(width: usize, height: usize) -> Self {
+        Self { first: [0; 2], size: [width, height] }
+    }
+
+    /// The pixels from the first to the last column and row, as [`bounds_of`] returns them.
+    pub fn of_bounds(bounds: [[usize; 2]; 2]) -> Self {
+        Self { first: bounds.map(|[low, _]| low), size: bounds.map(|[low, high]| high + 1 - low) }
+    }
+
+    /// The smallest window that contains both.
+    pub fn union(self, other: Self) -> Self {
+        let first = [0, 1].map(|axis| self.first[axis].min(other.first[axis]));
+        let end = |window: Self, axis: usize| window.first[axis] + window.size[axis];
+        Self { first, size: [0, 1].map(|axis| end(self, axis).max(end(other, axis)) - first[axis]) }
+    }
+
+    /// The window with a margin, as far as that is inside an image of this size.
+    pub fn grown(self, margin: usize, image: [usize; 2]) -> Self {
+        let first = self.first.map(|first| first.saturating_sub(margin));
+        let end = |axis: usize| (self.first[axis] + self.size[axis] + margin).min(image[axis]);
+        Self { first, size: [0, 1].map(|axis| end(axis).saturating_sub(first[axis])) }
+    }
+}
+
 impl<T: Copy> Image<T> {
     /// An image from its pixels. `argument` names it in errors.
     pub fn new(argument: &str, width: usize, height: usize, data: Vec<T>) -> Result<Self> {
@@ -51,6 +86,13 @@ impl<T: Copy> Image<T> {
     /// The pixel at column `u`, row `v`, or `None` outside the image.
     pub fn get(&self, u: usize, v: usize) -> Option<T> {
         if u < self.width && v < self.height { self.data.get(v * self.width + u).copied() } else { None }
+    }
+
+    /// The pixels in a window that is inside the image.
+    pub fn window(&self, window: &Window) -> Self {
+        let ([left, top], [width, height]) = (window.first, window.size);
+        let row = |v: usize| &self.data[v * self.width + left..][..width];
+        Self { width, height, data: (top..top + height).flat_map(row).copied().collect() }
     }
 
     /// Nearest-neighbour resampling: each new pixel takes the value of the old pixel that contains its centre. The new

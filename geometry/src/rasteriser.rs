@@ -8,6 +8,7 @@
 use glam::{DMat3, DVec3};
 
 use super::clip::{ClipVolume, GUARD_BAND_PX};
+use super::image::Window;
 use super::mesh::Mesh;
 use super::pinhole::Pinhole;
 use super::similarity::Similarity;
@@ -46,8 +47,7 @@ const MAX_COORDINATE: f64 = 1e60;
 /// ```
 #[derive(Debug, Clone, Default)]
 pub struct Rasteriser {
-    width: usize,
-    height: usize,
+    window: Window,
     vertices: Vec<Vertex>,
     /// 1/z during rendering, z afterwards.
     depth: Vec<f32>,
@@ -103,7 +103,8 @@ impl Rasteriser {
         width: usize,
         height: usize,
     ) {
-        self.draw::<true>(mesh, camera_from_mesh, camera, width, height);
+        let near = self.place(mesh, camera_from_mesh, camera);
+        self.draw::<true>(mesh, camera, near, Window::whole(width, height));
     }
 
     /// Like [`Rasteriser::render`], without the triangle image.
@@ -115,7 +116,44 @@ impl Rasteriser {
         width: usize,
         height: usize,
     ) {
-        self.draw::<false>(mesh, camera_from_mesh, camera, width, height);
+        let near = self.place(mesh, camera_from_mesh, camera);
+        self.draw::<false>(mesh, camera, near, Window::whole(width, height));
+    }
+
+    /// Like [`Rasteriser::render_depth`], for the smallest window of the image that contains `part`, the whole mesh, and one
+    /// more pixel on each side. The pixels are those of the whole image.
+    pub fn render_depth_around(
+        &mut self,
+        mesh: &Mesh,
+        camera_from_mesh: &Similarity,
+        camera: &Pinhole,
+        image: [usize; 2],
+        part: Window,
+    ) -> Window {
+        let near = self.place(mesh, camera_from_mesh, camera);
+        let window = self.covered(image).map_or(part, |covered| part.union(covered)).grown(1, image);
+        self.draw::<false>(mesh, camera, near, window);
+        window
+    }
+
+    /// The window that may contain the projected mesh; `None` if it is outside the image.
+    fn covered(&self, image: [usize; 2]) -> Option<Window> {
+        if self.vertices.iter().any(|v| v.placement == Placement::Outside) {
+            return Some(Window::whole(image[0], image[1]));
+        }
+        let inside = || self.vertices.iter().filter(|v| v.placement == Placement::Inside);
+        let mut bounds = [[0; 2]; 2];
+        for (axis, bounds) in bounds.iter_mut().enumerate() {
+            let low = inside().map(|v| v.fixed[axis]).min()?;
+            let high = inside().map(|v| v.fixed[axis]).max()?;
+            let last = i64::from(high).div_euclid(SUBPIXEL).min(image[axis] as i64 - 1);
+            let first = i64::from(low).div_euclid(SUBPIXEL).max(0);
+            if first > last {
+                return None;
+            }
+            *bounds = [first as usize, last as usize];
+        }
+        Some(Window::of_bounds(bounds))
     }
 
     /// z-depth per pixel, row-major, in the unit of the camera frame (metres); 0 for uncovered pixels.
@@ -131,30 +169,29 @@ impl Rasteriser {
 
     /// Width of the last render, in pixels.
     pub fn width(&self) -> usize {
-        self.width
+        self.window.size[0]
     }
 
     /// Height of the last render, in pixels.
     pub fn height(&self) -> usize {
-        self.height
+        self.window.size[1]
     }
 
-    fn draw<const TRIANGLES: bool>(
-        &mut self,
-        mesh: &Mesh,
-        camera_from_mesh: &Similarity,
-        camera: &Pinhole,
-        width: usize,
-        height: usize,
-    ) {
-        (self.width, self.height) = (width, height);
-        self.depth.clear();
-        self.depth.resize(width * height, 0.0);
-        self.triangles.clear();
-        self.triangles.resize(if TRIANGLES { width * height } else { 0 }, NO_TRIANGLE);
-
+    /// Places the vertices in the image, and returns the depth of the near plane.
+    fn place(&mut self, mesh: &Mesh, camera_from_mesh: &Similarity, camera: &Pinhole) -> f64 {
         let near = self.transform(mesh, camera_from_mesh);
         self.project(camera, near);
+        near
+    }
+
+    /// Draws the placed mesh.
+    fn draw<const TRIANGLES: bool>(&mut self, mesh: &Mesh, camera: &Pinhole, near: f64, window: Window) {
+        self.window = window;
+        let pixels = window.size[0] * window.size[1];
+        self.depth.clear();
+        self.depth.resize(pixels, 0.0);
+        self.triangles.clear();
+        self.triangles.resize(if TRIANGLES { pixels } else { 0 }, NO_TRIANGLE);
         let volume = ClipVolume::new(camera, near);
         self.visited = 0;
         for (id, triangle) in (0..).zip(mesh.triangles()) {
@@ -215,12 +252,13 @@ impl Rasteriser {
     fn fill<const TRIANGLES: bool>(&mut self, id: u32, corners: [[i32; 2]; 3], plane: impl Fn() -> InverseDepth) {
         let [a, mut b, mut c] = corners.map(|p| p.map(i64::from));
         // Pixels whose centres are inside the bounding box of the triangle.
-        let range = |i: usize, size: usize| {
+        let Window { first, size } = self.window;
+        let range = |i: usize| {
             let (low, high) = (a[i].min(b[i]).min(c[i]), a[i].max(b[i]).max(c[i]));
-            let first = (low + SUBPIXEL - 1).div_euclid(SUBPIXEL).max(0);
-            (first, high.div_euclid(SUBPIXEL).min(size as i64 - 1))
+            let from = (low + SUBPIXEL - 1).div_euclid(SUBPIXEL).max(first[i] as i64);
+            (from, high.div_euclid(SUBPIXEL).min((first[i] + size[i]) as i64 - 1))
         };
-        let ((u0, u1), (v0, v1)) = (range(0, self.width), range(1, self.height));
+        let ((u0, u1), (v0, v1)) = (range(0), range(1));
         if u0 > u1 || v0 > v1 {
             return;
         }
@@ -236,7 +274,7 @@ impl Rasteriser {
         let mut row = edges.map(|e| e.at(corner) - e.exclusive());
         let plane = plane();
         for v in v0..=v1 {
-            let start = v as usize * self.width;
+            let start = (v as usize - first[1]) * size[0];
             let w_row = plane.origin + plane.dv * v as f64;
             let (mut e, mut range) = (row, (u0, u1));
             if u1 - u0 >= WIDE {
@@ -250,7 +288,7 @@ impl Rasteriser {
             for u in range.0..=range.1 {
                 // All three are ≥ 0 if no sign bit is set.
                 if (e[0] | e[1] | e[2]) >= 0 {
-                    let i = start + u as usize;
+                    let i = start + (u as usize - first[0]);
                     // In this order, NaN (from a plane seen edge-on) becomes the lower bound.
                     let w = (w_row + plane.du * u as f64).max(plane.low).min(plane.high) as f32;
                     if w > self.depth[i] {

@@ -17,14 +17,18 @@ use crate::evidence::Evidence;
 use crate::evidence::clouds::Sampling;
 use crate::evidence::observation::Observation;
 use crate::geometry::decimate::decimate;
-use crate::geometry::image::{DepthMap, Mask};
+use crate::geometry::image::{DepthMap, Mask, Window, bounds_of};
 use crate::geometry::mesh::Mesh;
 use crate::geometry::rasteriser::Rasteriser;
 use crate::geometry::similarity::Similarity;
+use silhouette::boundary_tolerance_px;
 use surface::{Mean, surface_agreement};
 
-/// Triangles above which surfaces are searched on a decimated mesh.
-const MAX_SEARCHED_TRIANGLES: usize = 1 << 21;
+/// Triangles above which surfaces are searched on a decimated mesh, above which it is rendered as well, and the number of
+/// triangles that it then has.
+const MAX_SEARCHED_TRIANGLES: usize = 1 << 18;
+const MAX_DRAWN_TRIANGLES: usize = 1 << 21;
+const DECIMATED_TRIANGLES: usize = 1 << 17;
 
 /// Agreement of a posed mesh with the observation. `null` marks a value that could not be measured.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -83,39 +87,49 @@ pub fn score(
     evidence: &Evidence,
 ) -> Result<Metrics> {
     check_transform(camera_from_mesh)?;
-    let mesh = &*searchable(mesh);
-    let agreement = surface_agreement(evidence, mesh, camera_from_mesh);
+    let agreement = surface_agreement(evidence, &searchable(mesh), camera_from_mesh);
 
-    let (depth, mask) = (observation.depth(), observation.mask());
-    let (width, height) = (depth.width(), depth.height());
+    let image = [observation.mask().width(), observation.mask().height()];
+    let part = Window::of_bounds(bounds_of(observation.mask().data(), image[0], |m| *m != 0));
     let mut rasteriser = Rasteriser::new();
-    rasteriser.render_depth(mesh, camera_from_mesh, &observation.camera(), width, height);
-    let mut silhouette = Mask::filled(width, height, 0);
+    let window = rasteriser.render_depth_around(&drawable(mesh), camera_from_mesh, &observation.camera(), image, part);
+    // All else is empty in both images.
+    let (depth, mask) = (observation.depth().window(&window), observation.mask().window(&window));
+    let mut silhouette = Mask::filled(window.size[0], window.size[1], 0);
     for (pixel, z) in silhouette.data_mut().iter_mut().zip(rasteriser.depth()) {
         *pixel = u8::from(*z > 0.0);
     }
     let millimetres = |metres: Option<f64>| metres.map(|m| 1000.0 * m).filter(|m| m.is_finite());
     let chamfer = agreement.points_to_surface.zip(agreement.surface_to_points).map(|(to, from)| 0.5 * (to + from));
     Ok(Metrics {
-        boundary_f: Some(silhouette::boundary_f(mask, &silhouette)),
-        center_drift_px: silhouette::center_drift_px(mask, &silhouette),
-        iou: Some(silhouette::iou(mask, &silhouette)),
+        boundary_f: Some(silhouette::boundary_f(&mask, &silhouette, boundary_tolerance_px(image[0], image[1]))),
+        center_drift_px: silhouette::center_drift_px(&mask, &silhouette),
+        iou: Some(silhouette::iou(&mask, &silhouette)),
         chamfer_mm: millimetres(chamfer),
         uni_chamfer_mm: millimetres(agreement.points_to_surface),
         fitness: agreement.fitness,
         normal_consistency: agreement.normal_consistency,
-        depth_mae_mm: millimetres(depth_mae(depth, mask, rasteriser.depth())),
+        depth_mae_mm: millimetres(depth_mae(&depth, &mask, rasteriser.depth())),
         color_agreement: None,
     })
 }
 
-/// The mesh that is rendered and searched for nearest points: buffers for millions of triangles would take more memory than
-/// all else, and the decimated mesh differs by a fraction of its cells, which are a hundredth of its size.
+/// The mesh that is searched for nearest points. A tree over half a million triangles takes longer to build than an
+/// alignment to find, and the decimated surface differs by less than a thousandth of the size of the object.
 fn searchable(mesh: &Mesh) -> Cow<'_, Mesh> {
-    if mesh.triangles().len() <= MAX_SEARCHED_TRIANGLES {
+    at_most(MAX_SEARCHED_TRIANGLES, mesh)
+}
+
+/// The mesh that is rendered: a rasteriser's buffers for millions of vertices would take more memory than all else.
+fn drawable(mesh: &Mesh) -> Cow<'_, Mesh> {
+    at_most(MAX_DRAWN_TRIANGLES, mesh)
+}
+
+fn at_most(most: usize, mesh: &Mesh) -> Cow<'_, Mesh> {
+    if mesh.triangles().len() <= most {
         return Cow::Borrowed(mesh);
     }
-    Cow::Owned(decimate(mesh, MAX_SEARCHED_TRIANGLES / 16))
+    Cow::Owned(decimate(mesh, DECIMATED_TRIANGLES))
 }
 
 /// Mean |rendered − observed| over the pixels of the mask with both depths (above 0).

@@ -1,6 +1,6 @@
 //! Comparison of two masks of the same size: overlap, boundary, centroid.
 
-use crate::geometry::distance_transform::squared_distances;
+use crate::geometry::distance_transform::within;
 use crate::geometry::image::Mask;
 
 /// Maximum distance of matching boundary pixels, relative to the image diagonal (DAVIS).
@@ -22,33 +22,32 @@ pub fn center_drift_px(a: &Mask, b: &Mask) -> Option<f64> {
     Some(((ua - ub) * (ua - ub) + (va - vb) * (va - vb)).sqrt())
 }
 
+/// The distance of matching boundary pixels in an image of this size, pixels: ⌈0.008 · image diagonal⌉.
+pub fn boundary_tolerance_px(width: usize, height: usize) -> u32 {
+    // In u64: the square of a long side overflows a 32-bit usize.
+    let [w, h] = [width, height].map(|side| side as u64);
+    (BOUNDARY_TOLERANCE * ((w * w + h * h) as f64).sqrt()).ceil() as u32
+}
+
 /// Boundary F-measure of DAVIS (Perazzi et al. 2016, §4.1, as the 2017 evaluation code computes it), 0 to 1.
 ///
-/// Boundaries are one pixel wide (see [`boundary`]). Precision is the fraction of the boundary of b within
-/// ⌈0.008 · image diagonal⌉ pixels of that of a, recall the fraction of the boundary of a within the same distance of
+/// Boundaries are one pixel wide (see [`boundary`]). Precision is the fraction of the boundary of b within `tolerance_px`
+/// (see [`boundary_tolerance_px`]) of that of a, recall the fraction of the boundary of a within the same distance of
 /// that of b, and F = 2PR/(P + R). The result is 0 if a mask is empty, 1 if both masks fill the image, and 0 if only
-/// one does.
-pub fn boundary_f(a: &Mask, b: &Mask) -> f64 {
+/// one does. Rows and columns that are empty in both masks may be left out, but for one beside each mask.
+pub fn boundary_f(a: &Mask, b: &Mask, tolerance_px: u32) -> f64 {
     let empty = |mask: &Mask| mask.data().iter().all(|&m| m == 0);
     if empty(a) || empty(b) {
         return 0.0;
     }
-    let (width, height) = (a.width(), a.height());
-    // In u64: the square of a long side overflows a 32-bit usize.
-    let [w, h] = [width, height].map(|side| side as u64);
-    let diagonal = ((w * w + h * h) as f64).sqrt();
-    let radius = (BOUNDARY_TOLERANCE * diagonal).ceil() as u32;
     let outlines = [boundary(a), boundary(b)];
     let [counts_a, counts_b] = outlines.each_ref().map(|o| o.iter().filter(|set| **set).count());
     if counts_a == 0 || counts_b == 0 {
         return if counts_a == counts_b { 1.0 } else { 0.0 };
     }
-    // Crops to the bounding box of both boundaries.
-    let (outlines, width, height) = cropped(&outlines, width);
     let matched = |outline: &[bool], other: &[bool]| {
-        let distances = squared_distances(other, width, height);
-        let near = |&(set, squared): &(&bool, &u32)| *set && *squared <= radius.saturating_mul(radius);
-        outline.iter().zip(&distances).filter(near).count()
+        let near = within(tolerance_px, other, a.width(), a.height());
+        outline.iter().zip(&near).filter(|(set, near)| **set && **near).count()
     };
     let precision = matched(&outlines[1], &outlines[0]) as f64 / counts_b as f64;
     let recall = matched(&outlines[0], &outlines[1]) as f64 / counts_a as f64;
@@ -69,18 +68,6 @@ pub fn boundary(mask: &Mask) -> Vec<bool> {
         }
     }
     outline
-}
-
-/// Crops two images of the same size to the rows and columns that are not empty in both; returns the new size.
-fn cropped(images: &[Vec<bool>; 2], width: usize) -> ([Vec<bool>; 2], usize, usize) {
-    let [mut left, mut right, mut top, mut bottom] = [usize::MAX, 0, usize::MAX, 0];
-    for (i, _) in images.iter().flat_map(|image| image.iter().enumerate()).filter(|(_, set)| **set) {
-        let (u, v) = (i % width, i / width);
-        (left, right, top, bottom) = (left.min(u), right.max(u + 1), top.min(v), bottom.max(v + 1));
-    }
-    let rows =
-        |image: &Vec<bool>| (top..bottom).flat_map(|v| &image[v * width + left..v * width + right]).copied().collect();
-    (images.each_ref().map(rows), right - left, bottom - top)
 }
 
 fn centroid(mask: &Mask) -> Option<[f64; 2]> {

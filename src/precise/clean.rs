@@ -185,12 +185,13 @@ impl Crop {
         let end = [0, 1].map(|axis| end[axis].div_ceil(thinning.step).min(thinning.count(size[axis])));
         let origin = origin.map(|first| first / thinning.step);
         let [width, height] = [0, 1].map(|axis| end[axis].saturating_sub(origin[axis]));
-        let pixels = || {
-            (origin[1]..end[1]).flat_map(move |v| {
-                let row = thinning.at(v) * size[0];
-                (origin[0]..end[0]).map(move |u| row + thinning.at(u))
-            })
-        };
+        let (mut inside, mut scene) = (Vec::with_capacity(width * height), Vec::with_capacity(width * height));
+        for v in origin[1]..end[1] {
+            let row = thinning.at(v) * size[0];
+            let part = row + thinning.at(origin[0])..row + size[0];
+            inside.extend(mask.data()[part.clone()].iter().step_by(thinning.step).take(width).map(|m| *m != 0));
+            scene.extend(depth.data()[part].iter().step_by(thinning.step).take(width));
+        }
         Self {
             camera: thinning.camera(observation.camera()),
             thinning,
@@ -198,8 +199,8 @@ impl Crop {
             origin,
             width,
             height,
-            mask: pixels().map(|i| mask.data()[i] != 0).collect(),
-            scene: pixels().map(|i| depth.data()[i]).collect(),
+            mask: inside,
+            scene,
         }
     }
 
@@ -221,9 +222,9 @@ impl Crop {
         let limit = (PIN_HOLE * self.count() as f64) as usize;
         let outside: Vec<bool> = self.mask.iter().map(|set| !set).collect();
         for component in components(&outside, self.width, self.height) {
-            let shows_other = others.is_some_and(|others| component.pixels.iter().any(|&i| others[i as usize]));
-            if component.pixels.len() <= limit.max(4) && !component.touches_border && !shows_other {
-                component.pixels.iter().for_each(|&i| self.mask[i as usize] = true);
+            let shows_other = || others.is_some_and(|others| component.pixels().any(|i| others[i]));
+            if component.count() <= limit.max(4) && !component.touches_border && !shows_other() {
+                component.set(&mut self.mask);
             }
         }
     }
@@ -235,11 +236,11 @@ impl Crop {
             return;
         }
         let median_depth = |c: &Component| {
-            let depths = c.pixels.iter().map(|&i| self.scene[i as usize]).filter(|z| *z > 0.0);
+            let depths = c.pixels().map(|i| self.scene[i]).filter(|z| *z > 0.0);
             quantile(depths, 0.5).map(f64::from)
         };
-        let area = |c: &Component| c.pixels.len() as f64;
-        let Some(largest) = components.iter().max_by_key(|c| c.pixels.len()) else { return };
+        let area = |c: &Component| c.count() as f64;
+        let Some(largest) = components.iter().max_by_key(|c| c.count()) else { return };
         let is_large = |c: &Component| area(c) >= COMPONENT * area(largest);
         let main = self.mask_of(components.iter().filter(|c| is_large(c)));
         let extent_px = longer_side(&bounds_of(&main, self.width, |set| *set));
@@ -250,8 +251,8 @@ impl Crop {
         let bridged = others.map(|others| self.bridged(&main, others));
         let kept = components.iter().filter(|c| {
             let large = is_large(c);
-            let bridged = || bridged.as_ref().is_some_and(|b| c.pixels.iter().any(|&i| b[i as usize]));
-            let near = || bridged() || c.pixels.iter().any(|&i| f64::from(distances[i as usize]) <= reach * reach);
+            let bridged = || bridged.as_ref().is_some_and(|b| c.pixels().any(|i| b[i]));
+            let near = || bridged() || c.pixels().any(|i| f64::from(distances[i]) <= reach * reach);
             let apart_m = median_depth(c).zip(largest_m).map_or(0.0, |(a, b)| (a - b).abs());
             let at_depth = apart_m <= if large { 2.5 } else { 1.0 } * extent_m;
             at_depth && (large || (area(c) >= ISLAND * area(largest) && near()))
@@ -263,13 +264,13 @@ impl Crop {
     fn bridged(&self, main: &[bool], others: &[bool]) -> Vec<bool> {
         let joined: Vec<bool> = self.mask.iter().zip(others).map(|(mask, other)| *mask || *other).collect();
         let components = components(&joined, self.width, self.height);
-        self.mask_of(components.iter().filter(|c| c.pixels.iter().any(|&i| main[i as usize])))
+        self.mask_of(components.iter().filter(|c| c.pixels().any(|i| main[i])))
     }
 
     /// The mask of only these components.
     fn mask_of<'a>(&self, components: impl Iterator<Item = &'a Component>) -> Vec<bool> {
         let mut mask = vec![false; self.mask.len()];
-        components.flat_map(|c| &c.pixels).for_each(|&i| mask[i as usize] = true);
+        components.for_each(|component| component.set(&mut mask));
         mask
     }
 
@@ -353,12 +354,11 @@ impl Crop {
     fn range_around(&self, i: usize) -> f32 {
         let (u, v) = (i % self.width, i / self.width);
         let (mut low, mut high) = (f32::INFINITY, 0.0f32);
-        for y in v.saturating_sub(1)..=(v + 1).min(self.height - 1) {
-            for x in u.saturating_sub(1)..=(u + 1).min(self.width - 1) {
-                let z = self.scene[y * self.width + x];
-                if z > 0.0 {
-                    (low, high) = (low.min(z), high.max(z));
-                }
+        let columns = u.saturating_sub(1)..(u + 2).min(self.width);
+        for y in v.saturating_sub(1)..(v + 2).min(self.height) {
+            for &z in &self.scene[y * self.width..][columns.clone()] {
+                low = if z > 0.0 && z < low { z } else { low };
+                high = if z > high { z } else { high };
             }
         }
         high - low

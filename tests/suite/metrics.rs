@@ -158,7 +158,7 @@ fn every_platform_gives_these_bits() {
     let metrics = hash(fields.map(|f| f.unwrap().to_bits()));
     assert_eq!(
         (image, metrics),
-        (9_813_633_021_577_151_545, 3_124_411_306_330_285_539),
+        (9_813_633_021_577_151_545, 18_241_078_169_024_629_432),
         "an intended change of the method changes these: {m:?}"
     );
 }

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 use nalgebra::Vector3;
+use sim3align::geometry::image::Window;
 use sim3align::geometry::mesh::Mesh;
 use sim3align::geometry::pinhole::Pinhole;
 use sim3align::geometry::rasteriser::{NO_TRIANGLE, Rasteriser};
@@ -155,6 +156,33 @@ fn buffers_are_reused_without_a_trace() {
     assert_eq!(used.depth(), fresh.depth());
     assert!(used.triangles().is_empty());
     assert_eq!((used.width(), used.height()), (30, 20));
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_window_has_the_pixels_of_the_whole_image() {
+    let (width, height) = (70, 50);
+    let camera = Pinhole::new(60.0, 61.0, 34.3, 24.7).unwrap();
+    let (mut whole, mut part) = (Rasteriser::new(), Rasteriser::new());
+    let mut smaller = 0;
+    // In the middle, across each border, outside, around the camera, and behind it.
+    for place in
+        [[0.0, 0.0, 4.0], [2.0, 0.3, 4.0], [-2.2, -1.5, 4.0], [0.1, 9.0, 4.0], [0.0, 0.0, 0.5], [0.3, 0.1, -4.0]]
+    {
+        let pose = Similarity { translation: Vector3::from(place), ..Similarity::identity() };
+        let must = Window { first: [5, 40], size: [3, 2] };
+        whole.render_depth(&sphere(1.0, 12), &pose, &camera, width, height);
+        let window = part.render_depth_around(&sphere(1.0, 12), &pose, &camera, [width, height], must);
+        assert_eq!([part.width(), part.height()], window.size, "{place:?}");
+        let mut expected = vec![0.0; width * height];
+        for (i, z) in part.depth().iter().enumerate() {
+            let at = [i % window.size[0] + window.first[0], i / window.size[0] + window.first[1]];
+            expected[at[1] * width + at[0]] = *z;
+        }
+        assert_eq!(expected, whole.depth(), "{place:?}: {window:?}");
+        assert_eq!(window.union(must), window, "{place:?}");
+        smaller += usize::from(window.size[0] * window.size[1] < width * height);
+    }
+    assert_eq!(smaller, 4);
 }
 
 #[wasm_bindgen_test(unsupported = test)]

@@ -47,21 +47,23 @@ fn assert_recovers(found: &[f64; 16], truth: &Similarity, points: &[Vector3<f64>
 fn recovers_any_similarity_of_a_full_surface_exactly() {
     let settings =
         [(0.01, 0.0), (1.0, 0.0), (100.0, 0.0), (0.01, 0.5), (0.3, 0.25), (1.0, 0.5), (7.0, 0.5), (100.0, 0.5)];
-    for (shape, surface) in [("blob", blob as fn(&mut Draw, usize) -> Cloud), ("mug", mug)] {
-        for (case, (scale, clutter)) in settings.into_iter().enumerate() {
-            let seed = 100 + case as u64;
-            let draw = &mut Draw::new(seed);
-            let source: Vec<_> = surface(draw, 3000).points.into_iter().map(vector3).collect();
-            let truth = draw.similarity([scale, scale], 1e4);
-            let moved: Vec<_> = source.iter().map(|&p| truth.apply(p)).collect();
-            let target = cluttered(draw, &moved, clutter);
-            let what = format!("{shape}, seed {seed}, scale {scale}, clutter {clutter}");
-            let options = RegisterOptions::default();
-            let result = register(&flat(&source), &flat(&target), &options, &mut Silent);
-            let result = result.unwrap_or_else(|e| panic!("{what}: {e}"));
-            assert_recovers(&result.target_from_source.matrix, &truth, &source, 1e-4, &what);
-            assert!(result.diagnostics.converged && result.fitness > 0.99, "{what}: fitness {}", result.fitness);
-        }
+    // Each shape at every scale or with every amount of clutter, but not all of both.
+    let surfaces = [("blob", blob as fn(&mut Draw, usize) -> Cloud), ("mug", mug)];
+    for (case, ((scale, clutter), (shape, surface))) in
+        settings.into_iter().zip(surfaces.into_iter().cycle()).enumerate()
+    {
+        let seed = 100 + case as u64;
+        let draw = &mut Draw::new(seed);
+        let source: Vec<_> = surface(draw, 3000).points.into_iter().map(vector3).collect();
+        let truth = draw.similarity([scale, scale], 1e4);
+        let moved: Vec<_> = source.iter().map(|&p| truth.apply(p)).collect();
+        let target = cluttered(draw, &moved, clutter);
+        let what = format!("{shape}, seed {seed}, scale {scale}, clutter {clutter}");
+        let options = RegisterOptions::default();
+        let result = register(&flat(&source), &flat(&target), &options, &mut Silent);
+        let result = result.unwrap_or_else(|e| panic!("{what}: {e}"));
+        assert_recovers(&result.target_from_source.matrix, &truth, &source, 1e-4, &what);
+        assert!(result.diagnostics.converged && result.fitness > 0.99, "{what}: fitness {}", result.fitness);
     }
 }
 
@@ -185,7 +187,7 @@ fn part(points: &[Vector3<f64>], direction: Vector3<f64>, share: f64) -> Vec<Vec
 #[wasm_bindgen_test(unsupported = test)]
 fn a_free_scale_of_partial_clouds_does_not_collapse() {
     for (shape, surface, share) in [("blob", blob as fn(&mut Draw, usize) -> Cloud, 0.65), ("mug", mug, 0.75)] {
-        for seed in 400..403 {
+        for seed in 400..402 {
             let draw = &mut Draw::new(seed);
             let whole = surface(draw, 6000).points;
             let direction = draw.direction();

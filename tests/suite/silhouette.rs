@@ -1,8 +1,8 @@
 //! Mask metrics: hand-computed squares, and a boundary F written from its definition.
 
-use sim3align::geometry::image::Mask;
+use sim3align::geometry::image::{Mask, Window, bounds_of};
 use sim3align::geometry::random::Random;
-use sim3align::metrics::silhouette::{boundary, boundary_f, center_drift_px, iou};
+use sim3align::metrics::silhouette::{self, boundary, boundary_tolerance_px, center_drift_px, iou};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 fn rectangle(size: [usize; 2], [u0, v0]: [usize; 2], [w, h]: [usize; 2]) -> Mask {
@@ -12,6 +12,10 @@ fn rectangle(size: [usize; 2], [u0, v0]: [usize; 2], [w, h]: [usize; 2]) -> Mask
 }
 
 const SIZE: [usize; 2] = [100, 100];
+
+fn boundary_f(a: &Mask, b: &Mask) -> f64 {
+    silhouette::boundary_f(a, b, boundary_tolerance_px(a.width(), a.height()))
+}
 
 #[wasm_bindgen_test(unsupported = test)]
 fn equal_masks_agree_fully() {
@@ -108,6 +112,11 @@ fn boundary_f_equals_its_definition() {
         let (a, b) = (blob(), blob());
         let f = boundary_f(&a, &b);
         assert_eq!(f, boundary_f_slowly(&a, &b), "seed {seed}");
+        let parts = [&a, &b].map(|mask| Window::of_bounds(bounds_of(mask.data(), mask.width(), |m| *m != 0)));
+        let window = parts[0].union(parts[1]).grown(1, [a.width(), a.height()]);
+        let tolerance = boundary_tolerance_px(a.width(), a.height());
+        let cropped = silhouette::boundary_f(&a.window(&window), &b.window(&window), tolerance);
+        assert_eq!(f, cropped, "seed {seed}: in {window:?}");
         partly += usize::from(f > 0.0 && f < 1.0);
     }
     assert!(partly > 30, "only {partly} pairs were worth comparing");

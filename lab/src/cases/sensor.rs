@@ -65,11 +65,11 @@ pub fn apply(
                 return Ok(None);
             }
             let parts = parts(&mask, scene.width);
-            let smaller = parts[1].pixels.len() as f64 / mask.iter().filter(|m| **m).count().max(1) as f64;
+            let smaller = parts[1].count() as f64 / mask.iter().filter(|m| **m).count().max(1) as f64;
             parameters.push(("smallerPart", smaller));
             let lost = usize::from(chance(random, 0.7));
             if chance(random, 0.5) {
-                lose(readings, parts[lost].pixels.iter().map(|&i| i as usize));
+                lose(readings, parts[lost].pixels());
                 segmented.tags.push("part-without-depth");
             }
         }

@@ -56,14 +56,14 @@ pub fn bar(object: &[f32], width: usize, view: (&Pinhole, &Similarity), random: 
 /// The parts of a region, the largest first.
 pub fn parts(region: &[bool], width: usize) -> Vec<Component> {
     let mut parts = components(region, width, region.len() / width);
-    parts.sort_by_key(|part| core::cmp::Reverse(part.pixels.len()));
+    parts.sort_by_key(|part| core::cmp::Reverse(part.count()));
     parts
 }
 
 /// Whether a region consists of two large parts, apart from a few pixels.
 pub fn in_two(region: &[bool], width: usize) -> bool {
     let parts = parts(region, width);
-    let total = parts.iter().map(|part| part.pixels.len()).sum::<usize>() as f64;
-    let [first, second] = [0, 1].map(|k| parts.get(k).map_or(0.0, |part| part.pixels.len() as f64));
+    let total = parts.iter().map(|part| part.count()).sum::<usize>() as f64;
+    let [first, second] = [0, 1].map(|k| parts.get(k).map_or(0.0, |part| part.count() as f64));
     second >= LEAST_PART * total && first + second >= LEAST_BOTH * total
 }
