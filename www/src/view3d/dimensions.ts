@@ -20,7 +20,7 @@ export class Dimensions {
   readonly object = new Group();
   private readonly lines: LineSegments<BufferGeometry, LineBasicMaterial>;
   /** By axis. Drawing a text takes time, so the label of a length stays until the length changes. */
-  private readonly labels: { text: string; sprite: Sprite }[] = [];
+  private readonly labels = new Map<number, { text: string; sprite: Sprite }>();
   private shown = "";
 
   constructor() {
@@ -31,19 +31,24 @@ export class Dimensions {
     this.object.visible = false;
   }
 
-  /** Shows the size of a model at its present pose; `null` hides the lines. */
-  show(model: Model | null): void {
+  /** Shows the size of a model at its present pose, or only its longest side; `null` hides the lines. */
+  show(model: Model | null, sides: "all" | "longest" = "all"): void {
     const corners = model?.corners() ?? null;
     this.object.visible = corners !== null;
     if (corners === null) return;
-    const key = corners.map((corner) => corner.toArray().map((x) => x.toFixed(5))).join();
+    const key = [sides, ...corners.map((corner) => corner.toArray().map((x) => x.toFixed(5)))].join();
     if (key === this.shown) return;
     this.shown = key;
     const positions: number[] = [];
     const centre = corners.reduce((sum, corner) => sum.add(corner), new Vector3()).divideScalar(corners.length);
     const diagonal = (corners[0] as Vector3).distanceTo(corners[7] as Vector3);
-    for (const axis of [0, 1, 2]) {
-      const [from, to] = edge(corners, axis);
+    const edges = [0, 1, 2].map((axis) => edge(corners, axis));
+    const longest = Math.max(...edges.map(([from, to]) => from.distanceTo(to)));
+    for (const [axis, [from, to]] of edges.entries()) {
+      const isShown = sides === "all" || from.distanceTo(to) === longest;
+      const shown = this.labels.get(axis)?.sprite;
+      if (shown !== undefined) shown.visible = isShown;
+      if (!isShown) continue;
       positions.push(...from.toArray(), ...to.toArray());
       const middle = from.clone().lerp(to, 0.5);
       const outwards = middle.clone().sub(centre).normalize();
@@ -56,22 +61,24 @@ export class Dimensions {
   }
 
   private label(axis: number, text: string): Sprite {
-    const shown = this.labels[axis];
+    const shown = this.labels.get(axis);
     if (shown?.text === text) return shown.sprite;
     if (shown !== undefined) removeLabel(shown.sprite);
     const sprite = labelOf(text);
-    this.labels[axis] = { text, sprite };
+    this.labels.set(axis, { text, sprite });
     this.object.add(sprite);
     return sprite;
   }
 
   /** The labels that are shown. */
   get shownLabels(): readonly Sprite[] {
-    return this.object.visible ? this.labels.map(({ sprite }) => sprite) : [];
+    if (!this.object.visible) return [];
+    return [...this.labels.values()].map(({ sprite }) => sprite).filter(({ visible }) => visible);
   }
 
   dispose(): void {
-    for (const { sprite } of this.labels.splice(0)) removeLabel(sprite);
+    for (const { sprite } of this.labels.values()) removeLabel(sprite);
+    this.labels.clear();
     this.object.removeFromParent();
     this.lines.geometry.dispose();
     this.lines.material.dispose();

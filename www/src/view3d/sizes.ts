@@ -4,7 +4,7 @@ import { Dimensions } from "./dimensions.js";
 import { spreadLabels } from "./label.js";
 import type { Model } from "./model.js";
 
-/** Up to this many objects all show their sizes; of more, only the selected one does. */
+/** Of up to this many objects, those that are not selected show their longest sides; of more, the selected one alone is measured. */
 const FEW = 3;
 
 export class Sizes {
@@ -23,7 +23,8 @@ export class Sizes {
       const dimensions = this.dimensions.get(id) ?? new Dimensions();
       if (!this.dimensions.has(id)) this.root.add(dimensions.object);
       this.dimensions.set(id, dimensions);
-      dimensions.show((models.size <= FEW || id === selected) && isShown(id) ? model : null);
+      const isSelected = id === selected;
+      dimensions.show((isSelected || models.size <= FEW) && isShown(id) ? model : null, isSelected ? "all" : "longest");
     }
   }
 

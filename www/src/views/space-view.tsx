@@ -54,14 +54,13 @@ export function SpaceView() {
             </label>
           ))}
           <label class="check points">
-            <span>Size</span>
+            <span>Point size</span>
             <input
               type="range"
               min="0.4"
               max="3"
               step="0.2"
               value={pointSize}
-              aria-label="Point size"
               onInput={({ currentTarget }) => set({ pointSize: currentTarget.valueAsNumber })}
             />
           </label>
