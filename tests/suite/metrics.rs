@@ -139,6 +139,28 @@ fn what_cannot_be_scored_is_refused() {
     assert_eq!(code(&mesh, &nowhere), ErrorCode::InvalidTransform);
 }
 
+/// A mesh of more than 262 144 triangles is rendered as it is, but searched decimated. The object is .3 m in size.
+#[wasm_bindgen_test(unsupported = test)]
+fn the_surface_of_a_large_mesh_is_measured_as_exactly_as_matters() {
+    let [fine, coarse] = [270, 180].map(|rings| ellipsoid(Vec3::new(0.5, 0.8, 1.0), rings));
+    assert!(fine.triangles().len() > 1 << 18 && coarse.triangles().len() < 1 << 18);
+    let observation = observe(&fine, 0.0);
+    let m = score(&observation, &fine, &pose());
+    assert_eq!((m.iou, m.fitness, m.depth_mae_mm), (Some(1.0), Some(1.0), Some(0.0)));
+    // A thousandth of the size; as long as nothing is decimated, it is 0.
+    let error_mm = m.uni_chamfer_mm.unwrap();
+    assert!(error_mm > 0.0 && error_mm < 0.3, "{error_mm} mm");
+    let moved = Similarity { translation: pose().translation + Vector3::new(0.004, 0.0, 0.006), ..pose() };
+    let [a, b] = [&fine, &coarse].map(|mesh| score(&observation, mesh, &moved));
+    for (name, a, b) in [
+        ("chamfer", a.chamfer_mm, b.chamfer_mm),
+        ("uni-chamfer", a.uni_chamfer_mm, b.uni_chamfer_mm),
+        ("normals", a.normal_consistency, b.normal_consistency),
+    ] {
+        assert!((a.unwrap() / b.unwrap() - 1.0).abs() < 0.03, "{name}: {a:?} for {b:?}");
+    }
+}
+
 /// Fowler, Noll and Vo's hash.
 fn hash(words: impl Iterator<Item = u64>) -> u64 {
     words.fold(0xcbf2_9ce4_8422_2325, |h, word| (h ^ word).wrapping_mul(0x0100_0000_01b3))
