@@ -133,6 +133,14 @@ impl Pinhole {
         Self::new(f, f, 0.5 * (width as f64 - 1.0), 0.5 * (height as f64 - 1.0))
     }
 
+    /// The camera of an image that begins with the pixel `first` and has every `step`-th row and column.
+    pub fn thinned(&self, first: [usize; 2], step: usize) -> Self {
+        let scale = 1.0 / step as f64;
+        let [left, top] = first.map(|first| first as f64);
+        let [cx, cy] = [(self.cx - left) * scale, (self.cy - top) * scale];
+        Self { fx: self.fx * scale, fy: self.fy * scale, cx, cy }
+    }
+
     /// Back-projects pixel (u, v) at z-depth `z` into the camera frame: z·K⁻¹\[u,v,1\]ᵀ (paper §3.1).
     pub fn back_project(&self, u: f64, v: f64, z: f64) -> Vec3 {
         Vec3::new(((u - self.cx) * z / self.fx) as f32, ((v - self.cy) * z / self.fy) as f32, z as f32)

@@ -57,8 +57,6 @@ impl Frame {
         let [columns, rows] = bounds.map(|[first, end]| (first..end).step_by(step));
         let size = [columns.len(), rows.len()];
         let pixels = || rows.clone().flat_map(|v| columns.clone().map(move |u| v * width + u));
-        let Pinhole { fx, fy, cx, cy } = self.camera;
-        let scale = 1.0 / step as f64;
         let mut depth = DepthMap::filled(size[0], size[1], 0.0);
         depth.data_mut().iter_mut().zip(pixels()).for_each(|(z, i)| *z = self.depth.data()[i]);
         let mask = self.mask.as_ref().map(|mask| {
@@ -66,12 +64,7 @@ impl Frame {
             part.data_mut().iter_mut().zip(pixels()).for_each(|(m, i)| *m = mask.data()[i]);
             part
         });
-        let camera = Pinhole {
-            fx: fx * scale,
-            fy: fy * scale,
-            cx: (cx - bounds[0][0] as f64) * scale,
-            cy: (cy - bounds[1][0] as f64) * scale,
-        };
+        let camera = self.camera.thinned(bounds.map(|[first, _]| first), step);
         Self { depth, camera, mask, photo: None }
     }
 }

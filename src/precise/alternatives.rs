@@ -53,7 +53,7 @@ pub(crate) struct Listing<'a> {
     pub mesh: &'a Mesh,
     /// The symmetry.
     pub symmetry: &'a Symmetry,
-    /// What tells placements apart, once it was needed.
+    /// The evidence that distinguishes placements, prepared on first use.
     pub likeness: Option<Likeness>,
 }
 

@@ -4,6 +4,7 @@
 //! background by mistake. Doubtful pixels are excluded from the evidence.
 
 use super::rim::{RimImages, rim_offset};
+use super::thinning::Thinning;
 use crate::evidence::observation::Observation;
 use crate::geometry::components::{Component, components};
 use crate::geometry::distance_transform::squared_distances;
@@ -11,11 +12,6 @@ use crate::geometry::image::{Mask, bounds_of};
 use crate::geometry::order::{self, quantile};
 use crate::geometry::pinhole::Pinhole;
 
-/// Number of mask pixels that are enough: 16 samples in each of the 7000 cells of the finest grid. Of a mask with four
-/// times as many, every second row and column is used, and so on.
-const ENOUGH_PIXELS: usize = 16 * 7000;
-/// Maximum number of pixels around the mask, which may consist of specks that are far apart.
-const MAX_PIXELS: usize = 1 << 22;
 /// Margin around the mask, relative to its longer side.
 const MARGIN: f64 = 0.45;
 /// Holes smaller than this fraction of the mask are errors of the mask and are filled.
@@ -126,53 +122,6 @@ struct Crop {
     scene: Vec<f32>,
 }
 
-/// Every `step`-th row and column of an image. The first one is such that the remaining pixels are, to half a pixel, in the
-/// centres of the blocks that they stand for.
-#[derive(Debug, Clone, Copy)]
-struct Thinning {
-    step: usize,
-    first: usize,
-}
-
-impl Thinning {
-    /// The thinning for a mask with `around` pixels in and around it.
-    fn of(mask: &Mask, around: usize) -> Self {
-        let pixels = mask.data().iter().filter(|m| **m != 0).count();
-        let of_step = |step: usize| Self { step, first: (step - 1) / 2 };
-        let thinned = of_step((pixels / ENOUGH_PIXELS).isqrt().max(1));
-        // A pattern, such as every second row, would vanish or fill the image.
-        let step = thinned.step;
-        let remaining = thinned
-            .indices(mask.height())
-            .flat_map(|v| thinned.indices(mask.width()).filter(move |&u| mask.get(u, v).is_some_and(|m| m != 0)));
-        if (pixels / 2..=2 * pixels).contains(&(remaining.count() * step * step)) {
-            return thinned;
-        }
-        of_step((1..).find(|step| around / (step * step) <= MAX_PIXELS).unwrap_or(1))
-    }
-
-    /// The image positions of the remaining pixels along a side of this length.
-    fn indices(self, side: usize) -> impl Iterator<Item = usize> {
-        (self.first..side).step_by(self.step)
-    }
-
-    /// Number of pixels that remain of a side.
-    fn count(self, side: usize) -> usize {
-        side.saturating_sub(self.first).div_ceil(self.step)
-    }
-
-    /// The image position of a remaining pixel along one side.
-    fn at(self, index: usize) -> usize {
-        self.first + index * self.step
-    }
-
-    fn camera(self, camera: Pinhole) -> Pinhole {
-        let [first, step] = [self.first, self.step].map(|x| x as f64);
-        let Pinhole { fx, fy, cx, cy } = camera;
-        Pinhole { fx: fx / step, fy: fy / step, cx: (cx - first) / step, cy: (cy - first) / step }
-    }
-}
-
 impl Crop {
     fn new(observation: &Observation) -> Self {
         let (mask, depth) = (observation.mask(), observation.depth());
@@ -193,7 +142,7 @@ impl Crop {
             scene.extend(depth.data()[part].iter().step_by(thinning.step).take(width));
         }
         Self {
-            camera: thinning.camera(observation.camera()),
+            camera: thinning.camera(&observation.camera()),
             thinning,
             image: size.map(|side| side as f64 / thinning.step as f64),
             origin,

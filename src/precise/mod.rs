@@ -32,6 +32,7 @@ pub mod rounds;
 pub mod score;
 pub mod search;
 pub mod surroundings;
+pub mod thinning;
 pub mod turns;
 
 use core::ops::Range;

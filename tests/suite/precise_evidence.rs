@@ -165,6 +165,21 @@ fn large_masks_are_thinned_without_moving() {
     assert_eq!(CleanObservation::new(&observation).image, [1502.0, 1101.0]);
 }
 
+/// Two specks in opposite corners of an image that is larger than 4K.
+#[wasm_bindgen_test(unsupported = test)]
+fn specks_that_are_far_apart_are_thinned_as_well() {
+    let (width, height) = (4096, 2100);
+    let speck = |u: usize, v: usize| {
+        u.min(width - 1 - u) < 40 && v.min(height - 1 - v) < 40 && (2 * u < width) == (2 * v < height)
+    };
+    let pixels = || (0..width * height).map(|i| (i % width, i / width));
+    let mask = Mask::new("mask", width, height, pixels().map(|(u, v)| u8::from(speck(u, v))).collect()).unwrap();
+    let depth = pixels().map(|(u, v)| 1.0 + 1e-3 * ((u + v) % 5) as f32).collect();
+    let depth = DepthMap::from_metres(width, height, depth).unwrap();
+    let observation = Observation::new(depth, mask, Pinhole::new(4000.0, 4000.0, 2048.0, 1050.0).unwrap()).unwrap();
+    assert_eq!(CleanObservation::new(&observation).image, [2048.0, 1050.0]);
+}
+
 /// A mask at the image's left border, and depths with holes.
 fn at_the_border(draw: &mut Draw) -> CleanObservation {
     let holes: Vec<usize> = (0..900).map(|_| draw.below(WIDTH * HEIGHT)).collect();
