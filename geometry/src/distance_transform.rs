@@ -56,8 +56,8 @@ pub fn squared_distances(set: &[bool], width: usize, height: usize) -> Vec<u32> 
     distances
 }
 
-/// Whether each pixel is at most `radius` pixels from a set pixel. The same as a comparison of [`squared_distances`], but
-/// several times as fast.
+/// Whether each pixel is at most `radius` pixels from a set pixel. Gives the same answer as [`squared_distances`], several
+/// times faster.
 pub fn within(radius: u32, set: &[bool], width: usize, height: usize) -> Vec<bool> {
     let mut near = vec![false; set.len()];
     if width == 0 || height == 0 || set.len() != width * height {

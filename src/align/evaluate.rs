@@ -27,7 +27,7 @@ options! {
         /// The object's symmetry: the rotation error is the smallest over it. `"auto"` detects half turns about the mesh's
         /// principal axes, `"auto-revolution"` also axes of revolution.
         symmetry: Symmetry = Symmetry::None, Symmetry;
-        /// Whether to compute `layout` where `truth` is given. Without it, the call takes a fraction of the time.
+        /// Whether to compute `layout` if `truth` is given. Calls that leave it out are several times faster.
         layout: bool = true, Flag;
         /// Seed of all random draws. The same input and seed give the same bits.
         seed: u32 = 0, Count(0..=u32::MAX);

@@ -530,7 +530,7 @@ export const OPTIONS = {
       kind: "boolean",
       isNullable: false,
       default: true,
-      summary: "Whether to compute `layout` where `truth` is given",
+      summary: "Whether to compute `layout` if `truth` is given",
     },
     {
       name: "seed",

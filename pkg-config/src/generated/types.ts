@@ -310,7 +310,7 @@ export interface EvaluateOptions {
    */
   symmetry?: SymmetryOption | undefined;
   /**
-   * Whether to compute `layout` where `truth` is given. Without it, the call takes a fraction of the time. Default
+   * Whether to compute `layout` if `truth` is given. Calls that leave it out are several times faster. Default
    * `true`.
    */
   layout?: boolean | undefined;

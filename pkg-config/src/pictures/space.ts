@@ -31,7 +31,7 @@ export interface SpaceJson {
 const base64 = (array: Int16Array | Uint16Array | Uint8Array) =>
   Buffer.from(array.buffer, array.byteOffset, array.byteLength).toString("base64");
 
-/** What a view shows: the depth in it, metres, and a picture of it. */
+/** The content of a view: its depth map, in metres, and its picture. */
 interface Seen {
   view: View;
   measured: Float32Array;

@@ -138,7 +138,7 @@ export class Sim3AlignElement extends HTMLElement implements host.Sim3AlignEleme
     known.value = { ...known.peek(), ...options };
   }
 
-  /** Whether the scene can only be viewed. */
+  /** Whether the scene is read-only. */
   get readonly(): boolean {
     return this.hasAttribute("readonly");
   }

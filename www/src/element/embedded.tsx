@@ -1,4 +1,4 @@
-/** What an element shows: the views and panels of the page, without those for files. */
+/** The content of an element: the views and panels of the page, without those for files. */
 import { HandPanel } from "../panels/hand-panel.js";
 import { ObjectsPanel } from "../panels/objects-panel.js";
 import { OptionsPanel } from "../panels/options-panel.js";

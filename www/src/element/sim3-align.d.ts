@@ -107,7 +107,7 @@ export declare class Sim3AlignElement extends HTMLElement {
   /** The options of the alignments. Those that are not set keep their values. */
   get options(): ElementOptions;
   set options(options: Partial<ElementOptions>);
-  /** Whether the scene can only be viewed. */
+  /** Whether the scene is read-only. */
   readonly: boolean;
   /** The results of all objects. */
   get results(): ObjectResult[];

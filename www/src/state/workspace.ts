@@ -32,7 +32,7 @@ export function createWorkspace({ theme }: Surroundings) {
     ...openedState(scene, display, status),
     ...videoState(),
     theme,
-    /** Whether the scene can only be viewed. */
+    /** Whether the scene is read-only. */
     isReadonly: signal(false),
     space: signal<SpaceState>({ kind: "loading" }),
     /** Whether the first alignment has ended. The 3D view loads afterwards, so that it does not slow the alignment down. */
