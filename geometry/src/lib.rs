@@ -28,6 +28,7 @@ pub mod singular_values;
 pub mod surface;
 pub mod surface_colors;
 pub mod symmetric_eigen;
+mod triangle_block;
 pub mod triangle_tree;
 pub mod voxel_grid;
 

@@ -1,15 +1,18 @@
 //! Nearest point on a triangle mesh: a bounding-volume hierarchy over its triangles.
 
 use glam::{DVec3, Vec3};
+use wide::f32x4;
 
 use super::cloud::Bounds;
 use super::mesh::Mesh;
-use super::order::halve;
+use super::order::{index_of, pack, select_smallest};
+use super::triangle_block::{BLOCK, TriangleBlock};
 
-const LEAF_SIZE: usize = 4;
+/// Children of a node, whose boxes are tested at once.
+const CHILDREN: usize = 4;
 
-/// Average number of triangles and nodes that [`TriangleTree::nearest_of_each`] visits per point at most. Surfaces of
-/// objects take about forty; triangles that all overlap take as many as there are.
+/// Average number of triangles and boxes that [`TriangleTree::nearest_of_each`] visits per point at most. Surfaces of
+/// objects take about sixty; triangles that all overlap take as many as there are.
 const MAX_VISITS: usize = 2000;
 
 /// Fewest points that it visits, whatever they cost.
@@ -26,36 +29,83 @@ pub struct SurfacePoint {
     pub distance_squared: f32,
 }
 
-/// A median-split tree of bounding boxes over the triangles of a mesh. Degenerate triangles (needles, points) are
-/// included.
+/// A tree of bounding boxes over the triangles of a mesh, with four children a node. Degenerate triangles (needles, points)
+/// are included.
 ///
 /// Distances to triangles are computed in f64. Ties (in f32) go to the smaller index, so that results do not depend on
 /// the structure of the tree.
 #[derive(Debug, Clone)]
 pub struct TriangleTree {
-    /// Corners in leaf order, with the triangles' own indices.
-    triangles: Vec<([Vec3; 3], u32)>,
-    /// Depth-first: an inner node is followed by its left child.
-    nodes: Vec<Node>,
+    /// The triangles in leaf order.
+    blocks: Vec<TriangleBlock>,
+    /// Their indices in the mesh.
+    indices: Vec<u32>,
+    /// From the leaves to the root: the children of node `i` are the nodes of the level below, or the blocks, from
+    /// [`CHILDREN`] · `i` on.
+    levels: Vec<Vec<Boxes>>,
 }
 
+/// The boxes of the children of a node, by axis. Those of children that do not exist are infinitely far from any point.
 #[derive(Debug, Clone, Copy)]
-struct Node {
-    bounds: Bounds,
-    /// The right child; 0 in a leaf.
-    right: u32,
+struct Boxes {
+    min: [f32x4; 3],
+    max: [f32x4; 3],
+}
+
+impl Boxes {
+    fn new(children: &[Bounds]) -> Self {
+        let child = |i: usize| children.get(i).copied().unwrap_or(Bounds::NOTHING);
+        let four: [Bounds; CHILDREN] = core::array::from_fn(child);
+        Self {
+            min: [0, 1, 2].map(|axis| f32x4::new(four.map(|b| b.min[axis]))),
+            max: [0, 1, 2].map(|axis| f32x4::new(four.map(|b| b.max[axis]))),
+        }
+    }
+
+    /// As [`Bounds::distance_squared`].
+    #[inline(always)]
+    fn distances_squared(&self, point: &[f32x4; 3]) -> f32x4 {
+        let gap = |axis: usize| {
+            let (below, above) = (self.min[axis] - point[axis], point[axis] - self.max[axis]);
+            below.fast_max(above).fast_max(f32x4::ZERO)
+        };
+        let (x, y, z) = (gap(0), gap(1), gap(2));
+        x * x + y * y + z * z
+    }
+}
+
+/// A search: the query, the best triangle so far, and the hint.
+struct Search<'a> {
+    query: Vec3,
+    /// Its coordinates, each in all lanes.
+    lanes: [f32x4; 3],
+    best: SurfacePoint,
+    hint: &'a mut Hint,
 }
 
 impl TriangleTree {
     /// The tree over a mesh's triangles.
     pub fn new(mesh: &Mesh) -> Self {
-        let triangles: Vec<[Vec3; 3]> = mesh.triangles().iter().map(|&t| mesh.corners(t)).collect();
-        // A third of each corner, so that the sum cannot overflow f32.
-        let centers: Vec<Vec3> = triangles.iter().map(|[a, b, c]| a / 3.0 + b / 3.0 + c / 3.0).collect();
-        let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
-        let mut nodes = Vec::with_capacity(triangles.len());
-        build(&triangles, &centers, &mut order, &mut nodes);
-        Self { triangles: order.into_iter().map(|i| (triangles[i as usize], i)).collect(), nodes }
+        let boxes = mesh.triangles().iter().map(|&t| Bounds::of_triangle(&mesh.corners(t)));
+        // Halves, so that the sum cannot overflow f32.
+        let center = |b: Bounds| b.min * 0.5 + b.max * 0.5;
+        let centers: Vec<f32x4> = boxes.map(|b| f32x4::new(center(b).extend(0.0).to_array())).collect();
+        let mut indices: Vec<u32> = (0..centers.len() as u32).collect();
+        arrange(&centers, &mut indices, &mut Vec::with_capacity(centers.len()));
+        let corners = |i: &u32| mesh.corners(mesh.triangles()[*i as usize]);
+        let (mut blocks, mut bounds) = (Vec::new(), Vec::new());
+        for block in indices.chunks(BLOCK) {
+            let triangles: [[Vec3; 3]; BLOCK] = core::array::from_fn(|i| corners(block.get(i).unwrap_or(&block[0])));
+            bounds.push(triangles.iter().map(Bounds::of_triangle).fold(Bounds::NOTHING, Bounds::union));
+            blocks.push(TriangleBlock::new(&triangles));
+        }
+        let mut levels = Vec::new();
+        while bounds.len() > 1 {
+            levels.push(bounds.chunks(CHILDREN).map(Boxes::new).collect());
+            let parents = bounds.chunks(CHILDREN);
+            bounds = parents.map(|part| part.iter().copied().fold(Bounds::NOTHING, Bounds::union)).collect();
+        }
+        Self { blocks, indices, levels }
     }
 
     /// The point of the surface nearest to `query`. `None` only if the query is not finite, or if its squared
@@ -66,17 +116,16 @@ impl TriangleTree {
 
     /// Like [`TriangleTree::nearest`], but faster for a sequence of nearby queries, which share a `hint`.
     pub fn nearest_from(&self, query: Vec3, hint: &mut Hint) -> Option<SurfacePoint> {
-        let none = SurfacePoint { triangle: u32::MAX, point: query, distance_squared: f32::MAX };
-        let mut best = (none, *hint);
-        self.offer(hint.slot, query, &mut best);
-        self.descend(0, 0, self.triangles.len(), query, &mut best);
-        *hint = best.1;
-        (best.0.triangle != u32::MAX).then_some(best.0)
+        let best = SurfacePoint { triangle: u32::MAX, point: query, distance_squared: f32::MAX };
+        let mut search = Search { query, lanes: query.to_array().map(f32x4::splat), best, hint };
+        self.offer(search.hint.slot, &mut search);
+        self.descend(self.levels.len(), 0, &mut search);
+        (search.best.triangle != u32::MAX).then_some(search.best)
     }
 
     /// Calls `visit` with the index of each of `count` points and the nearest point of the surface to it. Where searches
     /// are costly, because most triangles overlap, it leaves points out, evenly over the list. Returns the cost: the number
-    /// of triangles and nodes visited.
+    /// of triangles and boxes visited.
     pub fn nearest_of_each(
         &self,
         count: usize,
@@ -97,39 +146,49 @@ impl TriangleTree {
     }
 
     /// Replaces the best triangle if this one is nearer.
-    fn offer(&self, slot: usize, query: Vec3, (best, hint): &mut (SurfacePoint, Hint)) {
-        let Some((corners, triangle)) = self.triangles.get(slot) else { return };
-        let offset = nearest_offset(corners.map(|p| p.as_dvec3() - query.as_dvec3()));
+    fn offer(&self, slot: usize, search: &mut Search) {
+        let Some((block, &triangle)) = self.blocks.get(slot / BLOCK).zip(self.indices.get(slot)) else { return };
+        let query = search.query.as_dvec3();
+        let offset = nearest_offset(block.triangle(slot % BLOCK).map(|p| p.as_dvec3() - query));
         let distance_squared = offset.length_squared() as f32;
-        if (distance_squared, *triangle) < (best.distance_squared, best.triangle) {
-            let point = (query.as_dvec3() + offset).as_vec3();
-            *best = SurfacePoint { triangle: *triangle, point, distance_squared };
-            hint.slot = slot;
+        if (distance_squared, triangle) < (search.best.distance_squared, search.best.triangle) {
+            search.best = SurfacePoint { triangle, point: (query + offset).as_vec3(), distance_squared };
+            search.hint.slot = slot;
         }
     }
 
-    fn descend(&self, node: usize, low: usize, high: usize, query: Vec3, best: &mut (SurfacePoint, Hint)) {
-        let right = self.nodes[node].right as usize;
-        best.1.visits += 1;
-        if right == 0 {
-            best.1.visits += high - low;
-            for slot in low..high {
-                let bounds = Bounds::of_triangle(&self.triangles[slot].0);
-                if may_hold(bounds.distance_squared(query), &best.0) {
-                    self.offer(slot, query, best);
-                }
-            }
+    /// Visits a node, or a block at level 0: nearest children first.
+    fn descend(&self, level: usize, node: usize, search: &mut Search) {
+        search.hint.visits += CHILDREN;
+        let below = level.checked_sub(1);
+        let distances = match below {
+            Some(below) => self.levels[below][node].distances_squared(&search.lanes) * f32x4::splat(1.0 - 1e-6),
+            None => self.blocks[node].least_distances(&search.lanes),
+        };
+        // A distance that is NaN may be smaller.
+        let is_far = distances.simd_gt(f32x4::splat(search.best.distance_squared));
+        let mut left = !is_far.to_bitmask() & 0xf;
+        if left == 0 {
             return;
         }
-        let middle = low + (high - low) / 2;
-        let mut children = [(node + 1, low, middle), (right, middle, high)]
-            .map(|child| (self.nodes[child.0].bounds.distance_squared(query), child));
-        if children[1].0 < children[0].0 {
-            children.swap(0, 1);
-        }
-        for (distance_squared, (node, low, high)) in children {
-            if may_hold(distance_squared, &best.0) {
-                self.descend(node, low, high, query, best);
+        let distances = distances.to_array();
+        while left != 0 {
+            let mut nearest = left.trailing_zeros() as usize;
+            let others = left & (left - 1);
+            if others != 0 {
+                for lane in nearest + 1..CHILDREN {
+                    if others >> lane & 1 == 1 && distances[lane] < distances[nearest] {
+                        nearest = lane;
+                    }
+                }
+            }
+            left &= !(1 << nearest);
+            if distances[nearest] > search.best.distance_squared {
+                continue;
+            }
+            match below {
+                Some(below) => self.descend(below, CHILDREN * node + nearest, search),
+                None => self.offer(BLOCK * node + nearest, search),
             }
         }
     }
@@ -139,36 +198,47 @@ impl TriangleTree {
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Hint {
     slot: usize,
-    /// Triangles and nodes visited by all searches so far.
+    /// Triangles and boxes visited by all searches so far.
     visits: usize,
 }
 
-/// Whether a box at this distance may contain a better result. The tolerance covers the rounding of the distance, so
-/// that ties are not lost.
-fn may_hold(distance_squared: f32, best: &SurfacePoint) -> bool {
-    distance_squared * (1.0 - 1e-6) <= best.distance_squared
+/// Sorts the indices so that each node has its children's in turn, every child but the last ones full, and in as small a
+/// box as halving at medians gives.
+fn arrange(centers: &[f32x4], indices: &mut [u32], keys: &mut Vec<u64>) {
+    if indices.len() <= BLOCK {
+        return;
+    }
+    let mut full = BLOCK;
+    while full * CHILDREN < indices.len() {
+        full *= CHILDREN;
+    }
+    halve(centers, indices, full, keys);
+    indices.chunks_mut(full).for_each(|child| arrange(centers, child, keys));
 }
 
-/// Sorts the triangle indices into leaf order. Halving bounds the depth by the logarithm of their number.
-fn build(triangles: &[[Vec3; 3]], centers: &[Vec3], order: &mut [u32], nodes: &mut Vec<Node>) -> Bounds {
-    let node = nodes.len();
-    nodes.push(Node { bounds: Bounds::NOTHING, right: 0 });
-    let bounds = if order.len() <= LEAF_SIZE {
-        order.iter().map(|&i| Bounds::of_triangle(&triangles[i as usize])).fold(Bounds::NOTHING, Bounds::union)
-    } else {
-        let center = |i: u32| centers[i as usize];
-        let spread = (order.iter().map(|&i| Bounds { min: center(i), max: center(i) }))
-            .fold(Bounds::NOTHING, Bounds::union)
-            .extent();
-        let axis = (1..3).fold(0, |best, axis| if spread[axis] > spread[best] { axis } else { best });
-        halve(order, |i| center(i)[axis]);
-        let (left, right) = order.split_at_mut(order.len() / 2);
-        let left = build(triangles, centers, left, nodes);
-        nodes[node].right = nodes.len() as u32;
-        left.union(build(triangles, centers, right, nodes))
-    };
-    nodes[node].bounds = bounds;
-    bounds
+/// Sorts the indices into parts of this size.
+fn halve(centers: &[f32x4], indices: &mut [u32], part: usize, keys: &mut Vec<u64>) {
+    let parts = indices.len().div_ceil(part);
+    if parts < 2 {
+        return;
+    }
+    let (mut low, mut high) = (f32x4::splat(f32::INFINITY), f32x4::splat(f32::NEG_INFINITY));
+    for &i in indices.iter() {
+        let center = centers[i as usize];
+        (low, high) = (low.fast_min(center), high.fast_max(center));
+    }
+    let spread = (high - low).to_array();
+    let axis = (1..3).fold(0, |best, axis| if spread[axis] > spread[best] { axis } else { best });
+    keys.clear();
+    keys.extend(indices.iter().map(|&i| pack(centers[i as usize].to_array()[axis], i)));
+    let middle = parts / 2 * part;
+    select_smallest(keys, middle);
+    for (index, &key) in indices.iter_mut().zip(keys.iter()) {
+        *index = index_of(key);
+    }
+    let (left, right) = indices.split_at_mut(middle);
+    halve(centers, left, part, keys);
+    halve(centers, right, part, keys);
 }
 
 /// The point of a triangle nearest to the origin.

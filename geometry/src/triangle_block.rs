@@ -1,0 +1,86 @@
+//! Four triangles, whose distances to a point are estimated at once.
+
+use glam::Vec3;
+use wide::f32x4;
+
+/// Number of triangles of a block.
+pub const BLOCK: usize = 4;
+
+/// How much a triangle's distance may exceed its estimate: relative to the squared distance, and to the squares of the
+/// edges and of the distance to a corner. Rounding of the estimate is 10⁻⁶ of the distances; where it puts a point inside a
+/// needle outside of it, the distance to the edges exceeds that to the triangle by at most a thousandth of its length.
+const TOLERANCE: [f32; 2] = [2e-3, 1e-5];
+
+/// Squared area, in mesh units⁴, below which there is no estimate: products of f32 lose their precision.
+const NO_AREA: f32 = 1e-30;
+
+/// The corners of four triangles, by corner and axis.
+#[derive(Debug, Clone, Copy)]
+pub struct TriangleBlock {
+    corners: [[f32x4; 3]; 3],
+}
+
+impl TriangleBlock {
+    /// The block of at most four triangles. The last one fills the other places.
+    pub fn new(triangles: &[[Vec3; 3]]) -> Self {
+        let last = triangles.last().copied().unwrap_or_default();
+        let four: [[Vec3; 3]; BLOCK] = core::array::from_fn(|i| triangles.get(i).copied().unwrap_or(last));
+        let of = |corner: usize, axis: usize| f32x4::new(four.map(|triangle| triangle[corner][axis]));
+        Self { corners: core::array::from_fn(|corner| core::array::from_fn(|axis| of(corner, axis))) }
+    }
+
+    /// The corners of one of the triangles.
+    pub fn triangle(&self, lane: usize) -> [Vec3; 3] {
+        self.corners.map(|corner| Vec3::from_array(corner.map(|axis| axis.to_array()[lane])))
+    }
+
+    /// A lower bound of each triangle's squared distance to `query`, close to it except for triangles without area.
+    /// Negative or NaN where there is none.
+    #[inline]
+    pub fn least_distances(&self, query: &[f32x4; 3]) -> f32x4 {
+        let [a, b, c] = self.corners.map(|corner| [0, 1, 2].map(|axis| corner[axis] - query[axis]));
+        let (ab, ac, bc) = (minus(b, a), minus(c, a), minus(c, b));
+        let (bb, cc, aa) = (dot(ab, ab), dot(ac, ac), dot(a, a));
+        let (bc_squared, between) = (dot(bc, bc), dot(ab, ac));
+        let (along_ab, along_ac, along_bc) = (-dot(ab, a), -dot(ac, a), -dot(bc, b));
+        // The barycentric weights of the projection, times the squared area.
+        let area = bb * cc - between * between;
+        let weight_b = cc * along_ab - between * along_ac;
+        let weight_c = bb * along_ac - between * along_ab;
+        let outside = weight_b.simd_lt(f32x4::ZERO)
+            | weight_c.simd_lt(f32x4::ZERO)
+            | (weight_b + weight_c).simd_gt(area);
+        let normal = cross(ab, ac);
+        let height = dot(normal, a);
+        let to_plane = height * height / dot(normal, normal);
+        let to_edges = to_segment(a, ab, along_ab, bb)
+            .fast_min(to_segment(a, ac, along_ac, cc))
+            .fast_min(to_segment(b, bc, along_bc, bc_squared));
+        let distance = outside.bitselect(to_edges, to_plane);
+        let least = distance * f32x4::splat(1.0 - TOLERANCE[0]) - (aa + bb + cc) * f32x4::splat(TOLERANCE[1]);
+        area.simd_gt(f32x4::splat(NO_AREA)).bitselect(least, f32x4::splat(-1.0))
+    }
+}
+
+/// The squared distance of the origin to segments from `start`.
+#[inline(always)]
+fn to_segment(start: [f32x4; 3], edge: [f32x4; 3], along: f32x4, length_squared: f32x4) -> f32x4 {
+    let share = (along / length_squared).fast_max(f32x4::ZERO).fast_min(f32x4::ONE);
+    let nearest = [0, 1, 2].map(|axis| start[axis] + edge[axis] * share);
+    dot(nearest, nearest)
+}
+
+#[inline(always)]
+fn minus(a: [f32x4; 3], b: [f32x4; 3]) -> [f32x4; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+#[inline(always)]
+fn dot(a: [f32x4; 3], b: [f32x4; 3]) -> f32x4 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[inline(always)]
+fn cross(a: [f32x4; 3], b: [f32x4; 3]) -> [f32x4; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
