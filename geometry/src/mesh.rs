@@ -98,6 +98,7 @@ impl Mesh {
     }
 
     /// The corners of a triangle of this mesh.
+    #[inline(always)]
     pub fn corners(&self, triangle: [u32; 3]) -> [Vec3; 3] {
         triangle.map(|i| self.positions[i as usize])
     }

@@ -65,7 +65,7 @@ pub fn each_surface_sample(mesh: &Mesh, count: usize, seed: u64, visit: &mut dyn
     let mut total = 0.0;
     let ends: Vec<f64> = (mesh.triangles().iter())
         .map(|&t| {
-            total += area_vector(corners(mesh, t)).length();
+            total += area_of(corners(mesh, t));
             total
         })
         .collect();
@@ -142,7 +142,7 @@ impl SurfaceMoments {
         let (mut area, mut first, mut second) = (0.0, DVec3::ZERO, DMat3::ZERO);
         for &triangle in mesh.triangles() {
             let [a, b, c] = corners(mesh, triangle).map(|p| p - origin);
-            let weight = area_vector([a, b, c]).length();
+            let weight = area_of([a, b, c]);
             let sum = a + b + c;
             area += weight;
             first += sum * (weight / 3.0);
@@ -166,6 +166,7 @@ fn outer(v: DVec3) -> DMat3 {
     DMat3::from_cols(v * v.x, v * v.y, v * v.z)
 }
 
+#[inline(always)]
 fn corners(mesh: &Mesh, triangle: [u32; 3]) -> [DVec3; 3] {
     mesh.corners(triangle).map(|p| p.as_dvec3())
 }
@@ -177,18 +178,25 @@ pub fn surface_area(mesh: &Mesh) -> f64 {
 
 /// The area of the triangle with this index; 0 if there is none.
 pub fn triangle_area(mesh: &Mesh, triangle: usize) -> f64 {
-    mesh.triangles().get(triangle).map_or(0.0, |&t| area_vector(corners(mesh, t)).length())
+    mesh.triangles().get(triangle).map_or(0.0, |&t| area_of(corners(mesh, t)))
+}
+
+// `DVec3::length` calls libm, which takes the square root in software: the time of all else here.
+#[inline(always)]
+fn area_of(corners: [DVec3; 3]) -> f64 {
+    area_vector(corners).length_squared().sqrt()
 }
 
 /// The vector along the normal whose length is the area of the triangle.
+#[inline(always)]
 fn area_vector([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a) * 0.5
 }
 
 /// The diagonal of the bounding box of the triangles, if it is within [`DIAGONALS`]; unused vertices are ignored.
 fn check_diagonal(mesh: &Mesh) -> Result<f64> {
-    let boxes = mesh.triangles().iter().map(|&t| Bounds::of_triangle(&mesh.corners(t)));
-    let Bounds { min, max } = boxes.fold(Bounds::NOTHING, Bounds::union);
+    let used = mesh.without_unused_vertices();
+    let Bounds { min, max } = Bounds::of(used.as_ref().unwrap_or(mesh).positions()).unwrap_or(Bounds::NOTHING);
     let diagonal = (max.as_dvec3() - min.as_dvec3()).length();
     if (DIAGONALS[0]..=DIAGONALS[1]).contains(&diagonal) {
         return Ok(diagonal);

@@ -31,14 +31,17 @@ impl TriangleBlock {
 
     /// The corners of one of the triangles.
     pub fn triangle(&self, lane: usize) -> [Vec3; 3] {
-        self.corners.map(|corner| Vec3::from_array(corner.map(|axis| axis.to_array()[lane])))
+        let [a, b, c] = &self.corners;
+        let corner = |[x, y, z]: &[f32x4; 3]| Vec3::new(x.to_array()[lane], y.to_array()[lane], z.to_array()[lane]);
+        [corner(a), corner(b), corner(c)]
     }
 
     /// A lower bound of each triangle's squared distance to `query`, close to it except for triangles without area.
     /// Negative or NaN where there is none.
     #[inline]
     pub fn least_distances(&self, query: &[f32x4; 3]) -> f32x4 {
-        let [a, b, c] = self.corners.map(|corner| [0, 1, 2].map(|axis| corner[axis] - query[axis]));
+        let [a, b, c] = &self.corners;
+        let (a, b, c) = (minus(*a, *query), minus(*b, *query), minus(*c, *query));
         let (ab, ac, bc) = (minus(b, a), minus(c, a), minus(c, b));
         let (bb, cc, aa) = (dot(ab, ab), dot(ac, ac), dot(a, a));
         let (bc_squared, between) = (dot(bc, bc), dot(ab, ac));
@@ -66,7 +69,8 @@ impl TriangleBlock {
 #[inline(always)]
 fn to_segment(start: [f32x4; 3], edge: [f32x4; 3], along: f32x4, length_squared: f32x4) -> f32x4 {
     let share = (along / length_squared).fast_max(f32x4::ZERO).fast_min(f32x4::ONE);
-    let nearest = [0, 1, 2].map(|axis| start[axis] + edge[axis] * share);
+    let along = |axis: usize| start[axis] + edge[axis] * share;
+    let nearest = [along(0), along(1), along(2)];
     dot(nearest, nearest)
 }
 

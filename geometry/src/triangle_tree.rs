@@ -56,10 +56,10 @@ impl Boxes {
     fn new(children: &[Bounds]) -> Self {
         let child = |i: usize| children.get(i).copied().unwrap_or(Bounds::NOTHING);
         let four: [Bounds; CHILDREN] = core::array::from_fn(child);
-        Self {
-            min: [0, 1, 2].map(|axis| f32x4::new(four.map(|b| b.min[axis]))),
-            max: [0, 1, 2].map(|axis| f32x4::new(four.map(|b| b.max[axis]))),
-        }
+        let [a, b, c, d] = four;
+        let min = |axis: usize| f32x4::new([a.min[axis], b.min[axis], c.min[axis], d.min[axis]]);
+        let max = |axis: usize| f32x4::new([a.max[axis], b.max[axis], c.max[axis], d.max[axis]]);
+        Self { min: [min(0), min(1), min(2)], max: [max(0), max(1), max(2)] }
     }
 
     /// As [`Bounds::distance_squared`].

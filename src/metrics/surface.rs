@@ -43,10 +43,12 @@ pub fn surface_agreement(evidence: &Evidence, mesh: &Mesh, camera_from_mesh: &Si
         let d = f64::from(nearest.distance_squared).sqrt() * camera_from_mesh.scale;
         distance.add(d);
         fitting.add(if d <= tolerance { 1.0 } else { 0.0 });
+        if normals[i] == Vec3::ZERO {
+            return;
+        }
         let facet = camera_from_mesh.rotation * vector3(facet_normal(mesh, nearest.triangle));
-        let cosine = facet.dot(&vector3(normals[i])).abs();
-        if facet.norm_squared() > 0.0 && normals[i] != Vec3::ZERO {
-            consistency.add(cosine.min(1.0));
+        if facet.norm_squared() > 0.0 {
+            consistency.add(facet.dot(&vector3(normals[i])).abs().min(1.0));
         }
     });
     let mut back = Mean::default();

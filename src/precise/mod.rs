@@ -14,6 +14,7 @@ pub mod coarse;
 pub mod color;
 pub mod conditioning;
 pub(crate) mod confidence;
+mod fill;
 pub mod grid;
 pub mod lookalikes;
 pub mod mesh_pyramid;

@@ -7,23 +7,15 @@ use core::ops::Range;
 
 use glam::{Mat3, Vec3};
 use wide::bytemuck::cast;
-use wide::{f32x4, i32x4, u32x4};
+use wide::{f32x4, i32x4};
 
+use super::fill::{Cells, Corners, LANES, STEPS, Vertex};
 use super::grid::CropGrid;
 use super::pose::CropPose;
 use crate::geometry::mesh::Mesh;
 
 /// Minimum depth of a rendered vertex, relative to the depth of the centre of the mesh.
 const NEAR: f32 = 0.05;
-/// Subpixel steps per cell to which vertices are snapped, 2⁶.
-const STEPS: i32 = 64;
-const SHIFT: u32 = 6;
-/// Boxes of triangles at least this many cells wide are drawn row by row from where the triangle begins.
-const WIDE: i32 = 32;
-/// Cells of a row that are drawn at once.
-const LANES: usize = 4;
-/// Steps below which the box of a triangle is so small that the areas its cells span fit 32 bits.
-const SMALL: i32 = 1 << 12;
 /// Maximum number of cells that the triangles of a render visit, per cell of the grid: dozens of layers of the object,
 /// whose image is a quarter of the grid. The triangles after that are left out.
 const MAX_LAYERS: usize = 32;
@@ -39,6 +31,8 @@ pub struct Model {
     pub triangles: Vec<[u32; 3]>,
     /// Unit normals of the triangles.
     pub normals: Vec<Vec3>,
+    /// The positions, four at a time, by axis. The last one fills the places of those that are missing.
+    lanes: Vec<[f32x4; 3]>,
 }
 
 impl Model {
@@ -48,10 +42,15 @@ impl Model {
             let [a, b, c] = mesh.corners(*t);
             (b - a).cross(c - a).normalize_or_zero()
         };
+        let in_lanes = |four: &[Vec3]| {
+            let at = |lane: usize| four.get(lane).or(four.last()).copied().unwrap_or_default();
+            [0, 1, 2].map(|axis| f32x4::new([0, 1, 2, 3].map(|lane| at(lane)[axis])))
+        };
         Self {
             positions: mesh.positions().to_vec(),
             triangles: mesh.triangles().to_vec(),
             normals: mesh.triangles().iter().map(normal).collect(),
+            lanes: mesh.positions().chunks(LANES).map(in_lanes).collect(),
         }
     }
 }
@@ -78,22 +77,6 @@ pub struct Canvas {
     vertices: Vec<Vertex>,
 }
 
-/// A vertex on the grid, in steps, and its 1/z; 0 if it cannot be rendered.
-#[derive(Debug, Clone, Copy)]
-struct Vertex {
-    u: i32,
-    v: i32,
-    w: f32,
-}
-
-/// A vertex for the coverage test.
-#[derive(Clone, Copy)]
-struct Corner {
-    u: i64,
-    v: i64,
-    w: f32,
-}
-
 impl Canvas {
     /// Renders the model on the cells of the grid.
     pub fn draw(&mut self, model: &Model, pose: &CropPose, grid: &CropGrid) {
@@ -104,16 +87,27 @@ impl Canvas {
         self.inverse_depth.resize(grid.mask.len(), 0.0);
         self.triangle.resize(grid.mask.len(), 0);
         self.project(model, grid);
-        let (inverse_depth, drawn) = (self.inverse_depth.as_mut_slice(), self.triangle.as_mut_slice());
-        let most = MAX_LAYERS * inverse_depth.len();
+        let most = MAX_LAYERS * self.inverse_depth.len();
         let mut visited = 0;
-        for (id, triangle) in (0..).zip(&model.triangles) {
-            let corners = triangle.map(|i| self.vertices[i as usize]);
-            visited += fill(inverse_depth, drawn, [grid.width, grid.height], id, corners);
+        let mut cells = Cells {
+            inverse_depth: &mut self.inverse_depth,
+            drawn: &mut self.triangle,
+            size: [grid.width, grid.height],
+        };
+        let mut id = 0;
+        let mut triangles = model.triangles.chunks_exact(LANES);
+        for four in &mut triangles {
+            let Some(four) = four.first_chunk() else { break };
+            cells.fill(id, &self.vertices, *four, &mut visited, most);
             if visited > most {
                 break;
             }
+            id += LANES as u32;
         }
+        // Triangles without area are not drawn.
+        let mut four = [[0; 3]; LANES];
+        four.iter_mut().zip(triangles.remainder()).for_each(|(triangle, last)| *triangle = *last);
+        cells.fill(id, &self.vertices, four, &mut visited, most);
         self.work += (grid.mask.len() + visited + model.positions.len() + model.triangles.len()) as u64;
     }
 
@@ -130,183 +124,60 @@ impl Canvas {
         let focal = grid.focal as f32;
         let (cx, cy) = (grid.center[0] as f32, grid.center[1] as f32);
         let (right, bottom) = (grid.width as f32 - 0.5, grid.height as f32 - 0.5);
-        let mut lost = 0u32;
-        let (mut low, mut high) = ([i32::MAX; 2], [i32::MIN; 2]);
+        let lanes = f32x4::splat;
+        let in_lanes = |v: Vec3| [lanes(v.x), lanes(v.y), lanes(v.z)];
+        let (of_x, of_y, of_z) = (in_lanes(linear.x_axis), in_lanes(linear.y_axis), in_lanes(linear.z_axis));
+        let shift = in_lanes(self.translation);
+        let mut lost = i32x4::ZERO;
+        let (mut low, mut high) = ([i32x4::MAX; 2], [i32x4::MIN; 2]);
+        let mut last_is_lost = 0;
         self.vertices.clear();
-        self.vertices.extend(model.positions.iter().map(|p| {
-            let p = linear * *p + self.translation;
-            let w = 1.0 / p.z;
-            let (u, v) = (focal * p.x * w + cx, focal * p.y * w + cy);
-            let inside = u > -0.5 && u < right && v > -0.5 && v < bottom;
-            lost += u32::from(!inside || p.z < near);
+        for position in &model.lanes {
+            let moved = |axis: usize| {
+                of_x[axis] * position[0] + of_y[axis] * position[1] + of_z[axis] * position[2] + shift[axis]
+            };
+            let (x, y, z) = (moved(0), moved(1), moved(2));
+            let w = f32x4::ONE / z;
+            let (u, v) = (lanes(focal) * x * w + lanes(cx), lanes(focal) * y * w + lanes(cy));
+            let is_inside = u.simd_gt(lanes(-0.5))
+                & u.simd_lt(lanes(right))
+                & v.simd_gt(lanes(-0.5))
+                & v.simd_lt(lanes(bottom));
             // The comparison is written so that NaN fails.
-            let w = if p.z >= near { w } else { 0.0 };
-            let (u, v) = (snap(u), snap(v));
-            (low, high) = ([low[0].min(u), low[1].min(v)], [high[0].max(u), high[1].max(v)]);
-            Vertex { u, v, w }
-        }));
+            let is_far = z.simd_ge(lanes(near));
+            let is_lost: i32x4 = cast(!(is_inside & !z.simd_lt(lanes(near))));
+            last_is_lost = is_lost.to_array()[LANES - 1];
+            lost += is_lost;
+            let corners = Corners { u: snap(u), v: snap(v), w: w & is_far };
+            (low, high) = (
+                [low[0].min(corners.u), low[1].min(corners.v)],
+                [high[0].max(corners.u), high[1].max(corners.v)],
+            );
+            self.vertices.extend(corners.vertices());
+        }
+        // Each lost vertex counts −1, those that fill the last lanes as well.
+        let missing = (model.lanes.len() * LANES - model.positions.len()) as i32;
+        let lost = missing * last_is_lost - lost.to_array().iter().sum::<i32>();
+        let (low, high) = (low.map(i32x4::reduce_min), high.map(i32x4::reduce_max));
         self.drawn = [0, 1].map(|axis| {
             let size = [grid.width, grid.height][axis];
-            let end = ((high[axis].max(-STEPS) >> SHIFT) + 1) as usize;
-            (first_cell(low[axis]) as usize).min(size)..end.min(size)
+            let end = (high[axis].max(-STEPS).div_euclid(STEPS) + 1) as usize;
+            first_cell(low[axis]).min(size)..end.min(size)
         });
         self.lost = lost as f32 / model.positions.len().max(1) as f32;
     }
 }
 
 /// The first cell whose centre is at least this many steps from the first one's.
-#[inline]
-fn first_cell(low: i32) -> i32 {
-    (low.max(0).min(FARTHEST as i32) + STEPS - 1) >> SHIFT
+fn first_cell(low: i32) -> usize {
+    (low.max(0).min(FARTHEST as i32) as usize).div_ceil(STEPS as usize)
 }
 
-/// Renders a triangle and returns about the number of cells that it visits. Takes slices instead of the canvas, so that
-/// their addresses stay in registers.
-#[inline]
-fn fill(
-    inverse_depth: &mut [f32],
-    drawn: &mut [u32],
-    [width, height]: [usize; 2],
-    id: u32,
-    [a, b, c]: [Vertex; 3],
-) -> usize {
-    // The first and last cell whose centre is in the box of the triangle.
-    let last = |high: i32, size: usize| (high >> SHIFT).min(size as i32 - 1);
-    let (u0, u1) = (first_cell(a.u.min(b.u).min(c.u)), last(a.u.max(b.u).max(c.u), width));
-    let (v0, v1) = (first_cell(a.v.min(b.v).min(c.v)), last(a.v.max(b.v).max(c.v), height));
-    if u0 > u1 || v0 > v1 || a.w * b.w * c.w == 0.0 {
-        return 0;
-    }
-    let span = |[a, b, c]: [i32; 3]| a.max(b).max(c) - a.min(b).min(c);
-    if span([a.u, b.u, c.u]).max(span([a.v, b.v, c.v])) < SMALL && u1 - u0 + 1 < WIDE && width >= LANES {
-        return fill_small(inverse_depth, drawn, width, id, [a, b, c], [u0, u1], [v0, v1]);
-    }
-    let [a, mut b, mut c] = [a, b, c].map(|p| Corner { u: p.u.into(), v: p.v.into(), w: p.w });
-    let mut area = (b.u - a.u) * (c.v - a.v) - (c.u - a.u) * (b.v - a.v);
-    if area == 0 {
-        return 0;
-    }
-    if area < 0 {
-        area = -area;
-        core::mem::swap(&mut b, &mut c);
-    }
-    // Twice the areas that a cell centre spans with two edges; the third follows from the total.
-    let (b_du, b_dv) = (c.v - a.v, a.u - c.u);
-    let (c_du, c_dv) = (a.v - b.v, b.u - a.u);
-    let steps = i64::from(STEPS);
-    let (du, dv) = (i64::from(u0) * steps - a.u, i64::from(v0) * steps - a.v);
-    let (mut b_row, mut c_row) = (b_du * du + b_dv * dv, c_du * du + c_dv * dv);
-    let (b_du, b_dv, c_du, c_dv) = (b_du * steps, b_dv * steps, c_du * steps, c_dv * steps);
-    let inverse = 1.0 / area as f32;
-    let (wb, wc) = ((b.w - a.w) * inverse, (c.w - a.w) * inverse);
-    let cells = (u1 - u0) as usize + 1;
-    let is_wide = u1 - u0 + 1 >= WIDE;
-    let rows = (v1 - v0) as usize + 1;
-    // Twice the area in steps² is 2¹³ times that in cells.
-    let visited = if is_wide { (cells * rows).min((area >> 13) as usize + 2 * rows) } else { cells * rows };
-    for v in v0..=v1 {
-        let start = v as usize * width + u0 as usize;
-        let (mut eb, mut ec, mut entered) = (b_row, c_row, false);
-        // A long thin triangle fills little of its box.
-        let skipped = if is_wide { first_inside([(eb, b_du), (ec, c_du), (area - eb - ec, -b_du - c_du)]) } else { 0 };
-        let skipped = skipped.min(cells as i64);
-        (eb, ec) = (eb + b_du * skipped, ec + c_du * skipped);
-        let (from, to) = (start + skipped as usize, start + cells);
-        let row = inverse_depth[from..to].iter_mut().zip(&mut drawn[from..to]);
-        for (cell, drawn) in row {
-            if (eb | ec | (area - eb - ec)) >= 0 {
-                entered = true;
-                let w = a.w + eb as f32 * wb + ec as f32 * wc;
-                if w > *cell {
-                    *cell = w;
-                    *drawn = id;
-                }
-            } else if entered {
-                break;
-            }
-            eb += b_du;
-            ec += c_du;
-        }
-        b_row += b_dv;
-        c_row += c_dv;
-    }
-    visited
-}
-
-/// Like [`fill`], with the same result, for a triangle whose box is small: in 32 bits, four cells of a row at
-/// once, and without a branch per cell. A lane computes what [`fill`] does, so that the bits are the same where there are no
-/// vector instructions.
-#[inline]
-fn fill_small(
-    inverse_depth: &mut [f32],
-    drawn: &mut [u32],
-    width: usize,
-    id: u32,
-    [a, mut b, mut c]: [Vertex; 3],
-    [u0, u1]: [i32; 2],
-    [v0, v1]: [i32; 2],
-) -> usize {
-    let mut area = (b.u - a.u) * (c.v - a.v) - (c.u - a.u) * (b.v - a.v);
-    if area == 0 {
-        return 0;
-    }
-    if area < 0 {
-        area = -area;
-        core::mem::swap(&mut b, &mut c);
-    }
-    let (b_du, b_row) = (c.v - a.v, a.u - c.u);
-    let (c_du, c_row) = (a.v - b.v, b.u - a.u);
-    let inverse = 1.0 / area as f32;
-    let (wb, wc) = ((b.w - a.w) * inverse, (c.w - a.w) * inverse);
-    let lanes = |edge: i32, growth: i32| i32x4::new([0, 1, 2, 3].map(|lane| edge + lane * (growth * STEPS)));
-    let ([b_dv, c_dv], total) = ([b_row, c_row].map(|growth| i32x4::splat(growth * STEPS)), i32x4::splat(area));
-    let [w_a, wb, wc] = [a.w, wb, wc].map(f32x4::splat);
-    // Cells beside the box are outside the triangle or, where the grid ends, begin before it.
-    let last = (width - LANES) as i32;
-    let mut from = u0;
-    while from <= u1 {
-        let first = from.min(last);
-        let (du, dv) = (first * STEPS - a.u, v0 * STEPS - a.v);
-        let mut b = lanes(b_du * du + b_row * dv, b_du);
-        let mut c = lanes(c_du * du + c_row * dv, c_du);
-        let mut at = v0 as usize * width + first as usize;
-        for _ in v0..=v1 {
-            let cells = inverse_depth.get_mut(at..).and_then(|cells| cells.first_chunk_mut::<LANES>());
-            let drawn = drawn.get_mut(at..).and_then(|drawn| drawn.first_chunk_mut::<LANES>());
-            let Some((cells, drawn)) = cells.zip(drawn) else { break };
-            let w = w_a + f32x4::from_i32x4(b) * wb + f32x4::from_i32x4(c) * wc;
-            let (far, other) = (f32x4::new(*cells), u32x4::new(*drawn));
-            let is_inside: i32x4 = (b | c | (total - b - c)).simd_gt(i32x4::splat(-1));
-            let is_drawn = is_inside & cast::<f32x4, i32x4>(w.simd_gt(far));
-            *cells = cast::<i32x4, f32x4>(is_drawn).bitselect(w, far).to_array();
-            *drawn = cast::<i32x4, u32x4>(is_drawn).bitselect(u32x4::splat(id), other).to_array();
-            (b, c, at) = (b + b_dv, c + c_dv, at + width);
-        }
-        from += LANES as i32;
-    }
-    ((u1 - u0 + 1) * (v1 - v0 + 1)) as usize
-}
-
-/// The first cell of a row in which no edge is negative, `i64::MAX` if there is none: each edge is its value at the first
-/// cell and its growth per cell.
-#[inline]
-fn first_inside(edges: [(i64, i64); 3]) -> i64 {
-    edges.into_iter().fold(0, |first, (value, growth)| {
-        if value >= 0 {
-            first
-        } else if growth <= 0 {
-            i64::MAX
-        } else {
-            first.max((growth - 1 - value) / growth)
-        }
-    })
-}
-
-/// Converts cells to steps, rounded to nearest; NaN becomes 0.
-#[inline]
-fn snap(cells: f32) -> i32 {
-    // Shifted to positive values, so that the cast rounds down.
+/// Converts cells to steps, rounded to nearest; NaN becomes the smallest.
+#[inline(always)]
+fn snap(cells: f32x4) -> i32x4 {
+    // Shifted to positive values, so that the conversion rounds down.
     const OFFSET: i32 = 1 << 20;
-    let steps = (cells * STEPS as f32).clamp(-FARTHEST, FARTHEST);
-    (steps + (OFFSET as f32 + 0.5)) as i32 - OFFSET
+    let steps = (cells * f32x4::splat(STEPS as f32)).fast_clamp(f32x4::splat(-FARTHEST), f32x4::splat(FARTHEST));
+    (steps + f32x4::splat(OFFSET as f32 + 0.5)).trunc_int() - i32x4::splat(OFFSET)
 }
