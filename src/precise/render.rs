@@ -9,7 +9,7 @@ use glam::{Mat3, Vec3};
 use wide::bytemuck::cast;
 use wide::{f32x4, i32x4};
 
-use super::fill::{Cells, Corners, LANES, STEPS, Vertex};
+use super::fill::{Corners, LANES, STEPS, Vertex, fill};
 use super::grid::CropGrid;
 use super::pose::CropPose;
 use crate::geometry::mesh::Mesh;
@@ -89,25 +89,20 @@ impl Canvas {
         self.project(model, grid);
         let most = MAX_LAYERS * self.inverse_depth.len();
         let mut visited = 0;
-        let mut cells = Cells {
-            inverse_depth: &mut self.inverse_depth,
-            drawn: &mut self.triangle,
-            size: [grid.width, grid.height],
-        };
-        let mut id = 0;
-        let mut triangles = model.triangles.chunks_exact(LANES);
-        for four in &mut triangles {
-            let Some(four) = four.first_chunk() else { break };
-            cells.fill(id, &self.vertices, *four, &mut visited, most);
+        let (inverse_depth, size) = (self.inverse_depth.as_mut_slice(), [grid.width, grid.height]);
+        let drawn = &mut self.triangle[..inverse_depth.len()];
+        for (id, four) in (0..).step_by(LANES).zip(model.triangles.chunks(LANES)) {
+            // Triangles without area are not drawn.
+            let triangles = four.first_chunk().copied().unwrap_or_else(|| {
+                let mut last = [[0; 3]; LANES];
+                last.iter_mut().zip(four).for_each(|(last, triangle)| *last = *triangle);
+                last
+            });
+            visited += fill(inverse_depth, drawn, size, id, &self.vertices, triangles, most - visited);
             if visited > most {
                 break;
             }
-            id += LANES as u32;
         }
-        // Triangles without area are not drawn.
-        let mut four = [[0; 3]; LANES];
-        four.iter_mut().zip(triangles.remainder()).for_each(|(triangle, last)| *triangle = *last);
-        cells.fill(id, &self.vertices, four, &mut visited, most);
         self.work += (grid.mask.len() + visited + model.positions.len() + model.triangles.len()) as u64;
     }
 
