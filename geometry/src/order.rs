@@ -4,6 +4,9 @@
 //! the index. All sorts and selections share one instance for u64: every further element type would add several
 //! kilobytes of WebAssembly.
 
+use wide::bytemuck::cast;
+use wide::{f32x4, i32x4};
+
 /// `value` and `index` as one sortable key.
 pub fn pack(value: f32, index: u32) -> u64 {
     let bits = value.to_bits();
@@ -137,4 +140,47 @@ fn at_quantile(keys: &mut [u64], quantile: f64) -> Option<f32> {
 /// The median; of an even number of values, the upper of the two middle ones. `None` without values.
 pub fn median(values: impl Iterator<Item = f32>) -> Option<f32> {
     quantile(values, 0.5)
+}
+
+/// Number of values that are left to be sorted.
+const LEFT: usize = 16;
+
+/// The [`median`] of the values above 0, which takes no copy of them.
+pub fn median_of_positive(values: &[f32x4]) -> Option<f32> {
+    // The bits of positive values have their order, and others are taken for 0.
+    let bits = |value: &f32x4| -> i32x4 { cast(*value & value.simd_gt(f32x4::ZERO)) };
+    let up_to = |most: i32| {
+        let is_above = |value| bits(value).simd_gt(i32x4::splat(most));
+        let above = values.iter().fold(i32x4::ZERO, |above, value| above + is_above(value));
+        values.len() * 4 - above.to_array().iter().map(|lane| lane.unsigned_abs() as usize).sum::<usize>()
+    };
+    let mut below = up_to(0);
+    let mut through = values.len() * 4;
+    if below == through {
+        return None;
+    }
+    let rank = below + (through - below) / 2;
+    // Halves the range of the bits until it holds few values: counting is faster than moving them.
+    let highest = values.iter().fold(i32x4::ZERO, |highest, value| highest.max(bits(value))).reduce_max();
+    let without_zeros = |value: &f32x4| bits(value) | (i32x4::splat(i32::MAX) & bits(value).simd_eq(i32x4::ZERO));
+    let lowest = values.iter().fold(i32x4::MAX, |lowest, value| lowest.min(without_zeros(value))).reduce_min();
+    let (mut low, mut high) = (lowest, highest);
+    while low < high && through - below > LEFT {
+        let middle = low + (high - low) / 2;
+        let count = up_to(middle);
+        if count > rank {
+            (high, through) = (middle, count);
+        } else {
+            (low, below) = (middle + 1, count);
+        }
+    }
+    if low == high {
+        return Some(f32::from_bits(low as u32));
+    }
+    let mut left: Vec<u64> = Vec::with_capacity(LEFT);
+    for value in values {
+        left.extend(bits(value).to_array().iter().filter(|bits| (low..=high).contains(*bits)).map(|bits| *bits as u64));
+    }
+    select_smallest(&mut left, rank - below);
+    left.get(rank - below).map(|bits| f32::from_bits(*bits as u32))
 }

@@ -1,14 +1,17 @@
 //! Coarse search: every rotation of the grid, with size, position and distance in closed form.
 
 use glam::{DMat3, DQuat, DVec2, Vec3};
+use wide::f32x4;
 
 use super::anchors::Anchor;
+use super::grid::CropGrid;
+use super::lanes::{LANES, first, four};
 use super::objective::Objective;
 use super::pose::CropPose;
 use super::ranking::Scored;
 use super::render::Canvas;
 use super::score::Score;
-use crate::geometry::order::median;
+use crate::geometry::order::median_of_positive;
 
 /// Iterations of the fit of a perspective box; each gains an order of magnitude.
 const BOX_ROUNDS: usize = 3;
@@ -70,9 +73,7 @@ impl Coarse<'_> {
     pub fn at_its_distance(&self, canvas: &mut Canvas, pose: CropPose) -> Candidate {
         let Objective { model, grid, scoring, prior, surroundings } = &self.objective;
         canvas.draw(model, &pose, grid);
-        let rows = canvas.rows(grid).map(|(_, row)| canvas.inverse_depth[row.clone()].iter().zip(&grid.depth[row]));
-        let ratios = rows.flatten().map(|(w, z)| w * z).filter(|r| *r > 0.0);
-        let stretch = median(ratios).unwrap_or(1.0);
+        let stretch = median_of_positive(&ratios(canvas, grid)).unwrap_or(1.0);
         let distant = CropPose { distance: pose.distance + libm::log(f64::from(stretch)), ..pose };
         let pose = prior.held(distant);
         // Unlike the silhouette, the surroundings depend on the distance.
@@ -113,4 +114,23 @@ impl Coarse<'_> {
         }
         (CropPose { rotation, size: libm::log(size), place, distance: libm::log(self.median_m) }, sides)
     }
+}
+
+/// The ratios of observed and rendered depths, where both are known, and zeros.
+fn ratios(canvas: &Canvas, grid: &CropGrid) -> Vec<f32x4> {
+    let [columns, rows] = &canvas.drawn;
+    let mut ratios = Vec::with_capacity(rows.len() * columns.len().div_ceil(LANES));
+    for (v, row) in canvas.rows(grid) {
+        let end = (v + 1) * grid.width;
+        for i in row.step_by(LANES) {
+            let mut ratio = four(&canvas.inverse_depth, i) * four(&grid.depth, i);
+            if i + LANES > end {
+                ratio &= first(end - i);
+            }
+            if ratio.simd_gt(f32x4::ZERO).any() {
+                ratios.push(ratio);
+            }
+        }
+    }
+    ratios
 }

@@ -6,13 +6,13 @@
 use wide::bytemuck::cast;
 use wide::{f32x4, i32x4, u32x4};
 
+use super::lanes::LANES;
+
 /// Subpixel steps per cell to which vertices are snapped, 2⁶.
 pub const STEPS: i32 = 64;
 const SHIFT: i32 = 6;
 /// Boxes of triangles at least this many cells wide are drawn row by row from where the triangle begins.
 const WIDE: i32 = 32;
-/// Triangles that are set up, and cells of a row that are drawn, at once.
-pub const LANES: usize = 4;
 /// Steps below which the box of a triangle is so small that the areas its cells span fit 32 bits.
 const SMALL: i32 = 1 << 12;
 

@@ -16,6 +16,7 @@ pub mod conditioning;
 pub(crate) mod confidence;
 mod fill;
 pub mod grid;
+mod lanes;
 pub mod lookalikes;
 pub mod mesh_pyramid;
 pub mod objective;

@@ -9,8 +9,9 @@ use glam::{Mat3, Vec3};
 use wide::bytemuck::cast;
 use wide::{f32x4, i32x4};
 
-use super::fill::{Corners, LANES, STEPS, Vertex, fill};
+use super::fill::{Corners, STEPS, Vertex, fill};
 use super::grid::CropGrid;
+use super::lanes::LANES;
 use super::pose::CropPose;
 use crate::geometry::mesh::Mesh;
 

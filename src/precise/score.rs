@@ -1,6 +1,10 @@
 //! Score: how well a rendered pose explains mask, free space and depth.
 
+use glam::Vec3;
+use wide::f32x4;
+
 use super::grid::CropGrid;
+use super::lanes::{LANES, count, first, four, four_set, plus};
 use super::render::{Canvas, Model};
 use crate::report::ScoreTerms;
 
@@ -138,48 +142,61 @@ impl Scoring {
         let to_mesh = canvas.rotation.transpose();
         let wants_outline = self.weights.outline > 0.0;
         let unknown_weight = grid.unknown_weight(self.weights.unknown);
+        let [per_depth, per_outline, stretch] = [per_depth, per_outline, stretch].map(f32x4::splat);
+        // Four cells at a time; sums in the order of the cells.
         for (v, row) in canvas.rows(grid) {
-            // By rows, so that bounds are checked once per row instead of once per cell.
-            let begin = row.start - v * width;
-            let (drawn, mask) = (&canvas.inverse_depth[row.clone()], &grid.mask[row.clone()]);
-            let (depth, scene) = (&grid.depth[row.clone()], &grid.scene[row]);
-            for (u, (((w, mask), observed), scene)) in (begin..).zip(drawn.iter().zip(mask).zip(depth).zip(scene)) {
-                let (w, mask, observed, scene) = (*w, *mask, *observed, *scene);
-                if w <= 0.0 {
+            for i in row.clone().step_by(LANES) {
+                let w = four(&canvas.inverse_depth, i);
+                let u = i - v * width;
+                let mut is_drawn = w.simd_gt(f32x4::ZERO);
+                if u + LANES > width {
+                    is_drawn &= first(width - u);
+                }
+                if !is_drawn.any() {
                     continue;
                 }
-                let i = v * width + u;
                 let z = stretch / w;
-                let mut visible = 1.0;
-                if mask {
-                    both += 1;
-                    if observed > 0.0 {
-                        let error = (z - observed).abs() * per_depth;
-                        depth_error += error / (1.0 + error);
-                        depth_cells += 1;
-                        let normal = grid.normals[i];
-                        if normal.z != 0.0 {
-                            normal_sum += (to_mesh * normal).dot(model.normals[canvas.triangle[i] as usize]).abs();
-                            normal_cells += 1;
-                        }
-                    }
-                } else {
-                    match self.background(scene, z) {
-                        Background::FreeSpace => extra += 1,
-                        Background::Occluder => {
-                            hidden += 1;
-                            visible = 0.0;
-                        }
-                        Background::Unknown => {
-                            unknown += 1;
-                            visible = unknown_weight;
-                        }
-                    }
+                let is_mask = four_set(&grid.mask, i);
+                let is_both = is_drawn & is_mask;
+                let is_extra = is_drawn & !is_mask;
+                both += count(is_both);
+                let observed = four(&grid.depth, i);
+                let has_depth = is_both & observed.simd_gt(f32x4::ZERO);
+                if has_depth.any() {
+                    let error = (z - observed).abs() * per_depth;
+                    depth_error = plus(depth_error, error / (f32x4::ONE + error) & has_depth);
+                    depth_cells += count(has_depth);
+                    let seen = seen_normals(grid, i);
+                    let has_normal = has_depth & seen[2].simd_ne(f32x4::ZERO);
+                    let drawn = drawn_normals(canvas, model, i, has_normal);
+                    let along = |axis: usize| {
+                        f32x4::splat(to_mesh.x_axis[axis]) * seen[0]
+                            + f32x4::splat(to_mesh.y_axis[axis]) * seen[1]
+                            + f32x4::splat(to_mesh.z_axis[axis]) * seen[2]
+                    };
+                    let cosine = along(0) * drawn[0] + along(1) * drawn[1] + along(2) * drawn[2];
+                    normal_sum = plus(normal_sum, cosine.abs() & has_normal);
+                    normal_cells += count(has_normal);
                 }
-                if wants_outline && visible > 0.0 && is_outline(canvas, width, grid.height, u, v) {
-                    let d = grid.outline[i];
-                    outline_sum += visible / (1.0 + d * d * per_outline);
-                    outline_cells += visible;
+                let mut visible = f32x4::ONE & is_both;
+                if is_extra.any() {
+                    // As `background`.
+                    let scene = four(&grid.scene, i);
+                    let is_unknown = is_extra & scene.simd_le(f32x4::ZERO);
+                    let is_hidden = is_extra & !is_unknown & scene.simd_lt(z - f32x4::splat(self.occluder_m));
+                    let is_free = is_extra & !is_unknown & !is_hidden;
+                    extra += count(is_free);
+                    hidden += count(is_hidden);
+                    unknown += count(is_unknown);
+                    visible = visible | (f32x4::ONE & is_free) | (f32x4::splat(unknown_weight) & is_unknown);
+                }
+                if wants_outline {
+                    let visible = visible & are_outline(canvas, width, grid.height, u, v);
+                    if visible.simd_gt(f32x4::ZERO).any() {
+                        let d = four(&grid.outline, i);
+                        outline_sum = plus(outline_sum, visible / (f32x4::ONE + d * d * per_outline));
+                        outline_cells = plus(outline_cells, visible);
+                    }
                 }
             }
         }
@@ -211,6 +228,47 @@ impl Scoring {
         // space does not reduce, it would favour a mesh that is too large.
         Score { total: self.weights.factor(&score, grid) * self.weights.agreement(&score), ..score }
     }
+}
+
+/// The observed normals of four cells, by axis.
+#[inline(always)]
+fn seen_normals(grid: &CropGrid, i: usize) -> [f32x4; 3] {
+    let last = grid.normals.len() - 1;
+    by_axis([grid.normals[i.min(last)], grid.normals[(i + 1).min(last)], grid.normals[(i + 2).min(last)], grid.normals[(i + 3).min(last)]])
+}
+
+/// The normals of the triangles that are drawn in four cells, by axis, in the mesh frame; those of cells that are not wanted may be any.
+#[inline(always)]
+fn drawn_normals(canvas: &Canvas, model: &Model, i: usize, is_wanted: f32x4) -> [f32x4; 3] {
+    let wanted = is_wanted.to_bitmask();
+    let of = |lane: usize| {
+        // Cells that are empty hold triangles of earlier renders, of other models.
+        if wanted >> lane & 1 == 1 { model.normals[canvas.triangle[i + lane] as usize] } else { Vec3::ZERO }
+    };
+    by_axis([of(0), of(1), of(2), of(3)])
+}
+
+#[inline(always)]
+fn by_axis([a, b, c, d]: [Vec3; LANES]) -> [f32x4; 3] {
+    [f32x4::new([a.x, b.x, c.x, d.x]), f32x4::new([a.y, b.y, c.y, d.y]), f32x4::new([a.z, b.z, c.z, d.z])]
+}
+
+/// As [`is_outline`], for four cells from column `u` on.
+#[inline(always)]
+fn are_outline(canvas: &Canvas, width: usize, height: usize, u: usize, v: usize) -> f32x4 {
+    if v == 0 || v + 1 >= height {
+        return f32x4::ZERO;
+    }
+    let (i, w) = (v * width + u, &canvas.inverse_depth);
+    let is_empty = |at: usize| four(w, at).simd_eq(f32x4::ZERO);
+    let mut are = is_empty(i - width) | is_empty(i + width) | is_empty(i - 1) | is_empty(i + 1);
+    if u == 0 {
+        are &= !first(1);
+    }
+    if u + LANES >= width {
+        are &= first(width - 1 - u);
+    }
+    are
 }
 
 /// Whether a rendered cell has an empty neighbour. The border of the grid is not an outline.
