@@ -145,26 +145,31 @@ pub fn median(values: impl Iterator<Item = f32>) -> Option<f32> {
 /// Number of values that are left to be sorted.
 const LEFT: usize = 16;
 
-/// The [`median`] of the values above 0, which takes no copy of them.
+/// The [`median`] of the values above 0, where the others are 0. Counts instead of moving values.
 pub fn median_of_positive(values: &[f32x4]) -> Option<f32> {
-    // The bits of positive values have their order, and others are taken for 0.
-    let bits = |value: &f32x4| -> i32x4 { cast(*value & value.simd_gt(f32x4::ZERO)) };
+    // The bits of positive values have their order.
+    let bits = |value: &f32x4| cast::<f32x4, i32x4>(*value);
+    let all = values.len() * 4;
     let up_to = |most: i32| {
-        let is_above = |value| bits(value).simd_gt(i32x4::splat(most));
-        let above = values.iter().fold(i32x4::ZERO, |above, value| above + is_above(value));
-        values.len() * 4 - above.to_array().iter().map(|lane| lane.unsigned_abs() as usize).sum::<usize>()
+        let most = i32x4::splat(most);
+        let mut above = i32x4::ZERO;
+        for value in values {
+            above += bits(value).simd_gt(most);
+        }
+        (all as i32 + above.to_array().iter().sum::<i32>()) as usize
     };
-    let mut below = up_to(0);
-    let mut through = values.len() * 4;
+    let (mut lowest, mut highest) = (i32x4::MAX, i32x4::ZERO);
+    for value in values {
+        let bits = bits(value);
+        highest = highest.max(bits);
+        lowest = lowest.min(bits | (bits.simd_eq(i32x4::ZERO) & i32x4::MAX));
+    }
+    let (mut below, mut through) = (up_to(0), all);
     if below == through {
         return None;
     }
     let rank = below + (through - below) / 2;
-    // Halves the range of the bits until it holds few values: counting is faster than moving them.
-    let highest = values.iter().fold(i32x4::ZERO, |highest, value| highest.max(bits(value))).reduce_max();
-    let without_zeros = |value: &f32x4| bits(value) | (i32x4::splat(i32::MAX) & bits(value).simd_eq(i32x4::ZERO));
-    let lowest = values.iter().fold(i32x4::MAX, |lowest, value| lowest.min(without_zeros(value))).reduce_min();
-    let (mut low, mut high) = (lowest, highest);
+    let (mut low, mut high) = (lowest.reduce_min(), highest.reduce_max());
     while low < high && through - below > LEFT {
         let middle = low + (high - low) / 2;
         let count = up_to(middle);
@@ -174,13 +179,24 @@ pub fn median_of_positive(values: &[f32x4]) -> Option<f32> {
             (low, below) = (middle + 1, count);
         }
     }
-    if low == high {
-        return Some(f32::from_bits(low as u32));
+    let mut left = [0; LEFT];
+    let mut count = 0;
+    if low < high {
+        let (first, last) = (i32x4::splat(low - 1), i32x4::splat(high));
+        for value in values {
+            let bits = bits(value);
+            let is_left: i32x4 = bits.simd_gt(first) & !bits.simd_gt(last);
+            if is_left.any() {
+                for (bits, is_left) in bits.to_array().into_iter().zip(is_left.to_array()) {
+                    if is_left != 0 && count < LEFT {
+                        left[count] = bits as u64;
+                        count += 1;
+                    }
+                }
+            }
+        }
+        select_smallest(&mut left[..count], rank - below);
+        low = left[rank - below] as i32;
     }
-    let mut left: Vec<u64> = Vec::with_capacity(LEFT);
-    for value in values {
-        left.extend(bits(value).to_array().iter().filter(|bits| (low..=high).contains(*bits)).map(|bits| *bits as u64));
-    }
-    select_smallest(&mut left, rank - below);
-    left.get(rank - below).map(|bits| f32::from_bits(*bits as u32))
+    Some(f32::from_bits(low as u32))
 }

@@ -116,7 +116,7 @@ impl Coarse<'_> {
     }
 }
 
-/// The ratios of observed and rendered depths, where both are known, and zeros.
+/// The ratios of observed and rendered depths, where both are known, and zeros elsewhere.
 fn ratios(canvas: &Canvas, grid: &CropGrid) -> Vec<f32x4> {
     let [columns, rows] = &canvas.drawn;
     let mut ratios = Vec::with_capacity(rows.len() * columns.len().div_ceil(LANES));
@@ -127,8 +127,9 @@ fn ratios(canvas: &Canvas, grid: &CropGrid) -> Vec<f32x4> {
             if i + LANES > end {
                 ratio &= first(end - i);
             }
-            if ratio.simd_gt(f32x4::ZERO).any() {
-                ratios.push(ratio);
+            let is_known = ratio.simd_gt(f32x4::ZERO);
+            if is_known.any() {
+                ratios.push(ratio & is_known);
             }
         }
     }

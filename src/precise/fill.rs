@@ -164,7 +164,7 @@ fn fill_small(inverse_depth: &mut [f32], drawn: &mut [u32], width: usize, id: u3
         let mut b = ramp(setup.b[lane] + b_du * (column - first), b_du);
         let mut c = ramp(setup.c[lane] + c_du * (column - first), c_du);
         let mut at = top as usize * width + column as usize;
-        for _ in top..=bottom {
+        for _ in 0..bottom - top + 1 {
             let cells = inverse_depth.get_mut(at..).and_then(|cells| cells.first_chunk_mut::<LANES>());
             let drawn = drawn.get_mut(at..).and_then(|drawn| drawn.first_chunk_mut::<LANES>());
             let Some((cells, drawn)) = cells.zip(drawn) else { break };
