@@ -21,12 +21,10 @@ pub struct TriangleBlock {
 }
 
 impl TriangleBlock {
-    /// The block of at most four triangles. The last one fills the other places.
-    pub fn new(triangles: &[[Vec3; 3]]) -> Self {
-        let last = triangles.last().copied().unwrap_or_default();
-        let four: [[Vec3; 3]; BLOCK] = core::array::from_fn(|i| triangles.get(i).copied().unwrap_or(last));
-        let of = |corner: usize, axis: usize| f32x4::new(four.map(|triangle| triangle[corner][axis]));
-        Self { corners: core::array::from_fn(|corner| core::array::from_fn(|axis| of(corner, axis))) }
+    /// The block of four triangles, whose corners are x, y, z and any number.
+    pub fn new(triangles: &[[f32x4; 3]; BLOCK]) -> Self {
+        let [i, j, k, l] = triangles;
+        Self { corners: [by_axis([i[0], j[0], k[0], l[0]]), by_axis([i[1], j[1], k[1], l[1]]), by_axis([i[2], j[2], k[2], l[2]])] }
     }
 
     /// The corners of one of the triangles.
@@ -63,6 +61,13 @@ impl TriangleBlock {
         let least = distance * f32x4::splat(1.0 - TOLERANCE[0]) - (aa + bb + cc) * f32x4::splat(TOLERANCE[1]);
         area.simd_gt(f32x4::splat(NO_AREA)).bitselect(least, f32x4::splat(-1.0))
     }
+}
+
+/// The coordinates of four points by axis.
+#[inline(always)]
+pub fn by_axis(points: [f32x4; BLOCK]) -> [f32x4; 3] {
+    let [x, y, z, _] = f32x4::transpose(points);
+    [x, y, z]
 }
 
 /// The squared distance of the origin to segments from `start`.

@@ -3,10 +3,9 @@
 use glam::{DVec3, Vec3};
 use wide::f32x4;
 
-use super::cloud::Bounds;
 use super::mesh::Mesh;
-use super::order::{index_of, pack, select_smallest};
-use super::triangle_block::{BLOCK, TriangleBlock};
+use super::order::{index_of, select_smallest};
+use super::triangle_block::{BLOCK, TriangleBlock, by_axis};
 
 /// Children of a node, whose boxes are tested at once.
 const CHILDREN: usize = 4;
@@ -52,17 +51,35 @@ struct Boxes {
     max: [f32x4; 3],
 }
 
-impl Boxes {
-    fn new(children: &[Bounds]) -> Self {
-        let child = |i: usize| children.get(i).copied().unwrap_or(Bounds::NOTHING);
-        let four: [Bounds; CHILDREN] = core::array::from_fn(child);
-        let [a, b, c, d] = four;
-        let min = |axis: usize| f32x4::new([a.min[axis], b.min[axis], c.min[axis], d.min[axis]]);
-        let max = |axis: usize| f32x4::new([a.max[axis], b.max[axis], c.max[axis], d.max[axis]]);
-        Self { min: [min(0), min(1), min(2)], max: [max(0), max(1), max(2)] }
+/// A box whose corners are x, y, z and 0: in one piece, because it takes most of the time to build a tree to find them.
+#[derive(Debug, Clone, Copy)]
+struct Extent {
+    min: f32x4,
+    max: f32x4,
+}
+
+impl Extent {
+    const NOTHING: Self = Self { min: f32x4::splat(f32::INFINITY), max: f32x4::splat(f32::NEG_INFINITY) };
+
+    #[inline(always)]
+    fn and(self, point: f32x4) -> Self {
+        Self { min: self.min.fast_min(point), max: self.max.fast_max(point) }
     }
 
-    /// As [`Bounds::distance_squared`].
+    #[inline(always)]
+    fn union(self, other: Self) -> Self {
+        Self { min: self.min.fast_min(other.min), max: self.max.fast_max(other.max) }
+    }
+}
+
+impl Boxes {
+    fn new(children: &[Extent]) -> Self {
+        let child = |i: usize| children.get(i).copied().unwrap_or(Extent::NOTHING);
+        let (a, b, c, d) = (child(0), child(1), child(2), child(3));
+        Self { min: by_axis([a.min, b.min, c.min, d.min]), max: by_axis([a.max, b.max, c.max, d.max]) }
+    }
+
+    /// The squared distance of a point to each box, 0 inside.
     #[inline(always)]
     fn distances_squared(&self, point: &[f32x4; 3]) -> f32x4 {
         let gap = |axis: usize| {
@@ -86,24 +103,41 @@ struct Search<'a> {
 impl TriangleTree {
     /// The tree over a mesh's triangles.
     pub fn new(mesh: &Mesh) -> Self {
-        let boxes = mesh.triangles().iter().map(|&t| Bounds::of_triangle(&mesh.corners(t)));
-        // Halves, so that the sum cannot overflow f32.
-        let center = |b: Bounds| b.min * 0.5 + b.max * 0.5;
-        let centers: Vec<f32x4> = boxes.map(|b| f32x4::new(center(b).extend(0.0).to_array())).collect();
+        let corners = |triangle: [u32; 3]| {
+            let [a, b, c] = mesh.corners(triangle);
+            [f32x4::new([a.x, a.y, a.z, 0.0]), f32x4::new([b.x, b.y, b.z, 0.0]), f32x4::new([c.x, c.y, c.z, 0.0])]
+        };
+        let half = f32x4::splat(0.5);
+        let mut centers = Vec::with_capacity(mesh.triangles().len());
+        for &triangle in mesh.triangles() {
+            let [a, b, c] = corners(triangle);
+            let Extent { min, max } = Extent { min: a, max: a }.and(b).and(c);
+            // Halves, so that the sum cannot overflow f32.
+            centers.push(min * half + max * half);
+        }
         let mut indices: Vec<u32> = (0..centers.len() as u32).collect();
         arrange(&centers, &mut indices, &mut Vec::with_capacity(centers.len()));
-        let corners = |i: &u32| mesh.corners(mesh.triangles()[*i as usize]);
-        let (mut blocks, mut bounds) = (Vec::new(), Vec::new());
+        let (mut blocks, mut extents) = (Vec::new(), Vec::new());
         for block in indices.chunks(BLOCK) {
-            let triangles: [[Vec3; 3]; BLOCK] = core::array::from_fn(|i| corners(block.get(i).unwrap_or(&block[0])));
-            bounds.push(triangles.iter().map(Bounds::of_triangle).fold(Bounds::NOTHING, Bounds::union));
+            // The first one fills the places of those that are missing.
+            let mut triangles = [corners(mesh.triangles()[block[0] as usize]); BLOCK];
+            let mut extent = Extent::NOTHING;
+            for (place, &i) in triangles.iter_mut().zip(block) {
+                *place = corners(mesh.triangles()[i as usize]);
+                extent = extent.and(place[0]).and(place[1]).and(place[2]);
+            }
+            extents.push(extent);
             blocks.push(TriangleBlock::new(&triangles));
         }
         let mut levels = Vec::new();
-        while bounds.len() > 1 {
-            levels.push(bounds.chunks(CHILDREN).map(Boxes::new).collect());
-            let parents = bounds.chunks(CHILDREN);
-            bounds = parents.map(|part| part.iter().copied().fold(Bounds::NOTHING, Bounds::union)).collect();
+        while extents.len() > 1 {
+            let (mut boxes, mut parents) = (Vec::new(), Vec::new());
+            for children in extents.chunks(CHILDREN) {
+                boxes.push(Boxes::new(children));
+                parents.push(children.iter().fold(Extent::NOTHING, |all, child| all.union(*child)));
+            }
+            levels.push(boxes);
+            extents = parents;
         }
         Self { blocks, indices, levels }
     }
@@ -222,15 +256,14 @@ fn halve(centers: &[f32x4], indices: &mut [u32], part: usize, keys: &mut Vec<u64
     if parts < 2 {
         return;
     }
-    let (mut low, mut high) = (f32x4::splat(f32::INFINITY), f32x4::splat(f32::NEG_INFINITY));
-    for &i in indices.iter() {
-        let center = centers[i as usize];
-        (low, high) = (low.fast_min(center), high.fast_max(center));
-    }
-    let spread = (high - low).to_array();
+    let all = indices.iter().fold(Extent::NOTHING, |all, &i| all.and(centers[i as usize]));
+    let spread = (all.max - all.min).to_array();
     let axis = (1..3).fold(0, |best, axis| if spread[axis] > spread[best] { axis } else { best });
+    let lowest = all.min.to_array()[axis];
     keys.clear();
-    keys.extend(indices.iter().map(|&i| pack(centers[i as usize].to_array()[axis], i)));
+    // Relative to the lowest, so that no sign needs to be sorted.
+    let key = |i: u32| u64::from((centers[i as usize].as_array()[axis] - lowest).to_bits()) << 32 | u64::from(i);
+    keys.extend(indices.iter().map(|&i| key(i)));
     let middle = parts / 2 * part;
     select_smallest(keys, middle);
     for (index, &key) in indices.iter_mut().zip(keys.iter()) {
