@@ -5,11 +5,15 @@
 //! index, so that results do not depend on the structure of the tree.
 
 use glam::Vec3;
+use wide::f32x4;
 
 use super::cloud::Bounds;
 use super::order::{halve, pack, select_smallest};
 
 const LEAF_SIZE: usize = 16;
+
+/// Points of a leaf whose distances are computed at once.
+const LANES: usize = 4;
 
 /// Points per joint search of [`KdTree::neighborhoods`].
 const GROUP_SIZE: usize = 12;
@@ -38,18 +42,65 @@ impl Neighbor {
 pub struct KdTree {
     /// Points in leaf order, with their original indices.
     points: Vec<(Vec3, u32)>,
+    /// Their coordinates by axis, followed by zeros to fill the last lanes.
+    axes: [Vec<f32>; 3],
     /// Depth-first: an inner node over `n` points is followed by its left child, over ⌊n/2⌋ of them.
     nodes: Vec<Node>,
 }
 
 #[derive(Debug, Clone, Copy)]
 struct Node {
-    /// The box around the points of the node: tighter than its cell if the points sample a surface.
-    bounds: Bounds,
+    /// The boxes around the points of the children: tighter than their cells if the points sample a surface.
+    children: TwoBoxes,
+    /// The smallest index of each child's points: of points that coincide, a search for the nearest visits no more than it
+    /// keeps.
+    first: [u32; 2],
     /// The right child; 0 in a leaf.
     right: u32,
-    /// The smallest index of its points: of points that coincide, a search for the nearest visits no more than it keeps.
-    first: u32,
+}
+
+/// Two boxes: x of both and y of both, and z of both twice.
+#[derive(Debug, Clone, Copy)]
+struct TwoBoxes {
+    min: [f32x4; 2],
+    max: [f32x4; 2],
+}
+
+impl TwoBoxes {
+    const NOTHING: Self = Self { min: [f32x4::ZERO; 2], max: [f32x4::ZERO; 2] };
+
+    fn new([a, b]: [Bounds; 2]) -> Self {
+        let lanes = |a: Vec3, b: Vec3| [f32x4::new([a.x, b.x, a.y, b.y]), f32x4::new([a.z, b.z, a.z, b.z])];
+        Self { min: lanes(a.min, b.min), max: lanes(a.max, b.max) }
+    }
+
+    /// [`Bounds::distance_squared`] of each.
+    #[inline(always)]
+    fn distances_squared(&self, query: &Query) -> [f32; 2] {
+        let squares = |axes: usize| {
+            let (below, above) = (self.min[axes] - query.two[axes], query.two[axes] - self.max[axes]);
+            let gap = below.fast_max(above).fast_max(f32x4::ZERO);
+            (gap * gap).to_array()
+        };
+        let ([ax, bx, ay, by], [az, bz, ..]) = (squares(0), squares(1));
+        [ax + ay + az, bx + by + bz]
+    }
+}
+
+/// The coordinates of a query: each in all lanes, and as those of [`TwoBoxes`].
+struct Query {
+    axes: [f32x4; 3],
+    two: [f32x4; 2],
+}
+
+impl Query {
+    fn new(point: Vec3) -> Self {
+        let Vec3 { x, y, z } = point;
+        Self {
+            axes: [f32x4::splat(x), f32x4::splat(y), f32x4::splat(z)],
+            two: [f32x4::new([x, x, y, y]), f32x4::splat(z)],
+        }
+    }
 }
 
 impl KdTree {
@@ -58,7 +109,9 @@ impl KdTree {
         let mut order: Vec<u32> = (0..points.len() as u32).collect();
         let mut nodes = Vec::with_capacity(points.len() / (LEAF_SIZE / 4));
         build(points, &mut order, &mut nodes);
-        Self { points: order.into_iter().map(|i| (points[i as usize], i)).collect(), nodes }
+        let points: Vec<(Vec3, u32)> = order.into_iter().map(|i| (points[i as usize], i)).collect();
+        let axis = |axis: usize| points.iter().map(|(p, _)| p[axis]).chain([0.0; LANES - 1]).collect();
+        Self { axes: [axis(0), axis(1), axis(2)], points, nodes }
     }
 
     /// Number of points.
@@ -161,25 +214,32 @@ impl KdTree {
     }
 
     fn visit(&self, query: Vec3, collector: &mut impl Collector) {
-        self.descend(0, 0, self.points.len(), query, collector);
+        self.descend(0, 0, self.points.len(), &Query::new(query), collector);
     }
 
     /// Visits the subtree over `points[low..high]`.
-    fn descend(&self, node: usize, low: usize, high: usize, query: Vec3, collector: &mut impl Collector) {
-        let right = self.nodes[node].right as usize;
-        if right == 0 {
-            for &(point, index) in &self.points[low..high] {
-                collector.offer(Neighbor { index, distance_squared: point.distance_squared(query) });
+    fn descend(&self, node: usize, low: usize, high: usize, query: &Query, collector: &mut impl Collector) {
+        let Node { children, first, right } = &self.nodes[node];
+        if *right == 0 {
+            for from in (low..high).step_by(LANES) {
+                let distances = self.distances_squared(from, query);
+                let mut near = distances.simd_le(f32x4::splat(collector.limit())).to_bitmask();
+                near &= (1 << (high - from).min(LANES)) - 1;
+                let distances = distances.to_array();
+                while near != 0 {
+                    let lane = near.trailing_zeros() as usize & (LANES - 1);
+                    near &= near - 1;
+                    let Some(&(_, index)) = self.points.get(from + lane) else { break };
+                    collector.offer(Neighbor { index, distance_squared: distances[lane] });
+                }
             }
             return;
         }
         let middle = low + (high - low) / 2;
-        let (left, right) = ((node + 1, low, middle), (right, middle, high));
-        let closest = |child: usize| {
-            let Node { bounds, first, .. } = &self.nodes[child];
-            Neighbor { index: *first, distance_squared: bounds.distance_squared(query) }
-        };
-        let (to_left, to_right) = (closest(left.0), closest(right.0));
+        let (left, right) = ((node + 1, low, middle), (*right as usize, middle, high));
+        let [to_left, to_right] = children.distances_squared(query);
+        let to_left = Neighbor { index: first[0], distance_squared: to_left };
+        let to_right = Neighbor { index: first[1], distance_squared: to_right };
         let ((near, to_near), (far, to_far)) = if to_left.distance_squared <= to_right.distance_squared {
             ((left, to_left), (right, to_right))
         } else {
@@ -192,16 +252,28 @@ impl KdTree {
             self.descend(far.0, far.1, far.2, query, collector);
         }
     }
+
+    /// The squared distances of the points from the `from`th on, in leaf order.
+    #[inline(always)]
+    fn distances_squared(&self, from: usize, query: &Query) -> f32x4 {
+        let gap = |axis: usize| {
+            let four = self.axes[axis].get(from..).and_then(|axis| axis.first_chunk::<LANES>());
+            four.map_or(f32x4::ZERO, |four| f32x4::new(*four) - query.axes[axis])
+        };
+        let (x, y, z) = (gap(0), gap(1), gap(2));
+        x * x + y * y + z * z
+    }
 }
 
 /// Sorts the indices of `points` into leaf order and records the nodes in depth-first order.
-fn build(points: &[Vec3], order: &mut [u32], nodes: &mut Vec<Node>) {
+/// Returns the box of the points and their smallest index.
+fn build(points: &[Vec3], order: &mut [u32], nodes: &mut Vec<Node>) -> (Bounds, u32) {
     let point = |i: u32| points[i as usize];
     let bounds = order.iter().map(|&i| Bounds { min: point(i), max: point(i) }).fold(Bounds::NOTHING, Bounds::union);
     let node = nodes.len();
-    nodes.push(Node { bounds, right: 0, first: order.iter().copied().min().unwrap_or_default() });
+    nodes.push(Node { children: TwoBoxes::NOTHING, first: [0; 2], right: 0 });
     if order.len() <= LEAF_SIZE {
-        return;
+        return (bounds, order.iter().copied().min().unwrap_or_default());
     }
     let extent = bounds.extent();
     let axis = if extent.x >= extent.y && extent.x >= extent.z {
@@ -213,14 +285,22 @@ fn build(points: &[Vec3], order: &mut [u32], nodes: &mut Vec<Node>) {
     };
     halve(order, |i| point(i)[axis]);
     let (left, right) = order.split_at_mut(order.len() / 2);
-    build(points, left, nodes);
-    nodes[node].right = nodes.len() as u32;
-    build(points, right, nodes);
+    let (left_bounds, left_first) = build(points, left, nodes);
+    let right_node = nodes.len() as u32;
+    let (right_bounds, right_first) = build(points, right, nodes);
+    nodes[node] = Node {
+        children: TwoBoxes::new([left_bounds, right_bounds]),
+        first: [left_first, right_first],
+        right: right_node,
+    };
+    (bounds, left_first.min(right_first))
 }
 
 /// Candidates that a search keeps.
 trait Collector {
     fn offer(&mut self, neighbor: Neighbor);
+    /// The squared distance beyond which it keeps no neighbour.
+    fn limit(&self) -> f32;
     /// Whether it would keep `first`, or any neighbour that sorts after it.
     fn wants(&self, first: Neighbor) -> bool;
 }
@@ -230,6 +310,10 @@ struct Nearest {
 }
 
 impl Collector for Nearest {
+    fn limit(&self) -> f32 {
+        self.best.distance_squared
+    }
+
     fn offer(&mut self, neighbor: Neighbor) {
         if self.wants(neighbor) {
             self.best = neighbor;
@@ -247,6 +331,10 @@ struct KNearest<'a> {
 }
 
 impl Collector for KNearest<'_> {
+    fn limit(&self) -> f32 {
+        self.found.get(self.k - 1).map_or(f32::INFINITY, |last| last.distance_squared)
+    }
+
     fn offer(&mut self, neighbor: Neighbor) {
         if !self.wants(neighbor) {
             return;
@@ -271,6 +359,10 @@ struct Within<'a> {
 }
 
 impl Collector for Within<'_> {
+    fn limit(&self) -> f32 {
+        self.radius_squared
+    }
+
     fn offer(&mut self, neighbor: Neighbor) {
         if self.wants(neighbor) {
             self.found.push(neighbor);

@@ -99,8 +99,8 @@ impl Mesh {
 
     /// The corners of a triangle of this mesh.
     #[inline(always)]
-    pub fn corners(&self, triangle: [u32; 3]) -> [Vec3; 3] {
-        triangle.map(|i| self.positions[i as usize])
+    pub fn corners(&self, [a, b, c]: [u32; 3]) -> [Vec3; 3] {
+        [self.positions[a as usize], self.positions[b as usize], self.positions[c as usize]]
     }
 
     /// The diagonal of the bounding box of the vertices.

@@ -168,7 +168,8 @@ fn outer(v: DVec3) -> DMat3 {
 
 #[inline(always)]
 fn corners(mesh: &Mesh, triangle: [u32; 3]) -> [DVec3; 3] {
-    mesh.corners(triangle).map(|p| p.as_dvec3())
+    let [a, b, c] = mesh.corners(triangle);
+    [a.as_dvec3(), b.as_dvec3(), c.as_dvec3()]
 }
 
 /// The area of a mesh's surface.
