@@ -108,7 +108,8 @@ impl KdTree {
     pub fn new(points: &[Vec3]) -> Self {
         let mut order: Vec<u32> = (0..points.len() as u32).collect();
         let mut nodes = Vec::with_capacity(points.len() / (LEAF_SIZE / 4));
-        build(points, &mut order, &mut nodes);
+        let lanes: Vec<f32x4> = points.iter().map(|p| f32x4::new([p.x, p.y, p.z, 0.0])).collect();
+        build(&lanes, &mut order, &mut nodes);
         let points: Vec<(Vec3, u32)> = order.into_iter().map(|i| (points[i as usize], i)).collect();
         let axis = |axis: usize| points.iter().map(|(p, _)| p[axis]).chain([0.0; LANES - 1]).collect();
         Self { axes: [axis(0), axis(1), axis(2)], points, nodes }
@@ -267,9 +268,14 @@ impl KdTree {
 
 /// Sorts the indices of `points` into leaf order and records the nodes in depth-first order.
 /// Returns the box of the points and their smallest index.
-fn build(points: &[Vec3], order: &mut [u32], nodes: &mut Vec<Node>) -> (Bounds, u32) {
-    let point = |i: u32| points[i as usize];
-    let bounds = order.iter().map(|&i| Bounds { min: point(i), max: point(i) }).fold(Bounds::NOTHING, Bounds::union);
+fn build(points: &[f32x4], order: &mut [u32], nodes: &mut Vec<Node>) -> (Bounds, u32) {
+    let (mut min, mut max) = (f32x4::splat(f32::INFINITY), f32x4::splat(f32::NEG_INFINITY));
+    for &i in order.iter() {
+        let point = points[i as usize];
+        (min, max) = (min.fast_min(point), max.fast_max(point));
+    }
+    let [min, max] = [min.to_array(), max.to_array()];
+    let bounds = Bounds { min: Vec3::new(min[0], min[1], min[2]), max: Vec3::new(max[0], max[1], max[2]) };
     let node = nodes.len();
     nodes.push(Node { children: TwoBoxes::NOTHING, first: [0; 2], right: 0 });
     if order.len() <= LEAF_SIZE {
@@ -283,7 +289,7 @@ fn build(points: &[Vec3], order: &mut [u32], nodes: &mut Vec<Node>) -> (Bounds, 
     } else {
         2
     };
-    halve(order, |i| point(i)[axis]);
+    halve(order, |i| points[i as usize].as_array()[axis]);
     let (left, right) = order.split_at_mut(order.len() / 2);
     let (left_bounds, left_first) = build(points, left, nodes);
     let right_node = nodes.len() as u32;

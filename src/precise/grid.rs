@@ -128,15 +128,21 @@ impl CropGrid {
             // Shifted, so that the cast rounds down also for negative values.
             (x + 0.5 + 1_048_576.0) as i64 - 1_048_576
         };
-        let columns: Vec<i64> = (0..self.width * samples).map(|i| at(i / samples, i % samples, 0)).collect();
-        let rows: Vec<i64> = (0..self.height * samples).map(|i| at(i / samples, i % samples, 1)).collect();
+        let [columns, rows] = [0, 1].map(|axis| {
+            let count = [self.width, self.height][axis] * samples;
+            let pixel = |i: usize| Sample::new(observation, axis, at(i / samples, i % samples, axis));
+            (0..count).map(pixel).collect::<Vec<Sample>>()
+        });
         let total = (samples * samples) as f32;
         for rows in rows.chunks_exact(samples) {
+            let are_inside = rows.iter().all(Sample::is_inside);
             for columns in columns.chunks_exact(samples) {
                 let mut sum = Sum::default();
-                for &v in rows {
-                    for &u in columns {
-                        sum.add(observation, u, v);
+                if are_inside && columns.iter().all(Sample::is_inside) {
+                    rows.iter().for_each(|row| sum.add_inside(observation, row, columns));
+                } else {
+                    for row in rows {
+                        columns.iter().for_each(|column| sum.add(observation, row, column));
                     }
                 }
                 let outline = sum.outline / total;
@@ -244,28 +250,61 @@ struct Sum {
     outside: f32,
 }
 
+/// A column or row of samples.
+struct Sample {
+    /// The nearest column or row of the crop.
+    nearest: usize,
+    /// The distance to it, pixels.
+    beyond: f32,
+    is_in_image: bool,
+}
+
+impl Sample {
+    fn new(observation: &CleanObservation, axis: usize, pixel: i64) -> Self {
+        let size = [observation.width, observation.height][axis];
+        let at = pixel - observation.origin[axis] as i64;
+        let nearest = at.max(0).min(size as i64 - 1);
+        let is_in_image = pixel >= 0 && (pixel as f64) < observation.image[axis];
+        Self { nearest: nearest as usize, beyond: (at - nearest) as f32, is_in_image }
+    }
+
+    /// Whether it is in the crop, and so in the image.
+    fn is_inside(&self) -> bool {
+        self.beyond == 0.0 && self.is_in_image
+    }
+}
+
 impl Sum {
-    fn add(&mut self, observation: &CleanObservation, u: i64, v: i64) {
-        let [width, height] = observation.image;
-        let inside_image = u >= 0 && v >= 0 && (u as f64) < width && (v as f64) < height;
-        self.outside += f32::from(u8::from(!inside_image));
+    fn add(&mut self, observation: &CleanObservation, row: &Sample, column: &Sample) {
+        self.outside += f32::from(u8::from(!(row.is_in_image && column.is_in_image)));
         // Outside the crop: the distance at the nearest pixel of the crop, plus the distance to that pixel.
-        let (u, v) = (u - observation.origin[0] as i64, v - observation.origin[1] as i64);
-        let near_u = u.max(0).min(observation.width as i64 - 1);
-        let near_v = v.max(0).min(observation.height as i64 - 1);
-        let (du, dv) = ((u - near_u) as f32, (v - near_v) as f32);
-        let i = near_v as usize * observation.width + near_u as usize;
+        let (du, dv) = (column.beyond, row.beyond);
+        let i = row.nearest * observation.width + column.nearest;
         self.outline += observation.outline[i] + (du * du + dv * dv).sqrt();
-        if du != 0.0 || dv != 0.0 {
-            return;
+        if du == 0.0 && dv == 0.0 {
+            self.read(observation.depth[i], observation.scene[i]);
         }
-        if observation.depth[i] > 0.0 {
-            self.depth += observation.depth[i];
-            self.readings += 1.0;
+    }
+
+    /// The samples of a row that are inside the crop.
+    #[inline(always)]
+    fn add_inside(&mut self, observation: &CleanObservation, row: &Sample, columns: &[Sample]) {
+        let start = row.nearest * observation.width;
+        let row = start..start + observation.width;
+        let [outline, depth, scene] =
+            [&observation.outline[row.clone()], &observation.depth[row.clone()], &observation.scene[row]];
+        for Sample { nearest, .. } in columns {
+            self.outline += outline[*nearest];
+            self.read(depth[*nearest], scene[*nearest]);
         }
-        if observation.scene[i] > 0.0 {
-            self.scene += observation.scene[i];
-            self.scene_readings += 1.0;
-        }
+    }
+
+    #[inline(always)]
+    fn read(&mut self, depth: f32, scene: f32) {
+        // Adding 0 changes nothing, and takes no branch.
+        self.depth += if depth > 0.0 { depth } else { 0.0 };
+        self.readings += if depth > 0.0 { 1.0 } else { 0.0 };
+        self.scene += if scene > 0.0 { scene } else { 0.0 };
+        self.scene_readings += if scene > 0.0 { 1.0 } else { 0.0 };
     }
 }
