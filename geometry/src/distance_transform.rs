@@ -17,15 +17,21 @@ pub fn squared_distances(set: &[bool], width: usize, height: usize) -> Vec<u32> 
     let mut heights = vec![0i64; width];
     // The columns whose parabolas form the envelope, each with the first column where it is the lowest.
     let mut envelope: Vec<(i32, i32)> = Vec::with_capacity(width);
-    let columns = width as i32;
+    let none = far(width, height);
     for row in distances.chunks_exact_mut(width) {
+        // Beyond the outermost pixels that are not set themselves, and one beside each, nothing changes.
+        let Some(first) = row.iter().position(|d| *d > 0) else { continue };
+        let last = row.iter().rposition(|d| *d > 0).unwrap_or(first);
+        let row = &mut row[first.saturating_sub(1)..(last + 2).min(width)];
+        let columns = row.len() as i32;
         heights.iter_mut().zip(row.iter()).for_each(|(h, d)| *h = i64::from(*d) * i64::from(*d));
         let value = |x: i32, from: i32| {
             let apart = i64::from(x - from);
             apart * apart + heights[from as usize]
         };
         envelope.clear();
-        for x in 0..columns {
+        // A column without a set pixel is the nearest nowhere.
+        for x in (0..columns).filter(|x| row[*x as usize] < none) {
             while envelope.last().is_some_and(|&(top, start)| value(start, top) > value(start, x)) {
                 envelope.pop();
             }
@@ -37,7 +43,7 @@ pub fn squared_distances(set: &[bool], width: usize, height: usize) -> Vec<u32> 
                 }
                 // The first column where x is lower than top, which is right of the start of top. f64 holds both integers
                 // exactly and divides faster; quotients of this size are never rounded up to the next integer.
-                let [x, top] = [x, top].map(i64::from);
+                let [x, top] = [i64::from(x), i64::from(top)];
                 let last = (x * x - top * top + rise) as f64 / (2 * (x - top)) as f64;
                 if last < f64::from(columns) { last as i32 + 1 } else { columns }
             });

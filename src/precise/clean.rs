@@ -224,23 +224,23 @@ impl Crop {
     }
 
     fn into_clean(self) -> CleanObservation {
-        let pixels = self.count();
+        let pixels: Vec<usize> = (0..self.mask.len()).filter(|i| self.mask[*i]).collect();
         let bounds = bounds_of(&self.mask, self.width, |set| *set);
         let extent_px = longer_side(&bounds);
         let outline = signed_distance(&self.mask, self.width, self.height);
-        let inner = self.inner_readings(&outline);
+        let inner = self.inner_readings(&pixels, &outline);
         let (median, spread) = self.densest_window(&inner, extent_px);
         let extent_m = extent_px / self.camera.fx * median;
         let reach = (1.2 * extent_m).max(5.0 * spread);
-        let near: Vec<bool> =
-            inner.iter().zip(&self.scene).map(|(&inner, &z)| inner && (f64::from(z) - median).abs() < reach).collect();
+        let is_near = |i: &usize| (f64::from(self.scene[*i]) - median).abs() < reach;
+        let near: Vec<usize> = inner.into_iter().filter(is_near).collect();
         let jump = (0.06 * extent_m + 0.006 * median) as f32;
-        let smooth: Vec<bool> = (0..near.len()).map(|i| near[i] && self.range_around(i) <= jump).collect();
-        let count = |set: &[bool]| set.iter().filter(|s| **s).count();
-        let trusted = if 10 * count(&smooth) > 3 * count(&near) { smooth } else { near };
-        let depth: Vec<f32> = trusted.iter().zip(&self.scene).map(|(&t, &z)| if t { z } else { 0.0 }).collect();
-        let median_m = quantile(depth.iter().copied().filter(|z| *z > 0.0), 0.5).map_or(median, f64::from);
-        let diagonal_m = self.diagonal(&depth).max(1e-3 * median_m);
+        let smooth: Vec<usize> = near.iter().copied().filter(|i| self.range_around(*i) <= jump).collect();
+        let trusted = if 10 * smooth.len() > 3 * near.len() { smooth } else { near };
+        let mut depth = vec![0.0; self.scene.len()];
+        trusted.iter().for_each(|&i| depth[i] = self.scene[i]);
+        let median_m = quantile(trusted.iter().map(|&i| self.scene[i]), 0.5).map_or(median, f64::from);
+        let diagonal_m = self.diagonal(&trusted).max(1e-3 * median_m);
         CleanObservation {
             camera: self.camera,
             origin: self.origin,
@@ -252,24 +252,23 @@ impl Crop {
             rim_offset: 0.0,
             depth,
             scene: self.scene,
-            pixels,
+            pixels: pixels.len(),
             median_m,
             diagonal_m,
         }
     }
 
-    /// Readings in the mask, excluding its rim if enough remain.
-    fn inner_readings(&self, outline: &[f32]) -> Vec<bool> {
-        let pixels = self.count();
+    /// Those of the mask's pixels that have a reading, excluding its rim if enough remain.
+    fn inner_readings(&self, pixels: &[usize], outline: &[f32]) -> Vec<usize> {
+        let count = pixels.len() as f64;
         // Two pixels, and more for images larger than the input of depth networks.
-        let two = (0.011 * (pixels as f64).sqrt()).clamp(2.0, 4.0);
+        let two = (0.011 * count.sqrt()).clamp(2.0, 4.0);
         for (rim, share) in [(two, 0.3), (1.0, 0.2), (0.0, 0.0)] {
-            let inside = |(i, set): (usize, &bool)| *set && 0.5 - f64::from(outline[i]) > rim;
-            let inner: Vec<bool> = self.mask.iter().enumerate().map(inside).collect();
-            let readings = inner.iter().zip(&self.scene).filter(|(inner, z)| **inner && **z > 0.0).count();
-            let enough = inner.iter().filter(|inner| **inner).count() as f64 >= share * pixels as f64;
-            if (enough && readings >= 32) || rim == 0.0 {
-                return inner.iter().zip(&self.scene).map(|(&inner, &z)| inner && z > 0.0).collect();
+            let inner = || pixels.iter().copied().filter(|i| 0.5 - f64::from(outline[*i]) > rim);
+            let readings: Vec<usize> = inner().filter(|i| self.scene[*i] > 0.0).collect();
+            let enough = inner().count() as f64 >= share * count;
+            if (enough && readings.len() >= 32) || rim == 0.0 {
+                return readings;
             }
         }
         Vec::new()
@@ -277,10 +276,9 @@ impl Crop {
 
     /// Median depth and median absolute deviation within the depth window with the most readings, which is as deep as
     /// the object is wide. A plain median would be biased by background inside the mask.
-    fn densest_window(&self, inner: &[bool], extent_px: f64) -> (f64, f64) {
-        let readings: Vec<f32> = inner.iter().zip(&self.scene).filter(|(i, _)| **i).map(|(_, &z)| z).collect();
-        let step = readings.len().div_ceil(WINDOW_SAMPLES).max(1);
-        let mut keys: Vec<u64> = readings.iter().step_by(step).map(|&z| order::pack(z, 0)).collect();
+    fn densest_window(&self, inner: &[usize], extent_px: f64) -> (f64, f64) {
+        let step = inner.len().div_ceil(WINDOW_SAMPLES).max(1);
+        let mut keys: Vec<u64> = inner.iter().step_by(step).map(|&i| order::pack(self.scene[i], 0)).collect();
         order::sort(&mut keys);
         let depths: Vec<f32> = keys.into_iter().map(order::value_of).collect();
         let deep = 1.0 + (1.2 * extent_px / self.camera.fx).max(0.1) as f32;
@@ -314,13 +312,12 @@ impl Crop {
     }
 
     /// Diagonal of the box that excludes half a percent of the points at either end of each axis.
-    fn diagonal(&self, depth: &[f32]) -> f64 {
-        let readings = depth.iter().filter(|z| **z > 0.0).count();
-        let step = readings.div_ceil(WINDOW_SAMPLES).max(1);
-        let points: Vec<glam::Vec3> = (depth.iter().enumerate().filter(|(_, z)| **z > 0.0).step_by(step))
-            .map(|(i, &z)| {
+    fn diagonal(&self, readings: &[usize]) -> f64 {
+        let step = readings.len().div_ceil(WINDOW_SAMPLES).max(1);
+        let points: Vec<glam::Vec3> = (readings.iter().step_by(step))
+            .map(|&i| {
                 let (u, v) = (i % self.width + self.origin[0], i / self.width + self.origin[1]);
-                self.camera.back_project(u as f64, v as f64, f64::from(z))
+                self.camera.back_project(u as f64, v as f64, f64::from(self.scene[i]))
             })
             .collect();
         let side = |axis: usize| {
