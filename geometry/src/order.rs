@@ -143,7 +143,7 @@ pub fn median(values: impl Iterator<Item = f32>) -> Option<f32> {
 }
 
 /// Number of values that are left to be sorted.
-const LEFT: usize = 16;
+const LEFT: usize = 4;
 
 /// The [`median`] of the values above 0, where the others are 0. Counts instead of moving values.
 pub fn median_of_positive(values: &[f32x4]) -> Option<f32> {

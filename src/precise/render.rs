@@ -34,6 +34,8 @@ pub struct Model {
     pub normals: Vec<Vec3>,
     /// The positions, four at a time, by axis. The last one fills the places of those that are missing.
     lanes: Vec<[f32x4; 3]>,
+    /// The normals, with a fourth number.
+    pub(super) facets: Vec<f32x4>,
 }
 
 impl Model {
@@ -47,10 +49,12 @@ impl Model {
             let at = |lane: usize| four.get(lane).or(four.last()).copied().unwrap_or_default();
             [0, 1, 2].map(|axis| f32x4::new([0, 1, 2, 3].map(|lane| at(lane)[axis])))
         };
+        let normals: Vec<Vec3> = mesh.triangles().iter().map(normal).collect();
         Self {
             positions: mesh.positions().to_vec(),
             triangles: mesh.triangles().to_vec(),
-            normals: mesh.triangles().iter().map(normal).collect(),
+            facets: normals.iter().map(|n| f32x4::new([n.x, n.y, n.z, 0.0])).collect(),
+            normals,
             lanes: mesh.positions().chunks(LANES).map(in_lanes).collect(),
         }
     }

@@ -1,7 +1,7 @@
 //! Score: how well a rendered pose explains mask, free space and depth.
 
-use glam::Vec3;
-use wide::f32x4;
+use wide::bytemuck::cast;
+use wide::{f32x4, i32x4};
 
 use super::grid::CropGrid;
 use super::lanes::{LANES, count, first, four, four_set, plus};
@@ -233,24 +233,25 @@ impl Scoring {
 /// The observed normals of four cells, by axis.
 #[inline(always)]
 fn seen_normals(grid: &CropGrid, i: usize) -> [f32x4; 3] {
-    let last = grid.normals.len() - 1;
-    by_axis([grid.normals[i.min(last)], grid.normals[(i + 1).min(last)], grid.normals[(i + 2).min(last)], grid.normals[(i + 3).min(last)]])
+    let [a, b, c, d] = match grid.normals.get(i..).and_then(|normals| normals.first_chunk::<LANES>()) {
+        Some(four) => *four,
+        None => core::array::from_fn(|lane| grid.normals.get(i + lane).copied().unwrap_or_default()),
+    };
+    [f32x4::new([a.x, b.x, c.x, d.x]), f32x4::new([a.y, b.y, c.y, d.y]), f32x4::new([a.z, b.z, c.z, d.z])]
 }
 
-/// The normals of the triangles that are drawn in four cells, by axis, in the mesh frame; those of cells that are not wanted may be any.
+/// The normals of the triangles that are drawn in four cells, by axis, in the mesh frame, where they are wanted.
 #[inline(always)]
 fn drawn_normals(canvas: &Canvas, model: &Model, i: usize, is_wanted: f32x4) -> [f32x4; 3] {
-    let wanted = is_wanted.to_bitmask();
-    let of = |lane: usize| {
-        // Cells that are empty hold triangles of earlier renders, of other models.
-        if wanted >> lane & 1 == 1 { model.normals[canvas.triangle[i + lane] as usize] } else { Vec3::ZERO }
+    let drawn = match canvas.triangle.get(i..).and_then(|drawn| drawn.first_chunk::<LANES>()) {
+        Some(four) => *four,
+        None => core::array::from_fn(|lane| canvas.triangle.get(i + lane).copied().unwrap_or_default()),
     };
-    by_axis([of(0), of(1), of(2), of(3)])
-}
-
-#[inline(always)]
-fn by_axis([a, b, c, d]: [Vec3; LANES]) -> [f32x4; 3] {
-    [f32x4::new([a.x, b.x, c.x, d.x]), f32x4::new([a.y, b.y, c.y, d.y]), f32x4::new([a.z, b.z, c.z, d.z])]
+    // Cells that are empty hold triangles of earlier renders, of other models.
+    let [a, b, c, d] = (i32x4::new(drawn.map(u32::cast_signed)) & cast::<f32x4, i32x4>(is_wanted)).to_array();
+    let normal = |triangle: i32| model.facets[triangle as usize];
+    let [x, y, z, _] = f32x4::transpose([normal(a), normal(b), normal(c), normal(d)]);
+    [x, y, z]
 }
 
 /// As [`is_outline`], for four cells from column `u` on.
