@@ -24,7 +24,13 @@ impl TriangleBlock {
     /// The block of four triangles, whose corners are x, y, z and any number.
     pub fn new(triangles: &[[f32x4; 3]; BLOCK]) -> Self {
         let [i, j, k, l] = triangles;
-        Self { corners: [by_axis([i[0], j[0], k[0], l[0]]), by_axis([i[1], j[1], k[1], l[1]]), by_axis([i[2], j[2], k[2], l[2]])] }
+        Self {
+            corners: [
+                by_axis([i[0], j[0], k[0], l[0]]),
+                by_axis([i[1], j[1], k[1], l[1]]),
+                by_axis([i[2], j[2], k[2], l[2]]),
+            ],
+        }
     }
 
     /// The corners of one of the triangles.
@@ -35,7 +41,7 @@ impl TriangleBlock {
     }
 
     /// A lower bound of each triangle's squared distance to `query`, close to it except for triangles without area.
-    /// Negative or NaN where there is none.
+    /// Negative where there is none.
     #[inline]
     pub fn least_distances(&self, query: &[f32x4; 3]) -> f32x4 {
         let [a, b, c] = &self.corners;
@@ -48,18 +54,20 @@ impl TriangleBlock {
         let area = bb * cc - between * between;
         let weight_b = cc * along_ab - between * along_ac;
         let weight_c = bb * along_ac - between * along_ab;
-        let outside = weight_b.simd_lt(f32x4::ZERO)
-            | weight_c.simd_lt(f32x4::ZERO)
-            | (weight_b + weight_c).simd_gt(area);
+        let outside =
+            weight_b.simd_lt(f32x4::ZERO) | weight_c.simd_lt(f32x4::ZERO) | (weight_b + weight_c).simd_gt(area);
         let normal = cross(ab, ac);
         let height = dot(normal, a);
-        let to_plane = height * height / dot(normal, normal);
+        let to_plane = height * (height / dot(normal, normal));
         let to_edges = to_segment(a, ab, along_ab, bb)
             .fast_min(to_segment(a, ac, along_ac, cc))
             .fast_min(to_segment(b, bc, along_bc, bc_squared));
         let distance = outside.bitselect(to_edges, to_plane);
         let least = distance * f32x4::splat(1.0 - TOLERANCE[0]) - (aa + bb + cc) * f32x4::splat(TOLERANCE[1]);
-        area.simd_gt(f32x4::splat(NO_AREA)).bitselect(least, f32x4::splat(-1.0))
+        // An overflow of a weight puts no point outside that is inside, where the distance to the plane is a bound. That of
+        // a distance is none.
+        let is_known = area.simd_gt(f32x4::splat(NO_AREA)) & least.simd_lt(f32x4::splat(f32::MAX));
+        is_known.bitselect(least, f32x4::splat(-1.0))
     }
 }
 

@@ -150,8 +150,13 @@ impl TriangleTree {
 
     /// Like [`TriangleTree::nearest`], but faster for a sequence of nearby queries, which share a `hint`.
     pub fn nearest_from(&self, query: Vec3, hint: &mut Hint) -> Option<SurfacePoint> {
+        // What is not a number would be in every box, even in those of children that do not exist.
+        if !query.is_finite() {
+            return None;
+        }
         let best = SurfacePoint { triangle: u32::MAX, point: query, distance_squared: f32::MAX };
-        let mut search = Search { query, lanes: query.to_array().map(f32x4::splat), best, hint };
+        let lanes = [f32x4::splat(query.x), f32x4::splat(query.y), f32x4::splat(query.z)];
+        let mut search = Search { query, lanes, best, hint };
         self.offer(search.hint.slot, &mut search);
         self.descend(self.levels.len(), 0, &mut search);
         (search.best.triangle != u32::MAX).then_some(search.best)
@@ -199,7 +204,6 @@ impl TriangleTree {
             Some(below) => self.levels[below][node].distances_squared(&search.lanes) * f32x4::splat(1.0 - 1e-6),
             None => self.blocks[node].least_distances(&search.lanes),
         };
-        // A distance that is NaN may be smaller.
         let is_far = distances.simd_gt(f32x4::splat(search.best.distance_squared));
         let mut left = !is_far.to_bitmask() & 0xf;
         if left == 0 {

@@ -139,20 +139,16 @@ impl Canvas {
             let (x, y, z) = (moved(0), moved(1), moved(2));
             let w = f32x4::ONE / z;
             let (u, v) = (lanes(focal) * x * w + lanes(cx), lanes(focal) * y * w + lanes(cy));
-            let is_inside = u.simd_gt(lanes(-0.5))
-                & u.simd_lt(lanes(right))
-                & v.simd_gt(lanes(-0.5))
-                & v.simd_lt(lanes(bottom));
+            let is_inside =
+                u.simd_gt(lanes(-0.5)) & u.simd_lt(lanes(right)) & v.simd_gt(lanes(-0.5)) & v.simd_lt(lanes(bottom));
             // The comparison is written so that NaN fails.
             let is_far = z.simd_ge(lanes(near));
             let is_lost: i32x4 = cast(!(is_inside & !z.simd_lt(lanes(near))));
             last_is_lost = is_lost.to_array()[LANES - 1];
             lost += is_lost;
             let corners = Corners { u: snap(u), v: snap(v), w: w & is_far };
-            (low, high) = (
-                [low[0].min(corners.u), low[1].min(corners.v)],
-                [high[0].max(corners.u), high[1].max(corners.v)],
-            );
+            (low, high) =
+                ([low[0].min(corners.u), low[1].min(corners.v)], [high[0].max(corners.u), high[1].max(corners.v)]);
             self.vertices.extend(corners.vertices());
         }
         // Each lost vertex counts −1, those that fill the last lanes as well.

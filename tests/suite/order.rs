@@ -1,7 +1,10 @@
 //! Packed keys sort as `f32::total_cmp` sorts, and give back what went in.
 
-use sim3align::geometry::order::{index_of, median, pack, quantile, select_smallest, sort, value_of};
+use sim3align::geometry::order::{
+    index_of, median, median_of_positive, pack, quantile, select_smallest, sort, value_of,
+};
 use wasm_bindgen_test::wasm_bindgen_test;
+use wide::f32x4;
 
 use crate::support::Draw;
 
@@ -28,6 +31,25 @@ fn quantiles_by_hand() {
     assert_eq!(quantile(values(), 1.0), Some(5.0));
     assert_eq!(median([2.0, 1.0].into_iter()), Some(2.0));
     assert_eq!(median(core::iter::empty()), None);
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn the_median_of_positive_values_leaves_out_zeros() {
+    let kinds: [fn(&mut Draw) -> f32; 4] = [
+        |draw| draw.between(0.8, 1.2) as f32,
+        |draw| 10f32.powi(draw.below(60) as i32 - 30),
+        |draw| [1.0, 1.0, 2.0, 0.0][draw.below(4)],
+        |draw| if draw.below(9) == 0 { draw.between(0.0, 1e-3) as f32 } else { 0.0 },
+    ];
+    for seed in 0..200 {
+        let mut draw = Draw::new(seed);
+        for (kind, value) in kinds.iter().enumerate() {
+            let values: Vec<f32x4> =
+                (0..draw.below(40)).map(|_| f32x4::new([0; 4].map(|_| value(&mut draw)))).collect();
+            let expected = median(values.iter().flat_map(|four| four.to_array()).filter(|value| *value > 0.0));
+            assert_eq!(median_of_positive(&values), expected, "seed {seed}, kind {kind}: {values:?}");
+        }
+    }
 }
 
 /// Keys in orders that are hard on one algorithm or another.

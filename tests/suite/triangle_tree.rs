@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 use sim3align::geometry::mesh::Mesh;
 use sim3align::geometry::random::Random;
-use sim3align::geometry::triangle_tree::{Hint, TriangleTree};
+use sim3align::geometry::triangle_tree::{Hint, SurfacePoint, TriangleTree};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::shapes::{cuboid, mapped, sphere};
@@ -139,4 +139,34 @@ fn points_are_left_out_only_where_all_triangles_overlap() {
     let some = far(3000);
     assert!(some.len() >= 64 && some.len() < 2000, "{} points", some.len());
     assert!(some.last().is_some_and(|last| *last > 2800), "to the end of the list");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn of_many_triangles_the_same_is_found_as_one_by_one() {
+    // Squares and products of these sizes leave the range of f32.
+    for (seed, unit) in [1e-12f32, 1e-6, 1e-3, 1.0, 1e3, 1e6, 1e9].into_iter().enumerate() {
+        let mut random = Random::new(seed as u64, 79);
+        let mesh = mapped(&triangles(&mut random, 120), |p| p * unit);
+        let alone: Vec<TriangleTree> =
+            mesh.triangles().iter().map(|t| TriangleTree::new(&mesh.of_triangles(&[*t]))).collect();
+        let (tree, mut hint) = (TriangleTree::new(&mesh), Hint::default());
+        for q in 0..300 {
+            let size = [0.3, 1.0, 40.0][q % 3] * unit;
+            let mut query = Vec3::from_array([0; 3].map(|_| (random.uniform() as f32 * 2.0 - 1.0) * size));
+            if q % 5 == 0 {
+                let [a, b, c] = mesh.corners(mesh.triangles()[q % mesh.triangles().len()]);
+                query = [a, a.lerp(b, 0.3), a * 0.2 + b * 0.3 + c * 0.5][q % 3];
+            }
+            let mut expected: Option<SurfacePoint> = None;
+            for (triangle, alone) in (0..).zip(&alone) {
+                let found = alone.nearest(query).map(|found| SurfacePoint { triangle, ..found });
+                expected = match (expected, found) {
+                    (Some(best), Some(found)) if found.distance_squared < best.distance_squared => Some(found),
+                    (None, found) => found,
+                    (best, _) => best,
+                };
+            }
+            assert_eq!(tree.nearest_from(query, &mut hint), expected, "unit {unit}, query {q} {query}");
+        }
+    }
 }
