@@ -59,12 +59,12 @@ impl NormalEquations {
         let (weighted, weight) = (f64x2::splat(weight * residual), f64x2::splat(weight));
         for (i, row) in self.matrix.iter_mut().enumerate() {
             let factor = f64x2::splat(jacobian[i]);
-            for k in i / 2..PAIRS {
-                row[k] += factor * pairs[k] * weight;
+            for (entries, columns) in row.iter_mut().zip(pairs).skip(i / 2) {
+                *entries += factor * columns * weight;
             }
         }
-        for k in 0..PAIRS {
-            self.gradient[k] += pairs[k] * weighted;
+        for (entries, columns) in self.gradient.iter_mut().zip(pairs) {
+            *entries += columns * weighted;
         }
     }
 
@@ -87,8 +87,8 @@ impl NormalEquations {
                 let (weight, to) = (other.entry(i.min(j), i.max(j)), pairs_of(to));
                 for (k, row) in self.matrix.iter_mut().enumerate() {
                     let factor = f64x2::splat(from[k] * weight);
-                    for pair in k / 2..PAIRS {
-                        row[pair] += factor * to[pair];
+                    for (entries, to) in row.iter_mut().zip(to).skip(k / 2) {
+                        *entries += factor * to;
                     }
                 }
             }

@@ -137,7 +137,7 @@ pub fn fill(
         left &= left - 1;
         let id = id + lane as u32;
         if large >> lane & 1 == 1 {
-            visited += fill_large(inverse_depth, drawn, size, id, &corners, lane, [u0, u1], [v0, v1]);
+            visited += fill_large(inverse_depth, drawn, size[0], id, &corners, [[u0, u1], [v0, v1]], lane);
         } else {
             fill_small(inverse_depth, drawn, size[0], id, &setup, lane);
             visited += boxes[lane] as usize;
@@ -182,18 +182,16 @@ fn fill_small(inverse_depth: &mut [f32], drawn: &mut [u32], width: usize, id: u3
 
 /// Any triangle, in 64 bits.
 #[inline(never)]
-#[allow(clippy::too_many_arguments)]
 fn fill_large(
     inverse_depth: &mut [f32],
     drawn: &mut [u32],
-    [width, _]: [usize; 2],
+    width: usize,
     id: u32,
     corners: &[Corners; 3],
+    cells: [[i32x4; 2]; 2],
     lane: usize,
-    u: [i32x4; 2],
-    v: [i32x4; 2],
 ) -> usize {
-    let [[u0, u1], [v0, v1]] = [u, v].map(|range| range.map(|cell| cell.to_array()[lane]));
+    let [[u0, u1], [v0, v1]] = cells.map(|range| range.map(|cell| cell.to_array()[lane]));
     let [a, mut b, mut c] = corners.map(|corner| Corner::of(&corner, lane));
     let mut area = (b.u - a.u) * (c.v - a.v) - (c.u - a.u) * (b.v - a.v);
     if area == 0 {

@@ -164,7 +164,7 @@ impl Scoring {
                 let has_depth = is_both & observed.simd_gt(f32x4::ZERO);
                 if has_depth.any() {
                     let error = (z - observed).abs() * per_depth;
-                    depth_error = plus(depth_error, error / (f32x4::ONE + error) & has_depth);
+                    depth_error = plus(depth_error, (error / (f32x4::ONE + error)) & has_depth);
                     depth_cells += count(has_depth);
                     let seen = seen_normals(grid, i);
                     let has_normal = has_depth & seen[2].simd_ne(f32x4::ZERO);
