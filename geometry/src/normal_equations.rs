@@ -59,8 +59,8 @@ impl NormalEquations {
         let (weighted, weight) = (f64x2::splat(weight * residual), f64x2::splat(weight));
         for (i, row) in self.matrix.iter_mut().enumerate() {
             let factor = f64x2::splat(jacobian[i]);
-            for (entries, columns) in row.iter_mut().zip(pairs).skip(i / 2) {
-                *entries += factor * columns * weight;
+            for (entries, columns) in row[i / 2..].iter_mut().zip(&pairs[i / 2..]) {
+                *entries += factor * *columns * weight;
             }
         }
         for (entries, columns) in self.gradient.iter_mut().zip(pairs) {
@@ -87,8 +87,8 @@ impl NormalEquations {
                 let (weight, to) = (other.entry(i.min(j), i.max(j)), pairs_of(to));
                 for (k, row) in self.matrix.iter_mut().enumerate() {
                     let factor = f64x2::splat(from[k] * weight);
-                    for (entries, to) in row.iter_mut().zip(to).skip(k / 2) {
-                        *entries += factor * to;
+                    for (entries, to) in row[k / 2..].iter_mut().zip(&to[k / 2..]) {
+                        *entries += factor * *to;
                     }
                 }
             }
