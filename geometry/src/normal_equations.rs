@@ -1,6 +1,6 @@
-//! Normal equations of a weighted least-squares step in up to seven parameters, such as (ω, τ, σ) of a similarity.
+//! Normal equations of a weighted least-squares step, mostly in up to seven parameters, such as (ω, τ, σ) of a similarity.
 //!
-//! All problems share one size, so that the decomposition is compiled once.
+//! Most problems share this size, so that the decomposition is compiled once for them.
 //!
 //! ```
 //! use sim3align_geometry::normal_equations::NormalEquations;
@@ -20,28 +20,37 @@ use wide::f64x2;
 /// Number of parameters. Problems with fewer set the other columns of the Jacobian to 0 and get a step of 0 there.
 pub const PARAMETERS: usize = 7;
 
-/// Pairs of columns.
-const PAIRS: usize = PARAMETERS.div_ceil(2);
+/// Pairs of columns of the largest problem, which has twelve parameters: the size of an array cannot depend on `N`.
+const MOST_PAIRS: usize = 6;
 
-/// JᵀWJ and JᵀWr, accumulated over residuals.
+/// Those of most problems.
+pub type NormalEquations = NormalEquationsOf<PARAMETERS>;
+
+/// JᵀWJ and JᵀWr, accumulated over residuals in `N` parameters, at most twelve.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NormalEquations {
+pub struct NormalEquationsOf<const N: usize> {
     /// Σ w J Jᵀ, in pairs of columns; only the upper triangle (column ≥ row) counts.
-    matrix: [[f64x2; PAIRS]; PARAMETERS],
+    matrix: [[f64x2; MOST_PAIRS]; N],
     /// Σ w r J, in pairs.
-    gradient: [f64x2; PAIRS],
+    gradient: [f64x2; MOST_PAIRS],
 }
 
-impl Default for NormalEquations {
+impl<const N: usize> Default for NormalEquationsOf<N> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl NormalEquations {
+impl<const N: usize> NormalEquationsOf<N> {
+    /// Pairs of columns.
+    const PAIRS: usize = {
+        assert!(N <= 2 * MOST_PAIRS);
+        N.div_ceil(2)
+    };
+
     /// Without residuals.
     pub fn new() -> Self {
-        Self { matrix: [[f64x2::ZERO; PAIRS]; PARAMETERS], gradient: [f64x2::ZERO; PAIRS] }
+        Self { matrix: [[f64x2::ZERO; MOST_PAIRS]; N], gradient: [f64x2::ZERO; MOST_PAIRS] }
     }
 
     /// The entry of the upper triangle.
@@ -49,21 +58,21 @@ impl NormalEquations {
         self.matrix[row][column / 2].to_array()[column % 2]
     }
 
-    fn gradient(&self) -> [f64; PARAMETERS] {
+    fn gradient(&self) -> [f64; N] {
         core::array::from_fn(|i| self.gradient[i / 2].to_array()[i % 2])
     }
 
     /// Adds a residual r with its Jacobian row J, weighted by w ≥ 0.
-    pub fn add(&mut self, jacobian: &[f64; PARAMETERS], residual: f64, weight: f64) {
+    pub fn add(&mut self, jacobian: &[f64; N], residual: f64, weight: f64) {
         let pairs = pairs_of(jacobian);
         let (weighted, weight) = (f64x2::splat(weight * residual), f64x2::splat(weight));
         for (i, row) in self.matrix.iter_mut().enumerate() {
             let factor = f64x2::splat(jacobian[i]);
-            for (entries, columns) in row[i / 2..].iter_mut().zip(&pairs[i / 2..]) {
+            for (entries, columns) in row[i / 2..Self::PAIRS].iter_mut().zip(&pairs[i / 2..Self::PAIRS]) {
                 *entries += factor * *columns * weight;
             }
         }
-        for (entries, columns) in self.gradient.iter_mut().zip(pairs) {
+        for (entries, columns) in self.gradient[..Self::PAIRS].iter_mut().zip(pairs) {
             *entries += columns * weighted;
         }
     }
@@ -79,15 +88,23 @@ impl NormalEquations {
         self.gradient[1] += f64x2::new([z, 0.0]);
     }
 
+    /// Adds equations in the first parameters only.
+    pub fn add_first<const M: usize>(&mut self, other: &NormalEquationsOf<M>) {
+        for (row, added) in self.matrix.iter_mut().zip(&other.matrix) {
+            row.iter_mut().zip(added).for_each(|(entries, added)| *entries += *added);
+        }
+        self.gradient.iter_mut().zip(other.gradient).for_each(|(entries, added)| *entries += added);
+    }
+
     /// Adds the equations of other parameters x = A·y, of which these are y: AᵀMA and Aᵀg. `map` holds the rows of A.
-    pub fn add_mapped(&mut self, other: &Self, map: &[[f64; PARAMETERS]; PARAMETERS]) {
+    pub fn add_mapped(&mut self, other: &Self, map: &[[f64; N]; N]) {
         // Entry by entry of M, so that no matrix is multiplied out.
         for (i, from) in map.iter().enumerate() {
             for (j, to) in map.iter().enumerate() {
                 let (weight, to) = (other.entry(i.min(j), i.max(j)), pairs_of(to));
                 for (k, row) in self.matrix.iter_mut().enumerate() {
                     let factor = f64x2::splat(from[k] * weight);
-                    for (entries, to) in row[k / 2..].iter_mut().zip(&to[k / 2..]) {
+                    for (entries, to) in row[k / 2..Self::PAIRS].iter_mut().zip(&to[k / 2..Self::PAIRS]) {
                         *entries += factor * *to;
                     }
                 }
@@ -104,28 +121,34 @@ impl NormalEquations {
     /// A small damping (1e-9) gives a step of 0 along unconstrained directions. A large one (1e-3 and above) shortens
     /// the step and turns it towards the gradient, as in the Levenberg–Marquardt method. `None` if the damped matrix is
     /// not positive definite: without residuals, or if some are not finite.
-    pub fn solve(&self, damping: f64) -> Option<[f64; PARAMETERS]> {
+    pub fn solve(&self, damping: f64) -> Option<[f64; N]> {
         Some(self.factored(damping)?.solve(&-SVector::from(self.gradient())).into())
     }
 
     /// (JᵀWJ + λ·1)⁻¹ with λ = `damping` × the trace of JᵀWJ; `None` as for [`NormalEquations::solve`].
-    pub fn inverse(&self, damping: f64) -> Option<[[f64; PARAMETERS]; PARAMETERS]> {
+    pub fn inverse(&self, damping: f64) -> Option<[[f64; N]; N]> {
         Some(self.factored(damping)?.inverse().into())
     }
 
     #[inline(never)]
-    fn factored(&self, damping: f64) -> Option<Cholesky<f64, Const<PARAMETERS>>> {
-        let trace: f64 = (0..PARAMETERS).map(|i| self.entry(i, i)).sum();
+    fn factored(&self, damping: f64) -> Option<Cholesky<f64, Const<N>>> {
+        let trace: f64 = (0..N).map(|i| self.entry(i, i)).sum();
         // The decomposition reads the lower triangle only.
         let lower = |row: usize, column: usize| if row < column { 0.0 } else { self.entry(column, row) };
-        let mut damped = SMatrix::<f64, PARAMETERS, PARAMETERS>::from_fn(lower);
-        damped.set_diagonal(&damped.diagonal().add_scalar(damping * trace));
+        let mut damped = SMatrix::<f64, N, N>::from_fn(lower);
+        (0..N).for_each(|i| damped[(i, i)] += damping * trace);
         Cholesky::new(damped).filter(|factor| factor.l_dirty().diagonal().iter().all(|pivot| pivot.is_finite()))
     }
 }
 
 #[inline(always)]
-fn pairs_of(numbers: &[f64; PARAMETERS]) -> [f64x2; PAIRS] {
-    let [a, b, c, d, e, f, g] = *numbers;
-    [f64x2::new([a, b]), f64x2::new([c, d]), f64x2::new([e, f]), f64x2::new([g, 0.0])]
+fn pairs_of<const N: usize>(numbers: &[f64; N]) -> [f64x2; MOST_PAIRS] {
+    let mut pairs = [f64x2::ZERO; MOST_PAIRS];
+    for (k, pair) in pairs.iter_mut().enumerate().take(N / 2) {
+        *pair = f64x2::new([numbers[2 * k], numbers[2 * k + 1]]);
+    }
+    if N % 2 == 1 {
+        pairs[N / 2] = f64x2::new([numbers[N - 1], 0.0]);
+    }
+    pairs
 }

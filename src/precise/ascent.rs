@@ -1,10 +1,10 @@
 //! Levenberg-Marquardt ascent on a score that is bounded by a quadratic at every pose.
 
 use super::pose::Step;
-use crate::geometry::normal_equations::NormalEquations;
+use crate::geometry::normal_equations::{NormalEquations, PARAMETERS};
 
-/// A score of poses to be maximised.
-pub trait Ascent {
+/// A score of poses with `N` parameters to be maximised.
+pub trait Ascent<const N: usize = PARAMETERS> {
     /// A pose.
     type Pose: Copy;
     /// Its score.
@@ -20,11 +20,11 @@ pub trait Ascent {
     fn total(score: &Self::Score) -> f32;
 
     /// The quadratic at the last render, which had this pose and this score.
-    fn equations(&mut self, pose: &Self::Pose, score: &Self::Score) -> NormalEquations;
+    fn equations(&mut self, pose: &Self::Pose, score: &Self::Score) -> NormalEquations<N>;
 
     /// The pose after the minimiser of the quadratic, limited to the range in which that is valid; `None` if the result
     /// is not finite.
-    fn moved(&self, pose: &Self::Pose, step: Step) -> Option<Self::Pose>;
+    fn moved(&self, pose: &Self::Pose, step: [f64; N]) -> Option<Self::Pose>;
 }
 
 /// The result of an ascent.
@@ -52,7 +52,11 @@ const MAX_TURN: f64 = 0.35;
 const MAX_STRETCH: f64 = 0.25;
 
 /// Ascends from `pose` in at most `iterations` steps.
-pub fn ascend<A: Ascent>(problem: &mut A, pose: A::Pose, iterations: usize) -> Summit<A::Pose, A::Score> {
+pub fn ascend<const N: usize, A: Ascent<N>>(
+    problem: &mut A,
+    pose: A::Pose,
+    iterations: usize,
+) -> Summit<A::Pose, A::Score> {
     let pose = problem.held(pose);
     let score = problem.score(&pose);
     let mut best = Summit { pose, score, renders: 1, converged: false };

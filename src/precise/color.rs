@@ -47,6 +47,8 @@ pub struct ColorStage {
 /// A pose whose shape is within noise of the best one.
 struct Compared {
     found: Found,
+    /// Its score with the mesh as it is.
+    own: f32,
     appearance: Appearance,
     look: Look,
 }
@@ -119,15 +121,18 @@ impl ColorStage {
         best: &Found,
     ) -> Option<Compared> {
         let search = &rounds.search;
-        let score = search.objective(FINE, &search.fine).score(canvas, &pose);
-        // Of the first comparison, which is of the best pose itself.
-        let shape = self.compared.first().map_or(score.total, |first| first.found.score.total);
-        if score.total < shape - NOISE {
+        let mut score = search.objective(FINE, &search.fine).score(canvas, &pose);
+        let own = score.total;
+        // Relative to the first comparison, which is of the best pose itself. Its score in the ranking is that of a mesh in
+        // better proportions.
+        let shape = own - self.compared.first().map_or(own, |first| first.own);
+        if shape < -NOISE {
             return None;
         }
+        score.total = best.score.total + shape;
         let appearance = self.photo.compare(canvas, colors, &search.mesh.frame, &search.fine)?;
-        let look = Look::new(appearance.agreement, score.total - shape);
-        Some(Compared { found: Found { pose, score, ..*best }, appearance, look })
+        let look = Look::new(appearance.agreement, shape);
+        Some(Compared { found: Found { pose, score, ..*best }, own, appearance, look })
     }
 
     /// Chooses among the compared poses.

@@ -10,6 +10,7 @@ use crate::geometry::cloud::farthest_along;
 use crate::geometry::decimate::decimate;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::rotations::fibonacci_sphere;
+use crate::geometry::surface::SurfaceMoments;
 
 /// Number of directions along which extreme vertices of the mesh are kept, for bounding boxes.
 const DIRECTIONS: usize = 128;
@@ -24,6 +25,8 @@ pub struct MeshPyramid {
     pub models: [Model; GRIDS],
     /// The extreme vertices of the fine mesh: almost all that a bounding box can touch.
     pub outermost: Vec<Vec3>,
+    /// The moments of the surface of the fine mesh.
+    pub surface: SurfaceMoments,
     /// The turns in which the object may look alike.
     pub turns: Turns,
 }
@@ -39,7 +42,9 @@ impl MeshPyramid {
             meshes[grid] = decimate(&meshes[grid + 1], grids[grid].triangles);
         }
         let models = meshes.each_ref().map(Model::new);
-        Some(Self { frame, outermost: outermost(&models[FINE]), turns: Turns::new(&fine), models, fine })
+        let surface = SurfaceMoments::of(&fine);
+        let turns = Turns::new(&surface);
+        Some(Self { frame, outermost: outermost(&models[FINE]), surface, turns, models, fine })
     }
 }
 

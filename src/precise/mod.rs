@@ -24,6 +24,7 @@ pub mod options;
 pub mod pose;
 pub mod prepared_mesh;
 pub mod prior;
+pub mod proportions;
 pub mod ranking;
 pub mod recipe;
 pub mod refine;
@@ -201,7 +202,7 @@ pub fn run(
     stages: &mut Stopwatch<'_>,
 ) -> bool {
     while let Some(round) = rounds.round() {
-        let is_refinement = matches!(round.task, Task::Refine | Task::Turn);
+        let is_refinement = matches!(round.task, Task::Refine | Task::Turn | Task::Fit);
         if is_refinement && stages.running() != Some(Stage::Refine) {
             stages.enter(Stage::Refine);
         }

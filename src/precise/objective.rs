@@ -1,5 +1,7 @@
 //! The objective: scores poses on one grid.
 
+use glam::Mat3;
+
 use super::grid::CropGrid;
 use super::pose::CropPose;
 use super::prior::Prior;
@@ -25,7 +27,12 @@ pub struct Objective<'a> {
 impl Objective<'_> {
     /// Renders a pose and scores it.
     pub fn score(&self, canvas: &mut Canvas, pose: &CropPose) -> Score {
-        canvas.draw(self.model, pose, self.grid);
+        self.score_stretched(canvas, pose, &Mat3::IDENTITY)
+    }
+
+    /// Renders a pose of the mesh in other proportions and scores it.
+    pub fn score_stretched(&self, canvas: &mut Canvas, pose: &CropPose, stretch: &Mat3) -> Score {
+        canvas.draw_stretched(self.model, pose, stretch, self.grid);
         let mut score = self.scoring.score(canvas, self.model, self.grid, 1.0);
         score.total += self.prior.score(pose);
         if let Some(surroundings) = self.surroundings {

@@ -52,6 +52,8 @@ pub enum Task {
     Refine,
     /// Refines a half or quarter turn of the best pose.
     Turn,
+    /// Refines all seven parameters and the proportions of the mesh.
+    Fit,
 }
 
 /// A round: the same task for many poses, of which the best are kept for the next round.
@@ -61,7 +63,7 @@ pub struct Round {
     pub task: Task,
     /// Index of the grid.
     pub grid: usize,
-    /// Number of rotations of [`Task::Rotate`], maximum number of steps of [`Task::Refine`] and [`Task::Turn`].
+    /// Number of rotations of [`Task::Rotate`], maximum number of steps of the tasks that refine.
     pub work: usize,
     /// Number of poses kept for the next round.
     pub keep: usize,
@@ -88,7 +90,7 @@ const fn grids(effort: Effort) -> [Grid; GRIDS] {
 /// The rounds of an effort.
 #[rustfmt::skip]
 const fn rounds(effort: Effort) -> [Round; ROUNDS] {
-    use Task::{Place, Refine, Rotate, Turn};
+    use Task::{Fit, Place, Refine, Rotate, Turn};
     let q = effort as usize;
     //       task          grid          work: fast, balanced, best   keep: fast, balanced, best  apart         done
     [
@@ -97,8 +99,8 @@ const fn rounds(effort: Effort) -> [Round; ROUNDS] {
         Round { task: Refine, grid: MIDDLE, work: [  4,    4,    5][q], keep: [  6,  20,   40][q], apart: 0.105, done: 0.78 },
         Round { task: Refine, grid: MIDDLE, work: [  5,    8,   15][q], keep: [  3,   6,   10][q], apart: 0.105, done: 0.89 },
         Round { task: Turn,   grid: MIDDLE, work: [  4,    5,    8][q], keep: [  3,   3,   16][q], apart: 0.21,  done: 0.92 },
-        Round { task: Refine, grid: FINE,   work: [  8,   12,   20][q], keep: [  1,   1,    2][q], apart: 0.105, done: 0.97 },
-        Round { task: Refine, grid: FINEST, work: [  4,    6,   12][q], keep: 0,                   apart: 0.0,   done: 1.0 },
+        Round { task: Fit,    grid: FINE,   work: [  8,   12,   20][q], keep: [  1,   1,    2][q], apart: 0.105, done: 0.97 },
+        Round { task: Fit,    grid: FINEST, work: [  4,    6,   12][q], keep: 0,                   apart: 0.0,   done: 1.0 },
     ]
 }
 

@@ -11,7 +11,7 @@ use super::objective::Objective;
 use super::pose::{CropPose, Step};
 use super::render::Canvas;
 use super::score::{Background, Score, is_outline};
-use crate::geometry::normal_equations::NormalEquations;
+use crate::geometry::normal_equations::{NormalEquations, PARAMETERS};
 
 /// The problem of a refinement.
 pub struct Refiner<'a> {
@@ -66,14 +66,8 @@ impl Ascent for OnGrid<'_, '_> {
         self.refiner.equations(self.canvas, score, pose)
     }
 
-    fn moved(&self, pose: &CropPose, mut step: Step) -> Option<CropPose> {
-        if self.refiner.lock_scale {
-            // log s = size + distance.
-            step[6] = -step[3] / libm::exp(pose.size);
-        }
-        let step = limited(step);
-        let next = pose.moved(&step);
-        (step.iter().all(|x| x.is_finite()) && self.held(next).is_finite()).then_some(next)
+    fn moved(&self, pose: &CropPose, step: Step) -> Option<CropPose> {
+        self.refiner.moved(pose, step)
     }
 }
 
@@ -85,9 +79,50 @@ impl Refiner<'_> {
         Refined { pose, score, renders, converged }
     }
 
+    /// A pose after a step, limited to the range in which the quadratic is valid; `None` if it is not finite.
+    pub(super) fn moved(&self, pose: &CropPose, mut step: Step) -> Option<CropPose> {
+        if self.lock_scale {
+            // log s = size + distance.
+            step[6] = -step[3] / libm::exp(pose.size);
+        }
+        let step = limited(step);
+        let next = pose.moved(&step);
+        let is_finite = step.iter().all(|x| x.is_finite()) && self.objective.prior.held(next).is_finite();
+        is_finite.then_some(next)
+    }
+
     /// The quadratic at the last render, which is of `pose`.
     pub fn equations(&self, canvas: &Canvas, score: &Score, pose: &CropPose) -> NormalEquations {
+        let mut equations =
+            self.evidence(canvas, score, |point, gradient| self.jacobian(canvas, point, gradient));
+        if let Some(surroundings) = self.objective.surroundings {
+            surroundings.add_to(&mut equations, pose, self.lock_scale);
+        }
+        equations
+    }
+
+    /// The quadratic of what is known of the surroundings at `pose`.
+    pub(super) fn known(&self, pose: &CropPose) -> NormalEquations {
         let mut equations = NormalEquations::new();
+        if let Some(surroundings) = self.objective.surroundings {
+            surroundings.add_to(&mut equations, pose, self.lock_scale);
+        }
+        equations
+    }
+
+    /// The quadratic of the image at the last render. `jacobian` is the change of a residual with each parameter, where it
+    /// changes by `gradient`·δx as the surface point x moves by δx; the first three parameters are a rotation.
+    pub(super) fn evidence<const N: usize>(
+        &self,
+        canvas: &Canvas,
+        score: &Score,
+        jacobian: impl Fn(Vec3, Vec3) -> [f32; N],
+    ) -> NormalEquations<N> {
+        let mut equations = NormalEquations::<N>::new();
+        let mut add = |point: Vec3, gradient: Vec3, residual: f32, weight: f32| {
+            let jacobian = jacobian(point, gradient).map(f64::from);
+            equations.add(&jacobian, f64::from(residual), f64::from(weight));
+        };
         let mut turns = Turns::default();
         let (grid, weights) = (self.objective.grid, &self.objective.scoring.weights);
         let factor = weights.factor(score, grid);
@@ -123,7 +158,7 @@ impl Refiner<'_> {
                     // Along the normal of the mesh: distance to the tangent plane.
                     let gradient = normal * per_depth;
                     let residual = normal.dot(point) * w * error;
-                    self.add(&mut equations, canvas, point, gradient, residual, depth_weight * curvature);
+                    add(point, gradient, residual, depth_weight * curvature);
                     let seen = grid.normals[i];
                     if seen.z != 0.0 {
                         turns.add(normal, seen);
@@ -149,14 +184,11 @@ impl Refiner<'_> {
                     let scale = grid.focal as f32 * w;
                     let along = -(slope_u * point.x + slope_v * point.y) * w;
                     let gradient = Vec3::new(slope_u, slope_v, along) * scale;
-                    self.add(&mut equations, canvas, point, gradient, d, visible * weight);
+                    add(point, gradient, d, visible * weight);
                 }
             }
         }
         turns.add_to(&mut equations, normal_weight);
-        if let Some(surroundings) = self.objective.surroundings {
-            surroundings.add_to(&mut equations, pose, self.lock_scale);
-        }
         equations
     }
 
@@ -173,17 +205,10 @@ impl Refiner<'_> {
         (sum / f64::from(count.max(1))).sqrt()
     }
 
-    /// A residual that changes by `gradient`·δx as the surface point moves by δx.
+    /// The change, with each parameter of the pose, of a residual that changes by `gradient`·δx as the surface point moves by
+    /// δx.
     #[inline]
-    fn add(
-        &self,
-        equations: &mut NormalEquations,
-        canvas: &Canvas,
-        point: Vec3,
-        gradient: Vec3,
-        residual: f32,
-        weight: f32,
-    ) {
+    pub(super) fn jacobian(&self, canvas: &Canvas, point: Vec3, gradient: Vec3) -> [f32; PARAMETERS] {
         let arm = point - canvas.translation;
         let turn = arm.cross(gradient);
         let (size, distance) = (arm.dot(gradient), point.dot(gradient));
@@ -193,8 +218,7 @@ impl Refiner<'_> {
             (size, distance * canvas.scale / canvas.translation.z)
         };
         let place = gradient * canvas.scale;
-        let jacobian = [turn.x, turn.y, turn.z, size, place.x, place.y, distance].map(f64::from);
-        equations.add(&jacobian, f64::from(residual), f64::from(weight));
+        [turn.x, turn.y, turn.z, size, place.x, place.y, distance]
     }
 }
 
@@ -219,7 +243,7 @@ impl Turns {
     }
 
     /// With JᵀJ = 1 − n nᵀ, and Jᵀr = n′ × n.
-    fn add_to(&self, equations: &mut NormalEquations, weight: f32) {
+    fn add_to<const N: usize>(&self, equations: &mut NormalEquations<N>, weight: f32) {
         let mut block = self.outer.map(|row| row.map(|x| f64::from(-x * weight)));
         for (i, row) in block.iter_mut().enumerate() {
             row[i] += f64::from(self.count * weight);

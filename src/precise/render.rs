@@ -85,13 +85,18 @@ pub struct Canvas {
 impl Canvas {
     /// Renders the model on the cells of the grid.
     pub fn draw(&mut self, model: &Model, pose: &CropPose, grid: &CropGrid) {
+        self.draw_stretched(model, pose, &Mat3::IDENTITY, grid);
+    }
+
+    /// Renders the model in other proportions, by a linear map in its frame that is nearly the identity.
+    pub fn draw_stretched(&mut self, model: &Model, pose: &CropPose, stretch: &Mat3, grid: &CropGrid) {
         let (scale, translation) = pose.scale_translation();
         self.rotation = glam::DMat3::from_quat(pose.rotation).as_mat3();
         (self.scale, self.translation) = (scale as f32, translation.as_vec3());
         self.inverse_depth.clear();
         self.inverse_depth.resize(grid.mask.len(), 0.0);
         self.triangle.resize(grid.mask.len(), 0);
-        self.project(model, grid);
+        self.project(model, stretch, grid);
         let most = MAX_LAYERS * self.inverse_depth.len();
         let mut visited = 0;
         let (inverse_depth, size) = (self.inverse_depth.as_mut_slice(), [grid.width, grid.height]);
@@ -118,8 +123,8 @@ impl Canvas {
     }
 
     /// Transforms the vertices to the camera frame and projects them onto the grid.
-    fn project(&mut self, model: &Model, grid: &CropGrid) {
-        let linear = self.rotation * self.scale;
+    fn project(&mut self, model: &Model, stretch: &Mat3, grid: &CropGrid) {
+        let linear = self.rotation * self.scale * *stretch;
         let near = NEAR * self.translation.z;
         let focal = grid.focal as f32;
         let (cx, cy) = (grid.center[0] as f32, grid.center[1] as f32);

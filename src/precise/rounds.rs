@@ -132,7 +132,7 @@ impl Rounds {
         let per_task = match round.task {
             Task::Rotate => self.anchors.len(),
             Task::Place => 1,
-            Task::Refine => round.work + 1,
+            Task::Refine | Task::Fit => round.work + 1,
             Task::Turn => round.work + 2,
         };
         let grid = settings.grids[round.grid];
@@ -204,6 +204,10 @@ impl Rounds {
                         }
                     }
                     self.outcomes.push(refiner.refine(&mut canvas, pose, steps).into());
+                }
+                Task::Fit => {
+                    let (pose, surface) = (self.poses[task], &search.mesh.surface);
+                    self.outcomes.push(refiner.refine_in_proportion(&mut canvas, pose, round.work, surface).into());
                 }
             }
             self.tasks_done += 1;

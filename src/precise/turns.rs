@@ -5,7 +5,6 @@ use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use glam::{DQuat, DVec3};
 
 use super::pose::CropPose;
-use crate::geometry::mesh::Mesh;
 use crate::geometry::rotations::exp;
 use crate::geometry::surface::SurfaceMoments;
 
@@ -26,9 +25,8 @@ pub struct Turns {
 }
 
 impl Turns {
-    /// The turns of a mesh.
-    pub fn new(mesh: &Mesh) -> Self {
-        let moments = SurfaceMoments::of(mesh);
+    /// The turns of a mesh with these moments of its surface.
+    pub fn new(moments: &SurfaceMoments) -> Self {
         Self { center: moments.centroid, axes: moments.principal_axes().vectors }
     }
 

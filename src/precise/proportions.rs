@@ -1,0 +1,196 @@
+//! Proportions: what a generative model gets wrong of the shape of an object as a whole.
+//!
+//! Such a mesh is often some percent too wide, too flat or skewed, which no similarity undoes. A similarity fitted to the
+//! image then matches the width or the height, whichever explains more of the outline, although the best one for the whole
+//! mesh is between them. The proportions are therefore fitted as well, x = s·R·e^E·p + t with a symmetric E of trace 0, and
+//! the result is the similarity that is nearest to this map over the whole surface.
+
+use glam::{DMat3, DVec3, Mat3, Vec3};
+
+use super::ascent::{Ascent, Summit, ascend};
+use super::conditioning::DROP;
+use super::pose::{CropPose, Step};
+use super::refine::{Refined, Refiner};
+use super::render::Canvas;
+use super::score::Score;
+use crate::geometry::normal_equations::{NormalEquations, PARAMETERS};
+use crate::geometry::rotations::exp;
+use crate::geometry::surface::SurfaceMoments;
+
+/// Number of parameters of E.
+const PROPORTIONS: usize = 5;
+/// Number of all parameters.
+const ALL: usize = PARAMETERS + PROPORTIONS;
+
+/// Standard deviation of each parameter. Half and twice of it give about the same errors on generated cases.
+const DEVIATION: f64 = 0.03;
+/// Score per square of E: [`DROP`] at one standard deviation.
+const COST: f64 = DROP / (DEVIATION * DEVIATION);
+/// Maximum magnitude of a parameter.
+const MOST: f64 = 0.25;
+/// Iterations that find the nearest similarity: each squares the relative error, which starts at the size of E.
+const ITERATIONS: usize = 4;
+/// Regularisation of the nearest rotation, relative to the trace: a line leaves its roll open.
+const ROLL: f64 = 1e-9;
+
+/// 1/√2 and 1/√6: the parameters are coordinates in an orthonormal basis, so that the squares of all entries of E add up to
+/// those of the parameters, whatever the axes of the mesh are.
+const HALF: f64 = core::f64::consts::FRAC_1_SQRT_2;
+const SIXTH: f64 = 0.408_248_290_463_863;
+
+/// The parameters of E.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Proportions([f64; PROPORTIONS]);
+
+impl Proportions {
+    /// e^E, in the frame of the mesh.
+    pub fn matrix(&self) -> DMat3 {
+        let [a, b, xy, xz, yz] = self.0;
+        let (a, b) = (HALF * a, SIXTH * b);
+        let [xy, xz, yz] = [xy, xz, yz].map(|x| HALF * x);
+        let e = DMat3::from_cols_array(&[a + b, xy, xz, xy, b - a, yz, xz, yz, -2.0 * b]);
+        // The fourth power of a percentage is nothing.
+        DMat3::IDENTITY + e + e * e * 0.5 + e * e * e * (1.0 / 6.0)
+    }
+
+    /// The change of a residual with each parameter, where it changes by `gradient`·δp as the point `p` moves by δp, both in
+    /// the frame of the mesh.
+    fn jacobian(p: Vec3, gradient: Vec3) -> [f32; PROPORTIONS] {
+        let (half, sixth) = (HALF as f32, SIXTH as f32);
+        let straight = p * gradient;
+        [
+            half * (straight.x - straight.y),
+            sixth * (straight.x + straight.y - 2.0 * straight.z),
+            half * (p.x * gradient.y + p.y * gradient.x),
+            half * (p.x * gradient.z + p.z * gradient.x),
+            half * (p.y * gradient.z + p.z * gradient.y),
+        ]
+    }
+
+    /// What they cost of the score.
+    fn cost(&self) -> f64 {
+        COST * self.0.iter().map(|x| x * x).sum::<f64>()
+    }
+
+    /// Adds the quadratic of the cost.
+    fn add_to(&self, equations: &mut NormalEquations<ALL>) {
+        for (i, x) in self.0.iter().enumerate() {
+            let mut jacobian = [0.0; ALL];
+            jacobian[PARAMETERS + i] = 1.0;
+            equations.add(&jacobian, *x, 2.0 * COST);
+        }
+    }
+}
+
+/// A pose of a mesh with other proportions.
+#[derive(Debug, Clone, Copy)]
+pub struct Stretched {
+    /// R, s and t.
+    pub pose: CropPose,
+    /// E.
+    pub proportions: Proportions,
+}
+
+impl Stretched {
+    /// The similarity that moves the points of the surface least, in the mean of squares, from where this map has them.
+    /// With a locked scale, only its rotation and translation are free.
+    pub fn nearest(&self, surface: &SurfaceMoments, lock_scale: bool) -> CropPose {
+        let (scale, translation) = self.pose.scale_translation();
+        let linear = DMat3::from_quat(self.pose.rotation) * self.proportions.matrix() * scale;
+        let (mut rotation, mut nearest) = (self.pose.rotation, scale);
+        let covariance = surface.covariance;
+        let trace = DVec3::new(covariance.x_axis.x, covariance.y_axis.y, covariance.z_axis.z).element_sum();
+        let held = (DMat3::from_diagonal(DVec3::splat((1.0 + ROLL) * trace)) - covariance).inverse();
+        for _ in 0..ITERATIONS {
+            let moved = DMat3::from_quat(rotation).transpose() * linear * covariance;
+            let trace_moved = DVec3::new(moved.x_axis.x, moved.y_axis.y, moved.z_axis.z).element_sum();
+            // The normal equations of ω in Σ|q + ω × q − D·q|², and of s in Σ|s·q − D·q|².
+            let turn = DVec3::new(
+                moved.y_axis.z - moved.z_axis.y,
+                moved.z_axis.x - moved.x_axis.z,
+                moved.x_axis.y - moved.y_axis.x,
+            );
+            let turn = held * turn * (trace / trace_moved);
+            if !turn.is_finite() {
+                return self.pose;
+            }
+            rotation = (rotation * exp(turn)).normalize();
+            if !lock_scale {
+                nearest = trace_moved / trace;
+            }
+        }
+        let center = surface.centroid;
+        CropPose::new(rotation, nearest, linear * center + translation - rotation * center * nearest)
+    }
+}
+
+/// A fit on one grid, whose last render is on the canvas.
+struct OnGrid<'a, 'c> {
+    refiner: &'a Refiner<'a>,
+    canvas: &'c mut Canvas,
+}
+
+impl Ascent<ALL> for OnGrid<'_, '_> {
+    type Pose = Stretched;
+    type Score = Score;
+
+    fn held(&self, at: Stretched) -> Stretched {
+        Stretched { pose: self.refiner.objective.prior.held(at.pose), ..at }
+    }
+
+    fn score(&mut self, at: &Stretched) -> Score {
+        let stretch = at.proportions.matrix().as_mat3();
+        let mut score = self.refiner.objective.score_stretched(self.canvas, &at.pose, &stretch);
+        score.total -= at.proportions.cost() as f32;
+        score
+    }
+
+    fn total(score: &Score) -> f32 {
+        score.total
+    }
+
+    fn equations(&mut self, at: &Stretched, score: &Score) -> NormalEquations<ALL> {
+        let canvas = &*self.canvas;
+        let to_mesh: Mat3 = canvas.rotation.transpose();
+        let mut equations = self.refiner.evidence(canvas, score, |point, gradient| {
+            let mut jacobian = [0.0; ALL];
+            let (pose, proportions) = jacobian.split_at_mut(PARAMETERS);
+            pose.copy_from_slice(&self.refiner.jacobian(canvas, point, gradient));
+            let arm = to_mesh * (point - canvas.translation);
+            proportions.copy_from_slice(&Proportions::jacobian(arm, to_mesh * gradient));
+            jacobian
+        });
+        equations.add_first(&self.refiner.known(&at.pose));
+        at.proportions.add_to(&mut equations);
+        equations
+    }
+
+    fn moved(&self, at: &Stretched, step: [f64; ALL]) -> Option<Stretched> {
+        let mut first: Step = [0.0; PARAMETERS];
+        first.copy_from_slice(&step[..PARAMETERS]);
+        let pose = self.refiner.moved(&at.pose, first)?;
+        let mut proportions = at.proportions;
+        for (x, by) in proportions.0.iter_mut().zip(&step[PARAMETERS..]) {
+            *x = (*x + by).max(-MOST).min(MOST);
+        }
+        Some(Stretched { pose, proportions })
+    }
+}
+
+impl Refiner<'_> {
+    /// Refines `pose` and the proportions of a mesh with this `surface` in at most `iterations` steps. The pose of the result
+    /// is the nearest similarity; its score is that of the mesh in its best proportions, less what these cost.
+    pub fn refine_in_proportion(
+        &self,
+        canvas: &mut Canvas,
+        pose: CropPose,
+        iterations: usize,
+        surface: &SurfaceMoments,
+    ) -> Refined {
+        let start = Stretched { pose, proportions: Proportions::default() };
+        let Summit { pose, score, renders, converged } =
+            ascend(&mut OnGrid { refiner: self, canvas }, start, iterations);
+        let nearest = self.objective.prior.held(pose.nearest(surface, self.lock_scale));
+        Refined { pose: if nearest.is_finite() { nearest } else { pose.pose }, score, renders, converged }
+    }
+}
