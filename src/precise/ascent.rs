@@ -1,7 +1,7 @@
 //! Levenberg-Marquardt ascent on a score that is bounded by a quadratic at every pose.
 
 use super::pose::Step;
-use crate::geometry::normal_equations::{NormalEquations, PARAMETERS};
+use crate::geometry::normal_equations::{NormalEquationsOf, PARAMETERS};
 
 /// A score of poses with `N` parameters to be maximised.
 pub trait Ascent<const N: usize = PARAMETERS> {
@@ -20,7 +20,7 @@ pub trait Ascent<const N: usize = PARAMETERS> {
     fn total(score: &Self::Score) -> f32;
 
     /// The quadratic at the last render, which had this pose and this score.
-    fn equations(&mut self, pose: &Self::Pose, score: &Self::Score) -> NormalEquations<N>;
+    fn equations(&mut self, pose: &Self::Pose, score: &Self::Score) -> NormalEquationsOf<N>;
 
     /// The pose after the minimiser of the quadratic, limited to the range in which that is valid; `None` if the result
     /// is not finite.

@@ -245,5 +245,5 @@ fn polished(rounds: &Rounds, pose: CropPose) -> CropPose {
     let search = &rounds.search;
     let finest = search.grid(FINEST);
     let refiner = Refiner { objective: search.objective(FINEST, &finest), lock_scale: search.settings.lock_scale };
-    refiner.refine(&mut Canvas::default(), pose, STEPS[1]).pose
+    refiner.refine_in_proportion(&mut Canvas::default(), pose, STEPS[1], &search.mesh.surface).pose
 }

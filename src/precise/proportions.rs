@@ -13,12 +13,12 @@ use super::pose::{CropPose, Step};
 use super::refine::{Refined, Refiner};
 use super::render::Canvas;
 use super::score::Score;
-use crate::geometry::normal_equations::{NormalEquations, PARAMETERS};
+use crate::geometry::normal_equations::{NormalEquationsOf, PARAMETERS};
 use crate::geometry::rotations::exp;
 use crate::geometry::surface::SurfaceMoments;
 
 /// Number of parameters of E.
-const PROPORTIONS: usize = 5;
+pub const PROPORTIONS: usize = 5;
 /// Number of all parameters.
 const ALL: usize = PARAMETERS + PROPORTIONS;
 
@@ -43,6 +43,11 @@ const SIXTH: f64 = 0.408_248_290_463_863;
 pub struct Proportions([f64; PROPORTIONS]);
 
 impl Proportions {
+    /// Coordinates of E in an orthonormal basis of the symmetric matrices of trace 0.
+    pub fn new(parameters: [f64; PROPORTIONS]) -> Self {
+        Self(parameters)
+    }
+
     /// e^E, in the frame of the mesh.
     pub fn matrix(&self) -> DMat3 {
         let [a, b, xy, xz, yz] = self.0;
@@ -55,7 +60,7 @@ impl Proportions {
 
     /// The change of a residual with each parameter, where it changes by `gradient`·δp as the point `p` moves by δp, both in
     /// the frame of the mesh.
-    fn jacobian(p: Vec3, gradient: Vec3) -> [f32; PROPORTIONS] {
+    pub fn jacobian(p: Vec3, gradient: Vec3) -> [f32; PROPORTIONS] {
         let (half, sixth) = (HALF as f32, SIXTH as f32);
         let straight = p * gradient;
         [
@@ -73,7 +78,7 @@ impl Proportions {
     }
 
     /// Adds the quadratic of the cost.
-    fn add_to(&self, equations: &mut NormalEquations<ALL>) {
+    fn add_to(&self, equations: &mut NormalEquationsOf<ALL>) {
         for (i, x) in self.0.iter().enumerate() {
             let mut jacobian = [0.0; ALL];
             jacobian[PARAMETERS + i] = 1.0;
@@ -98,26 +103,27 @@ impl Stretched {
         let (scale, translation) = self.pose.scale_translation();
         let linear = DMat3::from_quat(self.pose.rotation) * self.proportions.matrix() * scale;
         let (mut rotation, mut nearest) = (self.pose.rotation, scale);
-        let covariance = surface.covariance;
-        let trace = DVec3::new(covariance.x_axis.x, covariance.y_axis.y, covariance.z_axis.z).element_sum();
-        let held = (DMat3::from_diagonal(DVec3::splat((1.0 + ROLL) * trace)) - covariance).inverse();
+        let trace = |m: &DMat3| m.x_axis.x + m.y_axis.y + m.z_axis.z;
+        let spread = trace(&surface.covariance);
         for _ in 0..ITERATIONS {
-            let moved = DMat3::from_quat(rotation).transpose() * linear * covariance;
-            let trace_moved = DVec3::new(moved.x_axis.x, moved.y_axis.y, moved.z_axis.z).element_sum();
-            // The normal equations of ω in Σ|q + ω × q − D·q|², and of s in Σ|s·q − D·q|².
+            // Newton's method on Σ|s·R·q − A·q|², whose best R does not depend on s: ω from the skew part of Rᵀ·A·Σqqᵀ, with
+            // the symmetric part as its quadratic, and s from the trace.
+            let moved = DMat3::from_quat(rotation).transpose() * linear * surface.covariance;
+            if !lock_scale && spread > 0.0 {
+                nearest = trace(&moved) / spread;
+            }
             let turn = DVec3::new(
                 moved.y_axis.z - moved.z_axis.y,
                 moved.z_axis.x - moved.x_axis.z,
                 moved.x_axis.y - moved.y_axis.x,
             );
-            let turn = held * turn * (trace / trace_moved);
+            let even = (moved + moved.transpose()) * 0.5;
+            let held = DMat3::from_diagonal(DVec3::splat((1.0 + ROLL) * trace(&even))) - even;
+            let turn = held.inverse() * turn;
             if !turn.is_finite() {
-                return self.pose;
+                break;
             }
             rotation = (rotation * exp(turn)).normalize();
-            if !lock_scale {
-                nearest = trace_moved / trace;
-            }
         }
         let center = surface.centroid;
         CropPose::new(rotation, nearest, linear * center + translation - rotation * center * nearest)
@@ -149,7 +155,7 @@ impl Ascent<ALL> for OnGrid<'_, '_> {
         score.total
     }
 
-    fn equations(&mut self, at: &Stretched, score: &Score) -> NormalEquations<ALL> {
+    fn equations(&mut self, at: &Stretched, score: &Score) -> NormalEquationsOf<ALL> {
         let canvas = &*self.canvas;
         let to_mesh: Mat3 = canvas.rotation.transpose();
         let mut equations = self.refiner.evidence(canvas, score, |point, gradient| {
@@ -190,7 +196,9 @@ impl Refiner<'_> {
         let start = Stretched { pose, proportions: Proportions::default() };
         let Summit { pose, score, renders, converged } =
             ascend(&mut OnGrid { refiner: self, canvas }, start, iterations);
-        let nearest = self.objective.prior.held(pose.nearest(surface, self.lock_scale));
+        // At a bound of the scale, it stays there.
+        let lock_scale = self.lock_scale || self.objective.prior.holds(&pose.pose);
+        let nearest = self.objective.prior.held(pose.nearest(surface, lock_scale));
         Refined { pose: if nearest.is_finite() { nearest } else { pose.pose }, score, renders, converged }
     }
 }

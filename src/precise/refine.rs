@@ -11,7 +11,7 @@ use super::objective::Objective;
 use super::pose::{CropPose, Step};
 use super::render::Canvas;
 use super::score::{Background, Score, is_outline};
-use crate::geometry::normal_equations::{NormalEquations, PARAMETERS};
+use crate::geometry::normal_equations::{NormalEquations, NormalEquationsOf, PARAMETERS};
 
 /// The problem of a refinement.
 pub struct Refiner<'a> {
@@ -93,8 +93,7 @@ impl Refiner<'_> {
 
     /// The quadratic at the last render, which is of `pose`.
     pub fn equations(&self, canvas: &Canvas, score: &Score, pose: &CropPose) -> NormalEquations {
-        let mut equations =
-            self.evidence(canvas, score, |point, gradient| self.jacobian(canvas, point, gradient));
+        let mut equations = self.evidence(canvas, score, |point, gradient| self.jacobian(canvas, point, gradient));
         if let Some(surroundings) = self.objective.surroundings {
             surroundings.add_to(&mut equations, pose, self.lock_scale);
         }
@@ -117,8 +116,8 @@ impl Refiner<'_> {
         canvas: &Canvas,
         score: &Score,
         jacobian: impl Fn(Vec3, Vec3) -> [f32; N],
-    ) -> NormalEquations<N> {
-        let mut equations = NormalEquations::<N>::new();
+    ) -> NormalEquationsOf<N> {
+        let mut equations = NormalEquationsOf::<N>::new();
         let mut add = |point: Vec3, gradient: Vec3, residual: f32, weight: f32| {
             let jacobian = jacobian(point, gradient).map(f64::from);
             equations.add(&jacobian, f64::from(residual), f64::from(weight));
@@ -243,7 +242,7 @@ impl Turns {
     }
 
     /// With JᵀJ = 1 − n nᵀ, and Jᵀr = n′ × n.
-    fn add_to<const N: usize>(&self, equations: &mut NormalEquations<N>, weight: f32) {
+    fn add_to<const N: usize>(&self, equations: &mut NormalEquationsOf<N>, weight: f32) {
         let mut block = self.outer.map(|row| row.map(|x| f64::from(-x * weight)));
         for (i, row) in block.iter_mut().enumerate() {
             row[i] += f64::from(self.count * weight);

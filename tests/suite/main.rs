@@ -44,6 +44,7 @@ pub mod precise_anchors;
 pub mod precise_coarse;
 pub mod precise_color;
 pub mod precise_evidence;
+pub mod precise_proportions;
 pub mod precise_refine;
 pub mod precise_rounds;
 pub mod precise_scene;

@@ -132,7 +132,7 @@ fn every_image_that_is_drawn_counts() {
                 // As it is, and somewhat larger: nothing cuts this mask.
                 Task::Rotate => assert_eq!(drawn, 2 * tasks, "{what}"),
                 Task::Place => assert_eq!(drawn, tasks, "{what}"),
-                Task::Refine => assert!(drawn > tasks && drawn <= tasks * (1 + round.work), "{what}"),
+                Task::Refine | Task::Fit => assert!(drawn > tasks && drawn <= tasks * (1 + round.work), "{what}"),
                 Task::Turn => assert!(drawn >= 2 * tasks && drawn <= tasks * (2 + round.work), "{what}"),
             }
             before = rounds.search.renders;
@@ -168,7 +168,9 @@ fn what_was_found_is_ranked_by_the_fine_grid_and_distinct() {
     }
     assert!(ranked.len() > 1, "{ranked:?}");
     for (k, found) in ranked.iter().enumerate() {
-        assert_eq!(found.score, rounds.search.score(&found.pose), "{k}");
+        // In its best proportions the mesh explains the image at least as well, and the best pose needs no others.
+        let gain = found.score.total - rounds.search.score(&found.pose).total;
+        assert!(gain > -0.01 && (k > 0 || gain < 0.01), "{k}: {gain}");
         let apart = |other: &Found| angle_between(other.pose.rotation, found.pose.rotation) > 0.105;
         assert!(ranked[..k].iter().all(|other| other.score.total >= found.score.total && apart(other)), "{k}");
     }

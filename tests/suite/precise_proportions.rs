@@ -1,0 +1,182 @@
+//! The proportions of a mesh that are fitted with its pose: their derivatives, the nearest similarity against the closed
+//! form of Umeyama, and meshes that are too wide or too flat.
+
+use glam::{DMat3, DVec3};
+use sim3align::geometry::mesh::Mesh;
+use sim3align::geometry::rotations::angle_between;
+use sim3align::geometry::similarity::vector3;
+use sim3align::geometry::surface::{SurfaceMoments, triangle_area};
+use sim3align::precise::clean::CleanObservation;
+use sim3align::precise::grid::CropGrid;
+use sim3align::precise::objective::Objective;
+use sim3align::precise::pose::{CropPose, MeshFrame};
+use sim3align::precise::prior::Prior;
+use sim3align::precise::proportions::{PROPORTIONS, Proportions, Stretched};
+use sim3align::precise::recipe::{FINE, SearchSettings};
+use sim3align::precise::refine::Refiner;
+use sim3align::precise::render::{Canvas, Model};
+use sim3align::precise::score::Scoring;
+use sim3align::register::umeyama::{Pair, ScaleMode, umeyama};
+use sim3align::report::Effort;
+use wasm_bindgen_test::wasm_bindgen_test;
+
+use crate::precise::{body, observe, truth};
+use crate::precise_scene::pose;
+use crate::shapes::mapped;
+use crate::support::Draw;
+
+fn proportions(draw: &mut Draw, most: f64) -> Proportions {
+    Proportions::new(core::array::from_fn(|_| draw.between(-most, most)))
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn proportions_keep_the_volume_and_turn_nothing() {
+    for seed in 0..50 {
+        let draw = &mut Draw::new(seed);
+        let parameters: [f64; PROPORTIONS] = core::array::from_fn(|_| draw.between(-0.1, 0.1));
+        let stretch = Proportions::new(parameters).matrix();
+        let skew = stretch - stretch.transpose();
+        assert!(skew.to_cols_array().iter().all(|x| x.abs() < 1e-15), "seed {seed}: {stretch}");
+        assert!((stretch.determinant() - 1.0).abs() < 1e-4, "seed {seed}: {}", stretch.determinant());
+        // To first order the squares of the entries of E add up to those of the parameters.
+        let [small, large] = [1e-4, 1.0].map(|factor| {
+            let e = Proportions::new(parameters.map(|x| factor * x)).matrix() - DMat3::IDENTITY;
+            (e.to_cols_array().iter().map(|x| x * x).sum::<f64>() / (factor * factor)).sqrt()
+        });
+        let norm = parameters.iter().map(|x| x * x).sum::<f64>().sqrt();
+        assert!((small / norm - 1.0).abs() < 1e-4, "seed {seed}: {small} for {norm}");
+        assert!((large / norm - 1.0).abs() < 0.1, "seed {seed}: {large} for {norm}");
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn the_derivatives_by_the_proportions_are_differences() {
+    const H: f64 = 1e-5;
+    for seed in 0..50 {
+        let draw = &mut Draw::new(seed);
+        let [p, gradient] = core::array::from_fn(|_| DVec3::new(draw.normal(), draw.normal(), draw.normal()));
+        let found = Proportions::jacobian(p.as_vec3(), gradient.as_vec3());
+        for (k, found) in found.into_iter().enumerate() {
+            let at = |x: f64| {
+                let mut parameters = [0.0; PROPORTIONS];
+                parameters[k] = x;
+                gradient.dot(Proportions::new(parameters).matrix() * p)
+            };
+            let slope = (at(H) - at(-H)) / (2.0 * H);
+            assert!((f64::from(found) - slope).abs() < 1e-5, "seed {seed}, {k}: {found} for {slope}");
+        }
+    }
+}
+
+/// The similarity that is nearest to a map of the mesh over its surface, by Umeyama's closed form. The means over a triangle
+/// of a quadratic are those of the middles of its edges.
+fn by_umeyama(mesh: &Mesh, map: impl Fn(DVec3) -> DVec3, scale: ScaleMode) -> CropPose {
+    let middles = |triangle: usize| {
+        let [a, b, c] = mesh.corners(mesh.triangles()[triangle]).map(|p| p.as_dvec3());
+        [a + b, b + c, c + a].map(|sum| (sum * 0.5, triangle_area(mesh, triangle)))
+    };
+    let double = |p: DVec3| nalgebra::Vector3::from(p.to_array());
+    let pairs = (0..mesh.triangles().len()).flat_map(middles);
+    let pairs = pairs.map(|(p, weight)| Pair { source: double(p), target: double(map(p)), weight });
+    CropPose::of_similarity(&umeyama(pairs, scale).unwrap(), &MeshFrame::NORMALIZED).unwrap()
+}
+
+fn normalized(mesh: &Mesh) -> Mesh {
+    MeshFrame::of(mesh).normalized(mesh).unwrap()
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn the_nearest_similarity_is_that_of_umeyama() {
+    let mesh = normalized(&body());
+    let surface = SurfaceMoments::of(&mesh);
+    for seed in 0..40 {
+        let draw = &mut Draw::new(seed);
+        let stretched = Stretched { pose: pose(draw, 3.0), proportions: proportions(draw, 0.15) };
+        let (scale, translation) = stretched.pose.scale_translation();
+        let linear = DMat3::from_quat(stretched.pose.rotation) * stretched.proportions.matrix() * scale;
+        for (lock_scale, mode) in [(false, ScaleMode::Free), (true, ScaleMode::Fixed(scale))] {
+            let expected = by_umeyama(&mesh, |p| linear * p + translation, mode);
+            let found = stretched.nearest(&surface, lock_scale);
+            let turn = angle_between(found.rotation, expected.rotation);
+            let what = format!("seed {seed}, locked {lock_scale}: {found:?} for {expected:?}");
+            assert!(turn < 1e-6, "{turn}: {what}");
+            assert!((found.size - expected.size).abs() < 1e-7, "{what}");
+            assert!((found.distance - expected.distance).abs() < 1e-7, "{what}");
+            assert!((found.place - expected.place).length() < 1e-7, "{what}");
+        }
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_line_and_a_point_keep_a_finite_pose() {
+    let draw = &mut Draw::new(3);
+    let stretched = Stretched { pose: pose(draw, 3.0), proportions: proportions(draw, 0.15) };
+    let line = DMat3::from_diagonal(DVec3::new(0.1, 0.0, 0.0));
+    for covariance in [line, DMat3::ZERO] {
+        let found = stretched.nearest(&SurfaceMoments { area: 1.0, centroid: DVec3::ZERO, covariance }, false);
+        assert!(found.is_finite(), "{covariance}: {found:?}");
+        assert!((found.size - stretched.pose.size).abs() < 0.2, "{covariance}: {found:?}");
+    }
+}
+
+/// The body in other proportions, in its normalised frame, on the fine grid of an observation of the body as it is, and the
+/// pose that is nearest to the truth over the whole surface.
+fn disproportionate(by: &Proportions) -> (Mesh, CropGrid, Scoring, CropPose) {
+    let mesh = body();
+    let (matrix, clean) = (by.matrix(), CleanObservation::new(&observe(&mesh, &truth())));
+    let wrong = mapped(&mesh, |p| (matrix * p.as_dvec3()).as_vec3());
+    let (frame, back) = (MeshFrame::of(&wrong), matrix.inverse());
+    let of_object = |p: DVec3| truth().apply(vector3((back * (p * frame.diagonal + frame.center)).as_vec3()));
+    let wrong = normalized(&wrong);
+    let nearest = by_umeyama(&wrong, |p| DVec3::from_slice(of_object(p).as_slice()), ScaleMode::Free);
+    let grid = CropGrid::new(&clean, 3000);
+    (wrong, grid, SearchSettings::from(Effort::Balanced).scoring(&clean, FINE), nearest)
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_mesh_in_other_proportions_is_put_where_it_is_nearest_as_a_whole() {
+    let (mut better, mut errors) = (0, [[0.0; 3]; 2]);
+    const SEEDS: u64 = 12;
+    for seed in 0..SEEDS {
+        let draw = &mut Draw::new(seed);
+        let (mesh, grid, scoring, nearest) = disproportionate(&proportions(draw, 0.04));
+        let model = Model::new(&mesh);
+        let objective = Objective { model: &model, grid: &grid, scoring, prior: Prior::default(), surroundings: None };
+        let refiner = Refiner { objective, lock_scale: false };
+        let mut canvas = Canvas::default();
+        let start = nearest.moved(&core::array::from_fn(|_| draw.between(-0.02, 0.02)));
+        let plain = refiner.refine(&mut canvas, start, 20);
+        let fitted = refiner.refine_in_proportion(&mut canvas, start, 20, &SurfaceMoments::of(&mesh));
+        assert!(fitted.renders <= 21 && fitted.converged, "seed {seed}: {fitted:?}");
+        better += usize::from(fitted.score.total > plain.score.total);
+        for (sum, found) in errors.iter_mut().zip([plain.pose, fitted.pose]) {
+            let log_scale = |pose: &CropPose| pose.size + pose.distance;
+            sum[0] += angle_between(found.rotation, nearest.rotation).to_degrees() / SEEDS as f64;
+            sum[1] += (log_scale(&found) - log_scale(&nearest)).abs() / SEEDS as f64;
+            sum[2] += (found.place - nearest.place).length() / SEEDS as f64;
+        }
+    }
+    let [plain, fitted] = errors;
+    let what = format!("degrees, log of scale, place: {fitted:?}, and {plain:?} as if the proportions were right");
+    assert!(better as u64 > SEEDS * 3 / 4, "{better} of {SEEDS} explain the picture better");
+    assert!((0..3).all(|k| fitted[k] < 0.7 * plain[k]), "{what}");
+    assert!(fitted[0] < 1.5 && fitted[1] < 0.012, "{what}");
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_fit_in_proportion_keeps_a_locked_scale_and_the_bounds_of_a_free_one() {
+    let draw = &mut Draw::new(5);
+    let (mesh, grid, scoring, nearest) = disproportionate(&proportions(draw, 0.04));
+    let (model, surface) = (Model::new(&mesh), SurfaceMoments::of(&mesh));
+    let mut canvas = Canvas::default();
+    let log_scale = |pose: &CropPose| pose.size + pose.distance;
+    let free = Objective { model: &model, grid: &grid, scoring, prior: Prior::default(), surroundings: None };
+    let start = nearest.moved(&[0.02, -0.02, 0.01, 0.03, 0.01, 0.01, 0.0]);
+    let locked = Refiner { objective: free, lock_scale: true }.refine_in_proportion(&mut canvas, start, 20, &surface);
+    assert!((log_scale(&locked.pose) - log_scale(&start)).abs() < 1e-12, "{locked:?}");
+    let bounds = [1.03, 1.1].map(|factor| factor * libm::exp(log_scale(&nearest)));
+    let prior = Prior { scale: Some(bounds), up: None };
+    let objective = Objective { prior, ..free };
+    let held = Refiner { objective, lock_scale: false }.refine_in_proportion(&mut canvas, start, 20, &surface);
+    assert!(prior.holds(&held.pose), "the truth is below: {held:?}");
+}
