@@ -122,23 +122,36 @@ impl<const N: usize> NormalEquationsOf<N> {
     /// the step and turns it towards the gradient, as in the Levenberg–Marquardt method. `None` if the damped matrix is
     /// not positive definite: without residuals, or if some are not finite.
     pub fn solve(&self, damping: f64) -> Option<[f64; N]> {
-        Some(self.factored(damping)?.solve(&-SVector::from(self.gradient())).into())
+        let gradient = self.gradient();
+        let step = self.factored(damping)?.solve(&SVector::from_fn(|i, _| if i < N { -gradient[i] } else { 0.0 }));
+        Some(core::array::from_fn(|i| step[i]))
     }
 
     /// (JᵀWJ + λ·1)⁻¹ with λ = `damping` × the trace of JᵀWJ; `None` as for [`NormalEquations::solve`].
     pub fn inverse(&self, damping: f64) -> Option<[[f64; N]; N]> {
-        Some(self.factored(damping)?.inverse().into())
+        let inverse = self.factored(damping)?.inverse();
+        Some(core::array::from_fn(|column| core::array::from_fn(|row| inverse[(row, column)])))
     }
 
-    #[inline(never)]
-    fn factored(&self, damping: f64) -> Option<Cholesky<f64, Const<N>>> {
+    /// The decomposition, as one of the largest problem, whose other parameters are independent: it is compiled once.
+    fn factored(&self, damping: f64) -> Option<Factors> {
         let trace: f64 = (0..N).map(|i| self.entry(i, i)).sum();
-        // The decomposition reads the lower triangle only.
-        let lower = |row: usize, column: usize| if row < column { 0.0 } else { self.entry(column, row) };
-        let mut damped = SMatrix::<f64, N, N>::from_fn(lower);
-        (0..N).for_each(|i| damped[(i, i)] += damping * trace);
-        Cholesky::new(damped).filter(|factor| factor.l_dirty().diagonal().iter().all(|pivot| pivot.is_finite()))
+        let mut damped = SMatrix::identity();
+        for column in 0..N {
+            (column..N).for_each(|row| damped[(row, column)] = self.entry(column, row));
+            damped[(column, column)] += damping * trace;
+        }
+        factors(damped)
     }
+}
+
+/// A decomposition.
+type Factors = Cholesky<f64, Const<{ 2 * MOST_PAIRS }>>;
+
+/// Decomposes a matrix, of which only the lower triangle is read.
+#[inline(never)]
+fn factors(damped: SMatrix<f64, { 2 * MOST_PAIRS }, { 2 * MOST_PAIRS }>) -> Option<Factors> {
+    Cholesky::new(damped).filter(|factors| factors.l_dirty().diagonal().iter().all(|pivot| pivot.is_finite()))
 }
 
 #[inline(always)]

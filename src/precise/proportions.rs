@@ -158,14 +158,18 @@ impl Ascent<ALL> for OnGrid<'_, '_> {
     fn equations(&mut self, at: &Stretched, score: &Score) -> NormalEquationsOf<ALL> {
         let canvas = &*self.canvas;
         let to_mesh: Mat3 = canvas.rotation.transpose();
-        let mut equations = self.refiner.evidence(canvas, score, |point, gradient| {
+        let mut equations = NormalEquationsOf::new();
+        let turns = self.refiner.evidence(canvas, score, &mut |point, gradient, residual, weight| {
             let mut jacobian = [0.0; ALL];
-            let (pose, proportions) = jacobian.split_at_mut(PARAMETERS);
-            pose.copy_from_slice(&self.refiner.jacobian(canvas, point, gradient));
             let arm = to_mesh * (point - canvas.translation);
-            proportions.copy_from_slice(&Proportions::jacobian(arm, to_mesh * gradient));
-            jacobian
+            let of_pose = self.refiner.jacobian(canvas, point, gradient);
+            let of_proportions = Proportions::jacobian(arm, to_mesh * gradient);
+            for (to, from) in jacobian.iter_mut().zip(of_pose.iter().chain(&of_proportions)) {
+                *to = f64::from(*from);
+            }
+            equations.add(&jacobian, f64::from(residual), f64::from(weight));
         });
+        turns.add_to(&mut equations);
         equations.add_first(&self.refiner.known(&at.pose));
         at.proportions.add_to(&mut equations);
         equations
@@ -177,7 +181,7 @@ impl Ascent<ALL> for OnGrid<'_, '_> {
         let pose = self.refiner.moved(&at.pose, first)?;
         let mut proportions = at.proportions;
         for (x, by) in proportions.0.iter_mut().zip(&step[PARAMETERS..]) {
-            *x = (*x + by).max(-MOST).min(MOST);
+            *x = (*x + by).clamp(-MOST, MOST);
         }
         Some(Stretched { pose, proportions })
     }

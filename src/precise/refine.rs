@@ -93,7 +93,12 @@ impl Refiner<'_> {
 
     /// The quadratic at the last render, which is of `pose`.
     pub fn equations(&self, canvas: &Canvas, score: &Score, pose: &CropPose) -> NormalEquations {
-        let mut equations = self.evidence(canvas, score, |point, gradient| self.jacobian(canvas, point, gradient));
+        let mut equations = NormalEquations::new();
+        let turns = self.evidence(canvas, score, &mut |point, gradient, residual, weight| {
+            let jacobian = self.jacobian(canvas, point, gradient).map(f64::from);
+            equations.add(&jacobian, f64::from(residual), f64::from(weight));
+        });
+        turns.add_to(&mut equations);
         if let Some(surroundings) = self.objective.surroundings {
             surroundings.add_to(&mut equations, pose, self.lock_scale);
         }
@@ -109,19 +114,10 @@ impl Refiner<'_> {
         equations
     }
 
-    /// The quadratic of the image at the last render. `jacobian` is the change of a residual with each parameter, where it
-    /// changes by `gradient`·δx as the surface point x moves by δx; the first three parameters are a rotation.
-    pub(super) fn evidence<const N: usize>(
-        &self,
-        canvas: &Canvas,
-        score: &Score,
-        jacobian: impl Fn(Vec3, Vec3) -> [f32; N],
-    ) -> NormalEquationsOf<N> {
-        let mut equations = NormalEquationsOf::<N>::new();
-        let mut add = |point: Vec3, gradient: Vec3, residual: f32, weight: f32| {
-            let jacobian = jacobian(point, gradient).map(f64::from);
-            equations.add(&jacobian, f64::from(residual), f64::from(weight));
-        };
+    /// The quadratic of the image at the last render: calls `add` with a surface point x, the change of a residual as x moves,
+    /// the residual, and its weight, and returns the part of the normals. Compiled once for all numbers of parameters.
+    #[inline(never)]
+    pub(super) fn evidence(&self, canvas: &Canvas, score: &Score, add: &mut dyn FnMut(Vec3, Vec3, f32, f32)) -> Turns {
         let mut turns = Turns::default();
         let (grid, weights) = (self.objective.grid, &self.objective.scoring.weights);
         let factor = weights.factor(score, grid);
@@ -187,8 +183,8 @@ impl Refiner<'_> {
                 }
             }
         }
-        turns.add_to(&mut equations, normal_weight);
-        equations
+        turns.weight = normal_weight;
+        turns
     }
 
     /// Root mean square of the depth residuals of the last render, without those beyond three times their scale.
@@ -223,10 +219,11 @@ impl Refiner<'_> {
 
 /// Σ ½|n − n′|² over pairs of normals, as a quadratic in the rotation of n only.
 #[derive(Default)]
-struct Turns {
+pub(super) struct Turns {
     outer: [[f32; 3]; 3],
     gradient: Vec3,
     count: f32,
+    weight: f32,
 }
 
 impl Turns {
@@ -242,7 +239,8 @@ impl Turns {
     }
 
     /// With JᵀJ = 1 − n nᵀ, and Jᵀr = n′ × n.
-    fn add_to<const N: usize>(&self, equations: &mut NormalEquationsOf<N>, weight: f32) {
+    pub(super) fn add_to<const N: usize>(&self, equations: &mut NormalEquationsOf<N>) {
+        let weight = self.weight;
         let mut block = self.outer.map(|row| row.map(|x| f64::from(-x * weight)));
         for (i, row) in block.iter_mut().enumerate() {
             row[i] += f64::from(self.count * weight);
