@@ -89,7 +89,7 @@ impl ColorStage {
         let Some(best) = rounds.found.first() else { return true };
         let mut canvas = Canvas::default();
         if self.compared.is_empty() {
-            let Some(compared) = self.compare(rounds, colors, &mut canvas, best.pose, best) else {
+            let Some(compared) = self.compare(rounds, colors, &mut canvas, best.pose, Some(best)) else {
                 self.queue.clear();
                 return true;
             };
@@ -98,10 +98,18 @@ impl ColorStage {
         let middle = search.grid(MIDDLE);
         let refiner = Refiner { objective: search.objective(MIDDLE, &middle), lock_scale: search.settings.lock_scale };
         while let Some(Lookalike { pose, is_rough }) = self.queue.pop() {
-            let pose = if is_rough { refiner.refine(&mut canvas, pose, STEPS[0]).pose } else { pose };
-            let near = |other: &Compared| angle_between(other.found.pose.rotation, pose.rotation) < 0.5 * RIVAL;
-            let is_new = !is_rough || !self.compared.iter().any(near);
-            if is_new && let Some(compared) = self.compare(rounds, colors, &mut canvas, pose, best) {
+            // A turn of the best pose doubles its error. What the search has found near the turn is more accurate.
+            let is_near = |a: &CropPose, b: &CropPose| angle_between(a.rotation, b.rotation) < 0.5 * RIVAL;
+            let known = rounds.found.iter().skip(1).find(|found| is_near(&found.pose, &pose));
+            let pose = match known {
+                Some(found) => found.pose,
+                None if is_rough => refiner.refine(&mut canvas, pose, STEPS[0]).pose,
+                None => pose,
+            };
+            let is_compared =
+                |other: &Compared| other.found.pose == pose || is_rough && is_near(&other.found.pose, &pose);
+            let is_new = !self.compared.iter().any(is_compared);
+            if is_new && let Some(compared) = self.compare(rounds, colors, &mut canvas, pose, known) {
                 self.compared.push(compared);
             }
             if pause() && !self.queue.is_empty() {
@@ -111,21 +119,23 @@ impl ColorStage {
         true
     }
 
-    /// Renders a pose; `None` if its shape is not within noise, or nothing can be compared.
+    /// Renders a pose; `None` if its shape is not within noise, or nothing can be compared. `known` is its ranking, if it has
+    /// one.
     fn compare(
         &self,
         rounds: &Rounds,
         colors: &SurfaceColors,
         canvas: &mut Canvas,
         pose: CropPose,
-        best: &Found,
+        known: Option<&Found>,
     ) -> Option<Compared> {
-        let search = &rounds.search;
+        let (search, best) = (&rounds.search, rounds.found.first()?);
         let mut score = search.objective(FINE, &search.fine).score(canvas, &pose);
         let own = score.total;
-        // Relative to the first comparison, which is of the best pose itself. Its score in the ranking is that of a mesh in
-        // better proportions.
-        let shape = own - self.compared.first().map_or(own, |first| first.own);
+        // The scores of the ranking are those of the mesh in better proportions. Other poses are compared, as the mesh is, with
+        // the best one, which is the first.
+        let of_first = self.compared.first().map_or(own, |first| first.own);
+        let shape = known.map_or(own - of_first, |known| known.score.total - best.score.total);
         if shape < -NOISE {
             return None;
         }

@@ -189,7 +189,8 @@ impl Ascent<ALL> for OnGrid<'_, '_> {
 
 impl Refiner<'_> {
     /// Refines `pose` and the proportions of a mesh with this `surface` in at most `iterations` steps. The pose of the result
-    /// is the nearest similarity; its score is that of the mesh in its best proportions, less what these cost.
+    /// is the nearest similarity; its score is that of the mesh in its best proportions, less what these cost. If the scale is
+    /// locked, the mesh is that of the object itself, and its proportions are right.
     pub fn refine_in_proportion(
         &self,
         canvas: &mut Canvas,
@@ -197,12 +198,15 @@ impl Refiner<'_> {
         iterations: usize,
         surface: &SurfaceMoments,
     ) -> Refined {
+        if self.lock_scale {
+            return self.refine(canvas, pose, iterations);
+        }
         let start = Stretched { pose, proportions: Proportions::default() };
         let Summit { pose, score, renders, converged } =
             ascend(&mut OnGrid { refiner: self, canvas }, start, iterations);
         // At a bound of the scale, it stays there.
-        let lock_scale = self.lock_scale || self.objective.prior.holds(&pose.pose);
-        let nearest = self.objective.prior.held(pose.nearest(surface, lock_scale));
+        let is_held = self.objective.prior.holds(&pose.pose);
+        let nearest = self.objective.prior.held(pose.nearest(surface, is_held));
         Refined { pose: if nearest.is_finite() { nearest } else { pose.pose }, score, renders, converged }
     }
 }

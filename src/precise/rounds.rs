@@ -267,6 +267,7 @@ impl Rounds {
                 // Keeps the scores of the ranking, because scores of different grids are not comparable.
                 for (best, polished) in self.found.iter_mut().zip(outcomes) {
                     best.pose = polished.pose;
+                    best.converged |= polished.converged;
                 }
                 self.poses = Vec::new();
             }

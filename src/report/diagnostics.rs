@@ -131,7 +131,8 @@ pub struct PreciseDiagnostics {
     pub common: Diagnostics,
     /// The effort of the search that found the pose; it follows from `quality`.
     pub effort: Effort,
-    /// The search's objective, 0 to about 2. It compares poses of one input; scores of different inputs do not compare.
+    /// The search's objective, 0 to about 2. It compares poses of one input; scores of different inputs do not compare. Unless
+    /// the scale is fixed, it is that of the mesh in the proportions that fit the image best.
     pub score: f64,
     /// The terms of the score.
     pub terms: ScoreTerms,
