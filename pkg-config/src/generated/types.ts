@@ -843,7 +843,8 @@ export type PreciseDiagnostics = {
  */
 effort: Effort, 
 /**
- * The search's objective, 0 to about 2. It compares poses of one input; scores of different inputs do not compare.
+ * The search's objective, 0 to about 2. It compares poses of one input; scores of different inputs do not compare. Unless
+ * the scale is fixed, it is that of the mesh in the proportions that fit the image best.
  */
 score: number, 
 /**
