@@ -71,8 +71,15 @@ test("alternatives are pictures of their poses", async () => {
   await opened.aligned();
   const pictures = page.locator(".alternatives canvas");
   assert.ok((await pictures.count()) > 1);
-  const content = await pictures.evaluateAll((all) => all.map((one) => (one as HTMLCanvasElement).toDataURL()));
-  assert.equal(new Set(content).size, content.length);
+  // They are drawn a little later than the result is shown.
+  await page.waitForFunction(
+    () => {
+      const all = [...document.querySelectorAll<HTMLCanvasElement>(".alternatives canvas")];
+      return all.length > 1 && new Set(all.map((one) => one.toDataURL())).size === all.length;
+    },
+    undefined,
+    PATIENCE,
+  );
   await opened.close();
 });
 
