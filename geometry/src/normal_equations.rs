@@ -1,6 +1,6 @@
 //! Normal equations of a weighted least-squares step, mostly in up to seven parameters, such as (ω, τ, σ) of a similarity.
 //!
-//! Most problems share this size, so that the decomposition is compiled once for them.
+//! The decomposition is that of the largest problem for all, so that it is compiled once.
 //!
 //! ```
 //! use sim3align_geometry::normal_equations::NormalEquations;

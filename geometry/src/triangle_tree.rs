@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 use wide::f32x4;
 
 use super::mesh::Mesh;
-use super::order::{index_of, select_smallest};
+use super::order::{index_of, pack, select_smallest};
 use super::triangle_block::{BLOCK, TriangleBlock, by_axis};
 
 /// Children of a node, whose boxes are tested at once.
@@ -250,12 +250,12 @@ fn arrange(centers: &[f32x4], indices: &mut [u32], keys: &mut Vec<u64>) {
     while full * CHILDREN < indices.len() {
         full *= CHILDREN;
     }
-    halve(centers, indices, full, keys);
+    split(centers, indices, full, keys);
     indices.chunks_mut(full).for_each(|child| arrange(centers, child, keys));
 }
 
 /// Sorts the indices into parts of this size.
-fn halve(centers: &[f32x4], indices: &mut [u32], part: usize, keys: &mut Vec<u64>) {
+fn split(centers: &[f32x4], indices: &mut [u32], part: usize, keys: &mut Vec<u64>) {
     let parts = indices.len().div_ceil(part);
     if parts < 2 {
         return;
@@ -263,19 +263,16 @@ fn halve(centers: &[f32x4], indices: &mut [u32], part: usize, keys: &mut Vec<u64
     let all = indices.iter().fold(Extent::NOTHING, |all, &i| all.and(centers[i as usize]));
     let spread = (all.max - all.min).to_array();
     let axis = (1..3).fold(0, |best, axis| if spread[axis] > spread[best] { axis } else { best });
-    let lowest = all.min.to_array()[axis];
     keys.clear();
-    // Relative to the lowest, so that no sign needs to be sorted.
-    let key = |i: u32| u64::from((centers[i as usize].as_array()[axis] - lowest).to_bits()) << 32 | u64::from(i);
-    keys.extend(indices.iter().map(|&i| key(i)));
+    keys.extend(indices.iter().map(|&i| pack(centers[i as usize].as_array()[axis], i)));
     let middle = parts / 2 * part;
     select_smallest(keys, middle);
     for (index, &key) in indices.iter_mut().zip(keys.iter()) {
         *index = index_of(key);
     }
     let (left, right) = indices.split_at_mut(middle);
-    halve(centers, left, part, keys);
-    halve(centers, right, part, keys);
+    split(centers, left, part, keys);
+    split(centers, right, part, keys);
 }
 
 /// The point of a triangle nearest to the origin.

@@ -268,7 +268,7 @@ impl Sample {
         Self { nearest: nearest as usize, beyond: (at - nearest) as f32, is_in_image }
     }
 
-    /// Whether it is in the crop, and so in the image.
+    /// Whether the column or row is in the crop and in the image.
     fn is_inside(&self) -> bool {
         self.beyond == 0.0 && self.is_in_image
     }

@@ -13,7 +13,7 @@ use super::pose::{CropPose, Step};
 use super::refine::{Refined, Refiner};
 use super::render::Canvas;
 use super::score::Score;
-use crate::geometry::normal_equations::{NormalEquationsOf, PARAMETERS};
+use crate::geometry::normal_equations::{NormalEquations, NormalEquationsOf, PARAMETERS};
 use crate::geometry::rotations::exp;
 use crate::geometry::surface::SurfaceMoments;
 
@@ -22,7 +22,7 @@ pub const PROPORTIONS: usize = 5;
 /// Number of all parameters.
 const ALL: usize = PARAMETERS + PROPORTIONS;
 
-/// Standard deviation of each parameter. Half and twice of it give about the same errors on generated cases.
+/// Standard deviation of each parameter. From 0.02 to 0.1, the errors on generated cases are about the same.
 const DEVIATION: f64 = 0.03;
 /// Score per square of E: [`DROP`] at one standard deviation.
 const COST: f64 = DROP / (DEVIATION * DEVIATION);
@@ -35,8 +35,8 @@ const ROLL: f64 = 1e-9;
 
 /// 1/√2 and 1/√6: the parameters are coordinates in an orthonormal basis, so that the squares of all entries of E add up to
 /// those of the parameters, whatever the axes of the mesh are.
-const HALF: f64 = core::f64::consts::FRAC_1_SQRT_2;
-const SIXTH: f64 = 0.408_248_290_463_863;
+const ROOT_HALF: f64 = core::f64::consts::FRAC_1_SQRT_2;
+const ROOT_SIXTH: f64 = 0.408_248_290_463_863;
 
 /// The parameters of E.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -51,17 +51,17 @@ impl Proportions {
     /// e^E, in the frame of the mesh.
     pub fn matrix(&self) -> DMat3 {
         let [a, b, xy, xz, yz] = self.0;
-        let (a, b) = (HALF * a, SIXTH * b);
-        let [xy, xz, yz] = [xy, xz, yz].map(|x| HALF * x);
+        let (a, b) = (ROOT_HALF * a, ROOT_SIXTH * b);
+        let [xy, xz, yz] = [xy, xz, yz].map(|x| ROOT_HALF * x);
         let e = DMat3::from_cols_array(&[a + b, xy, xz, xy, b - a, yz, xz, yz, -2.0 * b]);
-        // The fourth power of a percentage is nothing.
+        // Terms of fourth order are below 1e-5 if E is 10 %.
         DMat3::IDENTITY + e + e * e * 0.5 + e * e * e * (1.0 / 6.0)
     }
 
     /// The change of a residual with each parameter, where it changes by `gradient`·δp as the point `p` moves by δp, both in
     /// the frame of the mesh.
     pub fn jacobian(p: Vec3, gradient: Vec3) -> [f32; PROPORTIONS] {
-        let (half, sixth) = (HALF as f32, SIXTH as f32);
+        let (half, sixth) = (ROOT_HALF as f32, ROOT_SIXTH as f32);
         let straight = p * gradient;
         [
             half * (straight.x - straight.y),
@@ -72,12 +72,12 @@ impl Proportions {
         ]
     }
 
-    /// What they cost of the score.
+    /// The penalty on the score.
     fn cost(&self) -> f64 {
         COST * self.0.iter().map(|x| x * x).sum::<f64>()
     }
 
-    /// Adds the quadratic of the cost.
+    /// Adds the quadratic of the penalty.
     fn add_to(&self, equations: &mut NormalEquationsOf<ALL>) {
         for (i, x) in self.0.iter().enumerate() {
             let mut jacobian = [0.0; ALL];
@@ -170,7 +170,9 @@ impl Ascent<ALL> for OnGrid<'_, '_> {
             equations.add(&jacobian, f64::from(residual), f64::from(weight));
         });
         turns.add_to(&mut equations);
-        equations.add_first(&self.refiner.known(&at.pose));
+        let mut of_surroundings = NormalEquations::new();
+        self.refiner.add_surroundings(&mut of_surroundings, &at.pose);
+        equations.add_first(&of_surroundings);
         at.proportions.add_to(&mut equations);
         equations
     }
@@ -189,7 +191,7 @@ impl Ascent<ALL> for OnGrid<'_, '_> {
 
 impl Refiner<'_> {
     /// Refines `pose` and the proportions of a mesh with this `surface` in at most `iterations` steps. The pose of the result
-    /// is the nearest similarity; its score is that of the mesh in its best proportions, less what these cost. If the scale is
+    /// is the nearest similarity; its score is that of the mesh in its best proportions, minus their penalty. If the scale is
     /// locked, the mesh is that of the object itself, and its proportions are right.
     pub fn refine_in_proportion(
         &self,

@@ -99,32 +99,27 @@ impl Refiner<'_> {
             equations.add(&jacobian, f64::from(residual), f64::from(weight));
         });
         turns.add_to(&mut equations);
-        if let Some(surroundings) = self.objective.surroundings {
-            surroundings.add_to(&mut equations, pose, self.lock_scale);
-        }
+        self.add_surroundings(&mut equations, pose);
         equations
     }
 
-    /// The quadratic of what is known of the surroundings at `pose`.
-    pub(super) fn known(&self, pose: &CropPose) -> NormalEquations {
-        let mut equations = NormalEquations::new();
+    /// Adds the quadratic of the surroundings, if they are known, at `pose`.
+    pub(super) fn add_surroundings(&self, equations: &mut NormalEquations, pose: &CropPose) {
         if let Some(surroundings) = self.objective.surroundings {
-            surroundings.add_to(&mut equations, pose, self.lock_scale);
+            surroundings.add_to(equations, pose, self.lock_scale);
         }
-        equations
     }
 
     /// The quadratic of the image at the last render: calls `add` with a surface point x, the change of a residual as x moves,
     /// the residual, and its weight, and returns the part of the normals. Compiled once for all numbers of parameters.
     #[inline(never)]
     pub(super) fn evidence(&self, canvas: &Canvas, score: &Score, add: &mut dyn FnMut(Vec3, Vec3, f32, f32)) -> Turns {
-        let mut turns = Turns::default();
         let (grid, weights) = (self.objective.grid, &self.objective.scoring.weights);
         let factor = weights.factor(score, grid);
         let per_cell = |weight: f32, cells: f32| weight * factor / cells.max(1.0);
         let [depth_cells, normal_cells, outline_cells] = score.counts;
         let depth_weight = per_cell(weights.depth, depth_cells);
-        let normal_weight = per_cell(weights.normals, normal_cells);
+        let mut turns = Turns { weight: per_cell(weights.normals, normal_cells), ..Turns::default() };
         let outline_weight = per_cell(weights.outline, outline_cells);
         // The score is a product, so the weight of a cell of overlap includes the other factor.
         let overlap_weight = weights.silhouette * weights.agreement(score) / score.union.max(1.0);
@@ -183,7 +178,6 @@ impl Refiner<'_> {
                 }
             }
         }
-        turns.weight = normal_weight;
         turns
     }
 
