@@ -66,11 +66,18 @@ impl Columns {
         Some(self.spans[y as usize * self.size[0] + x as usize]).filter(|span| span[0] <= span[1])
     }
 
-    /// How deep it is in another one, metres: the least side of the box of what both share.
-    pub fn overlap(&self, other: &Self) -> f64 {
+    /// How deep it is in another one once it is moved by some cells, metres: the least side of the box of what both share.
+    pub fn overlap(&self, other: &Self, by: [i64; 2]) -> f64 {
+        let is_beside = |i: usize| {
+            let from = self.from[i] + by[i];
+            from + self.size[i] as i64 <= other.from[i] || other.from[i] + other.size[i] as i64 <= from
+        };
+        if is_beside(0) || is_beside(1) {
+            return 0.0;
+        }
         let (mut low, mut high, mut depth) = ([i64::MAX; 2], [i64::MIN; 2], 0.0f64);
         for (cell, [a, b]) in self.cells() {
-            let Some([c, d]) = other.at(cell) else { continue };
+            let Some([c, d]) = other.at([0, 1].map(|i| cell[i] + by[i])) else { continue };
             let shared = b.min(d) - a.max(c);
             if shared <= 0.0 {
                 continue;

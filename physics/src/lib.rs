@@ -3,8 +3,10 @@
 //!
 //! The world is in metres with z up; the ground is z = 0.
 
+pub mod apart;
 pub mod body;
 pub mod columns;
+pub mod ground;
 pub mod mass;
 pub mod part;
 pub mod rest;

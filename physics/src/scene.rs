@@ -4,8 +4,10 @@ use glam::DVec3;
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::similarity::Similarity;
 
+use super::apart::{ASIDE_M, INSIDE_M, depth, steps_apart};
 use super::body::{Body, Pose};
 use super::columns::Columns;
+use super::ground::{AGREE_M, agreed_height};
 use super::rest::levelled;
 
 /// What an object rests on.
@@ -39,8 +41,12 @@ pub struct Settings {
     pub parts: usize,
     /// Largest angle by which a body is turned so that it rests, degrees.
     pub turn_deg: f64,
-    /// Largest distance by which its centre of mass is moved for that, metres.
+    /// Largest distance of its centre of mass from where it was found, metres.
     pub move_m: f64,
+    /// Whether the ground was found, and not given: its height is then fitted to the bodies that stand on it.
+    pub fits_ground: bool,
+    /// Whether bodies are moved at all. Otherwise they keep their poses, and those that would come to rest nearby are free.
+    pub rest: bool,
 }
 
 /// A body of a scene.
@@ -48,9 +54,11 @@ pub struct Settings {
 pub struct Settled {
     /// Its parts, mass and pose.
     pub body: Body,
+    /// The pose at which it was found.
+    pub found: Pose,
     /// Whether it may move: it rests by itself.
     pub is_free: bool,
-    /// How far its centre of mass has been moved, metres.
+    /// How far its centre of mass is from where it was found, metres.
     pub moved_m: f64,
     /// How far it has been turned, degrees.
     pub turned_deg: f64,
@@ -65,21 +73,44 @@ const MOST_CELLS: f64 = 220.0;
 const TOUCH_M: f64 = 1e-3;
 /// Directions in which a body must not tip over what it stands on.
 const DIRECTIONS: usize = 16;
-/// Depth up to which bodies may be inside of each other, metres: physics parts them.
-const INSIDE_M: f64 = 2e-3;
-/// Rounds in which bodies that stand side by side are moved apart.
-const ROUNDS: usize = 4;
-/// What is left between bodies that were moved apart, metres.
-const GAP_M: f64 = 5e-4;
 
-/// The bodies of a scene. Those that rest on something are put at rest there, if that moves them little; the others are
-/// to be fixed where they are.
-pub fn settle(objects: &[Object], settings: &Settings) -> Vec<Settled> {
-    let body = |object: &Object| Body::new(&object.mesh, &object.world_from_mesh, settings.parts, settings.density);
+/// The bodies of a scene, and the height above the ground of the plane z = 0 of their poses: those of the bodies are above
+/// the ground.
+///
+/// Bodies that rest on something are put at rest there, if that moves them little; the others are to be fixed where they are.
+/// A ground that was found is first moved to the height that most of the bodies on it agree on: they are then moved the
+/// least. A body that disagrees is fixed.
+pub fn settle(objects: &[Object], settings: &Settings) -> (Vec<Settled>, f64) {
     let mut bodies: Vec<Settled> = objects
         .iter()
-        .map(|object| Settled { body: body(object), is_free: false, moved_m: 0.0, turned_deg: 0.0, inside: Vec::new() })
+        .map(|Object { mesh, world_from_mesh, .. }| {
+            let body = Body::new(mesh, world_from_mesh, settings.parts, settings.density);
+            Settled { found: body.pose, body, is_free: false, moved_m: 0.0, turned_deg: 0.0, inside: Vec::new() }
+        })
         .collect();
+    let fits_ground = settings.fits_ground && settings.rest;
+    let mut lift = 0.0;
+    if fits_ground {
+        let mut lowest = Vec::new();
+        for (Settled { body, .. }, object) in bodies.iter().zip(objects) {
+            if let (On::Ground, Some((pose, angle))) = (object.on, levelled(body)) {
+                let height = body.pose.apply(body.mass.center).z - pose.apply(body.mass.center).z;
+                if angle.to_degrees() <= settings.turn_deg && height.is_finite() {
+                    lowest.push(height);
+                }
+            }
+        }
+        lift = -agreed_height(&lowest, settings.move_m).unwrap_or(0.0);
+        for settled in &mut bodies {
+            settled.found.translation.z += lift;
+            settled.body.pose = settled.found;
+        }
+    }
+    // How far a body may be moved.
+    let most = |i: usize| {
+        let is_fitted = fits_ground && objects[i].on == On::Ground;
+        if is_fitted { AGREE_M.min(settings.move_m) } else { settings.move_m }
+    };
     let reach = |settled: &Settled| {
         let points = || settled.body.points(settled.body.pose);
         let low = points().fold(DVec3::INFINITY, DVec3::min);
@@ -104,26 +135,37 @@ pub fn settle(objects: &[Object], settings: &Settings) -> Vec<Settled> {
         let Some((pose, angle)) = levelled(&bodies[i].body) else { continue };
         let Some(pose) = put_down(&bodies[i].body, pose, surface.as_deref(), cell) else { continue };
         let settled = &mut bodies[i];
-        let center = settled.body.mass.center;
-        let moved_m = (pose.apply(center) - settled.body.pose.apply(center)).length();
-        let turned_deg = angle.to_degrees();
-        if turned_deg <= settings.turn_deg && moved_m <= settings.move_m {
-            *settled = Settled {
-                body: Body { pose, ..settled.body.clone() },
-                is_free: true,
-                moved_m,
-                turned_deg,
-                ..settled.clone()
-            };
+        let (moved_m, turned_deg) = (distance(settled, pose), angle.to_degrees());
+        settled.is_free = turned_deg <= settings.turn_deg && moved_m <= most(i);
+        if settled.is_free && settings.rest {
+            settled.body.pose = pose;
+            settled.turned_deg = turned_deg;
         }
     }
-    move_apart(&mut bodies, objects, settings, cell);
-    let columns: Vec<_> = bodies.iter().map(|b| b.body.columns(b.body.pose, cell)).collect();
+    let mut columns: Vec<_> = bodies.iter().map(|b| b.body.columns(b.body.pose, cell)).collect();
+    // What stands on another body, or carries one, keeps its place on it.
+    let carries = |i: usize| objects.iter().any(|o| o.on == On::Object(i));
+    let may_move = |i: usize| settings.rest && bodies[i].is_free && objects[i].on == On::Ground && !carries(i);
+    // Rest moves bodies up and down only: what is left of the distance is the other leg of a right angle.
+    let left = |i: usize| (most(i).powi(2) - distance(&bodies[i], bodies[i].body.pose).powi(2)).max(0.0).sqrt();
+    let reach_m: Vec<f64> = (0..bodies.len()).map(|i| if may_move(i) { left(i).min(ASIDE_M) } else { 0.0 }).collect();
+    for (i, step) in steps_apart(&columns, &reach_m, cell).into_iter().enumerate() {
+        if step != [0, 0] {
+            bodies[i].body.pose.translation += DVec3::new(step[0] as f64, step[1] as f64, 0.0) * cell;
+            columns[i] = bodies[i].body.columns(bodies[i].body.pose, cell);
+        }
+    }
     for i in 0..bodies.len() {
         let is_inside = |k: &usize| *k != i && depth(&columns[i], &columns[*k]) > INSIDE_M;
         bodies[i].inside = (0..bodies.len()).filter(is_inside).collect();
+        bodies[i].moved_m = distance(&bodies[i], bodies[i].body.pose);
     }
-    bodies
+    (bodies, lift)
+}
+
+/// How far the centre of mass is at a pose from where it was found, metres.
+fn distance(Settled { body, found, .. }: &Settled, pose: Pose) -> f64 {
+    (pose.apply(body.mass.center) - found.apply(body.mass.center)).length()
 }
 
 /// The pose, raised onto what is below; `None` if the body would tip over there.
@@ -145,45 +187,4 @@ fn put_down(body: &Body, mut pose: Pose, below: Option<&[Columns]>, cell: f64) -
         touched.iter().any(|p| p.x * cosine + p.y * sine > 2.0 * cell)
     };
     (0..DIRECTIONS).all(holds).then_some(pose)
-}
-
-/// The depth to which parts are inside of others.
-fn depth(a: &[Columns], b: &[Columns]) -> f64 {
-    a.iter().flat_map(|a| b.iter().map(|b| a.overlap(b))).fold(0.0, f64::max)
-}
-
-/// Moves free bodies on the ground that are partly inside of others aside: their sizes and places are not exact.
-fn move_apart(bodies: &mut [Settled], objects: &[Object], settings: &Settings, cell: f64) {
-    let carries = |i: usize| objects.iter().any(|o| o.on == On::Object(i));
-    let may_move: Vec<bool> =
-        (0..bodies.len()).map(|i| bodies[i].is_free && objects[i].on == On::Ground && !carries(i)).collect();
-    for _ in 0..ROUNDS {
-        let mut is_done = true;
-        for i in 0..bodies.len() {
-            for k in 0..i {
-                let share = match (may_move[i], may_move[k]) {
-                    (false, false) => continue,
-                    (true, true) => [0.5, 0.5],
-                    (true, false) => [1.0, 0.0],
-                    (false, true) => [0.0, 1.0],
-                };
-                let columns = [i, k].map(|j| bodies[j].body.columns(bodies[j].body.pose, cell));
-                let deep = depth(&columns[0], &columns[1]);
-                let [a, b] = [i, k].map(|j| bodies[j].body.pose.apply(bodies[j].body.mass.center));
-                let away = (a - b).with_z(0.0).normalize_or_zero();
-                if deep <= 0.0 || away == DVec3::ZERO || deep > settings.move_m {
-                    continue;
-                }
-                is_done = false;
-                for (j, by) in [(i, share[0]), (k, -share[1])] {
-                    let shift = away * (by * (deep + GAP_M));
-                    bodies[j].body.pose.translation += shift;
-                    bodies[j].moved_m += shift.length();
-                }
-            }
-        }
-        if is_done {
-            break;
-        }
-    }
 }
