@@ -10,6 +10,7 @@ pub mod cpu_time;
 mod draws;
 mod files;
 pub mod fuzz;
+pub mod outlines;
 pub mod parallel;
 pub mod samples;
 pub mod scenes;

@@ -4,7 +4,7 @@ mod commands;
 
 use std::process::ExitCode;
 
-use commands::{Failure, bench, cases, fuzz, profile, registration, scenes, together, track, views};
+use commands::{Failure, bench, cases, fuzz, outlines, profile, registration, scenes, together, track, views};
 use sim3align_lab::fuzz::memory::CountingAllocator;
 
 /// For the memory of `fuzz`.
@@ -21,6 +21,7 @@ Usage: sim3align-lab COMMAND [arguments]
   registration  writes pairs of clouds, and registers them
   views         aligns one object in several views, and prints tables
   track         tracks one object through videos, and prints tables
+  outlines      compares the outlines of mask, depth and photo with the true ones, and prints tables
   profile       aligns case folders natively, and prints times as JSON
   fuzz          searches for inputs on which the package fails
 
@@ -29,7 +30,7 @@ Usage: sim3align-lab COMMAND [arguments]
 /// Name and entry point of a command.
 type Command = (&'static str, fn(lexopt::Parser) -> Result<(), Failure>);
 
-const COMMANDS: [Command; 9] = [
+const COMMANDS: [Command; 10] = [
     ("case", cases::main),
     ("scenes", scenes::main),
     ("bench", bench::main),
@@ -37,6 +38,7 @@ const COMMANDS: [Command; 9] = [
     ("registration", registration::main),
     ("views", views::main),
     ("track", track::main),
+    ("outlines", outlines::main),
     ("profile", profile::main),
     ("fuzz", fuzz::main),
 ];

@@ -10,11 +10,12 @@ use super::icp::{self, classical};
 use super::measurements::{Matched, no_consensus};
 use super::quatro::{self, QuatroSettings};
 use super::teaser::{self, TeaserSettings};
+use sim3align::register::at_once::{nearest, ransac};
 use sim3align::register::fpfh::fpfh;
 use sim3align::register::grid_cloud::GridCloud;
 use sim3align::register::icp::{IcpMetric, Refined};
-use sim3align::register::matching::{Match, enough_matches};
-use sim3align::register::ransac::{RansacSettings, ransac};
+use sim3align::register::matching::Match;
+use sim3align::register::ransac::RansacSettings;
 use sim3align::register::umeyama::ScaleMode;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::random::Random;
@@ -90,7 +91,7 @@ impl Clouds {
         };
         let (source, target) = (described(&self.source), described(&self.target));
         let own = |m: Match| Match { source: source.0[m.source as usize], target: target.0[m.target as usize] };
-        enough_matches(&source.1, &target.1).into_iter().map(own).collect()
+        nearest(&source.1, &target.1).enough().into_iter().map(own).collect()
     }
 
     /// Estimates the transform from matches; local methods ignore them and start at the identity.

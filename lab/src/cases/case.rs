@@ -6,6 +6,7 @@ use glam::DVec3;
 use serde_json::json;
 
 use super::draft::{Axis, Object};
+use super::edges::DepthSource;
 use super::families;
 use super::generator::generate;
 use super::holes::Shown;
@@ -18,10 +19,11 @@ use super::scene::{Scene, put_down, turned_axis};
 use super::sensor;
 use super::split::in_two;
 use super::streams::{
-    COLOR_STREAM, GENERATOR_STREAM, MASK_STREAM, OBJECT_STREAM, READINGS_STREAM, SCENE_STREAM, SENSOR_STREAM,
+    COLOR_STREAM, EDGE_STREAM, GENERATOR_STREAM, MASK_STREAM, OBJECT_STREAM, READINGS_STREAM, SCENE_STREAM,
+    SENSOR_STREAM,
 };
 use super::texture::paint;
-use super::tier::{CaseSet, Class, Tier};
+use super::tier::{CaseSet, Class, OutlineErrors, Tier};
 use crate::case_folder::contents::{case_files, glb_file, parameters_json, symmetry_json};
 use crate::cases::distortion::canonicalise;
 use crate::draws::{chance, mixed};
@@ -63,6 +65,10 @@ pub struct EvaluationCase {
     pub class: Class,
     /// What it shows: the family's name, or the mesh file's.
     pub family: String,
+    /// What made its depth map: a [`DepthSource`] by name, or `"monocular"` or `"sensor"`.
+    pub depth: &'static str,
+    /// What made its mask: `"network-mask"`, `"annotated-mask"` or `"uniform-mask"`.
+    pub mask: &'static str,
     /// Names of the simulated errors.
     pub tags: Vec<&'static str>,
     /// Magnitudes of the simulated errors.
@@ -112,7 +118,7 @@ impl EvaluationSet {
         for draw in 0..DRAWS {
             let seed = mixed([self.seed, index as u64, draw]);
             let seed = match self.classes {
-                CaseSet::General => seed,
+                CaseSet::General | CaseSet::Dilated => seed,
                 CaseSet::Sensors => mixed([seed, SENSOR_STREAM]),
                 CaseSet::Colors => mixed([seed, COLOR_STREAM]),
             };
@@ -139,9 +145,12 @@ impl EvaluationSet {
         let scene = Scene::draw(&placed, tier, class, random)?;
         let Some(mut tags) = shows_enough(&scene, &placed, &object, tier, class) else { return Ok(None) };
 
-        let mut segmented = Segmented::draw(&scene, (tier, class), &mut Random::new(seed, MASK_STREAM))?;
+        let errors = self.classes.outlines();
+        let mut segmented = Segmented::draw(&scene, (tier, class), errors, &mut Random::new(seed, MASK_STREAM))?;
         let random = &mut Random::new(seed, READINGS_STREAM);
-        let mut readings = Readings::draw(&scene, object.diagonal(), (tier, class), random)?;
+        let has_edges = errors == OutlineErrors::Measured && class.has_measured_edges();
+        let mut edge_random = has_edges.then(|| Random::new(seed, EDGE_STREAM));
+        let mut readings = Readings::draw(&scene, object.diagonal(), (tier, class), random, edge_random.as_mut())?;
         if readings.missing > tier.pick(0.1, 0.25, 0.4) {
             return Ok(None);
         }
@@ -181,6 +190,7 @@ impl EvaluationSet {
         let metric = Similarity { scale: readings.bias, ..Similarity::identity() };
         let camera_from_object = metric.compose(&scene.camera_from_world);
         tags.push(readings.kind);
+        tags.extend(readings.source.map(DepthSource::as_str));
         tags.extend(segmented.tags);
         tags.extend(generated.tags);
         let mut parameters = vec![
@@ -193,6 +203,7 @@ impl EvaluationSet {
             ("missingDepth", readings.missing),
             ("diagonalM", object.diagonal()),
         ];
+        parameters.extend(readings.parameters);
         parameters.extend(effects);
         parameters.extend(generated.parameters);
         parameters.extend(of_photo.into_iter().flatten());
@@ -201,6 +212,8 @@ impl EvaluationSet {
             tier,
             class,
             family: object.family,
+            depth: readings.source.map_or(readings.kind, DepthSource::as_str),
+            mask: segmented.kind,
             tags,
             parameters,
             observation,

@@ -6,17 +6,20 @@
 //! common. A draw that shows too little of the object is repeated
 //! with other random numbers.
 
+mod annotated_mask;
 mod atlas;
 pub mod case;
 mod cluster;
 pub(crate) mod distortion;
 pub(crate) mod draft;
+mod edges;
 pub(crate) mod families;
 mod figures;
 pub(crate) mod generator;
 mod holes;
 mod kitchen;
 pub(crate) mod mask;
+mod network_mask;
 pub(crate) mod photo;
 mod predicted_mask;
 pub(crate) mod print;

@@ -57,5 +57,5 @@ pub fn predict(scene: &Scene, tier: Tier, random: &mut Random) -> Result<(Segmen
         }
     }
     let mask = Image::new("mask", width, height, data)?;
-    Ok((Segmented { mask, offset_px: amplitude * lean, tags }, share))
+    Ok((Segmented { mask, offset_px: amplitude * lean, kind: "predicted-mask", tags }, share))
 }

@@ -2,6 +2,8 @@
 
 use core::f64::consts::TAU;
 
+use super::edges::{DepthSource, Edges, edges};
+use super::mask::Noise;
 use super::scene::Scene;
 use super::tier::{Class, Tier};
 use crate::draws::{between, chance, normal};
@@ -18,6 +20,10 @@ pub struct Readings {
     pub bias: f64,
     /// `"monocular"` or `"sensor"`.
     pub kind: &'static str,
+    /// What made the edges, if they are as measured.
+    pub source: Option<DepthSource>,
+    /// Magnitudes at the edges, by name.
+    pub parameters: Vec<(&'static str, f64)>,
     /// Fraction of the visible pixels of the object without a reading.
     pub missing: f64,
     /// By what share the warp moves each of the things asked for along its rays: what its truth has to follow.
@@ -25,31 +31,55 @@ pub struct Readings {
 }
 
 impl Readings {
-    /// Reads a scene that shows an object of this diagonal, metres.
-    pub fn draw(scene: &Scene, diagonal: f64, cell: (Tier, Class), random: &mut Random) -> Result<Self> {
-        Self::of_several(scene, &[], (diagonal, 1.0), cell, random)
+    /// Reads a scene that shows an object of this diagonal, metres. Without `edge_random`, edges are exact.
+    pub fn draw(
+        scene: &Scene,
+        diagonal: f64,
+        cell: (Tier, Class),
+        random: &mut Random,
+        edge_random: Option<&mut Random>,
+    ) -> Result<Self> {
+        Self::of_several(scene, &[], (diagonal, 1.0), cell, random, edge_random)
     }
 
     /// Reads a scene that shows several things, each at these pixels, all of them being what the scene calls visible;
-    /// of a monocular model's grain, it has this share.
+    /// of a monocular model's grain, it has this share. Without `edge_random`, edges are exact.
     pub fn of_several(
         scene: &Scene,
         things: &[&[bool]],
         (diagonal, grain): (f64, f64),
         (tier, class): (Tier, Class),
         random: &mut Random,
+        edge_random: Option<&mut Random>,
     ) -> Result<Self> {
         let sensor = chance(random, tier.pick(0.3, 0.35, 0.3)) || class == Class::SparseSensor || class.needs_sensor();
+        let sensor = sensor && class != Class::PredictedDepth;
+        let drawn = edge_random.map(|random| {
+            let source = DepthSource::draw(class, sensor, random);
+            (source, edges(source, scene, tier, random))
+        });
+        let mut parameters = Vec::new();
+        if let Some((_, Edges { offset_px, shift_px, .. })) = &drawn {
+            let shift = libm::hypot(shift_px[0], shift_px[1]);
+            parameters.extend([("depthEdgePx", *offset_px), ("depthShiftPx", shift)]);
+        }
+        let source = drawn.as_ref().map(|(source, _)| *source);
         let (mut depth, drifts, bias) = if sensor {
-            (sensed(scene, diagonal, (tier, class), random), vec![0.0; things.len()], 1.0)
+            let depth = match drawn {
+                Some((source, edges)) => measured(edges.depth, scene, source, diagonal, tier, random),
+                None => sensed(scene, diagonal, tier, random),
+            };
+            (spotted(depth, scene, diagonal, (tier, class), random), vec![0.0; things.len()], 1.0)
         } else {
-            let (depth, drifts) = estimated(scene, things, (diagonal, grain), tier, random);
+            let edged = drawn.map(|(_, edges)| edges.depth);
+            let (depth, drifts) = estimated(scene, edged, things, (diagonal, grain), tier, random);
             (depth, drifts, libm::exp(between(random, libm::log(0.8), libm::log(1.25))))
         };
         depth.iter_mut().for_each(|z| *z *= bias as f32);
         let missing = missing(scene, &depth);
         let kind = if sensor { "sensor" } else { "monocular" };
-        Ok(Self { depth: DepthMap::from_metres(scene.width, scene.height, depth)?, bias, kind, missing, drifts })
+        let depth = DepthMap::from_metres(scene.width, scene.height, depth)?;
+        Ok(Self { depth, bias, kind, source, parameters, missing, drifts })
     }
 }
 
@@ -59,11 +89,12 @@ pub fn missing(scene: &Scene, depth: &[f32]) -> f64 {
     shown().filter(|(z, _)| **z == 0.0).count() as f64 / shown().count().max(1) as f64
 }
 
-/// Monocular: blurred over edges, warped by long waves, hardly any noise. The warp has no part that moves the object
+/// Monocular: blurred over edges, or with the given ones, warped by long waves, hardly any noise. The warp has no part that moves the object
 /// as a whole: that is the bias, which the truth follows. Of several things it moves each by a share, which is
 /// returned.
 fn estimated(
     scene: &Scene,
+    edged: Option<Vec<f32>>,
     things: &[&[bool]],
     (diagonal, grain): (f64, f64),
     tier: Tier,
@@ -72,7 +103,7 @@ fn estimated(
     let (width, height) = (scene.width, scene.height);
     let resolution = (width as f64 / 640.0).round() as usize;
     let radius = resolution * tier.pick(usize::from(chance(random, 0.5)), 1, 1 + random.below(2));
-    let mut depth = blurred(&scene.depth, width, height, radius);
+    let mut depth = edged.unwrap_or_else(|| blurred(&scene.depth, width, height, radius));
     let amplitude = between(random, 0.3, 1.0) * tier.pick(0.003, 0.012, 0.025) * diagonal;
     let noise = between(random, 0.3, 1.0) * tier.pick(0.0007, 0.0015, 0.003) * diagonal * grain;
     // Waves no shorter than the object: a model gets its parts right to each other, and the whole not quite.
@@ -135,8 +166,8 @@ fn blurred(depth: &[f32], width: usize, height: usize, radius: usize) -> Vec<f32
     pass(&rows, height, width, &|line, i| i * width + line)
 }
 
-/// A sensor: noise that grows with the distance, steps, no reading beside edges, at grazing angles and here and there.
-fn sensed(scene: &Scene, diagonal: f64, (tier, class): (Tier, Class), random: &mut Random) -> Vec<f32> {
+/// A sensor with exact edges: noise that grows with the distance, steps, no reading beside edges and at grazing angles.
+fn sensed(scene: &Scene, diagonal: f64, tier: Tier, random: &mut Random) -> Vec<f32> {
     let (width, height) = (scene.width, scene.height);
     let resolution = width as f64 / 640.0;
     let share = between(random, 0.4, 1.0);
@@ -164,6 +195,53 @@ fn sensed(scene: &Scene, diagonal: f64, (tier, class): (Tier, Class), random: &m
             *value = ((noisy / step).round() * step) as f32;
         }
     }
+    depth
+}
+
+/// Noise and steps of a sensor, on a map with its edges: as published for RealSense D400, PrimeSense and Kinect 2.
+fn measured(
+    mut depth: Vec<f32>,
+    scene: &Scene,
+    source: DepthSource,
+    diagonal: f64,
+    tier: Tier,
+    random: &mut Random,
+) -> Vec<f32> {
+    // By z²: white noise, smooth noise, and steps; of time of flight, the noise hardly grows.
+    let [white, smooth, step] = match source {
+        DepthSource::ActiveStereo => [0.0008, 0.006, 0.0005],
+        DepthSource::StructuredLight => [0.0008, 0.002, 0.0028],
+        DepthSource::TimeOfFlight | DepthSource::Predicted => [0.001, 0.001, 0.0],
+    };
+    let share = between(random, 0.6, 1.0);
+    let bumps = Noise::new(scene, 6.0 * scene.width as f64 / 640.0, random);
+    // A sensor that drowns the object in noise is the wrong one: the user would step closer.
+    let at_most = |x: f64, most: f64| x.min(most * diagonal);
+    for (i, value) in depth.iter_mut().enumerate() {
+        let grain = normal(random);
+        let z = f64::from(*value);
+        if z == 0.0 || z > 12.0 {
+            *value = 0.0;
+            continue;
+        }
+        let squared = if source == DepthSource::TimeOfFlight { z } else { z * z };
+        let noise = at_most(white * squared, tier.pick(0.003, 0.006, 0.01)) * grain
+            + at_most(smooth * squared, tier.pick(0.005, 0.01, 0.02)) * bumps.at(i % scene.width, i / scene.width);
+        let step = at_most(step * squared, tier.pick(0.004, 0.008, 0.016)).max(1e-6);
+        *value = (((z + share * noise) / step).round() * step) as f32;
+    }
+    depth
+}
+
+/// The map without readings here and there, on the object and elsewhere.
+fn spotted(
+    mut depth: Vec<f32>,
+    scene: &Scene,
+    diagonal: f64,
+    (tier, class): (Tier, Class),
+    random: &mut Random,
+) -> Vec<f32> {
+    let (width, height) = (scene.width, scene.height);
     let wanted = if class == Class::SparseSensor {
         between(random, tier.pick(0.05, 0.1, 0.18), tier.pick(0.05, 0.18, 0.3))
     } else {

@@ -8,7 +8,7 @@ use glam::{DVec3, Vec3};
 use super::cluster::cluster;
 use super::draft::{Axis, Object};
 use crate::draws::between;
-use sim3align::metrics::symmetry::principal_symmetry;
+use sim3align::metrics::mesh_symmetry::symmetry_axes;
 use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, read_mesh};
 use sim3align_geometry::cloud::Bounds;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
@@ -61,7 +61,7 @@ impl Scan {
             let cell = mesh.diagonal() / CELLS;
             mesh = cluster(&mesh, cell, DVec3::ZERO)?;
         }
-        let symmetry = principal_symmetry(&mesh, true)?;
+        let symmetry = symmetry_axes(&mesh)?;
         let symmetry = symmetry.iter().map(|a| (DVec3::from_array(a.axis.into()), a.fold)).collect();
         let bounds = Bounds::of(mesh.positions()).unwrap_or(Bounds { min: Vec3::ZERO, max: Vec3::ONE });
         let unit = |p: &Vec3| (*p - bounds.center()) / bounds.diagonal();

@@ -15,6 +15,8 @@ pub(crate) const MASK_STREAM: u64 = 5;
 pub(crate) const SENSOR_STREAM: u64 = 6;
 /// Prints, photos, and the colours of generated meshes.
 pub(crate) const COLOR_STREAM: u64 = 7;
+/// Edges of the depth map.
+pub(crate) const EDGE_STREAM: u64 = 8;
 /// Cluttered scenes: positions of objects and clutter, and the viewpoint.
 pub(crate) const LAYOUT_STREAM: u64 = 17;
 /// Cluttered scenes: number of objects per scene.

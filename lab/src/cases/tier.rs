@@ -12,6 +12,18 @@ pub enum CaseSet {
     Sensors,
     /// Coloured objects, their photos and coloured meshes.
     Colors,
+    /// The general set with the errors of outlines that it once had ([`OutlineErrors::Uniform`]), for comparisons.
+    Dilated,
+}
+
+/// How outlines err in masks and depth maps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OutlineErrors {
+    /// As on real cases: masks of networks and of annotators, and the edges of sensors and depth models.
+    Measured,
+    /// Masks are too large or too small by the same distance everywhere, up to three pixels, and the edges of depth are
+    /// exact.
+    Uniform,
 }
 
 /// Tier of difficulty of a case.
@@ -63,6 +75,18 @@ pub enum Class {
     Quantised,
     /// A mask with smooth errors of its outline and small islands, as a segmentation network predicts it.
     PredictedMask,
+    /// Depth of a stereo camera: edges that move in and out by pixels, bumps.
+    ActiveStereo,
+    /// Depth from a projected pattern: eroded edges, shadows on one side, steps.
+    StructuredLight,
+    /// Depth from the time of light: readings between object and background.
+    TimeOfFlight,
+    /// Depth of a model: ramps from object to background.
+    PredictedDepth,
+    /// A mask enlarged from few logits.
+    NetworkMask,
+    /// A polygon.
+    AnnotatedMask,
     /// A symmetric shape whose print alone tells how it is turned.
     Printed,
     /// A symmetric shape of two colours or with blots.
@@ -105,8 +129,20 @@ const HARD: &[Class] = &[
     Class::ExtraPart,
 ];
 /// Of every tier.
-const SENSORS: &[Class] =
-    &[Class::WideShadow, Class::Holes, Class::MaskOfReadings, Class::SplitMask, Class::Quantised, Class::PredictedMask];
+const SENSORS: &[Class] = &[
+    Class::WideShadow,
+    Class::Holes,
+    Class::MaskOfReadings,
+    Class::SplitMask,
+    Class::Quantised,
+    Class::PredictedMask,
+    Class::ActiveStereo,
+    Class::StructuredLight,
+    Class::TimeOfFlight,
+    Class::PredictedDepth,
+    Class::NetworkMask,
+    Class::AnnotatedMask,
+];
 
 /// Of every tier.
 const COLORS: &[Class] = &[
@@ -122,7 +158,7 @@ const COLORS: &[Class] = &[
 
 impl CaseSet {
     /// All sets.
-    pub const ALL: &[Self] = &[Self::General, Self::Sensors, Self::Colors];
+    pub const ALL: &[Self] = &[Self::General, Self::Sensors, Self::Colors, Self::Dilated];
 
     /// The set's name.
     pub fn as_str(self) -> &'static str {
@@ -130,6 +166,7 @@ impl CaseSet {
             Self::General => "general",
             Self::Sensors => "sensors",
             Self::Colors => "colors",
+            Self::Dilated => "dilated",
         }
     }
 
@@ -144,11 +181,16 @@ impl CaseSet {
     /// The class of a case of this set.
     pub fn class(self, index: usize) -> Class {
         let classes = match self {
-            Self::General => Tier::of(index).pick(EASY, MEDIUM, HARD),
+            Self::General | Self::Dilated => Tier::of(index).pick(EASY, MEDIUM, HARD),
             Self::Sensors => SENSORS,
             Self::Colors => COLORS,
         };
         classes[index / 3 % classes.len()]
+    }
+
+    /// The errors of outlines.
+    pub(super) fn outlines(self) -> OutlineErrors {
+        if self == Self::Dilated { OutlineErrors::Uniform } else { OutlineErrors::Measured }
     }
 }
 
@@ -214,6 +256,12 @@ impl Class {
         Self::SplitMask,
         Self::Quantised,
         Self::PredictedMask,
+        Self::ActiveStereo,
+        Self::StructuredLight,
+        Self::TimeOfFlight,
+        Self::PredictedDepth,
+        Self::NetworkMask,
+        Self::AnnotatedMask,
         Self::Printed,
         Self::Blotted,
         Self::PrintedShape,
@@ -242,6 +290,12 @@ impl Class {
             Self::SplitMask => "split-mask",
             Self::Quantised => "quantised",
             Self::PredictedMask => "predicted-mask",
+            Self::ActiveStereo => "active-stereo",
+            Self::StructuredLight => "structured-light",
+            Self::TimeOfFlight => "time-of-flight",
+            Self::PredictedDepth => "predicted-depth",
+            Self::NetworkMask => "network-mask",
+            Self::AnnotatedMask => "annotated-mask",
             Self::Printed => "printed",
             Self::Blotted => "blotted",
             Self::PrintedShape => "printed-shape",
@@ -253,7 +307,21 @@ impl Class {
 
     /// Whether the class needs the depth of a sensor instead of a depth model's.
     pub(super) fn needs_sensor(self) -> bool {
-        SENSORS.contains(&self) && self != Self::PredictedMask
+        let of_masks = matches!(self, Self::PredictedMask | Self::NetworkMask | Self::AnnotatedMask);
+        SENSORS.contains(&self) && !of_masks && self != Self::PredictedDepth
+    }
+
+    /// Whether the edges of its depth are as measured. The others have effects of their own on an exact map.
+    pub(super) fn has_measured_edges(self) -> bool {
+        !matches!(
+            self,
+            Self::WideShadow
+                | Self::Holes
+                | Self::MaskOfReadings
+                | Self::SplitMask
+                | Self::Quantised
+                | Self::PredictedMask
+        )
     }
 
     /// Whether the shape is symmetric, so that at most its print tells how it is turned.

@@ -3,6 +3,7 @@
 pub mod bench;
 pub mod cases;
 pub mod fuzz;
+pub mod outlines;
 pub mod profile;
 pub mod registration;
 pub mod scenes;

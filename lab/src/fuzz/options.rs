@@ -94,10 +94,9 @@ fn number_in(c: &mut Choices, low: f64, high: f64) -> f64 {
 
 /// A symmetry, also one that no object has.
 pub fn symmetry(c: &mut Choices) -> Symmetry {
-    match c.below(4) {
+    match c.below(3) {
         0 => Symmetry::Auto,
         1 => Symmetry::None,
-        2 => Symmetry::AutoRevolution,
         _ => {
             let axes = 1 + c.below(3);
             let axis = |c: &mut Choices| SymmetryAxis {

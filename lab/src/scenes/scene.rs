@@ -14,7 +14,7 @@ use crate::cases::scene::Scene;
 use crate::cases::streams::{
     LAYOUT_STREAM, MASK_STREAM, OBJECT_STREAM, QUALITY_STREAM, READINGS_STREAM, SCENE_STREAM, STANCE_STREAM,
 };
-use crate::cases::tier::{Class, Tier};
+use crate::cases::tier::{Class, OutlineErrors, Tier};
 use crate::draws::{chance, mixed};
 use sim3align::evidence::observation::Observation;
 use sim3align::metrics::symmetry::{Symmetry, SymmetryAxis};
@@ -117,7 +117,7 @@ impl ClutteredScene {
         let diagonal = f64::from(median(diagonals).unwrap_or_default());
         let cell = (drawn_tier(quality), Class::Plain);
         let random = &mut Random::new(seed, READINGS_STREAM);
-        let readings = Readings::of_several(&seen.together, &shown, (diagonal, GRAIN), cell, random)?;
+        let readings = Readings::of_several(&seen.together, &shown, (diagonal, GRAIN), cell, random, None)?;
         let depth = in_units(&readings.depth)?;
         let mut pairs = Vec::new();
         let things = layout.objects.iter().zip(&seen.objects).enumerate();
@@ -126,7 +126,7 @@ impl ClutteredScene {
             let class =
                 if tier_of_mask != Tier::Easy && chance(quality, 0.12) { Class::RaggedMask } else { Class::Plain };
             let random = &mut Random::new(mixed([seed, k as u64]), MASK_STREAM);
-            let segmented = Segmented::draw(view, (tier_of_mask, class), random)?;
+            let segmented = Segmented::draw(view, (tier_of_mask, class), OutlineErrors::Uniform, random)?;
             let readings_in_mask = || segmented.mask.data().iter().zip(depth.data()).filter(|(m, _)| **m != 0);
             let mask_px = readings_in_mask().count();
             let missing = readings_in_mask().filter(|(_, z)| **z == 0.0).count() as f64 / mask_px.max(1) as f64;

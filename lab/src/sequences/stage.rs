@@ -18,7 +18,7 @@ use crate::cases::readings::Readings;
 use crate::cases::scene::{Scene, background, camera_at, count, hidden, put_before, put_down, shown};
 use crate::cases::solid::Solid;
 use crate::cases::texture::paint;
-use crate::cases::tier::{Class, Tier};
+use crate::cases::tier::{Class, OutlineErrors, Tier};
 use crate::draws::between;
 use sim3align::evidence::photo::Photo;
 use sim3align::metrics::symmetry::Symmetry;
@@ -169,11 +169,11 @@ impl Stage {
     /// Depth of a sensor and the mask of a segmentation model.
     pub fn readings(&self, scene: &Scene, random: &mut Random) -> Result<(DepthMap, Mask)> {
         let cell = (self.tier, Class::SparseSensor);
-        let readings = Readings::draw(scene, self.object.diagonal(), cell, random)?;
+        let readings = Readings::draw(scene, self.object.diagonal(), cell, random, None)?;
         if scene.visible_px() == 0 {
             return Ok((readings.depth, Mask::filled(scene.width, scene.height, 0)));
         }
-        let mask = Segmented::draw(scene, (self.tier, Class::Plain), random)?.mask;
+        let mask = Segmented::draw(scene, (self.tier, Class::Plain), OutlineErrors::Uniform, random)?.mask;
         Ok((readings.depth, mask))
     }
 }

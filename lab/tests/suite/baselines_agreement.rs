@@ -7,9 +7,10 @@
 use glam::Vec3;
 use nalgebra::Vector3;
 use serde_json::Value;
+use sim3align::register::at_once::ransac;
 use sim3align::register::icp::IcpMetric;
 use sim3align::register::matching::Match;
-use sim3align::register::ransac::{RansacSettings, ransac};
+use sim3align::register::ransac::RansacSettings;
 use sim3align::register::umeyama::ScaleMode;
 use sim3align_geometry::cloud::Cloud;
 use sim3align_geometry::kd_tree::KdTree;

@@ -9,6 +9,7 @@ mod colors;
 mod evaluation;
 mod fuzz;
 mod imported;
+mod outlines;
 mod overlay;
 mod real_cases;
 mod records;

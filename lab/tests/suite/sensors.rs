@@ -1,13 +1,14 @@
-//! The generated set of depth sensors and predicted masks: each class shows its effect.
+//! The generated set of depth sensors and of masks: each class shows its effect.
 
 use std::collections::BTreeSet;
 
 use sim3align_geometry::rasteriser::Rasteriser;
 use sim3align_lab::cases::case::{EvaluationCase, EvaluationSet, MIN_MASK_PX};
 use sim3align_lab::cases::tier::{CaseSet, Class, Tier};
+use sim3align_lab::outlines::{GroupBy, ObjectOutlines, OutlineView};
 
 /// Two cases of every class of every tier.
-const LOOKED_AT: usize = 36;
+const LOOKED_AT: usize = 72;
 
 fn set(seed: u64) -> EvaluationSet {
     EvaluationSet::new(seed).of(CaseSet::Sensors)
@@ -16,7 +17,7 @@ fn set(seed: u64) -> EvaluationSet {
 fn of_class(class: Class) -> Vec<EvaluationCase> {
     let indices = (0..LOOKED_AT).filter(|&index| CaseSet::Sensors.class(index) == class);
     let cases: Vec<EvaluationCase> = indices.map(|index| set(7).case(index).unwrap()).collect();
-    assert_eq!(cases.len(), LOOKED_AT / 6);
+    assert_eq!(cases.len(), LOOKED_AT / 12);
     cases
 }
 
@@ -67,7 +68,7 @@ fn classes_are_mixed_evenly() {
     for tier in Tier::ALL {
         let of_tier = || (0..LOOKED_AT).filter(|&index| Tier::of(index) == *tier);
         let classes: BTreeSet<Class> = of_tier().map(|index| CaseSet::Sensors.class(index)).collect();
-        assert_eq!(classes.len(), 6);
+        assert_eq!(classes.len(), 12);
         for class in classes {
             assert_eq!(of_tier().filter(|&index| CaseSet::Sensors.class(index) == class).count(), 2);
             assert!((0..LOOKED_AT).all(|index| CaseSet::General.class(index) != class), "{class:?}");
@@ -196,4 +197,78 @@ fn a_predicted_mask_is_wrong_by_a_few_percent_of_the_object() {
         assert!((0.008..=0.07).contains(&share), "{}: {share}", case.name());
     }
     assert!(checked >= 2);
+}
+
+/// The measured outlines of the cases of a class that show enough of them.
+fn outlines_of(class: Class) -> Vec<ObjectOutlines> {
+    let view = |case| OutlineView::generated(case, GroupBy::Class);
+    let found: Vec<_> = of_class(class).into_iter().filter_map(|case| ObjectOutlines::of(&view(case))).collect();
+    found.iter().for_each(|o| println!("{}: {o:?}", o.name));
+    assert!(found.len() >= 4, "{class:?}: {}", found.len());
+    found
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let values: Vec<f64> = values.collect();
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+#[test]
+fn edges_of_stereo_move_in_and_out() {
+    let found = outlines_of(Class::ActiveStereo);
+    let depth = || found.iter().filter_map(|o| o.depth);
+    assert!(depth().count() >= 3);
+    assert!(mean(depth().map(|edge| edge.spread)) >= 0.6);
+    assert!(depth().all(|edge| edge.median.abs() <= 8.0));
+    assert!(of_class(Class::ActiveStereo).iter().all(|case| case.depth == "active-stereo"));
+}
+
+#[test]
+fn edges_of_structured_light_are_eroded_behind_a_gap() {
+    let found = outlines_of(Class::StructuredLight);
+    let depth = || found.iter().filter(|o| o.depth.is_some());
+    assert!(depth().count() >= 3);
+    assert!(mean(depth().map(|o| o.depth.unwrap().median)) <= -0.6);
+    assert!(mean(depth().map(|o| o.gap.unwrap()[0])) >= 1.0);
+    assert!(mean(depth().map(|o| o.mixed.unwrap())) <= 0.1);
+}
+
+#[test]
+fn edges_of_time_of_flight_and_of_models_are_mixed() {
+    for (class, gap) in [(Class::TimeOfFlight, 2.0), (Class::PredictedDepth, 0.1)] {
+        let found = outlines_of(class);
+        let depth = || found.iter().filter(|o| o.depth.is_some());
+        assert!(depth().count() >= 3, "{class:?}");
+        assert!(mean(depth().map(|o| o.mixed.unwrap())) >= 0.1, "{class:?}");
+        assert!(mean(depth().map(|o| o.gap.unwrap()[0])) <= gap, "{class:?}");
+    }
+}
+
+#[test]
+fn masks_of_networks_and_annotators_are_right_within_about_a_pixel_and_not_evenly() {
+    for (class, kind) in [(Class::NetworkMask, "network-mask"), (Class::AnnotatedMask, "annotated-mask")] {
+        assert!(of_class(class).iter().all(|case| case.mask == kind && case.tags.contains(&kind)));
+        let found = outlines_of(class);
+        let masks = || found.iter().filter_map(|o| o.mask);
+        assert!(mean(masks().map(|mask| mask.median.abs())) <= 1.0, "{class:?}");
+        assert!(mean(masks().map(|mask| mask.spread)) >= 0.25, "{class:?}");
+        assert!(masks().all(|mask| mask.median.abs() <= 2.5), "{class:?}");
+    }
+}
+
+#[test]
+fn masks_of_all_sets_but_one_are_mostly_of_networks_and_annotators() {
+    let kinds = |set: CaseSet| -> Vec<&str> {
+        let set = EvaluationSet::new(7).of(set);
+        (0..36).map(|index| set.case(index).unwrap().mask).collect()
+    };
+    assert!(kinds(CaseSet::Dilated).iter().all(|kind| *kind == "uniform-mask"));
+    let general = kinds(CaseSet::General);
+    let count = |kind: &str| general.iter().filter(|k| **k == kind).count();
+    assert!(count("uniform-mask") <= 5, "{general:?}");
+    assert!(count("network-mask") >= 12 && count("annotated-mask") >= 6, "{general:?}");
+    // The same objects, seen from the same places: only what a mask or a depth map leaves too little of is drawn again.
+    let [new, old] = [CaseSet::General, CaseSet::Dilated].map(|set| EvaluationSet::new(7).of(set));
+    let same = (0..36).filter(|&index| new.case(index).unwrap().object == old.case(index).unwrap().object).count();
+    assert!(same >= 30, "{same} of 36");
 }

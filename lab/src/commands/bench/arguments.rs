@@ -29,8 +29,9 @@ Cases
   --misfits N        cases 0 to N − 1 with the mesh of the next case: no pose is right
   --scenes N         all pairs of a set of N cluttered scenes; 100 scenes are 338 pairs
   --prior P          what made the meshes of the scenes: detailed (default), smooth or both
-  --set SET          the generated set: general (default), sensors, with effects of depth sensors and predicted
-                     masks, or colors, with photos and coloured meshes
+  --set SET          the generated set: general (default); sensors, with effects of depth sensors and predicted
+                     masks; colors, with photos and coloured meshes; or dilated, the general set with masks that are too
+                     large or too small all around and with exact edges of depth
   --set-seed S       seed of the generated set and of the scenes, default 0
   --meshes DIR       show the GLB files of a folder in a third of the generated cases
   --cases DIR...     case folders, or folders of case folders
@@ -38,7 +39,8 @@ Cases
   --tier T,…         only these: easy, medium, hard
   --class C,…        only these: plain, occluded, border-cut, tiny, thin, missing-part, extra-part, ragged-mask,
                      warped, sparse-sensor, ambiguous; of the set sensors: wide-shadow, holes, mask-of-readings,
-                     split-mask, quantised, predicted-mask; of the set colors: printed, blotted, printed-shape,
+                     split-mask, quantised, predicted-mask, active-stereo, structured-light, time-of-flight,
+                     predicted-depth, network-mask, annotated-mask; of the set colors: printed, blotted, printed-shape,
                      one-color, wrong-colors, grey-photo
   --only I,…         only these indices of the generated set (--generated is not needed)
 
