@@ -2,7 +2,8 @@
 //! Generative Reconstructions via Partial Monocular Observations".
 //!
 //! Every module imports only from those below it in this list: [`bindings`], [`track`], [`views`], [`scene`], [`align`],
-//! [`precise`], [`paper`], [`register`], [`report`], [`options`], [`metrics`], [`evidence`], [`progress`], [`geometry`].
+//! [`precise`], [`paper`], [`register`], [`report`], [`options`], [`metrics`], [`evidence`], [`pauses`], [`progress`],
+//! [`geometry`].
 
 pub mod align;
 pub mod bindings;
@@ -10,6 +11,7 @@ pub mod evidence;
 pub mod metrics;
 pub mod options;
 pub mod paper;
+pub mod pauses;
 pub mod precise;
 pub mod progress;
 pub mod register;

@@ -63,7 +63,8 @@ pub fn read_depth(bytes: &[u8], options: &DepthReadOptions) -> Result<DepthMap> 
 fn read_png(bytes: &[u8], depth_scale: f64) -> Result<DepthMap> {
     let info = PngInfo::read("depth", bytes)?;
     if info.bit_depth < 16 {
-        return Err(eight_bit(format!("a {}-bit PNG", info.bit_depth)));
+        let article = if info.bit_depth == 8 { "an" } else { "a" };
+        return Err(eight_bit(format!("{article} {}-bit PNG", info.bit_depth)));
     }
     if !info.is_grey {
         return Err(unsupported(

@@ -63,6 +63,10 @@ pub enum ErrorCode {
     EightBitDepth,
     /// Draco- or meshopt-compressed geometry. The message names a tool that decompresses it.
     CompressedMesh,
+    /// A call that needs more memory than there is: 4 GB at most. Crop or reduce the images, or simplify the mesh.
+    OutOfMemory,
+    /// The worker or the memory in which a tracker lived is gone. Open another one at its last pose.
+    TrackerLost,
     /// A bug in this package. Please report it.
     Internal,
 }
@@ -95,6 +99,8 @@ impl ErrorCode {
             Self::FileTooLarge => "FILE_TOO_LARGE",
             Self::EightBitDepth => "EIGHT_BIT_DEPTH",
             Self::CompressedMesh => "COMPRESSED_MESH",
+            Self::OutOfMemory => "OUT_OF_MEMORY",
+            Self::TrackerLost => "TRACKER_LOST",
             Self::Internal => "INTERNAL",
         }
     }

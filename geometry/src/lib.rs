@@ -13,6 +13,8 @@ pub mod components;
 pub mod decimate;
 pub mod distance_transform;
 pub mod error;
+#[cfg(target_arch = "wasm32")]
+mod heap;
 pub mod image;
 pub mod kd_tree;
 pub mod mesh;
@@ -32,8 +34,7 @@ mod triangle_block;
 pub mod triangle_tree;
 pub mod voxel_grid;
 
-/// The allocator of all modules: two-level segregated fit, with constant time to allocate and to free, and a fifth of the
-/// code of the standard one.
+/// The allocator of all modules.
 #[cfg(target_arch = "wasm32")]
 #[global_allocator]
-static ALLOCATOR: rlsf::SmallGlobalTlsf = rlsf::SmallGlobalTlsf::new();
+static ALLOCATOR: heap::Heap = heap::Heap::new();

@@ -24,8 +24,8 @@ options! {
     pub struct EvaluateOptions {
         /// The known transform, camera from mesh, that `errors` compares with.
         truth: Option<Similarity> = None, Transform;
-        /// The object's symmetry: the rotation error is the smallest over it. `"auto"` detects half turns about the mesh's
-        /// principal axes, `"auto-revolution"` also axes of revolution.
+        /// The object's symmetry: the rotation error is the smallest over it. `"auto"` finds it on the surface of the
+        /// mesh.
         symmetry: Symmetry = Symmetry::None, Symmetry;
         /// Whether to compute `layout` if `truth` is given. Calls that leave it out are several times faster.
         layout: bool = true, Flag;

@@ -104,7 +104,9 @@ pub(super) fn report(
     let scale_ratio = camera_from_mesh.scale / initial_scale;
     let mut warnings = warnings::about_observation(observation);
     warnings.extend(warnings::about_scale(scale_ratio, clamped, setup.preset));
-    warnings.extend(warnings::about_convergence(converged, counts.icp_iterations, setup.preset));
+    if setup.preset == Preset::Paper {
+        warnings.extend(warnings::about_icp(converged, counts.icp_iterations));
+    }
     let [target_points, source_points] = clouds.counts();
     PaperAlignment {
         camera_from_mesh: (&camera_from_mesh).into(),

@@ -8,7 +8,7 @@ use core::mem::replace;
 use std::rc::Rc;
 
 use super::outcome::{Setup, report, score};
-use super::warnings::about_fit;
+use super::warnings::{about_fit, about_search};
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::Normals;
 use crate::evidence::clouds::Clouds;
@@ -17,6 +17,8 @@ use crate::evidence::photo::Photo;
 use crate::precise;
 use crate::precise::clean::CleanObservation;
 use crate::precise::color::{ColorStage, agreement};
+use crate::precise::conditioning::DROP;
+use crate::precise::equivalence::DIFFERENT;
 use crate::precise::options::AlignOptions;
 use crate::precise::prepared_mesh::PreparedMesh;
 use crate::precise::recipe::SURE;
@@ -59,8 +61,10 @@ pub struct Given {
 
 /// Loss of confidence beyond which the surroundings do not choose another pose than the object alone.
 const DOUBT: f64 = 0.05;
-/// Loss of confidence by which the surroundings contradict what an object alone shows.
-const CONTRADICTION: f64 = 0.3;
+/// Share of the confidence below which the surroundings contradict what an object alone shows.
+const CONTRADICTION: f64 = 0.75;
+/// Loss of the score of the image, at about the same rotation, with the same meaning: two standard deviations.
+const MOST_LOSS: f64 = 4.0 * DROP;
 
 /// The progress of the task.
 enum State {
@@ -78,6 +82,8 @@ enum State {
     Resumed(Box<Clouds>, Box<Rounds>),
     /// The search with the effort of this index is running.
     Searching(Box<Clouds>, Box<Rounds>, usize),
+    /// The search with the effort of this index is sure of its pose, and rivals of it are looked for.
+    Doubting(Box<Clouds>, Box<Rounds>, Box<(Solution, Certainty)>, Box<Rounds>, usize),
     /// The searches have ended.
     Searched(Box<Clouds>, Box<Rounds>, Box<(Solution, Certainty)>),
     /// The poses that the searches have left are compared with the photo.
@@ -219,6 +225,7 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
         let running = match &mut state {
             State::Searching(_, rounds, effort) => Some((rounds, precise::share(*effort, self.efforts.len()))),
             State::Resumed(_, rounds) => Some((rounds, precise::share(0, 1))),
+            State::Doubting(.., rounds, effort) => Some((rounds, precise::share(*effort + 1, self.efforts.len() + 1))),
             _ => None,
         };
         if let Some((rounds, share)) = running
@@ -264,32 +271,43 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
             },
             State::Decimated(clouds) => self.search(clouds, 0, None, stages)?,
             State::Searching(clouds, rounds, effort) => {
-                let concluded = precise::conclude(&rounds, mesh.mesh(), &self.options, None);
+                let concluded = precise::conclude(&rounds, None);
                 let is_sure = matches!(&concluded, Ok((_, certainty)) if certainty.confidence >= SURE);
-                if !is_sure && effort + 1 < self.efforts.len() {
+                let is_last = effort + 1 == self.efforts.len();
+                if !is_sure && !is_last {
                     return self.search(clouds, effort + 1, Some(&rounds), stages);
                 }
-                State::Searched(clouds, rounds, Box::new(concluded?))
+                let concluded = Box::new(concluded?);
+                match precise::look(&rounds).filter(|_| !is_last) {
+                    Some(look) => State::Doubting(clouds, rounds, concluded, Box::new(look), effort),
+                    None => State::Searched(clouds, rounds, concluded),
+                }
+            }
+            State::Doubting(clouds, mut rounds, concluded, look, effort) => {
+                if precise::has_rival(&mut rounds, &look) {
+                    return self.search(clouds, effort + 1, Some(&rounds), stages);
+                }
+                State::Searched(clouds, rounds, concluded)
             }
             State::Resumed(clouds, mut rounds) => {
-                let mut concluded = precise::conclude(&rounds, mesh.mesh(), &self.options, None)?;
+                let mut concluded = precise::conclude(&rounds, None)?;
                 if let Some((given, _)) = &self.given
                     && concluded.1.confidence < given.confidence - DOUBT
                     && rounds.prefer(&given.found)
                 {
-                    concluded = precise::conclude(&rounds, mesh.mesh(), &self.options, None)?;
+                    concluded = precise::conclude(&rounds, None)?;
                 }
                 if let Some((given, resume)) = &self.given
-                    && concluded.1.confidence < given.confidence - CONTRADICTION
+                    && (concluded.1.confidence < CONTRADICTION * given.confidence || leaves_image(given, &rounds))
                 {
-                    // Surroundings that spoil a good pose are those of a neighbour that is misplaced itself.
+                    // Tables, undersides and neighbours are as inaccurate as the object: what its image shows, wins.
                     let alone = Given { known: Neighbourhood::default(), ..given.clone() };
                     let clean = rounds.search.observation.clone();
                     let State::Resumed(clouds, rounds) = self.resume(clouds, &alone, *resume, Some(clean), stages)?
                     else {
                         return Err(over());
                     };
-                    let concluded = precise::conclude(&rounds, mesh.mesh(), &self.options, None)?;
+                    let concluded = precise::conclude(&rounds, None)?;
                     return Ok(State::Searched(clouds, rounds, Box::new(concluded)));
                 }
                 State::Searched(clouds, rounds, Box::new(concluded))
@@ -311,7 +329,7 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
                     chosen.into_iter().for_each(|chosen| rounds.found.insert(0, chosen));
                     return Ok(State::Chosen(rounds, concluded));
                 }
-                let (solution, certainty) = precise::conclude(&rounds, mesh.mesh(), &self.options, judgment.as_ref())?;
+                let (solution, certainty) = precise::conclude(&rounds, judgment.as_ref())?;
                 State::Found(clouds, rounds.search.observation.clone(), Box::new(solution), Box::new(certainty))
             }
             State::Chosen(..) | State::Found(..) | State::Over => return Err(over()),
@@ -351,12 +369,31 @@ impl<'h, 'm, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>> AlignTask<'h, 
     }
 }
 
+/// Whether the surroundings have moved the pose that the object has alone farther than its image allows.
+fn leaves_image(given: &Given, rounds: &Rounds) -> bool {
+    let (Some(alone), Some(now)) = (given.found.first(), rounds.found.first()) else { return false };
+    let search = &rounds.search;
+    let loss = search.by_image(&alone.score) - search.by_image(&now.score);
+    let turn = search.equivalence.angle(alone.pose.rotation, now.pose.rotation);
+    turn < DIFFERENT && f64::from(loss) > MOST_LOSS
+}
+
 fn with_certainty(aligned: PaperAlignment, certainty: Certainty) -> Alignment {
-    let Certainty { confidence, alternatives, uncertainty, score, terms, effort, color } = certainty;
+    let Certainty { confidence, turn_confidence, alternatives, uncertainty, score, terms, effort, color } = certainty;
     let PaperAlignment { camera_from_mesh, metrics, mut warnings, diagnostics } = aligned;
+    warnings.extend(about_search(diagnostics.converged, confidence));
     warnings.extend(about_fit(&terms));
     let diagnostics = PreciseDiagnostics { common: diagnostics, effort, score, terms, color };
-    Alignment { camera_from_mesh, confidence, alternatives, uncertainty, metrics, warnings, diagnostics }
+    Alignment {
+        camera_from_mesh,
+        confidence,
+        turn_confidence,
+        alternatives,
+        uncertainty,
+        metrics,
+        warnings,
+        diagnostics,
+    }
 }
 
 fn over() -> Error {

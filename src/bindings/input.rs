@@ -5,7 +5,7 @@ use std::sync::Arc;
 use js_sys::Uint16Array;
 use wasm_bindgen::{JsCast, JsValue};
 
-use super::object::{get, number, required_number, size, to_colors, to_f32s, to_u8s, wrong_type};
+use super::object::{check_bytes, get, number, required_number, size, to_colors, to_f32s, to_u8s, wrong_type};
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::frame::Frame;
 use crate::evidence::observation::{Observation, from_point_map};
@@ -83,6 +83,7 @@ fn depth(input: &JsValue, width: usize, height: usize) -> Result<DepthMap> {
             "Pass metres per unit of depth: 0.001 for millimetres.",
         ));
     }
+    check_bytes(&values, "depth")?;
     if let Some(units) = values.dyn_ref::<Uint16Array>() {
         check_size("depth", width, height, units.length() as usize)?;
         let scale = scale.unwrap_or(DEFAULT_DEPTH_SCALE);

@@ -75,8 +75,29 @@ fn is_typed_array(value: &JsValue) -> bool {
     value.is_instance_of::<Float32Array>() || value.is_instance_of::<Float64Array>()
 }
 
+/// Largest array of an argument, bytes: 67 million pixels of f32. What is derived from it, at up to 31 bytes per number, then
+/// stays below 2 GB, which is what a single allocation can have.
+const MAX_BYTES: f64 = (1 << 28) as f64;
+
+/// Checks the size of a typed array before it is copied; 16-bit numbers become 32-bit ones.
+pub fn check_bytes(array: &JsValue, argument: &str) -> Result<()> {
+    let of_numbers = if array.is_instance_of::<Uint16Array>() { 2.0 } else { 1.0 };
+    let bytes = of_numbers * get(array, "byteLength").and_then(|bytes| bytes.as_f64()).unwrap_or_default();
+    if bytes <= MAX_BYTES {
+        return Ok(());
+    }
+    Err(Error::new(
+        ErrorCode::OutOfMemory,
+        argument.to_owned(),
+        format!("an array of {} MB", number_text((bytes / 1e6).round())),
+        format!("at most {} MB", MAX_BYTES as u32 / 1_000_000),
+        "Crop the images to the object, reduce their size, or simplify the mesh.",
+    ))
+}
+
 /// A copy of a `Float32Array`.
 pub fn to_f32s(value: &JsValue, argument: &str) -> Result<Vec<f32>> {
+    check_bytes(value, argument)?;
     match value.dyn_ref::<Float32Array>() {
         Some(array) => Ok(array.to_vec()),
         None => Err(not_typed_array(argument, value, "a Float32Array")),
@@ -85,6 +106,7 @@ pub fn to_f32s(value: &JsValue, argument: &str) -> Result<Vec<f32>> {
 
 /// A copy of a `Float32Array` or `Float64Array` in f64.
 pub fn to_f64s(value: &JsValue, argument: &str) -> Result<Vec<f64>> {
+    check_bytes(value, argument)?;
     if let Some(array) = value.dyn_ref::<Float64Array>() {
         return Ok(array.to_vec());
     }
@@ -96,6 +118,7 @@ pub fn to_f64s(value: &JsValue, argument: &str) -> Result<Vec<f64>> {
 
 /// A copy of a `Uint32Array` or `Uint16Array`.
 pub fn to_u32s(value: &JsValue, argument: &str) -> Result<Vec<u32>> {
+    check_bytes(value, argument)?;
     if let Some(array) = value.dyn_ref::<Uint32Array>() {
         return Ok(array.to_vec());
     }
@@ -107,6 +130,7 @@ pub fn to_u32s(value: &JsValue, argument: &str) -> Result<Vec<u32>> {
 
 /// A copy of a `Uint8Array` or `Uint8ClampedArray`.
 pub fn to_u8s(value: &JsValue, argument: &str) -> Result<Vec<u8>> {
+    check_bytes(value, argument)?;
     if let Some(array) = value.dyn_ref::<Uint8Array>() {
         return Ok(array.to_vec());
     }

@@ -170,11 +170,11 @@ fn unknown_option(name: &str, known: &[&str]) -> Error {
     )
 }
 
-/// The named symmetries.
+/// The named symmetries; the last name is a former one.
 const SYMMETRY_NAMES: [(&str, Symmetry); 3] =
-    [("none", Symmetry::None), ("auto", Symmetry::Auto), ("auto-revolution", Symmetry::AutoRevolution)];
+    [("none", Symmetry::None), ("auto", Symmetry::Auto), ("auto-revolution", Symmetry::Auto)];
 
-/// `"none"`, `"auto"`, `"auto-revolution"`, or `[{ axis, fold? }]`.
+/// `"none"`, `"auto"`, or `[{ axis, fold? }]`.
 fn symmetry(value: &JsValue) -> Result<Symmetry> {
     if let Some((_, named)) = SYMMETRY_NAMES.into_iter().find(|(name, _)| *value == **name) {
         return Ok(named);

@@ -2,6 +2,7 @@
 
 pub mod bop;
 pub mod layout;
+pub mod mesh_symmetry;
 pub mod oriented_box;
 pub mod pose_error;
 pub mod silhouette;

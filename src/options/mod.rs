@@ -12,7 +12,7 @@ use crate::number::{number, numbers};
 use scale::ScaleOption;
 
 /// The values that a symmetry option takes, for error messages.
-pub const SYMMETRY: &str = "\"none\", \"auto\", \"auto-revolution\" or [{ axis: [x, y, z], fold? }]";
+pub const SYMMETRY: &str = "\"none\", \"auto\" or [{ axis: [x, y, z], fold? }]";
 
 /// An option: its value, by type, and its range.
 pub enum Field<'a> {

@@ -56,10 +56,10 @@ impl Choice {
         Some(Self { looks, chosen, rivals, is_used })
     }
 
-    /// Probability that the chosen pose is right, given that it is one of those compared. `gain` is by how much its
-    /// agreement has grown since.
-    pub fn certainty(&self, gain: f64) -> f64 {
-        let odds: f64 = self.rivals.iter().map(|&rival| libm::exp(-ODDS * self.lead(rival, gain))).sum();
+    /// Probability that the chosen pose is right, given that it or one of these rivals is. `gain` is by how much its agreement
+    /// has grown since.
+    pub fn certainty(&self, gain: f64, rivals: impl Iterator<Item = usize>) -> f64 {
+        let odds: f64 = rivals.map(|rival| libm::exp(-ODDS * self.lead(rival, gain))).sum();
         (1.0 / (1.0 + odds)).max(if self.is_used { 0.0 } else { UNMATCHED })
     }
 

@@ -11,7 +11,8 @@ use glam::DQuat;
 use super::appearance::{Appearance, PhotoCells};
 use super::choice::{Choice, HIDDEN, Look, SHAPE, best_roll};
 use super::clean::CleanObservation;
-use super::lookalikes::{Lookalike, lookalikes};
+use super::equivalence::{self, Equivalence};
+use super::lookalikes::{Likeness, Lookalike, lookalikes};
 use super::pose::CropPose;
 use super::prepared_mesh::PreparedMesh;
 use super::recipe::{FINE, FINEST, MIDDLE, SearchSettings};
@@ -59,6 +60,8 @@ pub struct Rival {
     pub found: Found,
     /// By how much its agreement with the photo is below that of the chosen pose.
     pub margin: f64,
+    /// Whether a symmetry of the shape makes it equivalent to the chosen pose.
+    pub is_turn: bool,
 }
 
 /// What colour says.
@@ -67,8 +70,11 @@ pub struct Judgment {
     pub chosen: Option<Found>,
     /// Other poses that look different, best first.
     pub rivals: Vec<Rival>,
-    /// Probability that the chosen pose is right, given that it is one of those compared.
+    /// Probability that the chosen pose is right up to the symmetry of the shape, given that it is one of those compared.
     pub certainty: f64,
+    /// Probability that it is the right one of the poses that this symmetry makes equivalent; `None` where colour does not
+    /// tell them apart.
+    pub turn: Option<f64>,
     /// For the result.
     pub report: ColorReport,
     /// Whether a pose agrees with the photo, so that colour counts.
@@ -97,7 +103,8 @@ impl ColorStage {
         }
         let middle = search.grid(MIDDLE);
         let refiner = Refiner { objective: search.objective(MIDDLE, &middle), lock_scale: search.settings.lock_scale };
-        while let Some(Lookalike { pose, is_rough }) = self.queue.pop() {
+        while let Some(Lookalike { pose, likeness }) = self.queue.pop() {
+            let is_rough = likeness == Likeness::Rough;
             // A turn of the best pose doubles its error. What the search has found near the turn is more accurate.
             let is_near = |a: &CropPose, b: &CropPose| angle_between(a.rotation, b.rotation) < 0.5 * RIVAL;
             let known = rounds.found.iter().skip(1).find(|found| is_near(&found.pose, &pose));
@@ -109,7 +116,11 @@ impl ColorStage {
             let is_compared =
                 |other: &Compared| other.found.pose == pose || is_rough && is_near(&other.found.pose, &pose);
             let is_new = !self.compared.iter().any(is_compared);
-            if is_new && let Some(compared) = self.compare(rounds, colors, &mut canvas, pose, known) {
+            if is_new
+                && let Some(compared) = self.compare(rounds, colors, &mut canvas, pose, known)
+                // What a symmetry makes equivalent is compared, whatever the inaccuracy of the mesh takes off its score.
+                && (likeness == Likeness::Equal || compared.found.score.total > best.score.total - NOISE)
+            {
                 self.compared.push(compared);
             }
             if pause() && !self.queue.is_empty() {
@@ -119,7 +130,7 @@ impl ColorStage {
         true
     }
 
-    /// Renders a pose; `None` if its shape is not within noise, or nothing can be compared. `known` is its ranking, if it has
+    /// Renders a pose; `None` if nothing can be compared. `known` is its ranking, if it has
     /// one.
     fn compare(
         &self,
@@ -136,9 +147,6 @@ impl ColorStage {
         // the best one, which is the first.
         let of_first = self.compared.first().map_or(own, |first| first.own);
         let shape = known.map_or(own - of_first, |known| known.score.total - best.score.total);
-        if shape < -NOISE {
-            return None;
-        }
         score.total = best.score.total + shape;
         let appearance = self.photo.compare(canvas, colors, &search.mesh.frame, &search.fine)?;
         let look = Look::new(appearance.agreement, shape);
@@ -164,14 +172,9 @@ impl ColorStage {
         if let Some((pose, _)) = rolled {
             found.pose = pose;
         }
-        let rival = |&k: &usize| Rival { found: self.compared[k].found, margin: choice.margin(k, gain) };
-        Judgment {
-            chosen: (is_changed || rolled.is_some()).then_some(found),
-            certainty: choice.certainty(gain),
-            report: choice.report(gain),
-            rivals: choice.rivals.iter().map(rival).collect(),
-            is_used: choice.is_used,
-        }
+        let pose_of = |k: usize| self.compared.get(k).map(|compared| compared.found);
+        let is_other = is_changed || rolled.is_some();
+        Judgment::new(&choice, (found, is_other), pose_of, gain, &rounds.search.equivalence)
     }
 }
 
@@ -189,11 +192,9 @@ pub fn roll(
     pose: CropPose,
     loose: f64,
 ) -> Option<(CropPose, f64)> {
-    let (conditioning, _) = search.conditioning(&pose);
-    let (deviation, axis) = conditioning?.rotation;
-    if deviation < loose {
-        return None;
-    }
+    let loosest =
+        || search.conditioning(&pose).0.map(|held| held.rotation).filter(|(deviation, _)| *deviation >= loose);
+    let axis = search.equivalence.free_axis(pose.rotation).or_else(|| loosest().map(|(_, axis)| axis))?;
     let rolled = |angle: f64| search.mesh.turns.turned(&pose, exp(axis * angle) * pose.rotation);
     let mut canvas = Canvas::default();
     let objective = search.objective(FINE, &search.fine);
@@ -206,6 +207,34 @@ pub fn roll(
 }
 
 impl Judgment {
+    /// From a choice and the pose that it ends with, which `is_other` than the best by shape. `pose_of` gives that of a rival.
+    pub fn new(
+        choice: &Choice,
+        (end, is_other): (Found, bool),
+        pose_of: impl Fn(usize) -> Option<Found>,
+        gain: f64,
+        equivalence: &Equivalence,
+    ) -> Self {
+        let rival = |&k: &usize| {
+            let found = pose_of(k)?;
+            let is_turn = equivalence.angle(end.pose.rotation, found.pose.rotation) <= equivalence::DIFFERENT;
+            Some((k, Rival { found, margin: choice.margin(k, gain), is_turn }))
+        };
+        let (indices, rivals): (Vec<usize>, Vec<Rival>) = choice.rivals.iter().filter_map(rival).unzip();
+        let certainty = |are_turns: bool| {
+            let these = indices.iter().zip(&rivals).filter(|(_, rival)| rival.is_turn == are_turns);
+            choice.certainty(gain, these.map(|(k, _)| *k))
+        };
+        Self {
+            chosen: is_other.then_some(end),
+            certainty: certainty(false),
+            turn: (choice.is_used && rivals.iter().any(|rival| rival.is_turn)).then(|| certainty(true)),
+            report: choice.report(gain),
+            is_used: choice.is_used,
+            rivals,
+        }
+    }
+
     /// The smallest lead over a pose that looks different, in units of the shape score, of which no more than [`NOISE`]
     /// counts; negative infinity if colour does not count.
     pub fn lead(&self) -> f64 {
@@ -217,7 +246,7 @@ impl Judgment {
 
     /// Nothing can be compared.
     fn none() -> Self {
-        Self { chosen: None, rivals: Vec::new(), certainty: 1.0, report: HIDDEN, is_used: false }
+        Self { chosen: None, rivals: Vec::new(), certainty: 1.0, turn: None, report: HIDDEN, is_used: false }
     }
 }
 

@@ -22,13 +22,24 @@ const MOST: usize = 60;
 const FAR: f32 = 0.25;
 const SAME: f32 = 0.02;
 
+/// How a lookalike looks like the best pose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Likeness {
+    /// A symmetry of the mesh makes them equivalent.
+    Equal,
+    /// Their scores are about the same.
+    Same,
+    /// Their scores differ so much that it should be refined.
+    Rough,
+}
+
 /// A pose that may explain the shape as well as the best one.
 #[derive(Debug, Clone, Copy)]
 pub struct Lookalike<P> {
     /// The pose.
     pub pose: P,
-    /// Whether its shape differs so much that it should be refined.
-    pub is_rough: bool,
+    /// How it looks like the best one.
+    pub likeness: Likeness,
 }
 
 /// The turns of the best pose that look about the same, and the other poses that the search has found.
@@ -39,26 +50,37 @@ pub fn lookalikes(rounds: &Rounds) -> Vec<Lookalike<CropPose>> {
     let grid = search.grid(COARSE);
     let objective = search.objective(COARSE, &grid);
     let score = objective.score(&mut canvas, &best.pose).total;
-    let turned = search.mesh.turns.about_axes(&best.pose, ROLLS);
+    let turns = &search.mesh.turns;
+    let turned = turns.about_axes(&best.pose, ROLLS);
     let poses = others.iter().map(|other| other.pose).chain(turned);
     let scored = poses.map(|pose| Candidate { score: objective.score(&mut canvas, &pose), pose });
-    let alike = among(best.pose.rotation, score, scored);
-    alike.into_iter().map(|Lookalike { pose, is_rough }| Lookalike { pose: pose.pose, is_rough }).collect()
+    let equal = search.equivalence.others(best.pose.rotation, ROLLS);
+    let equal = equal.into_iter().map(|rotation| turns.turned(&best.pose, rotation));
+    among(best.pose.rotation, score, scored, equal, |candidate| candidate.pose, |pose| pose.rotation)
 }
 
-/// Those of `poses` that look about like the best one, whose rotation and score are given. The scores are those of the
-/// coarse grid, the mean of all views.
-pub fn among<P: Scored>(best: DQuat, score: f32, poses: impl Iterator<Item = P>) -> Vec<Lookalike<P>> {
-    let likely: Vec<P> = poses.filter(|pose| pose.total() > score - FAR).collect();
+/// Those of `scored` that look about like the best one, whose rotation and score are given, after those that are equivalent
+/// to it. The scores are those of the coarse grid, the mean of all views.
+pub fn among<S: Scored, P: Copy>(
+    best: DQuat,
+    score: f32,
+    scored: impl Iterator<Item = S>,
+    equal: impl Iterator<Item = P>,
+    pose_of: impl Fn(&S) -> P,
+    rotation_of: impl Fn(&P) -> DQuat,
+) -> Vec<Lookalike<P>> {
+    let likely: Vec<S> = scored.filter(|pose| pose.total() > score - FAR).collect();
+    let mut alike: Vec<Lookalike<P>> = equal.map(|pose| Lookalike { pose, likeness: Likeness::Equal }).collect();
     let mut kept: Vec<DQuat> = vec![best];
-    let mut alike = Vec::new();
+    kept.extend(alike.iter().map(|equal| rotation_of(&equal.pose)));
     let likely = best_of(&likely, likely.len());
-    for (apart, is_rough) in APART.into_iter().zip([false, true]) {
-        for &pose in &likely {
+    for (apart, likeness) in APART.into_iter().zip([Likeness::Same, Likeness::Rough]) {
+        for pose in &likely {
             let is_near = |other: &DQuat| angle_between(*other, pose.rotation()) < apart;
-            if (pose.total() < score - SAME) == is_rough && kept.len() <= MOST && !kept.iter().any(is_near) {
+            let is_rough = pose.total() < score - SAME;
+            if is_rough == (likeness == Likeness::Rough) && kept.len() <= MOST && !kept.iter().any(is_near) {
                 kept.push(pose.rotation());
-                alike.push(Lookalike { pose, is_rough });
+                alike.push(Lookalike { pose: pose_of(pose), likeness });
             }
         }
     }

@@ -1,16 +1,22 @@
 //! The mesh at several resolutions: decimated for every grid of the search.
 
+use core::cell::OnceCell;
+use std::rc::Rc;
+
 use glam::Vec3;
 
+use super::equivalence::Equivalence;
 use super::pose::MeshFrame;
 use super::recipe::{FINE, FINEST, GRIDS, Grid};
 use super::render::Model;
 use super::turns::Turns;
+use crate::error::Result;
 use crate::geometry::cloud::farthest_along;
 use crate::geometry::decimate::decimate;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::rotations::fibonacci_sphere;
 use crate::geometry::surface::SurfaceMoments;
+use crate::metrics::symmetry::Symmetry;
 
 /// Number of directions along which extreme vertices of the mesh are kept, for bounding boxes.
 const DIRECTIONS: usize = 128;
@@ -29,6 +35,8 @@ pub struct MeshPyramid {
     pub surface: SurfaceMoments,
     /// The turns in which the object may look alike.
     pub turns: Turns,
+    /// The symmetry that its surface shows, on first use.
+    symmetry: OnceCell<Rc<Equivalence>>,
 }
 
 impl MeshPyramid {
@@ -44,7 +52,31 @@ impl MeshPyramid {
         let models = meshes.each_ref().map(Model::new);
         let surface = SurfaceMoments::of(&fine);
         let turns = Turns::new(&surface);
-        Some(Self { frame, outermost: outermost(&models[FINE]), surface, turns, models, fine })
+        Some(Self {
+            frame,
+            outermost: outermost(&models[FINE]),
+            surface,
+            turns,
+            models,
+            fine,
+            symmetry: OnceCell::new(),
+        })
+    }
+
+    /// Which poses of the mesh are equivalent, given its symmetry.
+    ///
+    /// # Errors
+    /// As [`Symmetry::group`].
+    pub fn equivalence(&self, symmetry: &Symmetry) -> Result<Rc<Equivalence>> {
+        let known = self.symmetry.get().filter(|_| *symmetry == Symmetry::Auto);
+        if let Some(known) = known {
+            return Ok(Rc::clone(known));
+        }
+        let found = Rc::new(Equivalence::new(symmetry.group(&self.fine)?));
+        if *symmetry == Symmetry::Auto {
+            self.symmetry.get_or_init(|| Rc::clone(&found));
+        }
+        Ok(found)
     }
 }
 

@@ -14,6 +14,7 @@ pub mod coarse;
 pub mod color;
 pub mod conditioning;
 pub(crate) mod confidence;
+pub mod equivalence;
 mod fill;
 pub mod grid;
 mod lanes;
@@ -42,15 +43,18 @@ use core::ops::Range;
 use std::borrow::Cow;
 use std::rc::Rc;
 
+use glam::DVec3;
+
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::observation::{Observation, degenerate_mask};
 use crate::geometry::cloud::Bounds;
 use crate::geometry::mesh::Mesh;
+use crate::geometry::rotations::super_fibonacci;
 use crate::geometry::similarity::Similarity;
 use crate::precise::options::{AlignOptions, ExtentAxis, SearchScope};
 use crate::progress::{Stage, Stopwatch};
 use crate::report::{Alternative, ColorReport, Counts, Effort, ScoreTerms, Solution, Uncertainty};
-use alternatives::{Listing, UNSURE, add_rivals};
+use alternatives::{UNSURE, add_rivals, alternatives};
 use clean::CleanObservation;
 use color::Judgment;
 use confidence::confidence;
@@ -74,6 +78,11 @@ pub const PLAN: &[(Stage, f64)] = &[
     (Stage::Search, 0.2),
     (Stage::Metrics, 0.85),
 ];
+
+/// Rotation from the best pose from which on rivals are looked for, radians.
+const ELSEWHERE: f64 = 0.5;
+/// Score below that of the best pose down to which a pose is its rival.
+const RIVAL: f32 = 0.05;
 
 /// Number of poses that are put down on the ground.
 const PUT_DOWN: usize = 4;
@@ -104,6 +113,37 @@ pub fn begin(
     }
     stages.enter(Stage::Search);
     Ok(rounds)
+}
+
+/// A look for rivals of the best pose that a search has found: from rotations between those of its grid, far from the pose.
+pub fn look(rounds: &Rounds) -> Option<Rounds> {
+    let best = rounds.found.first()?;
+    let search = &rounds.search;
+    let settings = search.settings.look();
+    let count = settings.rotations();
+    let mut again = Search::new(search.observation.clone(), search.mesh.clone(), settings);
+    again.assume(search.prior);
+    again.equivalence = search.equivalence.clone();
+    let rotations = (0..count).map(|i| super_fibonacci(i, count));
+    let rotations =
+        rotations.filter(|rotation| search.equivalence.angle(best.pose.rotation, *rotation) > ELSEWHERE).collect();
+    let mut look = Rounds::among(again, rotations);
+    look.propose([best.pose]);
+    Some(look)
+}
+
+/// Whether a look has found a pose that explains the image about as well as the best one of a search. It is then added to
+/// those of the search.
+pub fn has_rival(rounds: &mut Rounds, look: &Rounds) -> bool {
+    rounds.search.renders += look.search.renders;
+    let Some(best) = rounds.found.first().copied() else { return false };
+    let angle = |found: &Found| look.search.equivalence.angle(best.pose.rotation, found.pose.rotation);
+    let Some(own) = look.found.iter().find(|found| angle(found) <= equivalence::DIFFERENT) else { return true };
+    let is_rival =
+        |found: &&Found| angle(found) > equivalence::DIFFERENT && found.score.total > own.score.total - RIVAL;
+    let rivals: Vec<Found> = look.found.iter().filter(is_rival).copied().collect();
+    rounds.found.extend(&rivals);
+    !rivals.is_empty()
 }
 
 /// What another search has told.
@@ -175,6 +215,7 @@ fn prepared(
     let clean = clean.unwrap_or_else(|| Rc::new(CleanObservation::new(observation)));
     let mut search = Search::new(clean, pyramid, *settings);
     search.assume(prior(options, mesh.mesh(), &search.mesh.frame));
+    search.equivalence = search.mesh.equivalence(&options.symmetry)?;
     Ok(search)
 }
 
@@ -218,6 +259,8 @@ pub fn run(
 pub struct Certainty {
     /// See [`Alignment::confidence`](crate::report::Alignment::confidence).
     pub confidence: f64,
+    /// See [`Alignment::turn_confidence`](crate::report::Alignment::turn_confidence).
+    pub turn_confidence: Option<f64>,
     /// Alternative poses.
     pub alternatives: Vec<Alternative>,
     /// How well each part of the pose is determined.
@@ -236,25 +279,21 @@ pub struct Certainty {
 ///
 /// # Errors
 /// [`ErrorCode::NoConsensus`] if no pose overlaps the mask.
-pub fn conclude(
-    rounds: &Rounds,
-    mesh: &Mesh,
-    options: &AlignOptions,
-    color: Option<&Judgment>,
-) -> Result<(Solution, Certainty)> {
+pub fn conclude(rounds: &Rounds, color: Option<&Judgment>) -> Result<(Solution, Certainty)> {
     let search = &rounds.search;
     let mut found = Cow::Borrowed(&rounds.found);
     if let Some(chosen) = color.and_then(|color| color.chosen) {
         found.to_mut().insert(0, chosen);
     }
     let best = found.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
-    let mut listing = Listing { found: &found, search, mesh, symmetry: &options.symmetry, likeness: None };
-    let mut listed = |margin: f32| {
-        let mut list = listing.within(margin)?;
-        color.into_iter().for_each(|color| add_rivals(&mut list, best, &color.rivals, search));
-        Ok::<_, Error>(list)
+    let listed = |margin: f32, with_turns: bool| {
+        let mut list = alternatives(&found, search, margin);
+        let rivals = color.iter().flat_map(|color| &color.rivals).filter(|rival| with_turns || !rival.is_turn);
+        add_rivals(&mut list, best, rivals, search);
+        list
     };
-    let mut others = listed(NOISE)?;
+    // Turns that the symmetry of the shape makes equivalent are alternatives only if colour tells them apart.
+    let shows_turns = color.is_some_and(|color| color.is_used);
     let (conditioning, residual_m) = search.conditioning(&best.pose);
     let solution = Solution {
         camera_from_mesh: best.pose.similarity(&search.mesh.frame),
@@ -266,17 +305,18 @@ pub fn conclude(
     // The confidence is fitted to how sharply the image determines a pose. The ground makes every pose sharp, right or
     // wrong; what it tells is which of several poses is the better one.
     let by_image = if search.is_surrounded() { search.conditioning_by_image(&best.pose) } else { conditioning };
-    let confidence = confidence(best, &others, by_image.as_ref()) * color.map_or(1.0, |color| color.certainty);
-    if confidence < SURE {
-        others = listed(UNSURE)?;
-    }
+    let confidence = confidence(best, &listed(NOISE, false), by_image.as_ref());
+    let confidence = confidence * color.map_or(1.0, |color| color.certainty);
+    let others = listed(if confidence < SURE { UNSURE } else { NOISE }, shows_turns);
     let certainty = Certainty {
         confidence,
+        turn_confidence: color.and_then(|color| color.turn),
         alternatives: others,
         uncertainty: conditioning.map(|c| Uncertainty {
             scale: c.scale,
             rotation_deg: c.rotation.0.to_degrees(),
             rotation_axis: c.rotation.1.to_array(),
+            free_axis: search.equivalence.free_axis(best.pose.rotation).map(|axis| axis.to_array()),
             lateral_m: c.lateral_m,
             distance_m: c.distance_m,
         }),
@@ -337,7 +377,7 @@ pub(crate) fn prior(options: &AlignOptions, mesh: &Mesh, frame: &MeshFrame) -> P
     });
     let known = options.known_extent_m.map(|length| [length / side; 2]);
     let bounds = options.scale.bounds().or(known);
-    let direction = |v: [f64; 3]| glam::DVec3::from(v).normalize_or_zero();
+    let direction = |v: [f64; 3]| DVec3::from(v).normalize_or_zero();
     Prior {
         scale: bounds.map(|b| b.map(|s| s * frame.diagonal)),
         up: options.camera_up.zip(options.mesh_up).map(|(camera, mesh)| [direction(camera), direction(mesh)]),

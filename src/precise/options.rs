@@ -83,9 +83,9 @@ options! {
         camera_up: Option<[f64; 3]> = None, Direction;
         /// The up direction in the mesh's frame, of any length: `[0, 1, 0]` for glTF. It requires `cameraUp`.
         mesh_up: Option<[f64; 3]> = None, Direction;
-        /// The object's symmetry, so that `alternatives` does not list equivalent poses. `"auto"` detects half turns about
-        /// the mesh's principal axes, `"auto-revolution"` also axes of revolution; `[{ axis: [0, 1, 0], fold: 4 }]`
-        /// declares quarter turns about the mesh's y axis, without `fold` any turn about it.
+        /// The object's symmetry: poses that it makes equal are one for `confidence`, `alternatives` and `uncertainty`.
+        /// `"auto"` finds it on the surface of the mesh; `[{ axis: [0, 1, 0], fold: 4 }]` declares quarter turns about the
+        /// mesh's y axis, without `fold` any turn about it.
         symmetry: Symmetry = Symmetry::Auto, Symmetry;
         /// A pose to start from, camera from mesh, in metres: for example an annotator's, or the last frame's. Its scale
         /// has to be within `scale`.

@@ -99,6 +99,16 @@ impl CropPose {
         }
     }
 
+    /// The step to a pose nearby, to first order in its rotation.
+    pub fn step_to(&self, other: &Self) -> Step {
+        let turn = other.rotation * self.rotation.conjugate();
+        let turn = turn.xyz() * (2.0 * turn.w.signum());
+        let size = libm::exp(self.size);
+        let place = (other.place - self.place) / size;
+        let distance = (other.distance - self.distance) / size;
+        [turn.x, turn.y, turn.z, other.size - self.size, place.x, place.y, distance]
+    }
+
     /// Whether all numbers are finite.
     pub fn is_finite(&self) -> bool {
         self.rotation.is_finite() && self.place.is_finite() && self.size.is_finite() && self.distance.is_finite()

@@ -8,7 +8,7 @@
 use glam::{DMat3, DVec3, Mat3, Vec3};
 
 use super::ascent::{Ascent, Summit, ascend};
-use super::conditioning::DROP;
+use super::conditioning::{Covariance, DROP, covariance, hold_roll};
 use super::pose::{CropPose, Step};
 use super::refine::{Refined, Refiner};
 use super::render::Canvas;
@@ -32,6 +32,9 @@ const MOST: f64 = 0.25;
 const ITERATIONS: usize = 4;
 /// Regularisation of the nearest rotation, relative to the trace: a line leaves its roll open.
 const ROLL: f64 = 1e-9;
+
+/// Change of a parameter by which derivatives are measured.
+const SMALL: f64 = 1e-4;
 
 /// 1/√2 and 1/√6: the parameters are coordinates in an orthonormal basis, so that the squares of all entries of E add up to
 /// those of the parameters, whatever the axes of the mesh are.
@@ -190,6 +193,50 @@ impl Ascent<ALL> for OnGrid<'_, '_> {
 }
 
 impl Refiner<'_> {
+    /// The covariance of the similarity that [`Refiner::refine_in_proportion`] results in, at the last render, which was of
+    /// `pose`: the proportions are free within their prior, or those of the mesh if `is_exact`. The roll about `free_axis`
+    /// (camera frame) is held. `None` if the image constrains nothing.
+    pub fn covariance(
+        &self,
+        canvas: &mut Canvas,
+        score: &Score,
+        pose: &CropPose,
+        (surface, is_exact): (&SurfaceMoments, bool),
+        free_axis: Option<DVec3>,
+    ) -> Option<Covariance> {
+        if is_exact {
+            let mut equations = self.equations(canvas, score, pose);
+            free_axis.into_iter().for_each(|axis| hold_roll(&mut equations, axis));
+            return covariance(&equations);
+        }
+        let stretched = |proportions| Stretched { pose: *pose, proportions };
+        let mut equations = OnGrid { refiner: self, canvas }.equations(&stretched(Proportions::default()), score);
+        free_axis.into_iter().for_each(|axis| hold_roll(&mut equations, axis));
+        let of_all = covariance(&equations)?;
+        // The change of the nearest similarity with each parameter.
+        let mut changes = [[0.0; PARAMETERS]; ALL];
+        for (k, change) in changes.iter_mut().enumerate() {
+            match k.checked_sub(PARAMETERS) {
+                None => change[k] = 1.0,
+                Some(k) => {
+                    let mut parameters = [0.0; PROPORTIONS];
+                    parameters[k] = SMALL;
+                    let nearest = stretched(Proportions(parameters)).nearest(surface, false);
+                    *change = pose.step_to(&nearest).map(|x| x / SMALL);
+                }
+            }
+        }
+        let mut of_pose = [[0.0; PARAMETERS]; PARAMETERS];
+        for (row, from) in of_all.iter().zip(&changes) {
+            for (variance, to) in row.iter().zip(&changes) {
+                for (entries, x) in of_pose.iter_mut().zip(from) {
+                    entries.iter_mut().zip(to).for_each(|(entry, y)| *entry += x * y * variance);
+                }
+            }
+        }
+        Some(of_pose)
+    }
+
     /// Refines `pose` and the proportions of a mesh with this `surface` in at most `iterations` steps. The pose of the result
     /// is the nearest similarity; its score is that of the mesh in its best proportions, minus their penalty. If the scale is
     /// locked, the mesh is that of the object itself, and its proportions are right.

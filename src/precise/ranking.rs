@@ -2,8 +2,8 @@
 
 use glam::DQuat;
 
+use super::equivalence::Equivalence;
 use crate::geometry::order;
-use crate::geometry::rotations::angle_between;
 
 /// A pose with a score.
 pub trait Scored: Copy {
@@ -21,12 +21,17 @@ pub fn best_of<T: Scored>(candidates: &[T], count: usize) -> Vec<T> {
 
 /// The best `count` candidates whose rotations differ by at least `angle`, best first.
 pub fn distinct<T: Scored>(candidates: Vec<T>, count: usize, angle: f64) -> Vec<T> {
+    distinct_up_to(&Equivalence::default(), candidates, count, angle)
+}
+
+/// The same, where a symmetry makes some rotations one.
+pub fn distinct_up_to<T: Scored>(equivalence: &Equivalence, candidates: Vec<T>, count: usize, angle: f64) -> Vec<T> {
     let mut kept: Vec<T> = Vec::new();
     for candidate in best_of(&candidates, candidates.len()) {
         if kept.len() >= count {
             break;
         }
-        let turn = |k: &T| angle_between(k.rotation(), candidate.rotation());
+        let turn = |k: &T| equivalence.angle(k.rotation(), candidate.rotation());
         if kept.iter().all(|k| turn(k) > angle) {
             kept.push(candidate);
         }

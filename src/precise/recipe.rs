@@ -113,6 +113,9 @@ const ROLLS: usize = 24;
 /// Maximum number of steps per turn, and of turns that are ranked, of a search whose work is limited: turns are not scaled.
 const LIMITED_TURNS: [usize; 2] = [6, 6];
 
+/// Work and poses kept of the rounds of a look for rivals, which ends with them.
+const LOOK: [[usize; 2]; 4] = [[300, 40], [1, 6], [4, 3], [5, 0]];
+
 /// Minimum number of rotations of a search whose work is limited.
 pub const MIN_ROTATIONS: usize = 60;
 
@@ -177,6 +180,15 @@ impl SearchSettings {
     pub fn again(self, is_sure: bool) -> Self {
         let effort = if is_sure || self.effort == Effort::Fast { Effort::Fast } else { Effort::Balanced };
         Self { rounds: rounds(effort), turned: TURNED[effort as usize], ..self }
+    }
+
+    /// The settings of a look for rivals of a pose that a search is sure of: few rotations, refined on the middle grid only.
+    pub fn look(self) -> Self {
+        let mut look = Self { turned: 1, ..self };
+        for (round, [work, keep]) in look.rounds.iter_mut().zip(LOOK) {
+            (round.work, round.keep) = (work, keep);
+        }
+        look
     }
 
     /// The work of the search, in units of the work budget.

@@ -9,7 +9,7 @@ use super::anchors::{Anchor, anchors};
 use super::coarse::Coarse;
 use super::grid::CropGrid;
 use super::pose::CropPose;
-use super::ranking::{best_of, distinct};
+use super::ranking::{best_of, distinct_up_to};
 use super::recipe::{COARSE, FINE, FIRST_REFINEMENT, MIN_ROTATIONS, RANKING, ROUNDS, Round, TURNING, Task};
 use super::refine::Refiner;
 use super::render::Canvas;
@@ -246,6 +246,7 @@ impl Rounds {
     /// Selects the poses of the next round.
     fn end_round(&mut self, round: Round) {
         let outcomes = core::mem::take(&mut self.outcomes);
+        let equivalence = &self.search.equivalence;
         (self.tasks_done, self.work, self.allowance) = (0, 0, 0);
         self.search.renders += outcomes.iter().map(|f| f.renders).sum::<usize>();
         let best = core::mem::replace(&mut self.best, best_of(&outcomes, 1));
@@ -257,10 +258,10 @@ impl Rounds {
                 let least = best.first().map_or(0.0, |best| best.score.total) - near;
                 let alike = outcomes.into_iter().filter(|turned| turned.score.total > least).collect();
                 self.poses = core::mem::take(&mut self.unturned);
-                self.poses.extend(poses_of(&distinct(alike, round.keep, round.apart)));
+                self.poses.extend(poses_of(&distinct_up_to(equivalence, alike, round.keep, round.apart)));
             }
             RANKING => {
-                self.found = distinct(outcomes, usize::MAX, round.apart);
+                self.found = distinct_up_to(equivalence, outcomes, usize::MAX, round.apart);
                 self.poses = poses_of(&self.found[..round.keep.min(self.found.len())]);
             }
             index if index > RANKING => {
@@ -271,9 +272,14 @@ impl Rounds {
                 }
                 self.poses = Vec::new();
             }
+            // The last round of a search that is not ranked.
+            _ if round.keep == 0 => {
+                self.found = distinct_up_to(equivalence, outcomes, usize::MAX, round.apart);
+                self.poses = Vec::new();
+            }
             _ => {
                 let kept = if round.apart > 0.0 {
-                    distinct(outcomes, round.keep, round.apart)
+                    distinct_up_to(equivalence, outcomes, round.keep, round.apart)
                 } else {
                     best_of(&outcomes, round.keep)
                 };

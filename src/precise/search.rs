@@ -8,6 +8,7 @@ use super::anchors::Anchor;
 use super::clean::CleanObservation;
 use super::coarse::{Candidate, Coarse};
 use super::conditioning::Conditioning;
+use super::equivalence::Equivalence;
 use super::grid::CropGrid;
 use super::mesh_pyramid::MeshPyramid;
 use super::objective::Objective;
@@ -42,6 +43,8 @@ pub struct Search {
     pub(crate) settings: SearchSettings,
     pub(crate) prior: Prior,
     surroundings: Option<Surroundings>,
+    /// Which poses of the mesh are equivalent.
+    pub equivalence: Rc<Equivalence>,
     /// The fine grid, on which the final poses are compared.
     pub fine: CropGrid,
 }
@@ -92,6 +95,7 @@ impl Search {
             settings,
             prior: Prior::default(),
             surroundings: None,
+            equivalence: Rc::default(),
         }
     }
 
@@ -182,13 +186,16 @@ impl Search {
         self.objective(FINE, &self.fine).score(&mut Canvas::default(), pose)
     }
 
+    /// The part of a score that the image gives.
+    pub fn by_image(&self, score: &Score) -> f32 {
+        let weights = &self.settings.weights;
+        weights.factor(score, &self.fine) * weights.agreement(score)
+    }
+
     /// The conditioning of a pose by the image alone.
     pub fn conditioning_by_image(&self, pose: &CropPose) -> Option<Conditioning> {
         let objective = Objective { surroundings: None, ..self.objective(FINE, &self.fine) };
-        let refiner = Refiner { objective, lock_scale: false };
-        let mut canvas = Canvas::default();
-        let score = refiner.objective.score(&mut canvas, pose);
-        Conditioning::of(&refiner.equations(&canvas, &score, pose), pose)
+        self.conditioning_by(objective, pose).0
     }
 
     /// Whether the surroundings are known.
@@ -196,12 +203,24 @@ impl Search {
         self.surroundings.is_some()
     }
 
-    /// The conditioning of a pose, and the root mean square of its depth residuals, metres.
+    /// The conditioning of a pose, up to the symmetry of the mesh, and the root mean square of its depth residuals, metres.
     pub fn conditioning(&self, pose: &CropPose) -> (Option<Conditioning>, f64) {
-        let refiner = Refiner { objective: self.objective(FINE, &self.fine), lock_scale: false };
+        self.conditioning_by(self.objective(FINE, &self.fine), pose)
+    }
+
+    fn conditioning_by(&self, objective: Objective<'_>, pose: &CropPose) -> (Option<Conditioning>, f64) {
+        let refiner = Refiner { objective, lock_scale: false };
         let mut canvas = Canvas::default();
         let score = refiner.objective.score(&mut canvas, pose);
-        let equations = refiner.equations(&canvas, &score, pose);
-        (Conditioning::of(&equations, pose), refiner.depth_rms(&canvas))
+        let depth_rms_m = refiner.depth_rms(&canvas);
+        let proportions = (&self.mesh.surface, self.settings.lock_scale);
+        let free_axis = self.equivalence.free_axis(pose.rotation);
+        let covariance = refiner.covariance(&mut canvas, &score, pose, proportions, free_axis);
+        let conditioning = covariance.map(|covariance| Conditioning::new(&covariance, pose));
+        let upright = |held: Conditioning| match self.equivalence.is_sphere() {
+            true => Conditioning { rotation: (0.0, held.rotation.1), ..held },
+            false => held,
+        };
+        (conditioning.map(upright), depth_rms_m)
     }
 }

@@ -54,6 +54,11 @@ impl<'a> CloudPair<'a> {
         [&self.source.grid, &self.target.grid].map(|grid| fpfh(&grid.cloud, &grid.tree, radius))
     }
 
+    /// The units of work of the descriptors, or of a refinement.
+    pub(super) fn work(&self) -> f64 {
+        0.04 * (self.source.grid.cloud.len() + self.target.grid.cloud.len()) as f64
+    }
+
     /// ICP between the grids.
     pub(super) fn refine_on_grid(&self, initial: &Similarity, settings: &IcpSettings) -> Refined {
         let (source, target) = (&self.source.grid, &self.target.grid);

@@ -65,6 +65,11 @@ pub fn hypotheses(source: &[Vec3], target: &[Vec3], matches: &[Match], distance:
     found
 }
 
+/// The units of work of [`hypotheses`] of so many matches.
+pub fn graph_work(matches: usize) -> f64 {
+    1e-4 * matches as f64 + 3e-5 * (matches * matches) as f64
+}
+
 /// The compatibility graph: a bit per pair of matches, set if the pair preserves its distance.
 struct Graph {
     words: usize,

@@ -8,12 +8,14 @@ use super::pose_selector::about_clouds;
 use super::registration::PLAN;
 use super::report::Registration;
 use crate::error::{Error, ErrorCode, Result};
+use crate::geometry::cloud::Cloud;
 use crate::geometry::similarity::vector3;
 use crate::options::Options;
 use crate::options::scale::ScaleOption;
+use crate::pauses::{Pauses, Task, boxed, finished};
 use crate::progress::{Host, Stage, Stopwatch};
 use crate::register::matching::Match;
-use crate::register::ransac::{Guard, GuardMode, RansacSettings, ransac, reweighted};
+use crate::register::ransac::{Consensus, Guard, GuardMode, RansacSettings, ransac, reweighted};
 use crate::report::Counts;
 
 /// Estimates the similarity that most correspondences agree with. Clouds are interleaved x, y, z; `correspondences` are
@@ -28,59 +30,115 @@ pub fn estimate_sim3(
     options: &EstimateSim3Options,
     host: &mut dyn Host,
 ) -> Result<Registration> {
+    let pauses = Pauses::new(|| 0.0, options.work_budget);
+    finished(estimated(source_xyz, target_xyz, correspondences, options, host, &pauses))
+}
+
+/// [`estimate_sim3`] in steps, which end by this clock.
+///
+/// # Errors
+/// [`ErrorCode::InvalidOption`]; the others are those of the steps.
+pub fn estimate_sim3_task(
+    source_xyz: Vec<f64>,
+    target_xyz: Vec<f64>,
+    correspondences: Vec<u32>,
+    options: EstimateSim3Options,
+    mut host: impl Host + 'static,
+    clock: fn() -> f64,
+) -> Result<Task<'static, Registration>> {
+    options.validate()?;
+    Ok(Task::new(Pauses::new(clock, options.work_budget), |pauses| async move {
+        estimated(&source_xyz, &target_xyz, &correspondences, &options, &mut host, &pauses).await
+    }))
+}
+
+async fn estimated(
+    source_xyz: &[f64],
+    target_xyz: &[f64],
+    correspondences: &[u32],
+    options: &EstimateSim3Options,
+    host: &mut dyn Host,
+    pauses: &Pauses,
+) -> Result<Registration> {
     options.validate()?;
     check_cloud("source", source_xyz, 3)?;
     check_cloud("target", target_xyz, 3)?;
     let matches = check_correspondences(correspondences, source_xyz.len() / 3, target_xyz.len() / 3)?;
     let mut stages = Stopwatch::new(host, PLAN);
     stages.enter(Stage::Ransac);
-    let frames = NormalizedPair::of(source_xyz, target_xyz, options.scale)?;
-    let source = frames.source.normalized_flat(source_xyz);
-    let target = frames.target.normalized_flat(target_xyz);
-    let distance = options.inlier_distance.map_or(0.05, |d| d / frames.target.diagonal());
-    let settings = RansacSettings {
-        inlier_distance: distance,
-        edge_similarity: options.edge_similarity,
-        max_iterations: options.ransac_iterations as usize,
-        confidence: options.ransac_confidence,
-        scale_mode: frames.scale_mode,
-        // Correspondences determine the scale better than the boxes, so that only bounds of the caller apply.
-        guard: match options.scale {
-            ScaleOption::Free => None,
-            _ => frames.guard.map(|[min, max]| Guard { min, max, mode: GuardMode::Reject }),
-        },
-        seed: u64::from(options.seed),
-    };
-    let consensus =
-        ransac(&source.points, &target.points, &matches, &settings).map_err(|e| about_clouds(e, "correspondences"))?;
-    let unit = reweighted(&source.points, &target.points, &matches, &consensus, &settings);
-    let squares: f64 = consensus
-        .inliers
-        .iter()
-        .map(|&i| {
-            let (p, q) = (source.points[matches[i].source as usize], target.points[matches[i].target as usize]);
-            (unit.apply(vector3(p)) - vector3(q)).norm_squared()
-        })
-        .sum();
-    let counts = Counts {
-        source_points: source.len(),
-        target_points: target.len(),
-        matches: matches.len(),
-        inliers: consensus.inliers.len(),
-        iterations: consensus.counts.iterations,
-        inconsistent: consensus.counts.inconsistent,
-        rejected: consensus.counts.rejected,
-        clamped: consensus.counts.clamped,
-        ..Counts::default()
-    };
-    let count = consensus.inliers.len() as f64;
-    let fit = Fit {
-        fitness: count / matches.len() as f64,
-        residual: (squares / count).sqrt() * frames.target.diagonal(),
-        converged: true,
-        counts,
-    };
-    Ok(frames.registration(&frames.denormalized(&unit), fit, options.seed, stages))
+    let problem = Problem::new(source_xyz, target_xyz, matches, options)?;
+    let Problem { source, target, matches, settings, .. } = &problem;
+    let consensus = boxed(ransac(&source.points, &target.points, matches, settings, pauses))
+        .await
+        .map_err(|e| about_clouds(e, "correspondences"))?;
+    Ok(problem.solved(consensus, options.seed, stages))
+}
+
+/// Clouds and matches in their normalised frames.
+struct Problem {
+    frames: NormalizedPair,
+    source: Cloud,
+    target: Cloud,
+    matches: Vec<Match>,
+    settings: RansacSettings,
+}
+
+impl Problem {
+    #[inline(never)]
+    fn new(source_xyz: &[f64], target_xyz: &[f64], matches: Vec<Match>, options: &EstimateSim3Options) -> Result<Self> {
+        let frames = NormalizedPair::of(source_xyz, target_xyz, options.scale)?;
+        let source = frames.source.normalized_flat(source_xyz);
+        let target = frames.target.normalized_flat(target_xyz);
+        let distance = options.inlier_distance.map_or(0.05, |d| d / frames.target.diagonal());
+        let settings = RansacSettings {
+            inlier_distance: distance,
+            edge_similarity: options.edge_similarity,
+            max_iterations: options.ransac_iterations as usize,
+            confidence: options.ransac_confidence,
+            scale_mode: frames.scale_mode,
+            // Correspondences determine the scale better than the boxes, so that only bounds of the caller apply.
+            guard: match options.scale {
+                ScaleOption::Free => None,
+                _ => frames.guard.map(|[min, max]| Guard { min, max, mode: GuardMode::Reject }),
+            },
+            seed: u64::from(options.seed),
+        };
+        Ok(Self { frames, source, target, matches, settings })
+    }
+
+    /// The transform that the consensus agrees with.
+    #[inline(never)]
+    fn solved(&self, consensus: Consensus, seed: u32, stages: Stopwatch<'_>) -> Registration {
+        let Self { frames, source, target, matches, settings } = self;
+        let unit = reweighted(&source.points, &target.points, matches, &consensus, settings);
+        let squares: f64 = consensus
+            .inliers
+            .iter()
+            .map(|&i| {
+                let (p, q) = (source.points[matches[i].source as usize], target.points[matches[i].target as usize]);
+                (unit.apply(vector3(p)) - vector3(q)).norm_squared()
+            })
+            .sum();
+        let counts = Counts {
+            source_points: source.len(),
+            target_points: target.len(),
+            matches: matches.len(),
+            inliers: consensus.inliers.len(),
+            iterations: consensus.counts.iterations,
+            inconsistent: consensus.counts.inconsistent,
+            rejected: consensus.counts.rejected,
+            clamped: consensus.counts.clamped,
+            ..Counts::default()
+        };
+        let count = consensus.inliers.len() as f64;
+        let fit = Fit {
+            fitness: count / matches.len() as f64,
+            residual: (squares / count).sqrt() * frames.target.diagonal(),
+            converged: true,
+            counts,
+        };
+        frames.registration(&frames.denormalized(&unit), fit, seed, stages)
+    }
 }
 
 fn check_correspondences(correspondences: &[u32], sources: usize, targets: usize) -> Result<Vec<Match>> {

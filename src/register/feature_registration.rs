@@ -2,7 +2,7 @@
 //! ICP. Shared by the preset `paper` and `register`.
 
 use super::cloud_pair::CloudPair;
-use super::matching::{Match, enough_matches};
+use super::matching::{Match, Nearest};
 use super::ransac::{Consensus, ransac};
 use super::settings::RegistrationSettings;
 use super::support::supported;
@@ -10,6 +10,7 @@ use super::umeyama::{Pair, ScaleMode, umeyama};
 use crate::error::Result;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::similarity::{Similarity, vector3};
+use crate::pauses::{Pauses, boxed};
 use crate::progress::{Stage, Stopwatch};
 use crate::report::Counts;
 
@@ -36,28 +37,43 @@ pub(crate) struct FeatureRegistration<'a> {
 
 impl<'a> FeatureRegistration<'a> {
     /// Computes descriptors and matches. Both clouds have normals, and are centred with a box diagonal of 1.
-    pub(crate) fn new(
+    pub(crate) async fn new(
         source: &'a Cloud,
         target: &'a Cloud,
         settings: &RegistrationSettings,
         stages: &mut Stopwatch<'_>,
+        pauses: &Pauses,
     ) -> Self {
         let clouds = CloudPair::new(source, target, settings.voxel_size);
         let [source, target] = clouds.descriptors(settings, stages);
+        pauses.spend(clouds.work());
         stages.enter(Stage::Matching);
-        Self { clouds, matches: enough_matches(&source, &target) }
+        let matches = boxed(Nearest::of(&source, &target, pauses)).await.enough();
+        Self { clouds, matches }
     }
 
     /// Estimates the similarity from source to target.
     ///
     /// # Errors
     /// [`NoConsensus`](crate::error::ErrorCode::NoConsensus).
-    pub(crate) fn solve(&self, settings: &RegistrationSettings, stages: &mut Stopwatch<'_>) -> Result<Estimate> {
+    pub(crate) async fn solve(
+        &self,
+        settings: &RegistrationSettings,
+        stages: &mut Stopwatch<'_>,
+        pauses: &Pauses,
+    ) -> Result<Estimate> {
         let Self { clouds, matches } = self;
         stages.enter(Stage::Ransac);
         let points = [&clouds.source, &clouds.target].map(|side| &side.grid.cloud.points);
-        let consensus = ransac(points[0], points[1], matches, &settings.ransac)?;
+        let consensus = boxed(ransac(points[0], points[1], matches, &settings.ransac, pauses)).await?;
+        pauses.spend(clouds.work());
+        Ok(self.refined(consensus, settings, stages))
+    }
 
+    /// The estimate of a consensus.
+    #[inline(never)]
+    fn refined(&self, consensus: Consensus, settings: &RegistrationSettings, stages: &mut Stopwatch<'_>) -> Estimate {
+        let Self { clouds, matches } = self;
         stages.enter(Stage::Filter);
         let filtered = self.refit_on_supported(&consensus, settings);
 
@@ -67,7 +83,7 @@ impl<'a> FeatureRegistration<'a> {
         let guard = settings.ransac.guard.filter(|_| !settings.lock_scale);
         let stopped = guard.is_some_and(|g| g.is_bound(refined.target_from_source.scale));
 
-        Ok(Estimate {
+        Estimate {
             target_from_source: refined.target_from_source,
             clamped: consensus.clamped || stopped,
             converged: refined.converged,
@@ -82,7 +98,7 @@ impl<'a> FeatureRegistration<'a> {
                 ..clouds.counts(&refined)
             },
             inliers: consensus.inliers,
-        })
+        }
     }
 
     /// Removes matches (sorted indices) from later calls of [`FeatureRegistration::solve`].

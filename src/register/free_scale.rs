@@ -7,15 +7,16 @@
 
 use glam::Vec3;
 
+use super::at_once::nearest;
 use super::cloud_pair::CloudPair;
-use super::compatibility::hypotheses;
+use super::compatibility::{graph_work, hypotheses};
 use super::feature_registration::Estimate;
 use super::icp::movement;
-use super::matching::{Match, best_matches};
+use super::matching::Match;
 use super::normalized_pair::NormalizedPair;
 use super::options::RegisterOptions;
 use super::pose_scorer::{PoseScorer, distinctiveness};
-use super::pose_selector::{Candidate, check_scale, no_consensus, with_normals};
+use super::pose_selector::{Candidate, NORMAL, check_scale, no_consensus, with_normals};
 use super::ransac::{Guard, GuardMode};
 use super::rigid::{FREE_SLACK_VOXELS, limit_points};
 use super::settings::{RegistrationSettings, given_voxel_size};
@@ -25,7 +26,9 @@ use crate::geometry::cloud::Cloud;
 use crate::geometry::order::largest;
 use crate::geometry::similarity::{Similarity, vec3};
 use crate::geometry::voxel_grid::voxel_size_leaving;
+use crate::pauses::Pauses;
 use crate::progress::{Stage, Stopwatch};
+use crate::register::fpfh::Descriptor;
 use crate::register::free_space::FreeSpace;
 use crate::report::Counts;
 
@@ -77,24 +80,28 @@ const SCALE_SLACK: [f64; 2] = [0.87, 1.15];
 ///
 /// # Errors
 /// [`NoConsensus`](crate::error::ErrorCode::NoConsensus), also if a scale without given bounds ends at a bound of the default range.
-pub(super) fn register_free(
+pub(super) async fn register_free(
     [source_xyz, target_xyz]: [&[f64]; 2],
     options: &RegisterOptions,
     stages: &mut Stopwatch<'_>,
+    pauses: &Pauses,
 ) -> Result<Candidate> {
     let frames = NormalizedPair::of(source_xyz, target_xyz, options.scale)?;
     let guard = frames.guard.unwrap_or([1.0; 2]);
     stages.enter(Stage::Normals);
     let scans = Scans::new(&frames, [source_xyz, target_xyz], options);
+    pauses.point(NORMAL * (scans.source.len() + scans.target.len()) as f64).await;
 
     let [least, most] = [guard[0].max(WIDEST[0]), guard[1].min(WIDEST[1])];
     let vote = scans.at(&VOTE);
     let mut voted: Vec<Hypothesis> = Vec::new();
     let mut scale = least * COARSE_STEP.min(most / least).sqrt();
-    while scale <= most {
+    while scale <= most && pauses.goes_on(!voted.is_empty()) {
         let scaled = scans.scaled(scale, &vote, guard, options);
         let clouds = CloudPair::new(&scaled.source, scaled.target, scaled.settings.voxel_size);
-        voted.extend(Level::new(&scaled, &clouds, &VOTE, stages).hypotheses(&VOTE));
+        let level = Level::new(&scaled, &clouds, &VOTE, stages);
+        voted.extend(level.hypotheses(&VOTE));
+        pauses.point(level.work()).await;
         scale *= COARSE_STEP;
     }
     let voted = best_first(&voted, VOTED);
@@ -106,12 +113,16 @@ pub(super) fn register_free(
     let pose = scans.at(&POSE);
     let mut best: Option<(f64, Estimate)> = None;
     for scale in core::iter::once(scale).chain(second) {
+        if !pauses.goes_on(best.is_some()) {
+            break;
+        }
+        pauses.point(0.0).await;
         let mut scaled = scans.scaled(scale, &pose, guard, options);
         if let Some(voxel_size) = given_voxel_size(options, &frames) {
             let guard = guard.map(|bound| bound / scale);
             scaled.settings = RegistrationSettings::new(options, voxel_size, ScaleMode::Free, Some(guard));
         }
-        if let Some((score, estimate)) = scaled.solve(&voted, guard, stages)
+        if let Some((score, estimate)) = scaled.solve(&voted, guard, stages, pauses)
             && best.as_ref().is_none_or(|(highest, _)| score > *highest)
         {
             best = Some((score, estimate));
@@ -185,9 +196,16 @@ struct Scaled<'a> {
 
 impl Scaled<'_> {
     /// The best pose at about this scale, between the normalised frames, and its score.
-    fn solve(&self, voted: &[Hypothesis], guard: [f64; 2], stages: &mut Stopwatch<'_>) -> Option<(f64, Estimate)> {
+    fn solve(
+        &self,
+        voted: &[Hypothesis],
+        guard: [f64; 2],
+        stages: &mut Stopwatch<'_>,
+        pauses: &Pauses,
+    ) -> Option<(f64, Estimate)> {
         let clouds = CloudPair::new(&self.source, self.target, self.settings.voxel_size);
         let level = Level::new(self, &clouds, &POSE, stages);
+        pauses.spend(level.work());
         let mut found = level.hypotheses(&POSE);
         let iterations = found.len();
         stages.enter(Stage::Filter);
@@ -195,13 +213,19 @@ impl Scaled<'_> {
         let chosen = self.distinct(&found, level.scorer.distance);
 
         stages.enter(Stage::Icp);
-        let refined = chosen.into_iter().map(|candidate| {
-            let own = self.own(&candidate.pose);
-            let icp = self.near(own.scale).brief_icp_on_grid(ITERATIONS);
-            let own = icp.map_or(own, |icp| clouds.refine_on_grid(&own, &icp).target_from_source);
-            level.judged(self.unscaled(own), candidate.inliers)
-        });
-        let best = refined.reduce(|a, b| if b.score > a.score { b } else { a })?;
+        let mut best: Option<Hypothesis> = None;
+        for candidate in chosen {
+            let mut own = self.own(&candidate.pose);
+            if let Some(icp) = self.near(own.scale).brief_icp_on_grid(ITERATIONS) {
+                own = clouds.refine_on_grid(&own, &icp).target_from_source;
+                pauses.spend(clouds.work());
+            }
+            let refined = level.judged(self.unscaled(own), candidate.inliers);
+            if best.is_none_or(|best| refined.score > best.score) {
+                best = Some(refined);
+            }
+        }
+        let best = best?;
         let own = self.own(&best.pose);
         let refined = clouds.refine(&own, &self.near(own.scale));
         let pose = self.unscaled(refined.target_from_source);
@@ -282,15 +306,29 @@ impl<'a> Level<'a> {
         let settings = &scaled.settings;
         let [source, target] = clouds.descriptors(settings, stages);
         stages.enter(Stage::Matching);
-        let matches = best_matches(&source, &target, round.matches);
-        let weights = [distinctiveness(&source), distinctiveness(&target)];
+        let matches = nearest(&source, &target).best(round.matches);
         stages.enter(Stage::Ransac);
-        let distance = settings.ransac.inlier_distance as f32;
+        Self::of(scaled, clouds, [&source, &target], matches)
+    }
+
+    fn of(
+        scaled: &'a Scaled<'a>,
+        clouds: &'a CloudPair<'a>,
+        features: [&[Descriptor]; 2],
+        matches: Vec<Match>,
+    ) -> Self {
+        let weights = features.map(distinctiveness);
+        let distance = scaled.settings.ransac.inlier_distance as f32;
         Self { scaled, scorer: PoseScorer { clouds, weights, free: scaled.free.clone(), distance }, matches }
     }
 
     fn judged(&self, pose: Similarity, inliers: usize) -> Hypothesis {
         Hypothesis { pose, score: self.scorer.balanced(&self.scaled.own(&pose)), inliers }
+    }
+
+    /// The units of work of the hypotheses.
+    fn work(&self) -> f64 {
+        3.0 * graph_work(self.matches.len())
     }
 
     /// Poses from matches.

@@ -1,5 +1,6 @@
 //! General registration of two point clouds, without camera or mesh, and the parts that the preset `paper` shares.
 
+pub mod at_once;
 pub mod cloud_pair;
 pub mod compatibility;
 pub mod density;
@@ -25,5 +26,5 @@ pub mod support;
 pub mod tukey;
 pub mod umeyama;
 
-pub use estimate_sim3::estimate_sim3;
-pub use registration::register;
+pub use estimate_sim3::{estimate_sim3, estimate_sim3_task};
+pub use registration::{register, register_task};

@@ -51,6 +51,9 @@ options! {
         icp: Icp = Icp::PointToPlane, Choice;
         /// Upper bound on the iterations of each of ICP's two passes: on the voxel grid, then on the points.
         icp_iterations: u32 = 60, Count(1..=1_000);
+        /// An upper bound on the work, in units of about a millisecond on a 2020 laptop. The work is counted, not timed.
+        /// Draws and poses beyond it are left out; preparing the clouds takes what their points need. `null` sets no bound.
+        work_budget: Option<f64> = None, Positive;
     }
 }
 
@@ -71,5 +74,8 @@ options! {
         ransac_confidence: f64 = 0.999, Number(0.0..=MAX_CONFIDENCE);
         /// Smallest accepted ratio between the stretches of a minimal set's three edges, least to most stretched.
         edge_similarity: f64 = 0.9, Number(0.0..=1.0);
+        /// An upper bound on the work, in units of about a millisecond on a 2020 laptop. The work is counted, not timed.
+        /// Draws beyond it are left out. `null` sets no bound.
+        work_budget: Option<f64> = None, Positive;
     }
 }

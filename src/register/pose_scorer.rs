@@ -25,6 +25,11 @@ pub(super) struct PoseScorer<'a> {
 }
 
 impl PoseScorer<'_> {
+    /// The units of work of a score.
+    pub fn work(&self) -> f64 {
+        6e-4 * (self.clouds.source.grid.cloud.len() + self.clouds.target.grid.cloud.len()) as f64
+    }
+
     /// The agreement of the grids under a pose, in both directions: near points with similar normals, weighted by
     /// distinctiveness, minus the contradictions of free space. Higher is better.
     pub fn score(&self, pose: &Similarity) -> f64 {

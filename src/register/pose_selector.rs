@@ -15,6 +15,7 @@ use crate::geometry::kd_tree::KdTree;
 use crate::geometry::similarity::Similarity;
 use crate::geometry::voxel_grid::voxel_size_leaving;
 use crate::options::scale::ScaleOption;
+use crate::pauses::{Pauses, boxed};
 use crate::progress::{Stage, Stopwatch};
 
 /// Default number of voxels along the diagonal of the target's bounding box.
@@ -94,14 +95,15 @@ impl PoseSelector {
     }
 
     /// Registers these clouds by features, pose by pose until one is certain.
-    pub(crate) fn try_clouds(
+    pub(crate) async fn try_clouds(
         &mut self,
         source_xyz: &[f64],
         target_xyz: &[f64],
         options: &RegisterOptions,
         stages: &mut Stopwatch<'_>,
+        pauses: &Pauses,
     ) -> Result<()> {
-        if self.is_certain() {
+        if self.is_certain() || !pauses.goes_on(self.has_pose()) {
             return Ok(());
         }
         let frames = NormalizedPair::of(source_xyz, target_xyz, options.scale)?;
@@ -110,18 +112,19 @@ impl PoseSelector {
         stages.enter(Stage::Normals);
         let source = with_normals(frames.source.normalized_flat(source_xyz), None);
         let target = with_normals(frames.target.normalized_flat(target_xyz), None);
+        pauses.point(NORMAL * (source.len() + target.len()) as f64).await;
         let mut settings =
             RegistrationSettings::new(options, unit_voxel_size(options, &frames), frames.scale_mode, frames.guard);
         if is_brief {
             settings.ransac.max_iterations = settings.ransac.max_iterations.min(ITERATIONS_WITH_PREFERRED);
         }
-        let mut registration = FeatureRegistration::new(&source, &target, &settings, stages);
+        let mut registration = boxed(FeatureRegistration::new(&source, &target, &settings, stages, pauses)).await;
         let poses = if is_brief { 1 } else { POSES };
         for _ in 0..poses {
-            if self.is_certain() || self.is_partial(source_xyz) {
+            if self.is_certain() || self.is_partial(source_xyz) || !pauses.goes_on(self.has_pose()) {
                 break;
             }
-            match registration.solve(&settings, stages) {
+            match boxed(registration.solve(&settings, stages, pauses)).await {
                 Ok(estimate) => {
                     // The inliers would lead to the same pose again.
                     registration.discard(&estimate.inliers);
@@ -129,6 +132,7 @@ impl PoseSelector {
                         Ok(()) => self.consider(Candidate::new(&frames, estimate)),
                         Err(error) => drop(self.failure.get_or_insert(error)),
                     }
+                    pauses.point(NORMAL * self.source.len() as f64).await;
                 }
                 Err(error) => {
                     self.failure.get_or_insert(about_clouds(error, "source"));
@@ -271,6 +275,9 @@ pub(crate) fn with_normals(mut cloud: Cloud, eye: Option<Vec3>) -> Cloud {
     cloud.normals = outward_normals(&cloud.points, eye, NORMAL_NEIGHBORS);
     cloud
 }
+
+/// Units of work of the normal or of the agreement of a point.
+pub(super) const NORMAL: f64 = 2e-3;
 
 /// Rewords errors of RANSAC, which refer to mesh and observation, for two clouds.
 pub(crate) fn about_clouds(error: Error, argument: &str) -> Error {

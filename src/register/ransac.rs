@@ -10,6 +10,7 @@ use super::umeyama::{Pair, ScaleMode, umeyama};
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::random::Random;
 use crate::geometry::similarity::{Similarity, vector3};
+use crate::pauses::Pauses;
 
 const STREAM: u64 = 3;
 
@@ -21,6 +22,14 @@ const ROUNDING: f64 = 1e-6;
 
 /// Maximum number of closed-form refits of a new best hypothesis.
 const LOCAL_REFITS: usize = 4;
+
+/// Number of pairs by which hypotheses are judged, at most: evenly many of all. The inliers are those of all pairs.
+const JUDGES: usize = 20_000;
+
+/// Units of work between two pause points, of a draw, and of the distance of a pair.
+const STRIDE: f64 = 4.0;
+const DRAW: f64 = 2e-4;
+const DISTANCE: f64 = 6e-6;
 
 /// Treatment of scales outside the guard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -98,51 +107,99 @@ pub struct Consensus {
 ///
 /// # Errors
 /// [`ErrorCode::NoConsensus`] for fewer than three matches, or if no hypothesis inside the guard has three inliers.
-pub fn ransac(
+pub async fn ransac(
     source: &[glam::Vec3],
     target: &[glam::Vec3],
     matches: &[Match],
     settings: &RansacSettings,
+    pauses: &Pauses,
 ) -> Result<Consensus> {
-    // Skips matches of points that do not exist; indices of the others are those in `matches`.
-    let (numbers, pairs): (Vec<usize>, Vec<Pair>) = matches
+    let (numbers, pairs) = pairs_of(source, target, matches);
+    let mut search = Search::new(&pairs, settings);
+    while pairs.len() >= 3 && pauses.goes_on(search.counts.iterations > 0) {
+        let (work, is_over) = search.advance(&pairs, settings);
+        pauses.point(work).await;
+        if is_over {
+            break;
+        }
+    }
+    search.consensus(&numbers, &pairs, settings)
+}
+
+/// The pairs of matches, and their indices. Skips matches of points that do not exist.
+fn pairs_of(source: &[glam::Vec3], target: &[glam::Vec3], matches: &[Match]) -> (Vec<usize>, Vec<Pair>) {
+    matches
         .iter()
         .enumerate()
         .filter_map(|(i, m)| {
             let (source, target) = (source.get(m.source as usize)?, target.get(m.target as usize)?);
             Some((i, Pair { source: vector3(*source), target: vector3(*target), weight: 1.0 }))
         })
-        .unzip();
-    let mut counts = RansacCounts::default();
-    let mut best: Option<Hypothesis> = None;
-    if pairs.len() >= 3 {
-        let mut random = Random::new(settings.seed, STREAM);
-        let mut needed = settings.max_iterations;
-        while counts.iterations < needed {
+        .unzip()
+}
+
+/// A search for the best hypothesis.
+struct Search {
+    /// The pairs that judge hypotheses.
+    judges: Vec<Pair>,
+    random: Random,
+    needed: usize,
+    counts: RansacCounts,
+    best: Option<Hypothesis>,
+}
+
+impl Search {
+    #[inline(never)]
+    fn new(pairs: &[Pair], settings: &RansacSettings) -> Self {
+        Self {
+            judges: pairs.iter().step_by(pairs.len().div_ceil(JUDGES).max(1)).copied().collect(),
+            random: Random::new(settings.seed, STREAM),
+            needed: settings.max_iterations,
+            counts: RansacCounts::default(),
+            best: None,
+        }
+    }
+
+    /// Draws for about [`STRIDE`] units of work. Returns what it took, and whether no draw is left.
+    #[inline(never)]
+    fn advance(&mut self, pairs: &[Pair], settings: &RansacSettings) -> (f64, bool) {
+        let Self { judges, random, needed, counts, best } = self;
+        let mut work = 0.0;
+        while counts.iterations < *needed && work < STRIDE {
+            work += DRAW;
             counts.iterations += 1;
-            let minimal_set = draw_three(&mut random, &pairs);
+            let minimal_set = draw_three(random, pairs);
             if !edges_agree(&minimal_set, settings.edge_similarity) {
                 counts.inconsistent += 1;
                 continue;
             }
-            let Some(hypothesis) = fit(minimal_set.iter(), settings, &mut counts) else { continue };
-            let score = score(&hypothesis.transform, &pairs, settings.inlier_distance);
+            let Some(hypothesis) = fit(minimal_set.iter(), settings, counts) else { continue };
+            work += DISTANCE * judges.len() as f64;
+            let score = score(&hypothesis.transform, judges, settings.inlier_distance);
             if best.as_ref().is_none_or(|b| score > b.score) {
-                let improved = refit(Hypothesis { score, ..hypothesis }, &pairs, settings);
-                let share =
-                    inliers(&improved.transform, &pairs, settings.inlier_distance).len() as f64 / pairs.len() as f64;
-                needed = needed.min(iterations_needed(share, settings.confidence));
-                best = Some(improved);
+                work += (2 * LOCAL_REFITS) as f64 * DISTANCE * judges.len() as f64;
+                let improved = refit(Hypothesis { score, ..hypothesis }, judges, settings);
+                let agreeing = inliers(&improved.transform, judges, settings.inlier_distance).len();
+                let share = agreeing as f64 / judges.len() as f64;
+                *needed = (*needed).min(iterations_needed(share, settings.confidence));
+                *best = Some(improved);
             }
         }
+        (work, counts.iterations >= *needed)
     }
-    let consensus = best.map(|b| (inliers(&b.transform, &pairs, settings.inlier_distance), b));
-    match consensus {
-        Some((inliers, b)) if inliers.len() >= 3 => {
-            let inliers = inliers.into_iter().map(|i| numbers[i]).collect();
-            Ok(Consensus { target_from_source: b.transform, inliers, clamped: b.clamped, counts })
+
+    /// The consensus of all pairs on the best hypothesis.
+    #[inline(never)]
+    fn consensus(self, numbers: &[usize], pairs: &[Pair], settings: &RansacSettings) -> Result<Consensus> {
+        let Self { best, counts, .. } = self;
+        let consensus = best.map(|b| (inliers(&b.transform, pairs, settings.inlier_distance), b));
+        match consensus {
+            Some((inliers, b)) if inliers.len() >= 3 => {
+                let inliers = inliers.into_iter().map(|i| numbers[i]).collect();
+                Ok(Consensus { target_from_source: b.transform, inliers, clamped: b.clamped, counts })
+            }
+            _ => Err(no_consensus(pairs.len(), &counts)),
         }
-        _ => Err(no_consensus(pairs.len(), &counts)),
     }
 }
 

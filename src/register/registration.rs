@@ -13,6 +13,7 @@ use crate::evidence::observation::MIN_POINTS;
 use crate::geometry::random::Random;
 use crate::options::Options;
 use crate::options::scale::ScaleOption;
+use crate::pauses::{Pauses, Task, boxed, finished};
 use crate::progress::{Host, Stage, Stopwatch};
 
 /// Random stream of the subsampling.
@@ -45,6 +46,34 @@ pub fn register(
     options: &RegisterOptions,
     host: &mut dyn Host,
 ) -> Result<Registration> {
+    let pauses = Pauses::new(|| 0.0, options.work_budget);
+    finished(registered(source_xyz, target_xyz, options, host, &pauses))
+}
+
+/// [`register`] in steps, which end by this clock.
+///
+/// # Errors
+/// [`ErrorCode::InvalidOption`]; the others are those of the steps.
+pub fn register_task(
+    source_xyz: Vec<f64>,
+    target_xyz: Vec<f64>,
+    options: RegisterOptions,
+    mut host: impl Host + 'static,
+    clock: fn() -> f64,
+) -> Result<Task<'static, Registration>> {
+    options.validate()?;
+    Ok(Task::new(Pauses::new(clock, options.work_budget), |pauses| async move {
+        registered(&source_xyz, &target_xyz, &options, &mut host, &pauses).await
+    }))
+}
+
+async fn registered(
+    source_xyz: &[f64],
+    target_xyz: &[f64],
+    options: &RegisterOptions,
+    host: &mut dyn Host,
+    pauses: &Pauses,
+) -> Result<Registration> {
     options.validate()?;
     let (source_xyz, skipped_source) = finite_points(source_xyz);
     let (target_xyz, skipped_target) = finite_points(target_xyz);
@@ -68,20 +97,22 @@ pub fn register(
     let mut selector = PoseSelector::new(&source_xyz, &target_xyz, frames, options);
     let is_fixed = matches!(options.scale, ScaleOption::Fixed(_));
     if is_fixed {
-        selector.prefer(register_rigid(complete, options, &mut stages));
+        selector.prefer(register_rigid(complete, options, &mut stages, pauses));
     }
+    pauses.point(0.0).await;
     let dense = dense(&source_xyz, &target_xyz, &selector.frames);
+    pauses.point(1e-3 * (source_xyz.len() + target_xyz.len()) as f64).await;
     if let Some((source_xyz, target_xyz)) = &dense {
-        selector.try_clouds(source_xyz, target_xyz, options, &mut stages)?;
+        boxed(selector.try_clouds(source_xyz, target_xyz, options, &mut stages, pauses)).await?;
     }
     if !selector.has_preferred() && (is_fixed || dense.is_none()) {
-        selector.try_clouds(&source_xyz, &target_xyz, options, &mut stages)?;
+        boxed(selector.try_clouds(&source_xyz, &target_xyz, options, &mut stages, pauses)).await?;
     }
-    if !is_fixed && !selector.is_mutual() {
-        selector.prefer(register_free(complete, options, &mut stages));
+    if !is_fixed && !selector.is_mutual() && pauses.goes_on(selector.has_pose()) {
+        selector.prefer(boxed(register_free(complete, options, &mut stages, pauses)).await);
     }
     if !selector.has_pose() {
-        selector.try_clouds(&source_xyz, &target_xyz, options, &mut stages)?;
+        boxed(selector.try_clouds(&source_xyz, &target_xyz, options, &mut stages, pauses)).await?;
     }
     let mut found = selector.finish(options, stages)?;
     found.diagnostics.skipped_source_points = skipped_source;

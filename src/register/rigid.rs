@@ -3,22 +3,25 @@
 //! The voxel size follows from the number of points. Poses come from matches that preserve distances, and are ranked by
 //! the agreement of both complete scenes and by the free space of their sensors.
 
+use super::at_once::nearest;
 use super::cloud_pair::CloudPair;
 use super::feature_registration::Estimate;
 use super::normalized_pair::NormalizedPair;
 use super::options::RegisterOptions;
 use super::pose_scorer::{PoseScorer, distinctiveness};
-use super::pose_selector::{Candidate, no_consensus, with_normals};
+use super::pose_selector::{Candidate, NORMAL, no_consensus, with_normals};
 use super::settings::{RegistrationSettings, given_voxel_size};
 use crate::error::Result;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::similarity::{Similarity, vec3};
 use crate::geometry::voxel_grid::{voxel_downsample, voxel_size_leaving};
+use crate::pauses::Pauses;
 use crate::progress::{Stage, Stopwatch};
-use crate::register::compatibility::{Hypothesis, hypotheses};
+use crate::register::compatibility::{Hypothesis, graph_work, hypotheses};
+use crate::register::fpfh::Descriptor;
 use crate::register::free_space::FreeSpace;
 use crate::register::icp::movement;
-use crate::register::matching::best_matches;
+use crate::register::matching::Match;
 use crate::report::Counts;
 
 /// Maximum number of voxels of the larger cloud by default: it resolves furniture and keeps the run time at seconds.
@@ -45,72 +48,109 @@ pub(super) fn register_rigid(
     [source_xyz, target_xyz]: [&[f64]; 2],
     options: &RegisterOptions,
     stages: &mut Stopwatch<'_>,
+    pauses: &Pauses,
 ) -> Result<Candidate> {
     let frames = NormalizedPair::of(source_xyz, target_xyz, options.scale)?;
-    let most = options.max_points as usize;
-    let source = limit_points(frames.source.normalized_flat(source_xyz), most);
-    let target = limit_points(frames.target.normalized_flat(target_xyz), most);
-    let voxel_size = match given_voxel_size(options, &frames) {
-        Some(size) => size as f32,
-        None => voxel_size_leaving(&source, VOXELS).max(voxel_size_leaving(&target, VOXELS)),
-    };
-    let settings = RegistrationSettings::new(options, f64::from(voxel_size), frames.scale_mode, frames.guard);
-
-    stages.enter(Stage::Normals);
-    // Scans are usually in the frame of their sensor; the points show whether that is plausible.
-    let [source_eye, target_eye] = [&frames.source, &frames.target].map(|f| vec3(&f.unit_from_own().translation));
-    let slack = FREE_SLACK_VOXELS * voxel_size;
-    let source_free = FreeSpace::seen_from(source_eye, &source.points, slack);
-    let target_free = FreeSpace::seen_from(target_eye, &target.points, slack);
-    let source = with_normals(source, source_free.as_ref().map(|_| source_eye));
-    let target = with_normals(target, target_free.as_ref().map(|_| target_eye));
-    let clouds = CloudPair::new(&source, &target, settings.voxel_size);
-    let [source_features, target_features] = clouds.descriptors(&settings, stages);
-
+    let scans = Scans::new(&frames, [source_xyz, target_xyz], options, stages);
+    let [source, target] = &scans.clouds;
+    pauses.spend(NORMAL * (source.len() + target.len()) as f64);
+    let clouds = CloudPair::new(source, target, scans.settings.voxel_size);
+    let features = clouds.descriptors(&scans.settings, stages);
+    pauses.spend(clouds.work());
     stages.enter(Stage::Matching);
-    let matches = best_matches(&source_features, &target_features, MATCHES);
-
-    stages.enter(Stage::Ransac);
-    let distance = settings.ransac.inlier_distance as f32;
-    let count = HYPOTHESES.min(settings.ransac.max_iterations);
-    let [source_points, target_points] = [&clouds.source, &clouds.target].map(|side| &side.grid.cloud.points);
-    let found = hypotheses(source_points, target_points, &matches, distance, count);
-    let iterations = found.len();
-
-    stages.enter(Stage::Filter);
-    let scorer = PoseScorer {
-        clouds: &clouds,
-        weights: [distinctiveness(&source_features), distinctiveness(&target_features)],
-        free: [source_free, target_free],
-        distance,
-    };
-    let candidates = distinct_candidates(&scorer, found);
-
-    stages.enter(Stage::Icp);
-    let mut best: Option<(f64, Similarity, Vec<usize>)> = None;
-    let icp = settings.brief_icp_on_grid(ITERATIONS);
-    for hypothesis in candidates {
-        let pose = hypothesis.target_from_source;
-        let pose = icp.map_or(pose, |icp| clouds.refine_on_grid(&pose, &icp).target_from_source);
-        let score = scorer.score(&pose);
-        if best.as_ref().is_none_or(|(highest, ..)| score > *highest) {
-            best = Some((score, pose, hypothesis.inliers));
-        }
-    }
-    let Some((_, pose, inliers)) = best else {
-        return Err(no_consensus(format!("{} matches, no three of which preserve distances", matches.len())));
-    };
-    let refined = clouds.refine(&pose, &settings);
-    let counts = Counts { matches: matches.len(), inliers: inliers.len(), iterations, ..clouds.counts(&refined) };
-    let estimate = Estimate {
-        target_from_source: refined.target_from_source,
-        clamped: false,
-        converged: refined.converged,
-        rms: refined.rms,
-        counts,
-        inliers,
-    };
+    let matches = nearest(&features[0], &features[1]).best(MATCHES);
+    let estimate = scans.estimate(&clouds, &features, &matches, stages, pauses)?;
     Ok(Candidate::new(&frames, estimate))
+}
+
+/// Both clouds in their normalised frames, with normals.
+struct Scans {
+    clouds: [Cloud; 2],
+    /// Free space in their frames, if the position of the sensor is known.
+    free: [Option<FreeSpace>; 2],
+    settings: RegistrationSettings,
+}
+
+impl Scans {
+    fn new(
+        frames: &NormalizedPair,
+        [source_xyz, target_xyz]: [&[f64]; 2],
+        options: &RegisterOptions,
+        stages: &mut Stopwatch<'_>,
+    ) -> Self {
+        let most = options.max_points as usize;
+        let source = limit_points(frames.source.normalized_flat(source_xyz), most);
+        let target = limit_points(frames.target.normalized_flat(target_xyz), most);
+        let voxel_size = match given_voxel_size(options, frames) {
+            Some(size) => size as f32,
+            None => voxel_size_leaving(&source, VOXELS).max(voxel_size_leaving(&target, VOXELS)),
+        };
+        let settings = RegistrationSettings::new(options, f64::from(voxel_size), frames.scale_mode, frames.guard);
+
+        stages.enter(Stage::Normals);
+        // Scans are usually in the frame of their sensor; the points show whether that is plausible.
+        let [source_eye, target_eye] = [&frames.source, &frames.target].map(|f| vec3(&f.unit_from_own().translation));
+        let slack = FREE_SLACK_VOXELS * voxel_size;
+        let source_free = FreeSpace::seen_from(source_eye, &source.points, slack);
+        let target_free = FreeSpace::seen_from(target_eye, &target.points, slack);
+        let source = with_normals(source, source_free.as_ref().map(|_| source_eye));
+        let target = with_normals(target, target_free.as_ref().map(|_| target_eye));
+        Self { clouds: [source, target], free: [source_free, target_free], settings }
+    }
+
+    /// The best pose from matches.
+    fn estimate(
+        &self,
+        clouds: &CloudPair<'_>,
+        features: &[Vec<Descriptor>; 2],
+        matches: &[Match],
+        stages: &mut Stopwatch<'_>,
+        pauses: &Pauses,
+    ) -> Result<Estimate> {
+        let settings = &self.settings;
+        stages.enter(Stage::Ransac);
+        let distance = settings.ransac.inlier_distance as f32;
+        let count = HYPOTHESES.min(settings.ransac.max_iterations);
+        let [source_points, target_points] = [&clouds.source, &clouds.target].map(|side| &side.grid.cloud.points);
+        let found = hypotheses(source_points, target_points, matches, distance, count);
+        pauses.spend(graph_work(matches.len()));
+        let iterations = found.len();
+
+        stages.enter(Stage::Filter);
+        let scorer = PoseScorer {
+            clouds,
+            weights: features.each_ref().map(|features| distinctiveness(features)),
+            free: self.free.clone(),
+            distance,
+        };
+        let candidates = distinct_candidates(&scorer, found, pauses);
+
+        stages.enter(Stage::Icp);
+        let mut best: Option<(f64, Similarity, Vec<usize>)> = None;
+        let icp = settings.brief_icp_on_grid(ITERATIONS);
+        for hypothesis in candidates {
+            let pose = hypothesis.target_from_source;
+            let pose = icp.map_or(pose, |icp| clouds.refine_on_grid(&pose, &icp).target_from_source);
+            pauses.spend(clouds.work());
+            let score = scorer.score(&pose);
+            if best.as_ref().is_none_or(|(highest, ..)| score > *highest) {
+                best = Some((score, pose, hypothesis.inliers));
+            }
+        }
+        let Some((_, pose, inliers)) = best else {
+            return Err(no_consensus(format!("{} matches, no three of which preserve distances", matches.len())));
+        };
+        let refined = clouds.refine(&pose, settings);
+        let counts = Counts { matches: matches.len(), inliers: inliers.len(), iterations, ..clouds.counts(&refined) };
+        Ok(Estimate {
+            target_from_source: refined.target_from_source,
+            clamped: false,
+            converged: refined.converged,
+            rms: refined.rms,
+            counts,
+            inliers,
+        })
+    }
 }
 
 /// The cloud if it has at most `most` points; otherwise the means of the smallest voxels that leave that many.
@@ -119,8 +159,12 @@ pub(super) fn limit_points(cloud: Cloud, most: usize) -> Cloud {
 }
 
 /// The poses with the highest scores, best first, without near duplicates.
-fn distinct_candidates(scorer: &PoseScorer<'_>, mut found: Vec<Hypothesis>) -> Vec<Hypothesis> {
-    let mut scores: Vec<f64> = found.iter().map(|hypothesis| scorer.score(&hypothesis.target_from_source)).collect();
+fn distinct_candidates(scorer: &PoseScorer<'_>, mut found: Vec<Hypothesis>, pauses: &Pauses) -> Vec<Hypothesis> {
+    let mut scores = Vec::with_capacity(found.len());
+    for hypothesis in &found {
+        scores.push(scorer.score(&hypothesis.target_from_source));
+        pauses.spend(scorer.work());
+    }
     let mut chosen: Vec<Hypothesis> = Vec::new();
     while chosen.len() < REFINED {
         let highest = (0..scores.len()).reduce(|best, i| if scores[i] > scores[best] { i } else { best });

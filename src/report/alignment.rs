@@ -19,8 +19,11 @@ pub struct Alignment {
     /// Probability that the pose is right (scale within 5 %, rotation within 10° up to symmetry, translation within 5 %
     /// of the diameter), calibrated on generated cases. It assumes that the mesh is the object's.
     pub confidence: f64,
-    /// Other poses that explain the observation nearly as well, best first: flips, and turns under which the object
-    /// looks alike though the mesh does not.
+    /// Probability that the turn is right, too: that of the poses which a symmetry of the shape makes equal, this is the one
+    /// whose colours are those of the photo. `null` where the shape has no symmetry, or colour does not decide.
+    pub turn_confidence: Option<f64>,
+    /// Other poses that explain the observation nearly as well, best first. Poses that the symmetry of the shape makes equal
+    /// are one, unless their colours differ.
     pub alternatives: Vec<Alternative>,
     /// How well the observation determines each part of the pose; `null` where the search could not tell.
     pub uncertainty: Option<Uncertainty>,

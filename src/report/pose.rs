@@ -54,18 +54,21 @@ pub struct Alternative {
     pub color_margin: Option<f64>,
 }
 
-/// Standard deviations of the pose's parts, as the observation determines them. Parts that a single view leaves open,
-/// such as the turn of a round object about its axis, have large ones.
+/// Standard deviations of the pose's parts, as the observation determines them. Parts that a single view leaves open have
+/// large ones.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "camelCase")]
 pub struct Uncertainty {
     /// Of the scale, relative: 0.01 is one per cent.
     pub scale: f64,
-    /// Of the rotation about the least determined axis, in degrees.
+    /// Of the rotation about the least determined axis, in degrees, up to the symmetry of the mesh.
     pub rotation_deg: f64,
     /// That axis: a unit vector in the camera's frame.
     pub rotation_axis: [f64; 3],
+    /// The axis of revolution of the mesh, a unit vector in the camera's frame: any turn about it leaves its shape as it is,
+    /// and does not count as uncertain. `null` if it has none.
+    pub free_axis: Option<[f64; 3]>,
     /// Of the mesh centre's position across the line of sight, in metres.
     pub lateral_m: f64,
     /// Of the mesh centre's distance from the camera, in metres.

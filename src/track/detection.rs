@@ -6,7 +6,6 @@ use glam::DQuat;
 
 use crate::error::Result;
 use crate::evidence::observation::Observation;
-use crate::geometry::rotations::angle_between;
 use crate::precise::clean::CleanObservation;
 use crate::precise::color::{ColorStage, Judgment};
 use crate::precise::confidence::sureness;
@@ -76,8 +75,8 @@ impl Detection {
             precise::run(&mut next, &(0.2..0.85), &mut || false, stages);
             let best = next.found.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
             let (conditioning, _) = next.search.conditioning(&best.pose);
-            let rival = next.found.iter().skip(1).map(|other| other.score.total).fold(0.0, f32::max);
-            certainty = sureness(best, f64::from(best.score.total - rival), conditioning.as_ref());
+            let lead = next.search.equivalence.lead(best, &next.found[1..], |found| found.score.total);
+            certainty = sureness(best, lead, conditioning.as_ref());
             rounds = Some(next);
         }
         let rounds = rounds.ok_or_else(no_candidate)?;
@@ -103,13 +102,19 @@ fn chosen(rounds: &Rounds, judgment: Option<&Judgment>, known: &Known) -> Result
     let is_colored = judgment.is_some_and(|judgment| judgment.is_used && !judgment.rivals.is_empty());
     if let (Some((_, before)), false) = (known.before, is_colored) {
         for other in rounds.found.iter().filter(|other| other.score.total > first.score.total - 0.5 * NOISE) {
-            if angle_between(other.pose.rotation, before) < angle_between(chosen.pose.rotation, before) {
+            let angle = |found: &Found| rounds.search.equivalence.angle(found.pose.rotation, before);
+            if angle(other) < angle(&chosen) {
                 chosen = *other;
             }
         }
     }
-    let others = rounds.found.iter().filter(|other| other.score.total < chosen.score.total);
-    let rival = others.map(|other| other.score.total).fold(0.0, f32::max);
-    let margin = f64::from(chosen.score.total - rival);
+    if let (Some((_, before)), false) = (known.before, is_colored) {
+        // Of the rotations that the symmetry makes one, the search keeps any.
+        let nearest = rounds.search.equivalence.nearest(chosen.pose.rotation, before);
+        chosen.pose = rounds.search.mesh.turns.turned(&chosen.pose, nearest);
+    }
+    let others: Vec<Found> =
+        rounds.found.iter().filter(|other| other.score.total < chosen.score.total).copied().collect();
+    let margin = rounds.search.equivalence.lead(&chosen, &others, |found| found.score.total);
     Ok((chosen, judgment.map_or(margin, |color| margin.max(color.lead()))))
 }

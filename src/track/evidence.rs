@@ -7,6 +7,7 @@ use crate::evidence::frame::Frame;
 use crate::evidence::observation::Observation;
 use crate::evidence::photo::PhotoRegion;
 use crate::geometry::image::bounds_of;
+use crate::metrics::symmetry::Symmetry;
 use crate::precise::SearchSettings;
 use crate::precise::appearance::PhotoCells;
 use crate::precise::clean::CleanObservation;
@@ -73,7 +74,8 @@ fn evidence(
 ) -> Result<Option<Evidence>> {
     let Some(mask) = &window.mask else { return Ok(None) };
     let observation = Observation::new(window.depth.clone(), mask.clone(), window.camera)?;
-    let search = Search::new(Rc::new(CleanObservation::new(&observation)), mesh.clone(), *settings);
+    let mut search = Search::new(Rc::new(CleanObservation::new(&observation)), mesh.clone(), *settings);
+    search.equivalence = mesh.equivalence(&Symmetry::Auto)?;
     let photo = whole.photo.as_ref();
     let photo = photo.map(|photo| PhotoCells::new(photo, region, search.observation.image, &search.fine));
     Ok((search.fine.mask_cells > 0).then_some(Evidence { search, photo }))

@@ -17,7 +17,7 @@ use crate::evidence::observation::Observation;
 use crate::evidence::sample::Sampling;
 use crate::geometry::rotations::angle_between;
 use crate::geometry::similarity::Similarity;
-use crate::metrics;
+use crate::metrics::{self, symmetry::Symmetry};
 use crate::number::number;
 use crate::options::Options;
 use crate::precise::choice::AGREES;
@@ -236,7 +236,8 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         let options = self.options.of_detection();
         let detection = Detection::search(observation, self.mesh.borrow(), &options, &known, host)?;
         // With the settings of the frames after it, so that scores compare.
-        let search = Search::new(detection.observation, self.sight.mesh.clone(), self.sight.settings);
+        let mut search = Search::new(detection.observation, self.sight.mesh.clone(), self.sight.settings);
+        search.equivalence = self.sight.mesh.equivalence(&Symmetry::Auto)?;
         let found = Found { score: search.score(&detection.found.pose), ..detection.found };
         let photo = observation.photo().map(|photo| cells(photo, &search));
         let evidence = Evidence { search, photo };

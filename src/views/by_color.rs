@@ -1,6 +1,8 @@
 //! Colour in views with known camera poses: of the turns whose shape is within noise in all views together, the one that
 //! agrees best with all photos.
 
+use glam::DVec3;
+
 use super::joint::Joint;
 use super::known::{Hypothesis, Part, Ranked, grids, level};
 use super::world_pose::WorldPose;
@@ -8,9 +10,9 @@ use crate::geometry::rotations::exp;
 use crate::geometry::surface_colors::SurfaceColors;
 use crate::precise::appearance::{Appearance, PhotoCells};
 use crate::precise::choice::{Choice, Look, best_roll};
-use crate::precise::color::{DIFFERENT, Judgment, LOOSE, Rival, are_rivals};
+use crate::precise::color::{DIFFERENT, Judgment, LOOSE, are_rivals};
 use crate::precise::conditioning::Conditioning;
-use crate::precise::lookalikes::{Lookalike, ROLLS, among};
+use crate::precise::lookalikes::{Likeness, Lookalike, ROLLS, among};
 use crate::precise::recipe::{COARSE, FINE, FINEST, MIDDLE};
 use crate::precise::score::{NOISE, Score};
 use crate::precise::search::Found;
@@ -60,15 +62,15 @@ impl Photos<'_> {
         let shape = first.shape;
         let look = Look::new(first.look.agreement, 0.0);
         let mut compared = vec![Compared { look, ..first }];
-        for Lookalike { pose, is_rough } in alike {
-            let mut pose = pose.pose;
-            if is_rough {
+        for Lookalike { mut pose, likeness } in alike {
+            if likeness == Likeness::Rough {
                 let refined = rough.refine(pose, STEPS[0]);
                 *renders += refined.renders;
                 pose = refined.pose;
             }
             *renders += 1;
-            compared.extend(self.compare(&mut joint, &Ranked { pose, ..best.clone() }, Some(shape)));
+            let other = self.compare(&mut joint, &Ranked { pose, ..best.clone() }, Some(shape));
+            compared.extend(other.filter(|other| likeness == Likeness::Equal || other.shape >= shape - NOISE));
         }
         let differ = |a: usize, b: usize| {
             let [a, b] = [a, b].map(|k| &compared[k]);
@@ -83,9 +85,10 @@ impl Photos<'_> {
             *renders += polished.renders;
             chosen.pose = polished.pose;
         }
-        let rolled = conditioning
-            .filter(|held| choice.is_used && held.rotation.0 >= LOOSE)
-            .and_then(|held| self.roll(&mut joint, &chosen, held));
+        let part = self.parts.first()?;
+        let loosest = || conditioning.map(|held| held.rotation).filter(|(deviation, _)| *deviation >= LOOSE);
+        let axis = part.search.equivalence.free_axis(chosen.pose.rotation).or_else(|| loosest().map(|(_, axis)| axis));
+        let rolled = axis.filter(|_| choice.is_used).and_then(|axis| self.roll(&mut joint, &chosen, axis));
         let gain = rolled.map_or(0.0, |(_, gain)| gain);
         if let Some((pose, _)) = rolled {
             chosen.pose = pose;
@@ -95,16 +98,11 @@ impl Photos<'_> {
             let score = Score { total: ranked.score.total, ..Score::default() };
             Some(Found { pose: first.camera.see(&ranked.pose)?, score, converged: ranked.converged, renders: 0 })
         };
-        let rival = |&k: &usize| Some(Rival { found: seen(&compared[k].ranked)?, margin: choice.margin(k, gain) });
-        let chosen = (is_changed || rolled.is_some()).then_some(chosen);
-        let judgment = Judgment {
-            chosen: chosen.as_ref().and_then(seen),
-            rivals: choice.rivals.iter().filter_map(rival).collect(),
-            certainty: choice.certainty(gain),
-            report: choice.report(gain),
-            is_used: choice.is_used,
-        };
-        Some((judgment, chosen))
+        let end = seen(&chosen)?;
+        let is_other = is_changed || rolled.is_some();
+        let pose_of = |k: usize| seen(&compared.get(k)?.ranked);
+        let judgment = Judgment::new(&choice, (end, is_other), pose_of, gain, &first.search.equivalence);
+        Some((judgment, is_other.then_some(chosen)))
     }
 
     /// The turns that look about like the best pose in all views, on the coarse grid.
@@ -114,7 +112,7 @@ impl Photos<'_> {
         ranked: &[Ranked],
         lock_scale: bool,
         renders: &mut usize,
-    ) -> Option<Vec<Lookalike<Hypothesis>>> {
+    ) -> Option<Vec<Lookalike<WorldPose>>> {
         let (part, seen) = self.parts.iter().find_map(|part| Some((part, part.camera.see(&best.pose)?)))?;
         let turned = part.search.mesh.turns.about_axes(&seen, ROLLS);
         let turned = turned.iter().map(|turned| part.camera.place(turned));
@@ -125,16 +123,15 @@ impl Photos<'_> {
         let poses: Vec<WorldPose> = ranked.iter().skip(1).map(|other| other.pose).chain(turned).collect();
         *renders += poses.len();
         let scored = poses.into_iter().map(|pose| Hypothesis { pose, total: mean(&pose) });
-        Some(among(best.pose.rotation, score, scored))
+        let equal = part.search.equivalence.others(seen.rotation, ROLLS);
+        let equal = equal.into_iter().map(|turn| part.camera.place(&part.search.mesh.turns.turned(&seen, turn)));
+        Some(among(best.pose.rotation, score, scored, equal, |scored| scored.pose, |pose| pose.rotation))
     }
 
-    /// Renders a pose in all views; `None` if its shape is not within noise of `shape`, or nothing can be compared.
+    /// Renders a pose in all views, whose shape is compared with `shape`; `None` if no colours can be compared.
     fn compare(&self, joint: &mut Joint<'_>, ranked: &Ranked, shape: Option<f32>) -> Option<Compared> {
         let score = joint.score(&ranked.pose);
         let own = score.total / self.parts.len() as f32;
-        if shape.is_some_and(|shape| own < shape - NOISE) {
-            return None;
-        }
         let appearances: Vec<Option<Appearance>> = self
             .photos
             .iter()
@@ -149,11 +146,11 @@ impl Photos<'_> {
         Some(Compared { ranked: Ranked { score, ..ranked.clone() }, shape: own, appearances, look })
     }
 
-    /// The pose rolled about its open axis to where its colours agree best, and the gain.
-    fn roll(&self, joint: &mut Joint<'_>, chosen: &Ranked, held: &Conditioning) -> Option<(WorldPose, f64)> {
+    /// The pose rolled about an axis to where its colours agree best, and the gain.
+    fn roll(&self, joint: &mut Joint<'_>, chosen: &Ranked, axis: DVec3) -> Option<(WorldPose, f64)> {
         let part = self.parts.iter().find(|part| part.camera.see(&chosen.pose).is_some())?;
         let rolled = |angle: f64| {
-            let rotation = exp(held.rotation.1 * angle) * chosen.pose.rotation;
+            let rotation = exp(axis * angle) * chosen.pose.rotation;
             let seen = part.camera.see(&chosen.pose)?;
             let turned = part.camera.see(&WorldPose { rotation, ..chosen.pose })?;
             Some(part.camera.place(&part.search.mesh.turns.turned(&seen, turned.rotation)))

@@ -6,28 +6,25 @@ use super::View;
 use super::by_color::Photos;
 use super::joint::JointScore;
 use super::known::{Part, Ranked, contradicts, join, on_fine_grids, rank, with_fused_size};
-use super::options::ViewsOptions;
 use super::predicted_mask::with_predicted_mask;
 use super::report::{ViewRole, WorldFrame, WorldUncertainty};
 use super::searched_view::SearchedView;
 use super::summary::{Summary, SummaryView};
 use super::world_pose::{PlacedCamera, WorldPose};
 use crate::error::Result;
-use crate::geometry::mesh::Mesh;
 use crate::geometry::normal_equations::NormalEquations;
 use crate::geometry::similarity::Similarity;
-use crate::metrics::symmetry::Symmetry;
 use crate::precise::alternatives::{add_rivals, alternatives};
 use crate::precise::appearance::PhotoCells;
 use crate::precise::clean::CleanObservation;
 use crate::precise::color::{Judgment, cells};
-use crate::precise::conditioning::{Conditioning, covariance, deviation, widest};
+use crate::precise::conditioning::{Conditioning, covariance, deviation, hold_roll, widest};
 use crate::precise::confidence::confidence;
 use crate::precise::no_candidate;
 use crate::precise::pose::MeshFrame;
 use crate::precise::prepared_mesh::PreparedMesh;
 use crate::precise::recipe::SURE;
-use crate::precise::score::Score;
+use crate::precise::score::{NOISE, Score};
 use crate::precise::search::{Found, Search};
 use crate::report::{Alternative, Sim3};
 
@@ -38,12 +35,7 @@ const PREDICTIONS: usize = 2;
 ///
 /// # Errors
 /// [`NoConsensus`](crate::error::ErrorCode::NoConsensus) if no pose is in front of a camera and overlaps a mask.
-pub fn in_world(
-    searched: &[SearchedView],
-    views: &[View],
-    mesh: &PreparedMesh<'_>,
-    options: &ViewsOptions,
-) -> Result<Summary> {
+pub fn in_world(searched: &[SearchedView], views: &[View], mesh: &PreparedMesh<'_>) -> Result<Summary> {
     let lock_scale = searched.first().is_some_and(|view| view.search().settings.lock_scale);
     let cameras: Vec<PlacedCamera> = views.iter().map(camera).collect();
     let own = |view: &SearchedView| view.found().first().map(|found| found.pose);
@@ -102,7 +94,10 @@ pub fn in_world(
     let mut joint = on_fine_grids(&used, lock_scale);
     let mut held = |best: &Ranked| {
         let score = joint.score(&best.pose);
-        let held = conditioning(&joint.equations(&best.pose, &score), &best.pose)
+        let mut equations = joint.equations(&best.pose, &score);
+        let free_axis = used.first().and_then(|part| part.search.equivalence.free_axis(best.pose.rotation));
+        free_axis.into_iter().for_each(|axis| hold_roll(&mut equations, axis));
+        let held = conditioning(&equations, &best.pose)
             .map(|held| Conditioning { scale: fused.unwrap_or(held.scale), ..held });
         (score, held)
     };
@@ -115,17 +110,23 @@ pub fn in_world(
     }
     let color = judged.map(|(judgment, _)| judgment);
     let (Some(best), Some(first)) = (ranked.first(), used.first()) else { return Err(no_candidate()) };
-    let mut others = other_poses(&ranked, first, mesh.mesh(), &options.symmetry)?;
+    let mut others = other_poses(&ranked, first);
     let sum = Found {
         pose: first.camera.see(&best.pose).ok_or_else(no_candidate)?,
         score: mean_score(&score, best.score.total),
         converged: best.converged,
         renders: 0,
     };
-    if let Some(color) = &color {
-        add_rivals(&mut others, &sum, &color.rivals, first.search);
-    }
+    let rivals = |are_turns: bool| {
+        let all = color.iter().flat_map(|color| &color.rivals);
+        all.filter(move |rival| rival.is_turn == are_turns)
+    };
+    add_rivals(&mut others, &sum, rivals(false), first.search);
     let by_shape = confidence(&sum, &others, conditioning.as_ref());
+    // Turns that the symmetry of the shape makes equivalent are alternatives only if colour tells them apart.
+    if color.as_ref().is_some_and(|color| color.is_used) {
+        add_rivals(&mut others, &sum, rivals(true), first.search);
+    }
     let confidence = by_shape * color.as_ref().map_or(1.0, |color| color.certainty);
     let world_from_mesh = best.pose.similarity(&first.search.mesh.frame);
     let shown = |k: usize| {
@@ -161,6 +162,7 @@ pub fn in_world(
             scale: held.scale,
             rotation_deg: held.rotation.0.to_degrees(),
             rotation_axis: held.rotation.1.to_array(),
+            free_axis: first.search.equivalence.free_axis(best.pose.rotation).map(|axis| axis.to_array()),
             position_m: held.lateral_m,
         }),
         views,
@@ -209,6 +211,7 @@ fn predicted(pose: &WorldPose, views: &[View], cameras: &[PlacedCamera], like: &
         let Ok(Some(observation)) = frame.observation() else { continue };
         let mut search = Search::new(Rc::new(CleanObservation::new(&observation)), mesh.clone(), like.settings);
         search.assume(like.prior);
+        search.equivalence = like.equivalence.clone();
         if search.fine.mask_cells > 0 {
             evidence.push((k, search));
         }
@@ -241,12 +244,12 @@ fn mean_score(score: &JointScore, total: f32) -> Score {
 }
 
 /// The poses nearly as good as the best one, in the camera of the first view.
-fn other_poses(ranked: &[Ranked], first: &Part<'_>, mesh: &Mesh, symmetry: &Symmetry) -> Result<Vec<Alternative>> {
+fn other_poses(ranked: &[Ranked], first: &Part<'_>) -> Vec<Alternative> {
     let found = ranked.iter().filter_map(|ranked| {
         let score = Score { total: ranked.score.total, ..Score::default() };
         Some(Found { pose: first.camera.see(&ranked.pose)?, score, converged: ranked.converged, renders: 0 })
     });
-    alternatives(&found.collect::<Vec<_>>(), first.search, mesh, symmetry)
+    alternatives(&found.collect::<Vec<_>>(), first.search, NOISE)
 }
 
 /// An alternative in the world instead of a camera.

@@ -38,10 +38,13 @@ choices! {
 pub struct WorldUncertainty {
     /// Of the scale, relative: 0.01 is one per cent.
     pub scale: f64,
-    /// Of the rotation about the least determined axis, in degrees.
+    /// Of the rotation about the least determined axis, in degrees, up to the symmetry of the mesh.
     pub rotation_deg: f64,
     /// That axis: a unit vector in the world frame.
     pub rotation_axis: [f64; 3],
+    /// The axis of revolution of the mesh, a unit vector in the world frame: any turn about it leaves its shape as it is, and
+    /// does not count as uncertain. `null` if it has none.
+    pub free_axis: Option<[f64; 3]>,
     /// Of the mesh centre's position along the least determined direction, in metres.
     pub position_m: f64,
 }

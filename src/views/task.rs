@@ -153,7 +153,7 @@ impl<'h, 'm, M: Borrow<PreparedMesh<'m>>> ViewsTask<'h, M> {
         stages.enter(Stage::Refine);
         let mesh = self.mesh.borrow();
         let summary = if self.is_known {
-            in_world(&views, &self.views, mesh, &self.options)
+            in_world(&views, &self.views, mesh)
         } else {
             for view in &mut views {
                 view.judge_colors(self.views[view.index].frame.photo.as_deref(), mesh.colors());

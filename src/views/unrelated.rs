@@ -19,6 +19,8 @@ const NEAR: f32 = 0.35;
 /// Poses of a view tried at the common size, and the steps of their refinement on the fine and the finest grid.
 const TRIED: usize = 5;
 const STEPS: [usize; 2] = [14, 8];
+/// Number of other poses of a view that its lead is measured against.
+const RIVALS: usize = 8;
 /// Times that the size follows from the poses that were refined at the size before.
 const ROUNDS: usize = 2;
 
@@ -78,10 +80,7 @@ pub fn with_common_size(searched: &[SearchedView]) -> Option<CommonSize> {
         let refined = refine_at(search.objective(FINEST, &grid), found.pose, if agrees { size } else { own }, STEPS[1]);
         renders += refined.renders;
         // The score stays that of the fine grid, because scores of different grids are not comparable.
-        (
-            Found { pose: refined.pose, score: search.score(&refined.pose), converged: refined.converged, renders: 0 },
-            agrees,
-        )
+        (Found { score: search.score(&refined.pose), renders: 0, ..refined.into() }, agrees)
     });
     let views = views.collect();
     Some(CommonSize { sd, views, renders })
@@ -105,8 +104,10 @@ pub fn unrelated(searched: &[SearchedView]) -> Result<Summary> {
             .conditioning(&found.pose)
             .0
             .map(|own| Conditioning { scale: if *agrees { common.sd } else { own.scale }, ..own });
-        let rival = view.found().iter().skip(1).map(|other| other.score.total).fold(0.0, f32::max);
-        let lead = f64::from(found.score.total - rival);
+        // All are scored with the mesh as it is, at the common size or their own.
+        let others = view.found().get(1..).unwrap_or_default();
+        let likely = others.get(..RIVALS).unwrap_or(others);
+        let lead = search.equivalence.lead(found, likely, |other| search.score(&other.pose).total);
         let color = view.color.as_ref();
         let lead = lead.max(color.map_or(f64::NEG_INFINITY, Judgment::lead));
         let by_shape = if *agrees { sureness(found, lead, conditioning.as_ref()) } else { 0.0 };
@@ -145,10 +146,12 @@ pub fn unrelated(searched: &[SearchedView]) -> Result<Summary> {
     }
     let used = || views.iter().filter(|view| view.role == ViewRole::Used);
     let confidence = used().map(|view| view.confidence).fold(1.0, f64::min);
+    let free_axis = searched[first].search().equivalence.free_axis(common.views[first].0.pose.rotation);
     let uncertainty = held[first].map(|held| WorldUncertainty {
         scale: common.sd,
         rotation_deg: held.rotation.0.to_degrees(),
         rotation_axis: held.rotation.1.to_array(),
+        free_axis: free_axis.map(|axis| axis.to_array()),
         position_m: held.lateral_m.max(held.distance_m),
     });
     Ok(Summary {

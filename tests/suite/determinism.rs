@@ -6,10 +6,10 @@
 
 use sim3align::geometry::kd_tree::KdTree;
 use sim3align::geometry::voxel_grid::voxel_downsample;
+use sim3align::register::at_once::{nearest, ransac};
 use sim3align::register::fpfh::fpfh;
 use sim3align::register::icp::{IcpMetric, IcpSettings, refine};
-use sim3align::register::matching::mutual_matches;
-use sim3align::register::ransac::{RansacSettings, ransac};
+use sim3align::register::ransac::RansacSettings;
 use sim3align::register::support::SupportSettings;
 use sim3align::register::umeyama::ScaleMode;
 use wasm_bindgen_test::wasm_bindgen_test;
@@ -30,7 +30,7 @@ fn stages_give_the_same_bits_everywhere() {
     let (source_features, target_features) = (fpfh(&source, &source_tree, 0.2), fpfh(&target, &target_tree, 0.2));
     let features = fingerprint(target_features.iter().flatten().map(|x| u64::from(x.to_bits())));
 
-    let matches = mutual_matches(&source_features, &target_features);
+    let matches = nearest(&source_features, &target_features).mutual();
     let matched = fingerprint(matches.iter().flat_map(|m| [u64::from(m.source), u64::from(m.target)]));
 
     let settings = RansacSettings {

@@ -71,7 +71,7 @@ fn depth_scales_apply_to_what_they_say() {
 fn pictures_of_depth_are_refused() {
     let code = |bytes: &[u8]| depth(bytes, None).unwrap_err().code;
     let error = depth(fixture!("depth-8.png"), None).unwrap_err();
-    assert_eq!((error.code, &*error.found), (ErrorCode::EightBitDepth, "a 8-bit PNG"));
+    assert_eq!((error.code, &*error.found), (ErrorCode::EightBitDepth, "an 8-bit PNG"));
     assert!(error.remedy.contains("256 steps") && error.remedy.contains("numpy.save"), "{error}");
     assert_eq!(code(fixture!("depth-rgb.png")), ErrorCode::EightBitDepth);
     assert_eq!(code(fixture!("mask-1bit.png")), ErrorCode::EightBitDepth);

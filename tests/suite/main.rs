@@ -30,6 +30,7 @@ pub mod kd_tree;
 pub mod layout;
 pub mod matching;
 pub mod mesh;
+pub mod mesh_symmetry;
 pub mod metrics;
 pub mod normal_equations;
 pub mod normals;

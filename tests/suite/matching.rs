@@ -1,7 +1,8 @@
 //! Mutual nearest descriptors against a table of all distances.
 
+use sim3align::register::at_once::nearest;
 use sim3align::register::fpfh::{DIMENSION, Descriptor};
-use sim3align::register::matching::{Match, mutual_matches, one_way_matches};
+use sim3align::register::matching::Match;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::support::Draw;
@@ -49,15 +50,16 @@ fn matches_are_those_of_the_table() {
                 _ => {}
             }
         }
-        let found = mutual_matches(&source, &target);
+        let found = nearest(&source, &target).mutual();
         assert_eq!(found, brute_force(&source, &target), "seed {seed}");
         let one_way: Vec<Match> = (target.iter().zip(0..))
             .filter_map(|(d, t)| Some(Match { source: best(d, &source)? as u32, target: t }))
             .collect();
-        assert_eq!(one_way_matches(&source, &target), one_way, "seed {seed}");
+        assert_eq!(nearest(&source, &target).one_way(), one_way, "seed {seed}");
         assert!(found.iter().all(|m| one_way.contains(m)) && found.len() < one_way.len(), "seed {seed}");
         // The other way round, the same pairs.
-        let mut back: Vec<Match> = mutual_matches(&target, &source)
+        let mut back: Vec<Match> = nearest(&target, &source)
+            .mutual()
             .into_iter()
             .map(|m| Match { source: m.target, target: m.source })
             .collect();
@@ -69,25 +71,25 @@ fn matches_are_those_of_the_table() {
 #[wasm_bindgen_test(unsupported = test)]
 fn ties_match_the_first() {
     let one = [1.0; DIMENSION];
-    assert_eq!(mutual_matches(&[one; 3], &[one; 5]), [Match { source: 0, target: 0 }]);
+    assert_eq!(nearest(&[one; 3], &[one; 5]).mutual(), [Match { source: 0, target: 0 }]);
 }
 
 #[wasm_bindgen_test(unsupported = test)]
 fn nothing_matches_nothing() {
     let some = random(&mut Draw::new(1), 5);
-    assert_eq!(one_way_matches(&[], &some), []);
-    assert_eq!(one_way_matches(&some, &[]), []);
+    assert_eq!(nearest(&[], &some).one_way(), []);
+    assert_eq!(nearest(&some, &[]).one_way(), []);
     let empty = [[0.0; DIMENSION]; 4];
-    assert_eq!(mutual_matches(&[], &[]), []);
-    assert_eq!(mutual_matches(&some, &[]), []);
-    assert_eq!(mutual_matches(&[], &some), []);
-    assert_eq!(mutual_matches(&empty, &empty), []);
-    assert_eq!(mutual_matches(&some, &empty), []);
-    assert_eq!(mutual_matches(&empty, &some), []);
+    assert_eq!(nearest(&[], &[]).mutual(), []);
+    assert_eq!(nearest(&some, &[]).mutual(), []);
+    assert_eq!(nearest(&[], &some).mutual(), []);
+    assert_eq!(nearest(&empty, &empty).mutual(), []);
+    assert_eq!(nearest(&some, &empty).mutual(), []);
+    assert_eq!(nearest(&empty, &some).mutual(), []);
     // Even where the empty one is the nearest.
     let small = [0.01; DIMENSION];
     let large = [1.0; DIMENSION];
-    assert_eq!(mutual_matches(&[small], &[empty[0], large]), [Match { source: 0, target: 1 }]);
+    assert_eq!(nearest(&[small], &[empty[0], large]).mutual(), [Match { source: 0, target: 1 }]);
 }
 
 #[wasm_bindgen_test(unsupported = test)]
@@ -98,6 +100,6 @@ fn each_third_counts() {
         d[11 * third + 5] = 1.0;
         d
     };
-    let found = mutual_matches(&[with(0), with(1), with(2)], &[with(2), with(0), with(1)]);
+    let found = nearest(&[with(0), with(1), with(2)], &[with(2), with(0), with(1)]).mutual();
     assert_eq!(found.iter().map(|m| m.target).collect::<Vec<_>>(), [1, 2, 0]);
 }

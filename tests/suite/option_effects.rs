@@ -230,6 +230,19 @@ const REGISTER: &[Effect<RegisterOptions, Registration>] = &[
         let scale = ScaleOption::Fixed(1.4);
         (solve(&RegisterOptions { scale, ..base.clone() }).target_from_source.scale - 1.4).abs() < 1e-9
     }),
+    ("workBudget", |base, _, _| {
+        // Clouds with half of their surface in common, which one search after the other is tried on.
+        let mut points = blob(&mut Draw::new(23), 3000).points;
+        points.sort_by(|a, b| a.x.total_cmp(&b.x));
+        let part = |points: &[glam::Vec3]| flat(&points.iter().copied().map(vector3).collect::<Vec<_>>());
+        let (source, target) = (part(&points[..2000]), part(&points[1000..]));
+        let counts = |work_budget| {
+            let options = RegisterOptions { work_budget, ..base.clone() };
+            let found = register(&source, &target, &options, &mut Silent);
+            found.map(|found| found.diagnostics.counts).ok()
+        };
+        counts(Some(1e-6)) != counts(None)
+    }),
     ("seed", |base, usual, solve| {
         solve(&RegisterOptions { seed: 1, ..base.clone() }).target_from_source != usual.target_from_source
     }),
@@ -305,6 +318,11 @@ const ESTIMATE: &[Effect<EstimateSim3Options, Registration>] = &[
     ("scale", |base, _, solve| {
         let scale = ScaleOption::Fixed(1.4);
         (solve(&EstimateSim3Options { scale, ..base.clone() }).target_from_source.scale - 1.4).abs() < 1e-9
+    }),
+    ("workBudget", |base, _, solve| {
+        let strict = EstimateSim3Options { inlier_distance: Some(0.003), ..base.clone() };
+        let bounded = solve(&EstimateSim3Options { work_budget: Some(1e-6), ..strict.clone() });
+        bounded.diagnostics.counts.iterations < solve(&strict).diagnostics.counts.iterations
     }),
     ("seed", |base, usual, solve| {
         let other = solve(&EstimateSim3Options { seed: 1, ..base.clone() });

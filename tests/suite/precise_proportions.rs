@@ -7,6 +7,7 @@ use sim3align::geometry::rotations::angle_between;
 use sim3align::geometry::similarity::vector3;
 use sim3align::geometry::surface::{SurfaceMoments, triangle_area};
 use sim3align::precise::clean::CleanObservation;
+use sim3align::precise::conditioning::Conditioning;
 use sim3align::precise::grid::CropGrid;
 use sim3align::precise::objective::Objective;
 use sim3align::precise::pose::{CropPose, MeshFrame};
@@ -47,6 +48,33 @@ fn proportions_keep_the_volume_and_turn_nothing() {
         assert!((small / norm - 1.0).abs() < 1e-4, "seed {seed}: {small} for {norm}");
         assert!((large / norm - 1.0).abs() < 0.1, "seed {seed}: {large} for {norm}");
     }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn uncertainty_counts_the_proportions_that_are_fitted() {
+    let body = body();
+    let settings = SearchSettings::from(Effort::Fast);
+    let clean = CleanObservation::new(&observe(&body, &truth()));
+    let frame = MeshFrame::of(&body);
+    let mesh = frame.normalized(&body).unwrap();
+    let (model, grid) = (Model::new(&mesh), CropGrid::new(&clean, settings.grids[FINE].cells));
+    let scoring = settings.scoring(&clean, FINE);
+    let objective = Objective { model: &model, grid: &grid, scoring, prior: Prior::default(), surroundings: None };
+    let refiner = Refiner { objective, lock_scale: false };
+    let pose = CropPose::of_similarity(&truth(), &frame).unwrap();
+    let surface = SurfaceMoments::of(&mesh);
+    let mut canvas = Canvas::default();
+    let score = refiner.objective.score(&mut canvas, &pose);
+    let mut held = |is_exact, free_axis| {
+        let covariance = refiner.covariance(&mut canvas, &score, &pose, (&surface, is_exact), free_axis).unwrap();
+        Conditioning::new(&covariance, &pose)
+    };
+    let [exact, stretched] = [held(true, None), held(false, None)];
+    assert!(stretched.scale > 1.05 * exact.scale, "{stretched:?} for {exact:?}");
+    assert!(stretched.rotation.0 > exact.rotation.0, "{stretched:?} for {exact:?}");
+    // Without the turn about an axis, no other is less certain.
+    let rolled = held(false, Some(stretched.rotation.1));
+    assert!(rolled.rotation.0 < stretched.rotation.0 && rolled.scale <= stretched.scale, "{rolled:?}");
 }
 
 #[wasm_bindgen_test(unsupported = test)]

@@ -6,7 +6,7 @@ use nalgebra::{SMatrix, SVector};
 use sim3align::geometry::normal_equations::NormalEquations;
 use sim3align::geometry::rotations::{angle_between, exp};
 use sim3align::precise::clean::CleanObservation;
-use sim3align::precise::conditioning::Conditioning;
+use sim3align::precise::conditioning::{Conditioning, covariance, hold_roll};
 use sim3align::precise::grid::CropGrid;
 use sim3align::precise::objective::Objective;
 use sim3align::precise::pose::{CropPose, MeshFrame, Step};
@@ -317,7 +317,7 @@ fn one_standard_deviation_lowers_the_quadratic_by_a_hundredth() {
         let draw = &mut Draw::new(seed);
         let (equations, matrix) = known_equations(draw);
         let pose = CropPose { place: DVec2::new(draw.between(-0.3, 0.3), draw.between(-0.3, 0.3)), ..pose(draw, 3.0) };
-        let found = Conditioning::of(&equations, &pose).unwrap();
+        let found = Conditioning::new(&covariance(&equations).unwrap(), &pose);
         let covariance = matrix.try_inverse().unwrap() * 0.02;
         // The largest change of a quantity among the steps x with ½xᵀAx = 0.01, A being JᵀWJ.
         let deviation = |quantity: &dyn Fn(&CropPose) -> f64| {
@@ -348,8 +348,7 @@ fn one_standard_deviation_lowers_the_quadratic_by_a_hundredth() {
             assert!(about(other) <= angle * (1.0 + 1e-9), "seed {seed}: held less about {other}");
         }
     }
-    let pose = pose(&mut Draw::new(1), 3.0);
-    assert_eq!(Conditioning::of(&NormalEquations::new(), &pose), None);
+    assert_eq!(covariance(&NormalEquations::new()), None);
 }
 
 #[wasm_bindgen_test(unsupported = test)]
@@ -366,7 +365,14 @@ fn the_axis_held_least_is_that_of_a_bodys_revolution() {
         }
         equations.add(&jacobian, 0.0, if k == 2 { 1e-3 } else { 10.0 });
     }
-    let found = Conditioning::of(&equations, &pose(&mut Draw::new(2), 3.0)).unwrap();
+    let held_at = pose(&mut Draw::new(2), 3.0);
+    let found = Conditioning::new(&covariance(&equations).unwrap(), &held_at);
     assert!(found.rotation.1.dot(turn.z_axis).abs() > 1.0 - 1e-9, "{found:?}");
     assert!((found.rotation.0 / (0.02f64 / 1e-3).sqrt() - 1.0).abs() < 1e-4, "{found:?}");
+
+    // A symmetry that makes this turn meaningless leaves the other two, and all else as it is.
+    hold_roll(&mut equations, turn.z_axis);
+    let up_to_roll = Conditioning::new(&covariance(&equations).unwrap(), &held_at);
+    assert!((up_to_roll.rotation.0 / (0.02f64 / 10.0).sqrt() - 1.0).abs() < 1e-4, "{up_to_roll:?}");
+    assert!((up_to_roll.scale / found.scale - 1.0).abs() < 1e-4, "{up_to_roll:?}");
 }

@@ -3,8 +3,9 @@
 use glam::Vec3;
 use sim3align::error::ErrorCode;
 use sim3align::geometry::similarity::{Similarity, vec3, vector3};
+use sim3align::register::at_once::ransac;
 use sim3align::register::matching::Match;
-use sim3align::register::ransac::{Consensus, Guard, GuardMode, RansacSettings, ransac};
+use sim3align::register::ransac::{Consensus, Guard, GuardMode, RansacSettings};
 use sim3align::register::umeyama::ScaleMode;
 use wasm_bindgen_test::wasm_bindgen_test;
 

@@ -6,10 +6,9 @@ use sim3align::geometry::cloud::Cloud;
 use sim3align::geometry::similarity::{Similarity, vector3};
 use sim3align::options::scale::ScaleOption;
 use sim3align::progress::Silent;
-use sim3align::register::estimate_sim3;
 use sim3align::register::options::{EstimateSim3Options, RegisterOptions};
-use sim3align::register::register;
 use sim3align::register::report::Registration;
+use sim3align::register::{estimate_sim3, register, register_task};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::support::{Draw, blob, mug};
@@ -221,4 +220,54 @@ fn a_scale_at_a_bound_of_the_searched_range_is_no_answer() {
         }
     }
     assert!(refused > 0);
+}
+
+/// A clock at which every pause point is due.
+fn always() -> f64 {
+    1.0
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn pauses_change_no_bit() {
+    let draw = &mut Draw::new(3);
+    let points: Vec<_> = mug(draw, 1500).points.into_iter().map(vector3).collect();
+    let truth = draw.similarity([2.0, 2.0], 1.0);
+    let moved: Vec<_> = points.iter().map(|&p| truth.apply(p)).collect();
+    for scale in [ScaleOption::Free, ScaleOption::Fixed(truth.scale)] {
+        let (source, target) = (flat(&points), flat(&moved));
+        let options = RegisterOptions { scale, ..RegisterOptions::default() };
+        let whole = register(&source, &target, &options, &mut Silent).unwrap();
+        let mut task = register_task(source, target, options, Silent, always).unwrap();
+        let mut steps = 1;
+        let found = loop {
+            if let Some(found) = task.step(0.0).unwrap() {
+                break found;
+            }
+            steps += 1;
+        };
+        assert_eq!(found, whole);
+        assert!(steps > 2, "{steps} steps");
+        assert_eq!(task.step(0.0).unwrap_err().code, ErrorCode::Internal, "the task is over");
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_work_budget_bounds_the_draws() {
+    let points: Vec<_> = blob(&mut Draw::new(7), 400).points.into_iter().map(vector3).collect();
+    let points = flat(&points);
+    // Every source point with a target point that has nothing to do with it.
+    let pairs: Vec<u32> = (0..400).flat_map(|i| [i, (i * 173 + 31) % 400]).collect();
+    let draws = |work_budget| {
+        let options = EstimateSim3Options {
+            ransac_iterations: 10_000_000,
+            edge_similarity: 0.0,
+            work_budget: Some(work_budget),
+            ..EstimateSim3Options::default()
+        };
+        let found = estimate_sim3(&points, &points, &pairs, &options, &mut Silent);
+        found.unwrap().diagnostics.counts.iterations
+    };
+    let (few, many) = (draws(20.0), draws(200.0));
+    assert_eq!(few, draws(20.0));
+    assert!(few > 100 && many > 5 * few && many < 200_000, "{few} and {many} draws");
 }

@@ -222,7 +222,7 @@ fn an_object_that_fails_leaves_the_others() {
 #[wasm_bindgen_test(unsupported = test)]
 fn a_board_that_only_the_depth_map_shows_is_a_level() {
     let things =
-        [thing([0.16, 0.1, 0.12], [-0.2, -0.05, 0.0], 0.4), thing([0.12, 0.1, 0.08], [0.15, -0.17, 0.06], -0.3)];
+        [thing([0.16, 0.1, 0.12], [-0.2, -0.05, 0.0], 0.6), thing([0.12, 0.1, 0.08], [0.15, -0.17, 0.06], -0.3)];
     let translation = Vector3::new(0.15, -0.06, 0.06);
     let board = Thing {
         mesh: cuboid(Vec3::new(0.34, 0.12, 0.26)),

@@ -63,8 +63,8 @@ fn a_video_is_tracked_with_all_masks_and_with_the_first_alone() {
 
 #[wasm_bindgen_test(unsupported = test)]
 fn photos_tell_the_turn_in_which_an_object_is_found_and_how_it_rolls() {
-    // A book that shape takes the wrong way round, and a bottle that it rolls at random.
-    for (seed, index, least_deg, most_deg) in [(8, 1, 90.0, 2.0), (7, 3, 15.0, 6.0)] {
+    // One that shape takes the wrong way round, and a bottle that it rolls at random.
+    for (seed, index, least_deg, most_deg) in [(8, 2, 90.0, 2.0), (7, 3, 15.0, 6.0)] {
         let sequence = VideoSet { seed, frames: 8, is_printed: true }.video(index).unwrap();
         let rotations = |with_photos: bool| -> Vec<f64> {
             let mesh = sequence.prepared();

@@ -107,7 +107,7 @@ fn a_wrong_view_is_left_out() {
 
 #[wasm_bindgen_test(unsupported = test)]
 fn unknown_cameras_share_one_size_and_follow_from_the_object() {
-    let sequence = rig(45, 3, 0);
+    let sequence = rig(46, 3, 0);
     let mut views = views_of(&sequence);
     views.iter_mut().for_each(|view| view.world_from_camera = None);
     let found = align(&sequence, views);

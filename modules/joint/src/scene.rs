@@ -15,10 +15,11 @@ use sim3align::bindings::error::to_js;
 use sim3align::bindings::host::{JsHost, now_ms};
 use sim3align::bindings::object::{get, required_number, to_f32s, to_f64s, to_numbers, to_u8s, wrong_type};
 use sim3align::bindings::{input, mesh, options};
-use sim3align::error::{Error, Result};
+use sim3align::error::{Error, ErrorCode, Result};
 use sim3align::evidence::observation::Observation;
 use sim3align::geometry::image::{Image, Mask};
 use sim3align::geometry::similarity::Similarity;
+use sim3align::number::number;
 use sim3align::options::Choice;
 use sim3align::precise::options::AlignOptions;
 use sim3align::precise::prepared_mesh::PreparedMesh;
@@ -189,7 +190,16 @@ fn choice(value: &JsValue) -> Result<SupportChoice> {
     let d = required_number(value, "support", "d")?;
     let normal = DVec3::from(normal);
     let length = normal.length();
-    if !(length > 0.0 && length.is_finite() && d.is_finite()) {
+    if !(length > 0.0 && length.is_finite()) {
+        return Err(Error::new(
+            ErrorCode::InvalidArgument,
+            "support.normal",
+            format!("[{}, {}, {}]", number(normal.x), number(normal.y), number(normal.z)),
+            "a direction: three finite numbers that are not all 0",
+            "Pass the normal of the plane, of any length; or \"auto\", to find the plane.",
+        ));
+    }
+    if !d.is_finite() {
         return Err(invalid());
     }
     // As it is given: the camera may be below it.

@@ -72,10 +72,10 @@ fn tracker(id: u32) -> Result<Kept> {
         TRACKERS.with_borrow(|trackers| trackers.iter().find(|(known, _)| *known == id).map(|(_, kept)| kept.clone()));
     kept.ok_or_else(|| {
         Error::new(
-            ErrorCode::InvalidArgument,
+            ErrorCode::TrackerLost,
             "tracker",
-            "a tracker that is gone",
-            "an open tracker",
+            "a tracker whose worker, or whose memory, is gone",
+            "a tracker that lives as long as its frames come",
             "Open another one with track(), and pass the last pose as options.initial.",
         )
     })

@@ -8,28 +8,34 @@ use sim3align::bindings::object::{get, required_number, to_f32s, to_u32s, wrong_
 use sim3align::bindings::transform;
 use sim3align::error::Result;
 use sim3align::geometry::mesh::Mesh;
+use sim3align_physics::body::Pose;
 use sim3align_physics::part::ConvexPart;
 use sim3align_physics::scene::{Object, On, Settings, Settled, settle};
 use wasm_bindgen::prelude::*;
 
-/// Bodies at rest: `([{ mesh, transform, on }], { density, parts, turnDeg, moveM }) → [body]`. Transforms are world from mesh,
-/// z up; `on` is `"support"`, the index of an object, or `null`.
+/// Bodies at rest: `([{ mesh, transform, on }], { density, parts, turnDeg, moveM, rest,
+/// fitsGround }) → { bodies, supportHeightM }`. Transforms are world from mesh, z up; `on` is `"support"`, the index of an object, or `null`.
 #[wasm_bindgen(js_name = settleBodies, skip_typescript)]
 pub fn settle_bodies(objects: &JsValue, settings: &JsValue) -> core::result::Result<JsValue, JsValue> {
     let run = || {
         let number = |name| required_number(settings, "options", name);
+        let is_true = |name| get(settings, name).is_some_and(|value| value.is_truthy());
         let settings = Settings {
             density: number("density")?,
             parts: number("parts")? as usize,
             turn_deg: number("turnDeg")?,
             move_m: number("moveM")?,
+            rest: is_true("rest"),
+            fits_ground: is_true("fitsGround"),
         };
         let list = Array::is_array(objects).then(|| Array::from(objects));
         let list = list.ok_or_else(|| wrong_type("objects", objects, "an array", "Pass the objects."))?;
         let objects: Vec<Object> = list.iter().map(|object| read(&object)).collect::<Result<_>>()?;
-        Ok(settle(&objects, &settings).iter().map(body).collect::<Array>())
+        let (bodies, height_m) = settle(&objects, &settings);
+        let bodies: Array = bodies.iter().map(body).collect();
+        Ok(object(&[("bodies", bodies.into()), ("supportHeightM", height_m.into())]))
     };
-    run().map(Into::into).map_err(|error: sim3align::error::Error| to_js(&error))
+    run().map_err(|error: sim3align::error::Error| to_js(&error))
 }
 
 fn read(object: &JsValue) -> Result<Object> {
@@ -51,13 +57,13 @@ fn read(object: &JsValue) -> Result<Object> {
 }
 
 fn body(settled: &Settled) -> JsValue {
-    let Settled { body, is_free, moved_m, turned_deg, inside } = settled;
+    let Settled { body, found, is_free, moved_m, turned_deg, inside } = settled;
     let parts: Array = body.parts.iter().map(part).collect();
     let inside: Array = inside.iter().map(|i| JsValue::from(*i as f64)).collect();
     object(&[
         ("parts", parts.into()),
-        ("rotation", Float64Array::from(body.pose.rotation.to_array().as_slice()).into()),
-        ("translation", vector(body.pose.translation)),
+        ("pose", pose(body.pose)),
+        ("found", pose(*found)),
         ("mass", body.mass.mass.into()),
         ("center", vector(body.mass.center)),
         ("moments", vector(body.mass.moments)),
@@ -66,6 +72,13 @@ fn body(settled: &Settled) -> JsValue {
         ("movedM", (*moved_m).into()),
         ("turnedDeg", (*turned_deg).into()),
         ("inside", inside.into()),
+    ])
+}
+
+fn pose(Pose { rotation, translation }: Pose) -> JsValue {
+    object(&[
+        ("rotation", Float64Array::from(rotation.to_array().as_slice()).into()),
+        ("translation", vector(translation)),
     ])
 }
 

@@ -1,0 +1,190 @@
+//! The rotational symmetry of a mesh, found on its surface.
+//!
+//! A rotation is a symmetry if it moves the surface no farther from itself than scanned and generated meshes are off. A
+//! symmetry preserves the moments of the surface. Axes are therefore looked for along the principal axes and, in a plane
+//! or in space where the moments are about equal, in all directions.
+
+use core::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use glam::{DVec3, Vec3};
+
+use super::searchable;
+use super::symmetry::{SymmetryAxis, mesh_diagonal};
+use crate::error::Result;
+use crate::geometry::angle::sin_cos;
+use crate::geometry::mesh::Mesh;
+use crate::geometry::order::quantile;
+use crate::geometry::rotations::{exp, fibonacci_sphere};
+use crate::geometry::surface::{SurfaceMoments, sample_surface};
+use crate::geometry::triangle_tree::TriangleTree;
+
+/// Maximum mean distance between a surface and its rotated copy, relative to the box diagonal of the mesh. On scanned
+/// objects, true symmetries have 0.1 to 0.5 %, a bottle turned upside down 1.8 %, and dissimilar rotations 3 % and more.
+const MEAN: f64 = 0.01;
+/// The same for the 95th percentile, which detects small asymmetric parts such as a handle. True symmetries have 0.2 to
+/// 1.4 %, the bottle turned upside down 6.6 %.
+const TAIL: f64 = 0.03;
+
+/// Numbers of points of the surface that are compared: to find the best of many axes, to reject most, and to accept one.
+const SAMPLES: [usize; 3] = [24, 64, 256];
+/// Mean distance of few points, in units of [`MEAN`], up to which an axis is worth adjusting.
+const NEAR: f64 = 4.0;
+/// Steps by which an axis is adjusted, radians, and the number of times that each is repeated.
+const ADJUSTMENTS: [f64; 4] = [0.1, 0.05, 0.02, 0.01];
+const REPEATS: usize = 4;
+/// Ratio of two principal standard deviations from which on a symmetry may exchange their axes.
+const EQUAL: f64 = 0.9;
+/// Number of axes tried in a plane, and in space.
+const IN_PLANE: usize = 18;
+const IN_SPACE: usize = 120;
+/// Number of these that are looked at closely.
+const LIKELY: usize = 3;
+/// Angles of no regular polygon with few sides, in turns; the first finds the axis.
+const IRREGULAR: [f64; 6] = [0.37, 0.07, 0.13, 0.19, 0.29, 0.43];
+/// Orders of finite symmetries. Prisms with more sides are round within the tolerance.
+const FOLDS: [u32; 4] = [6, 5, 4, 3];
+
+/// The axes whose rotations are symmetries of a mesh, the one of the highest order first. The others are perpendicular to
+/// it, so that together they generate a group: that of a pyramid, a prism, a cube, a body of revolution or a sphere.
+///
+/// # Errors
+/// [`DegenerateMesh`](crate::error::ErrorCode::DegenerateMesh) for a mesh without area.
+pub fn symmetry_axes(mesh: &Mesh) -> Result<Vec<SymmetryAxis>> {
+    let moments = SurfaceMoments::of(mesh);
+    let finder = Finder {
+        samples: sample_surface(mesh, SAMPLES[2], 0)?.points,
+        center: moments.centroid,
+        tree: TriangleTree::new(&searchable(mesh)),
+        diagonal: mesh_diagonal(mesh),
+    };
+    let eigen = moments.principal_axes();
+    let [thin, middle, wide] = eigen.values.map(|v| v.max(0.0).sqrt());
+    let [a, b, c] = eigen.vectors;
+    // The axes that may have an order above 2, and those of half turns.
+    let (higher, halves) = match (thin > EQUAL * middle, middle > EQUAL * wide) {
+        (true, true) => {
+            let all: Vec<DVec3> = (0..IN_SPACE).map(|k| fibonacci_sphere(k, 2 * IN_SPACE)).collect();
+            (all.clone(), all)
+        }
+        (true, false) => (vec![c], [vec![c], plane(c)].concat()),
+        (false, true) => (vec![a], [vec![a], plane(a)].concat()),
+        (false, false) => (Vec::new(), vec![a, b, c]),
+    };
+    let Some((main, fold)) = finder.main_axis(&higher, &halves) else { return Ok(Vec::new()) };
+    // The other principal axes, where they are unique and perpendicular to the first.
+    let across = if higher.is_empty() {
+        [a, b, c].into_iter().filter(|axis| axis.dot(main).abs() < 0.5).collect()
+    } else {
+        plane(main)
+    };
+    let mut axes = vec![declared(main, fold)];
+    axes.extend(finder.across(main, fold, &across).map(|(axis, fold)| declared(axis, fold)));
+    Ok(axes)
+}
+
+fn declared(axis: DVec3, fold: Option<u32>) -> SymmetryAxis {
+    SymmetryAxis { axis: nalgebra::Vector3::new(axis.x, axis.y, axis.z), fold }
+}
+
+/// Directions across an axis, over half a turn.
+fn plane(axis: DVec3) -> Vec<DVec3> {
+    let (u, v) = axis.any_orthonormal_pair();
+    let angles = (0..IN_PLANE).map(|k| sin_cos(PI * k as f64 / IN_PLANE as f64));
+    angles.map(|(sin, cos)| u * cos + v * sin).collect()
+}
+
+/// A surface that is compared with its rotated copies.
+struct Finder {
+    samples: Vec<Vec3>,
+    center: DVec3,
+    tree: TriangleTree,
+    diagonal: f64,
+}
+
+impl Finder {
+    /// The axis of the highest order; without an order, an axis of revolution.
+    fn main_axis(&self, higher: &[DVec3], halves: &[DVec3]) -> Option<(DVec3, Option<u32>)> {
+        if let Some(axis) = self.find(higher, TAU * IRREGULAR[0])
+            && IRREGULAR.iter().all(|share| self.maps(axis, TAU * share))
+        {
+            return Some((axis, None));
+        }
+        let of_order = |fold: u32| Some((self.find(higher, TAU / f64::from(fold))?, Some(fold)));
+        FOLDS.into_iter().find_map(of_order).or_else(|| Some((self.find(halves, PI)?, Some(2))))
+    }
+
+    /// The symmetry about an axis across the main one, which has this order.
+    fn across(&self, main: DVec3, fold: Option<u32>, directions: &[DVec3]) -> Option<(DVec3, Option<u32>)> {
+        let angle = if fold.is_none() { TAU * IRREGULAR[0] } else { FRAC_PI_2 };
+        let level = |axis: DVec3| (axis - main * axis.dot(main)).normalize_or(axis);
+        // A second axis of revolution is that of a sphere, a second one of order 4 that of a cube.
+        if fold.is_none_or(|fold| fold == 4)
+            && let Some(axis) = self.find(directions, angle)
+        {
+            return Some((level(axis), fold));
+        }
+        self.find(directions, PI).map(|axis| (level(axis), Some(2)))
+    }
+
+    /// The direction about which a rotation by `angle` maps the surface onto itself, adjusted.
+    fn find(&self, directions: &[DVec3], angle: f64) -> Option<DVec3> {
+        let rough = |axis: &DVec3| (self.distance(*axis, angle, SAMPLES[0]), *axis);
+        let mut scored: Vec<(f64, DVec3)> = directions.iter().map(rough).collect();
+        scored.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let likely = scored.into_iter().take(LIKELY);
+        likely.filter_map(|(_, axis)| self.adjusted(axis, angle)).find(|axis| self.maps(*axis, angle))
+    }
+
+    /// The axis nearby with the smallest distance; `None` if that cannot be small enough.
+    fn adjusted(&self, mut axis: DVec3, angle: f64) -> Option<DVec3> {
+        let mut least = self.distance(axis, angle, SAMPLES[1]);
+        if least > NEAR * MEAN {
+            return None;
+        }
+        for step in ADJUSTMENTS {
+            for _ in 0..REPEATS {
+                let (u, v) = axis.any_orthonormal_pair();
+                let near = [u, v, -u, -v].map(|side| (axis + side * step).normalize());
+                let before = least;
+                for tilted in near {
+                    let distance = self.distance(tilted, angle, SAMPLES[1]);
+                    if distance < least {
+                        (least, axis) = (distance, tilted);
+                    }
+                }
+                if least == before {
+                    break;
+                }
+            }
+        }
+        Some(axis)
+    }
+
+    /// Whether a rotation maps the surface onto itself.
+    fn maps(&self, axis: DVec3, angle: f64) -> bool {
+        let distances = self.distances(axis, angle, SAMPLES[2]);
+        let tail = quantile(distances.iter().copied(), 0.95).map_or(f64::INFINITY, f64::from);
+        mean(&distances) <= MEAN * self.diagonal && tail <= TAIL * self.diagonal
+    }
+
+    /// The mean distance of a number of points from the surface after a rotation, relative to the diagonal.
+    fn distance(&self, axis: DVec3, angle: f64, count: usize) -> f64 {
+        mean(&self.distances(axis, angle, count)) / self.diagonal
+    }
+
+    fn distances(&self, axis: DVec3, angle: f64, count: usize) -> Vec<f32> {
+        let turn = exp(axis * angle);
+        // The samples are in the order of the triangles: evenly chosen ones are spread over the surface.
+        let step = self.samples.len() / count;
+        let turned = |i: usize| (turn * (self.samples[i * step].as_dvec3() - self.center) + self.center).as_vec3();
+        let mut distances = Vec::with_capacity(count);
+        self.tree.nearest_of_each(count, turned, |_, nearest| {
+            distances.push(nearest.map_or(f32::INFINITY, |s| s.distance_squared.sqrt()));
+        });
+        distances
+    }
+}
+
+fn mean(distances: &[f32]) -> f64 {
+    distances.iter().map(|d| f64::from(*d)).sum::<f64>() / distances.len().max(1) as f64
+}

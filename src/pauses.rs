@@ -1,0 +1,101 @@
+//! Pauses and bounds of calls that are written as they run: straight-line code that awaits a pause point.
+//!
+//! A call never waits for anything but its caller, so that no executor is needed: a step polls it until its next pause.
+
+use core::cell::Cell;
+use core::future::{Future, poll_fn};
+use core::pin::{Pin, pin};
+use core::task::{Context, Poll, Waker};
+use std::rc::Rc;
+
+use crate::error::{Error, ErrorCode, Result};
+
+/// Where a call may pause, and how much work it has left. Results depend on the work, and not on pauses.
+pub struct Pauses {
+    clock: fn() -> f64,
+    until: Cell<f64>,
+    left: Cell<f64>,
+}
+
+impl Pauses {
+    /// Pauses by a clock, and a bound on the work, if there is one.
+    pub fn new(clock: fn() -> f64, work_budget: Option<f64>) -> Self {
+        Self { clock, until: Cell::new(f64::INFINITY), left: Cell::new(work_budget.unwrap_or(f64::INFINITY)) }
+    }
+
+    /// No pause, and no bound.
+    pub fn none() -> Self {
+        Self::new(|| 0.0, None)
+    }
+
+    /// Counts work of so many units.
+    pub fn spend(&self, work: f64) {
+        self.left.set(self.left.get() - work);
+    }
+
+    /// Pauses if it is time, after work of so many units: about milliseconds on a laptop.
+    pub async fn point(&self, work: f64) {
+        self.spend(work);
+        let mut is_due = (self.clock)() >= self.until.get();
+        poll_fn(|_| if core::mem::take(&mut is_due) { Poll::Pending } else { Poll::Ready(()) }).await;
+    }
+
+    /// Whether the call goes on: there is work left, or it has no result yet.
+    pub fn goes_on(&self, has_result: bool) -> bool {
+        !has_result || self.left.get() > 0.0
+    }
+}
+
+/// A call in steps.
+pub struct Task<'a, T> {
+    pauses: Rc<Pauses>,
+    call: Option<Pin<Box<dyn Future<Output = Result<T>> + 'a>>>,
+}
+
+impl<'a, T: 'a> Task<'a, T> {
+    /// A call that has not begun.
+    pub fn new<F: Future<Output = Result<T>> + 'a>(pauses: Pauses, call: impl FnOnce(Rc<Pauses>) -> F) -> Self {
+        let pauses = Rc::new(pauses);
+        Self { call: Some(boxed(call(pauses.clone()))), pauses }
+    }
+
+    /// Continues until the call is finished, and returns its result, or until its first pause point after a time of its
+    /// clock.
+    ///
+    /// # Errors
+    /// Those of the call, which then ends.
+    pub fn step(&mut self, until: f64) -> Result<Option<T>> {
+        self.pauses.until.set(until);
+        let Some(call) = &mut self.call else {
+            return Err(Error::new(
+                ErrorCode::Internal,
+                "task",
+                "a finished task",
+                "a running task",
+                "Create another task.",
+            ));
+        };
+        match call.as_mut().poll(&mut Context::from_waker(Waker::noop())) {
+            Poll::Pending => Ok(None),
+            Poll::Ready(result) => {
+                self.call = None;
+                result.map(Some)
+            }
+        }
+    }
+}
+
+/// A call on the heap, whose code is not copied into that of its caller: the modules are smaller.
+pub fn boxed<'a, F: Future + 'a>(call: F) -> Pin<Box<dyn Future<Output = F::Output> + 'a>> {
+    Box::pin(call)
+}
+
+/// Runs a call to its end, without a pause.
+pub fn finished<T>(call: impl Future<Output = T>) -> T {
+    let mut call = pin!(call);
+    loop {
+        if let Poll::Ready(result) = call.as_mut().poll(&mut Context::from_waker(Waker::noop())) {
+            return result;
+        }
+    }
+}

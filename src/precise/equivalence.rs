@@ -1,0 +1,67 @@
+//! Equivalence: poses that a symmetry of the mesh makes one.
+
+use glam::{DQuat, DVec3};
+use nalgebra::{Quaternion, UnitQuaternion};
+
+use super::score::NOISE;
+use super::search::Found;
+use crate::geometry::rotations::angle_between;
+use crate::metrics::symmetry::SymmetryGroup;
+
+/// Minimum rotation between different poses, radians.
+pub const DIFFERENT: f64 = 0.26;
+
+/// The symmetry of a mesh, for comparing its poses.
+#[derive(Debug, Clone, Default)]
+pub struct Equivalence(SymmetryGroup);
+
+impl Equivalence {
+    /// Of a mesh with this symmetry.
+    pub fn new(group: SymmetryGroup) -> Self {
+        Self(group)
+    }
+
+    /// The rotation from one pose to the other, or to one that is equivalent to it, whichever is smallest, radians.
+    pub fn angle(&self, a: DQuat, b: DQuat) -> f64 {
+        angle_between(self.nearest(a, b), b)
+    }
+
+    /// The rotation nearest to `b` of those that are equivalent to `a`.
+    pub fn nearest(&self, a: DQuat, b: DQuat) -> DQuat {
+        if !self.is_any() {
+            return a;
+        }
+        let turn = UnitQuaternion::new_normalize(Quaternion::from((a.conjugate() * b).to_array()));
+        a * DQuat::from_array(self.0.nearest(&turn).coords.into())
+    }
+
+    /// The rotations that are equivalent to this one, without it: all of a finite group, and `rolls` about an axis of
+    /// revolution. None for a sphere.
+    pub fn others(&self, rotation: DQuat, rolls: usize) -> Vec<DQuat> {
+        let members = self.0.members(rolls).into_iter().skip(1);
+        members.map(|turn| rotation * DQuat::from_array(turn.coords.into())).collect()
+    }
+
+    /// The axis, in the camera frame, about which the symmetry leaves the rotation of a pose free.
+    pub fn free_axis(&self, rotation: DQuat) -> Option<DVec3> {
+        self.0.axis_of_revolution().map(|axis| rotation * DVec3::from_array(axis.into_inner().into()))
+    }
+
+    /// Whether the symmetry makes some poses one.
+    pub fn is_any(&self) -> bool {
+        !self.0.is_trivial()
+    }
+
+    /// Whether every rotation is a symmetry.
+    pub fn is_sphere(&self) -> bool {
+        self.0.is_sphere()
+    }
+
+    /// The lead of a pose over the best of the others that is different, in units of the score, at most [`NOISE`]. `score`
+    /// gives the scores to be compared.
+    pub fn lead(&self, best: &Found, others: &[Found], score: impl Fn(&Found) -> f32) -> f64 {
+        let differs = |other: &&Found| self.angle(best.pose.rotation, other.pose.rotation) > DIFFERENT;
+        let rival = others.iter().filter(differs).map(&score).fold(f32::NEG_INFINITY, f32::max);
+        f64::from((score(best) - rival).min(NOISE))
+    }
+}
