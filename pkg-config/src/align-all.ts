@@ -1,8 +1,10 @@
 /** Aligns many inputs with bounded memory, and yields each result when it is ready. */
+
 import { invalidArgument, type Sim3AlignError } from "./error.js";
 import type { AlignInput } from "./input/types.js";
 import { proxiedKind } from "./kinds.js";
 import { checkSignals, onAbort } from "./on-abort.js";
+import type { SignalLike } from "./platform.js";
 import type { AlignAllResult } from "./results.js";
 
 /** Options of a batch. */
@@ -10,8 +12,8 @@ export interface BatchOptions<A> {
   /** Maximum number of inputs pulled but not yet yielded. */
   limit: number;
   ordered: boolean;
-  signal: AbortSignal | undefined;
-  align(input: AlignInput, index: number, signal: AbortSignal): Promise<A>;
+  signal: SignalLike | undefined;
+  align(input: AlignInput, index: number, signal: SignalLike): Promise<A>;
   /** Whether an error concerns one input only; the others then continue. */
   isOwn(error: unknown): error is Sim3AlignError;
 }

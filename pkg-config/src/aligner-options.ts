@@ -1,8 +1,8 @@
 /** The options of `createAligner`, and the options of calls that the core does not check. */
 import { invalidArgument, Sim3AlignError } from "./error.js";
 import { onAbort } from "./on-abort.js";
-import type { CreateWorker, LazySource, WasmSource } from "./platform.js";
-import { ownOptions } from "./snapshot.js";
+import type { CreateWorker, LazySource, SignalLike, WasmSource } from "./platform.js";
+import { ownOptions, snapshot } from "./snapshot.js";
 import { isKind, isRecord, withoutUndefined } from "./values.js";
 
 /** Options of `createAligner`. */
@@ -29,6 +29,11 @@ export interface AlignerOptions {
   workers?: number | "auto" | undefined;
   /** Creates a worker that runs `worker.js` of this package. Needed only if that file is not next to this script. */
   createWorker?: CreateWorker | undefined;
+  /**
+   * Longest time that a new worker may take until it answers, milliseconds; 60 000 by default. A call whose workers do not
+   * answer rejects with `WORKER_FAILED`: their script is another one, or was never loaded.
+   */
+  workerStartMs?: number | undefined;
 }
 
 /**
@@ -64,6 +69,7 @@ const alignerOptions: readonly string[] = [
   "jointWasm",
   "workers",
   "createWorker",
+  "workerStartMs",
 ] satisfies (keyof AlignerOptions)[];
 
 /** The options of `createAligner`. Each is checked where it is used. */
@@ -71,7 +77,7 @@ export function checkedAlignerOptions(options: AlignerOptions): AlignerOptions {
   if (!isRecord(options)) {
     throw invalidArgument("options", options, "an object", "Pass { workers }, or omit it.");
   }
-  const own: AlignerOptions = { ...options };
+  const own = snapshot("options", options);
   const unknown = Object.keys(own).find((name) => !alignerOptions.includes(name));
   if (unknown === undefined) return own;
   throw new Sim3AlignError({
@@ -89,6 +95,13 @@ export function checkedFactory(createWorker: unknown): CreateWorker | undefined 
   throw invalidArgument("createWorker", createWorker, "a function that returns a worker", "Pass () => new Worker(…).");
 }
 
+/** The time that a worker may take until it answers, milliseconds. */
+export function checkedStartMs(startMs: unknown = 60_000): number {
+  // The longest time that timers know.
+  if (typeof startMs === "number" && startMs > 0 && startMs < 2 ** 31) return startMs;
+  throw invalidArgument("workerStartMs", startMs, "milliseconds above 0", "Omit it for 60 seconds.");
+}
+
 /** An option that is true or false. */
 export function checkedFlag(name: string, value: unknown): boolean {
   if (typeof value === "boolean") return value;
@@ -96,10 +109,10 @@ export function checkedFlag(name: string, value: unknown): boolean {
 }
 
 /** An abort signal of any realm. */
-export function checkedSignal(signal: unknown): AbortSignal | undefined {
+export function checkedSignal(signal: unknown): SignalLike | undefined {
   if (signal === undefined || signal === null) return undefined;
   try {
-    if (isKind<AbortSignal>(signal, "AbortSignal") && typeof signal.aborted === "boolean") {
+    if (isKind<SignalLike>(signal, "AbortSignal") && typeof signal.aborted === "boolean") {
       // A proxy of a signal throws.
       onAbort(signal, () => {})();
       return signal;

@@ -9,6 +9,7 @@ import {
   checkedFlag,
   checkedOptions,
   checkedSignal,
+  checkedStartMs,
   checkedWorkers,
 } from "./aligner-options.js";
 import { checkAttached } from "./attached.js";
@@ -39,6 +40,7 @@ import { workerFactory } from "./pool/port.js";
 import { copied } from "./pool/transfer.js";
 import { nextMeshId, PreparedMesh, withArrays } from "./prepared-mesh.js";
 import { checkedListener, ProgressListener } from "./progress.js";
+import { Queue } from "./queue.js";
 import { registrationModule } from "./registration-module.js";
 import type { AlignAllResult, AlignResult, Evaluation, Registration, ViewsAlignment } from "./results.js";
 import { alignScene } from "./scene/align-scene.js";
@@ -69,6 +71,8 @@ export async function createAligner(options: AlignerOptions = {}): Promise<Align
 export class Aligner {
   readonly #modules: Modules;
   readonly #engine: Engine;
+  /** As many scenes at a time as the engine has jobs. */
+  readonly #scenes: Queue<number>;
   #isDisposed = false;
 
   /** Creates an engine for one tracker. */
@@ -78,6 +82,7 @@ export class Aligner {
   private constructor(modules: Modules, engine: Engine, dedicated: () => OwnEngine) {
     this.#modules = modules;
     this.#engine = engine;
+    this.#scenes = new Queue(Array.from({ length: engine.capacity }, (_, i) => i));
     this.#dedicated = dedicated;
   }
 
@@ -88,6 +93,7 @@ export class Aligner {
       ...withoutUndefined(checkedAlignerOptions(options)),
     };
     const workers = checkedWorkers(given.workers);
+    const startMs = checkedStartMs(given.workerStartMs);
     const modules: Modules = {
       core: await coreModule.load(wasm),
       formats: () => formatsModule.load(formatsWasm),
@@ -103,6 +109,7 @@ export class Aligner {
     const size = workers === "auto" ? Math.min(Math.max(factory.cores - 1, 1), MAX_AUTO) : workers;
     const setup = {
       create: factory.create,
+      startMs,
       core: await coreModule.compile(),
       formats: () => formatsModule.compile(formatsWasm),
       registration: () => registrationModule.compile(registrationWasm),
@@ -194,7 +201,7 @@ export class Aligner {
     const result = await guarded(call, () => {
       checkSignals(signalsOf(call));
       checkAttached("input", own);
-      return alignScene(own, this.#modules, this.#engine, settings, call);
+      return this.#inTurn(call, () => alignScene(own, this.#modules, this.#engine, settings, call));
     });
     return isReturned ? { ...result, input: scene } : result;
   }
@@ -349,6 +356,17 @@ export class Aligner {
       throw error;
     } finally {
       release();
+    }
+  }
+
+  /** Runs a scene when those before it have ended: each holds its images until its end. */
+  async #inTurn<T>(call: Call, run: () => Promise<T>): Promise<T> {
+    const turn = await this.#scenes.acquire(signalsOf(call));
+    try {
+      this.#checkUsable();
+      return await run();
+    } finally {
+      this.#scenes.release(turn);
     }
   }
 

@@ -16,7 +16,7 @@ export interface SymmetryAxis {
   fold?: number | undefined;
 }
 
-/** The symmetry of an object: none, detected from the mesh, or declared. */
+/** The symmetry of an object: none, found on its mesh, or declared. `"auto-revolution"` is a former name of `"auto"`. */
 export type SymmetryOption = "none" | "auto" | "auto-revolution" | readonly SymmetryAxis[];
 
 /**

@@ -19,7 +19,7 @@ Examples
   sim3align scene scenes/desk --scene-glb desk.glb     align all objects of a scene; write it as one file
   sim3align track videos/mug                     track an object through the frames of a video
   sim3align evaluate cases/mug --transform results.json
-  sim3align bop bop/lmo --split test --evaluate  align the targets of a BOP dataset, and score them
+  sim3align bop bop/lmo --split test --evaluate    align the targets of a BOP dataset, and score them
 
 See "sim3align align --help" for the layout of a case folder, and for the frames and units of the results.
 ${statusHelp}`;

@@ -1,22 +1,24 @@
 /** Engines that run jobs: on the calling thread, or in workers. */
+
 import type { CoreListener } from "./core.js";
 import { disposed } from "./error.js";
-import { type Job, type Modules, perform, type Results } from "./jobs.js";
+import { type Job, type Modules, perform, type Results, trackerName } from "./jobs.js";
 import type { JointAligner } from "./joint-module.js";
-import { checkSignals } from "./on-abort.js";
+import { beforeAbort, checkSignals } from "./on-abort.js";
+import type { SignalLike } from "./platform.js";
 import type { ProgressListener } from "./progress.js";
-import type { LoadedModule } from "./wasm-module.js";
+import { heaps, type LoadedModule, releaseHeaps } from "./wasm-module.js";
 
 /** Options that control how a call runs. */
 export interface Call {
-  signal: AbortSignal | undefined;
+  signal: SignalLike | undefined;
   progress: ProgressListener;
   /** Whether the arrays of the job may be moved to the worker. */
   transfer: boolean;
 }
 
 /** The signals that end a call. */
-export const signalsOf = ({ signal, progress }: Call): AbortSignal[] =>
+export const signalsOf = ({ signal, progress }: Call): SignalLike[] =>
   signal === undefined ? [progress.failed] : [signal, progress.failed];
 
 /** The result of a job, and its data after the run. */
@@ -44,7 +46,7 @@ export class MainThreadEngine implements Engine {
   readonly #modules: Modules;
   /** The joint module, once a job has needed it. */
   #joint: LoadedModule<JointAligner> | undefined;
-  #isDisposed = false;
+  readonly #ended = new AbortController();
 
   constructor(modules: Modules) {
     this.#modules = modules;
@@ -52,22 +54,34 @@ export class MainThreadEngine implements Engine {
 
   async run<J extends Job>(job: J, call: Call): Promise<Outcome<J>> {
     const { signal, progress } = call;
-    const signals = signalsOf(call);
-    const check = () => {
-      if (this.#isDisposed) throw disposed();
-      checkSignals(signals);
-    };
+    const signals = [this.#ended.signal, ...signalsOf(call)];
+    const check = () => checkSignals(signals);
     check();
     if (signal !== undefined) {
       // Yields first, so that a pending abort is handled before the thread is busy.
       await turn();
-      check();
     }
+    const held = await heaps.acquire(signals);
+    try {
+      check();
+      return await this.#perform(job, progress, signals);
+    } finally {
+      releaseHeaps(held);
+    }
+  }
+
+  async #perform<J extends Job>(
+    job: J,
+    progress: ProgressListener,
+    signals: readonly SignalLike[],
+  ): Promise<Outcome<J>> {
+    const check = () => checkSignals(signals);
     const listener: CoreListener = (stage, fraction, best) => progress.report(stage, fraction, best);
     const checked =
       <M>(load: () => Promise<M>) =>
       async () => {
-        const module = await load();
+        // A call that waits for the network ends at once: others wait for it.
+        const module = await beforeAbort(load(), signals);
         check();
         return module;
       };
@@ -89,10 +103,11 @@ export class MainThreadEngine implements Engine {
   /** Frees a tracker. */
   closeTracker(id: number): void {
     this.#joint?.call((joint) => joint.closeTracker(id));
+    this.#joint?.drop(trackerName(id));
   }
 
   dispose(): void {
-    this.#isDisposed = true;
+    this.#ended.abort(disposed());
   }
 }
 

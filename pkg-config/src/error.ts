@@ -123,6 +123,32 @@ export function internalError(cause: unknown): Sim3AlignError {
   );
 }
 
+/**
+ * Whether an exception says that memory is exhausted: that of the allocator of the modules, which throws this before it
+ * would trap, and those of the engines for arrays and instances.
+ */
+export function isExhausted(error: unknown): boolean {
+  if (!(error instanceof Error)) return false;
+  return error.message === EXHAUSTED || (error instanceof RangeError && /allocat|out of memory/i.test(error.message));
+}
+
+/** See `geometry/src/heap.rs`. */
+const EXHAUSTED = "sim3align: memory exhausted";
+
+/** The error for a call that needs more memory than there is. */
+export function outOfMemory(cause: unknown): Sim3AlignError {
+  return new Sim3AlignError(
+    {
+      code: "OUT_OF_MEMORY",
+      argument: "input",
+      found: "more data than the memory can hold",
+      expected: "a call that fits in 4 GB, and in the memory of the machine",
+      remedy: "Crop the images to the object, reduce their size, or simplify the mesh; use fewer workers.",
+    },
+    { cause },
+  );
+}
+
 /** The parts of an error, which can be sent to another thread. */
 export function partsOf({ code, argument, found, expected, remedy }: Sim3AlignError): ErrorParts {
   return { code, argument, found, expected, remedy };

@@ -95,7 +95,7 @@ export type {
   TrackOptions,
   ViewsOptions,
 } from "./options.js";
-export type { CreateWorker, WasmSource, WorkerLike } from "./platform.js";
+export type { BlobLike, CreateWorker, SignalLike, UrlLike, WasmSource, WorkerLike } from "./platform.js";
 export { PreparedMesh } from "./prepared-mesh.js";
 export type {
   AlignAllResult,

@@ -10,7 +10,7 @@ import { type MeshAndWarnings, readCoreMesh, readMesh } from "./input/mesh.js";
 import { resolveInput } from "./input/resolve.js";
 import type { AlignInput, MeshInput } from "./input/types.js";
 import type { JointAligner, LoadJoint } from "./joint-module.js";
-import type { LoadRegistrar } from "./registration-module.js";
+import type { LoadRegistrar, Registrar } from "./registration-module.js";
 import {
   type AlignResult,
   type Clouds,
@@ -129,7 +129,10 @@ export async function perform(
       const { mesh } = await readCoreMesh(job.data.mesh, formats, true, job.meshId);
       const module = await joint();
       checkAttached("mesh", mesh);
-      module.call((j) => j.openTracker(job.tracker, { mesh }, options));
+      module.call((j) => {
+        j.openTracker(job.tracker, { mesh }, options);
+        module.keep(trackerName(job.tracker));
+      });
       return undefined;
     }
     case "trackFrame": {
@@ -159,18 +162,15 @@ export async function perform(
     }
     case "register": {
       const { source, target } = checkedClouds(job.data);
-      const module = await registrar();
-      checkAttached("input", job.data);
-      return module.call((m) => m.register(source, target, options));
+      return runTask(await registrar(), (r) => r.beginRegister(source, target, options), job.data, slices);
     }
     case "estimateSim3": {
       const { source, target, correspondences } = checkedClouds(job.data);
       if (!isTypedArray<Uint32Array>(correspondences, "Uint32Array")) {
         throw wrongKind("correspondences", correspondences, "a Uint32Array of index pairs", "Uint32Array");
       }
-      const module = await registrar();
-      checkAttached("input", job.data);
-      return module.call((m) => m.estimateSim3(source, target, correspondences, options));
+      const begin = (r: Registrar) => r.beginEstimateSim3(source, target, correspondences, options);
+      return runTask(await registrar(), begin, job.data, slices);
     }
   }
 }
@@ -187,6 +187,9 @@ export interface Slices {
 
 const all: Slices = { sliceMs: Number.POSITIVE_INFINITY, check() {}, async turn() {} };
 
+/** What a tracker is called where its module keeps it. */
+export const trackerName = (id: number) => `tracker ${id}`;
+
 /** Runs a task to its end, and frees it. `input` is what its beginning reads. */
 async function runTask<G extends Glue, T>(
   module: LoadedModule<G>,
@@ -197,7 +200,12 @@ async function runTask<G extends Glue, T>(
   const { sliceMs, check, turn } = slices;
   // The thread may have been elsewhere since the input was read.
   checkAttached("input", input);
-  const task = module.call(begin, withoutInput);
+  check();
+  const task = module.call((glue) => {
+    const begun = begin(glue);
+    module.keep(begun);
+    return begun;
+  }, withoutInput);
   const { instance } = module;
   try {
     for (;;) {
@@ -211,6 +219,7 @@ async function runTask<G extends Glue, T>(
     }
   } finally {
     if (module.instance === instance) task.free();
+    module.drop(task);
   }
 }
 

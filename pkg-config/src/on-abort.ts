@@ -1,17 +1,18 @@
 /** Abort signals: callbacks, and checks. */
+import type { SignalLike } from "./platform.js";
 
 interface Followers {
   acts: Set<(reason: unknown) => void>;
   listener: () => void;
 }
 
-const followed = new WeakMap<AbortSignal, Followers>();
+const followed = new WeakMap<SignalLike, Followers>();
 
 /**
  * Calls `act` when the signal aborts, until the returned function is called. A signal gets one listener regardless of
  * the number of callbacks, because Node warns of a leak if there are many.
  */
-export function onAbort(signal: AbortSignal, act: (reason: unknown) => void): () => void {
+export function onAbort(signal: SignalLike, act: (reason: unknown) => void): () => void {
   const { acts, listener } = followed.get(signal) ?? begin(signal);
   // Wraps `act`, so that registering it twice calls it twice.
   const own = (reason: unknown) => act(reason);
@@ -24,7 +25,7 @@ export function onAbort(signal: AbortSignal, act: (reason: unknown) => void): ()
   };
 }
 
-function begin(signal: AbortSignal): Followers {
+function begin(signal: SignalLike): Followers {
   const acts: Followers["acts"] = new Set();
   const listener = () => {
     for (const act of [...acts]) act(reasonOf(signal));
@@ -36,14 +37,27 @@ function begin(signal: AbortSignal): Followers {
 }
 
 /** Throws the reason of an aborted signal. Not `throwIfAborted`, which older implementations lack. */
-export function checkSignals(signals: readonly AbortSignal[]): void {
+export function checkSignals(signals: readonly SignalLike[]): void {
   for (const signal of signals) if (signal.aborted) throw reasonOf(signal);
 }
 
-const missingReasons = new WeakMap<AbortSignal, DOMException>();
+/** The value of a promise, unless a signal aborts before: then its reason is thrown. */
+export async function beforeAbort<T>(awaited: Promise<T>, signals: readonly SignalLike[]): Promise<T> {
+  const unfollow: (() => void)[] = [];
+  const aborted = new Promise<never>((_, reject) => {
+    for (const signal of signals) unfollow.push(onAbort(signal, reject));
+  });
+  try {
+    return await Promise.race([awaited, aborted]);
+  } finally {
+    for (const end of unfollow) end();
+  }
+}
+
+const missingReasons = new WeakMap<SignalLike, DOMException>();
 
 /** The reason of an aborted signal. Signals of older implementations have none: they get one, always the same. */
-export function reasonOf(signal: AbortSignal): unknown {
+export function reasonOf(signal: SignalLike): unknown {
   if (signal.reason !== undefined) return signal.reason;
   const reason = missingReasons.get(signal) ?? new DOMException("This operation was aborted", "AbortError");
   missingReasons.set(signal, reason);

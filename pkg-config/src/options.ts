@@ -1,5 +1,6 @@
 /** Options of the calls. The documentation of each field states its range and default. */
 import type * as Core from "./generated/types.js";
+import type { SignalLike } from "./platform.js";
 
 export type { Direction, ScaleOption, SymmetryAxis, SymmetryOption } from "./argument-types.js";
 
@@ -32,7 +33,7 @@ export interface CallOptions {
    * Cancels the call, which rejects with the reason of the signal (by default an `AbortError`). A worker is terminated
    * at once and replaced. Without workers, the call checks the signal before it starts and each time it yields.
    */
-  signal?: AbortSignal | undefined;
+  signal?: SignalLike | undefined;
   /**
    * Moves the buffers to the worker instead of copying them. The arrays are detached during the call; `input` of the
    * result, or of the error, returns them. They are lost if their worker is terminated. Other arrays on the same

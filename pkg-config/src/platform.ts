@@ -10,13 +10,34 @@ export interface ResponseLike {
   arrayBuffer(): Promise<ArrayBuffer>;
 }
 
-/** A compiled `WebAssembly.Module`, if its type is declared. */
-export type CompiledModule = typeof globalThis extends { WebAssembly: { Module: { prototype: infer Module } } }
-  ? Module
-  : object;
+/** A `Blob` or a `File`. */
+export interface BlobLike {
+  readonly size: number;
+  readonly type: string;
+  /** Its bytes. */
+  arrayBuffer(): Promise<ArrayBuffer>;
+}
+
+/** A `URL`. */
+export interface UrlLike {
+  readonly href: string;
+}
+
+/** The signal of an `AbortController`. */
+export interface SignalLike {
+  readonly aborted: boolean;
+  readonly reason: unknown;
+  /** Adds a listener of the abort. */
+  addEventListener(type: "abort", listener: () => void, options?: { once?: boolean }): void;
+  /** Removes it. */
+  removeEventListener(type: "abort", listener: () => void): void;
+}
+
+/** A compiled `WebAssembly.Module`, whose type no library but the DOM's declares. */
+export type CompiledModule = object;
 
 /** The source of a WebAssembly module: a URL, a response, the bytes, or the compiled module. */
-export type WasmSource = URL | string | ResponseLike | ArrayBuffer | ArrayBufferView | CompiledModule;
+export type WasmSource = UrlLike | string | ResponseLike | ArrayBuffer | ArrayBufferView | CompiledModule;
 
 /** The source of a WebAssembly module, or a function that returns one on demand. */
 export type LazySource = WasmSource | (() => WasmSource | Promise<WasmSource>);

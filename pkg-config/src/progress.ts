@@ -1,6 +1,8 @@
 /** Reports the progress of the core to the caller. */
+
 import { invalidArgument } from "./error.js";
 import type { BestSoFar, Progress } from "./options.js";
+import type { SignalLike } from "./platform.js";
 
 /** Maximum number of reports per second. */
 const MAX_PER_SECOND = 20;
@@ -23,7 +25,7 @@ export class ProgressListener {
   }
 
   /** Aborts when the caller's function throws, or when a promise that it returned rejects. */
-  get failed(): AbortSignal {
+  get failed(): SignalLike {
     return this.#failed.signal;
   }
 

@@ -1,5 +1,5 @@
 /** The registration module: the WebAssembly module with `register`, `estimateSim3`, the preset `paper` and errors of BOP. */
-import type { Cloud, CoreListener } from "./core.js";
+import type { Cloud, CoreListener, Task } from "./core.js";
 import type { BopErrors, PaperAlignment, Registration } from "./generated/types.js";
 import type { CoreInput } from "./input/core-input.js";
 import { type Glue, type LoadedModule, WasmModule } from "./wasm-module.js";
@@ -8,8 +8,8 @@ import { type Glue, type LoadedModule, WasmModule } from "./wasm-module.js";
 export interface Registrar extends Glue {
   alignPaper(input: CoreInput, options: object, onProgress: CoreListener | undefined): PaperAlignment;
   bopErrors(input: object, estimates: readonly object[], truths: readonly object[]): BopErrors[];
-  register(source: Cloud, target: Cloud, options: object): Registration;
-  estimateSim3(source: Cloud, target: Cloud, correspondences: Uint32Array, options: object): Registration;
+  beginRegister(source: Cloud, target: Cloud, options: object): Task<Registration>;
+  beginEstimateSim3(source: Cloud, target: Cloud, correspondences: Uint32Array, options: object): Task<Registration>;
 }
 
 /** Loads the module when a call first needs it. */

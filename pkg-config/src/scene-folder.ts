@@ -30,8 +30,18 @@ export interface SceneSettings extends CaseSettings {
  */
 export async function readSceneFolder(folder: string, settings: SceneSettings = {}): Promise<SceneOnDisk> {
   const names = await namesIn(folder);
-  const isBop = names.includes("mask_visib") && names.includes("scene_gt.json");
-  return isBop ? readBop(folder, settings) : readFolder(folder, names, settings);
+  return isBop(names) ? readBop(folder, settings) : readFolder(folder, names, settings);
+}
+
+const isBop = (names: readonly string[]) => names.includes("mask_visib") && names.includes("scene_gt.json");
+
+/** The name of the image that would be read of a scene of BOP; `undefined` for other folders, and where none can be. */
+export async function bopImageIn(folder: string, imageId: string | undefined): Promise<string | undefined> {
+  try {
+    return isBop(await namesIn(folder)) ? bopName(bopImageId(await openBopScene(folder), imageId)) : undefined;
+  } catch {
+    return undefined;
+  }
 }
 
 async function readFolder(folder: string, names: string[], { models, ...settings }: SceneSettings) {

@@ -18,6 +18,7 @@ export {
   type SimulatorBody,
   type SimulatorObject,
   type SimulatorOptions,
+  type SimulatorPose,
   type SimulatorScene,
   simulatorScene,
 } from "./simulators/scene.js";

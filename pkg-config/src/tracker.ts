@@ -1,8 +1,9 @@
 /// <reference lib="esnext.disposable" preserve="true" />
 /** Trackers: one object through a video. */
+
 import { checkedFlag, checkedOptions, checkedSignal } from "./aligner-options.js";
 import type { Engine, MainThreadEngine } from "./engine.js";
-import { disposed, internalError, Sim3AlignError } from "./error.js";
+import { disposed, internalError, invalidArgument, Sim3AlignError } from "./error.js";
 import type { CorrectedFrame } from "./generated/types.js";
 import type { FrameInput } from "./input/frame-types.js";
 import { classNames } from "./input/resolve.js";
@@ -10,6 +11,7 @@ import type { MeshInput } from "./input/types.js";
 import type { Job, Results } from "./jobs.js";
 import { checkSignals, onAbort } from "./on-abort.js";
 import type { CallOptions } from "./options.js";
+import type { SignalLike } from "./platform.js";
 import { ProgressListener } from "./progress.js";
 import type { TrackedFrame } from "./results.js";
 import { coreSim3, type Sim3Like } from "./sim3.js";
@@ -64,7 +66,7 @@ export class Tracker {
     own: OwnEngine,
     mesh: TrackerMesh,
     options: object,
-    signal: AbortSignal | undefined,
+    signal: SignalLike | undefined,
     closed: (tracker: Tracker) => void,
   ): Promise<Tracker> {
     lastTracker += 1;
@@ -92,7 +94,8 @@ export class Tracker {
    * in frames with a mask. The first frame needs a mask, unless `initial` is given.
    * @param options `signal` rejects a call that has not begun; a frame that has begun is tracked to its end
    * @throws {@link Sim3AlignError} for invalid input, `NO_CONSENSUS` if the object is not found in the first frame, and
-   * `DISPOSED` after `close()`. The tracker remains usable.
+   * `DISPOSED` after `close()`; the tracker remains usable. `TRACKER_LOST` if its worker has ended, or if another call has
+   * exhausted the memory that they share: open another tracker with the last pose as `initial`
    */
   async next(frame: FrameInput, options: CallOptions = {}): Promise<TrackedFrame> {
     const { signal, transfer = false } = checkedOptions(options);
@@ -113,9 +116,14 @@ export class Tracker {
    * @param pose camera from mesh, metres
    * @param frame the number of the frame (`frame` of its result); by default the last one
    * @returns the new poses of all frames that change
-   * @throws {@link Sim3AlignError} `INVALID_TRANSFORM`, and `INVALID_ARGUMENT` for a frame that was not tracked
+   * @throws {@link Sim3AlignError} `INVALID_TRANSFORM`, `INVALID_ARGUMENT` for a frame that was not tracked, and
+   * `TRACKER_LOST` if the worker of the tracker has ended
    */
   async correct(pose: Sim3Like, frame?: number): Promise<CorrectedFrame[]> {
+    // Any other value could not be sent to the worker in which the tracker lives.
+    if (frame !== undefined && frame !== null && typeof frame !== "number") {
+      throw invalidArgument("frame", frame, "the number of a frame", "Pass `frame` of its result.");
+    }
     const data = { pose: coreSim3(ownArgument("pose", pose)), frame };
     return this.#inOrder(() => this.#run({ method: "correctTrack", data, options: {}, tracker: this.#id }));
   }

@@ -1,12 +1,35 @@
 /** Loading and calling one WebAssembly module. */
-import { internalError, isCoded, Sim3AlignError } from "./error.js";
-import type { LazySource, WasmSource } from "./platform.js";
+import { internalError, isCoded, isExhausted, outOfMemory, Sim3AlignError } from "./error.js";
+import type { CompiledModule, LazySource, WasmSource } from "./platform.js";
+import { Queue } from "./queue.js";
 import { isKind } from "./values.js";
 
 /** The exports of wasm-bindgen's glue, other than the functions of the module. */
 export interface Glue {
-  default(options: { module_or_path: WebAssembly.Module }): Promise<unknown>;
+  default(options: { module_or_path: CompiledModule }): Promise<unknown>;
+  /** The exports of the current instance, once there is one. */
+  initSync(options: { module: CompiledModule }): { memory: { buffer: ArrayBufferLike } };
   __wbg_reset_state(): void;
+}
+
+/**
+ * The largest heap that an instance keeps when no call runs or waits, bytes: more than an alignment of 4096×3072 pixels needs.
+ * The heap of WebAssembly never shrinks, so that a larger one is let go with its instance.
+ */
+const MAX_IDLE_HEAP = 192 * 2 ** 20;
+
+/**
+ * The heaps of the modules of this thread. The jobs that run here use them one after the other, as in a worker: otherwise,
+ * each that has begun would hold its memory until all have ended.
+ */
+export const heaps = new Queue(["heaps"]);
+
+const loaded = new Set<{ letGo(): void }>();
+
+/** Gives the heaps to the next job, or lets go of those that have grown too large. */
+export function releaseHeaps(held: string): void {
+  heaps.release(held);
+  if (!heaps.isBusy) for (const module of loaded) module.letGo();
 }
 
 /** A module that is loaded once, also for concurrent callers. After a failure, the next call tries again. */
@@ -14,7 +37,7 @@ export class WasmModule<G extends Glue> {
   readonly #name: string;
   readonly #source: LazySource;
   readonly #importGlue: () => Promise<G> | G;
-  #compiling: Promise<WebAssembly.Module> | undefined;
+  #compiling: Promise<CompiledModule> | undefined;
   #loading: Promise<LoadedModule<G>> | undefined;
 
   constructor(name: string, source: LazySource, importGlue: () => Promise<G> | G) {
@@ -24,7 +47,7 @@ export class WasmModule<G extends Glue> {
   }
 
   /** Compiles the module, for this thread or a worker. Only the `source` of the first successful call is used. */
-  compile(source: LazySource = this.#source): Promise<WebAssembly.Module> {
+  compile(source: LazySource = this.#source): Promise<CompiledModule> {
     if (this.#compiling === undefined) {
       const compiling = this.#explained(async () => compiled(await given(source)));
       this.#compiling = compiling;
@@ -52,7 +75,7 @@ export class WasmModule<G extends Glue> {
     return this.#explained(async () => {
       const glue = await this.#importGlue();
       await glue.default({ module_or_path: module });
-      return new LoadedModule(glue);
+      return new LoadedModule(glue, module);
     });
   }
 
@@ -66,12 +89,13 @@ export class WasmModule<G extends Glue> {
 }
 
 function notLoaded(name: string, cause: unknown): Sim3AlignError {
+  if (isExhausted(cause)) return outOfMemory(cause);
   const file = `${name}_bg.wasm`;
   // If a server bundler has moved this script, the file is not next to it, or the script has no URL.
   const isMoved = cause instanceof Error && "code" in cause && ["ENOENT", "ERR_INVALID_URL"].includes(`${cause.code}`);
   const remedy = isMoved
     ? `If a bundler has moved this script, import from "sim3align/inline", which needs no other file, or exclude sim3align from the bundle; or pass createAligner the URL, bytes or module of ${file}.`
-    : `Serve sim3align/wasm/${file} next to the script, or pass createAligner its URL, bytes or module.`;
+    : `Serve sim3align/wasm/${file} next to the script, or pass createAligner its URL, bytes or module; for bundlers that leave it out, such as esbuild, import from "sim3align/inline".`;
   return new Sim3AlignError(
     {
       code: "NOT_INITIALISED",
@@ -84,14 +108,22 @@ function notLoaded(name: string, cause: unknown): Sim3AlignError {
   );
 }
 
-/** A loaded module. */
+/** A loaded module: its current instance, whose heap is let go when it has grown too large. */
 export class LoadedModule<G extends Glue> {
   readonly #glue: G;
+  readonly #module: CompiledModule;
+  /** What lives in the instance and is more than a copy: while there is any, its heap stays. */
+  readonly #kept = new Set<unknown>();
+  /** Whether the state of the instance is unknown. */
   #isSpent = false;
   #instance = 0;
+  /** Calls on the stack: a listener may call the module again. */
+  #depth = 0;
 
-  constructor(glue: G) {
+  constructor(glue: G, module: CompiledModule) {
     this.#glue = glue;
+    this.#module = module;
+    loaded.add(this);
   }
 
   /** The number of the current instance; objects of earlier instances are lost. */
@@ -101,15 +133,11 @@ export class LoadedModule<G extends Glue> {
 
   /**
    * Calls the module. Its errors about the input become {@link Sim3AlignError}s; `rename` maps their argument names to
-   * those of the caller. After any other exception, the state of the module is unknown, and the next call uses a new
-   * instance.
+   * those of the caller. After any other exception, the state of the module is unknown, and it gets a new instance.
    */
   call<T>(work: (glue: G) => T, rename: (argument: string) => string = (argument) => argument): T {
-    if (this.#isSpent) {
-      this.#glue.__wbg_reset_state();
-      this.#isSpent = false;
-      this.#instance += 1;
-    }
+    if (this.#isSpent) this.#renew();
+    this.#depth += 1;
     try {
       return work(this.#glue);
     } catch (error) {
@@ -118,8 +146,50 @@ export class LoadedModule<G extends Glue> {
         throw new Sim3AlignError({ code, argument: rename(argument), found, expected, remedy });
       }
       this.#isSpent = true;
-      throw internalError(error);
+      throw isExhausted(error) ? outOfMemory(error) : internalError(error);
+    } finally {
+      this.#depth -= 1;
+      if (this.#isSpent || !heaps.isBusy) this.letGo();
     }
+  }
+
+  /** Keeps the instance: this object, or what has this name, lives in it. To be called while the module is called. */
+  keep(owner: unknown): void {
+    this.#kept.add(owner);
+  }
+
+  /** Ends what {@link keep} has begun. */
+  drop(owner: unknown): void {
+    this.#kept.delete(owner);
+    if (!heaps.isBusy) this.letGo();
+  }
+
+  /**
+   * Replaces an instance whose state is unknown, or in which nothing is kept and whose heap is too large. If there is no
+   * memory for another one, the next call tries again.
+   */
+  letGo(): void {
+    if (this.#depth > 0) return;
+    if (!this.#isSpent) {
+      if (this.#kept.size > 0) return;
+      if (this.#glue.initSync({ module: this.#module }).memory.buffer.byteLength <= MAX_IDLE_HEAP) return;
+    }
+    try {
+      this.#renew();
+    } catch {
+      this.#isSpent = true;
+    }
+  }
+
+  #renew(): void {
+    this.#kept.clear();
+    try {
+      this.#glue.__wbg_reset_state();
+    } catch (error) {
+      throw isExhausted(error) ? outOfMemory(error) : internalError(error);
+    }
+    this.#isSpent = false;
+    this.#instance += 1;
   }
 }
 

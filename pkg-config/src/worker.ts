@@ -2,7 +2,7 @@
 import type { Core } from "./core.js";
 import { type ErrorParts, internalError, partsOf, Sim3AlignError } from "./error.js";
 import type { Formats } from "./formats-module.js";
-import { perform } from "./jobs.js";
+import { type MeshCache, perform } from "./jobs.js";
 import type { JointAligner } from "./joint-module.js";
 import type { LazyName, Reply, Request } from "./pool/protocol.js";
 import { buffersOf } from "./pool/transfer.js";
@@ -13,6 +13,8 @@ import * as formatsGlue from "./wasm/formats.js";
 import * as jointGlue from "./wasm/joint.js";
 import * as registrationGlue from "./wasm/registration.js";
 import { type Glue, type LoadedModule, WasmModule } from "./wasm-module.js";
+
+const caches: readonly MeshCache[] = ["core", "joint"];
 
 type Post = (message: Reply, transfer?: ArrayBuffer[]) => void;
 
@@ -38,9 +40,14 @@ class WorkerHost {
 
   receive(message: Request): void {
     if (message.type === "module") this.#receiveModule?.(message.module);
-    else if (message.type === "start") this.#core = this.#loadCore(message.core);
+    else if (message.type === "start") this.#start(message.core);
     else if (message.type === "drop-mesh") this.#dropMesh(message.id);
     else this.#run(message);
+  }
+
+  #start(core: WebAssembly.Module): void {
+    this.#core = this.#loadCore(core);
+    this.#post({ type: "ready" });
   }
 
   /** Reports a message whose content could not be read, so that its call does not wait forever. */
@@ -58,7 +65,25 @@ class WorkerHost {
     }
   }
 
-  async #answer({ job, wantsProgress }: Request & { type: "job" }): Promise<Reply & { type: "done" }> {
+  async #answer(request: Request & { type: "job" }): Promise<Reply & { type: "done" }> {
+    const before = await this.#instances();
+    const answer = await this.#performed(request);
+    const after = await this.#instances();
+    return {
+      ...answer,
+      emptied: caches.filter((cache) => before[cache] !== undefined && before[cache] !== after[cache]),
+    };
+  }
+
+  /** The numbers of the current instances of the modules that cache meshes, of those that are loaded. */
+  async #instances(): Promise<Partial<Record<MeshCache, number>>> {
+    const [core, joint] = await Promise.all(
+      [this.#core, this.#joint.loading()].map((it) => it?.catch(() => undefined)),
+    );
+    return { ...(core && { core: core.instance }), ...(joint && { joint: joint.instance }) };
+  }
+
+  async #performed({ job, wantsProgress }: Request & { type: "job" }): Promise<Reply & { type: "done" }> {
     const listener = (stage: (Reply & { type: "progress" })["stage"], fraction: number, best?: Float64Array) =>
       this.#post({ type: "progress", stage, fraction, best });
     try {

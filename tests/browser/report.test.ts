@@ -100,6 +100,27 @@ test("the keyboard goes through the rows, and axe finds nothing", async () => {
   assert.deepEqual(await violations(page), []);
 });
 
+test("the arrow keys work after loading, after a click on a name, and not in controls or in 3D", async () => {
+  const { page, errors } = await browser.open(address);
+  const selected = () => page.locator('tr[aria-selected="true"] th').textContent();
+  const [first, second, third] = await names(page);
+  assert.equal(await selected(), first);
+  await page.keyboard.press("ArrowDown");
+  assert.equal(await selected(), second, "after loading");
+  await page.getByRole("button", { name: "alpha", exact: true }).click();
+  assert.equal(await selected(), "alpha");
+  await page.keyboard.press("ArrowUp");
+  const above = [first, second, third][[first, second, third].indexOf("alpha") - 1];
+  assert.equal(await selected(), above, "after a click");
+  await page.keyboard.press("PageDown");
+  assert.equal(await selected(), third);
+  await page.locator("#detail canvas").press("ArrowUp");
+  await page.getByRole("slider").press("ArrowUp");
+  await page.getByRole("searchbox").press("ArrowUp");
+  assert.equal(await selected(), third, "keys of controls and of the 3D view are theirs");
+  assert.deepEqual(errors, []);
+});
+
 test("of a thousand rows, only those in sight have elements", async () => {
   const [first] = readFileSync(join(folder, "report", "rows.js"), "utf8")
     .split("\n")

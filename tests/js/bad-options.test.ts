@@ -113,7 +113,7 @@ const options: [name: string, options: unknown, code: ErrorCode, argument: strin
   ["up with NaN", { meshUp: [0, Number.NaN, 1] }, "INVALID_OPTION", "options.meshUp", /NaN/],
   ["up in the camera alone", { cameraUp: [0, -1, 0] }, "INVALID_OPTION", "options.meshUp", /in both frames/],
   ["up in the mesh alone", { meshUp: [0, 1, 0] }, "INVALID_OPTION", "options.cameraUp", /in both frames/],
-  ["an unknown symmetry", { symmetry: "round" }, "INVALID_OPTION", "options.symmetry", /"round".*"auto-revolution"/],
+  ["an unknown symmetry", { symmetry: "round" }, "INVALID_OPTION", "options.symmetry", /"round".*"auto"/],
   ["a symmetry of null", { symmetry: null }, "INVALID_OPTION", "options.symmetry", /null.*"none"/],
   ["an axis of zero", { symmetry: [{ axis: [0, 0, 0] }] }, "INVALID_OPTION", "options.symmetry.axis", /other than 0/],
   ["a fold of 1", { symmetry: [{ axis: [0, 0, 1], fold: 1 }] }, "INVALID_OPTION", "options.symmetry.fold", /2 to 360/],

@@ -32,6 +32,24 @@ for (const [name, aligner] of aligners) {
     }, isAbort);
   });
 
+  test(`${name}: estimateSim3 ends at an abort, and at its budget, whatever its options allow`, async () => {
+    const count = 20_000;
+    const points = Float64Array.from({ length: 3 * count }, (_, i) => Math.sin(i * i));
+    // Every point has a partner that has nothing to do with it.
+    const pairs = Uint32Array.from({ length: 2 * count }, (_, i) => (i % 2 === 0 ? i / 2 : (i * 7919) % count));
+    const endless = { ransacIterations: 10_000_000, edgeSimilarity: 0, inlierDistance: 1e-3 };
+    const signal = AbortSignal.timeout(20);
+    await assert.rejects(
+      aligner.estimateSim3(points, points, pairs, { ...endless, signal }),
+      (error) => error === signal.reason,
+    );
+    await rejectsWith(() => aligner.estimateSim3(points, points, pairs, { ...endless, workBudget: 20 }), {
+      code: "NO_CONSENSUS",
+      argument: "correspondences",
+      message: /minimal sets/,
+    });
+  });
+
   test(`${name}: the signal's own reason is what the call rejects with`, async () => {
     const reason = new TypeError("the user has left");
     const controller = new AbortController();
@@ -199,7 +217,12 @@ test("a task is freed when it fails, also where it runs at once, as in a worker"
       freed += 1;
     },
   };
-  const core = { instance: 0, call: (work: (glue: object) => unknown) => work({ beginAlign: () => task }) };
+  const core = {
+    instance: 0,
+    call: (work: (glue: object) => unknown) => work({ beginAlign: () => task }),
+    keep() {},
+    drop() {},
+  };
   await assert.rejects(perform({ method: "align", data: input, options: {} }, { core }), failure);
   assert.equal(freed, 1);
 });

@@ -19,7 +19,7 @@ const inOrder = [...quick, "--workers", "1"];
 for (const signal of ["SIGINT", "SIGTERM"] as const) {
   test(`${signal} after two of four cases: their rows and their JSON are there`, async () => {
     const names = ["one", "two", endless(`endless-${signal}`), "three"];
-    writeFileSync(join(folder, "part.json"), "what was there before");
+    writeFileSync(join(folder, "part.json"), "{}\n");
     const ended = await interrupted(/^two .*\n/m, signal, "align", ...names, ...inOrder, "--json", "part.json");
     assert.equal(ended.signal, signal, ended.stderr);
     assert.deepEqual(Object.keys(results("part.json")), ["one", "two"]);
@@ -32,7 +32,7 @@ for (const signal of ["SIGINT", "SIGTERM"] as const) {
 }
 
 test("an interruption before the first result leaves the file as it was", async () => {
-  writeFileSync(join(folder, "old.json"), "old");
+  writeFileSync(join(folder, "old.json"), "{}\n");
   const child = spawn(process.execPath, [commandLine, "align", endless("never"), "--json", "old.json"], {
     cwd: folder,
   });
@@ -40,7 +40,7 @@ test("an interruption before the first result leaves the file as it was", async 
   const ended = new Promise((resolve) => child.on("close", (_, signal) => resolve(signal)));
   child.on("spawn", () => child.kill("SIGINT"));
   assert.equal(await ended, "SIGINT");
-  assert.equal(readFileSync(join(folder, "old.json"), "utf8"), "old");
+  assert.equal(readFileSync(join(folder, "old.json"), "utf8"), "{}\n");
 });
 
 test("the JSON of many cases is the text that JSON.stringify writes", () => {
@@ -80,13 +80,26 @@ for (const command of [
 }
 
 test("a case that is given twice is aligned once, with a message", () => {
-  symlinkSync("one", join(folder, "link"));
-  const given = ["one", "./one/", "two", "link", join(folder, "two")];
+  const given = ["one", "./one/", "two", join(folder, "two")];
   const { status, stdout, stderr } = run("align", ...given, ...inOrder, "--json", "twice.json");
   assert.equal(status, 0, stderr);
   assert.deepEqual(Object.keys(results("twice.json")), ["one", "two"]);
-  assert.match(stderr, /skipped, given twice: \.\/one\/, link, .*two/);
+  assert.match(stderr, /skipped, given twice: \.\/one\/, .*two/);
   assert.equal(stdout.trimEnd().split("\n").length, 3, "the headings and two rows");
+});
+
+test("links to one folder are cases of their own: a folder of links is a data set", () => {
+  mkdirSync(join(folder, "links"));
+  for (const name of ["first", "second"]) symlinkSync(join("..", "one"), join(folder, "links", name));
+  const { status, stderr } = run("align", "links/*", "one", ...inOrder, "--json", "links.json");
+  assert.equal(status, 0, stderr);
+  assert.deepEqual(Object.keys(results("links.json")), ["first", "second", "one"]);
+  assert.equal(
+    run("align", "links/**", ...inOrder, "--csv", "-")
+      .stdout.trimEnd()
+      .split("\n").length,
+    3,
+  );
 });
 
 test("a reader that closes stdout ends the run, unless there is JSON to write", () => {

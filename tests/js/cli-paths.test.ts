@@ -1,7 +1,7 @@
 /** Which cases a command line names: folders, patterns, lists and stdin. */
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
-import { mkdirSync, writeFileSync } from "node:fs";
+import { mkdirSync, symlinkSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { files, folder, run, writeCase } from "../support/command-line.js";
@@ -47,6 +47,16 @@ test("a quoted pattern is expanded, in order of the names", () => {
 test("** finds cases at any depth, and nothing inside of them", () => {
   assert.deepEqual(found(["cases/**"]), ["a1", "a2", "b1", "c1"]);
   assert.deepEqual(found(["**/c*"]), ["c1"]);
+});
+
+test("links to folders are found by their names, and no link leads round in a circle", () => {
+  mkdirSync(join(folder, "linked", "inner"), { recursive: true });
+  symlinkSync(join("..", "cases", "a1"), join(folder, "linked", "first"));
+  symlinkSync(join("..", "..", "cases", "a1"), join(folder, "linked", "inner", "second"));
+  symlinkSync(join("..", "..", "linked"), join(folder, "linked", "inner", "round"));
+  symlinkSync("nowhere", join(folder, "linked", "broken"));
+  assert.deepEqual(found(["linked/f*"]), ["first"]);
+  assert.deepEqual(found(["linked/**"]), ["first", "second"]);
 });
 
 test("a folder whose name looks like a pattern is that folder", () => {

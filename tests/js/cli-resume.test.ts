@@ -44,8 +44,10 @@ test("--jsonl has a line for each case, the entry of --json", () => {
   assert.equal(linesOf("whole.jsonl").length, all.length + 1);
   const json = results("whole.json");
   for (const line of linesOf("whole.jsonl").slice(0, -1)) {
-    const { case: name, ...entry } = JSON.parse(line);
+    const { case: name, path, content, ...entry } = JSON.parse(line);
     assert.deepEqual(entry, json[name], name);
+    assert.equal(path, name, "relative to the record");
+    assert.equal(typeof content, name === "empty" ? "undefined" : "string");
   }
   assert.deepEqual(Object.keys(json).sort(), all);
 });
@@ -140,6 +142,7 @@ test("a complete batch that is resumed aligns nothing, and has the same exit sta
   assert.equal(status, 1);
   assert.equal(stdout, "");
   assert.match(stderr, /resumed: 6 of 6/);
+  assert.match(stderr, /failed earlier: empty \(FILE_NOT_FOUND\); remove their lines/);
   assert.deepEqual(rowsOf("again.csv"), rowsOf("whole.csv"));
   assert.equal(run("align", "a", "b", "--jsonl", "complete.jsonl", "--resume").status, 0, "without the failed case");
   assert.deepEqual(linesOf("complete.jsonl"), linesOf("whole.jsonl"));

@@ -104,7 +104,17 @@ test("--json has everything, as the documentation says", async () => {
   const { errors } = await aligner.evaluate(input, alignment, { truth });
   const { timingsMs, ...rest } = blob;
   assert.ok(timingsMs.total > 0);
-  const top = ["scale", "rotation", "translation", "matrix", "quaternion", "confidence", "alternatives", "uncertainty"];
+  const top = [
+    "scale",
+    "rotation",
+    "translation",
+    "matrix",
+    "quaternion",
+    "confidence",
+    "turnConfidence",
+    "alternatives",
+    "uncertainty",
+  ];
   assert.deepEqual(Object.keys(blob), [...top, "metrics", "warnings", "timingsMs", "diagnostics", "errors"]);
   const same = withoutTimes(alignment);
   const written = <T extends Sim3>({ rotation, rotationMatrix, ...others }: T) => {
@@ -315,7 +325,7 @@ const usage: [name: string, args: string[], message: RegExp][] = [
   ["a focal length of zero", ["align", "blob", "--camera", "0,600,320,240"], /focal lengths above 0/],
   ["a field of view of 500°", ["align", "blob", "--camera", "fov:500"], /above 0 and below 180/],
   ["a folder and files", ["align", "blob", "--depth", "blob/depth.npy"], /but not both/],
-  ["evaluate without a case", ["evaluate"], /missing required argument/],
+  ["evaluate without a case", ["evaluate"], /Pass at least one case folder/],
 ];
 
 for (const [name, args, message] of usage) {

@@ -41,6 +41,11 @@ test("every entry compiles in a browser's project without Node's types", () => {
   assert.equal(compiled("app.mts", allEntries, { ...browser, moduleResolution: "bundler" }), "");
 });
 
+test("every entry compiles without the DOM library and without Node's types", () => {
+  const alone = allEntries.replace(", { signal: AbortSignal.timeout(1000) }", "");
+  assert.equal(compiled("app.mts", alone, { lib: ["es2022"], types: [], module: "nodenext" }), "");
+});
+
 test("a mistake is seen in these projects", () => {
   const wrong = `import { createAligner } from "sim3align"; createAligner({ workers: "many" });`;
   assert.match(compiled("app.mts", wrong, node), /TS2322/);

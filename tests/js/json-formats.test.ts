@@ -192,7 +192,7 @@ test("poses come as parts or as a matrix, as BOP's entry, or not at all", async 
   assert.equal(await readPose({ available: false, symmetry: "unknown" }), null);
   const bop = await readPose({ cam_R_m2c: rows.flat(), cam_t_m2c: [1000, 2000, 3000] });
   assert.deepEqual([bop?.transform.scale, bop?.transform.translation], [0.001, [1, 2, 3]]);
-  const symmetries = { " Continuous about z": "auto-revolution", "discrete (4)": "auto", unknown: "none" };
+  const symmetries = { " Continuous about z": "auto", "discrete (4)": "auto", unknown: "none" };
   for (const [words, symmetry] of Object.entries(symmetries)) {
     assert.equal((await readPose({ matrix, symmetry: words }))?.symmetry, symmetry);
   }

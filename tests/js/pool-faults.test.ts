@@ -1,6 +1,7 @@
 /** Every call settles, whatever becomes of its worker or its messages, and the pool works on. */
 import assert from "node:assert/strict";
 import { after, test } from "node:test";
+import { Worker } from "node:worker_threads";
 import { type Aligner, createAligner } from "sim3align";
 import { rejectsWith } from "../support/errors.js";
 import { npy } from "../support/files.js";
@@ -233,4 +234,58 @@ test("a prepared mesh is freed in the worker, if no call used it, and after a ca
 
   await assert.rejects(aligner.prepareMesh({ positions: new Float32Array(9) }), { code: "DEGENERATE_MESH" });
   assert.deepEqual(sent, ["job", "drop-mesh"], "a mesh that was refused");
+});
+
+for (const [name, script] of Object.entries({
+  "says nothing": "",
+  "answers with rubbish":
+    "const { parentPort } = require('node:worker_threads'); parentPort.on('message', () => parentPort.postMessage('hello'));",
+  "claims success":
+    "const { parentPort } = require('node:worker_threads'); parentPort.on('message', () => parentPort.postMessage({ type: 'done', result: 42 }));",
+})) {
+  test(`a worker that ${name} is no worker of this package`, async () => {
+    const createWorker = () =>
+      new Worker(`require("node:worker_threads").parentPort.on("message", () => {}); {${script}}`, { eval: true });
+    const aligner = await createAligner({
+      workers: 1,
+      createWorker,
+      workerStartMs: name === "says nothing" ? 50 : 60_000,
+    });
+    aligners.push(aligner);
+    const moved = structuredClone(input);
+    await rejectsWith(() => aligner.align(moved, { ...quick, transfer: true }), {
+      code: "WORKER_FAILED",
+      argument: "workers",
+      message: name === "says nothing" ? /no answer for 50 ms/ : /a message that worker.js does not send/,
+    });
+    // It got no arrays that it could lose.
+    assert.ok(moved.depth.length > 0);
+  });
+}
+
+test("options and arguments whose getters throw are errors with a code", async () => {
+  const throwing = {
+    get depth() {
+      throw new Error("not now");
+    },
+  };
+  const found = (argument: string) =>
+    ({ code: "INVALID_ARGUMENT", argument, message: /a property that throws Error: not now/ }) as const;
+  await rejectsWith(() => createAligner(throwing as never), found("options.depth"));
+  using tracker = await here.track(mesh);
+  await rejectsWith(
+    () =>
+      tracker.correct({
+        matrix: new Array(16).fill(1),
+        get scale(): number {
+          throw new Error("not now");
+        },
+      } as never),
+    found("pose.scale"),
+  );
+  await rejectsWith(() => tracker.correct(new Float64Array(16), throwing as never), {
+    code: "INVALID_ARGUMENT",
+    argument: "frame",
+    message: /the number of a frame/,
+  });
 });

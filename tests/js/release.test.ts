@@ -46,13 +46,38 @@ test("the changelog has a section of the unreleased changes or of the version", 
   assert.ok(sectionOf(text, "Unreleased") || sectionOf(text, version));
 });
 
+const workflow = readFileSync(join(repository, ".github", "workflows", "release.yml"), "utf8");
+/** The jobs of the workflow by their names, as text. */
+const jobs = Object.fromEntries(
+  workflow
+    .slice(workflow.indexOf("\njobs:\n"))
+    .split(/^(?= {2}\w+:$)/m)
+    .slice(1)
+    .map((text) => [text.trim().split(":")[0] as string, text]),
+);
+
 test("the workflow publishes with provenance, and only after the checks", () => {
-  const workflow = readFileSync(join(repository, ".github", "workflows", "release.yml"), "utf8");
   const steps = ["scripts/release.mjs", ".ci/run", "npm pack", "npm publish"].map((text) => workflow.indexOf(text));
   assert.ok(
     steps.every((at, i) => at > (steps[i - 1] ?? 0)),
     `${steps}`,
   );
   assert.match(workflow, /npm publish .*--provenance/);
-  assert.match(workflow, /id-token: write/);
+});
+
+test("what may publish runs no code of the repository, and what runs it may not write", () => {
+  assert.deepEqual(Object.keys(jobs), ["test", "publish"]);
+  const { test: tests = "", publish = "" } = jobs;
+  assert.match(workflow, /^permissions: \{\}$/m);
+  assert.doesNotMatch(tests, /: write|secrets\.|GH_TOKEN/);
+  assert.match(tests, /persist-credentials: false/);
+  assert.match(publish, /^ {4}needs: test$/m);
+  assert.match(publish, /id-token: write/);
+  assert.doesNotMatch(publish, /checkout|scripts\/|\.ci\/|npm (ci|install|run|exec)|npx/);
+});
+
+test("actions are pinned to commits", () => {
+  const used = [...workflow.matchAll(/uses: (.*)/g)].map(([, action]) => action);
+  assert.ok(used.length >= 4);
+  for (const action of used) assert.match(action ?? "", /^[\w-]+\/[\w-]+@[0-9a-f]{40} # v\d+\.\d+\.\d+$/);
 });

@@ -224,7 +224,7 @@ test("errors of a scene name the argument", async () => {
     [{ ...tableScene, labels: { data: new Uint8Array(4), width: 2, height: 2 } }, "SIZE_MISMATCH", "labels"],
     [{ ...tableScene, occluders: [new Uint8Array(3)] }, "WRONG_LENGTH", "occluders[0]"],
     [{ ...tableScene, support: "floor" }, "INVALID_ARGUMENT", "support"],
-    [{ ...tableScene, support: { normal: [0, 0, 0], d: 1 } }, "INVALID_ARGUMENT", "support"],
+    [{ ...tableScene, support: { normal: [0, 0, 0], d: 1 } }, "INVALID_ARGUMENT", "support.normal"],
   ];
   assert.ok(width * height > 4);
   for (const [scene, code, argument] of cases)

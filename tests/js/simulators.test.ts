@@ -110,6 +110,51 @@ test("a body that floats and leans is put at rest; one that leans too much is fi
   );
 });
 
+test("the pose before is kept beside that at rest, in the result and in every file", async () => {
+  const objects = [{ name: "leans", mesh: box(0.1, 0.1, 0.2), transform: over(-0.5, 0.1, 0.004, 3) }];
+  const scene = await simulatorScene(objects, { support: below });
+  const [body] = scene.bodies;
+  assert.ok(body);
+  near([body.position[2], body.found.position[2]], [0, 0.004], 1e-6);
+  assert.notDeepEqual(body.rotation, body.found.rotation);
+  const { position, rotation } = body.found;
+  const short = (x: number) => String(Number(x.toPrecision(7)));
+  const [x, y, z, w] = rotation.map(short);
+  const numeric = /<numeric name="leans_found" size="7" data="([^"]*)"/.exec(toMjcf(scene)["scene.xml"] ?? "");
+  assert.equal(numeric?.[1], [...position.map(short), w, x, y, z].join(" "));
+  const [, inJson] = JSON.parse(toUrdf(scene)["scene.json"] ?? "").bodies;
+  assert.deepEqual(inJson.found, { position, quaternion: rotation });
+  const usd = toUsd(scene);
+  assert.ok(usd.includes(`custom double3 found:translate = (${position.map(short).join(", ")})`));
+  assert.ok(usd.includes(`custom quatd found:orient = (${[w, x, y, z].join(", ")})`));
+});
+
+test("without rest, no body is moved", async () => {
+  const objects = [
+    { mesh: box(0.1, 0.1, 0.2), transform: over(-0.5, 0, 0.004, 3) },
+    { mesh: box(0.1, 0.1, 0.2), transform: over(-0.404, 0, 0) },
+  ];
+  const { bodies } = await simulatorScene(objects, { support: { ...below, confidence: 0.9 }, rest: false });
+  for (const { found, position, rotation, movedM, turnedDeg, isFixed } of bodies) {
+    assert.deepEqual({ position, rotation }, found);
+    assert.deepEqual([movedM, turnedDeg, isFixed], [0, 0, false]);
+  }
+  await assert.rejects(simulatorScene(objects, { rest: "no" as never }), { code: "INVALID_ARGUMENT" });
+});
+
+test("a support that was found is moved to what stands on it; one that was given is kept", async () => {
+  const camera = { fy: 600, width: 640, height: 480 };
+  const objects = [0, 0.3, 0.6].map((x) => ({ mesh: box(0.1, 0.1, 0.1), transform: over(x, 0, -0.005) }));
+  const found = await simulatorScene(objects, { support: { ...below, confidence: 0.9 }, camera });
+  near([found.supportHeightM, found.camera?.position[2] ?? 0], [0.005, 1.005], 1e-6);
+  for (const { movedM, position } of found.bodies) near([movedM, position[2]], [0, 0], 1e-6);
+  for (const support of [below, { ...below, confidence: 1 }]) {
+    const given = await simulatorScene(objects, { support, camera });
+    near([given.supportHeightM, given.camera?.position[2] ?? 0], [0, 1], 1e-6);
+    for (const { movedM, position } of given.bodies) near([movedM, position[2]], [0.005, 0], 1e-6);
+  }
+});
+
 test("a body on another one is put onto it, and stays fixed where it would tip over", async () => {
   const table = { name: "table", mesh: box(0.4, 0.4, 0.1), transform: over(0, 0, 0) };
   const top = (x: number): SimulatorObject => ({
@@ -155,8 +200,8 @@ test("what is not a scene is an error, and flat or degenerate meshes are none", 
   assert.ok((bodies[0]?.mass ?? 0) > 0);
   assert.equal(bodies[1]?.isFixed, true);
   assert.doesNotMatch(
-    Object.values(toMjcf({ bodies, hasGround: true, camera: null })).join("") +
-      toUsd({ bodies, hasGround: true, camera: null }),
+    Object.values(toMjcf({ bodies, hasGround: true, supportHeightM: 0, camera: null })).join("") +
+      toUsd({ bodies, hasGround: true, supportHeightM: 0, camera: null }),
     /NaN|Infinity/,
   );
 });
@@ -275,6 +320,8 @@ test("the command line writes all formats, and says what is fixed", async (t) =>
   assert.equal(status, 0, stderr);
   assert.match(stdout, /thing_0: [\d.]+ kg, \d convex parts, free/);
   assert.match(stdout, /thing_2: .*, fixed/);
+  const kept = run("scene", "table", "--quality", "fast", "--mjcf", "out/kept", "--no-rest");
+  assert.match(kept.stdout, /thing_0: .*, free, where it was found/);
   const xml = readFileSync(join(folder, "out", "mjcf", "scene.xml"), "utf8");
   assert.equal(xml.match(/<freejoint\/>/g)?.length, 2);
   assert.match(xml, /type="plane"/);

@@ -1,9 +1,30 @@
 /** A batch: what is done, and what is written of it. */
+import { isRecord } from "../values.js";
 import { BatchProgress } from "./batch-progress.js";
-import { type Outcome, outcomeJson } from "./outcome.js";
+import type { CaseKey } from "./jsonl-file.js";
 import type { Output, OutputFlags } from "./output.js";
 import { type Pictures, shownIn } from "./pictures.js";
-import { details, notes, viewsDetails } from "./report.js";
+
+/** An item that is done. */
+export interface Done {
+  key: CaseKey;
+  /** Its JSON entry. */
+  entry: object;
+  /** Its rows of the table of a batch. */
+  rows: readonly string[];
+  /** Printed at the end: details of a single item, or warnings and failures. */
+  remarks: readonly string[];
+}
+
+/** The codes of the errors in an entry: its own, and those of its frames or objects. */
+export function errorsIn(entry: object): string[] {
+  const { error, frames, objects } = entry as Readonly<Record<string, unknown>>;
+  if (isRecord(error)) return [String(error.code)];
+  return [frames, objects].filter(isRecord).flatMap((parts) => Object.values(parts).filter(isRecord).flatMap(errorsIn));
+}
+
+/** Failures of an earlier run that are named. */
+const NAMED = 10;
 
 /** Writes the result of each case when it is done, and what concerns all of them at the end. */
 export class Batch {
@@ -11,8 +32,9 @@ export class Batch {
   readonly #output: Output;
   readonly #flags: OutputFlags;
   readonly #pictures: Pictures;
-  /** Printed at the end: details of a single case, or warnings and failures. */
   readonly #remarks: string[] = [];
+  /** What failed in the run that is resumed. */
+  readonly #failedBefore: string[] = [];
   #progress: BatchProgress | undefined;
   #done = 0;
   #failed = 0;
@@ -28,10 +50,18 @@ export class Batch {
     return this.#failed > 0;
   }
 
-  /** Counts a case that was done before. */
-  skip(isFailure: boolean): void {
+  /** Adds a case that was done before. */
+  resume(name: string, entry: object): void {
+    const [error] = this.#count(entry);
+    if (error !== undefined) this.#failedBefore.push(`${name} (${error})`);
+    this.#picture(name, entry);
+  }
+
+  #count(entry: object): string[] {
+    const errors = errorsIn(entry);
     this.#done += 1;
-    if (isFailure) this.#failed += 1;
+    if (errors.length > 0) this.#failed += 1;
+    return errors;
   }
 
   /** Shows the progress of the cases that are left. */
@@ -40,24 +70,19 @@ export class Batch {
     this.#progress.draw();
   }
 
-  /**
-   * Writes the result of a case.
-   * @param rows its rows of the table
-   */
-  add(outcome: Outcome, rows: readonly string[]): void {
-    const isFailure = "error" in outcome;
-    this.skip(isFailure);
-    const entry = outcomeJson(outcome);
-    this.#output.add(outcome.name, entry);
-    this.picture(outcome.name, entry);
-    this.#remarks.push(...remarks(outcome, this.#total === 1, this.#output));
+  /** Writes the result of a case. */
+  add({ key, entry, rows, remarks }: Done): void {
+    const isFailure = this.#count(entry).length > 0;
+    this.#output.add(key, entry);
+    this.#picture(key.name, entry);
+    this.#remarks.push(...remarks);
     this.#progress?.clear();
     this.#output.lines(rows);
     this.#progress?.add(isFailure);
   }
 
   /** Adds the rows of a case to the report. */
-  picture(name: string, entry: object): void {
+  #picture(name: string, entry: object): void {
     for (const shown of shownIn(name, entry)) this.#pictures.record(shown.name, shown.entry);
   }
 
@@ -73,6 +98,12 @@ export class Batch {
     this.#pictures.end();
     const isSeparate = this.#total > 1 && this.#remarks.length > 0;
     this.#output.lines(isSeparate ? ["", ...this.#remarks] : this.#remarks);
+    const before = this.#failedBefore;
+    if (before.length === 0) return;
+    const more = before.length > NAMED ? ` and ${before.length - NAMED} more` : "";
+    console.error(
+      `failed earlier: ${before.slice(0, NAMED).join(", ")}${more}; remove their lines from the record to try again`,
+    );
   }
 
   /** Ends the batch, and says how to go on. */
@@ -90,10 +121,4 @@ export class Batch {
         : "With --jsonl FILE, a batch can be resumed: --resume skips the cases in the file.",
     );
   }
-}
-
-/** What follows the table: details of a single case, or the warnings and the failure of one of several. */
-function remarks(outcome: Outcome, isSingle: boolean, { style }: Output): string[] {
-  if (!isSingle || "error" in outcome) return notes([outcome], style);
-  return "views" in outcome ? viewsDetails(outcome, style) : details(outcome, style);
 }

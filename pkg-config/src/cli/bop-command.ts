@@ -8,7 +8,8 @@ import { fromBop } from "../conventions/bop.js";
 import type { KnownPose } from "../conventions/pose-file.js";
 import type { AlignInput } from "../index.js";
 import { precise, shared } from "./align-case.js";
-import { alignBatch, type BatchFlags } from "./align-command.js";
+import { alignBatch, type CaseBatchFlags } from "./align-command.js";
+import { addRecordFlags } from "./batch-flags.js";
 import { Detections } from "./bop-detections.js";
 import { type BopEvaluation, evaluateBop } from "./bop-evaluation.js";
 import { BopModels } from "./bop-models.js";
@@ -18,14 +19,14 @@ import type { CaseToDo } from "./cases.js";
 import { fixed } from "./number.js";
 import { addOptionFlags } from "./option-flags.js";
 import { Output } from "./output.js";
-import { jsonObject, workers } from "./parse.js";
+import { jsonObject } from "./parse.js";
 import { addPictureFlags } from "./pictures.js";
 import { StatusLine } from "./status-line.js";
 import { pairs } from "./table.js";
 import { UsageError } from "./usage-error.js";
 import { checkWritable } from "./writable.js";
 
-interface BopFlags extends BatchFlags {
+interface BopFlags extends CaseBatchFlags {
   split: string;
   masks: string;
   models?: string;
@@ -69,7 +70,7 @@ ${statusHelp}`;
 
 /** The command. */
 export function bopCommand(): Command {
-  const command = new Command("bop")
+  const command = addRecordFlags(new Command("bop"), "pose")
     .summary("align the targets of a BOP dataset, and score poses as BOP does")
     .description(
       "Aligns each target of a BOP dataset, at its known size, and writes the results file of the leaderboard.",
@@ -83,10 +84,6 @@ export function bopCommand(): Command {
     .option("--csv <name>", "the last part of the name of the results file")
     .option("--evaluate [file]", "score the results, or only those of a file")
     .option("--scores <file>", 'write the scores as JSON; "-" is stdout')
-    .option("--json <file>", 'write the alignments as JSON; "-" is stdout')
-    .option("--jsonl <file>", 'write a line of JSON for each pose when it is done; "-" is stdout')
-    .option("--resume", "go on: skip the poses in the file of --jsonl, and append to it")
-    .option("--workers <n|auto>", "poses aligned at a time (1 to 64; default auto: one per core)", workers)
     .option("--no-image", "do not read the photos: align by shape alone");
   addOptionFlags(addPictureFlags(command), options);
   command.option("--options <json>", "further options of align() as JSON; flags take precedence", jsonObject);
@@ -159,8 +156,7 @@ async function casesOf(dataset: BopDataset, targets: readonly BopTarget[], flags
 
 /** How the mesh is compared with the true pose. */
 function symmetryOf(info: BopModelInfo | undefined): KnownPose["symmetry"] {
-  if (info === undefined || info.discrete.length + info.continuous.length === 0) return "none";
-  return info.continuous.length > 0 ? "auto-revolution" : "auto";
+  return info === undefined || info.discrete.length + info.continuous.length === 0 ? "none" : "auto";
 }
 
 /** Scores a results file, and prints and writes the scores. */

@@ -1,7 +1,8 @@
 /** The results as a table of comma-separated values. */
 import { isRecord } from "../values.js";
 import { LineFile } from "./line-file.js";
-import { checkWritable } from "./writable.js";
+import { shownIn } from "./pictures.js";
+import { checkReplaceable, checkWritable } from "./writable.js";
 
 type Entry = Readonly<Record<string, unknown>>;
 
@@ -36,20 +37,24 @@ const columns: readonly (readonly [heading: string, read: (entry: Entry) => unkn
 /** The headings, for --help. */
 export const csvHeadings: readonly string[] = ["case", ...columns.map(([heading]) => heading)];
 
-/** A row for each case, after a row of headings (RFC 4180 with line feeds). Values that a case lacks are empty. */
+/** A row for each case, or for each frame or object of one, after a row of headings (RFC 4180 with line feeds). Values that a case lacks are empty. */
 export class CsvFile {
   readonly #lines: LineFile;
   #isEmpty = true;
 
   /** @throws {@link UsageError} if the file cannot be written */
   constructor(path: string) {
-    if (path !== "-") checkWritable("--csv", path);
+    if (path !== "-" && checkWritable("--csv", path)) {
+      checkReplaceable("--csv", path, (beginning) => beginning.startsWith(`${csvHeadings.join(",")}\n`));
+    }
     this.#lines = new LineFile(path, "w");
   }
 
   add(name: string, entry: object): void {
-    const row = [name, ...columns.map(([, read]) => read(entry as Entry))].map(cell).join(",");
-    this.#lines.append(this.#isEmpty ? [csvHeadings.join(","), row] : [row]);
+    // A case of several views has a pose of its own; a scene or a video only has those of its parts.
+    const shown = "confidence" in entry ? [{ name, entry: entry as Entry }] : shownIn(name, entry);
+    const rows = shown.map((each) => [each.name, ...columns.map(([, read]) => read(each.entry))].map(cell).join(","));
+    this.#lines.append(this.#isEmpty ? [csvHeadings.join(","), ...rows] : rows);
     this.#isEmpty = false;
   }
 

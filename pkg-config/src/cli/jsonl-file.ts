@@ -2,13 +2,28 @@
 import { appendFileSync, closeSync, createReadStream, openSync, readSync, statSync, truncateSync } from "node:fs";
 import { createInterface } from "node:readline";
 import { isRecord } from "../values.js";
+import { contentHash, pathIn, recordedPath } from "./case-identity.js";
 import { LineFile } from "./line-file.js";
+import { lockRecord } from "./record-lock.js";
 import { UsageError } from "./usage-error.js";
 import { checkWritable } from "./writable.js";
 
-/** The JSON entry of a case, with its name. */
-export interface NamedEntry {
+/** What a case is: its name, and where it is. */
+export interface CaseKey {
+  /** For people, and for the other files. It depends on the other cases of a batch. */
   name: string;
+  /** Its absolute path, by which a record knows it; without one, it is known by its name. */
+  path?: string | undefined;
+  /** Its folder, if it is one: its content tells it where it has moved. */
+  folder?: string | undefined;
+}
+
+/** The JSON entry of a case in a record. */
+export interface RecordedEntry {
+  name: string;
+  /** Its absolute path, and the checksum of its inputs. */
+  path?: string | undefined;
+  content?: string | undefined;
   entry: Readonly<Record<string, unknown>>;
 }
 
@@ -16,18 +31,24 @@ export interface NamedEntry {
 const START = '{"case":';
 const NEWLINE = 0x0a;
 
-/** A line for each case: its entry, preceded by `case`, its name. */
+/**
+ * A line for each case: its entry, preceded by `case`, its name, `path`, its path relative to the record, and `content`, a
+ * checksum of its inputs.
+ */
 export class JsonlFile {
   readonly #path: string;
   readonly #lines: LineFile;
+  readonly #release: () => void = () => {};
 
   /**
    * @param isResumed whether the lines of the file are kept
-   * @throws {@link UsageError} if the file cannot be written, or if it holds lines that are not to be kept
+   * @throws {@link UsageError} if the file cannot be written, if another process writes it, or if it holds lines that are
+   * not to be kept
    */
   constructor(path: string, isResumed: boolean) {
     const isFile = path !== "-" && checkWritable("--jsonl", path);
     if (isResumed && !isFile) throw new UsageError(`--resume needs a file: --jsonl ${path} is none.`);
+    if (isFile) this.#release = lockRecord("--jsonl", path);
     if (isFile && !isResumed && (statSync(path, { throwIfNoEntry: false })?.size ?? 0) > 0) {
       throw new UsageError(`--jsonl ${path}: the file has content. Pass --resume to go on, or remove the file.`);
     }
@@ -35,19 +56,22 @@ export class JsonlFile {
     this.#lines = new LineFile(path, "a");
   }
 
-  add(name: string, entry: object): void {
-    this.#lines.append([JSON.stringify({ case: name, ...entry })]);
+  add({ name, path, folder }: CaseKey, entry: object): void {
+    const recorded = path === undefined ? undefined : recordedPath(this.#path, path);
+    const content = folder === undefined ? undefined : contentHash(folder);
+    this.#lines.append([JSON.stringify({ case: name, path: recorded, content, ...entry })]);
   }
 
   end(): void {
     this.#lines.end();
+    this.#release();
   }
 
   /**
    * The entries in the file, each case once. A last line that was not written to its end is removed.
    * @throws {@link UsageError} for a file with other content, which stays as it is
    */
-  async *entries(): AsyncGenerator<NamedEntry, void, undefined> {
+  async *entries(): AsyncGenerator<RecordedEntry, void, undefined> {
     const size = statSync(this.#path, { throwIfNoEntry: false })?.size ?? 0;
     if (size === 0) return;
     const { start, text } = lastLine(this.#path, size);
@@ -60,13 +84,14 @@ export class JsonlFile {
     for await (const line of lines) {
       number += 1;
       if (line.trim() === "") continue;
-      const named = parsed(line);
-      if (named === undefined) throw this.#foreign(number);
-      if (!seen.has(named.name)) yield named;
-      seen.add(named.name);
+      const found = this.#parsed(line);
+      if (found === undefined) throw this.#foreign(number);
+      const key = found.path ?? found.name;
+      if (!seen.has(key)) yield found;
+      seen.add(key);
     }
     if (text === "") return;
-    const last = parsed(text);
+    const last = this.#parsed(text);
     if (last === undefined && !text.startsWith(START.slice(0, text.length))) throw this.#foreign(number + 1);
     if (last === undefined) {
       truncateSync(this.#path, start);
@@ -74,7 +99,7 @@ export class JsonlFile {
     }
     // Only the line break is missing.
     appendFileSync(this.#path, "\n");
-    if (!seen.has(last.name)) yield last;
+    if (!seen.has(last.path ?? last.name)) yield last;
   }
 
   #foreign(line: number): UsageError {
@@ -83,16 +108,21 @@ export class JsonlFile {
       `--jsonl ${this.#path}: line ${line} is not ${expected}. Remove the line, or pass another file.`,
     );
   }
-}
 
-function parsed(line: string): NamedEntry | undefined {
-  try {
-    const value: unknown = JSON.parse(line);
-    if (!isRecord(value) || typeof value.case !== "string") return undefined;
-    const { case: name, ...entry } = value;
-    return { name: name as string, entry };
-  } catch {
-    return undefined;
+  #parsed(line: string): RecordedEntry | undefined {
+    try {
+      const value: unknown = JSON.parse(line);
+      if (!isRecord(value) || typeof value.case !== "string") return undefined;
+      const { case: name, path, content, ...entry } = value;
+      return {
+        name: name as string,
+        path: typeof path === "string" ? pathIn(this.#path, path) : undefined,
+        content: typeof content === "string" ? content : undefined,
+        entry,
+      };
+    } catch {
+      return undefined;
+    }
   }
 }
 

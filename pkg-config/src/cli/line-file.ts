@@ -1,6 +1,6 @@
 /** Files to which whole lines are appended. */
 import { closeSync, openSync } from "node:fs";
-import { writeAll } from "./writable.js";
+import { writeAll, writing } from "./writable.js";
 
 /** A file, pipe or stdout. It is opened when the first line comes: until then, it keeps its content. */
 export class LineFile {
@@ -24,8 +24,10 @@ export class LineFile {
       process.stdout.write(text);
       return;
     }
-    this.#file ??= openSync(this.#path, this.#mode);
-    writeAll(this.#file, Buffer.from(text), null);
+    writing(this.#path, () => {
+      this.#file ??= openSync(this.#path, this.#mode);
+      writeAll(this.#file, Buffer.from(text), null);
+    });
   }
 
   end(): void {

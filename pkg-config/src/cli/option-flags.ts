@@ -48,11 +48,19 @@ function flagOf(row: OptionRow, rows: readonly OptionRow[]): Option {
 function description(row: OptionRow, rows: readonly OptionRow[]): string {
   const summary = row.summary.replace(/`(\w+)`/g, (quoted, name: string) => {
     const named = rows.find((other) => other.name === name);
-    return named === undefined ? quoted : `--${flagName(named)}`;
+    // What only a --no flag changes has no flag of its own name.
+    return named === undefined || isNegated(named) ? quoted : `--${flagName(named)}`;
   });
   const facts = [valuesOf(row), defaultOf(row)].filter((fact) => fact !== undefined).join("; ");
-  const text = isNegated(row) ? `not: ${lowered(summary)}` : lowered(summary);
+  const text = isNegated(row) ? negated(summary) : lowered(summary);
   return (facts === "" ? text : `${text} (${facts})`).replaceAll("`", "");
+}
+
+/** The summary of what is done by default, for the flag that turns it off. */
+function negated(summary: string): string {
+  const action = /^Whether to (.*)$/.exec(summary)?.[1];
+  if (action !== undefined) return `do not ${action}`;
+  return `by default, ${summary.replace(/^Whether /, "")}; this turns it off`;
 }
 
 const lowered = (text: string) => (/^[A-Z][a-z]/.test(text) ? text.charAt(0).toLowerCase() + text.slice(1) : text);

@@ -65,11 +65,14 @@ function transformJson<T extends Sim3>({ scale, rotation, rotationMatrix, transl
 function alignmentJson({ alignment, errors }: Success) {
   const { scale, rotation, rotationMatrix, translation, matrix, metrics, warnings } = alignment;
   const { timingsMs, ...diagnostics } = alignment.diagnostics;
-  const { confidence, alternatives, uncertainty } =
-    "confidence" in alignment ? alignment : { confidence: null, alternatives: [], uncertainty: null };
+  const { confidence, turnConfidence, alternatives, uncertainty } =
+    "confidence" in alignment
+      ? alignment
+      : { confidence: null, turnConfidence: null, alternatives: [], uncertainty: null };
   return {
     ...transformJson({ scale, rotation, rotationMatrix, translation, matrix }),
     confidence,
+    turnConfidence,
     alternatives: alternatives.map(transformJson),
     uncertainty,
     ...(metrics === undefined ? {} : { metrics }),

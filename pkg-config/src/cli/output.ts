@@ -1,7 +1,7 @@
 /** Output of the commands. */
 import { resolve } from "node:path";
 import { CsvFile } from "./csv-file.js";
-import { JsonlFile, type NamedEntry } from "./jsonl-file.js";
+import { type CaseKey, JsonlFile, type RecordedEntry } from "./jsonl-file.js";
 import { ResultsFile } from "./results-file.js";
 import { Style } from "./style.js";
 import { UsageError } from "./usage-error.js";
@@ -55,21 +55,24 @@ export class Output {
    * Adds the entry of a case.
    * @param isFinal whether no other entry will replace it; others are written to the file of `json` only
    */
-  add(name: string, entry: object, isFinal = true): void {
+  add(key: CaseKey, entry: object, isFinal = true): void {
+    const { name } = key;
     // First the record from which the others can be written again.
-    if (isFinal) this.#jsonl?.add(name, entry);
+    if (isFinal) this.#jsonl?.add(key, entry);
     this.#json?.add(name, entry, isFinal);
     if (!isFinal) return;
     for (const sink of this.#sinks) sink.add(name, entry);
   }
 
-  /** The entries of an interrupted batch, which this adds to the files other than that of `jsonl`. */
-  async *resumed(): AsyncGenerator<NamedEntry, void, undefined> {
-    for await (const named of this.#jsonl?.entries() ?? []) {
-      this.#json?.add(named.name, named.entry);
-      for (const sink of this.#sinks) sink.add(named.name, named.entry);
-      yield named;
-    }
+  /** The entries of the record, before it is written. */
+  recorded(): AsyncIterable<RecordedEntry> | readonly RecordedEntry[] {
+    return this.#jsonl?.entries() ?? [];
+  }
+
+  /** Adds an entry of the record to the other files. */
+  addRecorded(name: string, entry: object): void {
+    this.#json?.add(name, entry);
+    for (const sink of this.#sinks) sink.add(name, entry);
   }
 
   /** Writes what is not written yet, and closes the files. */

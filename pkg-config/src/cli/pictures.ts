@@ -24,12 +24,12 @@ export interface Shown {
   input?: AlignInput | undefined;
 }
 
-/** The poses in the JSON entry of a case: one, or one for each of its frames. */
+/** The poses in a JSON entry: one, or one for each of its frames or objects. */
 export function shownIn(name: string, entry: object): Shown[] {
-  const { frames, ...own } = entry as Readonly<Record<string, unknown>>;
-  if (!isRecord(frames)) return [{ name, entry: own }];
-  return Object.entries(frames).map(([frame, pose]) => ({
-    name: `${name}/${frame}`,
+  const { frames, objects = frames, ...own } = entry as Readonly<Record<string, unknown>>;
+  if (!isRecord(objects)) return [{ name, entry: own }];
+  return Object.entries(objects).map(([part, pose]) => ({
+    name: `${name}/${part}`,
     entry: pose as Readonly<Record<string, unknown>>,
   }));
 }

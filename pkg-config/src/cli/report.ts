@@ -1,7 +1,7 @@
 /** Human-readable tables of results. */
 import type { AlignResult, Evaluation, LayoutErrors, Metrics, PoseErrors, Warning } from "../index.js";
 import { fixed, significant } from "./number.js";
-import { failureText, type Outcome, type Success, type ViewsSuccess } from "./outcome.js";
+import { type Failure, failureText, type Outcome, type Success, type ViewsSuccess } from "./outcome.js";
 import type { Style } from "./style.js";
 import { type Column, headings, pairs, tableLine, textWidth } from "./table.js";
 
@@ -47,6 +47,41 @@ export class Summary {
   }
 }
 
+/** The table of several evaluations. */
+export class EvaluationSummary {
+  readonly #columns: readonly Column[];
+  readonly #style: Style;
+  #isEmpty = true;
+
+  constructor(cases: readonly { name: string }[], style: Style) {
+    const width = cases.reduce((widest, { name }) => Math.max(widest, textWidth(name)), 0);
+    const metrics = ["IoU", "bound. F", "drift px", "Chamfer mm", "fitness", "MAE mm"].map(number);
+    this.#columns = [{ heading: "case", width }, ...metrics, ...errorColumns];
+    this.#style = style;
+  }
+
+  /** The row of a case; the first one is preceded by the headings. */
+  lines(name: string, result: Evaluation | Failure): string[] {
+    const cells =
+      "error" in result
+        ? [name, this.#style.red(result.error.code)]
+        : [name, ...metricCells(result.metrics), ...errorCells(result.errors)];
+    const lines = [tableLine(this.#columns, cells)];
+    if (this.#isEmpty) lines.unshift(this.#style.bold(headings(this.#columns)));
+    this.#isEmpty = false;
+    return lines;
+  }
+}
+
+const metricCells = (metrics: Metrics | undefined): string[] => [
+  fixed(metrics?.iou, 3),
+  fixed(metrics?.boundaryF, 3),
+  fixed(metrics?.centerDriftPx, 1),
+  fixed(metrics?.chamferMm, 2),
+  fixed(metrics?.fitness, 3),
+  fixed(metrics?.depthMaeMm, 2),
+];
+
 function row({ name, alignment }: Success): string[] {
   const { scale, metrics, diagnostics } = alignment;
   const { scaleRatio, timingsMs } = diagnostics;
@@ -57,12 +92,7 @@ function row({ name, alignment }: Success): string[] {
     certain === null ? "–" : String(certain.alternatives.length),
     significant(scale, 4),
     fixed(scaleRatio, 3),
-    fixed(metrics?.iou, 3),
-    fixed(metrics?.boundaryF, 3),
-    fixed(metrics?.centerDriftPx, 1),
-    fixed(metrics?.chamferMm, 2),
-    fixed(metrics?.fitness, 3),
-    fixed(metrics?.depthMaeMm, 2),
+    ...metricCells(metrics),
     fixed(timingsMs.total / 1000, 2),
   ];
 }

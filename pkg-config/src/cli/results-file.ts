@@ -1,8 +1,12 @@
 /** The JSON of the results, which is complete after each case: an interruption loses no result. */
 import { closeSync, openSync } from "node:fs";
-import { checkWritable, writeAll } from "./writable.js";
+import { checkReplaceable, checkWritable, writeAll, writing } from "./writable.js";
 
 const END = "\n}\n";
+
+/** Whether a file begins as {@link ResultsFile} writes it: the names of cases, and what became of each. */
+const isResults = (beginning: string) =>
+  /^\{\n {2}"(?:[^"\\]|\\.)*": \{\n {4}"/.test(beginning) || beginning.trim() === "{}" || beginning === `{\n${END}`;
 
 /** An object with an entry for each case, in a file or on stdout. */
 export class ResultsFile {
@@ -22,6 +26,7 @@ export class ResultsFile {
   constructor(path: string) {
     this.#path = path;
     this.#isIncremental = path !== "-" && checkWritable("--json", path);
+    if (this.#isIncremental) checkReplaceable("--json", path, isResults);
   }
 
   /**
@@ -36,9 +41,11 @@ export class ResultsFile {
       return;
     }
     const isFirst = this.#length === 0;
-    this.#file ??= openSync(this.#path, "w");
     const bytes = Buffer.from(`${isFirst ? "{\n" : ",\n"}${text}${END}`);
-    writeAll(this.#file, bytes, this.#length);
+    writing(this.#path, () => {
+      this.#file ??= openSync(this.#path, "w");
+      writeAll(this.#file, bytes, this.#length);
+    });
     if (isFinal) this.#length += bytes.length - END.length;
   }
 
@@ -53,8 +60,13 @@ export class ResultsFile {
       process.stdout.write(text);
       return;
     }
-    const file = openSync(this.#path, "w");
-    writeAll(file, Buffer.from(text), null);
-    closeSync(file);
+    writing(this.#path, () => {
+      const file = openSync(this.#path, "w");
+      try {
+        writeAll(file, Buffer.from(text), null);
+      } finally {
+        closeSync(file);
+      }
+    });
   }
 }

@@ -1,27 +1,44 @@
 /** `sim3align scene`: aligns the objects of scenes and prints what stands where. */
-import { Command, Option } from "commander";
+import { Command } from "commander";
 import { read } from "../case-folder.js";
 import { parsedJson } from "../formats/json.js";
-import { type AlignInput, createAligner, type PoseErrors, type SceneInput, type SceneResult } from "../index.js";
-import { readSceneFolder, type SceneOnDisk, type SceneSettings } from "../scene-folder.js";
+import {
+  type Aligner,
+  type AlignInput,
+  OPTIONS,
+  type OptionRow,
+  type PoseErrors,
+  type SceneInput,
+  type SceneOptions,
+  type SceneResult,
+} from "../index.js";
+import { bopImageIn, readSceneFolder, type SceneOnDisk, type SceneSettings } from "../scene-folder.js";
 import { withoutUndefined } from "../values.js";
+import { isAboutOptions } from "./align-case.js";
+import type { Done } from "./batch.js";
+import { addBatchFlags, type BatchFlags, batchHelp } from "./batch-flags.js";
 import { addCaseOptions, type CaseFlags, caseSettings, conventionsHelp, statusHelp } from "./case-options.js";
+import { type FolderToDo, foldersToDo, sceneKind } from "./folders.js";
 import { fixed } from "./number.js";
+import { addOptionFlags, givenOptions } from "./option-flags.js";
 import { type Failure, failure, failureText, type Outcome, outcomeJson } from "./outcome.js";
 import { Output } from "./output.js";
-import { addPictureFlags, type PictureFlags, Pictures } from "./pictures.js";
-import { ProgressLine } from "./progress-line.js";
+import { drawEntry } from "./picture-inputs.js";
+import { addPictureFlags, type PictureFlags } from "./pictures.js";
+import { type Live, runBatch } from "./run-batch.js";
 import { addSceneFileFlags, checkSceneFiles, type SceneFileFlags, writeSceneFiles } from "./scene-files.js";
+import type { Style } from "./style.js";
 import { type Column, headings, tableLine } from "./table.js";
 import { UsageError } from "./usage-error.js";
 
-interface SceneFlags extends CaseFlags, PictureFlags, SceneFileFlags {
-  json?: string;
+interface SceneFlags extends CaseFlags, PictureFlags, SceneFileFlags, BatchFlags, Readonly<Record<string, unknown>> {
   snap?: boolean;
   support?: string;
   models?: string;
-  quality?: "auto" | "fast" | "balanced" | "best";
 }
+
+/** The options of `align`, for every object; a first pose is that of one. */
+const rows: readonly OptionRow[] = OPTIONS.align.filter(({ name }) => name !== "initial");
 
 const help = `
 A scene folder holds
@@ -39,15 +56,19 @@ Output
   against it.
   --json writes { "<scene>": { "objects": { "<object>": as a case of "align --json", with "contact" },
   "support": { "normal", "d", "confidence" } | null, "metrics", "warnings" } }; a scene that failed has { "error" }.
-  --report, --overlay and --glb write pictures and posed meshes of each object, see "sim3align align --help".
+  --csv has a row per object, SCENE/OBJECT. --report, --overlay and --glb write pictures and posed meshes of each object, see "sim3align align --help".
   --scene-glb writes the scene of a single folder: nodes by name, materials and textures, the camera, and the support as
   ground, y up, in metres.
   --mjcf, --urdf and --usd write it for simulators, z up: bodies with mass and convex parts, the support as ground, the camera.
   What rests on the support or on another object is put at rest; what leans, hangs or stands on anything else is fixed.
+  --no-rest keeps every pose as it was found; the files hold both.
+${batchHelp(sceneKind)}
 
 Examples
   sim3align scene scenes/desk
-  sim3align scene scenes/* --json results.json
+  sim3align scene scenes/* --json scenes.json
+  sim3align scene 'scenes/**' --jsonl scenes.jsonl --csv scenes.csv --resume
+  sim3align scene scenes/desk --scale 0.05,0.5
   sim3align scene scenes/desk --snap --scene-glb desk.glb
   sim3align scene scenes/desk --mjcf desk-mujoco --usd desk.usda
   sim3align scene scenes/* --report report
@@ -56,63 +77,80 @@ ${statusHelp}`;
 
 /** The command. */
 export function sceneCommand(): Command {
-  const command = addSceneFileFlags(new Command("scene"))
+  const command = addSceneFileFlags(addBatchFlags(new Command("scene"), sceneKind))
     .summary("align all objects of each scene, and what they stand on")
     .description("Aligns the objects of each scene together: one depth map, a mask and a mesh per object.")
-    .argument("<scene...>", "scene folders")
-    .option("--json <file>", 'write the results as JSON; "-" is stdout')
     .option("--snap", "put objects exactly onto what they touch")
     .option("--support <auto|none|file>", 'what objects stand on: found, nothing, or a JSON file { "normal", "d" }')
-    .option("--models <folder>", "the models of a BOP scene")
-    .addOption(new Option("--quality <name>", "work of the search").choices(["auto", "fast", "balanced", "best"]));
-  return addCaseOptions(addPictureFlags(command)).addHelpText("after", help).action(run);
+    .option("--models <folder>", "the models of a BOP scene");
+  addOptionFlags(addCaseOptions(addPictureFlags(command)).optionsGroup("Options of every object:"), rows);
+  return command.addHelpText("after", help).action(run);
 }
 
-async function run(folders: string[], flags: SceneFlags): Promise<void> {
-  checkSceneFiles(flags, folders.length);
-  const output = new Output(flags);
-  const pictures = await Pictures.open(flags);
+async function run(args: string[], flags: SceneFlags): Promise<void> {
+  const scenes = await scenesIn(await foldersToDo(sceneKind, args, flags.list), flags);
+  checkSceneFiles(flags, scenes.length);
   const support = await supportOf(flags.support);
-  const aligner = await createAligner();
-  const progress = new ProgressLine(process.stderr, folders.length);
   const settings: SceneSettings = withoutUndefined({ ...caseSettings(flags), models: flags.models });
-  let hasFailed = false;
-  for (const folder of folders) {
-    progress.begin(folder);
-    try {
-      const scene = await readSceneFolder(folder, settings);
-      const input = { ...scene.input, support } as SceneInput;
-      const result = await aligner.alignScene(input, {
-        ...withoutUndefined({ quality: flags.quality, snap: flags.snap }),
-        onProgress: (state) => progress.update(state),
-      });
-      const errors = await errorsOf(aligner, scene, result);
-      progress.clear();
-      const outcomes = outcomesOf(result, errors);
-      hasFailed ||= outcomes.some((outcome) => "error" in outcome);
-      for (const [i, outcome] of outcomes.entries()) {
-        const name = `${scene.name}/${outcome.name}`;
-        const entry = outcomeJson(outcome) as Readonly<Record<string, unknown>>;
-        await pictures.draw({ name, entry, input: inputOf(scene, i) });
-        pictures.record(name, entry);
-      }
-      output.add(scene.name, sceneJson(result, outcomes));
-      output.lines(lines(scene.name, result, outcomes, errors));
-      output.lines(await writeSceneFiles(scene, result, flags));
-    } catch (error) {
-      if (error instanceof UsageError) throw error;
-      progress.clear();
-      hasFailed = true;
-      const outcome = failure(folder, error);
-      output.add(folder, outcomeJson(outcome));
-      pictures.record(folder, outcomeJson(outcome) as Readonly<Record<string, unknown>>);
-      output.lines([output.style.red("failed ") + failureText(outcome)]);
-    }
-    if (output.isClosed) break;
+  const output = new Output(flags);
+  await runBatch(scenes, flags, output, {
+    run: (aligner, scene, live) => alignScene(aligner, scene, flags, { settings, support, style: output.style }, live),
+    draw: (pictures, scene, entry, isResumed) =>
+      drawEntry(pictures, scene.name, entry, isResumed, async () => {
+        const onDisk = await readSceneFolder(scene.scene, settings);
+        const inputs = new Map<string, AlignInput>();
+        for (const [i, { name }] of onDisk.input.objects.entries()) {
+          const input = inputOf(onDisk, i);
+          if (input !== undefined) inputs.set(`${scene.name}/${name ?? i}`, input);
+        }
+        return inputs;
+      }),
+  });
+}
+
+/** A scene to align. */
+interface SceneToDo extends Omit<FolderToDo, "folder"> {
+  scene: string;
+  folder?: string;
+}
+
+/** The scenes in folders. Images of one scene of BOP are scenes of their own, and have no files of their own. */
+async function scenesIn(folders: readonly FolderToDo[], { imageId }: SceneFlags): Promise<SceneToDo[]> {
+  const scenes: SceneToDo[] = [];
+  for (const { name, path, folder } of folders) {
+    const image = await bopImageIn(folder, imageId);
+    const own = image === undefined ? { name, path, folder } : { name: `${name}/${image}`, path: `${path}#${image}` };
+    scenes.push({ ...own, scene: folder });
   }
-  output.end();
-  pictures.end();
-  if (hasFailed) process.exitCode = 1;
+  return scenes;
+}
+
+/** Aligns a scene. Only errors that concern all scenes are thrown. */
+async function alignScene(
+  aligner: Aligner,
+  key: SceneToDo,
+  flags: SceneFlags,
+  { settings, support, style }: { settings: SceneSettings; support: SceneInput["support"]; style: Style },
+  live?: Live,
+): Promise<Done> {
+  const done = (entry: object, shown: readonly string[]): Done =>
+    live === undefined ? { key, entry, rows: shown, remarks: [] } : { key, entry, rows: [], remarks: shown };
+  try {
+    const scene = await readSceneFolder(key.scene, settings);
+    const options: SceneOptions = { ...givenOptions(flags, rows), ...withoutUndefined({ snap: flags.snap }) };
+    const input = { ...scene.input, support } as SceneInput;
+    const onProgress = live?.progress;
+    const result = await aligner.alignScene(input, withoutUndefined({ ...options, onProgress }));
+    const errors = await errorsOf(aligner, scene, result);
+    const outcomes = outcomesOf(result, errors);
+    const written = await writeSceneFiles(scene, result, flags);
+    return done(sceneJson(result, outcomes), [...lines(key.name, result, outcomes, errors), ...written]);
+  } catch (error) {
+    if (error instanceof UsageError) throw error;
+    if (isAboutOptions(error)) throw new UsageError(error.message);
+    const failed = failure(key.name, error);
+    return done(outcomeJson(failed), [style.red("failed ") + failureText(failed)]);
+  }
 }
 
 async function supportOf(flag: string | undefined): Promise<SceneInput["support"]> {
@@ -123,7 +161,7 @@ async function supportOf(flag: string | undefined): Promise<SceneInput["support"
 }
 
 async function errorsOf(
-  aligner: Awaited<ReturnType<typeof createAligner>>,
+  aligner: Aligner,
   scene: SceneOnDisk,
   { objects }: SceneResult,
 ): Promise<(PoseErrors | null)[]> {

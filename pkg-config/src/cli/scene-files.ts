@@ -27,6 +27,7 @@ export interface SceneFileFlags {
   usd?: string;
   density?: number;
   parts?: number;
+  rest?: boolean;
 }
 
 /** Adds the flags to a command. */
@@ -41,7 +42,8 @@ export const addSceneFileFlags = (command: Command): Command =>
       "--parts <n>",
       `most convex parts of an object for simulators; 1 is its hull (default ${SIMULATOR_DEFAULTS.maxParts})`,
       number,
-    );
+    )
+    .option("--no-rest", "keep all objects for simulators where they were found: they are not put at rest");
 
 /**
  * Checks the flags before the first scene.
@@ -71,12 +73,12 @@ export async function writeSceneFiles(
   result: SceneResult,
   flags: SceneFileFlags,
 ): Promise<string[]> {
-  const { sceneGlb, mjcf, urdf, usd, density, parts } = flags;
+  const { sceneGlb, mjcf, urdf, usd, density, parts, rest } = flags;
   const camera = cameraOf(scene.input);
   if (sceneGlb !== undefined) writeFileSync(sceneGlb, await glbOf(scene, result, camera));
   if (mjcf === undefined && urdf === undefined && usd === undefined) return [];
   const { support } = result;
-  const options = { support, ...withoutUndefined({ camera, density, maxParts: parts }) };
+  const options = { support, ...withoutUndefined({ camera, density, maxParts: parts, rest }) };
   const simulated = await simulatorScene(await simulatorObjects(scene, result), options);
   if (mjcf !== undefined) writeTexts(mjcf, toMjcf(simulated));
   if (urdf !== undefined) writeTexts(urdf, toUrdf(simulated));
@@ -84,13 +86,17 @@ export async function writeSceneFiles(
   return linesOf(simulated);
 }
 
-function linesOf({ bodies }: SimulatorScene): string[] {
-  return bodies.map(({ name, isFixed, mass, movedM, turnedDeg, parts }) => {
+function linesOf({ bodies, supportHeightM }: SimulatorScene): string[] {
+  const ground = `ground: ${fixed(-1000 * supportHeightM, 1)} mm above the support, where most objects stand`;
+  const lines = bodies.map(({ name, isFixed, mass, movedM, turnedDeg, parts }) => {
     const state = isFixed
       ? "fixed"
-      : `free, moved ${fixed(1000 * movedM, 1)} mm and turned ${fixed(turnedDeg, 1)}° to rest`;
+      : movedM === 0 && turnedDeg === 0
+        ? "free, where it was found"
+        : `free, moved ${fixed(1000 * movedM, 1)} mm and turned ${fixed(turnedDeg, 1)}° to rest`;
     return `${name}: ${fixed(mass, 3)} kg, ${parts.length} convex parts, ${state}`;
   });
+  return supportHeightM === 0 ? lines : [ground, ...lines];
 }
 
 function writeTexts(folder: string, files: TextFiles): void {

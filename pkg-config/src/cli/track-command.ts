@@ -1,9 +1,11 @@
 /** `sim3align track`: tracks an object through videos and prints the results. */
-import { basename, join, resolve } from "node:path";
+import { join } from "node:path";
 import { Command } from "commander";
-import { type CaseSettings, frameNames, meshIn, readFrame, readMeshFile } from "../case-folder.js";
-import { type Aligner, createAligner, OPTIONS, type Tracker, type TrackOptions } from "../index.js";
+import { frameNames, meshIn, readFrame, readMeshFile } from "../case-folder.js";
+import { type Aligner, OPTIONS, type Tracker, type TrackOptions } from "../index.js";
 import { isAboutOptions } from "./align-case.js";
+import type { Done } from "./batch.js";
+import { addBatchFlags, type BatchFlags, batchHelp } from "./batch-flags.js";
 import {
   addCaseOptions,
   type CaseFlags,
@@ -12,18 +14,18 @@ import {
   conventionsHelp,
   statusHelp,
 } from "./case-options.js";
-import { onInterruption } from "./interruption.js";
+import { type FolderToDo, foldersToDo, videoKind } from "./folders.js";
 import { fixed, significant } from "./number.js";
 import { addOptionFlags, givenOptions } from "./option-flags.js";
 import { failure, failureText, outcomeJson, trackJson } from "./outcome.js";
 import { Output } from "./output.js";
+import { type Live, runBatch } from "./run-batch.js";
+import type { Style } from "./style.js";
 import { type Column, headings, tableLine } from "./table.js";
 import { readTransform } from "./transform-file.js";
 import { UsageError } from "./usage-error.js";
 
-interface TrackFlags extends CaseFlags, Readonly<Record<string, unknown>> {
-  json?: string;
-}
+interface TrackFlags extends CaseFlags, BatchFlags, Readonly<Record<string, unknown>> {}
 
 const help = `${caseFolderHelp}
 A video needs a mask in its first frame only. Camera poses are not used.
@@ -32,20 +34,21 @@ ${conventionsHelp}
 Output
   A row per frame: state, confidence, scale and its standard deviation, and time.
   --json writes { "<video>": { scale, frames: { "<frame>": { scale, rotation, translation, matrix, quaternion, state,
-  confidence, … } } } } after each frame; a frame that failed has { error }. The scale of the video is the last one.
+  confidence, … } } } }; a frame that failed has { error }. The scale of the video is the last one. A single video is written
+  after each frame, several when each ends. --csv has a row per frame, VIDEO/FRAME.
+${batchHelp(videoKind)}
 
 Examples
   sim3align track videos/mug --json poses.json
+  sim3align track 'videos/**' --jsonl videos.jsonl --resume --workers 4
   sim3align track videos/mug --known-extent 0.095 --known-extent-axis y
 ${statusHelp}`;
 
 /** The command. */
 export function trackCommand(): Command {
-  const command = new Command("track")
+  const command = addBatchFlags(new Command("track"), videoKind)
     .summary("track the mesh of each video through its frames")
-    .description("Tracks the object of a mesh through the frames of each video.")
-    .argument("<video...>", "folders with a mesh and frame_* folders")
-    .option("--json <file>", 'write the results as JSON; "-" is stdout');
+    .description("Tracks the object of a mesh through the frames of each video.");
   addOptionFlags(addCaseOptions(command), OPTIONS.track);
   return command.addHelpText("after", help).action(run);
 }
@@ -56,42 +59,46 @@ const columns: readonly Column[] = [
   ...["conf.", "scale", "± %", "time ms"].map((heading) => ({ heading, isNumber: true, width: 9 })),
 ];
 
-async function run(folders: string[], flags: TrackFlags): Promise<void> {
-  const output = new Output(flags);
-  const aligner = await createAligner();
-  const stop = onInterruption(() => output.end());
-  let hasFailed = false;
-  for (const folder of folders) {
-    hasFailed = !(await trackVideo(aligner, folder, flags, output)) || hasFailed;
-    if (output.isClosed) break;
+async function run(args: string[], flags: TrackFlags): Promise<void> {
+  const videos = await foldersToDo(videoKind, args, flags.list);
+  for (const { folder } of videos) {
+    if ((await frameNames(folder)).length === 0) throw new UsageError(`${folder} has no folder frame_*.`);
   }
-  stop();
-  output.end();
-  if (hasFailed) process.exitCode = 1;
+  const output = new Output(flags);
+  await runBatch(videos, flags, output, {
+    run: (aligner, video, live) => trackVideo(aligner, video, flags, output, live),
+  });
 }
 
-/** Returns whether all frames succeeded. */
-async function trackVideo(aligner: Aligner, folder: string, flags: TrackFlags, output: Output): Promise<boolean> {
-  const name = basename(resolve(folder));
-  const settings: CaseSettings = caseSettings(flags);
+/** Tracks through a video. Only errors that concern all videos are thrown. */
+async function trackVideo(
+  aligner: Aligner,
+  key: FolderToDo,
+  flags: TrackFlags,
+  output: Output,
+  live?: Live,
+): Promise<Done> {
+  const { name, folder } = key;
+  const { style }: { style: Style } = output;
   const frames: Parameters<typeof trackJson>[0][number][] = [];
+  const rows: string[] = [];
+  const print = (...lines: string[]) => (live === undefined ? rows.push(...lines) : live.lines(lines));
   let files: Readonly<Record<string, string>> = {};
   let tracker: Tracker | undefined;
   try {
     const names = await frameNames(folder);
-    if (names.length === 0) throw new UsageError(`${folder} has no folder frame_*.`);
     const given: Record<string, unknown> = givenOptions(flags, OPTIONS.track);
     if (typeof given.initial === "string") given.initial = await readTransform("initial", given.initial, name);
     const mesh = meshIn(folder);
     files = { mesh };
     tracker = await aligner.track(await readMeshFile(mesh), given as TrackOptions);
-    output.lines([output.style.bold(name), headings(columns)]);
-    for (const [k, frame] of names.entries()) {
+    print(style.bold(name), headings(columns));
+    for (const frame of names) {
       const began = performance.now();
       const row = [frame];
       let frameFiles: Readonly<Record<string, string>> = {};
       try {
-        const read = await readFrame(join(folder, frame), settings);
+        const read = await readFrame(join(folder, frame), caseSettings(flags));
         frameFiles = read.files;
         const { cameraToWorld, ...input } = read.input;
         const tracked = await tracker.next(input);
@@ -104,18 +111,17 @@ async function trackVideo(aligner: Aligner, folder: string, flags: TrackFlags, o
         row.push(failed.error.code, "–", "–", "–");
       }
       row.push(fixed(performance.now() - began, 0));
-      output.add(name, trackJson(frames), k + 1 === names.length);
-      output.lines([tableLine(columns, row)]);
+      live?.partial(trackJson(frames));
+      print(tableLine(columns, row));
       if (output.isClosed) break;
     }
-    return !frames.some(({ tracked }) => "error" in tracked);
+    return { key, entry: trackJson(frames), rows, remarks: [] };
   } catch (error) {
     if (error instanceof UsageError) throw error;
     if (isAboutOptions(error)) throw new UsageError(error.message);
     const failed = failure(name, error, files);
-    output.add(name, outcomeJson(failed));
-    output.lines([output.style.red("failed ") + failureText(failed)]);
-    return false;
+    print(style.red("failed ") + failureText(failed));
+    return { key, entry: outcomeJson(failed), rows, remarks: [] };
   } finally {
     tracker?.close();
   }

@@ -9,33 +9,49 @@ export const transformFileHelp = `
 A transform file is JSON with
   - { "scale", "rotation", "translation" }, the rotation as 3×3 numbers, row-major, or as a quaternion x, y, z, w; or
   - { "matrix" }, 16 numbers column by column; or
-  - the output of "sim3align align --json", from which the entry of the case is read.`;
+  - the output of "sim3align align --json", or a record of --jsonl, from which the entry of the case is read.`;
 
 /** Each file is read once, for all cases: --json may overwrite it when the first one is done. */
-const texts = new Map<string, Promise<string>>();
+const files = new Map<string, Promise<unknown>>();
 
 /**
  * Reads a transform file as 16 numbers, column-major.
  * @param argument the name of the transform in errors
- * @param name the case, whose entry is read from the output of `align --json`
+ * @param name the case, whose entry is read from the output of `align --json` or from a record
+ * @param frame its frame, whose pose is read from that entry
  */
-export async function readTransform(argument: "transform" | "initial", path: string, name: string): Promise<number[]> {
-  let reading = texts.get(path);
+export async function readTransform(
+  argument: "transform" | "initial",
+  path: string,
+  name: string,
+  frame?: string,
+): Promise<number[]> {
+  let reading = files.get(path);
   if (reading === undefined) {
-    reading = read(argument, path).then((bytes) => new TextDecoder().decode(bytes));
-    texts.set(path, reading);
+    reading = read(argument, path).then((bytes) => parse(new TextDecoder().decode(bytes), argument, path));
+    files.set(path, reading);
   }
-  const text = await reading;
+  const json = await reading;
   const invalid = (found: string, expected: string) => invalidTransform(argument, found, expected);
-  const entry = entryOf(parse(text, argument, path), name, invalid);
+  const own = entryOf(json, name, invalid);
+  const { frames } = own as Readonly<Record<string, unknown>>;
+  const entry = frame !== undefined && isRecord(frames) ? entryOf(frames, frame, invalid) : own;
   const pose = parsePoseFile(argument, entry);
   if (pose === null) throw invalid("a file without a known pose", "a transform");
   return Array.from(pose.transform.matrix);
 }
 
+/** A JSON file, or the entries of a record by case. */
 function parse(text: string, argument: string, path: string): unknown {
   try {
-    return JSON.parse(text);
+    if (!/^\{"case":/.test(text)) return JSON.parse(text);
+    const lines = text.split("\n").filter((line) => line.trim() !== "");
+    return Object.fromEntries(
+      lines.map((line) => {
+        const { case: name, ...entry } = JSON.parse(line) as { case: string };
+        return [name, entry];
+      }),
+    );
   } catch (cause) {
     throw new Sim3AlignError(
       {

@@ -1,5 +1,5 @@
 /** Output files and folders, checked before the work whose results they get. */
-import { accessSync, constants, mkdirSync, statSync, writeSync } from "node:fs";
+import { accessSync, closeSync, constants, mkdirSync, openSync, readSync, statSync, writeSync } from "node:fs";
 import { dirname } from "node:path";
 import { UsageError } from "./usage-error.js";
 
@@ -33,6 +33,41 @@ export function makeFolder(flag: string, path: string): void {
     mkdirSync(path, { recursive: true });
   } catch (error) {
     throw new UsageError(`${flag} ${path}: the folder cannot be made: ${(error as Error).message}.`);
+  }
+}
+
+/**
+ * Refuses to replace a file that is not the output of an earlier run: it may be the input.
+ * @param isOwn whether the beginning of a file is that of such an output
+ * @throws {@link UsageError}
+ */
+export function checkReplaceable(flag: string, path: string, isOwn: (beginning: string) => boolean): void {
+  const bytes = Buffer.alloc(4096);
+  let length: number;
+  try {
+    const file = openSync(path, "r");
+    try {
+      length = readSync(file, bytes, 0, bytes.length, 0);
+    } finally {
+      closeSync(file);
+    }
+  } catch {
+    // There is none, or it cannot be read, and so is no input.
+    return;
+  }
+  if (length === 0 || isOwn(bytes.toString("utf8", 0, length))) return;
+  throw new UsageError(`${flag} ${path}: this file was not written by ${flag}. Remove it, or pass another name.`);
+}
+
+/**
+ * Runs what writes a file.
+ * @throws {@link UsageError} that names the file, such as where no space is left
+ */
+export function writing<T>(path: string, write: () => T): T {
+  try {
+    return write();
+  } catch (cause) {
+    throw new UsageError(`${path}: cannot be written: ${(cause as Error).message}.`, { cause });
   }
 }
 

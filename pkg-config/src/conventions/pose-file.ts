@@ -10,7 +10,7 @@ export interface KnownPose {
   /** OpenCV camera from mesh, metres. */
   transform: Sim3;
   /** For the option `symmetry` of `evaluate`. */
-  symmetry: "none" | "auto" | "auto-revolution";
+  symmetry: "none" | "auto";
 }
 
 /**
@@ -51,6 +51,5 @@ function transformIn(argument: string, json: unknown): Sim3 {
 /** The symmetry for a description in a data set: "discrete", "continuous about z", … */
 function symmetryOf(words: unknown): KnownPose["symmetry"] {
   const text = typeof words === "string" ? words.trim().toLowerCase() : "";
-  if (text.startsWith("continuous")) return "auto-revolution";
-  return text.startsWith("discrete") ? "auto" : "none";
+  return text.startsWith("discrete") || text.startsWith("continuous") ? "auto" : "none";
 }

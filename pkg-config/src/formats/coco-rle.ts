@@ -1,5 +1,5 @@
 /** COCO's run-length encoding of masks: column-major runs, starting with background. */
-import { describe } from "../error.js";
+import { describe, type Sim3AlignError } from "../error.js";
 import type { CocoRle, PixelArray } from "../input/types.js";
 import { failure, finiteNumbers, flattened, isRecord, record, whole } from "../values.js";
 import { type JsonFile, numbersIn, parsedJson } from "./json.js";
@@ -72,6 +72,7 @@ export function readRleFile(argument: string, file: JsonFile): PixelArray<Uint8A
   const json = parsedJson(argument, file);
   const rle = isRecord(json) && isRecord(json.segmentation) ? json.segmentation : json;
   if (isRecord(rle) && numbersIn(rle.size, 2) !== null && rle.counts !== undefined) return decodedRle(argument, rle);
+  if (isPolygons(isRecord(json) ? json.segmentation : json)) throw polygons(argument);
   const expected = '{"size": [height, width], "counts": …}';
   const remedy = "Encode the mask as COCO RLE, for example with pycocotools, or pass a PNG.";
   throw failure("UNSUPPORTED_FORMAT", argument, "JSON without a run-length encoding", expected, remedy);
@@ -80,10 +81,29 @@ export function readRleFile(argument: string, file: JsonFile): PixelArray<Uint8A
 /** The validated run lengths of an array or a compressed string. */
 function runsOf(argument: string, counts: unknown): number[] {
   if (typeof counts === "string") return decompressed(argument, counts);
+  if (isPolygons(counts)) throw polygons(argument);
   const runs = flattened(counts);
   if (runs !== null) return runs as number[];
-  const remedy = "Rasterise polygons first, for example with pycocotools' annToMask.";
+  const remedy = 'Pass `counts` as COCO\'s files hold it. Bytes of Python become a string by rle["counts"].decode().';
   throw failure("INVALID_ARGUMENT", argument, describe(counts), "a string, or an array of run lengths", remedy);
+}
+
+/** Whether a value is what COCO has instead of an encoding for most annotations: arrays of coordinates. */
+export function isPolygons(value: unknown): boolean {
+  try {
+    if (!Array.isArray(value) || value.length === 0) return false;
+    return value.every((polygon) => Array.isArray(polygon) && polygon.length >= 6);
+  } catch {
+    // An array whose elements cannot be read, which is an error of its own.
+    return false;
+  }
+}
+
+/** The error for polygons. */
+export function polygons(argument: string): Sim3AlignError {
+  const remedy =
+    "Convert them with pycocotools: mask.merge(mask.frPyObjects(segmentation, height, width)) is their encoding; its counts are bytes: .decode() them.";
+  return failure("UNSUPPORTED_FORMAT", argument, "polygons", "pixels, or COCO RLE: { size, counts }", remedy);
 }
 
 /** Checks a size before allocation, because the file may be malicious. */

@@ -101,6 +101,7 @@ export const REGISTER_DEFAULTS = {
   edgeSimilarity: 0.9,
   icp: "point-to-plane",
   icpIterations: 60,
+  workBudget: null,
 } as const satisfies RegisterOptions;
 
 /** Defaults of `estimateSim3`. */
@@ -111,6 +112,7 @@ export const ESTIMATE_SIM3_DEFAULTS = {
   ransacIterations: 100000,
   ransacConfidence: 0.999,
   edgeSimilarity: 0.9,
+  workBudget: null,
 } as const satisfies EstimateSim3Options;
 
 /** Every option with its kind, range, default and a one-line description. */
@@ -166,7 +168,7 @@ export const OPTIONS = {
       kind: "symmetry",
       isNullable: false,
       default: "auto",
-      summary: "The object's symmetry, so that `alternatives` does not list equivalent poses",
+      summary: "The object's symmetry: poses that it makes equal are one for `confidence`, `alternatives` and `uncertainty`",
     },
     {
       name: "initial",
@@ -665,6 +667,14 @@ export const OPTIONS = {
       default: 60,
       summary: "Upper bound on the iterations of each of ICP's two passes: on the voxel grid, then on the points",
     },
+    {
+      name: "workBudget",
+      kind: "number",
+      above: 0,
+      isNullable: true,
+      default: null,
+      summary: "An upper bound on the work, in units of about a millisecond on a 2020 laptop",
+    },
   ],
   estimateSim3: [
     {
@@ -717,6 +727,14 @@ export const OPTIONS = {
       isNullable: false,
       default: 0.9,
       summary: "Smallest accepted ratio between the stretches of a minimal set's three edges, least to most stretched",
+    },
+    {
+      name: "workBudget",
+      kind: "number",
+      above: 0,
+      isNullable: true,
+      default: null,
+      summary: "An upper bound on the work, in units of about a millisecond on a 2020 laptop",
     },
   ],
 } as const satisfies Readonly<Record<string, readonly OptionRow[]>>;

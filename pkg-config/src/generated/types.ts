@@ -79,9 +79,9 @@ export interface AlignOptions {
    */
   meshUp?: Direction | null | undefined;
   /**
-   * The object's symmetry, so that `alternatives` does not list equivalent poses. `"auto"` detects half turns about
-   * the mesh's principal axes, `"auto-revolution"` also axes of revolution; `[{ axis: [0, 1, 0], fold: 4 }]` declares
-   * quarter turns about the mesh's y axis, without `fold` any turn about it. Default `"auto"`.
+   * The object's symmetry: poses that it makes equal are one for `confidence`, `alternatives` and `uncertainty`.
+   * `"auto"` finds it on the surface of the mesh; `[{ axis: [0, 1, 0], fold: 4 }]` declares quarter turns about the
+   * mesh's y axis, without `fold` any turn about it. Default `"auto"`.
    */
   symmetry?: SymmetryOption | undefined;
   /**
@@ -305,8 +305,8 @@ export interface EvaluateOptions {
    */
   truth?: Sim3Like | null | undefined;
   /**
-   * The object's symmetry: the rotation error is the smallest over it. `"auto"` detects half turns about the mesh's
-   * principal axes, `"auto-revolution"` also axes of revolution. Default `"none"`.
+   * The object's symmetry: the rotation error is the smallest over it. `"auto"` finds it on the surface of the mesh.
+   * Default `"none"`.
    */
   symmetry?: SymmetryOption | undefined;
   /**
@@ -391,6 +391,12 @@ export interface RegisterOptions {
    * number from 1 to 1000. Default `60`.
    */
   icpIterations?: number | undefined;
+  /**
+   * An upper bound on the work, in units of about a millisecond on a 2020 laptop. The work is counted, not timed.
+   * Draws and poses beyond it are left out; preparing the clouds takes what their points need. `null` sets no bound.
+   * Takes a finite number above 0, or null. Default `null`.
+   */
+  workBudget?: number | null | undefined;
 }
 
 /**
@@ -426,6 +432,11 @@ export interface EstimateSim3Options {
    * number from 0 to 1. Default `0.9`.
    */
   edgeSimilarity?: number | undefined;
+  /**
+   * An upper bound on the work, in units of about a millisecond on a 2020 laptop. The work is counted, not timed.
+   * Draws beyond it are left out. `null` sets no bound. Takes a finite number above 0, or null. Default `null`.
+   */
+  workBudget?: number | null | undefined;
 }
 
 /**
@@ -441,7 +452,7 @@ export type Timings = Partial<Record<Stage, number>> & { total: number };
  *
  * In JavaScript it is the `code` of a `Sim3AlignError`, spelled as [`ErrorCode::as_str`] spells it.
  */
-export type ErrorCode = "INVALID_ARGUMENT" | "INVALID_OPTION" | "UNKNOWN_OPTION" | "WRONG_LENGTH" | "EMPTY_IMAGE" | "SIZE_MISMATCH" | "INVALID_CAMERA" | "EMPTY_MASK" | "DEGENERATE_MASK" | "NO_DEPTH_IN_MASK" | "FLAT_DEPTH" | "TOO_FEW_POINTS" | "EMPTY_MESH" | "INDEX_OUT_OF_RANGE" | "NON_FINITE" | "DEGENERATE_MESH" | "DEGENERATE_POINTS" | "NO_CONSENSUS" | "INVALID_TRANSFORM" | "UNSUPPORTED_FORMAT" | "CORRUPT_FILE" | "FILE_TOO_LARGE" | "EIGHT_BIT_DEPTH" | "COMPRESSED_MESH" | "INTERNAL";
+export type ErrorCode = "INVALID_ARGUMENT" | "INVALID_OPTION" | "UNKNOWN_OPTION" | "WRONG_LENGTH" | "EMPTY_IMAGE" | "SIZE_MISMATCH" | "INVALID_CAMERA" | "EMPTY_MASK" | "DEGENERATE_MASK" | "NO_DEPTH_IN_MASK" | "FLAT_DEPTH" | "TOO_FEW_POINTS" | "EMPTY_MESH" | "INDEX_OUT_OF_RANGE" | "NON_FINITE" | "DEGENERATE_MESH" | "DEGENERATE_POINTS" | "NO_CONSENSUS" | "INVALID_TRANSFORM" | "UNSUPPORTED_FORMAT" | "CORRUPT_FILE" | "FILE_TOO_LARGE" | "EIGHT_BIT_DEPTH" | "COMPRESSED_MESH" | "OUT_OF_MEMORY" | "TRACKER_LOST" | "INTERNAL";
 
 /**
  * The kinds of warning.
@@ -764,8 +775,8 @@ translation: [number, number, number],
 matrix: number[], };
 
 /**
- * Standard deviations of the pose's parts, as the observation determines them. Parts that a single view leaves open,
- * such as the turn of a round object about its axis, have large ones.
+ * Standard deviations of the pose's parts, as the observation determines them. Parts that a single view leaves open have
+ * large ones.
  */
 export type Uncertainty = { 
 /**
@@ -773,13 +784,18 @@ export type Uncertainty = {
  */
 scale: number, 
 /**
- * Of the rotation about the least determined axis, in degrees.
+ * Of the rotation about the least determined axis, in degrees, up to the symmetry of the mesh.
  */
 rotationDeg: number, 
 /**
  * That axis: a unit vector in the camera's frame.
  */
 rotationAxis: [number, number, number], 
+/**
+ * The axis of revolution of the mesh, a unit vector in the camera's frame: any turn about it leaves its shape as it is,
+ * and does not count as uncertain. `null` if it has none.
+ */
+freeAxis: [number, number, number] | null, 
 /**
  * Of the mesh centre's position across the line of sight, in metres.
  */
@@ -906,8 +922,13 @@ export type Alignment = {
  */
 confidence: number, 
 /**
- * Other poses that explain the observation nearly as well, best first: flips, and turns under which the object
- * looks alike though the mesh does not.
+ * Probability that the turn is right, too: that of the poses which a symmetry of the shape makes equal, this is the one
+ * whose colours are those of the photo. `null` where the shape has no symmetry, or colour does not decide.
+ */
+turnConfidence: number | null, 
+/**
+ * Other poses that explain the observation nearly as well, best first. Poses that the symmetry of the shape makes equal
+ * are one, unless their colours differ.
  */
 alternatives: Array<Alternative>, 
 /**
@@ -1004,13 +1025,18 @@ export type WorldUncertainty = {
  */
 scale: number, 
 /**
- * Of the rotation about the least determined axis, in degrees.
+ * Of the rotation about the least determined axis, in degrees, up to the symmetry of the mesh.
  */
 rotationDeg: number, 
 /**
  * That axis: a unit vector in the world frame.
  */
 rotationAxis: [number, number, number], 
+/**
+ * The axis of revolution of the mesh, a unit vector in the world frame: any turn about it leaves its shape as it is, and
+ * does not count as uncertain. `null` if it has none.
+ */
+freeAxis: [number, number, number] | null, 
 /**
  * Of the mesh centre's position along the least determined direction, in metres.
  */

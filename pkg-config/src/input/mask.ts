@@ -1,6 +1,6 @@
 /** Converts masks to bytes with their size. */
 import { invalidArgument } from "../error.js";
-import { decodedRle, readRleFile } from "../formats/coco-rle.js";
+import { decodedRle, isPolygons, polygons, readRleFile } from "../formats/coco-rle.js";
 import type { LoadFormats } from "../formats-module.js";
 import { failure, isKind, isRecord, isTypedArray, wrongKind } from "../values.js";
 import { type Bytes, beginsLikeImage, beginsLikeJson, callReader, fileBytes, isBytes } from "./bytes.js";
@@ -13,7 +13,9 @@ const kinds =
  * @param pixels the number of pixels of the depth map
  */
 export async function readMask(mask: unknown, pixels: number, formats: LoadFormats): Promise<SizedArray<Bytes>> {
+  if (isPolygons(mask)) throw polygons("mask");
   if (isRecord(mask)) {
+    if (isPolygons(mask.segmentation)) throw polygons("mask.segmentation");
     if ("counts" in mask) return decodedRle("mask", mask);
     if ("data" in mask) {
       const { data, width, height } = mask as { data: unknown; width: number; height: number };

@@ -1,8 +1,9 @@
 /** The input of `align` and `evaluate`. */
+import type { BlobLike } from "../platform.js";
 import type { ColorSamples, PreparedMesh } from "../prepared-mesh.js";
 
 /** The content of an encoded file, as read or fetched. */
-export type EncodedBytes = Uint8Array | ArrayBuffer | Blob;
+export type EncodedBytes = Uint8Array | ArrayBuffer | BlobLike;
 
 /** Pixels and their size: `data` has width × height values, row-major from the top left. */
 export interface PixelArray<T> {
@@ -43,7 +44,7 @@ export type MaskInput =
   | Uint8ClampedArray
   | PixelArray<Uint8Array | Uint8ClampedArray>
   | ArrayBuffer
-  | Blob
+  | BlobLike
   | CocoRle;
 
 /** The size of the image that the intrinsics belong to. It must match the depth map. */
@@ -135,7 +136,7 @@ export type PhotoInput =
   | Uint8ClampedArray
   | PixelArray<Uint8Array | Uint8ClampedArray>
   | ArrayBuffer
-  | Blob;
+  | BlobLike;
 
 /** The photo of a view. */
 export interface PhotoOfView {

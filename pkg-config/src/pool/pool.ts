@@ -1,23 +1,25 @@
 /** A pool of workers that run jobs in parallel. */
+
 import { checkAttached } from "../attached.js";
 import { type Call, type Engine, type Outcome, signalsOf } from "../engine.js";
 import { disposed, Sim3AlignError } from "../error.js";
 import { type Job, meshCacheOf } from "../jobs.js";
 import { isAttached } from "../kinds.js";
-import { checkSignals, onAbort, reasonOf } from "../on-abort.js";
+import { checkSignals, onAbort } from "../on-abort.js";
+import type { SignalLike } from "../platform.js";
+import { Queue } from "../queue.js";
 import { type Answer, JobFailed, Unsendable, WorkerLost, type WorkerSetup, WorkerSlot } from "./slot.js";
 import { buffersOf, copied, isSendable } from "./transfer.js";
 
 /** Attempts per job if its worker is lost. */
 const ATTEMPTS = 2;
 
-/** Workers, and a queue of jobs. */
+/** Workers, for which jobs wait in a queue. */
 export class WorkerPool implements Engine {
   readonly capacity: number;
   readonly #slots: readonly WorkerSlot[];
   readonly #fallback: Engine;
-  readonly #idle: WorkerSlot[];
-  readonly #waiting: ((slot: WorkerSlot) => void)[] = [];
+  readonly #queue: Queue<WorkerSlot>;
   readonly #ended = new AbortController();
 
   /** @param fallback runs jobs that cannot be cloned; it is disposed with the pool */
@@ -26,13 +28,13 @@ export class WorkerPool implements Engine {
     this.capacity = 2 * size;
     this.#fallback = fallback;
     this.#slots = Array.from({ length: size }, () => new WorkerSlot(setup));
-    this.#idle = [...this.#slots];
+    this.#queue = new Queue(this.#slots);
     for (const slot of this.#slots) startEarly(slot);
   }
 
   async run<J extends Job>(job: J, call: Call): Promise<Outcome<J>> {
     const signals = [this.#ended.signal, ...signalsOf(call)];
-    const slot = await this.#acquire(signals);
+    const slot = await this.#queue.acquire(signals);
     const stop = (reason: unknown) => {
       slot.end(reason);
       if (!this.#ended.signal.aborted) startEarly(slot);
@@ -43,7 +45,7 @@ export class WorkerPool implements Engine {
       return await this.#runIn(slot, job, call, signals);
     } finally {
       for (const end of unfollow) end();
-      this.#release(slot);
+      this.#queue.release(slot);
     }
   }
 
@@ -62,10 +64,13 @@ export class WorkerPool implements Engine {
     slot: WorkerSlot,
     job: J,
     call: Call,
-    signals: readonly AbortSignal[],
+    signals: readonly SignalLike[],
   ): Promise<Outcome<J>> {
     for (let attempt = 1; ; attempt++) {
       try {
+        // A call that has ended must not start a worker, which nothing would end.
+        checkSignals(signals);
+        await slot.ready();
         const answer = await send(slot, job, call, signals);
         if (answer === null) return await this.#fallback.run(job, call);
         return { result: answer.result, data: answer.data ?? job.data } as Outcome<J>;
@@ -78,31 +83,6 @@ export class WorkerPool implements Engine {
         if (attempt === ATTEMPTS || isGone(job, call)) throw workerFailed(error);
       }
     }
-  }
-
-  #acquire(signals: readonly AbortSignal[]): Promise<WorkerSlot> {
-    return new Promise((resolve, reject) => {
-      for (const signal of signals) if (signal.aborted) return reject(reasonOf(signal));
-      const idle = this.#idle.pop();
-      if (idle !== undefined) return resolve(idle);
-      const take = (slot: WorkerSlot) => {
-        for (const end of unfollow) end();
-        resolve(slot);
-      };
-      const giveUp = (reason: unknown) => {
-        for (const end of unfollow) end();
-        this.#waiting.splice(this.#waiting.indexOf(take), 1);
-        reject(reason);
-      };
-      const unfollow = signals.map((signal) => onAbort(signal, giveUp));
-      this.#waiting.push(take);
-    });
-  }
-
-  #release(slot: WorkerSlot): void {
-    const next = this.#waiting.shift();
-    if (next === undefined) this.#idle.push(slot);
-    else next(slot);
   }
 }
 
@@ -118,7 +98,7 @@ async function send(
   slot: WorkerSlot,
   job: Job,
   { transfer, progress }: Call,
-  signals: readonly AbortSignal[],
+  signals: readonly SignalLike[],
 ): Promise<Answer | null> {
   const mesh = "meshId" in job && job.meshId !== undefined ? { id: job.meshId, cache: meshCacheOf(job) } : undefined;
   // Buffers of WebAssembly memory and of Node's pool cannot be transferred: they are copied.

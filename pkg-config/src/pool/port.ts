@@ -1,7 +1,7 @@
 /** One interface for browser workers and Node worker threads. */
 import { Sim3AlignError } from "../error.js";
 import type { CreateWorker, WorkerLike } from "../platform.js";
-import type { Reply, Request } from "./protocol.js";
+import type { Request } from "./protocol.js";
 
 type NodeWorker = import("node:worker_threads").Worker;
 
@@ -15,7 +15,7 @@ export interface Port {
 
 /** The events of a worker. */
 export interface PortEvents {
-  onMessage(message: Reply): void;
+  onMessage(message: unknown): void;
   /** The worker terminated or failed to start. */
   onFailure(description: string): void;
 }

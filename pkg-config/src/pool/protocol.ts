@@ -1,10 +1,12 @@
 /**
- * The messages between a pool and its workers. A worker is started once and then runs one job at a time; each job ends
- * with one `done`.
+ * The messages between a pool and its workers. A worker is started once, says that it is `ready`, and then runs one job at a
+ * time; each job ends with one `done`. `emptied` are the caches of meshes that were lost with the instance of their module: its heap had grown too
+ * large, or it was exhausted.
  */
-import type { ErrorParts } from "../error.js";
+import { type ErrorParts, isCoded } from "../error.js";
 import type { Stage } from "../generated/types.js";
-import type { Job } from "../jobs.js";
+import type { Job, MeshCache } from "../jobs.js";
+import { isRecord } from "../kinds.js";
 
 /** Messages to the worker. */
 export type Request =
@@ -22,9 +24,18 @@ export type LazyName = "formats" | "joint" | "registration";
 
 /** Messages from the worker. */
 export type Reply =
+  /** The answer to `start`: this script runs. */
+  | { type: "ready" }
   | { type: "progress"; stage: Stage; fraction: number; best?: Float64Array | undefined }
   | { type: "needs-module"; name: LazyName }
   /** A message to the worker could not be read: its content is lost. */
   | { type: "unreadable" }
-  | { type: "done"; result: unknown; data?: unknown; error?: undefined }
-  | { type: "done"; error: ErrorParts; data?: unknown };
+  | { type: "done"; result: unknown; data?: unknown; error?: undefined; emptied?: readonly MeshCache[] }
+  | { type: "done"; error: ErrorParts; data?: unknown; emptied?: readonly MeshCache[] };
+
+/** Whether a message is one of this package's `worker.js`: a worker of the caller may run another script. */
+export function isReply(message: unknown): message is Reply {
+  if (!isRecord(message)) return false;
+  if (message.type !== "done") return ["ready", "progress", "needs-module", "unreadable"].includes(`${message.type}`);
+  return message.error === undefined ? "result" in message : isCoded(message.error);
+}

@@ -4,7 +4,7 @@ import type { MeshCache } from "../jobs.js";
 import type { CreateWorker } from "../platform.js";
 import type { ProgressListener } from "../progress.js";
 import { type Port, portOf } from "./port.js";
-import type { LazyName, Reply, Request } from "./protocol.js";
+import { isReply, type LazyName, type Request } from "./protocol.js";
 
 /** The worker terminated or trapped before it answered; the job may be retried. */
 export class WorkerLost extends Error {}
@@ -27,24 +27,50 @@ export class JobFailed {
 export interface Answer {
   result: unknown;
   data?: unknown;
+  /** The caches of meshes that the worker has lost. */
+  emptied?: readonly MeshCache[];
 }
 
 /** Everything a slot needs to start a worker. */
 export interface WorkerSetup extends Record<LazyName, () => Promise<WebAssembly.Module>> {
   create: CreateWorker;
   core: WebAssembly.Module;
+  /** Longest time until a worker says that it is ready, milliseconds. */
+  startMs: number;
 }
 
 interface Pending {
   resolve(answer: Answer): void;
   reject(reason: unknown): void;
   progress: ProgressListener;
+  /** Whether the job has a result; all but the opening of a tracker have one, an object. */
+  hasResult: boolean;
 }
+
+/** What a worker says first. */
+class Greeting {
+  hear = () => {};
+  fail = (_reason: unknown) => {};
+  readonly heard = new Promise<void>((resolve, reject) => {
+    this.hear = resolve;
+    this.fail = reject;
+  });
+
+  constructor() {
+    // A worker that starts in advance may fail while nothing waits for it.
+    this.heard.catch(() => {});
+  }
+}
+
+/** Whether a job may end so; `hasResult` is missing if there is no job. */
+const isOf = ({ result, error }: { result?: unknown; error?: unknown }, hasResult: boolean | undefined): boolean =>
+  hasResult !== undefined && (error !== undefined || (typeof result === "object" && result !== null) === hasResult);
 
 /** A slot for a worker. */
 export class WorkerSlot {
   readonly #setup: WorkerSetup;
   #port: Port | undefined;
+  #greeting: Greeting | undefined;
   #pending: Pending | undefined;
   /**
    * The ids of the prepared meshes that were sent to the worker, and the modules that are known to hold them there: it may
@@ -67,6 +93,7 @@ export class WorkerSlot {
       onFailure: (description) => this.#isCurrent(port) && this.end(new WorkerLost(description)),
     });
     this.#port = port;
+    this.#greeting = new Greeting();
     this.#meshes.clear();
     try {
       port.post({ type: "start", core: this.#setup.core });
@@ -76,6 +103,25 @@ export class WorkerSlot {
       throw error;
     }
     return port;
+  }
+
+  /**
+   * Starts a worker if there is none, and waits until it is ready: a worker of the caller may run another script, which must
+   * not get arrays that were moved.
+   * @throws {@link WorkerLost}, and the reason passed to `end`
+   */
+  async ready(): Promise<void> {
+    const port = this.#started();
+    const { startMs } = this.#setup;
+    const found = `no answer for ${startMs} ms, which \`workerStartMs\` allows`;
+    const timer = setTimeout(() => this.#isCurrent(port) && this.end(new WorkerLost(found)), startMs);
+    port.hold(true);
+    try {
+      await this.#greeting?.heard;
+    } finally {
+      clearTimeout(timer);
+      port.hold(false);
+    }
   }
 
   /**
@@ -93,7 +139,7 @@ export class WorkerSlot {
     try {
       const answer = await new Promise<Answer>((resolve, reject) => {
         // Before the message is sent: its answer, or the end of the worker, may come at once.
-        this.#pending = { resolve, reject, progress };
+        this.#pending = { resolve, reject, progress, hasResult: message.job.method !== "openTracker" };
         try {
           port.post(message, transfer);
         } catch (cause) {
@@ -102,7 +148,8 @@ export class WorkerSlot {
         port.hold(true);
         if (mesh !== undefined && !this.#meshes.has(mesh.id)) this.#meshes.set(mesh.id, new Set());
       });
-      if (mesh !== undefined && this.#isCurrent(port)) this.#meshes.get(mesh.id)?.add(mesh.cache);
+      const isKept = mesh !== undefined && this.#isCurrent(port) && !answer.emptied?.includes(mesh.cache);
+      if (isKept) this.#meshes.get(mesh.id)?.add(mesh.cache);
       return answer;
     } finally {
       this.#pending = undefined;
@@ -137,6 +184,7 @@ export class WorkerSlot {
     const port = this.#port;
     this.#port = undefined;
     port?.terminate();
+    this.#greeting?.fail(reason);
     this.#pending?.reject(reason);
   }
 
@@ -150,8 +198,14 @@ export class WorkerSlot {
     }
   }
 
-  #receive(message: Reply, port: Port): void {
-    if (message.type === "progress") {
+  #receive(message: unknown, port: Port): void {
+    const { hasResult } = this.#pending ?? {};
+    const isAnswer = isReply(message) && (message.type !== "done" || isOf(message, hasResult));
+    if (!isAnswer) {
+      this.end(new WorkerLost("a message that worker.js does not send"));
+    } else if (message.type === "ready") {
+      this.#greeting?.hear();
+    } else if (message.type === "progress") {
       this.#pending?.progress.report(message.stage, message.fraction, message.best);
     } else if (message.type === "needs-module") {
       const lost = (error: unknown) => this.#isCurrent(port) && this.end(new WorkerLost(messageOf(error)));
@@ -159,13 +213,20 @@ export class WorkerSlot {
     } else if (message.type === "unreadable") {
       this.end(new WorkerLost("a message that the worker could not read"));
     } else if (message.error === undefined) {
+      this.#forget(message.emptied);
       this.#pending?.resolve(message);
     } else if (message.error.code === "INTERNAL") {
       // After a trap, the state of the module is unknown, and its memory may be exhausted.
       this.end(new WorkerLost(message.error.found));
     } else {
+      this.#forget(message.emptied);
       this.#pending?.reject(new JobFailed(message.error, message.data));
     }
+  }
+
+  /** Forgets what these caches held: the next jobs bring their meshes again. */
+  #forget(emptied: readonly MeshCache[] = []): void {
+    for (const caches of this.#meshes.values()) for (const cache of emptied) caches.delete(cache);
   }
 
   async #sendModule(name: LazyName, port: Port): Promise<void> {

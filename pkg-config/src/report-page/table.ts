@@ -38,11 +38,15 @@ export class Table {
     new ResizeObserver(() => this.#draw()).observe(this.#scroller);
     this.#body.addEventListener("click", (event) => {
       const index = (event.target as Element).closest("tr")?.dataset.index;
-      if (index !== undefined) this.select(this.#rows[Number(index)]);
+      if (index === undefined) return;
+      this.select(this.#rows[Number(index)]);
+      // The button that had the focus is drawn anew.
+      this.#scroller.focus({ preventScroll: true });
     });
-    this.#scroller.addEventListener("keydown", (event) => {
+    // Of the whole page: nothing has the focus after loading.
+    document.addEventListener("keydown", (event) => {
       const step = { ArrowDown: 1, ArrowUp: -1, PageDown: 10, PageUp: -10 }[event.key];
-      if (step === undefined || this.#rows.length === 0) return;
+      if (step === undefined || this.#rows.length === 0 || isForOthers(event)) return;
       event.preventDefault();
       const at = this.#selected === undefined ? -1 : this.#rows.indexOf(this.#selected);
       this.select(this.#rows[Math.min(Math.max(at + step, 0), this.#rows.length - 1)]);
@@ -170,6 +174,12 @@ export class Table {
     if (row === this.#selected) made.setAttribute("aria-selected", "true");
     return made;
   }
+}
+
+/** Whether a key is that of a control, of the details, or of the browser. */
+function isForOthers({ target, defaultPrevented, ctrlKey, altKey, metaKey }: KeyboardEvent): boolean {
+  const isElsewhere = target instanceof Element && target.closest("input, select, textarea, canvas, #detail") !== null;
+  return defaultPrevented || ctrlKey || altKey || metaKey || isElsewhere;
 }
 
 function compared(a: number | string | null, b: number | string | null, isDescending: boolean): number {

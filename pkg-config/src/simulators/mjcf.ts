@@ -7,7 +7,8 @@ import { meshFiles, spaced } from "./text.js";
 export type TextFiles = Record<string, string>;
 
 /**
- * A scene as MJCF: `scene.xml`, and a mesh in `meshes/` for each body and each of its convex parts.
+ * A scene as MJCF: `scene.xml`, and a mesh in `meshes/` for each body and each of its convex parts. A `numeric` named
+ * `NAME_found` holds the pose of a body before it was put at rest, as `pos` and `quat`.
  *
  * @example
  * for (const [path, text] of Object.entries(toMjcf(scene))) await writeFile(path, text);
@@ -34,6 +35,10 @@ export function toMjcf({ bodies, hasGround, camera }: SimulatorScene): TextFiles
   }
   world.push(...bodies.flatMap(bodyLines));
   const excluded = overlappingPairs(bodies).map(([one, other]) => `<exclude body1="${one}" body2="${other}"/>`);
+  const found = bodies.map(({ name, found: { position, rotation } }) => {
+    const pose = spaced([...position, ...wxyzFromXyzw(rotation)]);
+    return `<numeric name="${name}_found" size="7" data="${pose}"/>`;
+  });
   const text = `<mujoco model="scene">
   <compiler angle="radian" meshdir="meshes"/>
   <option integrator="implicitfast" cone="elliptic" impratio="10">
@@ -47,6 +52,7 @@ export function toMjcf({ bodies, hasGround, camera }: SimulatorScene): TextFiles
       <geom type="mesh" group="3" condim="6" friction="0.8 0.005 0.001"/>
     </default>
   </default>
+${section("custom", found)}
 ${section("asset", assets)}
 ${section("worldbody", world)}
 ${excluded.length > 0 ? `${section("contact", excluded)}\n` : ""}</mujoco>

@@ -9,11 +9,17 @@ export interface ConvexPart {
   indices: Uint32Array;
 }
 
+/** World from body, as the module returns it. */
+export interface BodyPose {
+  rotation: Float64Array;
+  translation: Float64Array;
+}
+
 /** A body, as the module returns it. */
 export interface SettledBody {
   parts: ConvexPart[];
-  rotation: Float64Array;
-  translation: Float64Array;
+  pose: BodyPose;
+  found: BodyPose;
   mass: number;
   center: Float64Array;
   moments: Float64Array;
@@ -26,7 +32,7 @@ export interface SettledBody {
 
 /** The functions of the module. */
 export interface Physics extends Glue {
-  settleBodies(objects: readonly object[], settings: object): SettledBody[];
+  settleBodies(objects: readonly object[], settings: object): { bodies: SettledBody[]; supportHeightM: number };
 }
 
 /** The module, shared by all scenes of this realm. */

@@ -19,7 +19,7 @@ import {
   type Vector3,
   whole,
 } from "../values.js";
-import { type ConvexPart, physicsModule } from "./physics-module.js";
+import { type BodyPose, type ConvexPart, physicsModule } from "./physics-module.js";
 
 /** An object of a scene for a simulator. */
 export interface SimulatorObject {
@@ -38,8 +38,12 @@ export interface SimulatorObject {
 
 /** Options of {@link simulatorScene}. */
 export interface SimulatorOptions {
-  /** The plane that the objects stand on, as `support` of the result: the ground, z = 0. Without one, all bodies are fixed. */
-  support?: Plane | null | undefined;
+  /**
+   * The plane that the objects stand on, as `support` of the result: the ground, z = 0. Without one, all bodies are fixed. A
+   * plane with a `confidence` below 1 was found, and is moved along its normal to where most of the objects stand: objects are
+   * found more exactly than planes. Others are kept.
+   */
+  support?: (Plane & { confidence?: number | undefined }) | null | undefined;
   /** The camera: its intrinsics, and the size of its image in pixels. */
   camera?: { fy: number; width: number; height: number } | undefined;
   /** Mass per volume of the convex parts, kg/m³. Default {@link SIMULATOR_DEFAULTS}: household things are mostly hollow. */
@@ -48,23 +52,31 @@ export interface SimulatorOptions {
   maxParts?: number | undefined;
   /** Largest angle by which a body is turned so that it rests, degrees. */
   maxTurnDeg?: number | undefined;
-  /** Largest distance by which the centre of mass of a body is moved so that it rests, metres. */
+  /** Largest distance of the centre of mass of a body from where it was found, metres. */
   maxMoveM?: number | undefined;
+  /** Whether bodies are put at rest; without it, each keeps the pose of its transform. */
+  rest?: boolean | undefined;
   /** The physics module, if it is not at `wasm/physics_bg.wasm` beside this script. Only the first one is used. */
   physicsWasm?: WasmSource | undefined;
 }
 
 /** Defaults of {@link SimulatorOptions}. */
-export const SIMULATOR_DEFAULTS = { density: 400, maxParts: 16, maxTurnDeg: 12, maxMoveM: 0.02 } as const;
+export const SIMULATOR_DEFAULTS = { density: 400, maxParts: 16, maxTurnDeg: 12, maxMoveM: 0.02, rest: true } as const;
 
-/** A rigid body. Its frame is that of its mesh, in metres. */
-export interface SimulatorBody {
-  /** A name of letters, digits and underscores, unique in the scene. */
-  name: string;
+/** A pose of a body. */
+export interface SimulatorPose {
   /** World from body, metres. */
   position: Vector3;
   /** World from body, x, y, z, w. */
   rotation: Quaternion;
+}
+
+/** A rigid body. Its frame is that of its mesh, in metres. */
+export interface SimulatorBody extends SimulatorPose {
+  /** A name of letters, digits and underscores, unique in the scene. */
+  name: string;
+  /** The pose of its transform: before it was put at rest. */
+  found: SimulatorPose;
   /** Whether it is fixed to the world: it rests on nothing in the scene, or would not rest at its place. */
   isFixed: boolean;
   /** Kilograms. */
@@ -81,7 +93,7 @@ export interface SimulatorBody {
   mesh: { positions: Float32Array; indices: Uint32Array };
   /** The mean colour, red, green and blue, 0 to 1, sRGB-encoded. */
   colour: Vector3;
-  /** How far its centre of mass was moved from the pose of the transform, metres. */
+  /** How far its centre of mass is from its place in the pose of the transform, metres. */
   movedM: number;
   /** How far it was turned, degrees. */
   turnedDeg: number;
@@ -93,6 +105,8 @@ export interface SimulatorBody {
 export interface SimulatorScene {
   bodies: SimulatorBody[];
   hasGround: boolean;
+  /** The height of the given support above the ground, metres: 0 unless it was moved to the objects. */
+  supportHeightM: number;
   /** World from camera (x right, y down, z forward), and its vertical field of view. */
   camera: { position: Vector3; rotation: Quaternion; fovYDeg: number; width: number; height: number } | null;
 }
@@ -100,7 +114,7 @@ export interface SimulatorScene {
 /**
  * Makes a scene for simulators. Each object becomes a rigid body with convex parts for collisions (V-HACD), and mass and
  * inertia of a density. An object that rests on the support or on another object is turned and moved a little, so that it
- * rests there by itself; one that leans, hangs, or stands on what is no object is fixed.
+ * rests there by itself; one that leans, hangs, or stands on what is no object is fixed. `found` keeps the pose before.
  *
  * @example
  * const { objects, support } = await aligner.alignScene(scene);
@@ -133,15 +147,18 @@ export async function simulatorScene(
     transform: sim3Of(composed(worldFromCamera, pose)).matrix,
     on: support === null ? null : groundOf(own[i] as SimulatorObject, list.length),
   }));
-  const settled = module.call((physics) => physics.settleBodies(sent, settings));
+  const fitsGround = support?.confidence !== undefined && support.confidence < 1;
+  const { bodies: settled, supportHeightM } = module.call((physics) =>
+    physics.settleBodies(sent, { ...settings, fitsGround }),
+  );
   const names = uniqueNames(own.map(({ name }, i) => name ?? `object_${i}`));
   const bodies = settled.map((body, i): SimulatorBody => {
     const { positions, indices } = meshes[i] as (typeof meshes)[number];
     const { scale } = poses[i] as Similarity;
     return {
       name: names[i] as string,
-      position: Array.from(body.translation) as Vector3,
-      rotation: Array.from(body.rotation) as Quaternion,
+      ...poseOf(body.pose),
+      found: poseOf(body.found),
       isFixed: !body.isFree,
       mass: body.mass,
       centerOfMass: Array.from(body.center) as Vector3,
@@ -158,17 +175,25 @@ export async function simulatorScene(
   return {
     bodies,
     hasGround: support !== null,
-    camera: camera === undefined ? null : cameraOf(camera, worldFromCamera),
+    supportHeightM,
+    camera: camera === undefined ? null : cameraOf(camera, worldFromCamera, supportHeightM),
   };
 }
 
+const poseOf = ({ translation, rotation }: BodyPose): SimulatorPose => ({
+  position: Array.from(translation) as Vector3,
+  rotation: Array.from(rotation) as Quaternion,
+});
+
 function settingsOf(given: Omit<SimulatorOptions, "support" | "camera">): object {
-  const { density, maxParts, maxTurnDeg, maxMoveM } = { ...SIMULATOR_DEFAULTS, ...given };
+  const { density, maxParts, maxTurnDeg, maxMoveM, rest } = { ...SIMULATOR_DEFAULTS, ...given };
+  if (typeof rest !== "boolean") throw invalidArgument("options.rest", rest, "true or false", "Pass one of them.");
   return {
     density: positive("options.density", density),
     parts: Math.min(whole("options.maxParts", maxParts, 1), 64),
     turnDeg: positive("options.maxTurnDeg", maxTurnDeg),
     moveM: positive("options.maxMoveM", maxMoveM),
+    rest,
   };
 }
 
@@ -180,13 +205,14 @@ function zUp({ right, up, back, origin }: ReturnType<typeof groundFrame>): Simil
   return { scale: 1, rotation, translation: [-x, -y, -z] };
 }
 
-function cameraOf(given: unknown, worldFromCamera: Similarity): SimulatorScene["camera"] {
+function cameraOf(given: unknown, worldFromCamera: Similarity, liftM: number): SimulatorScene["camera"] {
   const camera = record("options.camera", given, "{ fy, width, height }");
   const number = (name: string) => positive(`options.camera.${name}`, camera[name]);
   const [fy, width, height] = [number("fy"), number("width"), number("height")];
   const fovYDeg = (2 * Math.atan(height / (2 * fy)) * 180) / Math.PI;
   const { translation, rotation } = worldFromCamera;
-  return { position: translation, rotation: quaternionOf(rotation), fovYDeg, width, height };
+  const [x, y, z] = translation;
+  return { position: [x, y, z + liftM], rotation: quaternionOf(rotation), fovYDeg, width, height };
 }
 
 /** What an object rests on, for the module. */

@@ -40,14 +40,15 @@ if __name__ == "__main__":
 
 /**
  * A scene as URDF: `NAME.urdf` for each body, `ground.urdf`, their meshes, `scene.json` with poses (metres, quaternions
- * x, y, z, w, z up), and `load.py` for PyBullet.
+ * x, y, z, w, z up; `found` is the pose before a body was put at rest), and `load.py` for PyBullet.
  */
 export function toUrdf({ bodies, hasGround, camera }: SimulatorScene): TextFiles {
   const files: TextFiles = { "load.py": loader, ...meshFiles(bodies) };
   for (const body of bodies) files[`${body.name}.urdf`] = urdfOf(body);
   if (hasGround) files["ground.urdf"] = ground;
-  const entries = bodies.map(({ name, position, rotation, isFixed }) => ({
+  const entries = bodies.map(({ name, position, rotation, isFixed, found }) => ({
     ...{ name, file: `${name}.urdf`, position, quaternion: rotation, fixed: isFixed },
+    found: { position: found.position, quaternion: found.rotation },
   }));
   const floor = { name: "ground", file: "ground.urdf", position: [0, 0, 0], quaternion: [0, 0, 0, 1], fixed: true };
   const scene = {

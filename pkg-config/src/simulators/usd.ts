@@ -14,7 +14,8 @@ const REACH = 5;
 
 /**
  * A scene as the text of a USD file (`.usda`): metres, z up, rigid bodies with mass and convex colliders, the ground, and
- * the camera. Bodies that are fixed are colliders only.
+ * the camera. Bodies that are fixed are colliders only. `found:translate` and `found:orient` are the pose of a body before it
+ * was put at rest.
  */
 export function toUsd({ bodies, hasGround, camera }: SimulatorScene): string {
   const prims: string[] = [
@@ -79,7 +80,7 @@ ${indented(prims.join("\n\n"))}
 }
 
 function bodyPrim(body: SimulatorBody, names: readonly string[]): string {
-  const { name, isFixed, inside, position, rotation, parts, colour } = body;
+  const { name, isFixed, inside, position, rotation, found, parts, colour } = body;
   const filtered = inside.map((k) => `</World/${names[k]}>`);
   const schemas = [
     ...(isFixed ? [] : ["PhysicsRigidBodyAPI", "PhysicsMassAPI"]),
@@ -92,6 +93,8 @@ function bodyPrim(body: SimulatorBody, names: readonly string[]): string {
     `quatf physics:principalAxes = ${quaternion(body.principalAxes)}`,
   ];
   const properties = [
+    `custom double3 found:translate = ${tuple(found.position)}`,
+    `custom quatd found:orient = ${quaternion(found.rotation)}`,
     ...(isFixed ? [] : mass),
     ...(filtered.length > 0 ? [`rel physics:filteredPairs = [${filtered.join(", ")}]`] : []),
   ].map((line) => `    ${line}\n`);

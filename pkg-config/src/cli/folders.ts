@@ -1,0 +1,162 @@
+/** Folders on the command line: paths, patterns and lists. */
+import { existsSync, readdirSync, realpathSync, statSync } from "node:fs";
+import { readFile } from "node:fs/promises";
+import { basename, join, resolve, sep } from "node:path";
+import { text } from "node:stream/consumers";
+import { globSync, isDynamicPattern } from "tinyglobby";
+import { caseFiles } from "../case-files.js";
+import { absolutePath } from "./case-identity.js";
+import type { CaseKey } from "./jsonl-file.js";
+import { UsageError } from "./usage-error.js";
+
+/** What the folders of a command are. */
+export interface FolderKind {
+  /** What one of them is called. */
+  noun: string;
+  /** What makes a folder one, for errors. */
+  mark: string;
+  /** Whether a folder is one. */
+  is(folder: string): boolean;
+}
+
+const hasMesh = (folder: string) => caseFiles.mesh.some((name) => existsSync(join(folder, name)));
+const has = (folder: string, ...names: string[]) => names.every((name) => existsSync(join(folder, name)));
+
+export const caseKind: FolderKind = { noun: "case", mark: "a mesh", is: hasMesh };
+export const videoKind: FolderKind = { noun: "video", mark: "a mesh", is: hasMesh };
+export const sceneKind: FolderKind = {
+  noun: "scene",
+  mark: "objects",
+  is: (folder) => has(folder, "objects") || has(folder, "mask_visib", "scene_gt.json"),
+};
+
+/** A folder to work on. */
+export interface FolderToDo extends CaseKey {
+  path: string;
+  folder: string;
+}
+
+/**
+ * The folders that the arguments and a list name, in order. They are named by their own names, or by their paths if names
+ * repeat. Files, which `cases/*` may match, are skipped, and so are folders that were given before. Two links to one folder
+ * are two folders.
+ * @param list a file with a path per line; "-" is stdin
+ * @throws {@link UsageError} for a pattern without match, for a list that cannot be read or is empty, for no folder at all,
+ * and for a folder that only holds others
+ */
+export async function foldersToDo(
+  kind: FolderKind,
+  args: readonly string[],
+  list: string | undefined,
+): Promise<FolderToDo[]> {
+  const paths = [
+    ...args.flatMap((arg) => expanded(kind, arg)),
+    ...(list === undefined ? [] : await listed(kind, list)),
+  ];
+  if (paths.length === 0) throw new UsageError(`Pass at least one ${kind.noun} folder.`);
+  const isFile = (path: string) => statSync(path, { throwIfNoEntry: false })?.isFile() === true;
+  const files = paths.filter(isFile);
+  const folders = unique(paths.filter((path) => !isFile(path)));
+  if (folders.length === 0) throw new UsageError(`No ${kind.noun} folder among ${paths.join(", ")}.`);
+  for (const { folder } of folders) refuseParent(kind, folder);
+  if (files.length > 0) console.error(`skipped, not a folder: ${files.join(", ")}`);
+  const nameOf = (folder: string) => basename(resolve(folder));
+  const counts = new Map<string, number>();
+  for (const { folder } of folders) counts.set(nameOf(folder), (counts.get(nameOf(folder)) ?? 0) + 1);
+  return folders.map(({ folder, path }) => {
+    const name = nameOf(folder);
+    return { name: counts.get(name) === 1 ? name : folder, path, folder };
+  });
+}
+
+/** The folders with their absolute paths, each path once. */
+function unique(folders: readonly string[]): { folder: string; path: string }[] {
+  const seen = new Set<string>();
+  const repeated: string[] = [];
+  const first = folders.flatMap((folder) => {
+    const path = absolutePath(folder);
+    if (seen.has(path)) {
+      repeated.push(folder);
+      return [];
+    }
+    seen.add(path);
+    return [{ folder, path }];
+  });
+  if (repeated.length > 0) console.error(`skipped, given twice: ${repeated.join(", ")}`);
+  return first;
+}
+
+/** @throws {@link UsageError} for a folder that is above of what is meant */
+function refuseParent({ noun, is }: FolderKind, folder: string): void {
+  if (is(folder)) return;
+  const children = childrenOf(folder);
+  if (
+    children.some((name) =>
+      Object.values(caseFiles)
+        .flat()
+        .includes(name as never),
+    )
+  )
+    return;
+  const inside = (path: string, depth: number): boolean =>
+    childrenOf(path).some((name) => is(join(path, name)) || (depth > 1 && inside(join(path, name), depth - 1)));
+  if (!inside(folder, 2)) return;
+  const pattern = `${folder.replace(/[\\/]+$/, "")}/**`;
+  throw new UsageError(`${folder} is no ${noun} but holds some. Pass '${pattern}', in quotes, for all of them.`);
+}
+
+function childrenOf(folder: string): string[] {
+  try {
+    return readdirSync(folder);
+  } catch {
+    return [];
+  }
+}
+
+/** Expands a pattern that the shell did not expand. What exists is no pattern. */
+function expanded({ mark, is }: FolderKind, arg: string): string[] {
+  const pattern = process.platform === "win32" ? arg.replaceAll("\\", "/") : arg;
+  if (!isDynamicPattern(pattern) || existsSync(arg)) return [arg];
+  const found = globSync(pattern, { onlyDirectories: true, expandDirectories: false, fs: linksAsFolders });
+  const folders = found.map((path) => path.replace(/\/$/, "")).sort();
+  // Of folders at any depth, most are above or inside of those that are meant.
+  const meant = pattern.includes("**") ? folders.filter(is) : folders;
+  if (meant.length > 0) return meant;
+  throw new UsageError(`${arg}: no ${pattern.includes("**") ? `folder with ${mark}` : "folder"} matches the pattern.`);
+}
+
+/** Lists links to folders as folders, by their own names; but for those to a folder above them, which have no end. */
+const linksAsFolders = {
+  readdirSync: ((path: string, options: { withFileTypes: true }) => {
+    const entries = readdirSync(path, options);
+    for (const entry of entries.filter((each) => each.isSymbolicLink())) {
+      const isFolder = isFolderBelow(join(path, entry.name), path);
+      Object.assign(entry, { isSymbolicLink: () => false, isDirectory: () => isFolder });
+    }
+    return entries;
+  }) as typeof readdirSync,
+};
+
+function isFolderBelow(link: string, folder: string): boolean {
+  try {
+    const target = realpathSync(link);
+    return statSync(target).isDirectory() && !`${realpathSync(folder)}${sep}`.startsWith(`${target}${sep}`);
+  } catch {
+    // A link to nothing.
+    return false;
+  }
+}
+
+/** Lines of the list; empty ones and comments are skipped. */
+async function listed({ noun }: FolderKind, list: string): Promise<string[]> {
+  const name = list === "-" ? "stdin" : list;
+  const content = await (list === "-" ? text(process.stdin) : readFile(list, "utf8")).catch((error: Error) => {
+    throw new UsageError(`--list ${list}: the list cannot be read: ${error.message}.`);
+  });
+  const paths = content
+    .split("\n")
+    .map((line) => line.trim())
+    .filter((line) => line !== "" && !line.startsWith("#"));
+  if (paths.length === 0) throw new UsageError(`--list: ${name} names no ${noun} folder; write one path per line.`);
+  return paths;
+}
