@@ -1,9 +1,9 @@
 /**
- * `npm run bench:physics`: exports generated scenes for simulators, and prints which bodies stay where they are during a
- * second of physics.
+ * `npm run bench:physics`: exports scenes for simulators, and prints which bodies stay where they are during a second of
+ * physics; of scenes with true poses, also how far the bodies are from these.
  */
-import { existsSync, mkdirSync, readdirSync, rmSync } from "node:fs";
-import { join, resolve } from "node:path";
+import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { basename, join, resolve } from "node:path";
 import { runLab } from "../lib/lab.mjs";
 import { buildPackage } from "../lib/package.mjs";
 import { at, packageDir } from "../lib/paths.mjs";
@@ -12,14 +12,15 @@ import { attempt } from "../lib/run.mjs";
 import { command, count } from "./command.mjs";
 import { markdownTable } from "./table.mjs";
 
-/** @typedef {{ name: string, fixed: boolean, movedM: number, turnedDeg: number }} Rested */
+/** @typedef {{ name: string, fixed: boolean, movedM: number, turnedDeg: number, errorsMm?: [found: number, exported: number, after: number] }} Rested */
 /** @typedef {{ folder: string, [simulator: string]: { bodies: Rested[] } | string }} Simulated */
 /**
  * @typedef {object} Options
  * @property {number} scenes
  * @property {number} arranged
  * @property {number} setSeed
- * @property {readonly string[]} [folders]
+ * @property {readonly string[]} [cases]
+ * @property {number} seconds
  * @property {string} quality
  * @property {number} jobs
  * @property {string} python
@@ -29,17 +30,14 @@ import { markdownTable } from "./table.mjs";
 
 /** A body that has moved less, in metres and degrees, has stayed. */
 const limits = { movedM: 0.005, turnedDeg: 5 };
-const SECONDS = 1;
 
 /** @param {Options} options */
-async function main({ scenes, arranged, setSeed, folders, quality, jobs, python, keep, bodies }) {
+async function main({ scenes, arranged, setSeed, cases, seconds, quality, jobs, python, keep, bodies }) {
   await buildPackage();
   const root = at("target", "bench", "physics");
   if (!keep) rmSync(root, { recursive: true, force: true });
   const sets =
-    folders === undefined
-      ? await generated(root, { scenes, arranged, setSeed })
-      : { given: folders.map((f) => resolve(f)) };
+    cases === undefined ? await generated(root, { scenes, arranged, setSeed }) : { given: cases.flatMap(scenesIn) };
   // Before the scenes are exported, which takes long.
   await pythonWith("simulators", python);
   for (const [name, list] of Object.entries(sets)) {
@@ -50,8 +48,9 @@ async function main({ scenes, arranged, setSeed, folders, quality, jobs, python,
       .map((scene) => join(exported, scene));
     /** @type {Simulated[]} */
     const results = [];
-    await runPython("simulators", [`${SECONDS}`, ...made], python, (line) => results.push(JSON.parse(line)));
+    await runPython("simulators", [`${seconds}`, ...made], python, (line) => results.push(JSON.parse(line)));
     console.log(`\n${name}: ${list.length} scenes, ${made.length} exported\n\n${tableOf(results)}`);
+    if (results.some((result) => trueBodies(result).length > 0)) console.log(`\n${errorTable(results)}`);
     if (bodies) for (const result of results) printBodies(result);
   }
 }
@@ -78,6 +77,18 @@ async function generated(root, { scenes, arranged, setSeed }) {
 }
 
 /**
+ * The scene folders in a folder, which may be one itself.
+ * @param {string} folder
+ */
+function scenesIn(folder) {
+  const isScene = (/** @type {string} */ path) => existsSync(join(path, "objects"));
+  const path = resolve(folder);
+  if (isScene(path)) return [path];
+  const found = readdirSync(path).sort();
+  return found.map((name) => join(path, name)).filter(isScene);
+}
+
+/**
  * Aligns and exports scenes, some at a time; those that are there are kept.
  * @param {readonly string[]} list
  * @param {string} folder
@@ -85,19 +96,64 @@ async function generated(root, { scenes, arranged, setSeed }) {
  * @param {number} jobs
  */
 async function exportAll(list, folder, quality, jobs) {
-  const waiting = list.map((scene, i) => ({ scene, to: join(folder, String(i).padStart(3, "0")) }));
+  const waiting = list.map((scene, i) => ({
+    scene,
+    to: join(folder, `${String(i).padStart(3, "0")}-${basename(scene)}`),
+  }));
   const worker = async () => {
     for (let next = waiting.shift(); next !== undefined; next = waiting.shift()) {
       const { scene, to } = next;
       if (existsSync(join(to, "scene.usda"))) continue;
       mkdirSync(to, { recursive: true });
       const files = ["--mjcf", join(to, "mjcf"), "--urdf", join(to, "urdf"), "--usd", join(to, "scene.usda")];
-      const args = [join(packageDir, "cli.js"), "scene", scene, "--quality", quality, ...files];
+      const json = join(to, "results.json");
+      const args = [join(packageDir, "cli.js"), "scene", scene, "--quality", quality, "--json", json, ...files];
       const { output, reason } = await attempt(process.execPath, args);
       if (reason && !existsSync(join(to, "scene.usda"))) console.log(`${scene}: ${reason}\n${output}`);
+      else writeFileSync(join(to, "truth.json"), JSON.stringify(truthOf(scene, json)));
     }
   };
   await Promise.all(Array.from({ length: jobs }, worker));
+}
+
+/**
+ * The poses that were found and the true ones, camera from mesh, by the name of the body.
+ * @param {string} scene
+ * @param {string} results the file of `--json`
+ */
+function truthOf(scene, results) {
+  const [found] = Object.values(JSON.parse(readFileSync(results, "utf8")));
+  const entries = Object.entries(found.objects).flatMap(([name, aligned]) => {
+    const file = join(scene, "objects", name, "gt.json");
+    if (!existsSync(file) || aligned.error !== undefined) return [];
+    const truth = JSON.parse(readFileSync(file, "utf8"));
+    return [[name.replace(/[^A-Za-z0-9]+/g, "_"), { aligned: sim3(aligned), truth: sim3(truth) }]];
+  });
+  return Object.fromEntries(entries);
+}
+
+/** @param {{ scale: number, rotation: number[] | number[][], translation: number[] }} pose */
+const sim3 = ({ scale, rotation, translation }) => ({ scale, rotation: rotation.flat(), translation });
+
+/**
+ * The bodies whose errors are known.
+ * @param {Simulated} result
+ */
+function trueBodies({ mujoco }) {
+  const bodies = typeof mujoco === "object" ? mujoco.bodies : [];
+  return bodies.flatMap(({ errorsMm, ...body }) => (errorsMm === undefined ? [] : [{ ...body, errorsMm }]));
+}
+
+/** @param {readonly Simulated[]} results */
+function errorTable(results) {
+  const rows = results.flatMap((result) =>
+    trueBodies(result).map(({ name, fixed, errorsMm: [found, exported, after] }) => {
+      const numbers = [found, exported, after, exported - found].map((mm) => mm.toFixed(1));
+      return [basename(result.folder), name, fixed ? "fixed" : "free", ...numbers];
+    }),
+  );
+  const headings = ["scene", "object", "", "found, mm off", "exported", "after", "exported − found"];
+  return markdownTable(headings, rows);
 }
 
 /** @param {readonly Simulated[]} results */
@@ -146,11 +202,14 @@ const whole = (text) => Number.parseInt(text, 10);
 
 await command("bench:physics", (program) =>
   program
-    .description("Which bodies of exported scenes stay within 5 mm and 5° during a second of physics.")
+    .description(
+      "Which bodies of exported scenes stay within 5 mm and 5° during a second of physics, and how far they are from true poses.",
+    )
     .option("--scenes <n>", "generated scenes of objects on a desk", whole, 20)
     .option("--arranged <n>", "generated scenes whose objects also lean, hang and lie on each other", whole, 8)
     .option("--set-seed <n>", "seed of the sets", whole, 501)
-    .option("--folders <dir...>", "scene folders instead")
+    .option("--cases <dir...>", "scene folders instead, or folders of them; true poses are compared")
+    .option("--seconds <n>", "of physics", Number, 1)
     .option("--quality <name>", "of the alignment", "auto")
     .option("--jobs <n>", "scenes aligned at a time", count, 2)
     .option("--python <program>", "the Python that makes the environment", "python3")

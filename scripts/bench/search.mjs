@@ -36,7 +36,7 @@ process.argv.splice(2, 1);
 await command(`bench:${name}`, (program) => {
   program
     .option("--cases <n>", "generated cases", count, 240)
-    .option("--set <name>", "the generated set: general (default), sensors or colors")
+    .option("--set <name>", "the generated set: general (default), sensors, colors or dilated")
     .option("--set-seed <s>", "seed of the generated set", Number, 0)
     .option("--meshes <dir>", "show the GLB files of a folder in a third of the cases")
     .option("--threads <n>", "all by default", count)

@@ -1,6 +1,7 @@
 /** `sim3align/inline`: the package in one piece, and the worker's script, whole, in it. */
 import { mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
+import { refuseForeign } from "./notices.mjs";
 import { packageDir } from "./paths.mjs";
 import { wasmFile, wasmModules } from "./wasm.mjs";
 
@@ -11,6 +12,7 @@ const common = /** @type {const} */ ({
   target: "es2022",
   define: { "import.meta.url": "undefined" },
   logLevel: "warning",
+  metafile: true,
 });
 
 /** Bundles the compiler's output in pkg/. */
@@ -21,6 +23,7 @@ export async function bundleInline() {
     wasmModules.map((module) => [module.name, readFileSync(wasmFile(module)).toString("base64")]),
   );
   const worker = await build({ ...common, entryPoints: [join(packageDir, "worker.js")], write: false, minify: true });
+  refuseForeign(worker.metafile);
   const inlined = new Map([
     ["core", base64.core],
     ["worker", worker.outputFiles[0]?.text],
@@ -33,7 +36,7 @@ export async function bundleInline() {
       writeFileSync(join(packageDir, "inline", `${name}.js`), `${exported(module)}\n`);
   }
   rmSync(join(packageDir, "inlined.d.ts"), { force: true });
-  await build({
+  const { metafile } = await build({
     ...common,
     entryPoints: [join(packageDir, "inline.js")],
     outfile: join(packageDir, "inline.js"),
@@ -56,6 +59,7 @@ export async function bundleInline() {
       },
     ],
   });
+  refuseForeign(metafile);
 }
 
 /** @param {string | undefined} text */

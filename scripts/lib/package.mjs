@@ -5,6 +5,7 @@ import { chmodSync, copyFileSync, cpSync, existsSync, mkdirSync, readFileSync, r
 import { join } from "node:path";
 import { once } from "./cache.mjs";
 import { bundleInline } from "./inline.mjs";
+import { NOTICE } from "./notices.mjs";
 import { at, glueDir, packageDir, skinDir } from "./paths.mjs";
 import { bundleReportPage } from "./report-page.mjs";
 import { attempt, nodeProgram, run } from "./run.mjs";
@@ -45,7 +46,7 @@ export function packageVersion() {
 
 function copyFiles() {
   copyFileSync(join(skinDir, "package.json"), join(packageDir, "package.json"));
-  for (const name of ["README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE"]) {
+  for (const name of ["README.md", "CHANGELOG.md", "LICENSE-MIT", "LICENSE-APACHE", NOTICE]) {
     if (!existsSync(at(name))) throw new Error(`${name} is missing. Remedy: restore it; the package carries it.`);
     copyFileSync(at(name), join(packageDir, name));
   }

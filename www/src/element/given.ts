@@ -102,4 +102,4 @@ async function objectOf({ mask, mesh }: GivenObject, { width, height }: DepthIma
 const isPixels = (mask: object): mask is PixelArray<Uint8Array> => "data" in mask && "width" in mask;
 
 const bytesOf = async (source: EncodedBytes): Promise<Uint8Array> =>
-  source instanceof Uint8Array ? source : new Uint8Array(source instanceof Blob ? await source.arrayBuffer() : source);
+  source instanceof Uint8Array ? source : new Uint8Array("arrayBuffer" in source ? await source.arrayBuffer() : source);

@@ -63,7 +63,7 @@ export interface ElementOptions {
   scaleMax: number | null;
   /** The mesh axis that points up, for a level camera and an object that stands upright. */
   up: "unknown" | "y" | "z";
-  symmetry: "auto" | "auto-revolution" | "none";
+  symmetry: "auto" | "none";
   seed: number;
 }
 

@@ -25,7 +25,7 @@ const symmetry: SelectProps<"symmetry"> = {
   name: "symmetry",
   title: "Symmetry",
   about: "Poses that differ only by a symmetry of the object are not listed as alternatives.",
-  titles: { auto: "Detect 180° symmetry", "auto-revolution": "Detect revolution too", none: "None" },
+  titles: { auto: "Find on the mesh", none: "None" },
 };
 
 function Select<K extends ChoiceName>({ name, title, about, titles }: SelectProps<K>) {

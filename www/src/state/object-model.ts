@@ -32,7 +32,7 @@ export interface ObjectParts {
   /** The mesh's file if it is a GLB. */
   glb: Uint8Array | null;
   /** The true pose and the symmetry to compare with, if known. */
-  truth: { transform: Sim3Like; symmetry: "none" | "auto" | "auto-revolution" } | null;
+  truth: { transform: Sim3Like; symmetry: "none" | "auto" } | null;
   /** Centre and extent of the depth readings in the mask, metres. */
   visible: { centreM: Vector3; sizeM: number };
 }

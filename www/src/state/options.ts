@@ -34,7 +34,7 @@ export const choices: { readonly [K in ChoiceName]: readonly Options[K][] } = {
   preset: [ALIGN_DEFAULTS.preset, PAPER_DEFAULTS.preset],
   quality: OPTION_TABLE.quality,
   up: ["unknown", "y", "z"],
-  symmetry: ["auto", "auto-revolution", "none"],
+  symmetry: ["auto", "none"],
 };
 
 /** The largest seed. */

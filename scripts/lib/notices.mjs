@@ -1,0 +1,169 @@
+/** The licences of other people's code in the package: of the crates in the modules. Its scripts hold none of npm packages. */
+import { existsSync, readdirSync, readFileSync, writeFileSync } from "node:fs";
+import { homedir } from "node:os";
+import { join } from "node:path";
+import { at } from "./paths.mjs";
+import { run } from "./run.mjs";
+import { wasmTarget } from "./setup.mjs";
+import { wasmModules } from "./wasm.mjs";
+
+/** The committed notice, which the package carries. */
+export const NOTICE = "THIRD-PARTY.txt";
+
+/** Licences that the package may carry: they ask for no more than their text. The first of several is taken. */
+const allowed = ["MIT", "Apache-2.0", "Zlib", "BSD-3-Clause", "BSD-2-Clause", "ISC", "0BSD", "Unicode-3.0"];
+
+/**
+ * @typedef {object} Part
+ * @property {string} name
+ * @property {string} version
+ * @property {string} licence an SPDX expression
+ * @property {string} folder its sources
+ */
+
+/**
+ * The licences that are taken of an expression: one of each alternative, all of those that hold together.
+ * @param {string} expression
+ * @returns {string[] | undefined} `undefined` if none of the alternatives is allowed
+ */
+export function takenOf(expression) {
+  // Cargo once wrote OR as a slash.
+  const plain = expression.replaceAll("/", " OR ").trim();
+  const parts = topLevel(plain, " OR ");
+  if (parts.length > 1) {
+    const found = parts.flatMap((part) => [takenOf(part) ?? []]).filter((taken) => taken.length > 0);
+    const rank = (/** @type {string[]} */ taken) => Math.max(...taken.map((name) => allowed.indexOf(name)));
+    return found.sort((a, b) => rank(a) - rank(b))[0];
+  }
+  const all = topLevel(plain, " AND ");
+  if (all.length > 1) {
+    const taken = all.map(takenOf);
+    return taken.includes(undefined) ? undefined : taken.flatMap((names) => names ?? []);
+  }
+  if (/^\(.*\)$/.test(plain)) return takenOf(plain.slice(1, -1));
+  return allowed.includes(plain) ? [plain] : undefined;
+}
+
+/**
+ * Parts of an expression between an operator, outside of parentheses.
+ * @param {string} text
+ * @param {string} operator
+ */
+function topLevel(text, operator) {
+  /** @type {string[]} */
+  const parts = [];
+  let [depth, from] = [0, 0];
+  for (let i = 0; i < text.length; i++) {
+    if (text[i] === "(") depth += 1;
+    if (text[i] === ")") depth -= 1;
+    if (depth > 0 || !text.startsWith(operator, i)) continue;
+    parts.push(text.slice(from, i));
+    from = i + operator.length;
+  }
+  return [...parts, text.slice(from)];
+}
+
+/** The crates that the modules link, without those that only run while they are compiled. */
+async function crates() {
+  const selected = wasmModules.flatMap(({ crate }) => ["--package", crate]);
+  const listed = await run("cargo", [
+    ...["tree", "--locked", "--target", wasmTarget, "--edges", "normal,no-proc-macro", "--prefix", "none"],
+    ...["--format", "{p}|{l}", ...selected],
+  ]);
+  const registry = join(process.env.CARGO_HOME ?? join(homedir(), ".cargo"), "registry", "src");
+  const folders = readdirSync(registry).map((folder) => join(registry, folder));
+  /** @type {Map<string, Part>} */
+  const found = new Map();
+  for (const line of listed.split("\n")) {
+    const [, name = "", version = "", own, licence = ""] =
+      /^(\S+) v(\S+)( \(.*\))?\|(.*?)(?: \(\*\))?$/.exec(line) ?? [];
+    if (name === "" || own !== undefined) continue;
+    const folder = folders.map((place) => join(place, `${name}-${version}`)).find((path) => existsSync(path));
+    if (folder === undefined) throw new Error(`The sources of ${name} ${version} are missing. Remedy: cargo fetch.`);
+    found.set(`${name} ${version}`, { name, version, licence, folder });
+  }
+  if (found.size === 0) throw new Error("cargo tree names no crate of the modules.");
+  return [...found.values()].sort((a, b) => (`${a.name} ${a.version}` < `${b.name} ${b.version}` ? -1 : 1));
+}
+
+/**
+ * Checks that a bundle of the package holds no npm package, whose licence the notice would lack.
+ * @param {{ inputs: Readonly<Record<string, unknown>> }} metafile of esbuild
+ */
+export function refuseForeign({ inputs }) {
+  const foreign = Object.keys(inputs).filter((path) => path.includes("node_modules/"));
+  if (foreign.length === 0) return;
+  throw new Error(
+    `A script of the package holds ${foreign.join(", ")}. Remedy: add the licence to scripts/lib/notices.mjs.`,
+  );
+}
+
+/**
+ * The licence texts of a crate, those of what is taken if it has several.
+ * @param {Part} part
+ * @param {readonly string[]} taken
+ */
+function textsOf({ folder }, taken) {
+  const files = readdirSync(folder)
+    .filter((name) => /^(licen[cs]e|copying|notice)/i.test(name))
+    .sort();
+  const marks = taken.map((licence) => new RegExp(licence.split("-")[0] ?? licence, "i"));
+  const named = files.filter((name) => marks.some((mark) => mark.test(name)));
+  const chosen = named.length > 0 ? [...named, ...files.filter((name) => /^notice/i.test(name))] : files;
+  return [...new Set(chosen)].map((name) =>
+    readFileSync(join(folder, name), "utf8")
+      .replaceAll("\r\n", "\n")
+      .replace(/[ \t]+$/gm, "")
+      .replace(/^\n+|\n+$/g, ""),
+  );
+}
+
+const RULE = "-".repeat(80);
+
+/** The terms of Apache-2.0, without spaces and what follows them: copies differ in these. */
+const termsOf = (/** @type {string} */ text) =>
+  /Apache License.*?END OF TERMS AND CONDITIONS/s.exec(text)?.[0].replace(/\s+/g, "");
+
+/** The notice, as text. Equal texts stand once. */
+async function notice() {
+  /** @type {Map<string, string[]>} */
+  const owners = new Map();
+  const own = readFileSync(at("LICENSE-APACHE"), "utf8").trim();
+  const lines = [];
+  for (const part of await crates()) {
+    const title = `${part.name} ${part.version}`;
+    const taken = takenOf(part.licence);
+    if (taken === undefined) {
+      throw new Error(`${title} has the licence ${part.licence || "unknown"}. Remedy: allow it, or do without it.`);
+    }
+    const texts = textsOf(part, taken);
+    // Some crates hold no text. That of Apache-2.0 names no owner: it is that of the package.
+    const isWithout = texts.length === 0;
+    if (isWithout && !part.licence.includes("Apache-2.0")) {
+      throw new Error(`${title} holds no text of ${part.licence}. Remedy: add it to scripts/lib/notices.mjs.`);
+    }
+    lines.push(`${title.padEnd(32)} ${isWithout ? "Apache-2.0" : taken.join(" AND ")}`);
+    const isOwn = (/** @type {string} */ text) => /^\s*Apache License/.test(text) && termsOf(text) === termsOf(own);
+    for (const text of isWithout ? [own] : texts.map((each) => (isOwn(each) ? own : each)))
+      owners.set(text, [...(owners.get(text) ?? []), title]);
+  }
+  const head = `Third-party notices of sim3align
+
+The WebAssembly modules in wasm/ and inline/ hold code of the crates below, and of the standard library of Rust
+(MIT OR Apache-2.0; its text is LICENSE-APACHE). Where a crate can be had under several licences, that under which it is used
+is named. Written by "npm run notices".
+`;
+  const texts = [...owners].map(([text, titles]) => `${RULE}\n${titles.join(", ")}\n${RULE}\n\n${text}\n`);
+  return `${head}\n${lines.join("\n")}\n\n${texts.join("\n")}`;
+}
+
+/** Writes the notice. */
+export async function writeNotice() {
+  writeFileSync(at(NOTICE), await notice());
+}
+
+/** Checks that the committed notice is that of what the modules link. */
+export async function checkNotice() {
+  if (existsSync(at(NOTICE)) && readFileSync(at(NOTICE), "utf8") === (await notice())) return;
+  throw new Error(`${NOTICE} is not up to date. Remedy: \`npm run notices\`, and review what has changed.`);
+}
