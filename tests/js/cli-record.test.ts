@@ -32,7 +32,9 @@ test("a case is resumed whatever it is called: from other folders, with other ca
   const record = ["--jsonl", "batch.jsonl", "--resume"];
   run("align", "left/mug", "left/pan", ...record);
   assert.deepEqual(
-    entries("batch.jsonl").map((entry) => entry.case),
+    entries("batch.jsonl")
+      .map((entry) => entry.case)
+      .sort(),
     ["mug", "pan"],
   );
   const all = run("align", "left/*", "right/*", ...record, "--json", "batch.json");

@@ -2,13 +2,16 @@
 #![allow(unsafe_code)]
 
 use std::alloc::{GlobalAlloc, Layout, System};
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::cell::Cell;
 
 /// Bytes beyond which allocations fail: WebAssembly's own limit.
-const LIMIT: u64 = 1 << 32;
+const LIMIT: i64 = 1 << 32;
 
-static CURRENT: AtomicUsize = AtomicUsize::new(0);
-static PEAK: AtomicUsize = AtomicUsize::new(0);
+// Per thread: a call runs on one, and others may run beside it. Signed, for a thread may free what another one allocated.
+thread_local! {
+    static CURRENT: Cell<i64> = const { Cell::new(0) };
+    static PEAK: Cell<i64> = const { Cell::new(0) };
+}
 
 /// The system's allocator, counted. To be declared as the `#[global_allocator]` of a program that measures memory.
 pub struct CountingAllocator;
@@ -32,7 +35,7 @@ unsafe impl GlobalAlloc for CountingAllocator {
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        CURRENT.fetch_sub(layout.size(), Ordering::Relaxed);
+        count_freed(layout.size());
         // SAFETY: the caller's pointer, which the system's allocator returned.
         unsafe { System.dealloc(pointer, layout) }
     }
@@ -41,7 +44,7 @@ unsafe impl GlobalAlloc for CountingAllocator {
         if !has_room(new_size) {
             return core::ptr::null_mut();
         }
-        CURRENT.fetch_sub(layout.size(), Ordering::Relaxed);
+        count_freed(layout.size());
         // SAFETY: the caller's pointer, which the system's allocator returned.
         unsafe { System.realloc(pointer, layout, new_size) }
     }
@@ -49,21 +52,25 @@ unsafe impl GlobalAlloc for CountingAllocator {
 
 /// Counts an allocation, unless it would exceed the limit.
 fn has_room(bytes: usize) -> bool {
-    let current = CURRENT.fetch_add(bytes, Ordering::Relaxed).saturating_add(bytes);
-    if current as u64 > LIMIT {
-        CURRENT.fetch_sub(bytes, Ordering::Relaxed);
+    let current = CURRENT.get().saturating_add(i64::try_from(bytes).unwrap_or(i64::MAX));
+    if current > LIMIT {
         return false;
     }
-    PEAK.fetch_max(current, Ordering::Relaxed);
+    CURRENT.set(current);
+    PEAK.set(PEAK.get().max(current));
     true
 }
 
-/// Forgets the peak so far.
-pub fn reset_peak() {
-    PEAK.store(CURRENT.load(Ordering::Relaxed), Ordering::Relaxed);
+fn count_freed(bytes: usize) {
+    CURRENT.set(CURRENT.get() - bytes as i64);
 }
 
-/// The most bytes that were allocated at once since [`reset_peak`]; 0 where the program does not count.
+/// Forgets the peak of this thread so far.
+pub fn reset_peak() {
+    PEAK.set(CURRENT.get());
+}
+
+/// The most bytes that this thread had allocated at once since [`reset_peak`]; 0 where the program does not count.
 pub fn peak_bytes() -> usize {
-    PEAK.load(Ordering::Relaxed)
+    usize::try_from(PEAK.get()).unwrap_or(0)
 }

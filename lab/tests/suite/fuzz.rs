@@ -12,7 +12,7 @@ use sim3align_lab::fuzz::target::{Ceilings, Execution, TARGETS, Target};
 #[global_allocator]
 static ALLOCATOR: CountingAllocator = CountingAllocator;
 
-/// No test depends on time; memory is counted over all tests, which run side by side.
+/// No test depends on time.
 const CEILINGS: Ceilings = Ceilings { seconds: f64::INFINITY, bytes: usize::MAX };
 
 /// Prints which call it was when the code under test panics.
@@ -134,7 +134,11 @@ fn minimising_keeps_what_matters() {
 #[test]
 fn memory_is_counted() {
     reset_peak();
-    let before = peak_bytes();
-    drop(vec![1_u8; 300 << 20]);
-    assert!(peak_bytes() >= before.max(300 << 20), "{} after {before}", peak_bytes());
+    // The optimiser removes an allocation that nothing sees.
+    drop(std::hint::black_box(vec![1_u8; 300 << 20]));
+    let peak = peak_bytes() >> 20;
+    // What the thread was given by others, and has freed, is not its own.
+    assert!((299..310).contains(&peak), "{peak} MB");
+    reset_peak();
+    assert!(peak_bytes() >> 20 < 10, "{} MB", peak_bytes() >> 20);
 }
