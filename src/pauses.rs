@@ -46,10 +46,13 @@ impl Pauses {
     }
 }
 
+/// A call on the heap, whose code is not copied into that of its caller: the modules are smaller.
+pub type Call<'a, T> = Pin<Box<dyn Future<Output = T> + 'a>>;
+
 /// A call in steps.
 pub struct Task<'a, T> {
     pauses: Rc<Pauses>,
-    call: Option<Pin<Box<dyn Future<Output = Result<T>> + 'a>>>,
+    call: Option<Call<'a, Result<T>>>,
 }
 
 impl<'a, T: 'a> Task<'a, T> {
@@ -85,8 +88,8 @@ impl<'a, T: 'a> Task<'a, T> {
     }
 }
 
-/// A call on the heap, whose code is not copied into that of its caller: the modules are smaller.
-pub fn boxed<'a, F: Future + 'a>(call: F) -> Pin<Box<dyn Future<Output = F::Output> + 'a>> {
+/// Puts a call on the heap.
+pub fn boxed<'a, F: Future + 'a>(call: F) -> Call<'a, F::Output> {
     Box::pin(call)
 }
 

@@ -3,22 +3,24 @@
 pub mod evaluate;
 pub mod method;
 mod outcome;
-pub mod task;
+pub mod search;
 pub mod warnings;
+
+use core::borrow::Borrow;
 
 use crate::error::Result;
 use crate::evidence::observation::Observation;
 use crate::geometry::mesh::Mesh;
 use crate::paper;
 use crate::paper::options::PaperOptions;
-use crate::precise::SearchSettings;
+use crate::pauses::{Call, Pauses, Task, boxed, finished};
 use crate::precise::options::AlignOptions;
 use crate::precise::prepared_mesh::PreparedMesh;
 use crate::progress::Host;
 use crate::report::{Alignment, AnyAlignment, PaperAlignment};
 use method::Method;
 pub use outcome::{Setup, align_by};
-use task::AlignTask;
+use search::{Request, Search};
 
 /// Aligns a mesh with an observation by search by rendering.
 ///
@@ -27,22 +29,54 @@ use task::AlignTask;
 /// [`ErrorCode::DegenerateMesh`](crate::error::ErrorCode::DegenerateMesh),
 /// [`ErrorCode::NoConsensus`](crate::error::ErrorCode::NoConsensus): the identity is never returned instead.
 pub fn align(observation: &Observation, mesh: &Mesh, options: &AlignOptions, host: &mut dyn Host) -> Result<Alignment> {
-    align_with(observation, mesh, options, crate::precise::efforts(options), host)
+    align_prepared(observation, &PreparedMesh::borrowed(mesh), Request::new(options.clone())?, host)
 }
 
-/// [`align`] with explicit settings of the searches instead of those derived from the options, for ablations.
+/// [`align`] with a prepared mesh, which may have colours.
 ///
 /// # Errors
 /// As [`align`].
-pub fn align_with(
+pub fn align_prepared(
     observation: &Observation,
-    mesh: &Mesh,
-    options: &AlignOptions,
-    efforts: Vec<SearchSettings>,
+    mesh: &PreparedMesh<'_>,
+    request: Request,
     host: &mut dyn Host,
 ) -> Result<Alignment> {
-    let task = AlignTask::new(observation, PreparedMesh::borrowed(mesh), options.clone(), host)?;
-    task.with_efforts(efforts).finish()
+    finished(align_with_pauses(observation, mesh, &request, host, &Pauses::none()))
+}
+
+/// [`align`] in steps. The task owns or borrows its observation and mesh.
+///
+/// # Errors
+/// [`ErrorCode::InvalidOption`](crate::error::ErrorCode::InvalidOption).
+pub fn align_task<'a, 'm: 'a>(
+    observation: impl Borrow<Observation> + 'a,
+    mesh: impl Borrow<PreparedMesh<'m>> + 'a,
+    options: AlignOptions,
+    mut host: impl Host + 'a,
+    clock: fn() -> f64,
+) -> Result<Task<'a, Alignment>> {
+    let request = Request::new(options)?;
+    Ok(Task::new(Pauses::new(clock, None), |pauses| async move {
+        align_with_pauses(observation.borrow(), mesh.borrow(), &request, &mut host, &pauses).await
+    }))
+}
+
+/// The recipe of [`align`].
+fn align_with_pauses<'a>(
+    observation: &'a Observation,
+    mesh: &'a PreparedMesh<'_>,
+    request: &'a Request,
+    host: &'a mut dyn Host,
+    pauses: &'a Pauses,
+) -> Call<'a, Result<Alignment>> {
+    boxed(async move {
+        let mut search = Search::begin(observation, mesh, request, host, pauses).await?;
+        let clouds = search.clouds().await?;
+        let searched = search.search().await?;
+        let colors = search.colors(&searched).await;
+        search.finish(clouds, searched, colors.as_ref())
+    })
 }
 
 /// Aligns a mesh with an observation by the method of the paper.

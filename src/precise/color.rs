@@ -19,13 +19,14 @@ use super::recipe::{FINE, FINEST, MIDDLE, SearchSettings};
 use super::refine::Refiner;
 use super::render::Canvas;
 use super::rounds::Rounds;
-use super::score::NOISE;
+use super::score::{NOISE, Score};
 use super::search::{Found, Search};
 use crate::evidence::observation::Observation;
 use crate::evidence::photo::{Photo, PhotoRegion};
 use crate::geometry::rotations::{angle_between, exp};
 use crate::geometry::similarity::Similarity;
 use crate::geometry::surface_colors::SurfaceColors;
+use crate::pauses::{Call, Pauses, boxed};
 use crate::report::{ColorReport, Effort};
 
 /// Contrast between two poses, relative to the noise, from which on they look different.
@@ -37,19 +38,9 @@ const STEPS: [usize; 2] = [4, 6];
 /// Standard deviation of a rotation, radians, from which on colour refines it.
 pub const LOOSE: f64 = 0.05;
 
-/// The comparison of a search's poses with the photo, in steps.
-pub struct ColorStage {
-    photo: PhotoCells,
-    /// What is still to be compared, last first.
-    queue: Vec<Lookalike<CropPose>>,
-    compared: Vec<Compared>,
-}
-
 /// A pose whose shape is within noise of the best one.
 struct Compared {
     found: Found,
-    /// Its score with the mesh as it is.
-    own: f32,
     appearance: Appearance,
     look: Look,
 }
@@ -81,101 +72,86 @@ pub struct Judgment {
     pub is_used: bool,
 }
 
-impl ColorStage {
-    /// Prepares the comparison. `image` is the size of the depth map in pixels.
-    pub fn new(rounds: &Rounds, photo: &Photo) -> Self {
-        let search = &rounds.search;
-        let queue = lookalikes(rounds).into_iter().rev().collect();
-        Self { photo: cells(photo, search), queue, compared: Vec::new() }
-    }
+/// What the photo says about the poses that a search has found, with a pause point after each comparison.
+pub fn judgment<'a>(
+    rounds: &'a Rounds,
+    photo: &'a Photo,
+    colors: &'a SurfaceColors,
+    pauses: &'a Pauses,
+) -> Call<'a, Judgment> {
+    boxed(async move {
+        let photo = cells(photo, &rounds.search);
+        let compared = compared(rounds, &photo, colors, pauses).await;
+        chosen(rounds, &photo, colors, &compared)
+    })
+}
 
-    /// Compares poses until all are or `pause`, which is called after each, returns true. Returns whether all are.
-    pub fn run(&mut self, rounds: &Rounds, colors: &SurfaceColors, pause: &mut dyn FnMut() -> bool) -> bool {
-        let search = &rounds.search;
-        let Some(best) = rounds.found.first() else { return true };
-        let mut canvas = Canvas::default();
-        if self.compared.is_empty() {
-            let Some(compared) = self.compare(rounds, colors, &mut canvas, best.pose, Some(best)) else {
-                self.queue.clear();
-                return true;
-            };
-            self.compared.push(compared);
-        }
-        let middle = search.grid(MIDDLE);
-        let refiner = Refiner { objective: search.objective(MIDDLE, &middle), lock_scale: search.settings.lock_scale };
-        while let Some(Lookalike { pose, likeness }) = self.queue.pop() {
-            let is_rough = likeness == Likeness::Rough;
-            // A turn of the best pose doubles its error. What the search has found near the turn is more accurate.
-            let is_near = |a: &CropPose, b: &CropPose| angle_between(a.rotation, b.rotation) < 0.5 * RIVAL;
-            let known = rounds.found.iter().skip(1).find(|found| is_near(&found.pose, &pose));
-            let pose = match known {
-                Some(found) => found.pose,
-                None if is_rough => refiner.refine(&mut canvas, pose, STEPS[0]).pose,
-                None => pose,
-            };
-            let is_compared =
-                |other: &Compared| other.found.pose == pose || is_rough && is_near(&other.found.pose, &pose);
-            let is_new = !self.compared.iter().any(is_compared);
-            if is_new
-                && let Some(compared) = self.compare(rounds, colors, &mut canvas, pose, known)
-                // What a symmetry makes equivalent is compared, whatever the inaccuracy of the mesh takes off its score.
-                && (likeness == Likeness::Equal || compared.found.score.total > best.score.total - NOISE)
-            {
-                self.compared.push(compared);
-            }
-            if pause() && !self.queue.is_empty() {
-                return false;
-            }
-        }
-        true
+/// Chooses among the compared poses.
+fn chosen(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, compared: &[Compared]) -> Judgment {
+    let looks = compared.iter().map(|compared| compared.look).collect();
+    let differ = |a: usize, b: usize| {
+        let [a, b] = [a, b].map(|k| &compared[k]);
+        are_rivals(a.found.pose.rotation, b.found.pose.rotation) && a.appearance.difference(&b.appearance) > DIFFERENT
+    };
+    let Some(choice) = Choice::among(looks, differ) else { return Judgment::none() };
+    let is_changed = choice.chosen != 0;
+    let mut found = compared[choice.chosen].found;
+    if is_changed {
+        found.pose = polished(rounds, found.pose);
     }
-
-    /// Renders a pose; `None` if nothing can be compared. `known` is its ranking, if it has
-    /// one.
-    fn compare(
-        &self,
-        rounds: &Rounds,
-        colors: &SurfaceColors,
-        canvas: &mut Canvas,
-        pose: CropPose,
-        known: Option<&Found>,
-    ) -> Option<Compared> {
-        let (search, best) = (&rounds.search, rounds.found.first()?);
-        let mut score = search.objective(FINE, &search.fine).score(canvas, &pose);
-        let own = score.total;
-        // The scores of the ranking are those of the mesh in better proportions. Other poses are compared, as the mesh is, with
-        // the best one, which is the first.
-        let of_first = self.compared.first().map_or(own, |first| first.own);
-        let shape = known.map_or(own - of_first, |known| known.score.total - best.score.total);
-        score.total = best.score.total + shape;
-        let appearance = self.photo.compare(canvas, colors, &search.mesh.frame, &search.fine)?;
-        let look = Look::new(appearance.agreement, shape);
-        Some(Compared { found: Found { pose, score, ..*best }, own, appearance, look })
+    let rolled = if choice.is_used { roll(&rounds.search, photo, colors, found.pose, LOOSE) } else { None };
+    let gain = rolled.map_or(0.0, |(_, gain)| gain);
+    if let Some((pose, _)) = rolled {
+        found.pose = pose;
     }
+    let pose_of = |k: usize| compared.get(k).map(|compared| compared.found);
+    let is_other = is_changed || rolled.is_some();
+    Judgment::new(&choice, (found, is_other), pose_of, gain, &rounds.search.equivalence)
+}
 
-    /// Chooses among the compared poses.
-    pub fn judge(&self, rounds: &Rounds, colors: &SurfaceColors) -> Judgment {
-        let looks = self.compared.iter().map(|compared| compared.look).collect();
-        let differ = |a: usize, b: usize| {
-            let [a, b] = [a, b].map(|k| &self.compared[k]);
-            are_rivals(a.found.pose.rotation, b.found.pose.rotation)
-                && a.appearance.difference(&b.appearance) > DIFFERENT
+/// The poses of a search that shape cannot tell from the best one, which is the first, and what they look like. Empty if
+/// nothing can be compared.
+async fn compared(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, pauses: &Pauses) -> Vec<Compared> {
+    let search = &rounds.search;
+    let mut canvas = Canvas::default();
+    let look_at = |canvas: &mut Canvas, pose: CropPose| {
+        let score = search.objective(FINE, &search.fine).score(canvas, &pose);
+        Some((score, photo.compare(canvas, colors, &search.mesh.frame, &search.fine)?))
+    };
+    let Some(best) = rounds.found.first() else { return Vec::new() };
+    let Some((of_best, appearance)) = look_at(&mut canvas, best.pose) else { return Vec::new() };
+    let look = Look::new(appearance.agreement, 0.0);
+    let score = Score { total: best.score.total, ..of_best };
+    let mut list = vec![Compared { found: Found { score, ..*best }, appearance, look }];
+    let middle = search.grid(MIDDLE);
+    let refiner = Refiner { objective: search.objective(MIDDLE, &middle), lock_scale: search.settings.lock_scale };
+    for Lookalike { pose, likeness } in lookalikes(rounds) {
+        let is_rough = likeness == Likeness::Rough;
+        // A turn of the best pose doubles its error. What the search has found near the turn is more accurate.
+        let is_near = |a: &CropPose, b: &CropPose| angle_between(a.rotation, b.rotation) < 0.5 * RIVAL;
+        let known = rounds.found.iter().skip(1).find(|found| is_near(&found.pose, &pose));
+        let pose = match known {
+            Some(found) => found.pose,
+            None if is_rough => refiner.refine(&mut canvas, pose, STEPS[0]).pose,
+            None => pose,
         };
-        let Some(choice) = Choice::among(looks, differ) else { return Judgment::none() };
-        let is_changed = choice.chosen != 0;
-        let mut found = self.compared[choice.chosen].found;
-        if is_changed {
-            found.pose = polished(rounds, found.pose);
+        let is_compared = |other: &Compared| other.found.pose == pose || is_rough && is_near(&other.found.pose, &pose);
+        if !list.iter().any(is_compared)
+            && let Some((mut score, appearance)) = look_at(&mut canvas, pose)
+        {
+            // The scores of the ranking are those of the mesh in better proportions. Other poses are compared, as the mesh
+            // is, with the best one.
+            let shape = known.map_or(score.total - of_best.total, |known| known.score.total - best.score.total);
+            score.total = best.score.total + shape;
+            // What a symmetry makes equivalent is compared, whatever the inaccuracy of the mesh takes off its score.
+            if likeness == Likeness::Equal || score.total > best.score.total - NOISE {
+                let look = Look::new(appearance.agreement, shape);
+                list.push(Compared { found: Found { pose, score, ..*best }, appearance, look });
+            }
         }
-        let rolled = if choice.is_used { roll(&rounds.search, &self.photo, colors, found.pose, LOOSE) } else { None };
-        let gain = rolled.map_or(0.0, |(_, gain)| gain);
-        if let Some((pose, _)) = rolled {
-            found.pose = pose;
-        }
-        let pose_of = |k: usize| self.compared.get(k).map(|compared| compared.found);
-        let is_other = is_changed || rolled.is_some();
-        Judgment::new(&choice, (found, is_other), pose_of, gain, &rounds.search.equivalence)
+        pauses.point(0.0).await;
     }
+    list
 }
 
 /// Whether two poses are so far apart that one of them is wrong.

@@ -51,6 +51,7 @@ use crate::geometry::cloud::Bounds;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::rotations::super_fibonacci;
 use crate::geometry::similarity::Similarity;
+use crate::pauses::Pauses;
 use crate::precise::options::{AlignOptions, ExtentAxis, SearchScope};
 use crate::progress::{Stage, Stopwatch};
 use crate::report::{Alternative, ColorReport, Counts, Effort, ScoreTerms, Solution, Uncertainty};
@@ -119,11 +120,8 @@ pub fn begin(
 pub fn look(rounds: &Rounds) -> Option<Rounds> {
     let best = rounds.found.first()?;
     let search = &rounds.search;
-    let settings = search.settings.look();
-    let count = settings.rotations();
-    let mut again = Search::new(search.observation.clone(), search.mesh.clone(), settings);
-    again.assume(search.prior);
-    again.equivalence = search.equivalence.clone();
+    let again = search.again(search.settings.look());
+    let count = again.settings.rotations();
     let rotations = (0..count).map(|i| super_fibonacci(i, count));
     let rotations =
         rotations.filter(|rotation| search.equivalence.angle(best.pose.rotation, *rotation) > ELSEWHERE).collect();
@@ -157,17 +155,6 @@ pub struct Told<'a> {
     /// What is known of the surroundings of the object.
     pub known: Neighbourhood,
 }
-
-/// The type of [`resume`].
-pub type Resume = fn(
-    &Observation,
-    &PreparedMesh<'_>,
-    Option<Rc<CleanObservation>>,
-    Told<'_>,
-    &AlignOptions,
-    &SearchSettings,
-    &mut Stopwatch<'_>,
-) -> Result<Rounds>;
 
 /// A search among the poses that another one has found, with what is known of the surroundings of the object. Without
 /// surroundings, the result is that of the other search. If that was not sure, the rotations in which the mesh stands on
@@ -234,25 +221,16 @@ pub fn decimate(
     mesh.pyramid(&settings.grids).ok_or_else(no_candidate)
 }
 
-/// Continues a search until it ends or `pause` returns true. Returns whether it has ended. `share` is the progress at its
-/// start and end, 0 to 1.
-pub fn run(
-    rounds: &mut Rounds,
-    share: &Range<f64>,
-    pause: &mut dyn FnMut() -> bool,
-    stages: &mut Stopwatch<'_>,
-) -> bool {
+/// Runs a search to its end. `share` is the progress at its start and end, 0 to 1.
+pub async fn run(rounds: &mut Rounds, share: &Range<f64>, pauses: &Pauses, stages: &mut Stopwatch<'_>) {
     while let Some(round) = rounds.round() {
         let is_refinement = matches!(round.task, Task::Refine | Task::Turn | Task::Fit);
         if is_refinement && stages.running() != Some(Stage::Refine) {
             stages.enter(Stage::Refine);
         }
-        if !rounds.run(pause) {
-            return false;
-        }
+        rounds.run(pauses).await;
         stages.reach(share.start + (share.end - share.start) * round.done, rounds.best());
     }
-    true
 }
 
 /// The reliability of the pose.

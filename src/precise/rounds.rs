@@ -1,7 +1,6 @@
 //! Rounds: a search as lists of independent tasks.
 //!
-//! The results of a round, in the order of its tasks, determine the next round; ties are broken by that order. A search
-//! can therefore pause after any task, with bit-identical results.
+//! The results of a round, in the order of its tasks, determine the next round; ties are broken by that order.
 
 use glam::DQuat;
 
@@ -16,6 +15,7 @@ use super::render::Canvas;
 use super::search::{Found, Search};
 use crate::geometry::rotations::super_fibonacci;
 use crate::geometry::similarity::Similarity;
+use crate::pauses::{Call, Pauses, boxed};
 
 /// Score below the best pose at which a turn of it is not refined, and at which a refined one is not ranked.
 const FAR: f32 = 0.8;
@@ -28,6 +28,9 @@ const SAME: f64 = 0.25;
 
 /// Rotations after which the work of a round on the rotation grid is known.
 const PROBED_ROTATIONS: usize = 16;
+
+/// The work of a round on the rotation grid, where it is more than its allowance.
+struct TooLong(u64);
 
 /// A running search.
 pub struct Rounds {
@@ -45,12 +48,6 @@ pub struct Rounds {
     anchors: Vec<Anchor>,
     /// Initial poses of the tasks of the round; the rotations of the first round need no list.
     poses: Vec<CropPose>,
-    /// Results of the finished tasks of the round, in order, and the number of these tasks.
-    outcomes: Vec<Found>,
-    tasks_done: usize,
-    /// Work of the round so far, and the work after which it ends; see [`Canvas::work`].
-    work: u64,
-    allowance: u64,
     /// Candidates from other sources than the rotation grid, which precede those of the grid.
     others: Vec<CropPose>,
     /// The best candidate of the last round, if any.
@@ -76,10 +73,6 @@ impl Rounds {
             rotations: Vec::new(),
             anchors,
             poses: if global { Vec::new() } else { around.clone() },
-            outcomes: Vec::new(),
-            tasks_done: 0,
-            work: 0,
-            allowance: 0,
             others: around,
             best: Vec::new(),
             unturned: Vec::new(),
@@ -126,7 +119,7 @@ impl Rounds {
         list.extend(poses);
     }
 
-    /// The work of the current round that its inputs may ask for.
+    /// The work of the current round that its inputs may ask for; see [`Canvas::work`].
     fn allowed(&self, round: Round) -> u64 {
         let settings = &self.search.settings;
         let per_task = match round.task {
@@ -170,30 +163,39 @@ impl Rounds {
         }
     }
 
-    /// Runs tasks of the current round until `pause`, which is called after each, returns true. After the last task,
-    /// starts the next round. Returns whether the round has ended.
-    pub fn run(&mut self, pause: &mut dyn FnMut() -> bool) -> bool {
-        let Some(round) = self.round() else { return true };
-        if self.tasks_done == 0 && self.allowance == 0 {
-            self.allowance = self.allowed(round);
-        }
+    /// Runs the current round, with a pause point after each of its tasks, and begins the next one.
+    pub fn run<'a>(&'a mut self, pauses: &'a Pauses) -> Call<'a, ()> {
+        boxed(async move {
+            let Some(mut round) = self.round() else { return };
+            let allowance = self.allowed(round);
+            let outcomes = loop {
+                match self.outcomes(round, allowance, pauses).await {
+                    Ok(outcomes) => break outcomes,
+                    Err(TooLong(work)) => round = self.rotate_less(work, allowance),
+                }
+            };
+            self.end_round(round, outcomes);
+        })
+    }
+
+    /// The results of the tasks of a round, in order, of as many as its allowance is enough for.
+    async fn outcomes(&self, round: Round, allowance: u64, pauses: &Pauses) -> Result<Vec<Found>, TooLong> {
         let search = &self.search;
         let grid = if round.grid == FINE { &search.fine } else { &self.grid };
         let objective = search.objective(round.grid, grid);
         let coarse = Coarse { objective, median_m: search.observation.median_m };
         let refiner = Refiner { objective, lock_scale: search.settings.lock_scale };
         let mut canvas = Canvas::default();
-        let mut tried = Vec::new();
-        while self.tasks_done < self.tasks() {
-            let task = self.tasks_done;
+        let (mut outcomes, mut tried) = (Vec::new(), Vec::new());
+        for task in 0..self.tasks() {
             match round.task {
                 Task::Rotate => {
                     let rotation = self.rotations.get(task).copied();
                     let rotation = rotation.unwrap_or_else(|| super_fibonacci(task, round.work));
                     coarse.try_anchors(&mut canvas, &search.mesh.outermost, rotation, &self.anchors, &mut tried);
-                    self.outcomes.extend(tried.drain(..).map(Found::from));
+                    outcomes.extend(tried.drain(..).map(Found::from));
                 }
-                Task::Place => self.outcomes.push(coarse.at_its_distance(&mut canvas, self.poses[task]).into()),
+                Task::Place => outcomes.push(coarse.at_its_distance(&mut canvas, self.poses[task]).into()),
                 Task::Turn | Task::Refine => {
                     let (mut pose, mut steps) = (self.poses[task], round.work);
                     if round.task == Task::Turn {
@@ -203,51 +205,39 @@ impl Rounds {
                             steps = 0;
                         }
                     }
-                    self.outcomes.push(refiner.refine(&mut canvas, pose, steps).into());
+                    outcomes.push(refiner.refine(&mut canvas, pose, steps).into());
                 }
                 Task::Fit => {
                     let (pose, surface) = (self.poses[task], &search.mesh.surface);
-                    self.outcomes.push(refiner.refine_in_proportion(&mut canvas, pose, round.work, surface).into());
+                    outcomes.push(refiner.refine_in_proportion(&mut canvas, pose, round.work, surface).into());
                 }
             }
-            self.tasks_done += 1;
-            self.work += core::mem::take(&mut canvas.work);
-            if round.task == Task::Rotate {
-                let all = self.work * self.tasks() as u64 / self.tasks_done as u64;
-                if self.rotations.is_empty()
-                    && self.tasks_done == PROBED_ROTATIONS
-                    && all > self.allowance
-                    && self.tasks() > MIN_ROTATIONS
-                {
-                    self.rotate_less(all);
-                    return self.run(pause);
-                }
-            } else if self.work > self.allowance {
+            if round.task != Task::Rotate && canvas.work > allowance {
                 // The poses are sorted, so that the best ones have had their turn.
                 break;
             }
-            if pause() && self.tasks_done < self.tasks() {
-                return false;
+            let is_probed = round.task == Task::Rotate && task + 1 == PROBED_ROTATIONS && self.rotations.is_empty();
+            let all = canvas.work * self.tasks() as u64 / (task + 1) as u64;
+            if is_probed && all > allowance && self.tasks() > MIN_ROTATIONS {
+                return Err(TooLong(all));
             }
+            pauses.point(0.0).await;
         }
-        self.end_round(round);
-        true
+        Ok(outcomes)
     }
 
-    /// Begins the rotation grid again, with as many rotations as are allowed if all of them take this much `work`. The
-    /// first rotations of a grid are close to one another, so that the round cannot just end early.
-    fn rotate_less(&mut self, work: u64) {
-        let rotations = self.tasks() as u64 * self.allowance / work.max(1);
-        self.search.settings.rounds[0].work = (rotations as usize).max(MIN_ROTATIONS);
-        self.outcomes.clear();
-        (self.tasks_done, self.work) = (0, 0);
+    /// Reduces the rotation grid to as many rotations as are allowed if all of them take this much `work`. The first
+    /// rotations of a grid are close to one another, so that the round cannot just end early.
+    fn rotate_less(&mut self, work: u64, allowance: u64) -> Round {
+        let rotations = self.tasks() as u64 * allowance / work.max(1);
+        let round = &mut self.search.settings.rounds[0];
+        round.work = (rotations as usize).max(MIN_ROTATIONS);
+        *round
     }
 
     /// Selects the poses of the next round.
-    fn end_round(&mut self, round: Round) {
-        let outcomes = core::mem::take(&mut self.outcomes);
+    fn end_round(&mut self, round: Round, outcomes: Vec<Found>) {
         let equivalence = &self.search.equivalence;
-        (self.tasks_done, self.work, self.allowance) = (0, 0, 0);
         self.search.renders += outcomes.iter().map(|f| f.renders).sum::<usize>();
         let best = core::mem::replace(&mut self.best, best_of(&outcomes, 1));
         match self.index {

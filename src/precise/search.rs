@@ -46,7 +46,7 @@ pub struct Search {
     /// Which poses of the mesh are equivalent.
     pub equivalence: Rc<Equivalence>,
     /// The fine grid, on which the final poses are compared.
-    pub fine: CropGrid,
+    pub fine: Rc<CropGrid>,
 }
 
 /// A candidate in its current state.
@@ -89,13 +89,27 @@ impl Search {
     pub fn new(observation: Rc<CleanObservation>, mesh: Rc<MeshPyramid>, settings: SearchSettings) -> Self {
         Self {
             mesh,
-            fine: CropGrid::new(&observation, settings.grids[FINE].cells),
+            fine: Rc::new(CropGrid::new(&observation, settings.grids[FINE].cells)),
             observation,
             renders: 0,
             settings,
             prior: Prior::default(),
             surroundings: None,
             equivalence: Rc::default(),
+        }
+    }
+
+    /// Another search for the same object, without its surroundings.
+    pub(crate) fn again(&self, settings: SearchSettings) -> Self {
+        Self {
+            mesh: Rc::clone(&self.mesh),
+            observation: Rc::clone(&self.observation),
+            renders: 0,
+            settings,
+            prior: self.prior,
+            surroundings: None,
+            equivalence: Rc::clone(&self.equivalence),
+            fine: Rc::clone(&self.fine),
         }
     }
 

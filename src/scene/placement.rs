@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 
 use super::layers::{extremes, extremes_along, layer};
 use super::plane::Plane;
-use crate::align::task::Given;
+use crate::align::search::{Given, Searched};
 use crate::error::Result;
 use crate::evidence::observation::Observation;
 use crate::geometry::cloud::Bounds;
@@ -94,43 +94,42 @@ impl Body {
 
 impl Placement {
     /// What a search has found; `None` if it has found nothing.
-    pub fn new(rounds: &Rounds, confidence: f64, observation: &Observation) -> Option<Self> {
-        let (found, search) = (&rounds.found, &rounds.search);
-        let camera_from_mesh = found.first()?.pose.similarity(&search.mesh.frame);
+    pub fn new(searched: &Searched, observation: &Observation) -> Option<Self> {
+        let Rounds { found, search, .. } = &searched.rounds;
+        let pose = found.first()?.pose;
         Some(Self {
             found: found.clone(),
             effort: search.effort(),
             renders: search.renders,
-            confidence,
-            camera_from_mesh,
-            body: Body::new(&search.mesh, &found.first()?.pose, observation),
+            confidence: searched.confidence(),
+            camera_from_mesh: pose.similarity(&search.mesh.frame),
+            body: Body::new(&search.mesh, &pose, observation),
         })
     }
 
-    /// The space that the object takes in the pose of its alignment: colours may have chosen another one than the search.
-    /// With the normal of the ground, all vertices of the mesh are measured along it.
+    /// With the space that the object takes in the pose of its alignment: colours may have chosen another one than the
+    /// search. With the normal of the ground, all vertices of the mesh are measured along it.
     ///
     /// # Errors
     /// Those of [`Similarity::from_column_major`], which only a bug could cause.
-    pub fn body_of(
-        self,
+    pub fn in_pose_of(
+        mut self,
         alignment: &Alignment,
         mesh: &PreparedMesh<'_>,
         observation: &Observation,
         normal: Option<DVec3>,
-    ) -> Result<Body> {
+    ) -> Result<Self> {
         let camera_from_mesh = Similarity::from_column_major(&alignment.camera_from_mesh.matrix)?;
-        let mut body = self.body;
         if Sim3::from(&self.camera_from_mesh) != alignment.camera_from_mesh
             && let Some(pyramid) = mesh.pyramid(&SearchSettings::from(self.effort).grids)
             && let Some(pose) = CropPose::of_similarity(&camera_from_mesh, &pyramid.frame)
         {
-            body = Body::new(&pyramid, &pose, observation);
+            self.body = Body::new(&pyramid, &pose, observation);
         }
-        Ok(match normal {
-            Some(normal) => body.measured(mesh.mesh(), &camera_from_mesh, normal),
-            None => body,
-        })
+        if let Some(normal) = normal {
+            self.body = self.body.measured(mesh.mesh(), &camera_from_mesh, normal);
+        }
+        Ok(self)
     }
 
     /// What the search of the object begins with, once it knows its surroundings.

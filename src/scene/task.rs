@@ -1,6 +1,5 @@
 //! The steps of a scene: each object alone, the support, each object with what the others have told.
 
-use core::borrow::Borrow;
 use std::rc::Rc;
 
 use super::contact::{Contact, contacts};
@@ -8,12 +7,13 @@ use super::local::View;
 use super::placement::{Body, Placement};
 use super::planes::union_of;
 use super::support::{Ground, Support, SupportChoice, find_support};
-use crate::align::task::AlignTask;
+use crate::align::search::{Given, Request, Search};
 use crate::error::Result;
 use crate::evidence::observation::Observation;
 use crate::geometry::image::{DepthMap, Image, Mask};
 use crate::geometry::pinhole::Pinhole;
 use crate::geometry::similarity::Similarity;
+use crate::pauses::{Call, Pauses, boxed, finished};
 use crate::precise::options::AlignOptions;
 use crate::precise::prepared_mesh::PreparedMesh;
 use crate::precise::surroundings::Neighbourhood;
@@ -73,8 +73,16 @@ pub fn align_scene(scene: &Scene<'_>, host: &mut dyn Host) -> Result<SceneAlignm
     let masks = masks_of(scene);
     let observation = |i: usize| observation_of(&scene.depth, &scene.camera, &masks, i);
     let objects = scene.objects.iter().enumerate();
-    let found = objects.map(|(i, object)| alone(&observation(i)?, object, host)).collect();
+    let found = objects.map(|(i, object)| align_alone(&observation(i)?, object, host)).collect();
     align_placed(scene, found, host)
+}
+
+/// [`alone`] without pauses.
+///
+/// # Errors
+/// As there.
+pub fn align_alone(observation: &Observation, object: &SceneObject<'_>, host: &mut dyn Host) -> Result<Placement> {
+    finished(alone(observation, &object.mesh, object.options.clone(), host, &Pauses::none()))
 }
 
 /// Aligns the objects of a scene with what each has found alone.
@@ -97,10 +105,12 @@ pub fn align_placed(scene: &Scene<'_>, found: Vec<Result<Placement>>, host: &mut
     for (i, failure) in failures.into_iter().enumerate() {
         let run = || {
             let Some(placement) = &placements[i] else { return Err(failure.unwrap_or_else(missing)) };
-            together(&observation(i)?, &objects[i], placement, neighbourhood(i, &placements, &grounds), host)
+            let (observation, SceneObject { mesh, options, .. }) = (observation(i)?, &objects[i]);
+            let given = placement.given(neighbourhood(i, &placements, &grounds));
+            finished(together(&observation, mesh, options.clone(), &given, host, &Pauses::none()))
         };
         let (alignment, body) = match run() {
-            Ok((alignment, body)) => (Ok(alignment), Some(body)),
+            Ok((alignment, placement)) => (Ok(alignment), Some(placement.body)),
             Err(error) => (Err(error), None),
         };
         aligned.push(alignment);
@@ -143,32 +153,28 @@ pub fn observation_of(depth: &DepthMap, camera: &Pinhole, masks: &[&Mask], objec
     observation.with_others(others)
 }
 
-/// Aligns an object alone, and returns what the others need to know.
+/// Aligns an object alone, and returns what the others need to know: the poses that shape leaves, with that first which
+/// the photo chooses.
 ///
 /// # Errors
-/// Those of [`AlignTask::step`].
-pub fn alone(observation: &Observation, object: &SceneObject<'_>, host: &mut dyn Host) -> Result<Placement> {
-    // The metrics are those of the result.
-    let options = AlignOptions { metrics: false, ..object.options.clone() };
-    searched(&mut AlignTask::new(observation, &object.mesh, options, host)?.with_choice())
-}
-
-fn searched<'m, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>>(
-    task: &mut AlignTask<'_, O, M>,
-) -> Result<Placement> {
-    while !task.step_search(&mut || false)? {}
-    placement_of(task)
-}
-
-/// What a task whose search has ended tells the others.
-///
-/// # Errors
-/// [`ErrorCode::Internal`](crate::error::ErrorCode::Internal) for a search that has not ended.
-pub fn placement_of<'m, O: Borrow<Observation>, M: Borrow<PreparedMesh<'m>>>(
-    task: &AlignTask<'_, O, M>,
-) -> Result<Placement> {
-    let (rounds, confidence) = task.searched().ok_or_else(missing)?;
-    Placement::new(rounds, confidence, task.observation()).ok_or_else(missing)
+/// As [`align`](crate::align::align).
+pub fn alone<'a>(
+    observation: &'a Observation,
+    mesh: &'a PreparedMesh<'_>,
+    options: AlignOptions,
+    host: &'a mut dyn Host,
+    pauses: &'a Pauses,
+) -> Call<'a, Result<Placement>> {
+    boxed(async move {
+        let request = Request::new(options)?;
+        let mut search = Search::begin(observation, mesh, &request, host, pauses).await?;
+        let mut searched = search.search().await?;
+        let colors = search.colors(&searched).await;
+        if let Some(chosen) = colors.and_then(|colors| colors.chosen) {
+            searched.rounds.found.insert(0, chosen);
+        }
+        Placement::new(&searched, observation).ok_or_else(missing)
+    })
 }
 
 /// What an object is told about the others.
@@ -183,25 +189,30 @@ pub fn neighbourhood(object: usize, placements: &[Option<Placement>], grounds: &
 /// Confidence from which on an object takes space.
 const SOLID: f64 = 0.5;
 
-/// Aligns an object with what the others have told.
+/// Aligns an object with what the others have told. Returns what they need to know of it now, too.
 ///
 /// # Errors
-/// Those of [`AlignTask::step`].
-pub fn together(
-    observation: &Observation,
-    object: &SceneObject<'_>,
-    placement: &Placement,
-    known: Neighbourhood,
-    host: &mut dyn Host,
-) -> Result<(Alignment, Body)> {
-    let normal = known.ground.map(|(normal, ..)| normal);
-    let given = placement.given(known);
-    let task = AlignTask::new(observation, &object.mesh, object.options.clone(), host)?;
-    let mut task = task.with_given(given);
-    let placement = searched(&mut task)?;
-    let alignment = task.finish()?;
-    let body = placement.body_of(&alignment, &object.mesh, observation, normal)?;
-    Ok((alignment, body))
+/// As [`align`](crate::align::align).
+pub fn together<'a>(
+    observation: &'a Observation,
+    mesh: &'a PreparedMesh<'_>,
+    options: AlignOptions,
+    given: &'a Given,
+    host: &'a mut dyn Host,
+    pauses: &'a Pauses,
+) -> Call<'a, Result<(Alignment, Placement)>> {
+    boxed(async move {
+        let request = Request::new(options)?;
+        let mut search = Search::begin(observation, mesh, &request, host, pauses).await?;
+        let clouds = search.clouds().await?;
+        let searched = search.search_among(given).await?;
+        let placement = Placement::new(&searched, observation).ok_or_else(missing)?;
+        let colors = search.colors(&searched).await;
+        let alignment = search.finish(clouds, searched, colors.as_ref())?;
+        let normal = given.known.ground.map(|(normal, ..)| normal);
+        let placement = placement.in_pose_of(&alignment, mesh, observation, normal)?;
+        Ok((alignment, placement))
+    })
 }
 
 /// The error for a step without what the one before should have left.

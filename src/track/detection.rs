@@ -6,8 +6,9 @@ use glam::DQuat;
 
 use crate::error::Result;
 use crate::evidence::observation::Observation;
+use crate::pauses::{Pauses, finished};
 use crate::precise::clean::CleanObservation;
-use crate::precise::color::{ColorStage, Judgment};
+use crate::precise::color::{Judgment, judgment};
 use crate::precise::confidence::sureness;
 use crate::precise::options::AlignOptions;
 use crate::precise::prepared_mesh::PreparedMesh;
@@ -72,7 +73,7 @@ impl Detection {
             if let Some(log_scale) = log_scale {
                 next.search.assume(Prior { scale: Some([libm::exp(log_scale); 2]), ..known.prior });
             }
-            precise::run(&mut next, &(0.2..0.85), &mut || false, stages);
+            finished(precise::run(&mut next, &(0.2..0.85), &Pauses::none(), stages));
             let best = next.found.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
             let (conditioning, _) = next.search.conditioning(&best.pose);
             let lead = next.search.equivalence.lead(best, &next.found[1..], |found| found.score.total);
@@ -90,9 +91,7 @@ impl Detection {
 /// What colour says about the poses that a search has found; `None` without colours.
 fn by_color(rounds: &Rounds, observation: &Observation, mesh: &PreparedMesh<'_>) -> Option<Judgment> {
     let (photo, colors) = (observation.photo()?, mesh.colors()?);
-    let mut stage = ColorStage::new(rounds, photo);
-    stage.run(rounds, colors, &mut || false);
-    Some(stage.judge(rounds, colors))
+    Some(finished(judgment(rounds, photo, colors, &Pauses::none())))
 }
 
 /// The pose that counts, and its lead over the others.

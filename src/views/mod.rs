@@ -9,20 +9,23 @@ pub mod known;
 pub mod options;
 pub mod predicted_mask;
 pub mod report;
+mod request;
 pub mod searched_view;
 mod summary;
-pub mod task;
 mod unrelated;
 pub mod world_pose;
+
+use core::borrow::Borrow;
 
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::frame::Frame;
 use crate::geometry::similarity::Similarity;
+use crate::pauses::{Pauses, Task, finished};
 use crate::precise::prepared_mesh::PreparedMesh;
 use crate::progress::Host;
 use options::ViewsOptions;
 use report::ViewsAlignment;
-use task::ViewsTask;
+use request::Request;
 
 /// Maximum number of views.
 pub const MAX_VIEWS: usize = 64;
@@ -39,19 +42,32 @@ pub struct View {
 /// Aligns a mesh with several views of the object.
 ///
 /// # Errors
-/// As [`ViewsTask::new`] and [`ViewsTask::step`].
+/// As [`Request::new`] and [`Request::align`].
 pub fn align_views(
     views: Vec<View>,
     mesh: &PreparedMesh<'_>,
     options: &ViewsOptions,
     host: &mut dyn Host,
 ) -> Result<ViewsAlignment> {
-    let mut task = ViewsTask::new(views, mesh, options.clone(), host)?;
-    loop {
-        if let Some(alignment) = task.step(&mut || false)? {
-            return Ok(alignment);
-        }
-    }
+    finished(Request::new(views, options.clone())?.align(mesh, host, &Pauses::none()))
+}
+
+/// [`align_views`] in steps.
+///
+/// # Errors
+/// As [`Request::new`].
+pub fn align_views_task<'a, 'm: 'a>(
+    views: Vec<View>,
+    mesh: impl Borrow<PreparedMesh<'m>> + 'a,
+    options: ViewsOptions,
+    mut host: impl Host + 'a,
+    clock: fn() -> f64,
+) -> Result<Task<'a, ViewsAlignment>> {
+    let request = Request::new(views, options)?;
+    Ok(Task::new(
+        Pauses::new(clock, None),
+        |pauses| async move { request.align(mesh.borrow(), &mut host, &pauses).await },
+    ))
 }
 
 /// The error where a mask is needed.

@@ -5,7 +5,8 @@ use crate::error::Result;
 use crate::evidence::observation::Observation;
 use crate::evidence::photo::Photo;
 use crate::geometry::surface_colors::SurfaceColors;
-use crate::precise::color::{ColorStage, Judgment};
+use crate::pauses::Pauses;
+use crate::precise::color::{Judgment, judgment};
 use crate::precise::options::AlignOptions;
 use crate::precise::pose::CropPose;
 use crate::precise::prepared_mesh::PreparedMesh;
@@ -47,25 +48,20 @@ impl SearchedView {
         Ok(Self { index, camera, rounds, candidates: Vec::new(), color: None })
     }
 
-    /// Continues the search until it ends or `pause` returns true. Returns whether it has ended.
-    pub fn run(&mut self, pause: &mut dyn FnMut() -> bool) -> bool {
+    /// Runs the search to its end.
+    pub async fn run(&mut self, pauses: &Pauses) {
         while self.rounds.round().is_some() {
-            if !self.rounds.run(pause) {
-                return false;
-            }
+            self.rounds.run(pauses).await;
             if self.rounds.index() == FIRST_REFINEMENT + 1 {
                 self.candidates = self.rounds.poses().to_vec();
             }
         }
-        true
     }
 
     /// Compares the poses of the search, which has ended, with the photo. The pose that colour chooses becomes the first.
-    pub fn judge_colors(&mut self, photo: Option<&Photo>, colors: Option<&SurfaceColors>) {
+    pub async fn judge_colors(&mut self, photo: Option<&Photo>, colors: Option<&SurfaceColors>, pauses: &Pauses) {
         let (Some(photo), Some(colors)) = (photo, colors) else { return };
-        let mut stage = ColorStage::new(&self.rounds, photo);
-        stage.run(&self.rounds, colors, &mut || false);
-        let judgment = stage.judge(&self.rounds, colors);
+        let judgment = judgment(&self.rounds, photo, colors, pauses).await;
         if let Some(chosen) = judgment.chosen {
             self.rounds.found.insert(0, chosen);
         }

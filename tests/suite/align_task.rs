@@ -1,7 +1,6 @@
 //! Alignments in steps: pauses anywhere change no bit of the result.
 
-use sim3align::align::align;
-use sim3align::align::task::AlignTask;
+use sim3align::align::{align, align_task};
 use sim3align::error::ErrorCode;
 use sim3align::precise::options::{AlignOptions, Quality};
 use sim3align::precise::prepared_mesh::PreparedMesh;
@@ -10,16 +9,16 @@ use sim3align::report::Alignment;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::shapes::{body, observe};
-use crate::support::Draw;
+use crate::support::pausing;
 
-/// The result of a task that pauses where `pause` says, and how often it did.
-fn in_steps(mesh: &PreparedMesh<'_>, options: AlignOptions, mut pause: impl FnMut() -> bool) -> (Alignment, usize) {
-    let mut task = AlignTask::new(observe(mesh.mesh(), 1.0), mesh, options, Silent).unwrap();
+/// The result of a task that pauses where its clock says, and how often it did.
+fn in_steps(mesh: &PreparedMesh<'_>, options: AlignOptions, clock: fn() -> f64) -> (Alignment, usize) {
+    let mut task = align_task(observe(mesh.mesh(), 1.0), mesh, options, Silent, clock).unwrap();
     let mut pauses = 0;
     loop {
-        match task.step(&mut pause).unwrap() {
+        match task.step(0.0).unwrap() {
             Some(alignment) => {
-                assert_eq!(task.step(&mut || false).unwrap_err().code, ErrorCode::Internal, "the task is over");
+                assert_eq!(task.step(0.0).unwrap_err().code, ErrorCode::Internal, "the task is over");
                 return (alignment, pauses);
             }
             None => pauses += 1,
@@ -33,12 +32,11 @@ fn pauses_change_nothing() {
     let prepared = PreparedMesh::borrowed(&mesh);
     let options = AlignOptions { quality: Quality::Fast, ..AlignOptions::default() };
     let whole = align(&observe(&mesh, 1.0), &mesh, &options, &mut Silent).unwrap();
-    let (stepped, pauses) = in_steps(&prepared, options.clone(), || true);
+    let (stepped, pauses) = in_steps(&prepared, options.clone(), pausing(0, 1));
     assert_eq!(stepped, whole);
     assert!(pauses > 600, "after every rotation at least: {pauses}");
     for seed in 0..4 {
-        let mut draw = Draw::new(seed);
-        let (stepped, _) = in_steps(&prepared, options.clone(), || draw.below(50) == 0);
+        let (stepped, _) = in_steps(&prepared, options.clone(), pausing(seed, 50));
         assert_eq!(stepped, whole, "seed {seed}");
     }
     assert_eq!(whole.diagnostics.common.timings_ms.total_ms(), Timings::default().total_ms(), "no clock, no times");
@@ -52,7 +50,7 @@ fn a_prepared_mesh_gives_the_same_bits_at_every_quality() {
     for quality in [Quality::Balanced, Quality::Fast, Quality::Fast] {
         let options = AlignOptions { quality, ..AlignOptions::default() };
         let expected = align(&observe(&mesh, 1.0), &mesh, &options, &mut Silent).unwrap();
-        let (found, _) = in_steps(&prepared, options, || false);
+        let (found, _) = in_steps(&prepared, options, pausing(0, 0));
         assert_eq!(found, expected);
     }
 }

@@ -4,8 +4,9 @@
 use glam::Vec3;
 use nalgebra::{Rotation3, Vector3};
 use sim3align::align::evaluate::{EvaluateOptions, evaluate};
+use sim3align::align::search::Request;
 use sim3align::align::warnings::about_observation;
-use sim3align::align::{align, align_with};
+use sim3align::align::{align, align_prepared};
 use sim3align::error::{ErrorCode, Result};
 use sim3align::evidence::observation::{MAX_PIXELS, Observation};
 use sim3align::geometry::decimate::decimate;
@@ -207,21 +208,27 @@ fn a_render_visits_a_bounded_number_of_cells() {
     assert!(cost(&body()) < 10 * cells + 20_000);
 }
 
+/// Number of images that a search with these settings draws.
+fn renders_of(observation: &Observation, mesh: &Mesh, settings: SearchSettings) -> usize {
+    let request = Request::new(quick()).unwrap().with_efforts(vec![settings]);
+    let alignment = align_prepared(observation, &PreparedMesh::borrowed(mesh), request, &mut Silent).unwrap();
+    alignment.diagnostics.common.counts.renders
+}
+
 #[wasm_bindgen_test(unsupported = test)]
 fn a_bound_on_work_bounds_renders_of_costly_inputs() {
     let observation = view(VGA, [500.0; 2], blob).unwrap();
     let mesh = soup(3000, 1.0);
     let renders = |max_load: u64| {
         let settings = SearchSettings { max_load, ..SearchSettings::from(Effort::Fast) };
-        let alignment = align_with(&observation, &mesh, &quick(), vec![settings], &mut Silent).unwrap();
-        alignment.diagnostics.common.counts.renders
+        renders_of(&observation, &mesh, settings)
     };
     let [unbounded, bounded] = [u64::from(u32::MAX), 4].map(renders);
     assert!(4 * bounded < unbounded, "{bounded} renders instead of {unbounded}");
     let ordinary = observe(&body(), &truth());
     let of_body = |max_load: u64| {
         let settings = SearchSettings { max_load, ..SearchSettings::from(Effort::Fast) };
-        align_with(&ordinary, &body(), &quick(), vec![settings], &mut Silent).unwrap().diagnostics.common.counts.renders
+        renders_of(&ordinary, &body(), settings)
     };
     assert_eq!(of_body(12), of_body(u64::from(u32::MAX)), "an ordinary input is within every bound");
 }

@@ -3,7 +3,8 @@
 use glam::{DVec3, Vec3};
 use nalgebra::{Rotation3, Vector3};
 use sim3align::align::evaluate::{EvaluateOptions, evaluate, evaluate_prepared};
-use sim3align::align::task::AlignTask;
+use sim3align::align::search::Request;
+use sim3align::align::{align_prepared, align_task};
 use sim3align::evidence::observation::Observation;
 use sim3align::evidence::photo::Photo;
 use sim3align::geometry::image::Image;
@@ -102,7 +103,7 @@ fn truth() -> Similarity {
 }
 
 fn solve(observation: Observation, mesh: &PreparedMesh<'_>) -> Alignment {
-    AlignTask::new(observation, mesh, quick(), Silent).unwrap().finish().unwrap()
+    align_prepared(&observation, mesh, Request::new(quick()).unwrap(), &mut Silent).unwrap()
 }
 
 fn rotation_error(mesh: &Mesh, found: &Alignment, truth: &Similarity) -> f64 {
@@ -222,11 +223,11 @@ fn a_comparison_may_pause_after_any_pose() {
     let prepared = PreparedMesh::borrowed(&mesh).with_colors(painted(&mesh, label));
     let seen = observe(&mesh, &truth()).with_photo(photo(&mesh, &truth(), label, (Vec3::ONE, 0.3), 0)).unwrap();
     let expected = described(solve(seen.clone(), &prepared));
-    let mut task = AlignTask::new(seen, &prepared, quick(), Silent).unwrap();
+    let mut task = align_task(seen, &prepared, quick(), Silent, || 0.0).unwrap();
     let mut pauses = 0;
     let found = loop {
         pauses += 1;
-        if let Some(found) = task.step(&mut || true).unwrap() {
+        if let Some(found) = task.step(0.0).unwrap() {
             break found;
         }
     };

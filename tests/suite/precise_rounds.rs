@@ -3,10 +3,11 @@
 use std::rc::Rc;
 
 use sim3align::geometry::rotations::angle_between;
+use sim3align::pauses::{Pauses, Task};
 use sim3align::precise::clean::CleanObservation;
 use sim3align::precise::mesh_pyramid::MeshPyramid;
 use sim3align::precise::pose::{CropPose, MeshFrame};
-use sim3align::precise::recipe::{FIRST_REFINEMENT, RANKING, SearchSettings, TURNING, Task};
+use sim3align::precise::recipe::{FIRST_REFINEMENT, RANKING, SearchSettings, TURNING, Task as Kind};
 use sim3align::precise::rounds::Rounds;
 use sim3align::precise::search::{Found, Search};
 use sim3align::precise::turns::TURNS;
@@ -14,7 +15,7 @@ use sim3align::report::Effort;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::precise::{body, observe, truth};
-use crate::support::Draw;
+use crate::support::{pause_points, pausing};
 
 /// Few rotations and candidates, but two that are polished.
 fn settings() -> SearchSettings {
@@ -42,38 +43,44 @@ fn assert_same(found: &[Found], expected: &[Found], what: &str) {
     }
 }
 
-/// Tasks of every round, and number of parts, of a search that pauses where `pause` says so.
-fn run(rounds: &mut Rounds, pause: &mut dyn FnMut() -> bool) -> (Vec<usize>, usize) {
-    let (mut tasks, mut parts) = (Vec::new(), 0);
-    while rounds.round().is_some() {
-        let mut done = 0;
-        let mut counted = || {
-            done += 1;
-            pause()
-        };
-        while !rounds.run(&mut counted) {
-            parts += 1;
-        }
+/// Runs a round with pauses, at one pause point of `one_in`. Returns the number of its tasks, and of its parts.
+fn run_round(rounds: &mut Rounds, seed: u64, one_in: usize) -> (usize, usize) {
+    let clock = pausing(seed, one_in);
+    let mut round = Task::new(Pauses::new(clock, None), |pauses| async move {
+        rounds.run(&pauses).await;
+        Ok(())
+    });
+    let mut parts = 1;
+    while round.step(0.0).unwrap().is_none() {
         parts += 1;
-        tasks.push(done);
     }
-    (tasks, parts)
+    (pause_points(), parts)
+}
+
+/// Tasks of every round, and number of parts, of a search that pauses so.
+fn run(rounds: &mut Rounds, seed: u64, one_in: usize) -> (Vec<usize>, usize) {
+    let (mut tasks, mut all) = (Vec::new(), 0);
+    while rounds.round().is_some() {
+        let (count, parts) = run_round(rounds, seed + all as u64, one_in);
+        tasks.push(count);
+        all += parts;
+    }
+    (tasks, all)
 }
 
 #[wasm_bindgen_test(unsupported = test)]
 fn rounds_done_in_parts_are_rounds_done_whole() {
     for (initial, global) in [(false, true), (true, true), (true, false)] {
         let mut whole = rounds(initial, global);
-        let (tasks, parts) = run(&mut whole, &mut || false);
+        let (tasks, parts) = run(&mut whole, 0, 0);
         assert!(!whole.found.is_empty() && parts == tasks.len(), "{parts} parts, tasks {tasks:?}");
         for seed in 0..4 {
             let what = format!("initial {initial}, global {global}, seed {seed}");
-            let draw = &mut Draw::new(seed);
             // After every task, and after some.
             let mut divided = rounds(initial, global);
-            let (divided_tasks, parts) = run(&mut divided, &mut || seed == 0 || draw.below(3) == 0);
+            let (divided_tasks, parts) = run(&mut divided, seed, if seed == 0 { 1 } else { 3 });
             assert!(
-                parts > tasks.len() && (seed != 0 || parts == tasks.iter().sum::<usize>()),
+                parts > tasks.len() && (seed != 0 || parts == tasks.iter().map(|tasks| tasks + 1).sum::<usize>()),
                 "{what}: {parts} parts"
             );
             assert_eq!(divided_tasks, tasks, "{what}");
@@ -89,7 +96,7 @@ fn every_round_takes_what_the_one_before_it_keeps() {
     let recipe = settings().rounds;
     for (initial, global) in [(false, true), (true, true), (true, false)] {
         let mut rounds = rounds(initial, global);
-        let (tasks, _) = run(&mut rounds, &mut || false);
+        let (tasks, _) = run(&mut rounds, 0, 0);
         let what = format!("initial {initial}, global {global}: {tasks:?}");
         let first = if global { 0 } else { FIRST_REFINEMENT };
         assert_eq!(tasks.len(), recipe.len() - first, "{what}");
@@ -121,19 +128,15 @@ fn every_image_that_is_drawn_counts() {
         let mut before = if initial { 18 } else { 0 };
         assert_eq!(rounds.search.renders, before);
         while let Some(round) = rounds.round() {
-            let mut tasks = 0;
-            rounds.run(&mut || {
-                tasks += 1;
-                false
-            });
+            let (tasks, _) = run_round(&mut rounds, 0, 0);
             let drawn = rounds.search.renders - before;
             let what = format!("initial {initial}, global {global}, {round:?}: {drawn} images of {tasks} tasks");
             match round.task {
                 // As it is, and somewhat larger: nothing cuts this mask.
-                Task::Rotate => assert_eq!(drawn, 2 * tasks, "{what}"),
-                Task::Place => assert_eq!(drawn, tasks, "{what}"),
-                Task::Refine | Task::Fit => assert!(drawn > tasks && drawn <= tasks * (1 + round.work), "{what}"),
-                Task::Turn => assert!(drawn >= 2 * tasks && drawn <= tasks * (2 + round.work), "{what}"),
+                Kind::Rotate => assert_eq!(drawn, 2 * tasks, "{what}"),
+                Kind::Place => assert_eq!(drawn, tasks, "{what}"),
+                Kind::Refine | Kind::Fit => assert!(drawn > tasks && drawn <= tasks * (1 + round.work), "{what}"),
+                Kind::Turn => assert!(drawn >= 2 * tasks && drawn <= tasks * (2 + round.work), "{what}"),
             }
             before = rounds.search.renders;
         }
@@ -143,11 +146,11 @@ fn every_image_that_is_drawn_counts() {
 #[wasm_bindgen_test(unsupported = test)]
 fn what_a_search_has_found_is_refined_with_the_poses_of_the_next_one() {
     let mut first = rounds(false, true);
-    run(&mut first, &mut || false);
+    run(&mut first, 0, 0);
     let count = |resumes: usize| {
         let mut rounds = rounds(false, true);
         rounds.resume(&first.found[..resumes]);
-        let tasks = run(&mut rounds, &mut || false).0;
+        let tasks = run(&mut rounds, 0, 0).0;
         (tasks, rounds.found[0].score.total)
     };
     let ((without, low), (with, high)) = (count(0), count(2));
@@ -161,7 +164,7 @@ fn what_was_found_is_ranked_by_the_fine_grid_and_distinct() {
     let mut rounds = rounds(false, true);
     let mut ranked = Vec::new();
     while let Some(round) = rounds.round() {
-        assert!(rounds.run(&mut || false));
+        run_round(&mut rounds, 0, 0);
         if round == settings().rounds[RANKING] {
             ranked = rounds.found.clone();
         }

@@ -21,7 +21,7 @@ use sim3align::scene::local::View;
 use sim3align::scene::placement::{Body, Placement, found_of};
 use sim3align::scene::planes::union_of;
 use sim3align::scene::support::{RestsOn, SupportChoice, find_support};
-use sim3align::scene::task::{Scene, SceneAlignment, SceneObject, align_scene, alone};
+use sim3align::scene::task::{Scene, SceneAlignment, SceneObject, align_alone, align_scene};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use super::shapes::{cuboid, mapped};
@@ -198,7 +198,7 @@ fn candidates_survive_as_numbers() {
     let things = &things()[..1];
     let scene = scene_of(things, SupportChoice::None, false);
     let observation = Observation::new(scene.depth.clone(), scene.objects[0].mask.clone(), camera()).unwrap();
-    let placement: Placement = alone(&observation, &scene.objects[0], &mut Silent).unwrap();
+    let placement: Placement = align_alone(&observation, &scene.objects[0], &mut Silent).unwrap();
     let copies = found_of(&placement.numbers());
     assert_eq!(copies.len(), placement.found.len());
     for (copy, found) in copies.iter().zip(&placement.found) {
@@ -297,11 +297,12 @@ fn the_space_of_an_object_is_that_of_its_alignment() {
     let scene = scene_of(things, SupportChoice::None, false);
     let object = &scene.objects[0];
     let observation = Observation::new(scene.depth.clone(), object.mask.clone(), camera()).unwrap();
-    let placement: Placement = alone(&observation, object, &mut Silent).unwrap();
+    let placement: Placement = align_alone(&observation, object, &mut Silent).unwrap();
     let mut alignment = align(&observation, &things[0].mesh, &options(), &mut Silent).unwrap();
     let normal = DVec3::NEG_Y;
-    let body =
-        |alignment: &Alignment| placement.clone().body_of(alignment, &object.mesh, &observation, Some(normal)).unwrap();
+    let body = |alignment: &Alignment| {
+        placement.clone().in_pose_of(alignment, &object.mesh, &observation, Some(normal)).unwrap().body
+    };
     assert_eq!(body(&alignment).layer, placement.body.layer);
     // Turned over and moved away from the camera.
     let mut turned = placement.camera_from_mesh;

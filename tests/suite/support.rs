@@ -1,11 +1,36 @@
 //! What the tests of geometry and stages share: seeded draws, random similarities, surfaces with known normals,
 //! and the check that no axis of a test matrix is dead.
 
+use core::cell::{Cell, RefCell};
+
 use glam::Vec3;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3, Vector4};
 use sim3align::geometry::cloud::{Bounds, Cloud};
 use sim3align::geometry::random::Random;
 use sim3align::geometry::similarity::{Similarity, vec3, vector3};
+
+thread_local! {
+    /// How often the clock of [`pausing`] was read, and of what it draws whether to pause.
+    static READ: Cell<usize> = const { Cell::new(0) };
+    static CHANCE: RefCell<Option<(Draw, usize)>> = const { RefCell::new(None) };
+}
+
+/// A clock by which a step until 0 pauses at one pause point of `one_in`, by chance; never if that is 0.
+pub fn pausing(seed: u64, one_in: usize) -> fn() -> f64 {
+    READ.set(0);
+    CHANCE.set((one_in > 0).then(|| (Draw::new(seed), one_in)));
+    || {
+        READ.set(READ.get() + 1);
+        let is_due = |(draw, one_in): &mut (Draw, usize)| draw.below(*one_in) == 0;
+        let is_due = CHANCE.with_borrow_mut(|chance| chance.as_mut().is_some_and(is_due));
+        if is_due { f64::INFINITY } else { f64::NEG_INFINITY }
+    }
+}
+
+/// Number of pause points since the last [`pausing`].
+pub fn pause_points() -> usize {
+    READ.get()
+}
 
 /// Seeded draws of what tests need.
 pub struct Draw(Random);

@@ -11,8 +11,7 @@ use sim3align::report::WarningCode;
 use sim3align::views::common_size::{SizeEvidence, common_size};
 use sim3align::views::options::ViewsOptions;
 use sim3align::views::report::{ViewRole, ViewsAlignment, WorldFrame};
-use sim3align::views::task::ViewsTask;
-use sim3align::views::{View, align_views};
+use sim3align::views::{View, align_views, align_views_task};
 use sim3align_lab::sequences::Sequence;
 use sim3align_lab::sequences::rig::RigSet;
 use wasm_bindgen_test::wasm_bindgen_test;
@@ -197,11 +196,11 @@ fn pauses_and_repeats_change_no_bit() {
     let bits = |found: &ViewsAlignment| fingerprint(found.world_from_mesh.matrix.map(f64::to_bits));
     let whole = align(&sequence, views_of(&sequence));
     let mesh = sim3align::precise::prepared_mesh::PreparedMesh::borrowed(&sequence.mesh);
-    let mut task = ViewsTask::new(views_of(&sequence), &mesh, options(&sequence), Silent).unwrap();
+    let mut task = align_views_task(views_of(&sequence), &mesh, options(&sequence), Silent, || 0.0).unwrap();
     let mut steps = 0;
     let paused = loop {
         steps += 1;
-        if let Some(found) = task.step(&mut || true).unwrap() {
+        if let Some(found) = task.step(0.0).unwrap() {
             break found;
         }
     };

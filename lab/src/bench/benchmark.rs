@@ -11,10 +11,10 @@ use crate::case_folder::case::read_case;
 use crate::case_folder::contents::parameters_json;
 use crate::cases::case::EvaluationCase;
 use crate::cpu_time::CpuTimer;
-use sim3align::align::align_paper;
 use sim3align::align::evaluate::{EvaluateOptions, Truth, evaluate};
 use sim3align::align::method::Method;
-use sim3align::align::task::AlignTask;
+use sim3align::align::search::Request;
+use sim3align::align::{align_paper, align_prepared};
 use sim3align::evidence::observation::Observation;
 use sim3align::metrics::Metrics;
 use sim3align::metrics::layout::LayoutErrors;
@@ -240,8 +240,8 @@ pub fn run_case(case: &BenchCase, method: &Method, overrides: &[(String, f64)]) 
     let mut record = run_method(case, |observation, mesh, host| match method {
         Method::Precise(options) => {
             let mesh = PreparedMesh::borrowed(mesh).with_colors(case.colors.clone());
-            let task = AlignTask::new(observation, mesh, options.clone(), host)?;
-            task.with_efforts(searches.clone()).finish().map(Into::into)
+            let request = Request::new(options.clone())?.with_efforts(searches.clone());
+            align_prepared(observation, &mesh, request, host).map(Into::into)
         }
         Method::Paper(options) => align_paper(observation, mesh, options, host).map(Into::into),
     });

@@ -4,7 +4,8 @@ use std::time::Instant;
 
 use lexopt::prelude::*;
 use serde_json::{Map, Value as Json};
-use sim3align::align::task::AlignTask;
+use sim3align::align::align_prepared;
+use sim3align::align::search::Request;
 use sim3align::precise::options::AlignOptions;
 use sim3align::precise::prepared_mesh::PreparedMesh;
 use sim3align::progress::{Host, Stage};
@@ -36,7 +37,8 @@ fn results(folder: &str, runs: usize, options: &AlignOptions) -> Result<Vec<Json
         .map(|_| {
             let mut clock = Clock(Instant::now());
             let mesh = PreparedMesh::borrowed(&case.mesh).with_colors(case.colors.clone());
-            let alignment = AlignTask::new(&case.observation, mesh, options.clone(), &mut clock)?.finish()?;
+            let request = Request::new(options.clone())?;
+            let alignment = align_prepared(&case.observation, &mesh, request, &mut clock)?;
             Ok(serde_json::to_value(alignment).unwrap_or_default())
         })
         .collect()

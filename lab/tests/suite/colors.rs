@@ -2,8 +2,9 @@
 
 use std::sync::OnceLock;
 
+use sim3align::align::align_prepared;
 use sim3align::align::evaluate::{EvaluateOptions, evaluate_prepared};
-use sim3align::align::task::AlignTask;
+use sim3align::align::search::Request;
 use sim3align::metrics::pose_error::pose_errors;
 use sim3align::metrics::symmetry::Symmetry;
 use sim3align::precise::options::AlignOptions;
@@ -89,8 +90,8 @@ fn the_set_depends_on_its_seed_alone() {
 fn colour_finds_the_right_turn() {
     for case in of_class(Class::Printed).filter(|case| case.tier != Tier::Hard) {
         let mesh = PreparedMesh::borrowed(&case.mesh).with_colors(case.colors.clone());
-        let task = AlignTask::new(&case.observation, mesh, AlignOptions::default(), Silent).unwrap();
-        let found = task.finish().unwrap();
+        let request = Request::new(AlignOptions::default()).unwrap();
+        let found = align_prepared(&case.observation, &mesh, request, &mut Silent).unwrap();
         let pose = Similarity::from_column_major(&found.camera_from_mesh.matrix).unwrap();
         let errors = pose_errors(&case.mesh, &pose, &case.camera_from_mesh, &case.symmetry).unwrap();
         assert!(errors.rotation_error_deg < 10.0, "{}: {errors:?}, {:?}", case.name(), found.diagnostics.color);

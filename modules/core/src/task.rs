@@ -1,22 +1,21 @@
 //! An alignment in steps, between which the thread can do other work.
 
 use core::cell::RefCell;
-use std::rc::Rc;
 
 use js_sys::Function;
-use sim3align::align::task::AlignTask as Task;
+use sim3align::align::align_task;
 use sim3align::bindings::answer::step_answer;
 use sim3align::bindings::error::to_js;
 use sim3align::bindings::host::{JsHost, now_ms};
 use sim3align::bindings::{input, mesh, options};
-use sim3align::evidence::observation::Observation;
-use sim3align::precise::prepared_mesh::PreparedMesh;
+use sim3align::pauses::Task;
+use sim3align::report::Alignment;
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 /// A running alignment.
 #[wasm_bindgen(skip_typescript)]
-pub struct AlignTask(RefCell<Task<'static, Observation, Rc<PreparedMesh<'static>>>>);
+pub struct AlignTask(RefCell<Task<'static, Alignment>>);
 
 /// Starts an alignment; see `Aligner.align` in the TypeScript package.
 #[wasm_bindgen(js_name = beginAlign, skip_typescript)]
@@ -24,7 +23,7 @@ pub fn begin_align(input: &JsValue, options: &JsValue, on_progress: Option<Funct
     let begin = || {
         let options = options::precise(options)?;
         let (observation, mesh) = (input::observation(input)?, mesh::mesh_of(input)?);
-        Task::new(observation, mesh, options, JsHost::new(on_progress))
+        align_task(observation, mesh, options, JsHost::new(on_progress), now_ms)
     };
     begin().map(|task| AlignTask(RefCell::new(task))).map_err(|error| to_js(&error))
 }
@@ -34,7 +33,6 @@ impl AlignTask {
     /// Runs for about `slice_ms` milliseconds. Returns the alignment when finished, otherwise `undefined`.
     #[wasm_bindgen(skip_typescript)]
     pub fn step(&self, slice_ms: f64) -> Result<JsValue, JsValue> {
-        let end = now_ms() + slice_ms;
-        step_answer(self.0.borrow_mut().step(&mut || now_ms() >= end))
+        step_answer(self.0.borrow_mut().step(now_ms() + slice_ms))
     }
 }

@@ -9,20 +9,18 @@ use js_sys::{Array, Float32Array, Float64Array, Function, Object, Reflect};
 use wasm_bindgen::JsValue;
 use wasm_bindgen::prelude::wasm_bindgen;
 
-use sim3align::align::task::AlignTask;
+use sim3align::align::search::Given;
 use sim3align::bindings::answer::answer;
 use sim3align::bindings::error::to_js;
 use sim3align::bindings::host::{JsHost, now_ms};
 use sim3align::bindings::object::{get, required_number, to_f32s, to_f64s, to_numbers, to_u8s, wrong_type};
 use sim3align::bindings::{input, mesh, options};
 use sim3align::error::{Error, ErrorCode, Result};
-use sim3align::evidence::observation::Observation;
 use sim3align::geometry::image::{Image, Mask};
 use sim3align::geometry::similarity::Similarity;
 use sim3align::number::number;
 use sim3align::options::Choice;
-use sim3align::precise::options::AlignOptions;
-use sim3align::precise::prepared_mesh::PreparedMesh;
+use sim3align::pauses::{Pauses, Task};
 use sim3align::precise::surroundings::{Layer, Neighbourhood};
 use sim3align::report::{Alignment, Effort};
 use sim3align::scene::contact::contacts;
@@ -31,21 +29,11 @@ use sim3align::scene::placement::{Body, Placement, found_of};
 use sim3align::scene::plane::Plane;
 use sim3align::scene::planes::union_of;
 use sim3align::scene::support::{Ground, RestsOn, Support, SupportChoice, find_support};
-use sim3align::scene::task::placement_of;
-
-type Task = AlignTask<'static, Observation, Rc<PreparedMesh<'static>>>;
+use sim3align::scene::task::{alone, together};
 
 /// A step of one object of a scene.
 #[wasm_bindgen(skip_typescript)]
-pub struct PlaceTask {
-    task: RefCell<Task>,
-    /// What the search has found, once it has ended.
-    placement: RefCell<Option<Placement>>,
-    /// Whether the step ends with the search.
-    is_alone: bool,
-    /// The mesh, and the normal of the ground.
-    measured: (Rc<PreparedMesh<'static>>, Option<DVec3>),
-}
+pub struct PlaceTask(RefCell<Task<'static, (Option<Alignment>, Placement)>>);
 
 /// Begins to align an object of a scene alone or, with `known`, with what the others have told:
 /// `{ placement, ground, layers }`.
@@ -58,24 +46,18 @@ pub fn begin_place(
 ) -> core::result::Result<PlaceTask, JsValue> {
     let begin = || {
         let options = options::precise(options)?;
-        let is_alone = !known.is_object();
-        // The metrics are those of the result.
-        let options = if is_alone { AlignOptions { metrics: false, ..options } } else { options };
         let (observation, mesh) = (input::observation(input)?, mesh::mesh_of(input)?);
-        let mut normal = None;
-        let mut task = Task::new(observation, mesh.clone(), options, JsHost::new(on_progress))?;
-        if !is_alone {
-            let placement = placement(&of(known, "placement"))?;
-            let ground = ground(&of(known, "ground"))?.map(|ground| ground.known());
-            normal = ground.map(|(normal, ..)| normal);
-            let layers = Array::from(&of(known, "layers"));
-            let layers = layers.iter().map(|l| Ok(Rc::new(layer(&l)?))).collect::<Result<_>>()?;
-            task = task.with_given(placement.given(Neighbourhood { ground, layers }));
-        }
-        let task = RefCell::new(if is_alone { task.with_choice() } else { task });
-        Ok(PlaceTask { task, placement: RefCell::default(), is_alone, measured: (mesh, normal) })
+        let given = optional(known, given)?;
+        let mut host = JsHost::new(on_progress);
+        Ok(Task::new(Pauses::new(now_ms, None), |pauses| async move {
+            let Some(given) = given else {
+                return Ok((None, alone(&observation, &mesh, options, &mut host, &pauses).await?));
+            };
+            let (alignment, placement) = together(&observation, &mesh, options, &given, &mut host, &pauses).await?;
+            Ok((Some(alignment), placement))
+        }))
     };
-    begin().map_err(|error| to_js(&error))
+    begin().map(|task| PlaceTask(RefCell::new(task))).map_err(|error: Error| to_js(&error))
 }
 
 #[wasm_bindgen]
@@ -83,29 +65,10 @@ impl PlaceTask {
     /// Runs for about `slice_ms` milliseconds. Returns `{ placement, alignment? }` when finished, otherwise `undefined`.
     #[wasm_bindgen(skip_typescript)]
     pub fn step(&self, slice_ms: f64) -> core::result::Result<JsValue, JsValue> {
-        let end = now_ms() + slice_ms;
-        let pause = &mut || now_ms() >= end;
-        let mut task = self.task.borrow_mut();
-        let mut step = || {
-            if self.placement.borrow().is_none() {
-                if !task.step_search(pause)? {
-                    return Ok(None);
-                }
-                self.placement.replace(Some(placement_of(&task)?));
-            }
-            if self.is_alone { Ok(Some(None)) } else { Ok(task.step(pause)?.map(Some)) }
-        };
-        let done: Result<Option<Option<Alignment>>> = step();
-        let Some(alignment) = done.map_err(|error| to_js(&error))? else { return Ok(JsValue::UNDEFINED) };
-        let Some(mut placement) = self.placement.take() else { return Ok(JsValue::UNDEFINED) };
-        if let Some(alignment) = &alignment {
-            let (mesh, normal) = &self.measured;
-            let body = placement.clone().body_of(alignment, mesh, task.observation(), *normal);
-            placement.body = body.map_err(|error| to_js(&error))?;
-        }
-        let placement = placement_object(&placement);
+        let done = self.0.borrow_mut().step(now_ms() + slice_ms).map_err(|error| to_js(&error))?;
+        let Some((alignment, placement)) = done else { return Ok(JsValue::UNDEFINED) };
         let alignment = alignment.map_or(Ok(JsValue::UNDEFINED), |alignment| answer(Ok(alignment)))?;
-        Ok(object([("placement", placement), ("alignment", alignment)]))
+        Ok(object([("placement", placement_object(&placement)), ("alignment", alignment)]))
     }
 }
 
@@ -204,6 +167,13 @@ fn choice(value: &JsValue) -> Result<SupportChoice> {
     }
     // As it is given: the camera may be below it.
     Ok(SupportChoice::Plane(Plane { normal: normal / length, d: d / length }))
+}
+
+fn given(known: &JsValue) -> Result<Given> {
+    let ground = ground(&of(known, "ground"))?.map(|ground| ground.known());
+    let layers = Array::from(&of(known, "layers"));
+    let layers = layers.iter().map(|l| Ok(Rc::new(layer(&l)?))).collect::<Result<_>>()?;
+    Ok(placement(&of(known, "placement"))?.given(Neighbourhood { ground, layers }))
 }
 
 fn placement(value: &JsValue) -> Result<Placement> {

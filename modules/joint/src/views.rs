@@ -1,7 +1,6 @@
 //! Alignments of several views, in steps.
 
 use core::cell::RefCell;
-use std::rc::Rc;
 
 use js_sys::{Array, Function};
 use wasm_bindgen::JsValue;
@@ -15,16 +14,16 @@ use sim3align::bindings::transform::similarity;
 use sim3align::bindings::{input, mesh, options};
 use sim3align::error::{Error, ErrorCode, Result};
 use sim3align::number::number;
-use sim3align::precise::prepared_mesh::PreparedMesh;
-use sim3align::views::View;
-use sim3align::views::task::ViewsTask as Task;
+use sim3align::pauses::Task;
+use sim3align::views::report::ViewsAlignment;
+use sim3align::views::{View, align_views_task};
 
 /// Largest deviation of the scale of a camera pose from 1.
 const RIGID: f64 = 1e-3;
 
 /// A running alignment of several views.
 #[wasm_bindgen(skip_typescript)]
-pub struct ViewsTask(RefCell<Task<'static, Rc<PreparedMesh<'static>>>>);
+pub struct ViewsTask(RefCell<Task<'static, ViewsAlignment>>);
 
 /// Starts an alignment; see `Aligner.alignViews` in the TypeScript package.
 #[wasm_bindgen(js_name = beginAlignViews, skip_typescript)]
@@ -39,7 +38,7 @@ pub fn begin_align_views(
         let views = views.ok_or_else(|| wrong_type("views", &JsValue::UNDEFINED, "an array", "Pass the views."))?;
         let views = Array::from(&views);
         let views = views.iter().enumerate().map(|(k, value)| view(&value, k)).collect::<Result<Vec<_>>>()?;
-        Task::new(views, mesh::mesh_of(input)?, options, JsHost::new(on_progress))
+        align_views_task(views, mesh::mesh_of(input)?, options, JsHost::new(on_progress), now_ms)
     };
     begin().map(|task| ViewsTask(RefCell::new(task))).map_err(|error| to_js(&error))
 }
@@ -73,7 +72,6 @@ impl ViewsTask {
     /// Runs for about `slice_ms` milliseconds. Returns the alignment when finished, otherwise `undefined`.
     #[wasm_bindgen(skip_typescript)]
     pub fn step(&self, slice_ms: f64) -> core::result::Result<JsValue, JsValue> {
-        let end = now_ms() + slice_ms;
-        step_answer(self.0.borrow_mut().step(&mut || now_ms() >= end))
+        step_answer(self.0.borrow_mut().step(now_ms() + slice_ms))
     }
 }

@@ -1,0 +1,255 @@
+//! The alignment of one object by search, as it runs: the parts from which [`align`](super::align), and the calls of a
+//! scene, are composed.
+//!
+//! Each part awaits a pause point after any render or refinement of a pose, and elsewhere at the end of a stage. Results
+//! are bit-identical regardless of pauses.
+
+use super::outcome::{Setup, report, score};
+use super::warnings::{about_fit, about_search};
+use crate::error::Result;
+use crate::evidence::Normals;
+use crate::evidence::clouds::Clouds;
+use crate::evidence::observation::Observation;
+use crate::pauses::Pauses;
+use crate::precise;
+use crate::precise::color::{Judgment, agreement, judgment};
+use crate::precise::conditioning::DROP;
+use crate::precise::equivalence::DIFFERENT;
+use crate::precise::options::AlignOptions;
+use crate::precise::prepared_mesh::PreparedMesh;
+use crate::precise::recipe::SURE;
+use crate::precise::rounds::Rounds;
+use crate::precise::surroundings::Neighbourhood;
+use crate::precise::{Certainty, Found, SearchSettings, Told};
+use crate::progress::{Host, Stopwatch};
+use crate::report::{Alignment, Effort, PaperAlignment, PreciseDiagnostics, Solution};
+
+/// What is asked for: the options, validated, and what follows from them.
+pub struct Request {
+    options: AlignOptions,
+    efforts: Vec<SearchSettings>,
+    setup: Setup,
+}
+
+/// What another alignment of the same input has found, and what has become known of its surroundings since.
+#[derive(Debug, Clone, Default)]
+pub struct Given {
+    /// The poses, best first.
+    pub found: Vec<Found>,
+    /// The effort of the search that found them.
+    pub effort: Effort,
+    /// Number of images that it drew.
+    pub renders: usize,
+    /// The probability that the best pose is right.
+    pub confidence: f64,
+    /// The surroundings.
+    pub known: Neighbourhood,
+}
+
+/// The alignment of one object.
+pub struct Search<'a> {
+    observation: &'a Observation,
+    mesh: &'a PreparedMesh<'a>,
+    request: &'a Request,
+    stages: Stopwatch<'a>,
+    pauses: &'a Pauses,
+}
+
+/// What a search has found, by shape.
+pub struct Searched {
+    /// The poses.
+    pub rounds: Rounds,
+    solution: Solution,
+    certainty: Certainty,
+}
+
+/// Loss of confidence beyond which the surroundings do not choose another pose than the object alone.
+const DOUBT: f64 = 0.05;
+/// Share of the confidence below which the surroundings contradict what an object alone shows.
+const CONTRADICTION: f64 = 0.75;
+/// Loss of the score of the image, at about the same rotation, with the same meaning: two standard deviations.
+const MOST_LOSS: f64 = 4.0 * DROP;
+
+impl Request {
+    /// A request with these options.
+    ///
+    /// # Errors
+    /// [`ErrorCode::InvalidOption`](crate::error::ErrorCode::InvalidOption).
+    pub fn new(options: AlignOptions) -> Result<Self> {
+        let (setup, efforts) = (Setup::of_precise(&options)?, precise::efforts(&options));
+        Ok(Self { options, efforts, setup })
+    }
+
+    /// With other settings of the searches than those that follow from the options, for ablations.
+    pub fn with_efforts(self, efforts: Vec<SearchSettings>) -> Self {
+        Self { efforts, ..self }
+    }
+}
+
+impl Searched {
+    fn new(rounds: Rounds) -> Result<Self> {
+        let (solution, certainty) = precise::conclude(&rounds, None)?;
+        Ok(Self { rounds, solution, certainty })
+    }
+
+    /// The probability that the best pose is right.
+    pub fn confidence(&self) -> f64 {
+        self.certainty.confidence
+    }
+}
+
+impl<'a> Search<'a> {
+    /// Begins with a check of the mesh.
+    ///
+    /// # Errors
+    /// [`ErrorCode::DegenerateMesh`](crate::error::ErrorCode::DegenerateMesh).
+    pub async fn begin(
+        observation: &'a Observation,
+        mesh: &'a PreparedMesh<'a>,
+        request: &'a Request,
+        host: &'a mut dyn Host,
+        pauses: &'a Pauses,
+    ) -> Result<Self> {
+        let stages = Stopwatch::new(host, precise::PLAN);
+        mesh.check()?;
+        pauses.point(0.0).await;
+        Ok(Self { observation, mesh, request, stages, pauses })
+    }
+
+    /// Samples both clouds, and estimates their normals, if the metrics need them.
+    ///
+    /// # Errors
+    /// Those of [`Clouds::new`].
+    pub async fn clouds(&mut self) -> Result<Clouds> {
+        let setup = &self.request.setup;
+        let mut clouds = Clouds::new(self.observation, self.mesh.mesh(), &setup.sampling, &mut self.stages)?;
+        self.pauses.point(0.0).await;
+        if setup.metrics {
+            clouds.evidence(Normals::Some, &mut self.stages);
+            self.pauses.point(0.0).await;
+        }
+        Ok(clouds)
+    }
+
+    /// Searches with increasing effort, until the confidence is high and no rival of the pose is found.
+    ///
+    /// # Errors
+    /// [`ErrorCode::NoConsensus`](crate::error::ErrorCode::NoConsensus), and those of [`precise::begin`].
+    pub async fn search(&mut self) -> Result<Searched> {
+        let Self { observation, mesh, request: Request { options, efforts, .. }, pauses, .. } = *self;
+        let stages = &mut self.stages;
+        if let Some(first) = efforts.first() {
+            precise::decimate(mesh, first, stages)?;
+            pauses.point(0.0).await;
+        }
+        let mut before: Option<Rounds> = None;
+        for (index, settings) in efforts.iter().enumerate() {
+            let mut rounds = precise::begin(observation, mesh, before.as_ref(), options, settings, stages)?;
+            pauses.point(0.0).await;
+            precise::run(&mut rounds, &precise::share(index, efforts.len()), pauses, stages).await;
+            let concluded = precise::conclude(&rounds, None);
+            let is_last = index + 1 == efforts.len();
+            let is_sure = matches!(&concluded, Ok((_, certainty)) if certainty.confidence >= SURE);
+            if is_last || is_sure {
+                let (solution, certainty) = concluded?;
+                let look = precise::look(&rounds).filter(|_| !is_last);
+                let mut has_rival = false;
+                if let Some(mut look) = look {
+                    let share = precise::share(index + 1, efforts.len() + 1);
+                    precise::run(&mut look, &share, pauses, stages).await;
+                    has_rival = precise::has_rival(&mut rounds, &look);
+                }
+                if !has_rival {
+                    return Ok(Searched { rounds, solution, certainty });
+                }
+            }
+            before = Some(rounds);
+        }
+        Err(precise::no_candidate())
+    }
+
+    /// Searches among given poses, with what is known of the surroundings.
+    ///
+    /// # Errors
+    /// As [`Search::search`].
+    pub async fn search_among(&mut self, given: &Given) -> Result<Searched> {
+        let mut rounds = self.among(given, None)?;
+        self.pauses.point(0.0).await;
+        precise::run(&mut rounds, &precise::share(0, 1), self.pauses, &mut self.stages).await;
+        let mut searched = Searched::new(rounds)?;
+        if searched.confidence() < given.confidence - DOUBT && searched.rounds.prefer(&given.found) {
+            searched = Searched::new(searched.rounds)?;
+        }
+        let is_contradicted = searched.confidence() < CONTRADICTION * given.confidence;
+        if is_contradicted || leaves_image(given, &searched.rounds) {
+            // Tables, undersides and neighbours are as inaccurate as the object: what its image shows, wins.
+            let alone = Given { known: Neighbourhood::default(), ..given.clone() };
+            searched = Searched::new(self.among(&alone, Some(&searched.rounds))?)?;
+        }
+        Ok(searched)
+    }
+
+    /// The search among given poses, before its first round; `before` is an earlier one of the same object.
+    fn among(&mut self, given: &Given, before: Option<&Rounds>) -> Result<Rounds> {
+        let Request { options, efforts, .. } = self.request;
+        let is_sure = given.confidence >= SURE;
+        let settings = efforts.iter().find(|settings| settings.effort == given.effort);
+        let settings = settings.ok_or_else(precise::no_candidate)?.again(is_sure);
+        let clean = before.map(|rounds| rounds.search.observation.clone());
+        let told = Told { found: &given.found, renders: given.renders, is_sure, known: given.known.clone() };
+        precise::resume(self.observation, self.mesh, clean, told, options, &settings, &mut self.stages)
+    }
+
+    /// What the photo says about the poses; `None` without a photo, or without colours of the mesh.
+    pub async fn colors(&self, searched: &Searched) -> Option<Judgment> {
+        let (photo, colors) = (self.observation.photo()?, self.mesh.colors()?);
+        Some(judgment(&searched.rounds, photo, colors, self.pauses).await)
+    }
+
+    /// The result, with its metrics.
+    ///
+    /// # Errors
+    /// [`ErrorCode::NoConsensus`](crate::error::ErrorCode::NoConsensus).
+    pub fn finish(mut self, mut clouds: Clouds, searched: Searched, colors: Option<&Judgment>) -> Result<Alignment> {
+        let Searched { rounds, solution, certainty } = searched;
+        let (solution, certainty) = match colors {
+            Some(judgment) => precise::conclude(&rounds, Some(judgment))?,
+            None => (solution, certainty),
+        };
+        let Self { observation, mesh, request: Request { setup, .. }, .. } = self;
+        let mut metrics = score(observation, mesh.mesh(), setup, &mut clouds, &solution, &mut self.stages)?;
+        if let Some(metrics) = &mut metrics {
+            let (clean, pose) = (rounds.search.observation.clone(), &solution.camera_from_mesh);
+            metrics.color_agreement = agreement(observation, Some(clean), mesh, pose);
+        }
+        let aligned = report(observation, setup, &clouds, &solution, metrics, self.stages);
+        Ok(with_certainty(aligned, certainty))
+    }
+}
+
+/// Whether the surroundings have moved the pose that the object has alone farther than its image allows.
+fn leaves_image(given: &Given, rounds: &Rounds) -> bool {
+    let (Some(alone), Some(now)) = (given.found.first(), rounds.found.first()) else { return false };
+    let search = &rounds.search;
+    let loss = search.by_image(&alone.score) - search.by_image(&now.score);
+    let turn = search.equivalence.angle(alone.pose.rotation, now.pose.rotation);
+    turn < DIFFERENT && f64::from(loss) > MOST_LOSS
+}
+
+fn with_certainty(aligned: PaperAlignment, certainty: Certainty) -> Alignment {
+    let Certainty { confidence, turn_confidence, alternatives, uncertainty, score, terms, effort, color } = certainty;
+    let PaperAlignment { camera_from_mesh, metrics, mut warnings, diagnostics } = aligned;
+    warnings.extend(about_search(diagnostics.converged, confidence));
+    warnings.extend(about_fit(&terms));
+    let diagnostics = PreciseDiagnostics { common: diagnostics, effort, score, terms, color };
+    Alignment {
+        camera_from_mesh,
+        confidence,
+        turn_confidence,
+        alternatives,
+        uncertainty,
+        metrics,
+        warnings,
+        diagnostics,
+    }
+}
