@@ -65,10 +65,11 @@ export const isWithin = (errors, tolerance) =>
 
 /**
  * @typedef {object} BenchOptions
- * @property {number} cases of the generated set
+ * @property {number} [cases] of the generated set
  * @property {number} [misfits] cases of it with the mesh of another
  * @property {string} [set] name of the generated set
- * @property {number} setSeed
+ * @property {number} [setSeed]
+ * @property {readonly string[]} [folders] case folders, or folders of them, whose colours are left out
  * @property {string} [meshes]
  * @property {number} [threads]
  * @property {string} json
@@ -81,10 +82,13 @@ export const isWithin = (errors, tolerance) =>
  * @param {readonly string[]} rows of `--row`
  * @returns {Promise<BenchRow[]>}
  */
-export async function benchmarkRows({ cases, misfits, set, setSeed, meshes, threads, json, from }, rows) {
+export async function benchmarkRows({ cases, misfits, set, setSeed, folders, meshes, threads, json, from }, rows) {
   if (from === undefined) {
     mkdirSync(dirname(resolve(json)), { recursive: true });
-    const args = ["--generated", `${cases}`, "--set-seed", `${setSeed}`, "--json", resolve(json)];
+    const args = ["--json", resolve(json)];
+    if (cases !== undefined) args.push("--generated", `${cases}`);
+    if (setSeed !== undefined) args.push("--set-seed", `${setSeed}`);
+    if (folders !== undefined) args.push("--no-color", "--cases", ...folders.map((folder) => resolve(folder)));
     if (misfits !== undefined) args.push("--misfits", `${misfits}`);
     if (set !== undefined) args.push("--set", set);
     if (meshes !== undefined) args.push("--meshes", resolve(meshes));
