@@ -1,6 +1,7 @@
 /**
- * `npm run bench:fit`: fits the regression behind `confidence` to generated cases, and to real ones where their folders are
- * given, prints its constants as `src/precise/confidence.rs` declares them, and how reliable they are on other cases.
+ * `npm run bench:fit`: fits the regression behind `confidence` to generated cases, prints its constants as
+ * `src/precise/confidence.rs` declares them, and how reliable they are on other cases, real ones among them where their
+ * folders are given: nothing is fitted to these.
  */
 import { command, count } from "./command.mjs";
 import { currentModel, featuresOf, fitLogistic, probability } from "./confidence-model.mjs";
@@ -11,7 +12,7 @@ import { fixed, markdownTable, mean } from "./table.mjs";
 /** @typedef {import("./records.mjs").BenchRecord} BenchRecord */
 /** @typedef {import("./confidence-model.mjs").Line} Line */
 /** @typedef {{ record: BenchRecord, features: number[], isRight: boolean }} Sample */
-/** @typedef {{ cases: number, setSeed: number, testCases: number, testSeed: number, real?: string[], realWeight: number, threads?: number, keep: string, reuse?: boolean }} FitOptions */
+/** @typedef {{ cases: number, setSeed: number, testCases: number, testSeed: number, real?: string[], threads?: number, keep: string, reuse?: boolean }} FitOptions */
 
 /** Both searches of the default quality: the confidence of the first decides whether there is a second. */
 const rows = ["fast: quality=fast", "best: quality=best"];
@@ -59,37 +60,6 @@ async function samplesOf(name, cases, { threads, keep, reuse }) {
   });
 }
 
-/** The set that a real case is of: its name up to the first hyphen. @param {Sample} sample */
-const setOf = ({ record }) => record.name.split("-", 1)[0] ?? "";
-
-/** The line that is fitted to these poses. @param {readonly Sample[]} all */
-const fitted = (all) =>
-  fitLogistic(
-    all.map(({ features }) => features),
-    all.map(({ isRight }) => isRight),
-  );
-
-/**
- * How reliable the confidence of real cases is by constants that are fitted without any of the same set: the sensor, the
- * scenes and the way to the masks and the meshes are new to them.
- * @param {readonly Sample[]} training
- * @param {readonly Sample[]} real
- * @param {number} weight
- */
-function crossValidated(training, real, weight) {
-  const sets = [...new Set(real.map(setOf))];
-  const all = sets.flatMap((set) => {
-    const others = real.filter((sample) => setOf(sample) !== set);
-    const line = fitted([...training, ...repeated(others, weight)]);
-    const own = real.filter((sample) => setOf(sample) === set);
-    return predicted(own, line);
-  });
-  return `\nReal cases of ${sets.join(", ")}, each set by constants fitted without it\n\n${reliabilityTable(all)}`;
-}
-
-/** @param {readonly Sample[]} samples @param {number} times */
-const repeated = (samples, times) => Array.from({ length: times }, () => samples).flat();
-
 /** The Brier score and the logarithmic loss of a line: lower is better. @param {readonly Sample[]} all @param {Line} line */
 function losses(all, line) {
   const confidences = all.map(({ features }) => Math.min(Math.max(probability(features, line), 1e-12), 1 - 1e-12));
@@ -108,9 +78,12 @@ const predicted = (all, line) =>
 async function fit(options) {
   const training = await samples("training", options.cases, options.setSeed, options);
   const test = await samples("test", options.testCases, options.testSeed, options);
-  const { real: folders, realWeight } = options;
+  const { real: folders } = options;
   const real = folders ? await samplesOf("real", { folders }, options) : [];
-  const line = fitted([...training, ...repeated(real, realWeight)]);
+  const line = fitLogistic(
+    training.map(({ features }) => features),
+    training.map(({ isRight }) => isRight),
+  );
   // As many digits as the code has: what is measured is what can be copied.
   const rounded = {
     intercept: Number(line.intercept.toFixed(3)),
@@ -123,15 +96,12 @@ const SLOPES: [f64; ${rounded.slopes.length}] = [${rounded.slopes.map((x) => x.t
   const lines = { fitted: rounded, "in the code": currentModel() };
   const table = Object.entries(lines).map(([name, each]) => [name, ...losses(training, each), ...losses(test, each)]);
   const head = ["constants", "training: Brier", "log loss", "test: Brier", "log loss"];
-  console.log(
-    `${markdownTable(head, table)}\n\n${training.length} generated and ${real.length} real poses for training, ${test.length} for the test.`,
-  );
+  console.log(`${markdownTable(head, table)}\n\n${training.length} poses for training, ${test.length} for the test.`);
   for (const [name, each] of Object.entries(lines)) {
     console.log(`\nTest cases, constants ${name}\n\n${reliabilityTable(predicted(test, each))}`);
   }
   if (real.length > 0) {
-    console.log(`\nReal cases, constants in the code\n\n${reliabilityTable(predicted(real, currentModel()))}`);
-    console.log(crossValidated(training, real, realWeight));
+    console.log(`\nReal cases, constants fitted\n\n${reliabilityTable(predicted(real, rounded))}`);
   }
 }
 
@@ -142,8 +112,7 @@ await command("bench:fit", (program) =>
     .option("--set-seed <s>", "their seed", Number, 5)
     .option("--test-cases <n>", "generated cases of the test", count, 240)
     .option("--test-seed <s>", "their seed", Number, 1)
-    .option("--real <folders...>", "case folders with a truth, or folders of them, to fit to as well")
-    .option("--real-weight <n>", "weight of a real case", count, 3)
+    .option("--real <folders...>", "case folders with a truth, or folders of them, to test on as well")
     .option("--threads <n>", "all by default", count)
     .option("--keep <folder>", "keep everything about all cases here", "target/bench/fit")
     .option("--reuse", "take the cases that an earlier run has kept")
