@@ -78,7 +78,7 @@ export async function report({ specs, out, run, folders, general, snapshot }) {
   write("tables.md", `${markdown}\n![Errors by difficulty, histograms of IoU, and poses](figures.svg)\n`);
   if (snapshot) {
     mkdirSync(at("docs", "benchmark"), { recursive: true });
-    for (const name of ["tables.json", "times.json", "run.json", "figures.svg", "tables.md"]) {
+    for (const name of ["times.json", "run.json", "figures.svg", "tables.md"]) {
       copyFileSync(join(out, name), at("docs", "benchmark", name === "tables.md" ? "README.md" : name));
     }
   }
