@@ -5,7 +5,7 @@ use core::alloc::{GlobalAlloc, Layout};
 /// Two-level segregated fit, with constant time to allocate and to free, and a fifth of the code of the standard allocator.
 pub struct Heap(rlsf::SmallGlobalTlsf);
 
-/// What is thrown; `error.ts` of the package knows it. Without it, exhausted memory would be a trap, as a bug is.
+/// The thrown string, by which `error.ts` of the package tells exhausted memory from a bug: both would be a trap.
 const EXHAUSTED: &str = "sim3align: memory exhausted";
 
 impl Heap {

@@ -34,6 +34,11 @@ mod triangle_block;
 pub mod triangle_tree;
 pub mod voxel_grid;
 
+#[cfg(not(any(target_arch = "wasm32", target_arch = "x86_64", target_arch = "aarch64")))]
+compile_error!("the results are tested to have the same bits on wasm32, x86_64 and aarch64 only");
+#[cfg(target_feature = "relaxed-simd")]
+compile_error!("relaxed SIMD gives other bits on other machines: build with simd128 alone");
+
 /// The allocator of all modules.
 #[cfg(target_arch = "wasm32")]
 #[global_allocator]

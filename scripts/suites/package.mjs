@@ -103,6 +103,7 @@ export function checkSizes() {
     ["size of the element's script, gzipped, without the 3D library", checkElement],
     ["the modules export different functions", () => checkSeparation(modules.map(({ file }) => file))],
     ["the modules hold no path of the machine that built them", () => checkPaths(modules.map(({ file }) => file))],
+    ["the modules have no instruction that browsers lack, or whose result differs", () => checkFeatures(modules)],
   ]);
 }
 
@@ -165,5 +166,19 @@ function checkPaths(files) {
     const bytes = readFileSync(file);
     const found = [homedir(), repository].filter((path) => bytes.includes(`${path}${sep}`));
     if (found.length > 0) throw new Error(`${file} holds ${found}. Remedy: see rustFlags().`);
+  }
+}
+
+/** The instructions that the modules may have: those of the oldest browsers that are supported. Relaxed SIMD is not among them. */
+const features = ["bulk-memory", "bulk-memory-opt", "multivalue", "mutable-globals", "nontrapping-float-to-int"];
+const allowed = [...features, "reference-types", "sign-ext", "simd"].map((feature) => `--enable-${feature}`);
+
+/** @param {readonly { name: string, file: string }[]} modules */
+async function checkFeatures(modules) {
+  const [node, wasmOpt] = nodeProgram("binaryen", "wasm-opt");
+  for (const { name, file } of modules) {
+    // Without `-o` nothing is written: the module is read and validated.
+    const { output, reason } = await attempt(node, [wasmOpt, file, "--mvp-features", ...allowed]);
+    if (reason) throw new Error(`The ${name} module: ${output || reason}\nRemedy: see \`simd\` in scripts/lib/wasm.mjs.`);
   }
 }

@@ -65,9 +65,9 @@ pub struct EvaluationCase {
     pub class: Class,
     /// What it shows: the family's name, or the mesh file's.
     pub family: String,
-    /// What made its depth map: a [`DepthSource`] by name, or `"monocular"` or `"sensor"`.
+    /// The source of its depth map: a [`DepthSource`] by name, or `"monocular"` or `"sensor"`.
     pub depth: &'static str,
-    /// What made its mask: `"network-mask"`, `"annotated-mask"` or `"uniform-mask"`.
+    /// The source of its mask: `"network-mask"`, `"annotated-mask"` or `"uniform-mask"`.
     pub mask: &'static str,
     /// Names of the simulated errors.
     pub tags: Vec<&'static str>,

@@ -22,7 +22,7 @@ pub struct Segmented {
     pub mask: Mask,
     /// Offset of the boundary in pixels; positive if the mask is too large.
     pub offset_px: f64,
-    /// What made it: `"network-mask"`, `"annotated-mask"` or `"uniform-mask"`.
+    /// Its source: `"network-mask"`, `"annotated-mask"` or `"uniform-mask"`.
     pub kind: &'static str,
     /// Names of the simulated errors.
     pub tags: Vec<&'static str>,

@@ -9,7 +9,7 @@ use sim3align_lab::samples::shape::Kind;
 use sim3align_lab::samples::table::TableScene;
 use sim3align_lab::scenes::DEPTH_SCALE;
 
-use super::Failure;
+use super::{Failure, parsed};
 
 const USAGE: &str = "\
 Usage: sim3align-lab case OUT_DIR [--kind KIND] [--seed N] [--depth FORMAT]
@@ -66,13 +66,10 @@ fn depth_format(name: &str) -> Result<Option<f64>, lexopt::Error> {
 
 /// Runs the command.
 pub fn main(arguments: lexopt::Parser) -> Result<(), Failure> {
-    match parse(arguments) {
-        Ok(Some(Arguments { folder, kind, seed, depth_scale })) => match kind {
-            Some(kind) => SampleCase::new(kind, seed).and_then(|case| case.write(&folder, depth_scale)),
-            None => TableScene::new(seed).and_then(|scene| scene.write(&folder)),
-        }
-        .map_err(|error| Failure::Failed(error.to_string())),
-        Ok(None) => Err(Failure::Help(USAGE)),
-        Err(error) => Err(Failure::Usage(error, USAGE)),
+    let Arguments { folder, kind, seed, depth_scale } = parsed(arguments, parse, USAGE)?;
+    match kind {
+        Some(kind) => SampleCase::new(kind, seed).and_then(|case| case.write(&folder, depth_scale)),
+        None => TableScene::new(seed).and_then(|scene| scene.write(&folder)),
     }
+    .map_err(|error| Failure::Failed(error.to_string()))
 }

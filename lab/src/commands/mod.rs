@@ -21,3 +21,19 @@ pub enum Failure {
     /// Failure of the command.
     Failed(String),
 }
+
+/// The parsed arguments of a command, or the reason to end it: `parse` returns `None` where help is requested.
+///
+/// # Errors
+/// [`Failure::Help`], [`Failure::Usage`].
+fn parsed<T>(
+    parser: lexopt::Parser,
+    parse: impl FnOnce(lexopt::Parser) -> Result<Option<T>, lexopt::Error>,
+    usage: &'static str,
+) -> Result<T, Failure> {
+    match parse(parser) {
+        Ok(Some(arguments)) => Ok(arguments),
+        Ok(None) => Err(Failure::Help(usage)),
+        Err(error) => Err(Failure::Usage(error, usage)),
+    }
+}

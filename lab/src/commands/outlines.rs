@@ -9,7 +9,7 @@ use sim3align_lab::cases::tier::CaseSet;
 use sim3align_lab::outlines::{GroupBy, ObjectOutlines, OutlineView, table};
 use sim3align_lab::parallel::parallel_map;
 
-use super::Failure;
+use super::{Failure, parsed};
 
 const USAGE: &str = "\
 Usage: sim3align-lab outlines [--cases DIR...] [--generated N] [options]
@@ -83,11 +83,7 @@ fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Error>
 
 /// Runs the command.
 pub fn main(parser: lexopt::Parser) -> Result<(), Failure> {
-    let arguments = match parse(parser) {
-        Ok(Some(arguments)) => arguments,
-        Ok(None) => return Err(Failure::Help(USAGE)),
-        Err(error) => return Err(Failure::Usage(error, USAGE)),
-    };
+    let arguments = parsed(parser, parse, USAGE)?;
     let objects = measured(&arguments).map_err(|error| Failure::Failed(error.to_string()))?;
     if arguments.objects {
         println!("{}", table::by_object(&objects));

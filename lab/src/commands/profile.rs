@@ -13,7 +13,7 @@ use sim3align_geometry::error::Error;
 use sim3align_lab::bench::option_text;
 use sim3align_lab::case_folder::case::read_case;
 
-use super::Failure;
+use super::{Failure, parsed};
 
 const USAGE: &str = "\
 Usage: sim3align-lab profile [--quality QUALITY] RUNS CASE...
@@ -70,11 +70,7 @@ fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Error>
 
 /// Runs the command.
 pub fn main(arguments: lexopt::Parser) -> Result<(), Failure> {
-    let Arguments { options, runs, folders } = match parse(arguments) {
-        Ok(Some(arguments)) => arguments,
-        Ok(None) => return Err(Failure::Help(USAGE)),
-        Err(error) => return Err(Failure::Usage(error, USAGE)),
-    };
+    let Arguments { options, runs, folders } = parsed(arguments, parse, USAGE)?;
     let mut all = Map::new();
     for folder in folders {
         let values = results(&folder, runs, &options)

@@ -6,7 +6,7 @@ use lexopt::prelude::*;
 use sim3align_geometry::error::Error;
 use sim3align_lab::scenes::{Prior, SCENES, SceneSet, write_bop};
 
-use super::Failure;
+use super::{Failure, parsed};
 
 const USAGE: &str = "\
 Usage: sim3align-lab scenes OUT_DIR [--scenes N] [--set-seed S] [--prior P] [--bop] [--threads N]
@@ -56,11 +56,7 @@ fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Error>
 
 /// Runs the command.
 pub fn main(arguments: lexopt::Parser) -> Result<(), Failure> {
-    let Arguments { folder, set, priors, is_bop, threads } = match parse(arguments) {
-        Ok(Some(arguments)) => arguments,
-        Ok(None) => return Err(Failure::Help(USAGE)),
-        Err(error) => return Err(Failure::Usage(error, USAGE)),
-    };
+    let Arguments { folder, set, priors, is_bop, threads } = parsed(arguments, parse, USAGE)?;
     let all = set.scenes();
     let progress = |done| {
         let end = if done == all { "\n" } else { "" };

@@ -10,7 +10,7 @@ use sim3align_lab::bench::scene_bench::{BenchScene, SceneRecord, table};
 use sim3align_lab::parallel::parallel_map;
 use sim3align_lab::scenes::{Prior, SceneSet};
 
-use super::Failure;
+use super::{Failure, parsed};
 
 const USAGE: &str = "\
 Usage: sim3align-lab together [--scenes N] [--cases DIR...] [options]
@@ -100,11 +100,7 @@ fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Error>
 
 /// Runs the command.
 pub fn main(parser: lexopt::Parser) -> Result<(), Failure> {
-    let arguments = match parse(parser) {
-        Ok(Some(arguments)) => arguments,
-        Ok(None) => return Err(Failure::Help(USAGE)),
-        Err(error) => return Err(Failure::Usage(error, USAGE)),
-    };
+    let arguments = parsed(parser, parse, USAGE)?;
     let set = SceneSet::new(arguments.set_seed, arguments.scenes);
     let arranged = SceneSet::arranged(arguments.set_seed, arguments.arranged);
     let generated = [(&set, arguments.scenes), (&arranged, arguments.arranged)]

@@ -15,8 +15,8 @@ use sim3align_lab::cpu_time::CpuTimer;
 use sim3align_lab::sequences::Sequence;
 use sim3align_lab::sequences::video::VideoSet;
 
-use super::Failure;
 use super::sequence_rows::{each_row, outcomes};
+use super::{Failure, parsed};
 
 const USAGE: &str = "\
 Usage: sim3align-lab track [--generated N] [--from I] [--frames F] [--seed S] [--threads T] [--printed]
@@ -150,11 +150,7 @@ fn run(sequence: &Sequence, with_color: bool, verbose: bool) -> Result<Vec<Outco
 
 /// Runs the command.
 pub fn main(arguments: lexopt::Parser) -> core::result::Result<(), Failure> {
-    let arguments = match parse(arguments) {
-        Ok(Some(arguments)) => arguments,
-        Ok(None) => return Err(Failure::Help(USAGE)),
-        Err(error) => return Err(Failure::Usage(error, USAGE)),
-    };
+    let arguments = parsed(arguments, parse, USAGE)?;
     let Arguments { generated, set, threads, verbose, with_color, folders } = arguments;
     let outcomes =
         outcomes(folders, generated, threads, |index| set.video(index), |sequence| run(sequence, with_color, verbose))?;

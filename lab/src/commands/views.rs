@@ -18,8 +18,8 @@ use sim3align_lab::sequences::Sequence;
 use sim3align_lab::sequences::faulty_mask::{grown, holed};
 use sim3align_lab::sequences::rig::RigSet;
 
-use super::Failure;
 use super::sequence_rows::{each_row, outcomes};
+use super::{Failure, parsed};
 
 const USAGE: &str = "\
 Usage: sim3align-lab views [--generated N] [--from I] [--seed S] [--views V] [--threads T] [--printed] [--small]
@@ -199,11 +199,7 @@ fn run(sequence: &Sequence, fault: Fault, verbose: bool) -> Result<Vec<Outcome>>
 
 /// Runs the command.
 pub fn main(arguments: lexopt::Parser) -> core::result::Result<(), Failure> {
-    let arguments = match parse(arguments) {
-        Ok(Some(arguments)) => arguments,
-        Ok(None) => return Err(Failure::Help(USAGE)),
-        Err(error) => return Err(Failure::Usage(error, USAGE)),
-    };
+    let arguments = parsed(arguments, parse, USAGE)?;
     let Arguments { generated, set, threads, verbose, fault, folders } = arguments;
     let outcomes =
         outcomes(folders, generated, threads, |index| set.case(index), |sequence| run(sequence, fault, verbose))?;

@@ -4,14 +4,10 @@ mod arguments;
 mod run;
 mod table;
 
-use super::Failure;
+use super::{Failure, parsed};
 use arguments::{Arguments, USAGE};
 
 /// Runs the command.
 pub fn main(arguments: lexopt::Parser) -> Result<(), Failure> {
-    match Arguments::parse(arguments) {
-        Ok(Some(arguments)) => run::run(&arguments).map_err(Failure::Failed),
-        Ok(None) => Err(Failure::Help(USAGE)),
-        Err(error) => Err(Failure::Usage(error, USAGE)),
-    }
+    run::run(&parsed(arguments, Arguments::parse, USAGE)?).map_err(Failure::Failed)
 }

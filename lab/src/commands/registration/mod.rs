@@ -5,14 +5,10 @@ mod method;
 mod run;
 mod table;
 
-use super::Failure;
+use super::{Failure, parsed};
 use arguments::{Command, USAGE};
 
 /// Runs the command.
 pub fn main(arguments: lexopt::Parser) -> Result<(), Failure> {
-    match Command::parse(arguments) {
-        Ok(Some(command)) => run::run(&command).map_err(Failure::Failed),
-        Ok(None) => Err(Failure::Help(USAGE)),
-        Err(error) => Err(Failure::Usage(error, USAGE)),
-    }
+    run::run(&parsed(arguments, Command::parse, USAGE)?).map_err(Failure::Failed)
 }
