@@ -179,6 +179,7 @@ async function checkFeatures(modules) {
   for (const { name, file } of modules) {
     // Without `-o` nothing is written: the module is read and validated.
     const { output, reason } = await attempt(node, [wasmOpt, file, "--mvp-features", ...allowed]);
-    if (reason) throw new Error(`The ${name} module: ${output || reason}\nRemedy: see \`simd\` in scripts/lib/wasm.mjs.`);
+    if (reason)
+      throw new Error(`The ${name} module: ${output || reason}\nRemedy: see \`simd\` in scripts/lib/wasm.mjs.`);
   }
 }
