@@ -5,7 +5,7 @@
 //! are bit-identical regardless of pauses.
 
 use super::outcome::{Setup, report, score};
-use super::warnings::{about_fit, about_search};
+use super::warnings::{about_fit, about_search, retain_doubts};
 use crate::error::Result;
 use crate::evidence::Normals;
 use crate::evidence::clouds::Clouds;
@@ -239,8 +239,9 @@ fn leaves_image(given: &Given, rounds: &Rounds) -> bool {
 fn with_certainty(aligned: PaperAlignment, certainty: Certainty) -> Alignment {
     let Certainty { confidence, turn_confidence, alternatives, uncertainty, score, terms, effort, color } = certainty;
     let PaperAlignment { camera_from_mesh, metrics, mut warnings, diagnostics } = aligned;
-    warnings.extend(about_search(diagnostics.converged, confidence));
+    warnings.extend(about_search(diagnostics.converged));
     warnings.extend(about_fit(&terms));
+    retain_doubts(&mut warnings, confidence);
     let diagnostics = PreciseDiagnostics { common: diagnostics, effort, score, terms, color };
     Alignment {
         camera_from_mesh,

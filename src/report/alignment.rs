@@ -91,6 +91,14 @@ impl AnyAlignment {
         }
     }
 
+    /// Its warnings.
+    pub fn warnings(&self) -> &[Warning] {
+        match self {
+            Self::Precise(found) => &found.warnings,
+            Self::Paper(found) => &found.warnings,
+        }
+    }
+
     /// What all presets report.
     pub fn diagnostics(&self) -> &Diagnostics {
         match self {

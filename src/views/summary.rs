@@ -92,6 +92,7 @@ impl Summary {
             if view.role == ViewRole::Used && observation.is_some() {
                 warnings.extend(warnings::about_fit(&terms));
             }
+            warnings::retain_doubts(&mut warnings, view.confidence);
             views.push(ViewPose {
                 camera_from_mesh: (&view.camera_from_mesh).into(),
                 confidence: view.confidence,

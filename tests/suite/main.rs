@@ -74,3 +74,4 @@ pub mod umeyama;
 pub mod views;
 pub mod views_joint;
 pub mod voxel_grid;
+pub mod warnings;

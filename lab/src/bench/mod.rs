@@ -7,3 +7,4 @@ pub mod overlay;
 pub mod records;
 pub mod scene_bench;
 pub mod statistics;
+pub mod warning_tally;

@@ -27,3 +27,4 @@ mod shapes;
 #[path = "../../../tests/suite/support.rs"]
 mod support;
 mod typescript;
+mod warnings;

@@ -1,8 +1,9 @@
 /** Makes and changes the draft. A draft without any problem becomes the scene by itself. */
 
-import { extractArchives, type NamedFile } from "../load/files.js";
+import { extractArchives } from "../load/archives.js";
+import type { NamedFile } from "../load/files.js";
 import { type Inputs, noInputs, type Role, type Typed } from "../load/inputs.js";
-import { error, type Problem } from "../load/problems.js";
+import { error, errorOf, type Problem } from "../load/problems.js";
 import { readInputs, sceneOf } from "../load/read-scene.js";
 import { alignAll } from "../run/align.js";
 import { openSession } from "../session/index.js";
@@ -25,19 +26,23 @@ export async function propose(files: readonly NamedFile[]): Promise<void> {
   let typed: Typed[];
   try {
     const extracted = await extractArchives(files);
+    if (change !== lastChange) return;
     if (extracted.some(({ path }) => path === SESSION_FILE)) {
-      if (!(await openSession(extracted))) return refuse("The session was saved by another version of this page.");
+      if (!(await openSession(extracted))) {
+        return refuse(error("files", "The session was saved by another version of this page."));
+      }
       draft.value = null;
       return;
     }
     typed = await rolesOf(extracted);
   } catch (cause) {
-    return refuse(cause instanceof Error ? cause.message : `${cause}`);
+    if (change === lastChange) refuse(errorOf("files", cause));
+    return;
   }
   if (change !== lastChange) return;
   if (typed.every(({ role }) => role === "unused" || role === "resource")) {
     const names = typed.slice(0, 3).map(({ file }) => file.path);
-    return refuse(`None of the files is an input (${names.join(", ") || "no files"}).`);
+    return refuse(error("files", `None of the files is an input (${names.join(", ") || "no files"}).`));
   }
   const open = draft.peek();
   if (open !== null && !typed.some(({ role }) => role === "depth")) return add(open, typed);
@@ -180,9 +185,8 @@ async function set(next: Omit<Draft, "reading" | "problems" | "progress">, opens
 const hasWork = () => scene.peek()?.objects.some(({ pose }) => pose.peek().source === "hand") === true;
 
 /** Shows what is wrong with the files as a whole. */
-function refuse(message: string): void {
+function refuse(problem: Problem): void {
   const open = draft.peek();
-  const problem: Problem = error("files", message);
   const empty = {
     scenes: [{ ...noInputs, name: "New scene" }],
     index: 0,
@@ -192,7 +196,7 @@ function refuse(message: string): void {
     progress: { done: 0, total: 0 },
   };
   draft.value = { ...(open ?? empty), problems: [problem] };
-  announce(message, "failed");
+  announce(problem.message, "failed");
 }
 
 /** The files of inputs with their roles, also of a sample. */

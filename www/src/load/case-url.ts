@@ -1,5 +1,7 @@
 /** Files at an address: a zip archive, or a JSON index of a folder. */
+import { Allowance } from "./allowance.js";
 import { baseName, type NamedFile } from "./files.js";
+import { gathered } from "./slices.js";
 
 /** The first bytes of zip archives. */
 const ZIP = [0x50, 0x4b] as const;
@@ -10,24 +12,33 @@ const ZIP = [0x50, 0x4b] as const;
  */
 export async function filesAt(url: string): Promise<NamedFile[]> {
   const address = new URL(url, document.baseURI);
-  const bytes = await fetched(address);
+  const allowance = new Allowance();
+  const bytes = await fetched(address, allowance);
   if (bytes[0] === ZIP[0] && bytes[1] === ZIP[1]) {
     const path = baseName(address.pathname);
     return [{ path: path.endsWith(".zip") ? path : `${path}.zip`, bytes: async () => bytes }];
   }
   const folder = address.pathname.split("/").at(-2) ?? "";
-  return indexed(bytes, address).map((path) => ({
-    path: `${folder}/${path}`,
-    bytes: () => fetched(new URL(path, address)),
-  }));
+  const paths = indexed(bytes, address);
+  allowance.addFiles(paths.length, address.href);
+  return paths.map((path) => {
+    // Kept, so that each file is loaded and counted once.
+    let content: Promise<Uint8Array> | undefined;
+    const load = () => {
+      content ??= fetched(new URL(path, address), allowance);
+      return content;
+    };
+    return { path: `${folder}/${path}`, bytes: load };
+  });
 }
 
-async function fetched(address: URL): Promise<Uint8Array> {
+/** Loads an address. What a server says of the size is not relied on: it may compress, or lie. */
+async function fetched(address: URL, allowance: Allowance): Promise<Uint8Array> {
   const response = await fetch(address).catch(() => {
     throw new Error(`${address.href} could not be loaded: its server must be reachable, and allow this page (CORS).`);
   });
   if (!response.ok) throw new Error(`${address.href} could not be loaded: HTTP ${response.status}.`);
-  return new Uint8Array(await response.arrayBuffer());
+  return gathered(response.body ?? new ReadableStream(), (length) => allowance.addBytes(length, address.href));
 }
 
 /** The paths that an index lists. */

@@ -1,4 +1,4 @@
-/** Files that the user or a sample provides, from disk, folders and zip archives. */
+/** Files that the user or a sample provides, from disk and folders. */
 
 /** A file and its path in the folder or archive that it came from. */
 export interface NamedFile {
@@ -6,6 +6,8 @@ export interface NamedFile {
   bytes(): Promise<Uint8Array>;
   /** The first bytes, where they can be read alone. */
   head?(length: number): Promise<Uint8Array>;
+  /** In bytes, where it is known without reading them. */
+  size?: number;
 }
 
 /** The part of a path after its last slash. */
@@ -24,32 +26,14 @@ export const fromFile = (file: File, path = file.webkitRelativePath || file.name
   path,
   bytes: async () => new Uint8Array(await file.arrayBuffer()),
   head: async (length) => new Uint8Array(await file.slice(0, length).arrayBuffer()),
+  size: file.size,
 });
 
 /** The files of a file input. */
 export const filesOf = ({ files }: HTMLInputElement): NamedFile[] => Array.from(files ?? [], (file) => fromFile(file));
 
-/** Replaces zip archives by the files in them. */
-export async function extractArchives(files: readonly NamedFile[]): Promise<NamedFile[]> {
-  const parts = files.map((file) => (extension(file.path) === "zip" ? extracted(file) : [file]));
-  return (await Promise.all(parts)).flat();
-}
-
 /** Not metadata of operating systems and zip programs. */
-const isContent = (path: string) => !path.endsWith("/") && !/(^|\/)(__MACOSX\/|\.)/.test(path);
-
-async function extracted(archive: NamedFile): Promise<NamedFile[]> {
-  const { unzip } = await import("fflate");
-  const bytes = await archive.bytes();
-  const content = await new Promise<Record<string, Uint8Array>>((resolve, reject) => {
-    unzip(bytes, (error, files) => (error ? reject(error) : resolve(files)));
-  }).catch((cause: Error) => {
-    throw new Error(`${baseName(archive.path)} is not a readable zip archive: ${cause.message}`, { cause });
-  });
-  return Object.entries(content).flatMap(([path, file]) =>
-    isContent(path) ? [{ path, bytes: async () => file }] : [],
-  );
-}
+export const isContent = (path: string) => !path.endsWith("/") && !/(^|\/)(__MACOSX\/|\.)/.test(path);
 
 /** The files of a drop, with those in folders. */
 export async function droppedFiles(data: DataTransfer): Promise<NamedFile[]> {

@@ -22,7 +22,8 @@ use sim3align_lab::scenes::Prior;
 pub const USAGE: &str = "\
 Usage: sim3align-lab bench [--generated N] [--scenes N] [--cases DIR...] [options]
 
-Aligns cases with a known truth and prints Markdown tables: success, errors, metrics, failures.
+Aligns cases with a known truth and prints Markdown tables: success, errors, metrics, what
+warnings come with, failures.
 
 Cases
   --generated N      cases 0 to N − 1 of the generated set; 240 where no --cases or --scenes is given either

@@ -7,6 +7,7 @@ use sim3align::metrics::layout::LayoutErrors;
 use sim3align::metrics::pose_error::PoseErrors;
 use sim3align_lab::bench::benchmark::{LOOSE, Record, STRICT};
 use sim3align_lab::bench::statistics::{cell, mean, median};
+use sim3align_lab::bench::warning_tally::WarningTally;
 
 /// A column with a metric.
 struct Column {
@@ -46,6 +47,7 @@ pub fn report(rows: &[(String, Vec<&Record>)], failures: usize) -> String {
         "\nStrict: scale within 5 %, rotation within 10° up to symmetry, translation (of the middle of the mesh's box) within 5 % of its diagonal; loose: 10 %, 20°, 10 %. Errors and seconds are medians, metrics means over the answered cases; *truth* is the true pose's own row."
     );
     layout(&mut out, &groups, rows);
+    warnings(&mut out, rows);
     for (name, records) in rows {
         list_failures(&mut out, name, records, failures);
     }
@@ -84,6 +86,32 @@ fn layout(out: &mut String, groups: &[(String, Vec<usize>)], rows: &[(String, Ve
         out,
         "\n3D IoU of oriented boxes, ICP-Rot and ADD-S relative to the diameter are means, ADD-S over the answered cases; ADD-S@0.1 and the rule of 20 cm, 20° and 20 % are shares."
     );
+}
+
+/// The table of warnings: whether the poses that they come with are wrong.
+fn warnings(out: &mut String, rows: &[(String, Vec<&Record>)]) {
+    let lines: Vec<(&str, WarningTally)> = rows
+        .iter()
+        .flat_map(|(name, records)| WarningTally::of(records).into_iter().map(|tally| (name.as_str(), tally)))
+        .collect();
+    if lines.is_empty() {
+        return;
+    }
+    let _ = writeln!(out, "\n| warning | row | given | pose wrong | of those without it |");
+    let _ = writeln!(out, "|---|---|---|---|---|");
+    for (name, WarningTally { code, with, without }) in lines {
+        let code = serde_json::to_string(&code).unwrap_or_default();
+        let percent = cell(with.wrong_percent(), 0);
+        let _ = writeln!(
+            out,
+            "| `{}` | {name} | {} | {} ({percent} %) | {} % |",
+            code.trim_matches('"'),
+            with.poses,
+            with.wrong,
+            cell(without.wrong_percent(), 0)
+        );
+    }
+    let _ = writeln!(out, "\nOf the answered cases of known truth; a pose beyond the strict tolerance is wrong.");
 }
 
 /// Groups the indices of records by key, in the order of first occurrence.

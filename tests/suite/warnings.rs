@@ -1,0 +1,50 @@
+//! Warnings come with poses that are in doubt.
+
+use glam::Vec3;
+use sim3align::align::align;
+use sim3align::align::warnings::{about_observation, retain_doubts};
+use sim3align::evidence::observation::Observation;
+use sim3align::geometry::mesh::Mesh;
+use sim3align::progress::Silent;
+use sim3align::report::{Warning, WarningCode};
+use wasm_bindgen_test::wasm_bindgen_test;
+
+use crate::precise::{body, observe, quick, truth};
+use crate::shapes::cuboid;
+
+fn codes(warnings: &[Warning]) -> Vec<WarningCode> {
+    warnings.iter().map(|warning| warning.code).collect()
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_mask_at_the_border_is_warned_of_where_the_pose_is_in_doubt() {
+    let whole = observe(&body(), &truth());
+    let mut mask = whole.mask().clone();
+    mask.data_mut()[0] = 1;
+    let observation = Observation::new(whole.depth().clone(), mask, whole.camera()).unwrap();
+    assert_eq!(codes(&about_observation(&observation)), [WarningCode::MaskTouchesBorder]);
+    let with = |mesh: &Mesh| align(&observation, mesh, &quick(), &mut Silent).unwrap();
+    let right = with(&body());
+    assert!(right.confidence > 0.5 && right.warnings.is_empty(), "{} {:?}", right.confidence, right.warnings);
+    let other = with(&cuboid(Vec3::new(0.2, 0.3, 1.4)));
+    assert!(other.confidence < 0.5, "{}", other.confidence);
+    for code in [WarningCode::MaskTouchesBorder, WarningCode::MeshDoubtful] {
+        assert!(codes(&other.warnings).contains(&code), "{code:?}: {:?}", other.warnings);
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn faults_of_the_input_are_warned_of_whatever_the_pose() {
+    let kept = |code, confidence| {
+        let mut warnings = vec![Warning { code, message: String::new() }];
+        retain_doubts(&mut warnings, confidence);
+        !warnings.is_empty()
+    };
+    for code in [WarningCode::MaskTouchesBorder, WarningCode::SparseDepth, WarningCode::MeshDoubtful] {
+        assert!(kept(code, 0.49) && !kept(code, 0.5), "{code:?}");
+    }
+    assert!(kept(WarningCode::NotConverged, 0.29) && !kept(WarningCode::NotConverged, 0.3));
+    for code in [WarningCode::DepthLooksLikeMillimetres, WarningCode::MaskCoversImage, WarningCode::ScaleClamped] {
+        assert!(kept(code, 1.0), "{code:?}");
+    }
+}
