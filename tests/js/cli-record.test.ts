@@ -39,12 +39,14 @@ test("a case is resumed whatever it is called: from other folders, with other ca
   );
   const all = run("align", "left/*", "right/*", ...record, "--json", "batch.json");
   assert.match(all.stderr, /resumed: 2 of 4/);
-  assert.deepEqual(Object.keys(JSON.parse(readFileSync(inFolder("batch.json"), "utf8"))), [
-    ...["left/mug", "pan"],
-    ...entries("batch.jsonl")
-      .slice(2)
-      .map((entry) => entry.case),
-  ]);
+  // Cases are recorded in the order in which workers are done with them.
+  const added = entries("batch.jsonl")
+    .slice(2)
+    .map((entry) => entry.case);
+  assert.deepEqual(
+    Object.keys(JSON.parse(readFileSync(inFolder("batch.json"), "utf8"))).sort(),
+    ["left/mug", "pan", ...added].sort(),
+  );
   const beside = runIn("left", "mug", "pan", "../right/mug", "../right/jar", "--jsonl", "../batch.jsonl", "--resume");
   assert.match(beside.stderr, /resumed: 4 of 4/);
   const absolute = run("align", inFolder("left", "mug"), inFolder("right", "..", "right", "mug"), ...record);
