@@ -2,8 +2,7 @@
 //! Generative Reconstructions via Partial Monocular Observations".
 //!
 //! Every module imports only from those below it in this list: [`bindings`], [`track`], [`views`], [`scene`], [`align`],
-//! [`precise`], [`paper`], [`register`], [`report`], [`options`], [`metrics`], [`evidence`], [`pauses`], [`progress`],
-//! [`geometry`].
+//! [`precise`], [`paper`], [`register`], [`report`], [`options`], [`metrics`], [`evidence`], [`progress`], [`geometry`].
 
 pub mod align;
 pub mod bindings;
@@ -11,7 +10,6 @@ pub mod evidence;
 pub mod metrics;
 pub mod options;
 pub mod paper;
-pub mod pauses;
 pub mod precise;
 pub mod progress;
 pub mod register;
@@ -21,4 +19,4 @@ pub mod track;
 pub mod views;
 
 pub use sim3align_geometry as geometry;
-pub use sim3align_geometry::{error, number};
+pub use sim3align_geometry::{error, number, pauses};

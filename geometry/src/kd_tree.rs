@@ -8,15 +8,18 @@ use glam::Vec3;
 use wide::f32x4;
 
 use super::cloud::Bounds;
-use super::order::{halve, pack, select_smallest};
-
-const LEAF_SIZE: usize = 16;
+use super::kd_nodes::{Division, Node, Query};
+use super::order::{pack, select_smallest};
+use super::pauses::Pauses;
 
 /// Points of a leaf whose distances are computed at once.
 const LANES: usize = 4;
 
 /// Points per joint search of [`KdTree::neighborhoods`].
 const GROUP_SIZE: usize = 12;
+
+/// Units of work of a point of a node that is made.
+const DIVIDED: f64 = 3e-5;
 
 /// Safety factor for the rounding of a sum of f32 distances.
 const ROUNDING: f32 = 1e-5;
@@ -48,68 +51,24 @@ pub struct KdTree {
     nodes: Vec<Node>,
 }
 
-#[derive(Debug, Clone, Copy)]
-struct Node {
-    /// The boxes around the points of the children: tighter than their cells if the points sample a surface.
-    children: TwoBoxes,
-    /// The smallest index of each child's points: of points that coincide, a search for the nearest visits no more than it
-    /// keeps.
-    first: [u32; 2],
-    /// The right child; 0 in a leaf.
-    right: u32,
-}
-
-/// Two boxes: x of both and y of both, and z of both twice.
-#[derive(Debug, Clone, Copy)]
-struct TwoBoxes {
-    min: [f32x4; 2],
-    max: [f32x4; 2],
-}
-
-impl TwoBoxes {
-    const NOTHING: Self = Self { min: [f32x4::ZERO; 2], max: [f32x4::ZERO; 2] };
-
-    fn new([a, b]: [Bounds; 2]) -> Self {
-        let lanes = |a: Vec3, b: Vec3| [f32x4::new([a.x, b.x, a.y, b.y]), f32x4::new([a.z, b.z, a.z, b.z])];
-        Self { min: lanes(a.min, b.min), max: lanes(a.max, b.max) }
-    }
-
-    /// [`Bounds::distance_squared`] of each.
-    #[inline(always)]
-    fn distances_squared(&self, query: &Query) -> [f32; 2] {
-        let squares = |axes: usize| {
-            let (below, above) = (self.min[axes] - query.two[axes], query.two[axes] - self.max[axes]);
-            let gap = below.fast_max(above).fast_max(f32x4::ZERO);
-            (gap * gap).to_array()
-        };
-        let ([ax, bx, ay, by], [az, bz, ..]) = (squares(0), squares(1));
-        [ax + ay + az, bx + by + bz]
-    }
-}
-
-/// The coordinates of a query: each in all lanes, and as those of [`TwoBoxes`].
-struct Query {
-    axes: [f32x4; 3],
-    two: [f32x4; 2],
-}
-
-impl Query {
-    fn new(point: Vec3) -> Self {
-        let Vec3 { x, y, z } = point;
-        Self {
-            axes: [f32x4::splat(x), f32x4::splat(y), f32x4::splat(z)],
-            two: [f32x4::new([x, x, y, y]), f32x4::splat(z)],
-        }
-    }
-}
-
 impl KdTree {
     /// A tree over the points.
     pub fn new(points: &[Vec3]) -> Self {
-        let mut order: Vec<u32> = (0..points.len() as u32).collect();
-        let mut nodes = Vec::with_capacity(points.len() / (LEAF_SIZE / 4));
-        let lanes: Vec<f32x4> = points.iter().map(|p| f32x4::new([p.x, p.y, p.z, 0.0])).collect();
-        build(&lanes, &mut order, &mut nodes);
+        let mut division = Division::new(points);
+        while division.advance().is_some() {}
+        Self::of(points, division)
+    }
+
+    /// [`KdTree::new`] with pauses.
+    pub async fn paused(points: &[Vec3], pauses: &Pauses) -> Self {
+        let mut division = Division::new(points);
+        while let Some(count) = division.advance() {
+            pauses.point(DIVIDED * count as f64).await;
+        }
+        Self::of(points, division)
+    }
+
+    fn of(points: &[Vec3], Division { order, nodes, .. }: Division) -> Self {
         let points: Vec<(Vec3, u32)> = order.into_iter().map(|i| (points[i as usize], i)).collect();
         let axis = |axis: usize| points.iter().map(|(p, _)| p[axis]).chain([0.0; LANES - 1]).collect();
         Self { axes: [axis(0), axis(1), axis(2)], points, nodes }
@@ -167,51 +126,27 @@ impl KdTree {
         stride: usize,
         mut visit: impl FnMut(u32, &[u64]),
     ) {
-        let (mut found, mut near, mut keys) = (Vec::new(), Vec::new(), Vec::new());
-        let mut groups = vec![self.points.as_slice()];
-        let mut number = 0;
-        while let Some(group) = groups.pop() {
-            if group.len() > GROUP_SIZE {
-                // Halved in the same way as the tree.
-                let (left, right) = group.split_at(group.len() / 2);
-                groups.extend([right, left]);
-                continue;
-            }
-            number += 1;
-            if number % stride != 0 {
-                continue;
-            }
-            let members = || group.iter().map(|(point, _)| *point);
-            let Some(center) = Bounds::of(&members().collect::<Vec<_>>()).map(|b| b.center()) else { continue };
-            let spread = members().map(|q| q.distance(center)).fold(0.0, f32::max);
-            // The centre has k neighbours within its reach r. By the triangle inequality, a point q at distance d from
-            // the centre has k neighbours within r + d, all of which are within r + 2 d of the centre.
-            self.k_nearest(center, k, &mut found);
-            let reach = found.last().filter(|_| found.len() == k).map_or(f32::INFINITY, |n| n.distance_squared.sqrt());
-            // Of points that coincide with the centre, there may be many more.
-            if spread > 0.0 || reach > 0.0 {
-                self.within(center, (reach + 2.0 * spread) * (1.0 + ROUNDING), &mut found);
-            }
-            near.clear();
-            near.extend(found.iter().filter_map(|n| Some((*points.get(n.index as usize)?, n.index))));
-            for &(query, index) in group {
-                let enough = ((reach + query.distance(center)) * (1.0 + ROUNDING)).min(radius);
-                let limit = enough * enough;
-                // Writes every key and overwrites the rejected ones: half are rejected at random, so that a branch
-                // would be mispredicted.
-                keys.resize(near.len(), 0);
-                let mut count = 0;
-                for &(point, index) in &near {
-                    let distance_squared = point.distance_squared(query);
-                    keys[count] = pack(distance_squared, index);
-                    count += usize::from(distance_squared <= limit);
-                }
-                keys.truncate(count);
-                select_smallest(&mut keys, k);
-                keys.truncate(k);
-                visit(index, &keys);
+        let mut search = GroupSearch::new(self, points, k, radius);
+        for (number, group) in (1..).zip(self.groups()) {
+            if number % stride == 0 {
+                search.visit(group, &mut visit);
             }
         }
+    }
+
+    /// The points in small groups of nearby ones.
+    pub fn groups(&self) -> impl Iterator<Item = &[(Vec3, u32)]> {
+        let mut groups = vec![self.points.as_slice()];
+        core::iter::from_fn(move || {
+            let mut group = groups.pop()?;
+            while group.len() > GROUP_SIZE {
+                // Halved in the same way as the tree.
+                let (left, right) = group.split_at(group.len() / 2);
+                groups.push(right);
+                group = left;
+            }
+            Some(group)
+        })
     }
 
     fn visit(&self, query: Vec3, collector: &mut impl Collector) {
@@ -266,40 +201,57 @@ impl KdTree {
     }
 }
 
-/// Sorts the indices of `points` into leaf order and records the nodes in depth-first order.
-/// Returns the box of the points and their smallest index.
-fn build(points: &[f32x4], order: &mut [u32], nodes: &mut Vec<Node>) -> (Bounds, u32) {
-    let (mut min, mut max) = (f32x4::splat(f32::INFINITY), f32x4::splat(f32::NEG_INFINITY));
-    for &i in order.iter() {
-        let point = points[i as usize];
-        (min, max) = (min.fast_min(point), max.fast_max(point));
+/// Searches for the neighbours of the points of groups. See [`KdTree::neighborhoods`].
+pub struct GroupSearch<'a> {
+    tree: &'a KdTree,
+    points: &'a [Vec3],
+    k: usize,
+    radius: f32,
+    found: Vec<Neighbor>,
+    near: Vec<(Vec3, u32)>,
+    keys: Vec<u64>,
+}
+
+impl<'a> GroupSearch<'a> {
+    /// A search for the `k` nearest neighbours within `radius`; the tree was built from the points.
+    pub fn new(tree: &'a KdTree, points: &'a [Vec3], k: usize, radius: f32) -> Self {
+        Self { tree, points, k, radius, found: Vec::new(), near: Vec::new(), keys: Vec::new() }
     }
-    let [min, max] = [min.to_array(), max.to_array()];
-    let bounds = Bounds { min: Vec3::new(min[0], min[1], min[2]), max: Vec3::new(max[0], max[1], max[2]) };
-    let node = nodes.len();
-    nodes.push(Node { children: TwoBoxes::NOTHING, first: [0; 2], right: 0 });
-    if order.len() <= LEAF_SIZE {
-        return (bounds, order.iter().copied().min().unwrap_or_default());
+
+    /// Calls `visit` for every point of a group.
+    pub fn visit(&mut self, group: &[(Vec3, u32)], visit: &mut impl FnMut(u32, &[u64])) {
+        let Self { tree, points, k, radius, found, near, keys } = self;
+        let members = || group.iter().map(|(point, _)| *point);
+        let Some(center) = Bounds::of(&members().collect::<Vec<_>>()).map(|b| b.center()) else { return };
+        let spread = members().map(|q| q.distance(center)).fold(0.0, f32::max);
+        // The centre has k neighbours within its reach r. By the triangle inequality, a point q at distance d from
+        // the centre has k neighbours within r + d, all of which are within r + 2 d of the centre.
+        tree.k_nearest(center, *k, found);
+        let reach = found.last().filter(|_| found.len() == *k).map_or(f32::INFINITY, |n| n.distance_squared.sqrt());
+        // Of points that coincide with the centre, there may be many more.
+        if spread > 0.0 || reach > 0.0 {
+            tree.within(center, (reach + 2.0 * spread) * (1.0 + ROUNDING), found);
+        }
+        near.clear();
+        near.extend(found.iter().filter_map(|n| Some((*points.get(n.index as usize)?, n.index))));
+        for &(query, index) in group {
+            let enough = ((reach + query.distance(center)) * (1.0 + ROUNDING)).min(*radius);
+            let limit = enough * enough;
+            // Writes every key and overwrites the rejected ones: half are rejected at random, so that a branch
+            // would be mispredicted.
+            keys.resize(near.len(), 0);
+            let mut count = 0;
+            for &(point, index) in near.iter() {
+                let distance_squared = point.distance_squared(query);
+                keys[count] = pack(distance_squared, index);
+                count += usize::from(distance_squared <= limit);
+            }
+            keys.truncate(count);
+            select_smallest(keys, *k);
+            keys.truncate(*k);
+            visit(index, keys);
+        }
     }
-    let extent = bounds.extent();
-    let axis = if extent.x >= extent.y && extent.x >= extent.z {
-        0
-    } else if extent.y >= extent.z {
-        1
-    } else {
-        2
-    };
-    halve(order, |i| points[i as usize].as_array()[axis]);
-    let (left, right) = order.split_at_mut(order.len() / 2);
-    let (left_bounds, left_first) = build(points, left, nodes);
-    let right_node = nodes.len() as u32;
-    let (right_bounds, right_first) = build(points, right, nodes);
-    nodes[node] = Node {
-        children: TwoBoxes::new([left_bounds, right_bounds]),
-        first: [left_first, right_first],
-        right: right_node,
-    };
-    (bounds, left_first.min(right_first))
 }
 
 /// Candidates that a search keeps.

@@ -1,5 +1,5 @@
 //! Geometry that the aligner and the file readers share: meshes, clouds, images, cameras, transforms, search trees and
-//! the rasteriser, with the error type of all crates.
+//! the rasteriser, with the error type of all crates and the pauses of long calls.
 //!
 //! Two linear algebra crates divide the work. glam: f32 and f64 vectors in the hot loops over pixels, points and
 //! triangles, and all stored coordinates. nalgebra: transforms ([`similarity::Similarity`]), and solvers
@@ -16,11 +16,13 @@ pub mod error;
 #[cfg(target_arch = "wasm32")]
 mod heap;
 pub mod image;
+mod kd_nodes;
 pub mod kd_tree;
 pub mod mesh;
 pub mod normal_equations;
 pub mod number;
 pub mod order;
+pub mod pauses;
 pub mod pinhole;
 pub mod random;
 pub mod rasteriser;

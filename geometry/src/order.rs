@@ -27,12 +27,17 @@ pub fn value_of(key: u64) -> f32 {
 }
 
 /// Sorts keys by a least-significant-byte radix sort: linear for every input.
-#[inline(never)]
 pub fn sort(keys: &mut [u64]) {
+    sort_from(0, keys);
+}
+
+/// Sorts keys by their bits from this one on, and keeps the order of keys that differ below it only.
+#[inline(never)]
+pub fn sort_from(bit: usize, keys: &mut [u64]) {
     let mut sorted = vec![0; keys.len()];
     let first = keys.first().copied().unwrap_or_default();
     let varying = keys.iter().fold(0, |bits, key| bits | (key ^ first));
-    for shift in (0..64).step_by(8).filter(|shift| varying >> shift & 0xff != 0) {
+    for shift in (bit..64).step_by(8).filter(|shift| varying >> shift & 0xff != 0) {
         let digit = |key: u64| (key >> shift) as usize & 0xff;
         let mut starts = [0_usize; 256];
         for &key in keys.iter() {

@@ -3,7 +3,8 @@
 use glam::Vec3;
 
 use super::cloud::{Bounds, Cloud};
-use super::order::{index_of, sort};
+use super::order::{index_of, sort_from};
+use super::pauses::{Pauses, finished};
 
 /// Limit on the cells along an axis; points beyond are assigned to the last one. 2²¹ cells of 1 mm span two kilometres.
 const MAX_CELLS: u32 = (1 << 21) - 1;
@@ -12,40 +13,38 @@ const MAX_CELLS: u32 = (1 << 21) - 1;
 const MAX_ROUNDS: usize = 64;
 const MIN_GROWTH: f32 = 1.03;
 
+/// Units of work of a point that is sorted by an axis, and of one that is averaged.
+const SORTED: f64 = 3e-5;
+const AVERAGED: f64 = 2e-5;
+
 /// The mean point (and the normalised mean normal) of every occupied cell of edge `voxel_size`, ordered by x, then y,
 /// then z of the cell. The grid starts at the smallest corner of the cloud, so that the result moves with the cloud.
 /// Cells are sorted instead of hashed: the order does not depend on the platform. Returns the cloud unchanged if
 /// `voxel_size` is not above 0.
 pub fn voxel_downsample(cloud: &Cloud, voxel_size: f32) -> Cloud {
-    let Some(bounds) = Bounds::of(&cloud.points) else { return Cloud::default() };
-    if voxel_size.is_nan() || voxel_size <= 0.0 {
-        return cloud.clone();
-    }
-    let cells: Vec<[u32; 3]> = cloud.points.iter().map(|&p| cell(p, bounds.min, voxel_size)).collect();
-    let order = in_cell_order(&cells);
+    finished(paused_downsample(cloud, voxel_size, &Pauses::none()))
+}
 
-    let mut out = Cloud::default();
-    for run in order.chunk_by(|&i, &j| cells[i as usize] == cells[j as usize]) {
-        let members = || run.iter().map(|&i| i as usize);
-        // Sums are relative to the first member, so that the mean of large coordinates loses no precision.
-        let first = cloud.points[run[0] as usize];
-        let sum: Vec3 = members().map(|i| cloud.points[i] - first).sum();
-        out.points.push(first + sum / run.len() as f32);
-        if !cloud.normals.is_empty() {
-            out.normals.push(members().filter_map(|i| cloud.normals.get(i)).sum::<Vec3>().normalize_or_zero());
+/// [`voxel_downsample`] with pauses.
+pub async fn paused_downsample(cloud: &Cloud, voxel_size: f32, pauses: &Pauses) -> Cloud {
+    match Occupied::of(&cloud.points, voxel_size, pauses).await {
+        None => cloud.clone(),
+        Some(occupied) => {
+            pauses.point(AVERAGED * cloud.len() as f64).await;
+            occupied.means(cloud)
         }
     }
-    out
 }
 
 /// A voxel size that leaves at most `count` points of a cloud and, if the points sample a surface, not many fewer.
-pub fn voxel_size_leaving(cloud: &Cloud, count: usize) -> f32 {
+pub async fn voxel_size_leaving(cloud: &Cloud, count: usize, pauses: &Pauses) -> f32 {
     let wanted = count.max(1) as f32;
     let Some(bounds) = Bounds::of(&cloud.points) else { return 0.0 };
     // Starts too fine for any surface that fills its box. Doubling the voxels quarters the cells of a surface.
     let mut size = 0.3 * bounds.diagonal() / wanted.sqrt();
     for _ in 0..MAX_ROUNDS {
-        let left = voxel_downsample(cloud, size).len();
+        let occupied = Occupied::of(&cloud.points, size, pauses).await;
+        let left = occupied.map_or(cloud.len(), |occupied| occupied.cells().count());
         if left <= count {
             break;
         }
@@ -55,21 +54,59 @@ pub fn voxel_size_leaving(cloud: &Cloud, count: usize) -> f32 {
     size
 }
 
+/// The occupied cells of a grid.
+struct Occupied {
+    /// The cell of each point.
+    cell_of: Vec<[u32; 3]>,
+    /// The points by cell x, y, z, then index.
+    order: Vec<u32>,
+}
+
+impl Occupied {
+    /// `None` without points, or for a `voxel_size` that is not above 0.
+    async fn of(points: &[Vec3], voxel_size: f32, pauses: &Pauses) -> Option<Self> {
+        let bounds = Bounds::of(points).filter(|_| voxel_size > 0.0)?;
+        let cell_of: Vec<[u32; 3]> = points.iter().map(|&p| cell(p, bounds.min, voxel_size)).collect();
+        let mut order: Vec<u32> = (0..points.len() as u32).collect();
+        // One sort per axis, the least significant first.
+        for axis in [2, 1, 0] {
+            pauses.point(SORTED * points.len() as f64).await;
+            order = sorted_by(axis, &cell_of, &order);
+        }
+        Some(Self { cell_of, order })
+    }
+
+    /// The points of each cell.
+    fn cells(&self) -> impl Iterator<Item = &[u32]> {
+        self.order.chunk_by(|&i, &j| self.cell_of[i as usize] == self.cell_of[j as usize])
+    }
+
+    fn means(&self, cloud: &Cloud) -> Cloud {
+        let mut out = Cloud::default();
+        for cell in self.cells() {
+            let members = || cell.iter().map(|&i| i as usize);
+            // Sums are relative to the first member, so that the mean of large coordinates loses no precision.
+            let first = cloud.points[cell[0] as usize];
+            let sum: Vec3 = members().map(|i| cloud.points[i] - first).sum();
+            out.points.push(first + sum / cell.len() as f32);
+            if !cloud.normals.is_empty() {
+                out.normals.push(members().filter_map(|i| cloud.normals.get(i)).sum::<Vec3>().normalize_or_zero());
+            }
+        }
+        out
+    }
+}
+
 fn cell(p: Vec3, min: Vec3, voxel_size: f32) -> [u32; 3] {
     // Casts from float saturate: points beyond the last cell are assigned to it.
     ((p - min) / voxel_size).to_array().map(|x| (x as u32).min(MAX_CELLS))
 }
 
-/// Indices sorted by cell x, y, z, then index: one sort per axis, the least significant first. Each sort is stable,
-/// because the rank in the previous one breaks ties.
-fn in_cell_order(cells: &[[u32; 3]]) -> Vec<u32> {
-    let mut order: Vec<u32> = (0..cells.len() as u32).collect();
-    let mut keys = Vec::with_capacity(cells.len());
-    for axis in [2, 1, 0] {
-        keys.clear();
-        keys.extend(order.iter().zip(0..).map(|(&i, rank)| u64::from(cells[i as usize][axis]) << 32 | rank));
-        sort(&mut keys);
-        order = keys.iter().map(|&key| order[index_of(key) as usize]).collect();
-    }
-    order
+/// The indices sorted by an axis of their cells; equal ones keep their order.
+#[inline(never)]
+fn sorted_by(axis: usize, cells: &[[u32; 3]], order: &[u32]) -> Vec<u32> {
+    let cell_and_index = |&i: &u32| u64::from(cells[i as usize][axis]) << 32 | u64::from(i);
+    let mut keys: Vec<u64> = order.iter().map(cell_and_index).collect();
+    sort_from(32, &mut keys);
+    keys.into_iter().map(index_of).collect()
 }

@@ -13,7 +13,7 @@ use crate::evidence::observation::Observation;
 use crate::geometry::mesh::Mesh;
 use crate::paper;
 use crate::paper::options::PaperOptions;
-use crate::pauses::{Call, Pauses, Task, boxed, finished};
+use crate::pauses::{Boxed, Pauses, Task, boxed, finished};
 use crate::precise::options::AlignOptions;
 use crate::precise::prepared_mesh::PreparedMesh;
 use crate::progress::Host;
@@ -69,7 +69,7 @@ fn align_with_pauses<'a>(
     request: &'a Request,
     host: &'a mut dyn Host,
     pauses: &'a Pauses,
-) -> Call<'a, Result<Alignment>> {
+) -> Boxed<'a, Result<Alignment>> {
     boxed(async move {
         let mut search = Search::begin(observation, mesh, request, host, pauses).await?;
         let clouds = search.clouds().await?;

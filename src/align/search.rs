@@ -112,7 +112,7 @@ impl<'a> Search<'a> {
     ) -> Result<Self> {
         let stages = Stopwatch::new(host, precise::PLAN);
         mesh.check()?;
-        pauses.point(0.0).await;
+        pauses.here().await;
         Ok(Self { observation, mesh, request, stages, pauses })
     }
 
@@ -123,10 +123,10 @@ impl<'a> Search<'a> {
     pub async fn clouds(&mut self) -> Result<Clouds> {
         let setup = &self.request.setup;
         let mut clouds = Clouds::new(self.observation, self.mesh.mesh(), &setup.sampling, &mut self.stages)?;
-        self.pauses.point(0.0).await;
+        self.pauses.here().await;
         if setup.metrics {
             clouds.evidence(Normals::Some, &mut self.stages);
-            self.pauses.point(0.0).await;
+            self.pauses.here().await;
         }
         Ok(clouds)
     }
@@ -140,12 +140,12 @@ impl<'a> Search<'a> {
         let stages = &mut self.stages;
         if let Some(first) = efforts.first() {
             precise::decimate(mesh, first, stages)?;
-            pauses.point(0.0).await;
+            pauses.here().await;
         }
         let mut before: Option<Rounds> = None;
         for (index, settings) in efforts.iter().enumerate() {
             let mut rounds = precise::begin(observation, mesh, before.as_ref(), options, settings, stages)?;
-            pauses.point(0.0).await;
+            pauses.here().await;
             precise::run(&mut rounds, &precise::share(index, efforts.len()), pauses, stages).await;
             let concluded = precise::conclude(&rounds, None);
             let is_last = index + 1 == efforts.len();
@@ -174,7 +174,7 @@ impl<'a> Search<'a> {
     /// As [`Search::search`].
     pub async fn search_among(&mut self, given: &Given) -> Result<Searched> {
         let mut rounds = self.among(given, None)?;
-        self.pauses.point(0.0).await;
+        self.pauses.here().await;
         precise::run(&mut rounds, &precise::share(0, 1), self.pauses, &mut self.stages).await;
         let mut searched = Searched::new(rounds)?;
         if searched.confidence() < given.confidence - DOUBT && searched.rounds.prefer(&given.found) {

@@ -2,12 +2,17 @@
 
 use glam::{DMat3, DVec3, Vec3};
 
-use crate::geometry::kd_tree::KdTree;
+use crate::geometry::kd_tree::{GroupSearch, KdTree};
 use crate::geometry::order::{index_of, median};
 use crate::geometry::symmetric_eigen::SymmetricEigen;
+use crate::pauses::Pauses;
 
 /// Ratio of the middle to the largest eigenvalue below which a neighbourhood is collinear.
 const COLLINEAR: f64 = 1e-8;
+
+/// Units of work of a point's normal, and of a point of which a median is made.
+const NORMAL: f64 = 2e-3;
+const OF_MEDIAN: f64 = 3e-5;
 
 /// The neighbourhood of a point: the nearest `max_neighbors` points within `radius`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,26 +66,72 @@ pub fn estimate_some_normals(
     orientation: Orientation,
     stride: usize,
 ) -> Vec<Vec3> {
-    let neighborhood = neighborhood.into();
-    let mut normals = vec![Vec3::ZERO; points.len()];
-    tree.neighborhoods(points, neighborhood.max_neighbors, neighborhood.radius, stride, |index, neighbors| {
-        let Some((&point, slot)) = points.get(index as usize).zip(normals.get_mut(index as usize)) else { return };
-        let normal = thinnest_direction(point, neighbors, points);
-        let outward = match orientation {
-            Orientation::TowardsCamera => -point,
-            Orientation::AwayFrom(center) => point - center,
-        };
-        *slot = if normal.dot(outward) < 0.0 { -normal } else { normal };
-    });
-    normals
+    let mut estimation = Estimation::new(points, tree, neighborhood.into(), orientation);
+    for (number, group) in (1..).zip(tree.groups()) {
+        if number % stride == 0 {
+            estimation.add(group);
+        }
+    }
+    estimation.normals
+}
+
+/// [`estimate_normals`] with pauses.
+pub async fn paused_normals(
+    points: &[Vec3],
+    tree: &KdTree,
+    neighborhood: Neighborhood,
+    orientation: Orientation,
+    pauses: &Pauses,
+) -> Vec<Vec3> {
+    let mut estimation = Estimation::new(points, tree, neighborhood, orientation);
+    for group in tree.groups() {
+        estimation.add(group);
+        pauses.point(NORMAL * group.len() as f64).await;
+    }
+    estimation.normals
+}
+
+/// The normals of some points so far.
+struct Estimation<'a> {
+    points: &'a [Vec3],
+    search: GroupSearch<'a>,
+    orientation: Orientation,
+    normals: Vec<Vec3>,
+}
+
+impl<'a> Estimation<'a> {
+    fn new(points: &'a [Vec3], tree: &'a KdTree, neighborhood: Neighborhood, orientation: Orientation) -> Self {
+        let Neighborhood { max_neighbors, radius } = neighborhood;
+        let search = GroupSearch::new(tree, points, max_neighbors, radius);
+        Self { points, search, orientation, normals: vec![Vec3::ZERO; points.len()] }
+    }
+
+    /// Estimates the normals of a group.
+    fn add(&mut self, group: &[(Vec3, u32)]) {
+        let Self { points, search, orientation, normals } = self;
+        search.visit(group, &mut |index, neighbors| {
+            let Some((&point, slot)) = points.get(index as usize).zip(normals.get_mut(index as usize)) else { return };
+            let normal = thinnest_direction(point, neighbors, points);
+            let outward = match *orientation {
+                Orientation::TowardsCamera => -point,
+                Orientation::AwayFrom(center) => point - center,
+            };
+            *slot = if normal.dot(outward) < 0.0 { -normal } else { normal };
+        });
+    }
 }
 
 /// Normals that point away from the viewpoint `eye` or, if it is unknown, from the median of the points, which is
 /// robust to clutter. Without viewpoints, this orientation is consistent between two clouds.
-pub fn outward_normals(points: &[Vec3], eye: Option<Vec3>, neighbors: usize) -> Vec<Vec3> {
-    let middle = |axis: usize| median(points.iter().map(|p| p[axis])).unwrap_or_default();
-    let center = eye.unwrap_or_else(|| Vec3::new(middle(0), middle(1), middle(2)));
-    estimate_normals(points, &KdTree::new(points), Neighborhood::nearest(neighbors), Orientation::AwayFrom(center))
+pub async fn outward_normals(points: &[Vec3], eye: Option<Vec3>, neighbors: usize, pauses: &Pauses) -> Vec<Vec3> {
+    let mut center = eye.unwrap_or_default();
+    for axis in (0..3).take_while(|_| eye.is_none()) {
+        center[axis] = median(points.iter().map(|p| p[axis])).unwrap_or_default();
+        pauses.point(OF_MEDIAN * points.len() as f64).await;
+    }
+    let tree = KdTree::paused(points, pauses).await;
+    let neighborhood = Neighborhood::nearest(neighbors);
+    paused_normals(points, &tree, neighborhood, Orientation::AwayFrom(center), pauses).await
 }
 
 /// The unit eigenvector of the smallest eigenvalue, or zero if the neighbours do not span a plane. Sums are relative to

@@ -9,7 +9,7 @@ use crate::evidence::clouds::Clouds;
 use crate::evidence::extents::target_from_source;
 use crate::geometry::angle::sin_cos;
 use crate::paper::options::{GuardMode, PaperOptions};
-use crate::pauses::{Pauses, boxed, finished};
+use crate::pauses::{Pauses, finished};
 use crate::progress::{Stage, Stopwatch};
 use crate::register::feature_registration::FeatureRegistration;
 use crate::register::ransac::{self, Guard, RansacSettings};
@@ -43,8 +43,8 @@ pub fn estimate(clouds: &mut Clouds, options: &PaperOptions, stages: &mut Stopwa
     let settings = settings_of(options);
     let pauses = Pauses::none();
     let estimate = finished(async {
-        let registration = boxed(FeatureRegistration::new(&source, &target, &settings, stages, &pauses)).await;
-        boxed(registration.solve(&settings, stages, &pauses)).await
+        let registration = FeatureRegistration::new(&source, &target, &settings, stages, &pauses).await;
+        registration.solve(&settings, stages, &pauses).await
     })?;
     Ok(Solution {
         clamped: estimate.clamped,

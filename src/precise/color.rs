@@ -26,7 +26,7 @@ use crate::evidence::photo::{Photo, PhotoRegion};
 use crate::geometry::rotations::{angle_between, exp};
 use crate::geometry::similarity::Similarity;
 use crate::geometry::surface_colors::SurfaceColors;
-use crate::pauses::{Call, Pauses, boxed};
+use crate::pauses::{Boxed, Pauses, boxed};
 use crate::report::{ColorReport, Effort};
 
 /// Contrast between two poses, relative to the noise, from which on they look different.
@@ -78,7 +78,7 @@ pub fn judgment<'a>(
     photo: &'a Photo,
     colors: &'a SurfaceColors,
     pauses: &'a Pauses,
-) -> Call<'a, Judgment> {
+) -> Boxed<'a, Judgment> {
     boxed(async move {
         let photo = cells(photo, &rounds.search);
         let compared = compared(rounds, &photo, colors, pauses).await;
@@ -149,7 +149,7 @@ async fn compared(rounds: &Rounds, photo: &PhotoCells, colors: &SurfaceColors, p
                 list.push(Compared { found: Found { pose, score, ..*best }, appearance, look });
             }
         }
-        pauses.point(0.0).await;
+        pauses.here().await;
     }
     list
 }

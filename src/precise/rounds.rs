@@ -15,7 +15,7 @@ use super::render::Canvas;
 use super::search::{Found, Search};
 use crate::geometry::rotations::super_fibonacci;
 use crate::geometry::similarity::Similarity;
-use crate::pauses::{Call, Pauses, boxed};
+use crate::pauses::{Boxed, Pauses, boxed};
 
 /// Score below the best pose at which a turn of it is not refined, and at which a refined one is not ranked.
 const FAR: f32 = 0.8;
@@ -164,7 +164,7 @@ impl Rounds {
     }
 
     /// Runs the current round, with a pause point after each of its tasks, and begins the next one.
-    pub fn run<'a>(&'a mut self, pauses: &'a Pauses) -> Call<'a, ()> {
+    pub fn run<'a>(&'a mut self, pauses: &'a Pauses) -> Boxed<'a, ()> {
         boxed(async move {
             let Some(mut round) = self.round() else { return };
             let allowance = self.allowed(round);
@@ -221,7 +221,7 @@ impl Rounds {
             if is_probed && all > allowance && self.tasks() > MIN_ROTATIONS {
                 return Err(TooLong(all));
             }
-            pauses.point(0.0).await;
+            pauses.here().await;
         }
         Ok(outcomes)
     }

@@ -8,6 +8,7 @@ use super::support::SupportSettings;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::similarity::Similarity;
+use crate::pauses::Pauses;
 use crate::progress::{Stage, Stopwatch};
 use crate::report::Counts;
 
@@ -26,8 +27,8 @@ pub(super) struct CloudPyramid<'a> {
 }
 
 impl<'a> CloudPyramid<'a> {
-    fn new(full: &'a Cloud, voxel_size: f32) -> Self {
-        Self { full, grid: GridCloud::of_at_most(MAX_FEATURES, full, voxel_size) }
+    async fn new(full: &'a Cloud, voxel_size: f32, pauses: &Pauses) -> Self {
+        Self { full, grid: GridCloud::of_at_most(MAX_FEATURES, full, voxel_size, pauses).await }
     }
 }
 
@@ -39,45 +40,56 @@ pub(super) struct CloudPair<'a> {
 
 impl<'a> CloudPair<'a> {
     /// A pair of clouds with normals, on grids of `voxel_size`.
-    pub(super) fn new(source: &'a Cloud, target: &'a Cloud, voxel_size: f32) -> Self {
-        Self { source: CloudPyramid::new(source, voxel_size), target: CloudPyramid::new(target, voxel_size) }
+    pub(super) async fn new(source: &'a Cloud, target: &'a Cloud, voxel_size: f32, pauses: &Pauses) -> Self {
+        let source = CloudPyramid::new(source, voxel_size, pauses).await;
+        Self { source, target: CloudPyramid::new(target, voxel_size, pauses).await }
     }
 
     /// The descriptors of source and target on their grids.
-    pub(super) fn descriptors(
+    pub(super) async fn descriptors(
         &self,
         settings: &RegistrationSettings,
         stages: &mut Stopwatch<'_>,
+        pauses: &Pauses,
     ) -> [Vec<Descriptor>; 2] {
         stages.enter(Stage::Features);
         let radius = settings.fpfh_radius_voxels * settings.voxel_size;
-        [&self.source.grid, &self.target.grid].map(|grid| fpfh(&grid.cloud, &grid.tree, radius))
-    }
-
-    /// The units of work of the descriptors, or of a refinement.
-    pub(super) fn work(&self) -> f64 {
-        0.04 * (self.source.grid.cloud.len() + self.target.grid.cloud.len()) as f64
+        let mut found = [Vec::new(), Vec::new()];
+        for (found, side) in found.iter_mut().zip([&self.source, &self.target]) {
+            *found = fpfh(&side.grid.cloud, &side.grid.tree, radius, pauses).await;
+        }
+        found
     }
 
     /// ICP between the grids.
-    pub(super) fn refine_on_grid(&self, initial: &Similarity, settings: &IcpSettings) -> Refined {
+    pub(super) async fn refine_on_grid(
+        &self,
+        initial: &Similarity,
+        settings: &IcpSettings,
+        pauses: &Pauses,
+    ) -> Refined {
         let (source, target) = (&self.source.grid, &self.target.grid);
-        refine(&source.cloud, &target.cloud, &target.tree, initial, settings)
+        refine(&source.cloud, &target.cloud, &target.tree, initial, settings, pauses).await
     }
 
     /// ICP between the grids, then between the full clouds.
-    pub(super) fn refine(&self, initial: &Similarity, settings: &RegistrationSettings) -> Refined {
+    pub(super) async fn refine(
+        &self,
+        initial: &Similarity,
+        settings: &RegistrationSettings,
+        pauses: &Pauses,
+    ) -> Refined {
         let Some(coarse) = settings.icp_on_grid() else {
             return Refined { target_from_source: *initial, iterations: 0, converged: true, supported: 0, rms: 0.0 };
         };
-        let on_grid = self.refine_on_grid(initial, &coarse);
+        let on_grid = self.refine_on_grid(initial, &coarse, pauses).await;
         let support = SupportSettings { max_distance: coarse.final_distance, ..settings.support };
         let fine = IcpSettings { support, ..coarse };
         let (source, target) = (self.source.full, self.target.full);
         let step = source.len().div_ceil(FINE_POINTS).max(1);
         let points = source.select((0..source.len()).step_by(step));
-        let tree = KdTree::new(&target.points);
-        let on_points = refine(&points, target, &tree, &on_grid.target_from_source, &fine);
+        let tree = KdTree::paused(&target.points, pauses).await;
+        let on_points = refine(&points, target, &tree, &on_grid.target_from_source, &fine, pauses).await;
         Refined { iterations: on_grid.iterations + on_points.iterations, ..on_points }
     }
 

@@ -8,6 +8,7 @@ use super::matching::Match;
 use super::umeyama::{Pair, ScaleMode, umeyama};
 use crate::geometry::order::{index_of, pack, select_smallest, sort};
 use crate::geometry::similarity::{Similarity, vector3};
+use crate::pauses::Pauses;
 
 /// Number of compatible matches from which the first pose of a seed is computed.
 const SEED_NEIGHBORS: usize = 30;
@@ -17,6 +18,11 @@ const POWER_ROUNDS: usize = 10;
 
 /// Maximum number of closed-form refits on the inliers.
 const REFITS: usize = 5;
+
+/// Units of work of two matches that are compared, of a word of bits of two matches, and of a match that is tested.
+const COMPARED: f64 = 1e-5;
+const WORD: f64 = 1e-6;
+const TESTED: f64 = 2e-5;
 
 /// A pose and its consensus.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,7 +37,14 @@ pub struct Hypothesis {
 
 /// Up to `count` poses of scale 1 from disjoint seeds, those with the highest compatibility first. A match within
 /// `distance` is an inlier. Empty if a match refers to a point that does not exist.
-pub fn hypotheses(source: &[Vec3], target: &[Vec3], matches: &[Match], distance: f32, count: usize) -> Vec<Hypothesis> {
+pub async fn hypotheses(
+    source: &[Vec3],
+    target: &[Vec3],
+    matches: &[Match],
+    distance: f32,
+    count: usize,
+    pauses: &Pauses,
+) -> Vec<Hypothesis> {
     let pairs: Vec<Pair> = matches
         .iter()
         .filter_map(|m| {
@@ -42,18 +55,29 @@ pub fn hypotheses(source: &[Vec3], target: &[Vec3], matches: &[Match], distance:
     if pairs.len() != matches.len() {
         return Vec::new();
     }
-    let graph = Graph::new(source, target, matches, distance);
-    let mut order: Vec<u64> = (0..pairs.len()).map(|i| pack(-graph.weight(i), i as u32)).collect();
+    let ends: Vec<(Vec3, Vec3)> =
+        matches.iter().map(|m| (source[m.source as usize], target[m.target as usize])).collect();
+    let mut graph = Graph::new(ends.len());
+    for i in 0..ends.len() {
+        graph.connect(i, &ends, distance);
+        pauses.point(COMPARED * (ends.len() - i) as f64).await;
+    }
+    let mut order: Vec<u64> = Vec::with_capacity(pairs.len());
+    for i in 0..pairs.len() {
+        order.push(pack(-graph.weight(i), i as u32));
+        pauses.point(WORD * graph.words as f64 * f64::from(1 + graph.common(i, i))).await;
+    }
     sort(&mut order);
     let mut taken = vec![false; pairs.len()];
     let mut found: Vec<Hypothesis> = Vec::new();
     for seed in order.into_iter().map(|key| index_of(key) as usize) {
-        if found.len() >= count {
+        if found.len() >= count || !pauses.goes_on(!found.is_empty()) {
             break;
         }
         if taken[seed] {
             continue;
         }
+        pauses.point(TESTED * (REFITS * pairs.len()) as f64).await;
         let Some(first) = graph.consensus(seed, &pairs) else { continue };
         let Some(hypothesis) = refit(first, &pairs, f64::from(distance)) else { continue };
         taken[seed] = true;
@@ -65,11 +89,6 @@ pub fn hypotheses(source: &[Vec3], target: &[Vec3], matches: &[Match], distance:
     found
 }
 
-/// The units of work of [`hypotheses`] of so many matches.
-pub fn graph_work(matches: usize) -> f64 {
-    1e-4 * matches as f64 + 3e-5 * (matches * matches) as f64
-}
-
 /// The compatibility graph: a bit per pair of matches, set if the pair preserves its distance.
 struct Graph {
     words: usize,
@@ -77,22 +96,23 @@ struct Graph {
 }
 
 impl Graph {
-    fn new(source: &[Vec3], target: &[Vec3], matches: &[Match], tolerance: f32) -> Self {
-        let ends: Vec<(Vec3, Vec3)> =
-            matches.iter().map(|m| (source[m.source as usize], target[m.target as usize])).collect();
-        let words = ends.len().div_ceil(64);
-        let mut rows = vec![0; words * ends.len()];
-        for (i, (p, q)) in ends.iter().enumerate() {
-            for (j, (other_p, other_q)) in ends.iter().enumerate().skip(i + 1) {
-                let (a, b) = (p.distance(*other_p), q.distance(*other_q));
-                // Short distances are preserved by any pose.
-                if (a - b).abs() < tolerance && a.min(b) > tolerance {
-                    rows[i * words + j / 64] |= 1 << (j % 64);
-                    rows[j * words + i / 64] |= 1 << (i % 64);
-                }
+    fn new(count: usize) -> Self {
+        let words = count.div_ceil(64);
+        Self { words, rows: vec![0; words * count] }
+    }
+
+    /// Connects a match with the compatible ones after it, by the points of all.
+    fn connect(&mut self, i: usize, ends: &[(Vec3, Vec3)], tolerance: f32) {
+        let Self { words, rows } = self;
+        let (p, q) = ends[i];
+        for (j, (other_p, other_q)) in ends.iter().enumerate().skip(i + 1) {
+            let (a, b) = (p.distance(*other_p), q.distance(*other_q));
+            // Short distances are preserved by any pose.
+            if (a - b).abs() < tolerance && a.min(b) > tolerance {
+                rows[i * *words + j / 64] |= 1 << (j % 64);
+                rows[j * *words + i / 64] |= 1 << (i % 64);
             }
         }
-        Self { words, rows }
     }
 
     fn row(&self, i: usize) -> &[u64] {

@@ -4,6 +4,7 @@ use glam::Vec3;
 
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::order::quantile;
+use crate::pauses::Pauses;
 
 /// The neighbour whose distance measures the density at a point.
 const NEIGHBOR: usize = 8;
@@ -15,15 +16,19 @@ const SURFACE_QUANTILE: f64 = 0.25;
 /// neighbour varies by a quarter; for as many points in a volume, it is about three times larger.
 const SPARSER: f32 = 1.5;
 
+/// Units of work of a search for the neighbour.
+const SEARCH: f64 = 1e-3;
+
 /// Indices of the points that are about as dense as the densest quarter, in ascending order.
-pub fn dense_points(points: &[Vec3]) -> Vec<usize> {
-    let tree = KdTree::new(points);
+pub async fn dense_points(points: &[Vec3], pauses: &Pauses) -> Vec<usize> {
+    let tree = KdTree::paused(points, pauses).await;
     let mut found = Vec::new();
-    let mut reach = |&point: &Vec3| {
+    let mut reaches_squared: Vec<f32> = Vec::with_capacity(points.len());
+    for &point in points {
         tree.k_nearest(point, NEIGHBOR + 1, &mut found);
-        found.last().map_or(f32::INFINITY, |n| n.distance_squared)
-    };
-    let reaches_squared: Vec<f32> = points.iter().map(&mut reach).collect();
+        reaches_squared.push(found.last().map_or(f32::INFINITY, |n| n.distance_squared));
+        pauses.point(SEARCH).await;
+    }
     let surface = quantile(reaches_squared.iter().copied(), SURFACE_QUANTILE).unwrap_or_default();
     let limit = SPARSER * SPARSER * surface;
     reaches_squared.iter().enumerate().filter(|(_, r)| **r <= limit).map(|(i, _)| i).collect()

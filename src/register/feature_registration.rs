@@ -10,7 +10,7 @@ use super::umeyama::{Pair, ScaleMode, umeyama};
 use crate::error::Result;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::similarity::{Similarity, vector3};
-use crate::pauses::{Pauses, boxed};
+use crate::pauses::Pauses;
 use crate::progress::{Stage, Stopwatch};
 use crate::report::Counts;
 
@@ -44,11 +44,10 @@ impl<'a> FeatureRegistration<'a> {
         stages: &mut Stopwatch<'_>,
         pauses: &Pauses,
     ) -> Self {
-        let clouds = CloudPair::new(source, target, settings.voxel_size);
-        let [source, target] = clouds.descriptors(settings, stages);
-        pauses.spend(clouds.work());
+        let clouds = CloudPair::new(source, target, settings.voxel_size, pauses).await;
+        let [source, target] = clouds.descriptors(settings, stages, pauses).await;
         stages.enter(Stage::Matching);
-        let matches = boxed(Nearest::of(&source, &target, pauses)).await.enough();
+        let matches = Nearest::of(&source, &target, pauses).await.enough();
         Self { clouds, matches }
     }
 
@@ -65,20 +64,24 @@ impl<'a> FeatureRegistration<'a> {
         let Self { clouds, matches } = self;
         stages.enter(Stage::Ransac);
         let points = [&clouds.source, &clouds.target].map(|side| &side.grid.cloud.points);
-        let consensus = boxed(ransac(points[0], points[1], matches, &settings.ransac, pauses)).await?;
-        pauses.spend(clouds.work());
-        Ok(self.refined(consensus, settings, stages))
+        let consensus = ransac(points[0], points[1], matches, &settings.ransac, pauses).await?;
+        Ok(self.refined(consensus, settings, stages, pauses).await)
     }
 
     /// The estimate of a consensus.
-    #[inline(never)]
-    fn refined(&self, consensus: Consensus, settings: &RegistrationSettings, stages: &mut Stopwatch<'_>) -> Estimate {
+    async fn refined(
+        &self,
+        consensus: Consensus,
+        settings: &RegistrationSettings,
+        stages: &mut Stopwatch<'_>,
+        pauses: &Pauses,
+    ) -> Estimate {
         let Self { clouds, matches } = self;
         stages.enter(Stage::Filter);
         let filtered = self.refit_on_supported(&consensus, settings);
 
         stages.enter(Stage::Icp);
-        let refined = clouds.refine(&filtered, settings);
+        let refined = clouds.refine(&filtered, settings, pauses).await;
         // If the refinement may change the scale, it can also end at a bound of the guard.
         let guard = settings.ransac.guard.filter(|_| !settings.lock_scale);
         let stopped = guard.is_some_and(|g| g.is_bound(refined.target_from_source.scale));

@@ -6,6 +6,7 @@ use glam::Vec3;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::{KdTree, Neighbor};
 use crate::geometry::order::{index_of, pack, select_smallest, sort, value_of};
+use crate::pauses::Pauses;
 
 /// Bins per angle.
 const BINS: usize = 11;
@@ -22,48 +23,64 @@ const MAX_NEIGHBORS: usize = 128;
 /// Sine of the angle between normal and connecting line below which they are parallel up to rounding.
 const PARALLEL: f32 = 1e-5;
 
+/// Units of work of a neighbour that is found, and of one in a histogram.
+const FOUND: f64 = 3e-5;
+const COUNTED: f64 = 1e-4;
+
 /// The descriptors of a cloud with normals, one per point, from the neighbours within `radius`. `tree` is the search
 /// tree over the same points.
-pub fn fpfh(cloud: &Cloud, tree: &KdTree, radius: f32) -> Vec<Descriptor> {
+pub async fn fpfh(cloud: &Cloud, tree: &KdTree, radius: f32, pauses: &Pauses) -> Vec<Descriptor> {
     let mut found = Vec::new();
-    let neighborhoods: Vec<Vec<Neighbor>> = cloud
-        .points
-        .iter()
-        .enumerate()
-        .map(|(i, &point)| {
-            tree.within(point, radius, &mut found);
-            found.retain(|n| n.index as usize != i && n.distance_squared > 0.0);
-            let mut keys: Vec<u64> = found.iter().map(|n| pack(n.distance_squared, n.index)).collect();
-            select_smallest(&mut keys, MAX_NEIGHBORS);
-            keys.truncate(MAX_NEIGHBORS);
-            // Sorts by index (the low half of the keys), because f32 sums depend on the order.
-            keys.iter_mut().for_each(|key| *key = key.rotate_left(32));
-            sort(&mut keys);
-            let neighbor = |key: u64| Neighbor { index: index_of(key), distance_squared: value_of(key) };
-            keys.into_iter().map(|key| neighbor(key.rotate_left(32))).collect()
-        })
-        .collect();
+    let mut neighborhoods: Vec<Vec<Neighbor>> = Vec::with_capacity(cloud.len());
+    for (i, &point) in cloud.points.iter().enumerate() {
+        tree.within(point, radius, &mut found);
+        pauses.point(FOUND * found.len() as f64).await;
+        neighborhoods.push(nearest_others(i, &mut found));
+    }
 
-    let simplified: Vec<Descriptor> =
-        neighborhoods.iter().enumerate().map(|(i, near)| simplified_histogram(cloud, i, near)).collect();
+    let mut simplified: Vec<Descriptor> = Vec::with_capacity(cloud.len());
+    for (i, near) in neighborhoods.iter().enumerate() {
+        simplified.push(simplified_histogram(cloud, i, near));
+        pauses.point(COUNTED * near.len() as f64).await;
+    }
 
-    let combined = neighborhoods.iter().enumerate().map(|(i, near)| {
-        let mut sum = [0.0; DIMENSION];
-        for neighbor in near {
-            let weight = 1.0 / neighbor.distance_squared.sqrt();
-            for (bin, value) in sum.iter_mut().zip(simplified.get(neighbor.index as usize).into_iter().flatten()) {
-                *bin += weight * value;
-            }
+    let mut combined: Vec<Descriptor> = Vec::with_capacity(cloud.len());
+    for (near, own) in neighborhoods.iter().zip(&simplified) {
+        combined.push(combined_histogram(near, own, &simplified));
+        pauses.point(COUNTED * near.len() as f64).await;
+    }
+    combined
+}
+
+/// The nearest of the points in the neighbourhood of the `i`th, itself excluded.
+fn nearest_others(i: usize, found: &mut Vec<Neighbor>) -> Vec<Neighbor> {
+    found.retain(|n| n.index as usize != i && n.distance_squared > 0.0);
+    let mut keys: Vec<u64> = found.iter().map(|n| pack(n.distance_squared, n.index)).collect();
+    select_smallest(&mut keys, MAX_NEIGHBORS);
+    keys.truncate(MAX_NEIGHBORS);
+    // Sorts by index (the low half of the keys), because f32 sums depend on the order.
+    keys.iter_mut().for_each(|key| *key = key.rotate_left(32));
+    sort(&mut keys);
+    let neighbor = |key: u64| Neighbor { index: index_of(key), distance_squared: value_of(key) };
+    keys.into_iter().map(|key| neighbor(key.rotate_left(32))).collect()
+}
+
+/// SPFH(p), and the weighted mean of those of the neighbours.
+fn combined_histogram(near: &[Neighbor], own: &Descriptor, simplified: &[Descriptor]) -> Descriptor {
+    let mut sum = [0.0; DIMENSION];
+    for neighbor in near {
+        let weight = 1.0 / neighbor.distance_squared.sqrt();
+        for (bin, value) in sum.iter_mut().zip(simplified.get(neighbor.index as usize).into_iter().flatten()) {
+            *bin += weight * value;
         }
-        // SPFH(p) and the weighted mean of the neighbours have equal weight, independent of the unit of distance.
-        normalize(&mut sum);
-        for (bin, own) in sum.iter_mut().zip(&simplified[i]) {
-            *bin += own;
-        }
-        normalize(&mut sum);
-        sum
-    });
-    combined.collect()
+    }
+    // Both have equal weight, independent of the unit of distance.
+    normalize(&mut sum);
+    for (bin, own) in sum.iter_mut().zip(own) {
+        *bin += own;
+    }
+    normalize(&mut sum);
+    sum
 }
 
 /// SPFH: histograms of the three angles between a point and its neighbours.

@@ -7,21 +7,22 @@
 
 use glam::Vec3;
 
-use super::at_once::nearest;
 use super::cloud_pair::CloudPair;
-use super::compatibility::{graph_work, hypotheses};
+use super::compatibility::hypotheses;
 use super::feature_registration::Estimate;
 use super::icp::movement;
-use super::matching::Match;
+use super::input::PREPARED;
+use super::matching::{Match, Nearest};
 use super::normalized_pair::NormalizedPair;
 use super::options::RegisterOptions;
 use super::pose_scorer::{PoseScorer, distinctiveness};
-use super::pose_selector::{Candidate, NORMAL, check_scale, no_consensus, with_normals};
+use super::pose_selector::{Candidate, check_scale, no_consensus, with_normals};
 use super::ransac::{Guard, GuardMode};
 use super::rigid::{FREE_SLACK_VOXELS, limit_points};
 use super::settings::{RegistrationSettings, given_voxel_size};
 use super::umeyama::ScaleMode;
 use crate::error::Result;
+use crate::evidence::extents::Extents;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::order::largest;
 use crate::geometry::similarity::{Similarity, vec3};
@@ -29,7 +30,7 @@ use crate::geometry::voxel_grid::voxel_size_leaving;
 use crate::pauses::Pauses;
 use crate::progress::{Stage, Stopwatch};
 use crate::register::fpfh::Descriptor;
-use crate::register::free_space::FreeSpace;
+use crate::register::free_space::{FreeSpace, SEEN};
 use crate::report::Counts;
 
 /// How matches are made at a scale, and poses from matches.
@@ -89,19 +90,18 @@ pub(super) async fn register_free(
     let frames = NormalizedPair::of(source_xyz, target_xyz, options.scale)?;
     let guard = frames.guard.unwrap_or([1.0; 2]);
     stages.enter(Stage::Normals);
-    let scans = Scans::new(&frames, [source_xyz, target_xyz], options);
-    pauses.point(NORMAL * (scans.source.len() + scans.target.len()) as f64).await;
+    pauses.point(PREPARED * (source_xyz.len() + target_xyz.len()) as f64).await;
+    let scans = Scans::new(&frames, [source_xyz, target_xyz], options, pauses).await;
 
     let [least, most] = [guard[0].max(WIDEST[0]), guard[1].min(WIDEST[1])];
-    let vote = scans.at(&VOTE);
+    let vote = scans.at(&VOTE, pauses).await;
     let mut voted: Vec<Hypothesis> = Vec::new();
     let mut scale = least * COARSE_STEP.min(most / least).sqrt();
     while scale <= most && pauses.goes_on(!voted.is_empty()) {
-        let scaled = scans.scaled(scale, &vote, guard, options);
-        let clouds = CloudPair::new(&scaled.source, scaled.target, scaled.settings.voxel_size);
-        let level = Level::new(&scaled, &clouds, &VOTE, stages);
-        voted.extend(level.hypotheses(&VOTE));
-        pauses.point(level.work()).await;
+        let scaled = scans.scaled(scale, &vote, guard, options, pauses).await;
+        let clouds = CloudPair::new(&scaled.source, scaled.target, scaled.settings.voxel_size, pauses).await;
+        let level = Level::new(&scaled, &clouds, &VOTE, stages, pauses).await;
+        voted.extend(level.hypotheses(&VOTE, pauses).await);
         scale *= COARSE_STEP;
     }
     let voted = best_first(&voted, VOTED);
@@ -110,19 +110,18 @@ pub(super) async fn register_free(
     let (scale, least) = (first.pose.scale, SECOND * first.score);
     let differs = |other: &f64| (other / scale).max(scale / other) >= SECOND_RATIO;
     let second = voted.iter().take_while(|vote| vote.score >= least).map(|vote| vote.pose.scale).find(differs);
-    let pose = scans.at(&POSE);
+    let pose = scans.at(&POSE, pauses).await;
     let mut best: Option<(f64, Estimate)> = None;
     for scale in core::iter::once(scale).chain(second) {
         if !pauses.goes_on(best.is_some()) {
             break;
         }
-        pauses.point(0.0).await;
-        let mut scaled = scans.scaled(scale, &pose, guard, options);
+        let mut scaled = scans.scaled(scale, &pose, guard, options, pauses).await;
         if let Some(voxel_size) = given_voxel_size(options, &frames) {
             let guard = guard.map(|bound| bound / scale);
             scaled.settings = RegistrationSettings::new(options, voxel_size, ScaleMode::Free, Some(guard));
         }
-        if let Some((score, estimate)) = scaled.solve(&voted, guard, stages, pauses)
+        if let Some((score, estimate)) = scaled.solve(&voted, guard, stages, pauses).await
             && best.as_ref().is_none_or(|(highest, _)| score > *highest)
         {
             best = Some((score, estimate));
@@ -142,39 +141,51 @@ struct Scans {
 }
 
 impl Scans {
-    fn new(frames: &NormalizedPair, xyz: [&[f64]; 2], options: &RegisterOptions) -> Self {
-        let [(source, source_eye), (target, target_eye)] =
-            [(&frames.source, xyz[0]), (&frames.target, xyz[1])].map(|(extents, xyz)| {
-                let cloud = limit_points(extents.normalized_flat(xyz), options.max_points as usize);
-                // Scans are usually in the frame of their sensor; the points show whether that is plausible.
-                let eye = vec3(&extents.unit_from_own().translation);
-                let slack = FREE_SLACK_VOXELS * voxel_size_leaving(&cloud, POSE.voxels);
-                let eye = FreeSpace::seen_from(eye, &cloud.points, slack).map(|_| eye);
-                (with_normals(cloud, eye), eye)
-            });
+    async fn new(frames: &NormalizedPair, xyz: [&[f64]; 2], options: &RegisterOptions, pauses: &Pauses) -> Self {
+        let (source, source_eye) = scan(&frames.source, xyz[0], options, pauses).await;
+        let (target, target_eye) = scan(&frames.target, xyz[1], options, pauses).await;
         Self { source, target, eyes: [source_eye, target_eye] }
     }
 
     /// The resolution of a round, as far as it does not depend on the scale.
-    fn at(&self, round: &Round) -> Resolution {
-        Resolution { voxels: round.voxels, target: voxel_size_leaving(&self.target, round.voxels) }
+    async fn at(&self, round: &Round, pauses: &Pauses) -> Resolution {
+        Resolution { voxels: round.voxels, target: voxel_size_leaving(&self.target, round.voxels, pauses).await }
     }
 
     /// Both clouds, the source scaled.
-    fn scaled(&self, scale: f64, resolution: &Resolution, guard: [f64; 2], options: &RegisterOptions) -> Scaled<'_> {
+    async fn scaled(
+        &self,
+        scale: f64,
+        resolution: &Resolution,
+        guard: [f64; 2],
+        options: &RegisterOptions,
+        pauses: &Pauses,
+    ) -> Scaled<'_> {
         let factor = scale as f32;
         let points = self.source.points.iter().map(|&p| factor * p).collect();
         let source = Cloud { points, normals: self.source.normals.clone() };
-        let voxel_size = voxel_size_leaving(&source, resolution.voxels).max(resolution.target);
+        let voxel_size = voxel_size_leaving(&source, resolution.voxels, pauses).await.max(resolution.target);
         let slack = FREE_SLACK_VOXELS * voxel_size;
-        let free = [
-            self.eyes[0].and_then(|eye| FreeSpace::seen_from(factor * eye, &source.points, slack)),
-            self.eyes[1].and_then(|eye| FreeSpace::seen_from(eye, &self.target.points, slack)),
-        ];
+        let of_source = self.eyes[0].and_then(|eye| FreeSpace::seen_from(factor * eye, &source.points, slack));
+        pauses.point(SEEN * source.len() as f64).await;
+        let of_target = self.eyes[1].and_then(|eye| FreeSpace::seen_from(eye, &self.target.points, slack));
+        pauses.point(SEEN * self.target.len() as f64).await;
+        let free = [of_source, of_target];
         let guard = guard.map(|bound| bound / scale);
         let settings = RegistrationSettings::new(options, f64::from(voxel_size), ScaleMode::Free, Some(guard));
         Scaled { scale, source, target: &self.target, free, settings }
     }
+}
+
+/// A cloud with normals, and the position of its sensor.
+async fn scan(extents: &Extents, xyz: &[f64], options: &RegisterOptions, pauses: &Pauses) -> (Cloud, Option<Vec3>) {
+    let cloud = limit_points(extents.normalized_flat(xyz), options.max_points as usize, pauses).await;
+    // Scans are usually in the frame of their sensor; the points show whether that is plausible.
+    let eye = vec3(&extents.unit_from_own().translation);
+    let slack = FREE_SLACK_VOXELS * voxel_size_leaving(&cloud, POSE.voxels, pauses).await;
+    let eye = FreeSpace::seen_from(eye, &cloud.points, slack).map(|_| eye);
+    pauses.point(SEEN * cloud.len() as f64).await;
+    (with_normals(cloud, eye, pauses).await, eye)
 }
 
 /// The resolution of both clouds.
@@ -196,30 +207,35 @@ struct Scaled<'a> {
 
 impl Scaled<'_> {
     /// The best pose at about this scale, between the normalised frames, and its score.
-    fn solve(
+    async fn solve(
         &self,
         voted: &[Hypothesis],
         guard: [f64; 2],
         stages: &mut Stopwatch<'_>,
         pauses: &Pauses,
     ) -> Option<(f64, Estimate)> {
-        let clouds = CloudPair::new(&self.source, self.target, self.settings.voxel_size);
-        let level = Level::new(self, &clouds, &POSE, stages);
-        pauses.spend(level.work());
-        let mut found = level.hypotheses(&POSE);
+        let clouds = CloudPair::new(&self.source, self.target, self.settings.voxel_size, pauses).await;
+        let level = Level::new(self, &clouds, &POSE, stages, pauses).await;
+        let mut found = level.hypotheses(&POSE, pauses).await;
         let iterations = found.len();
         stages.enter(Stage::Filter);
-        found.extend(voted.iter().map(|vote| level.judged(vote.pose, vote.inliers)));
+        for vote in voted {
+            found.push(level.judged(vote.pose, vote.inliers));
+            pauses.point(level.scorer.work()).await;
+        }
         let chosen = self.distinct(&found, level.scorer.distance);
 
         stages.enter(Stage::Icp);
         let mut best: Option<Hypothesis> = None;
         for candidate in chosen {
+            if !pauses.goes_on(best.is_some()) {
+                break;
+            }
             let mut own = self.own(&candidate.pose);
             if let Some(icp) = self.near(own.scale).brief_icp_on_grid(ITERATIONS) {
-                own = clouds.refine_on_grid(&own, &icp).target_from_source;
-                pauses.spend(clouds.work());
+                own = clouds.refine_on_grid(&own, &icp, pauses).await.target_from_source;
             }
+            pauses.point(level.scorer.work()).await;
             let refined = level.judged(self.unscaled(own), candidate.inliers);
             if best.is_none_or(|best| refined.score > best.score) {
                 best = Some(refined);
@@ -227,7 +243,7 @@ impl Scaled<'_> {
         }
         let best = best?;
         let own = self.own(&best.pose);
-        let refined = clouds.refine(&own, &self.near(own.scale));
+        let refined = clouds.refine(&own, &self.near(own.scale), pauses).await;
         let pose = self.unscaled(refined.target_from_source);
         let bounds = Guard { min: guard[0], max: guard[1], mode: GuardMode::Reject };
         let matches = level.matches.len();
@@ -302,11 +318,17 @@ struct Level<'a> {
 }
 
 impl<'a> Level<'a> {
-    fn new(scaled: &'a Scaled<'a>, clouds: &'a CloudPair<'a>, round: &Round, stages: &mut Stopwatch<'_>) -> Self {
+    async fn new(
+        scaled: &'a Scaled<'a>,
+        clouds: &'a CloudPair<'a>,
+        round: &Round,
+        stages: &mut Stopwatch<'_>,
+        pauses: &Pauses,
+    ) -> Self {
         let settings = &scaled.settings;
-        let [source, target] = clouds.descriptors(settings, stages);
+        let [source, target] = clouds.descriptors(settings, stages, pauses).await;
         stages.enter(Stage::Matching);
-        let matches = nearest(&source, &target).best(round.matches);
+        let matches = Nearest::of(&source, &target, pauses).await.best(round.matches);
         stages.enter(Stage::Ransac);
         Self::of(scaled, clouds, [&source, &target], matches)
     }
@@ -326,21 +348,18 @@ impl<'a> Level<'a> {
         Hypothesis { pose, score: self.scorer.balanced(&self.scaled.own(&pose)), inliers }
     }
 
-    /// The units of work of the hypotheses.
-    fn work(&self) -> f64 {
-        3.0 * graph_work(self.matches.len())
-    }
-
     /// Poses from matches.
-    fn hypotheses(&self, round: &Round) -> Vec<Hypothesis> {
+    async fn hypotheses(&self, round: &Round, pauses: &Pauses) -> Vec<Hypothesis> {
         let [source, target] = [&self.scorer.clouds.source, &self.scorer.clouds.target].map(|side| &side.grid.cloud);
         let mut found = Vec::new();
         for scale in [1.0 / round.fine_step, 1.0, round.fine_step] {
             let points: Vec<Vec3> = source.points.iter().map(|&p| scale as f32 * p).collect();
             let distance = self.scorer.distance;
-            for rigid in hypotheses(&points, &target.points, &self.matches, distance, round.hypotheses) {
+            let count = round.hypotheses;
+            for rigid in hypotheses(&points, &target.points, &self.matches, distance, count, pauses).await {
                 let own = Similarity { scale, ..rigid.target_from_source };
                 found.push(self.judged(self.scaled.unscaled(own), rigid.inliers.len()));
+                pauses.point(self.scorer.work()).await;
             }
         }
         found

@@ -19,6 +19,9 @@ const MAX_HIDDEN: f32 = 0.3;
 /// Maximum distance of the sensor from the centre of its cloud, in box diagonals.
 const MAX_AWAY: f32 = 1.0;
 
+/// Units of work of a point.
+pub(super) const SEEN: f64 = 5e-5;
+
 /// The range of the nearest surface in every direction from a viewpoint.
 #[derive(Debug, Clone)]
 pub struct FreeSpace {

@@ -2,10 +2,11 @@
 
 use glam::Vec3;
 
-use crate::evidence::normals::{Neighborhood, Orientation, estimate_normals};
+use crate::evidence::normals::{Neighborhood, Orientation, paused_normals};
 use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
-use crate::geometry::voxel_grid::voxel_downsample;
+use crate::geometry::voxel_grid::paused_downsample;
+use crate::pauses::Pauses;
 
 /// Neighbours on the voxel grid for normal estimation: about those within two voxels.
 const NORMAL_NEIGHBORS: usize = 16;
@@ -20,30 +21,25 @@ pub struct GridCloud {
 }
 
 impl GridCloud {
-    /// Downsamples a cloud with normals to voxels of edge `voxel_size`.
-    pub fn new(full: &Cloud, voxel_size: f32) -> Self {
-        Self::with_smooth_normals(voxel_downsample(full, voxel_size))
-    }
-
-    /// Like [`GridCloud::new`], for a cloud with a box diagonal of 1. If more than `count` voxels are occupied, the
-    /// grid is coarser.
-    pub fn of_at_most(count: usize, full: &Cloud, voxel_size: f32) -> Self {
-        let mut cloud = voxel_downsample(full, voxel_size);
+    /// Downsamples a cloud with normals to voxels of edge `voxel_size`. If more than `count` are occupied, the grid is
+    /// coarser, unless its voxels are larger than 1: the diagonal of the box of a normalised cloud.
+    pub async fn of_at_most(count: usize, full: &Cloud, voxel_size: f32, pauses: &Pauses) -> Self {
+        let mut cloud = paused_downsample(full, voxel_size, pauses).await;
         // Doubling the voxels quarters the cells of a surface, so that few rounds suffice.
         let mut size = voxel_size;
         while cloud.len() > count && size < 1.0 {
             size *= 1.25;
-            cloud = voxel_downsample(full, size);
+            cloud = paused_downsample(full, size, pauses).await;
         }
-        Self::with_smooth_normals(cloud)
+        Self::with_smooth_normals(cloud, pauses).await
     }
 
     /// Estimates normals from the points of the grid, so that both clouds have normals at the same scale, independent
     /// of density and noise. The mean normals of the cells determine the orientation.
-    fn with_smooth_normals(mut cloud: Cloud) -> Self {
-        let tree = KdTree::new(&cloud.points);
+    async fn with_smooth_normals(mut cloud: Cloud, pauses: &Pauses) -> Self {
+        let tree = KdTree::paused(&cloud.points, pauses).await;
         let neighborhood = Neighborhood::nearest(NORMAL_NEIGHBORS);
-        let normals = estimate_normals(&cloud.points, &tree, neighborhood, Orientation::TowardsCamera);
+        let normals = paused_normals(&cloud.points, &tree, neighborhood, Orientation::TowardsCamera, pauses).await;
         for (own, smooth) in cloud.normals.iter_mut().zip(normals) {
             if smooth != Vec3::ZERO {
                 *own = if own.dot(smooth) < 0.0 { -smooth } else { smooth };

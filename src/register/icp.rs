@@ -15,6 +15,7 @@ use crate::geometry::cloud::Cloud;
 use crate::geometry::kd_tree::KdTree;
 use crate::geometry::normal_equations::{NormalEquations, PARAMETERS};
 use crate::geometry::similarity::{Similarity, nearest_rotation, vector3};
+use crate::pauses::Pauses;
 
 /// The distance that an iteration minimises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -67,18 +68,23 @@ const ROUNDING: f64 = 1e-6;
 /// Factor of the support distance per iteration.
 const SHRINK: f32 = 0.75;
 
+/// Units of work of a source point in an iteration.
+const LANDED: f64 = 1e-3;
+
 /// Refines a pose of `source` relative to `target`; `target_tree` is the search tree over the target. With too little
 /// support for a step (fewer than six points), iteration stops and `converged` is false.
-pub fn refine(
+pub async fn refine(
     source: &Cloud,
     target: &Cloud,
     target_tree: &KdTree,
     initial: &Similarity,
     settings: &IcpSettings,
+    pauses: &Pauses,
 ) -> Refined {
     let mut refined = Refined { target_from_source: *initial, iterations: 0, converged: false, supported: 0, rms: 0.0 };
     let mut support_settings = settings.support;
-    while refined.iterations < settings.max_iterations {
+    while refined.iterations < settings.max_iterations && pauses.goes_on(refined.iterations > 0) {
+        pauses.point(LANDED * source.len() as f64).await;
         let support = supported(source, target, target_tree, &refined.target_from_source, &support_settings);
         refined.supported = support.len();
         let residuals = Residuals::of(&support, target, settings);

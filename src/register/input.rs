@@ -8,6 +8,9 @@ use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::random::Random;
 use crate::number::number;
 
+/// Units of work of a number that is checked, selected or converted.
+pub(super) const PREPARED: f64 = 1e-5;
+
 /// Checks for complete, finite, sufficiently many and non-coincident points (interleaved x, y, z).
 pub(super) fn check_cloud(argument: &str, xyz: &[f64], min_points: usize) -> Result<()> {
     if !xyz.len().is_multiple_of(3) {

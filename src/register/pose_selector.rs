@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use super::feature_registration::{Estimate, FeatureRegistration};
+use super::input::PREPARED;
 use super::normalized_pair::{Fit, NormalizedPair};
 use super::options::RegisterOptions;
 use super::report::Registration;
@@ -15,7 +16,7 @@ use crate::geometry::kd_tree::KdTree;
 use crate::geometry::similarity::Similarity;
 use crate::geometry::voxel_grid::voxel_size_leaving;
 use crate::options::scale::ScaleOption;
-use crate::pauses::{Pauses, boxed};
+use crate::pauses::Pauses;
 use crate::progress::{Stage, Stopwatch};
 
 /// Default number of voxels along the diagonal of the target's bounding box.
@@ -52,18 +53,23 @@ pub(crate) struct PoseSelector {
 }
 
 impl PoseSelector {
-    pub(crate) fn new(
+    pub(crate) async fn new(
         source_xyz: &[f64],
         target_xyz: &[f64],
         frames: NormalizedPair,
         options: &RegisterOptions,
+        pauses: &Pauses,
     ) -> Self {
         let source = frames.source.normalized_flat(source_xyz);
         let target = frames.target.normalized_flat(target_xyz);
-        let is_fixed = matches!(options.scale, ScaleOption::Fixed(_));
-        let tree = KdTree::new(&target.points);
+        pauses.point(PREPARED * (source_xyz.len() + target_xyz.len()) as f64).await;
+        let tree = KdTree::paused(&target.points, pauses).await;
+        let reverse = match options.scale {
+            ScaleOption::Fixed(_) => None,
+            _ => Some(Reverse::new(&source, target, pauses).await),
+        };
         Self {
-            reverse: (!is_fixed).then(|| Reverse::new(&source, target)),
+            reverse,
             source,
             target: tree,
             inlier_distance: (options.inlier_distance_voxels * unit_voxel_size(options, &frames)) as f32,
@@ -76,14 +82,14 @@ impl PoseSelector {
 
     /// Sets a pose that was selected by evidence from both complete scenes; only a certain pose replaces it. If scenes
     /// overlap little, more points can agree under a wrong pose.
-    pub(crate) fn prefer(&mut self, candidate: Result<Candidate>) {
+    pub(crate) async fn prefer(&mut self, candidate: Result<Candidate>, pauses: &Pauses) {
         match candidate {
             Ok(candidate) => {
                 let other = self.best.take();
-                self.consider(candidate);
+                self.consider(candidate, pauses).await;
                 self.has_preferred = true;
-                if let Some((_, other)) = other {
-                    self.consider(other);
+                if let Some((agreement, other)) = other {
+                    self.keep_better(agreement, other);
                 }
             }
             Err(error) => self.failure = Some(error),
@@ -110,29 +116,27 @@ impl PoseSelector {
         // Without a known scale, clutter misleads the preferred pose as well.
         let is_brief = self.has_preferred && self.reverse.is_none();
         stages.enter(Stage::Normals);
-        let source = with_normals(frames.source.normalized_flat(source_xyz), None);
-        let target = with_normals(frames.target.normalized_flat(target_xyz), None);
-        pauses.point(NORMAL * (source.len() + target.len()) as f64).await;
+        let source = with_normals(frames.source.normalized_flat(source_xyz), None, pauses).await;
+        let target = with_normals(frames.target.normalized_flat(target_xyz), None, pauses).await;
         let mut settings =
             RegistrationSettings::new(options, unit_voxel_size(options, &frames), frames.scale_mode, frames.guard);
         if is_brief {
             settings.ransac.max_iterations = settings.ransac.max_iterations.min(ITERATIONS_WITH_PREFERRED);
         }
-        let mut registration = boxed(FeatureRegistration::new(&source, &target, &settings, stages, pauses)).await;
+        let mut registration = FeatureRegistration::new(&source, &target, &settings, stages, pauses).await;
         let poses = if is_brief { 1 } else { POSES };
         for _ in 0..poses {
             if self.is_certain() || self.is_partial(source_xyz) || !pauses.goes_on(self.has_pose()) {
                 break;
             }
-            match boxed(registration.solve(&settings, stages, pauses)).await {
+            match registration.solve(&settings, stages, pauses).await {
                 Ok(estimate) => {
                     // The inliers would lead to the same pose again.
                     registration.discard(&estimate.inliers);
                     match check_scale(&estimate, options) {
-                        Ok(()) => self.consider(Candidate::new(&frames, estimate)),
+                        Ok(()) => self.consider(Candidate::new(&frames, estimate), pauses).await,
                         Err(error) => drop(self.failure.get_or_insert(error)),
                     }
-                    pauses.point(NORMAL * self.source.len() as f64).await;
                 }
                 Err(error) => {
                     self.failure.get_or_insert(about_clouds(error, "source"));
@@ -163,12 +167,19 @@ impl PoseSelector {
         self.best.as_ref().is_some_and(|(agreement, _)| agreement.score >= CERTAIN)
     }
 
-    fn consider(&mut self, candidate: Candidate) {
+    async fn consider(&mut self, candidate: Candidate, pauses: &Pauses) {
         let unit = self.frames.normalized(&candidate.target_from_source);
-        let mut agreement = Agreement::of(&self.source, &self.target, &unit, self.inlier_distance);
+        let distance = self.inlier_distance;
+        let mut agreement = Agreement::of(&self.source, &self.target, &unit, distance, pauses).await;
         if let Some(reverse) = &self.reverse {
-            reverse.complete(&mut agreement, &unit, self.inlier_distance);
+            let (inverse, distance) = (unit.inverse(), distance / unit.scale as f32);
+            let back = Agreement::of(&reverse.target, &reverse.source, &inverse, distance, pauses).await;
+            reverse.complete(&mut agreement, &back, unit.scale);
         }
+        self.keep_better(agreement, candidate);
+    }
+
+    fn keep_better(&mut self, agreement: Agreement, candidate: Candidate) {
         let is_taken = !self.has_preferred || agreement.score >= CERTAIN;
         if is_taken && self.best.as_ref().is_none_or(|(best, _)| agreement.rank > best.rank) {
             self.best = Some((agreement, candidate));
@@ -233,23 +244,26 @@ struct Reverse {
 const AREA_VOXELS: usize = 1_500;
 
 impl Reverse {
-    fn new(source: &Cloud, target: Cloud) -> Self {
-        let [a, b] = [source, &target].map(|cloud| voxel_size_leaving(cloud, AREA_VOXELS.min(cloud.len() / 2)));
-        Self { source: KdTree::new(&source.points), target, size: f64::from(a / b) }
+    async fn new(source: &Cloud, target: Cloud, pauses: &Pauses) -> Self {
+        let mut sizes = [0.0; 2];
+        for (size, cloud) in sizes.iter_mut().zip([source, &target]) {
+            *size = voxel_size_leaving(cloud, AREA_VOXELS.min(cloud.len() / 2), pauses).await;
+        }
+        let tree = KdTree::paused(&source.points, pauses).await;
+        Self { source: tree, target, size: f64::from(sizes[0] / sizes[1]) }
     }
 
     /// Adds the other direction: the rank becomes the area on which both clouds agree, relative to the geometric mean of
     /// their areas.
-    fn complete(&self, agreement: &mut Agreement, unit: &Similarity, distance: f32) {
-        let back = Agreement::of(&self.target, &self.source, &unit.inverse(), distance / unit.scale as f32);
-        let size = unit.scale * self.size;
+    fn complete(&self, agreement: &mut Agreement, back: &Agreement, scale: f64) {
+        let size = scale * self.size;
         agreement.rank = agreement.score * size + back.score / size;
         agreement.mutual = agreement.fitness.min(back.fitness);
     }
 }
 
 impl Agreement {
-    fn of(source: &Cloud, target: &KdTree, unit: &Similarity, distance: f32) -> Self {
+    async fn of(source: &Cloud, target: &KdTree, unit: &Similarity, distance: f32, pauses: &Pauses) -> Self {
         let transform = unit.to_f32();
         let (mut near, mut sum) = (0_usize, 0.0);
         for &point in &source.points {
@@ -258,6 +272,7 @@ impl Agreement {
                 let close = distance / 3.0;
                 sum += (1.0 - f64::from(neighbor.distance_squared) / f64::from(close * close)).max(0.0);
             }
+            pauses.point(NEAREST).await;
         }
         let count = source.len() as f64;
         let score = sum / count;
@@ -271,13 +286,13 @@ fn unit_voxel_size(options: &RegisterOptions, frames: &NormalizedPair) -> f64 {
 }
 
 /// The cloud with [`outward_normals`].
-pub(crate) fn with_normals(mut cloud: Cloud, eye: Option<Vec3>) -> Cloud {
-    cloud.normals = outward_normals(&cloud.points, eye, NORMAL_NEIGHBORS);
+pub(crate) async fn with_normals(mut cloud: Cloud, eye: Option<Vec3>, pauses: &Pauses) -> Cloud {
+    cloud.normals = outward_normals(&cloud.points, eye, NORMAL_NEIGHBORS, pauses).await;
     cloud
 }
 
-/// Units of work of the normal or of the agreement of a point.
-pub(super) const NORMAL: f64 = 2e-3;
+/// Units of work of a search for the nearest point.
+const NEAREST: f64 = 1e-3;
 
 /// Rewords errors of RANSAC, which refer to mesh and observation, for two clouds.
 pub(crate) fn about_clouds(error: Error, argument: &str) -> Error {

@@ -27,9 +27,16 @@ const LOCAL_REFITS: usize = 4;
 const JUDGES: usize = 20_000;
 
 /// Units of work between two pause points, of a draw, and of the distance of a pair.
-const STRIDE: f64 = 4.0;
+const STRIDE: f64 = 1.0;
 const DRAW: f64 = 2e-4;
 const DISTANCE: f64 = 6e-6;
+
+/// Units of work of a pair that is collected, and of one that is weighed.
+const COLLECTED: f64 = 3e-5;
+const WEIGHED: f64 = 5e-5;
+
+/// Pairs that are collected between two pause points.
+const CHUNK: usize = 1 << 16;
 
 /// Treatment of scales outside the guard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -114,7 +121,7 @@ pub async fn ransac(
     settings: &RansacSettings,
     pauses: &Pauses,
 ) -> Result<Consensus> {
-    let (numbers, pairs) = pairs_of(source, target, matches);
+    let (numbers, pairs) = pairs_of(source, target, matches, pauses).await;
     let mut search = Search::new(&pairs, settings);
     while pairs.len() >= 3 && pauses.goes_on(search.counts.iterations > 0) {
         let (work, is_over) = search.advance(&pairs, settings);
@@ -123,19 +130,33 @@ pub async fn ransac(
             break;
         }
     }
+    pauses.point(COLLECTED * pairs.len() as f64).await;
     search.consensus(&numbers, &pairs, settings)
 }
 
 /// The pairs of matches, and their indices. Skips matches of points that do not exist.
-fn pairs_of(source: &[glam::Vec3], target: &[glam::Vec3], matches: &[Match]) -> (Vec<usize>, Vec<Pair>) {
-    matches
-        .iter()
-        .enumerate()
-        .filter_map(|(i, m)| {
-            let (source, target) = (source.get(m.source as usize)?, target.get(m.target as usize)?);
-            Some((i, Pair { source: vector3(*source), target: vector3(*target), weight: 1.0 }))
-        })
-        .unzip()
+async fn pairs_of(
+    source: &[glam::Vec3],
+    target: &[glam::Vec3],
+    matches: &[Match],
+    pauses: &Pauses,
+) -> (Vec<usize>, Vec<Pair>) {
+    let (mut numbers, mut pairs) = (Vec::with_capacity(matches.len()), Vec::with_capacity(matches.len()));
+    for from in (0..matches.len()).step_by(CHUNK) {
+        for (i, m) in matches.iter().enumerate().skip(from).take(CHUNK) {
+            let Some(pair) = pair_of(source, target, m) else { continue };
+            numbers.push(i);
+            pairs.push(pair);
+        }
+        pauses.point(COLLECTED * CHUNK as f64).await;
+    }
+    (numbers, pairs)
+}
+
+/// The points of a match; `None` if one does not exist.
+fn pair_of(source: &[glam::Vec3], target: &[glam::Vec3], m: &Match) -> Option<Pair> {
+    let (source, target) = (source.get(m.source as usize)?, target.get(m.target as usize)?);
+    Some(Pair { source: vector3(*source), target: vector3(*target), weight: 1.0 })
 }
 
 /// A search for the best hypothesis.
@@ -205,28 +226,27 @@ impl Search {
 
 /// Refits a consensus on its inliers by iteratively reweighted least squares, which excludes matches that are near by
 /// chance. Keeps the last pose if too few remain for the closed form, or if the scale leaves the guard.
-pub fn reweighted(
+pub async fn reweighted(
     source: &[glam::Vec3],
     target: &[glam::Vec3],
     matches: &[Match],
     consensus: &Consensus,
     settings: &RansacSettings,
+    pauses: &Pauses,
 ) -> Similarity {
-    let inliers = consensus.inliers.iter().filter_map(|&i| {
-        let m = matches.get(i)?;
-        let (source, target) = (source.get(m.source as usize)?, target.get(m.target as usize)?);
-        Some(Pair { source: vector3(*source), target: vector3(*target), weight: 1.0 })
-    });
-    let mut inliers: Vec<Pair> = inliers.collect();
+    let mut inliers: Vec<Pair> = Vec::with_capacity(consensus.inliers.len());
+    inliers.extend(consensus.inliers.iter().filter_map(|&i| pair_of(source, target, matches.get(i)?)));
     let mut best = consensus.target_from_source;
     if consensus.clamped {
         return best;
     }
     for _ in 0..REWEIGHTINGS {
+        pauses.point(WEIGHED * inliers.len() as f64).await;
         let residuals: Vec<f64> = inliers.iter().map(|pair| residual_squared(&best, pair).sqrt()).collect();
         for (pair, weight) in inliers.iter_mut().zip(biweights(&residuals, ROUNDING)) {
             pair.weight = weight;
         }
+        pauses.point(WEIGHED * inliers.len() as f64).await;
         let Ok(next) = umeyama(inliers.iter().copied(), settings.scale_mode) else { break };
         if settings.guard.is_some_and(|guard| next.scale < guard.min || next.scale > guard.max) {
             break;

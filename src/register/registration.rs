@@ -2,7 +2,7 @@
 
 use super::density::dense_points;
 use super::free_scale::register_free;
-use super::input::{check_cloud, finite_points, subsample};
+use super::input::{PREPARED, check_cloud, finite_points, subsample};
 use super::normalized_pair::NormalizedPair;
 use super::options::RegisterOptions;
 use super::pose_selector::PoseSelector;
@@ -13,7 +13,7 @@ use crate::evidence::observation::MIN_POINTS;
 use crate::geometry::random::Random;
 use crate::options::Options;
 use crate::options::scale::ScaleOption;
-use crate::pauses::{Pauses, Task, boxed, finished};
+use crate::pauses::{Boxed, Pauses, Task, boxed, finished};
 use crate::progress::{Host, Stage, Stopwatch};
 
 /// Random stream of the subsampling.
@@ -47,7 +47,7 @@ pub fn register(
     host: &mut dyn Host,
 ) -> Result<Registration> {
     let pauses = Pauses::new(|| 0.0, options.work_budget);
-    finished(registered(source_xyz, target_xyz, options, host, &pauses))
+    finished(registered([source_xyz, target_xyz], options, host, &pauses))
 }
 
 /// [`register`] in steps, which end by this clock.
@@ -63,24 +63,40 @@ pub fn register_task(
 ) -> Result<Task<'static, Registration>> {
     options.validate()?;
     Ok(Task::new(Pauses::new(clock, options.work_budget), |pauses| async move {
-        registered(&source_xyz, &target_xyz, &options, &mut host, &pauses).await
+        registered([&source_xyz, &target_xyz], &options, &mut host, &pauses).await
     }))
 }
 
-async fn registered(
-    source_xyz: &[f64],
-    target_xyz: &[f64],
+/// Without a budget, the options bound the work, in units: RANSAC makes at most 18 poses, each from at most
+/// `ransac_iterations` draws of 0.13 (0.0002 if their edges disagree). Descriptors are compared of at most 30 pairs of
+/// grids, of at most 8000 voxels each, which takes 2200. Trees, normals, grids and agreements take at most 0.5 for each
+/// point that is used.
+fn registered<'a>(
+    clouds: [&'a [f64]; 2],
+    options: &'a RegisterOptions,
+    host: &'a mut dyn Host,
+    pauses: &'a Pauses,
+) -> Boxed<'a, Result<Registration>> {
+    boxed(solved(clouds, options, host, pauses))
+}
+
+async fn solved(
+    [source_xyz, target_xyz]: [&[f64]; 2],
     options: &RegisterOptions,
     host: &mut dyn Host,
     pauses: &Pauses,
 ) -> Result<Registration> {
     options.validate()?;
     let (source_xyz, skipped_source) = finite_points(source_xyz);
+    pauses.point(PREPARED * source_xyz.len() as f64).await;
     let (target_xyz, skipped_target) = finite_points(target_xyz);
+    pauses.point(PREPARED * target_xyz.len() as f64).await;
     let complete: [&[f64]; 2] = [&source_xyz, &target_xyz];
+    for (argument, xyz) in ["source", "target"].into_iter().zip(complete) {
+        check_cloud(argument, xyz, MIN_POINTS)?;
+        pauses.point(PREPARED * xyz.len() as f64).await;
+    }
     let [source_xyz, target_xyz] = complete;
-    check_cloud("source", source_xyz, MIN_POINTS)?;
-    check_cloud("target", target_xyz, MIN_POINTS)?;
     let mut stages = Stopwatch::new(host, PLAN);
 
     stages.enter(Stage::Sample);
@@ -94,25 +110,26 @@ async fn registered(
     // dense points are tried first; but if the density varies by nature (lidar), they omit most of the scene, so that
     // all points are tried as well. The agreement of all points selects the result. Without a known scale, features
     // suffice for clouds that show the same surface; for others, matches vote for the scale.
-    let mut selector = PoseSelector::new(&source_xyz, &target_xyz, frames, options);
+    pauses.point(PREPARED * (source_xyz.len() + target_xyz.len()) as f64).await;
+    let mut selector = PoseSelector::new(&source_xyz, &target_xyz, frames, options, pauses).await;
     let is_fixed = matches!(options.scale, ScaleOption::Fixed(_));
     if is_fixed {
-        selector.prefer(register_rigid(complete, options, &mut stages, pauses));
+        let found = register_rigid(complete, options, &mut stages, pauses).await;
+        selector.prefer(found, pauses).await;
     }
-    pauses.point(0.0).await;
-    let dense = dense(&source_xyz, &target_xyz, &selector.frames);
-    pauses.point(1e-3 * (source_xyz.len() + target_xyz.len()) as f64).await;
+    let dense = dense(&source_xyz, &target_xyz, &selector.frames, pauses).await;
     if let Some((source_xyz, target_xyz)) = &dense {
-        boxed(selector.try_clouds(source_xyz, target_xyz, options, &mut stages, pauses)).await?;
+        selector.try_clouds(source_xyz, target_xyz, options, &mut stages, pauses).await?;
     }
     if !selector.has_preferred() && (is_fixed || dense.is_none()) {
-        boxed(selector.try_clouds(&source_xyz, &target_xyz, options, &mut stages, pauses)).await?;
+        selector.try_clouds(&source_xyz, &target_xyz, options, &mut stages, pauses).await?;
     }
     if !is_fixed && !selector.is_mutual() && pauses.goes_on(selector.has_pose()) {
-        selector.prefer(boxed(register_free(complete, options, &mut stages, pauses)).await);
+        let found = register_free(complete, options, &mut stages, pauses).await;
+        selector.prefer(found, pauses).await;
     }
     if !selector.has_pose() {
-        boxed(selector.try_clouds(&source_xyz, &target_xyz, options, &mut stages, pauses)).await?;
+        selector.try_clouds(&source_xyz, &target_xyz, options, &mut stages, pauses).await?;
     }
     let mut found = selector.finish(options, stages)?;
     found.diagnostics.skipped_source_points = skipped_source;
@@ -121,9 +138,14 @@ async fn registered(
 }
 
 /// The dense points of both clouds; `None` if they are too few, or almost all.
-fn dense(source_xyz: &[f64], target_xyz: &[f64], frames: &NormalizedPair) -> Option<(Vec<f64>, Vec<f64>)> {
-    let source = dense_points(&frames.source.normalized_flat(source_xyz).points);
-    let target = dense_points(&frames.target.normalized_flat(target_xyz).points);
+async fn dense(
+    source_xyz: &[f64],
+    target_xyz: &[f64],
+    frames: &NormalizedPair,
+    pauses: &Pauses,
+) -> Option<(Vec<f64>, Vec<f64>)> {
+    let source = dense_points(&frames.source.normalized_flat(source_xyz).points, pauses).await;
+    let target = dense_points(&frames.target.normalized_flat(target_xyz).points, pauses).await;
     let kept = |dense: &[usize], xyz: &[f64]| dense.len() as f64 / (xyz.len() / 3) as f64;
     let least = kept(&source, source_xyz).min(kept(&target, target_xyz));
     let enough = source.len().min(target.len()) >= MIN_POINTS;

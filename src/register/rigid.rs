@@ -3,25 +3,25 @@
 //! The voxel size follows from the number of points. Poses come from matches that preserve distances, and are ranked by
 //! the agreement of both complete scenes and by the free space of their sensors.
 
-use super::at_once::nearest;
 use super::cloud_pair::CloudPair;
 use super::feature_registration::Estimate;
+use super::input::PREPARED;
 use super::normalized_pair::NormalizedPair;
 use super::options::RegisterOptions;
 use super::pose_scorer::{PoseScorer, distinctiveness};
-use super::pose_selector::{Candidate, NORMAL, no_consensus, with_normals};
+use super::pose_selector::{Candidate, no_consensus, with_normals};
 use super::settings::{RegistrationSettings, given_voxel_size};
 use crate::error::Result;
 use crate::geometry::cloud::Cloud;
 use crate::geometry::similarity::{Similarity, vec3};
-use crate::geometry::voxel_grid::{voxel_downsample, voxel_size_leaving};
+use crate::geometry::voxel_grid::{paused_downsample, voxel_size_leaving};
 use crate::pauses::Pauses;
 use crate::progress::{Stage, Stopwatch};
-use crate::register::compatibility::{Hypothesis, graph_work, hypotheses};
+use crate::register::compatibility::{Hypothesis, hypotheses};
 use crate::register::fpfh::Descriptor;
-use crate::register::free_space::FreeSpace;
+use crate::register::free_space::{FreeSpace, SEEN};
 use crate::register::icp::movement;
-use crate::register::matching::Match;
+use crate::register::matching::{Match, Nearest};
 use crate::report::Counts;
 
 /// Maximum number of voxels of the larger cloud by default: it resolves furniture and keeps the run time at seconds.
@@ -44,22 +44,21 @@ pub(super) const FREE_SLACK_VOXELS: f32 = 2.0;
 ///
 /// # Errors
 /// [`NoConsensus`](crate::error::ErrorCode::NoConsensus).
-pub(super) fn register_rigid(
+pub(super) async fn register_rigid(
     [source_xyz, target_xyz]: [&[f64]; 2],
     options: &RegisterOptions,
     stages: &mut Stopwatch<'_>,
     pauses: &Pauses,
 ) -> Result<Candidate> {
     let frames = NormalizedPair::of(source_xyz, target_xyz, options.scale)?;
-    let scans = Scans::new(&frames, [source_xyz, target_xyz], options, stages);
+    pauses.point(PREPARED * (source_xyz.len() + target_xyz.len()) as f64).await;
+    let scans = Scans::new(&frames, [source_xyz, target_xyz], options, stages, pauses).await;
     let [source, target] = &scans.clouds;
-    pauses.spend(NORMAL * (source.len() + target.len()) as f64);
-    let clouds = CloudPair::new(source, target, scans.settings.voxel_size);
-    let features = clouds.descriptors(&scans.settings, stages);
-    pauses.spend(clouds.work());
+    let clouds = CloudPair::new(source, target, scans.settings.voxel_size, pauses).await;
+    let features = clouds.descriptors(&scans.settings, stages, pauses).await;
     stages.enter(Stage::Matching);
-    let matches = nearest(&features[0], &features[1]).best(MATCHES);
-    let estimate = scans.estimate(&clouds, &features, &matches, stages, pauses)?;
+    let matches = Nearest::of(&features[0], &features[1], pauses).await.best(MATCHES);
+    let estimate = scans.estimate(&clouds, &features, &matches, stages, pauses).await?;
     Ok(Candidate::new(&frames, estimate))
 }
 
@@ -72,18 +71,22 @@ struct Scans {
 }
 
 impl Scans {
-    fn new(
+    async fn new(
         frames: &NormalizedPair,
         [source_xyz, target_xyz]: [&[f64]; 2],
         options: &RegisterOptions,
         stages: &mut Stopwatch<'_>,
+        pauses: &Pauses,
     ) -> Self {
         let most = options.max_points as usize;
-        let source = limit_points(frames.source.normalized_flat(source_xyz), most);
-        let target = limit_points(frames.target.normalized_flat(target_xyz), most);
+        let source = limit_points(frames.source.normalized_flat(source_xyz), most, pauses).await;
+        let target = limit_points(frames.target.normalized_flat(target_xyz), most, pauses).await;
         let voxel_size = match given_voxel_size(options, frames) {
             Some(size) => size as f32,
-            None => voxel_size_leaving(&source, VOXELS).max(voxel_size_leaving(&target, VOXELS)),
+            None => {
+                let of_source = voxel_size_leaving(&source, VOXELS, pauses).await;
+                of_source.max(voxel_size_leaving(&target, VOXELS, pauses).await)
+            }
         };
         let settings = RegistrationSettings::new(options, f64::from(voxel_size), frames.scale_mode, frames.guard);
 
@@ -92,14 +95,16 @@ impl Scans {
         let [source_eye, target_eye] = [&frames.source, &frames.target].map(|f| vec3(&f.unit_from_own().translation));
         let slack = FREE_SLACK_VOXELS * voxel_size;
         let source_free = FreeSpace::seen_from(source_eye, &source.points, slack);
+        pauses.point(SEEN * source.len() as f64).await;
         let target_free = FreeSpace::seen_from(target_eye, &target.points, slack);
-        let source = with_normals(source, source_free.as_ref().map(|_| source_eye));
-        let target = with_normals(target, target_free.as_ref().map(|_| target_eye));
+        pauses.point(SEEN * target.len() as f64).await;
+        let source = with_normals(source, source_free.as_ref().map(|_| source_eye), pauses).await;
+        let target = with_normals(target, target_free.as_ref().map(|_| target_eye), pauses).await;
         Self { clouds: [source, target], free: [source_free, target_free], settings }
     }
 
     /// The best pose from matches.
-    fn estimate(
+    async fn estimate(
         &self,
         clouds: &CloudPair<'_>,
         features: &[Vec<Descriptor>; 2],
@@ -112,8 +117,7 @@ impl Scans {
         let distance = settings.ransac.inlier_distance as f32;
         let count = HYPOTHESES.min(settings.ransac.max_iterations);
         let [source_points, target_points] = [&clouds.source, &clouds.target].map(|side| &side.grid.cloud.points);
-        let found = hypotheses(source_points, target_points, matches, distance, count);
-        pauses.spend(graph_work(matches.len()));
+        let found = hypotheses(source_points, target_points, matches, distance, count, pauses).await;
         let iterations = found.len();
 
         stages.enter(Stage::Filter);
@@ -123,15 +127,20 @@ impl Scans {
             free: self.free.clone(),
             distance,
         };
-        let candidates = distinct_candidates(&scorer, found, pauses);
+        let candidates = distinct_candidates(&scorer, found, pauses).await;
 
         stages.enter(Stage::Icp);
         let mut best: Option<(f64, Similarity, Vec<usize>)> = None;
         let icp = settings.brief_icp_on_grid(ITERATIONS);
         for hypothesis in candidates {
-            let pose = hypothesis.target_from_source;
-            let pose = icp.map_or(pose, |icp| clouds.refine_on_grid(&pose, &icp).target_from_source);
-            pauses.spend(clouds.work());
+            if !pauses.goes_on(best.is_some()) {
+                break;
+            }
+            let mut pose = hypothesis.target_from_source;
+            if let Some(icp) = &icp {
+                pose = clouds.refine_on_grid(&pose, icp, pauses).await.target_from_source;
+            }
+            pauses.point(scorer.work()).await;
             let score = scorer.score(&pose);
             if best.as_ref().is_none_or(|(highest, ..)| score > *highest) {
                 best = Some((score, pose, hypothesis.inliers));
@@ -140,7 +149,7 @@ impl Scans {
         let Some((_, pose, inliers)) = best else {
             return Err(no_consensus(format!("{} matches, no three of which preserve distances", matches.len())));
         };
-        let refined = clouds.refine(&pose, settings);
+        let refined = clouds.refine(&pose, settings, pauses).await;
         let counts = Counts { matches: matches.len(), inliers: inliers.len(), iterations, ..clouds.counts(&refined) };
         Ok(Estimate {
             target_from_source: refined.target_from_source,
@@ -154,16 +163,20 @@ impl Scans {
 }
 
 /// The cloud if it has at most `most` points; otherwise the means of the smallest voxels that leave that many.
-pub(super) fn limit_points(cloud: Cloud, most: usize) -> Cloud {
-    if cloud.len() <= most { cloud } else { voxel_downsample(&cloud, voxel_size_leaving(&cloud, most)) }
+pub(super) async fn limit_points(cloud: Cloud, most: usize, pauses: &Pauses) -> Cloud {
+    if cloud.len() <= most {
+        return cloud;
+    }
+    let size = voxel_size_leaving(&cloud, most, pauses).await;
+    paused_downsample(&cloud, size, pauses).await
 }
 
 /// The poses with the highest scores, best first, without near duplicates.
-fn distinct_candidates(scorer: &PoseScorer<'_>, mut found: Vec<Hypothesis>, pauses: &Pauses) -> Vec<Hypothesis> {
+async fn distinct_candidates(scorer: &PoseScorer<'_>, mut found: Vec<Hypothesis>, pauses: &Pauses) -> Vec<Hypothesis> {
     let mut scores = Vec::with_capacity(found.len());
     for hypothesis in &found {
         scores.push(scorer.score(&hypothesis.target_from_source));
-        pauses.spend(scorer.work());
+        pauses.point(scorer.work()).await;
     }
     let mut chosen: Vec<Hypothesis> = Vec::new();
     while chosen.len() < REFINED {

@@ -13,7 +13,7 @@ use crate::evidence::observation::Observation;
 use crate::geometry::image::{DepthMap, Image, Mask};
 use crate::geometry::pinhole::Pinhole;
 use crate::geometry::similarity::Similarity;
-use crate::pauses::{Call, Pauses, boxed, finished};
+use crate::pauses::{Boxed, Pauses, boxed, finished};
 use crate::precise::options::AlignOptions;
 use crate::precise::prepared_mesh::PreparedMesh;
 use crate::precise::surroundings::Neighbourhood;
@@ -164,7 +164,7 @@ pub fn alone<'a>(
     options: AlignOptions,
     host: &'a mut dyn Host,
     pauses: &'a Pauses,
-) -> Call<'a, Result<Placement>> {
+) -> Boxed<'a, Result<Placement>> {
     boxed(async move {
         let request = Request::new(options)?;
         let mut search = Search::begin(observation, mesh, &request, host, pauses).await?;
@@ -200,7 +200,7 @@ pub fn together<'a>(
     given: &'a Given,
     host: &'a mut dyn Host,
     pauses: &'a Pauses,
-) -> Call<'a, Result<(Alignment, Placement)>> {
+) -> Boxed<'a, Result<(Alignment, Placement)>> {
     boxed(async move {
         let request = Request::new(options)?;
         let mut search = Search::begin(observation, mesh, &request, host, pauses).await?;

@@ -11,7 +11,7 @@ use super::{MAX_VIEWS, View, no_mask};
 use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::observation::Observation;
 use crate::options::Options;
-use crate::pauses::{Call, Pauses, boxed};
+use crate::pauses::{Boxed, Pauses, boxed};
 use crate::precise;
 use crate::precise::prepared_mesh::PreparedMesh;
 use crate::progress::{Host, Stage, Stopwatch};
@@ -77,7 +77,7 @@ impl Request {
         mesh: &'a PreparedMesh<'_>,
         host: &'a mut dyn Host,
         pauses: &'a Pauses,
-    ) -> Call<'a, Result<ViewsAlignment>> {
+    ) -> Boxed<'a, Result<ViewsAlignment>> {
         boxed(async move {
             let mut stages = Stopwatch::new(host, PLAN);
             mesh.check()?;
@@ -93,7 +93,7 @@ impl Request {
                     let (place, previous) = ((index, self.camera(index)), before.get(searched.len()));
                     let mut view =
                         SearchedView::begin(place, observation, mesh, (&options, settings), previous, &mut stages)?;
-                    pauses.point(0.0).await;
+                    pauses.here().await;
                     view.run(pauses).await;
                     searched.push(view);
                     let done = searched.len() as f64 / self.views.len() as f64;
@@ -101,7 +101,7 @@ impl Request {
                 }
                 stages.enter(Stage::Refine);
                 summary = self.combined(&mut searched, mesh, pauses).await;
-                pauses.point(0.0).await;
+                pauses.here().await;
                 if summary.as_ref().is_ok_and(|summary| summary.is_sure) {
                     break;
                 }

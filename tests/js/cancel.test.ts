@@ -50,6 +50,19 @@ for (const [name, aligner] of aligners) {
     });
   });
 
+  test(`${name}: register ends at an abort, whatever its options allow`, async () => {
+    const count = 60_000;
+    const points = Float64Array.from({ length: 3 * count }, (_, i) => Math.sin(i * i));
+    const large = { maxPoints: 1_000_000, voxelDivisions: 200 };
+    for (const scale of ["free", 1] as const) {
+      const signal = AbortSignal.timeout(20);
+      await assert.rejects(
+        aligner.register(points, points.slice().reverse(), { ...large, scale, signal }),
+        (error) => error === signal.reason,
+      );
+    }
+  });
+
   test(`${name}: the signal's own reason is what the call rejects with`, async () => {
     const reason = new TypeError("the user has left");
     const controller = new AbortController();

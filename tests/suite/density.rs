@@ -1,7 +1,7 @@
 //! Surface points are told from points scattered through the volume.
 
 use sim3align::geometry::similarity::vec3;
-use sim3align::register::density::dense_points;
+use sim3align::register::at_once::dense_points;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::support::{Draw, blob, sphere_surface};

@@ -6,9 +6,8 @@
 
 use sim3align::geometry::kd_tree::KdTree;
 use sim3align::geometry::voxel_grid::voxel_downsample;
-use sim3align::register::at_once::{nearest, ransac};
-use sim3align::register::fpfh::fpfh;
-use sim3align::register::icp::{IcpMetric, IcpSettings, refine};
+use sim3align::register::at_once::{fpfh, nearest, ransac, refine};
+use sim3align::register::icp::{IcpMetric, IcpSettings};
 use sim3align::register::ransac::RansacSettings;
 use sim3align::register::support::SupportSettings;
 use sim3align::register::umeyama::ScaleMode;

@@ -5,7 +5,8 @@ use nalgebra::Vector3;
 use sim3align::geometry::cloud::Cloud;
 use sim3align::geometry::kd_tree::KdTree;
 use sim3align::geometry::similarity::vector3;
-use sim3align::register::fpfh::{DIMENSION, Descriptor, fpfh};
+use sim3align::register::at_once::fpfh;
+use sim3align::register::fpfh::{DIMENSION, Descriptor};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::support::{Draw, blob, box_surface, mug, sphere_surface, torus, transformed};

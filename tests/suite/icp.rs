@@ -5,7 +5,8 @@ use nalgebra::{Rotation3, Vector3};
 use sim3align::geometry::cloud::Cloud;
 use sim3align::geometry::kd_tree::KdTree;
 use sim3align::geometry::similarity::{Similarity, vec3};
-use sim3align::register::icp::{IcpMetric, IcpSettings, Refined, refine};
+use sim3align::register::at_once::refine;
+use sim3align::register::icp::{IcpMetric, IcpSettings, Refined};
 use sim3align::register::support::SupportSettings;
 use wasm_bindgen_test::wasm_bindgen_test;
 

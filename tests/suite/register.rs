@@ -5,10 +5,11 @@ use sim3align::error::ErrorCode;
 use sim3align::geometry::cloud::Cloud;
 use sim3align::geometry::similarity::{Similarity, vector3};
 use sim3align::options::scale::ScaleOption;
+use sim3align::pauses::Task;
 use sim3align::progress::Silent;
 use sim3align::register::options::{EstimateSim3Options, RegisterOptions};
 use sim3align::register::report::Registration;
-use sim3align::register::{estimate_sim3, register, register_task};
+use sim3align::register::{estimate_sim3, estimate_sim3_task, register, register_task};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::support::{Draw, blob, mug};
@@ -227,6 +228,65 @@ fn always() -> f64 {
     1.0
 }
 
+/// The result of a task, and the number of its steps.
+fn stepped(task: &mut Task<'_, Registration>) -> (Registration, usize) {
+    let mut steps = 1;
+    loop {
+        if let Some(found) = task.step(0.0).unwrap() {
+            return (found, steps);
+        }
+        steps += 1;
+    }
+}
+
+/// The most units of work between two pause points: those of what is done for a voxel or a match at once, and those of one
+/// pass over all points.
+fn longest_block(points: usize) -> f64 {
+    12.0 + 6e-5 * points as f64
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn no_part_of_a_registration_is_long() {
+    let draw = &mut Draw::new(11);
+    let points: Vec<_> = mug(draw, 30_000).points.into_iter().map(vector3).collect();
+    let truth = draw.similarity([2.0, 2.0], 1.0);
+    let direction = draw.direction();
+    let moved: Vec<_> = part(&points, direction, 0.8).iter().map(|&p| truth.apply(p)).collect();
+    let (source, target) = (flat(&points), flat(&moved));
+    for scale in [ScaleOption::Free, ScaleOption::Fixed(truth.scale)] {
+        for voxel_divisions in [None, Some(200.0)] {
+            let options = RegisterOptions { scale, voxel_divisions, max_points: 30_000, ..RegisterOptions::default() };
+            let mut task = register_task(source.clone(), target.clone(), options, Silent, always).unwrap();
+            let (_, steps) = stepped(&mut task);
+            let (longest, most) = (task.longest_block(), longest_block(points.len()));
+            assert!(longest <= most, "{scale:?}, {voxel_divisions:?}: {longest} units, at most {most}");
+            assert!(steps > 200, "{scale:?}, {voxel_divisions:?}: {steps} steps");
+        }
+    }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn no_part_of_an_estimate_is_long() {
+    let draw = &mut Draw::new(12);
+    let count = 200_000;
+    let source: Vec<_> = (0..count).map(|_| draw.cube(1.0)).collect();
+    let truth = draw.similarity([2.0, 2.0], 1.0);
+    let target: Vec<_> = source.iter().map(|&p| truth.apply(p)).collect();
+    let pairs: Vec<u32> =
+        (0..count).flat_map(|i| [i as u32, if i % 2 == 0 { i } else { draw.below(count) } as u32]).collect();
+    for scale in [ScaleOption::Free, ScaleOption::Fixed(truth.scale)] {
+        let options = EstimateSim3Options { scale, ransac_iterations: 10_000_000, ..EstimateSim3Options::default() };
+        let whole = estimate_sim3(&flat(&source), &flat(&target), &pairs, &options, &mut Silent).unwrap();
+        let mut task =
+            estimate_sim3_task(flat(&source), flat(&target), pairs.clone(), options, Silent, always).unwrap();
+        let (found, steps) = stepped(&mut task);
+        assert_eq!(found, whole);
+        let (longest, most) = (task.longest_block(), longest_block(count));
+        assert!(longest <= most, "{scale:?}: {longest} units, at most {most}");
+        assert!(steps > 30, "{scale:?}: {steps} steps");
+    }
+}
+
 #[wasm_bindgen_test(unsupported = test)]
 fn pauses_change_no_bit() {
     let draw = &mut Draw::new(3);
@@ -238,15 +298,9 @@ fn pauses_change_no_bit() {
         let options = RegisterOptions { scale, ..RegisterOptions::default() };
         let whole = register(&source, &target, &options, &mut Silent).unwrap();
         let mut task = register_task(source, target, options, Silent, always).unwrap();
-        let mut steps = 1;
-        let found = loop {
-            if let Some(found) = task.step(0.0).unwrap() {
-                break found;
-            }
-            steps += 1;
-        };
+        let (found, steps) = stepped(&mut task);
         assert_eq!(found, whole);
-        assert!(steps > 2, "{steps} steps");
+        assert!(steps > 20, "{steps} steps");
         assert_eq!(task.step(0.0).unwrap_err().code, ErrorCode::Internal, "the task is over");
     }
 }

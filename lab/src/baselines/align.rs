@@ -10,8 +10,8 @@ use sim3align::evidence::extents::target_from_source;
 use sim3align::evidence::observation::Observation;
 use sim3align::paper::options::PaperOptions;
 use sim3align::progress::{Host, Stage};
+use sim3align::register::at_once::grid_cloud;
 use sim3align::register::cloud_pair::MAX_FEATURES;
-use sim3align::register::grid_cloud::GridCloud;
 use sim3align::register::settings::icp_metric;
 use sim3align::report::{Counts, PaperAlignment, Solution};
 use sim3align_geometry::error::Result;
@@ -64,8 +64,8 @@ pub fn align_baseline(
         let settings = unit_settings(options, baseline);
         let voxel_size = (1.0 / paper.voxel_divisions) as f32;
         let clouds = Clouds {
-            source: GridCloud::of_at_most(MAX_FEATURES, &reconstructed.normalized(&evidence.reconstructed), voxel_size),
-            target: GridCloud::of_at_most(MAX_FEATURES, &observed.normalized(&evidence.observed), voxel_size),
+            source: grid_cloud(MAX_FEATURES, &reconstructed.normalized(&evidence.reconstructed), voxel_size),
+            target: grid_cloud(MAX_FEATURES, &observed.normalized(&evidence.observed), voxel_size),
         };
         let mut matches = Vec::new();
         if baseline.is_local() {

@@ -1,6 +1,7 @@
 //! Classical ICP: equal weights for all pairs within a constant maximum distance.
 
-use sim3align::register::icp::{IcpMetric, IcpSettings, Refined, refine};
+use sim3align::register::at_once::refine;
+use sim3align::register::icp::{IcpMetric, IcpSettings, Refined};
 use sim3align::register::support::SupportSettings;
 use sim3align_geometry::cloud::Cloud;
 use sim3align_geometry::error::{Error, ErrorCode, Result};

@@ -7,7 +7,8 @@ use super::clouds::{Clouds, UnitSettings};
 use sim3align::evidence::extents::{Extents, target_from_source};
 use sim3align::evidence::normals::outward_normals;
 use sim3align::evidence::observation::MIN_POINTS;
-use sim3align::register::grid_cloud::GridCloud;
+use sim3align::pauses::{Pauses, finished};
+use sim3align::register::at_once::grid_cloud;
 use sim3align::register::icp::IcpMetric;
 use sim3align_geometry::cloud::Cloud;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
@@ -87,9 +88,9 @@ pub fn register_pair(
     let grid = |argument: &str, cloud: &Cloud| {
         let mut cloud = frame.normalized(cloud);
         if cloud.normals.len() != cloud.len() {
-            cloud.normals = outward_normals(&cloud.points, None, NORMAL_NEIGHBORS);
+            cloud.normals = finished(outward_normals(&cloud.points, None, NORMAL_NEIGHBORS, &Pauses::none()));
         }
-        let grid = GridCloud::new(&cloud, voxel_size as f32);
+        let grid = grid_cloud(usize::MAX, &cloud, voxel_size as f32);
         enough(argument, grid.cloud.len(), "voxels").map(|()| grid)
     };
     let clouds = Clouds { source: grid("source", source)?, target: grid("target", target)? };

@@ -3,7 +3,7 @@
 //! A call never waits for anything but its caller, so that no executor is needed: a step polls it until its next pause.
 
 use core::cell::Cell;
-use core::future::{Future, poll_fn};
+use core::future::Future;
 use core::pin::{Pin, pin};
 use core::task::{Context, Poll, Waker};
 use std::rc::Rc;
@@ -15,12 +15,19 @@ pub struct Pauses {
     clock: fn() -> f64,
     until: Cell<f64>,
     left: Cell<f64>,
+    /// Work since the clock was asked, and the most that ever was.
+    since: Cell<f64>,
+    most: Cell<f64>,
 }
+
+/// Work after which the clock is asked: it is a function of JavaScript, which takes as long as several distances.
+const GRAIN: f64 = 1.0;
 
 impl Pauses {
     /// Pauses by a clock, and a bound on the work, if there is one.
     pub fn new(clock: fn() -> f64, work_budget: Option<f64>) -> Self {
-        Self { clock, until: Cell::new(f64::INFINITY), left: Cell::new(work_budget.unwrap_or(f64::INFINITY)) }
+        let [until, left] = [f64::INFINITY, work_budget.unwrap_or(f64::INFINITY)].map(Cell::new);
+        Self { clock, until, left, since: Cell::new(0.0), most: Cell::new(0.0) }
     }
 
     /// No pause, and no bound.
@@ -31,13 +38,25 @@ impl Pauses {
     /// Counts work of so many units.
     pub fn spend(&self, work: f64) {
         self.left.set(self.left.get() - work);
+        self.since.set(self.since.get() + work);
     }
 
     /// Pauses if it is time, after work of so many units: about milliseconds on a laptop.
-    pub async fn point(&self, work: f64) {
+    pub fn point(&self, work: f64) -> Point {
         self.spend(work);
-        let mut is_due = (self.clock)() >= self.until.get();
-        poll_fn(|_| if core::mem::take(&mut is_due) { Poll::Pending } else { Poll::Ready(()) }).await;
+        Point { is_due: self.since.get() >= GRAIN && self.is_time() }
+    }
+
+    /// Pauses if it is time, whatever the work was: for calls that have another bound.
+    pub fn here(&self) -> Point {
+        Point { is_due: self.is_time() }
+    }
+
+    #[inline(never)]
+    fn is_time(&self) -> bool {
+        let since = self.since.replace(0.0);
+        self.most.set(self.most.get().max(since));
+        (self.clock)() >= self.until.get()
     }
 
     /// Whether the call goes on: there is work left, or it has no result yet.
@@ -46,13 +65,23 @@ impl Pauses {
     }
 }
 
-/// A call on the heap, whose code is not copied into that of its caller: the modules are smaller.
-pub type Call<'a, T> = Pin<Box<dyn Future<Output = T> + 'a>>;
+/// A pause point, to be awaited.
+pub struct Point {
+    is_due: bool,
+}
+
+impl Future for Point {
+    type Output = ();
+
+    fn poll(mut self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<()> {
+        if core::mem::take(&mut self.is_due) { Poll::Pending } else { Poll::Ready(()) }
+    }
+}
 
 /// A call in steps.
 pub struct Task<'a, T> {
     pauses: Rc<Pauses>,
-    call: Option<Call<'a, Result<T>>>,
+    call: Option<Boxed<'a, Result<T>>>,
 }
 
 impl<'a, T: 'a> Task<'a, T> {
@@ -60,6 +89,11 @@ impl<'a, T: 'a> Task<'a, T> {
     pub fn new<F: Future<Output = Result<T>> + 'a>(pauses: Pauses, call: impl FnOnce(Rc<Pauses>) -> F) -> Self {
         let pauses = Rc::new(pauses);
         Self { call: Some(boxed(call(pauses.clone()))), pauses }
+    }
+
+    /// The most work that was done so far without a pause point.
+    pub fn longest_block(&self) -> f64 {
+        self.pauses.most.get()
     }
 
     /// Continues until the call is finished, and returns its result, or until its first pause point after a time of its
@@ -88,8 +122,12 @@ impl<'a, T: 'a> Task<'a, T> {
     }
 }
 
+/// A call on the heap. A function that returns one is compiled in its own crate, while every crate that calls an `async fn`
+/// has a copy of its code.
+pub type Boxed<'a, T> = Pin<Box<dyn Future<Output = T> + 'a>>;
+
 /// Puts a call on the heap.
-pub fn boxed<'a, F: Future + 'a>(call: F) -> Call<'a, F::Output> {
+pub fn boxed<'a, F: Future + 'a>(call: F) -> Boxed<'a, F::Output> {
     Box::pin(call)
 }
 
