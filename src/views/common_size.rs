@@ -21,6 +21,8 @@ const DEPTH_ERROR_ALONE: f64 = 0.01;
 const DEPTH_SD: f64 = 0.5;
 /// Difference of the sizes beyond which the depths are not trusted alone, relative.
 const MAX_BIAS: f64 = 0.05;
+/// Standard deviation of the size from which a view says nothing, relative: its mean could be any number.
+const NOTHING: f64 = 1.0;
 /// Steps of the refinement on depths alone.
 const STEPS: usize = 10;
 /// Score below a view's best at which the view counts as contradicting.
@@ -82,7 +84,7 @@ impl SizeEvidence {
         let sd = deviation(covariance(&equations)?[3][3]);
         let shift = equations.solve(DAMPING)?[3];
         let log_scale = pose.log_scale + shift.max(-sd).min(sd);
-        (log_scale.is_finite() && sd.is_finite()).then_some(Self { log_scale, sd, score: f64::from(score.total) })
+        (log_scale.is_finite() && sd < NOTHING).then_some(Self { log_scale, sd, score: f64::from(score.total) })
     }
 
     /// The evidence with another, independent error.

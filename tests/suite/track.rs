@@ -4,10 +4,13 @@ use glam::DVec3;
 use nalgebra::{UnitQuaternion, Vector3};
 use sim3align::error::ErrorCode;
 use sim3align::evidence::frame::Frame;
+use sim3align::geometry::image::{DepthMap, Mask};
+use sim3align::geometry::pinhole::Pinhole;
 use sim3align::geometry::similarity::Similarity;
 use sim3align::metrics::pose_error::{PoseErrors, pose_errors};
 use sim3align::precise::SearchSettings;
 use sim3align::precise::color::{agreement, agreement_at};
+use sim3align::precise::options::Quality;
 use sim3align::precise::pose::CropPose;
 use sim3align::precise::prepared_mesh::PreparedMesh;
 use sim3align::progress::Silent;
@@ -59,6 +62,29 @@ fn a_video_is_tracked_with_all_masks_and_with_the_first_alone() {
             assert_eq!((found.frame, found.state, found.is_detected), (k, TrackState::Tracking, k == 0), "frame {k}");
         }
     }
+}
+
+#[wasm_bindgen_test(unsupported = test)]
+fn a_view_that_does_not_show_the_size_gives_none() {
+    // Rays that are nearly parallel to the image: a size that is twice as large looks the same.
+    let at = |i: usize| {
+        let (x, y) = ((i % 16) as f32 / 16.0 - 0.5, (i / 16) as f32 / 16.0 - 0.5);
+        let r = x * x + y * y;
+        1.0 + r - if r < 0.1 { 0.3 } else { 0.0 }
+    };
+    let frame = Frame {
+        depth: DepthMap::new("depth", 16, 16, (0..256).map(at).collect()).unwrap(),
+        camera: Pinhole::new(160.0, 160.0, 16007.5, 7.5).unwrap(),
+        mask: Some(Mask::filled(16, 16, 1)),
+        photo: None,
+    };
+    let sequence = video(1);
+    let mesh = PreparedMesh::borrowed(&sequence.mesh);
+    let options = TrackOptions { quality: Quality::Fast, ..TrackOptions::default() };
+    let found = Tracker::new(&mesh, options).unwrap().next(&frame, &mut Silent).unwrap();
+    let pose = pose_of(&found);
+    assert!((0.01..100.0).contains(&(pose.scale / sequence.frames[0].camera_from_mesh.unwrap().scale)), "{pose:?}");
+    assert!(pose.translation.iter().all(|x| x.is_finite()), "{pose:?}");
 }
 
 #[wasm_bindgen_test(unsupported = test)]
@@ -180,7 +206,7 @@ fn what_is_refused_leaves_the_tracker_usable() {
     assert_eq!(tracker.next(&without_mask(frame), &mut Silent).unwrap_err().code, ErrorCode::InvalidArgument);
     assert_eq!(tracker.correct(&Similarity::identity(), None).unwrap_err().code, ErrorCode::InvalidArgument);
     let mut other = frame.clone();
-    other.mask = Some(sim3align::geometry::image::Mask::filled(3, 3, 1));
+    other.mask = Some(Mask::filled(3, 3, 1));
     assert_eq!(tracker.next(&other, &mut Silent).unwrap_err().code, ErrorCode::SizeMismatch);
     assert_eq!(tracker.next(frame, &mut Silent).unwrap().state, TrackState::Tracking);
     assert_eq!(tracker.next(&other, &mut Silent).unwrap_err().code, ErrorCode::SizeMismatch);
