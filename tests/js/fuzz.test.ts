@@ -5,12 +5,13 @@ import * as conventionsModule from "sim3align/conventions";
 import { calledNames } from "../support/fuzz/conventions.js";
 import { targets } from "../support/fuzz/fuzzer.js";
 
-const { calls, storms, conventions, end } = await targets();
+const { calls, storms, sideBySide, conventions, end } = await targets();
 after(end);
 
 for (const [name, target, count] of [
   ["calls with odd arguments", calls, 1500],
   ["storms of a pool", storms, 40],
+  ["calls side by side without workers", sideBySide, 30],
   ["calls of the conventions with odd arguments", conventions, 5000],
 ] as const) {
   test(`${count} ${name} settle, with results or typed errors`, async () => {

@@ -1,6 +1,6 @@
 /**
- * The fuzzer of the package: odd calls without and with workers, storms of a pool, and odd calls of the conventions. Each
- * execution has a seed.
+ * The fuzzer of the package: odd calls without and with workers, storms of a pool, calls side by side without workers, and
+ * odd calls of the conventions. Each execution has a seed.
  */
 import assert from "node:assert/strict";
 import { type Aligner, createAligner } from "sim3align";
@@ -9,6 +9,7 @@ import { withoutTimes } from "../results.js";
 import { input } from "../scene.js";
 import { checkError, type Outcome, outcomeOf, randomCall } from "./calls.js";
 import { conventionCall } from "./conventions.js";
+import { sideBySide } from "./side-by-side.js";
 import { storm } from "./storm.js";
 
 /** A kind of execution: what it does with a seed, and how many calls that were. */
@@ -18,6 +19,7 @@ export type Target = (seed: number) => Promise<number>;
 export interface Targets {
   calls: Target;
   storms: Target;
+  sideBySide: Target;
   conventions: Target;
   /** Checks that nothing was left behind, and ends the workers. */
   end(): Promise<void>;
@@ -66,6 +68,7 @@ export async function targets(): Promise<Targets> {
         return 2;
       }),
     storms: (seed) => guarded("storms", seed, () => storm(new Random(seed))),
+    sideBySide: (seed) => guarded("side by side", seed, () => sideBySide(new Random(seed))),
     conventions: (seed) =>
       guarded("conventions", seed, async () => {
         const { name, call } = conventionCall(new Random(seed));
