@@ -1,6 +1,9 @@
 /** Checks that the memory of arrays is there. */
 import { describe, Sim3AlignError, withoutInput } from "./error.js";
-import { isAttached, isBuffer, isRecord } from "./kinds.js";
+import { isAttached, isBuffer, isKind, isRecord } from "./kinds.js";
+
+/** No argument has more levels: a camera file of several images has five. Deeper objects are not looked at. */
+export const MAX_LEVELS = 8;
 
 /**
  * Checks all typed arrays and buffers in an argument, which consists of plain objects and arrays. Detached memory must
@@ -8,14 +11,17 @@ import { isAttached, isBuffer, isRecord } from "./kinds.js";
  * @param argument its name in errors
  * @throws {@link Sim3AlignError} `INVALID_ARGUMENT`
  */
-export function checkAttached(argument: string, value: unknown): void {
+export function checkAttached(argument: string, value: unknown, levels = MAX_LEVELS): void {
   if (ArrayBuffer.isView(value) || isBuffer(value)) {
     if (!isAttached(value)) throw detached(argument, value);
-  } else if (isRecord(value) || Array.isArray(value)) {
-    for (const [name, inner] of Object.entries(value)) {
-      if (typeof inner === "object")
-        checkAttached(`${argument}${Array.isArray(value) ? `[${name}]` : `.${name}`}`, inner);
-    }
+    return;
+  }
+  // Unlike Array.isArray(), this does not throw for a revoked proxy.
+  const isList = isKind<unknown[]>(value, "Array");
+  if (levels === 0 || (!isList && !isRecord(value))) return;
+  for (const [name, inner] of Object.entries(value)) {
+    if (typeof inner !== "object") continue;
+    checkAttached(isList ? `${argument}[${name}]` : `${argument}.${name}`, inner, levels - 1);
   }
 }
 

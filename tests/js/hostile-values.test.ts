@@ -5,6 +5,7 @@
 import assert from "node:assert/strict";
 import { after, test } from "node:test";
 import { type AlignInput, type AlignOptions, createAligner, type ErrorCode, type Progress } from "sim3align";
+import { depthFromTensor } from "sim3align/conventions";
 import { readCamera, readCase, readDepth, readMask, readMesh, readPose } from "sim3align/formats";
 import { rejectsWith } from "../support/errors.js";
 import { glb, npy } from "../support/files.js";
@@ -332,4 +333,47 @@ test("the readers of files refuse them, too", async () => {
     [() => readCase(5 as never), "files"],
   ];
   for (const [call, argument] of refused) await rejectsWith(call, { code: "INVALID_ARGUMENT", argument, message: /./ });
+});
+
+test("a tracker refuses a pose that cannot be sent to its worker, and remains usable", async () => {
+  for (const [name, aligner] of aligners) {
+    using tracker = await aligner.track(mesh, { quality: "fast" });
+    await tracker.next(view);
+    for (const translation of [Symbol("odd"), () => 1]) {
+      await rejectsWith(() => tracker.correct({ ...truth, translation } as never), {
+        code: "INVALID_ARGUMENT",
+        argument: "pose",
+        message: /a pose of numbers/,
+      });
+    }
+    assert.equal((await tracker.next(view)).frame, 1, name);
+  }
+});
+
+test("a frame is tracked whatever else its camera file holds", async () => {
+  const { camera, ...rest } = view;
+  const cameraFile = { ...camera, date: new Date(0), note: Symbol("odd"), parse: () => 1, list: [/x/] };
+  for (const [name, aligner] of aligners) {
+    using tracker = await aligner.track(mesh, { quality: "fast" });
+    const plain = await tracker.next(view);
+    const found = await tracker.next({ ...rest, cameraFile } as never);
+    assert.deepEqual([plain.frame, found.frame], [0, 1], name);
+    await rejectsWith(() => tracker.next({ ...view, mask: Symbol("odd") } as never), {
+      code: "INVALID_ARGUMENT",
+      argument: "mask",
+      message: /./,
+    });
+  }
+});
+
+test("numbers among which are revoked proxies and lists are refused", async () => {
+  const cyclic: unknown[] = [];
+  cyclic.push(cyclic, 1, 2, 3);
+  for (const data of [[1, revoked, 2, 3], cyclic]) {
+    await rejectsWith(async () => depthFromTensor({ data, dims: [2, 2] }), {
+      code: "INVALID_ARGUMENT",
+      argument: "tensor.data",
+      message: /./,
+    });
+  }
 });

@@ -9,7 +9,7 @@ import { checkSignals, onAbort } from "../on-abort.js";
 import type { SignalLike } from "../platform.js";
 import { Queue } from "../queue.js";
 import { type Answer, JobFailed, Unsendable, WorkerLost, type WorkerSetup, WorkerSlot } from "./slot.js";
-import { buffersOf, copied, isSendable } from "./transfer.js";
+import { buffersOf, copied, isSendable, sendableParts } from "./transfer.js";
 
 /** Attempts per job if its worker is lost. */
 const ATTEMPTS = 2;
@@ -72,7 +72,7 @@ export class WorkerPool implements Engine {
         checkSignals(signals);
         await slot.ready();
         const answer = await send(slot, job, call, signals);
-        if (answer === null) return await this.#fallback.run(job, call);
+        if (answer === null) return await this.#runHere(slot, job, call, signals);
         return { result: answer.result, data: answer.data ?? job.data } as Outcome<J>;
       } catch (error) {
         if (error instanceof JobFailed) {
@@ -82,6 +82,23 @@ export class WorkerPool implements Engine {
         if (!(error instanceof WorkerLost)) throw error;
         if (attempt === ATTEMPTS || isGone(job, call)) throw workerFailed(error);
       }
+    }
+  }
+
+  /** Runs a job that cannot be sent, or sends it without what it does not need. */
+  async #runHere<J extends Job>(
+    slot: WorkerSlot,
+    job: J,
+    call: Call,
+    signals: readonly SignalLike[],
+  ): Promise<Outcome<J>> {
+    try {
+      return await this.#fallback.run(job, call);
+    } catch (error) {
+      const isTrackerElsewhere = error instanceof Sim3AlignError && error.code === "TRACKER_LOST";
+      if (!isTrackerElsewhere || isSendable(job.data)) throw error;
+      // The frame has been read here without an error, so that the tracker does not need the rest.
+      return await this.#runIn(slot, { ...job, data: sendableParts(job.data) } as J, call, signals);
     }
   }
 }

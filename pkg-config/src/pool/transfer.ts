@@ -27,6 +27,14 @@ export function isSendable(value: unknown): boolean {
   return Array.isArray(value) ? value.every(isSendable) : isRecord(value) && Object.values(value).every(isSendable);
 }
 
+/** A value without the parts that are not {@link isSendable}. */
+export function sendableParts(value: unknown): unknown {
+  if (isSendable(value)) return value;
+  if (Array.isArray(value)) return value.map(sendableParts);
+  if (!isRecord(value)) return undefined;
+  return Object.fromEntries(Object.entries(value).map(([name, inner]) => [name, sendableParts(inner)]));
+}
+
 /** The distinct buffers of the arrays in a value. */
 export function buffersOf(value: unknown): ArrayBuffer[] {
   const buffers = new Set<ArrayBuffer>();
