@@ -350,11 +350,11 @@ test("a tracker refuses a pose that cannot be sent to its worker, and remains us
   }
 });
 
-test("a frame is tracked whatever else its camera file holds", async () => {
+test("a frame is tracked whatever else the mesh and its camera file hold", async () => {
   const { camera, ...rest } = view;
   const cameraFile = { ...camera, date: new Date(0), note: Symbol("odd"), parse: () => 1, list: [/x/] };
   for (const [name, aligner] of aligners) {
-    using tracker = await aligner.track(mesh, { quality: "fast" });
+    using tracker = await aligner.track({ ...mesh, dispose() {} } as never, { quality: "fast" });
     const plain = await tracker.next(view);
     const found = await tracker.next({ ...rest, cameraFile } as never);
     assert.deepEqual([plain.frame, found.frame], [0, 1], name);

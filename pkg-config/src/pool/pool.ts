@@ -1,7 +1,7 @@
 /** A pool of workers that run jobs in parallel. */
 
 import { checkAttached } from "../attached.js";
-import { type Call, type Engine, type Outcome, signalsOf } from "../engine.js";
+import { type Call, type Engine, type MainThreadEngine, type Outcome, signalsOf } from "../engine.js";
 import { disposed, Sim3AlignError } from "../error.js";
 import { type Job, meshCacheOf } from "../jobs.js";
 import { isAttached } from "../kinds.js";
@@ -18,12 +18,12 @@ const ATTEMPTS = 2;
 export class WorkerPool implements Engine {
   readonly capacity: number;
   readonly #slots: readonly WorkerSlot[];
-  readonly #fallback: Engine;
+  readonly #fallback: MainThreadEngine;
   readonly #queue: Queue<WorkerSlot>;
   readonly #ended = new AbortController();
 
   /** @param fallback runs jobs that cannot be cloned; it is disposed with the pool */
-  constructor(size: number, setup: WorkerSetup, fallback: Engine) {
+  constructor(size: number, setup: WorkerSetup, fallback: MainThreadEngine) {
     // Two per worker: the next job is prepared while one runs.
     this.capacity = 2 * size;
     this.#fallback = fallback;
@@ -85,7 +85,7 @@ export class WorkerPool implements Engine {
     }
   }
 
-  /** Runs a job that cannot be sent, or sends it without what it does not need. */
+  /** Runs a job that cannot be sent; sends one of a tracker without what it does not need. */
   async #runHere<J extends Job>(
     slot: WorkerSlot,
     job: J,
@@ -93,13 +93,15 @@ export class WorkerPool implements Engine {
     signals: readonly SignalLike[],
   ): Promise<Outcome<J>> {
     try {
-      return await this.#fallback.run(job, call);
+      const outcome = await this.#fallback.run(job, call);
+      if (job.method !== "openTracker" || isSendable(job)) return outcome;
+      this.#fallback.closeTracker(job.tracker);
     } catch (error) {
       const isTrackerElsewhere = error instanceof Sim3AlignError && error.code === "TRACKER_LOST";
-      if (!isTrackerElsewhere || isSendable(job.data)) throw error;
-      // The frame has been read here without an error, so that the tracker does not need the rest.
-      return await this.#runIn(slot, { ...job, data: sendableParts(job.data) } as J, call, signals);
+      if (!isTrackerElsewhere || isSendable(job)) throw error;
     }
+    // All that matters has been read here without an error: the worker, in which trackers live, does not need the rest.
+    return await this.#runIn(slot, sendableParts(job) as J, call, signals);
   }
 }
 
