@@ -1,9 +1,6 @@
 /** Checks that the memory of arrays is there. */
 import { describe, Sim3AlignError, withoutInput } from "./error.js";
-import { isAttached, isBuffer, isKind, isRecord } from "./kinds.js";
-
-/** No argument has more levels: a camera file of several images has five. Deeper objects are not looked at. */
-export const MAX_LEVELS = 8;
+import { isAttached, isBuffer, isRecord } from "./kinds.js";
 
 /**
  * Checks all typed arrays and buffers in an argument, which consists of plain objects and arrays. Detached memory must
@@ -11,17 +8,14 @@ export const MAX_LEVELS = 8;
  * @param argument its name in errors
  * @throws {@link Sim3AlignError} `INVALID_ARGUMENT`
  */
-export function checkAttached(argument: string, value: unknown, levels = MAX_LEVELS): void {
+export function checkAttached(argument: string, value: unknown): void {
   if (ArrayBuffer.isView(value) || isBuffer(value)) {
     if (!isAttached(value)) throw detached(argument, value);
-    return;
-  }
-  // Unlike Array.isArray(), this does not throw for a revoked proxy.
-  const isList = isKind<unknown[]>(value, "Array");
-  if (levels === 0 || (!isList && !isRecord(value))) return;
-  for (const [name, inner] of Object.entries(value)) {
-    if (typeof inner !== "object") continue;
-    checkAttached(isList ? `${argument}[${name}]` : `${argument}.${name}`, inner, levels - 1);
+  } else if (isRecord(value) || Array.isArray(value)) {
+    for (const [name, inner] of Object.entries(value)) {
+      if (typeof inner === "object")
+        checkAttached(`${argument}${Array.isArray(value) ? `[${name}]` : `.${name}`}`, inner);
+    }
   }
 }
 

@@ -2,10 +2,13 @@
  * Reads arguments once, before anything else looks at them: getters and proxies may throw, or return something else the
  * next time. What is read afterwards are plain objects and arrays.
  */
-import { checkAttached, MAX_LEVELS } from "./attached.js";
+import { checkAttached } from "./attached.js";
 import { invalidArgument, messageOf, Sim3AlignError, withoutInput } from "./error.js";
 import { isKind, isRecord, proxiedKind } from "./kinds.js";
 import { PreparedMesh } from "./prepared-mesh.js";
+
+/** No argument has more levels: a camera file of several images has five. Deeper objects are left out. */
+const MAX_LEVELS = 8;
 
 /** No array of numbers in an argument is longer; typed arrays are not copied. */
 const MAX_LENGTH = 1 << 27;

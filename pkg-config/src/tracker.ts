@@ -12,7 +12,6 @@ import type { Job, Results } from "./jobs.js";
 import { checkSignals, onAbort } from "./on-abort.js";
 import type { CallOptions } from "./options.js";
 import type { SignalLike } from "./platform.js";
-import { isSendable } from "./pool/transfer.js";
 import { ProgressListener } from "./progress.js";
 import type { TrackedFrame } from "./results.js";
 import { coreSim3, type Sim3Like } from "./sim3.js";
@@ -121,14 +120,11 @@ export class Tracker {
    * `TRACKER_LOST` if the worker of the tracker has ended
    */
   async correct(pose: Sim3Like, frame?: number): Promise<CorrectedFrame[]> {
-    // Other values could not be sent to the worker in which the tracker lives.
+    // Any other value could not be sent to the worker in which the tracker lives.
     if (frame !== undefined && frame !== null && typeof frame !== "number") {
       throw invalidArgument("frame", frame, "the number of a frame", "Pass `frame` of its result.");
     }
     const data = { pose: coreSim3(ownArgument("pose", pose)), frame };
-    if (!isSendable(data.pose)) {
-      throw invalidArgument("pose", pose, "a pose of numbers", "Pass { scale, rotation, translation } or { matrix }.");
-    }
     return this.#inOrder(() => this.#run({ method: "correctTrack", data, options: {}, tracker: this.#id }));
   }
 

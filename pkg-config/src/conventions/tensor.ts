@@ -34,7 +34,8 @@ function dimensions(tensor: unknown) {
   if (typedArrayKind(data) === undefined && !isKind(data, "Array")) {
     throw wrongKind("tensor.data", data, "a typed array", "Float32Array");
   }
-  checkAttached("tensor.data", data);
+  // A list has numbers; what else is in it may have no end.
+  if (ArrayBuffer.isView(data)) checkAttached("tensor.data", data);
   checkCount("tensor.data", (data as ArrayLike<unknown>).length, { width, height }, count);
   return { data, width, height, count };
 }

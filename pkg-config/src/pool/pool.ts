@@ -3,13 +3,16 @@
 import { checkAttached } from "../attached.js";
 import { type Call, type Engine, type MainThreadEngine, type Outcome, signalsOf } from "../engine.js";
 import { disposed, Sim3AlignError } from "../error.js";
-import { type Job, meshCacheOf } from "../jobs.js";
+import { type Job, type MeshCache, meshCacheOf } from "../jobs.js";
 import { isAttached } from "../kinds.js";
 import { checkSignals, onAbort } from "../on-abort.js";
 import type { SignalLike } from "../platform.js";
 import { Queue } from "../queue.js";
 import { type Answer, JobFailed, Unsendable, WorkerLost, type WorkerSetup, WorkerSlot } from "./slot.js";
 import { buffersOf, copied, isSendable, sendableParts } from "./transfer.js";
+
+/** The id of a prepared mesh, and the module that caches it. */
+type CachedMesh = { id: number; cache: MeshCache };
 
 /** Attempts per job if its worker is lost. */
 const ATTEMPTS = 2;
@@ -72,7 +75,10 @@ export class WorkerPool implements Engine {
         checkSignals(signals);
         await slot.ready();
         const answer = await send(slot, job, call, signals);
-        if (answer === null) return await this.#runHere(slot, job, call, signals);
+        if (answer === null) {
+          // The worker, in which trackers live, does not need the rest; what a pose then lacks is an error there.
+          return (await this.#runHere(job, call)) ?? (await this.#runIn(slot, sendableParts(job) as J, call, signals));
+        }
         return { result: answer.result, data: answer.data ?? job.data } as Outcome<J>;
       } catch (error) {
         if (error instanceof JobFailed) {
@@ -85,23 +91,17 @@ export class WorkerPool implements Engine {
     }
   }
 
-  /** Runs a job that cannot be sent; sends one of a tracker without what it does not need. */
-  async #runHere<J extends Job>(
-    slot: WorkerSlot,
-    job: J,
-    call: Call,
-    signals: readonly SignalLike[],
-  ): Promise<Outcome<J>> {
+  /** Runs a job that cannot be sent; `undefined` for one of a tracker in which nothing that matters is wrong. */
+  async #runHere<J extends Job>(job: J, call: Call): Promise<Outcome<J> | undefined> {
+    const isWhole = isSendable(job);
     try {
       const outcome = await this.#fallback.run(job, call);
-      if (job.method !== "openTracker" || isSendable(job)) return outcome;
+      if (isWhole || job.method !== "openTracker") return outcome;
       this.#fallback.closeTracker(job.tracker);
     } catch (error) {
-      const isTrackerElsewhere = error instanceof Sim3AlignError && error.code === "TRACKER_LOST";
-      if (!isTrackerElsewhere || isSendable(job)) throw error;
+      if (isWhole || (error as Sim3AlignError | undefined)?.code !== "TRACKER_LOST") throw error;
     }
-    // All that matters has been read here without an error: the worker, in which trackers live, does not need the rest.
-    return await this.#runIn(slot, sendableParts(job) as J, call, signals);
+    return undefined;
   }
 }
 
@@ -128,7 +128,7 @@ async function send(
     checkAttached("input", job.data);
     if (!isSendable(job)) return null;
     try {
-      const sent = { ...job, data: sentData(slot, job, isMoved) } as Job;
+      const sent = { ...job, data: sentData(slot, job, isMoved, mesh) } as Job;
       const request = { type: "job", job: sent, wantsProgress: progress.isWanted, returnData: isMoved } as const;
       return await slot.request(request, buffersOf(sent.data), progress, mesh);
     } catch (error) {
@@ -139,14 +139,14 @@ async function send(
 }
 
 /** The data of a job for a worker. The arrays of a prepared mesh are copied, once to each cache of a worker. */
-function sentData(slot: WorkerSlot, job: Job, isMoved: boolean): unknown {
-  if (job.method === "prepareMesh" || !("meshId" in job) || job.meshId === undefined) {
-    return isMoved ? job.data : copied(job.data);
-  }
-  const { mesh, ...rest } = job.data;
-  const { warnings } = mesh as { warnings?: unknown };
-  const sent = slot.hasMesh(job.meshId, meshCacheOf(job)) ? { positions: new Float32Array(), warnings } : copied(mesh);
-  return { ...(isMoved ? rest : copied(rest)), mesh: sent };
+function sentData(slot: WorkerSlot, job: Job, isMoved: boolean, prepared: CachedMesh | undefined): unknown {
+  if (prepared === undefined || job.method === "prepareMesh") return isMoved ? job.data : copied(job.data);
+  const { mesh, ...rest } = job.data as { mesh: { warnings?: unknown } };
+  const isKnown = slot.hasMesh(prepared.id, prepared.cache);
+  return {
+    ...(isMoved ? rest : copied(rest)),
+    mesh: isKnown ? { positions: new Float32Array(), warnings: mesh.warnings } : copied(mesh),
+  };
 }
 
 /** Whether the arrays of the job were lost with the worker. */

@@ -8,9 +8,7 @@ export function copied<T>(value: T): T {
   const copy = mapped(value, (array) => {
     if (!ArrayBuffer.isView(array)) return array.slice(0);
     const Kind = (globalThis as unknown as Record<string, View>)[typedArrayKind(array) ?? "DataView"] as View;
-    const bytes = new Uint8Array(array.byteLength);
-    bytes.set(new Uint8Array(array.buffer, array.byteOffset, array.byteLength));
-    return new Kind(bytes.buffer);
+    return new Kind(new Uint8Array(array.buffer, array.byteOffset, array.byteLength).slice().buffer);
   });
   return copy as T;
 }
@@ -20,7 +18,7 @@ export function copied<T>(value: T): T {
  * the error.
  */
 export function isSendable(value: unknown): boolean {
-  if (typeof value !== "object" || value === null) return typeof value !== "function" && typeof value !== "symbol";
+  if (Object(value) !== value) return typeof value !== "symbol";
   if (ArrayBuffer.isView(value) || isBuffer(value) || isKind<SharedArrayBuffer>(value, "SharedArrayBuffer"))
     return true;
   if (isKind<Blob>(value, "Blob", "File")) return typeof value.arrayBuffer === "function";
@@ -31,8 +29,8 @@ export function isSendable(value: unknown): boolean {
 export function sendableParts(value: unknown): unknown {
   if (isSendable(value)) return value;
   if (Array.isArray(value)) return value.map(sendableParts);
-  if (!isRecord(value)) return undefined;
-  return Object.fromEntries(Object.entries(value).map(([name, inner]) => [name, sendableParts(inner)]));
+  if (isRecord(value)) return Object.fromEntries(Object.entries(value).map(([k, inner]) => [k, sendableParts(inner)]));
+  return undefined;
 }
 
 /** The distinct buffers of the arrays in a value. */
