@@ -1,6 +1,6 @@
 //! Size limits of the readers, and their errors.
 
-use sim3align_geometry::error::{Error, ErrorCode, Result};
+use sim3align_geometry::error::{Error, ErrorCode, Result, Text};
 use sim3align_geometry::image::check_not_empty;
 
 /// Maximum number of pixels of an image: 8192 × 8192.
@@ -15,15 +15,8 @@ pub const MAX_TRIANGLES: usize = 1 << 25;
 /// Maximum total size of the buffers of a glTF scene: 1 GiB.
 pub const MAX_BUFFER_BYTES: usize = 1 << 30;
 
-/// Maximum size of a JSON file other than glTF: 16 MiB.
-pub const MAX_JSON_BYTES: usize = 1 << 24;
-
 /// The error for a truncated or inconsistent file.
-pub(crate) fn corrupt(
-    argument: &str,
-    found: impl Into<sim3align_geometry::error::Text>,
-    expected: impl Into<sim3align_geometry::error::Text>,
-) -> Error {
+pub(crate) fn corrupt(argument: &str, found: impl Into<Text>, expected: impl Into<Text>) -> Error {
     Error::new(
         ErrorCode::CorruptFile,
         argument.to_owned(),
@@ -33,12 +26,14 @@ pub(crate) fn corrupt(
     )
 }
 
+/// The error for a reference of a mesh file to the `index`th of `count` parts of this kind.
+pub(crate) fn missing(kind: &str, index: usize, count: usize) -> Error {
+    let article = if kind.starts_with(['a', 'i']) { "an" } else { "a" };
+    corrupt("mesh", format!("{kind} {index} of {count}"), format!("{article} {kind} that exists"))
+}
+
 /// The error for a file that exceeds a limit.
-pub(crate) fn too_large(
-    argument: &str,
-    found: impl Into<sim3align_geometry::error::Text>,
-    expected: impl Into<sim3align_geometry::error::Text>,
-) -> Error {
+pub(crate) fn too_large(argument: &str, found: impl Into<Text>, expected: impl Into<Text>) -> Error {
     Error::new(
         ErrorCode::FileTooLarge,
         argument.to_owned(),
@@ -51,9 +46,9 @@ pub(crate) fn too_large(
 /// The error for an unsupported format.
 pub(crate) fn unsupported(
     argument: &str,
-    found: impl Into<sim3align_geometry::error::Text>,
-    expected: impl Into<sim3align_geometry::error::Text>,
-    remedy: impl Into<sim3align_geometry::error::Text>,
+    found: impl Into<Text>,
+    expected: impl Into<Text>,
+    remedy: impl Into<Text>,
 ) -> Error {
     Error::new(ErrorCode::UnsupportedFormat, argument.to_owned(), found, expected, remedy)
 }

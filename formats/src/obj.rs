@@ -7,7 +7,7 @@ use crate::guard::{MAX_VERTICES, corrupt, too_large};
 use crate::mesh_builder::MeshBuilder;
 use crate::mtl::MaterialLibrary;
 use crate::resources::{Resources, distinct, external};
-use crate::text::{lines, number, quoted, words};
+use crate::text::{lines, number, parsed, quoted, words};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::surface_colors::Rgb;
 
@@ -127,8 +127,7 @@ impl<'a> ObjColors<'a> {
         let Some([offset, scale]) = self.library.mapping(self.material) else { return };
         let of = |word: &&[u8]| {
             let digits = word.split(|&b| b == b'/').nth(1).unwrap_or_default();
-            let index: i64 =
-                core::str::from_utf8(digits).ok().and_then(|digits| digits.parse().ok()).unwrap_or_default();
+            let index: i64 = parsed(digits).unwrap_or_default();
             let from_zero = if index < 0 { self.coordinates.len() as i64 + index } else { index - 1 };
             let place = usize::try_from(from_zero).unwrap_or(usize::MAX);
             let [u, v] = self.coordinates.get(place).copied().unwrap_or_default();
@@ -186,8 +185,7 @@ fn vertex_color(words: &[&[u8]]) -> Option<Rgb> {
 /// The vertex index of `v`, `v/vt`, `v//vn` or `v/vt/vn`, counted from 0.
 fn corner(word: &[u8], vertex_count: usize, line: usize) -> Result<u32> {
     let digits = word.split(|&b| b == b'/').next().unwrap_or_default();
-    let index: Option<i64> = core::str::from_utf8(digits).ok().and_then(|digits| digits.parse().ok());
-    let Some(index) = index else {
+    let Some(index) = parsed::<i64>(digits) else {
         return Err(corrupt("mesh", format!("{} in line {line}", quoted(word)), "f v/vt/vn …: vertex numbers"));
     };
     // OBJ allows forward references, so that positive indices can only be checked against the complete mesh.

@@ -1,7 +1,7 @@
 //! The header of a PLY file: elements, properties and encoding.
 
 use crate::guard::{corrupt, unsupported};
-use crate::text::{quoted, words};
+use crate::text::{parsed, quoted, words};
 use sim3align_geometry::error::Result;
 
 /// The encoding of the body.
@@ -118,9 +118,7 @@ impl Header {
                 [b"format", name, ..] => encoding = Some(read_encoding(name)?),
                 [b"element", name, count] => elements.push(Element {
                     name: name.to_vec(),
-                    count: core::str::from_utf8(count)
-                        .ok()
-                        .and_then(|count| count.parse().ok())
+                    count: parsed(count)
                         .ok_or_else(|| corrupt("mesh", quoted(count), "the number of elements in the PLY header"))?,
                     properties: Vec::new(),
                 }),

@@ -1,5 +1,7 @@
 //! Lines, words and numbers of text files, from bytes of any encoding.
 
+use core::str::FromStr;
+
 /// The lines of a file, ended by \n, \r\n or \r (a trailing \r is white space for [`words`]).
 pub fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     let end = if bytes.contains(&b'\n') { b'\n' } else { b'\r' };
@@ -13,6 +15,11 @@ pub fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
 
 /// A decimal number.
 pub fn number(word: &[u8]) -> Option<f64> {
+    parsed(word)
+}
+
+/// A number of any type.
+pub(crate) fn parsed<T: FromStr>(word: &[u8]) -> Option<T> {
     core::str::from_utf8(word).ok()?.parse().ok()
 }
 

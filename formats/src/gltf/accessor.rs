@@ -8,7 +8,7 @@ use glam::Vec3;
 use crate::color::srgb;
 use crate::gltf::buffers::Buffers;
 use crate::gltf::document::Document;
-use crate::guard::{MAX_TRIANGLES, MAX_VERTICES, corrupt, too_large};
+use crate::guard::{MAX_TRIANGLES, MAX_VERTICES, corrupt, missing, too_large};
 use sim3align_geometry::error::Result;
 use sim3align_geometry::surface_colors::Rgb;
 
@@ -87,10 +87,7 @@ impl<'a> AccessorReader<'a> {
     fn accessor(&self, index: usize) -> Result<&'a json::Accessor> {
         let document: &'a Document = self.document;
         let accessors = &document.accessors;
-        accessors.get(index).ok_or_else(|| {
-            let found = format!("accessor {index} of {}", accessors.len());
-            corrupt("mesh", found, "an accessor that exists")
-        })
+        accessors.get(index).ok_or_else(|| missing("accessor", index, accessors.len()))
     }
 
     fn read<T: Copy>(
@@ -168,8 +165,7 @@ impl<'a> AccessorReader<'a> {
     ) -> Result<impl Iterator<Item = &[u8]>> {
         let document: &'a Document = self.document;
         let Some(view) = document.buffer_views.get(view_index) else {
-            let found = format!("buffer view {view_index} of {}", document.buffer_views.len());
-            return Err(corrupt("mesh", found, "a buffer view that exists"));
+            return Err(missing("buffer view", view_index, document.buffer_views.len()));
         };
         if !self.buffers.has_source(view.buffer.value()) {
             document.refuse_meshopt()?;

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use ::gltf::json;
 
-use crate::guard::{MAX_BUFFER_BYTES, corrupt, too_large};
+use crate::guard::{MAX_BUFFER_BYTES, corrupt, missing, too_large};
 use crate::resources::{Resources, at_uri};
 use sim3align_geometry::error::Result;
 
@@ -36,8 +36,7 @@ impl<'a> Buffers<'a> {
     /// The bytes of buffer `index`.
     pub fn get(&mut self, index: usize) -> Result<&[u8]> {
         let (Some(declared), Some(slot)) = (self.declared.get(index), self.loaded.get_mut(index)) else {
-            let found = format!("buffer {index} of {}", self.declared.len());
-            return Err(corrupt("mesh", found, "a buffer that exists"));
+            return Err(missing("buffer", index, self.declared.len()));
         };
         let bytes = match slot.take() {
             Some(bytes) => bytes,

@@ -18,25 +18,17 @@ const SUPPORTED_EXTENSIONS: &str = "KHR_mesh_quantization, KHR_materials_*, KHR_
     MSFT_texture_dds, KHR_lights_punctual, KHR_animation_pointer and KHR_xmp_json_ld";
 
 /// The parts of a glTF file that define its triangles.
-#[derive(Deserialize)]
-#[serde(rename_all = "camelCase")]
+#[derive(Default, Deserialize)]
+#[serde(default, rename_all = "camelCase")]
 pub(super) struct Document {
-    #[serde(default)]
     pub accessors: Vec<json::Accessor>,
-    #[serde(default)]
     pub buffers: Vec<json::Buffer>,
-    #[serde(default)]
     pub buffer_views: Vec<json::buffer::View>,
-    #[serde(default)]
     pub meshes: Vec<json::Mesh>,
-    #[serde(default)]
     pub nodes: Vec<json::Node>,
-    #[serde(default)]
     pub scenes: Vec<Scene>,
     pub scene: Option<usize>,
-    #[serde(default)]
     extensions_used: Vec<String>,
-    #[serde(default)]
     extensions_required: Vec<String>,
 }
 

@@ -8,7 +8,7 @@ use ::gltf::json;
 use serde::Deserialize;
 
 use crate::gltf::accessor::AccessorReader;
-use crate::guard::corrupt;
+use crate::guard::{corrupt, missing};
 use crate::painted_mesh::Material;
 use crate::resources::at_uri;
 use crate::texture::Wrap;
@@ -132,8 +132,7 @@ impl Materials {
         let mut loaded: Vec<Material> = vec![Material::default(); self.materials.len()];
         for &index in used {
             let Some(slot) = loaded.get_mut(index) else {
-                let found = format!("material {index} of {}", self.materials.len());
-                return Err(corrupt("mesh", found, "a material that exists"));
+                return Err(missing("material", index, self.materials.len()));
             };
             let Some(base_color) = self.base_color(index) else { continue };
             if let Some([r, g, b, _]) = base_color.base_color_factor {
@@ -141,8 +140,7 @@ impl Materials {
             }
             let Some(info) = &base_color.base_color_texture else { continue };
             let Some(texture) = self.textures.get(info.index) else {
-                let found = format!("texture {} of {}", info.index, self.textures.len());
-                return Err(corrupt("mesh", found, "a texture that exists"));
+                return Err(missing("texture", info.index, self.textures.len()));
             };
             // The images of other formats are in extensions.
             let source = texture.source.ok_or_else(|| unsupported_texture("a texture of another format"))?;
@@ -154,10 +152,7 @@ impl Materials {
     }
 
     fn image_bytes<'r>(&self, index: usize, reader: &'r mut AccessorReader<'_>) -> Result<Cow<'r, [u8]>> {
-        let Some(image) = self.images.get(index) else {
-            let found = format!("image {index} of {}", self.images.len());
-            return Err(corrupt("mesh", found, "an image that exists"));
-        };
+        let image = self.images.get(index).ok_or_else(|| missing("image", index, self.images.len()))?;
         match (&image.uri, image.buffer_view) {
             (_, Some(view)) => reader.bytes_of_view(view).map(Cow::Borrowed),
             (Some(uri), None) => at_uri(uri, reader.buffers.resources(), || format!("image {index}")),

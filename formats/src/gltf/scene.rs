@@ -9,7 +9,7 @@ use crate::colored_mesh::ColoredMesh;
 use crate::gltf::accessor::AccessorReader;
 use crate::gltf::document::Document;
 use crate::gltf::materials::Materials;
-use crate::guard::corrupt;
+use crate::guard::{corrupt, missing};
 use crate::mesh_builder::MeshBuilder;
 use crate::painted_mesh::PaintedMesh;
 use sim3align_geometry::error::{Error, ErrorCode, Result};
@@ -26,8 +26,7 @@ pub(super) fn read_scene(reader: &mut AccessorReader<'_>, materials: Option<Resu
     let mut skipped = 0;
     for (index, transform) in instances(document)? {
         let (Some(mesh), Some(slot)) = (document.meshes.get(index), parts.get_mut(index)) else {
-            let found = format!("mesh {index} of {}", document.meshes.len());
-            return Err(corrupt("mesh", found, "a mesh that exists"));
+            return Err(missing("mesh", index, document.meshes.len()));
         };
         let parts = match slot.take() {
             Some(parts) => parts,
@@ -75,8 +74,7 @@ fn instances(document: &Document) -> Result<Vec<(usize, DMat4)>> {
     let mut instances = Vec::new();
     while let Some((index, scene_from_parent)) = stack.pop() {
         let (Some(node), Some(visited)) = (document.nodes.get(index), visited.get_mut(index)) else {
-            let found = format!("node {index} of {}", document.nodes.len());
-            return Err(corrupt("mesh", found, "a node that exists"));
+            return Err(missing("node", index, document.nodes.len()));
         };
         if core::mem::replace(visited, true) {
             let found = format!("node {index} twice in the hierarchy");
@@ -95,13 +93,8 @@ fn instances(document: &Document) -> Result<Vec<(usize, DMat4)>> {
 fn roots(document: &Document) -> Result<Vec<usize>> {
     if !document.scenes.is_empty() || document.scene.is_some() {
         let index = document.scene.unwrap_or(0);
-        return match document.scenes.get(index) {
-            Some(scene) => Ok(scene.nodes.clone()),
-            None => {
-                let found = format!("scene {index} of {}", document.scenes.len());
-                Err(corrupt("mesh", found, "a scene that exists"))
-            }
-        };
+        let scene = document.scenes.get(index).ok_or_else(|| missing("scene", index, document.scenes.len()))?;
+        return Ok(scene.nodes.clone());
     }
     let mut is_root = vec![true; document.nodes.len()];
     for child in document.nodes.iter().flat_map(|node| node.children.iter().flatten()) {
