@@ -6,7 +6,7 @@ use glam::{DMat3, DVec3, Vec3};
 use super::cloud::Bounds;
 use super::mesh::Mesh;
 use super::order;
-use super::symmetric_eigen::SymmetricEigen;
+use super::symmetric_eigen::{SymmetricEigen, outer};
 
 /// Limit on the cells along the longest side; the table has this many cubed.
 const MAX_CELLS: usize = 112;
@@ -109,13 +109,13 @@ impl Clusters {
         for &triangle in mesh.triangles() {
             let [a, b, c] = mesh.corners(triangle).map(|p| p.as_dvec3());
             let normal = (b - a).cross(c - a);
-            let outer = DMat3::from_cols(normal * normal.x, normal * normal.y, normal * normal.z);
+            let planes = outer(normal);
             let clusters = triangle.map(|i| self.of_vertex[i as usize]);
             for (i, &cluster) in clusters.iter().enumerate() {
                 // A triangle within one cluster contributes once.
                 if !clusters[..i].contains(&cluster) {
                     let quadric = &mut quadrics[cluster as usize];
-                    quadric.planes += outer;
+                    quadric.planes += planes;
                     quadric.offset += normal * normal.dot(a);
                 }
             }

@@ -80,26 +80,9 @@ impl Similarity {
     /// The column-major 4×4 matrix.
     #[inline(never)]
     pub fn to_column_major(&self) -> [f64; 16] {
-        let m = self.rotation.matrix() * self.scale;
-        let t = self.translation;
-        [
-            m[(0, 0)],
-            m[(1, 0)],
-            m[(2, 0)],
-            0.0, //
-            m[(0, 1)],
-            m[(1, 1)],
-            m[(2, 1)],
-            0.0, //
-            m[(0, 2)],
-            m[(1, 2)],
-            m[(2, 2)],
-            0.0, //
-            t.x,
-            t.y,
-            t.z,
-            1.0,
-        ]
+        let [[a, b, c], [d, e, f], [g, h, i]] = (self.rotation.matrix() * self.scale).into();
+        let [x, y, z] = self.translation.into();
+        [a, b, c, 0.0, d, e, f, 0.0, g, h, i, 0.0, x, y, z, 1.0]
     }
 
     /// The rotation as a unit quaternion x, y, z, w with w ≥ 0.
@@ -230,15 +213,6 @@ pub fn vector3(v: Vec3) -> Vector3<f64> {
 
 /// Converts an f64 matrix (nalgebra) to f32 (glam).
 fn mat3(m: &Matrix3<f64>) -> Mat3 {
-    Mat3::from_cols_array(&[
-        m[(0, 0)] as f32,
-        m[(1, 0)] as f32,
-        m[(2, 0)] as f32, //
-        m[(0, 1)] as f32,
-        m[(1, 1)] as f32,
-        m[(2, 1)] as f32, //
-        m[(0, 2)] as f32,
-        m[(1, 2)] as f32,
-        m[(2, 2)] as f32,
-    ])
+    let columns: [[f64; 3]; 3] = (*m).into();
+    Mat3::from_cols_array_2d(&columns.map(|column| column.map(|x| x as f32)))
 }

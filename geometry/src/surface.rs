@@ -7,7 +7,7 @@ use crate::error::{Error, ErrorCode, Result};
 use crate::mesh::Mesh;
 use crate::number::number;
 use crate::random::Random;
-use crate::symmetric_eigen::SymmetricEigen;
+use crate::symmetric_eigen::{SymmetricEigen, outer};
 
 /// Random stream of [`each_surface_sample`].
 const STREAM: u64 = 2;
@@ -160,10 +160,6 @@ impl SurfaceMoments {
     pub fn principal_axes(&self) -> SymmetricEigen {
         SymmetricEigen::of(self.covariance)
     }
-}
-
-fn outer(v: DVec3) -> DMat3 {
-    DMat3::from_cols(v * v.x, v * v.y, v * v.z)
 }
 
 #[inline(always)]

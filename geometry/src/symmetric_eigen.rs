@@ -46,6 +46,11 @@ impl SymmetricEigen {
     }
 }
 
+/// v vᵀ.
+pub fn outer(v: DVec3) -> DMat3 {
+    DMat3::from_cols(v * v.x, v * v.y, v * v.z)
+}
+
 /// One Jacobi rotation, which makes a\[p\]\[q\] zero; p < q, and r is the third index.
 fn rotate(a: &mut [[f64; 3]; 3], vectors: &mut [DVec3; 3], p: usize, q: usize, r: usize) {
     let apq = a[p][q];

@@ -1,7 +1,7 @@
 //! Mass, centre of mass and inertia of convex parts of one density.
 
 use glam::{DMat3, DQuat, DVec3};
-use sim3align_geometry::symmetric_eigen::SymmetricEigen;
+use sim3align_geometry::symmetric_eigen::{SymmetricEigen, outer};
 
 use super::part::ConvexPart;
 
@@ -38,8 +38,4 @@ impl Mass {
         let axes = DQuat::from_mat3(&DMat3::from_cols(x, y, x.cross(y))).normalize();
         Self { mass: density * volume, center, moments: DVec3::from_array(values).max(DVec3::splat(1e-12)), axes }
     }
-}
-
-fn outer(a: DVec3) -> DMat3 {
-    DMat3::from_cols(a * a.x, a * a.y, a * a.z)
 }

@@ -9,7 +9,7 @@ use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use glam::{DVec3, Vec3};
 
 use super::searchable;
-use super::symmetry::{SymmetryAxis, mesh_diagonal};
+use super::symmetry::SymmetryAxis;
 use crate::error::Result;
 use crate::geometry::angle::sin_cos;
 use crate::geometry::mesh::Mesh;
@@ -55,7 +55,7 @@ pub fn symmetry_axes(mesh: &Mesh) -> Result<Vec<SymmetryAxis>> {
         samples: sample_surface(mesh, SAMPLES[2], 0)?.points,
         center: moments.centroid,
         tree: TriangleTree::new(&searchable(mesh)),
-        diagonal: mesh_diagonal(mesh),
+        diagonal: mesh.diagonal(),
     };
     let eigen = moments.principal_axes();
     let [thin, middle, wide] = eigen.values.map(|v| v.max(0.0).sqrt());

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::searchable;
 use super::surface::Mean;
-use super::symmetry::{Symmetry, mesh_diagonal};
+use super::symmetry::Symmetry;
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::cloud::Bounds;
 use crate::geometry::mesh::Mesh;
@@ -83,7 +83,7 @@ impl PoseComparison {
             bounds: Bounds::of(mesh.positions()).unwrap_or_else(at_centroid),
             samples,
             tree: TriangleTree::new(&searchable(mesh)),
-            diagonal: mesh_diagonal(mesh),
+            diagonal: mesh.diagonal(),
         })
     }
 

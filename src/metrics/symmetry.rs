@@ -196,8 +196,3 @@ fn invalid(found: String, expected: &str) -> Error {
         "Give each axis of symmetry once, in the mesh frame, with its fold.",
     )
 }
-
-/// The diagonal of the bounding box of the vertices.
-pub(super) fn mesh_diagonal(mesh: &Mesh) -> f64 {
-    crate::geometry::cloud::Bounds::of(mesh.positions()).map_or(0.0, |b| f64::from(b.diagonal()))
-}

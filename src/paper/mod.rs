@@ -8,11 +8,11 @@ use crate::evidence::Normals;
 use crate::evidence::clouds::Clouds;
 use crate::evidence::extents::target_from_source;
 use crate::geometry::angle::sin_cos;
-use crate::paper::options::{GuardMode, PaperOptions};
+use crate::paper::options::PaperOptions;
 use crate::pauses::{Pauses, finished};
 use crate::progress::{Stage, Stopwatch};
 use crate::register::feature_registration::FeatureRegistration;
-use crate::register::ransac::{self, Guard, RansacSettings};
+use crate::register::ransac::{Guard, RansacSettings};
 use crate::register::settings::{RegistrationSettings, icp_metric};
 use crate::register::support::SupportSettings;
 use crate::register::umeyama::ScaleMode;
@@ -57,10 +57,6 @@ pub fn estimate(clouds: &mut Clouds, options: &PaperOptions, stages: &mut Stopwa
 
 fn settings_of(options: &PaperOptions) -> RegistrationSettings {
     let voxel_size = 1.0 / options.voxel_divisions;
-    let mode = match options.guard_mode {
-        GuardMode::Reject => ransac::GuardMode::Reject,
-        GuardMode::Clamp => ransac::GuardMode::Clamp,
-    };
     RegistrationSettings {
         voxel_size: voxel_size as f32,
         fpfh_radius_voxels: options.fpfh_radius_voxels as f32,
@@ -70,7 +66,7 @@ fn settings_of(options: &PaperOptions) -> RegistrationSettings {
             max_iterations: options.ransac_iterations as usize,
             confidence: options.ransac_confidence,
             scale_mode: ScaleMode::Free,
-            guard: options.guard.map(|[min, max]| Guard { min, max, mode }),
+            guard: options.guard.map(|[min, max]| Guard { min, max, mode: options.guard_mode }),
             seed: u64::from(options.seed),
         },
         support: if options.hallucination_filter {

@@ -1,18 +1,8 @@
 //! Options of the paper's method.
 
-use crate::options::{choices, options};
+use crate::options::options;
+pub use crate::register::options::GuardMode;
 use crate::register::options::{Icp, MAX_CONFIDENCE};
-
-choices! {
-    /// What RANSAC does with a hypothesis whose scale is outside the guard.
-    pub enum GuardMode {
-        /// Drops it.
-        #[default]
-        Reject = "reject",
-        /// Moves its scale to the nearer bound, and counts it.
-        Clamp = "clamp",
-    }
-}
 
 options! {
     /// Options of `align` with `preset: "paper"`: the method of the paper, for comparison. All others have defaults.

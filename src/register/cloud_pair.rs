@@ -93,8 +93,8 @@ impl<'a> CloudPair<'a> {
         Refined { iterations: on_grid.iterations + on_points.iterations, ..on_points }
     }
 
-    /// Counts of points and voxels, and those of the refinement; the others are 0.
-    pub(super) fn counts(&self, refined: &Refined) -> Counts {
+    /// The counts with those of points and voxels, and of the refinement.
+    pub(super) fn counts(&self, refined: &Refined, others: Counts) -> Counts {
         Counts {
             source_points: self.source.full.len(),
             target_points: self.target.full.len(),
@@ -102,7 +102,7 @@ impl<'a> CloudPair<'a> {
             target_voxels: self.target.grid.cloud.len(),
             supported: refined.supported,
             icp_iterations: refined.iterations,
-            ..Counts::default()
+            ..others
         }
     }
 }

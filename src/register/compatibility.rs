@@ -5,9 +5,10 @@
 use glam::Vec3;
 
 use super::matching::Match;
+use super::ransac::pair_of;
 use super::umeyama::{Pair, ScaleMode, umeyama};
 use crate::geometry::order::{index_of, pack, select_smallest, sort};
-use crate::geometry::similarity::{Similarity, vector3};
+use crate::geometry::similarity::Similarity;
 use crate::pauses::Pauses;
 
 /// Number of compatible matches from which the first pose of a seed is computed.
@@ -45,16 +46,8 @@ pub async fn hypotheses(
     count: usize,
     pauses: &Pauses,
 ) -> Vec<Hypothesis> {
-    let pairs: Vec<Pair> = matches
-        .iter()
-        .filter_map(|m| {
-            let (source, target) = (*source.get(m.source as usize)?, *target.get(m.target as usize)?);
-            Some(Pair { source: vector3(source), target: vector3(target), weight: 1.0 })
-        })
-        .collect();
-    if pairs.len() != matches.len() {
-        return Vec::new();
-    }
+    let pairs: Option<Vec<Pair>> = matches.iter().map(|m| pair_of(source, target, m)).collect();
+    let Some(pairs) = pairs else { return Vec::new() };
     let ends: Vec<(Vec3, Vec3)> =
         matches.iter().map(|m| (source[m.source as usize], target[m.target as usize])).collect();
     let mut graph = Graph::new(ends.len());

@@ -55,41 +55,33 @@ pub fn estimate_sim3_task(
 /// Without a budget, the options bound the work, in units: `ransac_iterations` draws of 0.13 (0.0002 if their edges
 /// disagree), and 0.002 for each pair.
 fn estimated<'a>(
-    clouds: [&'a [f64]; 2],
+    [source_xyz, target_xyz]: [&'a [f64]; 2],
     correspondences: &'a [u32],
     options: &'a EstimateSim3Options,
     host: &'a mut dyn Host,
     pauses: &'a Pauses,
 ) -> Boxed<'a, Result<Registration>> {
-    boxed(solved(clouds, correspondences, options, host, pauses))
-}
-
-async fn solved(
-    [source_xyz, target_xyz]: [&[f64]; 2],
-    correspondences: &[u32],
-    options: &EstimateSim3Options,
-    host: &mut dyn Host,
-    pauses: &Pauses,
-) -> Result<Registration> {
-    options.validate()?;
-    for (argument, xyz) in [("source", source_xyz), ("target", target_xyz)] {
-        check_cloud(argument, xyz, 3)?;
-        pauses.point(PREPARED * xyz.len() as f64).await;
-    }
-    let matches = check_correspondences(correspondences, source_xyz.len() / 3, target_xyz.len() / 3)?;
-    pauses.point(PREPARED * correspondences.len() as f64).await;
-    let mut stages = Stopwatch::new(host, PLAN);
-    stages.enter(Stage::Ransac);
-    let problem = Problem::new(source_xyz, target_xyz, matches, options)?;
-    pauses.point(PREPARED * (source_xyz.len() + target_xyz.len()) as f64).await;
-    let Problem { source, target, matches, settings, .. } = &problem;
-    let consensus = ransac(&source.points, &target.points, matches, settings, pauses)
-        .await
-        .map_err(|e| about_clouds(e, "correspondences"))?;
-    pauses.point(PREPARED * consensus.inliers.len() as f64).await;
-    let unit = reweighted(&source.points, &target.points, matches, &consensus, settings, pauses).await;
-    pauses.point(PREPARED * consensus.inliers.len() as f64).await;
-    Ok(problem.solved(consensus, &unit, options.seed, stages))
+    boxed(async move {
+        options.validate()?;
+        for (argument, xyz) in [("source", source_xyz), ("target", target_xyz)] {
+            check_cloud(argument, xyz, 3)?;
+            pauses.point(PREPARED * xyz.len() as f64).await;
+        }
+        let matches = check_correspondences(correspondences, source_xyz.len() / 3, target_xyz.len() / 3)?;
+        pauses.point(PREPARED * correspondences.len() as f64).await;
+        let mut stages = Stopwatch::new(host, PLAN);
+        stages.enter(Stage::Ransac);
+        let problem = Problem::new(source_xyz, target_xyz, matches, options)?;
+        pauses.point(PREPARED * (source_xyz.len() + target_xyz.len()) as f64).await;
+        let Problem { source, target, matches, settings, .. } = &problem;
+        let consensus = ransac(&source.points, &target.points, matches, settings, pauses)
+            .await
+            .map_err(|e| about_clouds(e, "correspondences"))?;
+        pauses.point(PREPARED * consensus.inliers.len() as f64).await;
+        let unit = reweighted(&source.points, &target.points, matches, &consensus, settings, pauses).await;
+        pauses.point(PREPARED * consensus.inliers.len() as f64).await;
+        Ok(problem.solved(consensus, &unit, options.seed, stages))
+    })
 }
 
 /// Clouds and matches in their normalised frames.
@@ -136,17 +128,7 @@ impl Problem {
                 (unit.apply(vector3(p)) - vector3(q)).norm_squared()
             })
             .sum();
-        let counts = Counts {
-            source_points: source.len(),
-            target_points: target.len(),
-            matches: matches.len(),
-            inliers: consensus.inliers.len(),
-            iterations: consensus.counts.iterations,
-            inconsistent: consensus.counts.inconsistent,
-            rejected: consensus.counts.rejected,
-            clamped: consensus.counts.clamped,
-            ..Counts::default()
-        };
+        let counts = Counts { source_points: source.len(), target_points: target.len(), ..consensus.counts };
         let count = consensus.inliers.len() as f64;
         let fit = Fit {
             fitness: count / matches.len() as f64,

@@ -65,18 +65,6 @@ impl<'a> FeatureRegistration<'a> {
         stages.enter(Stage::Ransac);
         let points = [&clouds.source, &clouds.target].map(|side| &side.grid.cloud.points);
         let consensus = ransac(points[0], points[1], matches, &settings.ransac, pauses).await?;
-        Ok(self.refined(consensus, settings, stages, pauses).await)
-    }
-
-    /// The estimate of a consensus.
-    async fn refined(
-        &self,
-        consensus: Consensus,
-        settings: &RegistrationSettings,
-        stages: &mut Stopwatch<'_>,
-        pauses: &Pauses,
-    ) -> Estimate {
-        let Self { clouds, matches } = self;
         stages.enter(Stage::Filter);
         let filtered = self.refit_on_supported(&consensus, settings);
 
@@ -86,22 +74,14 @@ impl<'a> FeatureRegistration<'a> {
         let guard = settings.ransac.guard.filter(|_| !settings.lock_scale);
         let stopped = guard.is_some_and(|g| g.is_bound(refined.target_from_source.scale));
 
-        Estimate {
+        Ok(Estimate {
             target_from_source: refined.target_from_source,
             clamped: consensus.clamped || stopped,
             converged: refined.converged,
             rms: refined.rms,
-            counts: Counts {
-                matches: matches.len(),
-                inliers: consensus.inliers.len(),
-                iterations: consensus.counts.iterations,
-                inconsistent: consensus.counts.inconsistent,
-                rejected: consensus.counts.rejected,
-                clamped: consensus.counts.clamped,
-                ..clouds.counts(&refined)
-            },
+            counts: clouds.counts(&refined, consensus.counts),
             inliers: consensus.inliers,
-        }
+        })
     }
 
     /// Removes matches (sorted indices) from later calls of [`FeatureRegistration::solve`].

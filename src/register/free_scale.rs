@@ -29,7 +29,6 @@ use crate::geometry::similarity::{Similarity, vec3};
 use crate::geometry::voxel_grid::voxel_size_leaving;
 use crate::pauses::Pauses;
 use crate::progress::{Stage, Stopwatch};
-use crate::register::fpfh::Descriptor;
 use crate::register::free_space::{FreeSpace, SEEN};
 use crate::report::Counts;
 
@@ -252,7 +251,7 @@ impl Scaled<'_> {
             clamped: bounds.is_bound(pose.scale),
             converged: refined.converged,
             rms: refined.rms,
-            counts: Counts { matches, inliers: best.inliers, iterations, ..clouds.counts(&refined) },
+            counts: clouds.counts(&refined, Counts { matches, inliers: best.inliers, iterations, ..Counts::default() }),
             inliers: Vec::new(),
         };
         Some((best.score, estimate))
@@ -330,16 +329,7 @@ impl<'a> Level<'a> {
         stages.enter(Stage::Matching);
         let matches = Nearest::of(&source, &target, pauses).await.best(round.matches);
         stages.enter(Stage::Ransac);
-        Self::of(scaled, clouds, [&source, &target], matches)
-    }
-
-    fn of(
-        scaled: &'a Scaled<'a>,
-        clouds: &'a CloudPair<'a>,
-        features: [&[Descriptor]; 2],
-        matches: Vec<Match>,
-    ) -> Self {
-        let weights = features.map(distinctiveness);
+        let weights = [distinctiveness(&source), distinctiveness(&target)];
         let distance = scaled.settings.ransac.inlier_distance as f32;
         Self { scaled, scorer: PoseScorer { clouds, weights, free: scaled.free.clone(), distance }, matches }
     }

@@ -19,6 +19,17 @@ choices! {
     }
 }
 
+choices! {
+    /// What RANSAC does with a hypothesis whose scale is outside the guard.
+    pub enum GuardMode {
+        /// Drops it.
+        #[default]
+        Reject = "reject",
+        /// Moves its scale to the nearer bound, and counts it.
+        Clamp = "clamp",
+    }
+}
+
 options! {
     /// Options of `register`. All have defaults.
     pub struct RegisterOptions {

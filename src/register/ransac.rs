@@ -5,12 +5,14 @@
 //! hypothesis is rejected (or, in clamp mode, its scale is projected back).
 
 use super::matching::Match;
+pub use super::options::GuardMode;
 use super::tukey::biweights;
 use super::umeyama::{Pair, ScaleMode, umeyama};
 use crate::error::{Error, ErrorCode, Result};
 use crate::geometry::random::Random;
 use crate::geometry::similarity::{Similarity, vector3};
 use crate::pauses::Pauses;
+use crate::report::Counts;
 
 const STREAM: u64 = 3;
 
@@ -37,15 +39,6 @@ const WEIGHED: f64 = 5e-5;
 
 /// Pairs that are collected between two pause points.
 const CHUNK: usize = 1 << 16;
-
-/// Treatment of scales outside the guard.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum GuardMode {
-    /// The hypothesis is dropped.
-    Reject,
-    /// The scale is projected to the nearer bound, and the translation recomputed.
-    Clamp,
-}
 
 /// The interval of permitted scales, in the frames of the matched clouds.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,19 +77,6 @@ pub struct RansacSettings {
     pub seed: u64,
 }
 
-/// Event counts.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct RansacCounts {
-    /// Minimal sets drawn.
-    pub iterations: usize,
-    /// Minimal sets rejected by the edge-length check.
-    pub inconsistent: usize,
-    /// Minimal sets rejected because their scale was outside the guard.
-    pub rejected: usize,
-    /// Minimal sets whose scale was projected into the guard.
-    pub clamped: usize,
-}
-
 /// The best hypothesis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Consensus {
@@ -106,8 +86,8 @@ pub struct Consensus {
     pub inliers: Vec<usize>,
     /// Whether the scale was projected to a bound of the guard.
     pub clamped: bool,
-    /// The counts.
-    pub counts: RansacCounts,
+    /// Matches, inliers and events; what RANSAC does not count is 0.
+    pub counts: Counts,
 }
 
 /// Estimates the similarity with the highest consensus (MSAC scoring: near inliers count more).
@@ -131,7 +111,9 @@ pub async fn ransac(
         }
     }
     pauses.point(COLLECTED * pairs.len() as f64).await;
-    search.consensus(&numbers, &pairs, settings)
+    let mut consensus = search.consensus(&numbers, &pairs, settings)?;
+    consensus.counts.matches = matches.len();
+    Ok(consensus)
 }
 
 /// The pairs of matches, and their indices. Skips matches of points that do not exist.
@@ -154,7 +136,7 @@ async fn pairs_of(
 }
 
 /// The points of a match; `None` if one does not exist.
-fn pair_of(source: &[glam::Vec3], target: &[glam::Vec3], m: &Match) -> Option<Pair> {
+pub(super) fn pair_of(source: &[glam::Vec3], target: &[glam::Vec3], m: &Match) -> Option<Pair> {
     let (source, target) = (source.get(m.source as usize)?, target.get(m.target as usize)?);
     Some(Pair { source: vector3(*source), target: vector3(*target), weight: 1.0 })
 }
@@ -165,7 +147,7 @@ struct Search {
     judges: Vec<Pair>,
     random: Random,
     needed: usize,
-    counts: RansacCounts,
+    counts: Counts,
     best: Option<Hypothesis>,
 }
 
@@ -176,7 +158,7 @@ impl Search {
             judges: pairs.iter().step_by(pairs.len().div_ceil(JUDGES).max(1)).copied().collect(),
             random: Random::new(settings.seed, STREAM),
             needed: settings.max_iterations,
-            counts: RansacCounts::default(),
+            counts: Counts::default(),
             best: None,
         }
     }
@@ -216,7 +198,8 @@ impl Search {
         let consensus = best.map(|b| (inliers(&b.transform, pairs, settings.inlier_distance), b));
         match consensus {
             Some((inliers, b)) if inliers.len() >= 3 => {
-                let inliers = inliers.into_iter().map(|i| numbers[i]).collect();
+                let inliers: Vec<usize> = inliers.into_iter().map(|i| numbers[i]).collect();
+                let counts = Counts { inliers: inliers.len(), ..counts };
                 Ok(Consensus { target_from_source: b.transform, inliers, clamped: b.clamped, counts })
             }
             _ => Err(no_consensus(pairs.len(), &counts)),
@@ -288,7 +271,7 @@ fn edges_agree(set: &[Pair; 3], edge_similarity: f64) -> bool {
 fn fit<'a>(
     pairs: impl Iterator<Item = &'a Pair> + Clone,
     settings: &RansacSettings,
-    counts: &mut RansacCounts,
+    counts: &mut Counts,
 ) -> Option<Hypothesis> {
     let transform = umeyama(pairs.clone().copied(), settings.scale_mode).ok()?;
     let Some(guard) = settings.guard else { return Some(Hypothesis { transform, clamped: false, score: 0.0 }) };
@@ -313,7 +296,7 @@ fn fit<'a>(
 /// Refits on the inliers while the score increases.
 fn refit(mut best: Hypothesis, pairs: &[Pair], settings: &RansacSettings) -> Hypothesis {
     // The counts are those of minimal sets; refits are not counted.
-    let mut uncounted = RansacCounts::default();
+    let mut uncounted = Counts::default();
     for _ in 0..LOCAL_REFITS {
         let inliers = inliers(&best.transform, pairs, settings.inlier_distance);
         let Some(refitted) = fit(inliers.iter().map(|&i| &pairs[i]), settings, &mut uncounted) else { break };
@@ -351,7 +334,7 @@ fn iterations_needed(inlier_share: f64, confidence: f64) -> usize {
     libm::ceil(libm::log(1.0 - confidence) / libm::log1p(-hit)) as usize
 }
 
-fn no_consensus(matches: usize, counts: &RansacCounts) -> Error {
+fn no_consensus(matches: usize, counts: &Counts) -> Error {
     Error::new(
         ErrorCode::NoConsensus,
         "mesh",

@@ -72,69 +72,62 @@ pub fn register_task(
 /// grids, of at most 8000 voxels each, which takes 2200. Trees, normals, grids and agreements take at most 0.5 for each
 /// point that is used.
 fn registered<'a>(
-    clouds: [&'a [f64]; 2],
+    [source_xyz, target_xyz]: [&'a [f64]; 2],
     options: &'a RegisterOptions,
     host: &'a mut dyn Host,
     pauses: &'a Pauses,
 ) -> Boxed<'a, Result<Registration>> {
-    boxed(solved(clouds, options, host, pauses))
-}
+    boxed(async move {
+        options.validate()?;
+        let (source_xyz, skipped_source) = finite_points(source_xyz);
+        pauses.point(PREPARED * source_xyz.len() as f64).await;
+        let (target_xyz, skipped_target) = finite_points(target_xyz);
+        pauses.point(PREPARED * target_xyz.len() as f64).await;
+        let complete: [&[f64]; 2] = [&source_xyz, &target_xyz];
+        for (argument, xyz) in ["source", "target"].into_iter().zip(complete) {
+            check_cloud(argument, xyz, MIN_POINTS)?;
+            pauses.point(PREPARED * xyz.len() as f64).await;
+        }
+        let [source_xyz, target_xyz] = complete;
+        let mut stages = Stopwatch::new(host, PLAN);
 
-async fn solved(
-    [source_xyz, target_xyz]: [&[f64]; 2],
-    options: &RegisterOptions,
-    host: &mut dyn Host,
-    pauses: &Pauses,
-) -> Result<Registration> {
-    options.validate()?;
-    let (source_xyz, skipped_source) = finite_points(source_xyz);
-    pauses.point(PREPARED * source_xyz.len() as f64).await;
-    let (target_xyz, skipped_target) = finite_points(target_xyz);
-    pauses.point(PREPARED * target_xyz.len() as f64).await;
-    let complete: [&[f64]; 2] = [&source_xyz, &target_xyz];
-    for (argument, xyz) in ["source", "target"].into_iter().zip(complete) {
-        check_cloud(argument, xyz, MIN_POINTS)?;
-        pauses.point(PREPARED * xyz.len() as f64).await;
-    }
-    let [source_xyz, target_xyz] = complete;
-    let mut stages = Stopwatch::new(host, PLAN);
+        stages.enter(Stage::Sample);
+        let mut random = Random::new(u64::from(options.seed), STREAM);
+        let source_xyz = subsample(source_xyz, options.max_points as usize, &mut random);
+        let target_xyz = subsample(target_xyz, options.max_points as usize, &mut random);
+        let frames = NormalizedPair::of(&source_xyz, &target_xyz, options.scale)?;
 
-    stages.enter(Stage::Sample);
-    let mut random = Random::new(u64::from(options.seed), STREAM);
-    let source_xyz = subsample(source_xyz, options.max_points as usize, &mut random);
-    let target_xyz = subsample(target_xyz, options.max_points as usize, &mut random);
-    let frames = NormalizedPair::of(&source_xyz, &target_xyz, options.scale)?;
-
-    // With a known scale, correct matches preserve distances, which rigid registration uses. Otherwise, or if that
-    // fails, clouds are registered by features. Clutter enlarges the boxes and disturbs the descriptors, so that the
-    // dense points are tried first; but if the density varies by nature (lidar), they omit most of the scene, so that
-    // all points are tried as well. The agreement of all points selects the result. Without a known scale, features
-    // suffice for clouds that show the same surface; for others, matches vote for the scale.
-    pauses.point(PREPARED * (source_xyz.len() + target_xyz.len()) as f64).await;
-    let mut selector = PoseSelector::new(&source_xyz, &target_xyz, frames, options, pauses).await;
-    let is_fixed = matches!(options.scale, ScaleOption::Fixed(_));
-    if is_fixed {
-        let found = register_rigid(complete, options, &mut stages, pauses).await;
-        selector.prefer(found, pauses).await;
-    }
-    let dense = dense(&source_xyz, &target_xyz, &selector.frames, pauses).await;
-    if let Some((source_xyz, target_xyz)) = &dense {
-        selector.try_clouds(source_xyz, target_xyz, options, &mut stages, pauses).await?;
-    }
-    if !selector.has_preferred() && (is_fixed || dense.is_none()) {
-        selector.try_clouds(&source_xyz, &target_xyz, options, &mut stages, pauses).await?;
-    }
-    if !is_fixed && !selector.is_mutual() && pauses.goes_on(selector.has_pose()) {
-        let found = register_free(complete, options, &mut stages, pauses).await;
-        selector.prefer(found, pauses).await;
-    }
-    if !selector.has_pose() {
-        selector.try_clouds(&source_xyz, &target_xyz, options, &mut stages, pauses).await?;
-    }
-    let mut found = selector.finish(options, stages)?;
-    found.diagnostics.skipped_source_points = skipped_source;
-    found.diagnostics.skipped_target_points = skipped_target;
-    Ok(found)
+        // With a known scale, correct matches preserve distances, which rigid registration uses. Otherwise, or if that
+        // fails, clouds are registered by features. Clutter enlarges the boxes and disturbs the descriptors, so that the
+        // dense points are tried first; but if the density varies by nature (lidar), they omit most of the scene, so that
+        // all points are tried as well. The agreement of all points selects the result. Without a known scale, features
+        // suffice for clouds that show the same surface; for others, matches vote for the scale.
+        pauses.point(PREPARED * (source_xyz.len() + target_xyz.len()) as f64).await;
+        let mut selector = PoseSelector::new(&source_xyz, &target_xyz, frames, options, pauses).await;
+        let is_fixed = matches!(options.scale, ScaleOption::Fixed(_));
+        if is_fixed {
+            let found = register_rigid(complete, options, &mut stages, pauses).await;
+            selector.prefer(found, pauses).await;
+        }
+        let dense = dense(&source_xyz, &target_xyz, &selector.frames, pauses).await;
+        if let Some((source_xyz, target_xyz)) = &dense {
+            selector.try_clouds(source_xyz, target_xyz, options, &mut stages, pauses).await?;
+        }
+        if !selector.has_preferred() && (is_fixed || dense.is_none()) {
+            selector.try_clouds(&source_xyz, &target_xyz, options, &mut stages, pauses).await?;
+        }
+        if !is_fixed && !selector.is_mutual() && pauses.goes_on(selector.has_pose()) {
+            let found = register_free(complete, options, &mut stages, pauses).await;
+            selector.prefer(found, pauses).await;
+        }
+        if !selector.has_pose() {
+            selector.try_clouds(&source_xyz, &target_xyz, options, &mut stages, pauses).await?;
+        }
+        let mut found = selector.finish(options, stages)?;
+        found.diagnostics.skipped_source_points = skipped_source;
+        found.diagnostics.skipped_target_points = skipped_target;
+        Ok(found)
+    })
 }
 
 /// The dense points of both clouds; `None` if they are too few, or almost all.

@@ -150,13 +150,13 @@ impl Scans {
             return Err(no_consensus(format!("{} matches, no three of which preserve distances", matches.len())));
         };
         let refined = clouds.refine(&pose, settings, pauses).await;
-        let counts = Counts { matches: matches.len(), inliers: inliers.len(), iterations, ..clouds.counts(&refined) };
+        let found = Counts { matches: matches.len(), inliers: inliers.len(), iterations, ..Counts::default() };
         Ok(Estimate {
             target_from_source: refined.target_from_source,
             clamped: false,
             converged: refined.converged,
             rms: refined.rms,
-            counts,
+            counts: clouds.counts(&refined, found),
             inliers,
         })
     }

@@ -1,15 +1,10 @@
 //! Alignments in steps: pauses anywhere change no bit of the result.
 
 use sim3align::align::{align, align_task};
-use sim3align::error::ErrorCode;
-use sim3align::precise::options::{AlignOptions, Quality};
-use sim3align::precise::prepared_mesh::PreparedMesh;
-use sim3align::progress::{Silent, Timings};
-use sim3align::report::Alignment;
-use wasm_bindgen_test::wasm_bindgen_test;
+use sim3align::progress::Timings;
 
+use crate::prelude::*;
 use crate::shapes::{body, observe};
-use crate::support::pausing;
 
 /// The result of a task that pauses where its clock says, and how often it did.
 fn in_steps(mesh: &PreparedMesh<'_>, options: AlignOptions, clock: fn() -> f64) -> (Alignment, usize) {

@@ -2,11 +2,10 @@
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::UnitQuaternion;
 use sim3align::geometry::angle::{exp_so3, sin_cos};
-use wasm_bindgen_test::wasm_bindgen_test;
 
-use crate::support::Draw;
+use crate::prelude::*;
 
 /// Both are off by one unit in the last place at most, of numbers up to 1.
 const ROUNDING: f64 = 2.3e-16;

@@ -1,19 +1,10 @@
 //! The pose errors of BOP against slow ones, written from their definitions.
 
-use glam::{DVec3, Vec3};
-use nalgebra::{Rotation3, Vector3};
-use sim3align::error::ErrorCode;
-use sim3align::geometry::image::DepthMap;
-use sim3align::geometry::mesh::Mesh;
-use sim3align::geometry::pinhole::Pinhole;
-use sim3align::geometry::random::Random;
-use sim3align::geometry::similarity::{Similarity, vector3};
 use sim3align::metrics::bop::{
     BopErrors, BopModel, ModelSymmetry, RevolutionAxis, bop_errors, symmetry_transformations,
 };
-use wasm_bindgen_test::wasm_bindgen_test;
 
-use crate::shapes::{cuboid, ellipsoid};
+use crate::prelude::*;
 
 const WIDTH: usize = 48;
 const HEIGHT: usize = 36;

@@ -1,8 +1,8 @@
 //! Connected components against a search from every pixel.
 
 use sim3align::geometry::components::components;
-use sim3align::geometry::random::Random;
-use wasm_bindgen_test::wasm_bindgen_test;
+
+use crate::prelude::*;
 
 /// The components by flooding, as sorted indices, in the order of their first pixels, and whether they touch the border.
 fn by_flooding(set: &[bool], width: usize, height: usize) -> Vec<(Vec<usize>, bool)> {

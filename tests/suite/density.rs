@@ -1,10 +1,8 @@
 //! Surface points are told from points scattered through the volume.
 
-use sim3align::geometry::similarity::vec3;
 use sim3align::register::at_once::dense_points;
-use wasm_bindgen_test::wasm_bindgen_test;
 
-use crate::support::{Draw, blob, sphere_surface};
+use crate::prelude::*;
 
 #[wasm_bindgen_test(unsupported = test)]
 fn keeps_the_surface_and_drops_the_clutter() {
@@ -29,5 +27,5 @@ fn a_surface_alone_stays_whole_but_for_its_sparsest_spots() {
         assert!(kept > 2700, "seed {seed}: {kept} of 3000");
     }
     assert_eq!(dense_points(&[]), Vec::<usize>::new());
-    assert_eq!(dense_points(&[glam::Vec3::ONE; 20]).len(), 20);
+    assert_eq!(dense_points(&[Vec3::ONE; 20]).len(), 20);
 }

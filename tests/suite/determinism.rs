@@ -4,16 +4,13 @@
 //! A stage that is changed on purpose changes its fingerprint and those after it. Take the new ones over from the
 //! failure message once native and WebAssembly print the same.
 
-use sim3align::geometry::kd_tree::KdTree;
 use sim3align::geometry::voxel_grid::voxel_downsample;
 use sim3align::register::at_once::{fpfh, nearest, ransac, refine};
 use sim3align::register::icp::{IcpMetric, IcpSettings};
 use sim3align::register::ransac::RansacSettings;
 use sim3align::register::support::SupportSettings;
-use sim3align::register::umeyama::ScaleMode;
-use wasm_bindgen_test::wasm_bindgen_test;
 
-use crate::support::{Draw, fingerprint, mug, of_pose, pose_error, transformed, unit_box};
+use crate::prelude::*;
 
 #[wasm_bindgen_test(unsupported = test)]
 fn stages_give_the_same_bits_everywhere() {

@@ -1,8 +1,8 @@
 //! The distance transform against a search of every pixel.
 
 use sim3align::geometry::distance_transform::{NO_PIXEL, squared_distances, within};
-use sim3align::geometry::random::Random;
-use wasm_bindgen_test::wasm_bindgen_test;
+
+use crate::prelude::*;
 
 fn by_search(set: &[bool], width: usize) -> Vec<u32> {
     let at = |i: usize| ((i % width) as i64, (i / width) as i64);

@@ -1,14 +1,8 @@
 //! Boxes, the scale between them, and the way into the normalised frames and back.
 
-use glam::Vec3;
-use nalgebra::{Rotation3, Vector3};
-use sim3align::error::ErrorCode;
 use sim3align::evidence::extents::{Extents, initial_scale, target_from_source};
-use sim3align::geometry::cloud::{Bounds, Cloud};
-use sim3align::geometry::similarity::{Similarity, vector3};
-use wasm_bindgen_test::wasm_bindgen_test;
 
-use crate::support::{Draw, blob, transformed};
+use crate::prelude::*;
 
 #[wasm_bindgen_test(unsupported = test)]
 fn normalised_clouds_fill_a_centred_box_of_diagonal_1() {

@@ -1,14 +1,8 @@
 //! Support by hand: distance, angle, unknown normals.
 
-use glam::Vec3;
-use nalgebra::{Rotation3, Vector3};
-use sim3align::geometry::cloud::Cloud;
-use sim3align::geometry::kd_tree::KdTree;
-use sim3align::geometry::similarity::{Similarity, vec3};
 use sim3align::register::support::{Support, SupportSettings, supported};
-use wasm_bindgen_test::wasm_bindgen_test;
 
-use crate::support::{Draw, blob};
+use crate::prelude::*;
 
 fn support(source: &Cloud, target: &Cloud, pose: &Similarity, max_distance: f32, min_cosine: f32) -> Vec<Support> {
     supported(source, target, &KdTree::new(&target.points), pose, &SupportSettings { max_distance, min_cosine })

@@ -4,14 +4,13 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use sim3align::error::{ErrorCode, Result};
-use sim3align::geometry::image::{DepthMap, Image};
-use sim3align::geometry::mesh::Mesh;
+use sim3align::error::Result;
 use sim3align_formats::mesh::{MeshReadOptions, external_resources, read_mesh};
 use sim3align_lab::case_folder::case::read_case;
 use sim3align_lab::case_folder::write;
 
 use crate::formats_fixtures::{area, assert_near, bounds, fixture};
+use crate::prelude::*;
 
 /// A folder of its own for a test, removed at its end.
 struct Folder(PathBuf);
@@ -126,100 +125,41 @@ fn read_with_files_beside(path: &Path) -> Result<Mesh> {
     read_mesh(&bytes, &MeshReadOptions { format: None, resources: Some(&beside) })
 }
 
-/// Name, vertices, triangles, area and bounds.
-type Expected = (&'static str, usize, usize, f64, [[f64; 3]; 2]);
+/// Name, vertices (0 for those that trimesh counts otherwise), triangles, area, and lowest and highest corner: figures of
+/// trimesh 5.2.0 with process=False. trimesh does not apply sparse values: those bounds are the accessor's own min and max.
+/// It keeps the vertices that the strips leave out of their common buffer.
+const REAL_MESHES: &str = "
+chair.glb 596 1008 0.8027796273821127 -0.334719 -0.65725 -0.210492 0.186631 0.243233 0.222368
+cv3dobj-horse.glb 48485 96966 0.03589099519029837 -0.042003 -0.09167 -0.076418 0.042003 0.091671 0.076418
+donut.glb 4598 8736 0.17260887947010076 -0.11 -0.036145 -0.108265 0.117163 0.04158 0.11
+sam3d-human-object-generated.glb 113498 227278 0.388258756633758 -0.475851 -0.409879 -2.739644 0.077276 -0.216615 -2.49616
+ycb-bleach-cleanser.glb 8409 16384 0.0643801835915298 -0.055749 -0.033719 -0.105137 0.046684 0.03398 0.145443
+ycb-mug.glb 10690 16384 0.05555693644708611 -0.049596 -0.046393 -0.036544 0.067388 0.046738 0.044759
+ycb-pitcher-base.glb 8766 16384 0.1322822619973781 -0.073601 -0.072223 -0.13654 0.075533 0.072606 0.105847
+ycb-scissors.glb 8610 16384 0.016589593117907586 -0.05459 -0.071389 -0.007759 0.04149 0.130135 0.007912
+tricky/box-interleaved.glb 24 12 6.0 -0.5 -0.5 -0.5 0.5 0.5 0.5
+tricky/nested-transforms.glb 72 36 8.67720421164829 -1.167013 -2.336595 -0.269381 0.269381 1.0 0.269381
+tricky/mesh-and-pointcloud/sphere_two_materials_mesh_and_point_cloud.gltf 231 224 12.166687676015504 -1 -1 -1 1 1 1
+tricky/sparse-accessor/SimpleSparseAccessor.gltf 14 12 NaN 0 0 0 6 4 0
+tricky/triangle-strip-mode5.gltf 0 2786 20059.50849163092 -18.506493 1.777765 15.685872 38.643507 66.313521 91.803636";
 
 #[test]
 #[ignore = "needs SIM3ALIGN_MESHES"]
 fn real_meshes_are_what_trimesh_reads() {
     let folder = real_data("SIM3ALIGN_MESHES");
-    // Figures of trimesh 5.2.0 with process=False, but for the two noted.
-    let expected: [Expected; 13] = [
-        (
-            "chair.glb",
-            596,
-            1008,
-            0.8027796273821127,
-            [[-0.334719, -0.65725, -0.210492], [0.186631, 0.243233, 0.222368]],
-        ),
-        (
-            "cv3dobj-horse.glb",
-            48485,
-            96966,
-            0.03589099519029837,
-            [[-0.042003, -0.09167, -0.076418], [0.042003, 0.091671, 0.076418]],
-        ),
-        ("donut.glb", 4598, 8736, 0.17260887947010076, [[-0.11, -0.036145, -0.108265], [0.117163, 0.04158, 0.11]]),
-        (
-            "sam3d-human-object-generated.glb",
-            113498,
-            227278,
-            0.388258756633758,
-            [[-0.475851, -0.409879, -2.739644], [0.077276, -0.216615, -2.49616]],
-        ),
-        (
-            "ycb-bleach-cleanser.glb",
-            8409,
-            16384,
-            0.0643801835915298,
-            [[-0.055749, -0.033719, -0.105137], [0.046684, 0.03398, 0.145443]],
-        ),
-        (
-            "ycb-mug.glb",
-            10690,
-            16384,
-            0.05555693644708611,
-            [[-0.049596, -0.046393, -0.036544], [0.067388, 0.046738, 0.044759]],
-        ),
-        (
-            "ycb-pitcher-base.glb",
-            8766,
-            16384,
-            0.1322822619973781,
-            [[-0.073601, -0.072223, -0.13654], [0.075533, 0.072606, 0.105847]],
-        ),
-        (
-            "ycb-scissors.glb",
-            8610,
-            16384,
-            0.016589593117907586,
-            [[-0.05459, -0.071389, -0.007759], [0.04149, 0.130135, 0.007912]],
-        ),
-        ("tricky/box-interleaved.glb", 24, 12, 6.0, [[-0.5; 3], [0.5; 3]]),
-        (
-            "tricky/nested-transforms.glb",
-            72,
-            36,
-            8.67720421164829,
-            [[-1.167013, -2.336595, -0.269381], [0.269381, 1.0, 0.269381]],
-        ),
-        (
-            "tricky/mesh-and-pointcloud/sphere_two_materials_mesh_and_point_cloud.gltf",
-            231,
-            224,
-            12.166687676015504,
-            [[-1.0; 3], [1.0; 3]],
-        ),
-        // trimesh does not apply sparse values; these bounds are the accessor's own min and max.
-        ("tricky/sparse-accessor/SimpleSparseAccessor.gltf", 14, 12, f64::NAN, [[0.0; 3], [6.0, 4.0, 0.0]]),
-        // trimesh keeps the vertices that the strips leave out of their common buffer.
-        (
-            "tricky/triangle-strip-mode5.gltf",
-            0,
-            2786,
-            20059.50849163092,
-            [[-18.506493, 1.777765, 15.685872], [38.643507, 66.313521, 91.803636]],
-        ),
-    ];
-    for (name, vertices, triangles, expected_area, expected_bounds) in expected {
+    for row in REAL_MESHES.trim().lines() {
+        let (name, figures) = row.split_once(' ').unwrap();
+        let figures: Vec<f64> = figures.split(' ').map(|figure| figure.parse().unwrap()).collect();
+        let [vertices, triangles, expected_area, expected_bounds @ ..] = &*figures else { panic!("{row}") };
         let mesh = read_with_files_beside(&folder.join(name)).unwrap_or_else(|error| panic!("{name}: {error}"));
         println!("{name}: {} vertices, area {}", mesh.positions().len(), area(&mesh));
-        assert_eq!(mesh.triangles().len(), triangles, "{name}");
-        assert!(vertices == 0 || mesh.positions().len() == vertices, "{name}: {}", mesh.positions().len());
+        assert_eq!(mesh.triangles().len() as f64, *triangles, "{name}");
+        assert!(*vertices == 0.0 || mesh.positions().len() as f64 == *vertices, "{name}: {}", mesh.positions().len());
         if expected_area.is_finite() {
-            assert_near(area(&mesh), expected_area, 1e-5);
+            assert_near(area(&mesh), *expected_area, 1e-5);
         }
-        for (found, expected) in bounds(&mesh).as_flattened().iter().zip(expected_bounds.as_flattened()) {
+        assert_eq!(expected_bounds.len(), 6, "{name}");
+        for (found, expected) in bounds(&mesh).as_flattened().iter().zip(expected_bounds) {
             assert_near(f64::from(*found), *expected, 2e-6);
         }
     }

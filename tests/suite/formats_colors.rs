@@ -1,14 +1,13 @@
 //! Colours of meshes from files: textures, vertex colours and materials, compared with what they were made from.
 
-use glam::Vec3;
-use sim3align::error::{Error, ErrorCode};
+use sim3align::error::Error;
 use sim3align::geometry::surface_colors::{COLOR_SAMPLES, Rgb, SurfaceColors};
 use sim3align_formats::colored_mesh::ColoredMesh;
 use sim3align_formats::mesh::{MeshReadOptions, read_colored_mesh, read_mesh};
 use sim3align_lab::case_folder::write;
-use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::formats_fixtures::{MESHES, glb};
+use crate::prelude::*;
 
 fn read(bytes: &[u8]) -> ColoredMesh {
     let read = read_colored_mesh(bytes, &MeshReadOptions::default()).unwrap();

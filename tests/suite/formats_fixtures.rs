@@ -1,7 +1,6 @@
 //! The fixtures that tests/fixtures/make_fixtures.py wrote, and what is common to the tests on them.
 
-use glam::{DVec3, Vec3};
-use sim3align::geometry::mesh::Mesh;
+use crate::prelude::*;
 
 macro_rules! fixture {
     ($name:literal) => {

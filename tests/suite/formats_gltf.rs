@@ -1,11 +1,10 @@
 //! glTF: hierarchies, every kind of accessor, and files that mean harm.
 
-use sim3align::error::{Error, ErrorCode, Result};
-use sim3align::geometry::mesh::Mesh;
+use sim3align::error::{Error, Result};
 use sim3align_formats::mesh::{MeshReadOptions, external_resources, read_mesh};
-use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::formats_fixtures::{area, assert_near, bounds, corners, fixture, glb};
+use crate::prelude::*;
 
 fn read(bytes: &[u8]) -> Result<Mesh> {
     read_mesh(bytes, &MeshReadOptions::default())
@@ -119,7 +118,7 @@ fn node_transforms_compose_and_scenes_choose() {
         {"translation":[10,0,0],"scale":[2,2,2],"mesh":0}"#;
     let mesh = nodes_of(nested, "").unwrap();
     for (found, expected) in mesh.positions().iter().zip([[0.0, 12.0, 0.0], [-2.0, 10.0, 0.0], [-2.0, 12.0, 0.0]]) {
-        assert!((*found - glam::Vec3::from_array(expected)).length() < 1e-5, "{found} instead of {expected:?}");
+        assert!((*found - Vec3::from_array(expected)).length() < 1e-5, "{found} instead of {expected:?}");
     }
     // The same as one matrix, column by column.
     let matrix = r#"{"mesh":0,"matrix":[0,2,0,0,-2,0,0,0,0,0,2,0,0,10,0,1]}"#;

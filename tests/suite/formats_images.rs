@@ -1,13 +1,11 @@
 //! Depth maps and masks from files.
 
-use sim3align::error::ErrorCode;
-use sim3align::geometry::image::DepthMap;
 use sim3align_formats::depth::{DepthReadOptions, read_depth};
 use sim3align_formats::mask::read_mask;
 use sim3align_lab::case_folder::write;
-use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::formats_fixtures::fixture;
+use crate::prelude::*;
 
 /// The depth of make_fixtures.py: 7 × 5 pixels, no reading at (0, 0) and (3, 2).
 fn expected_depth() -> Vec<f64> {

@@ -1,13 +1,10 @@
 //! Mesh files: one mesh in every format, and what the text formats allow.
 
-use glam::Vec3;
-use sim3align::error::ErrorCode;
-use sim3align::geometry::mesh::Mesh;
 use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, read_mesh};
 use sim3align_lab::case_folder::write;
-use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::formats_fixtures::{MESHES, area, assert_near, bounds, corners, fixture};
+use crate::prelude::*;
 
 fn read(bytes: &[u8]) -> sim3align::error::Result<Mesh> {
     read_mesh(bytes, &MeshReadOptions::default())

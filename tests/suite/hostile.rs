@@ -1,42 +1,27 @@
 //! Inputs that are valid by type and hostile by content: each gets a typed error about itself or an answer, at a cost
 //! that the answer needs. Cost is counted in cells, triangles and renders.
 
-use glam::Vec3;
-use nalgebra::{Rotation3, Vector3};
 use sim3align::align::evaluate::{EvaluateOptions, evaluate};
 use sim3align::align::search::Request;
 use sim3align::align::warnings::about_observation;
 use sim3align::align::{align, align_prepared};
-use sim3align::error::{ErrorCode, Result};
-use sim3align::evidence::observation::{MAX_PIXELS, Observation};
+use sim3align::error::Result;
+use sim3align::evidence::observation::MAX_PIXELS;
 use sim3align::geometry::decimate::decimate;
-use sim3align::geometry::image::{DepthMap, Mask};
-use sim3align::geometry::mesh::Mesh;
-use sim3align::geometry::pinhole::Pinhole;
-use sim3align::geometry::similarity::Similarity;
 use sim3align::precise::SearchSettings;
-use sim3align::precise::clean::CleanObservation;
-use sim3align::precise::grid::CropGrid;
-use sim3align::precise::options::{AlignOptions, Quality};
-use sim3align::precise::pose::CropPose;
-use sim3align::precise::prepared_mesh::PreparedMesh;
-use sim3align::precise::render::{Canvas, Model};
-use sim3align::progress::Silent;
-use sim3align::report::{Effort, WarningCode};
-use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::precise::{body, observe, truth};
-use crate::support::Draw;
+use crate::prelude::*;
+use crate::shapes::{self, with_depth};
 
 const VGA: [usize; 2] = [640, 480];
 
 /// An image whose mask is the pixels that `set` selects, with noisy depth.
 fn view([width, height]: [usize; 2], focal: [f64; 2], set: impl Fn(usize, usize) -> bool) -> Result<Observation> {
     let mut draw = Draw::new(1);
-    let depth = (0..width * height).map(|_| draw.between(0.5, 1.5) as f32).collect();
-    let mask = (0..height).flat_map(|v| (0..width).map(move |u| (u, v))).map(|(u, v)| u8::from(set(u, v))).collect();
+    let depth: Vec<f32> = (0..width * height).map(|_| draw.between(0.5, 1.5) as f32).collect();
     let camera = Pinhole::new(focal[0], focal[1], 0.5 * width as f64, 0.5 * height as f64)?;
-    Observation::new(DepthMap::from_metres(width, height, depth)?, Mask::new("mask", width, height, mask)?, camera)
+    shapes::view(camera, [width, height], set, |u, v| depth[v * width + u])
 }
 
 fn blob(u: usize, v: usize) -> bool {
@@ -50,12 +35,9 @@ fn soup(count: usize, size: f64) -> Mesh {
     let mut positions = Vec::new();
     for _ in 0..count {
         let at = draw.cube(0.5);
-        positions.extend((0..3).map(|_| {
-            let p = at * (1.0 - size) + draw.cube(0.5) * size;
-            Vec3::new(p.x as f32, p.y as f32, p.z as f32)
-        }));
+        positions.extend((0..3).map(|_| vec3(&(at * (1.0 - size) + draw.cube(0.5) * size))));
     }
-    Mesh::new(positions, (0..count as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect()).unwrap()
+    shapes::soup(positions)
 }
 
 fn quick() -> AlignOptions {
@@ -114,10 +96,7 @@ fn images_beyond_the_limit_are_refused() {
 #[wasm_bindgen_test(unsupported = test)]
 fn meshes_beyond_the_numbers_are_refused() {
     let observation = observe(&body(), &truth());
-    let scaled = |unit: f32| {
-        let mesh = body();
-        Mesh::new(mesh.positions().iter().map(|p| *p * unit).collect(), mesh.triangles().to_vec()).unwrap()
-    };
+    let scaled = |unit: f32| mapped(&body(), |p| p * unit);
     for unit in [1e20, 1e30, 1e-20, 1e-30] {
         let mesh = scaled(unit);
         let aligned = align(&observation, &mesh, &quick(), &mut Silent).unwrap_err();
@@ -188,10 +167,10 @@ fn a_render_visits_a_bounded_number_of_cells() {
     let clean = CleanObservation::new(&view(VGA, [500.0; 2], blob).unwrap());
     let grid = CropGrid::new(&clean, 3000);
     let pose = CropPose {
-        rotation: glam::DQuat::IDENTITY,
+        rotation: DQuat::IDENTITY,
         // Three times as large as the mask.
         size: 0.2,
-        place: glam::DVec2::ZERO,
+        place: DVec2::ZERO,
         distance: 0.0,
     };
     let mut canvas = Canvas::default();
@@ -208,8 +187,9 @@ fn a_render_visits_a_bounded_number_of_cells() {
     assert!(cost(&body()) < 10 * cells + 20_000);
 }
 
-/// Number of images that a search with these settings draws.
-fn renders_of(observation: &Observation, mesh: &Mesh, settings: SearchSettings) -> usize {
+/// Number of images that a search with this bound on its load draws.
+fn renders_of(observation: &Observation, mesh: &Mesh, max_load: u64) -> usize {
+    let settings = SearchSettings { max_load, ..SearchSettings::from(Effort::Fast) };
     let request = Request::new(quick()).unwrap().with_efforts(vec![settings]);
     let alignment = align_prepared(observation, &PreparedMesh::borrowed(mesh), request, &mut Silent).unwrap();
     alignment.diagnostics.common.counts.renders
@@ -219,42 +199,24 @@ fn renders_of(observation: &Observation, mesh: &Mesh, settings: SearchSettings) 
 fn a_bound_on_work_bounds_renders_of_costly_inputs() {
     let observation = view(VGA, [500.0; 2], blob).unwrap();
     let mesh = soup(3000, 1.0);
-    let renders = |max_load: u64| {
-        let settings = SearchSettings { max_load, ..SearchSettings::from(Effort::Fast) };
-        renders_of(&observation, &mesh, settings)
-    };
-    let [unbounded, bounded] = [u64::from(u32::MAX), 4].map(renders);
+    let [unbounded, bounded] = [u64::from(u32::MAX), 4].map(|load| renders_of(&observation, &mesh, load));
     assert!(4 * bounded < unbounded, "{bounded} renders instead of {unbounded}");
-    let ordinary = observe(&body(), &truth());
-    let of_body = |max_load: u64| {
-        let settings = SearchSettings { max_load, ..SearchSettings::from(Effort::Fast) };
-        renders_of(&ordinary, &body(), settings)
-    };
-    assert_eq!(of_body(12), of_body(u64::from(u32::MAX)), "an ordinary input is within every bound");
+    let (ordinary, body) = (observe(&body(), &truth()), body());
+    let [unbounded, bounded] = [u64::from(u32::MAX), 12].map(|load| renders_of(&ordinary, &body, load));
+    assert_eq!(bounded, unbounded, "an ordinary input is within every bound");
 }
 
 #[wasm_bindgen_test(unsupported = test)]
 fn depths_beyond_the_numbers_are_refused() {
     let ordinary = observe(&body(), &truth());
-    let (width, height) = (ordinary.depth().width(), ordinary.depth().height());
-    let scaled = |unit: f32| {
-        let depths = ordinary.depth().data().iter().map(|z| z * unit).collect();
-        Observation::new(
-            DepthMap::from_metres(width, height, depths).unwrap(),
-            ordinary.mask().clone(),
-            ordinary.camera(),
-        )
-    };
+    let scaled = |unit: f32| with_depth(&ordinary, |_, z| z * unit);
     for unit in [1e-40, 1e-20, 1e20, 1e37] {
         let error = scaled(unit).unwrap_err();
         assert_eq!((error.code, &*error.argument), (ErrorCode::NoDepthInMask, "depth"), "{unit}: {error}");
     }
     // Some of the readings: they count as none.
-    let mixed = ordinary.depth().data().iter().enumerate();
-    let mixed = mixed.map(|(i, z)| if i % 3 == 0 { f32::MIN_POSITIVE } else { *z }).collect();
-    let mixed = DepthMap::from_metres(width, height, mixed).unwrap();
-    let mixed = Observation::new(mixed, ordinary.mask().clone(), ordinary.camera()).unwrap();
-    let alignment = align(&mixed, &body(), &quick(), &mut Silent).unwrap();
+    let mixed = with_depth(&ordinary, |i, z| if i % 3 == 0 { f32::MIN_POSITIVE } else { z });
+    let alignment = align(&mixed.unwrap(), &body(), &quick(), &mut Silent).unwrap();
     assert!(alignment.diagnostics.score.is_finite() && alignment.confidence > 0.0);
     for unit in [1e-9, 1e9] {
         let alignment = align(&scaled(unit).unwrap(), &body(), &quick(), &mut Silent).unwrap();
@@ -271,20 +233,16 @@ fn suspicious_inputs_are_warned_of() {
     assert!(codes(&white).contains(&WarningCode::MaskCoversImage));
     let ordinary = observe(&body(), &truth());
     assert!(codes(&ordinary).is_empty());
-    let (width, height) = (ordinary.depth().width(), ordinary.depth().height());
-    let metres = ordinary.depth().data().iter().map(|z| 0.001 * z).collect();
-    let depth = DepthMap::from_metres(width, height, metres).unwrap();
-    let twice = Observation::new(depth, ordinary.mask().clone(), ordinary.camera()).unwrap();
-    assert_eq!(codes(&twice), [WarningCode::DepthLooksTooSmall]);
+    let twice = with_depth(&ordinary, |_, z| 0.001 * z);
+    assert_eq!(codes(&twice.unwrap()), [WarningCode::DepthLooksTooSmall]);
 }
 
 #[wasm_bindgen_test(unsupported = test)]
 fn poses_of_every_size_are_evaluated() {
     let observation = observe(&body(), &truth());
-    for exponent in -12..=12 {
+    for exponent in (-12..=12).step_by(3) {
         let scale = libm::pow(10.0, f64::from(exponent));
-        let translation = Vector3::new(0.0, 0.0, scale);
-        let pose = Similarity { scale, rotation: Rotation3::identity(), translation };
+        let pose = similarity(scale, [0.0; 3], [0.0, 0.0, scale]);
         let metrics = evaluate(&observation, &body(), &pose, &EvaluateOptions::default()).unwrap().metrics;
         let values = [metrics.iou, metrics.boundary_f, metrics.fitness, metrics.normal_consistency];
         assert!(values.iter().flatten().all(|share| (0.0..=1.0).contains(share)), "1e{exponent}: {metrics:?}");

@@ -1,8 +1,6 @@
 //! Images: what a reading is, resampling, sizes.
 
-use sim3align::error::ErrorCode;
-use sim3align::geometry::image::{DepthMap, Image, Mask};
-use wasm_bindgen_test::wasm_bindgen_test;
+use crate::prelude::*;
 
 #[wasm_bindgen_test(unsupported = test)]
 fn depths_that_are_no_reading_become_0() {

@@ -1,14 +1,9 @@
-//! The kd-tree against brute force (to the bit, ties included) and against kiddo (by distance).
+//! The kd-tree against brute force: to the bit, ties included.
 
-use core::num::NonZero;
-
-use glam::Vec3;
-use kiddo::{ImmutableKdTree, SquaredEuclidean};
-use sim3align::geometry::kd_tree::{KdTree, Neighbor};
+use sim3align::geometry::kd_tree::Neighbor;
 use sim3align::geometry::order::{index_of, value_of};
-use wasm_bindgen_test::wasm_bindgen_test;
 
-use crate::support::{Draw, assert_no_dead_axis};
+use crate::prelude::*;
 
 /// Distributions that trees stumble over. The first six hold 300 points.
 fn distributions(draw: &mut Draw) -> Vec<(&'static str, Vec<Vec3>)> {
@@ -125,71 +120,6 @@ fn answers_are_those_of_brute_force() {
     }
 }
 
-#[wasm_bindgen_test(unsupported = test)]
-fn distances_are_those_of_kiddo() {
-    for seed in 10..13 {
-        let mut draw = Draw::new(seed);
-        for (name, points) in distributions(&mut draw) {
-            if points.is_empty() {
-                continue;
-            }
-            let arrays: Vec<[f32; 3]> = points.iter().map(|p| p.to_array()).collect();
-            let kiddo: ImmutableKdTree<f32, 3> = ImmutableKdTree::new_from_slice(&arrays).unwrap();
-            let tree = KdTree::new(&points);
-            for (kind, queried) in QUERIES.iter().enumerate() {
-                for query in queries(kind, &points, &mut draw) {
-                    let context = format!("seed {seed}, {name}, {queried}, {query}");
-                    let close = |a: f32, b: f32| (a - b).abs() <= 1e-5 * a.abs().max(b.abs());
-                    let q = query.to_array();
-                    let one = kiddo.query(&q).nearest_one::<SquaredEuclidean<f32>>().execute();
-                    let ours = tree.nearest(query).unwrap();
-                    assert!(close(ours.distance_squared, one.distance), "{context}: {ours:?}, {}", one.distance);
-
-                    let mut found = Vec::new();
-                    tree.k_nearest(query, 10, &mut found);
-                    let several =
-                        kiddo.query(&q).nearest_n::<SquaredEuclidean<f32>>(NonZero::new(10).unwrap()).execute();
-                    assert_eq!(found.len(), several.len(), "{context}");
-                    for (a, b) in found.iter().zip(&several) {
-                        assert!(close(a.distance_squared, b.distance), "{context}: {found:?}");
-                    }
-
-                    // A radius between the tenth and the next, where rounding decides nothing.
-                    let all = sorted_by_distance(&points, query);
-                    let gap = all.windows(2).skip(9).find(|w| w[1].distance_squared > 1.001 * w[0].distance_squared);
-                    if let Some(w) = gap {
-                        let radius = (0.5 * (w[0].distance_squared + w[1].distance_squared)).sqrt();
-                        tree.within(query, radius, &mut found);
-                        let inside = kiddo.query(&q).within::<SquaredEuclidean<f32>>(radius * radius).execute();
-                        let mut ours: Vec<u64> = found.iter().map(|n| u64::from(n.index)).collect();
-                        let mut theirs: Vec<u64> = inside.iter().map(|n| n.item as u64).collect();
-                        ours.sort_unstable();
-                        theirs.sort_unstable();
-                        assert_eq!(ours, theirs, "{context}, radius {radius}");
-                    }
-                }
-            }
-        }
-    }
-}
-
-#[wasm_bindgen_test(unsupported = test)]
-fn ties_go_to_the_smaller_index_whatever_the_order() {
-    // Eight corners of a cube, all as far from the middle, in 30 orders and four copies.
-    let corners: Vec<Vec3> =
-        (0..32u32).map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2 & 1) as f32)).collect();
-    for seed in 0..30 {
-        let order = Draw::new(seed).permutation(corners.len());
-        let points: Vec<Vec3> = order.iter().map(|&i| corners[i]).collect();
-        let tree = KdTree::new(&points);
-        let middle = Vec3::splat(0.5);
-        assert_eq!(tree.nearest(middle).unwrap().index, 0, "seed {seed}");
-        let mut found = Vec::new();
-        tree.k_nearest(middle, 11, &mut found);
-        assert!(found.iter().map(|n| n.index).eq(0..11), "seed {seed}: {found:?}");
-    }
-}
-
 /// Visits of all points for each would be 4·10¹⁰.
 #[wasm_bindgen_test(unsupported = test)]
 fn of_many_coincident_points_a_search_visits_few() {
@@ -210,16 +140,6 @@ fn of_many_coincident_points_a_search_visits_few() {
         assert_eq!(keys.len(), 8);
     });
     assert_eq!(visited, points.len());
-}
-
-#[wasm_bindgen_test(unsupported = test)]
-fn the_radius_includes_its_boundary() {
-    let tree = KdTree::new(&[Vec3::ZERO, Vec3::X * 2.0]);
-    let mut found = Vec::new();
-    tree.within(Vec3::X, 1.0, &mut found);
-    assert_eq!(found.len(), 2);
-    assert_eq!(tree.nearest_within(Vec3::X, 1.0).unwrap().index, 0);
-    assert_eq!(tree.nearest_within(Vec3::X, 0.999), None);
 }
 
 #[wasm_bindgen_test(unsupported = test)]

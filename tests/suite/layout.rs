@@ -1,21 +1,10 @@
 //! Errors of layout: overlap of boxes, the rotation that ICP needs, ADD-S in both directions, and the rule of CAD alignment.
 
-use glam::Vec3;
-use nalgebra::{Rotation3, Vector3};
-use sim3align::geometry::cloud::Bounds;
-use sim3align::geometry::mesh::Mesh;
-use sim3align::geometry::random::Random;
-use sim3align::geometry::similarity::{Similarity, vec3, vector3};
-use sim3align::geometry::surface::sample_surface;
-use sim3align::geometry::triangle_tree::TriangleTree;
 use sim3align::metrics::layout::LayoutErrors;
 use sim3align::metrics::oriented_box::OrientedBox;
 use sim3align::metrics::pose_error::PoseComparison;
-use sim3align::metrics::symmetry::Symmetry;
-use sim3align::register::umeyama::{Pair, ScaleMode, umeyama};
-use wasm_bindgen_test::wasm_bindgen_test;
 
-use crate::shapes::{cuboid, ellipsoid, mapped, sphere};
+use crate::prelude::*;
 
 const UNIT: Bounds = Bounds { min: Vec3::splat(-0.5), max: Vec3::splat(0.5) };
 

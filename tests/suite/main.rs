@@ -50,6 +50,7 @@ pub mod precise_refine;
 pub mod precise_rounds;
 pub mod precise_scene;
 pub mod precise_score;
+pub mod prelude;
 pub mod ransac;
 pub mod rasteriser;
 pub mod rasteriser_oracle;

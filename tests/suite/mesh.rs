@@ -1,11 +1,9 @@
 //! Meshes: what is refused, and the sign of their volume.
 
-use glam::Vec3;
-use sim3align::error::{ErrorCode, Result};
-use sim3align::geometry::mesh::Mesh;
-use wasm_bindgen_test::wasm_bindgen_test;
+use sim3align::error::Result;
 
-use crate::shapes::{cuboid, ellipsoid, inverted, mapped};
+use crate::prelude::*;
+use crate::shapes::inverted;
 
 #[track_caller]
 fn refused(mesh: Result<Mesh>, code: ErrorCode, argument: &str, found: &str) {

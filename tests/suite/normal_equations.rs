@@ -1,10 +1,9 @@
 //! Normal equations against nalgebra's Cholesky decomposition, and where there is no step.
 
 use nalgebra::{Cholesky, SMatrix, SVector};
-use sim3align::geometry::normal_equations::{NormalEquations, PARAMETERS};
-use wasm_bindgen_test::wasm_bindgen_test;
+use sim3align::geometry::normal_equations::PARAMETERS;
 
-use crate::support::Draw;
+use crate::prelude::*;
 
 type Vector = SVector<f64, PARAMETERS>;
 

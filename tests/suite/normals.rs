@@ -1,13 +1,8 @@
 //! Normals against surfaces whose normals are known.
 
-use glam::Vec3;
 use sim3align::evidence::normals::{Neighborhood, Orientation, estimate_normals};
-use sim3align::geometry::kd_tree::KdTree;
-use sim3align::geometry::random::Random;
-use sim3align::geometry::surface::sample_surface;
-use wasm_bindgen_test::wasm_bindgen_test;
 
-use crate::shapes::sphere;
+use crate::prelude::*;
 
 fn normals(points: &[Vec3], neighborhood: Neighborhood, orientation: Orientation) -> Vec<Vec3> {
     estimate_normals(points, &KdTree::new(points), neighborhood, orientation)

@@ -1,7 +1,8 @@
 //! Numbers in messages read as a person writes them.
 
 use sim3align::number::{number, numbers};
-use wasm_bindgen_test::wasm_bindgen_test;
+
+use crate::prelude::*;
 
 #[wasm_bindgen_test(unsupported = test)]
 fn writes_numbers_by_hand() {

@@ -1,13 +1,8 @@
 //! The observation: back-projection by hand, subsampling, what is refused, point maps.
 
-use glam::Vec3;
-use sim3align::error::ErrorCode;
-use sim3align::evidence::observation::{MIN_POINTS, Observation, from_point_map};
-use sim3align::geometry::image::{DepthMap, Mask};
-use sim3align::geometry::pinhole::Pinhole;
-use wasm_bindgen_test::wasm_bindgen_test;
+use sim3align::evidence::observation::{MIN_POINTS, from_point_map};
 
-use crate::support::Draw;
+use crate::prelude::*;
 
 fn camera() -> Pinhole {
     Pinhole::new(2.0, 4.0, 1.0, 1.0).unwrap()

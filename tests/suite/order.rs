@@ -3,10 +3,9 @@
 use sim3align::geometry::order::{
     index_of, median, median_of_positive, pack, quantile, select_smallest, sort, value_of,
 };
-use wasm_bindgen_test::wasm_bindgen_test;
 use wide::f32x4;
 
-use crate::support::Draw;
+use crate::prelude::*;
 
 const VALUES: [f32; 11] =
     [f32::NEG_INFINITY, -1e30, -2.5, -1e-40, -0.0, 0.0, 1e-40, 1.0, 1.000_000_1, 3e38, f32::INFINITY];

@@ -1,11 +1,6 @@
 //! The pinhole camera: projection and back, matrices, fields of view, and cameras that are none.
 
-use glam::Vec3;
-use sim3align::error::ErrorCode;
-use sim3align::geometry::pinhole::Pinhole;
-use wasm_bindgen_test::wasm_bindgen_test;
-
-use crate::support::Draw;
+use crate::prelude::*;
 
 #[wasm_bindgen_test(unsupported = test)]
 fn back_projection_undoes_projection() {

@@ -1,25 +1,13 @@
 //! Errors against a truth, and the symmetries that excuse them.
 
-use glam::Vec3;
-use nalgebra::{Rotation3, Vector3};
-use sim3align::error::ErrorCode;
-use sim3align::geometry::mesh::Mesh;
-use sim3align::geometry::random::Random;
-use sim3align::geometry::similarity::Similarity;
 use sim3align::metrics::pose_error::{PoseErrors, pose_errors};
-use sim3align::metrics::symmetry::{Symmetry, SymmetryAxis};
-use wasm_bindgen_test::wasm_bindgen_test;
 
-use crate::shapes::{cuboid, ellipsoid, mapped, sphere};
+use crate::prelude::*;
 
 const OFFSET: Vec3 = Vec3::new(2.0, -1.0, 0.5);
 
 fn truth() -> Similarity {
-    Similarity {
-        scale: 0.2,
-        rotation: Rotation3::new(Vector3::new(0.3, 1.2, -0.4)),
-        translation: Vector3::new(0.1, 0.2, 0.9),
-    }
+    similarity(0.2, [0.3, 1.2, -0.4], [0.1, 0.2, 0.9])
 }
 
 /// The truth after a turn of the mesh about `OFFSET`, by `angle` about `axis`.
@@ -96,11 +84,7 @@ fn half_turns_of_a_brick_are_found_and_excused() {
 fn what_sticks_out_breaks_the_symmetry() {
     // A brick with a knob on one end: about its long axis it still turns over, end to end it does not.
     let knob = mapped(&cuboid(Vec3::new(0.4, 0.4, 0.6)), |p| p + OFFSET + Vec3::Z * 1.8);
-    let brick = brick();
-    let count = brick.positions().len() as u32;
-    let positions = [brick.positions(), knob.positions()].concat();
-    let more = knob.triangles().iter().map(|t| t.map(|i| i + count));
-    let mesh = Mesh::new(positions, brick.triangles().iter().copied().chain(more).collect()).unwrap();
+    let mesh = joined(&brick(), &knob);
     let error = |axis| errors(&mesh, &turned(axis, core::f64::consts::PI), &Symmetry::Auto).rotation_error_deg;
     assert!(error(Vector3::z()) < 0.01);
     assert!(error(Vector3::x()) > 179.0 && error(Vector3::y()) > 179.0);

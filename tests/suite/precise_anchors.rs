@@ -1,12 +1,9 @@
 //! The anchors of `precise`: where something nearer, or the image border, cuts the mask off.
 
-use glam::DVec2;
 use sim3align::precise::anchors::{Anchor, anchors};
-use sim3align::precise::grid::CropGrid;
-use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::precise_scene::empty_grid;
-use crate::support::Draw;
+use crate::prelude::*;
 
 /// A square mask in the middle of a grid, half a metre away, with a wall behind it.
 fn square() -> CropGrid {

@@ -1,25 +1,15 @@
 //! The grid of rotations of `precise`: boxes that fit, distances, and the best of many.
 
-use glam::{DMat3, DVec2, DVec3, Vec3};
-use sim3align::geometry::rotations::{angle_between, super_fibonacci};
+use sim3align::geometry::rotations::super_fibonacci;
 use sim3align::precise::anchors::Anchor;
-use sim3align::precise::clean::CleanObservation;
 use sim3align::precise::coarse::{Candidate, Coarse};
-use sim3align::precise::grid::CropGrid;
 use sim3align::precise::mesh_pyramid::outermost;
-use sim3align::precise::objective::Objective;
-use sim3align::precise::pose::{CropPose, MeshFrame};
-use sim3align::precise::prior::Prior;
 use sim3align::precise::ranking::{best_of, distinct};
-use sim3align::precise::recipe::{COARSE, SearchSettings};
-use sim3align::precise::render::{Canvas, Model};
-use sim3align::precise::score::Score;
-use sim3align::report::Effort;
-use wasm_bindgen_test::wasm_bindgen_test;
+use sim3align::precise::recipe::COARSE;
 
 use crate::precise::{body, observe, truth};
 use crate::precise_scene::{pose, rotation};
-use crate::support::Draw;
+use crate::prelude::*;
 
 struct Scene {
     model: Model,

@@ -1,29 +1,17 @@
 //! Colour: it decides between the turns that shape cannot tell, and leaves everything else as it is.
 
-use glam::{DVec3, Vec3};
-use nalgebra::{Rotation3, Vector3};
 use sim3align::align::evaluate::{EvaluateOptions, evaluate, evaluate_prepared};
 use sim3align::align::search::Request;
 use sim3align::align::{align_prepared, align_task};
-use sim3align::evidence::observation::Observation;
 use sim3align::evidence::photo::Photo;
-use sim3align::geometry::image::Image;
-use sim3align::geometry::mesh::Mesh;
-use sim3align::geometry::rasteriser::{NO_TRIANGLE, Rasteriser};
-use sim3align::geometry::similarity::{Similarity, vec3, vector3};
-use sim3align::geometry::surface::sample_surface;
+use sim3align::geometry::rasteriser::NO_TRIANGLE;
 use sim3align::geometry::surface_colors::{COLOR_SAMPLES, Rgb, SurfaceColors};
 use sim3align::metrics::pose_error::pose_errors;
-use sim3align::metrics::symmetry::Symmetry;
-use sim3align::precise::prepared_mesh::PreparedMesh;
 use sim3align::precise::turns::dihedral;
-use sim3align::progress::Silent;
-use sim3align::report::{Alignment, ColorVerdict};
-use wasm_bindgen_test::wasm_bindgen_test;
+use sim3align::report::ColorVerdict;
 
 use crate::precise::{observe, quick};
-use crate::shapes::cuboid;
-use crate::support::Draw;
+use crate::prelude::*;
 
 /// Colours as a function of position and outward normal, mesh frame.
 type Paint = fn(Vec3, Vec3) -> Vec3;
@@ -95,11 +83,7 @@ fn photo(mesh: &Mesh, pose: &Similarity, paint: Paint, (gain, light): (Vec3, f32
 }
 
 fn truth() -> Similarity {
-    Similarity {
-        scale: 0.17,
-        rotation: Rotation3::new(Vector3::new(0.7, -0.5, 1.1)),
-        translation: Vector3::new(0.01, -0.01, 0.6),
-    }
+    similarity(0.17, [0.7, -0.5, 1.1], [0.01, -0.01, 0.6])
 }
 
 fn solve(observation: Observation, mesh: &PreparedMesh<'_>) -> Alignment {
@@ -107,8 +91,7 @@ fn solve(observation: Observation, mesh: &PreparedMesh<'_>) -> Alignment {
 }
 
 fn rotation_error(mesh: &Mesh, found: &Alignment, truth: &Similarity) -> f64 {
-    let pose = Similarity::from_column_major(&found.camera_from_mesh.matrix).unwrap();
-    pose_errors(mesh, &pose, truth, &Symmetry::None).unwrap().rotation_error_deg
+    pose_errors(mesh, &pose_of(&found.camera_from_mesh), truth, &Symmetry::None).unwrap().rotation_error_deg
 }
 
 /// A result as text, without its times.
@@ -121,13 +104,10 @@ fn described(mut found: Alignment) -> String {
 fn the_print_decides_which_side_of_a_box_faces_the_camera() {
     let mesh = carton();
     let prepared = PreparedMesh::borrowed(&mesh).with_colors(painted(&mesh, label));
-    let turns = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| axis * core::f64::consts::PI);
-    let turned = [DVec3::ZERO].into_iter().chain(turns).map(|turn| {
-        let turn = Rotation3::new(Vector3::from(turn.to_array()));
-        Similarity { rotation: truth().rotation * turn, ..truth() }
-    });
+    let turns = [Vector3::zeros(), Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| axis * core::f64::consts::PI);
     let mut decided = 0;
-    for (i, pose) in turned.enumerate() {
+    for (i, turn) in turns.into_iter().enumerate() {
+        let pose = Similarity { rotation: truth().rotation * Rotation3::new(turn), ..truth() };
         // Darker, bluer, lit from the camera, and two pixels off.
         let look = (Vec3::new(0.6, 0.7, 0.9), 0.5);
         let seen = observe(&mesh, &pose).with_photo(photo(&mesh, &pose, label, look, 2)).unwrap();
@@ -210,8 +190,7 @@ fn metrics_have_a_colour_agreement_only_where_there_are_colours() {
     // The same in the result of an alignment, at its pose.
     let prepared = PreparedMesh::borrowed(&mesh).with_colors(painted(&mesh, label));
     let found = solve(with_photo.clone(), &prepared);
-    let pose = Similarity::from_column_major(&found.camera_from_mesh.matrix).unwrap();
-    let again = evaluate_prepared(&with_photo, &prepared, &pose, &options).unwrap();
+    let again = evaluate_prepared(&with_photo, &prepared, &pose_of(&found.camera_from_mesh), &options).unwrap();
     let difference = found.metrics.unwrap().color_agreement.unwrap() - again.metrics.color_agreement.unwrap();
     // The matrix of a result has rounded once.
     assert!(difference.abs() < 1e-6, "{difference}");
@@ -239,7 +218,7 @@ fn a_comparison_may_pause_after_any_pose() {
 fn turns_about_an_axis_form_a_group() {
     let (axis, across) = (DVec3::new(1.0, 2.0, 2.0) / 3.0, DVec3::new(2.0, 1.0, -2.0) / 3.0);
     let group: Vec<_> = dihedral(axis, across, 6).collect();
-    let is_member = |rotation: glam::DQuat| group.iter().any(|g| g.dot(rotation).abs() > 1.0 - 1e-12);
+    let is_member = |rotation: DQuat| group.iter().any(|g| g.dot(rotation).abs() > 1.0 - 1e-12);
     assert_eq!(group.len(), 12);
     for (i, a) in group.iter().enumerate() {
         assert!(group.iter().all(|b| is_member(*a * *b)), "element {i}");

@@ -1,14 +1,7 @@
 //! The evidence of `precise`: the cleaned observation, and its grids, pixel by pixel.
 
-use glam::{DVec2, DVec3};
-use sim3align::evidence::observation::Observation;
-use sim3align::geometry::image::{DepthMap, Mask};
-use sim3align::geometry::pinhole::Pinhole;
-use sim3align::precise::clean::CleanObservation;
-use sim3align::precise::grid::CropGrid;
-use wasm_bindgen_test::wasm_bindgen_test;
-
-use crate::support::Draw;
+use crate::prelude::*;
+use crate::shapes::view;
 
 const WIDTH: usize = 120;
 const HEIGHT: usize = 90;
@@ -23,10 +16,7 @@ fn observation(mask: impl Fn(usize, usize) -> bool, depth: impl Fn(usize, usize)
 }
 
 fn seen_by(camera: Pinhole, mask: impl Fn(usize, usize) -> bool, depth: impl Fn(usize, usize) -> f32) -> Observation {
-    let pixels = || (0..WIDTH * HEIGHT).map(|i| (i % WIDTH, i / WIDTH));
-    let mask = Mask::new("mask", WIDTH, HEIGHT, pixels().map(|(u, v)| u8::from(mask(u, v))).collect()).unwrap();
-    let depth = DepthMap::from_metres(WIDTH, HEIGHT, pixels().map(|(u, v)| depth(u, v)).collect()).unwrap();
-    Observation::new(depth, mask, camera).unwrap()
+    view(camera, [WIDTH, HEIGHT], mask, depth).unwrap()
 }
 
 /// Discs that overlap: one connected mask without holes.
@@ -123,17 +113,13 @@ fn the_object_is_where_most_readings_of_one_depth_are() {
 }
 
 /// A slanted plane, seen in a mask of this size in a large image.
-fn large([wide, high]: [usize; 2], is_set: impl Fn(usize, usize) -> bool) -> (Observation, impl Fn(glam::Vec3) -> f64) {
-    let (width, height) = (1502, 1101);
+fn large([wide, high]: [usize; 2], is_set: impl Fn(usize, usize) -> bool) -> (Observation, impl Fn(Vec3) -> f64) {
     let camera = Pinhole::new(3000.0, 2900.0, 700.3, 540.1).unwrap();
     // n·p = 1 on the plane.
-    let depth_at = |ray: glam::Vec3| 1.0 / ray.as_dvec3().dot(DVec3::new(0.8, -0.5, 1.2));
-    let pixels = || (0..width * height).map(|i| (i % width, i / width));
-    let depth = pixels().map(|(u, v)| depth_at(camera.back_project(u as f64, v as f64, 1.0)) as f32);
+    let depth_at = |ray: Vec3| 1.0 / ray.as_dvec3().dot(DVec3::new(0.8, -0.5, 1.2));
+    let depth = |u, v| depth_at(camera.back_project(u as f64, v as f64, 1.0)) as f32;
     let inside = |u, v| (40..40 + wide).contains(&u) && (40..40 + high).contains(&v) && is_set(u, v);
-    let mask = pixels().map(|(u, v)| u8::from(inside(u, v))).collect();
-    let depth = DepthMap::from_metres(width, height, depth.collect()).unwrap();
-    (Observation::new(depth, Mask::new("mask", width, height, mask).unwrap(), camera).unwrap(), depth_at)
+    (view(camera, [1502, 1101], inside, depth).unwrap(), depth_at)
 }
 
 /// Thinned observations show the same surface in the same place: the plane is off by .3 mm for a pixel.
@@ -172,12 +158,9 @@ fn specks_that_are_far_apart_are_thinned_as_well() {
     let speck = |u: usize, v: usize| {
         u.min(width - 1 - u) < 40 && v.min(height - 1 - v) < 40 && (2 * u < width) == (2 * v < height)
     };
-    let pixels = || (0..width * height).map(|i| (i % width, i / width));
-    let mask = Mask::new("mask", width, height, pixels().map(|(u, v)| u8::from(speck(u, v))).collect()).unwrap();
-    let depth = pixels().map(|(u, v)| 1.0 + 1e-3 * ((u + v) % 5) as f32).collect();
-    let depth = DepthMap::from_metres(width, height, depth).unwrap();
-    let observation = Observation::new(depth, mask, Pinhole::new(4000.0, 4000.0, 2048.0, 1050.0).unwrap()).unwrap();
-    assert_eq!(CleanObservation::new(&observation).image, [2048.0, 1050.0]);
+    let camera = Pinhole::new(4000.0, 4000.0, 2048.0, 1050.0).unwrap();
+    let observation = view(camera, [width, height], speck, |u, v| 1.0 + 1e-3 * ((u + v) % 5) as f32);
+    assert_eq!(CleanObservation::new(&observation.unwrap()).image, [2048.0, 1050.0]);
 }
 
 /// A mask at the image's left border, and depths with holes.

@@ -1,30 +1,14 @@
 //! The proportions of a mesh that are fitted with its pose: their derivatives, the nearest similarity against the closed
 //! form of Umeyama, and meshes that are too wide or too flat.
 
-use glam::{DMat3, DVec3};
-use sim3align::geometry::mesh::Mesh;
-use sim3align::geometry::rotations::angle_between;
-use sim3align::geometry::similarity::vector3;
 use sim3align::geometry::surface::{SurfaceMoments, triangle_area};
-use sim3align::precise::clean::CleanObservation;
 use sim3align::precise::conditioning::Conditioning;
-use sim3align::precise::grid::CropGrid;
-use sim3align::precise::objective::Objective;
-use sim3align::precise::pose::{CropPose, MeshFrame};
-use sim3align::precise::prior::Prior;
 use sim3align::precise::proportions::{PROPORTIONS, Proportions, Stretched};
-use sim3align::precise::recipe::{FINE, SearchSettings};
-use sim3align::precise::refine::Refiner;
-use sim3align::precise::render::{Canvas, Model};
-use sim3align::precise::score::Scoring;
-use sim3align::register::umeyama::{Pair, ScaleMode, umeyama};
-use sim3align::report::Effort;
-use wasm_bindgen_test::wasm_bindgen_test;
+use sim3align::precise::recipe::FINE;
 
 use crate::precise::{body, observe, truth};
 use crate::precise_scene::pose;
-use crate::shapes::mapped;
-use crate::support::Draw;
+use crate::prelude::*;
 
 fn proportions(draw: &mut Draw, most: f64) -> Proportions {
     Proportions::new(core::array::from_fn(|_| draw.between(-most, most)))
@@ -103,7 +87,7 @@ fn by_umeyama(mesh: &Mesh, map: impl Fn(DVec3) -> DVec3, scale: ScaleMode) -> Cr
         let [a, b, c] = mesh.corners(mesh.triangles()[triangle]).map(|p| p.as_dvec3());
         [a + b, b + c, c + a].map(|sum| (sum * 0.5, triangle_area(mesh, triangle)))
     };
-    let double = |p: DVec3| nalgebra::Vector3::from(p.to_array());
+    let double = |p: DVec3| Vector3::from(p.to_array());
     let pairs = (0..mesh.triangles().len()).flat_map(middles);
     let pairs = pairs.map(|(p, weight)| Pair { source: double(p), target: double(map(p)), weight });
     CropPose::of_similarity(&umeyama(pairs, scale).unwrap(), &MeshFrame::NORMALIZED).unwrap()

@@ -1,26 +1,13 @@
 //! The refinement of `precise`: its quadratic against finite differences, its climb, and what the quadratic says of the
 //! uncertainty.
 
-use glam::{DMat3, DVec2, DVec3};
 use nalgebra::{SMatrix, SVector};
-use sim3align::geometry::normal_equations::NormalEquations;
-use sim3align::geometry::rotations::{angle_between, exp};
-use sim3align::precise::clean::CleanObservation;
 use sim3align::precise::conditioning::{Conditioning, covariance, hold_roll};
-use sim3align::precise::grid::CropGrid;
-use sim3align::precise::objective::Objective;
-use sim3align::precise::pose::{CropPose, MeshFrame, Step};
-use sim3align::precise::prior::Prior;
-use sim3align::precise::recipe::{FINE, SearchSettings};
-use sim3align::precise::refine::Refiner;
-use sim3align::precise::render::{Canvas, Model};
-use sim3align::precise::score::{Score, Scoring, Weights};
-use sim3align::report::Effort;
-use wasm_bindgen_test::wasm_bindgen_test;
+use sim3align::precise::recipe::FINE;
 
 use crate::precise::{body, observe, truth};
 use crate::precise_scene::{HEIGHT, WIDTH, facing, model, noisy_grid, pose, scoring};
-use crate::support::Draw;
+use crate::prelude::*;
 
 pub type Matrix = SMatrix<f64, 7, 7>;
 pub type Vector = SVector<f64, 7>;

@@ -2,20 +2,15 @@
 
 use std::rc::Rc;
 
-use sim3align::geometry::rotations::angle_between;
 use sim3align::pauses::{Pauses, Task};
-use sim3align::precise::clean::CleanObservation;
 use sim3align::precise::mesh_pyramid::MeshPyramid;
-use sim3align::precise::pose::{CropPose, MeshFrame};
-use sim3align::precise::recipe::{FIRST_REFINEMENT, RANKING, SearchSettings, TURNING, Task as Kind};
+use sim3align::precise::recipe::{FIRST_REFINEMENT, RANKING, TURNING, Task as Kind};
 use sim3align::precise::rounds::Rounds;
 use sim3align::precise::search::{Found, Search};
 use sim3align::precise::turns::TURNS;
-use sim3align::report::Effort;
-use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::precise::{body, observe, truth};
-use crate::support::{pause_points, pausing};
+use crate::prelude::*;
 
 /// Few rotations and candidates, but two that are polished.
 fn settings() -> SearchSettings {

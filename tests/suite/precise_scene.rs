@@ -1,18 +1,9 @@
 //! What the tests of the parts of `precise` share: a body, random poses, and grids of random evidence around it.
 
-use glam::{DQuat, DVec2, DVec3, Vec3};
-use sim3align::geometry::mesh::Mesh;
-use sim3align::geometry::rotations::exp;
-use sim3align::precise::grid::CropGrid;
-use sim3align::precise::pose::{CropPose, MeshFrame};
-use sim3align::precise::render::{Canvas, Model};
-use sim3align::precise::score::{Scoring, Weights};
-
-use crate::shapes::{ellipsoid, mapped};
-use crate::support::Draw;
-
 pub const WIDTH: usize = 56;
 pub const HEIGHT: usize = 44;
+
+use crate::prelude::*;
 
 /// A body without symmetry in its own frame, with some of its faces turned over.
 pub fn model() -> Model {

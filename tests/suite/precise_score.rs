@@ -1,17 +1,9 @@
 //! Score, prior and objective of `precise`, against their definitions, cell by cell.
 
-use glam::{DQuat, DVec2, DVec3};
-use sim3align::geometry::rotations::exp;
-use sim3align::precise::grid::CropGrid;
-use sim3align::precise::objective::Objective;
-use sim3align::precise::pose::CropPose;
-use sim3align::precise::prior::Prior;
-use sim3align::precise::render::{Canvas, Model};
-use sim3align::precise::score::{Background, Score, Scoring, Weights};
-use wasm_bindgen_test::wasm_bindgen_test;
+use sim3align::precise::score::Background;
 
 use crate::precise_scene::{FOCAL, model, noisy_grid, pose, rotation, scoring};
-use crate::support::Draw;
+use crate::prelude::*;
 
 /// The score's definition, in f64; the terms in the order total, overlap, coverage, depth, normals, outline, hidden,
 /// union.
@@ -77,7 +69,7 @@ fn by_definition(
 /// Share of the vertices whose projection is not on the grid.
 fn lost_vertices(model: &Model, grid: &CropGrid, pose: &CropPose) -> f64 {
     let (scale, translation) = pose.scale_translation();
-    let is_lost = |p: &&glam::Vec3| {
+    let is_lost = |p: &&Vec3| {
         let x = pose.rotation * p.as_dvec3() * scale + translation;
         let at = x.truncate() / x.z * FOCAL + DVec2::from(grid.center);
         x.z < 0.05 * translation.z

@@ -1,15 +1,10 @@
 //! RANSAC: recovery among outliers, the guard against collapse, counts, seeds, bounds.
 
-use glam::Vec3;
-use sim3align::error::ErrorCode;
-use sim3align::geometry::similarity::{Similarity, vec3, vector3};
 use sim3align::register::at_once::ransac;
 use sim3align::register::matching::Match;
 use sim3align::register::ransac::{Consensus, Guard, GuardMode, RansacSettings};
-use sim3align::register::umeyama::ScaleMode;
-use wasm_bindgen_test::wasm_bindgen_test;
 
-use crate::support::{Draw, pose_error, rotation_defect};
+use crate::prelude::*;
 
 fn settings(seed: u64) -> RansacSettings {
     RansacSettings {

@@ -1,12 +1,9 @@
 //! The rasteriser against casting a ray per pixel at every triangle, in f64.
 
-use glam::{DVec3, Vec3};
-use sim3align::geometry::mesh::Mesh;
-use sim3align::geometry::pinhole::Pinhole;
-use sim3align::geometry::random::Random;
-use sim3align::geometry::rasteriser::{NEAR, NO_TRIANGLE, Rasteriser};
-use sim3align::geometry::similarity::Similarity;
-use wasm_bindgen_test::wasm_bindgen_test;
+use sim3align::geometry::rasteriser::{NEAR, NO_TRIANGLE};
+
+use crate::prelude::*;
+use crate::shapes::soup;
 
 /// Snapping moves a vertex by at most √2/512 pixel; nearer than this to an outline nothing is claimed.
 const EDGE_PX: f64 = 0.004;
@@ -83,7 +80,7 @@ fn scene(random: &mut Random, deep: bool) -> Mesh {
             }
         }
     }
-    Mesh::new(positions, (0..count as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect()).unwrap()
+    soup(positions)
 }
 
 #[wasm_bindgen_test(unsupported = test)]
@@ -96,16 +93,16 @@ fn equals_ray_casting() {
         let mut number = |low: f64, high: f64| low + (high - low) * random.uniform();
         let camera =
             Pinhole::new(number(5.0, 60.0), number(5.0, 60.0), number(-10.0, 50.0), number(0.0, 30.0)).unwrap();
-        let axis = nalgebra::Vector3::new(number(-3.0, 3.0), number(-3.0, 3.0), number(-3.0, 3.0));
+        let axis = Vector3::new(number(-3.0, 3.0), number(-3.0, 3.0), number(-3.0, 3.0));
         let pose = Similarity {
             scale: number(0.5, 2.0),
-            rotation: nalgebra::Rotation3::new(axis),
-            translation: nalgebra::Vector3::new(number(-0.5, 0.5), number(-0.5, 0.5), number(-1.0, 4.0)),
+            rotation: Rotation3::new(axis),
+            translation: Vector3::new(number(-0.5, 0.5), number(-0.5, 0.5), number(-1.0, 4.0)),
         };
         rasteriser.render(&mesh, &pose, &camera, WIDTH, HEIGHT);
 
         let posed = |p: &Vec3| {
-            let p = pose.apply(nalgebra::Vector3::new(p.x.into(), p.y.into(), p.z.into()));
+            let p = pose.apply(Vector3::new(p.x.into(), p.y.into(), p.z.into()));
             DVec3::new(p.x, p.y, p.z)
         };
         let points: Vec<DVec3> = mesh.positions().iter().map(posed).collect();

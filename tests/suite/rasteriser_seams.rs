@@ -1,12 +1,6 @@
 //! Triangles that share edges: every pixel is covered by exactly one of them.
 
-use glam::Vec3;
-use sim3align::geometry::mesh::Mesh;
-use sim3align::geometry::pinhole::Pinhole;
-use sim3align::geometry::random::Random;
-use sim3align::geometry::rasteriser::Rasteriser;
-use sim3align::geometry::similarity::Similarity;
-use wasm_bindgen_test::wasm_bindgen_test;
+use crate::prelude::*;
 
 const WIDTH: usize = 48;
 const HEIGHT: usize = 36;

@@ -1,18 +1,11 @@
 //! General registration recovers known transforms.
 
-use nalgebra::Vector3;
-use sim3align::error::ErrorCode;
-use sim3align::geometry::cloud::Cloud;
-use sim3align::geometry::similarity::{Similarity, vector3};
-use sim3align::options::scale::ScaleOption;
 use sim3align::pauses::Task;
-use sim3align::progress::Silent;
 use sim3align::register::options::{EstimateSim3Options, RegisterOptions};
 use sim3align::register::report::Registration;
 use sim3align::register::{estimate_sim3, estimate_sim3_task, register, register_task};
-use wasm_bindgen_test::wasm_bindgen_test;
 
-use crate::support::{Draw, blob, mug};
+use crate::prelude::*;
 
 /// The transformed points with `share` of clutter (of the whole) spread over their box, half as large again,
 /// all in random order.
@@ -25,10 +18,6 @@ fn cluttered(draw: &mut Draw, points: &[Vector3<f64>], share: f64) -> Vec<Vector
         all.push(center + half.component_mul(&draw.cube(1.0)));
     }
     draw.permutation(all.len()).into_iter().map(|i| all[i]).collect()
-}
-
-fn flat(points: &[Vector3<f64>]) -> Vec<f64> {
-    points.iter().flat_map(|p| [p.x, p.y, p.z]).collect()
 }
 
 /// Scale and angle relative, and where the points land relative to their extent.
@@ -68,14 +57,13 @@ fn register_both(
 
 #[wasm_bindgen_test(unsupported = test)]
 fn recovers_any_similarity_of_a_full_surface_exactly() {
-    let settings =
-        [(0.01, 0.0), (1.0, 0.0), (100.0, 0.0), (0.01, 0.5), (0.3, 0.25), (1.0, 0.5), (7.0, 0.5), (100.0, 0.5)];
+    let settings = [(0.01, 0.0), (100.0, 0.0), (0.01, 0.5), (0.3, 0.25), (1.0, 0.5), (100.0, 0.5)];
     register_both(&settings, 100, 1e4, |_| RegisterOptions::default());
 }
 
 #[wasm_bindgen_test(unsupported = test)]
 fn a_known_scale_gives_the_pose_exactly_in_clutter_too() {
-    let settings = [(1.0, 0.0), (1.0, 0.25), (0.01, 0.5), (30.0, 0.5)];
+    let settings = [(1.0, 0.0), (0.01, 0.5), (30.0, 0.25)];
     let options =
         |truth: &Similarity| RegisterOptions { scale: ScaleOption::Fixed(truth.scale), ..RegisterOptions::default() };
     register_both(&settings, 300, 100.0, options);
@@ -181,9 +169,9 @@ fn part(points: &[Vector3<f64>], direction: Vector3<f64>, share: f64) -> Vec<Vec
 #[wasm_bindgen_test(unsupported = test)]
 fn a_free_scale_of_partial_clouds_does_not_collapse() {
     for (shape, surface, share) in [("blob", blob as fn(&mut Draw, usize) -> Cloud, 0.65), ("mug", mug, 0.75)] {
-        for seed in 400..403 {
+        for seed in 400..402 {
             let draw = &mut Draw::new(seed);
-            let whole = surface(draw, 6000).points;
+            let whole = surface(draw, 4000).points;
             let direction = draw.direction();
             // Two samples of noisy parts, which have a half or two thirds of their points in common.
             let [source, target] = [direction, -direction].map(|direction| {
@@ -248,7 +236,7 @@ fn longest_block(points: usize) -> f64 {
 #[wasm_bindgen_test(unsupported = test)]
 fn no_part_of_a_registration_is_long() {
     let draw = &mut Draw::new(11);
-    let points: Vec<_> = mug(draw, 15_000).points.into_iter().map(vector3).collect();
+    let points: Vec<_> = mug(draw, 8_000).points.into_iter().map(vector3).collect();
     let truth = draw.similarity([2.0, 2.0], 1.0);
     let direction = draw.direction();
     let moved: Vec<_> = part(&points, direction, 0.8).iter().map(|&p| truth.apply(p)).collect();

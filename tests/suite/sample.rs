@@ -1,13 +1,10 @@
 //! Surface samples and the check for degenerate shapes.
 
-use glam::{Mat3, Vec3};
-use sim3align::error::ErrorCode;
-use sim3align::geometry::mesh::Mesh;
-use sim3align::geometry::random::Random;
-use sim3align::geometry::surface::{SurfaceMoments, check_shape, sample_surface};
-use wasm_bindgen_test::wasm_bindgen_test;
+use glam::Mat3;
+use sim3align::geometry::surface::{SurfaceMoments, check_shape};
 
-use crate::shapes::{cuboid, inverted, mapped, sphere};
+use crate::prelude::*;
+use crate::shapes::inverted;
 
 /// Triangles side by side in the plane z = 0, the k-th between x = 2k and 2k + 1.
 fn row_of_triangles(heights: &[f32]) -> Mesh {
@@ -82,7 +79,7 @@ fn the_seed_decides() {
 fn moments_of_a_box_are_those_of_the_formula() {
     let moments = SurfaceMoments::of(&mapped(&cuboid(Vec3::new(2.0, 4.0, 6.0)), |p| p + Vec3::new(100.0, -50.0, 8.0)));
     assert!((moments.area - 2.0 * (2.0 * 4.0 + 2.0 * 6.0 + 4.0 * 6.0)).abs() < 1e-9);
-    assert!((moments.centroid - glam::DVec3::new(100.0, -50.0, 8.0)).length() < 1e-9);
+    assert!((moments.centroid - DVec3::new(100.0, -50.0, 8.0)).length() < 1e-9);
     // Faces of x²: the two x faces (24 each) lie at 1; the other four (8 and 12) are spread, variance 1/3.
     let expected = (48.0 + 40.0 / 3.0) / 88.0;
     assert!((moments.covariance.x_axis.x - expected).abs() < 1e-9, "{:?}", moments.covariance);

@@ -2,29 +2,17 @@
 
 use std::rc::Rc;
 
-use glam::{DVec3, Vec3};
-use nalgebra::{Rotation3, Vector3};
 use sim3align::align::align;
-use sim3align::evidence::observation::Observation;
-use sim3align::geometry::image::{DepthMap, Image, Mask};
-use sim3align::geometry::mesh::Mesh;
-use sim3align::geometry::pinhole::Pinhole;
-use sim3align::geometry::random::Random;
-use sim3align::geometry::rasteriser::Rasteriser;
-use sim3align::geometry::similarity::{Similarity, vec3, vector3};
-use sim3align::precise::options::{AlignOptions, Quality};
-use sim3align::precise::prepared_mesh::PreparedMesh;
-use sim3align::progress::Silent;
-use sim3align::report::{Alignment, Effort};
 use sim3align::scene::layers::{extremes, layer, volumes};
 use sim3align::scene::local::View;
 use sim3align::scene::placement::{Body, Placement, found_of};
 use sim3align::scene::planes::union_of;
 use sim3align::scene::support::{RestsOn, SupportChoice, find_support};
 use sim3align::scene::task::{Scene, SceneAlignment, SceneObject, align_alone, align_scene};
-use wasm_bindgen_test::wasm_bindgen_test;
 
 use super::shapes::{cuboid, mapped};
+
+use crate::prelude::*;
 
 const WIDTH: usize = 200;
 const HEIGHT: usize = 150;
@@ -115,8 +103,7 @@ fn scene_with<'m>(
 }
 
 fn pose(scene: &SceneAlignment, i: usize) -> Similarity {
-    let placed = scene.objects[i].as_ref().unwrap();
-    Similarity::from_column_major(&placed.alignment.camera_from_mesh.matrix).unwrap()
+    pose_of(&scene.objects[i].as_ref().unwrap().alignment.camera_from_mesh)
 }
 
 /// Two wedges on the floor, one on top of another, and one in the air.

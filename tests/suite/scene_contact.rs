@@ -3,19 +3,14 @@
 use core::f64::consts::PI;
 use std::rc::Rc;
 
-use glam::{DQuat, DVec2, DVec3, Vec3};
-use sim3align::geometry::normal_equations::NormalEquations;
-use sim3align::geometry::pinhole::Pinhole;
-use sim3align::geometry::random::Random;
-use sim3align::geometry::similarity::Similarity;
-use sim3align::precise::pose::{CropPose, Step};
 use sim3align::precise::rests::{Rest, rests};
 use sim3align::precise::surroundings::{Ground, Surroundings};
 use sim3align::scene::layers::{layer, volumes};
-use wasm_bindgen_test::wasm_bindgen_test;
 
 use super::precise_refine::unpacked;
 use super::shapes::{cuboid, mapped, sphere};
+
+use crate::prelude::*;
 
 #[wasm_bindgen_test(unsupported = test)]
 fn a_box_stands_on_its_six_sides_and_a_ball_on_none() {
@@ -119,7 +114,7 @@ fn what_hangs_is_not_pulled_and_what_is_sunk_in_loses_ever_more() {
 fn volumes_of_boxes_are_those_of_the_boxes() {
     let camera = Pinhole::new(500.0, 500.0, 159.5, 119.5).unwrap();
     let side = cuboid(Vec3::new(0.2, 0.2, 0.2));
-    let at = |x: f64, z: f64| Similarity { translation: nalgebra::Vector3::new(x, 0.0, z), ..Similarity::identity() };
+    let at = |x: f64, z: f64| Similarity { translation: Vector3::new(x, 0.0, z), ..Similarity::identity() };
     let [first, second] = [at(0.0, 1.0), at(0.05, 1.1)].map(|pose| layer(&side, &pose, &camera, [320, 240]));
     let [own, shared] = volumes(&first, &second, &camera);
     assert!((own - 0.008).abs() < 2e-4, "{own}");

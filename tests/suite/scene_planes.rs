@@ -1,12 +1,9 @@
 //! Planes of depth maps: made ones are found, with noise, on several levels, and where there is none.
 
-use glam::{DVec3, Vec3};
-use sim3align::geometry::image::{DepthMap, Image, Mask};
-use sim3align::geometry::pinhole::Pinhole;
-use sim3align::geometry::random::Random;
 use sim3align::scene::plane::Plane;
 use sim3align::scene::planes::{find_planes, union_of};
-use wasm_bindgen_test::wasm_bindgen_test;
+
+use crate::prelude::*;
 
 const WIDTH: usize = 160;
 const HEIGHT: usize = 120;

@@ -1,23 +1,10 @@
 //! The parts of the search, against brute force and against the exact rasteriser.
 
-use glam::{DQuat, DVec2, DVec3, Vec3};
-use sim3align::evidence::observation::Observation;
-use sim3align::geometry::cloud::Bounds;
 use sim3align::geometry::decimate::decimate;
-use sim3align::geometry::image::{DepthMap, Mask};
-use sim3align::geometry::normal_equations::NormalEquations;
-use sim3align::geometry::pinhole::Pinhole;
-use sim3align::geometry::random::Random;
-use sim3align::geometry::rasteriser::Rasteriser;
-use sim3align::geometry::rotations::{angle_between, exp, super_fibonacci};
-use sim3align::geometry::triangle_tree::TriangleTree;
-use sim3align::precise::clean::CleanObservation;
-use sim3align::precise::grid::CropGrid;
-use sim3align::precise::pose::{CropPose, MeshFrame};
-use sim3align::precise::render::{Canvas, Model};
-use wasm_bindgen_test::wasm_bindgen_test;
+use sim3align::geometry::rotations::super_fibonacci;
 
-use crate::shapes::{ellipsoid, mapped, sphere};
+use crate::prelude::*;
+use crate::shapes::view;
 
 const WIDTH: usize = 160;
 const HEIGHT: usize = 120;
@@ -30,17 +17,12 @@ fn disc(radius: f64, mask_radius: f64) -> Observation {
 /// The same with an edge of depth whose radius depends on the direction.
 fn with_edge(mask_radius: f64, radius: impl Fn(f64) -> f64) -> Observation {
     let camera = Pinhole::new(200.0, 200.0, 79.5, 59.5).unwrap();
-    let distance = |i: usize| {
-        let (u, v) = ((i % WIDTH) as f64 - 79.5, (i / WIDTH) as f64 - 59.5);
-        (u * u + v * v).sqrt()
+    let from_middle = |u: usize, v: usize| DVec2::new(u as f64 - 79.5, v as f64 - 59.5);
+    let depth = |u, v| {
+        let at = from_middle(u, v);
+        if at.length() < radius(libm::atan2(at.y, at.x)) { 0.5 + 1e-6 * at.length() as f32 } else { 0.9 }
     };
-    let angle = |i: usize| libm::atan2((i / WIDTH) as f64 - 59.5, (i % WIDTH) as f64 - 79.5);
-    let pixels = 0..WIDTH * HEIGHT;
-    let depth =
-        pixels.clone().map(|i| if distance(i) < radius(angle(i)) { 0.5 + 1e-6 * distance(i) as f32 } else { 0.9 });
-    let mask = pixels.map(|i| u8::from(distance(i) < mask_radius)).collect();
-    let depth = DepthMap::from_metres(WIDTH, HEIGHT, depth.collect()).unwrap();
-    Observation::new(depth, Mask::new("mask", WIDTH, HEIGHT, mask).unwrap(), camera).unwrap()
+    view(camera, [WIDTH, HEIGHT], |u, v| from_middle(u, v).length() < mask_radius, depth).unwrap()
 }
 
 #[wasm_bindgen_test(unsupported = test)]
@@ -138,7 +120,7 @@ fn distance_leaves_the_silhouette_as_it_is() {
     let frame = MeshFrame { center: DVec3::ZERO, diagonal: 1.0 };
     let pose = CropPose { rotation: DQuat::IDENTITY, size: -1.0, place: DVec2::new(0.1, 0.2), distance: 0.0 };
     let farther = pose.moved(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.3]);
-    let project = |pose: &CropPose, p: nalgebra::Vector3<f64>| {
+    let project = |pose: &CropPose, p: Vector3<f64>| {
         let x = pose.similarity(&frame).apply(p);
         (x.x / x.z, x.y / x.z)
     };
@@ -190,26 +172,4 @@ fn decimated_meshes_keep_the_surface() {
     let plate = mapped(&ball, |p| Vec3::new(p.x, p.y, 0.0));
     assert!(decimate(&plate, 300).triangles().len() <= 375);
     assert!(Bounds::of(decimate(&plate, 300).positions()).unwrap().extent().z == 0.0);
-}
-
-#[wasm_bindgen_test(unsupported = test)]
-fn the_inverse_of_normal_equations_is_one() {
-    let mut random = Random::new(9, 79);
-    let mut equations = NormalEquations::new();
-    let mut matrix = [[0.0; 7]; 7];
-    for _ in 0..40 {
-        let jacobian: [f64; 7] = core::array::from_fn(|_| random.uniform() - 0.5);
-        equations.add(&jacobian, 0.0, 2.0);
-        for (row, a) in matrix.iter_mut().zip(jacobian) {
-            row.iter_mut().zip(jacobian).for_each(|(entry, b): (&mut f64, f64)| *entry += 2.0 * a * b);
-        }
-    }
-    let inverse = equations.inverse(0.0).unwrap();
-    for (i, row) in matrix.iter().enumerate() {
-        for (j, column) in inverse.iter().enumerate() {
-            let entry: f64 = row.iter().zip(column).map(|(a, b)| a * b).sum();
-            assert!((entry - f64::from(u8::from(i == j))).abs() < 1e-9, "({i}, {j}): {entry}");
-        }
-    }
-    assert!(NormalEquations::new().inverse(1e-9).is_none());
 }

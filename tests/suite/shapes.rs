@@ -1,13 +1,8 @@
 //! Meshes that the tests share.
 
-use glam::Vec3;
-use nalgebra::{Rotation3, Vector3};
-use sim3align::evidence::observation::Observation;
-use sim3align::geometry::image::{DepthMap, Mask};
-use sim3align::geometry::mesh::Mesh;
-use sim3align::geometry::pinhole::Pinhole;
-use sim3align::geometry::rasteriser::Rasteriser;
-use sim3align::geometry::similarity::Similarity;
+use sim3align::error::Result;
+
+use crate::prelude::*;
 
 /// A box with outward faces, centred on the origin.
 pub fn cuboid(extent: Vec3) -> Mesh {
@@ -59,6 +54,20 @@ pub fn inverted(mesh: &Mesh) -> Mesh {
     Mesh::new(mesh.positions().to_vec(), triangles).unwrap()
 }
 
+/// Both meshes as one.
+pub fn joined(first: &Mesh, second: &Mesh) -> Mesh {
+    let count = first.positions().len() as u32;
+    let more = second.triangles().iter().map(|t| t.map(|i| i + count));
+    let triangles = first.triangles().iter().copied().chain(more).collect();
+    Mesh::new([first.positions(), second.positions()].concat(), triangles).unwrap()
+}
+
+/// A mesh of triangles without common vertices, of which `positions` holds the corners.
+pub fn soup(positions: Vec<Vec3>) -> Mesh {
+    let triangles = (0..positions.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    Mesh::new(positions, triangles).unwrap()
+}
+
 /// The mesh with its vertices passed through `f`.
 pub fn mapped(mesh: &Mesh, f: impl Fn(Vec3) -> Vec3) -> Mesh {
     Mesh::new(mesh.positions().iter().map(|&p| f(p)).collect(), mesh.triangles().to_vec()).unwrap()
@@ -78,20 +87,45 @@ pub fn body() -> Mesh {
 }
 
 pub fn truth() -> Similarity {
-    Similarity {
-        scale: 0.17,
-        rotation: Rotation3::new(Vector3::new(0.9, -0.5, 2.1)),
-        translation: Vector3::new(0.015, -0.01, 0.55),
-    }
+    similarity(0.17, [0.9, -0.5, 2.1], [0.015, -0.01, 0.55])
 }
 
 /// What a camera sees of the body in front of a wall; depths in units of `unit_m` metres.
 pub fn observe(mesh: &Mesh, unit_m: f32) -> Observation {
     let camera = Pinhole::new(420.0, 420.0, 119.5, 89.5).unwrap();
+    rendered(mesh, &truth(), camera, [WIDTH, HEIGHT], |z| if z > 0.0 { z / unit_m } else { 1.0 / unit_m })
+}
+
+/// An observation of a posed mesh: its silhouette, and the depths that `depth` gives for rendered ones, 0 beside the mesh.
+pub fn rendered(
+    mesh: &Mesh,
+    pose: &Similarity,
+    camera: Pinhole,
+    [width, height]: [usize; 2],
+    depth: impl Fn(f32) -> f32,
+) -> Observation {
     let mut rasteriser = Rasteriser::new();
-    rasteriser.render(mesh, &truth(), &camera, WIDTH, HEIGHT);
-    let mask = rasteriser.depth().iter().map(|z| u8::from(*z > 0.0)).collect();
-    let depth = rasteriser.depth().iter().map(|z| if *z > 0.0 { z / unit_m } else { 1.0 / unit_m }).collect();
-    let depth = DepthMap::from_metres(WIDTH, HEIGHT, depth).unwrap();
-    Observation::new(depth, Mask::new("mask", WIDTH, HEIGHT, mask).unwrap(), camera).unwrap()
+    rasteriser.render_depth(mesh, pose, &camera, width, height);
+    let drawn = |u: usize, v: usize| rasteriser.depth()[v * width + u];
+    view(camera, [width, height], |u, v| drawn(u, v) > 0.0, |u, v| depth(drawn(u, v))).unwrap()
+}
+
+/// An observation of the pixels that `mask` selects, with these depths.
+pub fn view(
+    camera: Pinhole,
+    [width, height]: [usize; 2],
+    mask: impl Fn(usize, usize) -> bool,
+    depth: impl Fn(usize, usize) -> f32,
+) -> Result<Observation> {
+    let pixels = || (0..height).flat_map(|v| (0..width).map(move |u| (u, v)));
+    let mask = pixels().map(|(u, v)| u8::from(mask(u, v))).collect();
+    let depth = DepthMap::from_metres(width, height, pixels().map(|(u, v)| depth(u, v)).collect())?;
+    Observation::new(depth, Mask::new("mask", width, height, mask)?, camera)
+}
+
+/// The observation with its depths passed through `change`, which also gets the index of the pixel.
+pub fn with_depth(seen: &Observation, change: impl Fn(usize, f32) -> f32) -> Result<Observation> {
+    let mut depth = seen.depth().clone();
+    depth.data_mut().iter_mut().enumerate().for_each(|(i, z)| *z = change(i, *z));
+    Observation::new(depth, seen.mask().clone(), seen.camera())
 }

@@ -1,9 +1,9 @@
 //! Mask metrics: hand-computed squares, and a boundary F written from its definition.
 
-use sim3align::geometry::image::{Mask, Window, bounds_of};
-use sim3align::geometry::random::Random;
+use sim3align::geometry::image::{Window, bounds_of};
 use sim3align::metrics::silhouette::{self, boundary, boundary_tolerance_px, center_drift_px, iou};
-use wasm_bindgen_test::wasm_bindgen_test;
+
+use crate::prelude::*;
 
 fn rectangle(size: [usize; 2], [u0, v0]: [usize; 2], [w, h]: [usize; 2]) -> Mask {
     let inside = |i: usize| (u0..u0 + w).contains(&(i % size[0])) && (v0..v0 + h).contains(&(i / size[0]));

@@ -1,11 +1,9 @@
 //! The algebra of similarities, their matrices and quaternions, and what is refused as one.
 
-use nalgebra::{Matrix3, Matrix4, Rotation3, Vector3};
-use sim3align::error::ErrorCode;
-use sim3align::geometry::similarity::{Similarity, nearest_rotation, vec3, vector3};
-use wasm_bindgen_test::wasm_bindgen_test;
+use nalgebra::{Matrix3, Matrix4};
+use sim3align::geometry::similarity::nearest_rotation;
 
-use crate::support::{Draw, rotation_defect};
+use crate::prelude::*;
 
 const PI: f64 = core::f64::consts::PI;
 

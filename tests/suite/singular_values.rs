@@ -1,10 +1,9 @@
 //! The decomposition into rotations against nalgebra's, from well-shaped matrices to all but singular ones.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 use sim3align::geometry::singular_values::SingularValues;
-use wasm_bindgen_test::wasm_bindgen_test;
 
-use crate::support::Draw;
+use crate::prelude::*;
 
 fn check(matrix: &Matrix3<f64>, context: &str) {
     let found = SingularValues::of(matrix);

@@ -3,11 +3,10 @@
 
 use core::cell::{Cell, RefCell};
 
-use glam::Vec3;
-use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3, Vector4};
-use sim3align::geometry::cloud::{Bounds, Cloud};
-use sim3align::geometry::random::Random;
-use sim3align::geometry::similarity::{Similarity, vec3, vector3};
+use nalgebra::{Matrix3, UnitQuaternion, Vector4};
+use sim3align::report::Sim3;
+
+use crate::prelude::*;
 
 thread_local! {
     /// How often the clock of [`pausing`] was read, and of what it draws whether to pause.
@@ -175,6 +174,21 @@ pub fn transformed(cloud: &Cloud, by: &Similarity) -> Cloud {
         points: cloud.points.iter().map(|&p| vec3(&by.apply(vector3(p)))).collect(),
         normals: cloud.normals.iter().map(|&n| vec3(&(by.rotation * vector3(n)))).collect(),
     }
+}
+
+/// A similarity of its scale, the vector of its rotation in radians, and its translation.
+pub fn similarity(scale: f64, rotation: [f64; 3], translation: [f64; 3]) -> Similarity {
+    Similarity { scale, rotation: Rotation3::new(rotation.into()), translation: translation.into() }
+}
+
+/// The transform of a result.
+pub fn pose_of(found: &Sim3) -> Similarity {
+    Similarity::from_column_major(&found.matrix).unwrap()
+}
+
+/// Points as the interleaved numbers that `register` takes.
+pub fn flat(points: &[Vector3<f64>]) -> Vec<f64> {
+    points.iter().flat_map(|p| [p.x, p.y, p.z]).collect()
 }
 
 /// Furthest that a corner of the unit box lands from where `truth` takes it.

@@ -1,13 +1,9 @@
 //! Points against surfaces at known distances.
 
-use glam::Vec3;
-use nalgebra::{Rotation3, Vector3};
 use sim3align::evidence::{Evidence, Normals};
-use sim3align::geometry::cloud::Cloud;
-use sim3align::geometry::mesh::Mesh;
-use sim3align::geometry::similarity::{Similarity, vec3, vector3};
 use sim3align::metrics::surface::{SurfaceAgreement, surface_agreement};
-use wasm_bindgen_test::wasm_bindgen_test;
+
+use crate::prelude::*;
 
 /// The square of edge 2 about the origin, in z = 0.
 fn square() -> Mesh {
@@ -32,11 +28,7 @@ fn agreement_of(points: &[Vec3], mesh: &Mesh, samples: &Cloud, camera_from_mesh:
 
 #[wasm_bindgen_test(unsupported = test)]
 fn parallel_planes_are_as_far_apart_as_they_are() {
-    let pose = Similarity {
-        scale: 0.2,
-        rotation: Rotation3::new(Vector3::new(0.5, -1.0, 0.8)),
-        translation: Vector3::new(0.1, -0.2, 1.5),
-    };
+    let pose = similarity(0.2, [0.5, -1.0, 0.8], [0.1, -0.2, 1.5]);
     let posed = |points: Vec<Vec3>| -> Vec<Vec3> { points.iter().map(|p| vec3(&pose.apply(vector3(*p)))).collect() };
     let samples = Cloud::from_points(grid(0.0));
     for height in [0.0, 0.05, 0.3] {

@@ -1,13 +1,8 @@
 //! Eigen-decomposition: the definition itself is the oracle.
 
-use glam::{DMat3, DVec3};
-use sim3align::geometry::random::Random;
-use sim3align::geometry::symmetric_eigen::SymmetricEigen;
-use wasm_bindgen_test::wasm_bindgen_test;
+use sim3align::geometry::symmetric_eigen::{SymmetricEigen, outer};
 
-fn outer(v: DVec3) -> DMat3 {
-    DMat3::from_cols(v * v.x, v * v.y, v * v.z)
-}
+use crate::prelude::*;
 
 #[wasm_bindgen_test(unsupported = test)]
 fn satisfies_the_definition() {

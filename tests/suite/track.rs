@@ -1,20 +1,10 @@
 //! Tracking through generated videos, corrections, losses, and what is refused.
 
-use glam::DVec3;
-use nalgebra::{UnitQuaternion, Vector3};
-use sim3align::error::ErrorCode;
+use nalgebra::UnitQuaternion;
 use sim3align::evidence::frame::Frame;
-use sim3align::geometry::image::{DepthMap, Mask};
-use sim3align::geometry::pinhole::Pinhole;
-use sim3align::geometry::similarity::Similarity;
 use sim3align::metrics::pose_error::{PoseErrors, pose_errors};
 use sim3align::precise::SearchSettings;
 use sim3align::precise::color::{agreement, agreement_at};
-use sim3align::precise::options::Quality;
-use sim3align::precise::pose::CropPose;
-use sim3align::precise::prepared_mesh::PreparedMesh;
-use sim3align::progress::Silent;
-use sim3align::report::Effort;
 use sim3align::track::evidence::{Evidence, of_mask};
 use sim3align::track::options::TrackOptions;
 use sim3align::track::report::{TrackState, TrackedFrame};
@@ -23,7 +13,9 @@ use sim3align::track::tracker::Tracker;
 use sim3align::views::common_size::SizeEvidence;
 use sim3align_lab::sequences::video::VideoSet;
 use sim3align_lab::sequences::{Sequence, SequenceFrame};
-use wasm_bindgen_test::wasm_bindgen_test;
+
+use crate::prelude::*;
+use crate::support;
 
 /// A hand-held video of an object with one right pose.
 fn video(frames: usize) -> Sequence {
@@ -31,7 +23,7 @@ fn video(frames: usize) -> Sequence {
 }
 
 fn pose_of(found: &TrackedFrame) -> Similarity {
-    Similarity::from_column_major(&found.camera_from_mesh.matrix).unwrap()
+    support::pose_of(&found.camera_from_mesh)
 }
 
 fn errors(sequence: &Sequence, k: usize, pose: &Similarity) -> PoseErrors {
@@ -129,11 +121,8 @@ fn the_photo_around_an_object_is_that_of_the_whole_frame() {
 fn a_known_size_stays_and_an_initial_pose_needs_no_mask() {
     let sequence = video(4);
     let truth = sequence.frames[0].camera_from_mesh.unwrap();
-    let options = TrackOptions {
-        initial: Some(truth),
-        scale: sim3align::options::scale::ScaleOption::Fixed(truth.scale),
-        ..TrackOptions::default()
-    };
+    let options =
+        TrackOptions { initial: Some(truth), scale: ScaleOption::Fixed(truth.scale), ..TrackOptions::default() };
     let mesh = PreparedMesh::borrowed(&sequence.mesh);
     let mut tracker = Tracker::new(&mesh, options).unwrap();
     for (k, frame) in sequence.frames.iter().enumerate() {
@@ -182,11 +171,11 @@ fn a_correction_moves_all_frames_of_its_stretch() {
     let changed = tracker.correct(&fixed, Some(1)).unwrap();
     assert_eq!(changed.iter().map(|frame| frame.frame).collect::<Vec<_>>(), [0, 1, 2, 3]);
     for (frame, before) in changed.iter().zip(&found) {
-        let after = Similarity::from_column_major(&frame.camera_from_mesh.matrix).unwrap();
+        let after = support::pose_of(&frame.camera_from_mesh);
         let turned = before.rotation.inverse() * after.rotation;
         assert!((turned.angle() - 1.5).abs() < 1e-6, "frame {}: turned by {}", frame.frame, turned.angle());
     }
-    let of_fix = Similarity::from_column_major(&changed[1].camera_from_mesh.matrix).unwrap();
+    let of_fix = support::pose_of(&changed[1].camera_from_mesh);
     assert!((of_fix.translation - fixed.translation).norm() < 1e-9);
     // Back again, and on to the next frame.
     tracker.correct(&found[1], Some(1)).unwrap();
@@ -217,7 +206,7 @@ fn what_is_refused_leaves_the_tracker_usable() {
 #[wasm_bindgen_test(unsupported = test)]
 fn the_size_counts_other_sides_and_settles() {
     let evidence = |log_scale: f64, sd: f64| SizeEvidence { log_scale, sd, score: 1.0 };
-    let turned = |angle: f64| sim3align::geometry::rotations::exp(DVec3::new(0.0, angle, 0.0));
+    let turned = |angle: f64| exp(DVec3::new(0.0, angle, 0.0));
     let mut size = Size::new(None);
     assert!(size.value().is_none() && size.wants(turned(0.0)));
     size.add(turned(0.0), evidence(0.04, 0.02));

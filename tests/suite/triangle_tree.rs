@@ -1,13 +1,9 @@
 //! Nearest points on triangles, against a search that knows no formula for them.
 
-use glam::{DVec3, Vec3};
-use sim3align::geometry::mesh::Mesh;
-use sim3align::geometry::random::Random;
-use sim3align::geometry::triangle_tree::{Hint, SurfacePoint, TriangleTree};
-use wasm_bindgen_test::wasm_bindgen_test;
+use sim3align::geometry::triangle_tree::{Hint, SurfacePoint};
 
-use crate::shapes::{cuboid, mapped, sphere};
-use crate::support::Draw;
+use crate::prelude::*;
+use crate::shapes::soup;
 
 /// Distance to the segments a + s(b − a) … a + s(c − a), minimised over s by trisection: the function is convex,
 /// whatever the triangle's shape.
@@ -41,7 +37,7 @@ fn triangles(random: &mut Random, count: usize) -> Mesh {
             _ => [a, a + u, a + v],
         });
     }
-    Mesh::new(positions, (0..count as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect()).unwrap()
+    soup(positions)
 }
 
 #[wasm_bindgen_test(unsupported = test)]
@@ -96,23 +92,6 @@ fn a_query_without_a_distance_has_no_answer() {
 }
 
 #[wasm_bindgen_test(unsupported = test)]
-fn hints_change_nothing() {
-    for seed in 0..20 {
-        let mut random = Random::new(seed, 78);
-        let tree = TriangleTree::new(&triangles(&mut random, 200));
-        let mut hint = Hint::default();
-        for i in 0..300 {
-            let size = [0.5, 2.0, 50.0][i % 3];
-            let query = Vec3::from_array([0; 3].map(|_| (random.uniform() as f32 * 2.0 - 1.0) * size));
-            assert_eq!(tree.nearest_from(query, &mut hint), tree.nearest(query), "seed {seed}, query {i} {query}");
-        }
-        // A hint of another, larger tree is no worse than none.
-        let small = TriangleTree::new(&triangles(&mut random, 6));
-        assert_eq!(small.nearest_from(Vec3::ONE, &mut hint), small.nearest(Vec3::ONE), "seed {seed}");
-    }
-}
-
-#[wasm_bindgen_test(unsupported = test)]
 fn points_are_left_out_only_where_all_triangles_overlap() {
     let visited = |mesh: &Mesh, count: usize| {
         let mut draw = Draw::new(5);
@@ -132,9 +111,7 @@ fn points_are_left_out_only_where_all_triangles_overlap() {
     assert_eq!(visited(&sphere(0.5, 40), 3000), (0..3000).collect::<Vec<_>>());
     // Every triangle contains the point that is nearest to all.
     let mut draw = Draw::new(6);
-    let positions: Vec<Vec3> = (0..12_000).map(|_| draw.points(1, 0.5)[0] * 100.0).collect();
-    let triangles = (0..4000).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-    let overlapping = Mesh::new(positions, triangles).unwrap();
+    let overlapping = soup((0..12_000).map(|_| draw.points(1, 0.5)[0] * 100.0).collect());
     let far = |count: usize| visited(&mapped(&overlapping, |p| p + Vec3::splat(1e9)), count);
     let some = far(3000);
     assert!(some.len() >= 64 && some.len() < 2000, "{} points", some.len());
@@ -168,5 +145,7 @@ fn of_many_triangles_the_same_is_found_as_one_by_one() {
             }
             assert_eq!(tree.nearest_from(query, &mut hint), expected, "unit {unit}, query {q} {query}");
         }
+        // A hint of another, larger tree is no worse than none.
+        assert_eq!(alone[0].nearest_from(Vec3::ONE, &mut hint), alone[0].nearest(Vec3::ONE), "unit {unit}");
     }
 }

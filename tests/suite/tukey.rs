@@ -1,7 +1,8 @@
 //! Tukey's biweight by hand.
 
 use sim3align::register::tukey::biweights;
-use wasm_bindgen_test::wasm_bindgen_test;
+
+use crate::prelude::*;
 
 #[wasm_bindgen_test(unsupported = test)]
 fn weights_by_hand() {

@@ -1,12 +1,8 @@
-//! The closed form against Horn's quaternions, brute force and perturbation; reflections, weights, degenerate sets.
+//! The closed form against Horn's quaternions; reflections, weights, degenerate sets.
 
-use nalgebra::{Matrix3, Matrix4, Quaternion, Rotation3, UnitQuaternion, Vector3};
-use sim3align::error::ErrorCode;
-use sim3align::geometry::similarity::Similarity;
-use sim3align::register::umeyama::{Pair, ScaleMode, umeyama};
-use wasm_bindgen_test::wasm_bindgen_test;
+use nalgebra::{Matrix3, Matrix4, Quaternion, UnitQuaternion};
 
-use crate::support::{Draw, rotation_defect};
+use crate::prelude::*;
 
 fn pairs(source: &[Vector3<f64>], target: &[Vector3<f64>]) -> Vec<Pair> {
     source.iter().zip(target).map(|(&source, &target)| Pair { source, target, weight: 1.0 }).collect()
@@ -121,42 +117,11 @@ fn the_answer_is_horns_and_the_scale_is_the_trace() {
         assert!((found.scale / trace - 1.0).abs() < 1e-13, "seed {seed}: {} {trace}", found.scale);
         let t = q_mean - found.rotation * p_mean * found.scale;
         assert!((found.translation - t).norm() < 1e-12 * (1.0 + t.norm()), "seed {seed}");
-    }
-}
-
-/// No random transform and no small change of the answer is better.
-fn assert_optimal(draw: &mut Draw, pairs: &[Pair], found: &Similarity, free_scale: bool, context: &str) {
-    let best = cost(pairs, found);
-    let (p_mean, q_mean, sigma, spread) = moments(pairs);
-    for k in 0..400 {
-        let rotation = if k % 2 == 0 { draw.rotation() } else { found.rotation * draw.rotation_by(0.03) };
-        let best_scale = ((rotation.matrix().transpose() * sigma).trace() / spread).max(1e-9);
-        let scale = if free_scale { best_scale } else { found.scale };
-        let other = Similarity { scale, rotation, translation: q_mean - rotation * p_mean * scale };
-        assert!(cost(pairs, &other) >= best * (1.0 - 1e-12), "{context}: {other:?} beats {found:?}");
-    }
-    for size in [1e-2, 1e-4, 1e-6] {
-        for _ in 0..30 {
-            let scale = if free_scale { found.scale * (1.0 + draw.between(-size, size)) } else { found.scale };
-            let rotation = found.rotation * draw.rotation_by(size);
-            let translation = found.translation + draw.cube(size);
-            let other = Similarity { scale, rotation, translation };
-            assert!(cost(pairs, &other) >= best * (1.0 - 1e-12), "{context}, change {size}: {other:?} beats {found:?}");
-        }
-    }
-}
-
-#[wasm_bindgen_test(unsupported = test)]
-fn nothing_near_or_far_is_better() {
-    for seed in 0..20 {
-        let mut draw = Draw::new(seed);
-        let pairs = noisy(&mut draw, 12, 0.5);
-        let found = solve(&pairs, ScaleMode::Free);
-        assert_optimal(&mut draw, &pairs, &found, true, &format!("seed {seed}"));
+        // The rotation is the best at every scale.
         let fixed = solve(&pairs, ScaleMode::Fixed(0.7));
-        assert_eq!(fixed.scale, 0.7);
-        assert_eq!(fixed.rotation, found.rotation, "seed {seed}: the rotation depends on the scale");
-        assert_optimal(&mut draw, &pairs, &fixed, false, &format!("seed {seed}, fixed scale"));
+        let t = q_mean - found.rotation * p_mean * 0.7;
+        assert_eq!((fixed.scale, fixed.rotation), (0.7, found.rotation), "seed {seed}");
+        assert!((fixed.translation - t).norm() < 1e-12 * (1.0 + t.norm()), "seed {seed}");
     }
 }
 
@@ -173,7 +138,6 @@ fn a_mirror_image_gets_the_best_rotation() {
         let found = solve(&pairs, ScaleMode::Free);
         assert!(rotation_defect(found.rotation.matrix()) < 1e-13, "seed {seed}: {:?}", found.rotation);
         assert!(found.rotation_angle_to(&horn(&pairs)) < 1e-7, "seed {seed}");
-        assert_optimal(&mut draw, &pairs, &found, true, &format!("seed {seed}"));
     }
 }
 

@@ -2,21 +2,16 @@
 
 use std::sync::Arc;
 
-use sim3align::error::ErrorCode;
 use sim3align::evidence::photo::Photo;
-use sim3align::geometry::similarity::Similarity;
 use sim3align::metrics::pose_error::pose_errors;
-use sim3align::progress::Silent;
-use sim3align::report::WarningCode;
 use sim3align::views::common_size::{SizeEvidence, common_size};
 use sim3align::views::options::ViewsOptions;
 use sim3align::views::report::{ViewRole, ViewsAlignment, WorldFrame};
 use sim3align::views::{View, align_views, align_views_task};
 use sim3align_lab::sequences::Sequence;
 use sim3align_lab::sequences::rig::RigSet;
-use wasm_bindgen_test::wasm_bindgen_test;
 
-use crate::support::{Draw, fingerprint};
+use crate::prelude::*;
 
 /// Case 0 of a set is easy and has exact camera poses, case 5 is hard and has a wrong view.
 fn rig(seed: u64, views: usize, index: usize) -> Sequence {
@@ -38,7 +33,7 @@ fn align(sequence: &Sequence, views: Vec<View>) -> ViewsAlignment {
 /// Checks the poses in all views but the wrong ones.
 fn assert_right(sequence: &Sequence, found: &ViewsAlignment, what: &str) {
     for (view, frame) in found.views.iter().zip(&sequence.frames).filter(|(_, frame)| !frame.is_wrong) {
-        let pose = Similarity::from_column_major(&view.camera_from_mesh.matrix).unwrap();
+        let pose = pose_of(&view.camera_from_mesh);
         let truth = frame.camera_from_mesh.unwrap();
         let errors = pose_errors(&sequence.mesh, &pose, &truth, &sequence.symmetry).unwrap();
         let strict =
@@ -55,11 +50,11 @@ fn three_views_with_known_cameras() {
         assert_right(&sequence, &found, &format!("seed {seed}"));
         assert_eq!(found.world, WorldFrame::Given);
         assert!(found.views.iter().all(|view| view.role == ViewRole::Used), "seed {seed}");
-        let world = Similarity::from_column_major(&found.world_from_mesh.matrix).unwrap();
+        let world = pose_of(&found.world_from_mesh);
         for (view, frame) in found.views.iter().zip(&sequence.frames) {
             let given = frame.view.world_from_camera.unwrap();
             let seen = given.inverse().compose(&world);
-            let pose = Similarity::from_column_major(&view.camera_from_mesh.matrix).unwrap();
+            let pose = pose_of(&view.camera_from_mesh);
             assert!((seen.translation - pose.translation).norm() < 1e-9, "seed {seed}: one pose for all views");
             assert!((seen.scale - pose.scale).abs() < 1e-9, "seed {seed}: one size for all views");
         }
@@ -112,11 +107,10 @@ fn unknown_cameras_share_one_size_and_follow_from_the_object() {
     let found = align(&sequence, views);
     assert_right(&sequence, &found, "with unknown cameras");
     assert_eq!(found.world, WorldFrame::Camera);
-    let poses: Vec<Similarity> =
-        found.views.iter().map(|view| Similarity::from_column_major(&view.camera_from_mesh.matrix).unwrap()).collect();
+    let poses: Vec<Similarity> = found.views.iter().map(|view| pose_of(&view.camera_from_mesh)).collect();
     for (view, pose) in found.views.iter().zip(&poses) {
         assert!((pose.scale / poses[0].scale - 1.0).abs() < 1e-9, "one size for all views");
-        let camera = Similarity::from_column_major(&view.camera.world_from_camera.matrix).unwrap();
+        let camera = pose_of(&view.camera.world_from_camera);
         let placed = camera.compose(pose);
         assert!((placed.translation - poses[0].translation).norm() < 1e-9, "the object is in one place");
         assert!(view.camera.rotation_sd_deg >= Some(0.0) && view.camera.position_sd_m.is_some_and(f64::is_finite));
@@ -141,7 +135,7 @@ fn without_cameras(mut views: Vec<View>) -> Vec<View> {
 }
 
 fn turn_deg(sequence: &Sequence, found: &ViewsAlignment, k: usize) -> f64 {
-    let pose = Similarity::from_column_major(&found.views[k].camera_from_mesh.matrix).unwrap();
+    let pose = pose_of(&found.views[k].camera_from_mesh);
     let truth = sequence.frames[k].camera_from_mesh.unwrap();
     pose_errors(&sequence.mesh, &pose, &truth, &sequence.symmetry).unwrap().rotation_error_deg
 }
@@ -195,7 +189,7 @@ fn pauses_and_repeats_change_no_bit() {
     let sequence = rig(46, 2, 0);
     let bits = |found: &ViewsAlignment| fingerprint(found.world_from_mesh.matrix.map(f64::to_bits));
     let whole = align(&sequence, views_of(&sequence));
-    let mesh = sim3align::precise::prepared_mesh::PreparedMesh::borrowed(&sequence.mesh);
+    let mesh = PreparedMesh::borrowed(&sequence.mesh);
     let mut task = align_views_task(views_of(&sequence), &mesh, options(&sequence), Silent, || 0.0).unwrap();
     let mut steps = 0;
     let paused = loop {

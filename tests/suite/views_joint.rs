@@ -1,21 +1,11 @@
 //! The summed objective of several views: its steps and its quadratic against finite differences, and one view alone.
 
-use glam::{DQuat, DVec2, DVec3};
-use nalgebra::Vector3;
-use sim3align::geometry::normal_equations::{NormalEquations, PARAMETERS};
-use sim3align::geometry::rotations::exp;
-use sim3align::geometry::similarity::Similarity;
-use sim3align::precise::objective::Objective;
-use sim3align::precise::pose::CropPose;
-use sim3align::precise::prior::Prior;
-use sim3align::precise::refine::Refiner;
-use sim3align::precise::render::Canvas;
+use sim3align::geometry::normal_equations::PARAMETERS;
 use sim3align::views::joint::{Joint, JointView};
 use sim3align::views::world_pose::{PlacedCamera, WorldPose};
-use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::precise_scene::{model, noisy_grid, pose, scoring};
-use crate::support::Draw;
+use crate::prelude::*;
 
 /// A camera anywhere.
 fn camera(draw: &mut Draw) -> PlacedCamera {
@@ -35,25 +25,37 @@ fn step_between(from: &CropPose, to: &CropPose) -> [f64; PARAMETERS] {
     [turn.x, turn.y, turn.z, to.size - from.size, place.x, place.y, (to.distance - from.distance) / size]
 }
 
+/// What steps of a pose in the world are in a camera that sees it so, by differences of `h`.
+fn map_by_differences(
+    camera: &PlacedCamera,
+    world: &WorldPose,
+    seen: &CropPose,
+    h: f64,
+) -> [[f64; PARAMETERS]; PARAMETERS] {
+    let mut map = [[0.0; PARAMETERS]; PARAMETERS];
+    for k in 0..PARAMETERS {
+        let moved = |by: f64| {
+            let mut step = [0.0; PARAMETERS];
+            step[k] = by;
+            step_between(seen, &camera.see(&world.moved(&step)).unwrap())
+        };
+        for (row, (after, before)) in map.iter_mut().zip(moved(h).iter().zip(moved(-h))) {
+            row[k] = (after - before) / (2.0 * h);
+        }
+    }
+    map
+}
+
 #[wasm_bindgen_test(unsupported = test)]
 fn a_step_in_the_world_is_its_image_in_the_camera() {
-    const H: f64 = 1e-6;
     for seed in 0..20 {
         let draw = &mut Draw::new(seed);
         let (camera, seen) = (camera(draw), pose(draw, 0.3));
         let world = camera.place(&seen);
         let map = camera.step_map(&seen);
-        for k in 0..PARAMETERS {
-            let moved = |by: f64| {
-                let mut step = [0.0; PARAMETERS];
-                step[k] = by;
-                step_between(&seen, &camera.see(&world.moved(&step)).unwrap())
-            };
-            let (after, before) = (moved(H), moved(-H));
-            for (row, (after, before)) in map.iter().zip(after.iter().zip(before)) {
-                let slope = (after - before) / (2.0 * H);
-                assert!((row[k] - slope).abs() < 1e-5, "seed {seed}, parameter {k}: {} for {slope}", row[k]);
-            }
+        let expected = map_by_differences(&camera, &world, &seen, 1e-6);
+        for (found, slope) in map.as_flattened().iter().zip(expected.as_flattened()) {
+            assert!((found - slope).abs() < 1e-5, "seed {seed}: {found} for {slope}");
         }
     }
 }
@@ -74,7 +76,7 @@ fn a_camera_sees_what_it_placed() {
         };
         let turned = PlacedCamera::of(&Similarity {
             rotation: camera.world_from_camera().rotation
-                * nalgebra::Rotation3::from_axis_angle(&Vector3::x_axis(), core::f64::consts::PI),
+                * Rotation3::from_axis_angle(&Vector3::x_axis(), core::f64::consts::PI),
             ..camera.world_from_camera()
         });
         assert!(turned.see(&behind).is_none(), "seed {seed}: what is behind a camera is not seen");
@@ -124,19 +126,7 @@ fn scores_add_up_and_quadratics_are_mapped() {
                 total += score.total;
                 let refiner = Refiner { objective: view.objective, lock_scale: false };
                 let own = refiner.equations(canvas, &score, &seen);
-                // The columns of the map by finite differences.
-                const H: f64 = 1e-5;
-                let mut map = [[0.0; PARAMETERS]; PARAMETERS];
-                for k in 0..PARAMETERS {
-                    let moved = |by: f64| {
-                        let mut step = [0.0; PARAMETERS];
-                        step[k] = by;
-                        step_between(&seen, &view.camera.see(&world.moved(&step)).unwrap())
-                    };
-                    for (row, (after, before)) in map.iter_mut().zip(moved(H).iter().zip(moved(-H))) {
-                        row[k] = (after - before) / (2.0 * H);
-                    }
-                }
+                let map = map_by_differences(&view.camera, world, &seen, 1e-5);
                 expected.add_mapped(&own, &map);
             }
             assert!(summed.total == total && summed.views.len() == 2, "seed {seed}");

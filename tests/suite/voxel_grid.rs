@@ -2,12 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DVec3, Vec3};
-use sim3align::geometry::cloud::Cloud;
 use sim3align::geometry::voxel_grid::voxel_downsample;
-use wasm_bindgen_test::wasm_bindgen_test;
 
-use crate::support::{Draw, blob, mug, transformed};
+use crate::prelude::*;
 
 /// The same in a map from cell to members, with means in f64.
 fn naive(cloud: &Cloud, voxel_size: f32) -> Vec<(DVec3, DVec3)> {

@@ -1,16 +1,11 @@
 //! Warnings come with poses that are in doubt.
 
-use glam::Vec3;
 use sim3align::align::align;
 use sim3align::align::warnings::{about_observation, retain_doubts};
-use sim3align::evidence::observation::Observation;
-use sim3align::geometry::mesh::Mesh;
-use sim3align::progress::Silent;
-use sim3align::report::{Warning, WarningCode};
-use wasm_bindgen_test::wasm_bindgen_test;
+use sim3align::report::Warning;
 
 use crate::precise::{body, observe, quick, truth};
-use crate::shapes::cuboid;
+use crate::prelude::*;
 
 fn codes(warnings: &[Warning]) -> Vec<WarningCode> {
     warnings.iter().map(|warning| warning.code).collect()

@@ -8,12 +8,14 @@ use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::solids::{Draw, cuboid, moved, similarity};
 
+const SETTINGS: Settings =
+    Settings { density: 400.0, parts: 1, turn_deg: 20.0, move_m: 1.0, fits_ground: true, rest: true };
+
 /// Settles one object; all of its numbers are finite, and its mass is not negative.
 fn settled(mesh: &Mesh, scale: f64, parts: usize, what: &str) -> (usize, f64) {
     let pose = similarity(scale, DQuat::from_rotation_x(0.02), DVec3::new(0.1, 0.2, 0.3));
     let object = Object { mesh: mesh.clone(), world_from_mesh: pose, on: On::Ground };
-    let settings = Settings { density: 400.0, parts, turn_deg: 20.0, move_m: 1.0, fits_ground: true, rest: true };
-    let [found] = settle(&[object], &settings).0.try_into().unwrap();
+    let [found] = settle(&[object], &Settings { parts, ..SETTINGS }).0.try_into().unwrap();
     let (body, mass) = (&found.body, found.body.mass);
     let corners = body.parts.iter().flat_map(|part| &part.positions);
     let vectors = [mass.center, mass.moments, body.pose.translation];
@@ -74,9 +76,7 @@ fn coordinates_near_the_largest_numbers_do_not_panic() {
         for parts in [1, 16] {
             let mesh = cuboid(-Vec3::splat(size), Vec3::splat(size));
             let object = Object { mesh, world_from_mesh: moved(0.0, 0.0, 0.0), on: On::Ground };
-            let settings =
-                Settings { density: 400.0, parts, turn_deg: 20.0, move_m: 1.0, fits_ground: true, rest: true };
-            let [found] = settle(&[object], &settings).0.try_into().unwrap();
+            let [found] = settle(&[object], &Settings { parts, ..SETTINGS }).0.try_into().unwrap();
             assert!(found.body.parts.len() <= 1, "{size}");
         }
     }

@@ -2,6 +2,7 @@
 
 use glam::{DMat3, DQuat, DVec3, Vec3};
 use sim3align_geometry::mesh::Mesh;
+use sim3align_geometry::symmetric_eigen::outer;
 use sim3align_physics::body::Body;
 use sim3align_physics::mass::Mass;
 use sim3align_physics::part::{ConvexPart, convex_parts};
@@ -68,14 +69,12 @@ fn parts_add_up_by_the_parallel_axis_theorem() {
     for [x, y, z, a, b, c] in boxes {
         let (m, center) = (DENSITY * x * y * z, DVec3::new(a, b, c));
         let own = DVec3::new(y * y + z * z, x * x + z * z, x * x + y * y) * (m / 12.0);
-        let outer = DMat3::from_cols(center * center.x, center * center.y, center * center.z);
         kilograms += m;
         first += m * center;
-        about += DMat3::from_diagonal(own) + (DMat3::IDENTITY * center.length_squared() - outer) * m;
+        about += DMat3::from_diagonal(own) + (DMat3::IDENTITY * center.length_squared() - outer(center)) * m;
     }
     let center = first / kilograms;
-    let outer = DMat3::from_cols(center * center.x, center * center.y, center * center.z);
-    let expected = about - (DMat3::IDENTITY * center.length_squared() - outer) * kilograms;
+    let expected = about - (DMat3::IDENTITY * center.length_squared() - outer(center)) * kilograms;
     // The decomposition works on cells of a 64th of the size.
     assert!(is_near(body.mass.mass, kilograms, 0.05), "{} and {kilograms} kg", body.mass.mass);
     assert!((body.mass.center - center).length() < 0.004, "{} and {center}", body.mass.center);
