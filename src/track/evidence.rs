@@ -8,12 +8,12 @@ use crate::evidence::observation::Observation;
 use crate::evidence::photo::PhotoRegion;
 use crate::geometry::image::bounds_of;
 use crate::metrics::symmetry::Symmetry;
-use crate::precise::SearchSettings;
-use crate::precise::appearance::PhotoCells;
-use crate::precise::clean::CleanObservation;
-use crate::precise::mesh_pyramid::MeshPyramid;
-use crate::precise::pose::{CropPose, MeshFrame};
-use crate::precise::search::Search;
+use crate::precise::drawn::mesh_pyramid::MeshPyramid;
+use crate::precise::drawn::pose::{CropPose, MeshFrame};
+use crate::precise::observed::clean::CleanObservation;
+use crate::precise::scored::appearance::PhotoCells;
+use crate::precise::searched::recipe::SearchSettings;
+use crate::precise::searched::search::Search;
 use crate::views::predicted_mask::with_predicted_mask;
 
 /// Margin of the window around the mask or the mesh, relative to its longer side, and in pixels.

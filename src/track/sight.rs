@@ -8,14 +8,14 @@ use super::detection::Lead;
 use super::evidence::{Evidence, of_mask, of_pose};
 use crate::evidence::frame::Frame;
 use crate::geometry::pinhole::Pinhole;
-use crate::precise::SearchSettings;
-use crate::precise::mesh_pyramid::MeshPyramid;
-use crate::precise::pose::CropPose;
-use crate::precise::recipe::{FINE, MIDDLE};
-use crate::precise::refine::Refiner;
-use crate::precise::render::Canvas;
-use crate::precise::score::Score;
-use crate::precise::search::{Found, Search};
+use crate::precise::drawn::mesh_pyramid::MeshPyramid;
+use crate::precise::drawn::pose::CropPose;
+use crate::precise::drawn::render::Canvas;
+use crate::precise::scored::score::Score;
+use crate::precise::searched::recipe::SearchSettings;
+use crate::precise::searched::recipe::{FINE, MIDDLE};
+use crate::precise::searched::refine::Refiner;
+use crate::precise::searched::search::{Found, Search};
 
 /// Steps of the refinement on the middle and on the fine grid.
 const STEPS: [usize; 2] = [7, 6];

@@ -8,14 +8,14 @@ use super::known::{Hypothesis, Part, Ranked, grids, level};
 use super::world_pose::WorldPose;
 use crate::geometry::rotations::exp;
 use crate::geometry::surface_colors::SurfaceColors;
-use crate::precise::appearance::{Appearance, PhotoCells};
-use crate::precise::choice::{Choice, Look, best_roll};
-use crate::precise::color::{DIFFERENT, Judgment, LOOSE, are_rivals};
-use crate::precise::conditioning::Conditioning;
-use crate::precise::lookalikes::{Likeness, Lookalike, ROLLS, among};
-use crate::precise::recipe::{COARSE, FINE, FINEST, MIDDLE};
-use crate::precise::score::{NOISE, Score};
-use crate::precise::search::Found;
+use crate::precise::judged::choice::{Choice, Look, best_roll};
+use crate::precise::judged::color::{DIFFERENT, Judgment, LOOSE, are_rivals};
+use crate::precise::judged::lookalikes::{Likeness, Lookalike, ROLLS, among};
+use crate::precise::scored::appearance::{Appearance, PhotoCells};
+use crate::precise::scored::conditioning::Conditioning;
+use crate::precise::scored::score::{NOISE, Score};
+use crate::precise::searched::recipe::{COARSE, FINE, FINEST, MIDDLE};
+use crate::precise::searched::search::Found;
 
 /// Steps of the refinement of a lookalike, and of the pose that colour chose.
 const STEPS: [usize; 2] = [4, 6];

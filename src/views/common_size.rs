@@ -2,13 +2,13 @@
 
 use super::joint::{Joint, JointView};
 use super::world_pose::{PlacedCamera, WorldPose};
-use crate::precise::conditioning::{DAMPING, DROP, covariance, deviation};
-use crate::precise::objective::Objective;
-use crate::precise::pose::CropPose;
-use crate::precise::prior::Prior;
-use crate::precise::refine::{Refined, Refiner};
-use crate::precise::render::Canvas;
-use crate::precise::score::Weights;
+use crate::precise::drawn::pose::CropPose;
+use crate::precise::drawn::render::Canvas;
+use crate::precise::scored::conditioning::{DAMPING, DROP, covariance, deviation};
+use crate::precise::scored::objective::Objective;
+use crate::precise::scored::prior::Prior;
+use crate::precise::scored::score::Weights;
+use crate::precise::searched::refine::{Refined, Refiner};
 
 /// Standard deviation of the size due to errors that all masks have in common, relative.
 pub const SILHOUETTE_ERROR: f64 = 0.01;

@@ -2,12 +2,12 @@
 
 use super::world_pose::{PlacedCamera, WorldPose};
 use crate::geometry::normal_equations::NormalEquations;
-use crate::precise::ascent::{Ascent, Summit, ascend, limited};
-use crate::precise::objective::Objective;
-use crate::precise::pose::{CropPose, Step};
-use crate::precise::refine::Refiner;
-use crate::precise::render::Canvas;
-use crate::precise::score::Score;
+use crate::precise::drawn::pose::{CropPose, Step};
+use crate::precise::drawn::render::Canvas;
+use crate::precise::scored::objective::Objective;
+use crate::precise::scored::score::Score;
+use crate::precise::searched::ascent::{Ascent, Summit, ascend, limited};
+use crate::precise::searched::refine::Refiner;
 
 /// One view of a joint objective.
 #[derive(Clone, Copy)]

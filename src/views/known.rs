@@ -5,14 +5,14 @@ use glam::DQuat;
 use super::common_size::{DEPTH_ERROR, SILHOUETTE_ERROR, SizeEvidence, mean};
 use super::joint::{Joint, JointScore, JointView};
 use super::world_pose::{PlacedCamera, WorldPose};
-use crate::precise::ascent::Summit;
-use crate::precise::grid::CropGrid;
-use crate::precise::pose::CropPose;
-use crate::precise::ranking::{Scored, distinct};
-use crate::precise::recipe::{COARSE, FINE, FINEST, MIDDLE};
-use crate::precise::refine::Refiner;
-use crate::precise::render::Canvas;
-use crate::precise::search::Search;
+use crate::precise::drawn::pose::CropPose;
+use crate::precise::drawn::render::Canvas;
+use crate::precise::observed::grid::CropGrid;
+use crate::precise::searched::ascent::Summit;
+use crate::precise::searched::ranking::{Scored, distinct};
+use crate::precise::searched::recipe::{COARSE, FINE, FINEST, MIDDLE};
+use crate::precise::searched::refine::Refiner;
+use crate::precise::searched::search::Search;
 
 /// Share of a view's own best score below which a pose contradicts the view, and the one that a view adds at least, so that
 /// one wrong view does not move the others. The second is low: errors of the camera poses cost all views a little, and

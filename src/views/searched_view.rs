@@ -6,14 +6,15 @@ use crate::evidence::observation::Observation;
 use crate::evidence::photo::Photo;
 use crate::geometry::surface_colors::SurfaceColors;
 use crate::pauses::Pauses;
-use crate::precise::color::{Judgment, judgment};
+use crate::precise::drawn::pose::CropPose;
+use crate::precise::drawn::prepared_mesh::PreparedMesh;
+use crate::precise::judged::color::{Judgment, judgment};
 use crate::precise::options::AlignOptions;
-use crate::precise::pose::CropPose;
-use crate::precise::prepared_mesh::PreparedMesh;
-use crate::precise::recipe::FIRST_REFINEMENT;
-use crate::precise::rounds::Rounds;
-use crate::precise::search::{Found, Search};
-use crate::precise::{self, SearchSettings};
+use crate::precise::searched::recipe::FIRST_REFINEMENT;
+use crate::precise::searched::recipe::SearchSettings;
+use crate::precise::searched::rounds::Rounds;
+use crate::precise::searched::search::{Found, Search};
+use crate::precise::searched::start;
 use crate::progress::Stopwatch;
 
 /// A view with a mask, and its search.
@@ -34,7 +35,7 @@ impl SearchedView {
     /// A view before its search; `previous` is the same view after a search with less effort.
     ///
     /// # Errors
-    /// As [`precise::begin`].
+    /// As [`start::begin`].
     pub fn begin(
         (index, camera): (usize, PlacedCamera),
         observation: &Observation,
@@ -44,7 +45,7 @@ impl SearchedView {
         stages: &mut Stopwatch<'_>,
     ) -> Result<Self> {
         let before = previous.map(|view| &view.rounds);
-        let rounds = precise::begin(observation, mesh, before, options, settings, stages)?;
+        let rounds = start::begin(observation, mesh, before, options, settings, stages)?;
         Ok(Self { index, camera, rounds, candidates: Vec::new(), color: None })
     }
 

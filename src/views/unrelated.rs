@@ -6,13 +6,14 @@ use super::searched_view::SearchedView;
 use super::summary::{Summary, SummaryView};
 use crate::error::Result;
 use crate::geometry::similarity::Similarity;
-use crate::precise::color::Judgment;
-use crate::precise::conditioning::Conditioning;
-use crate::precise::confidence::sureness;
+use crate::precise::judged::alternatives::lead;
+use crate::precise::judged::color::Judgment;
+use crate::precise::judged::confidence::sureness;
 use crate::precise::no_candidate;
-use crate::precise::objective::Objective;
-use crate::precise::recipe::{FINE, FINEST, SURE};
-use crate::precise::search::{Found, Search};
+use crate::precise::scored::conditioning::Conditioning;
+use crate::precise::scored::objective::Objective;
+use crate::precise::searched::recipe::{FINE, FINEST, SURE};
+use crate::precise::searched::search::{Found, Search};
 
 /// Score below a view's best at which a pose of it is not tried at the common size.
 const NEAR: f32 = 0.35;
@@ -107,7 +108,7 @@ pub fn unrelated(searched: &[SearchedView]) -> Result<Summary> {
         // All are scored with the mesh as it is, at the common size or their own.
         let others = view.found().get(1..).unwrap_or_default();
         let likely = others.get(..RIVALS).unwrap_or(others);
-        let lead = search.equivalence.lead(found, likely, |other| search.score(&other.pose).total);
+        let lead = lead(&search.equivalence, found, likely, |other| search.score(&other.pose).total);
         let color = view.color.as_ref();
         let lead = lead.max(color.map_or(f64::NEG_INFINITY, Judgment::lead));
         let by_shape = if *agrees { sureness(found, lead, conditioning.as_ref()) } else { 0.0 };

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use crate::geometry::normal_equations::PARAMETERS;
 use crate::geometry::rotations::{exp, matrix_of, quaternion_of};
 use crate::geometry::similarity::Similarity;
-use crate::precise::pose::{CropPose, MeshFrame, Step};
+use crate::precise::drawn::pose::{CropPose, MeshFrame, Step};
 
 /// x_world = e^`log_scale`·R·p + `center`, for p in the [`MeshFrame`].
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,18 +2,18 @@
 
 use glam::{DMat3, DVec2, DVec3, Vec3};
 use sim3align::geometry::rotations::{angle_between, super_fibonacci};
-use sim3align::precise::anchors::Anchor;
-use sim3align::precise::clean::CleanObservation;
-use sim3align::precise::coarse::{Candidate, Coarse};
-use sim3align::precise::grid::CropGrid;
-use sim3align::precise::mesh_pyramid::outermost;
-use sim3align::precise::objective::Objective;
-use sim3align::precise::pose::{CropPose, MeshFrame};
-use sim3align::precise::prior::Prior;
-use sim3align::precise::ranking::{best_of, distinct};
-use sim3align::precise::recipe::{COARSE, SearchSettings};
-use sim3align::precise::render::{Canvas, Model};
-use sim3align::precise::score::Score;
+use sim3align::precise::drawn::mesh_pyramid::outermost;
+use sim3align::precise::drawn::pose::{CropPose, MeshFrame};
+use sim3align::precise::drawn::render::{Canvas, Model};
+use sim3align::precise::observed::anchors::Anchor;
+use sim3align::precise::observed::clean::CleanObservation;
+use sim3align::precise::observed::grid::CropGrid;
+use sim3align::precise::scored::objective::Objective;
+use sim3align::precise::scored::prior::Prior;
+use sim3align::precise::scored::score::Score;
+use sim3align::precise::searched::coarse::{Candidate, Coarse};
+use sim3align::precise::searched::ranking::{best_of, distinct};
+use sim3align::precise::searched::recipe::{COARSE, SearchSettings};
 use sim3align::report::Effort;
 use wasm_bindgen_test::wasm_bindgen_test;
 

@@ -2,12 +2,12 @@
 
 use glam::{DQuat, DVec2, DVec3};
 use sim3align::geometry::rotations::exp;
-use sim3align::precise::grid::CropGrid;
-use sim3align::precise::objective::Objective;
-use sim3align::precise::pose::CropPose;
-use sim3align::precise::prior::Prior;
-use sim3align::precise::render::{Canvas, Model};
-use sim3align::precise::score::{Background, Score, Scoring, Weights};
+use sim3align::precise::drawn::pose::CropPose;
+use sim3align::precise::drawn::render::{Canvas, Model};
+use sim3align::precise::observed::grid::CropGrid;
+use sim3align::precise::scored::objective::Objective;
+use sim3align::precise::scored::prior::Prior;
+use sim3align::precise::scored::score::{Background, Score, Scoring, Weights};
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::precise_scene::{FOCAL, model, noisy_grid, pose, rotation, scoring};

@@ -4,18 +4,18 @@
 
 use glam::DQuat;
 
-use super::anchors::{Anchor, anchors};
 use super::coarse::Coarse;
-use super::grid::CropGrid;
-use super::pose::CropPose;
 use super::ranking::{best_of, distinct_up_to};
 use super::recipe::{COARSE, FINE, FIRST_REFINEMENT, MIN_ROTATIONS, RANKING, ROUNDS, Round, TURNING, Task};
 use super::refine::Refiner;
-use super::render::Canvas;
 use super::search::{Found, Search};
 use crate::geometry::rotations::super_fibonacci;
 use crate::geometry::similarity::Similarity;
 use crate::pauses::{Boxed, Pauses, boxed};
+use crate::precise::drawn::pose::CropPose;
+use crate::precise::drawn::render::Canvas;
+use crate::precise::observed::anchors::{Anchor, anchors};
+use crate::precise::observed::grid::CropGrid;
 
 /// Score below the best pose at which a turn of it is not refined, and at which a refined one is not ranked.
 const FAR: f32 = 0.8;

@@ -1,22 +1,10 @@
 //! The recipe of the search: grids and rounds for each effort.
 
-use super::clean::CleanObservation;
-use super::score::{Scoring, Weights};
-use super::turns::TURNS;
+use crate::precise::drawn::turns::TURNS;
+use crate::precise::observed::clean::CleanObservation;
+pub use crate::precise::observed::resolution::{COARSE, FINE, FINEST, GRIDS, Grid, MIDDLE, SIEVE};
+use crate::precise::scored::score::{Scoring, Weights};
 use crate::report::Effort;
-
-/// Grids of the search, coarse to fine.
-pub const GRIDS: usize = 5;
-/// The grid on which every rotation is rendered.
-pub const SIEVE: usize = 0;
-/// The grid on which promising poses, and the neighbourhood of a given pose, are rendered.
-pub const COARSE: usize = 1;
-/// The grid of the first refinements.
-pub const MIDDLE: usize = 2;
-/// The grid of the final ranking.
-pub const FINE: usize = 3;
-/// The grid of the final refinement.
-pub const FINEST: usize = 4;
 
 /// Rounds of the search.
 pub const ROUNDS: usize = 7;
@@ -26,20 +14,6 @@ pub const FIRST_REFINEMENT: usize = 2;
 pub const TURNING: usize = 4;
 /// The ranking round, whose scores are those of the result.
 pub const RANKING: usize = 5;
-
-/// The resolution of a grid and of the mesh rendered on it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Grid {
-    /// Approximate number of cells of the mask, at most its number of pixels.
-    pub cells: usize,
-    /// Number of triangles of the decimated mesh.
-    pub triangles: usize,
-    /// Depth error that halves the credit of a cell, relative to the observed diagonal.
-    pub depth_error: f64,
-    /// Factor of the weight of the outline, which is not informative on cells as wide as the errors of the rotation
-    /// grid.
-    pub outline: f32,
-}
 
 /// The task of a round for each of its poses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

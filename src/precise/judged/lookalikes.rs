@@ -2,13 +2,13 @@
 
 use glam::DQuat;
 
-use super::coarse::Candidate;
-use super::pose::CropPose;
-use super::ranking::{Scored, best_of};
-use super::recipe::COARSE;
-use super::render::Canvas;
-use super::rounds::Rounds;
 use crate::geometry::rotations::angle_between;
+use crate::precise::drawn::pose::CropPose;
+use crate::precise::drawn::render::Canvas;
+use crate::precise::searched::coarse::Candidate;
+use crate::precise::searched::ranking::{Scored, best_of};
+use crate::precise::searched::recipe::COARSE;
+use crate::precise::searched::rounds::Rounds;
 
 /// Number of rolls about each principal axis, and of each half turn followed by a roll.
 pub const ROLLS: usize = 24;

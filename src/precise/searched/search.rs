@@ -4,23 +4,23 @@ use std::rc::Rc;
 
 use glam::DQuat;
 
-use super::anchors::Anchor;
-use super::clean::CleanObservation;
 use super::coarse::{Candidate, Coarse};
-use super::conditioning::Conditioning;
-use super::equivalence::Equivalence;
-use super::grid::CropGrid;
-use super::mesh_pyramid::MeshPyramid;
-use super::objective::Objective;
-use super::pose::CropPose;
-use super::prior::Prior;
 use super::ranking::{Scored, distinct};
 use super::recipe::{COARSE, FINE, SearchSettings};
 use super::refine::{Refined, Refiner};
-use super::render::Canvas;
-use super::score::Score;
-use super::surroundings::Surroundings;
 use crate::geometry::rotations::angle_between;
+use crate::precise::drawn::equivalence::Equivalence;
+use crate::precise::drawn::mesh_pyramid::MeshPyramid;
+use crate::precise::drawn::pose::CropPose;
+use crate::precise::drawn::render::Canvas;
+use crate::precise::observed::anchors::Anchor;
+use crate::precise::observed::clean::CleanObservation;
+use crate::precise::observed::grid::CropGrid;
+use crate::precise::scored::conditioning::Conditioning;
+use crate::precise::scored::objective::Objective;
+use crate::precise::scored::prior::Prior;
+use crate::precise::scored::score::Score;
+use crate::precise::scored::surroundings::Surroundings;
 use crate::report::Effort;
 
 /// Rotations tried around a given pose, radians, and the number that are refined.

@@ -1,7 +1,7 @@
 //! Levenberg-Marquardt ascent on a score that is bounded by a quadratic at every pose.
 
-use super::pose::Step;
 use crate::geometry::normal_equations::{NormalEquationsOf, PARAMETERS};
+use crate::precise::drawn::pose::Step;
 
 /// A score of poses with `N` parameters to be maximised.
 pub trait Ascent<const N: usize = PARAMETERS> {

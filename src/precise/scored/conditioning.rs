@@ -2,9 +2,9 @@
 
 use glam::{DMat3, DVec3};
 
-use super::pose::CropPose;
 use crate::geometry::normal_equations::{NormalEquationsOf, PARAMETERS};
 use crate::geometry::symmetric_eigen::SymmetricEigen;
+use crate::precise::drawn::pose::CropPose;
 
 /// Score decrease at one standard deviation, calibrated so that the errors of correct poses on generated cases have the
 /// reported size.

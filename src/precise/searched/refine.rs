@@ -7,11 +7,11 @@
 use glam::Vec3;
 
 use super::ascent::{Ascent, Summit, ascend, limited};
-use super::objective::Objective;
-use super::pose::{CropPose, Step};
-use super::render::Canvas;
-use super::score::{Background, Score, is_outline};
 use crate::geometry::normal_equations::{NormalEquations, NormalEquationsOf, PARAMETERS};
+use crate::precise::drawn::pose::{CropPose, Step};
+use crate::precise::drawn::render::Canvas;
+use crate::precise::scored::objective::Objective;
+use crate::precise::scored::score::{Background, Score, is_outline};
 
 /// The problem of a refinement.
 pub struct Refiner<'a> {

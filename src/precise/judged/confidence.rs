@@ -6,9 +6,9 @@
 //! independent terms, and how sharply the score falls around the pose.
 
 use super::choice::SHAPE;
-use super::conditioning::Conditioning;
-use super::score::NOISE;
-use super::search::Found;
+use crate::precise::scored::conditioning::Conditioning;
+use crate::precise::scored::score::NOISE;
+use crate::precise::searched::search::Found;
 use crate::report::Alternative;
 
 /// Intercept and coefficients of the regression: overlap, depth, outline, the margin relative to [`NOISE`], and the

@@ -3,15 +3,15 @@
 use glam::{DMat3, DQuat, DVec2, Vec3};
 use wide::f32x4;
 
-use super::anchors::Anchor;
-use super::grid::CropGrid;
-use super::lanes::{LANES, first, four};
-use super::objective::Objective;
-use super::pose::CropPose;
 use super::ranking::Scored;
-use super::render::Canvas;
-use super::score::Score;
 use crate::geometry::order::median_of_positive;
+use crate::precise::drawn::lanes::{LANES, first, four};
+use crate::precise::drawn::pose::CropPose;
+use crate::precise::drawn::render::Canvas;
+use crate::precise::observed::anchors::Anchor;
+use crate::precise::observed::grid::CropGrid;
+use crate::precise::scored::objective::Objective;
+use crate::precise::scored::score::Score;
 
 /// Iterations of the fit of a perspective box; each gains an order of magnitude.
 const BOX_ROUNDS: usize = 3;

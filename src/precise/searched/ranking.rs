@@ -2,8 +2,8 @@
 
 use glam::DQuat;
 
-use super::equivalence::Equivalence;
 use crate::geometry::order;
+use crate::precise::drawn::equivalence::Equivalence;
 
 /// A pose with a score.
 pub trait Scored: Copy {

@@ -8,14 +8,14 @@
 use glam::{DMat3, DVec3, Mat3, Vec3};
 
 use super::ascent::{Ascent, Summit, ascend};
-use super::conditioning::{Covariance, DROP, covariance, hold_roll};
-use super::pose::{CropPose, Step};
 use super::refine::{Refined, Refiner};
-use super::render::Canvas;
-use super::score::Score;
 use crate::geometry::normal_equations::{NormalEquations, NormalEquationsOf, PARAMETERS};
 use crate::geometry::rotations::exp;
 use crate::geometry::surface::SurfaceMoments;
+use crate::precise::drawn::pose::{CropPose, Step};
+use crate::precise::drawn::render::Canvas;
+use crate::precise::scored::conditioning::{Covariance, DROP, covariance, hold_roll};
+use crate::precise::scored::score::Score;
 
 /// Number of parameters of E.
 pub const PROPORTIONS: usize = 5;

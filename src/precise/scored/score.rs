@@ -3,9 +3,9 @@
 use wide::bytemuck::cast;
 use wide::{f32x4, i32x4};
 
-use super::grid::CropGrid;
-use super::lanes::{LANES, count, first, four, four_set, plus};
-use super::render::{Canvas, Model};
+use crate::precise::drawn::lanes::{LANES, count, first, four, four_set, plus};
+use crate::precise::drawn::render::{Canvas, Model};
+use crate::precise::observed::grid::CropGrid;
 use crate::report::ScoreTerms;
 
 /// Score difference attributed to noise. In generated cases won by a flip, the true pose scores lower by about this

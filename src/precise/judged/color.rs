@@ -8,25 +8,25 @@ use std::rc::Rc;
 
 use glam::DQuat;
 
-use super::appearance::{Appearance, PhotoCells};
 use super::choice::{Choice, HIDDEN, Look, SHAPE, best_roll};
-use super::clean::CleanObservation;
-use super::equivalence::{self, Equivalence};
 use super::lookalikes::{Likeness, Lookalike, lookalikes};
-use super::pose::CropPose;
-use super::prepared_mesh::PreparedMesh;
-use super::recipe::{FINE, FINEST, MIDDLE, SearchSettings};
-use super::refine::Refiner;
-use super::render::Canvas;
-use super::rounds::Rounds;
-use super::score::{NOISE, Score};
-use super::search::{Found, Search};
 use crate::evidence::observation::Observation;
 use crate::evidence::photo::{Photo, PhotoRegion};
 use crate::geometry::rotations::{angle_between, exp};
 use crate::geometry::similarity::Similarity;
 use crate::geometry::surface_colors::SurfaceColors;
 use crate::pauses::{Boxed, Pauses, boxed};
+use crate::precise::drawn::equivalence::{self, Equivalence};
+use crate::precise::drawn::pose::CropPose;
+use crate::precise::drawn::prepared_mesh::PreparedMesh;
+use crate::precise::drawn::render::Canvas;
+use crate::precise::observed::clean::CleanObservation;
+use crate::precise::scored::appearance::{Appearance, PhotoCells};
+use crate::precise::scored::score::{NOISE, Score};
+use crate::precise::searched::recipe::{FINE, FINEST, MIDDLE, SearchSettings};
+use crate::precise::searched::refine::Refiner;
+use crate::precise::searched::rounds::Rounds;
+use crate::precise::searched::search::{Found, Search};
 use crate::report::{ColorReport, Effort};
 
 /// Contrast between two poses, relative to the noise, from which on they look different.
