@@ -12,14 +12,14 @@ use crate::precise::judged::confidence::sureness;
 use crate::precise::no_candidate;
 use crate::precise::scored::conditioning::Conditioning;
 use crate::precise::scored::objective::Objective;
-use crate::precise::searched::recipe::{FINE, FINEST, SURE};
-use crate::precise::searched::search::{Found, Search};
+use crate::precise::searched::recipe::{COMMON_SIZE, FINE, SURE};
+use crate::precise::searched::refine::Found;
+use crate::precise::searched::search::Search;
 
 /// Score below a view's best at which a pose of it is not tried at the common size.
 const NEAR: f32 = 0.35;
-/// Poses of a view tried at the common size, and the steps of their refinement on the fine and the finest grid.
+/// Poses of a view tried at the common size.
 const TRIED: usize = 5;
-const STEPS: [usize; 2] = [14, 8];
 /// Number of other poses of a view that its lead is measured against.
 const RIVALS: usize = 8;
 /// Times that the size follows from the poses that were refined at the size before.
@@ -37,6 +37,7 @@ pub struct CommonSize {
 
 /// Finds the common size; `None` if no view has a pose.
 pub fn with_common_size(searched: &[SearchedView]) -> Option<CommonSize> {
+    let [rank, polish] = COMMON_SIZE;
     let mut renders = 0;
     let likely: Vec<Vec<Found>> = searched.iter().map(likely).collect();
     let evidence: Vec<Vec<SizeEvidence>> = searched
@@ -60,10 +61,10 @@ pub fn with_common_size(searched: &[SearchedView]) -> Option<CommonSize> {
                 let tried = if round == 0 { likely[k].clone() } else { vec![poses[k]] };
                 let refined = tried.into_iter().map(|found| {
                     let own = found.pose.size + found.pose.distance;
-                    let refined =
-                        refine_at(fine(view.search()), found.pose, if agrees[k] { size } else { own }, STEPS[0]);
+                    let at = if agrees[k] { size } else { own };
+                    let refined = refine_at(view.search().objective(rank.grid), found.pose, at, rank.steps);
                     renders += refined.renders;
-                    Found::from(refined)
+                    refined
                 });
                 best_of(refined)
             })
@@ -77,11 +78,11 @@ pub fn with_common_size(searched: &[SearchedView]) -> Option<CommonSize> {
     let views = searched.iter().zip(poses).zip(agrees).map(|((view, found), agrees)| {
         let own = found.pose.size + found.pose.distance;
         let search = view.search();
-        let grid = search.grid(FINEST);
-        let refined = refine_at(search.objective(FINEST, &grid), found.pose, if agrees { size } else { own }, STEPS[1]);
+        let refined =
+            refine_at(search.objective(polish.grid), found.pose, if agrees { size } else { own }, polish.steps);
         renders += refined.renders;
         // The score stays that of the fine grid, because scores of different grids are not comparable.
-        (Found { score: search.score(&refined.pose), renders: 0, ..refined.into() }, agrees)
+        (Found { score: search.score(&refined.pose), renders: 0, ..refined }, agrees)
     });
     let views = views.collect();
     Some(CommonSize { sd, views, renders })
@@ -183,5 +184,5 @@ fn best_of(found: impl Iterator<Item = Found>) -> Option<Found> {
 }
 
 fn fine(search: &Search) -> Objective<'_> {
-    search.objective(FINE, &search.fine)
+    search.objective(FINE)
 }

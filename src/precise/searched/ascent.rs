@@ -28,6 +28,7 @@ pub trait Ascent<const N: usize = PARAMETERS> {
 }
 
 /// The result of an ascent.
+#[derive(Debug, Clone, Copy)]
 pub struct Summit<P, S> {
     /// The pose.
     pub pose: P,
@@ -37,6 +38,13 @@ pub struct Summit<P, S> {
     pub renders: usize,
     /// Whether the ascent converged: the last step hardly increased the score, or no step would.
     pub converged: bool,
+}
+
+impl<P, S> Summit<P, S> {
+    /// A pose that was scored as it is.
+    pub fn of(pose: P, score: S) -> Self {
+        Self { pose, score, renders: 1, converged: false }
+    }
 }
 
 /// Initial damping, and its factors after an accepted and after a rejected step.
@@ -59,7 +67,7 @@ pub fn ascend<const N: usize, A: Ascent<N>>(
 ) -> Summit<A::Pose, A::Score> {
     let pose = problem.held(pose);
     let score = problem.score(&pose);
-    let mut best = Summit { pose, score, renders: 1, converged: false };
+    let mut best = Summit::of(pose, score);
     let mut equations = problem.equations(&best.pose, &best.score);
     let mut damping = DAMPING[0];
     for _ in 0..iterations {

@@ -8,7 +8,7 @@
 use glam::{DMat3, DVec3, Mat3, Vec3};
 
 use super::ascent::{Ascent, Summit, ascend};
-use super::refine::{Refined, Refiner};
+use super::refine::{Found, Refiner};
 use crate::geometry::normal_equations::{NormalEquations, NormalEquationsOf, PARAMETERS};
 use crate::geometry::rotations::exp;
 use crate::geometry::surface::SurfaceMoments;
@@ -246,7 +246,7 @@ impl Refiner<'_> {
         pose: CropPose,
         iterations: usize,
         surface: &SurfaceMoments,
-    ) -> Refined {
+    ) -> Found {
         if self.lock_scale {
             return self.refine(canvas, pose, iterations);
         }
@@ -256,6 +256,6 @@ impl Refiner<'_> {
         // At a bound of the scale, it stays there.
         let is_held = self.objective.prior.holds(&pose.pose);
         let nearest = self.objective.prior.held(pose.nearest(surface, is_held));
-        Refined { pose: if nearest.is_finite() { nearest } else { pose.pose }, score, renders, converged }
+        Found { pose: if nearest.is_finite() { nearest } else { pose.pose }, score, renders, converged }
     }
 }
