@@ -286,7 +286,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             let (conditioning, _) = search.conditioning(&found.pose);
             let scale_sd = self.size.value().map_or(1.0, |(_, sd)| sd);
             let conditioning = conditioning
-                .map(|held| precise::scored::conditioning::Conditioning { scale: scale_sd.min(held.scale), ..held });
+                .map(|own| precise::scored::conditioning::Conditioning { scale: scale_sd.min(own.scale), ..own });
             sureness(&found, self.lead.margin, conditioning.as_ref()) * self.lead.turn_certainty
         };
         let camera_from_mesh = pose.similarity(&self.sight.mesh.frame);

@@ -95,7 +95,7 @@ impl Photos<'_> {
             chosen.pose = self.views.polished(&polish, chosen.pose);
         }
         let part = self.views.parts.first()?;
-        let loosest = || conditioning.map(|held| held.rotation).filter(|(deviation, _)| *deviation >= LOOSE);
+        let loosest = || conditioning.map(|own| own.rotation).filter(|(deviation, _)| *deviation >= LOOSE);
         let axis = part.search.equivalence.free_axis(chosen.pose.rotation).or_else(|| loosest().map(|(_, axis)| axis));
         let rolled = axis.filter(|_| choice.is_used).and_then(|axis| self.roll(&mut joint, &chosen, axis));
         let gain = rolled.map_or(0.0, |(_, gain)| gain);

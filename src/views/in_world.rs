@@ -22,7 +22,7 @@ use crate::precise::judged::confidence::confidence;
 use crate::precise::no_candidate;
 use crate::precise::observed::clean::CleanObservation;
 use crate::precise::scored::appearance::PhotoCells;
-use crate::precise::scored::conditioning::{Conditioning, covariance, deviation, hold_roll, widest};
+use crate::precise::scored::conditioning::{Conditioning, covariance, deviation, fix_roll, widest};
 use crate::precise::scored::score::{NOISE, Score};
 use crate::precise::searched::recipe::{FINE, SURE};
 use crate::precise::searched::refine::Found;
@@ -118,7 +118,7 @@ fn verdict(
         let score = joint.score(&best.pose);
         let mut equations = joint.equations(&best.pose, &score);
         let free_axis = first.search.equivalence.free_axis(best.pose.rotation);
-        free_axis.into_iter().for_each(|axis| hold_roll(&mut equations, axis));
+        free_axis.into_iter().for_each(|axis| fix_roll(&mut equations, axis));
         let own = conditioning(&equations, &best.pose);
         (score, own.map(|own| Conditioning { scale: size_sd.unwrap_or(own.scale), ..own }))
     };

@@ -97,7 +97,7 @@ pub fn unrelated(searched: &[SearchedView]) -> Result<Summary> {
     let effort = searched.first().map_or_else(Default::default, |view| view.search().settings.effort);
     let first = common.views.iter().position(|(_, agrees)| *agrees).unwrap_or(0);
     let mut views: Vec<SummaryView> = Vec::new();
-    let mut held: Vec<Option<Conditioning>> = Vec::new();
+    let mut conditioned: Vec<Option<Conditioning>> = Vec::new();
     let mut least: f64 = 1.0;
     for (view, (found, agrees)) in searched.iter().zip(&common.views) {
         let search = view.search();
@@ -127,18 +127,18 @@ pub fn unrelated(searched: &[SearchedView]) -> Result<Summary> {
             score: found.score,
             color: color.map(|color| color.report),
         });
-        held.push(conditioning);
+        conditioned.push(conditioning);
     }
     let world_from_mesh = views[first].camera_from_mesh;
     for (k, view) in views.iter_mut().enumerate().filter(|(k, _)| *k != first) {
         let relative = world_from_mesh.compose(&view.camera_from_mesh.inverse());
         view.world_from_camera = Similarity { scale: 1.0, ..relative };
         let sd = |part: fn(&Conditioning) -> f64| {
-            let (a, b) = (held[first].as_ref().map(part)?, held[k].as_ref().map(part)?);
+            let (a, b) = (conditioned[first].as_ref().map(part)?, conditioned[k].as_ref().map(part)?);
             Some((a * a + b * b).sqrt())
         };
-        let turn = sd(|held| held.rotation.0);
-        let moved = sd(|held| held.lateral_m.max(held.distance_m));
+        let turn = sd(|own| own.rotation.0);
+        let moved = sd(|own| own.lateral_m.max(own.distance_m));
         view.rotation_sd_deg = turn.map(f64::to_degrees);
         view.position_sd_m = turn.zip(moved).map(|(turn, moved)| {
             // The camera swings about the object as far as the rotation of the object is uncertain.
@@ -149,12 +149,12 @@ pub fn unrelated(searched: &[SearchedView]) -> Result<Summary> {
     let used = || views.iter().filter(|view| view.role == ViewRole::Used);
     let confidence = used().map(|view| view.confidence).fold(1.0, f64::min);
     let free_axis = searched[first].search().equivalence.free_axis(common.views[first].0.pose.rotation);
-    let uncertainty = held[first].map(|held| WorldUncertainty {
+    let uncertainty = conditioned[first].map(|own| WorldUncertainty {
         scale: common.sd,
-        rotation_deg: held.rotation.0.to_degrees(),
-        rotation_axis: held.rotation.1.to_array(),
+        rotation_deg: own.rotation.0.to_degrees(),
+        rotation_axis: own.rotation.1.to_array(),
         free_axis: free_axis.map(|axis| axis.to_array()),
-        position_m: held.lateral_m.max(held.distance_m),
+        position_m: own.lateral_m.max(own.distance_m),
     });
     Ok(Summary {
         world_from_mesh,

@@ -167,8 +167,7 @@ pub fn roll(
     pose: CropPose,
     loose: f64,
 ) -> Option<(CropPose, f64)> {
-    let loosest =
-        || search.conditioning(&pose).0.map(|held| held.rotation).filter(|(deviation, _)| *deviation >= loose);
+    let loosest = || search.conditioning(&pose).0.map(|own| own.rotation).filter(|(deviation, _)| *deviation >= loose);
     let axis = search.equivalence.free_axis(pose.rotation).or_else(|| loosest().map(|(_, axis)| axis))?;
     let rolled = |angle: f64| search.mesh.turns.turned(&pose, exp(axis * angle) * pose.rotation);
     let mut canvas = Canvas::default();

@@ -11,7 +11,7 @@ pub trait Ascent<const N: usize = PARAMETERS> {
     type Score;
 
     /// The pose that the prior allows.
-    fn held(&self, pose: Self::Pose) -> Self::Pose;
+    fn allowed(&self, pose: Self::Pose) -> Self::Pose;
 
     /// Renders a pose and scores it.
     fn score(&mut self, pose: &Self::Pose) -> Self::Score;
@@ -65,7 +65,7 @@ pub fn ascend<const N: usize, A: Ascent<N>>(
     pose: A::Pose,
     iterations: usize,
 ) -> Summit<A::Pose, A::Score> {
-    let pose = problem.held(pose);
+    let pose = problem.allowed(pose);
     let score = problem.score(&pose);
     let mut best = Summit::of(pose, score);
     let mut equations = problem.equations(&best.pose, &best.score);
@@ -73,7 +73,7 @@ pub fn ascend<const N: usize, A: Ascent<N>>(
     for _ in 0..iterations {
         let Some(step) = equations.solve(damping) else { break };
         let Some(next) = problem.moved(&best.pose, step) else { break };
-        let next = problem.held(next);
+        let next = problem.allowed(next);
         let score = problem.score(&next);
         best.renders += 1;
         let gain = A::total(&score) - A::total(&best.score);

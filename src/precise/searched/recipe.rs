@@ -106,6 +106,11 @@ pub const TRACKED: [Stage; 3] = [Stage::of_one(MIDDLE, 0), Stage::of_one(MIDDLE,
 /// Lookalikes whose colours are compared, and the pose that colour chooses.
 pub const COLORED: [Stage; 2] = [Stage::of_one(MIDDLE, 4), Stage::of_one(FINEST, 6)];
 
+/// Distance between two outlines that halves their agreement, cells.
+const OUTLINE_CELLS: f32 = 2.0;
+/// Least and most factor by which a work budget scales a search.
+const SCALING: [f64; 2] = [0.02, 20.0];
+
 /// Minimum number of rotations of a search whose work is limited.
 pub const MIN_ROTATIONS: usize = 60;
 
@@ -208,7 +213,7 @@ impl SearchSettings {
         let turn = &mut within.rounds[TURNING];
         (turn.work, turn.keep) = (turn.work.min(LIMITED_TURNS[0]), turn.keep.min(LIMITED_TURNS[1]));
         let turns = within.cost_of_turns();
-        let share = ((budget - turns) / (within.cost() - turns)).clamp(0.02, 20.0);
+        let share = ((budget - turns) / (within.cost() - turns)).clamp(SCALING[0], SCALING[1]);
         let scaled = |count: usize, least: usize| ((count as f64 * share) as usize).max(least);
         within.rounds[0].work = scaled(self.rotations(), MIN_ROTATIONS);
         for (round, least) in within.rounds.iter_mut().zip([30, 6, 3, 2]) {
@@ -227,7 +232,7 @@ impl SearchSettings {
             weights,
             depth_m: (depth_error * clean.diagonal_m) as f32,
             occluder_m: if self.occlusion { occluder_m as f32 } else { f32::INFINITY },
-            outline_cells: 2.0,
+            outline_cells: OUTLINE_CELLS,
         }
     }
 }

@@ -42,17 +42,17 @@ const MIN_OUTLINE_CELLS: f32 = 0.5;
 const FAR_OUTLINE: f32 = 1.0 / 9.0;
 
 /// A refinement on one grid, whose last render is on the canvas.
-struct OnGrid<'a, 'c> {
-    refiner: &'a Refiner<'a>,
-    canvas: &'c mut Canvas,
+pub(super) struct OnGrid<'a, 'c> {
+    pub(super) refiner: &'a Refiner<'a>,
+    pub(super) canvas: &'c mut Canvas,
 }
 
 impl Ascent for OnGrid<'_, '_> {
     type Pose = CropPose;
     type Score = Score;
 
-    fn held(&self, pose: CropPose) -> CropPose {
-        self.refiner.objective.prior.held(pose)
+    fn allowed(&self, pose: CropPose) -> CropPose {
+        self.refiner.objective.prior.bounded(pose)
     }
 
     fn score(&mut self, pose: &CropPose) -> Score {
@@ -75,7 +75,7 @@ impl Ascent for OnGrid<'_, '_> {
 impl Refiner<'_> {
     /// Refines `pose` in at most `iterations` steps.
     pub fn refine(&self, canvas: &mut Canvas, pose: CropPose, iterations: usize) -> Found {
-        ascend(&mut OnGrid { refiner: self, canvas }, pose, iterations)
+        ascend::<PARAMETERS, _>(&mut OnGrid { refiner: self, canvas }, pose, iterations)
     }
 
     /// A pose after a step, limited to the range in which the quadratic is valid; `None` if it is not finite.
@@ -86,7 +86,7 @@ impl Refiner<'_> {
         }
         let step = limited(step);
         let next = pose.moved(&step);
-        let is_finite = step.iter().all(|x| x.is_finite()) && self.objective.prior.held(next).is_finite();
+        let is_finite = step.iter().all(|x| x.is_finite()) && self.objective.prior.bounded(next).is_finite();
         is_finite.then_some(next)
     }
 

@@ -159,8 +159,8 @@ impl Search {
     }
 
     /// Whether a pose is at a bound of a scale that is not fixed.
-    pub fn is_held(&self, pose: &CropPose) -> bool {
-        self.prior.holds(pose)
+    pub fn is_at_bound(&self, pose: &CropPose) -> bool {
+        self.prior.is_at_bound(pose)
     }
 
     /// The score of any pose on the fine grid.
@@ -199,9 +199,10 @@ impl Search {
         let free_axis = self.equivalence.free_axis(pose.rotation);
         let covariance = refiner.covariance(&mut canvas, &score, pose, proportions, free_axis);
         let conditioning = covariance.map(|covariance| Conditioning::new(&covariance, pose));
-        let upright = |held: Conditioning| match self.equivalence.is_sphere() {
-            true => Conditioning { rotation: (0.0, held.rotation.1), ..held },
-            false => held,
+        // A sphere has no rotation that could be wrong.
+        let upright = |own: Conditioning| match self.equivalence.is_sphere() {
+            true => Conditioning { rotation: (0.0, own.rotation.1), ..own },
+            false => own,
         };
         (conditioning.map(upright), depth_rms_m)
     }
