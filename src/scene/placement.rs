@@ -1,7 +1,7 @@
 //! Placements: what the alignment of an object tells about it to the rest of the scene.
 
+use crate::precise::searched::ranking::Found;
 use crate::precise::searched::recipe::SearchSettings;
-use crate::precise::searched::refine::Found;
 use std::rc::Rc;
 
 use glam::{DVec3, Vec3};

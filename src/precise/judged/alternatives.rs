@@ -4,7 +4,7 @@ use super::color::Rival;
 use crate::geometry::rotations::angle_between;
 use crate::precise::drawn::equivalence::{DIFFERENT, Equivalence};
 use crate::precise::scored::score::NOISE;
-use crate::precise::searched::refine::Found;
+use crate::precise::searched::ranking::Found;
 use crate::precise::searched::search::Search;
 use crate::report::Alternative;
 

@@ -3,8 +3,8 @@
 use core::ops::Range;
 use std::rc::Rc;
 
+use super::ranking::Found;
 use super::recipe::{SearchSettings, Task};
-use super::refine::Found;
 use super::rounds::Rounds;
 use super::search::Search;
 use crate::error::{Error, ErrorCode, Result};
