@@ -6,7 +6,7 @@ use sim3align::align::{align, align_paper};
 use sim3align::metrics::Metrics;
 use sim3align::options::Options;
 use sim3align::paper::options::{GuardMode, PaperOptions};
-use sim3align::precise::recipe::ROUNDS;
+use sim3align::precise::searched::recipe::ROUNDS;
 use sim3align::progress::{Host, Stage};
 use sim3align::report::Preset;
 use sim3align::report::{PaperAlignment, Sim3};
@@ -47,13 +47,13 @@ fn finds_a_clean_object_near_its_pose_and_reports_how() {
     let consistency = [scored.metrics, metrics].map(|m| m.normal_consistency.unwrap());
     assert!((consistency[0] - consistency[1]).abs() < 2e-3, "{consistency:?}");
     assert_eq!(scored.metrics, Metrics { normal_consistency: scored.metrics.normal_consistency, ..metrics });
-    assert_eq!(scored.diagnostics.scale_ratio, result.diagnostics.scale_ratio);
+    assert_eq!(scored.diagnostics.scale_ratio, result.diagnostics.common.scale_ratio);
     assert!(result.metrics.unwrap().iou.unwrap() > 0.7, "{:?}", result.metrics);
     let counts = result.diagnostics.counts;
     assert!(counts.inliers >= 3 && counts.inliers <= counts.matches, "{counts:?}");
     assert!(counts.source_voxels < counts.source_points && counts.target_voxels < counts.target_points, "{counts:?}");
     assert!(
-        !result.diagnostics.collapsed && !result.diagnostics.clamped && result.warnings.is_empty(),
+        !result.diagnostics.common.collapsed && !result.diagnostics.common.clamped && result.warnings.is_empty(),
         "{:?}",
         result.warnings
     );
@@ -81,12 +81,12 @@ const EXPECTED: u64 = 0x04da_e448_130a_6309;
 fn a_scale_at_the_guard_is_reported() {
     let narrow = PaperOptions { guard: Some([1.0, 1.0]), guard_mode: GuardMode::Clamp, ..paper() };
     let clamped = solve(&narrow);
-    assert!(clamped.diagnostics.clamped, "{:?}", clamped.diagnostics);
+    assert!(clamped.diagnostics.common.clamped, "{:?}", clamped.diagnostics);
     assert!(clamped.warnings.iter().any(|w| w.code == WarningCode::ScaleClamped), "{:?}", clamped.warnings);
     // The refinement is stopped at the guard too, and says so.
     let tight = PaperOptions { lock_scale: false, guard: Some([0.999, 1.001]), ..paper() };
     let stopped = solve(&tight).diagnostics;
-    assert!(stopped.clamped && stopped.counts.clamped == 0, "{stopped:?}");
+    assert!(stopped.common.clamped && stopped.counts.clamped == 0, "{stopped:?}");
 }
 
 #[derive(Default)]
@@ -130,11 +130,11 @@ fn progress_never_falls_and_every_stage_is_timed() {
     let result = align_paper(&observe(&mesh, 1.0), &mesh, &paper(), &mut listener).unwrap();
     assert!(listener.calls.windows(2).all(|w| w[0].1 <= w[1].1), "{:?}", listener.calls);
     assert_eq!(listener.calls.last().unwrap().1, 1.0);
-    let timed = result.diagnostics.timings_ms.stages();
+    let timed = result.diagnostics.common.timings_ms.stages();
     let names: Vec<&str> = timed.iter().map(|(stage, _)| stage.as_str()).collect();
     assert_eq!(names, ["observe", "sample", "normals", "features", "matching", "ransac", "filter", "icp", "metrics"]);
     assert!(timed.iter().all(|(_, ms)| *ms == 1.0), "{timed:?}");
-    assert_eq!(result.diagnostics.timings_ms.total_ms(), 9.0);
+    assert_eq!(result.diagnostics.common.timings_ms.total_ms(), 9.0);
 }
 
 #[wasm_bindgen_test(unsupported = test)]
@@ -233,11 +233,7 @@ fn the_default_searches_by_rendering() {
     let mut listener = Listener::default();
     let result = align(&observation, &mesh, &AlignOptions::default(), &mut listener).unwrap();
     assert_eq!(result.diagnostics.common.preset, Preset::Precise);
-    assert!(
-        result.diagnostics.score > 0.0 && result.diagnostics.common.counts.renders > 0,
-        "{:?}",
-        result.diagnostics.common.counts
-    );
+    assert!(result.diagnostics.score > 0.0 && result.diagnostics.counts.renders > 0, "{:?}", result.diagnostics.counts);
     assert!(listener.calls.windows(2).all(|w| w[0].1 <= w[1].1), "{:?}", listener.calls);
     assert_eq!(listener.calls.last().unwrap().1, 1.0);
     for name in ["prepare", "search", "refine"] {

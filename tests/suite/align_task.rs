@@ -1,6 +1,7 @@
 //! Alignments in steps: pauses anywhere change no bit of the result.
 
 use sim3align::align::{align, align_task};
+use sim3align::precise::searched::start::prepare;
 use sim3align::progress::Timings;
 
 use crate::prelude::*;
@@ -41,7 +42,7 @@ fn pauses_change_nothing() {
 fn a_prepared_mesh_gives_the_same_bits_at_every_quality() {
     let mesh = body();
     let prepared = PreparedMesh::new(mesh.clone());
-    prepared.prepare().unwrap();
+    prepare(&prepared).unwrap();
     for quality in [Quality::Balanced, Quality::Fast, Quality::Fast] {
         let options = AlignOptions { quality, ..AlignOptions::default() };
         let expected = align(&observe(&mesh, 1.0), &mesh, &options, &mut Silent).unwrap();

@@ -8,7 +8,6 @@ use sim3align::align::{align, align_prepared};
 use sim3align::error::Result;
 use sim3align::evidence::observation::MAX_PIXELS;
 use sim3align::geometry::decimate::decimate;
-use sim3align::precise::SearchSettings;
 
 use crate::precise::{body, observe, truth};
 use crate::prelude::*;
@@ -192,7 +191,7 @@ fn renders_of(observation: &Observation, mesh: &Mesh, max_load: u64) -> usize {
     let settings = SearchSettings { max_load, ..SearchSettings::from(Effort::Fast) };
     let request = Request::new(quick()).unwrap().with_efforts(vec![settings]);
     let alignment = align_prepared(observation, &PreparedMesh::borrowed(mesh), request, &mut Silent).unwrap();
-    alignment.diagnostics.common.counts.renders
+    alignment.diagnostics.counts.renders
 }
 
 #[wasm_bindgen_test(unsupported = test)]

@@ -3,7 +3,7 @@
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use sim3align::metrics::mesh_symmetry::symmetry_axes;
-use sim3align::precise::equivalence::Equivalence;
+use sim3align::precise::drawn::equivalence::Equivalence;
 
 use crate::precise_scene::rotation;
 use crate::prelude::*;

@@ -8,39 +8,39 @@ use sim3align::register::options::Icp;
 use sim3align::register::options::{EstimateSim3Options, RegisterOptions};
 use sim3align::register::report::Registration;
 use sim3align::register::{estimate_sim3, register};
-use sim3align::report::{Counts, PaperAlignment};
+use sim3align::report::{Counts, PaperAlignment, SearchCounts};
 
 use crate::prelude::*;
 use crate::{precise, shapes};
 
 /// A call: what it finds with its usual options, and with others.
-struct Trial<'a, O, R> {
+struct Trial<'a, O, R, C> {
     base: &'a O,
     solve: &'a dyn Fn(&O) -> R,
-    counts: fn(&R) -> Counts,
+    counts: fn(&R) -> C,
     usual: R,
-    usually: Counts,
+    usually: C,
 }
 
-impl<O: Options, R> Trial<'_, O, R> {
+impl<O: Options, R, C> Trial<'_, O, R, C> {
     fn with(&self, change: impl FnOnce(&mut O)) -> R {
         let mut options = self.base.clone();
         change(&mut options);
         (self.solve)(&options)
     }
 
-    fn count(&self, change: impl FnOnce(&mut O)) -> Counts {
+    fn count(&self, change: impl FnOnce(&mut O)) -> C {
         (self.counts)(&self.with(change))
     }
 }
 
 /// An option, and what of the results tells that it has its effect.
-type Effect<O, R> = (&'static str, fn(&Trial<'_, O, R>) -> bool);
+type Effect<O, R, C> = (&'static str, fn(&Trial<'_, O, R, C>) -> bool);
 
-fn assert_effects<O: Options, R>(
-    effects: &[Effect<O, R>],
+fn assert_effects<O: Options, R, C>(
+    effects: &[Effect<O, R, C>],
     base: &O,
-    counts: fn(&R) -> Counts,
+    counts: fn(&R) -> C,
     solve: &dyn Fn(&O) -> R,
 ) {
     let mut names: Vec<&str> = effects.iter().map(|(name, _)| *name).collect();
@@ -62,7 +62,7 @@ fn extent() -> Vec3 {
     Bounds::of(precise::body().positions()).unwrap().extent()
 }
 
-const PRECISE: &[Effect<AlignOptions, Alignment>] = &[
+const PRECISE: &[Effect<AlignOptions, Alignment, SearchCounts>] = &[
     ("quality", |t| t.count(|o| o.quality = Quality::Balanced).renders > 2 * t.usually.renders),
     ("scale", |t| (scale(&t.with(|o| o.scale = ScaleOption::Fixed(0.15))) - 0.15).abs() < 1e-9),
     ("knownExtentM", |t| {
@@ -94,7 +94,7 @@ const PRECISE: &[Effect<AlignOptions, Alignment>] = &[
     ("initial", |t| {
         // One candidate more, which is the truth: more is drawn, and what is found is hardly worse.
         let given = t.with(|o| o.initial = Some(precise::truth()));
-        given.diagnostics.common.counts.renders > t.usually.renders
+        given.diagnostics.counts.renders > t.usually.renders
             && given.diagnostics.score > t.usual.diagnostics.score - 0.01
     }),
     ("search", |t| {
@@ -123,7 +123,7 @@ const PRECISE: &[Effect<AlignOptions, Alignment>] = &[
 ];
 
 /// Whether directions of up that contradict what is seen cost score, and those that agree with it none.
-fn costs_a_lean(t: &Trial<'_, AlignOptions, Alignment>, agree: [f64; 2], contradict: [f64; 2]) -> bool {
+fn costs_a_lean(t: &Trial<'_, AlignOptions, Alignment, SearchCounts>, agree: [f64; 2], contradict: [f64; 2]) -> bool {
     let gain = |[camera, mesh]: [f64; 2]| {
         let up = precise::truth().rotation * Vector3::y() * camera;
         let found = t.with(|o| {
@@ -135,7 +135,7 @@ fn costs_a_lean(t: &Trial<'_, AlignOptions, Alignment>, agree: [f64; 2], contrad
     gain(agree).abs() < 0.01 && gain(contradict) < -0.2
 }
 
-const PAPER: &[Effect<PaperOptions, PaperAlignment>] = &[
+const PAPER: &[Effect<PaperOptions, PaperAlignment, Counts>] = &[
     ("seed", |t| t.with(|o| o.seed = 1).camera_from_mesh != t.usual.camera_from_mesh),
     ("maxObservedPoints", |t| t.count(|o| o.max_observed_points = 2000).target_points == 2000),
     ("surfaceSamples", |t| t.count(|o| o.surface_samples = 3000).source_points == 3000),
@@ -159,7 +159,7 @@ const PAPER: &[Effect<PaperOptions, PaperAlignment>] = &[
         t.usually.rejected > 0
             && free.rejected == 0
             && tight.counts.rejected * t.usually.iterations > t.usually.rejected * tight.counts.iterations
-            && (0.99..=1.01).contains(&tight.scale_ratio)
+            && (0.99..=1.01).contains(&tight.common.scale_ratio)
     }),
     ("guardMode", |t| {
         let clamped = t.with(|o| {
@@ -167,7 +167,7 @@ const PAPER: &[Effect<PaperOptions, PaperAlignment>] = &[
             o.guard_mode = GuardMode::Clamp;
         });
         let Counts { clamped: some, rejected, .. } = clamped.diagnostics.counts;
-        some > 0 && rejected == 0 && (clamped.diagnostics.scale_ratio - 1.0).abs() < 1e-9
+        some > 0 && rejected == 0 && (clamped.diagnostics.common.scale_ratio - 1.0).abs() < 1e-9
     }),
     ("ransacIterations", |t| t.count(|o| o.ransac_iterations = 700).iterations == 700 && t.usually.iterations > 700),
     ("ransacConfidence", |t| t.count(|o| o.ransac_confidence = 0.5).iterations < t.usually.iterations),
@@ -190,7 +190,7 @@ const PAPER: &[Effect<PaperOptions, PaperAlignment>] = &[
     ("icpIterations", |t| {
         let one = t.with(|o| o.icp_iterations = 1).diagnostics;
         // On voxels, then on the points themselves.
-        one.counts.icp_iterations == 2 && t.usually.icp_iterations > 2 && !one.converged
+        one.counts.icp_iterations == 2 && t.usually.icp_iterations > 2 && !one.common.converged
     }),
 ];
 
@@ -198,7 +198,7 @@ const PAPER: &[Effect<PaperOptions, PaperAlignment>] = &[
 fn every_option_of_precise_has_its_effect() {
     let mesh = precise::body();
     let observation = precise::observe(&mesh, &precise::truth());
-    assert_effects(PRECISE, &precise::quick(), |found| found.diagnostics.common.counts, &|options| {
+    assert_effects(PRECISE, &precise::quick(), |found| found.diagnostics.counts, &|options| {
         align(&observation, &mesh, options, &mut Silent).unwrap()
     });
 }
@@ -212,7 +212,7 @@ fn every_option_of_the_paper_preset_has_its_effect() {
     });
 }
 
-const REGISTER: &[Effect<RegisterOptions, Registration>] = &[
+const REGISTER: &[Effect<RegisterOptions, Registration, Counts>] = &[
     ("scale", |t| (t.with(|o| o.scale = ScaleOption::Fixed(1.4)).target_from_source.scale - 1.4).abs() < 1e-9),
     ("workBudget", |t| {
         // Clouds with half of their surface in common, which one search after the other is tried on.
@@ -272,7 +272,7 @@ fn every_option_of_register_has_its_effect() {
     });
 }
 
-const ESTIMATE: &[Effect<EstimateSim3Options, Registration>] = &[
+const ESTIMATE: &[Effect<EstimateSim3Options, Registration, Counts>] = &[
     ("scale", |t| (t.with(|o| o.scale = ScaleOption::Fixed(1.4)).target_from_source.scale - 1.4).abs() < 1e-9),
     ("workBudget", |t| {
         let iterations = |work_budget| {

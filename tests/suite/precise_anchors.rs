@@ -1,6 +1,6 @@
 //! The anchors of `precise`: where something nearer, or the image border, cuts the mask off.
 
-use sim3align::precise::anchors::{Anchor, anchors};
+use sim3align::precise::observed::anchors::{Anchor, anchors};
 
 use crate::precise_scene::empty_grid;
 use crate::prelude::*;

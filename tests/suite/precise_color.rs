@@ -7,7 +7,7 @@ use sim3align::evidence::photo::Photo;
 use sim3align::geometry::rasteriser::NO_TRIANGLE;
 use sim3align::geometry::surface_colors::{COLOR_SAMPLES, Rgb, SurfaceColors};
 use sim3align::metrics::pose_error::pose_errors;
-use sim3align::precise::turns::dihedral;
+use sim3align::precise::drawn::turns::dihedral;
 use sim3align::report::ColorVerdict;
 
 use crate::precise::{observe, quick};

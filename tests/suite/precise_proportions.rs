@@ -2,9 +2,9 @@
 //! form of Umeyama, and meshes that are too wide or too flat.
 
 use sim3align::geometry::surface::{SurfaceMoments, triangle_area};
-use sim3align::precise::conditioning::Conditioning;
-use sim3align::precise::proportions::{PROPORTIONS, Proportions, Stretched};
-use sim3align::precise::recipe::FINE;
+use sim3align::precise::scored::conditioning::Conditioning;
+use sim3align::precise::searched::proportions::{PROPORTIONS, Proportions, Stretched};
+use sim3align::precise::searched::recipe::FINE;
 
 use crate::precise::{body, observe, truth};
 use crate::precise_scene::pose;
@@ -190,5 +190,5 @@ fn a_fit_in_proportion_keeps_a_locked_scale_and_the_bounds_of_a_free_one() {
     let prior = Prior { scale: Some(bounds), up: None };
     let objective = Objective { prior, ..free };
     let held = Refiner { objective, lock_scale: false }.refine_in_proportion(&mut canvas, start, 20, &surface);
-    assert!(prior.holds(&held.pose), "the truth is below: {held:?}");
+    assert!(prior.is_at_bound(&held.pose), "the truth is below: {held:?}");
 }

@@ -3,11 +3,12 @@
 use std::rc::Rc;
 
 use sim3align::pauses::{Pauses, Task};
-use sim3align::precise::mesh_pyramid::MeshPyramid;
-use sim3align::precise::recipe::{FIRST_REFINEMENT, RANKING, TURNING, Task as Kind};
-use sim3align::precise::rounds::Rounds;
-use sim3align::precise::search::{Found, Search};
-use sim3align::precise::turns::TURNS;
+use sim3align::precise::drawn::mesh_pyramid::MeshPyramid;
+use sim3align::precise::drawn::turns::TURNS;
+use sim3align::precise::searched::ranking::Found;
+use sim3align::precise::searched::recipe::{FIRST_REFINEMENT, RANKING, TURNING, Task as Kind};
+use sim3align::precise::searched::rounds::Rounds;
+use sim3align::precise::searched::search::Search;
 
 use crate::precise::{body, observe, truth};
 use crate::prelude::*;

@@ -3,8 +3,8 @@
 use core::f64::consts::PI;
 use std::rc::Rc;
 
-use sim3align::precise::rests::{Rest, rests};
-use sim3align::precise::surroundings::{Ground, Surroundings};
+use sim3align::precise::drawn::rests::{Rest, rests};
+use sim3align::precise::scored::surroundings::{Ground, Surroundings};
 use sim3align::scene::layers::{layer, volumes};
 
 use super::precise_refine::unpacked;

@@ -3,8 +3,7 @@
 use nalgebra::UnitQuaternion;
 use sim3align::evidence::frame::Frame;
 use sim3align::metrics::pose_error::{PoseErrors, pose_errors};
-use sim3align::precise::SearchSettings;
-use sim3align::precise::color::{agreement, agreement_at};
+use sim3align::precise::judged::color::{agreement, agreement_at};
 use sim3align::track::evidence::{Evidence, of_mask};
 use sim3align::track::options::TrackOptions;
 use sim3align::track::report::{TrackState, TrackedFrame};
