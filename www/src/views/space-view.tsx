@@ -2,6 +2,7 @@
 import { useEffect, useRef } from "preact/hooks";
 import { samples, sampleUrl } from "../load/samples.js";
 import type { Display3d } from "../state/display.js";
+import { Check } from "../ui/controls.js";
 import { centimetres } from "../ui/format.js";
 import { Picture } from "../ui/picture.js";
 import { useWorkspace } from "../ui/workspace.js";
@@ -44,14 +45,12 @@ export function SpaceView() {
         <fieldset disabled={state.kind !== "ready"}>
           <legend class="visually-hidden">Layers of the 3D view</legend>
           {switches.map(([name, title]) => (
-            <label key={name} class="check">
-              <input
-                type="checkbox"
-                checked={display3d.value[name]}
-                onChange={({ currentTarget }) => set({ [name]: currentTarget.checked })}
-              />
-              <span>{title}</span>
-            </label>
+            <Check
+              key={name}
+              title={title}
+              checked={display3d.value[name]}
+              onCheck={(checked) => set({ [name]: checked })}
+            />
           ))}
           <label class="check points">
             <span>Point size</span>
