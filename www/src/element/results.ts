@@ -1,14 +1,11 @@
 /** What an element says about its objects, as plain data. */
 import { type PackedState, stateOf } from "../session/pack.js";
 import type { ObjectModel } from "../state/object-model.js";
-import type { Options } from "../state/options.js";
 import type { Workspace } from "../state/workspace.js";
-import type { ObjectResult, PlainPose } from "./sim3-align.js";
+import type { ElementSession as HostSession, ObjectResult, PlainPose } from "./sim3-align.js";
 
-/** Hand work and results, without the files of the scene. Plain data. */
-export interface ElementSession {
-  version: 1;
-  options: Options;
+/** As hosts see it, with the state that is opaque to them. */
+export interface ElementSession extends HostSession {
   objects: { name: string; state: PackedState }[];
 }
 

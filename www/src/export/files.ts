@@ -8,9 +8,9 @@ import type { Scene } from "../state/scene.js";
 const { framePoses, options, support, video } = page;
 
 /** The 16 numbers of a pose as a JSON array of four lines. */
-export function matrixText({ pose }: ObjectModel, order: "columns" | "rows"): string {
+export function matrixText({ pose }: ObjectModel, order: "column" | "row"): string {
   const { transform } = pose.value;
-  const numbers = order === "columns" ? transform.matrix : toRowMajor(transform);
+  const numbers = order === "column" ? transform.matrix : toRowMajor(transform);
   return `[${Array.from({ length: 4 }, (_, i) => numbers.slice(4 * i, 4 * i + 4).join(", ")).join(",\n ")}]`;
 }
 
