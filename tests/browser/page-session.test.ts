@@ -1,7 +1,7 @@
 /** Nothing is lost: the scene, hand work and decisions survive a reload, and are saved and opened as one file. */
 import assert from "node:assert/strict";
 import { drop, files } from "../support/page-files.js";
-import { PATIENCE, pageTests, type SitePage } from "../support/site.js";
+import { PATIENCE, pageTests, type SitePage, until } from "../support/site.js";
 
 const test = pageTests();
 
@@ -23,13 +23,11 @@ const asks = ({ page }: SitePage) =>
   page.evaluate(() => !dispatchEvent(new Event("beforeunload", { cancelable: true })));
 
 /** Waits until the browser has kept everything. */
-async function kept(opened: SitePage): Promise<void> {
-  const end = Date.now() + PATIENCE.timeout;
-  while (await asks(opened)) {
-    assert.ok(Date.now() < end, "the session is not stored");
-    await opened.page.waitForTimeout(100);
-  }
-}
+const kept = (opened: SitePage) =>
+  until(
+    () => asks(opened),
+    (isOpen) => !isOpen,
+  );
 
 /** That the scene is as `worked` has left it. */
 async function isAsLeft(opened: SitePage, centre: string): Promise<void> {

@@ -2,20 +2,17 @@
 import assert from "node:assert/strict";
 import type { Page } from "playwright-core";
 import { SOFTWARE_WEBGPU, WEBGL, WITHOUT_3D } from "../support/browser.js";
-import { PATIENCE, type Pixels, pageTests, spacePixels } from "../support/site.js";
+import { PATIENCE, type Pixels, pageTests, spacePixels, until } from "../support/site.js";
 
-/**
- * Takes screenshots of the 3D view until what is measured in them is as wanted: the drawing time of software renderers is
- * unknown.
- */
+/** Takes screenshots of the 3D view until what is measured in them is as wanted, and returns the last one. */
 async function seen<T>(page: Page, measure: (image: Pixels) => T, isWanted: (found: T) => boolean): Promise<Pixels> {
-  const end = Date.now() + PATIENCE.timeout;
-  for (;;) {
-    const image = await spacePixels(page);
-    const found = measure(image);
-    if (isWanted(found)) return image;
-    assert.ok(Date.now() < end, `${found} in ${await page.locator(".space .view-host").innerHTML()}`);
-  }
+  let image: Pixels | undefined;
+  const measured = async () => {
+    image = await spacePixels(page);
+    return measure(image);
+  };
+  await until(measured, isWanted);
+  return image as Pixels;
 }
 
 /** The 3D view after two equal screenshots. */

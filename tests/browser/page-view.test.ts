@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { WEBGL } from "../support/browser.js";
 import { depthNpy, dropFolder, files, HEIGHT, inFolder, pinhole, WIDTH } from "../support/page-files.js";
 import { mesh, render, truth } from "../support/scene.js";
-import { PATIENCE, pageTests, type SitePage, spacePixels } from "../support/site.js";
+import { pageTests, type SitePage, spacePixels, until } from "../support/site.js";
 
 const test = pageTests(WEBGL);
 
@@ -52,12 +52,11 @@ test("objects of every size and distance are framed, before and after an alignme
     }
     for (const from of ["Camera", "Three-quarter", "Top", "Side"]) {
       await opened.press(from);
-      // Software renderers may need some time for a frame.
-      for (const end = Date.now() + PATIENCE.timeout; ; ) {
+      const fault = async () => {
         const wrong = faultOf(await drawn(opened));
-        if (wrong === null) break;
-        assert.ok(Date.now() < end, `${factor} × the size from ${from}: ${wrong}`);
-      }
+        return wrong && `${factor} × the size from ${from}: ${wrong}`;
+      };
+      await until(fault, (found) => found === null);
     }
   }
 });
@@ -66,23 +65,13 @@ test("the 3D view is orbited by keys, and shows the poses before", still, async 
   await opened.has3d("webgl");
   await opened.press("Three-quarter");
   await page.locator(".space canvas").focus();
-  let shown = "";
-  // Software renderers may need some time for a frame.
-  const changes = async (what: string) => {
-    for (const end = Date.now() + PATIENCE.timeout; ; ) {
-      const picture = (await page.locator(".space .view-host").screenshot()).toString("base64");
-      if (picture !== shown) {
-        shown = picture;
-        return;
-      }
-      assert.ok(Date.now() < end, what);
-    }
-  };
-  await changes("nothing is drawn");
+  const picture = async () => (await page.locator(".space .view-host").screenshot()).toString("base64");
+  const first = await picture();
   await page.keyboard.press("ArrowRight");
-  await changes("no turn");
+  await page.keyboard.press("+");
+  const turned = await until(picture, (shown) => shown !== first);
   await opened.press("Before");
-  await changes("no poses before");
+  await until(picture, (shown) => shown !== turned);
   assert.equal(await opened.source(), "aligned");
   await opened.press("Before");
 });

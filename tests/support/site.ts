@@ -13,6 +13,15 @@ export const siteDir = join(repository, "target", "www");
 /** Time limit for anything that a busy machine may be slow at. */
 export const PATIENCE = { timeout: 120_000 };
 
+/** Repeats a measurement until it is as wanted: how long software renderers and databases take is unknown. */
+export async function until<T>(measure: () => Promise<T>, isWanted: (found: T) => boolean): Promise<T> {
+  for (const end = Date.now() + PATIENCE.timeout; ; ) {
+    const found = await measure();
+    if (isWanted(found)) return found;
+    assert.ok(Date.now() < end, String(found).slice(0, 200));
+  }
+}
+
 /** A gate for the messages of workers: while it is closed, they wait. */
 interface WorkerGate {
   close(): void;

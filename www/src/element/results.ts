@@ -1,6 +1,7 @@
 /** What an element says about its objects, as plain data. */
 import { type PackedState, stateOf } from "../session/pack.js";
 import type { ObjectModel } from "../state/object-model.js";
+import { isResult } from "../state/pose.js";
 import type { Workspace } from "../state/workspace.js";
 import type { ElementSession as HostSession, ObjectResult, PlainPose } from "./sim3-align.js";
 
@@ -16,13 +17,12 @@ export const plainPose = ({ pose }: ObjectModel): PlainPose => {
 
 export function resultOf(object: ObjectModel): ObjectResult {
   const { source } = object.pose.peek();
-  const isFound = source === "aligned" || source === "refined";
   return {
     name: object.name,
     pose: source === "start" ? null : plainPose(object),
     source,
     sizeM: [...object.box.peek().sizeM],
-    confidence: isFound ? (object.precise?.confidence ?? null) : null,
+    confidence: isResult(source) ? (object.precise?.confidence ?? null) : null,
     isAccepted: object.isAccepted.peek(),
     metrics: object.metrics.peek(),
   };

@@ -1,8 +1,8 @@
 /** Writers of results, in formats that other programs read. */
-import type { Metrics } from "sim3align";
 import { exportGlb, exportPly, exportSceneGlb, placeGlb, type Sim3, toBop, toRowMajor } from "sim3align/conventions";
 import type { ObjectModel } from "../state/object-model.js";
 import { page } from "../state/page.js";
+import { isResult } from "../state/pose.js";
 import type { Scene } from "../state/scene.js";
 
 const { framePoses, options, support, video } = page;
@@ -28,22 +28,14 @@ export function keyOf(scene: Scene, object: ObjectModel): string {
   return namesakes.length === 1 ? object.name : `${object.name} ${Number(object.id) + 1}`;
 }
 
-interface JsonEntry extends ReturnType<typeof plain> {
-  source: string;
-  sizeM: number[];
-  confidence: number | null;
-  metrics: Metrics | null;
-  alternatives: ReturnType<typeof plain>[];
-}
-
-function jsonEntry({ pose, box, precise, metrics }: ObjectModel): JsonEntry {
+function jsonEntry({ pose, box, precise, metrics }: ObjectModel) {
   const { transform, source } = pose.value;
   return {
     ...plain(transform),
     source,
     sizeM: [...box.value.sizeM],
     // The confidence is that of the aligned pose, not of one that was changed by hand.
-    confidence: source === "aligned" || source === "refined" ? (precise?.confidence ?? null) : null,
+    confidence: isResult(source) ? (precise?.confidence ?? null) : null,
     metrics: metrics.value,
     alternatives: precise?.alternatives.map(plain) ?? [],
   };

@@ -6,7 +6,6 @@ import { depthGradient } from "../draw/colours.js";
 import type { Workspace } from "../state/workspace.js";
 import { Check } from "../ui/controls.js";
 import { useWorkspace } from "../ui/workspace.js";
-import { groundOf } from "./ground.js";
 import { imageOf } from "./image.js";
 import { pointerOf } from "./image-pointer.js";
 
@@ -29,8 +28,7 @@ const switches: readonly [name: "outline" | "silhouette" | "difference" | "zoom"
 export function ImageView() {
   const workspace = useWorkspace();
   const { imageCanvas, layers, scene, selected, setLayer } = workspace;
-  const { ground } = groundOf(workspace);
-  const { after, draw, drawn, zoom } = imageOf(workspace);
+  const { after, draw, drawn, ground, zoom } = imageOf(workspace);
   const { hover, focusOn, startDrag, move, wheel } = useMemo(() => pointerOf(workspace), [workspace]);
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => {

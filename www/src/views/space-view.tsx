@@ -6,7 +6,7 @@ import { Check } from "../ui/controls.js";
 import { centimetres } from "../ui/format.js";
 import { Picture } from "../ui/picture.js";
 import { useWorkspace } from "../ui/workspace.js";
-import { groundOf } from "./ground.js";
+import { imageOf } from "./image.js";
 import { mountSpace } from "./space.js";
 
 const switches: readonly [name: "cloud" | "mesh" | "wireframe" | "dimensions", title: string][] = [
@@ -129,7 +129,7 @@ function firstPhoto(sampleId: string | null): string | null {
 /** The photo or the depth map, until the 3D view is there. */
 function Preview() {
   const workspace = useWorkspace();
-  const image = groundOf(workspace).groundImage.value;
+  const image = imageOf(workspace).groundImage.value;
   const photo = firstPhoto(workspace.inputs.value.sample);
   if (image === null && photo !== null) return <img class="preview" src={photo} alt="" />;
   return image === null ? (
