@@ -6,7 +6,7 @@ import { join } from "node:path";
 import { before, test } from "node:test";
 import { readMesh } from "sim3align/formats";
 import { height, images, resultsText, width, writeBop } from "../support/bop-dataset.js";
-import { folder, results, run } from "../support/command-line.js";
+import { folder, read, results, run } from "../support/command-line.js";
 import { repository } from "../support/environment.js";
 import { cocoRle } from "../support/files.js";
 import { rotationRows } from "../support/scene.js";
@@ -36,7 +36,7 @@ before(() => {
 });
 
 const bop = (...args: string[]) => run("bop", dataset, "--split", "test", ...args);
-const scoresIn = (file: string) => JSON.parse(readFileSync(join(folder, file), "utf8"));
+const scoresIn = (file: string) => JSON.parse(read(file));
 const near = (found: number | null, expected: number, tolerance: number, what: string) =>
   assert.ok(found !== null && Math.abs(found - expected) <= tolerance, `${what}: ${found} instead of ${expected}`);
 
@@ -114,7 +114,7 @@ test("targets are aligned at their size, and the results file is that of the lea
   assert.equal(status, 0, stderr);
   const file = "sim3align_tudl-test.csv";
   assert.match(stderr, new RegExp(`results: ${file}`));
-  const [header, ...rows] = readFileSync(join(folder, file), "utf8").trimEnd().split("\n");
+  const [header, ...rows] = read(file).trimEnd().split("\n");
   assert.equal(header, "scene_id,im_id,obj_id,score,R,t,time");
   assert.equal(rows.length, 9);
   const cells = rows.map((row) => row.split(","));
@@ -149,19 +149,19 @@ test("targets are aligned at their size, and the results file is that of the lea
   assert.match(stdout, /AR MSSD/);
 
   // What is recorded is not aligned again, and gives the same file.
-  const before = readFileSync(join(folder, file), "utf8");
+  const before = read(file);
   rmSync(join(folder, file));
-  const lines = readFileSync(join(folder, "r.jsonl"), "utf8").trimEnd().split("\n");
+  const lines = read("r.jsonl").trimEnd().split("\n");
   const again = bop("--quality", "fast", "--jsonl", "r.jsonl", "--resume");
   assert.equal(again.status, 0, again.stderr);
   assert.match(again.stderr, /resumed: 9 of 9/);
-  assert.equal(readFileSync(join(folder, file), "utf8"), before);
+  assert.equal(read(file), before);
   // An interrupted batch: some poses are missing.
   writeFileSync(join(folder, "part.jsonl"), `${lines.slice(0, 7).join("\n")}\n`);
   const rest = bop("--quality", "fast", "--jsonl", "part.jsonl", "--resume", "--csv", "part", "--workers", "2");
   assert.equal(rest.status, 0, rest.stderr);
   const withoutTimes = (text: string) => text.replace(/,[^,\n]*$/gm, "");
-  assert.equal(withoutTimes(readFileSync(join(folder, "sim3align_tudl-test_part.csv"), "utf8")), withoutTimes(before));
+  assert.equal(withoutTimes(read("sim3align_tudl-test_part.csv")), withoutTimes(before));
 });
 
 test("detections take the place of masks, and pictures show the poses", async () => {
@@ -204,9 +204,9 @@ test("detections take the place of masks, and pictures show the poses", async ()
   const depths = positions.filter((_, i) => i % 3 === 2);
   const { translation } = entries["1/0/1-0"];
   near((Math.min(...depths) + Math.max(...depths)) / 2, -translation[2], 0.05, "the depth of the posed mesh");
-  const table = readFileSync(join(folder, "pictures", "rows.js"), "utf8");
+  const table = read(join("pictures", "rows.js"));
   for (const name of names) assert.match(table, new RegExp(`"name":"${name}","folder"`));
-  const rows = readFileSync(join(folder, "sim3align_tudl-test_cnos.csv"), "utf8").trimEnd().split("\n").slice(1);
+  const rows = read("sim3align_tudl-test_cnos.csv").trimEnd().split("\n").slice(1);
   const own = rows.map((row) => row.split(",").map(Number));
   for (const [, image = 0, , score = 1, , , time = 0] of own) {
     assert.ok(score <= (image === 7 ? 0.9 : 0.5), "times the score of the detection");

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { type AlignInput, type CameraFileInput, createAligner, type Evaluation } from "sim3align";
 import { codesOf, rejectsWith } from "../support/errors.js";
-import { cocoRle, glb, gltfBuffer, gltfJson, npy, obj, png } from "../support/files.js";
+import { cocoRle, glb, gltfBuffer, gltfJson, maskPng, npy, obj, png } from "../support/files.js";
 import { withoutTimes } from "../support/results.js";
 import { input, mesh, truth, view } from "../support/scene.js";
 
@@ -82,11 +82,7 @@ same("mask: a clamped array", () => ({ mask: Uint8ClampedArray.from(mask) }));
 same("mask: with its size", () => ({ mask: { data: mask, width, height } }));
 same("mask: an ArrayBuffer of pixels", () => ({ mask: arrayBuffer(mask) }));
 same("mask: bytes of a PNG", () => ({
-  mask: png(
-    mask.map((m) => 255 * m),
-    width,
-    height,
-  ),
+  mask: maskPng(mask, width, height),
 }));
 same("mask: a Blob with a PNG", () => ({ mask: new Blob([arrayBuffer(png(mask, width, height))]) }));
 same("mask: bytes of a .npy file", () => ({ mask: npy(mask, height, width) }));

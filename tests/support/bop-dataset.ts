@@ -2,9 +2,9 @@
  * A tiny dataset in the layout of BOP, made independently of the package: three objects (an uneven one, a brick, and a can)
  * in four images, each of which hides a part of another. `node tests/support/bop-dataset.ts FOLDER` writes it.
  */
-import { mkdirSync, writeFileSync } from "node:fs";
+import { writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { png } from "./files.js";
+import { maskPng, png, writeFiles } from "./files.js";
 import { Random } from "./random.js";
 import { blob, cuboid, type Mesh, type Pose, render, rotationRows } from "./scene.js";
 
@@ -138,11 +138,7 @@ const entryOf = ({ id, pose }: Placed) => ({
 
 /** Writes the dataset; its name is that of the folder. Returns the masks by their paths in it. */
 export function writeBop(folder: string): Map<string, Uint8Array> {
-  const write = (path: string, content: Uint8Array | string | object) => {
-    mkdirSync(join(folder, path, ".."), { recursive: true });
-    const text = typeof content === "string" || content instanceof Uint8Array ? content : JSON.stringify(content);
-    writeFileSync(join(folder, path), text);
-  };
+  const write = (path: string, content: Uint8Array | string | object) => writeFiles(folder, { [path]: content });
   for (const place of ["models", "models_eval"]) {
     for (const [i, { mesh }] of models.entries()) write(join(place, `obj_00000${i + 1}.ply`), plyText(mesh));
     const infos = models.map(({ mesh, info }, i) => [`${i + 1}`, { diameter: diameter(mesh), ...info }]);
@@ -191,15 +187,7 @@ export function writeBop(folder: string): Map<string, Uint8Array> {
     }
   }
   for (const [path, content] of files) write(path, content);
-  for (const [path, mask] of masks)
-    write(
-      path,
-      png(
-        mask.map((m) => 255 * m),
-        width,
-        height,
-      ),
-    );
+  for (const [path, mask] of masks) write(path, maskPng(mask, width, height));
   write("test_targets_bop19.json", targets);
   return masks;
 }

@@ -71,6 +71,11 @@ export function rotationRows([x, y, z, w]: Pose["rotation"]): [Vec3, Vec3, Vec3]
   ];
 }
 
+/** The pose as `gt.json` has it, of an object without symmetry. */
+export const poseJson = ({ scale, rotation, translation }: Pose) => ({
+  ...{ available: true, scale, rotation: rotationRows(rotation), translation, symmetry: "none" },
+});
+
 /** The pose's 16 numbers, column by column. */
 export function columnMajor({ scale, rotation, translation }: Pose): number[] {
   const rows = rotationRows(rotation);
