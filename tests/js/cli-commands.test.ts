@@ -1,6 +1,6 @@
 /** The flags that all commands for many folders share, and what each writes by them. */
 import assert from "node:assert/strict";
-import { mkdirSync, symlinkSync, writeFileSync } from "node:fs";
+import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { files, folder, read, refusesUsage, results, run, succeeds, writeCase } from "../support/command-line.js";
@@ -91,19 +91,4 @@ test("evaluate compares the poses of each frame, and those of many cases", () =>
   const missing = run("evaluate cases/* --transform poses/views.json");
   assert.equal(missing.status, 1, "there is a pose of one case only");
   assert.match(missing.stdout, /^two +INVALID_TRANSFORM/m);
-});
-
-test("evaluate takes a folder of links as a data set", () => {
-  mkdirSync(join(folder, "links"));
-  for (const name of ["x", "y"]) symlinkSync(join("..", "cases", "one"), join(folder, "links", name));
-  const { stdout } = succeeds("evaluate links/* --csv -");
-  assert.deepEqual(
-    stdout
-      .trimEnd()
-      .split("\n")
-      .slice(1)
-      .map((row) => row.split(",")[0])
-      .sort(),
-    ["x", "y"],
-  );
 });

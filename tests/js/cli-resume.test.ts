@@ -236,19 +236,6 @@ test("an interruption without --jsonl tells of it", async () => {
   assert.match(stderr, /interrupted: 1 of 2 cases are done\nWith --jsonl FILE, a batch can be resumed/);
 });
 
-test("the results do not depend on the number of workers", () => {
-  run("align", ...all, ...quick, "--jsonl", "one-worker.jsonl", "--workers", "1");
-  run("align", ...all, ...quick, "--jsonl", "three-workers.jsonl", "--workers", "3");
-  assert.deepEqual(entriesOf("one-worker.jsonl"), entriesOf("whole.jsonl"));
-  assert.deepEqual(entriesOf("three-workers.jsonl"), entriesOf("whole.jsonl"));
-  const order = linesOf("one-worker.jsonl").slice(0, -1);
-  assert.deepEqual(
-    order.map((line) => JSON.parse(line).case),
-    all,
-    "one worker keeps the order",
-  );
-});
-
 test("another program can follow the file: a line is there when its row is", async () => {
   rmSync(inFolder("followed.jsonl"), { force: true });
   appendFileSync(inFolder("followed.jsonl"), "");
