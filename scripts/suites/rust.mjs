@@ -1,7 +1,7 @@
 /** The Rust tests, natively and as WebAssembly in Node, and the samples that the crates' generator makes. */
 import { readFileSync } from "node:fs";
 import { relative } from "node:path";
-import { filesBelow } from "../lib/cache.mjs";
+import { cached, digest, filesBelow } from "../lib/cache.mjs";
 import { rustCounts, sum, withStatus } from "../lib/counts.mjs";
 import { at } from "../lib/paths.mjs";
 import { attempt, run } from "../lib/run.mjs";
@@ -54,22 +54,29 @@ export async function wasm() {
 }
 
 /** The generator writes the committed samples, byte by byte. */
-export async function samples() {
-  await rustToolchain();
-  const folder = at("target", "samples", "page");
-  return runChecks([
+export const samples = () =>
+  runChecks([
     [
       "www/samples",
       async (say) => {
-        await generateSamples(folder);
-        const [made, committed] = [folder, pageSamplesDir].map(
-          (root) => new Map(filesBelow([root]).map((file) => [relative(root, file), readFileSync(file, "base64")])),
+        const sources = ["src", "geometry", "formats", "lab", "Cargo.toml", "Cargo.lock", "scripts/lib"].map((path) =>
+          at(path),
         );
-        const names = [...new Set([...(made?.keys() ?? []), ...(committed?.keys() ?? [])])];
-        const other = names.filter((name) => made?.get(name) !== committed?.get(name));
-        if (other.length > 0) throw new Error(`Not reproduced: ${other.join(", ")}. Remedy: npm run samples.`);
-        say(`${names.length} files`);
+        const stamp = at("target", "samples", "reproduced-from");
+        const isNew = await cached(stamp, digest([...sources, pageSamplesDir]), [], reproduceSamples);
+        say(`${filesBelow([pageSamplesDir]).length} files${isNew ? "" : ", up to date"}`);
       },
     ],
   ]);
+
+async function reproduceSamples() {
+  const folder = at("target", "samples", "page");
+  await generateSamples(folder);
+  const [made = new Map(), committed = new Map()] = [folder, pageSamplesDir].map(
+    (root) => new Map(filesBelow([root]).map((file) => [relative(root, file), readFileSync(file, "base64")])),
+  );
+  const other = [...new Set([...made.keys(), ...committed.keys()])].filter(
+    (name) => made.get(name) !== committed.get(name),
+  );
+  if (other.length > 0) throw new Error(`Not reproduced: ${other.join(", ")}. Remedy: npm run samples.`);
 }
