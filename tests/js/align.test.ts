@@ -1,31 +1,14 @@
 /** `align` as its callers see it: what it returns, determinism, progress, the life of an aligner. */
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { ALIGN_DEFAULTS, createAligner, PAPER_DEFAULTS, type Progress, type Sim3 } from "sim3align";
+import { ALIGN_DEFAULTS, createAligner, PAPER_DEFAULTS, type Progress } from "sim3align";
 import { codesOf, rejectsWith } from "../support/errors.js";
-import { withoutTimes } from "../support/results.js";
-import { brick, input, rotationRows } from "../support/scene.js";
+import { assertForms, withoutTimes } from "../support/results.js";
+import { brick, input } from "../support/scene.js";
 
 const aligner = await createAligner();
 const reference = withoutTimes(await aligner.align(input, { seed: 3 }));
 const paper = { preset: "paper" } as const;
-
-function assertForms({ scale, rotation, rotationMatrix, translation, matrix }: Sim3): void {
-  assert.ok(scale > 0);
-  assert.equal(rotation.length, 4);
-  assert.ok(Math.abs(Math.hypot(...rotation) - 1) < 1e-12);
-  assert.ok(rotation[3] >= 0);
-  assert.ok(Array.isArray(matrix) && matrix.length === 16);
-  const rows = rotationRows(rotation);
-  for (const i of [0, 1, 2] as const) {
-    for (const j of [0, 1, 2] as const) {
-      assert.ok(Math.abs(rows[i][j] - rotationMatrix[i][j]) < 1e-9, "matrix and quaternion are one rotation");
-      assert.ok(Math.abs((matrix[4 * j + i] ?? 0) - scale * rotationMatrix[i][j]) < 1e-9, "columns come first");
-    }
-    assert.equal(matrix[12 + i], translation[i]);
-  }
-  assert.deepEqual([matrix[3], matrix[7], matrix[11], matrix[15]], [0, 0, 0, 1]);
-}
 
 test("the transform comes in every promised form, all saying the same", async () => {
   assertForms(reference);

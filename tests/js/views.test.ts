@@ -6,11 +6,9 @@ import { type Fault, rejectsWith } from "../support/errors.js";
 import { withoutTimes } from "../support/results.js";
 import { frameAt, turnBetween } from "../support/rig.js";
 import { mesh, truth } from "../support/scene.js";
-import { Workers } from "../support/workers.js";
 
 const here = await createAligner();
-const workers = new Workers();
-const pool = await createAligner({ workers: 1, createWorker: workers.create });
+const pool = await createAligner({ workers: 1 });
 after(() => pool.dispose());
 
 const rig = [0, 120, 240].map((angle) => frameAt(angle));

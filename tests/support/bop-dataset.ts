@@ -6,7 +6,7 @@ import { writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { maskPng, png, writeFiles } from "./files.js";
 import { Random } from "./random.js";
-import { blob, cuboid, type Mesh, type Pose, render, rotationRows } from "./scene.js";
+import { blob, cuboid, type Mesh, type Pose, product, render, rotationRows } from "./scene.js";
 
 export const [width, height] = [640, 480];
 export const camera = { fx: 610.5, fy: 612.25, cx: 318.25, cy: 241.5 };
@@ -224,15 +224,6 @@ function moved({ id, pose }: Placed, size: number, random: Random) {
       .map((c) => Number(c.toFixed(9))),
     cam_t_m2c: cam_t_m2c.map((c, i) => Number((c + (shift[i] ?? 0)).toFixed(6))),
   };
-}
-
-function product([a, b, c, d]: Pose["rotation"], [x, y, z, w]: Pose["rotation"]): Pose["rotation"] {
-  return [
-    d * x + a * w + b * z - c * y,
-    d * y - a * z + b * w + c * x,
-    d * z + a * y - b * x + c * w,
-    d * w - a * x - b * y - c * z,
-  ];
 }
 
 const [, script, folder] = process.argv;

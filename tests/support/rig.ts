@@ -1,6 +1,6 @@
 /** Several views of the test scene, from cameras on a circle around the object. */
 import { viewFiles } from "./files.js";
-import { type Mesh, mesh, type Pose, poseJson, render, truth, type View } from "./scene.js";
+import { type Mesh, mesh, type Pose, poseJson, product, render, truth, type View } from "./scene.js";
 
 const pinhole = { fx: 300, fy: 301, cx: 79.5, cy: 60 };
 const size = { width: 160, height: 120 };
@@ -29,17 +29,6 @@ export function frameAt(degrees: number, object: Mesh = mesh as Mesh): RigFrame 
     cameraToWorld: { scale: 1, rotation: back, translation },
     pose,
   };
-}
-
-type Quaternion = Pose["rotation"];
-
-function product([ax, ay, az, aw]: Quaternion, [bx, by, bz, bw]: Quaternion): Quaternion {
-  return [
-    aw * bx + ax * bw + ay * bz - az * by,
-    aw * by - ax * bz + ay * bw + az * bx,
-    aw * bz + ax * by - ay * bx + az * bw,
-    aw * bw - ax * bx - ay * by - az * bz,
-  ];
 }
 
 /** A frame with its true pose, as the files of a folder. */

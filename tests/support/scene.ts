@@ -62,6 +62,16 @@ export function blob(rings = 40, sectors = 60): Mesh {
   return { positions: Float32Array.from(positions), indices: Uint32Array.from(indices) };
 }
 
+/** The rotation by the second quaternion, then by the first. */
+export function product([a, b, c, d]: Pose["rotation"], [x, y, z, w]: Pose["rotation"]): Pose["rotation"] {
+  return [
+    d * x + a * w + b * z - c * y,
+    d * y - a * z + b * w + c * x,
+    d * z + a * y - b * x + c * w,
+    d * w - a * x - b * y - c * z,
+  ];
+}
+
 /** The rotation's rows. */
 export function rotationRows([x, y, z, w]: Pose["rotation"]): [Vec3, Vec3, Vec3] {
   return [
