@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { fromCocoRle, fromCvatRle, fromLabelStudioRle, toCocoRle } from "sim3align/conventions";
 import { fixtures, pixelsOf } from "../support/conventions.js";
-import { rejectsWith } from "../support/errors.js";
+import { type Refused, rejectsWith } from "../support/errors.js";
 import { cocoRle } from "../support/files.js";
 import { forSeeds } from "../support/random.js";
 
@@ -71,18 +71,13 @@ test("broken encodings are refused", async () => {
 
 test("encodings of other images are refused", async () => {
   const other = { width: size.width - 30, height: size.height };
-  await rejectsWith(() => fromLabelStudioRle(first.labelStudio, other), "SIZE_MISMATCH rle", /original_width/);
-  await rejectsWith(() => fromCvatRle(first.cvatPoints, other), "SIZE_MISMATCH mask", /within the image/);
-  await rejectsWith(() => fromCvatRle([1, 2], size), "WRONG_LENGTH mask", /four numbers of the box/);
-  await rejectsWith(() => fromLabelStudioRle([1, 256], size), "INVALID_ARGUMENT rle", /0 to 255/);
-  await rejectsWith(
-    () => toCocoRle({ data: new Uint8Array(3), width: 2, height: 2 }),
-    "WRONG_LENGTH mask.data",
-    /2 × 2 = 4/,
-  );
-  await rejectsWith(
-    () => toCocoRle({ data: new Uint8Array(0), width: 0, height: 2 }),
-    "INVALID_ARGUMENT mask.width",
-    /at least 1/,
-  );
+  const refused: Refused[] = [
+    [() => fromLabelStudioRle(first.labelStudio, other), "SIZE_MISMATCH rle", /original_width/],
+    [() => fromCvatRle(first.cvatPoints, other), "SIZE_MISMATCH mask", /within the image/],
+    [() => fromCvatRle([1, 2], size), "WRONG_LENGTH mask", /four numbers of the box/],
+    [() => fromLabelStudioRle([1, 256], size), "INVALID_ARGUMENT rle", /0 to 255/],
+    [() => toCocoRle({ data: new Uint8Array(3), width: 2, height: 2 }), "WRONG_LENGTH mask.data", /2 × 2 = 4/],
+    [() => toCocoRle({ data: new Uint8Array(0), width: 0, height: 2 }), "INVALID_ARGUMENT mask.width", /at least 1/],
+  ];
+  for (const each of refused) await rejectsWith(...each);
 });

@@ -25,6 +25,9 @@ export async function rejectsWith(call: () => unknown, fault: Fault, message = /
   assert.doesNotMatch(error.message, /undefined|NaN ×|\[object/);
 }
 
+/** A call that must be refused, with its fault and words of the message. */
+export type Refused = Parameters<typeof rejectsWith>;
+
 /** A test for each value that must be refused. */
 export function refuses<T>(refusals: Refusals<T>, call: (value: T) => unknown): void {
   for (const [name, [value, message]] of Object.entries(refusals) as [string, [T, RegExp?]][]) {
