@@ -1,25 +1,9 @@
 /** The test script's own reading of what other programs print: a wrong one would hide failures. */
 import assert from "node:assert/strict";
-import { join } from "node:path";
 import { test } from "node:test";
-import { pathToFileURL } from "node:url";
-import { repository } from "../support/environment.js";
+import { scriptModule } from "../support/internals.js";
 
-interface Counts {
-  passed: number;
-  failed: number;
-  skipped: number;
-  times?: { name: string; ms: number }[];
-}
-
-interface CountsModule {
-  rustCounts(output: string): Counts;
-  nodeCounts(output: string): Counts;
-  withStatus(counts: Counts, succeeded: boolean): Counts;
-}
-
-const module = pathToFileURL(join(repository, "scripts", "lib", "counts.mjs")).href;
-const { nodeCounts, rustCounts, withStatus } = (await import(module)) as CountsModule;
+const { nodeCounts, rustCounts, withStatus } = await scriptModule("lib/counts.mjs");
 
 test("the result lines of all Rust test programs are added, in colour or not, with the times of the tests", () => {
   const output = [
