@@ -112,13 +112,11 @@ const SLOW_MS = 1000;
 
 /** @param {readonly Result[]} results */
 function printSlowest(results) {
-  print("\nslowest\n");
-  for (const { name: suite, counts } of results) {
-    const slow = (counts.times ?? []).filter(({ ms }) => ms >= SLOW_MS).sort((a, b) => b.ms - a.ms);
-    for (const { name, ms } of slow.slice(0, SLOWEST)) {
-      print(`${suite.padEnd(10)}${duration(ms).padStart(12)}  ${name}\n`);
-    }
-  }
+  const lines = results.flatMap(({ name: suite, counts: { times = [] } }) => {
+    const slow = times.filter(({ ms }) => ms >= SLOW_MS).sort((a, b) => b.ms - a.ms);
+    return slow.slice(0, SLOWEST).map(({ name, ms }) => `${suite.padEnd(10)}${duration(ms).padStart(12)}  ${name}\n`);
+  });
+  if (lines.length > 0) print(`\nslowest\n${lines.join("")}`);
 }
 
 await script(async () => {
