@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { createAligner, ESTIMATE_SIM3_DEFAULTS, REGISTER_DEFAULTS, type Registration } from "sim3align";
 import { type Refusals, refuses } from "../support/errors.js";
+import { Random } from "../support/random.js";
 import { mesh, type Pose, transformed } from "../support/scene.js";
 
 const aligner = await createAligner();
@@ -10,15 +11,6 @@ const source = Float64Array.from(mesh.positions);
 const pose: Pose = { scale: 2.5, rotation: [0.5, -0.5, 0.1, 0.7], translation: [30, -20, 10] };
 pose.rotation = pose.rotation.map((x) => x / Math.hypot(...pose.rotation)) as Pose["rotation"];
 const target = transformed(source, pose);
-
-/** The same random numbers each time, in [0, 1). */
-function* random(seed: number): Generator<number, never> {
-  let state = seed;
-  for (;;) {
-    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
-    yield state / 2 ** 32;
-  }
-}
 
 function assertPose(
   { scale, rotation, translation }: Pick<Registration, "scale" | "rotation" | "translation">,
@@ -65,9 +57,9 @@ test("register keeps to a scale that is known, fixed or bounded", async () => {
 
 test("estimateSim3 finds the transform that correct correspondences agree on, among wrong ones", async () => {
   const count = 300;
-  const numbers = random(7);
-  const pick = () => Math.floor(numbers.next().value * (source.length / 3));
-  const correspondences = Uint32Array.from({ length: 2 * count }, () => 0);
+  const random = new Random(7);
+  const pick = () => random.whole(0, source.length / 3 - 1);
+  const correspondences = new Uint32Array(2 * count);
   for (let i = 0; i < count; i++) {
     const index = pick();
     correspondences[2 * i] = index;
