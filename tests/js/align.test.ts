@@ -88,12 +88,6 @@ test("the stages are timed, and the total is their sum", async () => {
   assert.ok(total > 0 && Math.abs(total - sum) < 1e-6 * total + 1e-9, `${total} against ${sum}`);
 });
 
-test("the same input and seed give the same bits, on this aligner and on another", async () => {
-  assert.deepEqual(withoutTimes(await aligner.align(input, { seed: 3 })), reference);
-  const other = await createAligner();
-  assert.deepEqual(withoutTimes(await other.align(input, { seed: 3 })), reference);
-});
-
 test("the arguments are left as they were", async () => {
   const { depth, mask, mesh } = input;
   const before = [depth.slice(), mask.slice(), mesh.positions.slice(), mesh.indices.slice()];

@@ -151,17 +151,6 @@ test("without workers: an abort that comes from a timer ends a call that is unde
   assert.ok(stages.includes("search") && !stages.includes("metrics"), `${stages}`);
 });
 
-test("without workers: calls that run side by side have the bits of calls alone", async () => {
-  const expected = withoutTimes(await here.align(input, quick));
-  const paper = withoutTimes(await here.align(input, { preset: "paper" }));
-  const [first, second, third] = await Promise.all([
-    here.align(input, quick),
-    here.align(input, { preset: "paper" }),
-    here.align(input, quick),
-  ]);
-  assert.deepEqual([first, second, third].map(withoutTimes), [expected, paper, expected]);
-});
-
 test("aborting ends the worker and its job, and the job that waits for it is not touched", async () => {
   const own = new Workers();
   const one = await createAligner({ workers: 1, createWorker: own.create });

@@ -1,6 +1,6 @@
 /** Batches that are recorded with --jsonl, stopped, and resumed. */
 import assert from "node:assert/strict";
-import { appendFileSync, copyFileSync, existsSync, rmSync, writeFileSync } from "node:fs";
+import { copyFileSync, existsSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import {
@@ -234,12 +234,4 @@ test("an interruption without --jsonl tells of it", async () => {
   const args = ["align", "a", endless("endless-alone"), ...quick, "--workers", "2"];
   const { stderr } = await interrupted(/^a .*\n/m, "SIGINT", ...args);
   assert.match(stderr, /interrupted: 1 of 2 cases are done\nWith --jsonl FILE, a batch can be resumed/);
-});
-
-test("another program can follow the file: a line is there when its row is", async () => {
-  rmSync(inFolder("followed.jsonl"), { force: true });
-  appendFileSync(inFolder("followed.jsonl"), "");
-  const args = ["align", "a", endless("endless-followed"), ...quick, "--jsonl", "followed.jsonl"];
-  await interrupted(/^a .*\n/m, "SIGKILL", ...args);
-  assert.equal(entriesOf("followed.jsonl").length, 1);
 });
