@@ -1,9 +1,9 @@
 //! Reads and writes files; errors name the path.
 
 use std::fs;
-use std::path::{Path, PathBuf};
 
-use sim3align_geometry::error::{Error, ErrorCode, Result, Text};
+use crate::prelude::*;
+use sim3align_geometry::error::Text;
 
 /// The name of a file in a folder, and its content.
 pub type NamedFile = (&'static str, Vec<u8>);

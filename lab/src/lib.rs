@@ -12,6 +12,7 @@ mod files;
 pub mod fuzz;
 pub mod outlines;
 pub mod parallel;
+pub mod prelude;
 pub mod samples;
 pub mod scenes;
 pub mod sequences;

@@ -1,21 +1,17 @@
 //! Other methods with the preprocessing of the paper: the same clouds, initial scale and voxel grid.
 
-use nalgebra::Vector3;
-
 use super::baseline::Baseline;
 use super::clouds::{Clouds, UnitSettings};
+use crate::prelude::*;
 use sim3align::align::{Setup, align_by};
 use sim3align::evidence::Normals;
 use sim3align::evidence::extents::target_from_source;
-use sim3align::evidence::observation::Observation;
 use sim3align::paper::options::PaperOptions;
 use sim3align::progress::{Host, Stage};
 use sim3align::register::at_once::grid_cloud;
 use sim3align::register::cloud_pair::MAX_FEATURES;
 use sim3align::register::settings::icp_metric;
 use sim3align::report::{Counts, PaperAlignment, Solution};
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
 
 /// Progress at the start of each stage, 0 to 1.
 const PLAN: &[(Stage, f64)] = &[

@@ -1,8 +1,5 @@
 //! Two clouds on a voxel grid in a common scale: the input of every method.
 
-use glam::Vec3;
-use nalgebra::Vector3;
-
 use super::baseline::Baseline;
 use super::fgr::{self, FgrSettings};
 use super::gicp::{self, GicpSettings};
@@ -10,15 +7,13 @@ use super::icp::{self, classical};
 use super::measurements::{Matched, no_consensus};
 use super::quatro::{self, QuatroSettings};
 use super::teaser::{self, TeaserSettings};
+use crate::prelude::*;
 use sim3align::register::at_once::{fpfh, nearest, ransac};
 use sim3align::register::grid_cloud::GridCloud;
 use sim3align::register::icp::{IcpMetric, Refined};
 use sim3align::register::matching::Match;
 use sim3align::register::ransac::RansacSettings;
 use sim3align::register::umeyama::ScaleMode;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::random::Random;
-use sim3align_geometry::similarity::Similarity;
 
 /// Random stream of the subsampling of descriptors.
 const STREAM: u64 = 8;

@@ -15,16 +15,11 @@
 //! - The source is moved and not the target, and small turns are turns and not Euler's angles: this does not move the
 //!   optimum.
 
-use glam::Vec3;
-use nalgebra::{Rotation3, Vector3};
-
 use super::measurements::{Matched, no_consensus};
+use crate::prelude::*;
 use sim3align::register::icp::{moved, rigid_jacobian};
 use sim3align::register::matching::Match;
-use sim3align_geometry::error::Result;
 use sim3align_geometry::normal_equations::NormalEquations;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::similarity::{Similarity, vector3};
 
 /// The random stream of the tuple test.
 const STREAM: u64 = 6;

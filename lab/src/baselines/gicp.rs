@@ -8,16 +8,11 @@
 //! Intentional differences: a covariance is stored as its normal; if the neighbours are collinear, it is 1 in all
 //! directions, as in small_gicp for too few neighbours.
 
-use glam::Vec3;
-use nalgebra::{Matrix3, Vector3};
-
 use super::icp::{TOLERANCE, no_overlap};
+use crate::prelude::*;
 use sim3align::evidence::normals::{Neighborhood, Orientation, estimate_normals};
 use sim3align::register::icp::{Refined, moved, movement, rigid_jacobian};
-use sim3align_geometry::error::Result;
-use sim3align_geometry::kd_tree::KdTree;
 use sim3align_geometry::normal_equations::NormalEquations;
-use sim3align_geometry::similarity::{Similarity, vector3};
 
 /// Fewer pairs than this do not determine a pose.
 const MIN_PAIRS: usize = 6;

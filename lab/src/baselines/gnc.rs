@@ -4,8 +4,7 @@
 //! The schedule is TEASER++'s: μ begins where the worst residual is just convex and grows by 1.4 an iteration; weights
 //! follow in closed form. It has converged when the cost no longer changes.
 
-use nalgebra::{Matrix3, Rotation3, Vector3};
-
+use crate::prelude::*;
 use sim3align_geometry::singular_values::SingularValues;
 
 /// Factor of μ from one iteration to the next.

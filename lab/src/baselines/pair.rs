@@ -1,19 +1,15 @@
 //! Registration of two clouds of the same scale, such as scans of a room or a street, by the methods for comparison.
 
-use nalgebra::Vector3;
-
 use super::baseline::Baseline;
 use super::clouds::{Clouds, UnitSettings};
+use crate::prelude::*;
 use sim3align::evidence::extents::{Extents, target_from_source};
 use sim3align::evidence::normals::outward_normals;
 use sim3align::evidence::observation::MIN_POINTS;
 use sim3align::pauses::{Pauses, finished};
 use sim3align::register::at_once::grid_cloud;
 use sim3align::register::icp::IcpMetric;
-use sim3align_geometry::cloud::Cloud;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::number::number;
-use sim3align_geometry::similarity::Similarity;
 
 /// Neighbours for normal estimation, for clouds without normals.
 const NORMAL_NEIGHBORS: usize = 30;

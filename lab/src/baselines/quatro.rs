@@ -3,13 +3,10 @@
 //!
 //! Intentional difference: the vertical is any direction per frame, instead of z in both.
 
-use nalgebra::{Rotation3, Vector3};
-
 use super::gnc::{Turns, about};
 use super::measurements::Matched;
 use super::teaser::{Teaser, TeaserSettings, solve_with};
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::similarity::Similarity;
+use crate::prelude::*;
 
 /// Settings of [`solve`].
 #[derive(Debug, Clone, Copy, PartialEq)]

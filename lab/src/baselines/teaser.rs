@@ -11,16 +11,13 @@
 //! TEASER++ chains each match to the next, which in the order of a voxel grid is its neighbour: short vectors are
 //! mostly noise. Large sets of length ratios are subsampled. Failure is an error, not the identity.
 
-use nalgebra::{Rotation3, Vector3};
-
 use super::clique::Graph;
 use super::gnc::{Turns, gnc_tls};
 use super::measurements::{Matched, links, no_consensus};
 use super::voting::vote;
+use crate::prelude::*;
 use sim3align::register::umeyama::ScaleMode;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::number::number;
-use sim3align_geometry::similarity::Similarity;
 
 /// Minimum number of matches.
 const MIN_MATCHES: usize = 3;

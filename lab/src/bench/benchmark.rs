@@ -1,6 +1,5 @@
 //! Runs methods over cases, and records the results for tables.
 
-use std::path::Path;
 use std::rc::Rc;
 use std::time::Instant;
 
@@ -11,15 +10,14 @@ use crate::case_folder::case::read_case;
 use crate::case_folder::contents::parameters_json;
 use crate::cases::case::EvaluationCase;
 use crate::cpu_time::CpuTimer;
+use crate::prelude::*;
 use sim3align::align::evaluate::{EvaluateOptions, Truth, evaluate};
 use sim3align::align::method::Method;
 use sim3align::align::search::Request;
 use sim3align::align::{align_paper, align_prepared};
-use sim3align::evidence::observation::Observation;
 use sim3align::metrics::Metrics;
 use sim3align::metrics::layout::LayoutErrors;
 use sim3align::metrics::pose_error::{PoseComparison, PoseErrors};
-use sim3align::metrics::symmetry::{Symmetry, SymmetryAxis};
 use sim3align::precise::clean::CleanObservation;
 use sim3align::precise::efforts;
 use sim3align::precise::mesh_pyramid::MeshPyramid;
@@ -30,10 +28,6 @@ use sim3align::precise::recipe::FIRST_REFINEMENT;
 use sim3align::precise::{Search, SearchSettings};
 use sim3align::progress::{Host, Stage};
 use sim3align::report::{Alternative, AnyAlignment, Sim3};
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::similarity::Similarity;
-use sim3align_geometry::surface_colors::SurfaceColors;
 
 /// A case from any source.
 #[derive(Debug, Clone)]
@@ -206,7 +200,7 @@ fn symmetry_of(axes: &Value) -> Option<Symmetry> {
             let axis: Option<Vec<f64>> = numbers.iter().map(Value::as_f64).collect();
             let [x, y, z] = axis?.try_into().ok()?;
             let fold = declared.get("fold").and_then(Value::as_u64).and_then(|fold| u32::try_from(fold).ok());
-            Some(SymmetryAxis { axis: nalgebra::Vector3::new(x, y, z), fold })
+            Some(SymmetryAxis { axis: Vector3::new(x, y, z), fold })
         })
         .collect();
     let axes = axes?;
@@ -310,7 +304,7 @@ pub(super) fn described(error: &Error) -> String {
 }
 
 /// The record of a case: the result or error, and the run time.
-pub(super) fn record_of(case: &BenchCase, outcome: core::result::Result<AnyAlignment, String>, seconds: f64) -> Record {
+pub(super) fn record_of(case: &BenchCase, outcome: Result<AnyAlignment, String>, seconds: f64) -> Record {
     let (alignment, error) = match outcome {
         Ok(alignment) => (Some(alignment), None),
         Err(error) => (None, Some(error)),

@@ -1,16 +1,10 @@
 //! Visualisation of a pose: outlines over the depth map.
 
-use core::f64::consts::TAU;
-
 use super::benchmark::BenchCase;
 use crate::case_folder::write::rgb_png;
+use crate::prelude::*;
 use sim3align::metrics::silhouette::boundary;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::image::{Image, Mask};
 use sim3align_geometry::order::quantile;
-use sim3align_geometry::pinhole::Pinhole;
-use sim3align_geometry::rasteriser::Rasteriser;
-use sim3align_geometry::similarity::Similarity;
 
 /// Colour of the outline of the mask: white.
 pub const MASK_COLOUR: [u8; 3] = [255, 255, 255];

@@ -3,14 +3,12 @@
 use std::fmt::Write as _;
 use std::io;
 
-use glam::Vec3;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
 
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::image::{DepthMap, Mask, check_size};
-use sim3align_geometry::mesh::Mesh;
+use crate::prelude::*;
+use sim3align_geometry::image::check_size;
 
 /// A depth map as NumPy array, float32 H×W, metres.
 pub fn depth_npy(depth: &DepthMap) -> Vec<u8> {

@@ -1,8 +1,5 @@
 //! One case of an evaluation set, and the set.
 
-use std::path::Path;
-
-use glam::DVec3;
 use serde_json::json;
 
 use super::draft::{Axis, Object};
@@ -26,16 +23,9 @@ use super::texture::paint;
 use super::tier::{CaseSet, Class, OutlineErrors, Tier};
 use crate::case_folder::contents::{case_files, glb_file, parameters_json, symmetry_json};
 use crate::cases::distortion::canonicalise;
-use crate::draws::{chance, mixed};
 use crate::files::{NamedFile, write_files};
-use sim3align::evidence::observation::Observation;
+use crate::prelude::*;
 use sim3align::geometry::surface::SurfaceMoments;
-use sim3align::metrics::symmetry::{Symmetry, SymmetryAxis};
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::similarity::Similarity;
-use sim3align_geometry::surface_colors::SurfaceColors;
 
 /// Default number of cases.
 pub const CASES: usize = 240;
@@ -325,7 +315,7 @@ pub(crate) fn declared(axes: &[Axis], object_from_mesh: &Similarity) -> Symmetry
     let mesh_from_object = object_from_mesh.rotation.inverse();
     let axis = |&(axis, fold): &Axis| {
         let turned = turned_axis(mesh_from_object.matrix(), axis);
-        SymmetryAxis { axis: nalgebra::Vector3::from(turned.to_array()), fold }
+        SymmetryAxis { axis: Vector3::from(turned.to_array()), fold }
     };
     Symmetry::Declared(axes.iter().map(axis).collect())
 }

@@ -2,17 +2,9 @@
 //! hallucinated, and the mesh is in a canonical frame.
 
 use core::cmp::Reverse;
-use core::f64::consts::TAU;
 use std::collections::BinaryHeap;
 
-use glam::{DVec3, Vec3};
-use nalgebra::{UnitQuaternion, Vector3};
-
-use crate::draws::between;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::similarity::{Similarity, vec3, vector3};
+use crate::prelude::*;
 
 /// Random stream of the hallucinated geometry.
 const DISTORTION_STREAM: u64 = 0x6469_7374;

@@ -5,8 +5,7 @@
 use super::mask::Noise;
 use super::scene::Scene;
 use super::tier::{Class, Tier};
-use crate::draws::{between, chance, normal, sign};
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
 
 /// Smallest step, as a share of the distance: about a pixel of a stereo camera's disparity.
 const STEP: f64 = 0.02;
@@ -175,7 +174,7 @@ pub fn edges(source: DepthSource, scene: &Scene, tier: Tier, random: &mut Random
         let dark = |u: usize, v: usize| 0.5 * (filling.at(u, v) + 1.0) < 0.2 + 0.8 * share;
         cast_shadow(scene, base * resolution, side, &mut depth, &dark);
     }
-    let angle = core::f64::consts::TAU * random.uniform();
+    let angle = TAU * random.uniform();
     let (sine, cosine) = libm::sincos(angle);
     let shift_px = [cosine, sine].map(|x| x * strength.shift * resolution);
     Edges { depth: shifted(&depth, width, shift_px), offset_px: strength.offset * resolution, shift_px }

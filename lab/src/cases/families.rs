@@ -4,9 +4,7 @@ use super::draft::{Draft, Object};
 use super::scans::Scan;
 use super::tier::{Class, Tier};
 use super::{figures, kitchen, tools};
-use crate::draws::chance;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
 
 /// A family: its name, its maker, and whether it is thin, or almost the same turned half round.
 struct Family(&'static str, fn(&mut Random) -> Draft, Kind);

@@ -1,12 +1,9 @@
 //! Families of objects: furniture, toys, shoes, fruit.
 
-use glam::{DAffine3, DVec3};
-
 use super::draft::Draft;
 use super::solid::{Solid, smooth};
 use super::tools::{along_y, to};
-use crate::draws::between;
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
 
 /// A leg or post.
 fn post(solid: &mut Solid, from: DVec3, to: DVec3, radii: [f64; 2]) {
@@ -70,7 +67,7 @@ pub fn shoe(r: &mut Random) -> Draft {
     draft.solid.at(to(0.0, 0.0, 0.012));
     let sole = |t: f64| {
         let round = (1.0 - libm::pow((2.0 * t - 1.0).abs(), 4.0)).max(0.0).sqrt();
-        [wide * round * (0.82 + 0.25 * t - 0.22 * libm::sin(core::f64::consts::PI * t)) * 1.15, 0.012]
+        [wide * round * (0.82 + 0.25 * t - 0.22 * libm::sin(PI * t)) * 1.15, 0.012]
     };
     draft.solid.tube(&[DVec3::X * -half, DVec3::new(0.0, 0.004, 0.0), DVec3::X * half], DVec3::Y, sole, 24);
     draft.solid.part();

@@ -1,22 +1,13 @@
 //! Simulates a generative model that reconstructs an object from one photo.
 
-use core::f64::consts::TAU;
-
-use glam::{DAffine3, DVec3};
-
 use super::cluster::cluster;
 use super::draft::{Axis, Object};
 use super::scene::Scene;
 use super::solid::Solid;
 use super::tier::{Class, Tier};
 use crate::cases::distortion::{neighbors, normals, paths};
-use crate::draws::{between, chance, normal, sign};
+use crate::prelude::*;
 use sim3align::register::umeyama::{Pair, ScaleMode, umeyama};
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::rasteriser::NO_TRIANGLE;
-use sim3align_geometry::similarity::{vec3, vector3};
 
 /// A generated mesh in the world frame, and its simulated errors.
 #[derive(Debug)]
@@ -178,7 +169,7 @@ fn fitted(positions: &[DVec3], original: &[DVec3], mesh: &Mesh) -> Result<Vec<DV
         let area = (b - a).cross(c - a).length();
         t.iter().for_each(|&i| weights[i as usize] += area);
     }
-    let vector = |p: &DVec3| nalgebra::Vector3::from(p.to_array());
+    let vector = |p: &DVec3| Vector3::from(p.to_array());
     let pairs = positions.iter().zip(original).zip(&weights);
     let pairs = pairs.map(|((p, q), &weight)| Pair { source: vector(p), target: vector(q), weight });
     let back = umeyama(pairs, ScaleMode::Free)?;
@@ -243,7 +234,7 @@ fn cut(positions: &[DVec3], triangles: &[[u32; 3]], radius: f64, random: &mut Ra
 }
 
 /// A lump at the surface.
-fn blob(positions: &[glam::Vec3], diagonal: f64, random: &mut Random) -> Solid {
+fn blob(positions: &[Vec3], diagonal: f64, random: &mut Random) -> Solid {
     let spot = positions[random.below(positions.len())].as_dvec3();
     let mut radius = || diagonal * between(random, 0.045, 0.1);
     let radii = DVec3::new(radius(), radius(), radius());
@@ -253,7 +244,7 @@ fn blob(positions: &[glam::Vec3], diagonal: f64, random: &mut Random) -> Solid {
 }
 
 /// Without vertices that no triangle uses.
-fn compact(positions: &[glam::Vec3], triangles: &[[u32; 3]]) -> Result<Mesh> {
+fn compact(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<Mesh> {
     let mut new = vec![u32::MAX; positions.len()];
     let mut kept = Vec::new();
     let triangles = triangles

@@ -1,15 +1,10 @@
 //! Holes in a sensor's readings, on dark, reflective and grazing surfaces.
 
-use glam::DVec3;
-
 use super::mask::Noise;
 use super::scene::Scene;
 use super::tier::Tier;
-use crate::draws::{between, chance, normal};
-use sim3align_geometry::mesh::Mesh;
+use crate::prelude::*;
 use sim3align_geometry::order::quantile;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::rasteriser::NO_TRIANGLE;
 
 /// Fewest pixels of one part that can be a dark part.
 const LEAST_PART_PX: usize = 40;

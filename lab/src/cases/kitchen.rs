@@ -1,13 +1,8 @@
 //! Families of objects: what stands in a kitchen.
 
-use core::f64::consts::PI;
-
-use glam::{DAffine3, DVec3};
-
 use super::draft::Draft;
 use super::solid::smooth;
-use crate::draws::between;
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
 
 const ROUND: (DVec3, Option<u32>) = (DVec3::Z, None);
 

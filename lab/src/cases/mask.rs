@@ -5,11 +5,8 @@ use super::network_mask::segmented;
 use super::readings::disc;
 use super::scene::Scene;
 use super::tier::{Class, OutlineErrors, Tier};
-use crate::draws::{between, chance};
+use crate::prelude::*;
 use sim3align_geometry::distance_transform::squared_distances;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::image::{Image, Mask};
-use sim3align_geometry::random::Random;
 
 /// Shares of the masks that networks and annotators make; the rest is uniformly too large or too small.
 const NETWORKS: f64 = 0.6;
@@ -144,7 +141,7 @@ fn spoil(
     }
     if let Some(at) = spot(random, &inner, "stray-island") {
         let reach = 3.0 * half_width + resolution * between(random, 15.0, 60.0);
-        let (sine, cosine) = libm::sincos(core::f64::consts::TAU * random.uniform());
+        let (sine, cosine) = libm::sincos(TAU * random.uniform());
         let (u, v) = ((at % width) as f64 + reach * cosine, (at / width) as f64 + reach * sine);
         let (u, v) = (u.clamp(0.0, width as f64 - 1.0) as usize, v.clamp(0.0, height as f64 - 1.0) as usize);
         let radius = (resolution * between(random, 2.0, 6.0)).min(0.15 * area.sqrt());

@@ -4,8 +4,7 @@
 use super::mask::{Noise, Outline};
 use super::scene::Scene;
 use super::tier::Tier;
-use crate::draws::{between, normal};
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
 
 /// Cells on the longer side of the logit image.
 const CELLS: f64 = 256.0;

@@ -1,18 +1,10 @@
 //! Prints: the colour of an object's surface, as a function of the position on it.
 
-use core::f64::consts::TAU;
-
-use glam::{DMat3, DVec3};
-
 use super::draft::Axis;
 use super::scene::Scene;
 use super::tier::Class;
-use crate::draws::{between, chance, mixed, normal};
+use crate::prelude::*;
 use sim3align::geometry::surface::SurfaceMoments;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::rasteriser::NO_TRIANGLE;
-use sim3align_geometry::similarity::vec3;
 use sim3align_geometry::surface_colors::Rgb;
 
 /// Sides of a label: those of a box, or one that goes round.

@@ -1,19 +1,12 @@
 //! Objects from mesh files.
 
 use std::fs;
-use std::path::Path;
-
-use glam::{DVec3, Vec3};
 
 use super::cluster::cluster;
 use super::draft::{Axis, Object};
-use crate::draws::between;
+use crate::prelude::*;
 use sim3align::metrics::mesh_symmetry::symmetry_axes;
 use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, read_mesh};
-use sim3align_geometry::cloud::Bounds;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
 
 /// A mesh of more triangles is thinned out.
 const MAX_TRIANGLES: usize = 60_000;

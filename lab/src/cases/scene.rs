@@ -1,23 +1,11 @@
 //! Camera and scene: an object on a table in front of a wall, with occluders and background objects.
 
-use core::f64::consts::TAU;
-
-use glam::{DAffine3, DVec3};
-use nalgebra::{Matrix3, Rotation3, Vector3};
-
 use super::draft::{Axis, Object};
 use super::solid::Solid;
 use super::split;
 use super::tier::{Class, Tier};
 use crate::cases::distortion::random_rotation;
-use crate::draws::{between, chance, sign};
-use sim3align_geometry::cloud::Bounds;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::pinhole::Pinhole;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::rasteriser::{NO_TRIANGLE, Rasteriser};
-use sim3align_geometry::similarity::{Similarity, vector3};
+use crate::prelude::*;
 
 /// Maximum number of occluders tried for the required occlusion.
 const OCCLUDERS: usize = 12;
@@ -79,7 +67,7 @@ pub fn put_down_turned(object: &Object, rotation: &Matrix3<f64>) -> Result<(Mesh
         0.5 * (least + most)
     });
     let down = Vector3::new(middle[0], middle[1], low);
-    let positions = turned.iter().map(|p| sim3align_geometry::similarity::vec3(&(p - down))).collect();
+    let positions = turned.iter().map(|p| vec3(&(p - down))).collect();
     let symmetry = object.symmetry.iter().map(|&(axis, fold)| (turned_axis(rotation, axis), fold)).collect();
     Ok((Mesh::new(positions, object.mesh.triangles().to_vec())?, symmetry))
 }

@@ -8,10 +8,8 @@ use super::scene::Scene;
 use super::shadow;
 use super::split::{in_two, parts};
 use super::tier::{Class, Tier};
-use crate::draws::{between, chance};
-use sim3align_geometry::error::Result;
+use crate::prelude::*;
 use sim3align_geometry::order::median;
-use sim3align_geometry::random::Random;
 
 /// Largest step of quantised depth at the object, as a share of its diagonal.
 const LARGEST_STEP: f64 = 0.06;

@@ -1,12 +1,8 @@
 //! Objects composed of overlapping closed parts, like those of mesh generators.
 
-use core::f64::consts::{PI, TAU};
 use std::collections::BTreeMap;
 
-use glam::{DAffine3, DVec3};
-
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
+use crate::prelude::*;
 
 /// Vertices and triangles by part; the triangles of every part face outward.
 #[derive(Debug, Clone, Default)]

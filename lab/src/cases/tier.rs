@@ -1,6 +1,6 @@
 //! Sets of cases, tiers of difficulty, and classes of cases.
 
-use sim3align_geometry::error::{Error, ErrorCode, Result};
+use crate::prelude::*;
 
 /// A set of classes that are generated together. The sets share no random numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]

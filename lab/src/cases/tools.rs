@@ -1,13 +1,8 @@
 //! Families of objects: tools, devices, boxes.
 
-use core::f64::consts::{FRAC_PI_2, PI, TAU};
-
-use glam::{DAffine3, DVec3};
-
 use super::draft::Draft;
 use super::solid::{arc, smooth};
-use crate::draws::between;
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
 
 /// A frame that was moved.
 pub fn to(x: f64, y: f64, z: f64) -> DAffine3 {

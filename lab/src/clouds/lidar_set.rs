@@ -1,21 +1,14 @@
 //! Drives along streets in KITTI's layout.
 
-use std::path::Path;
-
-use glam::{DQuat, DVec3, EulerRot, Vec3};
-use nalgebra::{Matrix3, Vector3};
+use glam::EulerRot;
 
 use super::kitti::line;
 use super::lidar::{HEIGHT_M, LIDAR_STREAM, sweep};
 use super::overlap::overlap;
 use super::pair::Listed;
 use super::street::Street;
-use crate::draws::normal;
 use crate::files::write;
-use sim3align_geometry::cloud::Cloud;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::similarity::Similarity;
+use crate::prelude::*;
 use sim3align_geometry::voxel_grid::voxel_downsample;
 
 /// Way from frame to frame.

@@ -2,9 +2,6 @@
 //! it, which contain one side of the object, its support and its neighbours. The unit is a decimetre, so that the
 //! tolerance of rooms, 0.2 units, is 2 cm.
 
-use std::path::Path;
-
-use glam::Vec3;
 use nalgebra::Matrix4;
 
 use super::overlap::{covered, information};
@@ -12,13 +9,9 @@ use super::pair::Listed;
 use super::trajectory::{Block, text};
 use crate::case_folder::write::ply_points;
 use crate::files::write;
+use crate::prelude::*;
 use crate::scenes::{ClutteredScene, SceneSet};
-use sim3align::evidence::observation::Observation;
 use sim3align::geometry::surface::sample_surface;
-use sim3align_geometry::cloud::Bounds;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::kd_tree::KdTree;
-use sim3align_geometry::similarity::{Similarity, vec3, vector3};
 
 /// Units per metre.
 const PER_METRE: f32 = 10.0;

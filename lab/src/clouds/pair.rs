@@ -1,14 +1,11 @@
 //! Pairs of clouds with a known transform: the list of a generated set, and the error of an estimate.
 
-use std::path::{Path, PathBuf};
-
 use nalgebra::Matrix6;
 use serde::{Deserialize, Serialize};
 
 use super::overlap::mean_squared_error;
 use crate::files::{corrupt, read};
-use sim3align_geometry::error::Result;
-use sim3align_geometry::similarity::Similarity;
+use crate::prelude::*;
 
 /// Largest root mean squared error of a success on 3DMatch and 3DLoMatch, in metres.
 pub const RMSE_M: f64 = 0.2;

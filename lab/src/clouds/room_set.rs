@@ -1,9 +1,5 @@
 //! Rooms in 3DMatch's layout.
 
-use core::f64::consts::TAU;
-use std::path::Path;
-
-use glam::{DVec3, Vec3};
 use nalgebra::{Matrix4, Matrix6};
 
 use super::depth_camera::{CAMERA_STREAM, Stand, fragment};
@@ -12,12 +8,8 @@ use super::pair::Listed;
 use super::room::Room;
 use super::trajectory::{Block, text};
 use crate::case_folder::write::ply_points;
-use crate::draws::between;
 use crate::files::write;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::kd_tree::KdTree;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::similarity::Similarity;
+use crate::prelude::*;
 
 /// Points of two fragments that are this near to each other show the same surface.
 pub const SAME_SURFACE_M: f32 = 0.0375;

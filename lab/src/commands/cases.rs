@@ -1,15 +1,13 @@
 //! `case`: writes a generated case folder with the true pose.
 
-use std::path::PathBuf;
-
 use lexopt::prelude::*;
-use sim3align_geometry::error::Error;
 use sim3align_lab::samples::case::SampleCase;
 use sim3align_lab::samples::shape::Kind;
 use sim3align_lab::samples::table::TableScene;
 use sim3align_lab::scenes::DEPTH_SCALE;
 
 use super::{Failure, parsed};
+use sim3align_lab::prelude::*;
 
 const USAGE: &str = "\
 Usage: sim3align-lab case OUT_DIR [--kind KIND] [--seed N] [--depth FORMAT]

@@ -1,15 +1,14 @@
 //! `outlines`: measures where mask, depth and photo show the outlines of objects.
 
-use std::path::PathBuf;
-
 use lexopt::prelude::*;
-use sim3align_geometry::error::{Error, Result as GeometryResult};
+use sim3align_geometry::error::Result as GeometryResult;
 use sim3align_lab::cases::case::EvaluationSet;
 use sim3align_lab::cases::tier::CaseSet;
 use sim3align_lab::outlines::{GroupBy, ObjectOutlines, OutlineView, table};
 use sim3align_lab::parallel::parallel_map;
 
 use super::{Failure, parsed};
+use sim3align_lab::prelude::*;
 
 const USAGE: &str = "\
 Usage: sim3align-lab outlines [--cases DIR...] [--generated N] [options]

@@ -9,11 +9,11 @@ use sim3align::align::search::Request;
 use sim3align::precise::options::AlignOptions;
 use sim3align::precise::prepared_mesh::PreparedMesh;
 use sim3align::progress::{Host, Stage};
-use sim3align_geometry::error::Error;
 use sim3align_lab::bench::option_text;
 use sim3align_lab::case_folder::case::read_case;
 
 use super::{Failure, parsed};
+use sim3align_lab::prelude::*;
 
 const USAGE: &str = "\
 Usage: sim3align-lab profile [--quality QUALITY] RUNS CASE...

@@ -1,12 +1,10 @@
 //! `scenes`: writes cluttered scenes as case folders.
 
-use std::path::PathBuf;
-
 use lexopt::prelude::*;
-use sim3align_geometry::error::Error;
 use sim3align_lab::scenes::{Prior, SCENES, SceneSet, write_bop};
 
 use super::{Failure, parsed};
+use sim3align_lab::prelude::*;
 
 const USAGE: &str = "\
 Usage: sim3align-lab scenes OUT_DIR [--scenes N] [--set-seed S] [--prior P] [--bop] [--threads N]

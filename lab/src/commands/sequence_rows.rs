@@ -2,12 +2,12 @@
 
 use core::ops::Range;
 
-use sim3align_geometry::error::Result;
 use sim3align_lab::parallel::parallel_map;
 use sim3align_lab::sequences::Sequence;
 use sim3align_lab::sequences::folder::read_sequence;
 
 use super::Failure;
+use sim3align_lab::prelude::*;
 
 /// The source of a sequence.
 enum Source {
@@ -22,7 +22,7 @@ pub fn outcomes<T: Send>(
     threads: usize,
     generate: impl Fn(usize) -> Result<Sequence> + Sync,
     run: impl Fn(&Sequence) -> Result<Vec<T>> + Sync,
-) -> core::result::Result<Vec<T>, Failure> {
+) -> Result<Vec<T>, Failure> {
     let sources: Vec<Source> = folders.into_iter().map(Source::Folder).chain(generated.map(Source::Index)).collect();
     let work = |source: &Source| {
         run(&match source {

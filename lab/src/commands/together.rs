@@ -1,16 +1,14 @@
 //! `together`: aligns the objects of scenes alone and together.
 
-use std::path::{Path, PathBuf};
-
 use lexopt::prelude::*;
 use sim3align::precise::options::AlignOptions;
-use sim3align_geometry::error::Error;
 use sim3align_lab::bench::option_text;
 use sim3align_lab::bench::scene_bench::{BenchScene, SceneRecord, table};
 use sim3align_lab::parallel::parallel_map;
 use sim3align_lab::scenes::{Prior, SceneSet};
 
 use super::{Failure, parsed};
+use sim3align_lab::prelude::*;
 
 const USAGE: &str = "\
 Usage: sim3align-lab together [--scenes N] [--cases DIR...] [options]

@@ -3,12 +3,9 @@
 use core::ops::Range;
 use lexopt::prelude::*;
 use sim3align::metrics::pose_error::pose_errors;
-use sim3align::progress::Silent;
 use sim3align::track::options::TrackOptions;
 use sim3align::track::report::TrackState;
 use sim3align::track::tracker::Tracker;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::similarity::Similarity;
 use sim3align_lab::bench::benchmark::STRICT;
 use sim3align_lab::bench::statistics::{cell, median};
 use sim3align_lab::cpu_time::CpuTimer;
@@ -17,6 +14,7 @@ use sim3align_lab::sequences::video::VideoSet;
 
 use super::sequence_rows::{each_row, outcomes};
 use super::{Failure, parsed};
+use sim3align_lab::prelude::*;
 
 const USAGE: &str = "\
 Usage: sim3align-lab track [--generated N] [--from I] [--frames F] [--seed S] [--threads T] [--printed]
@@ -36,7 +34,7 @@ struct Arguments {
     folders: Vec<String>,
 }
 
-fn parse(mut parser: lexopt::Parser) -> core::result::Result<Option<Arguments>, lexopt::Error> {
+fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Error> {
     let set = VideoSet { seed: 1, frames: 150, is_printed: false };
     let mut parsed =
         Arguments { generated: 0..0, set, threads: 1, verbose: false, with_color: true, folders: Vec::new() };
@@ -149,7 +147,7 @@ fn run(sequence: &Sequence, with_color: bool, verbose: bool) -> Result<Vec<Outco
 }
 
 /// Runs the command.
-pub fn main(arguments: lexopt::Parser) -> core::result::Result<(), Failure> {
+pub fn main(arguments: lexopt::Parser) -> Result<(), Failure> {
     let arguments = parsed(arguments, parse, USAGE)?;
     let Arguments { generated, set, threads, verbose, with_color, folders } = arguments;
     let outcomes =

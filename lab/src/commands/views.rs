@@ -5,13 +5,10 @@ use std::time::Instant;
 use core::ops::Range;
 use lexopt::prelude::*;
 use sim3align::metrics::pose_error::{PoseErrors, pose_errors};
-use sim3align::progress::Silent;
 use sim3align::report::Sim3;
 use sim3align::views::options::ViewsOptions;
 use sim3align::views::report::{ViewRole, ViewsAlignment};
 use sim3align::views::{View, align_views};
-use sim3align_geometry::error::Result;
-use sim3align_geometry::similarity::Similarity;
 use sim3align_lab::bench::benchmark::STRICT;
 use sim3align_lab::bench::statistics::{cell, median};
 use sim3align_lab::sequences::Sequence;
@@ -20,6 +17,7 @@ use sim3align_lab::sequences::rig::RigSet;
 
 use super::sequence_rows::{each_row, outcomes};
 use super::{Failure, parsed};
+use sim3align_lab::prelude::*;
 
 const USAGE: &str = "\
 Usage: sim3align-lab views [--generated N] [--from I] [--seed S] [--views V] [--threads T] [--printed] [--small]
@@ -63,7 +61,7 @@ struct Arguments {
     folders: Vec<String>,
 }
 
-fn parse(mut parser: lexopt::Parser) -> core::result::Result<Option<Arguments>, lexopt::Error> {
+fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Error> {
     let set = RigSet { seed: 1, views: None, is_printed: false, is_small: false };
     let fault = Fault { with_color: true, mask_px: 0, holes: false };
     let mut parsed = Arguments { generated: 0..0, set, threads: 1, verbose: false, fault, folders: Vec::new() };
@@ -198,7 +196,7 @@ fn run(sequence: &Sequence, fault: Fault, verbose: bool) -> Result<Vec<Outcome>>
 }
 
 /// Runs the command.
-pub fn main(arguments: lexopt::Parser) -> core::result::Result<(), Failure> {
+pub fn main(arguments: lexopt::Parser) -> Result<(), Failure> {
     let arguments = parsed(arguments, parse, USAGE)?;
     let Arguments { generated, set, threads, verbose, fault, folders } = arguments;
     let outcomes =

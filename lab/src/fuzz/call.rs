@@ -1,6 +1,6 @@
 //! Calls of the fuzzer, and the criteria for faults in their answers.
 
-use sim3align_geometry::error::{Error, ErrorCode};
+use crate::prelude::*;
 
 /// A call prepared by a generator.
 pub struct Call {

@@ -1,19 +1,13 @@
 //! Objects in views, with the true pose.
 
 use std::fs;
-use std::path::{Path, PathBuf};
 
 use crate::bench::scene_bench::{BenchObject, BenchScene};
 use crate::case_folder::case::{last_name, photo_of, read_case};
 use crate::cases::case::EvaluationCase;
+use crate::prelude::*;
 use crate::sequences::folder::read_sequence;
 use crate::sequences::{Sequence, SequenceFrame};
-use sim3align::evidence::photo::Photo;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::image::{DepthMap, Mask};
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::pinhole::Pinhole;
-use sim3align_geometry::similarity::Similarity;
 
 /// An object in a view, with the true pose.
 pub struct OutlineView {

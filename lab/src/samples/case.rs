@@ -1,7 +1,5 @@
 //! A generated case: the observation of an object, its generated mesh, and how the one follows from the other.
 
-use std::path::Path;
-
 use serde_json::json;
 
 use super::depth::View;
@@ -9,10 +7,7 @@ use super::shape::Kind;
 use crate::case_folder::contents::{case_files, glb_file};
 use crate::cases::distortion::{canonicalise, hallucinate};
 use crate::files::{NamedFile, write_files};
-use sim3align::evidence::observation::Observation;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::similarity::Similarity;
+use crate::prelude::*;
 
 /// A generated case.
 #[derive(Debug, Clone)]

@@ -1,19 +1,7 @@
 //! Renders an object on a table as depth map, with the errors of monocular depth models.
 
-use core::f64::consts::TAU;
-
-use glam::Vec3;
-use nalgebra::Vector3;
-
 use crate::cases::scene::{camera_at, count, hidden, put_before, shown};
-use crate::draws::between;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::image::{DepthMap, Image, Mask};
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::pinhole::Pinhole;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::rasteriser::Rasteriser;
-use sim3align_geometry::similarity::{Similarity, vec3, vector3};
+use crate::prelude::*;
 
 /// Random stream of the viewpoint.
 const VIEW_STREAM: u64 = 0x7669_6577;

@@ -1,16 +1,8 @@
 //! Procedural objects: metres, z up, standing on the plane z = 0 about the origin.
 
-use core::f64::consts::{PI, TAU};
-
-use glam::DVec3;
-use nalgebra::{Rotation3, Vector3};
-
 use crate::cases::families;
 use crate::cases::scene::put_down_turned;
-use crate::draws::between;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
 
 /// Random stream of the dimensions.
 const SHAPE_STREAM: u64 = 0x7368_6170;

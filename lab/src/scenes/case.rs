@@ -1,7 +1,5 @@
 //! A pair of a scene with the mesh of a prior, and its folder.
 
-use std::path::Path;
-
 use serde_json::json;
 
 use super::prior::Prior;
@@ -9,12 +7,8 @@ use crate::bench::benchmark::BenchCase;
 use crate::case_folder::contents::{case_files, glb_file, parameters_json, symmetry_json};
 use crate::cases::tier::Tier;
 use crate::files::{NamedFile, write_files};
+use crate::prelude::*;
 use sim3align::align::evaluate::Truth;
-use sim3align::evidence::observation::Observation;
-use sim3align::metrics::symmetry::Symmetry;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::similarity::Similarity;
 
 /// Metres per unit of the depth maps: finer than the noise, and compact as 16-bit images.
 pub const DEPTH_SCALE: f64 = 0.0001;

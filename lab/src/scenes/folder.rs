@@ -1,11 +1,9 @@
 //! Scene folders: the objects of a scene together.
 
-use std::path::Path;
-
 use super::prior::Prior;
 use super::scene::ClutteredScene;
 use crate::files::write_files;
-use sim3align_geometry::error::Result;
+use crate::prelude::*;
 
 /// The files that the objects of a scene share.
 const SHARED: [&str; 2] = ["depth.png", "camera.json"];

@@ -1,11 +1,6 @@
 //! A heap: the tops of everything that stands somewhere, as heights over a plane, onto which objects are dropped.
 
-use glam::{DQuat, DVec2, DVec3};
-
-use crate::draws::between;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
 use sim3align_geometry::rotations::exp;
 
 /// Side of a cell and of the whole, metres.

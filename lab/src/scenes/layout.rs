@@ -1,23 +1,13 @@
 //! Layout: objects placed close to each other without intersection.
 
-use core::f64::consts::{PI, TAU};
-
-use glam::{DVec2, DVec3, Vec3};
-use nalgebra::{Matrix3, Rotation3, Vector3};
-
 use super::clutter;
 use super::heap::Below;
 use crate::cases::distortion::random_rotation;
 use crate::cases::draft::{Axis, Object};
 use crate::cases::families;
 use crate::cases::scene::{put_down_turned, turned_axis};
-use crate::draws::between;
-use crate::draws::chance;
+use crate::prelude::*;
 use sim3align::geometry::surface::SurfaceMoments;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::similarity::vector3;
 
 /// Directions in which footprints are measured.
 const DIRECTIONS: usize = 64;

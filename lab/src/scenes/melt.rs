@@ -1,9 +1,6 @@
 //! A mesh sampled to a coarse, blurred volume and back: details melt, thin parts thicken, parts become one.
 
-use glam::DVec3;
-
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
+use crate::prelude::*;
 
 /// Empty cells around the object.
 const PAD: usize = 4;

@@ -1,7 +1,5 @@
 //! What generative models make of an object: two styles of being wrong.
 
-use nalgebra::{Matrix3, Vector3};
-
 use super::layout::Placed;
 use super::melt::melted;
 use super::underside::invented_underside;
@@ -9,13 +7,9 @@ use crate::cases::generator::{Generated, generate};
 use crate::cases::scene::Scene;
 use crate::cases::streams::{GENERATOR_STREAM, QUALITY_STREAM};
 use crate::cases::tier::{Class, Tier};
-use crate::draws::{between, chance, mixed};
+use crate::prelude::*;
 use sim3align::register::umeyama::{Pair, ScaleMode, umeyama};
 use sim3align_geometry::decimate::decimate;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::similarity::{Similarity, vec3, vector3};
 
 /// Pixels that the smooth prior's best fit is taken over, at most.
 const FITTED_PIXELS: usize = 4000;

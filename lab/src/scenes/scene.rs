@@ -15,15 +15,8 @@ use crate::cases::streams::{
     LAYOUT_STREAM, MASK_STREAM, OBJECT_STREAM, QUALITY_STREAM, READINGS_STREAM, SCENE_STREAM, STANCE_STREAM,
 };
 use crate::cases::tier::{Class, OutlineErrors, Tier};
-use crate::draws::{chance, mixed};
-use sim3align::evidence::observation::Observation;
-use sim3align::metrics::symmetry::{Symmetry, SymmetryAxis};
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::image::DepthMap;
-use sim3align_geometry::mesh::Mesh;
+use crate::prelude::*;
 use sim3align_geometry::order::median;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::similarity::Similarity;
 
 /// Minimum number of pixels in a mask.
 pub const MIN_MASK_PX: usize = 350;

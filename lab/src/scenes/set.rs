@@ -1,18 +1,15 @@
 //! The set: how many objects each of its scenes has.
 
 use std::fs;
-use std::path::Path;
 
 use serde_json::json;
 
 use super::prior::Prior;
 use super::scene::ClutteredScene;
 use crate::cases::streams::COUNT_STREAM;
-use crate::draws::mixed;
 use crate::files::unwritable;
 use crate::parallel::parallel_map;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
 
 /// Default number of scenes of a set.
 pub const SCENES: usize = 100;

@@ -1,14 +1,7 @@
 //! Undersides that a generative model invents: nobody has seen them.
 
-use core::f64::consts::TAU;
-
-use glam::DVec3;
-
 use crate::cases::distortion::normals;
-use crate::draws::between;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
 
 /// Height of what counts as the underside, relative to the height of the object.
 const BAND: f64 = 0.3;

@@ -1,16 +1,8 @@
 //! The camera, and what it sees of every object.
 
-use nalgebra::Vector3;
-
 use super::layout::Layout;
 use crate::cases::scene::{Scene, background, camera_at, count, hidden, in_front, put_before, shown};
-use crate::draws::between;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::pinhole::Pinhole;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::rasteriser::Rasteriser;
-use sim3align_geometry::similarity::{Similarity, vector3};
+use crate::prelude::*;
 
 /// Pixels in a row, and rows.
 pub const WIDTH: usize = 640;

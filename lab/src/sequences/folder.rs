@@ -2,20 +2,15 @@
 //! the true pose.
 
 use std::fs;
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
 
 use super::{Sequence, SequenceFrame};
 use crate::case_folder::case::{depth_and_camera, has_mask, last_name, mask_in, mesh_in, photo_of, truth_of};
 use crate::case_folder::json;
-use sim3align::evidence::frame::Frame;
-use sim3align::metrics::symmetry::Symmetry;
+use crate::prelude::*;
 use sim3align::views::View;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::similarity::Similarity;
 
 /// Reads a case folder with `frame_*` folders.
 ///

@@ -1,15 +1,10 @@
 //! Generated views: two to eight cameras around an object.
 
-use nalgebra::Vector3;
-
 use super::stage::Stage;
 use super::{Sequence, SequenceFrame, jittered};
 use crate::cases::tier::Tier;
-use crate::draws::{between, mixed, sign};
-use sim3align::evidence::frame::Frame;
+use crate::prelude::*;
 use sim3align::views::View;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::random::Random;
 
 /// Random stream of a rig.
 const STREAM: u64 = 31;

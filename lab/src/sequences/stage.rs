@@ -1,10 +1,6 @@
 //! An object on a table that cameras look at from all sides.
 
-use core::f64::consts::TAU;
 use std::sync::Arc;
-
-use glam::{DAffine3, DVec3};
-use nalgebra::Vector3;
 
 use crate::cases::case::declared;
 use crate::cases::distortion::canonicalise;
@@ -19,18 +15,7 @@ use crate::cases::scene::{Scene, background, camera_at, count, hidden, put_befor
 use crate::cases::solid::Solid;
 use crate::cases::texture::paint;
 use crate::cases::tier::{Class, OutlineErrors, Tier};
-use crate::draws::between;
-use sim3align::evidence::photo::Photo;
-use sim3align::metrics::symmetry::Symmetry;
-use sim3align_geometry::cloud::Bounds;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::image::{DepthMap, Mask};
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::pinhole::Pinhole;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::rasteriser::Rasteriser;
-use sim3align_geometry::similarity::{Similarity, vector3};
-use sim3align_geometry::surface_colors::SurfaceColors;
+use crate::prelude::*;
 
 /// Image size of all frames.
 pub const SIZE: [usize; 2] = [640, 480];

@@ -1,22 +1,12 @@
 //! Generated videos: a camera that moves around an object on a table.
 
-use core::f64::consts::TAU;
-
-use glam::{DAffine3, DVec3};
-use nalgebra::Vector3;
-
 use super::stage::{SIZE, Stage};
 use super::{Sequence, SequenceFrame};
 use crate::cases::readings::disc;
 use crate::cases::solid::Solid;
 use crate::cases::tier::Tier;
-use crate::draws::{between, chance, mixed, sign};
-use sim3align::evidence::frame::Frame;
+use crate::prelude::*;
 use sim3align::views::View;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::similarity::Similarity;
 
 /// Random stream of a video.
 const STREAM: u64 = 32;

@@ -1,21 +1,16 @@
 //! The baselines from clouds to pose: what each finds, what it does not depend on, and what it refuses.
 
-use glam::Vec3;
-use nalgebra::{Rotation3, Vector3};
 use sim3align::geometry::surface::sample_surface;
 use sim3align::paper::options::PaperOptions;
-use sim3align::progress::Silent;
 use sim3align::register::icp::IcpMetric;
 use sim3align::register::options::Icp;
 use sim3align::report::PaperAlignment;
-use sim3align_geometry::cloud::Cloud;
-use sim3align_geometry::error::{ErrorCode, Result};
-use sim3align_geometry::similarity::Similarity;
 use sim3align_lab::baselines::align::{BaselineOptions, align_baseline};
 use sim3align_lab::baselines::{Baseline, PairSettings, register_pair};
 
 use crate::shapes::{body, observe};
 use crate::support::{Draw, blob, fingerprint, of_pose, pose_error, rotation_defect, transformed};
+use sim3align_lab::prelude::*;
 
 /// A shape and what a scan from one side has of it, some way off: a turn about z for Quatro's sake, a small one for
 /// those that only search nearby.

@@ -4,22 +4,18 @@
 //! `tests/fixtures/make_baselines.py` wrote them, with `--problems 20` it writes more and has them read by way of
 //! `SIM3ALIGN_AGREEMENT`.
 
-use glam::Vec3;
-use nalgebra::Vector3;
 use serde_json::Value;
 use sim3align::register::at_once::ransac;
 use sim3align::register::icp::IcpMetric;
 use sim3align::register::matching::Match;
 use sim3align::register::ransac::RansacSettings;
 use sim3align::register::umeyama::ScaleMode;
-use sim3align_geometry::cloud::Cloud;
-use sim3align_geometry::kd_tree::KdTree;
-use sim3align_geometry::similarity::{Similarity, vector3};
 use sim3align_lab::baselines::fgr::{self, FgrSettings};
 use sim3align_lab::baselines::gicp::{self, GicpSettings};
 use sim3align_lab::baselines::icp::{self, classical};
 use sim3align_lab::baselines::quatro::{self, QuatroSettings};
 use sim3align_lab::baselines::teaser::{self, InlierSelection, TeaserSettings};
+use sim3align_lab::prelude::*;
 
 macro_rules! fixture {
     ($name:literal) => {

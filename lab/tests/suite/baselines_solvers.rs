@@ -1,11 +1,7 @@
 //! The parts of the baselines against slow oracles: cliques, votes, graduated non-convexity, and the solvers on matches.
 
-use glam::Vec3;
-use nalgebra::{Rotation3, Vector3};
 use sim3align::register::matching::Match;
 use sim3align::register::umeyama::ScaleMode;
-use sim3align_geometry::error::ErrorCode;
-use sim3align_geometry::similarity::{Similarity, vec3, vector3};
 use sim3align_lab::baselines::clique::{Clique, Graph};
 use sim3align_lab::baselines::fgr::{self, FgrSettings};
 use sim3align_lab::baselines::gnc::{Turns, gnc_tls};
@@ -15,6 +11,7 @@ use sim3align_lab::baselines::teaser::{self, InlierSelection, TeaserSettings};
 use sim3align_lab::baselines::voting::vote;
 
 use crate::support::{Draw, rotation_defect};
+use sim3align_lab::prelude::*;
 
 fn random_graph(draw: &mut Draw, count: usize, density: f64) -> Graph {
     let mut graph = Graph::new(count);

@@ -6,15 +6,13 @@ use sim3align::align::align_prepared;
 use sim3align::align::evaluate::{EvaluateOptions, evaluate_prepared};
 use sim3align::align::search::Request;
 use sim3align::metrics::pose_error::pose_errors;
-use sim3align::metrics::symmetry::Symmetry;
 use sim3align::precise::options::AlignOptions;
 use sim3align::precise::prepared_mesh::PreparedMesh;
-use sim3align::progress::Silent;
-use sim3align_geometry::similarity::Similarity;
 use sim3align_geometry::surface_colors::COLOR_SAMPLES;
 use sim3align_lab::bench::benchmark::BenchCase;
 use sim3align_lab::cases::case::{EvaluationCase, EvaluationSet};
 use sim3align_lab::cases::tier::{CaseSet, Class, Tier};
+use sim3align_lab::prelude::*;
 
 /// Every class of every tier.
 const LOOKED_AT: usize = 24;

@@ -2,25 +2,20 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::PathBuf;
 
-use nalgebra::{Rotation3, Unit, Vector3};
+use nalgebra::Unit;
 use sim3align::align::method::Method;
 use sim3align::evidence::clouds::Sampling;
 use sim3align::geometry::surface::{SurfaceMoments, check_shape};
 use sim3align::metrics::evaluate;
 use sim3align::metrics::pose_error::{PoseErrors, pose_errors};
 use sim3align::metrics::silhouette::iou;
-use sim3align::metrics::symmetry::Symmetry;
 use sim3align::paper::options::PaperOptions;
-use sim3align_geometry::error::ErrorCode;
-use sim3align_geometry::image::Mask;
-use sim3align_geometry::rasteriser::Rasteriser;
-use sim3align_geometry::similarity::{Similarity, vector3};
 use sim3align_lab::bench::benchmark::{BenchCase, LOOSE, STRICT, run_case};
 use sim3align_lab::case_folder::write;
 use sim3align_lab::cases::case::{EvaluationCase, EvaluationSet, MIN_MASK_PX};
 use sim3align_lab::cases::tier::{CaseSet, Class, Tier};
+use sim3align_lab::prelude::*;
 
 /// Cases that the tests look at: every class of every tier at least once.
 const LOOKED_AT: usize = 36;
@@ -171,10 +166,7 @@ fn a_turn_that_the_declared_symmetry_allows_is_no_error() {
         let object_from_mesh = case.camera_from_object.inverse().compose(&case.camera_from_mesh);
         for axis in axes {
             let direction = Unit::new_normalize(object_from_mesh.rotation * axis.axis);
-            let turn = Rotation3::from_axis_angle(
-                &direction,
-                axis.fold.map_or(2.0, |n| 2.0 * std::f64::consts::PI / f64::from(n)),
-            );
+            let turn = Rotation3::from_axis_angle(&direction, axis.fold.map_or(2.0, |n| 2.0 * PI / f64::from(n)));
             let turned = Similarity { scale: 1.0, rotation: turn, translation: centroid - turn * centroid };
             let estimate = case.camera_from_object.compose(&turned).compose(&object_from_mesh);
             let errors = pose_errors(&case.mesh, &estimate, &case.camera_from_mesh, &case.symmetry).unwrap();

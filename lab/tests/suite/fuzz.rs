@@ -1,12 +1,11 @@
 //! A fixed part of the fuzzing, and every input that it has found so far.
 
-use std::path::Path;
-
 use sim3align_lab::fuzz::call::Answer;
 use sim3align_lab::fuzz::choices::Choices;
 use sim3align_lab::fuzz::memory::{CountingAllocator, peak_bytes, reset_peak};
 use sim3align_lab::fuzz::minimise::minimise;
 use sim3align_lab::fuzz::target::{Ceilings, Execution, TARGETS, Target};
+use sim3align_lab::prelude::*;
 
 /// For the memory of the calls.
 #[global_allocator]

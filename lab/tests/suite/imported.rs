@@ -1,19 +1,15 @@
 //! Answers of other programs: read strictly, scored as our own.
 
 use std::fs;
-use std::path::PathBuf;
 
-use nalgebra::{Rotation3, Vector3};
 use serde_json::{Value, json};
 use sim3align::align::evaluate::{EvaluateOptions, evaluate};
 use sim3align::metrics::Metrics;
 use sim3align::paper::options::PaperOptions;
-use sim3align_geometry::error::ErrorCode;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::similarity::{Similarity, vector3};
 use sim3align_lab::bench::benchmark::{BenchCase, Record, STRICT};
 use sim3align_lab::bench::imported::{CASE, Outcome, imported, read_answer};
 use sim3align_lab::cases::case::EvaluationSet;
+use sim3align_lab::prelude::*;
 
 const DOCUMENTATION: &str = include_str!("../../../docs/importing-results.md");
 
@@ -77,7 +73,7 @@ fn the_documented_examples_are_imported_as_the_page_says() {
         DOCUMENTATION.split("```json\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
     assert_eq!(examples.len(), 4, "a pose, its matrix, correspondences, an error");
     let case = case();
-    let quarter_turn = Rotation3::from_axis_angle(&Vector3::z_axis(), core::f64::consts::FRAC_PI_2);
+    let quarter_turn = Rotation3::from_axis_angle(&Vector3::z_axis(), FRAC_PI_2);
     let pose = Similarity { scale: 0.25, rotation: quarter_turn, translation: Vector3::new(0.1, 0.0, 0.8) };
     for (i, seconds) in [0.83, 0.83, 0.31].into_iter().enumerate() {
         let record = import("documented", &case, examples[i]);

@@ -1,14 +1,13 @@
 //! Files of records: what a killed run leaves behind, another one goes on with.
 
 use std::fs;
-use std::path::PathBuf;
 
 use serde::de::IgnoredAny;
 use sim3align::precise::options::{AlignOptions, Quality};
-use sim3align_geometry::error::ErrorCode;
 use sim3align_lab::bench::benchmark::{BenchCase, Record, run_case};
 use sim3align_lab::bench::records::{RecordFile, RecordKey};
 use sim3align_lab::cases::case::EvaluationSet;
+use sim3align_lab::prelude::*;
 
 /// A path of its own for each test.
 fn fresh(name: &str) -> PathBuf {

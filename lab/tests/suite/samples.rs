@@ -2,20 +2,15 @@
 
 use std::fs;
 
-use nalgebra::{Rotation3, Vector3};
 use sim3align::align::{align, align_paper};
 use sim3align::evidence::clouds::Sampling;
 use sim3align::geometry::surface::check_shape;
 use sim3align::metrics::evaluate;
 use sim3align::paper::options::PaperOptions;
 use sim3align::precise::options::{AlignOptions, Quality};
-use sim3align::progress::Silent;
-use sim3align_geometry::error::ErrorCode;
-use sim3align_geometry::image::DepthMap;
-use sim3align_geometry::rasteriser::{NO_TRIANGLE, Rasteriser};
-use sim3align_geometry::similarity::{Similarity, vec3, vector3};
 use sim3align_geometry::triangle_tree::TriangleTree;
 use sim3align_lab::case_folder::case::read_case;
+use sim3align_lab::prelude::*;
 use sim3align_lab::samples::case::SampleCase;
 use sim3align_lab::samples::shape::Kind;
 

@@ -2,21 +2,16 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use sim3align::evidence::clouds::Sampling;
 use sim3align::geometry::surface::{SurfaceMoments, check_shape};
-use sim3align::metrics::symmetry::Symmetry;
 use sim3align::metrics::{Metrics, evaluate};
-use sim3align_geometry::cloud::Bounds;
-use sim3align_geometry::error::ErrorCode;
-use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::order::median;
-use sim3align_geometry::rasteriser::Rasteriser;
 use sim3align_geometry::triangle_tree::TriangleTree;
 use sim3align_lab::bench::benchmark::BenchCase;
 use sim3align_lab::cases::tier::Tier;
+use sim3align_lab::prelude::*;
 use sim3align_lab::scenes::{
     Below, ClutteredScene, LEAST_VISIBLE, MIN_MASK_PX, Prior, SceneCase, ScenePair, SceneSet, Sight, difficulty, tier,
 };
@@ -94,19 +89,19 @@ fn vertices_within(inner: &Mesh, outer: &Mesh) -> usize {
 }
 
 /// A mesh's vertices within another one, by parity along rays upwards; the meshes' parts are closed.
-fn points_within(inner: &Mesh, outer: &Mesh) -> Vec<glam::Vec3> {
+fn points_within(inner: &Mesh, outer: &Mesh) -> Vec<Vec3> {
     let triangles: Vec<_> = outer.triangles().iter().map(|t| outer.corners(*t).map(|p| p.as_dvec3())).collect();
     let bounds = Bounds::of(outer.positions()).unwrap();
-    let is_within = |p: &glam::Vec3| {
+    let is_within = |p: &Vec3| {
         if p.cmplt(bounds.min).any() || p.cmpgt(bounds.max).any() {
             return false;
         }
         // Off the lattice that meshes of revolution are made of.
-        let p = p.as_dvec3() + glam::DVec3::new(1.234e-6, 2.345e-6, 0.0);
+        let p = p.as_dvec3() + DVec3::new(1.234e-6, 2.345e-6, 0.0);
         let depth: i32 = triangles
             .iter()
             .map(|[a, b, c]| {
-                let side = |a: &glam::DVec3, b: &glam::DVec3| (*b - *a).truncate().perp_dot((p - *a).truncate());
+                let side = |a: &DVec3, b: &DVec3| (*b - *a).truncate().perp_dot((p - *a).truncate());
                 let sides = [side(a, b), side(b, c), side(c, a)];
                 let way = if sides.iter().all(|s| *s > 0.0) { 1 } else { -i32::from(sides.iter().all(|s| *s < 0.0)) };
                 let normal = (*b - *a).cross(*c - *a);
@@ -127,7 +122,7 @@ fn nothing_is_within_another() {
         for (i, mesh) in meshes.iter().enumerate() {
             for (k, other) in meshes.iter().enumerate().filter(|(k, _)| *k != i) {
                 assert_eq!(vertices_within(mesh, other), 0, "scene {}: {i} in {k}", scene.index);
-                let distance = |p: &glam::Vec3| trees[k].nearest(*p).unwrap().distance_squared.sqrt();
+                let distance = |p: &Vec3| trees[k].nearest(*p).unwrap().distance_squared.sqrt();
                 let nearest = mesh.positions().iter().map(distance).fold(f32::INFINITY, f32::min);
                 assert!(nearest >= 0.002, "scene {}: {i} and {k} are {nearest} m apart", scene.index);
             }
@@ -353,7 +348,7 @@ fn arranged_objects_are_held_as_their_scenes_say() {
             for other in scene.pairs.iter().skip(i + 1) {
                 // What is dropped touches cells, not points.
                 let tree = TriangleTree::new(&other.object);
-                let depth = |p: glam::Vec3| tree.nearest(p).unwrap().distance_squared.sqrt();
+                let depth = |p: Vec3| tree.nearest(p).unwrap().distance_squared.sqrt();
                 let within = points_within(&pair.object, &other.object);
                 let deepest = within.into_iter().map(depth).fold(0.0, f32::max);
                 assert!(deepest < 0.005, "{index}: {} is {deepest} m in {}", pair.name(), other.name());

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use sim3align_geometry::rasteriser::Rasteriser;
 use sim3align_lab::cases::case::{EvaluationCase, EvaluationSet, MIN_MASK_PX};
 use sim3align_lab::cases::tier::{CaseSet, Class, Tier};
 use sim3align_lab::outlines::{GroupBy, ObjectOutlines, OutlineView};
+use sim3align_lab::prelude::*;
 
 /// Two cases of every class of every tier.
 const LOOKED_AT: usize = 72;

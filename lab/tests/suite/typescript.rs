@@ -4,7 +4,6 @@
 //! `UPDATE=1 cargo test --features types typescript` writes the files after a change.
 
 use std::fmt::Write;
-use std::path::Path;
 
 use serde_json::{Value, json};
 use sim3align::align::evaluate::{EvaluateOptions, Evaluation, EvaluationDiagnostics};
@@ -12,7 +11,6 @@ use sim3align::metrics::Metrics;
 use sim3align::metrics::bop::BopErrors;
 use sim3align::metrics::layout::LayoutErrors;
 use sim3align::metrics::pose_error::PoseErrors;
-use sim3align::metrics::symmetry::Symmetry;
 use sim3align::options::scale::ScaleOption;
 use sim3align::options::{Field, Options};
 use sim3align::paper::options::{GuardMode, PaperOptions};
@@ -33,7 +31,7 @@ use sim3align::views::options::ViewsOptions;
 use sim3align::views::report::{
     CameraPose, ViewPose, ViewRole, ViewsAlignment, ViewsDiagnostics, WorldFrame, WorldUncertainty,
 };
-use sim3align_geometry::error::ErrorCode;
+use sim3align_lab::prelude::*;
 use ts_rs::{Config, TS};
 
 const HEADER: &str = "// Generated from the Rust declarations by tests/suite/typescript.rs; do not edit.\n\n";

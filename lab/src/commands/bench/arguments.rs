@@ -1,7 +1,5 @@
 //! Command line of `bench`.
 
-use std::path::{Path, PathBuf};
-
 use lexopt::prelude::*;
 use sim3align::align::method;
 use sim3align::options::{Choice, Options};
@@ -9,7 +7,6 @@ use sim3align::paper::options::PaperOptions;
 use sim3align::precise::SearchSettings;
 use sim3align::precise::options::AlignOptions;
 use sim3align::report::{Effort, Preset};
-use sim3align_geometry::error::Error;
 use sim3align_lab::baselines::Baseline;
 use sim3align_lab::baselines::align::BaselineOptions;
 use sim3align_lab::bench::benchmark::override_setting;
@@ -17,6 +14,7 @@ use sim3align_lab::bench::option_text;
 use sim3align_lab::bench::records::RecordKey;
 use sim3align_lab::cases::case::CASES;
 use sim3align_lab::cases::tier::{CaseSet, Class, Tier};
+use sim3align_lab::prelude::*;
 use sim3align_lab::scenes::Prior;
 
 pub const USAGE: &str = "\

@@ -1,13 +1,11 @@
 //! Runs the cases on several threads; results are in the order of the cases.
 
 use std::fs;
-use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use serde::de::IgnoredAny;
 use serde_json::json;
 use sim3align_geometry::error::Result as GeometryResult;
-use sim3align_geometry::similarity::Similarity;
 use sim3align_lab::baselines::align::align_baseline;
 use sim3align_lab::bench::benchmark::{BenchCase, Record, run_case, run_method};
 use sim3align_lab::bench::imported::imported;
@@ -20,6 +18,7 @@ use sim3align_lab::scenes::{ClutteredScene, Prior, SceneSet};
 
 use super::arguments::{Arguments, Method, Row};
 use super::table;
+use sim3align_lab::prelude::*;
 
 /// The source of a case.
 pub enum Source {

@@ -1,10 +1,10 @@
 //! The arguments of `fuzz`.
 
 use std::ops::Range;
-use std::path::PathBuf;
 
 use lexopt::prelude::*;
 use sim3align_lab::fuzz::target::{Ceilings, TARGETS, Target};
+use sim3align_lab::prelude::*;
 
 pub const USAGE: &str = "\
 Usage: sim3align-lab fuzz [options]

@@ -3,7 +3,6 @@
 use std::io::{Write, stdout};
 use std::ops::Range;
 use std::panic;
-use std::path::Path;
 use std::process::exit;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -15,6 +14,7 @@ use sim3align_lab::fuzz::target::{Ceilings, Execution, Target};
 
 use super::super::Failure;
 use super::arguments::Arguments;
+use sim3align_lab::prelude::*;
 
 /// Exit status after a fault that was printed.
 const FAULT: i32 = 3;

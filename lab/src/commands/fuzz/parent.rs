@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
 use std::ops::Range;
-use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -15,6 +14,7 @@ use sim3align_lab::fuzz::target::Target;
 use super::super::Failure;
 use super::arguments::Arguments;
 use super::child::seed_of;
+use sim3align_lab::prelude::*;
 
 /// Trials of the minimisation of one fault, and of one that takes long.
 const TRIALS: [usize; 2] = [300, 20];

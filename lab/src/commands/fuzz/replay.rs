@@ -1,12 +1,11 @@
 //! Makes the call of a file of choices.
 
-use std::path::Path;
-
 use sim3align_lab::fuzz::target::{TARGETS, Target};
 
 use super::super::Failure;
 use super::arguments::Arguments;
 use super::child;
+use sim3align_lab::prelude::*;
 
 /// Runs `--replay`.
 pub fn run(path: &Path, arguments: &Arguments) -> Result<(), Failure> {

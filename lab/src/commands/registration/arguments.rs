@@ -1,10 +1,9 @@
 //! Command line of `registration`.
 
-use std::path::PathBuf;
-
 use lexopt::prelude::*;
 
 use super::method::Method;
+use sim3align_lab::prelude::*;
 
 pub const USAGE: &str = "\
 Usage: sim3align-lab registration write rooms|lidar|objects OUT [--seed S] [--scenes N]

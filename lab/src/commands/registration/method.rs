@@ -1,23 +1,19 @@
 //! The registration methods of the benchmark.
 
-use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use glam::Vec3;
 use sim3align::options::Options;
 use sim3align::options::scale::ScaleOption;
-use sim3align::progress::Silent;
 use sim3align::register::icp::IcpMetric;
 use sim3align::register::options::RegisterOptions;
 use sim3align::register::register;
-use sim3align_geometry::cloud::Cloud;
-use sim3align_geometry::similarity::Similarity;
 use sim3align_lab::baselines::{Baseline, PairSettings, register_pair};
 use sim3align_lab::bench::imported::{CLOUDS, Outcome, answer_in};
 use sim3align_lab::bench::option_text;
 use sim3align_lab::bench::records::RecordKey;
 use sim3align_lab::clouds::cloud_file::flat;
 use sim3align_lab::clouds::pair::Pair;
+use sim3align_lab::prelude::*;
 
 /// Default inlier distance for imported correspondences, in voxels of the pair.
 const INLIER_VOXELS: f64 = 1.5;

@@ -1,11 +1,7 @@
 //! Registers the pairs on several threads.
 
-use glam::Vec3;
 use serde_json::json;
-use sim3align_geometry::cloud::Cloud;
-use sim3align_geometry::random::Random;
 use sim3align_geometry::rotations::super_fibonacci;
-use sim3align_geometry::similarity::{Similarity, vec3, vector3};
 use sim3align_geometry::voxel_grid::voxel_downsample;
 use sim3align_lab::bench::records::RecordFile;
 use sim3align_lab::clouds::cloud_file::read_cloud;
@@ -20,6 +16,7 @@ use sim3align_lab::parallel::parallel_map;
 use super::arguments::{Command, Kind, Protocol, Run};
 use super::method::Method;
 use super::table::{self, Record};
+use sim3align_lab::prelude::*;
 
 /// Random stream of `--moved`.
 const MOVED_STREAM: u64 = 0x6d6f_7665;
@@ -44,7 +41,7 @@ fn run_pairs(run: &Run) -> Result<(), String> {
         return Err("no pair left to run".into());
     }
     if let Some(path) = &run.pairs_json {
-        let absolute = |path: &std::path::Path| std::path::absolute(path).map_err(|error| error.to_string());
+        let absolute = |path: &Path| std::path::absolute(path).map_err(|error| error.to_string());
         let list = pairs.iter().map(|pair| {
             let (source, target) = (absolute(&pair.source)?, absolute(&pair.target)?);
             Ok(json!({ "id": pair.id, "source": source, "target": target, "voxelSizeM": pair.voxel_size_m }))
@@ -153,6 +150,6 @@ fn moved(seed: u64, id: &str, side: u64) -> Similarity {
     const ROTATIONS: usize = 1 << 20;
     let [x, y, z, w] = super_fibonacci(random.below(ROTATIONS), ROTATIONS).to_array();
     let matrix = Similarity::rotation_from_xyzw(&[x, y, z, w]);
-    let shift = nalgebra::Vector3::from_fn(|_, _| 60.0 * random.uniform() - 30.0);
+    let shift = Vector3::from_fn(|_, _| 60.0 * random.uniform() - 30.0);
     matrix.and_then(|matrix| Similarity::from_parts(1.0, matrix, shift)).unwrap_or_else(|_| Similarity::identity())
 }

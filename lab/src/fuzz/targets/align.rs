@@ -2,20 +2,17 @@
 
 use sim3align::align::align_by_method;
 use sim3align::align::method::Method;
-use sim3align::evidence::observation::Observation;
 use sim3align::options::Choice;
 use sim3align::paper::options::PaperOptions;
 use sim3align::precise::options::{AlignOptions, Quality};
-use sim3align::progress::Silent;
 use sim3align::report::{Alignment, AnyAlignment, Sim3};
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
 
 use crate::fuzz::call::{Answer, Call, finite, typed};
 use crate::fuzz::choices::Choices;
 use crate::fuzz::meshes::mesh;
 use crate::fuzz::options::options;
 use crate::fuzz::views::{Size, view};
+use crate::prelude::*;
 
 /// Small images and meshes, mostly with little work.
 pub fn small(c: &mut Choices) -> Call {
@@ -71,7 +68,7 @@ fn aligned(observation: Result<Observation>, mesh: Result<Mesh>, method: &Method
     align_by_method(&observation, &mesh, method, &mut Silent)
 }
 
-fn check(alignment: &Alignment) -> core::result::Result<Answer, String> {
+fn check(alignment: &Alignment) -> Result<Answer, String> {
     check_pose(&alignment.camera_from_mesh)?;
     finite("confidence, score", &[alignment.confidence, alignment.diagnostics.score])?;
     if !(0.0..=1.0).contains(&alignment.confidence) {
@@ -88,7 +85,7 @@ fn check(alignment: &Alignment) -> core::result::Result<Answer, String> {
 }
 
 /// A similarity with a scale above 0.
-pub fn check_pose(pose: &Sim3) -> core::result::Result<Answer, String> {
+pub fn check_pose(pose: &Sim3) -> Result<Answer, String> {
     finite("matrix", &pose.matrix)?;
     finite("rotation", &pose.rotation)?;
     let length: f64 = pose.rotation.iter().map(|x| x * x).sum();

@@ -1,13 +1,13 @@
 //! `evaluate`.
 
 use sim3align::align::evaluate::{EvaluateOptions, Evaluation, evaluate};
-use sim3align_geometry::error::Result;
 
 use crate::fuzz::call::{Answer, Call, finite, typed};
 use crate::fuzz::choices::Choices;
 use crate::fuzz::meshes::mesh;
 use crate::fuzz::options::{options, transform};
 use crate::fuzz::views::{Size, view};
+use crate::prelude::*;
 
 /// Any view, mesh and pose.
 pub fn call(c: &mut Choices) -> Call {
@@ -26,7 +26,7 @@ pub fn call(c: &mut Choices) -> Call {
     Call { run: Box::new(run), description, is_bounded: true }
 }
 
-fn check(evaluation: &Evaluation) -> core::result::Result<Answer, String> {
+fn check(evaluation: &Evaluation) -> Result<Answer, String> {
     let m = &evaluation.metrics;
     let shares = [m.boundary_f, m.iou, m.fitness, m.normal_consistency];
     let lengths = [m.center_drift_px, m.chamfer_mm, m.uni_chamfer_mm, m.depth_mae_mm];

@@ -1,19 +1,13 @@
 //! Several frames of an object: `alignViews`, and trackers.
 
-use sim3align::evidence::frame::Frame;
 use sim3align::precise::options::Quality;
 use sim3align::precise::prepared_mesh::PreparedMesh;
-use sim3align::progress::Silent;
 use sim3align::track::options::TrackOptions;
 use sim3align::track::report::TrackedFrame;
 use sim3align::track::tracker::Tracker;
 use sim3align::views::options::ViewsOptions;
 use sim3align::views::report::ViewsAlignment;
 use sim3align::views::{View, align_views};
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::similarity::Similarity;
-use sim3align_geometry::surface_colors::SurfaceColors;
 
 use super::align::check_pose;
 use crate::fuzz::call::{Answer, Call, finite, typed};
@@ -21,12 +15,13 @@ use crate::fuzz::choices::Choices;
 use crate::fuzz::meshes::mesh;
 use crate::fuzz::options::{options, transform};
 use crate::fuzz::views::{Size, frame};
+use crate::prelude::*;
 
 /// Most triangles of a mesh, so that a call takes little time.
 const MOST_TRIANGLES: usize = 300;
 
 /// A check's outcome: what was wrong.
-type Checked = core::result::Result<(), String>;
+type Checked = Result<(), String>;
 
 /// Hostile numbers of views, camera poses, masks and photos.
 pub fn views(c: &mut Choices) -> Call {
@@ -165,7 +160,7 @@ fn run(
     object: Result<(Mesh, Option<SurfaceColors>)>,
     given: &TrackOptions,
     steps: Vec<Step>,
-) -> core::result::Result<Answer, String> {
+) -> Result<Answer, String> {
     let takes_transform = given.initial.is_some();
     let tracker =
         object.and_then(|(mesh, colors)| Tracker::new(PreparedMesh::new(mesh).with_colors(colors), given.clone()));

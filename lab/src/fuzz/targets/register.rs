@@ -1,17 +1,16 @@
 //! `register` and `estimateSim3`.
 
-use sim3align::progress::Silent;
 use sim3align::register::estimate_sim3;
 use sim3align::register::options::{EstimateSim3Options, RegisterOptions};
 use sim3align::register::register;
 use sim3align::register::report::Registration;
-use sim3align_geometry::error::Result;
 
 use super::align::check_pose;
 use crate::fuzz::call::{Answer, Call, finite, typed};
 use crate::fuzz::choices::Choices;
 use crate::fuzz::clouds::pair;
 use crate::fuzz::options::options;
+use crate::prelude::*;
 
 /// `register`.
 pub fn call(c: &mut Choices) -> Call {
@@ -55,7 +54,7 @@ pub fn estimate(c: &mut Choices) -> Call {
     }
 }
 
-fn checked(result: Result<Registration>) -> core::result::Result<Answer, String> {
+fn checked(result: Result<Registration>) -> Result<Answer, String> {
     match result {
         Ok(found) => {
             finite("fitness, residual", &[found.fitness, found.residual])?;

@@ -5,10 +5,6 @@ mod light;
 mod paint;
 mod surface;
 
-use std::path::Path;
-
-use glam::Vec3;
-use nalgebra::{Matrix3, Rotation3, Vector3};
 use serde_json::json;
 
 use self::light::Light;
@@ -21,16 +17,9 @@ use crate::cases::distortion::hallucinate;
 use crate::cases::families::draw_from;
 use crate::cases::photo::resized;
 use crate::cases::scene::{background, camera_at, put_before, put_down_turned};
-use crate::draws::mixed;
 use crate::files::write;
+use crate::prelude::*;
 use crate::scenes::DEPTH_SCALE;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::image::{DepthMap, Mask};
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::pinhole::Pinhole;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::rasteriser::Rasteriser;
-use sim3align_geometry::similarity::{Similarity, vec3, vector3};
 
 const WIDTH: usize = 640;
 const HEIGHT: usize = 480;

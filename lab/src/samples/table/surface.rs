@@ -2,12 +2,7 @@
 
 use std::collections::HashMap;
 
-use glam::Vec3;
-use nalgebra::Vector3;
-
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::similarity::{Similarity, vec3, vector3};
+use crate::prelude::*;
 
 /// Surfaces that meet at a larger angle have an edge between them: its cosine.
 const CREASE: f64 = 0.75;
