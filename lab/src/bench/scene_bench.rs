@@ -10,6 +10,7 @@ use super::benchmark::{LOOSE, STRICT, Tolerance};
 use super::statistics::{cell, median};
 use crate::case_folder::case::{depth_and_camera, last_name, mask_in, mesh_in, name_of, truth_of};
 use crate::case_folder::json;
+use crate::files::entries;
 use crate::prelude::*;
 use crate::scenes::{Below, ClutteredScene, Prior, Stance};
 use sim3align::align::align;
@@ -162,10 +163,8 @@ impl BenchScene {
     /// Those of [`read_case`](crate::case_folder::case::read_case).
     pub fn read(folder: &Path) -> Result<Self> {
         let (depth, camera) = depth_and_camera(folder)?;
-        let entries = fs::read_dir(folder.join("objects")).into_iter().flatten().filter_map(Result::ok);
-        let mut folders: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
-        folders.sort();
-        let objects = folders.iter().map(|folder| BenchObject::read(folder)).collect::<Result<_>>()?;
+        let folders = entries(&folder.join("objects")).into_iter().filter(|path| path.is_dir());
+        let objects = folders.map(|folder| BenchObject::read(&folder)).collect::<Result<_>>()?;
         let plane = fs::read(folder.join("plane.json")).ok().and_then(|bytes| {
             let value: Value = serde_json::from_slice(&bytes).ok()?;
             Plane::new(json::numbers::<3>(value.get("normal")?)?.into(), value.get("d")?.as_f64()?)

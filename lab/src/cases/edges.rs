@@ -18,17 +18,18 @@ const PROJECTOR_BASE: f64 = 43.0;
 /// Widest shadow, pixels of an image 640 wide.
 const WIDEST: f64 = 15.0;
 
-/// What measures or predicts depth.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum DepthSource {
-    /// Stereo matching of blocks, with a projected texture.
-    ActiveStereo,
-    /// A projected pattern, matched to a reference.
-    StructuredLight,
-    /// The time that light takes.
-    TimeOfFlight,
-    /// A model, from one photo.
-    Predicted,
+named! {
+    /// What measures or predicts depth.
+    pub enum DepthSource: "source" {
+        /// Stereo matching of blocks, with a projected texture.
+        ActiveStereo = "active-stereo",
+        /// A projected pattern, matched to a reference.
+        StructuredLight = "structured-light",
+        /// The time that light takes.
+        TimeOfFlight = "time-of-flight",
+        /// A model, from one photo.
+        Predicted = "predicted-depth",
+    }
 }
 
 /// The edges of one depth map, in pixels of the image.
@@ -61,16 +62,6 @@ struct Strength {
 }
 
 impl DepthSource {
-    /// The name of a depth map's kind.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::ActiveStereo => "active-stereo",
-            Self::StructuredLight => "structured-light",
-            Self::TimeOfFlight => "time-of-flight",
-            Self::Predicted => "predicted-depth",
-        }
-    }
-
     /// The source of a class, or one of those that occur.
     pub fn draw(class: Class, is_sensor: bool, random: &mut Random) -> Self {
         let drawn = random.uniform();

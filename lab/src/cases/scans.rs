@@ -1,9 +1,8 @@
 //! Objects from mesh files.
 
-use std::fs;
-
 use super::cluster::cluster;
 use super::draft::{Axis, Object};
+use crate::files::{listed, read};
 use crate::prelude::*;
 use sim3align::metrics::mesh_symmetry::symmetry_axes;
 use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, read_mesh};
@@ -25,23 +24,12 @@ pub struct Scan {
 impl Scan {
     /// The GLB files of a folder, by name.
     pub fn all(folder: &Path) -> Result<Vec<Self>> {
-        let unreadable = |path: &Path, error: std::io::Error| {
-            Error::new(
-                ErrorCode::InvalidArgument,
-                path.display().to_string(),
-                format!("a file system that says: {error}"),
-                "a folder of .glb files",
-                "Name a folder that can be read.",
-            )
-        };
-        let entries = fs::read_dir(folder).map_err(|error| unreadable(folder, error))?;
-        let mut paths: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+        let mut paths = listed(folder)?;
         paths.retain(|path| path.extension().is_some_and(|extension| extension == "glb") && path.is_file());
-        paths.sort();
         paths
             .iter()
             .map(|path| {
-                let bytes = fs::read(path).map_err(|error| unreadable(path, error))?;
+                let bytes = read(path)?;
                 let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
                 Self::read(name, &bytes).map_err(|error| error.about(path.display().to_string()))
             })

@@ -7,50 +7,21 @@ use crate::prelude::*;
 /// Random stream of the dimensions.
 const SHAPE_STREAM: u64 = 0x7368_6170;
 
-/// Kinds of generated objects.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// A mug: a hollow cup, some 10 cm tall, with a handle towards +x.
-    Mug,
-    /// A hammer that lies on the table.
-    Hammer,
-    /// A spoon that lies on the table: a few millimetres thin.
-    Spoon,
-    /// A teapot, of which a mug that stands before it hides a good part.
-    Occluded,
+named! {
+    /// Kinds of generated objects.
+    pub enum Kind: "kind" {
+        /// A mug: a hollow cup, some 10 cm tall, with a handle towards +x.
+        Mug = "mug",
+        /// A hammer that lies on the table.
+        Hammer = "hammer",
+        /// A spoon that lies on the table: a few millimetres thin.
+        Spoon = "spoon",
+        /// A teapot, of which a mug that stands before it hides a good part.
+        Occluded = "occluded",
+    }
 }
 
 impl Kind {
-    /// All kinds.
-    pub const ALL: &[Self] = &[Self::Mug, Self::Hammer, Self::Spoon, Self::Occluded];
-
-    /// The name on the command line.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Mug => "mug",
-            Self::Hammer => "hammer",
-            Self::Spoon => "spoon",
-            Self::Occluded => "occluded",
-        }
-    }
-
-    /// The kind with a name.
-    ///
-    /// # Errors
-    /// [`ErrorCode::InvalidOption`] for any other.
-    pub fn from_name(name: &str) -> Result<Self> {
-        Self::ALL.iter().copied().find(|kind| kind.as_str() == name).ok_or_else(|| {
-            let names: Vec<&str> = Self::ALL.iter().map(|kind| kind.as_str()).collect();
-            Error::new(
-                ErrorCode::InvalidOption,
-                "kind",
-                format!("{name:?}"),
-                names.join(" or "),
-                "Pass one of the kinds that can be generated.",
-            )
-        })
-    }
-
     /// The kind's symmetry, in the words of a case's `gt.json`.
     pub fn symmetry(self) -> &'static str {
         match self {

@@ -27,39 +27,25 @@ const STEPS: usize = 400;
 const FIRST_STEP: f64 = 0.03;
 const SHORTER: f64 = 0.98;
 
-/// How an object is held.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stance {
-    /// It stands on the desk.
-    Stands,
-    /// It touches the desk, tilted, and leans on something that is not seen.
-    Leans,
-    /// It hangs over the desk.
-    Hangs,
-    /// It stands on another object.
-    OnTop,
-    /// It stands on a board over the desk.
-    OnBoard,
-    /// It lies as it fell, on or against other objects.
-    InPile,
+named! {
+    /// How an object is held.
+    pub enum Stance: "stance" {
+        /// It stands on the desk.
+        Stands = "stands",
+        /// It touches the desk, tilted, and leans on something that is not seen.
+        Leans = "leans",
+        /// It hangs over the desk.
+        Hangs = "hangs",
+        /// It stands on another object.
+        OnTop = "on top",
+        /// It stands on a board over the desk.
+        OnBoard = "on board",
+        /// It lies as it fell, on or against other objects.
+        InPile = "in pile",
+    }
 }
 
 impl Stance {
-    /// All stances.
-    pub const ALL: &[Self] = &[Self::Stands, Self::Leans, Self::Hangs, Self::OnTop, Self::OnBoard, Self::InPile];
-
-    /// Its name.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Stands => "stands",
-            Self::Leans => "leans",
-            Self::Hangs => "hangs",
-            Self::OnTop => "on top",
-            Self::OnBoard => "on board",
-            Self::InPile => "in pile",
-        }
-    }
-
     /// Half of them stand on the desk or, if there is one, on a board.
     pub(super) fn draw(random: &mut Random, has_board: bool) -> Self {
         match random.uniform() {

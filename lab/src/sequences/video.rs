@@ -14,38 +14,21 @@ const STREAM: u64 = 32;
 const DRAWS: u64 = 64;
 const MIN_PX: usize = 2500;
 
-/// Kinds of video.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Motion {
-    /// A camera in a hand, which moves to and fro.
-    HandHeld,
-    /// An object on a turntable.
-    Turntable,
-    /// Hand-held, with things that pass between camera and object.
-    Occluders,
-    /// Hand-held, with the object leaving the image and coming back.
-    Leaving,
-    /// Hand-held and fast: frames in which most of the depth is missing.
-    Blur,
-    /// Hand-held, with frames dropped.
-    Dropped,
-}
-
-impl Motion {
-    /// All kinds.
-    pub const ALL: [Self; 6] =
-        [Self::HandHeld, Self::Turntable, Self::Occluders, Self::Leaving, Self::Blur, Self::Dropped];
-
-    /// The name in tables.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::HandHeld => "hand-held",
-            Self::Turntable => "turntable",
-            Self::Occluders => "occluders",
-            Self::Leaving => "leaving",
-            Self::Blur => "motion blur",
-            Self::Dropped => "dropped frames",
-        }
+named! {
+    /// Kinds of video.
+    pub enum Motion: "motion" {
+        /// A camera in a hand, which moves to and fro.
+        HandHeld = "hand-held",
+        /// An object on a turntable.
+        Turntable = "turntable",
+        /// Hand-held, with things that pass between camera and object.
+        Occluders = "occluders",
+        /// Hand-held, with the object leaving the image and coming back.
+        Leaving = "leaving",
+        /// Hand-held and fast: frames in which most of the depth is missing.
+        Blur = "motion blur",
+        /// Hand-held, with frames dropped.
+        Dropped = "dropped frames",
     }
 }
 

@@ -32,7 +32,7 @@ fn execute(target: Target, choices: &mut Choices, name: String) -> Answer {
 }
 
 fn no_fault(name: &str, executions: u64, least_results: usize) {
-    let target = Target::of_name(name).unwrap();
+    let target: Target = name.parse().unwrap();
     let answers = (0..executions).map(|seed| execute(target, &mut Choices::random(seed), format!("{name} {seed}")));
     let results = answers.filter(|answer| *answer == Answer::Result).count();
     assert!(results >= least_results, "{results} of {executions} calls of {name} had a result");
@@ -109,7 +109,7 @@ fn the_same_choices_describe_the_same_input() {
 #[test]
 fn the_plainest_input_has_a_result() {
     for name in ["align", "align-large", "views", "track", "evaluate"] {
-        let target = Target::of_name(name).unwrap();
+        let target: Target = name.parse().unwrap();
         assert_eq!(execute(target, &mut Choices::of(Vec::new()), name.into()), Answer::Result, "{name}");
     }
 }

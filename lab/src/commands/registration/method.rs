@@ -44,9 +44,9 @@ impl Method {
             return Ok(Self::Import { name, folder });
         }
         if text != "register" {
-            let names = || Baseline::ALL.map(Baseline::as_str).join(", ");
-            let unknown = || format!("--method {text}: expected register, {}, or NAME=import:DIR", names());
-            return Baseline::from_name(text).map(Self::Baseline).ok_or_else(unknown);
+            let names = Baseline::names().join(", ");
+            let unknown = |_| format!("--method {text}: expected register, {names}, or NAME=import:DIR");
+            return Baseline::from_name(text).map(Self::Baseline).map_err(unknown);
         }
         let mut options = RegisterOptions { scale: ScaleOption::Fixed(1.0), ..RegisterOptions::default() };
         for assignment in assignments {
