@@ -117,7 +117,7 @@ fn across(up: Vector3<f64>, v: &Vector3<f64>) -> Vector3<f64> {
 }
 
 /// Rodrigues' rotation about a unit vector.
-pub(super) fn about(axis: Vector3<f64>, sine: f64, cosine: f64) -> Rotation3<f64> {
+fn about(axis: Vector3<f64>, sine: f64, cosine: f64) -> Rotation3<f64> {
     let turn = Matrix3::identity() * cosine + axis.cross_matrix() * sine + axis * axis.transpose() * (1.0 - cosine);
     Rotation3::from_matrix_unchecked(turn)
 }

@@ -4,12 +4,13 @@ use std::rc::Rc;
 use std::time::Instant;
 
 use serde::Serialize;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::case_folder::case::read_case;
-use crate::case_folder::contents::parameters_json;
+use crate::case_folder::contents::{case_files, parameters_json, symmetry_json};
 use crate::cases::case::EvaluationCase;
 use crate::cpu_time::CpuTimer;
+use crate::files::NamedFile;
 use crate::prelude::*;
 use sim3align::align::evaluate::{EvaluateOptions, Truth, evaluate};
 use sim3align::align::method::Method;
@@ -21,9 +22,7 @@ use sim3align::metrics::pose_error::{PoseComparison, PoseErrors};
 use sim3align::precise::clean::CleanObservation;
 use sim3align::precise::efforts;
 use sim3align::precise::mesh_pyramid::MeshPyramid;
-use sim3align::precise::options::AlignOptions;
 use sim3align::precise::pose::CropPose;
-use sim3align::precise::prepared_mesh::PreparedMesh;
 use sim3align::precise::recipe::FIRST_REFINEMENT;
 use sim3align::precise::{Search, SearchSettings};
 use sim3align::progress::{Host, Stage};
@@ -183,6 +182,37 @@ impl BenchCase {
             colors: case.colors,
             truth: truth.transpose()?,
         })
+    }
+
+    /// The files of its case folder: name and content. `gt.json` has the symmetry in words, as all readers understand them,
+    /// and, exactly, as `symmetryAxes`; `note` says there what was generated. `index` is that in a set. For `depth_scale`
+    /// see [`view_files`](crate::case_folder::contents::view_files).
+    ///
+    /// # Errors
+    /// [`ErrorCode::Internal`] if an encoder fails, or for a case without truth.
+    pub(crate) fn files(
+        &self,
+        note: &str,
+        mesh_files: Vec<NamedFile>,
+        index: Option<usize>,
+        depth_scale: Option<f64>,
+    ) -> Result<Vec<NamedFile>> {
+        let none = || Error::new(ErrorCode::Internal, "case", "no true pose", "a generated case", "Please report it.");
+        let Truth { camera_from_mesh, symmetry } = self.truth.as_ref().ok_or_else(none)?;
+        let truth = symmetry_json(symmetry, note);
+        let mut files = case_files(&self.observation, mesh_files, camera_from_mesh, truth, depth_scale)?;
+        let mut meta = json!({
+            "tier": self.tier,
+            "class": self.class,
+            "family": self.family,
+            "tags": self.tags,
+            "parameters": self.parameters,
+        });
+        if let Some(index) = index {
+            meta["index"] = json!(index);
+        }
+        files.push(("meta.json", format!("{meta:#}\n").into_bytes()));
+        Ok(files)
     }
 
     /// The case without its photo and colours.

@@ -11,8 +11,6 @@ use crate::prelude::*;
 use sim3align::align::Setup;
 use sim3align::align::align_by;
 use sim3align::evidence::extents::{Extents, initial_scale};
-use sim3align::options::scale::ScaleOption;
-use sim3align::paper::options::PaperOptions;
 use sim3align::progress::Stage;
 use sim3align::register::estimate_sim3;
 use sim3align::register::options::EstimateSim3Options;

@@ -1,8 +1,6 @@
 //! Options from text, as the programs' command lines have them.
 
-use sim3align::options::scale::ScaleOption;
 use sim3align::options::{Field, Options};
-use sim3align::precise::options::AlignOptions;
 
 use crate::prelude::*;
 

@@ -6,18 +6,16 @@ use std::time::Instant;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::benchmark::{LOOSE, STRICT, Tolerance};
+use super::benchmark::{BenchCase, LOOSE, STRICT, Tolerance};
 use super::statistics::{cell, median};
 use crate::case_folder::case::{depth_and_camera, last_name, mask_in, mesh_in, name_of, truth_of};
 use crate::case_folder::json;
 use crate::files::entries;
 use crate::prelude::*;
-use crate::scenes::{Below, ClutteredScene, Prior, Stance};
+use crate::scenes::{Below, ClutteredScene, Prior, ScenePair, Stance};
 use sim3align::align::align;
 use sim3align::align::evaluate::Truth;
 use sim3align::metrics::pose_error::{PoseErrors, pose_errors};
-use sim3align::precise::options::AlignOptions;
-use sim3align::precise::prepared_mesh::PreparedMesh;
 use sim3align::report::Sim3;
 use sim3align::scene::contact::Contact;
 use sim3align::scene::plane::Plane;
@@ -131,11 +129,11 @@ impl BenchScene {
         let pose = &first.camera_from_object;
         let normal = pose.rotation * Vector3::z();
         let plane = Plane::new(DVec3::from_array(normal.into()), -normal.dot(&pose.translation));
-        let object = |(case, pair): (crate::scenes::SceneCase, &crate::scenes::ScenePair)| BenchObject {
-            name: case.name.clone(),
+        let object = |(case, pair): (BenchCase, &ScenePair)| BenchObject {
+            name: case.name,
             mask: case.observation.mask().clone(),
-            mesh: case.mesh.clone(),
-            truth: Some(Truth { camera_from_mesh: case.camera_from_mesh, symmetry: case.symmetry }),
+            mesh: case.mesh,
+            truth: case.truth,
             stance: Some(pair.stance().as_str()),
             below: match pair.below() {
                 Below::Table => Some(Some(RestsOn::Support)),

@@ -75,6 +75,6 @@ pub(crate) fn symmetry_json(symmetry: &Symmetry, name: &str) -> Value {
 }
 
 /// The `parameters` of `meta.json`: numbers by name.
-pub(crate) fn parameters_json(parameters: &[(&'static str, f64)]) -> Value {
-    parameters.iter().map(|(name, value)| ((*name).to_owned(), json!(value))).collect()
+pub(crate) fn parameters_json<'a>(parameters: impl IntoIterator<Item = &'a (&'static str, f64)>) -> Value {
+    parameters.into_iter().map(|(name, value)| ((*name).to_owned(), json!(value))).collect()
 }

@@ -1,7 +1,5 @@
 //! One case of an evaluation set, and the set.
 
-use serde_json::json;
-
 use super::draft::{Axis, Object};
 use super::edges::DepthSource;
 use super::families;
@@ -21,7 +19,8 @@ use super::streams::{
 };
 use super::texture::paint;
 use super::tier::{CaseSet, Class, OutlineErrors, Tier};
-use crate::case_folder::contents::{case_files, glb_file, parameters_json, symmetry_json};
+use crate::bench::benchmark::BenchCase;
+use crate::case_folder::contents::glb_file;
 use crate::cases::distortion::canonicalise;
 use crate::files::{NamedFile, write_files};
 use crate::prelude::*;
@@ -105,24 +104,15 @@ impl EvaluationSet {
     /// # Errors
     /// Only in case of a bug in the generator.
     pub fn case(&self, index: usize) -> Result<EvaluationCase> {
-        for draw in 0..DRAWS {
+        first_fit(&format!("case {index}"), DRAWS, |draw| {
             let seed = mixed([self.seed, index as u64, draw]);
             let seed = match self.classes {
                 CaseSet::General | CaseSet::Dilated => seed,
                 CaseSet::Sensors => mixed([seed, SENSOR_STREAM]),
                 CaseSet::Colors => mixed([seed, COLOR_STREAM]),
             };
-            if let Some(case) = self.draw(index, seed)? {
-                return Ok(case);
-            }
-        }
-        Err(Error::new(
-            ErrorCode::Internal,
-            "case",
-            format!("no fitting draw of case {index}"),
-            "one in a few",
-            "Please report the set's seed.",
-        ))
+            self.draw(index, seed)
+        })
     }
 
     /// A draw of a case; `None` if it shows too little of the object, or not the property of its class.
@@ -230,21 +220,9 @@ impl EvaluationCase {
     /// # Errors
     /// [`ErrorCode::Internal`] if an encoder fails.
     pub fn files(&self) -> Result<Vec<NamedFile>> {
-        let truth = symmetry_json(&self.symmetry, &self.name());
-        let parameters = parameters_json(&self.parameters);
-        let meta = json!({
-            "index": self.index,
-            "tier": self.tier.as_str(),
-            "class": self.class.as_str(),
-            "family": self.family,
-            "tags": self.tags,
-            "parameters": parameters,
-        });
         let mesh_files =
             if self.color_files.is_empty() { vec![glb_file(&self.mesh)] } else { self.color_files.clone() };
-        let mut files = case_files(&self.observation, mesh_files, &self.camera_from_mesh, truth, None)?;
-        files.push(("meta.json", format!("{meta:#}\n").into_bytes()));
-        Ok(files)
+        BenchCase::from(self.clone()).files(&self.name(), mesh_files, Some(self.index), None)
     }
 
     /// Writes the case folder, and creates it if necessary.

@@ -5,7 +5,7 @@ use super::draft::{Axis, Object};
 use super::scene::Scene;
 use super::solid::Solid;
 use super::tier::{Class, Tier};
-use crate::cases::distortion::{neighbors, normals, paths};
+use crate::cases::distortion::{box_of, corners_of, neighbors, normals, paths};
 use crate::prelude::*;
 use sim3align::register::umeyama::{Pair, ScaleMode, umeyama};
 
@@ -127,7 +127,7 @@ pub fn generate(
 
 /// Stretched along the axes at the same volume, bent along the longest, and warped by long waves.
 fn deform(original: &[DVec3], strength: &Strength, diagonal: f64, random: &mut Random) -> Vec<DVec3> {
-    let (low, high) = original.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)));
+    let (low, high) = box_of(original.iter().copied());
     let (centre, extent) = ((low + high) * 0.5, high - low);
     let drawn = DVec3::new(random.uniform(), random.uniform(), random.uniform());
     let even = drawn - DVec3::splat(drawn.element_sum() / 3.0);
@@ -186,13 +186,9 @@ fn invent(
     diagonal: f64,
     random: &mut Random,
 ) {
-    let mut seen = vec![false; positions.len()];
-    for (&t, _) in
-        scene.object_triangles.iter().zip(&scene.visible).filter(|(t, visible)| **visible && **t != NO_TRIANGLE)
-    {
-        mesh.triangles()[t as usize].iter().for_each(|&i| seen[i as usize] = true);
-    }
-    let paths = paths(mesh, around, &seen);
+    let shown = scene.object_triangles.iter().zip(&scene.visible);
+    let shown = shown.filter(|(triangle, visible)| **visible && **triangle != NO_TRIANGLE);
+    let paths = paths(mesh, around, &corners_of(mesh, shown.map(|(triangle, _)| *triangle)));
     let normals = normals(mesh);
     let eye = DVec3::from_array(scene.camera_from_world.inverse().translation.into());
     let wave = DVec3::new(random.uniform(), random.uniform(), random.uniform()) * (TAU / diagonal);

@@ -1,5 +1,6 @@
 //! Holes in a sensor's readings, on dark, reflective and grazing surfaces.
 
+use super::distortion::face;
 use super::mask::Noise;
 use super::scene::Scene;
 use super::tier::Tier;
@@ -96,11 +97,7 @@ impl Views {
     fn of(scene: &Scene, mesh: &Mesh, object: &[usize]) -> Self {
         let world_from_camera = scene.camera_from_world.inverse();
         let eye = DVec3::from_array(world_from_camera.translation.into());
-        let normal = |&i: &usize| {
-            let triangle = mesh.triangles()[scene.object_triangles[i] as usize];
-            let [a, b, c] = mesh.corners(triangle).map(|p| p.as_dvec3());
-            (b - a).cross(c - a).normalize_or(DVec3::Z)
-        };
+        let normal = |&i: &usize| face(mesh, scene.object_triangles[i] as usize).normalize_or(DVec3::Z);
         let to_eye = |&i: &usize| {
             let point = scene.world_point(&world_from_camera, i, scene.object_depth[i]);
             (eye - DVec3::from_array(point.into())).normalize_or(DVec3::Z)

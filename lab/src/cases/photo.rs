@@ -1,6 +1,7 @@
 //! Photos: a scene under unknown light, through a camera with its own white balance, focus, noise and number of pixels,
 //! saved as PNG or JPEG.
 
+use super::distortion::face;
 use super::print::{Print, color, encoded};
 use super::scene::Scene;
 use super::tier::{Class, Tier};
@@ -124,8 +125,7 @@ pub fn take(
             let point = vec3(&point).as_dvec3();
             let at = DVec3::new(2.0 * u as f64 / width as f64 - 1.0, 2.0 * v as f64 / height as f64 - 1.0, 0.0);
             linear.push(if is_object {
-                let [a, b, c] = placed.corners(placed.triangles()[triangle as usize]).map(|p| p.as_dvec3());
-                let normal = (b - a).cross(c - a).normalize_or_zero();
+                let normal = face(placed, triangle as usize).normalize_or_zero();
                 let normal = if normal.dot(eye - point) < 0.0 { -normal } else { normal };
                 lit(print.at(point, normal), point, normal, at)
             } else {

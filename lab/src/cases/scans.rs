@@ -1,6 +1,7 @@
 //! Objects from mesh files.
 
 use super::cluster::cluster;
+use super::distortion::mapped;
 use super::draft::{Axis, Object};
 use crate::files::{listed, read};
 use crate::prelude::*;
@@ -46,15 +47,14 @@ impl Scan {
         let symmetry = symmetry.iter().map(|a| (DVec3::from_array(a.axis.into()), a.fold)).collect();
         let bounds = Bounds::of(mesh.positions()).unwrap_or(Bounds { min: Vec3::ZERO, max: Vec3::ONE });
         let unit = |p: &Vec3| (*p - bounds.center()) / bounds.diagonal();
-        let mesh = Mesh::new(mesh.positions().iter().map(unit).collect(), mesh.triangles().to_vec())?;
+        let mesh = mapped(&mesh, unit)?;
         Ok(Self { name, mesh, symmetry })
     }
 
     /// The object at a size that things on tables have.
     pub fn object(&self, random: &mut Random) -> Result<Object> {
         let diagonal = libm::exp(between(random, libm::log(0.1), libm::log(0.7))) as f32;
-        let mesh =
-            Mesh::new(self.mesh.positions().iter().map(|p| *p * diagonal).collect(), self.mesh.triangles().to_vec())?;
+        let mesh = mapped(&self.mesh, |p| *p * diagonal)?;
         Ok(Object {
             family: self.name.clone(),
             parts: vec![0; mesh.triangles().len()],

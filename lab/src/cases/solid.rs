@@ -28,6 +28,11 @@ impl Solid {
         self
     }
 
+    /// Number of vertices.
+    pub fn len(&self) -> usize {
+        self.positions.len()
+    }
+
     /// Whether there is nothing yet.
     pub fn is_empty(&self) -> bool {
         self.triangles.is_empty()
@@ -140,7 +145,7 @@ impl Solid {
 
     /// Joins rings of equally many points to each other, and either the outermost to a point each or the last to the
     /// first.
-    fn skin(&mut self, rings: &[Vec<DVec3>], ends: Option<[DVec3; 2]>) {
+    pub(crate) fn skin(&mut self, rings: &[Vec<DVec3>], ends: Option<[DVec3; 2]>) {
         let start = self.triangles.len();
         let starts: Vec<u32> = rings
             .iter()
@@ -209,7 +214,8 @@ fn rounded(p: DVec3, half: DVec3, rounding: f64) -> DVec3 {
     core + (p - core).normalize_or_zero() * rounding
 }
 
-fn circle(segments: u32) -> impl Iterator<Item = [f64; 2]> {
+/// Points of the unit circle.
+pub(crate) fn circle(segments: u32) -> impl Iterator<Item = [f64; 2]> {
     (0..segments).map(move |k| {
         let (sine, cosine) = libm::sincos(TAU * f64::from(k) / f64::from(segments));
         [cosine, sine]

@@ -73,11 +73,6 @@ pub fn pairs(root: &Path, benchmark: Option<&str>) -> Result<Vec<Pair>> {
     Ok(pairs)
 }
 
-/// Whether a folder looks like one of scenes.
-pub fn is_layout(root: &Path) -> bool {
-    !scenes(root, None).is_empty()
-}
-
 fn scenes(root: &Path, benchmark: Option<&str>) -> Vec<Scene> {
     let mut benchmarks = entries(&root.join("benchmarks"));
     benchmarks.retain(|folder| benchmark.is_none_or(|name| folder.file_name().is_some_and(|n| n == name)));

@@ -5,8 +5,6 @@ use std::time::Instant;
 use serde_json::{Map, Value as Json};
 use sim3align::align::align_prepared;
 use sim3align::align::search::Request;
-use sim3align::precise::options::AlignOptions;
-use sim3align::precise::prepared_mesh::PreparedMesh;
 use sim3align::progress::{Host, Stage};
 use sim3align_lab::bench::option_text;
 use sim3align_lab::case_folder::case::read_case;

@@ -1,6 +1,5 @@
 //! Options of every type.
 
-use sim3align::options::scale::ScaleOption;
 use sim3align::options::{Field, Options};
 use sim3align_geometry::rotations::super_fibonacci;
 

@@ -5,6 +5,7 @@ use super::heap::{Below, Heap};
 use super::layout::{
     Floor, Footprint, Layout, Placed, Stance, deepest, held, joined, moved, put_down, reach_of, shifted, unit,
 };
+use crate::cases::distortion::box_of;
 use crate::cases::draft::Axis;
 use crate::cases::scene::turned_axis;
 use crate::cases::solid::Solid;
@@ -179,8 +180,7 @@ fn up(height: f64) -> Vec3 {
 
 /// The middle of the box of a mesh on the plane, and half of its diagonal there.
 fn middle_of(mesh: &Mesh) -> (DVec2, f64) {
-    let points = || mesh.positions().iter().map(|p| p.as_dvec3().truncate());
-    let low = points().fold(DVec2::INFINITY, DVec2::min);
-    let high = points().fold(DVec2::NEG_INFINITY, DVec2::max);
+    let (low, high) = box_of(mesh.positions().iter().map(|p| p.as_dvec3()));
+    let (low, high) = (low.truncate(), high.truncate());
     ((low + high) * 0.5, (high - low).length() * 0.5)
 }

@@ -3,10 +3,11 @@
 use nalgebra::UnitVector3;
 use serde_json::{Map, Value, json};
 
-use super::case::DEPTH_SCALE;
+use super::scene::DEPTH_SCALE;
 use super::scene::ScenePair;
 use super::set::SceneSet;
 use crate::case_folder::write::{depth_png, mask_png, ply_mesh};
+use crate::cases::distortion::mapped;
 use crate::files::write;
 use crate::parallel::parallel_map;
 use crate::prelude::*;
@@ -89,10 +90,9 @@ impl Model {
         let bounds = Bounds::of(pair.object.positions());
         let middle = bounds.map_or(Vector3::zeros(), |b| vector3(b.center()));
         let unit = pose.scale / MILLIMETRE;
-        let moved = pair.object.positions().iter().map(|p| vec3(&((vector3(*p) - middle) * unit))).collect();
-        let triangles = pair.object.triangles().to_vec();
+        let moved = mapped(&pair.object, |p| vec3(&((vector3(*p) - middle) * unit)));
         Self {
-            mesh: Mesh::new(moved, triangles).unwrap_or_else(|_| pair.object.clone()),
+            mesh: moved.unwrap_or_else(|_| pair.object.clone()),
             camera_from_model: Similarity { scale: MILLIMETRE, translation: pose.apply(middle), ..*pose },
             symmetry: pair.symmetry(),
         }

@@ -1,5 +1,6 @@
 //! A heap: the tops of everything that stands somewhere, as heights over a plane, onto which objects are dropped.
 
+use crate::cases::distortion::with_vertices;
 use crate::prelude::*;
 use sim3align_geometry::rotations::exp;
 
@@ -90,8 +91,7 @@ impl Heap {
                 turned = (turn * turned).normalize();
             }
         }
-        let settled = Mesh::new(best.iter().map(|p| p.as_vec3()).collect(), mesh.triangles().to_vec())?;
-        Ok((settled, turned, below))
+        Ok((with_vertices(mesh, best.iter().map(|p| p.as_vec3()))?, turned, below))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::clutter;
 use super::heap::Below;
-use crate::cases::distortion::random_rotation;
+use crate::cases::distortion::{mapped, random_rotation};
 use crate::cases::draft::{Axis, Object};
 use crate::cases::families;
 use crate::cases::scene::{put_down_turned, turned_axis};
@@ -246,7 +246,7 @@ pub(super) fn moved(mesh: &Mesh, place: DVec2) -> Result<Mesh> {
 }
 
 pub(super) fn shifted(mesh: &Mesh, offset: Vec3) -> Result<Mesh> {
-    Mesh::new(mesh.positions().iter().map(|p| *p + offset).collect(), mesh.triangles().to_vec())
+    mapped(mesh, |p| *p + offset)
 }
 
 pub(super) fn joined(meshes: &[Mesh]) -> Result<Mesh> {

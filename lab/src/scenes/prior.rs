@@ -3,6 +3,7 @@
 use super::layout::Placed;
 use super::melt::melted;
 use super::underside::invented_underside;
+use crate::cases::distortion::mapped;
 use crate::cases::generator::{Generated, generate};
 use crate::cases::scene::Scene;
 use crate::cases::streams::{GENERATOR_STREAM, QUALITY_STREAM};
@@ -94,9 +95,8 @@ fn smooth(placed: &Placed, scene: &Scene, seed: u64) -> Result<Generated> {
     let flatten = Matrix3::identity() - away * away.transpose() * (1.0 - flattened);
     let flat = |p: Vector3<f64>| middle + flatten * (p - middle);
     let back = best_fit(&seen, flat, middle, away)?;
-    let positions = mesh.positions().iter().map(|p| vec3(&back.apply(flat(vector3(*p))))).collect();
     Ok(Generated {
-        mesh: Mesh::new(positions, mesh.triangles().to_vec())?,
+        mesh: mapped(&mesh, |p| vec3(&back.apply(flat(vector3(*p)))))?,
         symmetry: placed.symmetry.clone(),
         tags: vec!["melted", "flattened"],
         parameters: vec![("blur", blur), ("flattened", flattened)],

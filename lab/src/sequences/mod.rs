@@ -7,7 +7,6 @@ mod stage;
 pub mod video;
 
 use crate::prelude::*;
-use sim3align::precise::prepared_mesh::PreparedMesh;
 use sim3align::views::View;
 
 /// Frames of one object with the true poses.

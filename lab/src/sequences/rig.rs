@@ -40,12 +40,7 @@ impl RigSet {
     /// # Errors
     /// [`ErrorCode::Internal`] in case of a bug in the generator.
     pub fn case(&self, index: usize) -> Result<Sequence> {
-        for draw in 0..DRAWS {
-            if let Some(case) = self.draw(index, mixed([self.seed, index as u64, draw]))? {
-                return Ok(case);
-            }
-        }
-        Err(Error::new(ErrorCode::Internal, "case", "no fitting draw", "one in a few", "Please report the seed."))
+        first_fit("a rig", DRAWS, |draw| self.draw(index, mixed([self.seed, index as u64, draw])))
     }
 
     fn draw(&self, index: usize, seed: u64) -> Result<Option<Sequence>> {

@@ -62,12 +62,7 @@ impl VideoSet {
     /// # Errors
     /// [`ErrorCode::Internal`] in case of a bug in the generator.
     pub fn video(&self, index: usize) -> Result<Sequence> {
-        for draw in 0..DRAWS {
-            if let Some(video) = self.draw(index, mixed([self.seed, index as u64, draw]))? {
-                return Ok(video);
-            }
-        }
-        Err(Error::new(ErrorCode::Internal, "video", "no fitting draw", "one in a few", "Please report the seed."))
+        first_fit("a video", DRAWS, |draw| self.draw(index, mixed([self.seed, index as u64, draw])))
     }
 
     fn draw(&self, index: usize, seed: u64) -> Result<Option<Sequence>> {

@@ -5,11 +5,13 @@ use std::fs;
 use serde_json::Value;
 use sim3align_formats::mesh::{MeshReadOptions, read_mesh};
 use sim3align_lab::prelude::*;
+
+use crate::common::fresh;
 use sim3align_lab::scenes::{SceneSet, write_bop};
 
 #[test]
 fn scenes_are_a_dataset_of_bop() {
-    let folder = std::env::temp_dir().join(format!("sim3align-{}-bop", std::process::id()));
+    let folder = fresh("bop");
     let set = SceneSet::new(5, 2);
     write_bop(&set, &folder, 2, |_| {}).unwrap();
     let json = |path: &str| -> Value { serde_json::from_slice(&fs::read(folder.join(path)).unwrap()).unwrap() };

@@ -38,44 +38,25 @@ fn no_fault(name: &str, executions: u64, least_results: usize) {
     assert!(results >= least_results, "{results} of {executions} calls of {name} had a result");
 }
 
-#[test]
-fn readers_have_no_fault() {
-    no_fault("readers", 30_000, 1000);
+/// A test of a number of calls of a target, of which some have a result.
+macro_rules! no_fault {
+    ($($test:ident: $target:literal, $executions:literal, $least_results:literal;)+) => {
+        $(#[test]
+        fn $test() {
+            no_fault($target, $executions, $least_results);
+        })+
+    };
 }
 
-#[test]
-fn align_has_no_fault() {
-    no_fault("align", 400, 60);
-}
-
-#[test]
-fn align_of_large_inputs_has_no_fault() {
-    no_fault("align-large", 6, 1);
-}
-
-#[test]
-fn views_have_no_fault() {
-    no_fault("views", 300, 15);
-}
-
-#[test]
-fn trackers_have_no_fault() {
-    no_fault("track", 100, 10);
-}
-
-#[test]
-fn evaluate_has_no_fault() {
-    no_fault("evaluate", 200, 50);
-}
-
-#[test]
-fn register_has_no_fault() {
-    no_fault("register", 60, 5);
-}
-
-#[test]
-fn estimate_sim3_has_no_fault() {
-    no_fault("estimate-sim3", 1000, 100);
+no_fault! {
+    readers_have_no_fault: "readers", 30_000, 1000;
+    align_has_no_fault: "align", 400, 60;
+    align_of_large_inputs_has_no_fault: "align-large", 6, 1;
+    views_have_no_fault: "views", 300, 15;
+    trackers_have_no_fault: "track", 100, 10;
+    evaluate_has_no_fault: "evaluate", 200, 50;
+    register_has_no_fault: "register", 60, 5;
+    estimate_sim3_has_no_fault: "estimate-sim3", 1000, 100;
 }
 
 #[test]

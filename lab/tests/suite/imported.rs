@@ -5,11 +5,12 @@ use std::fs;
 use serde_json::{Value, json};
 use sim3align::align::evaluate::{EvaluateOptions, evaluate};
 use sim3align::metrics::Metrics;
-use sim3align::paper::options::PaperOptions;
 use sim3align_lab::bench::benchmark::{BenchCase, Record, STRICT};
 use sim3align_lab::bench::imported::{CASE, Outcome, imported, read_answer};
 use sim3align_lab::cases::case::EvaluationSet;
 use sim3align_lab::prelude::*;
+
+use crate::common::{assert_near, fresh};
 
 const DOCUMENTATION: &str = include_str!("../../../docs/importing-results.md");
 
@@ -23,17 +24,12 @@ fn truth(case: &BenchCase) -> Similarity {
 
 /// What comes of a case with this answer.
 fn import(test: &str, case: &BenchCase, answer: &str) -> Record {
-    let folder = folder(test);
+    let folder = fresh(&format!("imported-{test}"));
+    fs::create_dir_all(&folder).unwrap();
     fs::write(folder.join(format!("{}.json", case.name)), answer).unwrap();
     let record = imported(case, &folder);
     fs::remove_dir_all(folder).unwrap();
     record
-}
-
-fn folder(test: &str) -> PathBuf {
-    let folder = std::env::temp_dir().join(format!("sim3align-{}-imported-{test}", std::process::id()));
-    fs::create_dir_all(&folder).unwrap();
-    folder
 }
 
 fn pose_json(pose: &Similarity) -> Value {
@@ -45,11 +41,6 @@ fn pose_json(pose: &Similarity) -> Value {
 fn pose_of(record: &Record) -> Similarity {
     let alignment = record.alignment.as_ref().unwrap_or_else(|| panic!("{:?}", record.error));
     Similarity::from_column_major(&alignment.camera_from_mesh().matrix).unwrap()
-}
-
-fn assert_near(a: &Similarity, b: &Similarity, tolerance: f64) {
-    let off = [a.scale / b.scale - 1.0, a.rotation_angle_to(b), (a.translation - b.translation).norm()];
-    assert!(off.iter().all(|x| x.abs() <= tolerance), "{off:?}");
 }
 
 /// Vertices of the mesh and where `pose` takes them; every other one is taken somewhere else in the box of the rest.

@@ -2,7 +2,6 @@
 
 use sim3align::align::align_paper;
 use sim3align::align::evaluate::{EvaluateOptions, Truth, evaluate};
-use sim3align::paper::options::PaperOptions;
 use sim3align_lab::case_folder::case::{Case, read_case};
 use sim3align_lab::prelude::*;
 

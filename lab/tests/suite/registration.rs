@@ -4,7 +4,6 @@ use std::fs;
 use std::sync::LazyLock;
 
 use nalgebra::Matrix4;
-use sim3align::options::scale::ScaleOption;
 use sim3align::register::options::RegisterOptions;
 use sim3align::register::register;
 use sim3align_lab::case_folder::write::ply_points;

@@ -70,7 +70,7 @@ impl Scenes {
     }
 
     fn case(&self, scene: usize, pair: usize, prior: Prior) -> Result<BenchCase> {
-        self.scene(scene)?.pairs[pair].case(prior).map(BenchCase::from)
+        self.scene(scene)?.pairs[pair].case(prior)
     }
 
     /// Holds the lock while drawing: waiting threads usually need the same scene.
@@ -180,12 +180,9 @@ fn run_row(case: &BenchCase, row: &Row) -> Record {
     let case = shape.as_ref().unwrap_or(case);
     match &row.method {
         Method::Align => run_case(case, &row.preset_options(), &row.search),
-        Method::Baseline(baseline) => {
-            let options = row.baseline_options();
-            run_method(case, |observation, mesh, host| {
-                align_baseline(observation, mesh, *baseline, &options, host).map(Into::into)
-            })
-        }
+        Method::Baseline(baseline) => run_method(case, |observation, mesh, host| {
+            align_baseline(observation, mesh, *baseline, &row.paper, row.locks_scale(), host).map(Into::into)
+        }),
         Method::Import(folder) => imported(case, folder),
     }
 }

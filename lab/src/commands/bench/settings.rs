@@ -2,12 +2,9 @@
 
 use sim3align::align::method;
 use sim3align::options::{Choice, Options};
-use sim3align::paper::options::PaperOptions;
 use sim3align::precise::SearchSettings;
-use sim3align::precise::options::AlignOptions;
 use sim3align::report::{Effort, Preset};
 use sim3align_lab::baselines::Baseline;
-use sim3align_lab::baselines::align::BaselineOptions;
 use sim3align_lab::bench::benchmark::override_setting;
 use sim3align_lab::bench::option_text;
 use sim3align_lab::bench::records::RecordKey;
@@ -106,11 +103,9 @@ impl Row {
         }
     }
 
-    /// The options of a baseline.
-    pub fn baseline_options(&self) -> BaselineOptions {
-        // The paper's method locks the scale by default, TEASER only where it is asked to.
-        let lock_scale = self.assignments.iter().any(|assignment| assignment == "lockScale=true");
-        BaselineOptions { paper: self.paper.clone(), lock_scale, up: None }
+    /// Whether a baseline keeps the initial scale: the paper's method does by default, TEASER only where it is asked to.
+    pub fn locks_scale(&self) -> bool {
+        self.assignments.iter().any(|assignment| assignment == "lockScale=true")
     }
 
     /// The key of a record of this row.

@@ -3,11 +3,9 @@
 use std::time::Instant;
 
 use sim3align::options::Options;
-use sim3align::options::scale::ScaleOption;
-use sim3align::register::icp::IcpMetric;
-use sim3align::register::options::RegisterOptions;
+use sim3align::register::options::{Icp, RegisterOptions};
 use sim3align::register::register;
-use sim3align_lab::baselines::{Baseline, PairSettings, register_pair};
+use sim3align_lab::baselines::{Baseline, register_pair};
 use sim3align_lab::bench::imported::{CLOUDS, Outcome, answer_in};
 use sim3align_lab::bench::option_text;
 use sim3align_lab::bench::records::RecordKey;
@@ -97,9 +95,8 @@ impl Method {
                 let [source, target] = [source, target].map(|points| Cloud::from_points(points.to_vec()));
                 let begun = Instant::now();
                 // Refines the pose of RANSAC, as in common tutorials.
-                let settings =
-                    PairSettings { icp: Some(IcpMetric::PointToPlane), ..PairSettings::new(pair.voxel_size_m) };
-                let pose = register_pair(&source, &target, *baseline, &settings);
+                let settings = PaperOptions { icp: Icp::PointToPlane, ..PaperOptions::default() };
+                let pose = register_pair(&source, &target, *baseline, pair.voxel_size_m, &settings);
                 let seconds = begun.elapsed().as_secs_f64();
                 Answer { target_from_source: pose.map_err(|error| error.to_string()), seconds }
             }

@@ -3,8 +3,6 @@
 use sim3align::align::align_by_method;
 use sim3align::align::method::Method;
 use sim3align::options::Choice;
-use sim3align::paper::options::PaperOptions;
-use sim3align::precise::options::{AlignOptions, Quality};
 use sim3align::report::{Alignment, AnyAlignment, Sim3};
 
 use crate::fuzz::call::{Answer, Call, finite, typed};

@@ -1,7 +1,5 @@
 //! Several frames of an object: `alignViews`, and trackers.
 
-use sim3align::precise::options::Quality;
-use sim3align::precise::prepared_mesh::PreparedMesh;
 use sim3align::track::options::TrackOptions;
 use sim3align::track::report::TrackedFrame;
 use sim3align::track::tracker::Tracker;
