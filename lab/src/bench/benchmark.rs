@@ -238,7 +238,13 @@ fn symmetry_of(axes: &Value) -> Option<Symmetry> {
 }
 
 /// A host with a clock and no listener.
-struct Clock(Instant);
+pub struct Clock(Instant);
+
+impl Default for Clock {
+    fn default() -> Self {
+        Self(Instant::now())
+    }
+}
 
 impl Host for Clock {
     fn now_ms(&mut self) -> f64 {
@@ -323,7 +329,7 @@ pub fn run_method(
     method: impl FnOnce(&Observation, &Mesh, &mut dyn Host) -> Result<AnyAlignment>,
 ) -> Record {
     let timer = CpuTimer::start();
-    let outcome = method(&case.observation, &case.mesh, &mut Clock(Instant::now()));
+    let outcome = method(&case.observation, &case.mesh, &mut Clock::default());
     let seconds = timer.seconds();
     record_of(case, outcome.map_err(|error| described(&error)), seconds)
 }

@@ -4,7 +4,6 @@ use super::draft::{Axis, Object};
 use super::edges::DepthSource;
 use super::families;
 use super::generator::generate;
-use super::holes::Shown;
 use super::mask::Segmented;
 use super::photo::take;
 use super::print::{Print, PrintKind};
@@ -134,10 +133,9 @@ impl EvaluationSet {
         if readings.missing > tier.pick(0.1, 0.25, 0.4) {
             return Ok(None);
         }
-        let shown = Shown { mesh: &placed, parts: &object.parts, keys: &object.keys };
         let random = &mut Random::new(seed, SENSOR_STREAM);
         let (cell, observed) = ((tier, class), (&mut readings, &mut segmented));
-        let Some(effects) = sensor::apply(&scene, &shown, object.diagonal(), cell, observed, random)? else {
+        let Some(effects) = sensor::apply(&scene, (&object, &placed), cell, observed, random)? else {
             return Ok(None);
         };
         let mask_px = segmented.mask.data().iter().filter(|m| **m != 0).count();

@@ -43,6 +43,7 @@ pub struct Edges {
 }
 
 /// Magnitudes at the edges, pixels of an image 640 wide.
+#[derive(Default)]
 struct Strength {
     /// Mean offset, and how much it changes along the edge.
     offset: f64,
@@ -79,26 +80,26 @@ impl DepthSource {
     fn strength(self, tier: Tier, random: &mut Random) -> Strength {
         let much = between(random, 0.6, 1.0);
         let shift = much * tier.pick(0.7, 1.5, 3.0);
+        let none = Strength::default();
         match self {
             Self::ActiveStereo => Strength {
                 offset: tier.pick(0.8, 1.4, 2.2) * normal(random),
                 wobble: much * tier.pick(2.5, 4.0, 6.0),
                 place: 7.0,
                 ramp: between(random, 0.0, 0.5),
-                lost_ramp: 0.0,
                 gap: 0.5,
                 shadow: (STEREO_BASE, 0.7),
                 shift,
+                ..none
             },
             Self::StructuredLight => Strength {
                 offset: -much * tier.pick(1.0, 2.0, 3.5),
                 wobble: much * tier.pick(2.0, 3.0, 4.5),
                 place: 5.0,
-                ramp: 0.0,
-                lost_ramp: 0.0,
                 gap: much * tier.pick(1.5, 2.5, 3.5),
                 shadow: (PROJECTOR_BASE, 1.0),
                 shift,
+                ..none
             },
             Self::TimeOfFlight => Strength {
                 offset: 0.4 * normal(random),
@@ -106,20 +107,16 @@ impl DepthSource {
                 place: 5.0,
                 ramp: much * tier.pick(0.8, 1.4, 2.0),
                 lost_ramp: between(random, 0.2, 0.6),
-                gap: 0.0,
-                shadow: (0.0, 0.0),
                 shift,
+                ..none
             },
             Self::Predicted => Strength {
                 offset: tier.pick(0.1, 0.3, 0.5) + tier.pick(0.3, 0.6, 1.0) * normal(random),
                 wobble: much * tier.pick(1.0, 2.0, 3.5),
                 place: 8.0,
                 ramp: much * tier.pick(0.8, 1.5, 3.0),
-                lost_ramp: 0.0,
-                gap: 0.0,
-                shadow: (0.0, 0.0),
-                // It is made from the photo.
-                shift: 0.0,
+                // It is made from the photo: no shift.
+                ..none
             },
         }
     }

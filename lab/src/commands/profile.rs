@@ -1,11 +1,9 @@
 //! `profile`: aligns case folders with the native build, which `npm run profile` compares with WebAssembly.
 
-use std::time::Instant;
-
 use serde_json::{Map, Value as Json};
 use sim3align::align::align_prepared;
 use sim3align::align::search::Request;
-use sim3align::progress::{Host, Stage};
+use sim3align_lab::bench::benchmark::Clock;
 use sim3align_lab::bench::option_text;
 use sim3align_lab::case_folder::case::read_case;
 use sim3align_lab::prelude::*;
@@ -23,24 +21,13 @@ it and all other options have its defaults.",
     run,
 };
 
-struct Clock(Instant);
-
-impl Host for Clock {
-    fn now_ms(&mut self) -> f64 {
-        self.0.elapsed().as_secs_f64() * 1000.0
-    }
-
-    fn progress(&mut self, _stage: Stage, _fraction: f64) {}
-}
-
 fn results(folder: &str, runs: usize, options: &AlignOptions) -> Result<Vec<Json>, Error> {
     let case = read_case(folder.as_ref())?;
     (0..runs)
         .map(|_| {
-            let mut clock = Clock(Instant::now());
             let mesh = PreparedMesh::borrowed(&case.mesh).with_colors(case.colors.clone());
             let request = Request::new(options.clone())?;
-            let alignment = align_prepared(&case.observation, &mesh, request, &mut clock)?;
+            let alignment = align_prepared(&case.observation, &mesh, request, &mut Clock::default())?;
             Ok(serde_json::to_value(alignment).unwrap_or_default())
         })
         .collect()

@@ -126,8 +126,8 @@ fn arc(centre: [f64; 2], radius: f64, from: f64, to: f64, steps: u32) -> impl It
     })
 }
 
-/// The mesh of skins, the vertices of each of which end at an index: the point at which a skin begins comes before its
-/// rings, and not behind them.
+/// The mesh of skins, the vertices of each of which end at an index. The point at which a skin begins comes before its
+/// rings and not behind them: so the committed samples have it.
 fn begun(solid: Solid, ends: [usize; 2]) -> Result<Mesh> {
     let mesh = solid.finish()?.0;
     let (mut positions, mut triangles) = (mesh.positions().to_vec(), mesh.triangles().to_vec());

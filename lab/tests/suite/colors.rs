@@ -12,7 +12,7 @@ use sim3align_lab::cases::case::{EvaluationCase, EvaluationSet};
 use sim3align_lab::cases::tier::{CaseSet, Class, Tier};
 use sim3align_lab::prelude::*;
 
-use crate::common::{fresh, parameter};
+use crate::common::{assert_read_back, fresh, parameter};
 
 /// Every class of every tier.
 const LOOKED_AT: usize = 24;
@@ -117,9 +117,6 @@ fn a_written_case_has_the_same_photo_mesh_and_colours() {
         case.write(&folder).unwrap();
         let read = BenchCase::read(&folder);
         std::fs::remove_dir_all(&folder).unwrap();
-        let (read, made) = (read.unwrap(), BenchCase::from(case.clone()));
-        assert_eq!(read.observation.photo(), made.observation.photo());
-        assert_eq!(read.observation.depth(), made.observation.depth());
-        assert_eq!((read.mesh, read.colors), (made.mesh, made.colors));
+        assert_read_back(&read.unwrap(), &case.clone().into());
     }
 }

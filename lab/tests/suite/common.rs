@@ -1,5 +1,6 @@
 //! What several tests of generated cases share.
 
+use sim3align_lab::bench::benchmark::BenchCase;
 use sim3align_lab::cases::case::EvaluationCase;
 use sim3align_lab::prelude::*;
 
@@ -54,4 +55,35 @@ pub fn assert_canonical(mesh: &Mesh, name: &str) {
 pub fn assert_near(a: &Similarity, b: &Similarity, tolerance: f64) {
     let off = [a.scale / b.scale - 1.0, a.rotation_angle_to(b), (a.translation - b.translation).norm()];
     assert!(off.iter().all(|x| x.abs() <= tolerance), "{off:?}");
+}
+
+/// A case read from its folder is the case that was written there.
+pub fn assert_read_back(read: &BenchCase, made: &BenchCase) {
+    assert_eq!(read.observation.depth(), made.observation.depth());
+    assert_eq!(read.observation.photo(), made.observation.photo());
+    let masks = read.observation.mask().data().iter().zip(made.observation.mask().data());
+    assert!(masks.into_iter().all(|(a, b)| (*a != 0) == (*b != 0)));
+    assert_eq!((&read.mesh, &read.colors), (&made.mesh, &made.colors));
+    assert_eq!((&read.tier, &read.class, &read.family), (&made.tier, &made.class, &made.family));
+    assert_eq!(read.tags, made.tags);
+    for (name, value) in made.parameters.as_object().unwrap() {
+        let Some(value) = value.as_f64() else {
+            assert_eq!(&read.parameters[name], value);
+            continue;
+        };
+        // Decimals are read to all but the last bit.
+        let off = read.parameters[name].as_f64().unwrap() - value;
+        assert!(off.abs() <= 1e-12 * value.abs(), "{name}");
+    }
+    let [read, made] = [read, made].map(|case| case.truth.as_ref().unwrap());
+    assert_near(&read.camera_from_mesh, &made.camera_from_mesh, 1e-12);
+    match (&read.symmetry, &made.symmetry) {
+        (Symmetry::Declared(read), Symmetry::Declared(made)) => {
+            assert_eq!(read.len(), made.len());
+            for (read, made) in read.iter().zip(made) {
+                assert!((read.axis - made.axis).norm() < 1e-12 && read.fold == made.fold, "{read:?}, {made:?}");
+            }
+        }
+        (read, made) => assert_eq!(read, made),
+    }
 }

@@ -16,7 +16,7 @@ use sim3align_lab::cases::case::{EvaluationCase, EvaluationSet, MIN_MASK_PX};
 use sim3align_lab::cases::tier::{CaseSet, Class, Tier};
 use sim3align_lab::prelude::*;
 
-use crate::common::{assert_canonical, assert_closed, assert_near, fresh, mask_px, object_depth, parameter};
+use crate::common::{assert_canonical, assert_closed, assert_read_back, fresh, mask_px, object_depth, parameter};
 
 /// Cases that the tests look at: every class of every tier at least once.
 const LOOKED_AT: usize = 36;
@@ -181,29 +181,7 @@ fn a_written_case_reads_back() {
         case.write(&folder).unwrap();
         let read = BenchCase::read(&folder);
         fs::remove_dir_all(&folder).unwrap();
-        let (read, made) = (read.unwrap(), BenchCase::from(case));
-        assert_eq!(read.observation.depth(), made.observation.depth());
-        let masks = read.observation.mask().data().iter().zip(made.observation.mask().data());
-        assert!(masks.into_iter().all(|(a, b)| (*a != 0) == (*b != 0)));
-        assert_eq!(read.mesh, made.mesh);
-        assert_eq!((&read.tier, &read.class, &read.family), (&made.tier, &made.class, &made.family));
-        assert_eq!(read.tags, made.tags);
-        for (name, value) in made.parameters.as_object().unwrap() {
-            // Decimals are read to all but the last bit.
-            let off = read.parameters[name].as_f64().unwrap() - value.as_f64().unwrap();
-            assert!(off.abs() <= 1e-12 * value.as_f64().unwrap().abs(), "{name}");
-        }
-        let (read, made) = (read.truth.unwrap(), made.truth.unwrap());
-        assert_near(&read.camera_from_mesh, &made.camera_from_mesh, 1e-12);
-        match (read.symmetry, made.symmetry) {
-            (Symmetry::Declared(read), Symmetry::Declared(made)) => {
-                assert_eq!(read.len(), made.len());
-                for (read, made) in read.iter().zip(&made) {
-                    assert!((read.axis - made.axis).norm() < 1e-12 && read.fold == made.fold, "{read:?}, {made:?}");
-                }
-            }
-            (read, made) => assert_eq!(read, made),
-        }
+        assert_read_back(&read.unwrap(), &case.into());
     }
 }
 

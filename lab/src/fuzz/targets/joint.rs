@@ -7,8 +7,8 @@ use sim3align::views::options::ViewsOptions;
 use sim3align::views::report::ViewsAlignment;
 use sim3align::views::{View, align_views};
 
-use super::align::check_pose;
-use crate::fuzz::call::{Answer, Call, finite, typed};
+use super::align::{check_pose, check_probability};
+use crate::fuzz::call::{Answer, Call, Checked, finite, typed};
 use crate::fuzz::choices::Choices;
 use crate::fuzz::meshes::mesh;
 use crate::fuzz::options::{options, transform};
@@ -17,9 +17,6 @@ use crate::prelude::*;
 
 /// Most triangles of a mesh, so that a call takes little time.
 const MOST_TRIANGLES: usize = 300;
-
-/// A check's outcome: what was wrong.
-type Checked = Result<(), String>;
 
 /// Hostile numbers of views, camera poses, masks and photos.
 pub fn views(c: &mut Choices) -> Call {
@@ -46,21 +43,15 @@ pub fn views(c: &mut Choices) -> Call {
         };
         views.push(frame.clone().map(|frame| View { frame, world_from_camera: pose }));
     }
-    Call {
-        description: format!("{words}; {mesh_words}; {given:?}"),
-        // Each view takes as long as one `align`.
-        is_bounded: count <= if given.quality == Quality::Fast { 16 } else { 2 },
-        run: Box::new(move || {
-            let found = views.into_iter().collect::<Result<Vec<View>>>().and_then(|views| {
-                let (mesh, colors) = object?;
-                align_views(views, &PreparedMesh::new(mesh).with_colors(colors), &given, &mut Silent)
-            });
-            match found {
-                Ok(found) => check_views(&found).map(|()| Answer::Result),
-                Err(error) => typed(&error, false),
-            }
-        }),
-    }
+    let description = format!("{words}; {mesh_words}; {given:?}");
+    // Each view takes as long as one `align`.
+    let is_bounded = count <= if given.quality == Quality::Fast { 16 } else { 2 };
+    let aligned = move || {
+        let views = views.into_iter().collect::<Result<Vec<View>>>()?;
+        let (mesh, colors) = object?;
+        align_views(views, &PreparedMesh::new(mesh).with_colors(colors), &given, &mut Silent)
+    };
+    Call::new(description, is_bounded, false, aligned, check_views)
 }
 
 /// A mesh, and the colours of its vertices, if it has some.
@@ -81,8 +72,8 @@ fn coloured(c: &mut Choices) -> (String, Result<(Mesh, Option<SurfaceColors>)>) 
 
 fn check_views(found: &ViewsAlignment) -> Checked {
     check_pose(&found.world_from_mesh)?;
-    is_probability(found.confidence)?;
-    found.alternatives.iter().try_for_each(|other| check_pose(&other.camera_from_mesh).map(drop))?;
+    check_probability(found.confidence)?;
+    found.alternatives.iter().try_for_each(|other| check_pose(&other.camera_from_mesh))?;
     if let Some(u) = &found.uncertainty {
         finite("uncertainty", &[u.scale, u.rotation_deg, u.position_m])?;
         finite("rotationAxis", &u.rotation_axis)?;
@@ -91,7 +82,7 @@ fn check_views(found: &ViewsAlignment) -> Checked {
     for view in &found.views {
         check_pose(&view.camera_from_mesh)?;
         check_pose(&view.camera.world_from_camera)?;
-        is_probability(view.confidence)?;
+        check_probability(view.confidence)?;
         finite("score", &[view.score])?;
         let certainty = [view.camera.rotation_sd_deg, view.camera.position_sd_m];
         finite("camera", &certainty.map(Option::unwrap_or_default))?;
@@ -196,22 +187,15 @@ fn run(
 
 fn correct(tracker: &mut Tracker<PreparedMesh<'_>>, pose: &Similarity, frame: Option<usize>) -> Result<Checked> {
     let changed = tracker.correct(pose, frame)?;
-    Ok(changed.iter().try_for_each(|frame| check_pose(&frame.camera_from_mesh).map(drop)))
+    Ok(changed.iter().try_for_each(|frame| check_pose(&frame.camera_from_mesh)))
 }
 
 fn check_frame(found: &TrackedFrame, number: usize) -> Checked {
     check_pose(&found.camera_from_mesh)?;
-    is_probability(found.confidence)?;
+    check_probability(found.confidence)?;
     finite("scaleSd, score", &[found.scale_sd, found.score])?;
     if found.frame != number {
         return Err(format!("result: frame {} instead of {number}", found.frame));
     }
     Ok(())
-}
-
-fn is_probability(confidence: f64) -> Checked {
-    if (0.0..=1.0).contains(&confidence) {
-        return Ok(());
-    }
-    Err(format!("result: confidence {confidence}"))
 }
