@@ -1,4 +1,5 @@
-//! The results of the entry points.
+//! The results of the entry points, as they reach JavaScript: every field is serialised under its name in camelCase, and the
+//! TypeScript declarations are generated from these types. Their documentation is the users'.
 
 mod alignment;
 mod diagnostics;
@@ -7,7 +8,10 @@ mod preset;
 mod warning;
 
 pub use alignment::{Alignment, AnyAlignment, PaperAlignment, Solution};
-pub use diagnostics::{ColorReport, ColorVerdict, Counts, Diagnostics, PreciseDiagnostics, ScoreTerms, is_collapsed};
+pub use diagnostics::{
+    ColorReport, ColorVerdict, Counts, Diagnostics, PaperDiagnostics, PreciseDiagnostics, ScoreTerms, SearchCounts,
+    is_collapsed,
+};
 pub use pose::{Alternative, Sim3, Uncertainty};
 pub use preset::{Effort, Preset};
 pub use warning::{Warning, WarningCode};

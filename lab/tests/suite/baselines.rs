@@ -142,17 +142,17 @@ fn meshes_keep_their_initial_scale_but_for_teaser() {
     let usual = PaperOptions::default();
     for baseline in aligned() {
         let found = align_by(baseline, &usual, false).unwrap().diagnostics;
-        let is_initial = (found.scale_ratio - 1.0).abs() < 1e-9;
-        assert_eq!(is_initial, baseline != Baseline::Teaser, "{baseline:?}: {}", found.scale_ratio);
+        let is_initial = (found.common.scale_ratio - 1.0).abs() < 1e-9;
+        assert_eq!(is_initial, baseline != Baseline::Teaser, "{baseline:?}: {}", found.common.scale_ratio);
         let counts = &found.counts;
         assert!(counts.source_voxels > 0 && counts.target_voxels > 0, "{baseline:?}: {counts:?}");
         assert_eq!(counts.matches > 0, !baseline.is_local(), "{baseline:?}: {counts:?}");
         let refines = baseline.is_local() || baseline == Baseline::Ransac;
         assert_eq!(counts.icp_iterations > 0, refines, "{baseline:?}: {counts:?}");
-        assert_eq!(found.residual_m > 0.0, refines, "{baseline:?}: {}", found.residual_m);
+        assert_eq!(found.common.residual_m > 0.0, refines, "{baseline:?}: {}", found.common.residual_m);
     }
     let locked = align_by(Baseline::Teaser, &usual, true).unwrap();
-    assert!((locked.diagnostics.scale_ratio - 1.0).abs() < 1e-9, "{}", locked.diagnostics.scale_ratio);
+    assert!((locked.diagnostics.common.scale_ratio - 1.0).abs() < 1e-9, "{}", locked.diagnostics.common.scale_ratio);
     let plain = align_by(Baseline::Ransac, &PaperOptions { icp: Icp::None, ..usual.clone() }, false).unwrap();
     assert_eq!(plain.diagnostics.counts.icp_iterations, 0);
     let error = align_by(Baseline::Quatro, &usual, false).unwrap_err();

@@ -19,8 +19,8 @@ use sim3align::register::options::Icp;
 use sim3align::register::options::{EstimateSim3Options, RegisterOptions};
 use sim3align::register::report::{Registration, RegistrationDiagnostics};
 use sim3align::report::{
-    Alignment, Alternative, Counts, Diagnostics, PaperAlignment, PreciseDiagnostics, ScoreTerms, Sim3, Uncertainty,
-    Warning, WarningCode,
+    Alignment, Alternative, Counts, Diagnostics, PaperAlignment, PaperDiagnostics, PreciseDiagnostics, ScoreTerms,
+    SearchCounts, Sim3, Uncertainty, Warning, WarningCode,
 };
 use sim3align::report::{ColorReport, ColorVerdict, Effort, Preset};
 use sim3align::scene::contact::Contact;
@@ -215,11 +215,13 @@ fn types() -> String {
         declaration::<LayoutErrors>(&config),
         declaration::<BopErrors>(&config),
         declaration::<Counts>(&config),
+        declaration::<SearchCounts>(&config),
         declaration::<ScoreTerms>(&config),
         declaration::<ColorReport>(&config),
         declaration::<Alternative>(&config),
         declaration::<Uncertainty>(&config),
         declaration::<Diagnostics>(&config),
+        declaration::<PaperDiagnostics>(&config),
         declaration::<PreciseDiagnostics>(&config),
         declaration::<Alignment>(&config),
         declaration::<PaperAlignment>(&config),

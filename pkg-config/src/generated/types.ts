@@ -681,7 +681,20 @@ clamped: number,
 /**
  * ICP iterations.
  */
-icpIterations: number, 
+icpIterations: number, };
+
+/**
+ * Sizes of the problem and of the search.
+ */
+export type SearchCounts = { 
+/**
+ * Source points, of the mesh surface.
+ */
+sourcePoints: number, 
+/**
+ * Target points, observed.
+ */
+targetPoints: number, 
 /**
  * Images that the search drew.
  */
@@ -749,8 +762,8 @@ score: number,
  */
 turnDeg: number, 
 /**
- * By how much its colours agree less with the photo than the alignment's, as a difference of correlations; present
- * where colours were compared.
+ * The correlation of the alignment's colours with the photo, minus that of this pose; present where colours were
+ * compared.
  */
 colorMargin?: number, 
 /**
@@ -842,9 +855,50 @@ converged: boolean,
  */
 residualM: number, 
 /**
+ * Milliseconds per stage, and their total.
+ */
+timingsMs: Timings, };
+
+/**
+ * Diagnostics of the preset `paper`.
+ */
+export type PaperDiagnostics = { 
+/**
  * Sizes of the problem and events during the run.
  */
 counts: Counts, 
+/**
+ * The method that ran.
+ */
+preset: Preset, 
+/**
+ * The seed it ran with.
+ */
+seed: number, 
+/**
+ * s_init: the ratio of the bounding boxes' diagonals, observation to mesh (§3.1).
+ */
+initialScale: number, 
+/**
+ * The scale divided by the initial scale.
+ */
+scaleRatio: number, 
+/**
+ * Whether the scale collapsed: `scaleRatio` is below 0.3.
+ */
+collapsed: boolean, 
+/**
+ * Whether the scale was held at a bound.
+ */
+clamped: boolean, 
+/**
+ * Whether the refinement converged.
+ */
+converged: boolean, 
+/**
+ * Root mean square residual of the refinement, in metres.
+ */
+residualM: number, 
 /**
  * Milliseconds per stage, and their total.
  */
@@ -854,6 +908,10 @@ timingsMs: Timings, };
  * Diagnostics of the preset `precise`.
  */
 export type PreciseDiagnostics = { 
+/**
+ * Sizes of the problem and of the search.
+ */
+counts: SearchCounts, 
 /**
  * The effort of the search that found the pose; it follows from `quality`.
  */
@@ -903,10 +961,6 @@ converged: boolean,
  * Root mean square residual of the refinement, in metres.
  */
 residualM: number, 
-/**
- * Sizes of the problem and events during the run.
- */
-counts: Counts, 
 /**
  * Milliseconds per stage, and their total.
  */
@@ -984,7 +1038,7 @@ warnings: Array<Warning>,
 /**
  * Everything else: initial scale, counts, timings.
  */
-diagnostics: Diagnostics, 
+diagnostics: PaperDiagnostics, 
 /**
  * s, target units per source unit; for `align`, metres per mesh unit.
  */

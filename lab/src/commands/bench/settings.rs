@@ -2,7 +2,7 @@
 
 use sim3align::align::method;
 use sim3align::options::{Choice, Options};
-use sim3align::precise::SearchSettings;
+use sim3align::precise::searched::recipe::SearchSettings;
 use sim3align::report::{Effort, Preset};
 use sim3align_lab::baselines::Baseline;
 use sim3align_lab::bench::benchmark::override_setting;
