@@ -24,7 +24,7 @@ impl Arguments {
     /// Whether an option without value is given.
     pub fn flag(&mut self, name: &str) -> bool {
         let before = self.0.len();
-        self.0.retain(|argument| !argument.to_str().is_some_and(|word| word.strip_prefix("--") == Some(name)));
+        self.0.retain(|argument| argument.to_str().is_none_or(|word| word.strip_prefix("--") != Some(name)));
         self.0.len() < before
     }
 
