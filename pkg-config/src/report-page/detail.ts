@@ -30,6 +30,10 @@ function loaded(host: ReportHost, folder: string): Promise<ReportDetails> {
   });
 }
 
+/** A part of the panel under its title. */
+const section = (title: string, ...children: Node[]) =>
+  element("section", { "aria-label": title }, element("h3", {}, title), ...children);
+
 /** The panel of details. */
 export class Detail {
   readonly #host: ReportHost;
@@ -76,12 +80,8 @@ export class Detail {
   #picture(folder: string): HTMLElement {
     const image = (name: string, alt: string) =>
       element("img", {
-        src: `cases/${folder}/${name}.png`,
-        alt,
-        width: 440,
-        height: 330,
-        "data-layer": name,
-        decoding: "async",
+        ...{ src: `cases/${folder}/${name}.png`, alt, width: 440, height: 330 },
+        ...{ "data-layer": name, decoding: "async" },
       });
     const stack = element("div", { class: "stack" }, image("ground", "What was seen, around the object"));
     const boxes = layers.map(([name, label]) => {
@@ -129,31 +129,20 @@ export class Detail {
     });
     body.querySelector(".layers")?.after(legend);
     this.#space = SpaceView.of(canvas, space);
-    if (this.#space !== undefined)
-      body.append(element("section", { "aria-label": "3D" }, element("h3", {}, "3D"), canvas));
+    if (this.#space !== undefined) body.append(section("3D", canvas));
     if (alternatives.length > 0) {
       const figures = alternatives.map(({ file, turnDeg, score }) =>
         element(
           "figure",
           {},
           element("img", {
-            src: `cases/${folder}/${file}`,
-            alt: `The mesh turned by ${turnDeg.toFixed(0)} degrees`,
-            width: 160,
-            height: 120,
-            loading: "lazy",
+            ...{ src: `cases/${folder}/${file}`, alt: `The mesh turned by ${turnDeg.toFixed(0)} degrees` },
+            ...{ width: 160, height: 120, loading: "lazy" },
           }),
           element("figcaption", {}, `turned ${turnDeg.toFixed(0)}°, score ${score.toFixed(3)}`),
         ),
       );
-      body.append(
-        element(
-          "section",
-          { "aria-label": "Alternatives" },
-          element("h3", {}, "Alternatives"),
-          element("div", { class: "alternatives" }, ...figures),
-        ),
-      );
+      body.append(section("Alternatives", element("div", { class: "alternatives" }, ...figures)));
     }
     const numbers: [string, string][] = [
       ["Confidence", decimals(row.confidence, 3)],
@@ -167,14 +156,7 @@ export class Detail {
     const rows = [0, 1, 2, 3].map((i) =>
       [0, 1, 2, 3].map((j) => (matrix[4 * j + i] ?? 0).toFixed(6).padStart(11)).join(" "),
     );
-    body.append(
-      element(
-        "section",
-        { "aria-label": "Numbers" },
-        element("h3", {}, "Numbers"),
-        element("dl", {}, ...entries),
-        element("pre", { tabindex: 0, "aria-label": "Camera from mesh, rows" }, rows.join("\n")),
-      ),
-    );
+    const text = element("pre", { tabindex: 0, "aria-label": "Camera from mesh, rows" }, rows.join("\n"));
+    body.append(section("Numbers", element("dl", {}, ...entries), text));
   }
 }
