@@ -4,7 +4,6 @@
 //! `UPDATE=1 cargo test --features types typescript` writes the files after a change.
 
 use std::fmt::Write;
-use std::path::Path;
 
 use serde_json::{Value, json};
 use sim3align::align::evaluate::{EvaluateOptions, Evaluation, EvaluationDiagnostics};
@@ -12,11 +11,9 @@ use sim3align::metrics::Metrics;
 use sim3align::metrics::bop::BopErrors;
 use sim3align::metrics::layout::LayoutErrors;
 use sim3align::metrics::pose_error::PoseErrors;
-use sim3align::metrics::symmetry::Symmetry;
-use sim3align::options::scale::ScaleOption;
 use sim3align::options::{Field, Options};
-use sim3align::paper::options::{GuardMode, PaperOptions};
-use sim3align::precise::options::{AlignOptions, ExtentAxis, Quality, SearchScope};
+use sim3align::paper::options::GuardMode;
+use sim3align::precise::options::{ExtentAxis, SearchScope};
 use sim3align::progress::Stage;
 use sim3align::register::options::Icp;
 use sim3align::register::options::{EstimateSim3Options, RegisterOptions};
@@ -33,7 +30,7 @@ use sim3align::views::options::ViewsOptions;
 use sim3align::views::report::{
     CameraPose, ViewPose, ViewRole, ViewsAlignment, ViewsDiagnostics, WorldFrame, WorldUncertainty,
 };
-use sim3align_geometry::error::ErrorCode;
+use sim3align_lab::prelude::*;
 use ts_rs::{Config, TS};
 
 const HEADER: &str = "// Generated from the Rust declarations by tests/suite/typescript.rs; do not edit.\n\n";
@@ -155,10 +152,46 @@ fn declaration<T: TS>(config: &Config) -> String {
     format!("{}export {}\n", T::docs().unwrap_or_default(), T::decl(config))
 }
 
-fn types() -> String {
-    let config = Config::default();
+/// The options of a call in all their forms.
+struct Call {
+    /// The interface, and the constant with the defaults.
+    interface: String,
+    defaults: String,
+    /// The rows of the table of options, under the name of the call.
+    table: String,
+    summaries: Vec<String>,
+}
+
+/// The options of a call. `property` is the property of the interface that tells the presets apart.
+fn call<T: Options>(name: &str, ts: &str, described: &str, preset: Option<&str>, property: &str) -> Call {
+    let constant = ts.strip_suffix("Options").unwrap_or(ts);
+    let words = constant.char_indices().flat_map(|(i, c)| [(i > 0 && c.is_uppercase()).then_some('_'), Some(c)]);
+    let constant = words.flatten().collect::<String>().to_uppercase();
+    Call {
+        interface: interface::<T>(ts, property),
+        defaults: defaults::<T>(&format!("{constant}_DEFAULTS"), &format!("Defaults of {described}."), ts, preset),
+        table: table::<T>(name),
+        summaries: rows::<T>().iter().map(|row| first_sentence(&row.doc).to_owned()).collect(),
+    }
+}
+
+fn calls() -> [Call; 7] {
     let precise = "  /** The default method: search by rendering. */\n  preset?: \"precise\" | undefined;\n";
     let paper = "  /** The paper's method. */\n  preset: \"paper\";\n";
+    let of_paper = "`align` with `preset: \"paper\"`";
+    [
+        call::<AlignOptions>("align", "AlignOptions", "`align`", Some("precise"), precise),
+        call::<PaperOptions>("paper", "PaperOptions", of_paper, Some("paper"), paper),
+        call::<ViewsOptions>("alignViews", "ViewsOptions", "`alignViews`", None, ""),
+        call::<TrackOptions>("track", "TrackOptions", "`track`", None, ""),
+        call::<EvaluateOptions>("evaluate", "EvaluateOptions", "`evaluate`", None, ""),
+        call::<RegisterOptions>("register", "RegisterOptions", "`register`", None, ""),
+        call::<EstimateSim3Options>("estimateSim3", "EstimateSim3Options", "`estimateSim3`", None, ""),
+    ]
+}
+
+fn types() -> String {
+    let config = Config::default();
     let declarations = [
         declaration::<Preset>(&config),
         declaration::<ColorVerdict>(&config),
@@ -168,13 +201,7 @@ fn types() -> String {
         declaration::<ExtentAxis>(&config),
         declaration::<GuardMode>(&config),
         declaration::<Icp>(&config),
-        interface::<AlignOptions>("AlignOptions", precise),
-        interface::<PaperOptions>("PaperOptions", paper),
-        interface::<ViewsOptions>("ViewsOptions", ""),
-        interface::<TrackOptions>("TrackOptions", ""),
-        interface::<EvaluateOptions>("EvaluateOptions", ""),
-        interface::<RegisterOptions>("RegisterOptions", ""),
-        interface::<EstimateSim3Options>("EstimateSim3Options", ""),
+        calls().map(|call| call.interface).join("\n"),
         declaration::<Stage>(&config),
         "/** Milliseconds per stage, in the order in which the stages first ran, and their total. */\n\
          export type Timings = Partial<Record<Stage, number>> & { total: number };\n"
@@ -252,34 +279,8 @@ fn table<T: Options>(name: &str) -> String {
 fn options() -> String {
     let imports = "import type { OptionRow } from \"../options.js\";\nimport type {\n  AlignOptions,\n  EstimateSim3Options,\n  \
         EvaluateOptions,\n  PaperOptions,\n  RegisterOptions,\n  TrackOptions,\n  ViewsOptions,\n} from \"./types.js\";\n\n";
-    let constants = [
-        defaults::<AlignOptions>("ALIGN_DEFAULTS", "Defaults of `align`.", "AlignOptions", Some("precise")),
-        defaults::<PaperOptions>(
-            "PAPER_DEFAULTS",
-            "Defaults of `align` with `preset: \"paper\"`.",
-            "PaperOptions",
-            Some("paper"),
-        ),
-        defaults::<ViewsOptions>("VIEWS_DEFAULTS", "Defaults of `alignViews`.", "ViewsOptions", None),
-        defaults::<TrackOptions>("TRACK_DEFAULTS", "Defaults of `track`.", "TrackOptions", None),
-        defaults::<EvaluateOptions>("EVALUATE_DEFAULTS", "Defaults of `evaluate`.", "EvaluateOptions", None),
-        defaults::<RegisterOptions>("REGISTER_DEFAULTS", "Defaults of `register`.", "RegisterOptions", None),
-        defaults::<EstimateSim3Options>(
-            "ESTIMATE_SIM3_DEFAULTS",
-            "Defaults of `estimateSim3`.",
-            "EstimateSim3Options",
-            None,
-        ),
-    ];
-    let tables = [
-        table::<AlignOptions>("align"),
-        table::<PaperOptions>("paper"),
-        table::<ViewsOptions>("alignViews"),
-        table::<TrackOptions>("track"),
-        table::<EvaluateOptions>("evaluate"),
-        table::<RegisterOptions>("register"),
-        table::<EstimateSim3Options>("estimateSim3"),
-    ];
+    let (constants, tables): (Vec<String>, Vec<String>) =
+        calls().into_iter().map(|call| (call.defaults, call.table)).unzip();
     format!(
         "{HEADER}{imports}{}\n/** Every option with its kind, range, default and a one-line description. */\n\
          export const OPTIONS = {{\n{}}} as const satisfies Readonly<Record<string, readonly OptionRow[]>>;\n",
@@ -304,19 +305,7 @@ fn generated_files_are_those_of_the_rust_declarations() {
 
 #[test]
 fn every_option_is_described_on_one_line() {
-    fn summaries<T: Options>() -> Vec<String> {
-        rows::<T>().iter().map(|row| first_sentence(&row.doc).to_owned()).collect()
-    }
-    let all = [
-        summaries::<AlignOptions>(),
-        summaries::<PaperOptions>(),
-        summaries::<ViewsOptions>(),
-        summaries::<TrackOptions>(),
-        summaries::<EvaluateOptions>(),
-        summaries::<RegisterOptions>(),
-        summaries::<EstimateSim3Options>(),
-    ];
-    for summary in all.concat() {
+    for summary in calls().into_iter().flat_map(|call| call.summaries) {
         assert!((10..=130).contains(&summary.chars().count()), "{summary}");
     }
 }
