@@ -1,8 +1,15 @@
 //! Meshes that the tests share.
 
+use glam::Vec3;
 use sim3align::error::Result;
+use sim3align::evidence::observation::Observation;
+use sim3align::geometry::image::{DepthMap, Mask};
+use sim3align::geometry::mesh::Mesh;
+use sim3align::geometry::pinhole::Pinhole;
+use sim3align::geometry::rasteriser::Rasteriser;
+use sim3align::geometry::similarity::Similarity;
 
-use crate::prelude::*;
+use crate::support::similarity;
 
 /// A box with outward faces, centred on the origin.
 pub fn cuboid(extent: Vec3) -> Mesh {

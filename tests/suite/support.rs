@@ -3,10 +3,12 @@
 
 use core::cell::{Cell, RefCell};
 
-use nalgebra::{Matrix3, UnitQuaternion, Vector4};
+use glam::Vec3;
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3, Vector4};
+use sim3align::geometry::cloud::{Bounds, Cloud};
+use sim3align::geometry::random::Random;
+use sim3align::geometry::similarity::{Similarity, vec3, vector3};
 use sim3align::report::Sim3;
-
-use crate::prelude::*;
 
 thread_local! {
     /// How often the clock of [`pausing`] was read, and of what it draws whether to pause.
