@@ -1,8 +1,9 @@
 //! The TypeScript package's declarations of options, results and codes, its defaults and its table of options are
 //! generated from the Rust declarations.
 //!
-//! `UPDATE=1 cargo test --features types typescript` writes the files after a change.
+//! `UPDATE=1 cargo test --package sim3align-lab typescript` writes the files after a change.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -38,6 +39,9 @@ use ts_rs::{Config, TS};
 
 const HEADER: &str = "// Generated from the Rust declarations by tests/suite/typescript.rs; do not edit.\n\n";
 
+/// The longest line of the package.
+const LINE_WIDTH: usize = 120;
+
 /// An option, as the tables of both packages have it.
 struct Row {
     name: String,
@@ -53,10 +57,43 @@ struct Row {
     default: Value,
 }
 
-fn rows<T: Options>() -> Vec<Row> {
+/// A call whose options are a table.
+struct Call {
+    /// Its name in the table of options.
+    key: &'static str,
+    /// The name of the constant with its defaults.
+    constant: &'static str,
+    /// The name of its options' type.
+    interface: &'static str,
+    doc: &'static str,
+    /// The preset that its options name.
+    preset: Option<&'static str>,
+    rows: Vec<Row>,
+}
+
+fn call<T: Options>(
+    key: &'static str,
+    constant: &'static str,
+    interface: &'static str,
+    preset: Option<&'static str>,
+) -> Call {
     let mut options = T::default();
     let docs: Vec<String> = T::FIELDS.iter().map(|(_, doc)| text(doc)).collect();
-    options.named_fields().iter().zip(docs).map(|((name, field), doc)| row(name.clone(), doc, field)).collect()
+    let rows =
+        options.named_fields().iter().zip(docs).map(|((name, field), doc)| row(name.clone(), doc, field)).collect();
+    Call { key, constant, interface, doc: T::DOC, preset, rows }
+}
+
+fn calls() -> [Call; 7] {
+    [
+        call::<AlignOptions>("align", "ALIGN_DEFAULTS", "AlignOptions", Some("precise")),
+        call::<PaperOptions>("paper", "PAPER_DEFAULTS", "PaperOptions", Some("paper")),
+        call::<ViewsOptions>("alignViews", "VIEWS_DEFAULTS", "ViewsOptions", None),
+        call::<TrackOptions>("track", "TRACK_DEFAULTS", "TrackOptions", None),
+        call::<EvaluateOptions>("evaluate", "EVALUATE_DEFAULTS", "EvaluateOptions", None),
+        call::<RegisterOptions>("register", "REGISTER_DEFAULTS", "RegisterOptions", None),
+        call::<EstimateSim3Options>("estimateSim3", "ESTIMATE_SIM3_DEFAULTS", "EstimateSim3Options", None),
+    ]
 }
 
 fn row(name: String, doc: String, field: &Field<'_>) -> Row {
@@ -122,109 +159,173 @@ fn first_sentence(doc: &str) -> &str {
     doc.split_once(". ").map_or(doc.trim_end_matches('.'), |(first, _)| first)
 }
 
-fn comment(out: &mut String, indent: &str, text: &str) {
-    let _ = writeln!(out, "{indent}/**");
-    let mut line = String::new();
+/// A doc comment of one paragraph, in lines of the package's length.
+fn comment(indent: &str, text: &str) -> String {
+    let mut lines = vec![String::new()];
     for word in text.split(' ') {
+        let line = lines.last_mut().unwrap();
         if !line.is_empty() && line.chars().count() + word.chars().count() + indent.len() + 4 > 118 {
-            let _ = writeln!(out, "{indent} * {line}");
-            line.clear();
+            lines.push(word.to_owned());
+        } else {
+            *line += if line.is_empty() { "" } else { " " };
+            *line += word;
         }
-        if !line.is_empty() {
-            line.push(' ');
-        }
-        line.push_str(word);
     }
-    let _ = writeln!(out, "{indent} * {line}\n{indent} */");
+    comment_of_lines(indent, &lines)
 }
 
-/// Options as an interface; `preset` is the property that tells the presets apart.
-fn interface<T: Options>(name: &str, preset: &str) -> String {
-    let mut out = String::new();
-    comment(&mut out, "", &text(T::DOC));
-    let _ = writeln!(out, "export interface {name} {{\n{preset}");
-    for Row { name, doc, ts, range, default, .. } in rows::<T>() {
-        let range = if range.is_empty() { range } else { format!(" Takes {range}.") };
-        comment(&mut out, "  ", &format!("{doc}{range} Default `{default}`."));
-        let _ = writeln!(out, "  {name}?: {ts} | undefined;");
+fn comment_of_lines<T: AsRef<str>>(indent: &str, lines: &[T]) -> String {
+    if let [line] = lines {
+        let short = format!("{indent}/** {} */\n", line.as_ref());
+        if short.chars().count() <= LINE_WIDTH + 1 {
+            return short;
+        }
     }
-    out.replace("{\n\n", "{\n") + "}\n"
+    let lines: Vec<String> = lines.iter().map(|line| format!("{indent} * {}", line.as_ref())).collect();
+    let lines: Vec<&str> = lines.iter().map(|line| line.trim_end()).collect();
+    format!("{indent}/**\n{}\n{indent} */\n", lines.join("\n"))
 }
 
-fn declaration<T: TS>(config: &Config) -> String {
-    format!("{}export {}\n", T::docs().unwrap_or_default(), T::decl(config))
+/// The lines of text in a doc comment that `ts_rs` wrote.
+fn comment_lines(comment: &str) -> Vec<&str> {
+    let text = comment.trim().trim_start_matches("/**").trim_end_matches("*/").trim();
+    text.lines().map(|line| line.trim_start_matches([' ', '*'])).collect()
+}
+
+/// A property of a type.
+#[derive(PartialEq)]
+struct Member {
+    name: String,
+    /// Its comment and its declaration.
+    text: String,
+}
+
+/// The declarations of a file. A type names the earlier ones that have some of its members, and does not repeat these.
+#[derive(Default)]
+struct Types {
+    declarations: Vec<String>,
+    objects: Vec<(String, Vec<Member>)>,
+    options: Vec<(String, Vec<Member>)>,
+}
+
+impl Types {
+    /// A result as an object type, everything else as it is.
+    fn add<T: TS>(&mut self) {
+        let config = Config::default();
+        let doc = T::docs().map(|doc| comment_of_lines("", &comment_lines(&doc))).unwrap_or_default();
+        let declaration = T::decl(&config);
+        let Some(body) = declaration.split_once("= { \n").and_then(|(_, body)| body.strip_suffix(", };")) else {
+            return self.declarations.push(format!("{doc}export {declaration}\n"));
+        };
+        let name = T::name(&config);
+        let mut members = members_of(body);
+        let mut code = String::new();
+        for (base, theirs) in self.objects.iter().rev() {
+            if theirs.iter().all(|member| members.contains(member)) {
+                let _ = write!(code, "{base} & ");
+                members.retain(|member| !theirs.contains(member));
+            }
+        }
+        let own: String = members.iter().map(|member| &*member.text).collect();
+        self.declarations.push(format!("{doc}export type {name} = {code}{{\n{own}}};\n"));
+        self.objects.push((name, members_of(body)));
+    }
+
+    /// Options as an interface.
+    fn add_options(&mut self, call: &Call) {
+        let preset = match call.preset {
+            Some("precise") => {
+                "  /** The default method: search by rendering. */\n  preset?: \"precise\" | undefined;\n".to_owned()
+            }
+            Some(other) => format!("  /** The {other}'s method. */\n  preset: \"{other}\";\n"),
+            None => String::new(),
+        };
+        let member = |Row { name, doc, ts, range, default, .. }: &Row| {
+            let range = if range.is_empty() { String::new() } else { format!(" Takes {range}.") };
+            let comment = comment("  ", &format!("{doc}{range} Default `{default}`."));
+            Member { name: name.clone(), text: format!("{comment}  {name}?: {ts} | undefined;\n") }
+        };
+        let all: Vec<Member> = call.rows.iter().map(member).collect();
+        let mut bases = Vec::new();
+        let mut inherited: Vec<&Member> = Vec::new();
+        for (base, theirs) in &self.options {
+            let isnt_inherited = |member: &&Member| !inherited.contains(member);
+            let shared: Vec<&Member> =
+                all.iter().filter(isnt_inherited).filter(|member| theirs.contains(member)).collect();
+            if !shared.is_empty() {
+                let names: Vec<String> = shared.iter().map(|member| format!("\"{}\"", member.name)).collect();
+                bases.push(format!("Pick<{base}, {}>", names.join(" | ")));
+                inherited.extend(shared);
+            }
+        }
+        let own: String = all.iter().filter(|member| !inherited.contains(member)).map(|member| &*member.text).collect();
+        let mut extends = if bases.is_empty() { String::new() } else { format!(" extends {}", bases.join(", ")) };
+        if "export interface  {".len() + call.interface.len() + extends.len() > LINE_WIDTH {
+            extends = format!("\n  extends {}", bases.join(",\n    "));
+        }
+        let doc = comment("", &text(call.doc));
+        self.declarations.push(format!("{doc}export interface {}{extends} {{\n{preset}{own}}}\n", call.interface));
+        self.options.push((call.interface.to_owned(), all));
+    }
+}
+
+/// The members in the braces of a type that `ts_rs` declares.
+fn members_of(body: &str) -> Vec<Member> {
+    let member = |part: &str| {
+        let (doc, code) = part.split_once("*/\n").unwrap();
+        let (name, ts) = code.split_once(':').unwrap();
+        let text = format!("{}  {name}:{ts};\n", comment_of_lines("  ", &comment_lines(doc)));
+        Member { name: name.trim_end_matches('?').to_owned(), text }
+    };
+    body.split(", \n").map(member).collect()
+}
+
+/// Adds declarations in their order.
+macro_rules! add {
+    ($types:ident: $($name:ty),* $(,)?) => {
+        $($types.add::<$name>();)*
+    };
 }
 
 fn types() -> String {
-    let config = Config::default();
-    let precise = "  /** The default method: search by rendering. */\n  preset?: \"precise\" | undefined;\n";
-    let paper = "  /** The paper's method. */\n  preset: \"paper\";\n";
-    let declarations = [
-        declaration::<Preset>(&config),
-        declaration::<ColorVerdict>(&config),
-        declaration::<Quality>(&config),
-        declaration::<Effort>(&config),
-        declaration::<SearchScope>(&config),
-        declaration::<ExtentAxis>(&config),
-        declaration::<GuardMode>(&config),
-        declaration::<Icp>(&config),
-        interface::<AlignOptions>("AlignOptions", precise),
-        interface::<PaperOptions>("PaperOptions", paper),
-        interface::<ViewsOptions>("ViewsOptions", ""),
-        interface::<TrackOptions>("TrackOptions", ""),
-        interface::<EvaluateOptions>("EvaluateOptions", ""),
-        interface::<RegisterOptions>("RegisterOptions", ""),
-        interface::<EstimateSim3Options>("EstimateSim3Options", ""),
-        declaration::<Stage>(&config),
+    let mut types = Types::default();
+    add! { types:
+        Preset, ColorVerdict, Quality, Effort, SearchScope, ExtentAxis, GuardMode, Icp,
+    }
+    for call in calls() {
+        types.add_options(&call);
+    }
+    types.add::<Stage>();
+    types.declarations.push(
         "/** Milliseconds per stage, in the order in which the stages first ran, and their total. */\n\
          export type Timings = Partial<Record<Stage, number>> & { total: number };\n"
             .into(),
-        declaration::<ErrorCode>(&config),
-        declaration::<WarningCode>(&config),
-        declaration::<Warning>(&config),
-        declaration::<Sim3>(&config),
-        declaration::<Metrics>(&config),
-        declaration::<PoseErrors>(&config),
-        declaration::<LayoutErrors>(&config),
-        declaration::<BopErrors>(&config),
-        declaration::<Counts>(&config),
-        declaration::<ScoreTerms>(&config),
-        declaration::<ColorReport>(&config),
-        declaration::<Alternative>(&config),
-        declaration::<Uncertainty>(&config),
-        declaration::<Diagnostics>(&config),
-        declaration::<PreciseDiagnostics>(&config),
-        declaration::<Alignment>(&config),
-        declaration::<PaperAlignment>(&config),
-        declaration::<WorldFrame>(&config),
-        declaration::<ViewRole>(&config),
-        declaration::<WorldUncertainty>(&config),
-        declaration::<CameraPose>(&config),
-        declaration::<ViewPose>(&config),
-        declaration::<ViewsDiagnostics>(&config),
-        declaration::<ViewsAlignment>(&config),
-        declaration::<TrackState>(&config),
-        declaration::<TrackedFrame>(&config),
-        declaration::<CorrectedFrame>(&config),
-        declaration::<EvaluationDiagnostics>(&config),
-        declaration::<Evaluation>(&config),
-        declaration::<Contact>(&config),
-        declaration::<RegistrationDiagnostics>(&config),
-        declaration::<Registration>(&config),
-    ];
+    );
+    add! { types:
+        ErrorCode, WarningCode, Warning, Sim3, Metrics, PoseErrors, LayoutErrors, BopErrors, Counts,
+        ScoreTerms, ColorReport, Alternative, Uncertainty, EvaluationDiagnostics, Diagnostics,
+        PreciseDiagnostics, PaperAlignment, Alignment, WorldFrame, ViewRole, WorldUncertainty, CameraPose,
+        ViewPose, ViewsDiagnostics, ViewsAlignment, TrackState, CorrectedFrame, TrackedFrame, Evaluation,
+        Contact, RegistrationDiagnostics, Registration,
+    }
     let imports = "import type { Direction, ScaleOption, Sim3Like, SymmetryOption } from \"../argument-types.js\";\n\n";
-    HEADER.to_owned() + imports + &declarations.join("\n")
+    HEADER.to_owned() + imports + &types.declarations.join("\n")
 }
 
-fn defaults<T: Options>(name: &str, doc: &str, ts: &str, preset: Option<&str>) -> String {
-    let mut out = format!("/** {doc} */\nexport const {name} = {{\n");
+fn defaults(call: &Call) -> String {
+    let Call { constant, key, interface, preset, rows, .. } = call;
+    let what = preset.map_or(format!("`{key}`"), |preset| match preset {
+        "precise" => "`align`".into(),
+        _ => format!("`align` with `preset: \"{preset}\"`"),
+    });
+    let mut out = format!("/** Defaults of {what}. */\nexport const {constant} = {{\n");
     if let Some(preset) = preset {
         let _ = writeln!(out, "  preset: \"{preset}\",");
     }
-    for Row { name, default, .. } in rows::<T>() {
-        let _ = writeln!(out, "  {name}: {},", spaced(&default));
+    for Row { name, default, .. } in rows {
+        let _ = writeln!(out, "  {name}: {},", spaced(default));
     }
-    let _ = writeln!(out, "}} as const satisfies {ts};");
+    let _ = writeln!(out, "}} as const satisfies {interface};");
     out
 }
 
@@ -233,56 +334,45 @@ fn spaced(value: &Value) -> String {
     value.to_string().replace(',', ", ")
 }
 
-fn table<T: Options>(name: &str) -> String {
-    let mut out = format!("  {name}: [\n");
-    for Row { name, doc, kind, ts, limits, default, .. } in rows::<T>() {
-        let nullable = ts.ends_with("| null");
-        let _ = write!(out, "    {{\n      name: \"{name}\",\n      kind: \"{kind}\",\n");
-        for (limit, value) in limits {
-            let _ = writeln!(out, "      {limit}: {},", spaced(&value));
-        }
-        let _ = writeln!(out, "      isNullable: {nullable},\n      default: {},", spaced(&default));
-        let _ = writeln!(out, "      summary: {},\n    }},", json!(first_sentence(&doc)));
+/// What the table of options says of one.
+fn entry(indent: &str, row: &Row) -> String {
+    let Row { name, doc, kind, ts, limits, default, .. } = row;
+    let mut out = format!("{{\n{indent}  name: \"{name}\",\n{indent}  kind: \"{kind}\",\n");
+    for (limit, value) in limits {
+        let _ = writeln!(out, "{indent}  {limit}: {},", spaced(value));
     }
-    out + "  ],\n"
+    let _ = writeln!(out, "{indent}  isNullable: {},", ts.ends_with("| null"));
+    let _ = writeln!(out, "{indent}  default: {},", spaced(default));
+    let _ = write!(out, "{indent}  summary: {},\n{indent}}}", json!(first_sentence(doc)));
+    out
 }
 
 fn options() -> String {
-    let imports = "import type { OptionRow } from \"../options.js\";\nimport type {\n  AlignOptions,\n  EstimateSim3Options,\n  \
-        EvaluateOptions,\n  PaperOptions,\n  RegisterOptions,\n  TrackOptions,\n  ViewsOptions,\n} from \"./types.js\";\n\n";
-    let constants = [
-        defaults::<AlignOptions>("ALIGN_DEFAULTS", "Defaults of `align`.", "AlignOptions", Some("precise")),
-        defaults::<PaperOptions>(
-            "PAPER_DEFAULTS",
-            "Defaults of `align` with `preset: \"paper\"`.",
-            "PaperOptions",
-            Some("paper"),
-        ),
-        defaults::<ViewsOptions>("VIEWS_DEFAULTS", "Defaults of `alignViews`.", "ViewsOptions", None),
-        defaults::<TrackOptions>("TRACK_DEFAULTS", "Defaults of `track`.", "TrackOptions", None),
-        defaults::<EvaluateOptions>("EVALUATE_DEFAULTS", "Defaults of `evaluate`.", "EvaluateOptions", None),
-        defaults::<RegisterOptions>("REGISTER_DEFAULTS", "Defaults of `register`.", "RegisterOptions", None),
-        defaults::<EstimateSim3Options>(
-            "ESTIMATE_SIM3_DEFAULTS",
-            "Defaults of `estimateSim3`.",
-            "EstimateSim3Options",
-            None,
-        ),
-    ];
-    let tables = [
-        table::<AlignOptions>("align"),
-        table::<PaperOptions>("paper"),
-        table::<ViewsOptions>("alignViews"),
-        table::<TrackOptions>("track"),
-        table::<EvaluateOptions>("evaluate"),
-        table::<RegisterOptions>("register"),
-        table::<EstimateSim3Options>("estimateSim3"),
-    ];
+    let calls = calls();
+    let mut interfaces = calls.each_ref().map(|call| call.interface);
+    interfaces.sort_unstable();
+    let all: Vec<&Row> = calls.iter().flat_map(|call| &call.rows).collect();
+    let is_shared = |row: &Row| all.iter().filter(|other| entry("", other) == entry("", row)).count() > 1;
+    // Options that several calls have in common, by name.
+    let shared: BTreeMap<&str, String> =
+        all.iter().filter(|row| is_shared(row)).map(|row| (&*row.name, entry("", row))).collect();
+    let constants: String =
+        shared.iter().map(|(name, entry)| format!("const {name} = {entry} as const;\n\n")).collect();
+    let table = |call: &Call| {
+        let entries = call.rows.iter().map(|row| match shared.get(&*row.name) {
+            Some(entry_of_all) if *entry_of_all == entry("", row) => format!("    {},\n", row.name),
+            _ => format!("    {},\n", entry("    ", row)),
+        });
+        format!("  {}: [\n{}  ],\n", call.key, entries.collect::<String>())
+    };
     format!(
-        "{HEADER}{imports}{}\n/** Every option with its kind, range, default and a one-line description. */\n\
+        "{HEADER}import type {{ OptionRow }} from \"../options.js\";\n\
+         import type {{\n  {},\n}} from \"./types.js\";\n\n{}\n{constants}\
+         /** Every option with its kind, range, default and a one-line description. */\n\
          export const OPTIONS = {{\n{}}} as const satisfies Readonly<Record<string, readonly OptionRow[]>>;\n",
-        constants.join("\n"),
-        tables.concat()
+        interfaces.join(",\n  "),
+        calls.each_ref().map(defaults).join("\n"),
+        calls.each_ref().map(table).concat(),
     )
 }
 
@@ -302,19 +392,8 @@ fn generated_files_are_those_of_the_rust_declarations() {
 
 #[test]
 fn every_option_is_described_on_one_line() {
-    fn summaries<T: Options>() -> Vec<String> {
-        rows::<T>().iter().map(|row| first_sentence(&row.doc).to_owned()).collect()
-    }
-    let all = [
-        summaries::<AlignOptions>(),
-        summaries::<PaperOptions>(),
-        summaries::<ViewsOptions>(),
-        summaries::<TrackOptions>(),
-        summaries::<EvaluateOptions>(),
-        summaries::<RegisterOptions>(),
-        summaries::<EstimateSim3Options>(),
-    ];
-    for summary in all.concat() {
+    for Row { doc, .. } in calls().iter().flat_map(|call| &call.rows) {
+        let summary = first_sentence(doc);
         assert!((10..=130).contains(&summary.chars().count()), "{summary}");
     }
 }

@@ -115,6 +115,138 @@ export const ESTIMATE_SIM3_DEFAULTS = {
   workBudget: null,
 } as const satisfies EstimateSim3Options;
 
+const edgeSimilarity = {
+  name: "edgeSimilarity",
+  kind: "number",
+  min: 0,
+  max: 1,
+  isNullable: false,
+  default: 0.9,
+  summary: "Smallest accepted ratio between the stretches of a minimal set's three edges, least to most stretched",
+} as const;
+
+const fpfhRadiusVoxels = {
+  name: "fpfhRadiusVoxels",
+  kind: "number",
+  min: 1,
+  max: 20,
+  isNullable: false,
+  default: 5,
+  summary: "Radius of the FPFH descriptors, in voxels",
+} as const;
+
+const icp = {
+  name: "icp",
+  kind: "choice",
+  choices: ["point-to-plane", "point-to-point", "none"],
+  isNullable: false,
+  default: "point-to-plane",
+  summary: "The distance that ICP minimises, or `\"none\"` for no refinement",
+} as const;
+
+const icpIterations = {
+  name: "icpIterations",
+  kind: "integer",
+  min: 1,
+  max: 1000,
+  isNullable: false,
+  default: 60,
+  summary: "Upper bound on the iterations of each of ICP's two passes: on the voxel grid, then on the points",
+} as const;
+
+const inlierDistanceVoxels = {
+  name: "inlierDistanceVoxels",
+  kind: "number",
+  min: 0.1,
+  max: 20,
+  isNullable: false,
+  default: 1.5,
+  summary: "Distance below which a match counts as an inlier, in voxels",
+} as const;
+
+const knownExtentAxis = {
+  name: "knownExtentAxis",
+  kind: "choice",
+  choices: ["longest", "x", "y", "z"],
+  isNullable: false,
+  default: "longest",
+  summary: "The side of the mesh's bounding box that `knownExtentM` measures",
+} as const;
+
+const knownExtentM = {
+  name: "knownExtentM",
+  kind: "number",
+  above: 0,
+  isNullable: true,
+  default: null,
+  summary: "The object's known length along `knownExtentAxis`, in metres",
+} as const;
+
+const maxObservedPoints = {
+  name: "maxObservedPoints",
+  kind: "integer",
+  min: 32,
+  max: 1000000,
+  isNullable: false,
+  default: 20000,
+  summary: "Upper bound on the depth readings used",
+} as const;
+
+const metrics = {
+  name: "metrics",
+  kind: "boolean",
+  isNullable: false,
+  default: true,
+  summary: "Whether to compute `metrics`",
+} as const;
+
+const ransacConfidence = {
+  name: "ransacConfidence",
+  kind: "number",
+  min: 0,
+  max: 0.999999,
+  isNullable: false,
+  default: 0.999,
+  summary: "RANSAC stops once it has found the best consensus with this probability",
+} as const;
+
+const ransacIterations = {
+  name: "ransacIterations",
+  kind: "integer",
+  min: 1,
+  max: 10000000,
+  isNullable: false,
+  default: 100000,
+  summary: "Upper bound on the minimal sets that RANSAC draws",
+} as const;
+
+const scale = {
+  name: "scale",
+  kind: "scale",
+  isNullable: false,
+  default: "free",
+  summary: "The scale in metres per mesh unit: `\"free\"`, a known number (1 for a mesh in metres), or bounds `[min, max]`",
+} as const;
+
+const seed = {
+  name: "seed",
+  kind: "integer",
+  min: 0,
+  max: 4294967295,
+  isNullable: false,
+  default: 0,
+  summary: "Seed of all random draws",
+} as const;
+
+const workBudget = {
+  name: "workBudget",
+  kind: "number",
+  above: 0,
+  isNullable: true,
+  default: null,
+  summary: "An upper bound on the work, in units of about a millisecond on a 2020 laptop",
+} as const;
+
 /** Every option with its kind, range, default and a one-line description. */
 export const OPTIONS = {
   align: [
@@ -126,29 +258,9 @@ export const OPTIONS = {
       default: "auto",
       summary: "How much work the search does",
     },
-    {
-      name: "scale",
-      kind: "scale",
-      isNullable: false,
-      default: "free",
-      summary: "The scale in metres per mesh unit: `\"free\"`, a known number (1 for a mesh in metres), or bounds `[min, max]`",
-    },
-    {
-      name: "knownExtentM",
-      kind: "number",
-      above: 0,
-      isNullable: true,
-      default: null,
-      summary: "The object's known length along `knownExtentAxis`, in metres",
-    },
-    {
-      name: "knownExtentAxis",
-      kind: "choice",
-      choices: ["longest", "x", "y", "z"],
-      isNullable: false,
-      default: "longest",
-      summary: "The side of the mesh's bounding box that `knownExtentM` measures",
-    },
+    scale,
+    knownExtentM,
+    knownExtentAxis,
     {
       name: "cameraUp",
       kind: "direction",
@@ -193,22 +305,8 @@ export const OPTIONS = {
       default: null,
       summary: "An upper bound on the work of the search, in units of about a millisecond on a 2020 laptop",
     },
-    {
-      name: "metrics",
-      kind: "boolean",
-      isNullable: false,
-      default: true,
-      summary: "Whether to compute `metrics`",
-    },
-    {
-      name: "seed",
-      kind: "integer",
-      min: 0,
-      max: 4294967295,
-      isNullable: false,
-      default: 0,
-      summary: "Seed of all random draws",
-    },
+    metrics,
+    seed,
     {
       name: "maxObservedPoints",
       kind: "integer",
@@ -229,24 +327,8 @@ export const OPTIONS = {
     },
   ],
   paper: [
-    {
-      name: "seed",
-      kind: "integer",
-      min: 0,
-      max: 4294967295,
-      isNullable: false,
-      default: 0,
-      summary: "Seed of all random draws",
-    },
-    {
-      name: "maxObservedPoints",
-      kind: "integer",
-      min: 32,
-      max: 1000000,
-      isNullable: false,
-      default: 20000,
-      summary: "Upper bound on the depth readings used",
-    },
+    seed,
+    maxObservedPoints,
     {
       name: "surfaceSamples",
       kind: "integer",
@@ -256,13 +338,7 @@ export const OPTIONS = {
       default: 20000,
       summary: "Number of points sampled on the mesh surface",
     },
-    {
-      name: "metrics",
-      kind: "boolean",
-      isNullable: false,
-      default: true,
-      summary: "Whether to compute `metrics`",
-    },
+    metrics,
     {
       name: "voxelDivisions",
       kind: "number",
@@ -272,15 +348,7 @@ export const OPTIONS = {
       default: 30,
       summary: "Voxels along the diagonal of the observation's bounding box (the paper compares 20, 30 and 50)",
     },
-    {
-      name: "fpfhRadiusVoxels",
-      kind: "number",
-      min: 1,
-      max: 20,
-      isNullable: false,
-      default: 5,
-      summary: "Radius of the FPFH descriptors, in voxels",
-    },
+    fpfhRadiusVoxels,
     {
       name: "guard",
       kind: "guard",
@@ -296,42 +364,10 @@ export const OPTIONS = {
       default: "reject",
       summary: "What RANSAC does with a hypothesis whose scale is outside the guard",
     },
-    {
-      name: "ransacIterations",
-      kind: "integer",
-      min: 1,
-      max: 10000000,
-      isNullable: false,
-      default: 100000,
-      summary: "Upper bound on the minimal sets that RANSAC draws",
-    },
-    {
-      name: "ransacConfidence",
-      kind: "number",
-      min: 0,
-      max: 0.999999,
-      isNullable: false,
-      default: 0.999,
-      summary: "RANSAC stops once it has found the best consensus with this probability",
-    },
-    {
-      name: "inlierDistanceVoxels",
-      kind: "number",
-      min: 0.1,
-      max: 20,
-      isNullable: false,
-      default: 1.5,
-      summary: "Distance below which a match counts as an inlier, in voxels",
-    },
-    {
-      name: "edgeSimilarity",
-      kind: "number",
-      min: 0,
-      max: 1,
-      isNullable: false,
-      default: 0.9,
-      summary: "Smallest accepted ratio between the stretches of a minimal set's three edges, least to most stretched",
-    },
+    ransacIterations,
+    ransacConfidence,
+    inlierDistanceVoxels,
+    edgeSimilarity,
     {
       name: "hallucinationFilter",
       kind: "boolean",
@@ -357,14 +393,7 @@ export const OPTIONS = {
       default: 60,
       summary: "Largest angle between the two normals that counts as support, in degrees",
     },
-    {
-      name: "icp",
-      kind: "choice",
-      choices: ["point-to-plane", "point-to-point", "none"],
-      isNullable: false,
-      default: "point-to-plane",
-      summary: "The distance that ICP minimises, or `\"none\"` for no refinement",
-    },
+    icp,
     {
       name: "lockScale",
       kind: "boolean",
@@ -372,15 +401,7 @@ export const OPTIONS = {
       default: true,
       summary: "Whether ICP leaves the scale as RANSAC found it (§3.3)",
     },
-    {
-      name: "icpIterations",
-      kind: "integer",
-      min: 1,
-      max: 1000,
-      isNullable: false,
-      default: 60,
-      summary: "Upper bound on the iterations of each of ICP's two passes: on the voxel grid, then on the points",
-    },
+    icpIterations,
   ],
   alignViews: [
     {
@@ -391,29 +412,9 @@ export const OPTIONS = {
       default: "auto",
       summary: "How much work the searches do",
     },
-    {
-      name: "scale",
-      kind: "scale",
-      isNullable: false,
-      default: "free",
-      summary: "The scale in metres per mesh unit: `\"free\"`, a known number (1 for a mesh in metres), or bounds `[min, max]`",
-    },
-    {
-      name: "knownExtentM",
-      kind: "number",
-      above: 0,
-      isNullable: true,
-      default: null,
-      summary: "The object's known length along `knownExtentAxis`, in metres",
-    },
-    {
-      name: "knownExtentAxis",
-      kind: "choice",
-      choices: ["longest", "x", "y", "z"],
-      isNullable: false,
-      default: "longest",
-      summary: "The side of the mesh's bounding box that `knownExtentM` measures",
-    },
+    scale,
+    knownExtentM,
+    knownExtentAxis,
     {
       name: "symmetry",
       kind: "symmetry",
@@ -428,15 +429,7 @@ export const OPTIONS = {
       default: true,
       summary: "Whether to compute the `metrics` of each view",
     },
-    {
-      name: "seed",
-      kind: "integer",
-      min: 0,
-      max: 4294967295,
-      isNullable: false,
-      default: 0,
-      summary: "Seed of all random draws",
-    },
+    seed,
     {
       name: "maxObservedPoints",
       kind: "integer",
@@ -465,29 +458,9 @@ export const OPTIONS = {
       default: "auto",
       summary: "How much work the search in the first frame does, and the one that finds a lost object again",
     },
-    {
-      name: "scale",
-      kind: "scale",
-      isNullable: false,
-      default: "free",
-      summary: "The scale in metres per mesh unit: `\"free\"`, a known number (1 for a mesh in metres), or bounds `[min, max]`",
-    },
-    {
-      name: "knownExtentM",
-      kind: "number",
-      above: 0,
-      isNullable: true,
-      default: null,
-      summary: "The object's known length along `knownExtentAxis`, in metres",
-    },
-    {
-      name: "knownExtentAxis",
-      kind: "choice",
-      choices: ["longest", "x", "y", "z"],
-      isNullable: false,
-      default: "longest",
-      summary: "The side of the mesh's bounding box that `knownExtentM` measures",
-    },
+    scale,
+    knownExtentM,
+    knownExtentAxis,
     {
       name: "initial",
       kind: "transform",
@@ -502,15 +475,7 @@ export const OPTIONS = {
       default: false,
       summary: "Whether to compute `metrics` of each frame that has a mask, which takes several times as long as tracking",
     },
-    {
-      name: "seed",
-      kind: "integer",
-      min: 0,
-      max: 4294967295,
-      isNullable: false,
-      default: 0,
-      summary: "Seed of all random draws",
-    },
+    seed,
   ],
   evaluate: [
     {
@@ -534,24 +499,8 @@ export const OPTIONS = {
       default: true,
       summary: "Whether to compute `layout` if `truth` is given",
     },
-    {
-      name: "seed",
-      kind: "integer",
-      min: 0,
-      max: 4294967295,
-      isNullable: false,
-      default: 0,
-      summary: "Seed of all random draws",
-    },
-    {
-      name: "maxObservedPoints",
-      kind: "integer",
-      min: 32,
-      max: 1000000,
-      isNullable: false,
-      default: 20000,
-      summary: "Upper bound on the depth readings used",
-    },
+    seed,
+    maxObservedPoints,
     {
       name: "surfaceSamples",
       kind: "integer",
@@ -570,15 +519,7 @@ export const OPTIONS = {
       default: "free",
       summary: "The scale in target units per source unit: `\"free\"`, a known number (1 for rigid registration), or bounds `[min, max]`",
     },
-    {
-      name: "seed",
-      kind: "integer",
-      min: 0,
-      max: 4294967295,
-      isNullable: false,
-      default: 0,
-      summary: "Seed of all random draws",
-    },
+    seed,
     {
       name: "maxPoints",
       kind: "integer",
@@ -605,76 +546,14 @@ export const OPTIONS = {
       default: null,
       summary: "Voxels along the diagonal of the target's bounding box",
     },
-    {
-      name: "fpfhRadiusVoxels",
-      kind: "number",
-      min: 1,
-      max: 20,
-      isNullable: false,
-      default: 5,
-      summary: "Radius of the FPFH descriptors, in voxels",
-    },
-    {
-      name: "ransacIterations",
-      kind: "integer",
-      min: 1,
-      max: 10000000,
-      isNullable: false,
-      default: 100000,
-      summary: "Upper bound on the minimal sets that RANSAC draws",
-    },
-    {
-      name: "ransacConfidence",
-      kind: "number",
-      min: 0,
-      max: 0.999999,
-      isNullable: false,
-      default: 0.999,
-      summary: "RANSAC stops once it has found the best consensus with this probability",
-    },
-    {
-      name: "inlierDistanceVoxels",
-      kind: "number",
-      min: 0.1,
-      max: 20,
-      isNullable: false,
-      default: 1.5,
-      summary: "Distance below which a match counts as an inlier, in voxels",
-    },
-    {
-      name: "edgeSimilarity",
-      kind: "number",
-      min: 0,
-      max: 1,
-      isNullable: false,
-      default: 0.9,
-      summary: "Smallest accepted ratio between the stretches of a minimal set's three edges, least to most stretched",
-    },
-    {
-      name: "icp",
-      kind: "choice",
-      choices: ["point-to-plane", "point-to-point", "none"],
-      isNullable: false,
-      default: "point-to-plane",
-      summary: "The distance that ICP minimises, or `\"none\"` for no refinement",
-    },
-    {
-      name: "icpIterations",
-      kind: "integer",
-      min: 1,
-      max: 1000,
-      isNullable: false,
-      default: 60,
-      summary: "Upper bound on the iterations of each of ICP's two passes: on the voxel grid, then on the points",
-    },
-    {
-      name: "workBudget",
-      kind: "number",
-      above: 0,
-      isNullable: true,
-      default: null,
-      summary: "An upper bound on the work, in units of about a millisecond on a 2020 laptop",
-    },
+    fpfhRadiusVoxels,
+    ransacIterations,
+    ransacConfidence,
+    inlierDistanceVoxels,
+    edgeSimilarity,
+    icp,
+    icpIterations,
+    workBudget,
   ],
   estimateSim3: [
     {
@@ -684,15 +563,7 @@ export const OPTIONS = {
       default: "free",
       summary: "The scale in target units per source unit: `\"free\"`, a known number (1 for a rigid transform), or bounds `[min, max]`",
     },
-    {
-      name: "seed",
-      kind: "integer",
-      min: 0,
-      max: 4294967295,
-      isNullable: false,
-      default: 0,
-      summary: "Seed of all random draws",
-    },
+    seed,
     {
       name: "inlierDistance",
       kind: "number",
@@ -701,40 +572,9 @@ export const OPTIONS = {
       default: null,
       summary: "Distance below which a correspondence counts as an inlier, in target units",
     },
-    {
-      name: "ransacIterations",
-      kind: "integer",
-      min: 1,
-      max: 10000000,
-      isNullable: false,
-      default: 100000,
-      summary: "Upper bound on the minimal sets that RANSAC draws",
-    },
-    {
-      name: "ransacConfidence",
-      kind: "number",
-      min: 0,
-      max: 0.999999,
-      isNullable: false,
-      default: 0.999,
-      summary: "RANSAC stops once it has found the best consensus with this probability",
-    },
-    {
-      name: "edgeSimilarity",
-      kind: "number",
-      min: 0,
-      max: 1,
-      isNullable: false,
-      default: 0.9,
-      summary: "Smallest accepted ratio between the stretches of a minimal set's three edges, least to most stretched",
-    },
-    {
-      name: "workBudget",
-      kind: "number",
-      above: 0,
-      isNullable: true,
-      default: null,
-      summary: "An upper bound on the work, in units of about a millisecond on a 2020 laptop",
-    },
+    ransacIterations,
+    ransacConfidence,
+    edgeSimilarity,
+    workBudget,
   ],
 } as const satisfies Readonly<Record<string, readonly OptionRow[]>>;
