@@ -1,11 +1,13 @@
 /** Datasets in the layout of BOP on disk (Node only): models, scenes and targets of a split. */
+
 import { readdir } from "node:fs/promises";
 import { basename, join, resolve } from "node:path";
 import { type BopScene, bopId, bopModels, bopName, openBopScene } from "./bop-folder.js";
 import { fileNotFound } from "./case-files.js";
 import { read } from "./case-folder.js";
+import { failure } from "./error.js";
 import { isNumber, numbersIn, parsedJson, shown } from "./formats/json.js";
-import { failure, isRecord } from "./values.js";
+import { isRecord } from "./values.js";
 
 /** The file of targets that a split has by default. */
 const TARGETS = "test_targets_bop19.json";

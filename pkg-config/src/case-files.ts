@@ -1,6 +1,6 @@
 /** A case: the files of one observation, one mesh and, if known, the true pose. */
 import { type KnownPose, parsePoseFile } from "./conventions/pose-file.js";
-import { Sim3AlignError } from "./error.js";
+import { failure, Sim3AlignError } from "./error.js";
 import { numbersIn, parsedJson, shown } from "./formats/json.js";
 import type { LoadFormats } from "./formats-module.js";
 import { requiredBytes } from "./input/bytes.js";
@@ -87,13 +87,9 @@ function cameraPose(bytes: Uint8Array): number[] {
   const json = parsedJson("pose", bytes);
   const rows = isRecord(json) ? numbersIn(json.camera_to_world, 16) : null;
   if (rows !== null) return Array.from(rows, (_, i) => rows[4 * (i % 4) + Math.floor(i / 4)] as number);
-  throw new Sim3AlignError({
-    code: "CORRUPT_FILE",
-    argument: "pose",
-    found: isRecord(json) ? shown(json.camera_to_world) : shown(json),
-    expected: '{ "camera_to_world": 4 × 4 numbers, row by row }',
-    remedy: "The matrix maps points of the camera (x right, y down, z forward) to the world, in metres.",
-  });
+  const expected = '{ "camera_to_world": 4 × 4 numbers, row by row }';
+  const remedy = "The matrix maps points of the camera (x right, y down, z forward) to the world, in metres.";
+  throw failure("CORRUPT_FILE", "pose", isRecord(json) ? shown(json.camera_to_world) : shown(json), expected, remedy);
 }
 
 const meshFormats: readonly string[] = ["glb", "gltf", "obj", "ply", "stl"] satisfies MeshFormat[];
@@ -191,13 +187,9 @@ function pathBelow(uri: string): string | undefined {
 }
 
 function outside(uri: string): Sim3AlignError {
-  return new Sim3AlignError({
-    code: "CORRUPT_FILE",
-    argument: "mesh",
-    found: `a buffer at ${JSON.stringify(uri)}`,
-    expected: "a path in the folder of the .gltf, or below it",
-    remedy: "Put the buffers next to the .gltf, or convert it to a single .glb.",
-  });
+  const expected = "a path in the folder of the .gltf, or below it";
+  const remedy = "Put the buffers next to the .gltf, or convert it to a single .glb.";
+  return failure("CORRUPT_FILE", "mesh", `a buffer at ${JSON.stringify(uri)}`, expected, remedy);
 }
 
 function decoded(uri: string): string {
@@ -211,5 +203,5 @@ function decoded(uri: string): string {
 /** The error for a missing file of a case. */
 export function fileNotFound(argument: string, found: string, expected: string, cause?: unknown): Sim3AlignError {
   const remedy = 'See "sim3align align --help" for the layout of a case folder.';
-  return new Sim3AlignError({ code: "FILE_NOT_FOUND", argument, found, expected, remedy }, { cause });
+  return failure("FILE_NOT_FOUND", argument, found, expected, remedy, cause);
 }

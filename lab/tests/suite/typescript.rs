@@ -19,14 +19,12 @@ use sim3align::options::{Field, Options};
 use sim3align::paper::options::{GuardMode, PaperOptions};
 use sim3align::precise::options::{AlignOptions, ExtentAxis, Quality, SearchScope};
 use sim3align::progress::Stage;
-use sim3align::register::options::Icp;
-use sim3align::register::options::{EstimateSim3Options, RegisterOptions};
+use sim3align::register::options::{EstimateSim3Options, Icp, RegisterOptions};
 use sim3align::register::report::{Registration, RegistrationDiagnostics};
 use sim3align::report::{
-    Alignment, Alternative, Counts, Diagnostics, PaperAlignment, PreciseDiagnostics, ScoreTerms, Sim3, Uncertainty,
-    Warning, WarningCode,
+    Alignment, Alternative, ColorReport, ColorVerdict, Counts, Diagnostics, Effort, PaperAlignment, PreciseDiagnostics,
+    Preset, ScoreTerms, Sim3, Uncertainty, Warning, WarningCode,
 };
-use sim3align::report::{ColorReport, ColorVerdict, Effort, Preset};
 use sim3align::scene::contact::Contact;
 use sim3align::track::options::TrackOptions;
 use sim3align::track::report::{CorrectedFrame, TrackState, TrackedFrame};
@@ -61,7 +59,7 @@ struct Row {
 struct Call {
     /// Its name in the table of options.
     key: &'static str,
-    /// The name of the constant with its defaults.
+    /// What the name of the constant with its defaults begins with.
     constant: &'static str,
     /// The name of its options' type.
     interface: &'static str,
@@ -71,12 +69,7 @@ struct Call {
     rows: Vec<Row>,
 }
 
-fn call<T: Options>(
-    key: &'static str,
-    constant: &'static str,
-    interface: &'static str,
-    preset: Option<&'static str>,
-) -> Call {
+fn call<T: Options>([key, constant, interface]: [&'static str; 3], preset: Option<&'static str>) -> Call {
     let mut options = T::default();
     let docs: Vec<String> = T::FIELDS.iter().map(|(_, doc)| text(doc)).collect();
     let rows =
@@ -86,19 +79,23 @@ fn call<T: Options>(
 
 fn calls() -> [Call; 7] {
     [
-        call::<AlignOptions>("align", "ALIGN_DEFAULTS", "AlignOptions", Some("precise")),
-        call::<PaperOptions>("paper", "PAPER_DEFAULTS", "PaperOptions", Some("paper")),
-        call::<ViewsOptions>("alignViews", "VIEWS_DEFAULTS", "ViewsOptions", None),
-        call::<TrackOptions>("track", "TRACK_DEFAULTS", "TrackOptions", None),
-        call::<EvaluateOptions>("evaluate", "EVALUATE_DEFAULTS", "EvaluateOptions", None),
-        call::<RegisterOptions>("register", "REGISTER_DEFAULTS", "RegisterOptions", None),
-        call::<EstimateSim3Options>("estimateSim3", "ESTIMATE_SIM3_DEFAULTS", "EstimateSim3Options", None),
+        call::<AlignOptions>(["align", "ALIGN", "AlignOptions"], Some("precise")),
+        call::<PaperOptions>(["paper", "PAPER", "PaperOptions"], Some("paper")),
+        call::<ViewsOptions>(["alignViews", "VIEWS", "ViewsOptions"], None),
+        call::<TrackOptions>(["track", "TRACK", "TrackOptions"], None),
+        call::<EvaluateOptions>(["evaluate", "EVALUATE", "EvaluateOptions"], None),
+        call::<RegisterOptions>(["register", "REGISTER", "RegisterOptions"], None),
+        call::<EstimateSim3Options>(["estimateSim3", "ESTIMATE_SIM3", "EstimateSim3Options"], None),
     ]
 }
 
 fn row(name: String, doc: String, field: &Field<'_>) -> Row {
     let between = |min: Value, max: Value| vec![("min", min), ("max", max)];
     let or_null = |ts: &str| format!("{ts} | null");
+    let is_numeric = matches!(
+        field,
+        Field::Guard(_) | Field::Count(..) | Field::Number(..) | Field::OptionalNumber(..) | Field::Positive(_)
+    );
     let (kind, ts, limits, default) = match field {
         Field::Count(value, range) => {
             ("integer", "number".into(), between(json!(range.start()), json!(range.end())), json!(value))
@@ -108,11 +105,9 @@ fn row(name: String, doc: String, field: &Field<'_>) -> Row {
         }
         Field::OptionalNumber(value, range) => {
             let limits = between(plain(*range.start()), plain(*range.end()));
-            ("number", or_null("number"), limits, value.map_or(Value::Null, plain))
+            ("number", or_null("number"), limits, json!(value.map(plain)))
         }
-        Field::Positive(value) => {
-            ("number", or_null("number"), vec![("above", json!(0))], value.map_or(Value::Null, plain))
-        }
+        Field::Positive(value) => ("number", or_null("number"), vec![("above", json!(0))], json!(value.map(plain))),
         Field::Flag(value) => ("boolean", "boolean".into(), vec![], json!(value)),
         Field::Scale(value) => {
             assert_eq!(**value, ScaleOption::Free);
@@ -128,19 +123,14 @@ fn row(name: String, doc: String, field: &Field<'_>) -> Row {
             ("transform", or_null("Sim3Like"), vec![], Value::Null)
         }
         Field::Guard(value) => {
-            let default = value.map_or(Value::Null, |bounds| json!(bounds.map(plain)));
-            ("guard", "readonly [min: number, max: number] | null".into(), vec![], default)
+            let bounds = value.map(|bounds| bounds.map(plain));
+            ("guard", or_null("readonly [min: number, max: number]"), vec![], json!(bounds))
         }
         Field::Choice(choice) => {
             ("choice", choice.type_name().into(), vec![("choices", json!(choice.names()))], json!(choice.name()))
         }
     };
-    let range = match field {
-        Field::Count(..) | Field::Number(..) | Field::OptionalNumber(..) | Field::Positive(_) | Field::Guard(_) => {
-            field.expected()
-        }
-        _ => String::new(),
-    };
+    let range = if is_numeric { field.expected() } else { String::new() };
     Row { name, doc, kind, ts, range, limits, default }
 }
 
@@ -159,37 +149,33 @@ fn first_sentence(doc: &str) -> &str {
     doc.split_once(". ").map_or(doc.trim_end_matches('.'), |(first, _)| first)
 }
 
-/// A doc comment of one paragraph, in lines of the package's length.
-fn comment(indent: &str, text: &str) -> String {
-    let mut lines = vec![String::new()];
-    for word in text.split(' ') {
-        let line = lines.last_mut().unwrap();
-        if !line.is_empty() && line.chars().count() + word.chars().count() + indent.len() + 4 > 118 {
-            lines.push(word.to_owned());
-        } else {
-            *line += if line.is_empty() { "" } else { " " };
-            *line += word;
+/// A doc comment, in lines of the package's length.
+fn comment(indent: &str, doc: &str) -> String {
+    let prefix = format!("{indent} * ");
+    let mut lines = Vec::new();
+    for paragraph in doc.split("\n\n") {
+        let mut line = prefix.clone();
+        for word in paragraph.split_whitespace() {
+            if line.len() > prefix.len() && line.chars().count() + word.chars().count() > LINE_WIDTH - 2 {
+                lines.push(std::mem::replace(&mut line, prefix.clone()).trim_end().to_owned());
+            }
+            line += &format!("{word} ");
         }
+        lines.extend([line.trim_end().to_owned(), format!("{indent} *")]);
     }
-    comment_of_lines(indent, &lines)
+    lines.pop();
+    match &lines[..] {
+        [line] if line.chars().count() + "/* */".len() <= LINE_WIDTH => {
+            format!("{indent}/**{} */\n", &line[prefix.len() - 1..])
+        }
+        _ => format!("{indent}/**\n{}\n{indent} */\n", lines.join("\n")),
+    }
 }
 
-fn comment_of_lines<T: AsRef<str>>(indent: &str, lines: &[T]) -> String {
-    if let [line] = lines {
-        let short = format!("{indent}/** {} */\n", line.as_ref());
-        if short.chars().count() <= LINE_WIDTH + 1 {
-            return short;
-        }
-    }
-    let lines: Vec<String> = lines.iter().map(|line| format!("{indent} * {}", line.as_ref())).collect();
-    let lines: Vec<&str> = lines.iter().map(|line| line.trim_end()).collect();
-    format!("{indent}/**\n{}\n{indent} */\n", lines.join("\n"))
-}
-
-/// The lines of text in a doc comment that `ts_rs` wrote.
-fn comment_lines(comment: &str) -> Vec<&str> {
-    let text = comment.trim().trim_start_matches("/**").trim_end_matches("*/").trim();
-    text.lines().map(|line| line.trim_start_matches([' ', '*'])).collect()
+/// The text of a doc comment that `ts_rs` wrote.
+fn uncommented(comment: &str) -> String {
+    let lines = comment.trim().trim_start_matches("/**").trim_end_matches("*/").trim().lines();
+    lines.map(|line| line.trim_start_matches([' ', '*'])).collect::<Vec<_>>().join("\n")
 }
 
 /// A property of a type.
@@ -212,7 +198,7 @@ impl Types {
     /// A result as an object type, everything else as it is.
     fn add<T: TS>(&mut self) {
         let config = Config::default();
-        let doc = T::docs().map(|doc| comment_of_lines("", &comment_lines(&doc))).unwrap_or_default();
+        let doc = T::docs().map(|doc| comment("", &uncommented(&doc))).unwrap_or_default();
         let declaration = T::decl(&config);
         let Some(body) = declaration.split_once("= { \n").and_then(|(_, body)| body.strip_suffix(", };")) else {
             return self.declarations.push(format!("{doc}export {declaration}\n"));
@@ -235,10 +221,10 @@ impl Types {
     fn add_options(&mut self, call: &Call) {
         let preset = match call.preset {
             Some("precise") => {
-                "  /** The default method: search by rendering. */\n  preset?: \"precise\" | undefined;\n".to_owned()
+                "  /** The default method: search by rendering. */\n  preset?: \"precise\" | undefined;\n"
             }
-            Some(other) => format!("  /** The {other}'s method. */\n  preset: \"{other}\";\n"),
-            None => String::new(),
+            Some(_) => "  /** The paper's method. */\n  preset: \"paper\";\n",
+            None => "",
         };
         let member = |Row { name, doc, ts, range, default, .. }: &Row| {
             let range = if range.is_empty() { String::new() } else { format!(" Takes {range}.") };
@@ -249,13 +235,12 @@ impl Types {
         let mut bases = Vec::new();
         let mut inherited: Vec<&Member> = Vec::new();
         for (base, theirs) in &self.options {
-            let isnt_inherited = |member: &&Member| !inherited.contains(member);
-            let shared: Vec<&Member> =
-                all.iter().filter(isnt_inherited).filter(|member| theirs.contains(member)).collect();
-            if !shared.is_empty() {
-                let names: Vec<String> = shared.iter().map(|member| format!("\"{}\"", member.name)).collect();
+            let shared = |member: &&Member| theirs.contains(member) && !inherited.contains(member);
+            let taken: Vec<&Member> = all.iter().filter(shared).collect();
+            let names: Vec<String> = taken.iter().map(|member| format!("\"{}\"", member.name)).collect();
+            inherited.extend(taken);
+            if !names.is_empty() {
                 bases.push(format!("Pick<{base}, {}>", names.join(" | ")));
-                inherited.extend(shared);
             }
         }
         let own: String = all.iter().filter(|member| !inherited.contains(member)).map(|member| &*member.text).collect();
@@ -263,7 +248,7 @@ impl Types {
         if "export interface  {".len() + call.interface.len() + extends.len() > LINE_WIDTH {
             extends = format!("\n  extends {}", bases.join(",\n    "));
         }
-        let doc = comment("", &text(call.doc));
+        let doc = comment("", call.doc);
         self.declarations.push(format!("{doc}export interface {}{extends} {{\n{preset}{own}}}\n", call.interface));
         self.options.push((call.interface.to_owned(), all));
     }
@@ -274,7 +259,7 @@ fn members_of(body: &str) -> Vec<Member> {
     let member = |part: &str| {
         let (doc, code) = part.split_once("*/\n").unwrap();
         let (name, ts) = code.split_once(':').unwrap();
-        let text = format!("{}  {name}:{ts};\n", comment_of_lines("  ", &comment_lines(doc)));
+        let text = format!("{}  {name}:{ts};\n", comment("  ", &uncommented(doc)));
         Member { name: name.trim_end_matches('?').to_owned(), text }
     };
     body.split(", \n").map(member).collect()
@@ -318,7 +303,7 @@ fn defaults(call: &Call) -> String {
         "precise" => "`align`".into(),
         _ => format!("`align` with `preset: \"{preset}\"`"),
     });
-    let mut out = format!("/** Defaults of {what}. */\nexport const {constant} = {{\n");
+    let mut out = format!("/** Defaults of {what}. */\nexport const {constant}_DEFAULTS = {{\n");
     if let Some(preset) = preset {
         let _ = writeln!(out, "  preset: \"{preset}\",");
     }
@@ -334,17 +319,32 @@ fn spaced(value: &Value) -> String {
     value.to_string().replace(',', ", ")
 }
 
-/// What the table of options says of one.
-fn entry(indent: &str, row: &Row) -> String {
+/// What the table of options says of one: a property per item.
+fn properties(row: &Row) -> Vec<String> {
     let Row { name, doc, kind, ts, limits, default, .. } = row;
-    let mut out = format!("{{\n{indent}  name: \"{name}\",\n{indent}  kind: \"{kind}\",\n");
-    for (limit, value) in limits {
-        let _ = writeln!(out, "{indent}  {limit}: {},", spaced(value));
+    let mut all = vec![format!("name: \"{name}\""), format!("kind: \"{kind}\"")];
+    all.extend(limits.iter().map(|(limit, value)| format!("{limit}: {}", spaced(value))));
+    all.push(format!("isNullable: {}", ts.ends_with("| null")));
+    all.extend([format!("default: {}", spaced(default)), format!("summary: {}", json!(first_sentence(doc)))]);
+    all
+}
+
+/// A row of the table of options: itself, or what differs from the row that calls share under its name.
+fn entry(row: &Row, shared: Option<&Vec<String>>) -> String {
+    let mut parts = properties(row);
+    if let Some(shared) = shared {
+        parts.retain(|property| !shared.contains(property));
+        if parts.is_empty() {
+            return row.name.clone();
+        }
+        parts.insert(0, format!("...{}", row.name));
     }
-    let _ = writeln!(out, "{indent}  isNullable: {},", ts.ends_with("| null"));
-    let _ = writeln!(out, "{indent}  default: {},", spaced(default));
-    let _ = write!(out, "{indent}  summary: {},\n{indent}}}", json!(first_sentence(doc)));
-    out
+    let line = format!("{{ {} }}", parts.join(", "));
+    if line.len() + "    ,".len() <= LINE_WIDTH {
+        line
+    } else {
+        format!("{{\n      {},\n    }}", parts.join(",\n      "))
+    }
 }
 
 fn options() -> String {
@@ -352,18 +352,19 @@ fn options() -> String {
     let mut interfaces = calls.each_ref().map(|call| call.interface);
     interfaces.sort_unstable();
     let all: Vec<&Row> = calls.iter().flat_map(|call| &call.rows).collect();
-    let is_shared = |row: &Row| all.iter().filter(|other| entry("", other) == entry("", row)).count() > 1;
-    // Options that several calls have in common, by name.
-    let shared: BTreeMap<&str, String> =
-        all.iter().filter(|row| is_shared(row)).map(|row| (&*row.name, entry("", row))).collect();
-    let constants: String =
-        shared.iter().map(|(name, entry)| format!("const {name} = {entry} as const;\n\n")).collect();
+    // Options that several calls have, each as the first of them has it.
+    let mut shared = BTreeMap::new();
+    for row in &all {
+        if all.iter().filter(|other| other.name == row.name && other.kind == row.kind).count() > 1 {
+            shared.entry(&*row.name).or_insert_with(|| properties(row));
+        }
+    }
+    let constant =
+        |(name, own): (&&str, &Vec<String>)| format!("const {name} = {{\n  {},\n}} as const;\n\n", own.join(",\n  "));
+    let constants: String = shared.iter().map(constant).collect();
     let table = |call: &Call| {
-        let entries = call.rows.iter().map(|row| match shared.get(&*row.name) {
-            Some(entry_of_all) if *entry_of_all == entry("", row) => format!("    {},\n", row.name),
-            _ => format!("    {},\n", entry("    ", row)),
-        });
-        format!("  {}: [\n{}  ],\n", call.key, entries.collect::<String>())
+        let rows = call.rows.iter().map(|row| format!("    {},\n", entry(row, shared.get(&*row.name))));
+        format!("  {}: [\n{}  ],\n", call.key, rows.collect::<String>())
     };
     format!(
         "{HEADER}import type {{ OptionRow }} from \"../options.js\";\n\

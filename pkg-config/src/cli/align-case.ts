@@ -15,7 +15,7 @@ import { withoutUndefined } from "../values.js";
 import { type CaseFlags, caseSettings } from "./case-options.js";
 import type { CaseToDo } from "./cases.js";
 import { givenOptions } from "./option-flags.js";
-import { failure, type Outcome, type Success } from "./outcome.js";
+import { failureOf, type Outcome, type Success } from "./outcome.js";
 import { readTransform } from "./transform-file.js";
 import { UsageError } from "./usage-error.js";
 
@@ -55,7 +55,7 @@ export async function alignCase(
   } catch (error) {
     if (error instanceof UsageError) throw error;
     if (isAboutOptions(error)) throw new UsageError(error.message);
-    return failure(name, error, files);
+    return failureOf(name, error, files);
   }
 }
 

@@ -1,8 +1,17 @@
 /** `sim3align evaluate`: computes the metrics of transforms on cases. */
+
 import { Command } from "commander";
 import { frameNames, readCaseFolder, readFrames } from "../case-folder.js";
 import type { KnownPose } from "../conventions/pose-file.js";
-import { type Aligner, type AlignInput, type Evaluation, OPTIONS, type OptionRow, Sim3AlignError } from "../index.js";
+import { failure } from "../error.js";
+import {
+  type Aligner,
+  type AlignInput,
+  type Evaluation,
+  OPTIONS,
+  type OptionRow,
+  type Sim3AlignError,
+} from "../index.js";
 import { isAboutOptions } from "./align-case.js";
 import type { Done } from "./batch.js";
 import { addBatchFlags, type BatchFlags, batchHelp } from "./batch-flags.js";
@@ -16,7 +25,7 @@ import {
 } from "./case-options.js";
 import { caseKind, type FolderToDo, foldersToDo } from "./folders.js";
 import { addOptionFlags, givenOptions } from "./option-flags.js";
-import { evaluationJson, type Failure, failure, failureText } from "./outcome.js";
+import { evaluationJson, type Failure, failureOf, failureText } from "./outcome.js";
 import { Output } from "./output.js";
 import { EvaluationSummary, evaluationDetails } from "./report.js";
 import { runBatch } from "./run-batch.js";
@@ -110,7 +119,7 @@ async function evaluateCase(
     } catch (error) {
       if (error instanceof UsageError) throw error;
       if (isAboutOptions(error)) throw new UsageError(error.message);
-      return failure(name, error, files);
+      return failureOf(name, error, files);
     }
   };
   try {
@@ -129,16 +138,11 @@ async function evaluateCase(
     return results;
   } catch (error) {
     if (error instanceof UsageError) throw error;
-    return [[undefined, failure(name, error)]];
+    return [[undefined, failureOf(name, error)]];
   }
 }
 
 function noTruth(folder: string): Sim3AlignError {
-  return new Sim3AlignError({
-    code: "FILE_NOT_FOUND",
-    argument: "transform",
-    found: `no true pose in ${folder}`,
-    expected: "gt.json with a pose",
-    remedy: "Pass --transform FILE.",
-  });
+  const remedy = "Pass --transform FILE.";
+  return failure("FILE_NOT_FOUND", "transform", `no true pose in ${folder}`, "gt.json with a pose", remedy);
 }

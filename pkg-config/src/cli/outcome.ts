@@ -1,5 +1,5 @@
 /** Outcomes of cases, for tables and for JSON. */
-import { describe, Sim3AlignError } from "../error.js";
+import { describe, failure, Sim3AlignError } from "../error.js";
 import type { AlignResult, Evaluation, PoseErrors, Sim3, TrackedFrame, ViewsAlignment } from "../index.js";
 
 /** An aligned case. */
@@ -33,20 +33,13 @@ export type Outcome = Success | ViewsSuccess | Failure;
 /** Converts any exception to a `Sim3AlignError`. */
 export function asSim3AlignError(error: unknown): Sim3AlignError {
   if (error instanceof Sim3AlignError) return error;
-  return new Sim3AlignError(
-    {
-      code: "INTERNAL",
-      argument: "sim3align",
-      found: error instanceof Error ? (error.stack ?? error.message) : describe(error),
-      expected: "a result or a Sim3AlignError",
-      remedy: "This is a bug in sim3align. Please report it with the input.",
-    },
-    { cause: error },
-  );
+  const found = error instanceof Error ? (error.stack ?? error.message) : describe(error);
+  const remedy = "This is a bug in sim3align. Please report it with the input.";
+  return failure("INTERNAL", "sim3align", found, "a result or a Sim3AlignError", remedy, error);
 }
 
 /** The failure of a case. `files` maps arguments to the known files. */
-export function failure(name: string, thrown: unknown, files: Readonly<Record<string, string>> = {}): Failure {
+export function failureOf(name: string, thrown: unknown, files: Readonly<Record<string, string>> = {}): Failure {
   const error = asSim3AlignError(thrown);
   return { name, error, file: files[error.argument.split(".")[0] ?? ""] };
 }

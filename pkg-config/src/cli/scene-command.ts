@@ -21,7 +21,7 @@ import { addCaseOptions, type CaseFlags, caseSettings, conventionsHelp, statusHe
 import { type FolderToDo, foldersToDo, sceneKind } from "./folders.js";
 import { fixed } from "./number.js";
 import { addOptionFlags, givenOptions } from "./option-flags.js";
-import { type Failure, failure, failureText, type Outcome, outcomeJson } from "./outcome.js";
+import { type Failure, failureOf, failureText, type Outcome, outcomeJson } from "./outcome.js";
 import { Output } from "./output.js";
 import { drawEntry } from "./picture-inputs.js";
 import { addPictureFlags, type PictureFlags } from "./pictures.js";
@@ -148,7 +148,7 @@ async function alignScene(
   } catch (error) {
     if (error instanceof UsageError) throw error;
     if (isAboutOptions(error)) throw new UsageError(error.message);
-    const failed = failure(key.name, error);
+    const failed = failureOf(key.name, error);
     return done(outcomeJson(failed), [style.red("failed ") + failureText(failed)]);
   }
 }

@@ -17,7 +17,7 @@ import {
 import { type FolderToDo, foldersToDo, videoKind } from "./folders.js";
 import { fixed, significant } from "./number.js";
 import { addOptionFlags, givenOptions } from "./option-flags.js";
-import { failure, failureText, outcomeJson, trackJson } from "./outcome.js";
+import { failureOf, failureText, outcomeJson, trackJson } from "./outcome.js";
 import { Output } from "./output.js";
 import { type Live, runBatch } from "./run-batch.js";
 import type { Style } from "./style.js";
@@ -106,7 +106,7 @@ async function trackVideo(
         const { state, confidence, scale, scaleSd } = tracked;
         row.push(state, fixed(confidence, 2), significant(scale, 5), fixed(100 * scaleSd, 2));
       } catch (error) {
-        const failed = failure(frame, error, frameFiles);
+        const failed = failureOf(frame, error, frameFiles);
         frames.push({ name: frame, tracked: failed });
         row.push(failed.error.code, "–", "–", "–");
       }
@@ -119,7 +119,7 @@ async function trackVideo(
   } catch (error) {
     if (error instanceof UsageError) throw error;
     if (isAboutOptions(error)) throw new UsageError(error.message);
-    const failed = failure(name, error, files);
+    const failed = failureOf(name, error, files);
     print(style.red("failed ") + failureText(failed));
     return { key, entry: outcomeJson(failed), rows, remarks: [] };
   } finally {

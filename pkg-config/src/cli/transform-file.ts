@@ -1,7 +1,7 @@
 /** Transforms from JSON files. */
 import { read } from "../case-folder.js";
 import { parsePoseFile } from "../conventions/pose-file.js";
-import { Sim3AlignError } from "../error.js";
+import { failure, type Sim3AlignError } from "../error.js";
 import { isRecord } from "../values.js";
 
 /** The layout of a transform file, for --help. */
@@ -53,16 +53,8 @@ function parse(text: string, argument: string, path: string): unknown {
       }),
     );
   } catch (cause) {
-    throw new Sim3AlignError(
-      {
-        code: "CORRUPT_FILE",
-        argument,
-        found: `${path}: ${(cause as Error).message}`,
-        expected: "JSON",
-        remedy: 'See "sim3align evaluate --help" for the layout of a transform file.',
-      },
-      { cause },
-    );
+    const remedy = 'See "sim3align evaluate --help" for the layout of a transform file.';
+    throw failure("CORRUPT_FILE", argument, `${path}: ${(cause as Error).message}`, "JSON", remedy, cause);
   }
 }
 
@@ -80,11 +72,6 @@ function entryOf(json: unknown, name: string, invalid: (found: string, expected:
 }
 
 function invalidTransform(argument: string, found: string, expected: string): Sim3AlignError {
-  return new Sim3AlignError({
-    code: "INVALID_TRANSFORM",
-    argument,
-    found,
-    expected,
-    remedy: 'See "sim3align evaluate --help" for the layout of a transform file.',
-  });
+  const remedy = 'See "sim3align evaluate --help" for the layout of a transform file.';
+  return failure("INVALID_TRANSFORM", argument, found, expected, remedy);
 }

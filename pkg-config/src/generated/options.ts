@@ -154,6 +154,14 @@ const icpIterations = {
   summary: "Upper bound on the iterations of each of ICP's two passes: on the voxel grid, then on the points",
 } as const;
 
+const initial = {
+  name: "initial",
+  kind: "transform",
+  isNullable: true,
+  default: null,
+  summary: "A pose to start from, camera from mesh, in metres: for example an annotator's, or the last frame's",
+} as const;
+
 const inlierDistanceVoxels = {
   name: "inlierDistanceVoxels",
   kind: "number",
@@ -189,7 +197,7 @@ const maxObservedPoints = {
   max: 1000000,
   isNullable: false,
   default: 20000,
-  summary: "Upper bound on the depth readings used",
+  summary: "Upper bound on the depth readings used for metrics and initial scale",
 } as const;
 
 const metrics = {
@@ -198,6 +206,15 @@ const metrics = {
   isNullable: false,
   default: true,
   summary: "Whether to compute `metrics`",
+} as const;
+
+const quality = {
+  name: "quality",
+  kind: "choice",
+  choices: ["auto", "fast", "balanced", "best"],
+  isNullable: false,
+  default: "auto",
+  summary: "How much work the search does",
 } as const;
 
 const ransacConfidence = {
@@ -238,26 +255,47 @@ const seed = {
   summary: "Seed of all random draws",
 } as const;
 
+const surfaceSamples = {
+  name: "surfaceSamples",
+  kind: "integer",
+  min: 100,
+  max: 1000000,
+  isNullable: false,
+  default: 10000,
+  summary: "Number of points sampled on the mesh surface for metrics and initial scale",
+} as const;
+
+const symmetry = {
+  name: "symmetry",
+  kind: "symmetry",
+  isNullable: false,
+  default: "auto",
+  summary: "The object's symmetry: poses that it makes equal are one for `confidence`, `alternatives` and `uncertainty`",
+} as const;
+
+const voxelDivisions = {
+  name: "voxelDivisions",
+  kind: "number",
+  min: 5,
+  max: 200,
+  isNullable: false,
+  default: 30,
+  summary: "Voxels along the diagonal of the observation's bounding box (the paper compares 20, 30 and 50)",
+} as const;
+
 const workBudget = {
   name: "workBudget",
   kind: "number",
   above: 0,
   isNullable: true,
   default: null,
-  summary: "An upper bound on the work, in units of about a millisecond on a 2020 laptop",
+  summary: "An upper bound on the work of the search, in units of about a millisecond on a 2020 laptop",
 } as const;
 
 /** Every option with its kind, range, default and a one-line description. */
 export const OPTIONS = {
   align: [
-    {
-      name: "quality",
-      kind: "choice",
-      choices: ["auto", "fast", "balanced", "best"],
-      isNullable: false,
-      default: "auto",
-      summary: "How much work the search does",
-    },
+    quality,
     scale,
     knownExtentM,
     knownExtentAxis,
@@ -275,20 +313,8 @@ export const OPTIONS = {
       default: null,
       summary: "The up direction in the mesh's frame, of any length: `[0, 1, 0]` for glTF",
     },
-    {
-      name: "symmetry",
-      kind: "symmetry",
-      isNullable: false,
-      default: "auto",
-      summary: "The object's symmetry: poses that it makes equal are one for `confidence`, `alternatives` and `uncertainty`",
-    },
-    {
-      name: "initial",
-      kind: "transform",
-      isNullable: true,
-      default: null,
-      summary: "A pose to start from, camera from mesh, in metres: for example an annotator's, or the last frame's",
-    },
+    symmetry,
+    initial,
     {
       name: "search",
       kind: "choice",
@@ -297,57 +323,18 @@ export const OPTIONS = {
       default: "global",
       summary: "Where to search: everywhere, or around `initial` only",
     },
-    {
-      name: "workBudget",
-      kind: "number",
-      above: 0,
-      isNullable: true,
-      default: null,
-      summary: "An upper bound on the work of the search, in units of about a millisecond on a 2020 laptop",
-    },
+    workBudget,
     metrics,
     seed,
-    {
-      name: "maxObservedPoints",
-      kind: "integer",
-      min: 32,
-      max: 1000000,
-      isNullable: false,
-      default: 20000,
-      summary: "Upper bound on the depth readings used for metrics and initial scale",
-    },
-    {
-      name: "surfaceSamples",
-      kind: "integer",
-      min: 100,
-      max: 1000000,
-      isNullable: false,
-      default: 10000,
-      summary: "Number of points sampled on the mesh surface for metrics and initial scale",
-    },
+    maxObservedPoints,
+    surfaceSamples,
   ],
   paper: [
     seed,
-    maxObservedPoints,
-    {
-      name: "surfaceSamples",
-      kind: "integer",
-      min: 100,
-      max: 1000000,
-      isNullable: false,
-      default: 20000,
-      summary: "Number of points sampled on the mesh surface",
-    },
+    { ...maxObservedPoints, summary: "Upper bound on the depth readings used" },
+    { ...surfaceSamples, default: 20000, summary: "Number of points sampled on the mesh surface" },
     metrics,
-    {
-      name: "voxelDivisions",
-      kind: "number",
-      min: 5,
-      max: 200,
-      isNullable: false,
-      default: 30,
-      summary: "Voxels along the diagonal of the observation's bounding box (the paper compares 20, 30 and 50)",
-    },
+    voxelDivisions,
     fpfhRadiusVoxels,
     {
       name: "guard",
@@ -404,74 +391,30 @@ export const OPTIONS = {
     icpIterations,
   ],
   alignViews: [
-    {
-      name: "quality",
-      kind: "choice",
-      choices: ["auto", "fast", "balanced", "best"],
-      isNullable: false,
-      default: "auto",
-      summary: "How much work the searches do",
-    },
+    { ...quality, summary: "How much work the searches do" },
     scale,
     knownExtentM,
     knownExtentAxis,
     {
-      name: "symmetry",
-      kind: "symmetry",
-      isNullable: false,
-      default: "auto",
+      ...symmetry,
       summary: "The object's symmetry, so that `alternatives` does not list equivalent poses; as in `align`",
     },
-    {
-      name: "metrics",
-      kind: "boolean",
-      isNullable: false,
-      default: true,
-      summary: "Whether to compute the `metrics` of each view",
-    },
+    { ...metrics, summary: "Whether to compute the `metrics` of each view" },
     seed,
-    {
-      name: "maxObservedPoints",
-      kind: "integer",
-      min: 32,
-      max: 1000000,
-      isNullable: false,
-      default: 20000,
-      summary: "Upper bound on the depth readings of each view that are used for metrics",
-    },
-    {
-      name: "surfaceSamples",
-      kind: "integer",
-      min: 100,
-      max: 1000000,
-      isNullable: false,
-      default: 10000,
-      summary: "Number of points sampled on the mesh surface for metrics",
-    },
+    { ...maxObservedPoints, summary: "Upper bound on the depth readings of each view that are used for metrics" },
+    { ...surfaceSamples, summary: "Number of points sampled on the mesh surface for metrics" },
   ],
   track: [
     {
-      name: "quality",
-      kind: "choice",
-      choices: ["auto", "fast", "balanced", "best"],
-      isNullable: false,
-      default: "auto",
+      ...quality,
       summary: "How much work the search in the first frame does, and the one that finds a lost object again",
     },
     scale,
     knownExtentM,
     knownExtentAxis,
+    { ...initial, summary: "The pose in the first frame, camera from mesh, in metres, if it is known" },
     {
-      name: "initial",
-      kind: "transform",
-      isNullable: true,
-      default: null,
-      summary: "The pose in the first frame, camera from mesh, in metres, if it is known",
-    },
-    {
-      name: "metrics",
-      kind: "boolean",
-      isNullable: false,
+      ...metrics,
       default: false,
       summary: "Whether to compute `metrics` of each frame that has a mask, which takes several times as long as tracking",
     },
@@ -485,13 +428,7 @@ export const OPTIONS = {
       default: null,
       summary: "The known transform, camera from mesh, that `errors` compares with",
     },
-    {
-      name: "symmetry",
-      kind: "symmetry",
-      isNullable: false,
-      default: "none",
-      summary: "The object's symmetry: the rotation error is the smallest over it",
-    },
+    { ...symmetry, default: "none", summary: "The object's symmetry: the rotation error is the smallest over it" },
     {
       name: "layout",
       kind: "boolean",
@@ -500,23 +437,12 @@ export const OPTIONS = {
       summary: "Whether to compute `layout` if `truth` is given",
     },
     seed,
-    maxObservedPoints,
-    {
-      name: "surfaceSamples",
-      kind: "integer",
-      min: 100,
-      max: 1000000,
-      isNullable: false,
-      default: 10000,
-      summary: "Number of points sampled on the mesh surface",
-    },
+    { ...maxObservedPoints, summary: "Upper bound on the depth readings used" },
+    { ...surfaceSamples, summary: "Number of points sampled on the mesh surface" },
   ],
   register: [
     {
-      name: "scale",
-      kind: "scale",
-      isNullable: false,
-      default: "free",
+      ...scale,
       summary: "The scale in target units per source unit: `\"free\"`, a known number (1 for rigid registration), or bounds `[min, max]`",
     },
     seed,
@@ -538,10 +464,7 @@ export const OPTIONS = {
       summary: "Voxel size in target units",
     },
     {
-      name: "voxelDivisions",
-      kind: "number",
-      min: 5,
-      max: 200,
+      ...voxelDivisions,
       isNullable: true,
       default: null,
       summary: "Voxels along the diagonal of the target's bounding box",
@@ -553,14 +476,11 @@ export const OPTIONS = {
     edgeSimilarity,
     icp,
     icpIterations,
-    workBudget,
+    { ...workBudget, summary: "An upper bound on the work, in units of about a millisecond on a 2020 laptop" },
   ],
   estimateSim3: [
     {
-      name: "scale",
-      kind: "scale",
-      isNullable: false,
-      default: "free",
+      ...scale,
       summary: "The scale in target units per source unit: `\"free\"`, a known number (1 for a rigid transform), or bounds `[min, max]`",
     },
     seed,
@@ -575,6 +495,6 @@ export const OPTIONS = {
     ransacIterations,
     ransacConfidence,
     edgeSimilarity,
-    workBudget,
+    { ...workBudget, summary: "An upper bound on the work, in units of about a millisecond on a 2020 laptop" },
   ],
 } as const satisfies Readonly<Record<string, readonly OptionRow[]>>;

@@ -184,7 +184,9 @@ export interface ViewsOptions extends Pick<AlignOptions, "scale" | "knownExtentA
 export interface TrackOptions
   extends Pick<AlignOptions, "scale" | "knownExtentAxis">,
     Pick<ViewsOptions, "knownExtentM"> {
-  /** How much work the search in the first frame does, and the one that finds a lost object again. Default `"auto"`. */
+  /**
+   * How much work the search in the first frame does, and the one that finds a lost object again. Default `"auto"`.
+   */
   quality?: Quality | undefined;
   /**
    * The pose in the first frame, camera from mesh, in metres, if it is known. That frame then needs no mask. Default
@@ -328,25 +330,26 @@ export type Sim3 = {
 };
 
 /**
- * Agreement of a posed mesh with the observation. `null` marks a value that could not be measured. Distances to a mesh with
- * more than 262 144 triangles are distances to its decimated surface, which differs by less than a thousandth of its size.
+ * Agreement of a posed mesh with the observation. `null` marks a value that could not be measured. Distances to a
+ * mesh with more than 262 144 triangles are distances to its decimated surface, which differs by less than a
+ * thousandth of its size.
  */
 export type Metrics = {
   /**
-   * DAVIS boundary F-measure of mask and rendered silhouette at 0.008 × the image diagonal, 0 to 1, higher is
-   * better; 0 if nothing is rendered.
+   * DAVIS boundary F-measure of mask and rendered silhouette at 0.008 × the image diagonal, 0 to 1, higher is better;
+   * 0 if nothing is rendered.
    */
   boundaryF: number | null;
   /** Distance of the centroids of mask and rendered silhouette, pixels; `null` where nothing is rendered. */
   centerDriftPx: number | null;
   /**
-   * Intersection over union of mask and rendered silhouette, 0 to 1, higher is better; 0 where nothing is
-   * rendered or nothing overlaps.
+   * Intersection over union of mask and rendered silhouette, 0 to 1, higher is better; 0 where nothing is rendered or
+   * nothing overlaps.
    */
   iou: number | null;
   /**
-   * Mean of the two directional mean distances between observed points and surface, millimetres. The surface's
-   * unseen side counts, so that it is above 0 at the true pose too.
+   * Mean of the two directional mean distances between observed points and surface, millimetres. The surface's unseen
+   * side counts, so that it is above 0 at the true pose too.
    */
   chamferMm: number | null;
   /** Mean distance from the observed points to the surface, millimetres. */
@@ -354,8 +357,8 @@ export type Metrics = {
   /** Share of the observed points within 5 % of their box diagonal of the surface, 0 to 1. */
   fitness: number | null;
   /**
-   * Mean |n·n′| of an observed point's normal and that of the nearest triangle, 0 to 1; random directions
-   * give 0.5. `null` where no point has a normal.
+   * Mean |n·n′| of an observed point's normal and that of the nearest triangle, 0 to 1; random directions give 0.5.
+   * `null` where no point has a normal.
    */
   normalConsistency: number | null;
   /** Mean |rendered − observed| depth over the mask's pixels that have both, millimetres; `null` where none has. */
@@ -393,8 +396,8 @@ export type PoseErrors = {
 /** Errors of layout of an estimate relative to the true pose, up to the symmetry of the object as the pose errors. */
 export type LayoutErrors = {
   /**
-   * 3D IoU: volume of the intersection over volume of the union of the mesh's bounding box under both transforms, 0 to
-   * 1, higher is better. The boxes are in the axes of the mesh, and the volumes are exact.
+   * 3D IoU: volume of the intersection over volume of the union of the mesh's bounding box under both transforms, 0
+   * to 1, higher is better. The boxes are in the axes of the mesh, and the volumes are exact.
    */
   boxIou: number;
   /**
@@ -404,16 +407,16 @@ export type LayoutErrors = {
    */
   icpRotationDeg: number;
   /**
-   * ADD-S in both directions, relative to the diameter (SAM 3D Objects 2025): the mean of both mean distances from the
-   * surface under one pose to that under the other, divided by the largest distance between two points of the true
-   * object.
+   * ADD-S in both directions, relative to the diameter (SAM 3D Objects 2025): the mean of both mean distances from
+   * the surface under one pose to that under the other, divided by the largest distance between two points of the
+   * true object.
    */
   addSRelative: number;
   /** Whether `addSRelative` is below 0.1; ADD-S@0.1 is the share of such objects. */
   isFound: boolean;
   /**
-   * Whether a CAD model counts as aligned (Scan2CAD, Avetisyan et al. 2019): translation within 20 cm, rotation within
-   * 20°, scale within 20 %.
+   * Whether a CAD model counts as aligned (Scan2CAD, Avetisyan et al. 2019): translation within 20 cm, rotation
+   * within 20°, scale within 20 %.
    */
   isCadAligned: boolean;
 };
@@ -492,13 +495,13 @@ export type ColorReport = {
   /** What the comparison came to. */
   verdict: ColorVerdict;
   /**
-   * Correlation of the colours of mesh and photo at the resulting pose, without the shading that normals explain,
-   * −1 to 1.
+   * Correlation of the colours of mesh and photo at the resulting pose, without the shading that normals explain, −1
+   * to 1.
    */
   agreement: number;
   /**
-   * Lead over the next pose that shape allows and that looks different, in units of the correlation; `null` where there
-   * is none.
+   * Lead over the next pose that shape allows and that looks different, in units of the correlation; `null` where
+   * there is none.
    */
   margin: number | null;
 };
@@ -517,8 +520,8 @@ export type Alternative = Sim3 & {
 };
 
 /**
- * Standard deviations of the pose's parts, as the observation determines them. Parts that a single view leaves open have
- * large ones.
+ * Standard deviations of the pose's parts, as the observation determines them. Parts that a single view leaves open
+ * have large ones.
  */
 export type Uncertainty = {
   /** Of the scale, relative: 0.01 is one per cent. */
@@ -528,8 +531,8 @@ export type Uncertainty = {
   /** That axis: a unit vector in the camera's frame. */
   rotationAxis: [number, number, number];
   /**
-   * The axis of revolution of the mesh, a unit vector in the camera's frame: any turn about it leaves its shape as it is,
-   * and does not count as uncertain. `null` if it has none.
+   * The axis of revolution of the mesh, a unit vector in the camera's frame: any turn about it leaves its shape as it
+   * is, and does not count as uncertain. `null` if it has none.
    */
   freeAxis: [number, number, number] | null;
   /** Of the mesh centre's position across the line of sight, in metres. */
@@ -571,8 +574,8 @@ export type PreciseDiagnostics = Diagnostics & {
   /** The effort of the search that found the pose; it follows from `quality`. */
   effort: Effort;
   /**
-   * The search's objective, 0 to about 2. It compares poses of one input; scores of different inputs do not compare. Unless
-   * the scale is fixed, it is that of the mesh in the proportions that fit the image best.
+   * The search's objective, 0 to about 2. It compares poses of one input; scores of different inputs do not compare.
+   * Unless the scale is fixed, it is that of the mesh in the proportions that fit the image best.
    */
   score: number;
   /** The terms of the score. */
@@ -595,7 +598,8 @@ export type PaperAlignment = Sim3 & {
 };
 
 /**
- * The result of `align`: camera from mesh, x_cam = s·R·p_mesh + t (OpenCV camera: x right, y down, z forward; metres).
+ * The result of `align`: camera from mesh, x_cam = s·R·p_mesh + t (OpenCV camera: x right, y down, z forward;
+ * metres).
  */
 export type Alignment = Sim3 & {
   /**
@@ -604,13 +608,13 @@ export type Alignment = Sim3 & {
    */
   confidence: number;
   /**
-   * Probability that the turn is right, too: that of the poses which a symmetry of the shape makes equal, this is the one
-   * whose colours are those of the photo. `null` where the shape has no symmetry, or colour does not decide.
+   * Probability that the turn is right, too: that of the poses which a symmetry of the shape makes equal, this is the
+   * one whose colours are those of the photo. `null` where the shape has no symmetry, or colour does not decide.
    */
   turnConfidence: number | null;
   /**
-   * Other poses that explain the observation nearly as well, best first. Poses that the symmetry of the shape makes equal
-   * are one, unless their colours differ.
+   * Other poses that explain the observation nearly as well, best first. Poses that the symmetry of the shape makes
+   * equal are one, unless their colours differ.
    */
   alternatives: Array<Alternative>;
   /** How well the observation determines each part of the pose; `null` where the search could not tell. */
@@ -638,8 +642,8 @@ export type WorldUncertainty = {
   /** That axis: a unit vector in the world frame. */
   rotationAxis: [number, number, number];
   /**
-   * The axis of revolution of the mesh, a unit vector in the world frame: any turn about it leaves its shape as it is, and
-   * does not count as uncertain. `null` if it has none.
+   * The axis of revolution of the mesh, a unit vector in the world frame: any turn about it leaves its shape as it
+   * is, and does not count as uncertain. `null` if it has none.
    */
   freeAxis: [number, number, number] | null;
   /** Of the mesh centre's position along the least determined direction, in metres. */
@@ -649,8 +653,8 @@ export type WorldUncertainty = {
 /** The pose of a camera in the world. */
 export type CameraPose = Sim3 & {
   /**
-   * Standard deviation of its rotation, in degrees; 0 for given camera poses and for the camera that is the world, `null`
-   * where the views do not determine it.
+   * Standard deviation of its rotation, in degrees; 0 for given camera poses and for the camera that is the world,
+   * `null` where the views do not determine it.
    */
   rotationSdDeg: number | null;
   /** Standard deviation of its position, in metres; 0 and `null` as above. */
@@ -670,8 +674,8 @@ export type ViewPose = Sim3 & {
   /** The terms of the score. */
   terms: ScoreTerms;
   /**
-   * What the colours of photo and mesh contributed; with given camera poses, those of all views together. Present where
-   * the view has a photo and the mesh has colours.
+   * What the colours of photo and mesh contributed; with given camera poses, those of all views together. Present
+   * where the view has a photo and the mesh has colours.
    */
   color?: ColorReport;
   /** Agreement of the posed mesh with the view. */
