@@ -22,6 +22,15 @@ export function withoutUndefined<T extends object>(object: T): { [K in keyof T]?
   return Object.fromEntries(entries) as { [K in keyof T]?: Exclude<T[K], undefined> };
 }
 
+/** A function that makes something once for each key. */
+export function oncePerKey<K, T, A extends unknown[]>(make: (key: K, ...more: A) => T): (key: K, ...more: A) => T {
+  const made = new Map<K, T>();
+  return (key, ...more) => {
+    if (!made.has(key)) made.set(key, make(key, ...more));
+    return made.get(key) as T;
+  };
+}
+
 /** The strings in an array; none for any other value. */
 export const stringsIn = (value: unknown): string[] =>
   Array.isArray(value) ? value.filter((text) => typeof text === "string") : [];

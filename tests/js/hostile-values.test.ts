@@ -339,12 +339,13 @@ test("a tracker refuses a pose that cannot be sent to its worker, and remains us
   for (const [name, aligner] of aligners) {
     using tracker = await aligner.track(mesh, { quality: "fast" });
     await tracker.next(view);
-    for (const translation of [Symbol("odd"), () => 1]) {
-      await rejectsWith(() => tracker.correct({ ...truth, translation } as never), {
-        code: "INVALID_ARGUMENT",
-        argument: "pose.translation",
-        message: /./,
-      });
+    for (const odd of [Symbol("odd"), () => 1]) {
+      for (const [pose, argument] of [
+        [{ ...truth, translation: odd }, "pose.translation"],
+        [{ matrix: odd }, "pose"],
+      ] as const) {
+        await rejectsWith(() => tracker.correct(pose as never), { code: "INVALID_ARGUMENT", argument, message: /./ });
+      }
     }
     assert.equal((await tracker.next(view)).frame, 1, name);
   }

@@ -349,8 +349,6 @@ fn entry(row: &Row, shared: Option<&Vec<String>>) -> String {
 
 fn options() -> String {
     let calls = calls();
-    let mut interfaces = calls.each_ref().map(|call| call.interface);
-    interfaces.sort_unstable();
     let all: Vec<&Row> = calls.iter().flat_map(|call| &call.rows).collect();
     // Options that several calls have, each as the first of them has it.
     let mut shared = BTreeMap::new();
@@ -366,12 +364,13 @@ fn options() -> String {
         let rows = call.rows.iter().map(|row| format!("    {},\n", entry(row, shared.get(&*row.name))));
         format!("  {}: [\n{}  ],\n", call.key, rows.collect::<String>())
     };
+    // A call, because bundlers keep an unused object with spreads.
     format!(
         "{HEADER}import type {{ OptionRow }} from \"../options.js\";\n\
          import type {{\n  {},\n}} from \"./types.js\";\n\n{}\n{constants}\
          /** Every option with its kind, range, default and a one-line description. */\n\
-         export const OPTIONS = {{\n{}}} as const satisfies Readonly<Record<string, readonly OptionRow[]>>;\n",
-        interfaces.join(",\n  "),
+         export const OPTIONS = /* @__PURE__ */ (() => ({{\n{}}}) as const satisfies Readonly<Record<string, readonly OptionRow[]>>)();\n",
+        calls.each_ref().map(|call| call.interface).join(",\n  "),
         calls.each_ref().map(defaults).join("\n"),
         calls.each_ref().map(table).concat(),
     )

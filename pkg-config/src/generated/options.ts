@@ -293,7 +293,7 @@ const workBudget = {
 } as const;
 
 /** Every option with its kind, range, default and a one-line description. */
-export const OPTIONS = {
+export const OPTIONS = /* @__PURE__ */ (() => ({
   align: [
     quality,
     scale,
@@ -497,4 +497,4 @@ export const OPTIONS = {
     edgeSimilarity,
     { ...workBudget, summary: "An upper bound on the work, in units of about a millisecond on a 2020 laptop" },
   ],
-} as const satisfies Readonly<Record<string, readonly OptionRow[]>>;
+}) as const satisfies Readonly<Record<string, readonly OptionRow[]>>)();

@@ -101,12 +101,8 @@ export function shaded(mesh: Float32Array, view: View, { fx, fy }: { fx: number;
     const dy = slope(v > 0 ? i - width : i, v + 1 < height ? i + width : i, fy);
     const lambert = (dx * LIGHT[0] + dy * LIGHT[1] - LIGHT[2]) / Math.hypot(dx, dy, 1);
     const light = 0.35 + 0.75 * Math.max(0, lambert);
-    const [red, green, blue] = MESH.map((part) => 8 * Math.round(Math.min(255, part * light) / 8)) as [
-      number,
-      number,
-      number,
-    ];
-    return [Math.min(255, red), Math.min(255, green), Math.min(255, blue), 235];
+    const lit = (part: number) => Math.min(255, 8 * Math.round(Math.min(255, part * light) / 8));
+    return [lit(MESH[0]), lit(MESH[1]), lit(MESH[2]), 235];
   });
 }
 

@@ -74,15 +74,9 @@ export class Detail {
   }
 
   #picture(folder: string): HTMLElement {
+    const size = { width: 440, height: 330, decoding: "async" };
     const image = (name: string, alt: string) =>
-      element("img", {
-        src: `cases/${folder}/${name}.png`,
-        alt,
-        width: 440,
-        height: 330,
-        "data-layer": name,
-        decoding: "async",
-      });
+      element("img", { src: `cases/${folder}/${name}.png`, alt, ...size, "data-layer": name });
     const stack = element("div", { class: "stack" }, image("ground", "What was seen, around the object"));
     const boxes = layers.map(([name, label]) => {
       const drawn = image(name, `${label} over the picture`);
@@ -96,12 +90,8 @@ export class Detail {
       });
       return element("label", {}, box, ` ${label}`);
     });
-    return element(
-      "section",
-      { "aria-label": "Picture" },
-      stack,
-      element("div", { class: "layers", role: "group", "aria-label": "Layers" }, ...boxes),
-    );
+    const group = element("div", { class: "layers", role: "group", "aria-label": "Layers" }, ...boxes);
+    return element("section", { "aria-label": "Picture" }, stack, group);
   }
 
   #fill(
@@ -129,31 +119,15 @@ export class Detail {
     });
     body.querySelector(".layers")?.after(legend);
     this.#space = SpaceView.of(canvas, space);
-    if (this.#space !== undefined)
-      body.append(element("section", { "aria-label": "3D" }, element("h3", {}, "3D"), canvas));
+    if (this.#space !== undefined) body.append(section("3D", canvas));
     if (alternatives.length > 0) {
-      const figures = alternatives.map(({ file, turnDeg, score }) =>
-        element(
-          "figure",
-          {},
-          element("img", {
-            src: `cases/${folder}/${file}`,
-            alt: `The mesh turned by ${turnDeg.toFixed(0)} degrees`,
-            width: 160,
-            height: 120,
-            loading: "lazy",
-          }),
-          element("figcaption", {}, `turned ${turnDeg.toFixed(0)}°, score ${score.toFixed(3)}`),
-        ),
-      );
-      body.append(
-        element(
-          "section",
-          { "aria-label": "Alternatives" },
-          element("h3", {}, "Alternatives"),
-          element("div", { class: "alternatives" }, ...figures),
-        ),
-      );
+      const figures = alternatives.map(({ file, turnDeg, score }) => {
+        const alt = `The mesh turned by ${turnDeg.toFixed(0)} degrees`;
+        const src = `cases/${folder}/${file}`;
+        const caption = element("figcaption", {}, `turned ${turnDeg.toFixed(0)}°, score ${score.toFixed(3)}`);
+        return element("figure", {}, element("img", { src, alt, width: 160, height: 120, loading: "lazy" }), caption);
+      });
+      body.append(section("Alternatives", element("div", { class: "alternatives" }, ...figures)));
     }
     const numbers: [string, string][] = [
       ["Confidence", decimals(row.confidence, 3)],
@@ -167,14 +141,11 @@ export class Detail {
     const rows = [0, 1, 2, 3].map((i) =>
       [0, 1, 2, 3].map((j) => (matrix[4 * j + i] ?? 0).toFixed(6).padStart(11)).join(" "),
     );
-    body.append(
-      element(
-        "section",
-        { "aria-label": "Numbers" },
-        element("h3", {}, "Numbers"),
-        element("dl", {}, ...entries),
-        element("pre", { tabindex: 0, "aria-label": "Camera from mesh, rows" }, rows.join("\n")),
-      ),
-    );
+    const matrixRows = element("pre", { tabindex: 0, "aria-label": "Camera from mesh, rows" }, rows.join("\n"));
+    body.append(section("Numbers", element("dl", {}, ...entries), matrixRows));
   }
 }
+
+/** A part of the details under its heading. */
+const section = (title: string, ...children: HTMLElement[]) =>
+  element("section", { "aria-label": title }, element("h3", {}, title), ...children);

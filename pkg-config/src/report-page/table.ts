@@ -127,19 +127,13 @@ export class Table {
     const first = Math.max(0, Math.floor(this.#scroller.scrollTop / ROW) - SPARE);
     const count = Math.ceil(this.#scroller.clientHeight / ROW) + 2 * SPARE;
     const end = Math.min(this.#rows.length, first + count);
-    const width = this.#columns.length + 1;
-    const spacer = (rows: number) =>
-      element(
-        "tr",
-        { "aria-hidden": "true" },
-        element("td", { colspan: width, class: "spacer", style: `height:${rows * ROW}px` }),
-      );
+    const colspan = this.#columns.length + 1;
+    const spacer = (rows: number) => {
+      const space = element("td", { colspan, class: "spacer", style: `height:${rows * ROW}px` });
+      return rows > 0 ? [element("tr", { "aria-hidden": "true" }, space)] : [];
+    };
     const rows = this.#rows.slice(first, end).map((row, i) => this.#row(row, first + i));
-    this.#body.replaceChildren(
-      ...(first > 0 ? [spacer(first)] : []),
-      ...rows,
-      ...(end < this.#rows.length ? [spacer(this.#rows.length - end)] : []),
-    );
+    this.#body.replaceChildren(...spacer(first), ...rows, ...spacer(this.#rows.length - end));
   }
 
   #row(row: ReportRow, index: number): HTMLTableRowElement {
@@ -154,23 +148,10 @@ export class Table {
       const bar = element("span", { class: "bar", style: `--share:${row.confidence ?? 0}` });
       return element("td", {}, bar, text);
     });
-    const picture =
-      row.folder === undefined
-        ? null
-        : element("img", {
-            src: `cases/${row.folder}/thumbnail.png`,
-            alt: "",
-            loading: "lazy",
-            decoding: "async",
-            width: 56,
-            height: 42,
-          });
-    const made = element(
-      "tr",
-      { "data-index": index, "aria-rowindex": index + 2 },
-      element("td", {}, picture),
-      ...cells,
-    );
+    const src = `cases/${row.folder}/thumbnail.png`;
+    const lazy = { alt: "", loading: "lazy", decoding: "async", width: 56, height: 42 };
+    const picture = element("td", {}, row.folder === undefined ? null : element("img", { src, ...lazy }));
+    const made = element("tr", { "data-index": index, "aria-rowindex": index + 2 }, picture, ...cells);
     if (row === this.#selected) made.setAttribute("aria-selected", "true");
     return made;
   }

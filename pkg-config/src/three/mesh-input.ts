@@ -98,15 +98,8 @@ function appendTree(arrays: Arrays, tree: MeshTree, frame: "object" | "world") {
     if (found.isInstancedMesh !== true) return append(arrays, found.geometry, local, found.material);
     const { array } = found.instanceMatrix as { array: ArrayLike<number> };
     for (let i = 0; i < (found.count as number); i++) {
-      append(
-        arrays,
-        found.geometry,
-        product(
-          local,
-          Array.from({ length: 16 }, (_, k) => array[16 * i + k] ?? 0),
-        ),
-        found.material,
-      );
+      const instance = Array.from({ length: 16 }, (_, k) => array[16 * i + k] ?? 0);
+      append(arrays, found.geometry, product(local, instance), found.material);
     }
   });
 }
