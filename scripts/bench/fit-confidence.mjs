@@ -1,6 +1,6 @@
 /**
  * `npm run bench:fit`: fits the regression behind `confidence` to generated cases, prints its constants as
- * `src/precise/confidence.rs` declares them, and how reliable they are on other cases, real ones among them where their
+ * `src/precise/judged/confidence.rs` declares them, and how reliable they are on other cases, real ones among them where their
  * folders are given: nothing is fitted to these.
  */
 import { command, count } from "./command.mjs";
@@ -52,7 +52,7 @@ async function samplesOf(name, cases, { threads, keep, reuse }) {
     const [expected, found] = [record.alignment?.confidence ?? Number.NaN, probability(features, model)];
     if (!(Math.abs(found - expected) < 1e-9)) {
       throw new Error(
-        `${record.name}: confidence ${expected}, but ${found} by the constants of src/precise/confidence.rs. Remedy: ` +
+        `${record.name}: confidence ${expected}, but ${found} by the constants of src/precise/judged/confidence.rs. Remedy: ` +
           "run the cases again with this version of the code, or make featuresOf() agree with it.",
       );
     }

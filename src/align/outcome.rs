@@ -12,7 +12,7 @@ use crate::options::Options;
 use crate::paper::options::PaperOptions;
 use crate::precise::options::AlignOptions;
 use crate::progress::{Host, Stage, Stopwatch};
-use crate::report::{self, Counts, Diagnostics, PaperAlignment, Preset, Solution};
+use crate::report::{self, Counts, Diagnostics, PaperAlignment, PaperDiagnostics, Preset, Sim3, Solution, Warning};
 
 /// The common options of all methods.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,7 +60,7 @@ pub fn align_by(
     setup: &Setup,
     plan: &'static [(Stage, f64)],
     host: &mut dyn Host,
-    method: impl FnOnce(&mut Clouds, &mut Stopwatch<'_>) -> Result<Solution>,
+    method: impl FnOnce(&mut Clouds, &mut Stopwatch<'_>) -> Result<(Solution, Counts)>,
 ) -> Result<PaperAlignment> {
     let mut stages = Stopwatch::new(host, plan);
     check_shape(mesh)?;
@@ -68,9 +68,16 @@ pub fn align_by(
     if setup.metrics {
         clouds.evidence(Normals::All, &mut stages);
     }
-    let solution = method(&mut clouds, &mut stages)?;
+    let (solution, counts) = method(&mut clouds, &mut stages)?;
     let metrics = score(observation, mesh, setup, &mut clouds, &solution, &mut stages)?;
-    Ok(report(observation, setup, &clouds, &solution, metrics, stages))
+    let Outcome { camera_from_mesh, metrics, mut warnings, diagnostics: common, points } =
+        outcome(observation, setup, &clouds, &solution, metrics, stages);
+    if setup.preset == Preset::Paper {
+        warnings.extend(warnings::about_icp(solution.converged, counts.icp_iterations));
+    }
+    let [target_points, source_points] = points;
+    let diagnostics = PaperDiagnostics { common, counts: Counts { source_points, target_points, ..counts } };
+    Ok(PaperAlignment { camera_from_mesh, metrics, warnings, diagnostics })
 }
 
 /// The metrics of a solution, if requested.
@@ -90,25 +97,31 @@ pub(super) fn score(
     metrics::score(observation, mesh, &solution.camera_from_mesh, evidence).map(Some)
 }
 
-/// The result of a method.
-pub(super) fn report(
+/// What the results of all methods have in common.
+pub(super) struct Outcome {
+    pub camera_from_mesh: Sim3,
+    pub metrics: Option<Metrics>,
+    pub warnings: Vec<Warning>,
+    pub diagnostics: Diagnostics,
+    /// Number of points observed, and of points of the mesh surface.
+    pub points: [usize; 2],
+}
+
+/// The outcome of a method.
+pub(super) fn outcome(
     observation: &Observation,
     setup: &Setup,
     clouds: &Clouds,
     solution: &Solution,
     metrics: Option<Metrics>,
     stages: Stopwatch<'_>,
-) -> PaperAlignment {
-    let &Solution { camera_from_mesh, clamped, converged, residual_m, counts } = solution;
+) -> Outcome {
+    let &Solution { camera_from_mesh, clamped, converged, residual_m } = solution;
     let initial_scale = clouds.initial_scale();
     let scale_ratio = camera_from_mesh.scale / initial_scale;
     let mut warnings = warnings::about_observation(observation);
     warnings.extend(warnings::about_scale(scale_ratio, clamped, setup.preset));
-    if setup.preset == Preset::Paper {
-        warnings.extend(warnings::about_icp(converged, counts.icp_iterations));
-    }
-    let [target_points, source_points] = clouds.counts();
-    PaperAlignment {
+    Outcome {
         camera_from_mesh: (&camera_from_mesh).into(),
         metrics,
         warnings,
@@ -121,8 +134,8 @@ pub(super) fn report(
             clamped,
             converged,
             residual_m,
-            counts: Counts { source_points, target_points, ..counts },
             timings_ms: stages.finish(),
         },
+        points: clouds.counts(),
     }
 }

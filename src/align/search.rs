@@ -4,7 +4,7 @@
 //! Each part awaits a pause point after any render or refinement of a pose, and elsewhere at the end of a stage. Results
 //! are bit-identical regardless of pauses.
 
-use super::outcome::{Setup, report, score};
+use super::outcome::{Outcome, Setup, outcome, score};
 use super::warnings::{about_fit, about_search, retain_doubts};
 use crate::error::Result;
 use crate::evidence::Normals;
@@ -12,17 +12,23 @@ use crate::evidence::clouds::Clouds;
 use crate::evidence::observation::Observation;
 use crate::pauses::Pauses;
 use crate::precise;
-use crate::precise::color::{Judgment, agreement, judgment};
-use crate::precise::conditioning::DROP;
-use crate::precise::equivalence::DIFFERENT;
+use crate::precise::drawn::equivalence::DIFFERENT;
+use crate::precise::drawn::prepared_mesh::PreparedMesh;
+use crate::precise::judged::color::{Judgment, agreement, judgment};
+use crate::precise::judged::verdict;
+use crate::precise::judged::verdict::Certainty;
 use crate::precise::options::AlignOptions;
-use crate::precise::prepared_mesh::PreparedMesh;
-use crate::precise::recipe::SURE;
-use crate::precise::rounds::Rounds;
-use crate::precise::surroundings::Neighbourhood;
-use crate::precise::{Certainty, Found, SearchSettings, Told};
+use crate::precise::scored::conditioning::DROP;
+use crate::precise::scored::surroundings::Neighbourhood;
+use crate::precise::searched::efforts;
+use crate::precise::searched::ranking::Found;
+use crate::precise::searched::recipe::SURE;
+use crate::precise::searched::recipe::SearchSettings;
+use crate::precise::searched::rounds::Rounds;
+use crate::precise::searched::start;
+use crate::precise::searched::start::Told;
 use crate::progress::{Host, Stopwatch};
-use crate::report::{Alignment, Effort, PaperAlignment, PreciseDiagnostics, Solution};
+use crate::report::{Alignment, Effort, PreciseDiagnostics, SearchCounts, Solution};
 
 /// What is asked for: the options, validated, and what follows from them.
 pub struct Request {
@@ -76,7 +82,7 @@ impl Request {
     /// # Errors
     /// [`ErrorCode::InvalidOption`](crate::error::ErrorCode::InvalidOption).
     pub fn new(options: AlignOptions) -> Result<Self> {
-        let (setup, efforts) = (Setup::of_precise(&options)?, precise::efforts(&options));
+        let (setup, efforts) = (Setup::of_precise(&options)?, efforts::of(&options));
         Ok(Self { options, efforts, setup })
     }
 
@@ -88,7 +94,7 @@ impl Request {
 
 impl Searched {
     fn new(rounds: Rounds) -> Result<Self> {
-        let (solution, certainty) = precise::conclude(&rounds, None)?;
+        let (solution, certainty) = verdict::conclude(&rounds, None)?;
         Ok(Self { rounds, solution, certainty })
     }
 
@@ -134,30 +140,30 @@ impl<'a> Search<'a> {
     /// Searches with increasing effort, until the confidence is high and no rival of the pose is found.
     ///
     /// # Errors
-    /// [`ErrorCode::NoConsensus`](crate::error::ErrorCode::NoConsensus), and those of [`precise::begin`].
+    /// [`ErrorCode::NoConsensus`](crate::error::ErrorCode::NoConsensus), and those of [`start::begin`].
     pub async fn search(&mut self) -> Result<Searched> {
         let Self { observation, mesh, request: Request { options, efforts, .. }, pauses, .. } = *self;
         let stages = &mut self.stages;
         if let Some(first) = efforts.first() {
-            precise::decimate(mesh, first, stages)?;
+            start::decimate(mesh, first, stages)?;
             pauses.here().await;
         }
         let mut before: Option<Rounds> = None;
         for (index, settings) in efforts.iter().enumerate() {
-            let mut rounds = precise::begin(observation, mesh, before.as_ref(), options, settings, stages)?;
+            let mut rounds = start::begin(observation, mesh, before.as_ref(), options, settings, stages)?;
             pauses.here().await;
-            precise::run(&mut rounds, &precise::share(index, efforts.len()), pauses, stages).await;
-            let concluded = precise::conclude(&rounds, None);
+            start::run(&mut rounds, &efforts::share(index, efforts.len()), pauses, stages).await;
+            let concluded = verdict::conclude(&rounds, None);
             let is_last = index + 1 == efforts.len();
             let is_sure = matches!(&concluded, Ok((_, certainty)) if certainty.confidence >= SURE);
             if is_last || is_sure {
                 let (solution, certainty) = concluded?;
-                let look = precise::look(&rounds).filter(|_| !is_last);
+                let look = start::look(&rounds).filter(|_| !is_last);
                 let mut has_rival = false;
                 if let Some(mut look) = look {
-                    let share = precise::share(index + 1, efforts.len() + 1);
-                    precise::run(&mut look, &share, pauses, stages).await;
-                    has_rival = precise::has_rival(&mut rounds, &look);
+                    let share = efforts::share(index + 1, efforts.len() + 1);
+                    start::run(&mut look, &share, pauses, stages).await;
+                    has_rival = start::has_rival(&mut rounds, &look);
                 }
                 if !has_rival {
                     return Ok(Searched { rounds, solution, certainty });
@@ -175,7 +181,7 @@ impl<'a> Search<'a> {
     pub async fn search_among(&mut self, given: &Given) -> Result<Searched> {
         let mut rounds = self.among(given, None)?;
         self.pauses.here().await;
-        precise::run(&mut rounds, &precise::share(0, 1), self.pauses, &mut self.stages).await;
+        start::run(&mut rounds, &efforts::share(0, 1), self.pauses, &mut self.stages).await;
         let mut searched = Searched::new(rounds)?;
         if searched.confidence() < given.confidence - DOUBT && searched.rounds.prefer(&given.found) {
             searched = Searched::new(searched.rounds)?;
@@ -197,7 +203,7 @@ impl<'a> Search<'a> {
         let settings = settings.ok_or_else(precise::no_candidate)?.again(is_sure);
         let clean = before.map(|rounds| rounds.search.observation.clone());
         let told = Told { found: &given.found, renders: given.renders, is_sure, known: given.known.clone() };
-        precise::resume(self.observation, self.mesh, clean, told, options, &settings, &mut self.stages)
+        start::resume(self.observation, self.mesh, clean, told, options, &settings, &mut self.stages)
     }
 
     /// What the photo says about the poses; `None` without a photo, or without colours of the mesh.
@@ -213,7 +219,7 @@ impl<'a> Search<'a> {
     pub fn finish(mut self, mut clouds: Clouds, searched: Searched, colors: Option<&Judgment>) -> Result<Alignment> {
         let Searched { rounds, solution, certainty } = searched;
         let (solution, certainty) = match colors {
-            Some(judgment) => precise::conclude(&rounds, Some(judgment))?,
+            Some(judgment) => verdict::conclude(&rounds, Some(judgment))?,
             None => (solution, certainty),
         };
         let Self { observation, mesh, request: Request { setup, .. }, .. } = self;
@@ -222,8 +228,8 @@ impl<'a> Search<'a> {
             let (clean, pose) = (rounds.search.observation.clone(), &solution.camera_from_mesh);
             metrics.color_agreement = agreement(observation, Some(clean), mesh, pose);
         }
-        let aligned = report(observation, setup, &clouds, &solution, metrics, self.stages);
-        Ok(with_certainty(aligned, certainty))
+        let outcome = outcome(observation, setup, &clouds, &solution, metrics, self.stages);
+        Ok(with_certainty(outcome, certainty, rounds.search.renders))
     }
 }
 
@@ -236,13 +242,15 @@ fn leaves_image(given: &Given, rounds: &Rounds) -> bool {
     turn < DIFFERENT && f64::from(loss) > MOST_LOSS
 }
 
-fn with_certainty(aligned: PaperAlignment, certainty: Certainty) -> Alignment {
+fn with_certainty(outcome: Outcome, certainty: Certainty, renders: usize) -> Alignment {
     let Certainty { confidence, turn_confidence, alternatives, uncertainty, score, terms, effort, color } = certainty;
-    let PaperAlignment { camera_from_mesh, metrics, mut warnings, diagnostics } = aligned;
-    warnings.extend(about_search(diagnostics.converged));
+    let Outcome { camera_from_mesh, metrics, mut warnings, diagnostics: common, points } = outcome;
+    let [target_points, source_points] = points;
+    let counts = SearchCounts { source_points, target_points, renders };
+    warnings.extend(about_search(common.converged));
     warnings.extend(about_fit(&terms));
     retain_doubts(&mut warnings, confidence);
-    let diagnostics = PreciseDiagnostics { common: diagnostics, effort, score, terms, color };
+    let diagnostics = PreciseDiagnostics { common, counts, effort, score, terms, color };
     Alignment {
         camera_from_mesh,
         confidence,

@@ -16,7 +16,7 @@ use crate::register::ransac::{self, Guard, RansacSettings};
 use crate::register::settings::{RegistrationSettings, icp_metric};
 use crate::register::support::SupportSettings;
 use crate::register::umeyama::ScaleMode;
-use crate::report::Solution;
+use crate::report::{Counts, Solution};
 
 /// Progress at the start of each stage, 0 to 1; from profiles of real cases.
 pub const PLAN: &[(Stage, f64)] = &[
@@ -35,7 +35,7 @@ pub const PLAN: &[(Stage, f64)] = &[
 ///
 /// # Errors
 /// [`NoConsensus`](crate::error::ErrorCode::NoConsensus).
-pub fn estimate(clouds: &mut Clouds, options: &PaperOptions, stages: &mut Stopwatch<'_>) -> Result<Solution> {
+pub fn estimate(clouds: &mut Clouds, options: &PaperOptions, stages: &mut Stopwatch<'_>) -> Result<(Solution, Counts)> {
     let (evidence, [observed, reconstructed]) = clouds.evidence(Normals::All, stages);
     // §3.1: both clouds are centred, and scaled to a box diagonal of 1.
     let target = observed.normalized(&evidence.observed);
@@ -46,13 +46,13 @@ pub fn estimate(clouds: &mut Clouds, options: &PaperOptions, stages: &mut Stopwa
         let registration = FeatureRegistration::new(&source, &target, &settings, stages, &pauses).await;
         registration.solve(&settings, stages, &pauses).await
     })?;
-    Ok(Solution {
+    let solution = Solution {
         clamped: estimate.clamped,
         converged: estimate.converged,
         residual_m: estimate.rms * observed.diagonal(),
-        counts: estimate.counts,
         ..Solution::of_pose(target_from_source(observed, &estimate.target_from_source, reconstructed))
-    })
+    };
+    Ok((solution, estimate.counts))
 }
 
 fn settings_of(options: &PaperOptions) -> RegistrationSettings {

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::diagnostics::{Counts, Diagnostics, PreciseDiagnostics};
+use super::diagnostics::{Diagnostics, PaperDiagnostics, PreciseDiagnostics};
 use super::pose::{Alternative, Sim3, Uncertainty};
 use super::warning::Warning;
 use crate::geometry::similarity::Similarity;
@@ -53,7 +53,7 @@ pub struct PaperAlignment {
     /// Conditions that the caller should know about; the result stands.
     pub warnings: Vec<Warning>,
     /// Everything else: initial scale, counts, timings.
-    pub diagnostics: Diagnostics,
+    pub diagnostics: PaperDiagnostics,
 }
 
 /// The result of an alignment by either preset.
@@ -103,7 +103,7 @@ impl AnyAlignment {
     pub fn diagnostics(&self) -> &Diagnostics {
         match self {
             Self::Precise(found) => &found.diagnostics.common,
-            Self::Paper(found) => &found.diagnostics,
+            Self::Paper(found) => &found.diagnostics.common,
         }
     }
 }
@@ -131,13 +131,11 @@ pub struct Solution {
     pub converged: bool,
     /// Root mean square residual of the refinement, in metres.
     pub residual_m: f64,
-    /// Sizes of the problem and events during the run.
-    pub counts: Counts,
 }
 
 impl Solution {
     /// A pose of which nothing else is known.
     pub fn of_pose(camera_from_mesh: Similarity) -> Self {
-        Self { camera_from_mesh, clamped: false, converged: true, residual_m: 0.0, counts: Counts::default() }
+        Self { camera_from_mesh, clamped: false, converged: true, residual_m: 0.0 }
     }
 }

@@ -36,6 +36,17 @@ pub struct Counts {
     pub clamped: usize,
     /// ICP iterations.
     pub icp_iterations: usize,
+}
+
+/// Sizes of the problem and of the search.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "camelCase")]
+pub struct SearchCounts {
+    /// Source points, of the mesh surface.
+    pub source_points: usize,
+    /// Target points, observed.
+    pub target_points: usize,
     /// Images that the search drew.
     pub renders: usize,
 }
@@ -114,11 +125,21 @@ pub struct Diagnostics {
     pub converged: bool,
     /// Root mean square residual of the refinement, in metres.
     pub residual_m: f64,
-    /// Sizes of the problem and events during the run.
-    pub counts: Counts,
     /// Milliseconds per stage, and their total.
     #[cfg_attr(feature = "types", ts(type = "Timings"))]
     pub timings_ms: Timings,
+}
+
+/// Diagnostics of the preset `paper`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "camelCase")]
+pub struct PaperDiagnostics {
+    /// What all presets report.
+    #[serde(flatten)]
+    pub common: Diagnostics,
+    /// Sizes of the problem and events during the run.
+    pub counts: Counts,
 }
 
 /// Diagnostics of the preset `precise`.
@@ -129,6 +150,8 @@ pub struct PreciseDiagnostics {
     /// What all presets report.
     #[serde(flatten)]
     pub common: Diagnostics,
+    /// Sizes of the problem and of the search.
+    pub counts: SearchCounts,
     /// The effort of the search that found the pose; it follows from `quality`.
     pub effort: Effort,
     /// The search's objective, 0 to about 2. It compares poses of one input; scores of different inputs do not compare. Unless

@@ -7,7 +7,10 @@ mod preset;
 mod warning;
 
 pub use alignment::{Alignment, AnyAlignment, PaperAlignment, Solution};
-pub use diagnostics::{ColorReport, ColorVerdict, Counts, Diagnostics, PreciseDiagnostics, ScoreTerms, is_collapsed};
+pub use diagnostics::{
+    ColorReport, ColorVerdict, Counts, Diagnostics, PaperDiagnostics, PreciseDiagnostics, ScoreTerms, SearchCounts,
+    is_collapsed,
+};
 pub use pose::{Alternative, Sim3, Uncertainty};
 pub use preset::{Effort, Preset};
 pub use warning::{Warning, WarningCode};

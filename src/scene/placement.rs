@@ -1,5 +1,7 @@
 //! Placements: what the alignment of an object tells about it to the rest of the scene.
 
+use crate::precise::searched::ranking::Found;
+use crate::precise::searched::recipe::SearchSettings;
 use std::rc::Rc;
 
 use glam::{DVec3, Vec3};
@@ -12,13 +14,12 @@ use crate::evidence::observation::Observation;
 use crate::geometry::cloud::Bounds;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::similarity::{Similarity, vec3, vector3};
-use crate::precise::mesh_pyramid::MeshPyramid;
-use crate::precise::pose::{CropPose, MeshFrame};
-use crate::precise::prepared_mesh::PreparedMesh;
-use crate::precise::rounds::Rounds;
-use crate::precise::score::Score;
-use crate::precise::surroundings::{Layer, Neighbourhood};
-use crate::precise::{Found, SearchSettings};
+use crate::precise::drawn::mesh_pyramid::MeshPyramid;
+use crate::precise::drawn::pose::{CropPose, MeshFrame};
+use crate::precise::drawn::prepared_mesh::PreparedMesh;
+use crate::precise::scored::score::Score;
+use crate::precise::scored::surroundings::{Layer, Neighbourhood};
+use crate::precise::searched::rounds::Rounds;
 use crate::report::{Alignment, Effort, Sim3};
 
 /// Numbers of a candidate in [`Placement::numbers`].

@@ -67,7 +67,7 @@ pub struct Ground {
 }
 
 impl Ground {
-    /// What a search is told of it: see [`Neighbourhood::ground`](crate::precise::surroundings::Neighbourhood::ground).
+    /// What a search is told of it: see [`Neighbourhood::ground`](crate::precise::scored::surroundings::Neighbourhood::ground).
     pub fn known(&self) -> (DVec3, f64, f64) {
         (self.plane.normal, self.plane.d, self.gap_m)
     }

@@ -14,9 +14,9 @@ use crate::geometry::image::{DepthMap, Image, Mask};
 use crate::geometry::pinhole::Pinhole;
 use crate::geometry::similarity::Similarity;
 use crate::pauses::{Boxed, Pauses, boxed, finished};
+use crate::precise::drawn::prepared_mesh::PreparedMesh;
 use crate::precise::options::AlignOptions;
-use crate::precise::prepared_mesh::PreparedMesh;
-use crate::precise::surroundings::Neighbourhood;
+use crate::precise::scored::surroundings::Neighbourhood;
 use crate::progress::Host;
 use crate::report::Alignment;
 

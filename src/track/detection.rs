@@ -1,5 +1,11 @@
 //! The search for a tracked object over all rotations, in its first frame and after it was lost.
 
+use crate::precise;
+use crate::precise::judged::alternatives::lead;
+use crate::precise::no_candidate;
+use crate::precise::searched::efforts;
+use crate::precise::searched::recipe::SearchSettings;
+use crate::precise::searched::start;
 use std::rc::Rc;
 
 use glam::DQuat;
@@ -7,17 +13,16 @@ use glam::DQuat;
 use crate::error::Result;
 use crate::evidence::observation::Observation;
 use crate::pauses::{Pauses, finished};
-use crate::precise::clean::CleanObservation;
-use crate::precise::color::{Judgment, judgment};
-use crate::precise::confidence::sureness;
+use crate::precise::drawn::prepared_mesh::PreparedMesh;
+use crate::precise::judged::color::{Judgment, judgment};
+use crate::precise::judged::confidence::sureness;
+use crate::precise::observed::clean::CleanObservation;
 use crate::precise::options::AlignOptions;
-use crate::precise::prepared_mesh::PreparedMesh;
-use crate::precise::prior::Prior;
-use crate::precise::recipe::SURE;
-use crate::precise::rounds::Rounds;
-use crate::precise::score::NOISE;
-use crate::precise::search::Found;
-use crate::precise::{self, SearchSettings, no_candidate};
+use crate::precise::scored::prior::Prior;
+use crate::precise::scored::score::NOISE;
+use crate::precise::searched::ranking::Found;
+use crate::precise::searched::recipe::SURE;
+use crate::precise::searched::rounds::Rounds;
 use crate::progress::{Host, Stopwatch};
 
 /// What a search knows beforehand.
@@ -52,7 +57,7 @@ impl Detection {
     /// before, the nearest one counts: an object that looks alike from several sides has not turned unseen.
     ///
     /// # Errors
-    /// As [`precise::begin`].
+    /// As [`start::begin`].
     pub fn search(
         observation: &Observation,
         mesh: &PreparedMesh<'_>,
@@ -62,21 +67,21 @@ impl Detection {
     ) -> Result<Self> {
         let mut rounds: Option<Rounds> = None;
         let mut certainty = 0.0;
-        for settings in precise::efforts(options) {
+        for settings in efforts::of(options) {
             if certainty >= SURE || (known.before.is_some() && rounds.is_some()) {
                 break;
             }
             let stages = &mut Stopwatch::new(&mut *host, precise::PLAN);
             let log_scale = known.before.and_then(|(log_scale, _)| log_scale);
             let settings = SearchSettings { lock_scale: settings.lock_scale || log_scale.is_some(), ..settings };
-            let mut next = precise::begin(observation, mesh, rounds.as_ref(), options, &settings, stages)?;
+            let mut next = start::begin(observation, mesh, rounds.as_ref(), options, &settings, stages)?;
             if let Some(log_scale) = log_scale {
                 next.search.assume(Prior { scale: Some([libm::exp(log_scale); 2]), ..known.prior });
             }
-            finished(precise::run(&mut next, &(0.2..0.85), &Pauses::none(), stages));
+            finished(start::run(&mut next, &(0.2..0.85), &Pauses::none(), stages));
             let best = next.found.first().filter(|best| best.pose.is_finite()).ok_or_else(no_candidate)?;
             let (conditioning, _) = next.search.conditioning(&best.pose);
-            let lead = next.search.equivalence.lead(best, &next.found[1..], |found| found.score.total);
+            let lead = lead(&next.search.equivalence, best, &next.found[1..], |found| found.score.total);
             certainty = sureness(best, lead, conditioning.as_ref());
             rounds = Some(next);
         }
@@ -114,6 +119,6 @@ fn chosen(rounds: &Rounds, judgment: Option<&Judgment>, known: &Known) -> Result
     }
     let others: Vec<Found> =
         rounds.found.iter().filter(|other| other.score.total < chosen.score.total).copied().collect();
-    let margin = rounds.search.equivalence.lead(&chosen, &others, |found| found.score.total);
+    let margin = lead(&rounds.search.equivalence, &chosen, &others, |found| found.score.total);
     Ok((chosen, judgment.map_or(margin, |color| margin.max(color.lead()))))
 }

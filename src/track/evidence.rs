@@ -8,12 +8,12 @@ use crate::evidence::observation::Observation;
 use crate::evidence::photo::PhotoRegion;
 use crate::geometry::image::bounds_of;
 use crate::metrics::symmetry::Symmetry;
-use crate::precise::SearchSettings;
-use crate::precise::appearance::PhotoCells;
-use crate::precise::clean::CleanObservation;
-use crate::precise::mesh_pyramid::MeshPyramid;
-use crate::precise::pose::{CropPose, MeshFrame};
-use crate::precise::search::Search;
+use crate::precise::drawn::mesh_pyramid::MeshPyramid;
+use crate::precise::drawn::pose::{CropPose, MeshFrame};
+use crate::precise::observed::clean::CleanObservation;
+use crate::precise::scored::appearance::PhotoCells;
+use crate::precise::searched::recipe::{FINE, SearchSettings};
+use crate::precise::searched::search::Search;
 use crate::views::predicted_mask::with_predicted_mask;
 
 /// Margin of the window around the mask or the mesh, relative to its longer side, and in pixels.
@@ -77,8 +77,8 @@ fn evidence(
     let mut search = Search::new(Rc::new(CleanObservation::new(&observation)), mesh.clone(), *settings);
     search.equivalence = mesh.equivalence(&Symmetry::Auto)?;
     let photo = whole.photo.as_ref();
-    let photo = photo.map(|photo| PhotoCells::new(photo, region, search.observation.image, &search.fine));
-    Ok((search.fine.mask_cells > 0).then_some(Evidence { search, photo }))
+    let photo = photo.map(|photo| PhotoCells::new(photo, region, search.observation.image, search.grid(FINE)));
+    Ok((search.grid(FINE).mask_cells > 0).then_some(Evidence { search, photo }))
 }
 
 /// A part of a frame, and where it lies in the photo.

@@ -1,5 +1,9 @@
 //! The tracker.
 
+use crate::precise;
+use crate::precise::no_candidate;
+use crate::precise::searched::recipe::SearchSettings;
+use crate::precise::searched::start;
 use core::borrow::Borrow;
 use glam::DQuat;
 
@@ -20,19 +24,19 @@ use crate::geometry::similarity::Similarity;
 use crate::metrics::{self, symmetry::Symmetry};
 use crate::number::number;
 use crate::options::Options;
-use crate::precise::choice::AGREES;
-use crate::precise::color::{LOOSE, agreement_at, cells, roll};
-use crate::precise::confidence::sureness;
-use crate::precise::objective::Objective;
-use crate::precise::pose::CropPose;
-use crate::precise::prepared_mesh::PreparedMesh;
-use crate::precise::prior::Prior;
-use crate::precise::recipe::FINE;
-use crate::precise::refine::Refiner;
-use crate::precise::render::Canvas;
-use crate::precise::score::{NOISE, Score};
-use crate::precise::search::{Found, Search};
-use crate::precise::{self, SearchSettings, no_candidate};
+use crate::precise::drawn::pose::CropPose;
+use crate::precise::drawn::prepared_mesh::PreparedMesh;
+use crate::precise::drawn::render::Canvas;
+use crate::precise::judged::choice::AGREES;
+use crate::precise::judged::color::{LOOSE, agreement_at, cells, roll};
+use crate::precise::judged::confidence::sureness;
+use crate::precise::scored::objective::Objective;
+use crate::precise::scored::prior::Prior;
+use crate::precise::scored::score::{NOISE, Score};
+use crate::precise::searched::ranking::Found;
+use crate::precise::searched::recipe::FINE;
+use crate::precise::searched::refine::Refiner;
+use crate::precise::searched::search::Search;
 use crate::progress::Host;
 use crate::report::Effort;
 use crate::views::common_size::{PREDICTED_ERROR, SILHOUETTE_ERROR, SizeEvidence, refine_at};
@@ -90,7 +94,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         prepared.check()?;
         let settings = SearchSettings { lock_scale: true, ..SearchSettings::from(Effort::Fast) };
         let pyramid = prepared.pyramid(&settings.grids).ok_or_else(no_candidate)?;
-        let prior = precise::prior(&options.of_detection(), prepared.mesh(), &pyramid.frame);
+        let prior = Prior::of(&options.of_detection(), prepared.mesh(), &pyramid.frame);
         let known = prior.scale.filter(|[min, max]| min == max).map(|[scale, _]| libm::log(scale));
         Ok(Self {
             mesh,
@@ -144,7 +148,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         if index >= count {
             return Err(unknown());
         }
-        let fixed = precise::seen_from(pose, &self.sight.mesh.frame, (ErrorCode::InvalidTransform, "pose"))?;
+        let fixed = start::seen_from(pose, &self.sight.mesh.frame, (ErrorCode::InvalidTransform, "pose"))?;
         let fixed = PlacedCamera::AT_ORIGIN.place(&fixed);
         let (changed, is_present) = self.history.correct(index, fixed, &self.sight.mesh.frame).ok_or_else(unknown)?;
         if is_present {
@@ -282,7 +286,7 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
             let (conditioning, _) = search.conditioning(&found.pose);
             let scale_sd = self.size.value().map_or(1.0, |(_, sd)| sd);
             let conditioning = conditioning
-                .map(|held| precise::conditioning::Conditioning { scale: scale_sd.min(held.scale), ..held });
+                .map(|own| precise::scored::conditioning::Conditioning { scale: scale_sd.min(own.scale), ..own });
             sureness(&found, self.lead.margin, conditioning.as_ref()) * self.lead.turn_certainty
         };
         let camera_from_mesh = pose.similarity(&self.sight.mesh.frame);
@@ -323,14 +327,14 @@ impl<'m, M: Borrow<PreparedMesh<'m>>> Tracker<M> {
         if !self.size.wants(found.pose.rotation) {
             return;
         }
-        let objective = search.objective(FINE, &search.fine);
+        let objective = search.objective(FINE);
         let objective = Objective { prior: self.prior, ..objective };
         let free = Refiner { objective, lock_scale: false }.refine(&mut Canvas::default(), found.pose, STEPS[0]);
         if let Some(evidence) = SizeEvidence::at(objective, &free.pose, silhouette_error) {
             self.size.add(found.pose.rotation, evidence);
         }
         if let Some((log_scale, _)) = self.size.value() {
-            *found = refine_at(objective, found.pose, log_scale, STEPS[1]).into();
+            *found = refine_at(objective, found.pose, log_scale, STEPS[1]);
         }
     }
 

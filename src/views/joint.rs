@@ -2,12 +2,13 @@
 
 use super::world_pose::{PlacedCamera, WorldPose};
 use crate::geometry::normal_equations::NormalEquations;
-use crate::precise::ascent::{Ascent, Summit, ascend, limited};
-use crate::precise::objective::Objective;
-use crate::precise::pose::{CropPose, Step};
-use crate::precise::refine::Refiner;
-use crate::precise::render::Canvas;
-use crate::precise::score::Score;
+use crate::precise::drawn::pose::{CropPose, Step};
+use crate::precise::drawn::render::Canvas;
+use crate::precise::scored::objective::Objective;
+use crate::precise::scored::score::Score;
+use crate::precise::searched::ascent::{Ascent, ascend, limited};
+use crate::precise::searched::ranking::{Found, Total};
+use crate::precise::searched::refine::Refiner;
 
 /// One view of a joint objective.
 #[derive(Clone, Copy)]
@@ -46,7 +47,7 @@ impl<'a> Joint<'a> {
     }
 
     /// Refines a pose in at most `iterations` steps.
-    pub fn refine(&mut self, pose: WorldPose, iterations: usize) -> Summit<WorldPose, JointScore> {
+    pub fn refine(&mut self, pose: WorldPose, iterations: usize) -> Found<WorldPose, JointScore> {
         ascend(self, pose, iterations)
     }
 
@@ -85,28 +86,30 @@ impl<'a> Joint<'a> {
     }
 }
 
+impl Total for JointScore {
+    fn total(&self) -> f32 {
+        self.total
+    }
+}
+
 impl Ascent for Joint<'_> {
     type Pose = WorldPose;
     type Score = JointScore;
 
-    fn held(&self, mut pose: WorldPose) -> WorldPose {
+    fn allowed(&self, mut pose: WorldPose) -> WorldPose {
         let Some(view) = self.views.first() else { return pose };
-        let held = view.objective.prior.held(CropPose {
+        let bounded = view.objective.prior.bounded(CropPose {
             rotation: pose.rotation,
             size: pose.log_scale,
             place: glam::DVec2::ZERO,
             distance: 0.0,
         });
-        pose.log_scale = held.size;
+        pose.log_scale = bounded.size;
         pose
     }
 
     fn score(&mut self, pose: &WorldPose) -> JointScore {
         Joint::score(self, pose)
-    }
-
-    fn total(score: &JointScore) -> f32 {
-        score.total
     }
 
     fn equations(&mut self, pose: &WorldPose, score: &JointScore) -> NormalEquations {

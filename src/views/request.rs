@@ -12,8 +12,8 @@ use crate::error::{Error, ErrorCode, Result};
 use crate::evidence::observation::Observation;
 use crate::options::Options;
 use crate::pauses::{Boxed, Pauses, boxed};
-use crate::precise;
-use crate::precise::prepared_mesh::PreparedMesh;
+use crate::precise::drawn::prepared_mesh::PreparedMesh;
+use crate::precise::searched::efforts;
 use crate::progress::{Host, Stage, Stopwatch};
 
 /// Progress at the start of each stage, 0 to 1.
@@ -82,11 +82,11 @@ impl Request {
             let mut stages = Stopwatch::new(host, PLAN);
             mesh.check()?;
             let options = self.options.of_one_view();
-            let efforts = precise::efforts(&options);
+            let efforts = efforts::of(&options);
             let mut searched: Vec<SearchedView> = Vec::new();
             let mut summary = Err(no_mask());
             for (effort, settings) in efforts.iter().enumerate() {
-                let share = precise::share(effort, efforts.len());
+                let share = efforts::share(effort, efforts.len());
                 let before = core::mem::take(&mut searched);
                 for (index, observation) in self.observations.iter().enumerate() {
                     let Some(observation) = observation else { continue };

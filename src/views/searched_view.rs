@@ -1,19 +1,21 @@
 //! The search in one view, whose poses are hypotheses for all.
 
-use super::world_pose::PlacedCamera;
+use super::known::Part;
+use super::world_pose::{PlacedCamera, WorldPose};
 use crate::error::Result;
 use crate::evidence::observation::Observation;
 use crate::evidence::photo::Photo;
 use crate::geometry::surface_colors::SurfaceColors;
 use crate::pauses::Pauses;
-use crate::precise::color::{Judgment, judgment};
+use crate::precise::drawn::pose::CropPose;
+use crate::precise::drawn::prepared_mesh::PreparedMesh;
+use crate::precise::judged::color::{Judgment, judgment};
 use crate::precise::options::AlignOptions;
-use crate::precise::pose::CropPose;
-use crate::precise::prepared_mesh::PreparedMesh;
-use crate::precise::recipe::FIRST_REFINEMENT;
-use crate::precise::rounds::Rounds;
-use crate::precise::search::{Found, Search};
-use crate::precise::{self, SearchSettings};
+use crate::precise::searched::ranking::Found;
+use crate::precise::searched::recipe::{FIRST_REFINEMENT, SearchSettings};
+use crate::precise::searched::rounds::Rounds;
+use crate::precise::searched::search::Search;
+use crate::precise::searched::start;
 use crate::progress::Stopwatch;
 
 /// A view with a mask, and its search.
@@ -34,7 +36,7 @@ impl SearchedView {
     /// A view before its search; `previous` is the same view after a search with less effort.
     ///
     /// # Errors
-    /// As [`precise::begin`].
+    /// As [`start::begin`].
     pub fn begin(
         (index, camera): (usize, PlacedCamera),
         observation: &Observation,
@@ -44,7 +46,7 @@ impl SearchedView {
         stages: &mut Stopwatch<'_>,
     ) -> Result<Self> {
         let before = previous.map(|view| &view.rounds);
-        let rounds = precise::begin(observation, mesh, before, options, settings, stages)?;
+        let rounds = start::begin(observation, mesh, before, options, settings, stages)?;
         Ok(Self { index, camera, rounds, candidates: Vec::new(), color: None })
     }
 
@@ -66,6 +68,18 @@ impl SearchedView {
             self.rounds.found.insert(0, chosen);
         }
         self.color = Some(judgment);
+    }
+
+    /// The view as one of several.
+    pub fn part(&self) -> Part<'_> {
+        let own = self.found().first().map(|found| found.pose);
+        Part { index: self.index, search: self.search(), camera: self.camera, own }
+    }
+
+    /// The poses in the world that the search has found or refined once.
+    pub fn hypotheses(&self) -> impl Iterator<Item = WorldPose> {
+        let poses = self.found().iter().map(|found| found.pose).chain(self.candidates.iter().copied());
+        poses.map(|pose| self.camera.place(&pose))
     }
 
     /// The poses that the search has found, best first.

@@ -8,9 +8,9 @@ use crate::evidence::observation::Observation;
 use crate::evidence::sample::Sampling;
 use crate::geometry::similarity::Similarity;
 use crate::metrics::{self, Metrics};
-use crate::precise::color::agreement;
-use crate::precise::prepared_mesh::PreparedMesh;
-use crate::precise::score::Score;
+use crate::precise::drawn::prepared_mesh::PreparedMesh;
+use crate::precise::judged::color::agreement;
+use crate::precise::scored::score::Score;
 use crate::progress::Stopwatch;
 use crate::report::{Alternative, ColorReport, Effort, ScoreTerms, Warning, WarningCode};
 

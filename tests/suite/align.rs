@@ -12,7 +12,7 @@ use sim3align::options::Options;
 use sim3align::options::scale::ScaleOption;
 use sim3align::paper::options::{GuardMode, PaperOptions};
 use sim3align::precise::options::{AlignOptions, Quality, SearchScope};
-use sim3align::precise::recipe::ROUNDS;
+use sim3align::precise::searched::recipe::ROUNDS;
 use sim3align::progress::{Host, Silent, Stage};
 use sim3align::register::options::Icp;
 use sim3align::report::Preset;
@@ -54,13 +54,13 @@ fn finds_a_clean_object_near_its_pose_and_reports_how() {
     let consistency = [scored.metrics, metrics].map(|m| m.normal_consistency.unwrap());
     assert!((consistency[0] - consistency[1]).abs() < 2e-3, "{consistency:?}");
     assert_eq!(scored.metrics, Metrics { normal_consistency: scored.metrics.normal_consistency, ..metrics });
-    assert_eq!(scored.diagnostics.scale_ratio, result.diagnostics.scale_ratio);
+    assert_eq!(scored.diagnostics.scale_ratio, result.diagnostics.common.scale_ratio);
     assert!(result.metrics.unwrap().iou.unwrap() > 0.7, "{:?}", result.metrics);
     let counts = result.diagnostics.counts;
     assert!(counts.inliers >= 3 && counts.inliers <= counts.matches, "{counts:?}");
     assert!(counts.source_voxels < counts.source_points && counts.target_voxels < counts.target_points, "{counts:?}");
     assert!(
-        !result.diagnostics.collapsed && !result.diagnostics.clamped && result.warnings.is_empty(),
+        !result.diagnostics.common.collapsed && !result.diagnostics.common.clamped && result.warnings.is_empty(),
         "{:?}",
         result.warnings
     );
@@ -92,9 +92,9 @@ fn every_ablation_runs_and_does_what_it_says() {
     let narrow = PaperOptions { guard: Some([1.0, 1.0]), guard_mode: GuardMode::Clamp, ..paper() };
     let clamped = solve(&narrow);
     assert!(
-        (clamped.diagnostics.scale_ratio - 1.0).abs() < 1e-9 && clamped.diagnostics.clamped,
+        (clamped.diagnostics.common.scale_ratio - 1.0).abs() < 1e-9 && clamped.diagnostics.common.clamped,
         "{}",
-        clamped.diagnostics.scale_ratio
+        clamped.diagnostics.common.scale_ratio
     );
     assert!(
         clamped.diagnostics.counts.clamped > 0 && clamped.diagnostics.counts.rejected == 0,
@@ -112,9 +112,9 @@ fn every_ablation_runs_and_does_what_it_says() {
     let tight = PaperOptions { lock_scale: false, guard: Some([0.999, 1.001]), ..paper() };
     let stopped = solve(&tight);
     assert!(
-        stopped.diagnostics.clamped && stopped.diagnostics.counts.clamped == 0,
+        stopped.diagnostics.common.clamped && stopped.diagnostics.counts.clamped == 0,
         "{} {:?}",
-        stopped.diagnostics.scale_ratio,
+        stopped.diagnostics.common.scale_ratio,
         stopped.diagnostics.counts
     );
 
@@ -176,11 +176,11 @@ fn progress_never_falls_and_every_stage_is_timed() {
     let result = align_paper(&observe(&mesh, 1.0), &mesh, &paper(), &mut listener).unwrap();
     assert!(listener.calls.windows(2).all(|w| w[0].1 <= w[1].1), "{:?}", listener.calls);
     assert_eq!(listener.calls.last().unwrap().1, 1.0);
-    let timed = result.diagnostics.timings_ms.stages();
+    let timed = result.diagnostics.common.timings_ms.stages();
     let names: Vec<&str> = timed.iter().map(|(stage, _)| stage.as_str()).collect();
     assert_eq!(names, ["observe", "sample", "normals", "features", "matching", "ransac", "filter", "icp", "metrics"]);
     assert!(timed.iter().all(|(_, ms)| *ms == 1.0), "{timed:?}");
-    assert_eq!(result.diagnostics.timings_ms.total_ms(), 9.0);
+    assert_eq!(result.diagnostics.common.timings_ms.total_ms(), 9.0);
 }
 
 #[wasm_bindgen_test(unsupported = test)]
@@ -279,11 +279,7 @@ fn the_default_searches_by_rendering() {
     let mut listener = Listener::default();
     let result = align(&observation, &mesh, &AlignOptions::default(), &mut listener).unwrap();
     assert_eq!(result.diagnostics.common.preset, Preset::Precise);
-    assert!(
-        result.diagnostics.score > 0.0 && result.diagnostics.common.counts.renders > 0,
-        "{:?}",
-        result.diagnostics.common.counts
-    );
+    assert!(result.diagnostics.score > 0.0 && result.diagnostics.counts.renders > 0, "{:?}", result.diagnostics.counts);
     assert!(listener.calls.windows(2).all(|w| w[0].1 <= w[1].1), "{:?}", listener.calls);
     assert_eq!(listener.calls.last().unwrap().1, 1.0);
     for name in ["prepare", "search", "refine"] {

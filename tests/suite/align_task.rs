@@ -2,8 +2,9 @@
 
 use sim3align::align::{align, align_task};
 use sim3align::error::ErrorCode;
+use sim3align::precise::drawn::prepared_mesh::PreparedMesh;
 use sim3align::precise::options::{AlignOptions, Quality};
-use sim3align::precise::prepared_mesh::PreparedMesh;
+use sim3align::precise::searched::start::prepare;
 use sim3align::progress::{Silent, Timings};
 use sim3align::report::Alignment;
 use wasm_bindgen_test::wasm_bindgen_test;
@@ -46,7 +47,7 @@ fn pauses_change_nothing() {
 fn a_prepared_mesh_gives_the_same_bits_at_every_quality() {
     let mesh = body();
     let prepared = PreparedMesh::new(mesh.clone());
-    prepared.prepare().unwrap();
+    prepare(&prepared).unwrap();
     for quality in [Quality::Balanced, Quality::Fast, Quality::Fast] {
         let options = AlignOptions { quality, ..AlignOptions::default() };
         let expected = align(&observe(&mesh, 1.0), &mesh, &options, &mut Silent).unwrap();

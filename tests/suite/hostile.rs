@@ -14,13 +14,13 @@ use sim3align::geometry::image::{DepthMap, Mask};
 use sim3align::geometry::mesh::Mesh;
 use sim3align::geometry::pinhole::Pinhole;
 use sim3align::geometry::similarity::Similarity;
-use sim3align::precise::SearchSettings;
-use sim3align::precise::clean::CleanObservation;
-use sim3align::precise::grid::CropGrid;
+use sim3align::precise::drawn::pose::CropPose;
+use sim3align::precise::drawn::prepared_mesh::PreparedMesh;
+use sim3align::precise::drawn::render::{Canvas, Model};
+use sim3align::precise::observed::clean::CleanObservation;
+use sim3align::precise::observed::grid::CropGrid;
 use sim3align::precise::options::{AlignOptions, Quality};
-use sim3align::precise::pose::CropPose;
-use sim3align::precise::prepared_mesh::PreparedMesh;
-use sim3align::precise::render::{Canvas, Model};
+use sim3align::precise::searched::recipe::SearchSettings;
 use sim3align::progress::Silent;
 use sim3align::report::{Effort, WarningCode};
 use wasm_bindgen_test::wasm_bindgen_test;
@@ -212,7 +212,7 @@ fn a_render_visits_a_bounded_number_of_cells() {
 fn renders_of(observation: &Observation, mesh: &Mesh, settings: SearchSettings) -> usize {
     let request = Request::new(quick()).unwrap().with_efforts(vec![settings]);
     let alignment = align_prepared(observation, &PreparedMesh::borrowed(mesh), request, &mut Silent).unwrap();
-    alignment.diagnostics.common.counts.renders
+    alignment.diagnostics.counts.renders
 }
 
 #[wasm_bindgen_test(unsupported = test)]

@@ -7,7 +7,7 @@ use sim3align::geometry::mesh::Mesh;
 use sim3align::geometry::rotations::angle_between;
 use sim3align::metrics::mesh_symmetry::symmetry_axes;
 use sim3align::metrics::symmetry::Symmetry;
-use sim3align::precise::equivalence::Equivalence;
+use sim3align::precise::drawn::equivalence::Equivalence;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::precise_scene::rotation;

@@ -41,7 +41,7 @@ fn scale(result: &Alignment) -> f64 {
 const PRECISE: &[Effect<AlignOptions, Alignment>] = &[
     ("quality", |base, usual, solve| {
         let balanced = solve(&AlignOptions { quality: Quality::Balanced, ..base.clone() });
-        balanced.diagnostics.common.counts.renders > 2 * usual.diagnostics.common.counts.renders
+        balanced.diagnostics.counts.renders > 2 * usual.diagnostics.counts.renders
     }),
     ("scale", |base, _, solve| {
         (scale(&solve(&AlignOptions { scale: ScaleOption::Fixed(0.15), ..base.clone() })) - 0.15).abs() < 1e-9
@@ -74,17 +74,17 @@ const PRECISE: &[Effect<AlignOptions, Alignment>] = &[
     ("initial", |base, usual, solve| {
         // One candidate more, which is the truth: more is drawn, and what is found is hardly worse.
         let given = solve(&AlignOptions { initial: Some(precise::truth()), ..base.clone() });
-        given.diagnostics.common.counts.renders > usual.diagnostics.common.counts.renders
+        given.diagnostics.counts.renders > usual.diagnostics.counts.renders
             && given.diagnostics.score > usual.diagnostics.score - 0.01
     }),
     ("search", |base, _, solve| {
         let given = AlignOptions { initial: Some(precise::truth()), ..base.clone() };
         let local = AlignOptions { search: SearchScope::Local, ..given.clone() };
-        2 * solve(&local).diagnostics.common.counts.renders < solve(&given).diagnostics.common.counts.renders
+        2 * solve(&local).diagnostics.counts.renders < solve(&given).diagnostics.counts.renders
     }),
     ("workBudget", |base, usual, solve| {
-        solve(&AlignOptions { work_budget: Some(20.0), ..base.clone() }).diagnostics.common.counts.renders
-            < usual.diagnostics.common.counts.renders
+        solve(&AlignOptions { work_budget: Some(20.0), ..base.clone() }).diagnostics.counts.renders
+            < usual.diagnostics.counts.renders
     }),
     ("seed", |base, usual, solve| {
         // The search draws nothing at random; the clouds of the metrics are other ones.
@@ -93,10 +93,10 @@ const PRECISE: &[Effect<AlignOptions, Alignment>] = &[
             && other.metrics.unwrap().chamfer_mm != usual.metrics.unwrap().chamfer_mm
     }),
     ("maxObservedPoints", |base, _, solve| {
-        solve(&AlignOptions { max_observed_points: 333, ..base.clone() }).diagnostics.common.counts.target_points == 333
+        solve(&AlignOptions { max_observed_points: 333, ..base.clone() }).diagnostics.counts.target_points == 333
     }),
     ("surfaceSamples", |base, _, solve| {
-        solve(&AlignOptions { surface_samples: 222, ..base.clone() }).diagnostics.common.counts.source_points == 222
+        solve(&AlignOptions { surface_samples: 222, ..base.clone() }).diagnostics.counts.source_points == 222
     }),
     ("metrics", |base, usual, solve| {
         let without = solve(&AlignOptions { metrics: false, ..base.clone() });
@@ -152,14 +152,14 @@ const PAPER: &[Effect<PaperOptions, PaperAlignment>] = &[
             && free.rejected == 0
             && tight.diagnostics.counts.rejected * usual.diagnostics.counts.iterations
                 > usual.diagnostics.counts.rejected * tight.diagnostics.counts.iterations
-            && (0.99..=1.01).contains(&tight.diagnostics.scale_ratio)
+            && (0.99..=1.01).contains(&tight.diagnostics.common.scale_ratio)
     }),
     ("guardMode", |base, _, solve| {
         let clamping = PaperOptions { guard: Some([1.0, 1.0]), guard_mode: GuardMode::Clamp, ..base.clone() };
         let clamped = solve(&clamping);
         clamped.diagnostics.counts.clamped > 0
             && clamped.diagnostics.counts.rejected == 0
-            && (clamped.diagnostics.scale_ratio - 1.0).abs() < 1e-9
+            && (clamped.diagnostics.common.scale_ratio - 1.0).abs() < 1e-9
     }),
     ("ransacIterations", |base, usual, solve| {
         let iterations = solve(&PaperOptions { ransac_iterations: 700, ..base.clone() }).diagnostics.counts.iterations;
@@ -205,7 +205,7 @@ const PAPER: &[Effect<PaperOptions, PaperAlignment>] = &[
         // On voxels, then on the points themselves.
         one.diagnostics.counts.icp_iterations == 2
             && usual.diagnostics.counts.icp_iterations > 2
-            && !one.diagnostics.converged
+            && !one.diagnostics.common.converged
     }),
 ];
 

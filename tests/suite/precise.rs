@@ -14,8 +14,8 @@ use sim3align::geometry::rasteriser::Rasteriser;
 use sim3align::geometry::similarity::Similarity;
 use sim3align::metrics::symmetry::{Symmetry, SymmetryAxis};
 use sim3align::options::scale::ScaleOption;
-use sim3align::precise::efforts;
 use sim3align::precise::options::{AlignOptions, ExtentAxis, Quality, SearchScope};
+use sim3align::precise::searched::efforts;
 use sim3align::progress::Silent;
 use sim3align::report::{Alignment, Effort, WarningCode};
 use wasm_bindgen_test::wasm_bindgen_test;
@@ -92,7 +92,7 @@ fn finds_the_pose_and_the_size() {
         "{}",
         result.diagnostics.common.residual_m
     );
-    assert!(result.diagnostics.common.counts.renders > 500);
+    assert!(result.diagnostics.counts.renders > 500);
     assert!(result.warnings.is_empty(), "{:?}", result.warnings);
     assert!(solve(&AlignOptions { quality: Quality::Balanced, ..quick() }).diagnostics.common.converged);
     let terms = result.diagnostics.terms;
@@ -176,7 +176,7 @@ fn a_local_search_refines_the_pose_it_is_given() {
     assert!(turn_deg(&pose, &truth()) < 1.5, "{}°", turn_deg(&pose, &truth()));
     assert!((pose.scale / truth().scale - 1.0).abs() < 0.01);
     assert!(
-        result.diagnostics.common.counts.renders < solve(&quick()).diagnostics.common.counts.renders / 2,
+        result.diagnostics.counts.renders < solve(&quick()).diagnostics.counts.renders / 2,
         "only the neighbourhood is drawn"
     );
 
@@ -205,7 +205,7 @@ fn an_initial_pose_behind_the_camera_is_refused() {
 #[wasm_bindgen_test(unsupported = test)]
 fn the_best_quality_draws_more_and_is_as_near() {
     let best = solve(&AlignOptions { quality: Quality::Best, ..quick() });
-    assert!(best.diagnostics.common.counts.renders > 2 * solve(&quick()).diagnostics.common.counts.renders);
+    assert!(best.diagnostics.counts.renders > 2 * solve(&quick()).diagnostics.counts.renders);
     assert!(turn_deg(&similarity(&best), &truth()) < 1.0);
 }
 
@@ -245,16 +245,16 @@ fn alternatives_are_told_from_repetitions() {
 
 #[wasm_bindgen_test(unsupported = test)]
 fn a_budget_bounds_the_work() {
-    let renders = |work_budget| solve(&AlignOptions { work_budget, ..quick() }).diagnostics.common.counts.renders;
+    let renders = |work_budget| solve(&AlignOptions { work_budget, ..quick() }).diagnostics.counts.renders;
     let (small, large) = (renders(Some(15.0)), renders(Some(120.0)));
     assert!(small < large, "{small} and {large}");
     assert!(small < renders(None));
     assert_eq!(small, renders(Some(15.0)), "counted, not timed");
-    let settings = |work_budget| efforts(&AlignOptions { work_budget: Some(work_budget), ..quick() });
+    let settings = |work_budget| efforts::of(&AlignOptions { work_budget: Some(work_budget), ..quick() });
     assert!(settings(1e-9)[0].rotations() >= 60, "the least that is a search");
     assert!(settings(1e300)[0].rotations() < 100_000, "the most");
     // Two searches share a budget: as little as one takes is for one, and what it leaves for the other.
-    let both = |work_budget| efforts(&AlignOptions { work_budget: Some(work_budget), ..AlignOptions::default() });
+    let both = |work_budget| efforts::of(&AlignOptions { work_budget: Some(work_budget), ..AlignOptions::default() });
     let [fast, best] = both(1e9)[..] else { panic!("two searches") };
     assert_eq!((fast.effort, best.effort), (Effort::Fast, Effort::Best));
     assert_eq!(both(0.5 * fast.cost()).len(), 1);

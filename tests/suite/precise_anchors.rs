@@ -1,8 +1,8 @@
 //! The anchors of `precise`: where something nearer, or the image border, cuts the mask off.
 
 use glam::DVec2;
-use sim3align::precise::anchors::{Anchor, anchors};
-use sim3align::precise::grid::CropGrid;
+use sim3align::precise::observed::anchors::{Anchor, anchors};
+use sim3align::precise::observed::grid::CropGrid;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::precise_scene::empty_grid;

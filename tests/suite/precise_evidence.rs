@@ -4,8 +4,8 @@ use glam::{DVec2, DVec3};
 use sim3align::evidence::observation::Observation;
 use sim3align::geometry::image::{DepthMap, Mask};
 use sim3align::geometry::pinhole::Pinhole;
-use sim3align::precise::clean::CleanObservation;
-use sim3align::precise::grid::CropGrid;
+use sim3align::precise::observed::clean::CleanObservation;
+use sim3align::precise::observed::grid::CropGrid;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::support::Draw;

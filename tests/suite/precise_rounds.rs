@@ -4,13 +4,14 @@ use std::rc::Rc;
 
 use sim3align::geometry::rotations::angle_between;
 use sim3align::pauses::{Pauses, Task};
-use sim3align::precise::clean::CleanObservation;
-use sim3align::precise::mesh_pyramid::MeshPyramid;
-use sim3align::precise::pose::{CropPose, MeshFrame};
-use sim3align::precise::recipe::{FIRST_REFINEMENT, RANKING, SearchSettings, TURNING, Task as Kind};
-use sim3align::precise::rounds::Rounds;
-use sim3align::precise::search::{Found, Search};
-use sim3align::precise::turns::TURNS;
+use sim3align::precise::drawn::mesh_pyramid::MeshPyramid;
+use sim3align::precise::drawn::pose::{CropPose, MeshFrame};
+use sim3align::precise::drawn::turns::TURNS;
+use sim3align::precise::observed::clean::CleanObservation;
+use sim3align::precise::searched::ranking::Found;
+use sim3align::precise::searched::recipe::{FIRST_REFINEMENT, RANKING, SearchSettings, TURNING, Task as Kind};
+use sim3align::precise::searched::rounds::Rounds;
+use sim3align::precise::searched::search::Search;
 use sim3align::report::Effort;
 use wasm_bindgen_test::wasm_bindgen_test;
 

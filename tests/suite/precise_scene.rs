@@ -3,10 +3,10 @@
 use glam::{DQuat, DVec2, DVec3, Vec3};
 use sim3align::geometry::mesh::Mesh;
 use sim3align::geometry::rotations::exp;
-use sim3align::precise::grid::CropGrid;
-use sim3align::precise::pose::{CropPose, MeshFrame};
-use sim3align::precise::render::{Canvas, Model};
-use sim3align::precise::score::{Scoring, Weights};
+use sim3align::precise::drawn::pose::{CropPose, MeshFrame};
+use sim3align::precise::drawn::render::{Canvas, Model};
+use sim3align::precise::observed::grid::CropGrid;
+use sim3align::precise::scored::score::{Scoring, Weights};
 
 use crate::shapes::{ellipsoid, mapped};
 use crate::support::Draw;

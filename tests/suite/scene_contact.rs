@@ -8,9 +8,9 @@ use sim3align::geometry::normal_equations::NormalEquations;
 use sim3align::geometry::pinhole::Pinhole;
 use sim3align::geometry::random::Random;
 use sim3align::geometry::similarity::Similarity;
-use sim3align::precise::pose::{CropPose, Step};
-use sim3align::precise::rests::{Rest, rests};
-use sim3align::precise::surroundings::{Ground, Surroundings};
+use sim3align::precise::drawn::pose::{CropPose, Step};
+use sim3align::precise::drawn::rests::{Rest, rests};
+use sim3align::precise::scored::surroundings::{Ground, Surroundings};
 use sim3align::scene::layers::{layer, volumes};
 use wasm_bindgen_test::wasm_bindgen_test;
 

@@ -11,10 +11,10 @@ use sim3align::geometry::random::Random;
 use sim3align::geometry::rasteriser::Rasteriser;
 use sim3align::geometry::rotations::{angle_between, exp, super_fibonacci};
 use sim3align::geometry::triangle_tree::TriangleTree;
-use sim3align::precise::clean::CleanObservation;
-use sim3align::precise::grid::CropGrid;
-use sim3align::precise::pose::{CropPose, MeshFrame};
-use sim3align::precise::render::{Canvas, Model};
+use sim3align::precise::drawn::pose::{CropPose, MeshFrame};
+use sim3align::precise::drawn::render::{Canvas, Model};
+use sim3align::precise::observed::clean::CleanObservation;
+use sim3align::precise::observed::grid::CropGrid;
 use wasm_bindgen_test::wasm_bindgen_test;
 
 use crate::shapes::{ellipsoid, mapped, sphere};

@@ -195,7 +195,7 @@ fn pauses_and_repeats_change_no_bit() {
     let sequence = rig(46, 2, 0);
     let bits = |found: &ViewsAlignment| fingerprint(found.world_from_mesh.matrix.map(f64::to_bits));
     let whole = align(&sequence, views_of(&sequence));
-    let mesh = sim3align::precise::prepared_mesh::PreparedMesh::borrowed(&sequence.mesh);
+    let mesh = sim3align::precise::drawn::prepared_mesh::PreparedMesh::borrowed(&sequence.mesh);
     let mut task = align_views_task(views_of(&sequence), &mesh, options(&sequence), Silent, || 0.0).unwrap();
     let mut steps = 0;
     let paused = loop {

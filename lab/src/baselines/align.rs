@@ -80,19 +80,19 @@ pub fn align_baseline(
         let solution = Solution {
             converged: refined.is_none_or(|refined| refined.converged),
             residual_m: refined.map_or(0.0, |refined| refined.rms * observed.diagonal()),
-            counts: Counts {
-                source_voxels: clouds.source.cloud.len(),
-                target_voxels: clouds.target.cloud.len(),
-                matches: found.matches,
-                inliers: found.inliers,
-                supported: refined.map_or(0, |refined| refined.supported),
-                iterations: found.ransac_iterations,
-                icp_iterations: refined.map_or(0, |refined| refined.iterations),
-                ..Counts::default()
-            },
             ..Solution::of_pose(target_from_source(observed, &found.target_from_source, reconstructed))
         };
-        Ok(solution)
+        let counts = Counts {
+            source_voxels: clouds.source.cloud.len(),
+            target_voxels: clouds.target.cloud.len(),
+            matches: found.matches,
+            inliers: found.inliers,
+            supported: refined.map_or(0, |refined| refined.supported),
+            iterations: found.ransac_iterations,
+            icp_iterations: refined.map_or(0, |refined| refined.iterations),
+            ..Counts::default()
+        };
+        Ok((solution, counts))
     })
 }
 

@@ -1,5 +1,7 @@
 //! Runs methods over cases, and records the results for tables.
 
+use sim3align::precise::searched::recipe::SearchSettings;
+use sim3align::precise::searched::search::Search;
 use std::path::Path;
 use std::rc::Rc;
 use std::time::Instant;
@@ -20,14 +22,13 @@ use sim3align::metrics::Metrics;
 use sim3align::metrics::layout::LayoutErrors;
 use sim3align::metrics::pose_error::{PoseComparison, PoseErrors};
 use sim3align::metrics::symmetry::{Symmetry, SymmetryAxis};
-use sim3align::precise::clean::CleanObservation;
-use sim3align::precise::efforts;
-use sim3align::precise::mesh_pyramid::MeshPyramid;
+use sim3align::precise::drawn::mesh_pyramid::MeshPyramid;
+use sim3align::precise::drawn::pose::CropPose;
+use sim3align::precise::drawn::prepared_mesh::PreparedMesh;
+use sim3align::precise::observed::clean::CleanObservation;
 use sim3align::precise::options::AlignOptions;
-use sim3align::precise::pose::CropPose;
-use sim3align::precise::prepared_mesh::PreparedMesh;
-use sim3align::precise::recipe::FIRST_REFINEMENT;
-use sim3align::precise::{Search, SearchSettings};
+use sim3align::precise::searched::efforts;
+use sim3align::precise::searched::recipe::FIRST_REFINEMENT;
 use sim3align::progress::{Host, Stage};
 use sim3align::report::{Alternative, AnyAlignment, Sim3};
 use sim3align_geometry::error::{Error, ErrorCode, Result};
@@ -229,8 +230,8 @@ impl Host for Clock {
 /// `overrides` change single settings of the search (see [`override_setting`]).
 pub fn run_case(case: &BenchCase, method: &Method, overrides: &[(String, f64)]) -> Record {
     let mut searches = match method {
-        Method::Precise(options) => efforts(options),
-        Method::Paper(_) => efforts(&AlignOptions::default()),
+        Method::Precise(options) => efforts::of(options),
+        Method::Paper(_) => efforts::of(&AlignOptions::default()),
     };
     for (name, value) in overrides {
         searches.iter_mut().for_each(|settings| {

@@ -142,9 +142,9 @@ fn align_as(case: &BenchCase, outcome: Outcome) -> core::result::Result<AnyAlign
         align_by(&case.observation, &case.mesh, &setup, PLAN, &mut Silent, |clouds, _| {
             let solution = match &outcome {
                 Outcome::Pairs(pairs) => estimated(pairs, clouds.extents())?,
-                Outcome::Pose(pose) => Solution::of_pose(*pose),
+                Outcome::Pose(pose) => (Solution::of_pose(*pose), Counts::default()),
                 // Taken care of above.
-                Outcome::Failure(_) => Solution::of_pose(Similarity::identity()),
+                Outcome::Failure(_) => (Solution::of_pose(Similarity::identity()), Counts::default()),
             };
             Ok(solution)
         })
@@ -152,7 +152,7 @@ fn align_as(case: &BenchCase, outcome: Outcome) -> core::result::Result<AnyAlign
     aligned.map(Into::into).map_err(|error| described(&error))
 }
 
-fn estimated(pairs: &Pairs, [observed, reconstructed]: [&Extents; 2]) -> Result<Solution> {
+fn estimated(pairs: &Pairs, [observed, reconstructed]: [&Extents; 2]) -> Result<(Solution, Counts)> {
     let initial = initial_scale(observed, reconstructed);
     let scale = match (pairs.scale, PaperOptions::default().guard) {
         (PairScale::Initial, _) => ScaleOption::Fixed(initial),
@@ -161,11 +161,8 @@ fn estimated(pairs: &Pairs, [observed, reconstructed]: [&Extents; 2]) -> Result<
     };
     let inlier_distance = pairs.inlier_distance_m.unwrap_or(INLIER_DISTANCE * observed.diagonal());
     let found = pairs.estimate(scale, inlier_distance)?;
-    Ok(Solution {
-        residual_m: found.residual,
-        counts: Counts { source_points: 0, target_points: 0, ..found.diagnostics.counts },
-        ..Solution::of_pose(Similarity::from_column_major(&found.target_from_source.matrix)?)
-    })
+    let pose = Similarity::from_column_major(&found.target_from_source.matrix)?;
+    Ok((Solution { residual_m: found.residual, ..Solution::of_pose(pose) }, found.diagnostics.counts))
 }
 
 /// Reads an answer. `argument` names the file in errors, `names` is what its parts are called.

@@ -8,7 +8,7 @@ pub mod video;
 
 use nalgebra::{UnitQuaternion, Vector3};
 use sim3align::metrics::symmetry::Symmetry;
-use sim3align::precise::prepared_mesh::PreparedMesh;
+use sim3align::precise::drawn::prepared_mesh::PreparedMesh;
 use sim3align::views::View;
 use sim3align_geometry::mesh::Mesh;
 use sim3align_geometry::random::Random;

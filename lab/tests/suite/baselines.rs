@@ -156,8 +156,8 @@ fn with_paper(paper: PaperOptions) -> BaselineOptions {
 fn meshes_keep_their_initial_scale_but_for_teaser() {
     for baseline in Baseline::ALL {
         let found = align_by(baseline, &upright()).unwrap();
-        let is_initial = (found.diagnostics.scale_ratio - 1.0).abs() < 1e-9;
-        assert_eq!(is_initial, baseline != Baseline::Teaser, "{baseline:?}: {}", found.diagnostics.scale_ratio);
+        let is_initial = (found.diagnostics.common.scale_ratio - 1.0).abs() < 1e-9;
+        assert_eq!(is_initial, baseline != Baseline::Teaser, "{baseline:?}: {}", found.diagnostics.common.scale_ratio);
         assert!(
             found.diagnostics.counts.source_voxels > 0 && found.diagnostics.counts.target_voxels > 0,
             "{:?}",
@@ -176,11 +176,16 @@ fn meshes_keep_their_initial_scale_but_for_teaser() {
             "{baseline:?}: {:?}",
             found.diagnostics.counts
         );
-        assert_eq!(found.diagnostics.residual_m > 0.0, refines, "{baseline:?}: {}", found.diagnostics.residual_m);
+        assert_eq!(
+            found.diagnostics.common.residual_m > 0.0,
+            refines,
+            "{baseline:?}: {}",
+            found.diagnostics.common.residual_m
+        );
     }
     let locked =
         align_by(Baseline::Teaser, &BaselineOptions { lock_scale: true, ..BaselineOptions::default() }).unwrap();
-    assert!((locked.diagnostics.scale_ratio - 1.0).abs() < 1e-9, "{}", locked.diagnostics.scale_ratio);
+    assert!((locked.diagnostics.common.scale_ratio - 1.0).abs() < 1e-9, "{}", locked.diagnostics.common.scale_ratio);
     let plain =
         align_by(Baseline::Ransac, &with_paper(PaperOptions { icp: Icp::None, ..PaperOptions::default() })).unwrap();
     assert_eq!(plain.diagnostics.counts.icp_iterations, 0);

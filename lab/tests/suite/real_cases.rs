@@ -25,10 +25,10 @@ fn the_paper_preset_runs_on_every_case_and_its_scale_stays_inside_the_guard() {
     for case in cases() {
         let result = align_paper(&case.observation, &case.mesh, &PaperOptions::default(), &mut Silent).unwrap();
         assert!(
-            (0.5..=1.5).contains(&result.diagnostics.scale_ratio),
+            (0.5..=1.5).contains(&result.diagnostics.common.scale_ratio),
             "{}: scale ratio {}",
             case.name,
-            result.diagnostics.scale_ratio
+            result.diagnostics.common.scale_ratio
         );
         let camera_from_mesh = Similarity::from_column_major(&result.camera_from_mesh.matrix).unwrap();
         let truth = case.truth.map(|(camera_from_mesh, symmetry)| Truth {
@@ -40,7 +40,7 @@ fn the_paper_preset_runs_on_every_case_and_its_scale_stays_inside_the_guard() {
         println!(
             "{}: scale ratio {:.3}, IoU {:.3}, errors {:?}, {:?}",
             case.name,
-            result.diagnostics.scale_ratio,
+            result.diagnostics.common.scale_ratio,
             scored.metrics.iou.unwrap(),
             scored.errors.map(|e| (e.scale_error, e.rotation_error_deg, e.translation_error_relative)),
             result.diagnostics.counts

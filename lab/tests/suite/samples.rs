@@ -176,7 +176,7 @@ fn a_written_case_reads_back_and_the_paper_preset_aligns_it() {
     assert_eq!(symmetry, "none");
 
     let result = align_paper(&case.observation, &case.mesh, &PaperOptions::default(), &mut Silent).unwrap();
-    let ratio = result.diagnostics.scale_ratio;
+    let ratio = result.diagnostics.common.scale_ratio;
     assert!((0.5..=1.5).contains(&ratio), "scale ratio {ratio}");
 }
 

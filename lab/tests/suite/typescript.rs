@@ -22,8 +22,8 @@ use sim3align::progress::Stage;
 use sim3align::register::options::{EstimateSim3Options, Icp, RegisterOptions};
 use sim3align::register::report::{Registration, RegistrationDiagnostics};
 use sim3align::report::{
-    Alignment, Alternative, ColorReport, ColorVerdict, Counts, Diagnostics, Effort, PaperAlignment, PreciseDiagnostics,
-    Preset, ScoreTerms, Sim3, Uncertainty, Warning, WarningCode,
+    Alignment, Alternative, ColorReport, ColorVerdict, Counts, Diagnostics, Effort, PaperAlignment, PaperDiagnostics,
+    PreciseDiagnostics, Preset, ScoreTerms, SearchCounts, Sim3, Uncertainty, Warning, WarningCode,
 };
 use sim3align::scene::contact::Contact;
 use sim3align::track::options::TrackOptions;
@@ -287,11 +287,11 @@ fn types() -> String {
             .into(),
     );
     add! { types:
-        ErrorCode, WarningCode, Warning, Sim3, Metrics, PoseErrors, LayoutErrors, BopErrors, Counts,
-        ScoreTerms, ColorReport, Alternative, Uncertainty, EvaluationDiagnostics, Diagnostics,
-        PreciseDiagnostics, PaperAlignment, Alignment, WorldFrame, ViewRole, WorldUncertainty, CameraPose,
-        ViewPose, ViewsDiagnostics, ViewsAlignment, TrackState, CorrectedFrame, TrackedFrame, Evaluation,
-        Contact, RegistrationDiagnostics, Registration,
+        ErrorCode, WarningCode, Warning, Sim3, Metrics, PoseErrors, LayoutErrors, BopErrors, SearchCounts,
+        Counts, ScoreTerms, ColorReport, Alternative, Uncertainty, EvaluationDiagnostics, Diagnostics,
+        PaperDiagnostics, PreciseDiagnostics, PaperAlignment, Alignment, WorldFrame, ViewRole,
+        WorldUncertainty, CameraPose, ViewPose, ViewsDiagnostics, ViewsAlignment, TrackState, CorrectedFrame,
+        TrackedFrame, Evaluation, Contact, RegistrationDiagnostics, Registration,
     }
     let imports = "import type { Direction, ScaleOption, Sim3Like, SymmetryOption } from \"../argument-types.js\";\n\n";
     HEADER.to_owned() + imports + &types.declarations.join("\n")

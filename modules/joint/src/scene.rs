@@ -21,7 +21,7 @@ use sim3align::geometry::similarity::Similarity;
 use sim3align::number::number;
 use sim3align::options::Choice;
 use sim3align::pauses::{Pauses, Task};
-use sim3align::precise::surroundings::{Layer, Neighbourhood};
+use sim3align::precise::scored::surroundings::{Layer, Neighbourhood};
 use sim3align::report::{Alignment, Effort};
 use sim3align::scene::contact::contacts;
 use sim3align::scene::local::View;

@@ -13,7 +13,7 @@ use sim3align::bindings::object::wrong_type;
 use sim3align::bindings::transform::similarity;
 use sim3align::bindings::{input, mesh, options};
 use sim3align::error::{Error, ErrorCode, Result};
-use sim3align::precise::prepared_mesh::PreparedMesh;
+use sim3align::precise::drawn::prepared_mesh::PreparedMesh;
 use sim3align::track::tracker::Tracker;
 
 type Kept = Rc<RefCell<Tracker<Rc<PreparedMesh<'static>>>>>;

@@ -3,12 +3,12 @@
 import type { OptionRow } from "../options.js";
 import type {
   AlignOptions,
-  EstimateSim3Options,
-  EvaluateOptions,
   PaperOptions,
-  RegisterOptions,
-  TrackOptions,
   ViewsOptions,
+  TrackOptions,
+  EvaluateOptions,
+  RegisterOptions,
+  EstimateSim3Options,
 } from "./types.js";
 
 /** Defaults of `align`. */

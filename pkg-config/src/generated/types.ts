@@ -438,6 +438,16 @@ export type BopErrors = {
   addSMm: number;
 };
 
+/** Sizes of the problem and of the search. */
+export type SearchCounts = {
+  /** Source points, of the mesh surface. */
+  sourcePoints: number;
+  /** Target points, observed. */
+  targetPoints: number;
+  /** Images that the search drew. */
+  renders: number;
+};
+
 /**
  * Sizes of the problem and events during the run. `precise` counts points and renders, the other methods everything
  * but renders; what a method does not count is 0.
@@ -467,8 +477,6 @@ export type Counts = {
   clamped: number;
   /** ICP iterations. */
   icpIterations: number;
-  /** Images that the search drew. */
-  renders: number;
 };
 
 /**
@@ -513,8 +521,8 @@ export type Alternative = Sim3 & {
   /** The angle between its rotation and the alignment's, in degrees, 0 to 180. */
   turnDeg: number;
   /**
-   * By how much its colours agree less with the photo than the alignment's, as a difference of correlations; present
-   * where colours were compared.
+   * The correlation of the alignment's colours with the photo, minus that of this pose; present where colours were
+   * compared.
    */
   colorMargin?: number;
 };
@@ -563,14 +571,20 @@ export type Diagnostics = EvaluationDiagnostics & {
   converged: boolean;
   /** Root mean square residual of the refinement, in metres. */
   residualM: number;
-  /** Sizes of the problem and events during the run. */
-  counts: Counts;
   /** Milliseconds per stage, and their total. */
   timingsMs: Timings;
 };
 
+/** Diagnostics of the preset `paper`. */
+export type PaperDiagnostics = Diagnostics & {
+  /** Sizes of the problem and events during the run. */
+  counts: Counts;
+};
+
 /** Diagnostics of the preset `precise`. */
 export type PreciseDiagnostics = Diagnostics & {
+  /** Sizes of the problem and of the search. */
+  counts: SearchCounts;
   /** The effort of the search that found the pose; it follows from `quality`. */
   effort: Effort;
   /**
@@ -594,7 +608,7 @@ export type PaperAlignment = Sim3 & {
   /** Conditions that the caller should know about; the result stands. */
   warnings: Array<Warning>;
   /** Everything else: initial scale, counts, timings. */
-  diagnostics: Diagnostics;
+  diagnostics: PaperDiagnostics;
 };
 
 /**

@@ -1,8 +1,8 @@
 //! Several frames of an object: `alignViews`, and trackers.
 
 use sim3align::evidence::frame::Frame;
+use sim3align::precise::drawn::prepared_mesh::PreparedMesh;
 use sim3align::precise::options::Quality;
-use sim3align::precise::prepared_mesh::PreparedMesh;
 use sim3align::progress::Silent;
 use sim3align::track::options::TrackOptions;
 use sim3align::track::report::TrackedFrame;

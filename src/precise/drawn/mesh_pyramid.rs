@@ -7,7 +7,6 @@ use glam::Vec3;
 
 use super::equivalence::Equivalence;
 use super::pose::MeshFrame;
-use super::recipe::{FINE, FINEST, GRIDS, Grid};
 use super::render::Model;
 use super::turns::Turns;
 use crate::error::Result;
@@ -17,6 +16,7 @@ use crate::geometry::mesh::Mesh;
 use crate::geometry::rotations::fibonacci_sphere;
 use crate::geometry::surface::SurfaceMoments;
 use crate::metrics::symmetry::Symmetry;
+use crate::precise::observed::resolution::{FINE, FINEST, GRIDS, Grid};
 
 /// Number of directions along which extreme vertices of the mesh are kept, for bounding boxes.
 const DIRECTIONS: usize = 128;

@@ -2,8 +2,11 @@
 
 use glam::DVec3;
 
-use super::pose::CropPose;
 use crate::geometry::angle::sin_cos;
+use crate::geometry::cloud::Bounds;
+use crate::geometry::mesh::Mesh;
+use crate::precise::drawn::pose::{CropPose, MeshFrame};
+use crate::precise::options::{AlignOptions, ExtentAxis};
 
 /// Penalty of an upside-down pose, and the tilt at half of that penalty.
 const TILT: f64 = 0.3;
@@ -19,8 +22,26 @@ pub struct Prior {
 }
 
 impl Prior {
+    /// The prior that options state, of a mesh with this frame.
+    pub fn of(options: &AlignOptions, mesh: &Mesh, frame: &MeshFrame) -> Self {
+        let extent = Bounds::of(mesh.positions()).map_or(glam::Vec3::ONE, |b| b.extent());
+        let side = f64::from(match options.known_extent_axis {
+            ExtentAxis::Longest => extent.max_element(),
+            ExtentAxis::X => extent.x,
+            ExtentAxis::Y => extent.y,
+            ExtentAxis::Z => extent.z,
+        });
+        let known = options.known_extent_m.map(|length| [length / side; 2]);
+        let bounds = options.scale.bounds().or(known);
+        let direction = |v: [f64; 3]| DVec3::from(v).normalize_or_zero();
+        Self {
+            scale: bounds.map(|b| b.map(|s| s * frame.diagonal)),
+            up: options.camera_up.zip(options.mesh_up).map(|(camera, mesh)| [direction(camera), direction(mesh)]),
+        }
+    }
+
     /// The pose with its scale within the bounds, at the same distance.
-    pub fn held(&self, pose: CropPose) -> CropPose {
+    pub fn bounded(&self, pose: CropPose) -> CropPose {
         let Some(bounds) = self.scale else { return pose };
         let [low, high] = bounds.map(libm::log);
         let scale = pose.size + pose.distance;
@@ -32,7 +53,7 @@ impl Prior {
     }
 
     /// Whether a pose is at a bound of a scale that is not fixed.
-    pub fn holds(&self, pose: &CropPose) -> bool {
+    pub fn is_at_bound(&self, pose: &CropPose) -> bool {
         let scale = pose.size + pose.distance;
         self.scale.is_some_and(|[low, high]| {
             low < high && [low, high].iter().any(|bound| (libm::log(*bound) - scale).abs() < 1e-9)

@@ -3,8 +3,6 @@
 use glam::{DQuat, DVec3};
 use nalgebra::{Quaternion, UnitQuaternion};
 
-use super::score::NOISE;
-use super::search::Found;
 use crate::geometry::rotations::angle_between;
 use crate::metrics::symmetry::SymmetryGroup;
 
@@ -55,13 +53,5 @@ impl Equivalence {
     /// Whether every rotation is a symmetry.
     pub fn is_sphere(&self) -> bool {
         self.0.is_sphere()
-    }
-
-    /// The lead of a pose over the best of the others that is different, in units of the score, at most [`NOISE`]. `score`
-    /// gives the scores to be compared.
-    pub fn lead(&self, best: &Found, others: &[Found], score: impl Fn(&Found) -> f32) -> f64 {
-        let differs = |other: &&Found| self.angle(best.pose.rotation, other.pose.rotation) > DIFFERENT;
-        let rival = others.iter().filter(differs).map(&score).fold(f32::NEG_INFINITY, f32::max);
-        f64::from((score(best) - rival).min(NOISE))
     }
 }

@@ -6,11 +6,11 @@
 
 use glam::{DMat4, DVec4, Vec3};
 
-use super::grid::CropGrid;
-use super::pose::MeshFrame;
-use super::render::Canvas;
 use crate::evidence::photo::{Photo, PhotoRegion};
 use crate::geometry::surface_colors::SurfaceColors;
+use crate::precise::drawn::pose::MeshFrame;
+use crate::precise::drawn::render::Canvas;
+use crate::precise::observed::grid::CropGrid;
 
 /// Maximum number of pixels along a side of a cell whose mean is its colour.
 const MAX_SAMPLES: usize = 6;

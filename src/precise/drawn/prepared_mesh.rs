@@ -5,12 +5,11 @@ use std::borrow::Cow;
 use std::rc::Rc;
 
 use super::mesh_pyramid::MeshPyramid;
-use super::options::Quality;
-use super::recipe::{GRIDS, Grid, SearchSettings};
 use crate::error::Result;
 use crate::geometry::mesh::Mesh;
 use crate::geometry::surface::check_shape;
 use crate::geometry::surface_colors::SurfaceColors;
+use crate::precise::observed::resolution::{GRIDS, Grid};
 
 /// A mesh with cached derived data: the result of its validation, and its decimations. Both are computed on first use.
 /// Results are bit-identical to those of the mesh itself. Vertices that no triangle uses are removed: they are no part
@@ -65,17 +64,6 @@ impl<'a> PreparedMesh<'a> {
             check_shape(&self.mesh)?;
             self.is_checked.set(true);
         }
-        Ok(())
-    }
-
-    /// Validates the mesh, and decimates it for the first search of the default quality.
-    ///
-    /// # Errors
-    /// [`DegenerateMesh`](crate::error::ErrorCode::DegenerateMesh).
-    pub fn prepare(&self) -> Result<()> {
-        self.check()?;
-        let first = Quality::default().efforts().first();
-        first.into_iter().for_each(|&effort| drop(self.pyramid(&SearchSettings::from(effort).grids)));
         Ok(())
     }
 

@@ -7,14 +7,14 @@ use std::rc::Rc;
 
 use glam::{DQuat, DVec3, Vec3};
 
-use super::clean::CleanObservation;
-use super::grid::CropGrid;
-use super::mesh_pyramid::MeshPyramid;
-use super::pose::CropPose;
-use super::render::Canvas;
-use super::rests::{Rest, rests};
 use crate::geometry::normal_equations::NormalEquations;
 use crate::geometry::rotations::exp;
+use crate::precise::drawn::mesh_pyramid::MeshPyramid;
+use crate::precise::drawn::pose::CropPose;
+use crate::precise::drawn::render::Canvas;
+use crate::precise::drawn::rests::{Rest, rests};
+use crate::precise::observed::clean::CleanObservation;
+use crate::precise::observed::grid::CropGrid;
 
 /// The plane that an object may stand on.
 #[derive(Debug, Clone)]

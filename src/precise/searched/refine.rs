@@ -6,12 +6,13 @@
 
 use glam::Vec3;
 
-use super::ascent::{Ascent, Summit, ascend, limited};
-use super::objective::Objective;
-use super::pose::{CropPose, Step};
-use super::render::Canvas;
-use super::score::{Background, Score, is_outline};
+use super::ascent::{Ascent, ascend, limited};
+use super::ranking::Found;
 use crate::geometry::normal_equations::{NormalEquations, NormalEquationsOf, PARAMETERS};
+use crate::precise::drawn::pose::{CropPose, Step};
+use crate::precise::drawn::render::Canvas;
+use crate::precise::scored::objective::Objective;
+use crate::precise::scored::score::{Background, Score, is_outline};
 
 /// The problem of a refinement.
 pub struct Refiner<'a> {
@@ -21,19 +22,6 @@ pub struct Refiner<'a> {
     pub lock_scale: bool,
 }
 
-/// The result of a refinement.
-#[derive(Debug, Clone, Copy)]
-pub struct Refined {
-    /// The pose.
-    pub pose: CropPose,
-    /// Its score.
-    pub score: Score,
-    /// Number of renders.
-    pub renders: usize,
-    /// Whether the refinement converged: the last step hardly increased the score, or no step would.
-    pub converged: bool,
-}
-
 /// Minimum magnitude of residuals, in units of their scale, because a loss like |e| has no finite curvature at 0.
 const MIN_DEPTH_ERROR: f32 = 0.1;
 const MIN_OUTLINE_CELLS: f32 = 0.5;
@@ -41,25 +29,21 @@ const MIN_OUTLINE_CELLS: f32 = 0.5;
 const FAR_OUTLINE: f32 = 1.0 / 9.0;
 
 /// A refinement on one grid, whose last render is on the canvas.
-struct OnGrid<'a, 'c> {
-    refiner: &'a Refiner<'a>,
-    canvas: &'c mut Canvas,
+pub(super) struct OnGrid<'a, 'c> {
+    pub(super) refiner: &'a Refiner<'a>,
+    pub(super) canvas: &'c mut Canvas,
 }
 
 impl Ascent for OnGrid<'_, '_> {
     type Pose = CropPose;
     type Score = Score;
 
-    fn held(&self, pose: CropPose) -> CropPose {
-        self.refiner.objective.prior.held(pose)
+    fn allowed(&self, pose: CropPose) -> CropPose {
+        self.refiner.objective.prior.bounded(pose)
     }
 
     fn score(&mut self, pose: &CropPose) -> Score {
         self.refiner.objective.score(self.canvas, pose)
-    }
-
-    fn total(score: &Score) -> f32 {
-        score.total
     }
 
     fn equations(&mut self, pose: &CropPose, score: &Score) -> NormalEquations {
@@ -73,10 +57,8 @@ impl Ascent for OnGrid<'_, '_> {
 
 impl Refiner<'_> {
     /// Refines `pose` in at most `iterations` steps.
-    pub fn refine(&self, canvas: &mut Canvas, pose: CropPose, iterations: usize) -> Refined {
-        let Summit { pose, score, renders, converged } =
-            ascend(&mut OnGrid { refiner: self, canvas }, pose, iterations);
-        Refined { pose, score, renders, converged }
+    pub fn refine(&self, canvas: &mut Canvas, pose: CropPose, iterations: usize) -> Found {
+        ascend::<PARAMETERS, _>(&mut OnGrid { refiner: self, canvas }, pose, iterations)
     }
 
     /// A pose after a step, limited to the range in which the quadratic is valid; `None` if it is not finite.
@@ -87,7 +69,7 @@ impl Refiner<'_> {
         }
         let step = limited(step);
         let next = pose.moved(&step);
-        let is_finite = step.iter().all(|x| x.is_finite()) && self.objective.prior.held(next).is_finite();
+        let is_finite = step.iter().all(|x| x.is_finite()) && self.objective.prior.bounded(next).is_finite();
         is_finite.then_some(next)
     }
 

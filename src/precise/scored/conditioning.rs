@@ -2,9 +2,9 @@
 
 use glam::{DMat3, DVec3};
 
-use super::pose::CropPose;
 use crate::geometry::normal_equations::{NormalEquationsOf, PARAMETERS};
 use crate::geometry::symmetric_eigen::SymmetricEigen;
+use crate::precise::drawn::pose::CropPose;
 
 /// Score decrease at one standard deviation, calibrated so that the errors of correct poses on generated cases have the
 /// reported size.
@@ -52,7 +52,7 @@ pub fn covariance<const N: usize>(equations: &NormalEquationsOf<N>) -> Option<[[
 }
 
 /// Holds the roll about an axis, in the camera frame, of a pose whose first three parameters are its rotation.
-pub fn hold_roll<const N: usize>(equations: &mut NormalEquationsOf<N>, axis: DVec3) {
+pub fn fix_roll<const N: usize>(equations: &mut NormalEquationsOf<N>, axis: DVec3) {
     let weight = 2.0 * DROP / (FIXED * FIXED);
     let row = |x: f64| (axis * (x * weight)).to_array();
     equations.add_block(&[row(axis.x), row(axis.y), row(axis.z)], [0.0; 3]);

@@ -10,10 +10,10 @@ use wide::bytemuck::cast;
 use wide::{f32x4, i32x4};
 
 use super::fill::{Corners, STEPS, Vertex, fill};
-use super::grid::CropGrid;
 use super::lanes::LANES;
 use super::pose::CropPose;
 use crate::geometry::mesh::Mesh;
+use crate::precise::observed::grid::CropGrid;
 
 /// Minimum depth of a rendered vertex, relative to the depth of the centre of the mesh.
 const NEAR: f32 = 0.05;
@@ -35,7 +35,7 @@ pub struct Model {
     /// The positions, four at a time, by axis. The last one fills the places of those that are missing.
     lanes: Vec<[f32x4; 3]>,
     /// The normals, with a fourth number.
-    pub(super) facets: Vec<f32x4>,
+    pub(in crate::precise) facets: Vec<f32x4>,
 }
 
 impl Model {

@@ -1,14 +1,15 @@
 //! Alternative poses that explain an observation as well, such as flips, without equivalent placements.
 
 use super::color::Rival;
-use super::equivalence::DIFFERENT;
-use super::score::NOISE;
-use super::search::{Found, Search};
 use crate::geometry::rotations::angle_between;
+use crate::precise::drawn::equivalence::{DIFFERENT, Equivalence};
+use crate::precise::scored::score::NOISE;
+use crate::precise::searched::ranking::Found;
+use crate::precise::searched::search::Search;
 use crate::report::Alternative;
 
-/// Score below an unsure best pose down to which poses are alternatives. It is wrong more often than others, and the right pose
-/// then scores less.
+/// Score below an unsure best pose down to which poses are alternatives: where such a pose is wrong, the right one scores lower
+/// by up to this much.
 pub(crate) const UNSURE: f32 = 3.0 * NOISE;
 /// Maximum number of alternatives that shape tells from the best pose.
 const MOST: usize = 12;
@@ -64,4 +65,12 @@ pub(crate) fn add_rivals<'a>(
             None => {}
         }
     }
+}
+
+/// The lead of a pose over the best of the others that is different, in units of the score, at most [`NOISE`]. `score`
+/// gives the scores to be compared.
+pub fn lead(equivalence: &Equivalence, best: &Found, others: &[Found], score: impl Fn(&Found) -> f32) -> f64 {
+    let differs = |other: &&Found| equivalence.angle(best.pose.rotation, other.pose.rotation) > DIFFERENT;
+    let rival = others.iter().filter(differs).map(&score).fold(f32::NEG_INFINITY, f32::max);
+    f64::from((score(best) - rival).min(NOISE))
 }

@@ -2,12 +2,12 @@
 
 use glam::Mat3;
 
-use super::grid::CropGrid;
-use super::pose::CropPose;
 use super::prior::Prior;
-use super::render::{Canvas, Model};
 use super::score::{Score, Scoring};
 use super::surroundings::Surroundings;
+use crate::precise::drawn::pose::CropPose;
+use crate::precise::drawn::render::{Canvas, Model};
+use crate::precise::observed::grid::CropGrid;
 
 /// The objective on one grid.
 #[derive(Clone, Copy)]
