@@ -1,4 +1,8 @@
 //! The evidence for a pose: observed points with normals, and points on the surface of the mesh.
+//!
+//! In: a depth map, a mask, a camera and, if there is one, a photo. Out: an
+//! [`observation::Observation`], validated once for all that follows, and the clouds of the paper's method and of
+//! the metrics. Depths without a reading are 0 from here on.
 
 pub mod clouds;
 pub mod extents;

@@ -1,5 +1,8 @@
 //! Preset `paper`: the method of the paper (§3.1 to §3.3): descriptors, guarded RANSAC, hallucination filter,
 //! scale-locked ICP.
+//!
+//! In: the clouds of an observation and a mesh. Out: a [`Solution`] and the counts of its stages. It is the baseline, and stays
+//! as published: improvements belong into `precise`.
 
 pub mod options;
 

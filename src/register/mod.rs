@@ -1,4 +1,8 @@
 //! General registration of two point clouds, without camera or mesh, and the parts that the preset `paper` shares.
+//!
+//! In: two clouds and [`options`]. Out: a [`Registration`](report::Registration), target from source. The stages are voxel grid,
+//! normals, FPFH, mutual matches, consensus and ICP; `paper` and the benchmark compose them anew, so that a stage must not
+//! know which method calls it.
 
 pub mod at_once;
 pub mod cloud_pair;

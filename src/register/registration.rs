@@ -38,8 +38,9 @@ pub(super) const PLAN: &[(Stage, f64)] = &[
 /// or infinite coordinates are skipped.
 ///
 /// # Errors
-/// [`ErrorCode::WrongLength`], [`ErrorCode::TooFewPoints`],
-/// [`ErrorCode::DegeneratePoints`], [`ErrorCode::InvalidOption`], [`ErrorCode::NoConsensus`].
+/// [`WrongLength`](crate::error::ErrorCode::WrongLength), [`TooFewPoints`](crate::error::ErrorCode::TooFewPoints),
+/// [`DegeneratePoints`](crate::error::ErrorCode::DegeneratePoints), [`InvalidOption`](crate::error::ErrorCode::InvalidOption),
+/// [`NoConsensus`](crate::error::ErrorCode::NoConsensus).
 pub fn register(
     source_xyz: &[f64],
     target_xyz: &[f64],
@@ -53,7 +54,7 @@ pub fn register(
 /// [`register`] in steps, which end by this clock.
 ///
 /// # Errors
-/// [`ErrorCode::InvalidOption`]; the others are those of the steps.
+/// [`InvalidOption`](crate::error::ErrorCode::InvalidOption); the others are those of the steps.
 pub fn register_task(
     source_xyz: Vec<f64>,
     target_xyz: Vec<f64>,

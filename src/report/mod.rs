@@ -1,4 +1,5 @@
-//! The results of the entry points.
+//! The results of the entry points, as they reach JavaScript: every field is serialised under its name in camelCase, and the
+//! TypeScript declarations are generated from these types. Their documentation is the users'.
 
 mod alignment;
 mod diagnostics;

@@ -42,7 +42,8 @@ pub struct View {
 /// Aligns a mesh with several views of the object.
 ///
 /// # Errors
-/// As [`Request::new`] and [`Request::align`].
+/// [`InvalidOption`](crate::error::ErrorCode::InvalidOption) and [`InvalidArgument`](crate::error::ErrorCode::InvalidArgument);
+/// [`NoConsensus`](crate::error::ErrorCode::NoConsensus) if no view has a pose.
 pub fn align_views(
     views: Vec<View>,
     mesh: &PreparedMesh<'_>,
@@ -55,7 +56,7 @@ pub fn align_views(
 /// [`align_views`] in steps.
 ///
 /// # Errors
-/// As [`Request::new`].
+/// As [`align_views`].
 pub fn align_views_task<'a, 'm: 'a>(
     views: Vec<View>,
     mesh: impl Borrow<PreparedMesh<'m>> + 'a,

@@ -35,7 +35,7 @@ pub struct Certainty {
 /// The best pose of the search, or the one that colour chose, and its reliability.
 ///
 /// # Errors
-/// [`ErrorCode::NoConsensus`] if no pose overlaps the mask.
+/// [`NoConsensus`](crate::error::ErrorCode::NoConsensus) if no pose overlaps the mask.
 pub fn conclude(rounds: &Rounds, color: Option<&Judgment>) -> Result<(Solution, Certainty)> {
     let search = &rounds.search;
     let mut found = Cow::Borrowed(&rounds.found);
