@@ -2,44 +2,60 @@
  * `npm run fuzz -- [--minutes N] [--seed N] [--only NAME,…]`: searches for inputs on which the package fails. The fuzzers
  * share the minutes. The command fails if one of them finds something.
  */
+import { join } from "node:path";
 import { parseArgs } from "node:util";
-import { fuzzCore } from "./fuzz/core.mjs";
-import { fuzzJavaScript } from "./fuzz/javascript.mjs";
+import { runTestedLab } from "./lib/lab.mjs";
+import { buildPackage } from "./lib/package.mjs";
+import { installDir } from "./lib/paths.mjs";
+import { run } from "./lib/run.mjs";
 import { explain, script } from "./lib/step.mjs";
+import { install, testEnvironment } from "./suites/installed.mjs";
 
 /**
- * @typedef {object} Budget
- * @property {number} minutes of this fuzzer
- * @property {number} seed the first one; a different seed tries different inputs
- */
-
-/**
- * Each prints what it tried and throws for a finding.
- * @type {Record<string, { title: string, run: (budget: Budget) => Promise<void> }>}
+ * Each prints what it tried and throws for a finding; a different seed tries different inputs.
+ * @type {Record<string, { title: string, search: (minutes: string, seed: string) => Promise<unknown> }>}
  */
 const fuzzers = {
-  javascript: { title: "Arguments and pools of the package", run: fuzzJavaScript },
-  core: { title: "Readers, align, views, trackers, evaluate and register, native", run: fuzzCore },
+  javascript: {
+    title: "Arguments and pools of the package",
+    async search(minutes, seed) {
+      await buildPackage();
+      await install();
+      const program = join(installDir, "tests", "support", "fuzz", "program.js");
+      const remedy = "mend what the seeds show, and keep each as a test of its own";
+      const args = ["--enable-source-maps", program, minutes, seed];
+      await run(process.execPath, args, { cwd: installDir, echo: true, env: testEnvironment, remedy });
+    },
+  },
+  core: {
+    title: "Readers, align, views, trackers, evaluate and register, native",
+    async search(minutes, seed) {
+      const remedy = "mend what the choices in lab/findings show, and keep them in lab/regressions";
+      await runTestedLab(["fuzz", "--minutes", minutes, "--seed", seed], { echo: true, remedy });
+    },
+  },
 };
 
 await script(async () => {
   const { values } = parseArgs({
-    options: { minutes: { type: "string" }, seed: { type: "string" }, only: { type: "string" } },
+    options: {
+      minutes: { type: "string", default: "10" },
+      seed: { type: "string", default: "0" },
+      only: { type: "string", default: Object.keys(fuzzers).join() },
+    },
   });
-  const names = values.only?.split(",") ?? Object.keys(fuzzers);
+  const names = values.only.split(",");
   const chosen = names.flatMap((name) => fuzzers[name] ?? []);
   if (chosen.length < names.length) {
     throw new Error(`--only: found ${names.join()}, expected some of ${Object.keys(fuzzers).join()}.`);
   }
-  const minutes = Number(values.minutes ?? 10) / chosen.length;
-  for (const { title, run } of chosen) {
+  const minutes = Number(values.minutes) / chosen.length;
+  for (const { title, search } of chosen) {
     console.log(`\n${title}: ${minutes.toFixed(1)} minutes`);
-    try {
-      await run({ minutes, seed: Number(values.seed ?? 0) });
-    } catch (error) {
-      // The others still run.
+    // The others still run.
+    await search(`${minutes}`, `${Number(values.seed)}`).catch((error) => {
       explain(error);
       process.exitCode = 1;
-    }
+    });
   }
 });

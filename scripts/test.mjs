@@ -66,46 +66,63 @@ async function outcome({ title, run }) {
   return { ...noTests(), failed: 1 };
 }
 
+/** @typedef {{ name: string, counts: import("./lib/counts.mjs").Counts, ms: number }} Result */
+
 /**
  * Runs suites, {@link LANES} at a time, each after the one that it needs.
  * @param {readonly (readonly [name: string, suite: Suite])[]} chosen
  */
 async function runAll(chosen) {
-  /** @type {Map<string, { counts: import("./lib/counts.mjs").Counts, ms: number }>} */
+  /** @type {Map<string, Result>} */
   const done = new Map();
   const waiting = [...chosen];
   /** @type {Set<Promise<void>>} */
   const running = new Set();
-  const start = (/** @type {string} */ name, /** @type {Suite} */ suite) => {
+  const start = async (/** @type {string} */ name, /** @type {Suite} */ suite) => {
     const started = performance.now();
-    const needed = suite.after === undefined ? undefined : done.get(suite.after)?.counts;
-    const ended = (async () => {
-      if (needed && needed.failed > 0) {
-        print(`\n${suite.title}: not run, for the build failed.\n`);
-        done.set(name, { counts: { ...noTests(), skipped: 1 }, ms: 0 });
-      } else if (chosen.length === 1) done.set(name, { counts: await outcome(suite), ms: performance.now() - started });
-      else {
-        print(`${name} … (${chosen.length - waiting.length} of ${chosen.length})\n`);
-        const { result: counts, output } = await collect(() => outcome(suite));
-        print(output);
-        done.set(name, { counts, ms: performance.now() - started });
-      }
-    })();
-    const tracked = ended.finally(() => running.delete(tracked));
-    running.add(tracked);
+    const end = (/** @type {Result["counts"]} */ counts) => {
+      done.set(name, { name, counts, ms: performance.now() - started });
+    };
+    if (done.get(suite.after ?? "")?.counts.failed) {
+      print(`\n${suite.title}: not run, for the build failed.\n`);
+      end({ ...noTests(), skipped: 1 });
+    } else if (chosen.length === 1) end(await outcome(suite));
+    else {
+      print(`${name} … (${chosen.length - waiting.length} of ${chosen.length})\n`);
+      const { result: counts, output } = await collect(() => outcome(suite));
+      print(output);
+      end(counts);
+    }
   };
   while (waiting.length + running.size > 0) {
     const ready = waiting.findIndex(([, { after }]) => after === undefined || done.has(after));
     if (ready >= 0 && running.size < LANES) {
-      for (const [name, suite] of waiting.splice(ready, 1)) start(name, suite);
+      for (const [name, suite] of waiting.splice(ready, 1)) {
+        const ended = start(name, suite).finally(() => running.delete(ended));
+        running.add(ended);
+      }
     } else await Promise.race(running);
   }
-  return chosen.map(([name]) => ({ name, ...(done.get(name) ?? { counts: noTests(), ms: 0 }) }));
+  return chosen.flatMap(([name]) => done.get(name) ?? []);
+}
+
+/** The longest tests of each suite that takes a while. */
+const SLOWEST = 3;
+const SLOW_MS = 1000;
+
+/** @param {readonly Result[]} results */
+function printSlowest(results) {
+  const lines = results.flatMap(({ name: suite, counts: { times = [] } }) => {
+    const slow = times.filter(({ ms }) => ms >= SLOW_MS).sort((a, b) => b.ms - a.ms);
+    return slow.slice(0, SLOWEST).map(({ name, ms }) => `${suite.padEnd(10)}${duration(ms).padStart(12)}  ${name}\n`);
+  });
+  if (lines.length > 0) print(`\nslowest\n${lines.join("")}`);
 }
 
 await script(async () => {
   const started = performance.now();
   const results = await runAll(selected());
+  printSlowest(results);
   const line = (/** @type {readonly unknown[]} */ cells) =>
     print(`${cells.map((cell, i) => (i > 0 ? `${cell}`.padStart(i < 4 ? 8 : 14) : `${cell}`.padEnd(10))).join("")}\n`);
   print("\n");

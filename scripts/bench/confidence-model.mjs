@@ -19,7 +19,7 @@ export function currentModel() {
     if (value === undefined) throw new Error(`src/precise declares no ${name}. Remedy: correct ${import.meta.url}.`);
     return value.split(",").map(Number);
   };
-  const [confidence, score] = [read("confidence.rs"), read("score.rs")];
+  const [confidence, score] = [read("judged/confidence.rs"), read("scored/score.rs")];
   const limits = (/** @type {string} */ name) => /** @type {Limits} */ (numbers(confidence, name));
   return {
     intercept: numbers(confidence, "INTERCEPT")[0] ?? Number.NaN,

@@ -10,7 +10,7 @@ import { at } from "../lib/paths.mjs";
 import { command, count } from "./command.mjs";
 import { packageModule, qualities, readTypedCase } from "./inputs.mjs";
 import { caseFolders, runPeers } from "./peers.mjs";
-import { isWithin, loose, strict } from "./records.mjs";
+import { isWithin, loose, strict, typicalError } from "./records.mjs";
 import { fixed, markdownTable, median } from "./table.mjs";
 
 /** Our methods by name, and their options. @returns {Promise<[name: string, options: object][]>} */
@@ -71,11 +71,10 @@ function table(all, hasTruth) {
     );
     const hits = (/** @type {typeof strict} */ tolerance) =>
       `${measurements.filter(({ errors }) => isWithin(errors, tolerance)).length}/${measurements.length}`;
-    const error = (/** @type {string} */ name) =>
-      median(measurements.map(({ errors }) => errors?.[name] ?? Number.POSITIVE_INFINITY));
-    const [scale, rotation, translation] = ["scaleError", "rotationErrorDeg", "translationErrorRelative"].map(error);
-    const accuracy = [hits(strict), hits(loose), fixed(100 * (scale ?? 0), 1), fixed(rotation, 1)];
-    accuracy.push(fixed(100 * (translation ?? 0), 1));
+    const percent = (/** @type {"scaleError" | "translationErrorRelative"} */ name) =>
+      fixed(100 * typicalError(measurements, name), 1);
+    const rotation = fixed(typicalError(measurements, "rotationErrorDeg"), 1);
+    const accuracy = [hits(strict), hits(loose), percent("scaleError"), rotation, percent("translationErrorRelative")];
     const cells = [method, fixed(milliseconds(all, method)), ...ratios.map((ratio) => fixed(ratio, 2))];
     return [
       ...cells,

@@ -1,6 +1,6 @@
 /** Inputs of measurements as typed arrays: case folders, and generated pictures of any size. */
-import { readFileSync } from "node:fs";
-import { join } from "node:path";
+import { existsSync, readdirSync, readFileSync } from "node:fs";
+import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { packageDir } from "../lib/paths.mjs";
 
@@ -15,6 +15,24 @@ export async function qualities() {
   const { OPTIONS } = await packageModule("index.js");
   return OPTIONS.align.find((/** @type {{ name: string }} */ { name }) => name === "quality").choices;
 }
+
+/**
+ * The folders that hold a file of this name: the given ones, and those in others.
+ * @param {string} file
+ * @param {readonly string[]} folders
+ */
+export function foldersWith(file, folders) {
+  const isOne = (/** @type {string} */ folder) => existsSync(join(folder, file));
+  return folders
+    .map((folder) => resolve(folder))
+    .flatMap((folder) => (isOne(folder) ? folder : within(folder).filter(isOne)));
+}
+
+/** What is in a folder, in the order of the names. @param {string} folder */
+export const within = (folder) =>
+  readdirSync(folder)
+    .sort()
+    .map((name) => join(folder, name));
 
 /**
  * @typedef {object} TypedCase

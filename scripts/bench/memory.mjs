@@ -8,7 +8,7 @@ import { buildPackage } from "../lib/package.mjs";
 import { step } from "../lib/step.mjs";
 import { command, count } from "./command.mjs";
 import { bumpyRing, freshCore, freshMemory, packageModule, pictureOf, qualities } from "./inputs.mjs";
-import { markdownTable, megabytes } from "./table.mjs";
+import { markdownTable, megabytes, printWithin } from "./table.mjs";
 import { blocksPng, texturedGlb } from "./textured.mjs";
 
 /** @typedef {import("./inputs.mjs").TypedCase} TypedCase */
@@ -87,14 +87,9 @@ async function measurePeaks(meshes) {
     const memory = "preset" in options ? await freshMemory("registration") : core;
     const before = memory.buffer.byteLength;
     await aligner.align(input, options);
-    peaks.push({ name: Object.values(options).join(), before, peak: memory.buffer.byteLength });
+    peaks.push(/** @type {const} */ ([Object.values(options).join(), before, given, memory.buffer.byteLength]));
   }
-  const rows = peaks.map(({ name, before, peak }) => [
-    ...[name, megabytes(before), megabytes(given), megabytes(peak), megabytes(limit)],
-    peak <= limit ? "yes" : "NO",
-  ]);
-  console.log(markdownTable(["one alignment", "empty, MB", "input, MB", "peak, MB", "limit, MB", "within"], rows));
-  return peaks.every(({ peak }) => peak <= limit);
+  return printWithin("one alignment", ["empty", "input", "peak"], peaks, limit);
 }
 
 /** One line a pair of photo and texture: the memory of both modules after one alignment in new instances. */
@@ -111,16 +106,11 @@ async function measureColor() {
     const colored = { ...input, mesh: await texturedGlb(mesh, blocksPng(texture)), image: blocksPng(photo) };
     const { diagnostics } = await aligner.align(colored);
     if (diagnostics.color === undefined) throw new Error("The colours were not used.");
-    const bytes = [memory, readers].map(({ buffer }) => buffer.byteLength);
-    const sum = bytes.reduce((a, b) => a + b);
-    peaks.push({ name: `photo ${photo.join("×")}, texture ${texture.join("×")}`, bytes, sum });
+    const [core, read] = [memory.buffer.byteLength, readers.buffer.byteLength];
+    const name = `photo ${photo.join("×")}, texture ${texture.join("×")}`;
+    peaks.push(/** @type {const} */ ([name, core, read, core + read]));
   }
-  const rows = peaks.map(({ name, bytes, sum }) => [
-    ...[name, ...[...bytes, sum, colorLimit].map(megabytes)],
-    sum <= colorLimit ? "yes" : "NO",
-  ]);
-  console.log(markdownTable(["with colour", "core, MB", "readers, MB", "both, MB", "limit, MB", "within"], rows));
-  return peaks.every(({ sum }) => sum <= colorLimit);
+  return printWithin("with colour", ["core", "readers", "both"], peaks, colorLimit);
 }
 
 /**

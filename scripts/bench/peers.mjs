@@ -1,11 +1,11 @@
 /** Other libraries' registration on our cases, and on pairs of clouds: the Python package `peers`. */
-import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { availableParallelism } from "node:os";
 import { basename, join, resolve } from "node:path";
 import { buildPackage } from "../lib/package.mjs";
 import { at } from "../lib/paths.mjs";
 import { runPython } from "../lib/python.mjs";
-import { readTypedCase } from "./inputs.mjs";
+import { foldersWith, readTypedCase } from "./inputs.mjs";
 
 /** @typedef {{ method: string, case: string, seconds: number | null, error?: string }} Answered */
 
@@ -43,21 +43,8 @@ export const meshMethods = (isQuick) => (isQuick ? quick : { ...quick, "probreg-
 /** Methods that align two clouds. @type {Record<string, number>} */
 export const pairMethods = { "open3d-ransac": 2, "open3d-fgr": 1, "kiss-matcher": 0.5 };
 
-/**
- * Folders of cases stand for the cases in them.
- * @param {readonly string[]} folders
- */
-export function caseFolders(folders) {
-  const isCase = (/** @type {string} */ folder) => existsSync(join(folder, "camera.json"));
-  return folders.flatMap((path) => {
-    const folder = resolve(path);
-    if (isCase(folder)) return [folder];
-    return readdirSync(folder)
-      .sort()
-      .map((name) => join(folder, name))
-      .filter(isCase);
-  });
-}
+/** Folders of cases stand for the cases in them. @param {readonly string[]} folders */
+export const caseFolders = (folders) => foldersWith("camera.json", folders);
 
 /**
  * Runs the methods; installs them first where that has not been done.

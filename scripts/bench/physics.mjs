@@ -2,14 +2,15 @@
  * `npm run bench:physics`: exports scenes for simulators, and prints which bodies stay where they are during a second of
  * physics; of scenes with true poses, also how far the bodies are from these.
  */
-import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { basename, join, resolve } from "node:path";
+import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { basename, join } from "node:path";
 import { runLab } from "../lib/lab.mjs";
 import { buildPackage } from "../lib/package.mjs";
 import { at, packageDir } from "../lib/paths.mjs";
 import { pythonWith, runPython } from "../lib/python.mjs";
 import { attempt } from "../lib/run.mjs";
 import { command, count } from "./command.mjs";
+import { foldersWith, within } from "./inputs.mjs";
 import { markdownTable } from "./table.mjs";
 
 /** @typedef {{ name: string, fixed: boolean, movedM: number, turnedDeg: number, errorsMm?: [found: number, exported: number, after: number] }} Rested */
@@ -37,15 +38,15 @@ async function main({ scenes, arranged, setSeed, cases, seconds, quality, jobs, 
   const root = at("target", "bench", "physics");
   if (!keep) rmSync(root, { recursive: true, force: true });
   const sets =
-    cases === undefined ? await generated(root, { scenes, arranged, setSeed }) : { given: cases.flatMap(scenesIn) };
+    cases === undefined
+      ? await generated(root, { scenes, arranged, setSeed })
+      : { given: foldersWith("objects", cases) };
   // Before the scenes are exported, which takes long.
   await pythonWith("simulators", python);
   for (const [name, list] of Object.entries(sets)) {
     const exported = join(root, "exported", name);
     await exportAll(list, exported, quality, jobs);
-    const made = readdirSync(exported)
-      .sort()
-      .map((scene) => join(exported, scene));
+    const made = within(exported);
     /** @type {Simulated[]} */
     const results = [];
     await runPython("simulators", [`${seconds}`, ...made], python, (line) => results.push(JSON.parse(line)));
@@ -69,23 +70,9 @@ async function generated(root, { scenes, arranged, setSeed }) {
     const folder = join(root, name);
     const args = ["together", `--${name}`, `${number}`, "--set-seed", `${setSeed}`, "--write", folder];
     if (!existsSync(folder)) await runLab(args);
-    sets[name] = readdirSync(folder)
-      .sort()
-      .map((scene) => join(folder, scene));
+    sets[name] = within(folder);
   }
   return sets;
-}
-
-/**
- * The scene folders in a folder, which may be one itself.
- * @param {string} folder
- */
-function scenesIn(folder) {
-  const isScene = (/** @type {string} */ path) => existsSync(join(path, "objects"));
-  const path = resolve(folder);
-  if (isScene(path)) return [path];
-  const found = readdirSync(path).sort();
-  return found.map((name) => join(path, name)).filter(isScene);
 }
 
 /**

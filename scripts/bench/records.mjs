@@ -2,6 +2,7 @@
 import { existsSync, mkdirSync, readFileSync } from "node:fs";
 import { dirname, resolve } from "node:path";
 import { runLab } from "../lib/lab.mjs";
+import { median } from "./table.mjs";
 
 /** @typedef {{ scaleError: number, rotationErrorDeg: number, translationErrorRelative: number }} PoseErrors */
 
@@ -97,6 +98,13 @@ export async function benchmarkRows({ cases, misfits, set, setSeed, folders, mes
   }
   return JSON.parse(readFileSync(from ?? json, "utf8")).rows;
 }
+
+/**
+ * The median of an error; no answer is as wrong as can be.
+ * @param {readonly { errors: PoseErrors | null | undefined }[]} all
+ * @param {keyof PoseErrors} name
+ */
+export const typicalError = (all, name) => median(all.map(({ errors }) => errors?.[name] ?? Number.POSITIVE_INFINITY));
 
 /**
  * The cases whose truth is known; only these can be right or wrong.

@@ -5,7 +5,7 @@
 import { buildPackage } from "../lib/package.mjs";
 import { command, count } from "./command.mjs";
 import { bumpyRing, freshCore, freshMemory, pictureOf } from "./inputs.mjs";
-import { fixed, markdownTable, megabytes } from "./table.mjs";
+import { fixed, markdownTable, printWithin } from "./table.mjs";
 
 /** @typedef {import("./inputs.mjs").TypedCase} TypedCase */
 
@@ -56,18 +56,13 @@ async function measureMemory() {
     const objects = scene.objects.map(({ mask }, i) => ({ mask, mesh: meshes[i] }));
     const result = await aligner.alignScene({ ...scene, objects });
     for (const { error } of result.objects) if (error !== undefined) throw error;
-    peaks.push({ name: isPrepared ? "prepared" : "arrays", before, peak: used() });
+    peaks.push(/** @type {const} */ ([isPrepared ? "prepared" : "arrays", before, used()]));
   }
   const { objects, triangles, width, height } = large;
   console.log(
     `\n${objects} objects of ${triangles} triangles, depth ${width}×${height}, one thread. MB = 10⁶ bytes.\n`,
   );
-  const rows = peaks.map(({ name, before, peak }) => [
-    ...[name, megabytes(before), megabytes(peak), megabytes(limit)],
-    peak <= limit ? "yes" : "NO",
-  ]);
-  console.log(markdownTable(["meshes", "empty, MB", "peak, MB", "limit, MB", "within"], rows));
-  return peaks.every(({ peak }) => peak <= limit);
+  return printWithin("meshes", ["empty", "peak"], peaks, limit);
 }
 
 /**

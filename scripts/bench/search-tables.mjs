@@ -1,5 +1,5 @@
 /** Tables over generated cases: the parts of the search, the reliability of confidence, and the kinds of failures. */
-import { failureCounts, isWithin, judged, loose, strict, tiersOf } from "./records.mjs";
+import { failureCounts, isWithin, judged, loose, strict, tiersOf, typicalError } from "./records.mjs";
 import { fixed, markdownTable, mean, median, percent, share } from "./table.mjs";
 
 /** @typedef {import("./records.mjs").BenchRow} BenchRow */
@@ -32,9 +32,7 @@ export function ablationTable(rows) {
 /** @param {readonly BenchRecord[]} records @param {readonly string[]} tiers */
 function ablationCells(records, tiers) {
   const groups = [records, ...tiers.map((tier) => records.filter((record) => record.tier === tier))];
-  const error = (/** @type {"scaleError" | "rotationErrorDeg" | "translationErrorRelative"} */ name) =>
-    // No answer is as wrong as can be.
-    median(records.map(({ errors }) => errors?.[name] ?? Number.POSITIVE_INFINITY));
+  const error = (/** @type {keyof import("./records.mjs").PoseErrors} */ name) => typicalError(records, name);
   const overlaps = records.flatMap(({ alignment }) => alignment?.metrics.iou ?? []);
   const { search, scoring } = failureCounts(records);
   return [

@@ -2,7 +2,7 @@
 import { cpSync, existsSync, mkdirSync, rmSync } from "node:fs";
 import { basename, join } from "node:path";
 import { cached, digest } from "./cache.mjs";
-import { at, docsDir } from "./paths.mjs";
+import { at, docsDir, skinDir } from "./paths.mjs";
 import { run } from "./run.mjs";
 
 /** typedoc, and the compiler that it is made for, apart from the repository's own. */
@@ -29,10 +29,13 @@ async function installTools() {
 export async function writeApiDocs() {
   await installTools();
   const typedoc = join(tools, "node_modules", "typedoc", "bin", "typedoc");
-  // Plugins are looked for from the working directory.
-  await run(process.execPath, [typedoc, "--options", at("scripts", "docs", "typedoc.json")], {
-    cwd: tools,
-    remedy: "document what typedoc names, and correct its links, in pkg-config/src and docs/guides",
+  const sources = [skinDir, at("docs"), at("README.md"), at("CHANGELOG.md"), at("scripts", "docs")];
+  await cached(join(tools, "written-from"), digest(sources), [join(docsDir, "index.html")], async () => {
+    // Plugins are looked for from the working directory.
+    await run(process.execPath, [typedoc, "--options", at("scripts", "docs", "typedoc.json")], {
+      cwd: tools,
+      remedy: "document what typedoc names, and correct its links, in pkg-config/src and docs/guides",
+    });
   });
   if (!existsSync(join(docsDir, "index.html"))) throw new Error("typedoc wrote no index.html to target/docs.");
 }

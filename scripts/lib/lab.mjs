@@ -18,3 +18,21 @@ export async function runLab(args, options) {
   await buildLab();
   return run(at("target", "native", "sim3align-lab"), args, options);
 }
+
+/**
+ * The same in the profile of the tests: optimised, and with checks of overflow. It is the program that the tests of the lab run:
+ * to build it by itself would compile everything again, with other features of the dependencies.
+ */
+const buildTestedLab = once(async () => {
+  await rustToolchain();
+  await run("cargo", ["test", "--quiet", "--workspace", "--tests", "--no-run"]);
+});
+
+/**
+ * @param {readonly string[]} args
+ * @param {import("./run.mjs").RunOptions} [options]
+ */
+export async function runTestedLab(args, options) {
+  await buildTestedLab();
+  return run(at("target", "debug", "sim3align-lab"), args, options);
+}

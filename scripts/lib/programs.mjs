@@ -6,45 +6,33 @@ import { run } from "./run.mjs";
 import { step } from "./step.mjs";
 
 /**
- * @typedef {object} SystemProgram
- * @property {string} variable the environment variable that may name it
- * @property {readonly string[]} names on the path, in order of preference
- * @property {readonly string[]} elsewhere files that it may be in
- * @property {string} debianPackage
+ * By the environment variable that may name them: names on the path in order of preference, of which the first is Debian's
+ * package, and files elsewhere.
  */
-
-/** @type {SystemProgram} */
-const chromiumProgram = {
-  variable: "CHROMIUM_PATH",
-  names: ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"],
-  elsewhere: [
-    "/Applications/Chromium.app/Contents/MacOS/Chromium",
-    "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
-    "C:\\Program Files\\Google\\Chrome\\Application\\chrome.exe",
-  ],
-  debianPackage: "chromium",
+const programs = {
+  CHROMIUM_PATH: {
+    names: ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"],
+    elsewhere: [
+      "/Applications/Chromium.app/Contents/MacOS/Chromium",
+      "/Applications/Google Chrome.app/Contents/MacOS/Google Chrome",
+      "C:\\Program Files\\Google\\Chrome\\Application\\chrome.exe",
+    ],
+  },
+  FIREFOX_PATH: {
+    names: ["firefox-esr", "firefox"],
+    elsewhere: ["/Applications/Firefox.app/Contents/MacOS/firefox", "C:\\Program Files\\Mozilla Firefox\\firefox.exe"],
+  },
+  REDIS_SERVER_PATH: {
+    names: ["redis-server"],
+    elsewhere: ["/opt/homebrew/bin/redis-server", "/usr/local/bin/redis-server"],
+  },
 };
 
-/** @type {SystemProgram} */
-const firefoxProgram = {
-  variable: "FIREFOX_PATH",
-  names: ["firefox-esr", "firefox"],
-  elsewhere: ["/Applications/Firefox.app/Contents/MacOS/firefox", "C:\\Program Files\\Mozilla Firefox\\firefox.exe"],
-  debianPackage: "firefox-esr",
-};
-
-/** @type {SystemProgram} */
-const redisProgram = {
-  variable: "REDIS_SERVER_PATH",
-  names: ["redis-server"],
-  elsewhere: ["/opt/homebrew/bin/redis-server", "/usr/local/bin/redis-server"],
-  debianPackage: "redis-server",
-};
-
-/** @param {SystemProgram} program @returns {string | undefined} its path */
-function find({ variable, names, elsewhere }) {
+/** @param {keyof typeof programs} variable @returns {string | undefined} its path */
+function find(variable) {
   const named = process.env[variable];
   if (named && !existsSync(named)) throw new Error(`${variable} names ${named}, which does not exist.`);
+  const { names, elsewhere } = programs[variable];
   const folders = (process.env.PATH ?? "").split(delimiter);
   const onPath = folders.flatMap((folder) => names.map((name) => join(folder, name)));
   return named || [...onPath, ...elsewhere].find((path) => existsSync(path));
@@ -53,26 +41,28 @@ function find({ variable, names, elsewhere }) {
 /**
  * Finds a program. Installs it only in continuous integration (`CI` set), on Debian or Ubuntu, as root: on other
  * machines that is for their owners to do.
- * @param {SystemProgram} program
+ * @param {keyof typeof programs} variable
  * @returns {Promise<string | undefined>} its path
  */
-async function locate(program) {
-  const found = find(program);
+async function locate(variable) {
+  const found = find(variable);
   if (found || !process.env.CI || process.platform !== "linux" || process.getuid?.() !== 0) return found;
-  await step(`apt-get install ${program.debianPackage}`, async () => {
+  const [debianPackage = ""] = programs[variable].names;
+  await step(`apt-get install ${debianPackage}`, async () => {
     // Run level 1 keeps the package's services from being started.
     const env = { DEBIAN_FRONTEND: "noninteractive", RUNLEVEL: "1" };
     await run("apt-get", ["update"], { env });
-    await run("apt-get", ["install", "--yes", "--no-install-recommends", program.debianPackage], { env });
+    await run("apt-get", ["install", "--yes", "--no-install-recommends", debianPackage], { env });
   });
-  return find(program);
+  return find(variable);
 }
 
 /** The remedy for a missing Chromium. */
-export const chromiumRemedy = `install Chromium (Debian and Ubuntu: apt-get install chromium), or name it in ${chromiumProgram.variable}`;
+export const chromiumRemedy =
+  "install Chromium (Debian and Ubuntu: apt-get install chromium), or name it in CHROMIUM_PATH";
 
 /** Chromium's path, or undefined where there is none. */
-export const chromium = once(() => locate(chromiumProgram));
+export const chromium = once(() => locate("CHROMIUM_PATH"));
 
 /**
  * Firefox's path, or undefined where there is none: tests in it are then skipped, because some distributions have no
@@ -80,13 +70,13 @@ export const chromium = once(() => locate(chromiumProgram));
  */
 export const firefox = once(async () => {
   await chromium();
-  return locate(firefoxProgram).catch(() => undefined);
+  return locate("FIREFOX_PATH").catch(() => undefined);
 });
 
 /** The path of Redis' server, or undefined where there is none. */
 export const redisServer = once(async () => {
   await firefox();
-  return locate(redisProgram);
+  return locate("REDIS_SERVER_PATH");
 });
 
 /** Starts a headless Chromium. @throws where there is none */

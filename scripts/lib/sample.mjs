@@ -3,9 +3,9 @@ import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } f
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 import { cached, digest, once } from "./cache.mjs";
+import { runTestedLab as lab } from "./lab.mjs";
 import { buildPackage } from "./package.mjs";
 import { at, packageDir, sampleDir } from "./paths.mjs";
-import { run } from "./run.mjs";
 import { pictureOf } from "./sample-picture.mjs";
 
 /** A folder for each sample, and `index.json`, which lists them. */
@@ -84,9 +84,6 @@ function npy(values, shape) {
   start.write("\n", 9 + length);
   return Buffer.concat([start, Buffer.from(values.buffer)]);
 }
-
-/** In the profile of the tests, which have compiled it. @param {readonly string[]} args */
-const lab = (args) => run("cargo", ["run", "--quiet", "--package", "sim3align-lab", "--", ...args]);
 
 /**
  * Generates all samples.

@@ -1,5 +1,6 @@
 /** Tests on the package as its users install it: in Node, in a browser, and by the examples. */
 import { cpSync, mkdirSync, readdirSync, renameSync, rmSync, writeFileSync } from "node:fs";
+import { availableParallelism } from "node:os";
 import { basename, join } from "node:path";
 import { cached, digest, filesBelow, once } from "../lib/cache.mjs";
 import { nodeCounts, noTests, withStatus } from "../lib/counts.mjs";
@@ -18,16 +19,15 @@ export const testEnvironment = { SIM3ALIGN_REPOSITORY: repository, SIM3ALIGN_SAM
 /** Tests that use the installed package, and what they share. */
 const testFolders = ["js", "browser", "bundlers", "examples", "support"];
 
-/**
- * Writes the package's tarball.
- * @param {string} folder
- * @returns {Promise<{ filename: string, size: number, unpackedSize: number }>}
- */
-export async function pack(folder) {
+/** The package's tarball: its file, and its size in bytes. */
+export const packed = once(async () => {
+  const folder = at("target", "packed");
   mkdirSync(folder, { recursive: true });
-  const [packed] = JSON.parse(await run("npm", ["pack", packageDir, "--json", "--pack-destination", folder]));
-  return packed;
-}
+  const [{ filename, size }] = JSON.parse(
+    await run("npm", ["pack", packageDir, "--json", "--pack-destination", folder]),
+  );
+  return { file: join(folder, filename), size: Number(size) };
+});
 
 /** Packs pkg/, installs the tarball into a folder of its own, and compiles the tests there. */
 export const install = once(async () => {
@@ -35,8 +35,9 @@ export const install = once(async () => {
   await step("install the packed package", async (say) => {
     const isNew = await cached(join(installDir, "installed-from"), digest([packageDir]), [], async () => {
       rmSync(installDir, { recursive: true, force: true });
-      const { filename } = await pack(installDir);
-      const project = { private: true, type: "module", dependencies: { sim3align: `file:./${filename}` } };
+      const { file } = await packed();
+      mkdirSync(installDir, { recursive: true });
+      const project = { private: true, type: "module", dependencies: { sim3align: `file:${file}` } };
       writeFileSync(join(installDir, "package.json"), JSON.stringify(project, null, 2));
       await run("npm", ["install", "--prefer-offline", "--no-audit", "--no-fund"], {
         cwd: installDir,
@@ -64,7 +65,10 @@ export const install = once(async () => {
 async function nodeTest(folder, env = {}) {
   await install();
   const files = filesBelow([join(installDir, "tests", folder)]).filter((file) => file.endsWith(".test.js"));
-  const args = ["--enable-source-maps", "--test", "--test-reporter=spec", ...files];
+  // By default, Node leaves one core free. Its versions before 20.10 know no other number.
+  const [major = 0, minor = 0] = process.versions.node.split(".").map(Number);
+  const concurrency = major > 20 || minor >= 10 ? [`--test-concurrency=${availableParallelism()}`] : [];
+  const args = ["--enable-source-maps", "--test", "--test-reporter=spec", ...concurrency, ...files];
   const { output, reason } = await attempt(process.execPath, args, {
     cwd: installDir,
     echo: true,
@@ -113,8 +117,8 @@ async function installExamples() {
   const outputs = [join(examplesDir, "node_modules")];
   await cached(join(copy, "installed-from"), digest([packageDir, ...manifests]), outputs, async () => {
     rmSync(copy, { recursive: true, force: true });
-    const { filename } = await pack(copy);
-    await run("tar", ["-xzf", filename], { cwd: copy });
+    mkdirSync(copy, { recursive: true });
+    await run("tar", ["-xzf", (await packed()).file], { cwd: copy });
     renameSync(join(copy, "package"), join(copy, "pkg"));
     cpSync(at("examples"), examplesDir, { recursive: true, filter: isSource });
     await run("npm", ["ci", "--prefer-offline"], {

@@ -32,9 +32,7 @@ export async function lint() {
 
 /** `npm start` and `npm test` install what they need: no npm package may be missing before they do. */
 function checkCommands() {
-  const modules = ["start", "test", "build", "build-www", "docs", "format", "samples"].map((name) =>
-    at("scripts", `${name}.mjs`),
-  );
+  const modules = ["start", "test", "make"].map((name) => at("scripts", `${name}.mjs`));
   const early = [];
   for (const path of modules) {
     const statements = readFileSync(path, "utf8").matchAll(

@@ -5,12 +5,12 @@ import { dirname, join, sep } from "node:path";
 import { writeApiDocs } from "../lib/api-docs.mjs";
 import { checkApiReport } from "../lib/api-report.mjs";
 import { checkNotice } from "../lib/notices.mjs";
-import { at, installDir, packageDir, repository, siteDir } from "../lib/paths.mjs";
+import { installDir, packageDir, repository, siteDir } from "../lib/paths.mjs";
 import { attempt, nodeProgram, run } from "../lib/run.mjs";
 import { buildSite } from "../lib/site.mjs";
 import { runChecks } from "../lib/step.mjs";
 import { kilobytes, sizes, wasmFile, wasmModules } from "../lib/wasm.mjs";
-import { install, pack } from "./installed.mjs";
+import { install, packed } from "./installed.mjs";
 
 /** Limits in bytes; the tarball holds the WebAssembly twice, the second time in `inline.js`. */
 const limits = { tarball: 2_240_000, pageScript: 90_000, elementScript: 70_000 };
@@ -48,14 +48,10 @@ function holdSize(what, bytes, limit, say) {
 export async function checkPackage() {
   const [node, publint] = nodeProgram("publint");
   const [, attw] = nodeProgram("@arethetypeswrong/cli", "attw");
-  const folder = at("target", "packed");
-  const { filename, size } = await pack(folder);
+  const { file, size } = await packed();
   return runChecks([
     ["publint", () => run(node, [publint, packageDir, "--strict"])],
-    [
-      "types, in modules' resolution",
-      () => run(node, [attw, join(folder, filename), "--profile", "esm-only", "--no-emoji"]),
-    ],
+    ["types, in modules' resolution", () => run(node, [attw, file, "--profile", "esm-only", "--no-emoji"])],
     ["tsc --strict, resolution node16", () => compileStrictly("node16")],
     ["tsc --strict, resolution bundler", () => compileStrictly("bundler")],
     ["package.json names files that exist", checkNamedFiles],

@@ -10,7 +10,7 @@ import { createAligner } from "sim3align";
 import { readMask } from "sim3align/formats";
 import { PageTest } from "../support/browser.js";
 import { sampleDir } from "../support/environment.js";
-import { examplesDir, program } from "../support/examples.js";
+import { examplesDir, filesOf, program } from "../support/examples.js";
 
 const { skip } = program("CHROMIUM_PATH", "Chromium", "install it (Debian and Ubuntu: apt-get install chromium)");
 const started: { stop(): unknown }[] = [];
@@ -32,10 +32,7 @@ async function opened(folder: string, path: string) {
 test("02-browser-esm aligns the sample to the same bits as Node", { skip }, async () => {
   const { page } = await opened(examplesDir, "02-browser-esm/");
   const shown = JSON.parse((await page.textContent("#result")) ?? "");
-  const read = (name: string) => readFileSync(join(sampleDir, name));
-  const [depth, mask, cameraFile, mesh] = ["depth.npy", "mask.png", "camera.json", "mesh.glb"].map(read);
-  assert.ok(depth && mask && cameraFile && mesh);
-  const direct = await (await createAligner()).align({ depth, mask, cameraFile, mesh });
+  const direct = await (await createAligner()).align(filesOf(sampleDir));
   assert.deepEqual(shown.matrix, [...direct.matrix]);
   assert.equal(shown.confidence, direct.confidence);
   assert.equal(await page.$eval("#progress", (bar: HTMLProgressElement) => bar.value), 1);

@@ -1,7 +1,7 @@
 /** The examples that run in Node. */
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
-import { existsSync, readFileSync } from "node:fs";
+import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { type Alignment, createAligner } from "sim3align";
@@ -9,19 +9,10 @@ import { compose, fromBop, invert, type Sim3, toSim3 } from "sim3align/conventio
 import { readMesh } from "sim3align/formats";
 import { otherPose, writeCase } from "../support/case-folder.js";
 import { repository, sampleDir } from "../support/environment.js";
-import { examplesDir, newFolder, runExample } from "../support/examples.js";
+import { examplesDir, filesOf, newFolder, printedBy, runExample } from "../support/examples.js";
+import { turnBetween } from "../support/rig.js";
 
 const aligner = await createAligner();
-
-/** A case's files, as bytes. */
-function filesOf(folder: string) {
-  const read = (...names: string[]) => {
-    const name = names.find((candidate) => existsSync(join(folder, candidate))) ?? "";
-    return readFileSync(join(folder, name));
-  };
-  const [depth, mask, cameraFile] = [read("depth.npy"), read("mask.png"), read("camera.json")];
-  return { depth, mask, cameraFile, mesh: read("mesh.glb", "mesh.obj") };
-}
 
 const sample = filesOf(sampleDir);
 const gt = JSON.parse(readFileSync(join(sampleDir, "gt.json"), "utf8"));
@@ -42,9 +33,7 @@ test("the compiler finds nothing wrong in the examples", () => {
 });
 
 test("01-one-call prints the transform of a case folder", async () => {
-  const { status, stdout, stderr } = await runExample("01-one-call/align.mjs", [sampleDir]);
-  assert.equal(status, 0, stderr);
-  const printed = JSON.parse(stdout);
+  const printed = JSON.parse(await printedBy("01-one-call/align.mjs", [sampleDir]));
   const direct = await aligner.align(sample);
   assert.deepEqual(printed.matrix, [...direct.matrix]);
   assert.equal(printed.confidence, direct.confidence);
@@ -87,8 +76,7 @@ test("04-worker-pool-batch writes a table and all results, in order, and goes on
 
 test("05-annotation-loop brings a dragged object back, keeps the known size, and exports it", async () => {
   const out = join(newFolder(), "annotation");
-  const { status, stdout, stderr } = await runExample("05-annotation-loop/annotate.mjs", [sampleDir, out]);
-  assert.equal(status, 0, stderr);
+  const stdout = await printedBy("05-annotation-loop/annotate.mjs", [sampleDir, out]);
   assert.match(stdout, /proposal turned by 0°/);
 
   const { poses, sizeM, knownExtentM, modelMmPerUnit } = JSON.parse(readFileSync(join(out, "annotation.json"), "utf8"));
@@ -118,13 +106,8 @@ test("05-annotation-loop brings a dragged object back, keeps the known size, and
   }
 });
 
-/** The angle between two rotations, quaternions, degrees. */
-const turnBetween = (a: readonly number[], b: readonly number[]) =>
-  (2 * Math.acos(Math.min(1, Math.abs(a.reduce((sum, x, i) => sum + x * (b[i] ?? 0), 0)))) * 180) / Math.PI;
-
 test("08-two-cameras finds the object in the world, and the cameras from the object", async () => {
-  const { status, stdout, stderr } = await runExample("08-two-cameras/align-views.mjs");
-  assert.equal(status, 0, stderr);
+  const stdout = await printedBy("08-two-cameras/align-views.mjs");
   const { alone, known, oneMask, unknown } = JSON.parse(stdout);
   const { cameras, frames, mesh, truth } = await import(join(examplesDir, "08-two-cameras", "table.mjs"));
   assert.deepEqual([known.world, oneMask.world, unknown.world], ["given", "given", "camera"]);
@@ -154,8 +137,7 @@ test("08-two-cameras finds the object in the world, and the cameras from the obj
 
 test("09-video-annotation tracks from one mask, and a correction reaches the frames before and after it", async () => {
   const out = join(newFolder(), "annotations");
-  const { status, stdout, stderr } = await runExample("09-video-annotation/annotate-video.mjs", [out]);
-  assert.equal(status, 0, stderr);
+  const stdout = await printedBy("09-video-annotation/annotate-video.mjs", [out]);
   assert.match(stdout, /40 frames, 21 of them corrected/);
   const { FRAMES, frameAt, mesh } = await import(join(examplesDir, "09-video-annotation", "video.mjs"));
   const annotated = Array.from({ length: FRAMES }, (_, k) =>

@@ -2,14 +2,13 @@
 import assert from "node:assert/strict";
 import { type ChildProcess, execFileSync, spawn } from "node:child_process";
 import { once } from "node:events";
-import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
 import { after, before, test } from "node:test";
 import { createAligner } from "sim3align";
 import { PageTest } from "../support/browser.js";
 import { sampleDir } from "../support/environment.js";
-import { examplesDir, program } from "../support/examples.js";
+import { examplesDir, filesOf, program } from "../support/examples.js";
 
 const folder = join(examplesDir, "11-react-server");
 const { skip } = program("CHROMIUM_PATH", "Chromium", "install it (Debian and Ubuntu: apt-get install chromium)");
@@ -30,12 +29,8 @@ before(async () => {
   });
   assert.ok(server.stdout);
   [url = ""] = await once(createInterface({ input: server.stdout }), "line");
-  const [depth, mask, cameraFile, mesh] = ["depth.npy", "mask.png", "camera.json", "mesh.glb"].map((name) =>
-    readFileSync(join(sampleDir, name)),
-  );
-  assert.ok(depth && mask && cameraFile && mesh);
   const aligner = await createAligner();
-  expected = [...(await aligner.align({ depth, mask, cameraFile, mesh }, { quality: "fast" })).matrix];
+  expected = [...(await aligner.align(filesOf(sampleDir), { quality: "fast" })).matrix];
 });
 after(async () => {
   server.kill();

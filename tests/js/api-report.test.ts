@@ -4,11 +4,10 @@ import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { after, test } from "node:test";
-import { pathToFileURL } from "node:url";
-import { installDir, repository } from "../support/environment.js";
+import { installDir } from "../support/environment.js";
+import { scriptModule } from "../support/internals.js";
 
-const module = pathToFileURL(join(repository, "scripts", "lib", "api-report.mjs")).href;
-const { apiReport }: { apiReport(folder: string): string } = await import(module);
+const { apiReport } = await scriptModule("lib/api-report.mjs");
 
 const folder = mkdtempSync(join(tmpdir(), "sim3align-api-"));
 after(() => rmSync(folder, { recursive: true, force: true }));

@@ -1,5 +1,6 @@
 /** Bad files: a typed error that says what to do. */
-import { type Bad, refuses } from "../support/bad-input.js";
+import { refusesInputs } from "../support/bad-input.js";
+import type { Refusals } from "../support/errors.js";
 import { glb, glbOf, gltfBuffer, gltfJson, npy, png } from "../support/files.js";
 import { mesh, view } from "../support/scene.js";
 
@@ -39,50 +40,32 @@ const claims = { ...gltfJson(mesh), accessors: gltfJson(mesh).accessors.map((a) 
 const bytes = new Uint8Array(width * height).fill(80);
 const sized = { width: undefined, height: undefined };
 
-const files: Bad[] = [
-  ["8-bit PNG depth", { ...sized, depth: png(bytes, width, height) }, "EIGHT_BIT_DEPTH", "depth", /8-bit PNG/],
-  ["8-bit NPY depth", { ...sized, depth: npy(bytes, height, width) }, "EIGHT_BIT_DEPTH", "depth", /8-bit/],
-  [
-    "depth of no known format",
+const files: Refusals<object> = {
+  "8-bit PNG depth: EIGHT_BIT_DEPTH depth": [{ ...sized, depth: png(bytes, width, height) }, /8-bit PNG/],
+  "8-bit NPY depth: EIGHT_BIT_DEPTH depth": [{ ...sized, depth: npy(bytes, height, width) }, /8-bit/],
+  "depth of no known format: UNSUPPORTED_FORMAT depth": [
     { ...sized, depth: Buffer.from("II*\0 a TIFF") },
-    "UNSUPPORTED_FORMAT",
-    "depth",
     /16-bit grey PNG or a \.npy/,
   ],
-  ["empty depth file", { ...sized, depth: new Uint8Array(0) }, "UNSUPPORTED_FORMAT", "depth", /./],
-  ["truncated depth", { ...sized, depth: npy(depth, height, width).slice(0, 5000) }, "CORRUPT_FILE", "depth", /./],
-  [
-    "a depth file of another size than stated",
+  "empty depth file: UNSUPPORTED_FORMAT depth": [{ ...sized, depth: new Uint8Array(0) }],
+  "truncated depth: CORRUPT_FILE depth": [{ ...sized, depth: npy(depth, height, width).slice(0, 5000) }],
+  "a depth file of another size than stated: SIZE_MISMATCH depth": [
     { depth: npy(depth, height, width), width: 1, height: 2 },
-    "SIZE_MISMATCH",
-    "depth",
     /160 × 120.*1 × 2/,
   ],
-  ["truncated mask", { mask: png(mask, width, height).slice(0, 60) }, "CORRUPT_FILE", "mask", /./],
-  [
-    "a mask file of another size",
-    { mask: png(new Uint8Array(6).fill(1), 3, 2) },
-    "SIZE_MISMATCH",
-    "mask",
-    /3 × 2 pixels/,
-  ],
-  [
-    "RLE that does not fill its size",
-    { mask: { size: [120, 160], counts: [5, 5] } },
-    "CORRUPT_FILE",
-    "mask.counts",
-    /./,
-  ],
-  ["a JPEG mask", { mask: Buffer.from("\xff\xd8\xff\xe0 JFIF", "latin1") }, "UNSUPPORTED_FORMAT", "mask", /PNG/],
-  ["a GLB that claims 4 GB", { mesh: hostile }, "FILE_TOO_LARGE", "mesh", /claims 4294967295 bytes; the file has 100/],
-  ["truncated GLB", { mesh: glb(mesh).slice(0, 5000) }, "CORRUPT_FILE", "mesh", /./],
-  ["accessors that claim too much", { mesh: glbOf(claims, gltfBuffer(mesh)) }, "FILE_TOO_LARGE", "mesh", /./],
-  ["a Draco-compressed GLB", { mesh: draco }, "COMPRESSED_MESH", "mesh", /KHR_draco_mesh_compression.*gltf-transform/],
-  ["a meshopt-compressed GLB", { mesh: meshopt }, "COMPRESSED_MESH", "mesh", /EXT_meshopt_compression.*gltf-transform/],
-  ["a .gltf without its buffer", { mesh: external }, "INVALID_ARGUMENT", "mesh.resources", /mesh\.bin/],
-  ["a mesh of no known format", { mesh: Buffer.from("hello, world") }, "UNSUPPORTED_FORMAT", "mesh", /./],
-  ["an unknown mesh format", { mesh: { bytes: glb(mesh), format: "fbx" } }, "INVALID_OPTION", "mesh.format", /fbx/],
-  ["an empty mesh file", { mesh: new Uint8Array(0) }, "UNSUPPORTED_FORMAT", "mesh", /./],
-];
+  "truncated mask: CORRUPT_FILE mask": [{ mask: png(mask, width, height).slice(0, 60) }],
+  "a mask file of another size: SIZE_MISMATCH mask": [{ mask: png(new Uint8Array(6).fill(1), 3, 2) }, /3 × 2 pixels/],
+  "RLE that does not fill its size: CORRUPT_FILE mask.counts": [{ mask: { size: [120, 160], counts: [5, 5] } }],
+  "a JPEG mask: UNSUPPORTED_FORMAT mask": [{ mask: Buffer.from("\xff\xd8\xff\xe0 JFIF", "latin1") }, /PNG/],
+  "a GLB that claims 4 GB: FILE_TOO_LARGE mesh": [{ mesh: hostile }, /claims 4294967295 bytes; the file has 100/],
+  "truncated GLB: CORRUPT_FILE mesh": [{ mesh: glb(mesh).slice(0, 5000) }],
+  "accessors that claim too much: FILE_TOO_LARGE mesh": [{ mesh: glbOf(claims, gltfBuffer(mesh)) }],
+  "a Draco-compressed GLB: COMPRESSED_MESH mesh": [{ mesh: draco }, /KHR_draco_mesh_compression.*gltf-transform/],
+  "a meshopt-compressed GLB: COMPRESSED_MESH mesh": [{ mesh: meshopt }, /EXT_meshopt_compression.*gltf-transform/],
+  "a .gltf without its buffer: INVALID_ARGUMENT mesh.resources": [{ mesh: external }, /mesh\.bin/],
+  "a mesh of no known format: UNSUPPORTED_FORMAT mesh": [{ mesh: Buffer.from("hello, world") }],
+  "an unknown mesh format: INVALID_OPTION mesh.format": [{ mesh: { bytes: glb(mesh), format: "fbx" } }, /fbx/],
+  "an empty mesh file: UNSUPPORTED_FORMAT mesh": [{ mesh: new Uint8Array(0) }],
+};
 
-refuses(files);
+refusesInputs(files);

@@ -1,5 +1,6 @@
 /** Bad meshes: a typed error that says what to do. */
-import { type Bad, changed, refuses } from "../support/bad-input.js";
+import { changed, refusesInputs } from "../support/bad-input.js";
+import type { Refusals } from "../support/errors.js";
 import { mesh } from "../support/scene.js";
 
 const scaled = (x: number, y: number, z: number) => ({
@@ -7,69 +8,45 @@ const scaled = (x: number, y: number, z: number) => ({
   positions: mesh.positions.map((value, i) => value * ([x, y, z][i % 3] ?? 0)),
 });
 
-const meshes: Bad[] = [
-  ["mesh missing", { mesh: undefined }, "INVALID_ARGUMENT", "mesh", /found nothing/],
-  [
-    "positions as a plain array",
+const meshes: Refusals<object> = {
+  "mesh missing: INVALID_ARGUMENT mesh": [{ mesh: undefined }, /found nothing/],
+  "positions as a plain array: INVALID_ARGUMENT mesh.positions": [
     { mesh: { positions: [0, 0, 0] } },
-    "INVALID_ARGUMENT",
-    "mesh.positions",
     /Float32Array\.from/,
   ],
-  [
-    "positions as doubles",
+  "positions as doubles: INVALID_ARGUMENT mesh.positions": [
     { mesh: { positions: new Float64Array(9) } },
-    "INVALID_ARGUMENT",
-    "mesh.positions",
     /Float32Array\.from/,
   ],
-  [
-    "positions not in threes",
+  "positions not in threes: WRONG_LENGTH mesh.positions": [
     { mesh: { ...mesh, positions: mesh.positions.slice(1) } },
-    "WRONG_LENGTH",
-    "mesh.positions",
     /multiple of 3/,
   ],
-  [
-    "indices as a plain array",
+  "indices as a plain array: INVALID_ARGUMENT mesh.indices": [
     { mesh: { ...mesh, indices: [0, 1, 2] } },
-    "INVALID_ARGUMENT",
-    "mesh.indices",
     /Uint32Array\.from/,
   ],
-  [
-    "indices not in threes",
+  "indices not in threes: WRONG_LENGTH mesh.indices": [
     { mesh: { ...mesh, indices: mesh.indices.slice(1) } },
-    "WRONG_LENGTH",
-    "mesh.indices",
     /multiple of 3/,
   ],
-  [
-    "an index out of range",
+  "an index out of range: INDEX_OUT_OF_RANGE mesh.indices": [
     { mesh: { ...mesh, indices: changed(mesh.indices, 7, 1e6) } },
-    "INDEX_OUT_OF_RANGE",
-    "mesh.indices",
     /1000000 in triangle 2/,
   ],
-  ["no triangle", { mesh: { ...mesh, indices: new Uint32Array(0) } }, "EMPTY_MESH", "mesh", /no triangle/],
-  ["no vertex", { mesh: { positions: new Float32Array(0) } }, "EMPTY_MESH", "mesh", /no triangle/],
-  [
-    "a NaN vertex",
+  "no triangle: EMPTY_MESH mesh": [{ mesh: { ...mesh, indices: new Uint32Array(0) } }, /no triangle/],
+  "no vertex: EMPTY_MESH mesh": [{ mesh: { positions: new Float32Array(0) } }, /no triangle/],
+  "a NaN vertex: NON_FINITE mesh.positions": [
     { mesh: { ...mesh, positions: changed(mesh.positions, 4, Number.NaN) } },
-    "NON_FINITE",
-    "mesh.positions",
     /NaN.*vertex 1/,
   ],
-  [
-    "an infinite vertex",
+  "an infinite vertex: NON_FINITE mesh.positions": [
     { mesh: { ...mesh, positions: changed(mesh.positions, 0, Number.POSITIVE_INFINITY) } },
-    "NON_FINITE",
-    "mesh.positions",
     /Infinity.*vertex 0/,
   ],
-  ["a mesh without area", { mesh: scaled(0, 0, 0) }, "DEGENERATE_MESH", "mesh", /./],
-  ["a planar mesh", { mesh: scaled(1, 1, 0) }, "DEGENERATE_MESH", "mesh", /./],
-  ["a needle", { mesh: scaled(1, 0, 0) }, "DEGENERATE_MESH", "mesh", /./],
-];
+  "a mesh without area: DEGENERATE_MESH mesh": [{ mesh: scaled(0, 0, 0) }],
+  "a planar mesh: DEGENERATE_MESH mesh": [{ mesh: scaled(1, 1, 0) }],
+  "a needle: DEGENERATE_MESH mesh": [{ mesh: scaled(1, 0, 0) }],
+};
 
-refuses(meshes);
+refusesInputs(meshes);

@@ -1,153 +1,89 @@
 /** Bad options: a typed error that says what to do. */
-import { test } from "node:test";
-import type { AlignOptions, ErrorCode } from "sim3align";
+import type { AlignOptions } from "sim3align";
 import { aligner } from "../support/bad-input.js";
-import { rejectsWith } from "../support/errors.js";
+import { type Refusals, refuses } from "../support/errors.js";
 import { input, truth } from "../support/scene.js";
 
-const options: [name: string, options: unknown, code: ErrorCode, argument: string, message: RegExp][] = [
-  ["options as text", "paper", "INVALID_ARGUMENT", "options", /string "paper"/],
-  ["an unknown option", { qualty: "best" }, "UNKNOWN_OPTION", "options.qualty", /Did you mean `quality`/],
-  [
-    "a misspelt listener",
-    { onprogress: () => {} },
-    "UNKNOWN_OPTION",
-    "options.onprogress",
-    /Did you mean `onProgress`/,
-  ],
-  [
-    "an option of createAligner",
+const options: Refusals<unknown> = {
+  "options as text: INVALID_ARGUMENT options": ["paper", /string "paper"/],
+  "an unknown option: UNKNOWN_OPTION options.qualty": [{ qualty: "best" }, /Did you mean `quality`/],
+  "a misspelt listener: UNKNOWN_OPTION options.onprogress": [{ onprogress: () => {} }, /Did you mean `onProgress`/],
+  "an option of createAligner: UNKNOWN_OPTION options.workers": [
     { workers: 4 },
-    "UNKNOWN_OPTION",
-    "options.workers",
     /`workers`, which is an option of createAligner.*createAligner\(\{ workers \}\)/,
   ],
-  ["a seed without constructor", { seed: Object.create(null) }, "INVALID_OPTION", "options.seed", /an object|Object/],
-  ["a seed without class", { seed: { constructor: null } }, "INVALID_OPTION", "options.seed", /an object/],
-  [
-    "an option that is like no other",
+  "a seed without constructor: INVALID_OPTION options.seed": [{ seed: Object.create(null) }, /an object|Object/],
+  "a seed without class: INVALID_OPTION options.seed": [{ seed: { constructor: null } }, /an object/],
+  "an option that is like no other: UNKNOWN_OPTION options.zebra": [
     { zebra: 1 },
-    "UNKNOWN_OPTION",
-    "options.zebra",
     /one of preset, signal, transfer, onProgress, quality.*Check/,
   ],
-  [
-    "an option of the other preset",
+  "an option of the other preset: UNKNOWN_OPTION options.guard": [
     { guard: null },
-    "UNKNOWN_OPTION",
-    "options.guard",
     /`guard`, which is an option of preset "paper".*Pass `preset: "paper"`/,
   ],
-  [
-    "the same under preset paper",
+  "the same under preset paper: UNKNOWN_OPTION options.quality": [
     { preset: "paper", quality: "best" },
-    "UNKNOWN_OPTION",
-    "options.quality",
     /`quality`, which is an option of preset "precise".*Omit `preset`/,
   ],
-  [
-    "lockScale without the paper's method",
-    { lockScale: true },
-    "UNKNOWN_OPTION",
-    "options.lockScale",
-    /preset "paper"/,
-  ],
-  ["an unknown preset", { preset: "fast" }, "INVALID_OPTION", "options.preset", /precise.*paper/],
-  ["a seed below 0", { seed: -1 }, "INVALID_OPTION", "options.seed", /-1/],
-  ["a fractional seed", { seed: 0.5 }, "INVALID_OPTION", "options.seed", /0\.5/],
-  [
-    "voxelDivisions too small",
+  "lockScale without the paper's method: UNKNOWN_OPTION options.lockScale": [{ lockScale: true }, /preset "paper"/],
+  "an unknown preset: INVALID_OPTION options.preset": [{ preset: "fast" }, /precise.*paper/],
+  "a seed below 0: INVALID_OPTION options.seed": [{ seed: -1 }, /-1/],
+  "a fractional seed: INVALID_OPTION options.seed": [{ seed: 0.5 }, /0\.5/],
+  "voxelDivisions too small: INVALID_OPTION options.voxelDivisions": [
     { preset: "paper", voxelDivisions: 1 },
-    "INVALID_OPTION",
-    "options.voxelDivisions",
     /from 5 to 200/,
   ],
-  [
-    "voxelDivisions as NaN",
+  "voxelDivisions as NaN: INVALID_OPTION options.voxelDivisions": [
     { preset: "paper", voxelDivisions: Number.NaN },
-    "INVALID_OPTION",
-    "options.voxelDivisions",
     /NaN/,
   ],
-  [
-    "voxelDivisions as text",
-    { preset: "paper", voxelDivisions: "30" },
-    "INVALID_OPTION",
-    "options.voxelDivisions",
-    /30/,
-  ],
-  [
-    "a guard that excludes the initial scale",
+  "voxelDivisions as text: INVALID_OPTION options.voxelDivisions": [{ preset: "paper", voxelDivisions: "30" }, /30/],
+  "a guard that excludes the initial scale: INVALID_OPTION options.guard": [
     { preset: "paper", guard: [1.2, 1.5] },
-    "INVALID_OPTION",
-    "options.guard",
     /≤ 1 ≤/,
   ],
-  ["a guard of one number", { preset: "paper", guard: [0.5] }, "INVALID_OPTION", "options.guard", /./],
-  [
-    "an unknown guard mode",
+  "a guard of one number: INVALID_OPTION options.guard": [{ preset: "paper", guard: [0.5] }],
+  "an unknown guard mode: INVALID_OPTION options.guardMode": [
     { preset: "paper", guardMode: "ignore" },
-    "INVALID_OPTION",
-    "options.guardMode",
     /reject.*clamp/,
   ],
-  [
-    "too many iterations",
-    { preset: "paper", ransacIterations: 1e12 },
-    "INVALID_OPTION",
-    "options.ransacIterations",
-    /./,
-  ],
-  ["lockScale as a number", { preset: "paper", lockScale: 1 }, "INVALID_OPTION", "options.lockScale", /./],
-  ["an unknown quality", { quality: "ultra" }, "INVALID_OPTION", "options.quality", /"ultra".*fast.*balanced.*best/],
-  ["a scale of zero", { scale: 0 }, "INVALID_OPTION", "options.scale", /number above 0/],
-  ["a scale as another word", { scale: "fixed" }, "INVALID_OPTION", "options.scale", /"fixed".*"free"/],
-  ["bounds the wrong way round", { scale: [2, 1] }, "INVALID_OPTION", "options.scale", /\[2, 1\].*min ≤ max/],
-  ["bounds by name", { scale: { min: 1, max: 2 } }, "INVALID_OPTION", "options.scale", /\[min, max\]/],
-  ["a scale of null", { scale: null }, "INVALID_OPTION", "options.scale", /null.*"free"/],
-  ["a known extent below 0", { knownExtentM: -0.1 }, "INVALID_OPTION", "options.knownExtentM", /-0\.1.*above 0/],
-  ["an unknown side", { knownExtentAxis: "w" }, "INVALID_OPTION", "options.knownExtentAxis", /longest.*z/],
-  ["two known sizes", { scale: 1, knownExtentM: 1 }, "INVALID_OPTION", "options.knownExtentM", /omit one of the two/],
-  ["up as zero", { cameraUp: [0, 0, 0], meshUp: [0, 1, 0] }, "INVALID_OPTION", "options.cameraUp", /not all 0/],
-  ["up of two numbers", { cameraUp: [0, 1] }, "INVALID_OPTION", "options.cameraUp", /Array of 2.*three/],
-  ["up with NaN", { meshUp: [0, Number.NaN, 1] }, "INVALID_OPTION", "options.meshUp", /NaN/],
-  ["up in the camera alone", { cameraUp: [0, -1, 0] }, "INVALID_OPTION", "options.meshUp", /in both frames/],
-  ["up in the mesh alone", { meshUp: [0, 1, 0] }, "INVALID_OPTION", "options.cameraUp", /in both frames/],
-  ["an unknown symmetry", { symmetry: "round" }, "INVALID_OPTION", "options.symmetry", /"round".*"auto"/],
-  ["a symmetry of null", { symmetry: null }, "INVALID_OPTION", "options.symmetry", /null.*"none"/],
-  ["an axis of zero", { symmetry: [{ axis: [0, 0, 0] }] }, "INVALID_OPTION", "options.symmetry.axis", /other than 0/],
-  ["a fold of 1", { symmetry: [{ axis: [0, 0, 1], fold: 1 }] }, "INVALID_OPTION", "options.symmetry.fold", /2 to 360/],
-  ["an unknown search", { search: "nearby" }, "INVALID_OPTION", "options.search", /global.*local/],
-  ["a local search from nowhere", { search: "local" }, "INVALID_OPTION", "options.search", /without an initial pose/],
-  ["an initial pose that is none", { initial: 5 }, "INVALID_ARGUMENT", "options.initial", /number 5.*matrix/],
-  ["an initial pose without parts", { initial: {} }, "INVALID_ARGUMENT", "options.initial", /scale, rotation, transl/],
-  [
-    "an initial pose of no scale",
-    { initial: { ...truth, scale: 0 } },
-    "INVALID_TRANSFORM",
-    "options.initial",
-    /above 0/,
-  ],
-  [
-    "an initial pose with no rotation",
+  "too many iterations: INVALID_OPTION options.ransacIterations": [{ preset: "paper", ransacIterations: 1e12 }],
+  "lockScale as a number: INVALID_OPTION options.lockScale": [{ preset: "paper", lockScale: 1 }],
+  "an unknown quality: INVALID_OPTION options.quality": [{ quality: "ultra" }, /"ultra".*fast.*balanced.*best/],
+  "a scale of zero: INVALID_OPTION options.scale": [{ scale: 0 }, /number above 0/],
+  "a scale as another word: INVALID_OPTION options.scale": [{ scale: "fixed" }, /"fixed".*"free"/],
+  "bounds the wrong way round: INVALID_OPTION options.scale": [{ scale: [2, 1] }, /\[2, 1\].*min ≤ max/],
+  "bounds by name: INVALID_OPTION options.scale": [{ scale: { min: 1, max: 2 } }, /\[min, max\]/],
+  "a scale of null: INVALID_OPTION options.scale": [{ scale: null }, /null.*"free"/],
+  "a known extent below 0: INVALID_OPTION options.knownExtentM": [{ knownExtentM: -0.1 }, /-0\.1.*above 0/],
+  "an unknown side: INVALID_OPTION options.knownExtentAxis": [{ knownExtentAxis: "w" }, /longest.*z/],
+  "two known sizes: INVALID_OPTION options.knownExtentM": [{ scale: 1, knownExtentM: 1 }, /omit one of the two/],
+  "up as zero: INVALID_OPTION options.cameraUp": [{ cameraUp: [0, 0, 0], meshUp: [0, 1, 0] }, /not all 0/],
+  "up of two numbers: INVALID_OPTION options.cameraUp": [{ cameraUp: [0, 1] }, /Array of 2.*three/],
+  "up with NaN: INVALID_OPTION options.meshUp": [{ meshUp: [0, Number.NaN, 1] }, /NaN/],
+  "up in the camera alone: INVALID_OPTION options.meshUp": [{ cameraUp: [0, -1, 0] }, /in both frames/],
+  "up in the mesh alone: INVALID_OPTION options.cameraUp": [{ meshUp: [0, 1, 0] }, /in both frames/],
+  "an unknown symmetry: INVALID_OPTION options.symmetry": [{ symmetry: "round" }, /"round".*"auto"/],
+  "a symmetry of null: INVALID_OPTION options.symmetry": [{ symmetry: null }, /null.*"none"/],
+  "an axis of zero: INVALID_OPTION options.symmetry.axis": [{ symmetry: [{ axis: [0, 0, 0] }] }, /other than 0/],
+  "a fold of 1: INVALID_OPTION options.symmetry.fold": [{ symmetry: [{ axis: [0, 0, 1], fold: 1 }] }, /2 to 360/],
+  "an unknown search: INVALID_OPTION options.search": [{ search: "nearby" }, /global.*local/],
+  "a local search from nowhere: INVALID_OPTION options.search": [{ search: "local" }, /without an initial pose/],
+  "an initial pose that is none: INVALID_ARGUMENT options.initial": [{ initial: 5 }, /number 5.*matrix/],
+  "an initial pose without parts: INVALID_ARGUMENT options.initial": [{ initial: {} }, /scale, rotation, transl/],
+  "an initial pose of no scale: INVALID_TRANSFORM options.initial": [{ initial: { ...truth, scale: 0 } }, /above 0/],
+  "an initial pose with no rotation: INVALID_TRANSFORM options.initial.rotation": [
     { initial: { ...truth, rotation: [0, 0, 0, 0] } },
-    "INVALID_TRANSFORM",
-    "options.initial.rotation",
     /quaternion/,
   ],
-  [
-    "an initial pose beyond the scale's bounds",
+  "an initial pose beyond the scale's bounds: INVALID_OPTION options.initial": [
     { initial: truth, scale: [0.1, 0.2] },
-    "INVALID_OPTION",
-    "options.initial",
     /0\.09.*within `scale`: \[0\.1, 0\.2\]/,
   ],
-  ["a budget of zero", { workBudget: 0 }, "INVALID_OPTION", "options.workBudget", /above 0/],
-  ["metrics as a word", { metrics: "none" }, "INVALID_OPTION", "options.metrics", /true or false/],
-  ["onProgress as text", { onProgress: "log" }, "INVALID_ARGUMENT", "options.onProgress", /function/],
-];
+  "a budget of zero: INVALID_OPTION options.workBudget": [{ workBudget: 0 }, /above 0/],
+  "metrics as a word: INVALID_OPTION options.metrics": [{ metrics: "none" }, /true or false/],
+  "onProgress as text: INVALID_ARGUMENT options.onProgress": [{ onProgress: "log" }, /function/],
+};
 
-for (const [name, value, code, argument, message] of options) {
-  const call = () => aligner.align(input, value as AlignOptions);
-  test(`${name}: ${code}`, () => rejectsWith(call, { code, argument, message }));
-}
+refuses(options, (value) => aligner.align(input, value as AlignOptions));

@@ -1,11 +1,9 @@
 /** The benchmark commands' statistics: medians, success, bins of confidence, kinds of failure. */
 import assert from "node:assert/strict";
-import { join } from "node:path";
 import { test } from "node:test";
-import { pathToFileURL } from "node:url";
-import { repository } from "../support/environment.js";
+import { scriptModule } from "../support/internals.js";
 
-const script = (name: string) => import(pathToFileURL(join(repository, "scripts", "bench", name)).href);
+const script = (name: string) => scriptModule(`bench/${name}`);
 const [{ median, mean, share, fixed, markdownTable }, { failure, judged, isWithin, loose, strict }, tables] =
   await Promise.all(["table.mjs", "records.mjs", "search-tables.mjs"].map(script));
 const { ablationTable, binOf, failureTable, reliabilityTable } = tables;

@@ -4,10 +4,9 @@ import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
-import { pathToFileURL } from "node:url";
-import { repository } from "../support/environment.js";
+import { scriptModule } from "../support/internals.js";
 
-const script = (name: string) => import(pathToFileURL(join(repository, "scripts", "bench", name)).href);
+const script = (name: string) => scriptModule(`bench/${name}`);
 const [{ summarise, summariseTruth, columns }, { tableSpecs, rowsToRun }, { makeTables, tableMarkdown }] =
   await Promise.all(["summary", "rows", "tables"].map((name) => script(`paper/${name}.mjs`)));
 const [{ byDifficulty, byOverlap, figurePage }, { openResults }, { readRecords }] = await Promise.all(

@@ -43,11 +43,11 @@ for (const [name, aligner] of aligners) {
       aligner.estimateSim3(points, points, pairs, { ...endless, signal }),
       (error) => error === signal.reason,
     );
-    await rejectsWith(() => aligner.estimateSim3(points, points, pairs, { ...endless, workBudget: 20 }), {
-      code: "NO_CONSENSUS",
-      argument: "correspondences",
-      message: /minimal sets/,
-    });
+    await rejectsWith(
+      () => aligner.estimateSim3(points, points, pairs, { ...endless, workBudget: 20 }),
+      "NO_CONSENSUS correspondences",
+      /minimal sets/,
+    );
   });
 
   test(`${name}: register ends at an abort, whatever its options allow`, async () => {
@@ -113,11 +113,7 @@ for (const [name, aligner] of aligners) {
 
   test(`${name}: a signal that is none is refused`, async () => {
     const signal = { aborted: false } as AbortSignal;
-    await rejectsWith(() => aligner.align(input, { signal }), {
-      code: "INVALID_ARGUMENT",
-      argument: "options.signal",
-      message: /AbortSignal/,
-    });
+    await rejectsWith(() => aligner.align(input, { signal }), "INVALID_ARGUMENT options.signal", /AbortSignal/);
   });
 
   test(`${name}: alignAll ends when its signal does, also while it waits for an input`, async () => {
@@ -153,17 +149,6 @@ test("without workers: an abort that comes from a timer ends a call that is unde
   };
   await assert.rejects(here.align(input, { ...quick, signal: controller.signal, onProgress }), isAbort);
   assert.ok(stages.includes("search") && !stages.includes("metrics"), `${stages}`);
-});
-
-test("without workers: calls that run side by side have the bits of calls alone", async () => {
-  const expected = withoutTimes(await here.align(input, quick));
-  const paper = withoutTimes(await here.align(input, { preset: "paper" }));
-  const [first, second, third] = await Promise.all([
-    here.align(input, quick),
-    here.align(input, { preset: "paper" }),
-    here.align(input, quick),
-  ]);
-  assert.deepEqual([first, second, third].map(withoutTimes), [expected, paper, expected]);
 });
 
 test("aborting ends the worker and its job, and the job that waits for it is not touched", async () => {

@@ -1,14 +1,25 @@
 /** Many cases on the command line: results that come as cases finish, and what is refused before the first one. */
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
-import { existsSync, mkdirSync, readFileSync, symlinkSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, symlinkSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { endless, files, folder, interrupted, results, run, writeCase } from "../support/command-line.js";
+import {
+  endless,
+  files,
+  folder,
+  interrupted,
+  read,
+  refusesUsage,
+  results,
+  run,
+  succeeds,
+  writeCase,
+} from "../support/command-line.js";
 import { commandLine } from "../support/environment.js";
-import { rotationRows, truth } from "../support/scene.js";
+import { poseJson, truth } from "../support/scene.js";
 
-const gt = { ...truth, available: true, rotation: rotationRows(truth.rotation), symmetry: "none" };
+const gt = poseJson(truth);
 for (const name of ["one", "two", "three"]) writeCase(name, { ...files, "gt.json": gt });
 writeCase("empty", {});
 
@@ -40,15 +51,15 @@ test("an interruption before the first result leaves the file as it was", async 
   const ended = new Promise((resolve) => child.on("close", (_, signal) => resolve(signal)));
   child.on("spawn", () => child.kill("SIGINT"));
   assert.equal(await ended, "SIGINT");
-  assert.equal(readFileSync(join(folder, "old.json"), "utf8"), "{}\n");
+  assert.equal(read("old.json"), "{}\n");
 });
 
 test("the JSON of many cases is the text that JSON.stringify writes", () => {
-  const { status } = run("align", "one", "empty", "two", ...inOrder, "--json", "many.json");
+  const { status } = run("align one empty two", ...inOrder, "--json", "many.json");
   assert.equal(status, 1);
-  const text = readFileSync(join(folder, "many.json"), "utf8");
+  const text = read("many.json");
   assert.equal(text, `${JSON.stringify(JSON.parse(text), null, 2)}\n`);
-  const { stdout } = run("align", "one", "empty", "two", ...inOrder, "--json", "-");
+  const { stdout } = run("align one empty two", ...inOrder, "--json", "-");
   assert.deepEqual(Object.keys(JSON.parse(stdout)), ["one", "empty", "two"]);
 });
 
@@ -58,31 +69,21 @@ test("the JSON is written to pipes, too", () => {
   assert.deepEqual(Object.keys(JSON.parse(stdout)), ["one", "two"], stderr);
 });
 
-for (const command of [
-  ["align", "one", "two"],
-  ["evaluate", "one"],
-]) {
-  test(`${command[0]}: a file that cannot be written is noticed before the first case`, () => {
-    mkdirSync(join(folder, "folder"), { recursive: true });
-    const refused: [path: string, message: RegExp][] = [
-      [join("nowhere", "out.json"), /--json nowhere.out\.json: the file cannot be written: .*no such/],
-      ["folder", /--json folder: this is a folder/],
-      [join("one", "mask.png", "out.json"), /cannot be written/],
-    ];
-    for (const [path, message] of refused) {
-      const { status, stdout, stderr } = run(...command, "--json", path);
-      assert.equal(status, 2, stderr);
-      assert.match(stderr, message);
-      assert.equal(stdout, "");
-    }
-    assert.ok(!existsSync(join(folder, "nowhere")));
-  });
-}
+test("a file that cannot be written is noticed before the first case", () => {
+  mkdirSync(join(folder, "folder"), { recursive: true });
+  for (const flag of ["align one two --json", "evaluate one --json", "align one two --jsonl", "align one two --csv"]) {
+    refusesUsage({
+      [`${flag} nowhere/out`]: /--\w+ nowhere.out: the file cannot be written: .*no such/,
+      [`${flag} folder`]: /--\w+ folder: this is a folder/,
+      [`${flag} one/mask.png/out.json`]: /cannot be written/,
+    });
+  }
+  assert.ok(!existsSync(join(folder, "nowhere")));
+});
 
 test("a case that is given twice is aligned once, with a message", () => {
   const given = ["one", "./one/", "two", join(folder, "two")];
-  const { status, stdout, stderr } = run("align", ...given, ...inOrder, "--json", "twice.json");
-  assert.equal(status, 0, stderr);
+  const { stdout, stderr } = succeeds("align", ...given, ...inOrder, "--json", "twice.json");
   assert.deepEqual(Object.keys(results("twice.json")), ["one", "two"]);
   assert.match(stderr, /skipped, given twice: \.\/one\/, .*two/);
   assert.equal(stdout.trimEnd().split("\n").length, 3, "the headings and two rows");
@@ -91,11 +92,10 @@ test("a case that is given twice is aligned once, with a message", () => {
 test("links to one folder are cases of their own: a folder of links is a data set", () => {
   mkdirSync(join(folder, "links"));
   for (const name of ["first", "second"]) symlinkSync(join("..", "one"), join(folder, "links", name));
-  const { status, stderr } = run("align", "links/*", "one", ...inOrder, "--json", "links.json");
-  assert.equal(status, 0, stderr);
+  succeeds("align links/* one", ...inOrder, "--json", "links.json");
   assert.deepEqual(Object.keys(results("links.json")), ["first", "second", "one"]);
   assert.equal(
-    run("align", "links/**", ...inOrder, "--csv", "-")
+    run("align links/**", ...inOrder, "--csv", "-")
       .stdout.trimEnd()
       .split("\n").length,
     3,

@@ -1,54 +1,32 @@
 /** The examples of the help texts: each runs as it is written, on data of the names that it uses. */
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
-import { chmodSync, cpSync, mkdirSync, writeFileSync } from "node:fs";
-import { delimiter, dirname, join } from "node:path";
+import { chmodSync, cpSync } from "node:fs";
+import { delimiter, join } from "node:path";
 import { before, test } from "node:test";
 import { resultsText, writeBop } from "../support/bop-dataset.js";
 import { files, folder, pixels, run, writeCase } from "../support/command-line.js";
 import { commandLine } from "../support/environment.js";
-import { cocoRle, glb, npy, obj, png } from "../support/files.js";
-import { frameAt } from "../support/rig.js";
-import { mesh, rotationRows, truth, view } from "../support/scene.js";
-import { masks, poses, standingGlb, tableView } from "../support/table.js";
+import { cocoRle, glb, npy, obj, png, writeFiles } from "../support/files.js";
+import { frameAt, frameFiles } from "../support/rig.js";
+import { mesh, poseJson, truth, view } from "../support/scene.js";
+import { tableFiles } from "../support/table.js";
 
-const write = (path: string, content: Uint8Array | string) => {
-  mkdirSync(dirname(join(folder, path)), { recursive: true });
-  writeFileSync(join(folder, path), content);
-};
-
-const poseJson = ({ scale, rotation, translation }: typeof truth) => ({
-  ...{ available: true, scale, rotation: rotationRows(rotation), translation, symmetry: "none" },
-});
+const write = (path: string, content: Uint8Array | string | object) => writeFiles(folder, { [path]: content });
 
 /** Frames whose cameras are known only through the object. */
 function writeFrames(name: string, angles: readonly number[]): void {
   writeCase(name, { "mesh.glb": glb(mesh) });
-  for (const [k, angle] of angles.entries()) {
-    const { frame, pose } = frameAt(angle);
-    const mask = frame.mask.map((inside) => 255 * inside);
-    writeCase(`${name}/frame_0${k}`, {
-      "depth.npy": npy(frame.depth, frame.height, frame.width),
-      "mask.png": png(mask, frame.width, frame.height),
-      "camera.json": frame.camera,
-      "gt.json": poseJson({ ...truth, ...pose }),
-    });
-  }
+  for (const [k, angle] of angles.entries()) writeCase(`${name}/frame_0${k}`, frameFiles(frameAt(angle)));
 }
 
 before(() => {
   for (const name of ["cases/mug", "cases/pan"]) writeCase(name, { ...files, "gt.json": poseJson(truth) });
-  write("annotated.json", JSON.stringify(poseJson(truth)));
+  write("annotated.json", poseJson(truth));
   const { width, height, depth } = view;
   write("d.npy", npy(depth, height, width));
-  write(
-    "d.png",
-    png(
-      Uint16Array.from(depth, (z) => Math.round(1000 * z)),
-      width,
-      height,
-    ),
-  );
+  const millimetres = Uint16Array.from(depth, (z) => Math.round(1000 * z));
+  write("d.png", png(millimetres, width, height));
   write("m.png", pixels);
   write("mug.glb", glb(mesh));
   write("mug.obj", obj(mesh));
@@ -56,15 +34,11 @@ before(() => {
   write("photo.jpg", png(new Uint8Array(3 * width * height).fill(90), width, height, 3));
   writeFrames("views/mug", [0, 40]);
   writeFrames("videos/mug", [0, 3]);
-  const desk = tableView;
-  writeCase("scenes/desk", { "depth.npy": npy(desk.depth, desk.height, desk.width), "camera.json": desk.camera });
-  for (const [i, mask] of masks.entries()) {
-    const own = { "mask.png": png(mask, desk.width, desk.height), "mesh.glb": standingGlb };
-    writeCase(`scenes/desk/objects/thing-${i}`, { ...own, "gt.json": poseJson(poses[i] as typeof truth) });
-  }
+  writeCase("scenes/desk", tableFiles());
+
   const found = writeBop(join(folder, "bop", "lmo"));
   // A target is enough.
-  write("bop/lmo/test_targets_bop19.json", JSON.stringify([{ scene_id: 2, im_id: 3, obj_id: 3, inst_count: 1 }]));
+  write("bop/lmo/test_targets_bop19.json", [{ scene_id: 2, im_id: 3, obj_id: 3, inst_count: 1 }]);
   for (const name of ["ycbv", "tless"])
     cpSync(join(folder, "bop", "lmo"), join(folder, "bop", name), { recursive: true });
   cpSync(join(folder, "bop/tless/test"), join(folder, "bop/tless/test_primesense"), { recursive: true });
@@ -73,7 +47,7 @@ before(() => {
   cpSync(join(folder, "bop/lmo/test/000003"), join(folder, "bop/test/000048"), { recursive: true });
   const mask = found.get(join("test", "000002", "mask_visib", "000003_000000.png")) as Uint8Array;
   const detection = { scene_id: 2, image_id: 3, category_id: 3, score: 0.9, time: 0.5 };
-  write("cnos_lmo-test.json", JSON.stringify([{ ...detection, segmentation: cocoRle(mask, 640, 480) }]));
+  write("cnos_lmo-test.json", [{ ...detection, segmentation: cocoRle(mask, 640, 480) }]);
   write("other_lmo-test.csv", resultsText());
   write("bin/sim3align", `#!/bin/sh\nexec "${process.execPath}" "${commandLine}" "$@"\n`);
   // As much of jq as the examples use.

@@ -4,7 +4,7 @@ import { spawnSync } from "node:child_process";
 import { mkdirSync, symlinkSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { files, folder, run, writeCase } from "../support/command-line.js";
+import { files, folder, refusesUsage, writeCase } from "../support/command-line.js";
 import { commandLine } from "../support/environment.js";
 
 // Without depth map: their failures name them at once.
@@ -64,14 +64,10 @@ test("a folder whose name looks like a pattern is that folder", () => {
 });
 
 test("a pattern without match is refused", () => {
-  for (const [pattern, message] of [
-    ["cases/z*", /cases\/z\*: no folder matches the pattern/],
-    ["odd/[x]/**/y", /no folder with a mesh matches the pattern/],
-  ] as const) {
-    const { status, stderr } = run("align", pattern);
-    assert.equal(status, 2, stderr);
-    assert.match(stderr, message);
-  }
+  refusesUsage({
+    "align cases/z*": /cases\/z\*: no folder matches the pattern/,
+    "align odd/[x]/**/y": /no folder with a mesh matches the pattern/,
+  });
 });
 
 test("--list has a path per line; comments and empty lines are skipped, names are taken as they are", () => {
@@ -88,15 +84,10 @@ test("--list - reads stdin", () => {
 
 test("a list that is missing, empty, or next to single files is refused", () => {
   writeFileSync(join(folder, "empty.txt"), "# none\n\n");
-  const single = ["--depth", "d", "--mask", "m", "--mesh", "m", "--camera", "c"];
-  for (const [args, message] of [
-    [["--list", "nowhere.txt"], /--list nowhere\.txt: the list cannot be read: ENOENT/],
-    [["--list", "cases"], /--list cases: the list cannot be read: EISDIR/],
-    [["--list", "empty.txt"], /--list: empty\.txt names no case folder/],
-    [["--list", "list.txt", ...single], /Pass case folders, or --depth/],
-  ] as const) {
-    const { status, stderr } = run("align", ...args);
-    assert.equal(status, 2, stderr);
-    assert.match(stderr, message);
-  }
+  refusesUsage({
+    "align --list nowhere.txt": /--list nowhere\.txt: the list cannot be read: ENOENT/,
+    "align --list cases": /--list cases: the list cannot be read: EISDIR/,
+    "align --list empty.txt": /--list: empty\.txt names no case folder/,
+    "align --list list.txt --depth d --mask m --mesh m --camera c": /Pass case folders, or --depth/,
+  });
 });

@@ -7,13 +7,23 @@ import vm from "node:vm";
 import { createAligner } from "sim3align";
 import { fromFrame, toSim3 } from "sim3align/conventions";
 import { readImage } from "sim3align/formats";
-import { files, folder, interrupted, results, run, writeCase } from "../support/command-line.js";
+import {
+  files,
+  folder,
+  interrupted,
+  read,
+  refusesUsage,
+  results,
+  run,
+  succeeds,
+  writeCase,
+} from "../support/command-line.js";
 import { npy, obj, png } from "../support/files.js";
 import { assertValid } from "../support/gltf-validator.js";
-import { input, mesh, rotationRows, truth, view } from "../support/scene.js";
+import { input, mesh, poseJson, truth, view } from "../support/scene.js";
 
 const { width, height, depth } = view;
-const gt = { ...truth, available: true, rotation: rotationRows(truth.rotation), symmetry: "none" };
+const gt = poseJson(truth);
 for (const name of ["one", "two"]) writeCase(name, { ...files, "gt.json": gt });
 const rgb = Uint8Array.from({ length: 3 * 4 * width * height }, (_, i) => (i * 7) % 256);
 writeCase("Photo", { ...files, "rgb.png": png(rgb, 2 * width, 2 * height, 3) });
@@ -26,7 +36,7 @@ const quick = ["--quality", "fast"];
 /** The rows and details of a report, run as its page runs them. */
 function reportOf(name: string) {
   const context = vm.createContext({ sim3align: { rows: [], details: {} } });
-  const load = (file: string) => vm.runInContext(readFileSync(join(folder, name, file), "utf8"), context);
+  const load = (file: string) => vm.runInContext(read(join(name, file)), context);
   load("rows.js");
   const { rows, details } = context.sim3align as {
     rows: { name: string; folder?: string; confidence: number | null; iou: number; error?: { code: string } }[];
@@ -45,7 +55,7 @@ test("a report has a page, a row for each case, and pictures", async () => {
   const { status, stderr } = run("align", ...names, ...quick, ...flags);
   assert.equal(status, 1, "one case is broken");
   assert.doesNotMatch(stderr, /no pictures/);
-  const page = readFileSync(join(folder, "report", "index.html"), "utf8");
+  const page = read(join("report", "index.html"));
   assert.doesNotMatch(page, /(src|href)="https?:|import\(|type="module"/);
   const { rows, details } = reportOf("report");
   assert.deepEqual(rows.map((row) => row.name).sort(), [...names].sort());
@@ -105,7 +115,7 @@ test("a resumed batch has the rows of all cases, and draws what is missing", asy
   const { stderr } = await interrupted(/^one .*\n/m, "SIGINT", "align", "one", "two", "obj", ...flags);
   assert.match(stderr, /with --resume/);
   rmSync(join(folder, "resumed", "cases", "one"), { recursive: true });
-  const { status } = run("align", "one", "two", "obj", ...flags, "--resume");
+  const { status } = run("align one two obj", ...flags, "--resume");
   assert.equal(status, 0);
   const { rows, details } = reportOf("resumed");
   assert.deepEqual(rows.map((row) => row.name).sort(), ["obj", "one", "two"]);
@@ -116,8 +126,7 @@ test("cases with frames have a row and pictures for each frame", () => {
   const { "mesh.glb": glb, ...frame } = files;
   writeCase("several", { "mesh.glb": glb });
   for (const name of ["frame_0", "frame_1"]) writeCase(join("several", name), frame);
-  const { status, stderr } = run("align", "several", ...quick, "--report", "frames");
-  assert.equal(status, 0, stderr);
+  succeeds("align several", ...quick, "--report", "frames");
   const { rows, details } = reportOf("frames");
   assert.deepEqual(
     rows.map((row) => row.name),
@@ -130,17 +139,12 @@ test("folders that cannot be used are refused before the first case", () => {
   writeFileSync(join(folder, "file"), "");
   mkdirSync(join(folder, "other"), { recursive: true });
   writeFileSync(join(folder, "other", "index.html"), "mine");
-  for (const [flag, path, message] of [
-    ["--report", "file", /--report file: the folder cannot be made/],
-    ["--report", "other", /--report other: the folder has other content/],
-    ["--overlay", "file", /--overlay file/],
-    ["--glb", join("file", "below"), /--glb/],
-  ] as const) {
-    const { status, stdout, stderr } = run("align", "one", flag, path);
-    assert.equal(status, 2, stderr);
-    assert.match(stderr, message);
-    assert.equal(stdout, "");
-  }
-  assert.equal(readFileSync(join(folder, "other", "index.html"), "utf8"), "mine");
+  refusesUsage({
+    "align one --report file": /--report file: the folder cannot be made/,
+    "align one --report other": /--report other: the folder has other content/,
+    "align one --overlay file": /--overlay file/,
+    "align one --glb file/below": /--glb/,
+  });
+  assert.equal(read(join("other", "index.html")), "mine");
   assert.ok(!existsSync(join(folder, "other", "rows.js")));
 });

@@ -1,12 +1,23 @@
 /** Batches that are recorded with --jsonl, stopped, and resumed. */
 import assert from "node:assert/strict";
-import { appendFileSync, copyFileSync, existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { copyFileSync, existsSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { endless, files, folder, interrupted, results, run, writeCase } from "../support/command-line.js";
-import { rotationRows, truth } from "../support/scene.js";
+import {
+  endless,
+  files,
+  folder,
+  interrupted,
+  read,
+  refusesUsage,
+  results,
+  run,
+  succeeds,
+  writeCase,
+} from "../support/command-line.js";
+import { poseJson, truth } from "../support/scene.js";
 
-const gt = { ...truth, available: true, rotation: rotationRows(truth.rotation), symmetry: "none" };
+const gt = poseJson(truth);
 const names = ["a", "b", "c", "d", "e"];
 const complete = { ...files, "gt.json": gt };
 for (const name of names) writeCase(name, complete);
@@ -15,7 +26,7 @@ const all = [...names, "empty"];
 
 const quick = ["--quality", "fast"];
 const inFolder = (name: string) => join(folder, name);
-const linesOf = (path: string) => readFileSync(inFolder(path), "utf8").split("\n");
+const linesOf = (path: string) => read(path).split("\n");
 
 /** The entries of a file by case, in the order of the names, without times. */
 function entriesOf(path: string): unknown[] {
@@ -74,7 +85,7 @@ test("--csv has the numbers of --json, a row for each case", () => {
 test("a case whose name needs quotes has them in the CSV", () => {
   writeCase('x, "y"', {});
   run("align", 'x, "y"', "empty", "--csv", "quoted.csv", "--workers", "1");
-  assert.match(readFileSync(inFolder("quoted.csv"), "utf8"), /^case,error,.*\n"x, ""y""",FILE_NOT_FOUND,/);
+  assert.match(read("quoted.csv"), /^case,error,.*\n"x, ""y""",FILE_NOT_FOUND,/);
 });
 
 for (const workers of ["1", "2"]) {
@@ -120,7 +131,7 @@ test("lines longer than a block of reading are found and repaired", () => {
   const [first = ""] = linesOf("whole.jsonl");
   const long = JSON.stringify({ case: "elsewhere", text: "ü".repeat(100_000) });
   writeFileSync(inFolder("long.jsonl"), `${long}\n${long.slice(0, -2)}`);
-  const { stderr } = run("align", "a", "empty", ...quick, "--jsonl", "long.jsonl", "--resume");
+  const { stderr } = run("align a empty", ...quick, "--jsonl", "long.jsonl", "--resume");
   assert.match(stderr, /resumed: 0 of 2/);
   const lines = linesOf("long.jsonl");
   assert.equal(lines.length, 4);
@@ -144,62 +155,38 @@ test("a complete batch that is resumed aligns nothing, and has the same exit sta
   assert.match(stderr, /resumed: 6 of 6/);
   assert.match(stderr, /failed earlier: empty \(FILE_NOT_FOUND\); remove their lines/);
   assert.deepEqual(rowsOf("again.csv"), rowsOf("whole.csv"));
-  assert.equal(run("align", "a", "b", "--jsonl", "complete.jsonl", "--resume").status, 0, "without the failed case");
+  succeeds("align a b --jsonl complete.jsonl --resume");
   assert.deepEqual(linesOf("complete.jsonl"), linesOf("whole.jsonl"));
 });
 
 test("--resume without a file begins one", () => {
-  const { status, stderr } = run("align", "a", ...quick, "--jsonl", "begun.jsonl", "--resume");
-  assert.equal(status, 0, stderr);
+  succeeds("align a", ...quick, "--jsonl", "begun.jsonl", "--resume");
   assert.equal(linesOf("begun.jsonl").length, 2);
 });
 
 test("results are never lost by accident: a file with content needs --resume", () => {
   const text = "the work of a day\n";
   writeFileSync(inFolder("kept.jsonl"), text);
-  const without = run("align", "a", ...quick, "--jsonl", "kept.jsonl");
-  assert.equal(without.status, 2);
-  assert.match(without.stderr, /--jsonl kept\.jsonl: the file has content\. Pass --resume/);
+  refusesUsage({ "align a --jsonl kept.jsonl": /--jsonl kept\.jsonl: the file has content\. Pass --resume/ });
   for (const content of [text, text.trimEnd(), `${linesOf("whole.jsonl")[0]}\n${text}`, '{"case": 1}\n']) {
     writeFileSync(inFolder("kept.jsonl"), content);
-    const { status, stderr } = run("align", "a", ...quick, "--jsonl", "kept.jsonl", "--resume");
-    assert.equal(status, 2, stderr);
-    assert.match(stderr, /--jsonl kept\.jsonl: line \d is not an object with "case"/);
-    assert.equal(readFileSync(inFolder("kept.jsonl"), "utf8"), content);
+    refusesUsage({
+      "align a --jsonl kept.jsonl --resume": /--jsonl kept\.jsonl: line \d is not an object with "case"/,
+    });
+    assert.equal(read("kept.jsonl"), content);
   }
 });
 
-for (const flag of ["--jsonl", "--csv"]) {
-  test(`${flag}: a file that cannot be written is noticed before the first case`, () => {
-    mkdirSync(inFolder("folder"), { recursive: true });
-    for (const [path, message] of [
-      [join("nowhere", "out"), /nowhere.out: the file cannot be written: .*no such/],
-      ["folder", /folder: this is a folder/],
-    ] as const) {
-      const { status, stdout, stderr } = run("align", "a", "b", flag, path);
-      assert.equal(status, 2, stderr);
-      assert.ok(stderr.includes(`${flag} ${path}`), stderr);
-      assert.match(stderr, message);
-      assert.equal(stdout, "");
-    }
-  });
-}
-
 test("flags that contradict each other are refused", () => {
-  for (const [args, message] of [
-    [["--resume"], /--resume needs --jsonl FILE/],
-    [["--jsonl", "-", "--resume"], /--resume needs a file/],
-    [["--jsonl", "same", "--csv", "./same"], /--jsonl and --csv name the same file/],
-    [["--json", "-", "--jsonl", "-"], /--json and --jsonl name the same file/],
-    [["--workers", "0"], /Expected 1 to 64, or "auto"/],
-    [["--workers", "1.5"], /Expected 1 to 64, or "auto"/],
-    [["--workers", "65"], /Expected 1 to 64, or "auto"/],
-  ] as const) {
-    const { status, stderr, stdout } = run("align", "a", "b", ...args);
-    assert.equal(status, 2, stderr);
-    assert.match(stderr, message);
-    assert.equal(stdout, "");
-  }
+  refusesUsage({
+    "align a b --resume": /--resume needs --jsonl FILE/,
+    "align a b --jsonl - --resume": /--resume needs a file/,
+    "align a b --jsonl same --csv ./same": /--jsonl and --csv name the same file/,
+    "align a b --json - --jsonl -": /--json and --jsonl name the same file/,
+    "align a b --workers 0": /Expected 1 to 64, or "auto"/,
+    "align a b --workers 1.5": /Expected 1 to 64, or "auto"/,
+    "align a b --workers 65": /Expected 1 to 64, or "auto"/,
+  });
   assert.ok(!existsSync(inFolder("same")));
 });
 
@@ -213,17 +200,17 @@ test("an option that no case can have ends the batch before the next result", ()
 });
 
 test("--jsonl - and --csv - write to stdout as cases end, the table goes to stderr", () => {
-  const jsonl = run("align", "a", "empty", ...quick, "--jsonl", "-");
+  const jsonl = run("align a empty", ...quick, "--jsonl", "-");
   const found = jsonl.stdout.trimEnd().split("\n");
   assert.deepEqual(found.map((line) => JSON.parse(line).case).sort(), ["a", "empty"]);
   assert.match(jsonl.stderr, /^a +\d/m);
-  const csv = run("align", "a", "empty", ...quick, "--csv", "-");
+  const csv = run("align a empty", ...quick, "--csv", "-");
   assert.match(csv.stdout, /^case,error,confidence,.*\n.*\n.*\n$/);
 });
 
 test("stdout has no record: a file of the name - is not read", () => {
   writeFileSync(inFolder("-"), "something else\n");
-  const { status, stdout } = run("align", "empty", "--jsonl", "-");
+  const { status, stdout } = run("align empty --jsonl -");
   rmSync(inFolder("-"));
   assert.equal(status, 1);
   assert.equal(JSON.parse(stdout).case, "empty");
@@ -247,25 +234,4 @@ test("an interruption without --jsonl tells of it", async () => {
   const args = ["align", "a", endless("endless-alone"), ...quick, "--workers", "2"];
   const { stderr } = await interrupted(/^a .*\n/m, "SIGINT", ...args);
   assert.match(stderr, /interrupted: 1 of 2 cases are done\nWith --jsonl FILE, a batch can be resumed/);
-});
-
-test("the results do not depend on the number of workers", () => {
-  run("align", ...all, ...quick, "--jsonl", "one-worker.jsonl", "--workers", "1");
-  run("align", ...all, ...quick, "--jsonl", "three-workers.jsonl", "--workers", "3");
-  assert.deepEqual(entriesOf("one-worker.jsonl"), entriesOf("whole.jsonl"));
-  assert.deepEqual(entriesOf("three-workers.jsonl"), entriesOf("whole.jsonl"));
-  const order = linesOf("one-worker.jsonl").slice(0, -1);
-  assert.deepEqual(
-    order.map((line) => JSON.parse(line).case),
-    all,
-    "one worker keeps the order",
-  );
-});
-
-test("another program can follow the file: a line is there when its row is", async () => {
-  rmSync(inFolder("followed.jsonl"), { force: true });
-  appendFileSync(inFolder("followed.jsonl"), "");
-  const args = ["align", "a", endless("endless-followed"), ...quick, "--jsonl", "followed.jsonl"];
-  await interrupted(/^a .*\n/m, "SIGKILL", ...args);
-  assert.equal(entriesOf("followed.jsonl").length, 1);
 });

@@ -56,19 +56,15 @@ test("a round trip gives the same cuboid, also with quarter turns", () => {
 });
 
 test("other numbers are refused", async () => {
-  await rejectsWith(async () => fromCvatCuboid([1, 2, 3]), {
-    code: "WRONG_LENGTH",
-    argument: "points",
-    message: /16 numbers/,
-  });
-  await rejectsWith(async () => fromCvatCuboid([0, 0, 0, 0, 0, 0, 1, 1, -1, 0, 0, 0, 0, 0, 0, 0]), {
-    code: "INVALID_ARGUMENT",
-    argument: "points",
-    message: /above 0/,
-  });
-  await rejectsWith(async () => toCvatCuboid({ center: [0, 0, 0], size: [1, 0, 1], quaternion: [0, 0, 0, 1] }), {
-    code: "INVALID_ARGUMENT",
-    argument: "cuboid.size",
-    message: /above 0/,
-  });
+  await rejectsWith(() => fromCvatCuboid([1, 2, 3]), "WRONG_LENGTH points", /16 numbers/);
+  await rejectsWith(
+    () => fromCvatCuboid([0, 0, 0, 0, 0, 0, 1, 1, -1, 0, 0, 0, 0, 0, 0, 0]),
+    "INVALID_ARGUMENT points",
+    /above 0/,
+  );
+  await rejectsWith(
+    () => toCvatCuboid({ center: [0, 0, 0], size: [1, 0, 1], quaternion: [0, 0, 0, 1] }),
+    "INVALID_ARGUMENT cuboid.size",
+    /above 0/,
+  );
 });

@@ -9,7 +9,7 @@ import { type BufferGeometry, type Group, Mesh, Vector3 } from "three";
 import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 import { PLYLoader } from "three/addons/loaders/PLYLoader.js";
 import { repository } from "../support/environment.js";
-import { rejectsWith } from "../support/errors.js";
+import { type Fault, rejectsWith } from "../support/errors.js";
 import { glbJson, glbOf } from "../support/files.js";
 import { assertValid } from "../support/gltf-validator.js";
 import { assertNear, forSeeds, Random } from "../support/random.js";
@@ -169,59 +169,42 @@ test("PLY: three.js reads the vertices and triangles", () => {
 
 test("what is no mesh is refused", async () => {
   const { positions } = soup;
-  const cases: [unknown, Parameters<typeof rejectsWith>[1]][] = [
-    [{ positions: [0, 0, 0] }, { code: "INVALID_ARGUMENT", argument: "mesh.positions", message: /Float32Array\.from/ }],
-    [{ positions: positions.slice(0, 8) }, { code: "WRONG_LENGTH", argument: "mesh.positions", message: /8 numbers/ }],
-    [{ positions: positions.slice(0, 6) }, { code: "WRONG_LENGTH", argument: "mesh.positions", message: /2 vertices/ }],
-    [{ positions: new Float32Array() }, { code: "EMPTY_MESH", argument: "mesh", message: /no vertex/ }],
-    [
-      { positions, indices: new Uint32Array() },
-      { code: "EMPTY_MESH", argument: "mesh", message: /no triangle/ },
-    ],
-    [
-      { positions, indices: Uint32Array.of(0, 1, 9) },
-      { code: "INDEX_OUT_OF_RANGE", argument: "mesh.indices", message: /below 9/ },
-    ],
-    [
-      { positions, indices: Uint32Array.of(0, 1) },
-      { code: "WRONG_LENGTH", argument: "mesh.indices", message: /2 indices/ },
-    ],
+  const cases: [unknown, Fault, RegExp][] = [
+    [{ positions: [0, 0, 0] }, "INVALID_ARGUMENT mesh.positions", /Float32Array\.from/],
+    [{ positions: positions.slice(0, 8) }, "WRONG_LENGTH mesh.positions", /8 numbers/],
+    [{ positions: positions.slice(0, 6) }, "WRONG_LENGTH mesh.positions", /2 vertices/],
+    [{ positions: new Float32Array() }, "EMPTY_MESH mesh", /no vertex/],
+    [{ positions, indices: new Uint32Array() }, "EMPTY_MESH mesh", /no triangle/],
+    [{ positions, indices: Uint32Array.of(0, 1, 9) }, "INDEX_OUT_OF_RANGE mesh.indices", /below 9/],
+    [{ positions, indices: Uint32Array.of(0, 1) }, "WRONG_LENGTH mesh.indices", /2 indices/],
     [
       { positions: positions.map((x, i) => (i === 5 ? Number.NaN : x)) },
-      { code: "NON_FINITE", argument: "mesh.positions", message: /NaN in vertex 1/ },
+      "NON_FINITE mesh.positions",
+      /NaN in vertex 1/,
     ],
   ];
-  for (const [wrong, expected] of cases) await rejectsWith(async () => exportGlb(wrong as never, truth), expected);
-  await rejectsWith(async () => exportGlb(soup, truth, { mode: "bake" as never }), {
-    code: "INVALID_OPTION",
-    argument: "options.mode",
-    message: /"node" or "baked"/,
-  });
+  for (const [wrong, ...expected] of cases) await rejectsWith(() => exportGlb(wrong as never, truth), ...expected);
+  await rejectsWith(
+    () => exportGlb(soup, truth, { mode: "bake" as never }),
+    "INVALID_OPTION options.mode",
+    /"node" or "baked"/,
+  );
 });
 
 test("what is no GLB is refused, whatever its bytes", async () => {
-  const corrupt = (message: RegExp) => ({ code: "CORRUPT_FILE", argument: "glb", message }) as const;
   const good = Uint8Array.from(exportGlb(soup, truth));
-  await rejectsWith(async () => placeGlb(new Uint8Array(7), truth), corrupt(/without a GLB header/));
-  await rejectsWith(async () => placeGlb(good.slice(0, -1), truth), corrupt(/bytes of/));
+  await rejectsWith(() => placeGlb(new Uint8Array(7), truth), "CORRUPT_FILE glb", /without a GLB header/);
+  await rejectsWith(() => placeGlb(good.slice(0, -1), truth), "CORRUPT_FILE glb", /bytes of/);
   const broken = good.slice();
   broken[20] = 0x78;
-  await rejectsWith(async () => placeGlb(broken, truth), corrupt(/JSON/));
+  await rejectsWith(() => placeGlb(broken, truth), "CORRUPT_FILE glb", /JSON/);
   const long = good.slice();
   long[15] = 0x7f;
-  await rejectsWith(async () => placeGlb(long, truth), corrupt(/a chunk up to/));
-  await rejectsWith(async () => placeGlb("glb" as never, truth), {
-    code: "INVALID_ARGUMENT",
-    argument: "glb",
-    message: /bytes of a GLB/,
-  });
+  await rejectsWith(() => placeGlb(long, truth), "CORRUPT_FILE glb", /a chunk up to/);
+  await rejectsWith(() => placeGlb("glb" as never, truth), "INVALID_ARGUMENT glb", /bytes of a GLB/);
   const old = good.slice();
   old[4] = 1;
-  await rejectsWith(async () => placeGlb(old, truth), {
-    code: "UNSUPPORTED_FORMAT",
-    argument: "glb",
-    message: /glTF 2/,
-  });
+  await rejectsWith(() => placeGlb(old, truth), "UNSUPPORTED_FORMAT glb", /glTF 2/);
   // Bytes changed at random are placed or refused, never anything else.
   const random = new Random(5);
   for (let i = 0; i < 300; i++) {

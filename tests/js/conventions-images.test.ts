@@ -14,7 +14,7 @@ import {
   resizeMask,
 } from "sim3align/conventions";
 import { fixtures } from "../support/conventions.js";
-import { rejectsWith } from "../support/errors.js";
+import { type Refused, rejectsWith } from "../support/errors.js";
 import { assertNear, forSeeds } from "../support/random.js";
 import { mesh, truth, view } from "../support/scene.js";
 
@@ -40,29 +40,20 @@ test("a mask is chosen from a tensor by its number or its score", () => {
 
 test("tensors that leave the choice open, or are none, are refused", async () => {
   const tensor = { data: new Uint8Array(18), dims: [1, 3, 2, 3] };
-  const choice = { code: "INVALID_OPTION", argument: "choice", message: /iou_scores/ } as const;
-  await rejectsWith(async () => maskFromTensor(tensor), choice);
-  await rejectsWith(async () => maskFromTensor(tensor, { index: 3 }), choice);
-  await rejectsWith(async () => maskFromTensor(tensor, { scores: [1, 2] }), {
-    code: "WRONG_LENGTH",
-    argument: "choice.scores",
-    message: /2 scores/,
-  });
-  await rejectsWith(async () => maskFromTensor({ data: new Uint8Array(17), dims: [1, 3, 2, 3] }), {
-    code: "WRONG_LENGTH",
-    argument: "tensor.data",
-    message: /17 values/,
-  });
-  await rejectsWith(async () => depthFromTensor({ data: new Uint8Array(6), dims: [2, 3] }), {
-    code: "EIGHT_BIT_DEPTH",
-    argument: "tensor.data",
-    message: /predicted_depth/,
-  });
-  await rejectsWith(async () => depthFromTensor({ data: new Float32Array(12), dims: [2, 2, 3] }), {
-    code: "WRONG_LENGTH",
-    argument: "tensor.dims",
-    message: /2 maps/,
-  });
+  const choice = ["INVALID_OPTION choice", /iou_scores/] as const;
+  await rejectsWith(() => maskFromTensor(tensor), ...choice);
+  await rejectsWith(() => maskFromTensor(tensor, { index: 3 }), ...choice);
+  const refused: Refused[] = [
+    [() => maskFromTensor(tensor, { scores: [1, 2] }), "WRONG_LENGTH choice.scores", /2 scores/],
+    [() => maskFromTensor({ data: new Uint8Array(17), dims: [1, 3, 2, 3] }), "WRONG_LENGTH tensor.data", /17 values/],
+    [
+      () => depthFromTensor({ data: new Uint8Array(6), dims: [2, 3] }),
+      "EIGHT_BIT_DEPTH tensor.data",
+      /predicted_depth/,
+    ],
+    [() => depthFromTensor({ data: new Float32Array(12), dims: [2, 2, 3] }), "WRONG_LENGTH tensor.dims", /2 maps/],
+  ];
+  for (const each of refused) await rejectsWith(...each);
 });
 
 test("depth comes from a tensor as it is", () => {
@@ -195,33 +186,22 @@ test("a crop holds the pixels of its box, and everything else of the input", () 
 test("sizes that do not go together are refused", async () => {
   const small = resizeMask(mask, { width: 8, height: 6 });
   const whole = { left: 0, top: 0, width, height };
-  await rejectsWith(async () => cropInput({ depth, mask: small }, whole), {
-    code: "SIZE_MISMATCH",
-    argument: "input.mask",
-    message: /8 × 6 pixels, expected 160 × 120/,
-  });
-  await rejectsWith(async () => cropInput({ depth }, { ...whole, left: 1 }), {
-    code: "SIZE_MISMATCH",
-    argument: "box",
-    message: /within/,
-  });
-  await rejectsWith(async () => maskBox({ data: new Uint8Array(4), width: 2, height: 2 }), {
-    code: "EMPTY_MASK",
-    argument: "mask",
-    message: /no non-zero pixel/,
-  });
-  await rejectsWith(
-    async () => resizeCamera({ ...camera, fx: 0 }, { fromWidth: 1, fromHeight: 1, width: 2, height: 2 }),
-    { code: "INVALID_CAMERA", argument: "camera.fx", message: /above 0/ },
-  );
-  await rejectsWith(
-    async () =>
-      resizeCamera({ K: [600, 0, 0, 0, 600, 0, 320, 240, 1] }, { fromWidth: 1, fromHeight: 1, width: 2, height: 2 }),
-    { code: "INVALID_CAMERA", argument: "camera.K", message: /transpose/ },
-  );
-  await rejectsWith(async () => depthFromDisparity(depth, { scale: Number.NaN }), {
-    code: "INVALID_ARGUMENT",
-    argument: "calibration.scale",
-    message: /finite/,
-  });
+  const refused: Refused[] = [
+    [() => cropInput({ depth, mask: small }, whole), "SIZE_MISMATCH input.mask", /8 × 6 pixels, expected 160 × 120/],
+    [() => cropInput({ depth }, { ...whole, left: 1 }), "SIZE_MISMATCH box", /within/],
+    [() => maskBox({ data: new Uint8Array(4), width: 2, height: 2 }), "EMPTY_MASK mask", /no non-zero pixel/],
+    [
+      () => resizeCamera({ ...camera, fx: 0 }, { fromWidth: 1, fromHeight: 1, width: 2, height: 2 }),
+      "INVALID_CAMERA camera.fx",
+      /above 0/,
+    ],
+    [
+      () =>
+        resizeCamera({ K: [600, 0, 0, 0, 600, 0, 320, 240, 1] }, { fromWidth: 1, fromHeight: 1, width: 2, height: 2 }),
+      "INVALID_CAMERA camera.K",
+      /transpose/,
+    ],
+    [() => depthFromDisparity(depth, { scale: Number.NaN }), "INVALID_ARGUMENT calibration.scale", /finite/],
+  ];
+  for (const each of refused) await rejectsWith(...each);
 });

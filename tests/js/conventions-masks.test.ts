@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { fromCocoRle, fromCvatRle, fromLabelStudioRle, toCocoRle } from "sim3align/conventions";
 import { fixtures, pixelsOf } from "../support/conventions.js";
-import { rejectsWith } from "../support/errors.js";
+import { type Refused, rejectsWith } from "../support/errors.js";
 import { cocoRle } from "../support/files.js";
 import { forSeeds } from "../support/random.js";
 
@@ -54,57 +54,30 @@ const size = { width: first.width, height: first.height };
 const cut = (list: number[]) => list.slice(0, Math.floor(list.length / 2));
 
 test("broken encodings are refused", async () => {
-  const corrupt = (argument: string, message: RegExp) => ({ code: "CORRUPT_FILE", argument, message }) as const;
   const counts = first.coco;
-  const coco = (broken: string | number[]) => async () =>
-    fromCocoRle({ size: [first.height, first.width], counts: broken });
-  await rejectsWith(coco(counts.slice(0, -2)), corrupt("rle.counts", /add up to/));
-  await rejectsWith(coco(`${counts}é`), corrupt("rle.counts", /character "é"/));
-  await rejectsWith(coco(`${counts}P`), corrupt("rle.counts", /unfinished/));
-  await rejectsWith(coco("ooooooooo0"), corrupt("rle.counts", /35 bits/));
-  await rejectsWith(coco([1.5, 3]), corrupt("rle.counts", /1\.5/));
-  await rejectsWith(coco([-1, 3]), corrupt("rle.counts", /-1/));
-  await rejectsWith(async () => fromCocoRle({ size: [1e9, 1e9], counts: [1e18] }), {
-    code: "FILE_TOO_LARGE",
-    argument: "rle.size",
-    message: /8192 × 8192/,
-  });
-  await rejectsWith(async () => fromLabelStudioRle(cut(first.labelStudio), size), corrupt("rle", /truncated/));
-  await rejectsWith(async () => fromLabelStudioRle([], size), corrupt("rle", /0 bytes/));
-  await rejectsWith(async () => fromCvatRle([1, 2, ...first.cvatPoints.slice(2)], size), corrupt("mask", /runs of/));
-  await rejectsWith(async () => fromCvatRle({ ...first.cvatElement, rle: "1, x" }, size), corrupt("mask", /NaN among/));
+  const coco = (broken: string | number[]) => () => fromCocoRle({ size: [first.height, first.width], counts: broken });
+  await rejectsWith(coco(counts.slice(0, -2)), "CORRUPT_FILE rle.counts", /add up to/);
+  await rejectsWith(coco(`${counts}é`), "CORRUPT_FILE rle.counts", /character "é"/);
+  await rejectsWith(coco(`${counts}P`), "CORRUPT_FILE rle.counts", /unfinished/);
+  await rejectsWith(coco("ooooooooo0"), "CORRUPT_FILE rle.counts", /35 bits/);
+  await rejectsWith(coco([1.5, 3]), "CORRUPT_FILE rle.counts", /1\.5/);
+  await rejectsWith(coco([-1, 3]), "CORRUPT_FILE rle.counts", /-1/);
+  await rejectsWith(() => fromCocoRle({ size: [1e9, 1e9], counts: [1e18] }), "FILE_TOO_LARGE rle.size", /8192 × 8192/);
+  await rejectsWith(() => fromLabelStudioRle(cut(first.labelStudio), size), "CORRUPT_FILE rle", /truncated/);
+  await rejectsWith(() => fromLabelStudioRle([], size), "CORRUPT_FILE rle", /0 bytes/);
+  await rejectsWith(() => fromCvatRle([1, 2, ...first.cvatPoints.slice(2)], size), "CORRUPT_FILE mask", /runs of/);
+  await rejectsWith(() => fromCvatRle({ ...first.cvatElement, rle: "1, x" }, size), "CORRUPT_FILE mask", /NaN among/);
 });
 
 test("encodings of other images are refused", async () => {
   const other = { width: size.width - 30, height: size.height };
-  await rejectsWith(async () => fromLabelStudioRle(first.labelStudio, other), {
-    code: "SIZE_MISMATCH",
-    argument: "rle",
-    message: /original_width/,
-  });
-  await rejectsWith(async () => fromCvatRle(first.cvatPoints, other), {
-    code: "SIZE_MISMATCH",
-    argument: "mask",
-    message: /within the image/,
-  });
-  await rejectsWith(async () => fromCvatRle([1, 2], size), {
-    code: "WRONG_LENGTH",
-    argument: "mask",
-    message: /four numbers of the box/,
-  });
-  await rejectsWith(async () => fromLabelStudioRle([1, 256], size), {
-    code: "INVALID_ARGUMENT",
-    argument: "rle",
-    message: /0 to 255/,
-  });
-  await rejectsWith(async () => toCocoRle({ data: new Uint8Array(3), width: 2, height: 2 }), {
-    code: "WRONG_LENGTH",
-    argument: "mask.data",
-    message: /2 × 2 = 4/,
-  });
-  await rejectsWith(async () => toCocoRle({ data: new Uint8Array(0), width: 0, height: 2 }), {
-    code: "INVALID_ARGUMENT",
-    argument: "mask.width",
-    message: /at least 1/,
-  });
+  const refused: Refused[] = [
+    [() => fromLabelStudioRle(first.labelStudio, other), "SIZE_MISMATCH rle", /original_width/],
+    [() => fromCvatRle(first.cvatPoints, other), "SIZE_MISMATCH mask", /within the image/],
+    [() => fromCvatRle([1, 2], size), "WRONG_LENGTH mask", /four numbers of the box/],
+    [() => fromLabelStudioRle([1, 256], size), "INVALID_ARGUMENT rle", /0 to 255/],
+    [() => toCocoRle({ data: new Uint8Array(3), width: 2, height: 2 }), "WRONG_LENGTH mask.data", /2 × 2 = 4/],
+    [() => toCocoRle({ data: new Uint8Array(0), width: 0, height: 2 }), "INVALID_ARGUMENT mask.width", /at least 1/],
+  ];
+  for (const each of refused) await rejectsWith(...each);
 });

@@ -24,7 +24,7 @@ import {
 } from "sim3align/conventions";
 import { Matrix4, Quaternion, Vector3 } from "three";
 import { fixtures } from "../support/conventions.js";
-import { rejectsWith } from "../support/errors.js";
+import { type Refusals, refuses, rejectsWith } from "../support/errors.js";
 import { assertNear, forSeeds } from "../support/random.js";
 import { columnMajor, type Pose, rotationRows, transformed } from "../support/scene.js";
 
@@ -245,73 +245,48 @@ test("glTF's nodes have the transform in parts, and what is known in extras", ()
   assert.equal(toGltfNode(result, { name: "mug" }).name, "mug");
 });
 
-const bad: [string, unknown, Parameters<typeof rejectsWith>[1]][] = [
-  ["nothing", undefined, { code: "INVALID_ARGUMENT", argument: "transform", message: /16 numbers/ }],
-  ["too few numbers", [1, 2, 3], { code: "WRONG_LENGTH", argument: "transform", message: /3 numbers/ }],
-  ["a row-major matrix", [1, 0, 0, 5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1], row(/Transpose/)],
-  ["a mirror image", new Matrix4().makeScale(1, 1, -1).elements, row(/determinant -1/)],
-  ["a stretch", new Matrix4().makeScale(1, 2, 1).elements, row(/orthonormal/)],
-  ["no scale", new Matrix4().makeScale(0, 0, 0).elements, row(/scale/)],
-  [
-    "a scale of 0",
+const bad: Refusals<unknown> = {
+  "nothing: INVALID_ARGUMENT transform": [undefined, /16 numbers/],
+  "too few numbers: WRONG_LENGTH transform": [[1, 2, 3], /3 numbers/],
+  "a row-major matrix: INVALID_TRANSFORM transform": [[1, 0, 0, 5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1], /Transpose/],
+  "a mirror image: INVALID_TRANSFORM transform": [new Matrix4().makeScale(1, 1, -1).elements, /determinant -1/],
+  "a stretch: INVALID_TRANSFORM transform": [new Matrix4().makeScale(1, 2, 1).elements, /orthonormal/],
+  "no scale: INVALID_TRANSFORM transform": [new Matrix4().makeScale(0, 0, 0).elements, /scale/],
+  "a scale of 0: INVALID_TRANSFORM transform.scale": [
     { scale: 0, rotation: [0, 0, 0, 1], translation: [0, 0, 0] },
-    { code: "INVALID_TRANSFORM", argument: "transform.scale", message: /above 0/ },
+    /above 0/,
   ],
-  [
-    "a quaternion of 0",
+  "a quaternion of 0: INVALID_TRANSFORM transform.rotation": [
     { scale: 1, rotation: [0, 0, 0, 0], translation: [0, 0, 0] },
-    { code: "INVALID_TRANSFORM", argument: "transform.rotation", message: /other than 0/ },
+    /other than 0/,
   ],
-  [
-    "a translation that is none",
+  "a translation that is none: NON_FINITE transform.translation": [
     { scale: 1, rotation: [0, 0, 0, 1], translation: [0, Number.NaN, 0] },
-    { code: "NON_FINITE", argument: "transform.translation", message: /NaN/ },
+    /NaN/,
   ],
-  [
-    "no rotation",
-    { scale: 1, translation: [0, 0, 0] },
-    { code: "INVALID_ARGUMENT", argument: "transform.rotation", message: /quaternion/ },
-  ],
-];
+  "no rotation: INVALID_ARGUMENT transform.rotation": [{ scale: 1, translation: [0, 0, 0] }, /quaternion/],
+};
 
-function row(message: RegExp) {
-  return { code: "INVALID_TRANSFORM", argument: "transform", message } as const;
-}
-
-for (const [name, transform, expected] of bad) {
-  test(`no transform: ${name}`, () => rejectsWith(async () => toSim3(transform as Sim3Like), expected));
-}
+refuses(bad, (transform) => toSim3(transform as Sim3Like));
 
 test("other wrong arguments are named", async () => {
   const identity = toSim3(new Matrix4().elements);
-  await rejectsWith(async () => toFrame(identity, "blender" as CameraFrame), {
-    code: "INVALID_OPTION",
-    argument: "frame",
-    message: /"opencv" or "opengl"/,
-  });
-  await rejectsWith(async () => compose(identity, [1] as unknown as Sim3Like), {
-    code: "WRONG_LENGTH",
-    argument: "transforms[1]",
-    message: /1 numbers/,
-  });
-  await rejectsWith(async () => applyToPoints(identity, new Float32Array(4)), {
-    code: "WRONG_LENGTH",
-    argument: "points",
-    message: /x, y, z per point/,
-  });
-  await rejectsWith(async () => applyToPoints(identity, [1, 2, 3] as unknown as Float32Array), {
-    code: "INVALID_ARGUMENT",
-    argument: "points",
-    message: /Float32Array.from\(points\)/,
-  });
-  await rejectsWith(async () => fromSam3d({ scale: [1, 2, 1], rotation: [1, 0, 0, 0], translation: [0, 0, 1] }), {
-    code: "INVALID_TRANSFORM",
-    argument: "layout.scale",
-    message: /uniform scale/,
-  });
-  await rejectsWith(async () => fromBop({ cam_R_m2c: [1, 0, 0], cam_t_m2c: [0, 0, 1] }), {
-    code: "WRONG_LENGTH",
-    argument: "entry.cam_R_m2c",
-    message: /nine/,
-  });
+  await rejectsWith(() => toFrame(identity, "blender" as CameraFrame), "INVALID_OPTION frame", /"opencv" or "opengl"/);
+  await rejectsWith(() => compose(identity, [1] as unknown as Sim3Like), "WRONG_LENGTH transforms[1]", /1 numbers/);
+  await rejectsWith(() => applyToPoints(identity, new Float32Array(4)), "WRONG_LENGTH points", /x, y, z per point/);
+  await rejectsWith(
+    () => applyToPoints(identity, [1, 2, 3] as unknown as Float32Array),
+    "INVALID_ARGUMENT points",
+    /Float32Array.from\(points\)/,
+  );
+  await rejectsWith(
+    () => fromSam3d({ scale: [1, 2, 1], rotation: [1, 0, 0, 0], translation: [0, 0, 1] }),
+    "INVALID_TRANSFORM layout.scale",
+    /uniform scale/,
+  );
+  await rejectsWith(
+    () => fromBop({ cam_R_m2c: [1, 0, 0], cam_t_m2c: [0, 0, 1] }),
+    "WRONG_LENGTH entry.cam_R_m2c",
+    /nine/,
+  );
 });

@@ -1,42 +1,38 @@
 /** The test script's own reading of what other programs print: a wrong one would hide failures. */
 import assert from "node:assert/strict";
-import { join } from "node:path";
 import { test } from "node:test";
-import { pathToFileURL } from "node:url";
-import { repository } from "../support/environment.js";
+import { scriptModule } from "../support/internals.js";
 
-interface Counts {
-  passed: number;
-  failed: number;
-  skipped: number;
-}
+const { nodeCounts, rustCounts, withStatus } = await scriptModule("lib/counts.mjs");
 
-interface CountsModule {
-  rustCounts(output: string): Counts;
-  nodeCounts(output: string): Counts;
-  withStatus(counts: Counts, succeeded: boolean): Counts;
-}
-
-const module = pathToFileURL(join(repository, "scripts", "lib", "counts.mjs")).href;
-const { nodeCounts, rustCounts, withStatus } = (await import(module)) as CountsModule;
-
-test("the result lines of all Rust test programs are added, in colour or not", () => {
+test("the result lines of all Rust test programs are added, in colour or not, with the times of the tests", () => {
   const output = [
+    "test kd_tree::nearest ... ok <1.250s>",
     "test result: ok. 12 passed; 0 failed; 3 ignored; 0 measured; 0 filtered out; finished in 0.10s",
     "test a::b ... FAILED",
     "test result: \u001b[31mFAILED\u001b[0m. 4 passed; 2 failed; 0 ignored; 0 filtered out; finished in 1s",
   ].join("\n");
-  assert.deepEqual(rustCounts(output), { passed: 16, failed: 2, skipped: 3 });
+  assert.deepEqual(rustCounts(output), {
+    passed: 16,
+    failed: 2,
+    skipped: 3,
+    times: [{ name: "kd_tree::nearest", ms: 1250 }],
+  });
 });
 
 test("output without a result line counts nothing", () => {
-  assert.deepEqual(rustCounts("error: could not compile"), { passed: 0, failed: 0, skipped: 0 });
+  assert.deepEqual(rustCounts("error: could not compile"), { passed: 0, failed: 0, skipped: 0, times: [] });
 });
 
 test("Node's summary is read, cancelled tests as failed", () => {
   const summary = ["tests 9", "suites 0", "pass 4", "fail 1", "cancelled 2", "skipped 1", "todo 1", "duration_ms 5"];
   const output = ["✔ pass 100 balls (1.5ms)", ...summary.map((line) => `\u001b[34mℹ ${line}\u001b[39m`)].join("\n");
-  assert.deepEqual(nodeCounts(output), { passed: 4, failed: 3, skipped: 2 });
+  assert.deepEqual(nodeCounts(output), {
+    passed: 4,
+    failed: 3,
+    skipped: 2,
+    times: [{ name: "pass 100 balls", ms: 1.5 }],
+  });
 });
 
 test("a program that ends badly has failed, whatever it counted", () => {

@@ -4,7 +4,7 @@ import { spawnSync } from "node:child_process";
 import { chmodSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { delimiter, dirname, join } from "node:path";
 import { test } from "node:test";
-import { files, folder, writeCase } from "../support/command-line.js";
+import { files, folder, read, writeCase } from "../support/command-line.js";
 import { commandLine, repository } from "../support/environment.js";
 
 const python = process.env.SIM3ALIGN_NOTEBOOKS ?? "";
@@ -50,7 +50,7 @@ test("a cell of a notebook runs the command line, and says what came of each cas
   // Run twice: the second time, everything is there.
   writeFileSync(join(folder, "cells.json"), JSON.stringify([cell, cell]));
   const lines = runIn(python, "notebook.py", "cells.json").trim().split("\n").sort();
-  const record = readFileSync(join(folder, "results.jsonl"), "utf8").trim().split("\n");
+  const record = read("results.jsonl").trim().split("\n");
   assert.equal(record.length, 2);
   const [result, failed] = record.map((line) => JSON.parse(line)).sort((a, b) => (a.case < b.case ? -1 : 1));
   const aligned = `blob confidence ${result.confidence.toFixed(2)}, scale ${result.scale.toFixed(4)}`;
@@ -68,7 +68,7 @@ test("Rerun shows the record: camera, depth, mesh and pose", { skip }, () => {
     assert.ok(printed.includes(entity), `${entity} is there`);
   }
   assert.ok(!printed.includes("/broken"), "what failed is left out");
-  const [line = ""] = readFileSync(join(folder, "results.jsonl"), "utf8")
+  const [line = ""] = read("results.jsonl")
     .split("\n")
     .filter((line) => line.includes('"case":"blob"'));
   const { translation, matrix } = JSON.parse(line) as { translation: number[]; matrix: number[] };

@@ -146,38 +146,35 @@ for (const [name, aligner] of aligners) {
       ...Object.getOwnPropertyDescriptors(input),
       ...Object.getOwnPropertyDescriptors(change),
     }) as AlignInput;
-    test(`${name}: ${value}`, () => rejectsWith(() => aligner.align(bad, quick), { code, argument, message }));
+    test(`${name}: ${value}`, () => rejectsWith(() => aligner.align(bad, quick), `${code} ${argument}`, message));
   }
 
   test(`${name}: arguments of other calls`, async () => {
     const cloud = detached(mesh.positions);
-    const refused = { code: "INVALID_ARGUMENT", message: /detached/ } as const;
-    await rejectsWith(() => aligner.register(cloud, mesh.positions), { ...refused, argument: "source" });
+    await rejectsWith(() => aligner.register(cloud, mesh.positions), "INVALID_ARGUMENT source", /detached/);
     const pairs = detached(new Uint32Array(6));
     const estimate = () => aligner.estimateSim3(mesh.positions, mesh.positions, pairs);
-    await rejectsWith(estimate, { ...refused, argument: "correspondences" });
-    await rejectsWith(() => aligner.prepareMesh({ ...mesh, positions: cloud }), {
-      ...refused,
-      argument: "mesh.positions",
-    });
-    await rejectsWith(() => aligner.align(detached(new Uint8Array(8)) as never), { ...refused, argument: "input" });
+    await rejectsWith(estimate, "INVALID_ARGUMENT correspondences", /detached/);
+    await rejectsWith(
+      () => aligner.prepareMesh({ ...mesh, positions: cloud }),
+      "INVALID_ARGUMENT mesh.positions",
+      /detached/,
+    );
+    await rejectsWith(() => aligner.align(detached(new Uint8Array(8)) as never), "INVALID_ARGUMENT input", /detached/);
     const matrix = detached(new Float64Array(16));
-    await rejectsWith(() => aligner.evaluate(input, { matrix }), { ...refused, argument: "transform.matrix" });
-    await rejectsWith(() => aligner.evaluate(input, truth, { truth: matrix }), {
-      ...refused,
-      argument: "options.truth",
-    });
-    await rejectsWith(() => aligner.align(input, throwing({ ...quick }, "seed")), {
-      code: "INVALID_ARGUMENT",
-      argument: "options.seed",
-      message: /not loaded yet/,
-    });
+    await rejectsWith(() => aligner.evaluate(input, { matrix }), "INVALID_ARGUMENT transform.matrix", /detached/);
+    await rejectsWith(
+      () => aligner.evaluate(input, truth, { truth: matrix }),
+      "INVALID_ARGUMENT options.truth",
+      /detached/,
+    );
+    await rejectsWith(
+      () => aligner.align(input, throwing({ ...quick }, "seed")),
+      "INVALID_ARGUMENT options.seed",
+      /not loaded yet/,
+    );
     const signal = { [Symbol.toStringTag]: "AbortSignal", aborted: false } as unknown as AbortSignal;
-    await rejectsWith(() => aligner.align(input, { signal }), {
-      code: "INVALID_ARGUMENT",
-      argument: "options.signal",
-      message: /AbortSignal/,
-    });
+    await rejectsWith(() => aligner.align(input, { signal }), "INVALID_ARGUMENT options.signal", /AbortSignal/);
   });
 
   test(`${name}: the cause of a getter's error is kept`, async () => {
@@ -250,15 +247,11 @@ for (const [name, aligner] of aligners) {
     const lists = [5, null, undefined, input, () => input, { [Symbol.iterator]: () => 5 }];
     const odd = [detached(new Uint8Array(8)), plainProxy(new Uint8Array(8)), hidden, revoked];
     for (const inputs of [...lists, ...odd]) {
-      await rejectsWith(() => drain(inputs), { code: "INVALID_ARGUMENT", argument: "inputs", message: /iterable/ });
+      await rejectsWith(() => drain(inputs), "INVALID_ARGUMENT inputs", /iterable/);
     }
     const silent = { [Symbol.iterator]: () => ({ next: () => 5 }) };
-    await rejectsWith(() => drain(silent), { code: "INVALID_ARGUMENT", argument: "inputs", message: /next\(\)/ });
-    await rejectsWith(() => drain([], { onProgress: "log" }), {
-      code: "INVALID_ARGUMENT",
-      argument: "options.onProgress",
-      message: /function/,
-    });
+    await rejectsWith(() => drain(silent), "INVALID_ARGUMENT inputs", /next\(\)/);
+    await rejectsWith(() => drain([], { onProgress: "log" }), "INVALID_ARGUMENT options.onProgress", /function/);
   });
 
   test(`${name}: an async onProgress that rejects ends the call, and not the process`, async () => {
@@ -292,17 +285,17 @@ test("without workers: memory that goes while a file is read", async () => {
   const moved = { ...input, depth: structuredClone(input.depth), mesh: glb(mesh) };
   const call = own.align(moved, quick);
   structuredClone(moved.depth, { transfer: [moved.depth.buffer as ArrayBuffer] });
-  await rejectsWith(() => call, { code: "INVALID_ARGUMENT", argument: "depth", message: /detached/ });
+  await rejectsWith(() => call, "INVALID_ARGUMENT depth", /detached/);
   const file = Uint8Array.from(npy(input.depth, 120, 160));
   const next = own.align({ ...input, depth: file }, { ...quick, signal: new AbortController().signal });
   structuredClone(file, { transfer: [file.buffer as ArrayBuffer] });
-  await rejectsWith(() => next, { code: "INVALID_ARGUMENT", argument: "depth", message: /detached/ });
+  await rejectsWith(() => next, "INVALID_ARGUMENT depth", /detached/);
 });
 
 test("a proxy of a prepared mesh is not called disposed", async () => {
   using prepared = await here.prepareMesh(mesh);
   const call = () => here.align({ ...input, mesh: proxied(prepared) }, quick);
-  await rejectsWith(call, { code: "INVALID_ARGUMENT", argument: "mesh", message: /no proxy/ });
+  await rejectsWith(call, "INVALID_ARGUMENT mesh", /no proxy/);
 });
 
 test("createAligner refuses options that are none", async () => {
@@ -313,14 +306,14 @@ test("createAligner refuses options that are none", async () => {
     [{ workers: 1, createWorker: "worker.js" }, "INVALID_ARGUMENT", "createWorker", /function/],
   ];
   for (const [options, code, argument, message] of refused) {
-    await rejectsWith(() => createAligner(options as object), { code, argument, message });
+    await rejectsWith(() => createAligner(options as object), `${code} ${argument}`, message);
   }
   const misplaced = { workers: 4 } as AlignOptions;
-  await rejectsWith(() => here.align(input, misplaced), {
-    code: "UNKNOWN_OPTION",
-    argument: "options.workers",
-    message: /option of createAligner.*createAligner\(\{ workers \}\)/,
-  });
+  await rejectsWith(
+    () => here.align(input, misplaced),
+    "UNKNOWN_OPTION options.workers",
+    /option of createAligner.*createAligner\(\{ workers \}\)/,
+  );
 });
 
 test("the readers of files refuse them, too", async () => {
@@ -332,7 +325,7 @@ test("the readers of files refuse them, too", async () => {
     [() => readMesh(glb(mesh), null as never), "options"],
     [() => readCase(5 as never), "files"],
   ];
-  for (const [call, argument] of refused) await rejectsWith(call, { code: "INVALID_ARGUMENT", argument, message: /./ });
+  for (const [call, argument] of refused) await rejectsWith(call, `INVALID_ARGUMENT ${argument}`);
 });
 
 test("a tracker refuses a pose that cannot be sent to its worker, and remains usable", async () => {
@@ -340,12 +333,9 @@ test("a tracker refuses a pose that cannot be sent to its worker, and remains us
     using tracker = await aligner.track(mesh, { quality: "fast" });
     await tracker.next(view);
     for (const odd of [Symbol("odd"), () => 1]) {
-      for (const [pose, argument] of [
-        [{ ...truth, translation: odd }, "pose.translation"],
-        [{ matrix: odd }, "pose"],
-      ] as const) {
-        await rejectsWith(() => tracker.correct(pose as never), { code: "INVALID_ARGUMENT", argument, message: /./ });
-      }
+      const inTranslation = { ...truth, translation: odd } as never;
+      await rejectsWith(() => tracker.correct(inTranslation), "INVALID_ARGUMENT pose.translation");
+      await rejectsWith(() => tracker.correct({ matrix: odd } as never), "INVALID_ARGUMENT pose");
     }
     assert.equal((await tracker.next(view)).frame, 1, name);
   }
@@ -359,11 +349,7 @@ test("a frame is tracked whatever else the mesh and its camera file hold", async
     const plain = await tracker.next(view);
     const found = await tracker.next({ ...rest, cameraFile } as never);
     assert.deepEqual([plain.frame, found.frame], [0, 1], name);
-    await rejectsWith(() => tracker.next({ ...view, mask: Symbol("odd") } as never), {
-      code: "INVALID_ARGUMENT",
-      argument: "mask",
-      message: /./,
-    });
+    await rejectsWith(() => tracker.next({ ...view, mask: Symbol("odd") } as never), "INVALID_ARGUMENT mask");
   }
 });
 
@@ -371,10 +357,6 @@ test("numbers among which are revoked proxies and lists are refused", async () =
   const cyclic: unknown[] = [];
   cyclic.push(cyclic, 1, 2, 3);
   for (const data of [[1, revoked, 2, 3], cyclic]) {
-    await rejectsWith(async () => depthFromTensor({ data, dims: [2, 2] }), {
-      code: "INVALID_ARGUMENT",
-      argument: "tensor.data",
-      message: /./,
-    });
+    await rejectsWith(async () => depthFromTensor({ data, dims: [2, 2] }), "INVALID_ARGUMENT tensor.data");
   }
 });

@@ -36,13 +36,6 @@ function inFreshProcess(script: string): string {
   });
 }
 
-test("importing the package does nothing by itself", () => {
-  const count =
-    "let count = 0; const { compile } = WebAssembly; WebAssembly.compile = (...a) => { count++; return compile(...a); };";
-  const output = inFreshProcess(`${count} await Promise.resolve(); console.log(count);`);
-  assert.equal(output.trim(), "0");
-});
-
 test("the core loads once, however many ask at once; the other modules only when they are needed", () => {
   const output = inFreshProcess(`
     const compiled = [];
@@ -156,7 +149,7 @@ test("a trap in WebAssembly costs one call: the next one gets a new instance", a
       const { exports } = new WebAssembly.Instance(new WebAssembly.Module(Uint8Array.from(code)));
       (exports.f as () => void)();
     });
-  await rejectsWith(trap, { code: "INTERNAL", argument: "sim3align", message: /RuntimeError: unreachable.*report/ });
+  await rejectsWith(trap, "INTERNAL sim3align", /RuntimeError: unreachable.*report/);
   assert.deepEqual((await aligner.evaluate(input, truth)).metrics, before);
 });
 

@@ -3,17 +3,11 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { test } from "node:test";
-import { fileURLToPath, pathToFileURL } from "node:url";
+import { fileURLToPath } from "node:url";
 import { repository } from "../support/environment.js";
+import { scriptModule } from "../support/internals.js";
 
-interface Notices {
-  takenOf(expression: string): string[] | undefined;
-  refuseForeign(metafile: { inputs: Record<string, unknown> }): void;
-}
-
-const { takenOf, refuseForeign }: Notices = await import(
-  pathToFileURL(join(repository, "scripts", "lib", "notices.mjs")).href
-);
+const { takenOf, refuseForeign } = await scriptModule("lib/notices.mjs");
 
 test("of alternatives, an allowed licence is taken; of several that hold together, all have to be", () => {
   for (const [expression, taken] of [

@@ -64,9 +64,3 @@ test("the command line says the package's version", () => {
   const output = execFileSync(process.execPath, [commandLine, "--version"], { encoding: "utf8" });
   assert.equal(output.trim(), manifest.version);
 });
-
-test("the command line explains itself", () => {
-  const output = execFileSync(process.execPath, [commandLine, "--help"], { encoding: "utf8" });
-  assert.match(output, /^Usage: sim3align /);
-  assert.match(output, /\balign\b/);
-});

@@ -66,11 +66,11 @@ test("messages that no worker can read: the call fails, and the next one has a w
     if (isSpoilt && message.type === "job") spoil(message, post);
     else post(message, transfer);
   });
-  await rejectsWith(() => aligner.align(input, quick), {
-    code: "WORKER_FAILED",
-    argument: "workers",
-    message: /a message that the worker could not read/,
-  });
+  await rejectsWith(
+    () => aligner.align(input, quick),
+    "WORKER_FAILED workers",
+    /a message that the worker could not read/,
+  );
   isSpoilt = false;
   await works(aligner);
 });
@@ -94,7 +94,7 @@ for (const type of ["start", "job"]) {
     const moved = structuredClone(input);
     const call = aligner.align(moved, { ...quick, transfer: true });
     if (type === "start") {
-      await rejectsWith(() => call, { code: "WORKER_FAILED", argument: "workers", message: /out of memory/ });
+      await rejectsWith(() => call, "WORKER_FAILED workers", /out of memory/);
     } else {
       // What cannot be sent is aligned on the calling thread.
       const { input: back, ...result } = await call;
@@ -146,7 +146,7 @@ test("arrays that were moved to a worker that is lost are lost: the call says so
   const worker = await workers.nth(0);
   await worker.isBusy;
   await worker.terminate();
-  await rejectsWith(() => call, { code: "WORKER_FAILED", argument: "workers", message: /exit code/ });
+  await rejectsWith(() => call, "WORKER_FAILED workers", /exit code/);
   assert.deepEqual(withoutTimes(await next), expected);
 });
 
@@ -156,7 +156,7 @@ test("arrays that are moved while their call waits for a worker are refused by n
   const moved = structuredClone(input);
   const waiting = aligner.align(moved, quick);
   structuredClone(moved.mask, { transfer: [moved.mask.buffer] });
-  await rejectsWith(() => waiting, { code: "INVALID_ARGUMENT", argument: "mask", message: /detached/ });
+  await rejectsWith(() => waiting, "INVALID_ARGUMENT mask", /detached/);
   assert.deepEqual(withoutTimes(await first), expected);
   await works(aligner);
 });
@@ -253,11 +253,11 @@ for (const [name, script] of Object.entries({
     });
     aligners.push(aligner);
     const moved = structuredClone(input);
-    await rejectsWith(() => aligner.align(moved, { ...quick, transfer: true }), {
-      code: "WORKER_FAILED",
-      argument: "workers",
-      message: name === "says nothing" ? /no answer for 50 ms/ : /a message that worker.js does not send/,
-    });
+    await rejectsWith(
+      () => aligner.align(moved, { ...quick, transfer: true }),
+      "WORKER_FAILED workers",
+      name === "says nothing" ? /no answer for 50 ms/ : /a message that worker.js does not send/,
+    );
     // It got no arrays that it could lose.
     assert.ok(moved.depth.length > 0);
   });
@@ -269,9 +269,8 @@ test("options and arguments whose getters throw are errors with a code", async (
       throw new Error("not now");
     },
   };
-  const found = (argument: string) =>
-    ({ code: "INVALID_ARGUMENT", argument, message: /a property that throws Error: not now/ }) as const;
-  await rejectsWith(() => createAligner(throwing as never), found("options.depth"));
+  const message = /a property that throws Error: not now/;
+  await rejectsWith(() => createAligner(throwing as never), "INVALID_ARGUMENT options.depth", message);
   using tracker = await here.track(mesh);
   await rejectsWith(
     () =>
@@ -281,11 +280,12 @@ test("options and arguments whose getters throw are errors with a code", async (
           throw new Error("not now");
         },
       } as never),
-    found("pose.scale"),
+    "INVALID_ARGUMENT pose.scale",
+    message,
   );
-  await rejectsWith(() => tracker.correct(new Float64Array(16), throwing as never), {
-    code: "INVALID_ARGUMENT",
-    argument: "frame",
-    message: /the number of a frame/,
-  });
+  await rejectsWith(
+    () => tracker.correct(new Float64Array(16), throwing as never),
+    "INVALID_ARGUMENT frame",
+    /the number of a frame/,
+  );
 });

@@ -2,23 +2,11 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { type Alignment, type AlignOptions, createAligner, type Sim3Like } from "sim3align";
-import { withoutTimes } from "../support/results.js";
+import { assertForms, withoutTimes } from "../support/results.js";
 import { brick, columnMajor, input, rotationRows, truth } from "../support/scene.js";
 
 const aligner = await createAligner();
 const quick = { quality: "fast" } as const;
-
-function assertSimilarity({ scale, rotationMatrix, translation, matrix }: Alignment): void {
-  assert.ok(scale > 0 && Number.isFinite(scale));
-  for (const [i, row] of rotationMatrix.entries()) {
-    for (const [j, other] of rotationMatrix.entries()) {
-      const product = row.reduce((sum, x, k) => sum + x * (other[k] ?? 0), 0);
-      assert.ok(Math.abs(product - (i === j ? 1 : 0)) < 1e-9, "rows of length 1 at right angles");
-      assert.ok(Math.abs((matrix[4 * j + i] ?? 0) - scale * (row[j] ?? 0)) < 1e-9);
-    }
-    assert.equal(matrix[12 + i], translation[i]);
-  }
-}
 
 /** The blob's extent along its axes, in mesh units. */
 const extent = ([0, 1, 2] as const).map((axis) => {
@@ -61,7 +49,7 @@ const effects: readonly [options: AlignOptions & { metrics?: true }, check: Chec
 for (const [options, check] of effects) {
   test(`has its effect: ${JSON.stringify(options)}`, async () => {
     const found = await aligner.align(input, { ...quick, ...options });
-    assertSimilarity(found);
+    assertForms(found);
     assert.ok(check(found), JSON.stringify(found));
   });
 }
@@ -100,7 +88,7 @@ test("an initial pose is taken in every form of a transform", async () => {
     pose,
     ...pose.alternatives.slice(0, 1),
   ];
-  for (const initial of forms) assertSimilarity(await aligner.align(input, { ...quick, initial, search: "local" }));
+  for (const initial of forms) assertForms(await aligner.align(input, { ...quick, initial, search: "local" }));
 });
 
 test("the same options give the same bits, also after other calls and errors", async () => {
@@ -114,5 +102,5 @@ test("the same options give the same bits, also after other calls and errors", a
 
 test("an initial pose that is no option's business is left alone", async () => {
   const initial = Object.freeze({ ...truth, rotation: Object.freeze([...truth.rotation]), label: "annotated" });
-  assertSimilarity(await aligner.align(input, { ...quick, initial }));
+  assertForms(await aligner.align(input, { ...quick, initial }));
 });

@@ -3,17 +3,10 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { pathToFileURL } from "node:url";
 import { repository } from "../support/environment.js";
+import { scriptModule } from "../support/internals.js";
 
-interface ReleaseModule {
-  releaseNotes(tag: string, version: string, changelog: string): string;
-  sectionOf(changelog: string, version: string): string | undefined;
-  distributionTag(version: string): string;
-}
-
-const module = pathToFileURL(join(repository, "scripts", "lib", "release.mjs")).href;
-const { distributionTag, releaseNotes, sectionOf }: ReleaseModule = await import(module);
+const { distributionTag, releaseNotes, sectionOf } = await scriptModule("lib/release.mjs");
 
 const changelog =
   "# Changelog\n\n## [Unreleased]\n\n## [1.1.0] - 2030-01-02\n\n### Added\n\n- New.\n\n## [1.0.0]\n\n- Old.\n";

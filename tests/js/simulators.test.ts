@@ -1,18 +1,17 @@
 /** Scenes for simulators: bodies, mass and rest, and the files, which the simulators themselves load. */
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
-import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { mkdirSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { test } from "node:test";
 import { toSim3 } from "sim3align/conventions";
 import { type SimulatorObject, type SimulatorScene, simulatorScene, toMjcf, toUrdf, toUsd } from "sim3align/simulators";
-import { folder, run, writeCase } from "../support/command-line.js";
+import { folder, read, refusesUsage, run, succeeds, writeCase } from "../support/command-line.js";
 import { repository } from "../support/environment.js";
-import { npy, png } from "../support/files.js";
 import type { Mesh } from "../support/scene.js";
-import { masks, plane, poses, standingGlb, standingMesh, tableView } from "../support/table.js";
+import { plane, poses, standingMesh, tableFiles, tableView } from "../support/table.js";
 
-const { width, height, depth, camera } = tableView;
+const { width, height, camera } = tableView;
 const image = { fy: camera.fy, width, height };
 
 /** A box from 0 to these sizes. */
@@ -298,31 +297,17 @@ test("MuJoCo, PyBullet and USD load a scene; its bodies stay, and have the same 
   }
 });
 
-writeCase("table", { "depth.npy": npy(depth, height, width), "camera.json": { ...camera, width, height } });
-for (const [i, mask] of masks.entries()) {
-  writeCase(join("table", "objects", `thing-${i}`), { "mask.png": png(mask, width, height), "mesh.glb": standingGlb });
-}
+writeCase("table", tableFiles());
 
 test("the command line writes all formats, and says what is fixed", async (t) => {
   const flags = ["--mjcf", "out/mjcf", "--urdf", "out/urdf", "--usd", "out/scene.usda"];
   mkdirSync(join(folder, "out"));
-  const { status, stdout, stderr } = run(
-    "scene",
-    "table",
-    "--quality",
-    "fast",
-    ...flags,
-    "--density",
-    "250",
-    "--parts",
-    "4",
-  );
-  assert.equal(status, 0, stderr);
+  const { stdout } = succeeds("scene table --quality fast", ...flags, "--density", "250", "--parts", "4");
   assert.match(stdout, /thing_0: [\d.]+ kg, \d convex parts, free/);
   assert.match(stdout, /thing_2: .*, fixed/);
-  const kept = run("scene", "table", "--quality", "fast", "--mjcf", "out/kept", "--no-rest");
+  const kept = run("scene table --quality fast --mjcf out/kept --no-rest");
   assert.match(kept.stdout, /thing_0: .*, free, where it was found/);
-  const xml = readFileSync(join(folder, "out", "mjcf", "scene.xml"), "utf8");
+  const xml = read(join("out", "mjcf", "scene.xml"));
   assert.equal(xml.match(/<freejoint\/>/g)?.length, 2);
   assert.match(xml, /type="plane"/);
   assert.match(xml, /<camera name="camera"/);
@@ -335,16 +320,11 @@ test("the command line writes all formats, and says what is fixed", async (t) =>
 });
 
 test("the command line refuses several scenes, and what it cannot write, before the first", () => {
-  for (const [flags, message] of [
-    [["table", "table2", "--mjcf", "many"], /--mjcf takes a single scene/],
-    [["table", "--usd", "nowhere/scene.usda"], /--usd nowhere/],
-    [["table", "--urdf", "table/camera.json"], /--urdf table\/camera\.json/],
-  ] as const) {
-    const { status, stderr, stdout } = run("scene", ...flags);
-    assert.equal(status, 2, stderr);
-    assert.match(stderr, message);
-    assert.equal(stdout, "");
-  }
+  refusesUsage({
+    "scene table table2 --mjcf many": /--mjcf takes a single scene/,
+    "scene table --usd nowhere/scene.usda": /--usd nowhere/,
+    "scene table --urdf table/camera.json": /--urdf table\/camera\.json/,
+  });
 });
 
 test("the masses of a generated object are those of its surface", async () => {

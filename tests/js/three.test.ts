@@ -175,39 +175,23 @@ test("a pinhole camera in three.js sees every point at its pixel, in WebGL and W
 });
 
 test("wrong objects and cameras are refused", async () => {
-  await rejectsWith(async () => meshInputFromThree(new Group()), {
-    code: "EMPTY_MESH",
-    argument: "source",
-    message: /no triangle/,
-  });
-  await rejectsWith(async () => meshInputFromThree({} as never), {
-    code: "INVALID_ARGUMENT",
-    argument: "source",
-    message: /BufferGeometry or an Object3D/,
-  });
+  await rejectsWith(() => meshInputFromThree(new Group()), "EMPTY_MESH source", /no triangle/);
+  await rejectsWith(() => meshInputFromThree({} as never), "INVALID_ARGUMENT source", /BufferGeometry or an Object3D/);
   const flat = new Group().add(new Mesh(new BoxGeometry()));
   flat.scale.set(1, 0, 1);
-  await rejectsWith(async () => meshInputFromThree(flat), {
-    code: "INVALID_TRANSFORM",
-    argument: "source.matrixWorld",
-    message: /other than 0/,
-  });
+  await rejectsWith(() => meshInputFromThree(flat), "INVALID_TRANSFORM source.matrixWorld", /other than 0/);
   const stretched = new Mesh();
   stretched.scale.set(1, 2, 1);
-  await rejectsWith(async () => transformFromObject3D(stretched), {
-    code: "INVALID_TRANSFORM",
-    argument: "transform",
-    message: /uniform scale/,
-  });
+  await rejectsWith(() => transformFromObject3D(stretched), "INVALID_TRANSFORM transform", /uniform scale/);
   const pose = { scale: 1, rotation: new Quaternion().toArray(), translation: [0, 0, 1] };
-  await rejectsWith(async () => applyToObject3D(new Group(), pose, { frame: "ros" as never }), {
-    code: "INVALID_OPTION",
-    argument: "options.frame",
-    message: /"opencv" or "opengl"/,
-  });
-  await rejectsWith(async () => cameraFromPinhole(view.camera, { ...view, near: 2, far: 1 }), {
-    code: "INVALID_ARGUMENT",
-    argument: "lens.far",
-    message: /beyond near/,
-  });
+  await rejectsWith(
+    () => applyToObject3D(new Group(), pose, { frame: "ros" as never }),
+    "INVALID_OPTION options.frame",
+    /"opencv" or "opengl"/,
+  );
+  await rejectsWith(
+    () => cameraFromPinhole(view.camera, { ...view, near: 2, far: 1 }),
+    "INVALID_ARGUMENT lens.far",
+    /beyond near/,
+  );
 });

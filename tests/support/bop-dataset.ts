@@ -2,11 +2,11 @@
  * A tiny dataset in the layout of BOP, made independently of the package: three objects (an uneven one, a brick, and a can)
  * in four images, each of which hides a part of another. `node tests/support/bop-dataset.ts FOLDER` writes it.
  */
-import { mkdirSync, writeFileSync } from "node:fs";
+import { writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { png } from "./files.js";
+import { maskPng, png, writeFiles } from "./files.js";
 import { Random } from "./random.js";
-import { blob, cuboid, type Mesh, type Pose, render, rotationRows } from "./scene.js";
+import { blob, cuboid, type Mesh, type Pose, product, render, rotationRows } from "./scene.js";
 
 export const [width, height] = [640, 480];
 export const camera = { fx: 610.5, fy: 612.25, cx: 318.25, cy: 241.5 };
@@ -138,11 +138,7 @@ const entryOf = ({ id, pose }: Placed) => ({
 
 /** Writes the dataset; its name is that of the folder. Returns the masks by their paths in it. */
 export function writeBop(folder: string): Map<string, Uint8Array> {
-  const write = (path: string, content: Uint8Array | string | object) => {
-    mkdirSync(join(folder, path, ".."), { recursive: true });
-    const text = typeof content === "string" || content instanceof Uint8Array ? content : JSON.stringify(content);
-    writeFileSync(join(folder, path), text);
-  };
+  const write = (path: string, content: Uint8Array | string | object) => writeFiles(folder, { [path]: content });
   for (const place of ["models", "models_eval"]) {
     for (const [i, { mesh }] of models.entries()) write(join(place, `obj_00000${i + 1}.ply`), plyText(mesh));
     const infos = models.map(({ mesh, info }, i) => [`${i + 1}`, { diameter: diameter(mesh), ...info }]);
@@ -191,15 +187,7 @@ export function writeBop(folder: string): Map<string, Uint8Array> {
     }
   }
   for (const [path, content] of files) write(path, content);
-  for (const [path, mask] of masks)
-    write(
-      path,
-      png(
-        mask.map((m) => 255 * m),
-        width,
-        height,
-      ),
-    );
+  for (const [path, mask] of masks) write(path, maskPng(mask, width, height));
   write("test_targets_bop19.json", targets);
   return masks;
 }
@@ -236,15 +224,6 @@ function moved({ id, pose }: Placed, size: number, random: Random) {
       .map((c) => Number(c.toFixed(9))),
     cam_t_m2c: cam_t_m2c.map((c, i) => Number((c + (shift[i] ?? 0)).toFixed(6))),
   };
-}
-
-function product([a, b, c, d]: Pose["rotation"], [x, y, z, w]: Pose["rotation"]): Pose["rotation"] {
-  return [
-    d * x + a * w + b * z - c * y,
-    d * y - a * z + b * w + c * x,
-    d * z + a * y - b * x + c * w,
-    d * w - a * x - b * y - c * z,
-  ];
 }
 
 const [, script, folder] = process.argv;

@@ -1,7 +1,6 @@
 /** Case folders, written as their users have them. */
-import { mkdirSync, writeFileSync } from "node:fs";
-import { dirname, join } from "node:path";
-import { npy, obj, png } from "./files.js";
+import { join } from "node:path";
+import { type Files, maskPng, npy, obj, writeFiles } from "./files.js";
 import { type Mesh, mesh, type Pose, render, truth, type View } from "./scene.js";
 
 /** What differs from case to case. */
@@ -13,32 +12,18 @@ export interface CaseOptions {
 
 const seen = (pose: Pose) => render(mesh as Mesh, pose, { fx: 300, fy: 301, cx: 79.5, cy: 60 }, 160, 120);
 
-/** Writes files by their paths in a folder. */
-function writeAll(folder: string, files: Record<string, Uint8Array | string>): string {
-  for (const [path, content] of Object.entries(files)) {
-    mkdirSync(dirname(join(folder, path)), { recursive: true });
-    writeFileSync(join(folder, path), content);
-  }
-  return folder;
-}
-
 const depthAndCamera = ({ width, height, depth, camera }: View) => ({
   "depth.npy": npy(depth, height, width),
-  "camera.json": JSON.stringify({ ...camera, width, height }),
+  "camera.json": { ...camera, width, height },
 });
 
-const maskFile = ({ mask, width, height }: View) =>
-  png(
-    mask.map((value) => 255 * value),
-    width,
-    height,
-  );
+const maskFile = ({ mask, width, height }: View) => maskPng(mask, width, height);
 
 /** Writes a case of the test scene, and returns its folder. */
 export function writeCase(parent: string, name: string, { pose = truth, isEmpty = false }: CaseOptions = {}): string {
   const view = seen(pose);
   const mask = maskFile(isEmpty ? { ...view, mask: new Uint8Array(view.mask.length) } : view);
-  return writeAll(join(parent, name), { ...depthAndCamera(view), "mask.png": mask, "mesh.obj": obj(mesh) });
+  return writeFiles(join(parent, name), { ...depthAndCamera(view), "mask.png": mask, "mesh.obj": obj(mesh) });
 }
 
 /** Writes a scene of two objects of the test scene's mesh, side by side, and returns its folder. */
@@ -48,7 +33,7 @@ export function writeScene(parent: string, name: string): string {
   const isFree = right.depth.map((_, i) => (left.mask[i] === 0 ? 1 : 0));
   const mask = right.mask.map((value, i) => value * (isFree[i] ?? 0));
   const depth = left.depth.map((value, i) => (isFree[i] === 1 ? (right.depth[i] ?? 0) : value));
-  return writeAll(join(parent, name), {
+  return writeFiles(join(parent, name), {
     ...depthAndCamera({ ...left, depth }),
     ...{ "objects/left/mask.png": maskFile(left), "objects/left/mesh.obj": obj(mesh) },
     ...{ "objects/right/mask.png": maskFile({ ...right, mask }), "objects/right/mesh.obj": obj(mesh) },
@@ -57,14 +42,14 @@ export function writeScene(parent: string, name: string): string {
 
 /** Writes a video in which the object moves by 4 mm per frame, with a mask in the first frame only; returns its folder. */
 export function writeVideo(parent: string, name: string, frames: number): string {
-  const files: Record<string, Uint8Array | string> = { "mesh.obj": obj(mesh) };
+  const files: Files = { "mesh.obj": obj(mesh) };
   for (let i = 0; i < frames; i++) {
     const [x, y, z] = truth.translation;
     const view = seen({ ...truth, translation: [x + 0.004 * i, y, z] });
     for (const [file, content] of Object.entries(depthAndCamera(view))) files[`frame_${i}/${file}`] = content;
     if (i === 0) files["frame_0/mask.png"] = maskFile(view);
   }
-  return writeAll(join(parent, name), files);
+  return writeFiles(join(parent, name), files);
 }
 
 /** Poses that differ from the test scene's in place, size and turn. */

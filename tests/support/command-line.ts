@@ -1,27 +1,41 @@
 /** The command line, run as its users run it, in a folder of cases. */
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
-import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after } from "node:test";
 import { commandLine } from "./environment.js";
-import { glb, npy, png } from "./files.js";
+import { type Files, glb, viewFiles, writeFiles } from "./files.js";
 import { mesh, view } from "./scene.js";
-
-const { width, height, depth, mask, camera } = view;
 
 /** The folder of the cases, removed after the tests of a file. */
 export const folder = mkdtempSync(join(tmpdir(), "sim3align-cli-"));
 after(() => rmSync(folder, { recursive: true, force: true }));
 
-/** Runs the command line in the folder of the cases. */
+/** Runs the command line in the folder of the cases. The first argument may be several words. */
 export function run(...args: string[]): { status: number | null; stdout: string; stderr: string } {
-  const { status, stdout, stderr } = spawnSync(process.execPath, [commandLine, ...args], {
-    cwd: folder,
-    encoding: "utf8",
-  });
+  const [words = "", ...more] = args;
+  const all = [commandLine, ...words.split(" ").filter(Boolean), ...more];
+  const { status, stdout, stderr } = spawnSync(process.execPath, all, { cwd: folder, encoding: "utf8" });
   return { status, stdout, stderr };
+}
+
+/** Runs the command line, which has to succeed. */
+export function succeeds(...args: string[]): { stdout: string; stderr: string } {
+  const { status, ...printed } = run(...args);
+  assert.equal(status, 0, printed.stderr);
+  return printed;
+}
+
+/** Checks that command lines are refused as wrong usage, before anything is written to stdout, with these messages. */
+export function refusesUsage(messages: Record<string, RegExp>): void {
+  for (const [words, message] of Object.entries(messages)) {
+    const { status, stdout, stderr } = run(words);
+    assert.equal(status, 2, `${words}: ${stderr}`);
+    assert.match(stderr, message, words);
+    assert.equal(stdout, "", words);
+  }
 }
 
 /** Runs the command line until it has written some text to stdout, and then sends it a signal. */
@@ -41,32 +55,22 @@ export function interrupted(text: RegExp, signal: NodeJS.Signals, ...args: strin
 }
 
 /** Writes the files of a case, and returns its name. */
-export function writeCase(name: string, files: Record<string, Uint8Array | object>): string {
-  mkdirSync(join(folder, name), { recursive: true });
-  for (const [file, content] of Object.entries(files)) {
-    const text = content instanceof Uint8Array ? content : JSON.stringify(content);
-    writeFileSync(join(folder, name, file), text);
-  }
+export function writeCase(name: string, files: Files): string {
+  writeFiles(join(folder, name), files);
   return name;
 }
 
-/** The mask of the scene as a file. */
-export const pixels = png(
-  mask.map((m) => 255 * m),
-  width,
-  height,
-);
-
 /** The files of the scene. */
-export const files = {
-  "depth.npy": npy(depth, height, width),
-  "mask.png": pixels,
-  "mesh.glb": glb(mesh),
-  "camera.json": camera,
-};
+export const files = { ...viewFiles(view), "mesh.glb": glb(mesh) };
+
+/** The mask of the scene as a file. */
+export const pixels = files["mask.png"];
+
+/** The text of a file in the folder of the cases. */
+export const read = (path: string) => readFileSync(join(folder, path), "utf8");
 
 /** The results that --json wrote. */
-export const results = (path: string) => JSON.parse(readFileSync(join(folder, path), "utf8"));
+export const results = (path: string) => JSON.parse(read(path));
 
 /** A case that never ends: nobody writes to its depth map. */
 export function endless(name: string): string {

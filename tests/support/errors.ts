@@ -1,27 +1,40 @@
 /** Checks of errors. */
 import assert from "node:assert/strict";
+import { test } from "node:test";
 import { type ErrorCode, Sim3AlignError } from "sim3align";
 
-/** What an error has to be. */
-export interface Expected {
-  code: ErrorCode;
-  argument: string;
-  /** What the message has to say, beside the argument. */
-  message: RegExp;
-}
+/** The code of an error, and the argument that it is about: `WRONG_LENGTH mesh.positions`. */
+export type Fault = `${ErrorCode} ${string}`;
 
-/** Checks that a call is rejected with a complete error of this kind. */
-export async function rejectsWith(call: () => Promise<unknown>, { code, argument, message }: Expected): Promise<void> {
-  const error = await call().then(
-    () => assert.fail(`nothing was thrown; expected ${code}`),
+/** Values that must be refused, by what they are and the fault; what the message has to say is any text by default. */
+export type Refusals<T> = Record<`${string}: ${Fault}`, [value: T, message?: RegExp]>;
+
+/** Checks that a call fails with a complete error of this kind, whose message says this beside the argument. */
+export async function rejectsWith(call: () => unknown, fault: Fault, message = /./): Promise<void> {
+  const error = await (async () => call())().then(
+    () => assert.fail(`nothing was thrown; expected ${fault}`),
     (thrown: unknown) => thrown,
   );
   assert.ok(error instanceof Sim3AlignError && error instanceof Error, String(error));
-  assert.equal(error.name, "Sim3AlignError");
-  assert.equal(error.code, code, error.message);
-  assert.equal(error.argument, argument, error.message);
+  const { name, code, argument, found, expected, remedy } = error;
+  assert.equal(name, "Sim3AlignError");
+  assert.equal(`${code} ${argument}`, fault, error.message);
   assert.match(error.message, message);
-  assert.equal(error.message, `${argument}: found ${error.found}, expected ${error.expected}. ${error.remedy}`);
-  for (const part of [error.found, error.expected, error.remedy]) assert.notEqual(part.trim(), "");
+  assert.equal(error.message, `${argument}: found ${found}, expected ${expected}. ${remedy}`);
+  for (const part of [found, expected, remedy]) assert.notEqual(part.trim(), "");
   assert.doesNotMatch(error.message, /undefined|NaN ×|\[object/);
 }
+
+/** A call that must be refused, with its fault and words of the message. */
+export type Refused = Parameters<typeof rejectsWith>;
+
+/** A test for each value that must be refused. */
+export function refuses<T>(refusals: Refusals<T>, call: (value: T) => unknown): void {
+  for (const [name, [value, message]] of Object.entries(refusals) as [string, [T, RegExp?]][]) {
+    const fault = name.slice(name.lastIndexOf(": ") + 2) as Fault;
+    test(name, () => rejectsWith(() => call(value), fault, message));
+  }
+}
+
+/** The codes of warnings. */
+export const codesOf = (warnings: readonly { code: string }[]) => warnings.map(({ code }) => code);

@@ -1,6 +1,7 @@
 /** The examples as they are installed, and how they are run. */
+import assert from "node:assert/strict";
 import { execFile } from "node:child_process";
-import { mkdtempSync, rmSync } from "node:fs";
+import { existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { required } from "./environment.js";
@@ -28,6 +29,20 @@ export function runExample(script: string, args: string[] = [], env: NodeJS.Proc
       resolve({ status, stdout, stderr });
     });
   });
+}
+
+/** Runs an example's script, which has to succeed, and returns what it prints. */
+export async function printedBy(script: string, args: string[] = [], env: NodeJS.ProcessEnv = {}): Promise<string> {
+  const { status, stdout, stderr } = await runExample(script, args, env);
+  assert.equal(status, 0, stderr);
+  return stdout;
+}
+
+/** A case's files, as bytes. */
+export function filesOf(folder: string) {
+  const read = (name: string) => readFileSync(join(folder, name));
+  const mesh = read(existsSync(join(folder, "mesh.glb")) ? "mesh.glb" : "mesh.obj");
+  return { depth: read("depth.npy"), mask: read("mask.png"), cameraFile: read("camera.json"), mesh };
 }
 
 /** A new folder for what an example writes, gone when the test's process ends. */

@@ -1,8 +1,10 @@
 /** Encoders of the files that the tests pass, written independently of the package's readers. */
 
+import { mkdirSync, writeFileSync } from "node:fs";
+import { dirname, join } from "node:path";
 import { deflateSync } from "node:zlib";
 import { crc32 } from "./crc32.js";
-import type { Mesh } from "./scene.js";
+import type { Mesh, View } from "./scene.js";
 
 /** A `.npy` file, version 1.0. */
 export function npy(data: Float32Array | Uint16Array | Uint8Array, height: number, width: number): Uint8Array {
@@ -40,6 +42,35 @@ export function png(data: Uint8Array | Uint16Array, width: number, height: numbe
   const signature = Buffer.from("\x89PNG\r\n\x1a\n", "latin1");
   const none = new Uint8Array();
   return Buffer.concat([signature, chunk("IHDR", header), chunk("IDAT", deflateSync(rows)), chunk("IEND", none)]);
+}
+
+/** A mask as a PNG of 0 and 255. */
+export const maskPng = (mask: Uint8Array, width: number, height: number) =>
+  png(
+    mask.map((inside) => 255 * inside),
+    width,
+    height,
+  );
+
+/** The content of files by their paths; objects stand for JSON. */
+export type Files = Record<string, Uint8Array | string | object>;
+
+/** What a camera sees, as the files of a case folder. */
+export const viewFiles = ({ depth, mask, width, height, camera }: View) => ({
+  "depth.npy": npy(depth, height, width),
+  "mask.png": maskPng(mask, width, height),
+  "camera.json": camera,
+});
+
+/** Writes files below a folder, and returns it. */
+export function writeFiles(folder: string, files: Files): string {
+  mkdirSync(folder, { recursive: true });
+  for (const [path, content] of Object.entries(files)) {
+    mkdirSync(dirname(join(folder, path)), { recursive: true });
+    const isWritten = typeof content === "string" || content instanceof Uint8Array;
+    writeFileSync(join(folder, path), isWritten ? content : JSON.stringify(content));
+  }
+  return folder;
 }
 
 /** A Wavefront OBJ file, whose vertices may have colours, 0 to 255. */

@@ -1,6 +1,14 @@
-/** Modules of the installed package that it does not export. */
+/** Modules that the installed package does not export, and those of the repository's commands. */
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+import { repository } from "./environment.js";
 
 /** The module at this path in the package. */
 // biome-ignore lint/suspicious/noExplicitAny: their types are those of the sources, which the tests do not see.
 export const internalModule = (path: string): Promise<any> =>
   import(new URL(`../../node_modules/sim3align/${path}`, import.meta.url).href);
+
+/** The module at this path in `scripts/`. */
+// biome-ignore lint/suspicious/noExplicitAny: as above.
+export const scriptModule = (path: string): Promise<any> =>
+  import(pathToFileURL(join(repository, "scripts", path)).href);

@@ -1,7 +1,7 @@
 /** Files that the tests of the page drop on it. */
 import assert from "node:assert/strict";
 import { zipSync } from "fflate";
-import { npy, obj, png } from "./files.js";
+import { maskPng as maskFile, npy, obj } from "./files.js";
 import { mesh, render, truth } from "./scene.js";
 import type { SitePage } from "./site.js";
 
@@ -19,12 +19,7 @@ export const jsonFile = (content: unknown) => Buffer.from(JSON.stringify(content
 export const cameraFile = jsonFile({ ...pinhole, width: WIDTH, height: HEIGHT });
 
 /** A mask as a PNG of 0 and 255. */
-export const maskPng = (mask: Uint8Array) =>
-  png(
-    mask.map((value) => 255 * value),
-    WIDTH,
-    HEIGHT,
-  );
+export const maskPng = (mask: Uint8Array) => maskFile(mask, WIDTH, HEIGHT);
 
 /** A complete case of one object. */
 export const files: Files = {

@@ -1,18 +1,13 @@
 /** Several views of the test scene, from cameras on a circle around the object. */
-import { type Mesh, mesh, type Pose, render, truth } from "./scene.js";
+import { viewFiles } from "./files.js";
+import { type Mesh, mesh, type Pose, poseJson, product, render, truth, type View } from "./scene.js";
 
 const pinhole = { fx: 300, fy: 301, cx: 79.5, cy: 60 };
 const size = { width: 160, height: 120 };
 
 /** A frame of the scene, and the true pose in it. */
 export interface RigFrame {
-  frame: {
-    depth: Float32Array;
-    width: number;
-    height: number;
-    mask: Uint8Array;
-    camera: { fx: number; fy: number; cx: number; cy: number };
-  };
+  frame: View;
   /** World from camera; the world is the camera at 0°. */
   cameraToWorld: { scale: number; rotation: [number, number, number, number]; translation: [number, number, number] };
   pose: Pose;
@@ -36,16 +31,8 @@ export function frameAt(degrees: number, object: Mesh = mesh as Mesh): RigFrame 
   };
 }
 
-type Quaternion = Pose["rotation"];
-
-function product([ax, ay, az, aw]: Quaternion, [bx, by, bz, bw]: Quaternion): Quaternion {
-  return [
-    aw * bx + ax * bw + ay * bz - az * by,
-    aw * by - ax * bz + ay * bw + az * bx,
-    aw * bz + ax * by - ay * bx + az * bw,
-    aw * bw - ax * bx - ay * by - az * bz,
-  ];
-}
+/** A frame with its true pose, as the files of a folder. */
+export const frameFiles = ({ frame, pose }: RigFrame) => ({ ...viewFiles(frame), "gt.json": poseJson(pose) });
 
 /** The angle between two rotations, degrees. */
 export function turnBetween(a: readonly number[], b: readonly number[]): number {

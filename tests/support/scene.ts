@@ -62,6 +62,16 @@ export function blob(rings = 40, sectors = 60): Mesh {
   return { positions: Float32Array.from(positions), indices: Uint32Array.from(indices) };
 }
 
+/** The rotation by the second quaternion, then by the first. */
+export function product([a, b, c, d]: Pose["rotation"], [x, y, z, w]: Pose["rotation"]): Pose["rotation"] {
+  return [
+    d * x + a * w + b * z - c * y,
+    d * y - a * z + b * w + c * x,
+    d * z + a * y - b * x + c * w,
+    d * w - a * x - b * y - c * z,
+  ];
+}
+
 /** The rotation's rows. */
 export function rotationRows([x, y, z, w]: Pose["rotation"]): [Vec3, Vec3, Vec3] {
   return [
@@ -70,6 +80,11 @@ export function rotationRows([x, y, z, w]: Pose["rotation"]): [Vec3, Vec3, Vec3]
     [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
   ];
 }
+
+/** The pose as `gt.json` has it, of an object without symmetry. */
+export const poseJson = ({ scale, rotation, translation }: Pose) => ({
+  ...{ available: true, scale, rotation: rotationRows(rotation), translation, symmetry: "none" },
+});
 
 /** The pose's 16 numbers, column by column. */
 export function columnMajor({ scale, rotation, translation }: Pose): number[] {

@@ -6,7 +6,7 @@
 import assert from "node:assert/strict";
 import { Worker } from "node:worker_threads";
 import { type Aligner, type AlignInput, createAligner, type PreparedMesh, Sim3AlignError } from "sim3align";
-import { glb, npy, png } from "./files.js";
+import { glb, maskPng, npy } from "./files.js";
 import { Random } from "./random.js";
 import { withoutTimes } from "./results.js";
 import { blob, render, truth } from "./scene.js";
@@ -31,11 +31,7 @@ const inputs: AlignInput[] = meshes.flatMap((mesh) =>
   sizes.flatMap(([width, height]): AlignInput[] => {
     const view = render(mesh, truth, camera(width, height), width, height);
     const depth = npy(view.depth, height, width);
-    const mask = png(
-      view.mask.map((m) => 255 * m),
-      width,
-      height,
-    );
+    const mask = maskPng(view.mask, width, height);
     return [
       { ...view, mesh },
       { depth, mask, camera: view.camera, mesh: glb(mesh) },

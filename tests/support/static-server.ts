@@ -1,7 +1,4 @@
-/** The static server of the scripts. */
-import { join } from "node:path";
-import { pathToFileURL } from "node:url";
-import { repository } from "./environment.js";
+import { scriptModule } from "./internals.js";
 
 /** A running server. */
 export interface Server {
@@ -10,8 +7,5 @@ export interface Server {
 }
 
 /** Serves a folder. */
-export async function serve(folder: string): Promise<Server> {
-  const module = pathToFileURL(join(repository, "scripts", "lib", "static-server.mjs")).href;
-  const { serve } = (await import(module)) as { serve(folder: string): Promise<Server> };
-  return serve(folder);
-}
+export const serve = async (folder: string): Promise<Server> =>
+  (await scriptModule("lib/static-server.mjs")).serve(folder);

@@ -1,6 +1,7 @@
 /** Two objects on a table, and a third one in the air, made independently of the package. */
 import { exportGlb } from "sim3align/conventions";
-import { blob, type Mesh, type Pinhole, type Pose, render } from "./scene.js";
+import { type Files, npy, png } from "./files.js";
+import { blob, type Mesh, type Pinhole, type Pose, poseJson, render } from "./scene.js";
 
 const [width, height] = [160, 120];
 const camera: Pinhole = { fx: 170, fy: 170, cx: 79.5, cy: 59.5 };
@@ -71,6 +72,20 @@ export const labels = { data: owner, width, height };
 export const masks = poses.map((_, k) => Uint8Array.from(owner, (label) => (label === k + 1 ? 1 : 0)));
 
 export const tableView = { depth, width, height, camera };
+
+/** A scene folder of so many of the objects. */
+export function tableFiles(objects = masks.length): Files {
+  const files: Files = { "depth.npy": npy(depth, height, width), "camera.json": { ...camera, width, height } };
+  for (const [i, mask] of masks.slice(0, objects).entries()) {
+    const own = {
+      "mask.png": png(mask, width, height),
+      "mesh.glb": standingGlb,
+      "gt.json": poseJson(poses[i] as Pose),
+    };
+    for (const [name, content] of Object.entries(own)) files[`objects/thing-${i}/${name}`] = content;
+  }
+  return files;
+}
 
 /** The scene. */
 export const tableScene = {

@@ -6,6 +6,7 @@ import { build } from "esbuild";
 import type { Page } from "playwright-core";
 import { PageTest, SOFTWARE, SOFTWARE_WEBGPU } from "./browser.js";
 import { repository } from "./environment.js";
+import { columnMajor } from "./scene.js";
 
 export type Place = [number, number];
 export type ViewEvent =
@@ -82,24 +83,8 @@ export function placeOf({ width, height }: Harness, u: number, v: number): Place
 }
 
 /** A cube of 0.1 m with its centre, (3, 0, 0) in the frame of the mesh, at (x, y, 0.8) metres, in front of the wall. */
-export const pose = (x: number, y: number, scale = 0.1) => [
-  scale,
-  0,
-  0,
-  0,
-  0,
-  scale,
-  0,
-  0,
-  0,
-  0,
-  scale,
-  0,
-  x - 3 * scale,
-  y,
-  0.8,
-  1,
-];
+export const pose = (x: number, y: number, scale = 0.1) =>
+  columnMajor({ scale, rotation: [0, 0, 0, 1], translation: [x - 3 * scale, y, 0.8] });
 
 /** The pixel of a point of the camera frame. */
 export const pixelOf = ({ camera }: Harness, x: number, y: number, z: number): Place => [

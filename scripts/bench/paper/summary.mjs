@@ -1,5 +1,5 @@
 /** The columns of the paper's tables, in the paper's order and units, and their values over the cases of a row. */
-import { isWithin, judged, loose, strict } from "../records.mjs";
+import { isWithin, judged, loose, strict, typicalError } from "../records.mjs";
 import { mean, median, share } from "../table.mjs";
 
 /** @typedef {import("../records.mjs").BenchRecord} BenchRecord */
@@ -59,8 +59,7 @@ const statistic = (values) => ({ mean: finite(mean(values)), median: finite(medi
 export function summarise(records) {
   const known = judged(records);
   const answers = records.flatMap(({ alignment }) => alignment ?? []);
-  const error = (/** @type {"scaleError" | "rotationErrorDeg" | "translationErrorRelative"} */ name) =>
-    finite(median(known.map(({ errors }) => errors?.[name] ?? Number.POSITIVE_INFINITY)));
+  const error = (/** @type {keyof import("../records.mjs").PoseErrors} */ name) => finite(typicalError(known, name));
   return {
     n: records.length,
     answered: answers.length,

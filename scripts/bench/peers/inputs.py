@@ -20,10 +20,11 @@ class Case:
     camera: dict[str, float]
     mesh: trimesh.Trimesh
 
-    def surface(self, seed: int) -> tuple[np.ndarray, np.ndarray]:
-        """Points spread evenly over the mesh, and the normals of their triangles."""
-        points, faces = trimesh.sample.sample_surface(self.mesh, SURFACE_SAMPLES, seed=seed)
-        return np.asarray(points), np.asarray(self.mesh.face_normals[faces])
+
+def surface(mesh: trimesh.Trimesh, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Points spread evenly over a mesh, and the normals of their triangles."""
+    points, faces = trimesh.sample.sample_surface(mesh, SURFACE_SAMPLES, seed=seed)
+    return np.asarray(points), np.asarray(mesh.face_normals[faces])
 
 
 def read_case(folder: Path) -> Case:

@@ -15,14 +15,14 @@ import sys
 import time
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TextIO
 
 import numpy as np
 
 from .frames import Problem, unified
-from .inputs import Case, read_case, read_cloud
+from .inputs import Case, read_case, read_cloud, surface
 from .methods import METHODS, SEED, SEED_VARIABLE
 
 _progress: TextIO = sys.stdout
@@ -49,7 +49,7 @@ class Task:
     def left(self) -> Task:
         """The task without what is answered."""
         missing = tuple(method for method in self.methods if not self.answer(method).is_file())
-        return Task(**{**self.__dict__, "methods": missing})
+        return replace(self, methods=missing)
 
 
 def run_tasks(tasks: list[Task], jobs: int, threads: int, seed: int) -> None:
@@ -69,7 +69,7 @@ def run_tasks(tasks: list[Task], jobs: int, threads: int, seed: int) -> None:
                 if not task.begun(method).exists():
                     continue
                 task.begun(method).unlink()
-                alone = Task(**{**task.__dict__, "methods": (method,)})
+                alone = replace(task, methods=(method,))
                 if not _run_all([alone], 1):
                     _write(alone, method, {"error": "the library ended its process"})
 
@@ -137,7 +137,7 @@ def _answer(task: Task, case: Any, method: str) -> dict[str, Any]:
     if task.folder is None:
         source, target = case
         return {"targetFromSource": similarity(run(Problem(source, target, task.voxel_m)))}
-    problem, unit_from_mesh, unit_from_camera = unified(case.depth, case.mask, case.camera, case.surface(SEED))
+    problem, unit_from_mesh, unit_from_camera = unified(case.depth, case.mask, case.camera, surface(case.mesh, SEED))
     camera_from_mesh = np.linalg.inv(unit_from_camera) @ run(problem) @ unit_from_mesh
     return {"cameraFromMesh": similarity(camera_from_mesh)}
 

@@ -9,6 +9,7 @@ import trimesh
 from scipy.spatial.transform import Rotation
 
 from .frames import Problem, apply, unit_from_own
+from .inputs import surface
 from .methods import METHODS, PAIR_METHODS
 from .runner import similarity
 
@@ -49,15 +50,10 @@ def motion(turn_deg: float, scale: float, shift: tuple[float, float, float]) -> 
     return matrix
 
 
-def sampled(mesh: trimesh.Trimesh, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    points, faces = trimesh.sample.sample_surface(mesh, 20_000, seed=seed)
-    return np.asarray(points), np.asarray(mesh.face_normals[faces])
-
-
 def moved_problem(truth: np.ndarray, size: float, voxel: float) -> Problem:
     """The model in a box of diagonal `size`, and other points of it, moved."""
     mesh = model()
-    (source, source_normals), (target, target_normals) = sampled(mesh, 1), sampled(mesh, 2)
+    (source, source_normals), (target, target_normals) = surface(mesh, 1), surface(mesh, 2)
     unit = unit_from_own(source)
     turn = truth[:3, :3] / np.cbrt(np.linalg.det(truth[:3, :3]))
     return Problem(

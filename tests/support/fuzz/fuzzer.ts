@@ -15,21 +15,11 @@ import { storm } from "./storm.js";
 /** A kind of execution: what it does with a seed, and how many calls that were. */
 export type Target = (seed: number) => Promise<number>;
 
-/** The targets, by name. */
-export interface Targets {
-  calls: Target;
-  storms: Target;
-  sideBySide: Target;
-  conventions: Target;
-  /** Checks that nothing was left behind, and ends the workers. */
-  end(): Promise<void>;
-}
-
 /** Longest that a call may take, milliseconds: a call beyond it hangs. */
 const HANGS_MS = 60_000;
 
-/** Creates the targets. */
-export async function targets(): Promise<Targets> {
+/** Creates the targets, by name. */
+export async function targets() {
   const [here, pool] = await Promise.all([0, 1].map((workers) => createAligner({ workers })));
   const aligners = [here, pool] as [Aligner, Aligner];
   const bits = async (aligner: Aligner) => withoutTimes(await aligner.align(input, { quality: "fast" }));
@@ -50,7 +40,7 @@ export async function targets(): Promise<Targets> {
   };
 
   return {
-    calls: (seed) =>
+    calls: (seed: number) =>
       guarded("calls", seed, async () => {
         const outcomes: Outcome[] = [];
         for (const aligner of aligners) {
@@ -67,9 +57,9 @@ export async function targets(): Promise<Targets> {
         }
         return 2;
       }),
-    storms: (seed) => guarded("storms", seed, () => storm(new Random(seed))),
-    sideBySide: (seed) => guarded("side by side", seed, () => sideBySide(new Random(seed))),
-    conventions: (seed) =>
+    storms: (seed: number) => guarded("storms", seed, () => storm(new Random(seed))),
+    sideBySide: (seed: number) => guarded("side by side", seed, () => sideBySide(new Random(seed))),
+    conventions: (seed: number) =>
       guarded("conventions", seed, async () => {
         const { name, call } = conventionCall(new Random(seed));
         try {
@@ -84,6 +74,7 @@ export async function targets(): Promise<Targets> {
         }
         return 1;
       }),
+    /** Checks that nothing was left behind, and ends the workers. */
     async end() {
       for (const aligner of aligners) assert.deepEqual(await bits(aligner), expected, "other bits afterwards");
       for (const aligner of aligners) aligner.dispose();

@@ -1,5 +1,5 @@
 /** Small scenes in every form that the package reads. They are rendered once. */
-import { cocoRle, glb, npy, obj, png } from "../files.js";
+import { cocoRle, glb, maskPng, npy, obj, png } from "../files.js";
 import type { Random } from "../random.js";
 import { blob, render, truth } from "../scene.js";
 import { pick } from "./odd-values.js";
@@ -32,11 +32,7 @@ export function randomPicture(random: Random): Record<string, unknown> {
     Uint8ClampedArray.from(mask),
     { data: mask.slice(), ...size },
     cocoRle(mask, width, height),
-    png(
-      mask.map((m) => 255 * m),
-      width,
-      height,
-    ),
+    maskPng(mask, width, height),
   ];
   const cameras = [
     { camera: { ...camera } },
