@@ -1,24 +1,16 @@
 //! Reads and writes files; errors name the path.
 
 use std::fs;
-use std::path::{Path, PathBuf};
 
-use sim3align_geometry::error::{Error, ErrorCode, Result, Text};
+use crate::prelude::*;
+use sim3align_geometry::error::Text;
 
 /// The name of a file in a folder, and its content.
 pub type NamedFile = (&'static str, Vec<u8>);
 
 /// Reads a file.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
-    fs::read(path).map_err(|error| {
-        Error::new(
-            ErrorCode::InvalidArgument,
-            path.display().to_string(),
-            format!("the file system error: {error}"),
-            "a readable file",
-            "Check the layout of the folder.",
-        )
-    })
+    fs::read(path).map_err(|error| unreadable(path, error))
 }
 
 /// Writes a file, and creates its parent folders.
@@ -37,12 +29,31 @@ pub(crate) fn write_files(folder: &Path, files: &[NamedFile]) -> Result<()> {
     Ok(())
 }
 
+/// Paths of the entries of a folder, sorted by name.
+///
+/// # Errors
+/// [`ErrorCode::InvalidArgument`] if the folder cannot be read.
+pub fn listed(folder: &Path) -> Result<Vec<PathBuf>> {
+    let entries = fs::read_dir(folder).map_err(|error| unreadable(folder, error))?;
+    let mut entries: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    entries.sort();
+    Ok(entries)
+}
+
 /// Paths of the entries of a folder, sorted by name; empty if the folder cannot be read.
 pub(crate) fn entries(folder: &Path) -> Vec<PathBuf> {
-    let mut entries: Vec<_> =
-        fs::read_dir(folder).into_iter().flatten().filter_map(|entry| Some(entry.ok()?.path())).collect();
-    entries.sort();
-    entries
+    listed(folder).unwrap_or_default()
+}
+
+/// The error for a path that cannot be read.
+pub(crate) fn unreadable(path: &Path, error: std::io::Error) -> Error {
+    Error::new(
+        ErrorCode::InvalidArgument,
+        path.display().to_string(),
+        format!("the file system error: {error}"),
+        "a file or a folder that can be read",
+        "Check the layout of the folder.",
+    )
 }
 
 /// The error for a path that cannot be written.

@@ -4,68 +4,46 @@ mod commands;
 
 use std::process::ExitCode;
 
-use commands::{Failure, bench, cases, fuzz, outlines, profile, registration, scenes, together, track, views};
+use commands::{Arguments, COMMANDS, Failure};
 use sim3align_lab::fuzz::memory::CountingAllocator;
 
 /// For the memory of `fuzz`.
 #[global_allocator]
 static ALLOCATOR: CountingAllocator = CountingAllocator;
 
-const USAGE: &str = "\
-Usage: sim3align-lab COMMAND [arguments]
-
-  case          writes one generated case folder
-  scenes        writes cluttered scenes as case folders
-  bench         aligns cases with a known truth, and prints tables
-  together      aligns the objects of scenes alone and together, and prints tables
-  registration  writes pairs of clouds, and registers them
-  views         aligns one object in several views, and prints tables
-  track         tracks one object through videos, and prints tables
-  outlines      compares the outlines of mask, depth and photo with the true ones, and prints tables
-  profile       aligns case folders natively, and prints times as JSON
-  fuzz          searches for inputs on which the package fails
-
-`sim3align-lab COMMAND --help` lists the command's arguments.";
-
-/// Name and entry point of a command.
-type Command = (&'static str, fn(lexopt::Parser) -> Result<(), Failure>);
-
-const COMMANDS: [Command; 10] = [
-    ("case", cases::main),
-    ("scenes", scenes::main),
-    ("bench", bench::main),
-    ("together", together::main),
-    ("registration", registration::main),
-    ("views", views::main),
-    ("track", track::main),
-    ("outlines", outlines::main),
-    ("profile", profile::main),
-    ("fuzz", fuzz::main),
-];
+fn usage() -> String {
+    let commands = COMMANDS.iter().map(|command| format!("  {:14}{}\n", command.name, command.about));
+    format!(
+        "Usage: sim3align-lab COMMAND [arguments]\n\n{}\n`sim3align-lab COMMAND --help` lists the command's arguments.",
+        commands.collect::<String>()
+    )
+}
 
 fn main() -> ExitCode {
     let mut arguments = std::env::args_os().skip(1);
     let name = arguments.next().unwrap_or_default();
     if name == "--help" || name == "-h" {
-        println!("{USAGE}");
+        println!("{}", usage());
         return ExitCode::SUCCESS;
     }
-    let Some((name, main)) = COMMANDS.into_iter().find(|(known, _)| name == **known) else {
-        eprintln!("sim3align-lab: no such command: {:?}\n\n{USAGE}", name);
+    let Some(command) = COMMANDS.iter().find(|command| name == *command.name) else {
+        eprintln!("sim3align-lab: no such command: {name:?}\n\n{}", usage());
         return ExitCode::from(2);
     };
-    match main(lexopt::Parser::from_args(arguments)) {
+    let mut arguments = Arguments::new(arguments);
+    let outcome = if arguments.ask_for_help() { Err(Failure::Help) } else { (command.run)(&mut arguments) };
+    match outcome {
         Ok(()) => ExitCode::SUCCESS,
-        Err(Failure::Help(usage)) => {
-            println!("{usage}");
+        Err(Failure::Help) => {
+            println!("{}", command.usage);
             ExitCode::SUCCESS
         }
-        Err(Failure::Usage(error, usage)) => {
-            eprintln!("sim3align-lab {name}: {error}\n\n{usage}");
+        Err(Failure::Usage(error)) => {
+            eprintln!("sim3align-lab {}: {error}\n\n{}", command.name, command.usage);
             ExitCode::from(2)
         }
         Err(Failure::Failed(message)) => {
-            eprintln!("sim3align-lab {name}: {message}");
+            eprintln!("sim3align-lab {}: {message}", command.name);
             ExitCode::FAILURE
         }
     }

@@ -23,7 +23,7 @@ export const isWithin = (errors, tolerance) =>
   errors.translationErrorRelative <= tolerance.translation;
 
 /**
- * The outcome of a case: the fields of `Record` in `lab/src/samples/benchmark.rs` that the tables use.
+ * The outcome of a case: the fields of `Record` in `lab/src/bench/benchmark.rs` that the tables use.
  * @typedef {object} BenchRecord
  * @property {string} name
  * @property {string} tier

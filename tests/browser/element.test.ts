@@ -1,11 +1,11 @@
 /** The custom element `<sim3-align>`, its page for iframes, and scenes by address. */
 import assert from "node:assert/strict";
 import { join } from "node:path";
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 import { zipSync } from "fflate";
 import type { Page } from "playwright-core";
 import { createAligner } from "sim3align";
-import { PageTest } from "../support/browser.js";
+import { browserFor, WEBGL } from "../support/browser.js";
 import { repository } from "../support/environment.js";
 import { type Files, files, HEIGHT, inFolder, jsonFile, pinhole, seen, WIDTH } from "../support/page-files.js";
 import { mesh } from "../support/scene.js";
@@ -34,35 +34,27 @@ declare global {
 
 const siteFolder = join(repository, "target");
 
-let browser: PageTest;
-before(async () => {
-  browser = await PageTest.start(siteFolder, ["!--enable-unsafe-webgpu"]);
-});
-after(() => browser?.stop());
+const browser = browserFor(siteFolder, WEBGL);
 
 /** Leaves the scene in the page, as arrays. */
 async function giveArrays(page: Page): Promise<void> {
-  const given = {
-    ...{ depth: Array.from(seen.depth), mask: Array.from(seen.mask), camera: pinhole, width: WIDTH, height: HEIGHT },
-    ...{ positions: Array.from(mesh.positions), indices: Array.from(mesh.indices) },
+  const { depth, mask } = seen;
+  const scene = {
+    ...{ name: "Blob", depth, width: WIDTH, height: HEIGHT },
+    camera: pinhole,
+    objects: [{ name: "blob", mask, mesh }],
   };
   await page.evaluate((scene) => {
-    window.arrays = {
-      name: "Blob",
-      depth: Float32Array.from(scene.depth),
-      width: scene.width,
-      height: scene.height,
-      camera: scene.camera,
-      objects: [
-        {
-          name: "blob",
-          mask: Uint8Array.from(scene.mask),
-          mesh: { positions: Float32Array.from(scene.positions), indices: Uint32Array.from(scene.indices) },
-        },
-      ],
-    };
-  }, given);
+    window.arrays = scene;
+  }, scene);
 }
+
+/** Sets properties of an element of the page, and its scene to that of `giveArrays`. */
+const give = (page: Page, id: string, properties: object = {}) =>
+  page.evaluate(
+    ([id, given]) => void Object.assign(document.querySelector(`#${id}`) as Element, given, { scene: window.arrays }),
+    [id, properties] as const,
+  );
 
 /** A page of a host, with the script of the element and a record of all events. */
 async function host(html: string): Promise<{ page: Page; errors: string[] }> {
@@ -84,13 +76,15 @@ async function host(html: string): Promise<{ page: Page; errors: string[] }> {
   return opened;
 }
 
-/** Waits until an element has told of an event. */
-const told = (page: Page, of: string, type: string) =>
-  page.waitForFunction(
+/** Waits until an element has told of an event, and returns its detail. */
+async function told<T>(page: Page, of: string, type: string): Promise<T> {
+  const found = await page.waitForFunction(
     ([id, name]) => window.told.find((one) => one.of === id && one.type === name)?.detail,
     [of, type] as const,
     PATIENCE,
   );
+  return (await found.jsonValue()) as T;
+}
 
 /** The files of the scene, at an address. */
 async function serveFiles(page: Page, path: string, served: Files): Promise<void> {
@@ -105,11 +99,8 @@ test("an element aligns what it is given to the same bits as Node, and says so",
   const { page, errors } = await host(`<sim3-align id="a"></sim3-align>`);
   const input = { ...seen, camera: pinhole, mesh };
   const direct = await (await createAligner()).align({ ...input, depth: seen.depth, mask: seen.mask });
-  await page.evaluate(() => {
-    (document.querySelector("#a") as Element).scene = window.arrays;
-  });
-  const aligned = await (await told(page, "a", "align")).jsonValue();
-  const { objects } = aligned as { objects: Element["results"] };
+  await give(page, "a");
+  const { objects } = await told<{ objects: Element["results"] }>(page, "a", "align");
   assert.deepEqual(objects[0]?.pose?.matrix, [...direct.matrix]);
   assert.equal(objects[0]?.confidence, direct.confidence);
   const types = await page.evaluate(() => window.told.map(({ type }) => type));
@@ -176,9 +167,7 @@ test("properties that were set before the script was loaded become those of the 
   await page.route("**/blank.html", (route) => route.fulfill({ contentType: "text/html", body }));
   await page.goto(new URL("blank.html", page.url()).href);
   await giveArrays(page);
-  await page.evaluate(() => {
-    Object.assign(document.querySelector("#a") as Element, { selected: "none", scene: window.arrays });
-  });
+  await give(page, "a", { selected: "none" });
   await page.evaluate(`import("/www/element/sim3-align.js")`);
   await page.locator('#a .embedded[data-scene="Blob"]').waitFor(PATIENCE);
   assert.equal(await page.evaluate(() => (document.querySelector("#a") as Element).selected), "blob");
@@ -199,9 +188,7 @@ test("pose and session are set and read, and survive a transfer as JSON", async 
   await page.locator("#a #accept").click();
   await told(page, "a", "accept");
   const session = await page.evaluate(() => JSON.stringify((document.querySelector("#a") as Element).session));
-  await page.evaluate((json) => {
-    Object.assign(document.querySelector("#b") as Element, { session: JSON.parse(json), scene: window.arrays });
-  }, session);
+  await give(page, "b", { session: JSON.parse(session) });
   await told(page, "b", "ready");
   const restored = await page.evaluate(() => {
     const { pose, results, session } = document.querySelector("#b") as Element;
@@ -219,9 +206,7 @@ test("pose and session are set and read, and survive a transfer as JSON", async 
 test("read-only, nothing can be changed, and tokens and parts style the element", async () => {
   const style = `<style>sim3-align { --accent: rgb(1 2 3); } sim3-align::part(result) { outline: 3px solid red; }</style>`;
   const { page } = await host(`${style}<sim3-align id="a" readonly></sim3-align>`);
-  await page.evaluate(() => {
-    (document.querySelector("#a") as Element).scene = window.arrays;
-  });
+  await give(page, "a");
   await told(page, "a", "ready");
   assert.equal(await page.locator("#a :is(#align, #accept, #refine, .hand-panel)").count(), 0);
   const outline = await page.locator("#a .result").evaluate((panel) => getComputedStyle(panel).outlineWidth);
@@ -252,17 +237,12 @@ test("src names a zip archive, a session or an index, and what cannot be opened 
     for (const [id, name] of Object.entries(sources))
       document.querySelector(`#${id}`)?.setAttribute("src", `/cases/${name}`);
   }, sources);
-  const names = await Promise.all(
-    ["zip", "index"].map(async (id) => ((await (await told(page, id, "ready")).jsonValue()) as { name: string }).name),
-  );
-  assert.deepEqual(names, ["mug", "cases"]);
-  const messages = await Promise.all(
-    ["bad", "gone"].map(async (id) =>
-      String(((await (await told(page, id, "error")).jsonValue()) as { message: string }).message),
-    ),
-  );
-  assert.match(messages[0] ?? "", /neither a zip archive nor an index/);
-  assert.match(messages[1] ?? "", /HTTP 404/);
+  for (const [id, opened] of Object.entries({ zip: "mug", index: "cases" })) {
+    assert.equal((await told<{ name: string }>(page, id, "ready")).name, opened);
+  }
+  for (const [id, says] of Object.entries({ bad: /neither a zip archive nor an index/, gone: /HTTP 404/ })) {
+    assert.match((await told<{ message: string }>(page, id, "error")).message, says);
+  }
   await page.close();
 });
 
@@ -301,15 +281,11 @@ test("an iframe is controlled by messages of its parent's origin, and of no othe
       contentWindow?.postMessage({ type: "sim3align:get", id: 5 }, origin);
       contentWindow?.postMessage({ type: "sim3align:nonsense", id: 6 }, origin);
     }, from);
-    const answer = (await (await told(page, from, "sim3align:results")).jsonValue()) as {
-      id: number;
-      results: Element["results"];
-    };
+    const answer = await told<{ id: number; results: Element["results"] }>(page, from, "sim3align:results");
     assert.equal(answer.id, 5);
     assert.equal(answer.results[0]?.name, "blob");
     assert.ok((answer.results[0]?.confidence ?? 0) > 0.5);
-    const refused = (await (await told(page, from, "sim3align:error")).jsonValue()) as { id: number };
-    assert.equal(refused.id, 6);
+    assert.equal((await told<{ id: number }>(page, from, "sim3align:error")).id, 6);
     // Without its parent's origin, the frame trusts its own only: it neither tells nor listens.
     await framed("");
     const frame = page.frames().find((one) => one.url().startsWith(other.url));

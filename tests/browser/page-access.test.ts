@@ -1,15 +1,11 @@
 /** Accessibility: axe, keyboard, phones, light and dark themes, layout shifts. */
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
 import type { BrowserContextOptions } from "playwright-core";
+import { WEBGL } from "../support/browser.js";
 import { drop, files } from "../support/page-files.js";
-import { PATIENCE, SiteTest } from "../support/site.js";
+import { PATIENCE, pageTests } from "../support/site.js";
 
-let site: SiteTest;
-before(async () => {
-  site = await SiteTest.start();
-});
-after(() => site?.stop());
+const test = pageTests(WEBGL);
 
 const phone = { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true } satisfies BrowserContextOptions;
 const views: readonly [string, BrowserContextOptions][] = [
@@ -20,9 +16,7 @@ const views: readonly [string, BrowserContextOptions][] = [
 ];
 
 for (const [name, context] of views) {
-  test(`axe finds nothing on ${name}`, async () => {
-    const opened = await site.open("#sample=desk", context);
-    const { page } = opened;
+  test(`axe finds nothing on ${name}`, { address: "#sample=desk", ...context }, async (opened, page) => {
     for (const summary of await page.locator("details:not([open]) > summary").all()) {
       if (await summary.isVisible()) await summary.click();
     }
@@ -32,13 +26,11 @@ for (const [name, context] of views) {
     await page.keyboard.press("Escape");
     const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
     assert.ok(overflow <= 0, `the page is ${overflow} pixels wider than the window`);
-    await opened.close();
   });
 }
 
 for (const [name, context] of views) {
-  test(`axe finds nothing on the intake sheet, on ${name}`, async () => {
-    const opened = await site.open("#sample=mug", context);
+  test(`axe finds nothing on the intake sheet, on ${name}`, { ...context }, async (opened) => {
     const { "camera.json": _, ...rest } = files;
     const { "mesh.obj": mesh, "mask.png": mask } = rest;
     // Two objects whose names do not tell that they belong together, and no camera.
@@ -46,13 +38,10 @@ for (const [name, context] of views) {
     const sheet = await opened.sheet();
     await sheet.locator(".file-roles summary").click();
     assert.deepEqual(await opened.violations(), []);
-    await opened.close();
   });
 }
 
-test("all controls are reachable by keyboard and show their focus", async () => {
-  const opened = await site.open();
-  const { page } = opened;
+test("all controls are reachable by keyboard and show their focus", async ({ page }) => {
   const reached = new Set<string>();
   for (let i = 0; i < 120; i++) {
     await page.keyboard.press("Tab");
@@ -81,12 +70,9 @@ test("all controls are reachable by keyboard and show their focus", async () => 
   ]) {
     assert.ok(reached.has(name), `${name} is not among ${[...reached].join(", ")}`);
   }
-  await opened.close();
 });
 
-test("explanations of metrics open by keyboard", async () => {
-  const opened = await site.open();
-  const { page } = opened;
+test("explanations of metrics open by keyboard", async ({ page }) => {
   const tip = page.getByRole("button", { name: "About Overlap (IoU)" });
   await tip.focus();
   await page.keyboard.press("Enter");
@@ -96,23 +82,17 @@ test("explanations of metrics open by keyboard", async () => {
   assert.ok(place !== null && window !== null && place.x >= 0 && place.x + place.width <= window.width);
   await page.keyboard.press("Escape");
   await box.waitFor({ state: "detached", ...PATIENCE });
-  await opened.close();
 });
 
-test("keys open the help, which lists them, and Escape closes it", async () => {
-  const opened = await site.open();
-  const { page } = opened;
+test("keys open the help, which lists them, and Escape closes it", async ({ page }) => {
   await page.keyboard.press("?");
   await page.locator("dialog.help").waitFor(PATIENCE);
   assert.ok((await page.locator("dialog.help kbd").count()) > 15);
   await page.keyboard.press("Escape");
   await page.locator("dialog.help").waitFor({ state: "hidden", ...PATIENCE });
-  await opened.close();
 });
 
-test("the theme follows the switch, and is remembered", async () => {
-  const opened = await site.open("#sample=mug", { colorScheme: "light" });
-  const { page } = opened;
+test("the theme follows the switch, and is remembered", { colorScheme: "light" }, async (opened, page) => {
   const paper = () => page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor);
   const light = await paper();
   await page.selectOption("#theme", "dark");
@@ -121,12 +101,10 @@ test("the theme follows the switch, and is remembered", async () => {
   await page.reload();
   await opened.aligned();
   assert.equal(await paper(), dark);
-  await opened.close();
 });
 
-test("the layout does not shift while the page loads, aligns, and aligns again", async () => {
-  const opened = await site.visit();
-  const { page } = opened;
+const first = { address: "", isLoading: true };
+test("the layout does not shift while the page loads and aligns twice", first, async (opened, page) => {
   await page.evaluate(() => {
     const shifts: number[] = [];
     Object.assign(globalThis, { shifts });
@@ -144,9 +122,8 @@ test("the layout does not shift while the page loads, aligns, and aligns again",
   await page.locator('.space:not([data-state="loading"])').waitFor(PATIENCE);
   // The second callback runs after the frame with the last changes, whose shifts are then recorded.
   const shifts = (await page.evaluate(`new Promise((resolve) =>
-    requestAnimationFrame(() => requestAnimationFrame(() => resolve((flush(), shifts)))))`)) as number[];
+  requestAnimationFrame(() => requestAnimationFrame(() => resolve((flush(), shifts)))))`)) as number[];
   const sum = shifts.reduce((total, shift) => total + shift, 0);
   // Google's limit for "good" is 0.1.
   assert.ok(sum < 0.05, `cumulative layout shift ${sum}: ${shifts}`);
-  await opened.close();
 });

@@ -1,19 +1,14 @@
 /** Zip archives that inflate to more than a tab can hold, dropped or at an address. */
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
 import { drop, type Files, files, jsonFile } from "../support/page-files.js";
-import { PATIENCE, type SitePage, SiteTest } from "../support/site.js";
+import { PATIENCE, pageTests, type SitePage } from "../support/site.js";
 import { deflated, zeros, zip } from "../support/zip.js";
 
 declare global {
   var turnsBefore: number[];
 }
 
-let site: SiteTest;
-before(async () => {
-  site = await SiteTest.start();
-});
-after(() => site?.stop());
+const test = pageTests();
 
 const GB = 1 << 30;
 const bomb = zeros("depth.npy", 3 * GB);
@@ -29,8 +24,7 @@ async function refuses(opened: SitePage, message: RegExp): Promise<void> {
   await page.locator(".intake").waitFor({ state: "detached" });
 }
 
-test("a bomb is refused with what was found and what helps, and the scene stays", async () => {
-  const opened = await site.open();
+test("a bomb is refused with what was found and what helps, and the scene stays", async (opened) => {
   await drop(opened, { "bomb.zip": zip([bomb]) });
   await refuses(opened, /Found 3\.2 GB of files with bomb\.zip; expected at most 1\.0 GB\. Unpack it/);
   await drop(opened, { "liar.zip": zip([...entries, { ...bomb, inflated: 5000 }]) });
@@ -38,12 +32,9 @@ test("a bomb is refused with what was found and what helps, and the scene stays"
   await drop(opened, { "outer.zip": zip([...entries, deflated("inner.zip", zip([bomb]))]) });
   await refuses(opened, /Found the archive inner\.zip in outer\.zip/);
   assert.deepEqual(opened.errors, []);
-  await opened.close();
 });
 
-test("the page answers while an archive is inflated", async () => {
-  const opened = await site.open();
-  const { page } = opened;
+test("the page answers while an archive is inflated", async (opened, page) => {
   // How many tasks of a timer ran before each of the entries was inflated.
   await page.evaluate(() => {
     let turns = 0;
@@ -60,12 +51,9 @@ test("the page answers while an archive is inflated", async () => {
   await opened.shows("Own files");
   const [atFirst = 0, atSecond = 0] = await page.evaluate(() => globalThis.turnsBefore);
   assert.ok(atSecond - atFirst >= 3, `${atSecond - atFirst} turns`);
-  await opened.close();
 });
 
-test("?case= loads no more than a drop may hold", async () => {
-  const opened = await site.open();
-  const { page } = opened;
+test("?case= loads no more than a drop may hold", async (opened, page) => {
   const served: Files = {
     "bomb.zip": zip([bomb]),
     "many.json": jsonFile({ files: Array.from({ length: 10_001 }, (_, i) => `${i}.png`) }),
@@ -78,5 +66,4 @@ test("?case= loads no more than a drop may hold", async () => {
   await opened.says(/found 10001 files .*, expected at most 10000/);
   await page.goto(new URL("?case=/cases/bomb.zip", page.url()).href);
   await page.locator(".intake .error:has-text('Found 3.2 GB of files with bomb.zip')").waitFor(PATIENCE);
-  await opened.close();
 });

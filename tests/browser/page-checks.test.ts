@@ -1,10 +1,10 @@
 /** Wrong inputs: each says at its own field what is wrong and what helps, and nothing runs meanwhile. */
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import { npy, png } from "../support/files.js";
+import { png } from "../support/files.js";
 import {
   cameraFile,
   choose,
+  depthNpy,
   drop,
   type Files,
   files,
@@ -15,13 +15,9 @@ import {
   seen,
   WIDTH,
 } from "../support/page-files.js";
-import { type SitePage, SiteTest } from "../support/site.js";
+import { pageTests, type SitePage } from "../support/site.js";
 
-let site: SiteTest;
-before(async () => {
-  site = await SiteTest.start();
-});
-after(() => site?.stop());
+const test = pageTests();
 
 /** The problems that the sheet shows, by field. */
 async function problems(opened: SitePage): Promise<Record<string, string>> {
@@ -35,9 +31,7 @@ async function problems(opened: SitePage): Promise<Record<string, string>> {
 const pixels = WIDTH * HEIGHT;
 const eightBit = png(new Uint8Array(pixels).fill(9), WIDTH, HEIGHT);
 
-test("a rejected file leaves the scene, its files and its name as they were", async () => {
-  const opened = await site.open();
-  const { page } = opened;
+test("a rejected file leaves the scene, its files and its name as they were", async (opened, page) => {
   await drop(opened, files);
   await opened.shows("Own files");
   const dimensions = await opened.dimensions();
@@ -67,20 +61,15 @@ test("a rejected file leaves the scene, its files and its name as they were", as
   await opened.aligned();
   assert.deepEqual(await opened.dimensions(), dimensions);
   assert.match((await page.textContent("#inputs")) ?? "", /depth\.npy.*camera\.json/);
-  await opened.close();
 });
 
 const wrong: readonly (readonly [title: string, changed: Files, field: string, says: RegExp])[] = [
   ["an 8-bit depth map", { "depth.npy": new Uint8Array(), "depth.png": eightBit }, "depth", /8.bit.*expected.*16/i],
-  ["no reading at all", { "depth.npy": npy(new Float32Array(pixels), HEIGHT, WIDTH) }, "depth", /no reading/],
+  ["no reading at all", { "depth.npy": depthNpy(new Float32Array(pixels)) }, "depth", /no reading/],
   [
     "millimetres for metres",
     {
-      "depth.npy": npy(
-        seen.depth.map((z) => 1000 * z),
-        HEIGHT,
-        WIDTH,
-      ),
+      "depth.npy": depthNpy(seen.depth.map((z) => 1000 * z)),
     },
     "depth",
     /millimetres/,
@@ -97,11 +86,7 @@ const wrong: readonly (readonly [title: string, changed: Files, field: string, s
     "a mask without depth",
     {
       "mask.png": maskPng(seen.mask),
-      "depth.npy": npy(
-        seen.depth.map((z, i) => (seen.mask[i] === 0 ? z || 1 : 0)),
-        HEIGHT,
-        WIDTH,
-      ),
+      "depth.npy": depthNpy(seen.depth.map((z, i) => (seen.mask[i] === 0 ? z || 1 : 0))),
     },
     "mask",
     /No pixel of the mask has a depth/,
@@ -130,26 +115,25 @@ const wrong: readonly (readonly [title: string, changed: Files, field: string, s
   ["a damaged photo", { "photo.jpg": Uint8Array.of(1, 2, 3) }, "photo", /cannot decode/],
 ];
 
-for (const [title, changed, field, says] of wrong) {
-  test(`${title} is an error of the field ${field} alone`, async () => {
-    const opened = await site.open();
-    const dropped = Object.entries({ ...files, ...changed }).filter(([, bytes]) => bytes.length > 0);
-    await drop(opened, Object.fromEntries(dropped));
-    const found = await problems(opened);
-    assert.deepEqual(Object.keys(found), [field], JSON.stringify(found));
-    assert.match(found[field] ?? "", says);
-    assert.doesNotMatch(found[field] ?? "", /cut short/);
-    assert.ok(await opened.page.isDisabled("#intake-open"));
-    const ids = (await opened.page.getAttribute(`#${field}-file`, "aria-describedby")) ?? "";
-    assert.match(ids, new RegExp(`^${field}-error`));
-    assert.equal(await opened.page.getAttribute("main", "data-scene"), "Mug");
-    await opened.close();
-  });
-}
+test("a wrong file is an error of its field alone", async (opened, page, t) => {
+  for (const [title, changed, field, says] of wrong) {
+    await t.test(title, async () => {
+      const dropped = Object.entries({ ...files, ...changed }).filter(([, bytes]) => bytes.length > 0);
+      await drop(opened, Object.fromEntries(dropped));
+      const found = await problems(opened);
+      assert.deepEqual(Object.keys(found), [field], JSON.stringify(found));
+      assert.match(found[field] ?? "", says);
+      assert.doesNotMatch(found[field] ?? "", /cut short/);
+      assert.ok(await page.isDisabled("#intake-open"));
+      const ids = (await page.getAttribute(`#${field}-file`, "aria-describedby")) ?? "";
+      assert.match(ids, new RegExp(`^${field}-error`));
+      assert.equal(await page.getAttribute("main", "data-scene"), "Mug");
+      await page.click("#intake-cancel");
+    });
+  }
+});
 
-test("remedies are buttons", async () => {
-  const opened = await site.open();
-  const { page } = opened;
+test("remedies are buttons", async (opened, page) => {
   const small = png(
     new Uint8Array(pixels / 4).map(
       (_, i) => 255 * (seen.mask[2 * (i % (WIDTH / 2)) + 2 * WIDTH * Math.floor(i / (WIDTH / 2))] ?? 0),
@@ -160,11 +144,7 @@ test("remedies are buttons", async () => {
   await drop(opened, {
     ...files,
     "mask.png": small,
-    "depth.npy": npy(
-      seen.depth.map((z) => 1000 * z),
-      HEIGHT,
-      WIDTH,
-    ),
+    "depth.npy": depthNpy(seen.depth.map((z) => 1000 * z)),
     "photo.png": png(new Uint8Array(400).fill(90), 20, 20),
   });
   await opened.sheet();
@@ -175,23 +155,17 @@ test("remedies are buttons", async () => {
   // Not `check`: the sheet closes with the click.
   await page.click("#resize-masks");
   await opened.shows("Own files");
-  await opened.close();
 });
 
-test("a damaged archive and unknown files say so, at no other field", async () => {
-  const opened = await site.open();
-  const { page } = opened;
+test("a damaged archive and unknown files say so, at no other field", async (opened, page) => {
   await drop(opened, { "scene.zip": Buffer.from("PK no archive") });
   assert.match((await problems(opened)).files ?? "", /Found scene\.zip, without a directory at its end/);
   await page.keyboard.press("Escape");
   await drop(opened, { "notes.txt": Buffer.from("hello") });
   assert.match((await problems(opened)).files ?? "", /None of the files is an input \(notes\.txt\)/);
-  await opened.close();
 });
 
-test("numbers out of range are errors of the camera", async () => {
-  const opened = await site.open();
-  const { page } = opened;
+test("numbers out of range are errors of the camera", async (opened, page) => {
   await drop(opened, files);
   await opened.shows("Own files");
   await page.click("#edit-files");
@@ -206,5 +180,4 @@ test("numbers out of range are errors of the camera", async () => {
   await choose(opened, "camera", "camera.json", cameraFile);
   await opened.sheet();
   assert.ok(await page.isEnabled("#intake-open"));
-  await opened.close();
 });

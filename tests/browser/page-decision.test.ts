@@ -1,49 +1,41 @@
 /** The decision about results: accept, fix, next; what helps when unsure; the objects of a scene. */
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
 import { choose, drop, files } from "../support/page-files.js";
-import { PATIENCE, SiteTest } from "../support/site.js";
+import { PATIENCE, pageTests } from "../support/site.js";
 
-let site: SiteTest;
-before(async () => {
-  site = await SiteTest.start();
-});
-after(() => site?.stop());
+const test = pageTests();
 
-test("accepting goes on to the next object, and another pose has to be accepted anew", async () => {
-  const opened = await site.open("#sample=desk");
-  const { page } = opened;
-  const chosen = async () => (await page.textContent(".objects [aria-pressed=true] .name")) ?? "";
-  const seen: string[] = [];
-  for (let i = 0; i < 3; i++) {
-    seen.push(await chosen());
-    await page.click("#accept");
-  }
-  assert.equal(new Set(seen).size, 3);
-  await opened.says(/All objects are accepted/);
-  assert.equal(await page.locator(".objects .confidence", { hasText: "✓" }).count(), 3);
-  await page.locator(".objects .select").first().click();
-  assert.match((await page.textContent("#accept")) ?? "", /Accepted/);
-  await page.click(".hand-panel .more summary");
-  await page.getByRole("button", { name: "Move left", exact: true }).click();
-  assert.equal(await page.textContent("#accept"), "Accept");
-  await page.click("#next");
-  await page.keyboard.press("n");
-  assert.equal(await chosen(), seen[0]);
-  await opened.close();
-});
+test(
+  "accepting goes on to the next object; another pose is to be accepted anew",
+  "#sample=desk",
+  async (opened, page) => {
+    const chosen = async () => (await page.textContent(".objects [aria-pressed=true] .name")) ?? "";
+    const seen: string[] = [];
+    for (let i = 0; i < 3; i++) {
+      seen.push(await chosen());
+      await page.click("#accept");
+    }
+    assert.equal(new Set(seen).size, 3);
+    await opened.says(/All objects are accepted/);
+    assert.equal(await page.locator(".objects .confidence", { hasText: "✓" }).count(), 3);
+    await page.locator(".objects .select").first().click();
+    assert.match((await page.textContent("#accept")) ?? "", /Accepted/);
+    await page.click(".hand-panel .more summary");
+    await opened.press("Move left");
+    assert.equal(await page.textContent("#accept"), "Accept");
+    await page.click("#next");
+    await page.keyboard.press("n");
+    assert.equal(await chosen(), seen[0]);
+  },
+);
 
-test("Fix shows the handles, with the focus on them", async () => {
-  const opened = await site.open();
-  const { page } = opened;
+test("Fix shows the handles, with the focus on them", async ({ page }) => {
   await page.click("#fix");
   assert.equal(await page.evaluate(() => document.activeElement?.closest(".hand-panel") !== null), true);
-  await opened.close();
 });
 
-test("an unsure result says what helps, and a known size is tried at once", async () => {
-  const opened = await site.open("#sample=hammer&quality=fast");
-  const { page } = opened;
+const hammer = "#sample=hammer&quality=fast";
+test("an unsure result says what helps, and a known size is tried at once", hammer, async (opened, page) => {
   // The mesh of another object: nothing fits.
   await page.click("#edit-files");
   const sheet = await opened.sheet();
@@ -59,33 +51,9 @@ test("an unsure result says what helps, and a known size is tried at once", asyn
   await opened.aligned();
   assert.equal(Math.max(...(await opened.dimensions())), 20);
   assert.ok(await page.isChecked("#lock-scale"));
-  await opened.close();
 });
 
-test("alternatives are pictures of their poses", async () => {
-  const opened = await site.open("#sample=desk&symmetry=none");
-  const { page } = opened;
-  // Alone, the box could be turned; the others tell how it stands.
-  await page.click("#align");
-  await page.locator("#cancel").waitFor({ state: "detached", ...PATIENCE });
-  await opened.aligned();
-  const pictures = page.locator(".alternatives canvas");
-  assert.ok((await pictures.count()) > 1);
-  // They are drawn a little later than the result is shown.
-  await page.waitForFunction(
-    () => {
-      const all = [...document.querySelectorAll<HTMLCanvasElement>(".alternatives canvas")];
-      return all.length > 1 && new Set(all.map((one) => one.toDataURL())).size === all.length;
-    },
-    undefined,
-    PATIENCE,
-  );
-  await opened.close();
-});
-
-test("objects are hidden, locked, renamed and removed", async () => {
-  const opened = await site.open("#sample=desk");
-  const { page } = opened;
+test("objects are hidden, locked, renamed and removed", "#sample=desk", async (opened, page) => {
   const rows = page.locator(".objects li");
   const before = await opened.imagePixels();
   await page.getByRole("button", { name: "Show Teapot" }).click();
@@ -103,7 +71,7 @@ test("objects are hidden, locked, renamed and removed", async () => {
 
   // A locked pose stays where a person has put it.
   await page.click(".hand-panel .more summary");
-  await page.getByRole("button", { name: "Move left", exact: true }).click();
+  await opened.press("Move left");
   await opened.isNow("hand");
   const moved = await page.textContent("#centre");
   await page.getByRole("button", { name: "Lock Tea box" }).click();
@@ -116,12 +84,9 @@ test("objects are hidden, locked, renamed and removed", async () => {
   assert.equal(await rows.count(), 2);
   assert.equal(await page.textContent("#centre"), moved);
   assert.ok(!page.url().includes("sample="), "a link to another scene");
-  await opened.close();
 });
 
-test("what an object stands on is said, and the scene is saved as one GLB", async () => {
-  const opened = await site.open("");
-  const { page } = opened;
+test("what an object stands on is said, and the scene is saved as one GLB", "", async (opened, page) => {
   await page.click("#align-all");
   await page.locator(".contact", { hasText: /^Stands on the ground/ }).waitFor(PATIENCE);
   const { name, bytes } = await opened.saved("GLB of the scene");
@@ -133,14 +98,11 @@ test("what an object stands on is said, and the scene is saved as one GLB", asyn
       nodes.some((node) => node.name === object),
       object,
     );
-  await opened.close();
 });
 
-test("a stranger goes from a dropped folder to a GLB with one click", async () => {
-  const opened = await site.open("");
+test("a stranger goes from a dropped folder to a GLB with one click", "", async (opened) => {
   await drop(opened, files);
   await opened.shows("Own files");
   const { bytes } = await opened.saved("GLB");
   assert.equal(bytes.subarray(0, 4).toString(), "glTF");
-  await opened.close();
 });

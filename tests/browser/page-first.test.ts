@@ -1,19 +1,13 @@
 /** The first screen: a photo scene, aligned by itself, and the ways to go on. */
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import { PATIENCE, SiteTest } from "../support/site.js";
+import { WEBGL } from "../support/browser.js";
+import { PATIENCE, pageTests } from "../support/site.js";
 
-let site: SiteTest;
-before(async () => {
-  site = await SiteTest.start(["!--enable-unsafe-webgpu"]);
-});
-after(() => site?.stop());
+const test = pageTests(WEBGL);
 
-const laptop = { viewport: { width: 1440, height: 900 } };
+const laptop = { address: "", viewport: { width: 1440, height: 900 } };
 
-test("the page opens with a photo, whose objects are placed at their sizes", async () => {
-  const opened = await site.open("", laptop);
-  const { page } = opened;
+test("the page opens with a photo, whose objects are placed at their sizes", laptop, async ({ page }) => {
   assert.equal(await page.getAttribute("main", "data-scene"), "Table");
   assert.equal(await page.inputValue('[aria-label="Background"]'), "photo");
   const names = await page.locator(".objects .name").allTextContents();
@@ -27,12 +21,9 @@ test("the page opens with a photo, whose objects are placed at their sizes", asy
   await page
     .locator('.space canvas[aria-label*="from the depth camera"][aria-label*="Teapot, Mug, Box"]')
     .waitFor(PATIENCE);
-  await opened.close();
 });
 
-test("one sentence, one large button and three pictures are in sight", async () => {
-  const opened = await site.open("", laptop);
-  const { page } = opened;
+test("one sentence, one large button and three pictures are in sight", laptop, async (opened, page) => {
   assert.equal(await page.textContent(".claim"), "Place a 3D model in your photo at true scale.");
   const pictures = page.locator(".samples button");
   assert.equal(await pictures.count(), 3);
@@ -47,12 +38,9 @@ test("one sentence, one large button and three pictures are in sight", async () 
   await opened.shows("Hammer");
   assert.equal(await page.getAttribute('[data-sample="hammer"]', "aria-pressed"), "true");
   assert.equal(await page.getAttribute('[data-sample="table"]', "aria-pressed"), "false");
-  await opened.close();
 });
 
-test("a sample that cannot be loaded leaves the scene and the list of samples as they are", async () => {
-  const opened = await site.open();
-  const { page } = opened;
+test("a sample that cannot be loaded leaves the scene and the list of samples as they are", async (opened, page) => {
   await page.route("**/samples/hammer/**", (route) => route.abort());
   await page.selectOption("#sample", "hammer");
   await opened.says(/Hammer: /);
@@ -61,12 +49,14 @@ test("a sample that cannot be loaded leaves the scene and the list of samples as
   assert.equal(await page.getAttribute('[data-sample="hammer"]', "aria-pressed"), "false");
   // The browser logs the requests that were refused.
   opened.errors.length = 0;
-  await opened.close();
 });
 
-test("on a phone, image and result come first, and targets are large", async () => {
-  const opened = await site.open("", { viewport: { width: 390, height: 844 }, isMobile: true, hasTouch: true });
-  const { page } = opened;
+test("on a phone, image and result come first, and targets are large", {
+  address: "",
+  viewport: { width: 390, height: 844 },
+  isMobile: true,
+  hasTouch: true,
+}, async ({ page }) => {
   const top = async (part: string) => (await page.locator(part).first().boundingBox())?.y ?? Number.NaN;
   const order = [
     await top(".space"),
@@ -89,5 +79,4 @@ test("on a phone, image and result come first, and targets are large", async () 
   await page.mouse.wheel(0, 2000);
   const bar = await page.locator(".run").boundingBox();
   assert.ok(bar !== null && bar.y >= 0 && bar.y + bar.height <= 845, `the run bar is at ${bar?.y}`);
-  await opened.close();
 });

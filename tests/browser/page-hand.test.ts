@@ -1,19 +1,12 @@
 /** By hand: nudges, a known size, refine, undo and redo. */
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import { type SitePage, SiteTest } from "../support/site.js";
+import { pageTests, type SitePage } from "../support/site.js";
 
-let site: SiteTest;
-before(async () => {
-  site = await SiteTest.start();
-});
-after(() => site?.stop());
+const test = pageTests();
 
 const showNudges = ({ page }: SitePage) => page.click(".hand-panel .more summary");
 
-test("nudges change the pose, with undo and redo", async () => {
-  const opened = await site.open();
-  const { page } = opened;
+test("nudges change the pose, with undo and redo", async (opened, page) => {
   const iou = await opened.metric("iou");
   await showNudges(opened);
   const names = ["Move left", "Move up", "Rotate clockwise"];
@@ -30,27 +23,21 @@ test("nudges change the pose, with undo and redo", async () => {
   await opened.isNow("hand");
   assert.equal(await opened.metric("iou"), moved);
   assert.equal(await page.getAttribute("#redo", "aria-disabled"), "true");
-  await opened.close();
 });
 
-test("refining restores a mesh that was moved", async () => {
-  const opened = await site.open();
-  const { page } = opened;
+test("refining restores a mesh that was moved", async (opened, page) => {
   const iou = await opened.metric("iou");
   await showNudges(opened);
-  await page.getByRole("button", { name: "Move right", exact: true }).click();
+  await opened.press("Move right");
   await page.getByRole("button", { name: "Larger" }).click();
   await opened.isNow("hand");
   await page.click("#refine");
   await opened.isNow("refined");
   const refined = await opened.metric("iou");
   assert.ok(refined > iou - 0.02, `${refined}, was ${iou}`);
-  await opened.close();
 });
 
-test("a known size scales the mesh, and every alignment keeps it", async () => {
-  const opened = await site.open();
-  const { page } = opened;
+test("a known size scales the mesh, and every alignment keeps it", async (opened, page) => {
   const [, height = 0] = await opened.dimensions();
   const known = (0.97 * height).toFixed(1);
   await page.fill("#known-size", known);
@@ -69,12 +56,9 @@ test("a known size scales the mesh, and every alignment keeps it", async () => {
   await page.locator("#cancel").waitFor({ state: "detached" });
   await opened.aligned();
   assert.equal((await opened.dimensions())[1], height);
-  await opened.close();
 });
 
-test("buttons keep the focus while they work, and when there is nothing left to redo", async () => {
-  const opened = await site.open();
-  const { page } = opened;
+test("buttons keep the focus while they work, and when there is nothing left to redo", async (opened, page) => {
   const focused = () => page.evaluate(() => document.activeElement?.id);
   await page.focus("#refine");
   await page.keyboard.press("Enter");
@@ -87,5 +71,4 @@ test("buttons keep the focus while they work, and when there is nothing left to 
   await opened.isNow("refined");
   assert.equal(await focused(), "redo");
   assert.equal(await page.getAttribute("#redo", "aria-disabled"), "true");
-  await opened.close();
 });

@@ -1,17 +1,10 @@
 /** Aligning: progress, cancelling, several objects, alternatives, invalid options. */
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import { PATIENCE, SiteTest } from "../support/site.js";
+import { PATIENCE, pageTests } from "../support/site.js";
 
-let site: SiteTest;
-before(async () => {
-  site = await SiteTest.start();
-});
-after(() => site?.stop());
+const test = pageTests();
 
-test("an alignment can be cancelled, by button and by key, and started again", async () => {
-  const opened = await site.open("#sample=desk");
-  const { page } = opened;
+test("an alignment can be cancelled, by button and by key, and started again", "#sample=desk", async (opened, page) => {
   const before = await opened.dimensions();
   await opened.closeWorkerGate();
   await page.click("#align-all");
@@ -25,12 +18,10 @@ test("an alignment can be cancelled, by button and by key, and started again", a
   await opened.openWorkerGate();
   await page.keyboard.press("a");
   await opened.aligned();
-  await opened.close();
 });
 
-test("the page responds during an alignment, and shows its progress", async () => {
-  const opened = await site.open("#sample=mug&quality=best");
-  const { page } = opened;
+const best = "#sample=mug&quality=best";
+test("the page responds during an alignment, and shows its progress", best, async (opened, page) => {
   await page.evaluate(() => {
     const seen: number[] = [];
     Object.assign(globalThis, { seen });
@@ -53,12 +44,9 @@ test("the page responds during an alignment, and shows its progress", async () =
     values,
     [...values].sort((a, b) => a - b),
   );
-  await opened.close();
 });
 
-test("several objects of one scene are aligned, each with its own result", async () => {
-  const opened = await site.open("#sample=desk");
-  const { page } = opened;
+test("several objects of one scene are aligned, each with its own result", "#sample=desk", async (opened, page) => {
   const rows = page.locator(".objects .select");
   assert.equal(await rows.count(), 3);
   const seen = new Set<string>();
@@ -71,37 +59,42 @@ test("several objects of one scene are aligned, each with its own result", async
   assert.equal(seen.size, 3);
   await page.click("#align-all");
   await opened.says(/^Aligned 3 objects/);
-  await opened.close();
 });
 
-test("alternatives change the pose and its metrics, and the result can be restored", async () => {
-  const opened = await site.open("#sample=desk&symmetry=none");
-  const { page } = opened;
-  // Alone, the box could be turned; the others tell how it stands.
-  await page.click("#align");
-  await page.locator("#cancel").waitFor({ state: "detached" });
-  await opened.aligned();
-  const buttons = page.locator(".alternatives button:not(.tip)");
-  assert.ok((await buttons.count()) > 1, "the box has no alternative");
-  const iou = await opened.metric("iou");
-  await page.keyboard.press("1");
-  await opened.isNow("alternative");
-  const other = await opened.metric("iou");
-  assert.ok(other > 0 && other !== iou, `${other} and ${iou}`);
-  await buttons.first().click();
-  await opened.isNow("aligned");
-  assert.equal(await opened.metric("iou"), iou);
-  await opened.close();
-});
+const turned = "#sample=desk&symmetry=none";
+test(
+  "alternatives are pictures of poses that can be chosen, and the result can be restored",
+  turned,
+  async (opened, page) => {
+    // Alone, the box could be turned; the others tell how it stands.
+    await page.click("#align");
+    await page.locator("#cancel").waitFor({ state: "detached" });
+    await opened.aligned();
+    const buttons = page.locator(".alternatives button:not(.tip)");
+    assert.ok((await buttons.count()) > 1, "the box has no alternative");
+    // The pictures are drawn a little later than the result is shown.
+    const areDifferent = () => {
+      const all = [...document.querySelectorAll<HTMLCanvasElement>(".alternatives canvas")];
+      return all.length > 1 && new Set(all.map((one) => one.toDataURL())).size === all.length;
+    };
+    await page.waitForFunction(areDifferent, undefined, PATIENCE);
+    const iou = await opened.metric("iou");
+    await page.keyboard.press("1");
+    await opened.isNow("alternative");
+    const other = await opened.metric("iou");
+    assert.ok(other > 0 && other !== iou, `${other} and ${iou}`);
+    await buttons.first().click();
+    await opened.isNow("aligned");
+    assert.equal(await opened.metric("iou"), iou);
+  },
+);
 
-test("contradictory options show the error of the library, and the page remains usable", async () => {
-  const opened = await site.visit("#scaleMin=3&scaleMax=2");
-  const { page } = opened;
+const contradictory = { address: "#scaleMin=3&scaleMax=2", isLoading: true };
+test("contradictory options show the error of the library", contradictory, async (opened, page) => {
   await opened.says(/scale/);
   assert.match((await page.textContent(".result .error")) ?? "", /options\.scale/);
   await page.click(".options-panel summary");
   for (const name of ["scaleMin", "scaleMax"]) await page.fill(`#option-${name}`, "");
   await page.click("#align");
   await opened.aligned();
-  await opened.close();
 });

@@ -1,14 +1,9 @@
 /** Nothing is lost: the scene, hand work and decisions survive a reload, and are saved and opened as one file. */
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
 import { drop, files } from "../support/page-files.js";
-import { PATIENCE, type SitePage, SiteTest } from "../support/site.js";
+import { PATIENCE, pageTests, type SitePage, until } from "../support/site.js";
 
-let site: SiteTest;
-before(async () => {
-  site = await SiteTest.start();
-});
-after(() => site?.stop());
+const test = pageTests();
 
 /** Opens own files, moves the mesh by hand, and accepts the pose. */
 async function worked(opened: SitePage): Promise<string> {
@@ -16,7 +11,7 @@ async function worked(opened: SitePage): Promise<string> {
   await drop(opened, files);
   await opened.shows("Own files");
   await page.click(".hand-panel .more summary");
-  await page.getByRole("button", { name: "Move left", exact: true }).click();
+  await opened.press("Move left");
   await page.check("#lock-scale");
   await opened.isNow("hand");
   await page.click("#accept");
@@ -28,13 +23,11 @@ const asks = ({ page }: SitePage) =>
   page.evaluate(() => !dispatchEvent(new Event("beforeunload", { cancelable: true })));
 
 /** Waits until the browser has kept everything. */
-async function kept(opened: SitePage): Promise<void> {
-  const end = Date.now() + PATIENCE.timeout;
-  while (await asks(opened)) {
-    assert.ok(Date.now() < end, "the session is not stored");
-    await opened.page.waitForTimeout(100);
-  }
-}
+const kept = (opened: SitePage) =>
+  until(
+    () => asks(opened),
+    (isOpen) => !isOpen,
+  );
 
 /** That the scene is as `worked` has left it. */
 async function isAsLeft(opened: SitePage, centre: string): Promise<void> {
@@ -47,13 +40,11 @@ async function isAsLeft(opened: SitePage, centre: string): Promise<void> {
   assert.ok((await opened.metric("iou")) > 0.3);
 }
 
-test("a reload restores the scene, the pose and the decision; unstored work asks before it is left", async () => {
-  const opened = await site.open();
-  const { page } = opened;
+test("a reload restores the scene, the pose and the decision; unstored work asks before it is left", async (opened, page) => {
   const centre = await worked(opened);
   await kept(opened);
   // Changes of this moment are not stored yet.
-  await page.getByRole("button", { name: "Move right", exact: true }).click();
+  await opened.press("Move right");
   await page.click("#undo");
   await page.click("#accept");
   await kept(opened);
@@ -69,12 +60,9 @@ test("a reload restores the scene, the pose and the decision; unstored work asks
   await page.locator('main[data-scene="Table"]').waitFor(PATIENCE);
   await page.reload();
   await opened.shows("Table");
-  await opened.close();
 });
 
-test("a session is saved and opened as one file", async () => {
-  const opened = await site.open();
-  const { page } = opened;
+test("a session is saved and opened as one file", async (opened, page) => {
   const centre = await worked(opened);
   const { name, bytes } = await opened.saved("Session");
   assert.equal(name, "own-files.sim3align.zip");
@@ -82,5 +70,4 @@ test("a session is saved and opened as one file", async () => {
   await opened.shows("Mug");
   await drop(opened, { [name]: bytes });
   await isAsLeft(opened, centre);
-  await opened.close();
 });

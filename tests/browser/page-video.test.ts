@@ -1,9 +1,10 @@
 /** Videos: frames in folders are tracked through, shown on a time axis, and corrected in the middle. */
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import { npy, obj } from "../support/files.js";
+import { WEBGL } from "../support/browser.js";
+import { obj } from "../support/files.js";
 import {
   cameraFile,
+  depthNpy,
   dropFolder,
   type Files,
   HEIGHT,
@@ -13,13 +14,9 @@ import {
   WIDTH,
 } from "../support/page-files.js";
 import { mesh, type Pose, render, truth } from "../support/scene.js";
-import { PATIENCE, type SitePage, SiteTest } from "../support/site.js";
+import { PATIENCE, pageTests, type SitePage } from "../support/site.js";
 
-let site: SiteTest;
-before(async () => {
-  site = await SiteTest.start(["!--enable-unsafe-webgpu"]);
-});
-after(() => site?.stop());
+const test = pageTests(WEBGL);
 
 const COUNT = 5;
 
@@ -29,22 +26,27 @@ function poseIn(frame: number): Pose {
   return { ...truth, translation: [x + 0.02 * z * (frame - (COUNT - 1) / 2), y, z] };
 }
 
+/** The pose of a camera that has moved along x, as a file. */
+function cameraAt(x: number): Uint8Array {
+  const rows = [
+    [1, 0, 0, x],
+    [0, 1, 0, 0],
+    [0, 0, 1, 0],
+    [0, 0, 0, 1],
+  ];
+  return jsonFile({ camera_to_world: rows });
+}
+
 /** The folders of the frames. */
 function frames(hasMasks: boolean): Files {
   const files: Files = { "toy/mesh.obj": obj(mesh) };
   for (let i = 0; i < COUNT; i++) {
     const seen = render(mesh, poseIn(i), pinhole, WIDTH, HEIGHT);
     const folder = `toy/frame_0${i}/`;
-    files[`${folder}depth.npy`] = npy(seen.depth, HEIGHT, WIDTH);
+    files[`${folder}depth.npy`] = depthNpy(seen.depth);
     files[`${folder}camera.json`] = cameraFile;
     // The camera moves along; the world is that of the first frame.
-    const rows = [
-      [1, 0, 0, 0.01 * i],
-      [0, 1, 0, 0],
-      [0, 0, 1, 0],
-      [0, 0, 0, 1],
-    ];
-    files[`${folder}pose.json`] = jsonFile({ camera_to_world: rows });
+    files[`${folder}pose.json`] = cameraAt(0.01 * i);
     if (hasMasks || i === 0) files[`${folder}mask.png`] = maskPng(seen.mask);
   }
   return files;
@@ -61,9 +63,7 @@ async function goTo({ page }: SitePage, frame: number): Promise<void> {
 }
 
 for (const hasMasks of [true, false]) {
-  test(`a video ${hasMasks ? "with masks" : "with one mask"} is tracked by itself`, async () => {
-    const opened = await site.open();
-    const { page } = opened;
+  test(`a video ${hasMasks ? "with masks" : "with one mask"} is tracked by itself`, async (opened, page) => {
     await dropFolder(opened, frames(hasMasks));
     await opened.says(new RegExp(`^Tracked ${COUNT} frames`));
     assert.equal(await page.locator('.strip [data-state="tracking"]').count(), COUNT);
@@ -77,13 +77,10 @@ for (const hasMasks of [true, false]) {
       assert.ok(Math.abs(x - first - moved) < 0.3 * expected, `frame ${frame}: ${x}, first ${first}`);
     }
     assert.deepEqual(await opened.violations(), []);
-    await opened.close();
   });
 }
 
-test("a correction in the middle is carried to the other frames, and all poses are saved", async () => {
-  const opened = await site.open();
-  const { page } = opened;
+test("a correction in the middle is carried to the other frames, and all poses are saved", async (opened, page) => {
   await dropFolder(opened, frames(true));
   await opened.says(/^Tracked/);
   await goTo(opened, 4);
@@ -91,7 +88,7 @@ test("a correction in the middle is carried to the other frames, and all poses a
   await goTo(opened, 2);
   assert.ok(await page.isDisabled("#correct"));
   await page.click(".hand-panel .more summary");
-  for (let i = 0; i < 4; i++) await page.getByRole("button", { name: "Move right", exact: true }).click();
+  for (let i = 0; i < 4; i++) await opened.press("Move right");
   await opened.isNow("hand");
   await page.click("#correct");
   await opened.says(/^Corrected \d frames/);
@@ -106,12 +103,9 @@ test("a correction in the middle is carried to the other frames, and all poses a
   await page.selectOption("#sample", "mug");
   await opened.shows("Mug");
   assert.equal(await page.locator(".time").count(), 0);
-  await opened.close();
 });
 
-test("images without names of frames are scenes of their own, unless a click makes them one video", async () => {
-  const opened = await site.open();
-  const { page } = opened;
+test("images without names of frames are scenes of their own, unless a click makes them one video", async (opened, page) => {
   const named = Object.entries(frames(true)).map(([path, bytes]) => [path.replace(/frame_0(\d)/, "view-$1"), bytes]);
   await dropFolder(opened, Object.fromEntries(named));
   await opened.sheet();
@@ -121,23 +115,13 @@ test("images without names of frames are scenes of their own, unless a click mak
   await opened.sheet();
   await page.click("#intake-open");
   await opened.says(/^Tracked/);
-  await opened.close();
 });
 
-test("frames of known cameras are aligned together, as views of an object that has not moved", async () => {
-  const opened = await site.open();
-  const { page } = opened;
+test("frames of known cameras are aligned together, as views of an object that has not moved", async (opened, page) => {
   const views = frames(true);
   // The object moves in the camera as the camera moves the other way.
   for (let i = 0; i < COUNT; i++) {
-    const [x, , , t] = [1, 0, 0, -0.02 * truth.translation[2] * i];
-    const rows = [
-      [x, 0, 0, t],
-      [0, 1, 0, 0],
-      [0, 0, 1, 0],
-      [0, 0, 0, 1],
-    ];
-    views[`toy/frame_0${i}/pose.json`] = jsonFile({ camera_to_world: rows });
+    views[`toy/frame_0${i}/pose.json`] = cameraAt(-0.02 * truth.translation[2] * i);
   }
   await dropFolder(opened, views);
   await opened.says(/^Tracked/);
@@ -150,16 +134,12 @@ test("frames of known cameras are aligned together, as views of an object that h
   const last = await centreX(opened);
   // One pose in the world: the views differ exactly as their cameras do.
   assert.ok(Math.abs(last - first - step * (COUNT - 1)) < 0.0011, `from ${first} to ${last}, steps of ${step}`);
-  await opened.close();
 });
 
-test("tracking can be stopped", async () => {
-  const opened = await site.open();
-  const { page } = opened;
+test("tracking can be stopped", async (opened, page) => {
   await opened.closeWorkerGate();
   await dropFolder(opened, frames(true));
   await page.locator("#stop-tracking").click(PATIENCE);
   await opened.openWorkerGate();
   await page.locator("#track").waitFor(PATIENCE);
-  await opened.close();
 });

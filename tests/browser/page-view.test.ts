@@ -1,18 +1,11 @@
 /** The views: framing, ground, keyboard, measuring, before and after, numbers, wheel and drag in the image. */
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import { npy } from "../support/files.js";
-import { dropFolder, files, HEIGHT, inFolder, pinhole, WIDTH } from "../support/page-files.js";
+import { WEBGL } from "../support/browser.js";
+import { depthNpy, dropFolder, files, HEIGHT, inFolder, pinhole, WIDTH } from "../support/page-files.js";
 import { mesh, render, truth } from "../support/scene.js";
-import { PATIENCE, type SitePage, SiteTest, spacePixels } from "../support/site.js";
+import { pageTests, type SitePage, spacePixels, until } from "../support/site.js";
 
-let site: SiteTest;
-before(async () => {
-  site = await SiteTest.start(["!--enable-unsafe-webgpu"]);
-});
-after(() => site?.stop());
-
-const ready = ({ page }: SitePage) => page.locator('.view-host[data-backend="webgl"] canvas').waitFor(PATIENCE);
+const test = pageTests(WEBGL);
 
 /** The box of the pixels that differ from the background, as shares of the view: left, top, right, bottom. */
 async function drawn({ page }: SitePage): Promise<[number, number, number, number]> {
@@ -41,62 +34,50 @@ function faultOf(box: [number, number, number, number]): string | null {
   return isAside ? `aside: ${text}` : null;
 }
 
-const show = ({ page }: SitePage, name: string, isShown: boolean) =>
-  page.locator(".space").getByLabel(name, { exact: true }).setChecked(isShown);
+/** Without animations. */
+const still = { reducedMotion: "reduce" } as const;
 
-const look = ({ page }: SitePage, name: string) => page.getByRole("button", { name, exact: true }).click();
-
-test("objects of every size and distance are framed, before and after an alignment", async () => {
-  const opened = await site.open("#sample=mug", { reducedMotion: "reduce" });
-  await ready(opened);
-  for (const name of ["Points", "Sizes"]) await show(opened, name, false);
+test("objects of every size and distance are framed, before and after an alignment", {
+  reducedMotion: "reduce",
+}, async (opened) => {
+  await opened.has3d("webgl");
+  for (const name of ["Points", "Sizes"]) await opened.show3d(name, false);
   for (const factor of [1, 30, 0.1]) {
     if (factor !== 1) {
       const pose = { ...truth, scale: factor * truth.scale, translation: truth.translation.map((x) => factor * x) };
       const seen = render(mesh, pose as typeof truth, pinhole, WIDTH, HEIGHT, 1.5 * factor);
       const name = `times ${factor}`;
-      await dropFolder(opened, inFolder(name, { ...files, "depth.npy": npy(seen.depth, HEIGHT, WIDTH) }));
+      await dropFolder(opened, inFolder(name, { ...files, "depth.npy": depthNpy(seen.depth) }));
       await opened.shows(name);
     }
     for (const from of ["Camera", "Three-quarter", "Top", "Side"]) {
-      await look(opened, from);
-      // Software renderers may need some time for a frame.
-      for (let attempt = 0; ; attempt++) {
+      await opened.press(from);
+      const fault = async () => {
         const wrong = faultOf(await drawn(opened));
-        if (wrong === null) break;
-        assert.ok(attempt < 40, `${factor} × the size from ${from}: ${wrong}`);
-        await opened.page.waitForTimeout(200);
-      }
+        return wrong && `${factor} × the size from ${from}: ${wrong}`;
+      };
+      await until(fault, (found) => found === null);
     }
   }
-  await opened.close();
 });
 
-test("the 3D view is orbited by keys, and shows the poses before", async () => {
-  const opened = await site.open("#sample=mug", { reducedMotion: "reduce" });
-  const { page } = opened;
-  await ready(opened);
-  await look(opened, "Three-quarter");
+test("the 3D view is orbited by keys, and shows the poses before", still, async (opened, page) => {
+  await opened.has3d("webgl");
+  await opened.press("Three-quarter");
   await page.locator(".space canvas").focus();
   const picture = async () => (await page.locator(".space .view-host").screenshot()).toString("base64");
   const first = await picture();
   await page.keyboard.press("ArrowRight");
   await page.keyboard.press("+");
-  await page.waitForTimeout(300);
-  const turned = await picture();
-  assert.notEqual(turned, first);
-  await look(opened, "Before");
-  await page.waitForTimeout(300);
-  assert.notEqual(await picture(), turned);
+  const turned = await until(picture, (shown) => shown !== first);
+  await opened.press("Before");
+  await until(picture, (shown) => shown !== turned);
   assert.equal(await opened.source(), "aligned");
-  await look(opened, "Before");
-  await opened.close();
+  await opened.press("Before");
 });
 
-test("two clicks measure a distance", async () => {
-  const opened = await site.open();
-  const { page } = opened;
-  await ready(opened);
+test("two clicks measure a distance", async (opened, page) => {
+  await opened.has3d("webgl");
   await page.click("#measure");
   assert.match((await page.textContent("#measured")) ?? "", /Click a point/);
   const canvas = page.locator(".image canvas");
@@ -107,12 +88,9 @@ test("two clicks measure a distance", async () => {
   assert.ok(length > 0.5 && length < 12, `${length} cm on a mug`);
   await page.click("#measure");
   assert.equal(await page.locator("#measured").count(), 0);
-  await opened.close();
 });
 
-test("the pose is entered in numbers, as steps that can be undone", async () => {
-  const opened = await site.open();
-  const { page } = opened;
+test("the pose is entered in numbers, as steps that can be undone", async (opened, page) => {
   await page.click(".hand-panel .more summary");
   const at = Number(await page.inputValue("#centre-x"));
   await page.fill("#centre-x", `${at + 2}`);
@@ -128,31 +106,31 @@ test("the pose is entered in numbers, as steps that can be undone", async () => 
   await page.click("#undo");
   await opened.isNow("aligned");
   assert.equal(Number(await page.inputValue("#centre-x")), at);
-  await opened.close();
 });
 
-test("the wheel zooms the image at the pointer, and a drag moves it without selecting", async () => {
-  const opened = await site.open("#sample=desk");
-  const { page } = opened;
-  const picture = page.locator(".picture");
-  const zoom = async () => Number(await picture.evaluate((one) => getComputedStyle(one).getPropertyValue("--zoom")));
-  const x = async () => Number(await picture.evaluate((one) => getComputedStyle(one).getPropertyValue("--x")));
-  await page.uncheck("#layer-zoom");
-  assert.equal(await zoom(), 1);
-  const host = (await page.locator(".image .view-host").boundingBox()) ?? { x: 0, y: 0, width: 0, height: 0 };
-  const [u, v] = [host.x + host.width / 2, host.y + host.height / 2];
-  await page.mouse.move(u, v);
-  await page.mouse.wheel(0, -800);
-  await page.waitForFunction(
-    () => Number(getComputedStyle(document.querySelector(".picture") as Element).getPropertyValue("--zoom")) > 2,
-  );
-  const before = await x();
-  const chosen = await page.textContent(".objects [aria-pressed=true] .name");
-  await page.mouse.down();
-  await page.mouse.move(u - 60, v, { steps: 4 });
-  await page.mouse.up();
-  assert.ok((await x()) > before, `${await x()}, was ${before}`);
-  assert.equal(await page.textContent(".objects [aria-pressed=true] .name"), chosen);
-  await page.check("#layer-zoom");
-  await opened.close();
-});
+test(
+  "the wheel zooms the image at the pointer, and a drag moves it without selecting",
+  "#sample=desk",
+  async ({ page }) => {
+    const picture = page.locator(".picture");
+    const zoom = async () => Number(await picture.evaluate((one) => getComputedStyle(one).getPropertyValue("--zoom")));
+    const x = async () => Number(await picture.evaluate((one) => getComputedStyle(one).getPropertyValue("--x")));
+    await page.uncheck("#layer-zoom");
+    assert.equal(await zoom(), 1);
+    const host = (await page.locator(".image .view-host").boundingBox()) ?? { x: 0, y: 0, width: 0, height: 0 };
+    const [u, v] = [host.x + host.width / 2, host.y + host.height / 2];
+    await page.mouse.move(u, v);
+    await page.mouse.wheel(0, -800);
+    await page.waitForFunction(
+      () => Number(getComputedStyle(document.querySelector(".picture") as Element).getPropertyValue("--zoom")) > 2,
+    );
+    const before = await x();
+    const chosen = await page.textContent(".objects [aria-pressed=true] .name");
+    await page.mouse.down();
+    await page.mouse.move(u - 60, v, { steps: 4 });
+    await page.mouse.up();
+    assert.ok((await x()) > before, `${await x()}, was ${before}`);
+    assert.equal(await page.textContent(".objects [aria-pressed=true] .name"), chosen);
+    await page.check("#layer-zoom");
+  },
+);

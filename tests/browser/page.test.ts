@@ -2,22 +2,15 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { after, before, test } from "node:test";
 import { createAligner } from "sim3align";
 import { readMask } from "sim3align/formats";
-import { SiteTest, siteDir } from "../support/site.js";
+import { pageTests, siteDir } from "../support/site.js";
 
-let site: SiteTest;
-before(async () => {
-  site = await SiteTest.start();
-});
-after(() => site?.stop());
+const test = pageTests();
 
 const sampleFile = (path: string) => Uint8Array.from(readFileSync(join(siteDir, "samples", path)));
 
-test("the page aligns its sample, as the library does", async () => {
-  const opened = await site.open();
-  const { page } = opened;
+test("the page aligns its sample, as the library does", async (opened, page) => {
   const input = {
     depth: sampleFile("mug/depth.png"),
     mask: sampleFile("mug/mask.png"),
@@ -31,12 +24,9 @@ test("the page aligns its sample, as the library does", async () => {
   assert.match((await page.textContent("#confidence")) ?? "", new RegExp(`^${Math.round(100 * confidence)} %`));
   assert.equal((await opened.dimensions()).length, 3);
   assert.match((await page.textContent("#errors")) ?? "", /scale [\d.]+ %/);
-  await opened.close();
 });
 
-test("the displayed silhouette has the measured IoU", async () => {
-  const opened = await site.open();
-  const { page } = opened;
+test("the displayed silhouette has the measured IoU", async (opened, page) => {
   const mask = await readMask(sampleFile("mug/mask.png"));
   // Without outlines, the two images differ by the silhouette only.
   await page.uncheck("#layer-outline");
@@ -52,12 +42,9 @@ test("the displayed silhouette has the measured IoU", async () => {
   });
   const iou = await opened.metric("iou");
   assert.ok(iou > 0.5 && Math.abs(both / either - iou) < 0.002, `drawn ${both / either}, measured ${iou}`);
-  await opened.close();
 });
 
-test("before, after and depth difference are different images", async () => {
-  const opened = await site.open();
-  const { page } = opened;
+test("before, after and depth difference are different images", async (opened, page) => {
   const after = await opened.imagePixels();
   await page.keyboard.press("b");
   const before = await opened.imagePixels();
@@ -68,12 +55,9 @@ test("before, after and depth difference are different images", async () => {
   assert.ok(changed(after.data, before.data) > 1000, "before");
   assert.ok(changed(after.data, difference.data) > 1000, "difference");
   assert.ok(await page.isVisible(".legend"));
-  await opened.close();
 });
 
-test("every sample can be chosen, and is aligned", async () => {
-  const opened = await site.open();
-  const { page } = opened;
+test("every sample can be chosen, and is aligned", async (opened, page) => {
   const ids = await page.$$eval("#sample option", (found) =>
     found.map((option) => (option as HTMLOptionElement).value),
   );
@@ -84,22 +68,18 @@ test("every sample can be chosen, and is aligned", async () => {
     await opened.aligned();
     assert.ok((await opened.metric("iou")) > 0.3, id);
   }
-  await opened.close();
 });
 
-test("a link holds the sample and the options", async () => {
-  const first = await site.open("#sample=desk&quality=fast&seed=7&symmetry=none");
-  assert.equal(await first.page.inputValue("#sample"), "desk");
-  assert.equal(await first.page.inputValue("#effort"), "fast");
-  assert.equal(await first.page.inputValue("#option-seed"), "7");
-  assert.equal(await first.page.inputValue("#option-symmetry"), "none");
-  await first.page.selectOption("#effort", "best");
-  const { hash } = new URL(first.page.url());
-  const names = await first.page.$$eval(".objects .name", (found) => found.map((name) => name.textContent));
-  assert.equal(names.length, 3);
-  await first.close();
-  const second = await site.open(hash);
-  assert.equal(await second.page.inputValue("#effort"), "best");
-  assert.equal(await second.page.inputValue("#option-seed"), "7");
-  await second.close();
+const link = "#sample=desk&quality=fast&seed=7&symmetry=none";
+test("a link holds the sample and the options", link, async (opened, page) => {
+  const isShown = async (values: Record<string, string>) => {
+    for (const [id, value] of Object.entries(values)) assert.equal(await page.inputValue(`#${id}`), value);
+  };
+  await isShown({ sample: "desk", effort: "fast", "option-seed": "7", "option-symmetry": "none" });
+  assert.equal(await page.locator(".objects .name").count(), 3);
+  await page.selectOption("#effort", "best");
+  // The address is that of a link now.
+  await page.reload();
+  await opened.aligned();
+  await isShown({ sample: "desk", effort: "best", "option-seed": "7", "option-symmetry": "none" });
 });

@@ -1,20 +1,18 @@
 /** Workers in a browser: bit-identical results, cancelling, failing workers. */
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
+import { before, test } from "node:test";
 import type { Page } from "playwright-core";
 import { createAligner } from "sim3align";
-import { PageTest } from "../support/browser.js";
+import { browserFor, WITHOUT_3D } from "../support/browser.js";
 import { installDir } from "../support/environment.js";
 import { input } from "../support/scene.js";
 
-let browser: PageTest;
+const browser = browserFor(installDir, WITHOUT_3D);
 let page: Page;
 let errors: string[];
 before(async () => {
-  browser = await PageTest.start(installDir);
   ({ page, errors } = await browser.open("node_modules/sim3align/package.json"));
 });
-after(() => browser?.stop());
 
 /** Modules for the functions that run in the page. */
 interface InPage {

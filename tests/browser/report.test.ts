@@ -2,36 +2,24 @@
 import assert from "node:assert/strict";
 import { appendFileSync, readFileSync } from "node:fs";
 import { join } from "node:path";
-import { after, before, test } from "node:test";
+import { before, test } from "node:test";
 import { pathToFileURL } from "node:url";
 import type { Page } from "playwright-core";
 import { violations } from "../support/axe.js";
-import { PageTest, SOFTWARE } from "../support/browser.js";
+import { browserFor, SOFTWARE } from "../support/browser.js";
 import { files, folder, results, run, writeCase } from "../support/command-line.js";
 
 const address = pathToFileURL(join(folder, "report", "index.html")).href;
 
-let browser: PageTest;
-before(async () => {
+const browser = browserFor(folder, SOFTWARE);
+before(() => {
   for (const name of ["alpha", "beta"]) writeCase(name, files);
   const { "mask.png": _, ...incomplete } = files;
   writeCase("<b>gamma", incomplete);
-  const { status } = run(
-    "align",
-    "alpha",
-    "beta",
-    "<b>gamma",
-    "--quality",
-    "fast",
-    "--report",
-    "report",
-    "--json",
-    "r.json",
-  );
+  const names = ["alpha", "beta", "<b>gamma"];
+  const { status } = run("align", ...names, ..."--quality fast --report report --json r.json".split(" "));
   assert.equal(status, 1);
-  browser = await PageTest.start(folder, SOFTWARE);
 });
-after(() => browser?.stop());
 
 const names = (page: Page) => page.locator("#rows tr th").allTextContents();
 

@@ -1,17 +1,10 @@
 /** Textures of three.js in a browser: images and bitmaps are read by way of a canvas. */
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import type { Page } from "playwright-core";
-import { PageTest } from "../support/browser.js";
+import { test } from "node:test";
+import { browserFor, WITHOUT_3D } from "../support/browser.js";
 import { installDir } from "../support/environment.js";
 
-let browser: PageTest;
-let page: Page;
-before(async () => {
-  browser = await PageTest.start(installDir);
-  ({ page } = await browser.open("node_modules/sim3align/package.json"));
-});
-after(() => browser?.stop());
+const browser = browserFor(installDir, WITHOUT_3D);
 
 /** The kinds of images, and whether three.js turns them over when it uploads them. */
 const kinds = [
@@ -23,6 +16,7 @@ const kinds = [
 ] as const;
 
 test("the colours of images, bitmaps and canvases are seen where three.js shows them", async () => {
+  const { page } = await browser.open("node_modules/sim3align/package.json");
   const found = (await page.evaluate(`(async () => {
     const { meshInputFromThree } = await import("/node_modules/sim3align/three.js");
     const canvas = new OffscreenCanvas(2, 2);

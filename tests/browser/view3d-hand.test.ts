@@ -1,7 +1,6 @@
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
+import { test } from "node:test";
 import type { Page } from "playwright-core";
-import type { PageTest } from "../support/browser.js";
 import {
   host,
   isNear,
@@ -10,15 +9,11 @@ import {
   pixelOf,
   placeOf,
   pose,
-  startWithWebGl,
   type ViewEvent,
+  withoutWebGpu,
 } from "../support/view3d.js";
 
-let browser: PageTest;
-before(async () => {
-  browser = await startWithWebGl();
-});
-after(() => browser?.stop());
+const browser = withoutWebGpu();
 
 /** Drags a handle and returns the pose events. */
 async function drag(page: Page, from: Place, by: Place): Promise<Extract<ViewEvent, { kind: "pose" }>[]> {
@@ -31,7 +26,7 @@ async function drag(page: Page, from: Place, by: Place): Promise<Extract<ViewEve
 }
 
 test("the gizmo moves, rotates and scales about the mesh centre, and reports the pose", async () => {
-  const { page, errors, facts } = await openCube(browser, {});
+  const { page, errors, facts } = await openCube(browser);
   const [x, y] = placeOf(facts, ...pixelOf(facts, 0, 0, 0.8));
   await page.evaluate(() => harness.view.select("cube"));
   const scalePx = Math.min(host.width / facts.width, host.height / facts.height);
@@ -75,7 +70,7 @@ test("the gizmo moves, rotates and scales about the mesh centre, and reports the
 });
 
 test("clicks on meshes and points select objects, and hovering reports the pixel of the depth map", async () => {
-  const { page, errors, facts } = await openCube(browser, {});
+  const { page, errors, facts } = await openCube(browser);
   const told = async () => (await page.evaluate(() => harness.viewEvents.splice(0))) as ViewEvent[];
   const selectedAt = async (u: number, v: number) => {
     await page.mouse.click(...placeOf(facts, u, v));

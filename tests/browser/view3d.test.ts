@@ -1,6 +1,5 @@
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import type { PageTest } from "../support/browser.js";
+import { test } from "node:test";
 import {
   isGreen,
   isNear,
@@ -10,30 +9,21 @@ import {
   pixelOf,
   placeOf,
   pose,
-  startWithWebGl,
-  startWithWebGpu,
+  withoutWebGpu,
+  withWebGpu,
 } from "../support/view3d.js";
 
-let withWebGpu: PageTest;
-let withoutWebGpu: PageTest;
-before(async () => {
-  withWebGpu = await startWithWebGpu();
-  withoutWebGpu = await startWithWebGl();
-});
-after(async () => {
-  await withWebGpu?.stop();
-  await withoutWebGpu?.stop();
-});
+const [webGpu, webGl] = [withWebGpu(), withoutWebGpu()];
 
-const modes: [string, () => PageTest, object, "webgpu" | "webgl"][] = [
-  ["WebGPU", () => withWebGpu, {}, "webgpu"],
-  ["WebGL, forced", () => withWebGpu, { forceWebGL: true }, "webgl"],
-  ["WebGL, without WebGPU", () => withoutWebGpu, {}, "webgl"],
-];
+const modes = [
+  ["WebGPU", webGpu, false, "webgpu"],
+  ["WebGL, forced", webGpu, true, "webgl"],
+  ["WebGL, without WebGPU", webGl, false, "webgl"],
+] as const;
 
-for (const [name, browser, options, expected] of modes) {
+for (const [name, browser, isForced, expected] of modes) {
   test(`${name}: points and mesh are drawn where the depth camera sees them`, async () => {
-    const { page, errors, facts, backend, colours } = await openCube(browser(), options);
+    const { page, errors, facts, backend, colours } = await openCube(browser, isForced);
     assert.equal(backend, expected);
     const at = (u: number, v: number) => placeOf(facts, u, v);
     const points = await colours([at(10, 10), at(78, 30), at(82, 30), at(10, 110), at(150, 110), [3, 150], [497, 150]]);
@@ -58,14 +48,14 @@ for (const [name, browser, options, expected] of modes) {
     for (const colour of await colours(outside.map(([u, v]) => at(u, v)))) assert.ok(!isGreen(colour), `${colour}`);
 
     const [u, v] = pixelOf(facts, 0, 0, 0.75);
-    await page.evaluate(() => harness.view.setPose("cube", null));
+    await page.evaluate(() => harness.show({ hidden: ["cube"] }));
     assert.ok(!isGreen((await colours([at(u, v)]))[0]), "a hidden mesh");
     assert.deepEqual(errors, []);
   });
 }
 
 test("glTF node transforms are applied, and an invalid GLB leaves the view unchanged", async () => {
-  const { page, errors, facts, colours } = await openCube(withoutWebGpu, {}, "glb");
+  const { page, errors, facts, colours } = await openCube(webGl, false, "glb");
   const [u, v] = pixelOf(facts, 0, 0, 0.75);
   const [beside] = [pixelOf(facts, 0.056, 0, 0.75)];
   const places = [placeOf(facts, u, v), placeOf(facts, ...beside)];
@@ -86,7 +76,7 @@ test("glTF node transforms are applied, and an invalid GLB leaves the view uncha
 });
 
 test("poses are animated, unless reduced motion is preferred; afterwards no frames are drawn", async () => {
-  const { page, errors, facts, colours } = await openCube(withoutWebGpu, {});
+  const { page, errors, facts, colours } = await openCube(webGl);
   const move = ([from, to]: number[][]) => harness.view.setPose("cube", to ?? [], { from, durationMs: 400 });
   const seen = async () => {
     const [there, before] = await colours([
@@ -111,7 +101,7 @@ test("poses are animated, unless reduced motion is preferred; afterwards no fram
 });
 
 test("the view follows the size of its host, and dispose removes everything", async () => {
-  const { page, errors, facts } = await openCube(withoutWebGpu, {});
+  const { page, errors, facts } = await openCube(webGl);
   await page.evaluate(() => {
     const host = document.querySelector("#host") as HTMLElement;
     Object.assign(host.style, { width: "200px", height: "400px" });
@@ -138,7 +128,7 @@ test("the view follows the size of its host, and dispose removes everything", as
 });
 
 test("after two losses of the WebGPU device, WebGL 2 draws", async () => {
-  const { page, errors, facts, backend, colours } = await openCube(withWebGpu, {});
+  const { page, errors, facts, backend, colours } = await openCube(webGpu);
   assert.equal(backend, "webgpu");
   for (const expected of ["webgpu", "webgl"]) {
     await page.evaluate(() => {
@@ -156,7 +146,7 @@ test("after two losses of the WebGPU device, WebGL 2 draws", async () => {
 });
 
 test("a lost WebGL 2 device is replaced once; a second loss shows a message", async () => {
-  const { page, errors, facts, colours } = await openCube(withoutWebGpu, {});
+  const { page, errors, facts, colours } = await openCube(webGl);
   const lose = () =>
     page.evaluate(() => {
       const canvas = document.querySelector("#host canvas") as HTMLCanvasElement;
@@ -174,7 +164,7 @@ test("a lost WebGL 2 device is replaced once; a second loss shows a message", as
 });
 
 test("without WebGPU and WebGL 2, creating a view rejects with NoGraphics and leaves no elements", async () => {
-  const { page, errors } = await open(withoutWebGpu);
+  const { page, errors } = await open(webGl);
   const said = await page.evaluate(() => {
     HTMLCanvasElement.prototype.getContext = () => null;
     return harness.start(100, 100).then(

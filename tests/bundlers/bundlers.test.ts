@@ -22,7 +22,7 @@ let expected: Found;
 before(async () => {
   rmSync(folder, { recursive: true, force: true });
   mkdirSync(folder, { recursive: true });
-  browser = await PageTest.start(installDir);
+  browser = new PageTest(installDir);
   expected = await work(createAligner);
   const first = JSON.stringify(Object.values(expected)[0]);
   for (const matrix of Object.values(expected)) assert.equal(JSON.stringify(matrix), first, "workers change nothing");

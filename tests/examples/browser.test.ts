@@ -20,7 +20,7 @@ after(async () => {
 
 /** Opens a page, and waits until it says that it is done. */
 async function opened(folder: string, path: string) {
-  const browser = await PageTest.start(folder);
+  const browser = new PageTest(folder);
   started.push(browser);
   const { page, errors } = await browser.open(path);
   await page.waitForSelector('#status:is([data-state="done"], [data-state="failed"])', { timeout: 120_000 });

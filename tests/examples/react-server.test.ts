@@ -48,7 +48,7 @@ test("11-react-server renders in Node with the result of an alignment on the ser
 test("11-react-server, in Chromium: hydrated, aligned in workers with progress, cancelled when it goes", {
   skip,
 }, async () => {
-  const browser = await PageTest.start(folder);
+  const browser = new PageTest(folder);
   try {
     // Counts the workers, and keeps what arrives after a component has gone.
     const { page, errors } = await browser.open(url, {}, () => {

@@ -1,4 +1,5 @@
 /** A browser and a static server for its pages. */
+import { after } from "node:test";
 import { type Browser, type BrowserContextOptions, chromium, type Page } from "playwright-core";
 import { repository } from "./environment.js";
 import { type Server, serve } from "./static-server.js";
@@ -26,28 +27,35 @@ export const SOFTWARE = [
 /** Software rendering with WebGPU and WebGL 2. */
 export const SOFTWARE_WEBGPU = [...SOFTWARE, "--enable-features=Vulkan", "--use-vulkan=swiftshader"];
 
-/** A browser and a server of a folder. */
+/** Chromium without WebGPU: the 3D view draws with WebGL 2. */
+export const WEBGL = ["!--enable-unsafe-webgpu"];
+/** Chromium without graphics, for tests of other parts than the 3D view: drawing it in software takes most of their time. */
+export const WITHOUT_3D = [...WEBGL, "--disable-3d-apis"];
+
+/** A browser and a server of a folder, which start with the first page. */
 export class PageTest {
-  private constructor(
-    private readonly browser: Browser,
-    private readonly server: Server,
-  ) {}
+  private started: Promise<{ browser: Browser; server: Server }> | undefined;
 
   /**
-   * Starts both.
    * @param folder the served folder, by default the repository
    * @param more flags of Chromium; a "!" removes a default flag
    */
-  static async start(folder = repository, more: readonly string[] = []): Promise<PageTest> {
+  constructor(
+    private readonly folder = repository,
+    private readonly more: readonly string[] = [],
+  ) {}
+
+  private async start() {
     const executablePath = process.env.CHROMIUM_PATH;
     if (executablePath === undefined) throw new Error('CHROMIUM_PATH is not set: run the tests by "npm test".');
+    const { folder, more } = this;
     const args = [
       ...flags.filter((flag) => !more.includes(`!${flag}`)),
       ...more.filter((flag) => !flag.startsWith("!")),
     ];
     // The browser first, because it may fail to launch, and a running server would keep the process alive.
     const browser = await chromium.launch({ executablePath, headless: true, args });
-    return new PageTest(browser, await serve(folder));
+    return { browser, server: await serve(folder) };
   }
 
   /**
@@ -62,20 +70,30 @@ export class PageTest {
     context: BrowserContextOptions = {},
     script?: () => void,
   ): Promise<{ page: Page; errors: string[] }> {
-    const page = await this.browser.newPage(context);
+    this.started ??= this.start();
+    const { browser, server } = await this.started;
+    const page = await browser.newPage(context);
     if (script !== undefined) await page.addInitScript(script);
     const errors: string[] = [];
     page.on("pageerror", (error) => errors.push(error.message));
     page.on("console", (message) => {
       if (message.type() === "error") errors.push(message.text());
     });
-    await page.goto(new URL(path, this.server.url).href);
+    await page.goto(new URL(path, server.url).href);
     return { page, errors };
   }
 
   /** Stops both. */
   async stop(): Promise<void> {
-    await this.browser.close();
-    await this.server.close();
+    const running = await this.started?.catch(() => undefined);
+    await running?.browser.close();
+    await running?.server.close();
   }
+}
+
+/** A browser and a server for all tests of a file. */
+export function browserFor(...parameters: ConstructorParameters<typeof PageTest>): PageTest {
+  const made = new PageTest(...parameters);
+  after(() => made.stop());
+  return made;
 }

@@ -18,12 +18,15 @@ export const jsonFile = (content: unknown) => Buffer.from(JSON.stringify(content
 
 export const cameraFile = jsonFile({ ...pinhole, width: WIDTH, height: HEIGHT });
 
+/** A depth map, metres. */
+export const depthNpy = (depth: Float32Array) => npy(depth, HEIGHT, WIDTH);
+
 /** A mask as a PNG of 0 and 255. */
 export const maskPng = (mask: Uint8Array) => maskFile(mask, WIDTH, HEIGHT);
 
 /** A complete case of one object. */
 export const files: Files = {
-  "depth.npy": npy(seen.depth, HEIGHT, WIDTH),
+  "depth.npy": depthNpy(seen.depth),
   "mask.png": maskPng(seen.mask),
   "camera.json": cameraFile,
   "mesh.obj": obj(mesh),

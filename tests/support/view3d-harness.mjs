@@ -1,6 +1,6 @@
 /** Runs in the page of the tests of the 3D view. esbuild bundles it with the view. */
 import { exportGlb } from "sim3align/conventions";
-import { createView } from "../../www/src/view3d/index.ts";
+import { SceneView } from "../../www/src/view3d/scene-view.ts";
 
 const [width, height] = [160, 120];
 /** An off-centre principal point, and non-square pixels. */
@@ -92,7 +92,7 @@ globalThis.harness = {
   ...{ camera, width, height, quarters, wallM, object, scene },
   viewEvents: [],
   /** Creates a view in a host of that size. */
-  async start(hostWidth, hostHeight, options) {
+  async start(hostWidth, hostHeight, forceWebGL) {
     const host = document.createElement("div");
     host.id = "host";
     host.style.cssText = `width:${hostWidth}px;height:${hostHeight}px;background:rgb(250, 251, 252)`;
@@ -104,7 +104,7 @@ globalThis.harness = {
       onSelect: (id) => viewEvents.push({ kind: "select", id }),
       onHover: (pixel) => viewEvents.push({ kind: "hover", pixel }),
     };
-    harness.view = await createView(host, events, options);
+    harness.view = await SceneView.create(host, events, forceWebGL);
     return harness.view.backend;
   },
   /** Shows the wall from the camera. */

@@ -2,9 +2,10 @@
 import assert from "node:assert/strict";
 import { mkdirSync, writeFileSync } from "node:fs";
 import { basename, join } from "node:path";
+import { before } from "node:test";
 import { build } from "esbuild";
 import type { Page } from "playwright-core";
-import { PageTest, SOFTWARE, SOFTWARE_WEBGPU } from "./browser.js";
+import { browserFor, type PageTest, SOFTWARE, SOFTWARE_WEBGPU, WEBGL } from "./browser.js";
 import { repository } from "./environment.js";
 import { columnMajor } from "./scene.js";
 
@@ -22,7 +23,7 @@ export interface Harness {
   height: number;
   quarters: [number, number, number][];
   object(id: string, colour: string, kind?: string): object;
-  start(width: number, height: number, options?: object): Promise<"webgpu" | "webgl">;
+  start(width: number, height: number, forceWebGL?: boolean): Promise<"webgpu" | "webgl">;
   show(display?: object): void;
   loseWebGpu(): void;
   colours(places: Place[]): Promise<[number, number, number][]>;
@@ -30,12 +31,9 @@ export interface Harness {
   view: {
     readonly backend: "webgpu" | "webgl";
     setObjects(objects: object[]): Promise<void>;
-    setPose(id: string, pose: number[] | null, animate?: object): Promise<void>;
+    setPose(id: string, pose: number[], animate?: object): Promise<void>;
     select(id: string | null): void;
     setGizmo(mode: string | null): void;
-    setDisplay(display: object): void;
-    lookFrom(which: string): void;
-    focus(point?: [number, number, number]): void;
     dispose(): void;
   };
 }
@@ -47,18 +45,12 @@ declare global {
 const folder = join(repository, "target", "view3d-test", basename(process.argv[1] ?? ""));
 
 /** A browser with WebGPU in software. */
-export async function startWithWebGpu(): Promise<PageTest> {
-  await bundleHarness();
-  return PageTest.start(folder, SOFTWARE_WEBGPU);
-}
+export const withWebGpu = () => browserFor(folder, SOFTWARE_WEBGPU);
 
 /** A browser with WebGL 2 only. */
-export async function startWithWebGl(): Promise<PageTest> {
-  await bundleHarness();
-  return PageTest.start(folder, [...SOFTWARE, "!--enable-unsafe-webgpu", "--disable-blink-features=WebGPU"]);
-}
+export const withoutWebGpu = () => browserFor(folder, [...SOFTWARE, ...WEBGL, "--disable-blink-features=WebGPU"]);
 
-async function bundleHarness(): Promise<void> {
+before(async () => {
   mkdirSync(folder, { recursive: true });
   const html =
     '<!doctype html><link rel="icon" href="data:,"><title>3D</title><script type="module" src="harness.js"></script>';
@@ -71,7 +63,7 @@ async function bundleHarness(): Promise<void> {
       "sim3align/three": join(repository, "pkg", "three.js"),
     },
   });
-}
+});
 
 /** Wider than the image, which therefore has bars at its sides. */
 export const host = { width: 500, height: 300 };
@@ -109,10 +101,10 @@ export async function open(browser: PageTest): Promise<{ page: Page; errors: str
 }
 
 /** Opens a view of the wall from the camera, with a green cube. */
-export async function openCube(browser: PageTest, options: object, kind = "arrays") {
+export async function openCube(browser: PageTest, forceWebGL = false, kind = "arrays") {
   const opened = await open(browser);
-  const start = ([size, options]: [typeof host, object]) => harness.start(size.width, size.height, options);
-  const backend = await opened.page.evaluate(start, [host, options] as [typeof host, object]);
+  const start = ([size, isForced]: [typeof host, boolean]) => harness.start(size.width, size.height, isForced);
+  const backend = await opened.page.evaluate(start, [host, forceWebGL] as [typeof host, boolean]);
   const show = async ([kind, pose]: [string, number[]]) => {
     harness.show();
     await harness.view.setObjects([harness.object("cube", "#00c040", kind)]);

@@ -25,10 +25,7 @@ updateAddress();
 observePoses(page);
 // Needed when the files of the sample arrive.
 loadFormats().catch(() => {});
-aligner().then(
-  () => performance.mark("aligner ready"),
-  (error) => announce(String(error), "failed"),
-);
+aligner().catch((error) => announce(String(error), "failed"));
 
 /** The scene that the address names. */
 const address = new URLSearchParams(location.search).get("case");
@@ -60,7 +57,6 @@ if (root !== null) render(<App />, root);
 /** Not at the top level: scripts that are loaded later wait until this one has run. */
 async function start(): Promise<void> {
   if (await opened) {
-    performance.mark("opened");
     // The workers would take the time of the first frame.
     await new Promise((resolve) => requestAnimationFrame(() => setTimeout(resolve)));
     await alignEach(page);

@@ -1,21 +1,15 @@
 //! Other methods with the preprocessing of the paper: the same clouds, initial scale and voxel grid.
 
-use nalgebra::Vector3;
-
 use super::baseline::Baseline;
-use super::clouds::{Clouds, UnitSettings};
+use super::clouds::{Clouds, Settings};
+use crate::prelude::*;
 use sim3align::align::{Setup, align_by};
 use sim3align::evidence::Normals;
 use sim3align::evidence::extents::target_from_source;
-use sim3align::evidence::observation::Observation;
-use sim3align::paper::options::PaperOptions;
 use sim3align::progress::{Host, Stage};
 use sim3align::register::at_once::grid_cloud;
 use sim3align::register::cloud_pair::MAX_FEATURES;
-use sim3align::register::settings::icp_metric;
 use sim3align::report::{Counts, PaperAlignment, Solution};
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
 
 /// Progress at the start of each stage, 0 to 1.
 const PLAN: &[(Stage, f64)] = &[
@@ -29,24 +23,11 @@ const PLAN: &[(Stage, f64)] = &[
     (Stage::Metrics, 0.7),
 ];
 
-/// Options of a baseline.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct BaselineOptions {
-    /// Clouds, descriptors, RANSAC and ICP, as in the paper's method. `inlier_distance_voxels` is also the noise bound
-    /// of TEASER and Quatro; `support_distance_voxels` bounds the correspondences of local methods and of the
-    /// refinement.
-    pub paper: PaperOptions,
-    /// Keeps the initial scale under TEASER, which estimates its own otherwise. All other methods always keep it.
-    pub lock_scale: bool,
-    /// The up direction in the frames of mesh and camera, which Quatro needs.
-    pub up: Option<[[f64; 3]; 2]>,
-}
-
 /// Aligns a mesh to an observation by another method: the mask's cloud, centred, the mesh scaled by the ratio of the
 /// boxes' diagonals, both on a grid of `voxel_divisions`.
 ///
 /// Local methods begin at the centred, unrotated pose. RANSAC's pose is refined by plain ICP unless `icp` is `None`;
-/// the others stand as they are published.
+/// the others stand as they are published. All but TEASER keep the initial scale; with `lock_scale`, TEASER as well.
 ///
 /// # Errors
 /// As [`align`](sim3align::align::align); [`NoConsensus`](sim3align_geometry::error::ErrorCode::NoConsensus) where the
@@ -55,17 +36,19 @@ pub fn align_baseline(
     observation: &Observation,
     mesh: &Mesh,
     baseline: Baseline,
-    options: &BaselineOptions,
+    paper: &PaperOptions,
+    lock_scale: bool,
     host: &mut dyn Host,
 ) -> Result<PaperAlignment> {
-    let paper = &options.paper;
     align_by(observation, mesh, &Setup::of_paper(paper)?, PLAN, host, |clouds, stages| {
         let (evidence, [observed, reconstructed]) = clouds.evidence(Normals::All, stages);
-        let settings = unit_settings(options, baseline);
-        let voxel_size = (1.0 / paper.voxel_divisions) as f32;
+        let voxel_size = 1.0 / paper.voxel_divisions;
+        let estimates_scale = baseline == Baseline::Teaser && !lock_scale;
+        let settings = Settings { paper, voxel_size, estimates_scale, is_upright: false };
+        let grid = |cloud: &Cloud| grid_cloud(MAX_FEATURES, cloud, voxel_size as f32);
         let clouds = Clouds {
-            source: grid_cloud(MAX_FEATURES, &reconstructed.normalized(&evidence.reconstructed), voxel_size),
-            target: grid_cloud(MAX_FEATURES, &observed.normalized(&evidence.observed), voxel_size),
+            source: grid(&reconstructed.normalized(&evidence.reconstructed)),
+            target: grid(&observed.normalized(&evidence.observed)),
         };
         let mut matches = Vec::new();
         if baseline.is_local() {
@@ -94,23 +77,4 @@ pub fn align_baseline(
         };
         Ok((solution, counts))
     })
-}
-
-fn unit_settings(options: &BaselineOptions, baseline: Baseline) -> UnitSettings {
-    let BaselineOptions { paper, lock_scale, up } = options;
-    let voxel_size = 1.0 / paper.voxel_divisions;
-    UnitSettings {
-        fpfh_radius: (paper.fpfh_radius_voxels * voxel_size) as f32,
-        max_features: MAX_FEATURES,
-        inlier_distance: paper.inlier_distance_voxels * voxel_size,
-        edge_similarity: paper.edge_similarity,
-        ransac_iterations: paper.ransac_iterations as usize,
-        ransac_confidence: paper.ransac_confidence,
-        icp: icp_metric(paper.icp),
-        max_correspondence_distance: (paper.support_distance_voxels * voxel_size) as f32,
-        icp_iterations: paper.icp_iterations as usize,
-        estimates_scale: baseline == Baseline::Teaser && !lock_scale,
-        up: up.map(|up| up.map(Vector3::from)),
-        seed: u64::from(paper.seed),
-    }
 }

@@ -15,16 +15,11 @@
 //! - The source is moved and not the target, and small turns are turns and not Euler's angles: this does not move the
 //!   optimum.
 
-use glam::Vec3;
-use nalgebra::{Rotation3, Vector3};
-
 use super::measurements::{Matched, no_consensus};
+use crate::prelude::*;
 use sim3align::register::icp::{moved, rigid_jacobian};
 use sim3align::register::matching::Match;
-use sim3align_geometry::error::Result;
 use sim3align_geometry::normal_equations::NormalEquations;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::similarity::{Similarity, vector3};
 
 /// The random stream of the tuple test.
 const STREAM: u64 = 6;
@@ -38,45 +33,32 @@ const TRIALS_PER_MATCH: usize = 100;
 /// Maximum number of matches; more are subsampled evenly.
 const MAX_MATCHES: usize = 100_000;
 
-/// Iterations between two decreases of μ.
+/// Maximum number of tuples.
+const MAX_TUPLES: usize = 1000;
+
+/// Iterations between two decreases of μ, and its divisor then.
 const HOLD: usize = 4;
+const DIVISION_FACTOR: f64 = 1.4;
+
+/// μ stops decreasing below this fraction of the radius of the larger cloud.
+const MAX_CORRESPONDENCE_DISTANCE: f64 = 0.025;
 
 /// Settings of [`solve`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FgrSettings {
-    /// Divisor of μ in every fourth iteration, above 1.
-    pub division_factor: f64,
-    /// Leaves the clouds in their own unit: `max_correspondence_distance` is then in it too.
-    pub use_absolute_scale: bool,
-    /// μ at the beginning, in the normalised frame; `None` is 1, or the larger radius where the scale is absolute.
-    pub initial_mu: Option<f64>,
-    /// Whether μ decreases.
-    pub decrease_mu: bool,
-    /// μ stops decreasing below this fraction of the radius of the larger cloud.
-    pub max_correspondence_distance: f64,
+    /// μ at the beginning, in the normalised frame.
+    pub initial_mu: f64,
     /// Number of iterations.
     pub iterations: usize,
     /// Minimum similarity of the edges of a tuple's triangles, in (0, 1]; `None` disables the tuple test.
     pub tuple_scale: Option<f64>,
-    /// Maximum number of tuples.
-    pub max_tuples: usize,
     /// Seed of the tuple test.
     pub seed: u64,
 }
 
 impl Default for FgrSettings {
     fn default() -> Self {
-        Self {
-            division_factor: 1.4,
-            use_absolute_scale: false,
-            initial_mu: None,
-            decrease_mu: true,
-            max_correspondence_distance: 0.025,
-            iterations: 64,
-            tuple_scale: Some(0.95),
-            max_tuples: 1000,
-            seed: 0,
-        }
+        Self { initial_mu: 1.0, iterations: 64, tuple_scale: Some(0.95), seed: 0 }
     }
 }
 
@@ -108,12 +90,11 @@ pub fn solve(source: &[Vec3], target: &[Vec3], matches: &[Match], settings: &Fgr
     }
     let (source_center, source_radius) = middle_and_radius(source);
     let (target_center, target_radius) = middle_and_radius(target);
-    let radius = source_radius.max(target_radius);
-    if !(radius > 0.0 && radius.is_finite()) {
+    let unit = source_radius.max(target_radius);
+    if !(unit > 0.0 && unit.is_finite()) {
         return Err(no_consensus(matched.len(), 0, "points that span a surface"));
     }
-    let (unit, mu) = if settings.use_absolute_scale { (1.0, radius) } else { (radius, 1.0) };
-    let mut mu = settings.initial_mu.unwrap_or(mu);
+    let mut mu = settings.initial_mu;
     let pairs: Vec<[Vector3<f64>; 2]> = used
         .iter()
         .map(|&i| [(matched.source[i] - source_center) / unit, (matched.target[i] - target_center) / unit])
@@ -133,8 +114,8 @@ pub fn solve(source: &[Vec3], target: &[Vec3], matches: &[Match], settings: &Fgr
         let next = equations.solve(1e-12).and_then(|delta| moved(&pose, Vector3::zeros(), &delta));
         let Some(next) = next else { return Err(no_consensus(matched.len(), used.len(), "ten off one line")) };
         pose = next;
-        if settings.decrease_mu && iteration % HOLD == 0 && mu > settings.max_correspondence_distance {
-            mu /= settings.division_factor;
+        if iteration % HOLD == 0 && mu > MAX_CORRESPONDENCE_DISTANCE {
+            mu /= DIVISION_FACTOR;
         }
     }
     let own = |center: Vector3<f64>| Similarity { scale: unit, rotation: Rotation3::identity(), translation: center };
@@ -158,7 +139,7 @@ fn tuples(matched: &Matched, scale: f64, settings: &FgrSettings) -> Vec<usize> {
         source * scale < target && target * scale < source
     };
     for _ in 0..n * TRIALS_PER_MATCH {
-        if used.len() >= 3 * settings.max_tuples {
+        if used.len() >= 3 * MAX_TUPLES {
             break;
         }
         let [i, j, k] = [0; 3].map(|_| random.below(n));

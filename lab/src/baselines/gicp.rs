@@ -8,16 +8,11 @@
 //! Intentional differences: a covariance is stored as its normal; if the neighbours are collinear, it is 1 in all
 //! directions, as in small_gicp for too few neighbours.
 
-use glam::Vec3;
-use nalgebra::{Matrix3, Vector3};
-
 use super::icp::{TOLERANCE, no_overlap};
+use crate::prelude::*;
 use sim3align::evidence::normals::{Neighborhood, Orientation, estimate_normals};
 use sim3align::register::icp::{Refined, moved, movement, rigid_jacobian};
-use sim3align_geometry::error::Result;
-use sim3align_geometry::kd_tree::KdTree;
 use sim3align_geometry::normal_equations::NormalEquations;
-use sim3align_geometry::similarity::{Similarity, vector3};
 
 /// Fewer pairs than this do not determine a pose.
 const MIN_PAIRS: usize = 6;
@@ -28,28 +23,14 @@ const TRIALS: usize = 10;
 /// Initial damping, relative to the trace.
 const DAMPING: f64 = 1e-6;
 
+/// Neighbours for surface estimation, including the point itself.
+const NEIGHBORS: usize = 20;
+
+/// Variance across a surface; that along it is 1.
+const EPSILON: f64 = 1e-3;
+
 /// Factor by which the damping increases after a rejected step, and decreases after an accepted one.
 const DAMPING_FACTOR: f64 = 10.0;
-
-/// Settings of [`solve`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct GicpSettings {
-    /// Maximum correspondence distance, in the unit of the target.
-    pub max_correspondence_distance: f32,
-    /// Maximum number of iterations.
-    pub max_iterations: usize,
-    /// Neighbours for surface estimation, including the point itself.
-    pub neighbors: usize,
-    /// Variance across a surface; that along it is 1.
-    pub epsilon: f64,
-}
-
-impl GicpSettings {
-    /// The published settings.
-    pub fn new(max_correspondence_distance: f32, max_iterations: usize) -> Self {
-        Self { max_correspondence_distance, max_iterations, neighbors: 20, epsilon: 1e-3 }
-    }
-}
 
 /// A pair of an iteration.
 struct Patches {
@@ -66,7 +47,7 @@ impl Patches {
     }
 }
 
-/// Rigid GICP, the scale that of `initial`. `target_tree` is the tree over the target.
+/// Rigid GICP, the scale that of `initial`. The distance is in the unit of the target; `target_tree` is the tree over the target.
 ///
 /// # Errors
 /// [`NoConsensus`](sim3align_geometry::error::ErrorCode::NoConsensus) where fewer than six source points have a target
@@ -76,21 +57,20 @@ pub fn solve(
     target: &[Vec3],
     target_tree: &KdTree,
     initial: &Similarity,
-    settings: &GicpSettings,
+    max_correspondence_distance: f32,
+    max_iterations: usize,
 ) -> Result<Refined> {
     let normals = |points: &[Vec3], tree: &KdTree| {
         // The covariance does not depend on the sign of the normal.
-        estimate_normals(points, tree, Neighborhood::nearest(settings.neighbors), Orientation::TowardsCamera)
+        estimate_normals(points, tree, Neighborhood::nearest(NEIGHBORS), Orientation::TowardsCamera)
     };
     let (source_normals, target_normals) = (normals(source, &KdTree::new(source)), normals(target, target_tree));
     let pairs = |pose: &Similarity| -> Vec<Patches> {
         let transform = pose.to_f32();
         let pair = |(&p, &p_normal): (&Vec3, &Vec3)| {
-            let nearest =
-                target_tree.nearest_within(transform.apply(p), settings.max_correspondence_distance)?.index as usize;
+            let nearest = target_tree.nearest_within(transform.apply(p), max_correspondence_distance)?.index as usize;
             let (q, q_normal) = (target.get(nearest)?, target_normals.get(nearest)?);
-            let sum = covariance(pose.rotation * vector3(p_normal), settings.epsilon)
-                + covariance(vector3(*q_normal), settings.epsilon);
+            let sum = covariance(pose.rotation * vector3(p_normal)) + covariance(vector3(*q_normal));
             Some(Patches { source: vector3(p), target: vector3(*q), whitening: whitening(&sum)? })
         };
         source.iter().zip(&source_normals).filter_map(pair).collect()
@@ -98,7 +78,7 @@ pub fn solve(
 
     let mut refined = Refined { target_from_source: *initial, iterations: 0, converged: false, supported: 0, rms: 0.0 };
     let mut damping = DAMPING;
-    while refined.iterations < settings.max_iterations && !refined.converged {
+    while refined.iterations < max_iterations && !refined.converged {
         let pose = refined.target_from_source;
         let pairs = pairs(&pose);
         refined.supported = pairs.len();
@@ -116,7 +96,7 @@ pub fn solve(
         let error = |pose: &Similarity| pairs.iter().map(|pair| pair.error(pose)).sum::<f64>();
         let before = error(&pose);
         // As a distance across the surfaces, of which both have a variance of ε.
-        refined.rms = (2.0 * settings.epsilon * before / pairs.len() as f64).sqrt();
+        refined.rms = (2.0 * EPSILON * before / pairs.len() as f64).sqrt();
         // If no step decreases the cost, the pose has converged.
         refined.converged = true;
         for _ in 0..TRIALS {
@@ -136,8 +116,8 @@ pub fn solve(
 }
 
 /// The covariance: 1 along the surface, ε across it; the identity without a normal.
-fn covariance(normal: Vector3<f64>, epsilon: f64) -> Matrix3<f64> {
-    Matrix3::identity() - normal * normal.transpose() * (1.0 - epsilon)
+fn covariance(normal: Vector3<f64>) -> Matrix3<f64> {
+    Matrix3::identity() - normal * normal.transpose() * (1.0 - EPSILON)
 }
 
 /// The rows of L⁻¹ with L Lᵀ = `c`, by Cholesky decomposition; `None` if `c` is not positive definite.

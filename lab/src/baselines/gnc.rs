@@ -4,8 +4,7 @@
 //! The schedule is TEASER++'s: μ begins where the worst residual is just convex and grows by 1.4 an iteration; weights
 //! follow in closed form. It has converged when the cost no longer changes.
 
-use nalgebra::{Matrix3, Rotation3, Vector3};
-
+use crate::prelude::*;
 use sim3align_geometry::singular_values::SingularValues;
 
 /// Factor of μ from one iteration to the next.
@@ -118,7 +117,7 @@ fn across(up: Vector3<f64>, v: &Vector3<f64>) -> Vector3<f64> {
 }
 
 /// Rodrigues' rotation about a unit vector.
-pub(super) fn about(axis: Vector3<f64>, sine: f64, cosine: f64) -> Rotation3<f64> {
+fn about(axis: Vector3<f64>, sine: f64, cosine: f64) -> Rotation3<f64> {
     let turn = Matrix3::identity() * cosine + axis.cross_matrix() * sine + axis * axis.transpose() * (1.0 - cosine);
     Rotation3::from_matrix_unchecked(turn)
 }

@@ -1,12 +1,9 @@
 //! Classical ICP: equal weights for all pairs within a constant maximum distance.
 
+use crate::prelude::*;
 use sim3align::register::at_once::refine;
 use sim3align::register::icp::{IcpMetric, IcpSettings, Refined};
 use sim3align::register::support::SupportSettings;
-use sim3align_geometry::cloud::Cloud;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::kd_tree::KdTree;
-use sim3align_geometry::similarity::Similarity;
 
 /// Settings for which [`refine`] is the ICP of Besl & McKay or Chen & Medioni with a maximum correspondence distance,
 /// like `registration_icp` of Open3D: without weights, decreasing distance, and check of the normals.

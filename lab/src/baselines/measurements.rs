@@ -1,12 +1,7 @@
 //! Matched points, and the translation-invariant vectors between them.
 
-use glam::Vec3;
-use nalgebra::Vector3;
-
+use crate::prelude::*;
 use sim3align::register::matching::Match;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::random::Random;
-use sim3align_geometry::similarity::vector3;
 
 /// Random stream of the subsampling.
 const STREAM: u64 = 7;

@@ -13,10 +13,9 @@ pub mod gnc;
 pub mod icp;
 pub mod measurements;
 mod pair;
-pub mod quatro;
 pub mod teaser;
 pub mod voting;
 
 pub use baseline::Baseline;
-pub use clouds::{Clouds, Solved, UnitSettings};
-pub use pair::{PairSettings, register_pair};
+pub use clouds::{Clouds, Settings, Solved};
+pub use pair::register_pair;

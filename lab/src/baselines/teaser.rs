@@ -11,16 +11,13 @@
 //! TEASER++ chains each match to the next, which in the order of a voxel grid is its neighbour: short vectors are
 //! mostly noise. Large sets of length ratios are subsampled. Failure is an error, not the identity.
 
-use nalgebra::{Rotation3, Vector3};
-
 use super::clique::Graph;
 use super::gnc::{Turns, gnc_tls};
 use super::measurements::{Matched, links, no_consensus};
 use super::voting::vote;
+use crate::prelude::*;
 use sim3align::register::umeyama::ScaleMode;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
 use sim3align_geometry::number::number;
-use sim3align_geometry::similarity::Similarity;
 
 /// Minimum number of matches.
 const MIN_MATCHES: usize = 3;
@@ -80,25 +77,27 @@ pub struct Teaser {
     pub is_largest_clique: bool,
 }
 
-/// Estimates the similarity from corresponding points.
+/// Estimates the similarity from corresponding points. With [`Turns::About`] the vertical, this is Quatro (Lim et al., "A
+/// Single Correspondence Is Enough", ICRA 2022): fewer correct matches suffice for the rotation about it.
 ///
 /// # Errors
 /// [`ErrorCode::NoConsensus`] if fewer than three matches agree or their rotation is undetermined;
 /// [`ErrorCode::WrongLength`], [`ErrorCode::NonFinite`], [`ErrorCode::InvalidOption`] for a noise bound or a scale that
 /// is not above 0.
-pub fn solve(source: &[Vector3<f64>], target: &[Vector3<f64>], settings: &TeaserSettings) -> Result<Teaser> {
-    solve_with(&Matched::from_points(source, target)?, settings, Turns::All)
-}
-
-/// Like [`solve`], for a set of permitted rotations.
-pub(super) fn solve_with(matched: &Matched, settings: &TeaserSettings, turns: Turns) -> Result<Teaser> {
+pub fn solve(
+    source: &[Vector3<f64>],
+    target: &[Vector3<f64>],
+    settings: &TeaserSettings,
+    turns: Turns,
+) -> Result<Teaser> {
+    let matched = Matched::from_points(source, target)?;
     let beta = positive("options.noiseBound", settings.noise_bound)?;
     let count = matched.len();
     let too_few = |agreeing: usize| no_consensus(count, agreeing, "three that are not on one line");
     if count < MIN_MATCHES {
         return Err(too_few(count));
     }
-    let matched = matched.clone().thinned(settings.max_matches.max(MIN_MATCHES), settings.seed);
+    let matched = matched.thinned(settings.max_matches.max(MIN_MATCHES), settings.seed);
     let scale = match settings.scale {
         ScaleMode::Fixed(scale) => positive("options.scale", scale)?,
         ScaleMode::Free => voted_scale(&matched, beta, settings.seed).ok_or_else(|| too_few(0))?,

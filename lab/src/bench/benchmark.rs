@@ -1,40 +1,32 @@
 //! Runs methods over cases, and records the results for tables.
 
-use sim3align::precise::searched::recipe::SearchSettings;
-use sim3align::precise::searched::search::Search;
-use std::path::Path;
 use std::rc::Rc;
 use std::time::Instant;
 
 use serde::Serialize;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::case_folder::case::read_case;
-use crate::case_folder::contents::parameters_json;
+use crate::case_folder::contents::{case_files, parameters_json, symmetry_json};
 use crate::cases::case::EvaluationCase;
 use crate::cpu_time::CpuTimer;
+use crate::files::NamedFile;
+use crate::prelude::*;
 use sim3align::align::evaluate::{EvaluateOptions, Truth, evaluate};
 use sim3align::align::method::Method;
 use sim3align::align::search::Request;
 use sim3align::align::{align_paper, align_prepared};
-use sim3align::evidence::observation::Observation;
 use sim3align::metrics::Metrics;
 use sim3align::metrics::layout::LayoutErrors;
 use sim3align::metrics::pose_error::{PoseComparison, PoseErrors};
-use sim3align::metrics::symmetry::{Symmetry, SymmetryAxis};
 use sim3align::precise::drawn::mesh_pyramid::MeshPyramid;
 use sim3align::precise::drawn::pose::CropPose;
-use sim3align::precise::drawn::prepared_mesh::PreparedMesh;
 use sim3align::precise::observed::clean::CleanObservation;
-use sim3align::precise::options::AlignOptions;
 use sim3align::precise::searched::efforts;
-use sim3align::precise::searched::recipe::FIRST_REFINEMENT;
+use sim3align::precise::searched::recipe::{FIRST_REFINEMENT, SearchSettings};
+use sim3align::precise::searched::search::Search;
 use sim3align::progress::{Host, Stage};
 use sim3align::report::{Alternative, AnyAlignment, Sim3};
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::similarity::Similarity;
-use sim3align_geometry::surface_colors::SurfaceColors;
 
 /// A case from any source.
 #[derive(Debug, Clone)]
@@ -192,6 +184,37 @@ impl BenchCase {
         })
     }
 
+    /// The files of its case folder: name and content. `gt.json` has the symmetry in words, as all readers understand them,
+    /// and, exactly, as `symmetryAxes`; `note` says there what was generated. `index` is that in a set. For `depth_scale`
+    /// see [`view_files`](crate::case_folder::contents::view_files).
+    ///
+    /// # Errors
+    /// [`ErrorCode::Internal`] if an encoder fails, or for a case without truth.
+    pub(crate) fn files(
+        &self,
+        note: &str,
+        mesh_files: Vec<NamedFile>,
+        index: Option<usize>,
+        depth_scale: Option<f64>,
+    ) -> Result<Vec<NamedFile>> {
+        let none = || Error::new(ErrorCode::Internal, "case", "no true pose", "a generated case", "Please report it.");
+        let Truth { camera_from_mesh, symmetry } = self.truth.as_ref().ok_or_else(none)?;
+        let truth = symmetry_json(symmetry, note);
+        let mut files = case_files(&self.observation, mesh_files, camera_from_mesh, truth, depth_scale)?;
+        let mut meta = json!({
+            "tier": self.tier,
+            "class": self.class,
+            "family": self.family,
+            "tags": self.tags,
+            "parameters": self.parameters,
+        });
+        if let Some(index) = index {
+            meta["index"] = json!(index);
+        }
+        files.push(("meta.json", format!("{meta:#}\n").into_bytes()));
+        Ok(files)
+    }
+
     /// The case without its photo and colours.
     pub fn without_color(self) -> Self {
         Self { observation: self.observation.without_photo(), colors: None, ..self }
@@ -207,7 +230,7 @@ fn symmetry_of(axes: &Value) -> Option<Symmetry> {
             let axis: Option<Vec<f64>> = numbers.iter().map(Value::as_f64).collect();
             let [x, y, z] = axis?.try_into().ok()?;
             let fold = declared.get("fold").and_then(Value::as_u64).and_then(|fold| u32::try_from(fold).ok());
-            Some(SymmetryAxis { axis: nalgebra::Vector3::new(x, y, z), fold })
+            Some(SymmetryAxis { axis: Vector3::new(x, y, z), fold })
         })
         .collect();
     let axes = axes?;
@@ -215,7 +238,13 @@ fn symmetry_of(axes: &Value) -> Option<Symmetry> {
 }
 
 /// A host with a clock and no listener.
-struct Clock(Instant);
+pub struct Clock(Instant);
+
+impl Default for Clock {
+    fn default() -> Self {
+        Self(Instant::now())
+    }
+}
 
 impl Host for Clock {
     fn now_ms(&mut self) -> f64 {
@@ -300,7 +329,7 @@ pub fn run_method(
     method: impl FnOnce(&Observation, &Mesh, &mut dyn Host) -> Result<AnyAlignment>,
 ) -> Record {
     let timer = CpuTimer::start();
-    let outcome = method(&case.observation, &case.mesh, &mut Clock(Instant::now()));
+    let outcome = method(&case.observation, &case.mesh, &mut Clock::default());
     let seconds = timer.seconds();
     record_of(case, outcome.map_err(|error| described(&error)), seconds)
 }
@@ -311,7 +340,7 @@ pub(super) fn described(error: &Error) -> String {
 }
 
 /// The record of a case: the result or error, and the run time.
-pub(super) fn record_of(case: &BenchCase, outcome: core::result::Result<AnyAlignment, String>, seconds: f64) -> Record {
+pub(super) fn record_of(case: &BenchCase, outcome: Result<AnyAlignment, String>, seconds: f64) -> Record {
     let (alignment, error) = match outcome {
         Ok(alignment) => (Some(alignment), None),
         Err(error) => (None, Some(error)),

@@ -2,25 +2,22 @@
 //! describes the files.
 
 use std::io::ErrorKind;
-use std::path::Path;
 
 use serde_json::{Map, Value};
 
 use super::benchmark::{BenchCase, Record, described, record_of};
 use crate::case_folder::{json, pose};
+use crate::prelude::*;
 use sim3align::align::Setup;
 use sim3align::align::align_by;
 use sim3align::evidence::extents::{Extents, initial_scale};
-use sim3align::options::scale::ScaleOption;
-use sim3align::paper::options::PaperOptions;
-use sim3align::progress::{Silent, Stage};
+use sim3align::progress::Stage;
 use sim3align::register::estimate_sim3;
 use sim3align::register::options::EstimateSim3Options;
 use sim3align::register::report::Registration;
 use sim3align::report::Solution;
 use sim3align::report::{AnyAlignment, Counts};
-use sim3align_geometry::error::{Error, ErrorCode, Result, Text};
-use sim3align_geometry::similarity::Similarity;
+use sim3align_geometry::error::Text;
 
 const REMEDY: &str = "docs/importing-results.md describes the file.";
 
@@ -119,7 +116,7 @@ pub fn imported(case: &BenchCase, folder: &Path) -> Record {
 ///
 /// # Errors
 /// Those of [`read_answer`], and that there is no such file.
-pub fn answer_in(folder: &Path, case: &str, names: &Names) -> core::result::Result<Answer, String> {
+pub fn answer_in(folder: &Path, case: &str, names: &Names) -> Result<Answer, String> {
     let path = folder.join(format!("{case}.json"));
     match std::fs::read(&path) {
         Ok(bytes) => read_answer(&path.display().to_string(), names, &bytes).map_err(|error| described(&error)),
@@ -134,7 +131,7 @@ fn unreadable(path: &Path, error: &std::io::Error) -> Error {
 }
 
 /// The report of a pose that is known beforehand, or follows from pairs.
-fn align_as(case: &BenchCase, outcome: Outcome) -> core::result::Result<AnyAlignment, String> {
+fn align_as(case: &BenchCase, outcome: Outcome) -> Result<AnyAlignment, String> {
     if let Outcome::Failure(message) = outcome {
         return Err(format!("the method's own error: {message}"));
     }

@@ -1,7 +1,8 @@
 //! Options from text, as the programs' command lines have them.
 
-use sim3align::options::scale::ScaleOption;
 use sim3align::options::{Field, Options};
+
+use crate::prelude::*;
 
 /// Sets an option by its JavaScript name. Directions, symmetries and poses differ from case to case and have no text.
 ///
@@ -13,6 +14,16 @@ pub fn assign<T: Options>(options: &mut T, name: &str, text: &str) -> Option<Res
         return Some(Err(format!("{name}: found {text:?}, expected {}", field.expected())));
     }
     Some(field.check(name).map_err(|error| error.to_string()))
+}
+
+/// The options of `align` with a quality; the defaults without one.
+///
+/// # Errors
+/// In words, for any other quality.
+pub fn with_quality(quality: Option<String>) -> Result<AlignOptions, String> {
+    let mut options = AlignOptions::default();
+    quality.and_then(|quality| assign(&mut options, "quality", &quality)).transpose()?;
+    Ok(options)
 }
 
 fn set(field: &mut Field<'_>, text: &str) -> Option<()> {

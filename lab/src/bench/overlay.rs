@@ -1,16 +1,11 @@
 //! Visualisation of a pose: outlines over the depth map.
 
-use core::f64::consts::TAU;
-
 use super::benchmark::BenchCase;
 use crate::case_folder::write::rgb_png;
+use crate::prelude::*;
 use sim3align::metrics::silhouette::boundary;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::image::{Image, Mask};
+use sim3align_geometry::image::bounds_of;
 use sim3align_geometry::order::quantile;
-use sim3align_geometry::pinhole::Pinhole;
-use sim3align_geometry::rasteriser::Rasteriser;
-use sim3align_geometry::similarity::Similarity;
 
 /// Colour of the outline of the mask: white.
 pub const MASK_COLOUR: [u8; 3] = [255, 255, 255];
@@ -72,16 +67,12 @@ pub fn picture(case: &BenchCase, pose: &Similarity) -> Result<Vec<u8>> {
 
 impl Crop {
     fn about(mask: &Mask) -> Self {
-        let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
-        for (i, _) in mask.data().iter().enumerate().filter(|(_, m)| **m != 0) {
-            for (axis, x) in [i % mask.width(), i / mask.width()].into_iter().enumerate() {
-                (low[axis], high[axis]) = (low[axis].min(x), high[axis].max(x + 1));
-            }
-        }
         let size = [mask.width(), mask.height()];
-        if low[0] >= high[0] {
-            (low, high) = ([0; 2], size);
-        }
+        let bounds = bounds_of(mask.data(), mask.width(), |m| *m != 0);
+        let is_empty = mask.data().iter().all(|m| *m == 0);
+        // Bounds are the first and the last pixel.
+        let low = bounds.map(|[first, _]| first);
+        let high = if is_empty { size } else { bounds.map(|[_, last]| last + 1) };
         let longest = (high[0] - low[0]).max(high[1] - low[1]);
         let margin = (MARGIN * longest as f64).max(MARGIN_PX) as usize;
         let low = low.map(|x| x.saturating_sub(margin));

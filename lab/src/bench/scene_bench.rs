@@ -1,37 +1,26 @@
 //! Aligns the objects of scenes alone and together, and compares both with the truth.
 
 use std::fs;
-use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use glam::DVec3;
-use nalgebra::UnitQuaternion;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::benchmark::{LOOSE, STRICT, Tolerance};
+use super::benchmark::{BenchCase, LOOSE, STRICT, Tolerance};
 use super::statistics::{cell, median};
 use crate::case_folder::case::{depth_and_camera, last_name, mask_in, mesh_in, name_of, truth_of};
 use crate::case_folder::json;
-use crate::scenes::{Below, ClutteredScene, Prior, Stance};
+use crate::files::entries;
+use crate::prelude::*;
+use crate::scenes::{Below, ClutteredScene, Prior, ScenePair, Stance};
 use sim3align::align::align;
 use sim3align::align::evaluate::Truth;
-use sim3align::evidence::observation::Observation;
 use sim3align::metrics::pose_error::{PoseErrors, pose_errors};
-use sim3align::metrics::symmetry::Symmetry;
-use sim3align::precise::drawn::prepared_mesh::PreparedMesh;
-use sim3align::precise::options::AlignOptions;
-use sim3align::progress::Silent;
 use sim3align::report::Sim3;
 use sim3align::scene::contact::Contact;
 use sim3align::scene::plane::Plane;
 use sim3align::scene::support::{RestsOn, Support, SupportChoice};
 use sim3align::scene::task::{PlacedObject, Scene, SceneObject, align_scene};
-use sim3align_geometry::error::Result;
-use sim3align_geometry::image::{DepthMap, Mask};
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::pinhole::Pinhole;
-use sim3align_geometry::similarity::{Similarity, vector3};
 
 /// A scene from any source.
 #[derive(Debug, Clone)]
@@ -138,13 +127,13 @@ impl BenchScene {
         let first = &scene.pairs[0];
         // The objects rest on z = 0 of the frame that all share; each has a metric of its own.
         let pose = &first.camera_from_object;
-        let normal = pose.rotation * nalgebra::Vector3::z();
+        let normal = pose.rotation * Vector3::z();
         let plane = Plane::new(DVec3::from_array(normal.into()), -normal.dot(&pose.translation));
-        let object = |(case, pair): (crate::scenes::SceneCase, &crate::scenes::ScenePair)| BenchObject {
-            name: case.name.clone(),
+        let object = |(case, pair): (BenchCase, &ScenePair)| BenchObject {
+            name: case.name,
             mask: case.observation.mask().clone(),
-            mesh: case.mesh.clone(),
-            truth: Some(Truth { camera_from_mesh: case.camera_from_mesh, symmetry: case.symmetry }),
+            mesh: case.mesh,
+            truth: case.truth,
             stance: Some(pair.stance().as_str()),
             below: match pair.below() {
                 Below::Table => Some(Some(RestsOn::Support)),
@@ -172,10 +161,8 @@ impl BenchScene {
     /// Those of [`read_case`](crate::case_folder::case::read_case).
     pub fn read(folder: &Path) -> Result<Self> {
         let (depth, camera) = depth_and_camera(folder)?;
-        let entries = fs::read_dir(folder.join("objects")).into_iter().flatten().filter_map(core::result::Result::ok);
-        let mut folders: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
-        folders.sort();
-        let objects = folders.iter().map(|folder| BenchObject::read(folder)).collect::<Result<_>>()?;
+        let folders = entries(&folder.join("objects")).into_iter().filter(|path| path.is_dir());
+        let objects = folders.map(|folder| BenchObject::read(&folder)).collect::<Result<_>>()?;
         let plane = fs::read(folder.join("plane.json")).ok().and_then(|bytes| {
             let value: Value = serde_json::from_slice(&bytes).ok()?;
             Plane::new(json::numbers::<3>(value.get("normal")?)?.into(), value.get("d")?.as_f64()?)
@@ -226,7 +213,7 @@ impl BenchScene {
             let angle = truth.normal.dot(found.plane.normal).clamp(-1.0, 1.0).acos().to_degrees();
             let center = self.objects.iter().filter_map(|o| o.truth.as_ref()).map(|t| t.camera_from_mesh.translation);
             let count = center.clone().count().max(1) as f64;
-            let center = DVec3::from_array((center.sum::<nalgebra::Vector3<f64>>() / count).into());
+            let center = DVec3::from_array((center.sum::<Vector3<f64>>() / count).into());
             [angle, (truth.height(center) - found.plane.height(center)).abs()]
         });
         Ok(SceneRecord {
@@ -255,7 +242,7 @@ impl BenchScene {
         outcome.errors = pose_errors(&object.mesh, &found, &truth.camera_from_mesh, &truth.symmetry).ok();
         outcome.scale = Some(found.scale / truth.camera_from_mesh.scale - 1.0);
         if let Some(plane) = self.plane {
-            let up = nalgebra::Vector3::from(plane.normal.to_array());
+            let up = Vector3::from(plane.normal.to_array());
             let relative =
                 UnitQuaternion::from_rotation_matrix(&(truth.camera_from_mesh.rotation.inverse() * found.rotation));
             // The true pose in the equivalent rotation that is nearest.

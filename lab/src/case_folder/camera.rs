@@ -3,8 +3,7 @@
 use serde_json::Value;
 
 use super::json;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::pinhole::Pinhole;
+use crate::prelude::*;
 
 /// The intrinsics in pixels, and metres per unit of integer depth, where the file states it.
 ///

@@ -1,23 +1,16 @@
 //! Reads case folders: one observation, one mesh and optionally the true pose.
 
 use std::fs;
-use std::path::{Component, Path, PathBuf};
+use std::path::Component;
 
 use super::camera::{depth_scale, read_camera};
 use super::pose::read_truth;
-use sim3align::evidence::observation::Observation;
-use sim3align::evidence::photo::Photo;
+use crate::prelude::*;
 use sim3align_formats::colored_mesh::ColoredMesh;
 use sim3align_formats::depth::{DepthReadOptions, read_depth};
 use sim3align_formats::mask::read_mask;
 use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, read_colored_mesh};
 use sim3align_formats::photo::read_photo;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::image::{DepthMap, Mask};
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::pinhole::Pinhole;
-use sim3align_geometry::similarity::Similarity;
-use sim3align_geometry::surface_colors::SurfaceColors;
 
 /// File names of each part, in order of preference.
 const DEPTH_FILES: &[&str] = &["depth.npy", "depth.png"];

@@ -4,13 +4,7 @@ use serde_json::{Value, json};
 
 use super::write;
 use crate::files::NamedFile;
-use sim3align::evidence::observation::Observation;
-use sim3align::metrics::symmetry::Symmetry;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::image::{DepthMap, Mask};
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::pinhole::Pinhole;
-use sim3align_geometry::similarity::Similarity;
+use crate::prelude::*;
 
 /// The files of a case: those of its mesh and, if it has one, of its photo, and those of the view, the mask and the
 /// truth. See [`view_files`] and [`truth_file`].
@@ -81,6 +75,6 @@ pub(crate) fn symmetry_json(symmetry: &Symmetry, name: &str) -> Value {
 }
 
 /// The `parameters` of `meta.json`: numbers by name.
-pub(crate) fn parameters_json(parameters: &[(&'static str, f64)]) -> Value {
-    parameters.iter().map(|(name, value)| ((*name).to_owned(), json!(value))).collect()
+pub(crate) fn parameters_json<'a>(parameters: impl IntoIterator<Item = &'a (&'static str, f64)>) -> Value {
+    parameters.into_iter().map(|(name, value)| ((*name).to_owned(), json!(value))).collect()
 }

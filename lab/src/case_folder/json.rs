@@ -2,7 +2,8 @@
 
 use serde_json::Value;
 
-use sim3align_geometry::error::{Error, ErrorCode, Result, Text};
+use crate::prelude::*;
+use sim3align_geometry::error::Text;
 
 /// Parses a JSON file.
 pub fn parse(argument: &str, bytes: &[u8]) -> Result<Value> {

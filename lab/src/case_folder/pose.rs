@@ -1,11 +1,9 @@
 //! Known poses from JSON: a case's `gt.json`, or any file with a similarity in it.
 
-use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
 
 use super::json;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::similarity::Similarity;
+use crate::prelude::*;
 
 /// Reads a true pose x_cam = scale · R · p_mesh + translation (metres) and the object's declared symmetry, in words:
 /// `{available, scale, rotation, translation, symmetry}` where `rotation` is 3×3 row-major, 9 numbers row-major or a

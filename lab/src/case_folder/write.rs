@@ -3,14 +3,12 @@
 use std::fmt::Write as _;
 use std::io;
 
-use glam::Vec3;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
 
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::image::{DepthMap, Mask, check_size};
-use sim3align_geometry::mesh::Mesh;
+use crate::prelude::*;
+use sim3align_geometry::image::check_size;
 
 /// A depth map as NumPy array, float32 H×W, metres.
 pub fn depth_npy(depth: &DepthMap) -> Vec<u8> {
@@ -120,31 +118,27 @@ fn not_encoded(kind: &'static str, error: &dyn core::error::Error) -> Error {
 
 /// Points as binary PLY: float x, y, z.
 pub fn ply_points(points: &[Vec3]) -> Vec<u8> {
-    let header = "ply\nformat binary_little_endian 1.0";
-    let properties = "property float x\nproperty float y\nproperty float z\nend_header\n";
-    let mut bytes = format!("{header}\nelement vertex {}\n{properties}", points.len()).into_bytes();
-    bytes.extend(points.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes));
-    bytes
+    ply(points, "")
 }
 
 /// A mesh as binary PLY: float x, y, z, and triangles.
 pub fn ply_mesh(mesh: &Mesh) -> Vec<u8> {
-    let (vertices, triangles) = (mesh.positions(), mesh.triangles());
-    let mut bytes = format!(
-        concat!(
-            "ply\nformat binary_little_endian 1.0\nelement vertex {}\n",
-            "property float x\nproperty float y\nproperty float z\n",
-            "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-        ),
-        vertices.len(),
-        triangles.len(),
-    )
-    .into_bytes();
-    bytes.extend(vertices.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes));
+    let triangles = mesh.triangles();
+    let faces = format!("element face {}\nproperty list uchar int vertex_indices\n", triangles.len());
+    let mut bytes = ply(mesh.positions(), &faces);
     for triangle in triangles {
         bytes.push(3);
         bytes.extend(triangle.iter().flat_map(|i| i.to_le_bytes()));
     }
+    bytes
+}
+
+/// The header of a PLY file, with other elements after the vertices, and the vertices.
+fn ply(vertices: &[Vec3], elements: &str) -> Vec<u8> {
+    let (count, xyz) = (vertices.len(), "property float x\nproperty float y\nproperty float z\n");
+    let header = format!("ply\nformat binary_little_endian 1.0\nelement vertex {count}\n{xyz}{elements}end_header\n");
+    let mut bytes = header.into_bytes();
+    bytes.extend(vertices.iter().flat_map(|p| p.to_array()).flat_map(f32::to_le_bytes));
     bytes
 }
 

@@ -2,13 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use glam::DVec2;
-
 use super::mask::Outline;
 use super::scene::Scene;
 use super::tier::Tier;
-use crate::draws::{between, normal};
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
 
 /// Least area of an outline that is drawn at all, pixels of an image 640 wide.
 const LEAST_AREA: f64 = 12.0;

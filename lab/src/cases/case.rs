@@ -1,15 +1,9 @@
 //! One case of an evaluation set, and the set.
 
-use std::path::Path;
-
-use glam::DVec3;
-use serde_json::json;
-
 use super::draft::{Axis, Object};
 use super::edges::DepthSource;
 use super::families;
 use super::generator::generate;
-use super::holes::Shown;
 use super::mask::Segmented;
 use super::photo::take;
 use super::print::{Print, PrintKind};
@@ -24,18 +18,12 @@ use super::streams::{
 };
 use super::texture::paint;
 use super::tier::{CaseSet, Class, OutlineErrors, Tier};
-use crate::case_folder::contents::{case_files, glb_file, parameters_json, symmetry_json};
+use crate::bench::benchmark::BenchCase;
+use crate::case_folder::contents::glb_file;
 use crate::cases::distortion::canonicalise;
-use crate::draws::{chance, mixed};
 use crate::files::{NamedFile, write_files};
-use sim3align::evidence::observation::Observation;
+use crate::prelude::*;
 use sim3align::geometry::surface::SurfaceMoments;
-use sim3align::metrics::symmetry::{Symmetry, SymmetryAxis};
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::similarity::Similarity;
-use sim3align_geometry::surface_colors::SurfaceColors;
 
 /// Default number of cases.
 pub const CASES: usize = 240;
@@ -115,24 +103,15 @@ impl EvaluationSet {
     /// # Errors
     /// Only in case of a bug in the generator.
     pub fn case(&self, index: usize) -> Result<EvaluationCase> {
-        for draw in 0..DRAWS {
+        first_fit(&format!("case {index}"), DRAWS, |draw| {
             let seed = mixed([self.seed, index as u64, draw]);
             let seed = match self.classes {
                 CaseSet::General | CaseSet::Dilated => seed,
                 CaseSet::Sensors => mixed([seed, SENSOR_STREAM]),
                 CaseSet::Colors => mixed([seed, COLOR_STREAM]),
             };
-            if let Some(case) = self.draw(index, seed)? {
-                return Ok(case);
-            }
-        }
-        Err(Error::new(
-            ErrorCode::Internal,
-            "case",
-            format!("no fitting draw of case {index}"),
-            "one in a few",
-            "Please report the set's seed.",
-        ))
+            self.draw(index, seed)
+        })
     }
 
     /// A draw of a case; `None` if it shows too little of the object, or not the property of its class.
@@ -154,10 +133,9 @@ impl EvaluationSet {
         if readings.missing > tier.pick(0.1, 0.25, 0.4) {
             return Ok(None);
         }
-        let shown = Shown { mesh: &placed, parts: &object.parts, keys: &object.keys };
         let random = &mut Random::new(seed, SENSOR_STREAM);
         let (cell, observed) = ((tier, class), (&mut readings, &mut segmented));
-        let Some(effects) = sensor::apply(&scene, &shown, object.diagonal(), cell, observed, random)? else {
+        let Some(effects) = sensor::apply(&scene, (&object, &placed), cell, observed, random)? else {
             return Ok(None);
         };
         let mask_px = segmented.mask.data().iter().filter(|m| **m != 0).count();
@@ -240,21 +218,9 @@ impl EvaluationCase {
     /// # Errors
     /// [`ErrorCode::Internal`] if an encoder fails.
     pub fn files(&self) -> Result<Vec<NamedFile>> {
-        let truth = symmetry_json(&self.symmetry, &self.name());
-        let parameters = parameters_json(&self.parameters);
-        let meta = json!({
-            "index": self.index,
-            "tier": self.tier.as_str(),
-            "class": self.class.as_str(),
-            "family": self.family,
-            "tags": self.tags,
-            "parameters": parameters,
-        });
         let mesh_files =
             if self.color_files.is_empty() { vec![glb_file(&self.mesh)] } else { self.color_files.clone() };
-        let mut files = case_files(&self.observation, mesh_files, &self.camera_from_mesh, truth, None)?;
-        files.push(("meta.json", format!("{meta:#}\n").into_bytes()));
-        Ok(files)
+        BenchCase::from(self.clone()).files(&self.name(), mesh_files, Some(self.index), None)
     }
 
     /// Writes the case folder, and creates it if necessary.
@@ -325,7 +291,7 @@ pub(crate) fn declared(axes: &[Axis], object_from_mesh: &Similarity) -> Symmetry
     let mesh_from_object = object_from_mesh.rotation.inverse();
     let axis = |&(axis, fold): &Axis| {
         let turned = turned_axis(mesh_from_object.matrix(), axis);
-        SymmetryAxis { axis: nalgebra::Vector3::from(turned.to_array()), fold }
+        SymmetryAxis { axis: Vector3::from(turned.to_array()), fold }
     };
     Symmetry::Declared(axes.iter().map(axis).collect())
 }

@@ -2,10 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DVec3, Vec3};
-
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
+use crate::prelude::*;
 
 /// One vertex, the mean, per occupied cell of edge `cell`; `offset` shifts the grid. Triangles that fall together
 /// disappear. The mesh as it is where nothing would be left.

@@ -2,17 +2,9 @@
 //! hallucinated, and the mesh is in a canonical frame.
 
 use core::cmp::Reverse;
-use core::f64::consts::TAU;
 use std::collections::BinaryHeap;
 
-use glam::{DVec3, Vec3};
-use nalgebra::{UnitQuaternion, Vector3};
-
-use crate::draws::between;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::similarity::{Similarity, vec3, vector3};
+use crate::prelude::*;
 
 /// Random stream of the hallucinated geometry.
 const DISTORTION_STREAM: u64 = 0x6469_7374;
@@ -71,7 +63,7 @@ pub fn hallucinate(mesh: &Mesh, seen: &[bool], bulge: f64, seed: u64) -> Result<
         };
         positions = invented.iter().enumerate().map(smooth).collect();
     }
-    Mesh::new(positions.iter().map(|p| p.as_vec3()).collect(), mesh.triangles().to_vec())
+    with_vertices(mesh, positions.iter().map(|p| p.as_vec3()))
 }
 
 /// The mesh as generators deliver it, centred, its box's longest side 1, turned at random; and the way back,
@@ -91,7 +83,7 @@ pub fn canonicalise(mesh: &Mesh, seed: u64) -> Result<(Mesh, Similarity)> {
         let p = vector3(*p) - object_from_mesh.translation;
         vec3(&(object_from_mesh.rotation.inverse() * p / scale))
     };
-    Ok((Mesh::new(mesh.positions().iter().map(canonical).collect(), mesh.triangles().to_vec())?, object_from_mesh))
+    Ok((mapped(mesh, canonical)?, object_from_mesh))
 }
 
 /// Evenly distributed over SO(3): Shoemake, "Uniform random rotations", Graphics Gems III.
@@ -103,8 +95,43 @@ pub(crate) fn random_rotation(random: &mut Random) -> UnitQuaternion<f64> {
 }
 
 fn bounds(mesh: &Mesh) -> (DVec3, DVec3) {
-    let points = || mesh.positions().iter().map(|p| p.as_dvec3());
-    (points().fold(DVec3::INFINITY, DVec3::min), points().fold(DVec3::NEG_INFINITY, DVec3::max))
+    box_of(mesh.positions().iter().map(|p| p.as_dvec3()))
+}
+
+/// The lowest and the highest corner of the box of some points.
+pub(crate) fn box_of(points: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
+    points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
+}
+
+/// The normal of a triangle of a mesh, as long as twice its area.
+pub(crate) fn face(mesh: &Mesh, triangle: usize) -> DVec3 {
+    let [a, b, c] = mesh.corners(mesh.triangles()[triangle]).map(|p| p.as_dvec3());
+    (b - a).cross(c - a)
+}
+
+/// For each vertex of a mesh, whether it is a corner of one of these triangles.
+pub(crate) fn corners_of(mesh: &Mesh, triangles: impl Iterator<Item = u32>) -> Vec<bool> {
+    let mut corners = vec![false; mesh.positions().len()];
+    for triangle in triangles {
+        mesh.triangles()[triangle as usize].iter().for_each(|&vertex| corners[vertex as usize] = true);
+    }
+    corners
+}
+
+/// A mesh with other positions of its vertices.
+///
+/// # Errors
+/// Those of [`Mesh::new`], which only a bug in the generator could cause.
+pub(crate) fn with_vertices(mesh: &Mesh, positions: impl Iterator<Item = Vec3>) -> Result<Mesh> {
+    Mesh::new(positions.collect(), mesh.triangles().to_vec())
+}
+
+/// A mesh whose vertices a function has moved.
+///
+/// # Errors
+/// As [`with_vertices`].
+pub(crate) fn mapped(mesh: &Mesh, moved: impl FnMut(&Vec3) -> Vec3) -> Result<Mesh> {
+    with_vertices(mesh, mesh.positions().iter().map(moved))
 }
 
 /// The vertices that share an edge with each, in ascending order.
@@ -126,10 +153,8 @@ pub(crate) fn neighbors(mesh: &Mesh) -> Vec<Vec<u32>> {
 /// Unit normals of the vertices, weighted by area; 0 where a vertex has no area about it.
 pub(crate) fn normals(mesh: &Mesh) -> Vec<DVec3> {
     let mut normals = vec![DVec3::ZERO; mesh.positions().len()];
-    for &triangle in mesh.triangles() {
-        let [a, b, c] = mesh.corners(triangle).map(|p| p.as_dvec3());
-        let normal = (b - a).cross(c - a);
-        triangle.iter().for_each(|&i| normals[i as usize] += normal);
+    for (t, triangle) in mesh.triangles().iter().enumerate() {
+        triangle.iter().for_each(|&i| normals[i as usize] += face(mesh, t));
     }
     normals.into_iter().map(DVec3::normalize_or_zero).collect()
 }

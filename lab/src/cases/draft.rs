@@ -1,9 +1,7 @@
 //! Objects before observation: metres, z up, standing on the plane z = 0.
 
-use glam::DVec3;
-
 use super::solid::Solid;
-use sim3align_geometry::mesh::Mesh;
+use crate::prelude::*;
 
 /// An axis of symmetry in the object's frame: direction, and how many times it looks the same in a full turn.
 pub type Axis = (DVec3, Option<u32>);

@@ -5,8 +5,7 @@
 use super::mask::Noise;
 use super::scene::Scene;
 use super::tier::{Class, Tier};
-use crate::draws::{between, chance, normal, sign};
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
 
 /// Smallest step, as a share of the distance: about a pixel of a stereo camera's disparity.
 const STEP: f64 = 0.02;
@@ -19,17 +18,18 @@ const PROJECTOR_BASE: f64 = 43.0;
 /// Widest shadow, pixels of an image 640 wide.
 const WIDEST: f64 = 15.0;
 
-/// What measures or predicts depth.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum DepthSource {
-    /// Stereo matching of blocks, with a projected texture.
-    ActiveStereo,
-    /// A projected pattern, matched to a reference.
-    StructuredLight,
-    /// The time that light takes.
-    TimeOfFlight,
-    /// A model, from one photo.
-    Predicted,
+named! {
+    /// What measures or predicts depth.
+    pub enum DepthSource: "source" {
+        /// Stereo matching of blocks, with a projected texture.
+        ActiveStereo = "active-stereo",
+        /// A projected pattern, matched to a reference.
+        StructuredLight = "structured-light",
+        /// The time that light takes.
+        TimeOfFlight = "time-of-flight",
+        /// A model, from one photo.
+        Predicted = "predicted-depth",
+    }
 }
 
 /// The edges of one depth map, in pixels of the image.
@@ -43,6 +43,7 @@ pub struct Edges {
 }
 
 /// Magnitudes at the edges, pixels of an image 640 wide.
+#[derive(Default)]
 struct Strength {
     /// Mean offset, and how much it changes along the edge.
     offset: f64,
@@ -62,16 +63,6 @@ struct Strength {
 }
 
 impl DepthSource {
-    /// The name of a depth map's kind.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::ActiveStereo => "active-stereo",
-            Self::StructuredLight => "structured-light",
-            Self::TimeOfFlight => "time-of-flight",
-            Self::Predicted => "predicted-depth",
-        }
-    }
-
     /// The source of a class, or one of those that occur.
     pub fn draw(class: Class, is_sensor: bool, random: &mut Random) -> Self {
         let drawn = random.uniform();
@@ -89,26 +80,26 @@ impl DepthSource {
     fn strength(self, tier: Tier, random: &mut Random) -> Strength {
         let much = between(random, 0.6, 1.0);
         let shift = much * tier.pick(0.7, 1.5, 3.0);
+        let none = Strength::default();
         match self {
             Self::ActiveStereo => Strength {
                 offset: tier.pick(0.8, 1.4, 2.2) * normal(random),
                 wobble: much * tier.pick(2.5, 4.0, 6.0),
                 place: 7.0,
                 ramp: between(random, 0.0, 0.5),
-                lost_ramp: 0.0,
                 gap: 0.5,
                 shadow: (STEREO_BASE, 0.7),
                 shift,
+                ..none
             },
             Self::StructuredLight => Strength {
                 offset: -much * tier.pick(1.0, 2.0, 3.5),
                 wobble: much * tier.pick(2.0, 3.0, 4.5),
                 place: 5.0,
-                ramp: 0.0,
-                lost_ramp: 0.0,
                 gap: much * tier.pick(1.5, 2.5, 3.5),
                 shadow: (PROJECTOR_BASE, 1.0),
                 shift,
+                ..none
             },
             Self::TimeOfFlight => Strength {
                 offset: 0.4 * normal(random),
@@ -116,20 +107,16 @@ impl DepthSource {
                 place: 5.0,
                 ramp: much * tier.pick(0.8, 1.4, 2.0),
                 lost_ramp: between(random, 0.2, 0.6),
-                gap: 0.0,
-                shadow: (0.0, 0.0),
                 shift,
+                ..none
             },
             Self::Predicted => Strength {
                 offset: tier.pick(0.1, 0.3, 0.5) + tier.pick(0.3, 0.6, 1.0) * normal(random),
                 wobble: much * tier.pick(1.0, 2.0, 3.5),
                 place: 8.0,
                 ramp: much * tier.pick(0.8, 1.5, 3.0),
-                lost_ramp: 0.0,
-                gap: 0.0,
-                shadow: (0.0, 0.0),
-                // It is made from the photo.
-                shift: 0.0,
+                // It is made from the photo: no shift.
+                ..none
             },
         }
     }
@@ -175,7 +162,7 @@ pub fn edges(source: DepthSource, scene: &Scene, tier: Tier, random: &mut Random
         let dark = |u: usize, v: usize| 0.5 * (filling.at(u, v) + 1.0) < 0.2 + 0.8 * share;
         cast_shadow(scene, base * resolution, side, &mut depth, &dark);
     }
-    let angle = core::f64::consts::TAU * random.uniform();
+    let angle = TAU * random.uniform();
     let (sine, cosine) = libm::sincos(angle);
     let shift_px = [cosine, sine].map(|x| x * strength.shift * resolution);
     Edges { depth: shifted(&depth, width, shift_px), offset_px: strength.offset * resolution, shift_px }

@@ -4,12 +4,10 @@ use super::draft::{Draft, Object};
 use super::scans::Scan;
 use super::tier::{Class, Tier};
 use super::{figures, kitchen, tools};
-use crate::draws::chance;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
 
 /// A family: its name, its maker, and whether it is thin, or almost the same turned half round.
-struct Family(&'static str, fn(&mut Random) -> Draft, Kind);
+struct Family(&'static str, fn(&mut Draft, &mut Random), Kind);
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
@@ -58,11 +56,16 @@ const FURNITURE: &[&str] = &["chair", "sofa"];
 const SCANS: f64 = 0.35;
 
 impl Family {
+    fn draft(&self, random: &mut Random) -> Draft {
+        let mut draft = Draft::default();
+        (self.1)(&mut draft, random);
+        draft
+    }
+
     fn object(&self, random: &mut Random) -> Result<Object> {
-        let Self(name, make, _) = self;
-        let Draft { solid, symmetry, keys, losable } = make(random);
+        let Draft { solid, symmetry, keys, losable } = self.draft(random);
         let (mesh, parts) = solid.finish()?;
-        Ok(Object { family: (*name).into(), mesh, parts, symmetry, keys, losable, any_side_up: false })
+        Ok(Object { family: self.0.into(), mesh, parts, symmetry, keys, losable, any_side_up: false })
     }
 }
 
@@ -75,13 +78,13 @@ pub(crate) fn draw(random: &mut Random, tier: Tier, class: Class, scans: &[Scan]
     if free && !scans.is_empty() && chance(random, SCANS) {
         return scans[random.below(scans.len())].object(random);
     }
-    let fits = |Family(_, make, kind): &&Family| match class {
-        Class::Thin => *kind == Kind::Thin,
-        Class::Ambiguous => *kind == Kind::Ambiguous,
+    let fits = |family: &&Family| match class {
+        Class::Thin => family.2 == Kind::Thin,
+        Class::Ambiguous => family.2 == Kind::Ambiguous,
         // A part that can be lost without losing what tells how the object is turned.
-        Class::MissingPart => !make(&mut Random::new(0, 0)).losable.is_empty(),
+        Class::MissingPart => !family.draft(&mut Random::new(0, 0)).losable.is_empty(),
         // What is almost the same turned half round is no easy case.
-        _ => *kind == Kind::Common || (*kind == Kind::Thin && tier != Tier::Easy) || tier == Tier::Hard,
+        _ => family.2 == Kind::Common || (family.2 == Kind::Thin && tier != Tier::Easy) || tier == Tier::Hard,
     };
     let families: Vec<&Family> = FAMILIES.iter().filter(fits).collect();
     families[random.below(families.len())].object(random)

@@ -1,12 +1,9 @@
 //! Families of objects: furniture, toys, shoes, fruit.
 
-use glam::{DAffine3, DVec3};
-
 use super::draft::Draft;
 use super::solid::{Solid, smooth};
 use super::tools::{along_y, to};
-use crate::draws::between;
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
 
 /// A leg or post.
 fn post(solid: &mut Solid, from: DVec3, to: DVec3, radii: [f64; 2]) {
@@ -14,8 +11,7 @@ fn post(solid: &mut Solid, from: DVec3, to: DVec3, radii: [f64; 2]) {
     solid.tube(&[from, to], DVec3::Y, |t| [radii[0] + (radii[1] - radii[0]) * t; 2], 14);
 }
 
-pub fn chair(r: &mut Random) -> Draft {
-    let mut draft = Draft::default();
+pub fn chair(draft: &mut Draft, r: &mut Random) {
     let (wide, deep) = (between(r, 0.19, 0.24), between(r, 0.19, 0.24));
     let (seat, top) = (between(r, 0.4, 0.48), between(r, 0.8, 1.0));
     let (leg, splay) = (between(r, 0.015, 0.022), between(r, 0.0, 0.04));
@@ -40,11 +36,9 @@ pub fn chair(r: &mut Random) -> Draft {
         let frame = to(-deep + 0.02 - lean * t, 0.0, seat + (top - seat) * t - 0.3 * height);
         draft.solid.at(frame).cuboid(DVec3::new(0.009, wide - 0.02, height), 0.006);
     }
-    draft
 }
 
-pub fn sofa(r: &mut Random) -> Draft {
-    let mut draft = Draft::default();
+pub fn sofa(draft: &mut Draft, r: &mut Random) {
     let (wide, deep) = (between(r, 0.36, 0.5), between(r, 0.3, 0.38));
     let (seat, back, arm) = (between(r, 0.2, 0.24), between(r, 0.36, 0.44), between(r, 0.28, 0.33));
     draft.solid.at(to(0.0, 0.0, seat)).cuboid(DVec3::new(deep, wide, seat - 0.05), 0.04);
@@ -60,17 +54,15 @@ pub fn sofa(r: &mut Random) -> Draft {
         let hip = DVec3::new(i * (deep - 0.06), j * (wide - 0.06), 0.1);
         post(&mut draft.solid, hip, DVec3::new(hip.x, hip.y, 0.0), [0.025, 0.018]);
     }
-    draft
 }
 
-pub fn shoe(r: &mut Random) -> Draft {
-    let mut draft = Draft::default();
+pub fn shoe(draft: &mut Draft, r: &mut Random) {
     let (length, wide) = (between(r, 0.23, 0.3), between(r, 0.042, 0.052));
     let half = 0.5 * length;
     draft.solid.at(to(0.0, 0.0, 0.012));
     let sole = |t: f64| {
         let round = (1.0 - libm::pow((2.0 * t - 1.0).abs(), 4.0)).max(0.0).sqrt();
-        [wide * round * (0.82 + 0.25 * t - 0.22 * libm::sin(core::f64::consts::PI * t)) * 1.15, 0.012]
+        [wide * round * (0.82 + 0.25 * t - 0.22 * libm::sin(PI * t)) * 1.15, 0.012]
     };
     draft.solid.tube(&[DVec3::X * -half, DVec3::new(0.0, 0.004, 0.0), DVec3::X * half], DVec3::Y, sole, 24);
     draft.solid.part();
@@ -83,11 +75,9 @@ pub fn shoe(r: &mut Random) -> Draft {
     let path = [DVec3::new(-0.22 * length, 0.0, 0.03), DVec3::new(-0.27 * length, 0.0, ankle)];
     draft.solid.at(DAffine3::IDENTITY);
     draft.solid.tube(&path, DVec3::Y, |t| [0.036 - 0.003 * t, 0.052 - 0.006 * t], 22);
-    draft
 }
 
-pub fn animal(r: &mut Random) -> Draft {
-    let mut draft = Draft::default();
+pub fn animal(draft: &mut Draft, r: &mut Random) {
     let (length, girth) = (between(r, 0.06, 0.09), between(r, 0.028, 0.042));
     let hip = between(r, 0.05, 0.09);
     draft.solid.at(to(0.0, 0.0, hip + 0.6 * girth)).ellipsoid(DVec3::new(length, girth, girth * between(r, 0.95, 1.2)));
@@ -119,11 +109,9 @@ pub fn animal(r: &mut Random) -> Draft {
     draft.solid.at(DAffine3::IDENTITY);
     draft.solid.tube(&path, DVec3::Y, |t| [0.008 - 0.003 * t; 2], 12);
     draft.losable.push((tail, Vec::new()));
-    draft
 }
 
-pub fn car(r: &mut Random) -> Draft {
-    let mut draft = Draft::default();
+pub fn car(draft: &mut Draft, r: &mut Random) {
     let (length, wide) = (between(r, 0.06, 0.11), between(r, 0.028, 0.042));
     let (belly, wheel) = (between(r, 0.012, 0.018), between(r, 0.012, 0.018));
     draft.solid.at(to(0.0, 0.0, wheel + belly)).cuboid(DVec3::new(length, wide, belly), 0.01);
@@ -136,11 +124,9 @@ pub fn car(r: &mut Random) -> Draft {
         draft.solid.at(to(i * length, j * wide - 0.006, wheel) * along_y()).cylinder([wheel, wheel], 0.012);
         draft.losable.push((part, Vec::new()));
     }
-    draft
 }
 
-pub fn banana(r: &mut Random) -> Draft {
-    let mut draft = Draft::default();
+pub fn banana(draft: &mut Draft, r: &mut Random) {
     let (length, bow, radius) = (between(r, 0.15, 0.2), between(r, 0.035, 0.055), between(r, 0.016, 0.02));
     let path: Vec<DVec3> = (0..=32)
         .map(|i| {
@@ -154,5 +140,4 @@ pub fn banana(r: &mut Random) -> Draft {
         [radius * belly.max(0.3), radius * 0.95 * belly.max(0.3)]
     };
     draft.solid.tube(&path, DVec3::Z, thick, 20);
-    draft
 }

@@ -1,22 +1,13 @@
 //! Simulates a generative model that reconstructs an object from one photo.
 
-use core::f64::consts::TAU;
-
-use glam::{DAffine3, DVec3};
-
 use super::cluster::cluster;
 use super::draft::{Axis, Object};
 use super::scene::Scene;
 use super::solid::Solid;
 use super::tier::{Class, Tier};
-use crate::cases::distortion::{neighbors, normals, paths};
-use crate::draws::{between, chance, normal, sign};
+use crate::cases::distortion::{box_of, corners_of, neighbors, normals, paths};
+use crate::prelude::*;
 use sim3align::register::umeyama::{Pair, ScaleMode, umeyama};
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::rasteriser::NO_TRIANGLE;
-use sim3align_geometry::similarity::{vec3, vector3};
 
 /// A generated mesh in the world frame, and its simulated errors.
 #[derive(Debug)]
@@ -136,7 +127,7 @@ pub fn generate(
 
 /// Stretched along the axes at the same volume, bent along the longest, and warped by long waves.
 fn deform(original: &[DVec3], strength: &Strength, diagonal: f64, random: &mut Random) -> Vec<DVec3> {
-    let (low, high) = original.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)));
+    let (low, high) = box_of(original.iter().copied());
     let (centre, extent) = ((low + high) * 0.5, high - low);
     let drawn = DVec3::new(random.uniform(), random.uniform(), random.uniform());
     let even = drawn - DVec3::splat(drawn.element_sum() / 3.0);
@@ -178,7 +169,7 @@ fn fitted(positions: &[DVec3], original: &[DVec3], mesh: &Mesh) -> Result<Vec<DV
         let area = (b - a).cross(c - a).length();
         t.iter().for_each(|&i| weights[i as usize] += area);
     }
-    let vector = |p: &DVec3| nalgebra::Vector3::from(p.to_array());
+    let vector = |p: &DVec3| Vector3::from(p.to_array());
     let pairs = positions.iter().zip(original).zip(&weights);
     let pairs = pairs.map(|((p, q), &weight)| Pair { source: vector(p), target: vector(q), weight });
     let back = umeyama(pairs, ScaleMode::Free)?;
@@ -195,13 +186,9 @@ fn invent(
     diagonal: f64,
     random: &mut Random,
 ) {
-    let mut seen = vec![false; positions.len()];
-    for (&t, _) in
-        scene.object_triangles.iter().zip(&scene.visible).filter(|(t, visible)| **visible && **t != NO_TRIANGLE)
-    {
-        mesh.triangles()[t as usize].iter().for_each(|&i| seen[i as usize] = true);
-    }
-    let paths = paths(mesh, around, &seen);
+    let shown = scene.object_triangles.iter().zip(&scene.visible);
+    let shown = shown.filter(|(triangle, visible)| **visible && **triangle != NO_TRIANGLE);
+    let paths = paths(mesh, around, &corners_of(mesh, shown.map(|(triangle, _)| *triangle)));
     let normals = normals(mesh);
     let eye = DVec3::from_array(scene.camera_from_world.inverse().translation.into());
     let wave = DVec3::new(random.uniform(), random.uniform(), random.uniform()) * (TAU / diagonal);
@@ -243,7 +230,7 @@ fn cut(positions: &[DVec3], triangles: &[[u32; 3]], radius: f64, random: &mut Ra
 }
 
 /// A lump at the surface.
-fn blob(positions: &[glam::Vec3], diagonal: f64, random: &mut Random) -> Solid {
+fn blob(positions: &[Vec3], diagonal: f64, random: &mut Random) -> Solid {
     let spot = positions[random.below(positions.len())].as_dvec3();
     let mut radius = || diagonal * between(random, 0.045, 0.1);
     let radii = DVec3::new(radius(), radius(), radius());
@@ -253,7 +240,7 @@ fn blob(positions: &[glam::Vec3], diagonal: f64, random: &mut Random) -> Solid {
 }
 
 /// Without vertices that no triangle uses.
-fn compact(positions: &[glam::Vec3], triangles: &[[u32; 3]]) -> Result<Mesh> {
+fn compact(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<Mesh> {
     let mut new = vec![u32::MAX; positions.len()];
     let mut kept = Vec::new();
     let triangles = triangles

@@ -1,28 +1,15 @@
 //! Holes in a sensor's readings, on dark, reflective and grazing surfaces.
 
-use glam::DVec3;
-
+use super::distortion::face;
+use super::draft::Object;
 use super::mask::Noise;
 use super::scene::Scene;
 use super::tier::Tier;
-use crate::draws::{between, chance, normal};
-use sim3align_geometry::mesh::Mesh;
+use crate::prelude::*;
 use sim3align_geometry::order::quantile;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::rasteriser::NO_TRIANGLE;
 
 /// Fewest pixels of one part that can be a dark part.
 const LEAST_PART_PX: usize = 40;
-
-/// The object: its mesh in the world frame, and the part of each triangle.
-pub struct Shown<'a> {
-    /// The mesh.
-    pub mesh: &'a Mesh,
-    /// Part of each triangle.
-    pub parts: &'a [usize],
-    /// Parts of which at least one must be visible to determine the orientation; may be empty.
-    pub keys: &'a [usize],
-}
 
 /// Holes in the readings of the object.
 pub struct Holes {
@@ -32,15 +19,15 @@ pub struct Holes {
     pub tags: Vec<&'static str>,
 }
 
-/// Draws holes that cover a share of the visible object.
-pub fn on_object(scene: &Scene, shown: &Shown, tier: Tier, random: &mut Random) -> Holes {
+/// Draws holes that cover a share of the visible object, which lies in the scene as `placed`.
+pub fn on_object(scene: &Scene, (shown, placed): (&Object, &Mesh), tier: Tier, random: &mut Random) -> Holes {
     let wanted = between(random, tier.pick(0.05, 0.15, 0.25), tier.pick(0.12, 0.3, 0.45));
     let object: Vec<usize> =
         (0..scene.visible.len()).filter(|&i| scene.visible[i] && scene.object_triangles[i] != NO_TRIANGLE).collect();
     let kinds = [chance(random, 0.6), chance(random, 0.5), chance(random, 0.5)];
     let kinds = if kinds == [false; 3] { [true, false, false] } else { kinds };
     let each = wanted / kinds.iter().filter(|kind| **kind).count() as f64;
-    let views = Views::of(scene, shown.mesh, &object);
+    let views = Views::of(scene, placed, &object);
     let mut holes = Holes { pixels: Vec::new(), tags: Vec::new() };
     let mut lose = |tag, score: &dyn Fn(usize) -> f64, share: f64| {
         holes.tags.push(tag);
@@ -101,11 +88,7 @@ impl Views {
     fn of(scene: &Scene, mesh: &Mesh, object: &[usize]) -> Self {
         let world_from_camera = scene.camera_from_world.inverse();
         let eye = DVec3::from_array(world_from_camera.translation.into());
-        let normal = |&i: &usize| {
-            let triangle = mesh.triangles()[scene.object_triangles[i] as usize];
-            let [a, b, c] = mesh.corners(triangle).map(|p| p.as_dvec3());
-            (b - a).cross(c - a).normalize_or(DVec3::Z)
-        };
+        let normal = |&i: &usize| face(mesh, scene.object_triangles[i] as usize).normalize_or(DVec3::Z);
         let to_eye = |&i: &usize| {
             let point = scene.world_point(&world_from_camera, i, scene.object_depth[i]);
             (eye - DVec3::from_array(point.into())).normalize_or(DVec3::Z)
@@ -115,7 +98,7 @@ impl Views {
 }
 
 /// A random part of the object that covers at most about this share of its visible pixels, if there is one.
-fn dark_part(scene: &Scene, shown: &Shown, object: &[usize], share: f64, random: &mut Random) -> Option<usize> {
+fn dark_part(scene: &Scene, shown: &Object, object: &[usize], share: f64, random: &mut Random) -> Option<usize> {
     let mut sizes = std::collections::BTreeMap::new();
     for &i in object {
         if let Some(&part) = shown.parts.get(scene.object_triangles[i] as usize) {

@@ -1,13 +1,8 @@
 //! Families of objects: what stands in a kitchen.
 
-use core::f64::consts::PI;
-
-use glam::{DAffine3, DVec3};
-
 use super::draft::Draft;
 use super::solid::smooth;
-use crate::draws::between;
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
 
 const ROUND: (DVec3, Option<u32>) = (DVec3::Z, None);
 
@@ -29,8 +24,7 @@ fn handle(lower: [f64; 2], upper: [f64; 2], reach: f64) -> Vec<DVec3> {
     smooth(&[low, low + out * 0.8, low.lerp(high, 0.4) + out, low.lerp(high, 0.75) + out, high + out * 0.8, high])
 }
 
-pub fn mug(r: &mut Random) -> Draft {
-    let mut draft = Draft::default();
+pub fn mug(draft: &mut Draft, r: &mut Random) {
     let (radius, height) = (between(r, 0.034, 0.046), between(r, 0.075, 0.12));
     let (taper, wall) = (between(r, 0.82, 1.02), between(r, 0.003, 0.006));
     draft.solid.lathe(&hollow(|z| radius * (taper + (1.0 - taper) * z / height), height, wall), 48);
@@ -42,20 +36,16 @@ pub fn mug(r: &mut Random) -> Draft {
     draft.solid.tube(&path, DVec3::Y, |_| radii, 14);
     draft.keys = vec![part];
     draft.losable = vec![(part, vec![ROUND])];
-    draft
 }
 
-pub fn can(r: &mut Random) -> Draft {
-    let mut draft = Draft::default();
+pub fn can(draft: &mut Draft, r: &mut Random) {
     let radius = between(r, 0.03, 0.055);
     let height = radius * between(r, 0.9, 3.2);
     draft.solid.at(DAffine3::IDENTITY).cylinder([radius, radius], height);
     draft.symmetry = vec![ROUND, (DVec3::X, Some(2))];
-    draft
 }
 
-pub fn bottle(r: &mut Random) -> Draft {
-    let mut draft = Draft::default();
+pub fn bottle(draft: &mut Draft, r: &mut Random) {
     let (radius, height) = (between(r, 0.028, 0.045), between(r, 0.17, 0.3));
     let neck = radius * between(r, 0.3, 0.5);
     let (shoulder, neck_z, cap) = (height * between(r, 0.5, 0.68), height * between(r, 0.74, 0.84), height * 0.92);
@@ -74,21 +64,17 @@ pub fn bottle(r: &mut Random) -> Draft {
     let close = (0..4).rev().map(|i| [lid * 0.95 * f64::from(i) / 4.0, height]);
     draft.solid.lathe(&profile.into_iter().chain(body).chain(top).chain(close).collect::<Vec<_>>(), 48);
     draft.symmetry = vec![ROUND];
-    draft
 }
 
-pub fn bowl(r: &mut Random) -> Draft {
-    let mut draft = Draft::default();
+pub fn bowl(draft: &mut Draft, r: &mut Random) {
     let (radius, height) = (between(r, 0.06, 0.13), between(r, 0.045, 0.09));
     let (foot, power) = (between(r, 0.35, 0.55), between(r, 0.4, 0.75));
     let outer = |z: f64| radius * (foot + (1.0 - foot) * libm::pow(z / height, power));
     draft.solid.lathe(&hollow(outer, height, between(r, 0.0035, 0.006)), 56);
     draft.symmetry = vec![ROUND];
-    draft
 }
 
-pub fn teapot(r: &mut Random) -> Draft {
-    let mut draft = Draft::default();
+pub fn teapot(draft: &mut Draft, r: &mut Random) {
     let (radius, height) = (between(r, 0.06, 0.085), between(r, 0.1, 0.14));
     let belly = |z: f64| radius * (0.6 + 0.4 * libm::sin(PI * (0.12 + 0.76 * z / height)));
     let mut profile: Vec<[f64; 2]> = (0..4).map(|i| [belly(0.0) * f64::from(i) / 4.0, 0.0]).collect();
@@ -118,11 +104,9 @@ pub fn teapot(r: &mut Random) -> Draft {
     draft.solid.tube(&path, DVec3::Y, |_| [0.008, 0.0055], 14);
     draft.keys = vec![spout, grip];
     draft.losable = vec![(spout, Vec::new()), (grip, Vec::new())];
-    draft
 }
 
-pub fn pitcher(r: &mut Random) -> Draft {
-    let mut draft = Draft::default();
+pub fn pitcher(draft: &mut Draft, r: &mut Random) {
     let (radius, height) = (between(r, 0.05, 0.07), between(r, 0.18, 0.25));
     let (top, bulge) = (between(r, 0.72, 0.95), between(r, 0.0, 0.2));
     let outer = |z: f64| {
@@ -140,11 +124,9 @@ pub fn pitcher(r: &mut Random) -> Draft {
     draft.solid.tube(&path, DVec3::Y, |_| [0.011, 0.007], 14);
     draft.keys = vec![grip];
     draft.losable = vec![(lip, Vec::new())];
-    draft
 }
 
-pub fn spoon(r: &mut Random) -> Draft {
-    let mut draft = Draft::default();
+pub fn spoon(draft: &mut Draft, r: &mut Random) {
     let (length, bowl) = (between(r, 0.11, 0.2), between(r, 0.024, 0.034));
     let (width, depth) = (bowl * between(r, 0.58, 0.72), between(r, 0.007, 0.011));
     let sheet = between(r, 0.0016, 0.0026);
@@ -162,5 +144,4 @@ pub fn spoon(r: &mut Random) -> Draft {
     ]);
     let (neck, tail) = (between(r, 0.003, 0.004), between(r, 0.007, 0.011));
     draft.solid.tube(&path, DVec3::Y, |t| [neck + (tail - neck) * t * t, sheet * 0.8], 16);
-    draft
 }

@@ -5,11 +5,9 @@ use super::network_mask::segmented;
 use super::readings::disc;
 use super::scene::Scene;
 use super::tier::{Class, OutlineErrors, Tier};
-use crate::draws::{between, chance};
+use crate::prelude::*;
 use sim3align_geometry::distance_transform::squared_distances;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::image::{Image, Mask};
-use sim3align_geometry::random::Random;
+use sim3align_geometry::image::bounds_of;
 
 /// Shares of the masks that networks and annotators make; the rest is uniformly too large or too small.
 const NETWORKS: f64 = 0.6;
@@ -144,7 +142,7 @@ fn spoil(
     }
     if let Some(at) = spot(random, &inner, "stray-island") {
         let reach = 3.0 * half_width + resolution * between(random, 15.0, 60.0);
-        let (sine, cosine) = libm::sincos(core::f64::consts::TAU * random.uniform());
+        let (sine, cosine) = libm::sincos(TAU * random.uniform());
         let (u, v) = ((at % width) as f64 + reach * cosine, (at / width) as f64 + reach * sine);
         let (u, v) = (u.clamp(0.0, width as f64 - 1.0) as usize, v.clamp(0.0, height as f64 - 1.0) as usize);
         let radius = (resolution * between(random, 2.0, 6.0)).min(0.15 * area.sqrt());
@@ -159,17 +157,12 @@ pub(super) fn signed_distances(scene: &Scene) -> Vec<f32> {
     let mut signed = vec![f32::MAX; width * height];
     // Only around the object: the transform costs more than anything else here.
     let margin = 24 * width / 640;
-    let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
-    for (i, _) in scene.visible.iter().enumerate().filter(|(_, visible)| **visible) {
-        for (axis, x) in [i % width, i / width].into_iter().enumerate() {
-            (low[axis], high[axis]) = (low[axis].min(x), high[axis].max(x));
-        }
-    }
-    if low[0] > high[0] {
+    if !scene.visible.contains(&true) {
         return signed;
     }
-    let low = low.map(|x| x.saturating_sub(margin));
-    let high = [(high[0] + margin).min(width - 1), (high[1] + margin).min(height - 1)];
+    let [columns, rows] = bounds_of(&scene.visible, width, |visible| *visible);
+    let low = [columns[0], rows[0]].map(|x| x.saturating_sub(margin));
+    let high = [(columns[1] + margin).min(width - 1), (rows[1] + margin).min(height - 1)];
     let size = [0, 1].map(|axis| high[axis] - low[axis] + 1);
     let index = |k: usize| (low[1] + k / size[0]) * width + low[0] + k % size[0];
     let inside: Vec<bool> = (0..size[0] * size[1]).map(|k| scene.visible[index(k)]).collect();

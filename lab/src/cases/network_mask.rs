@@ -4,8 +4,8 @@
 use super::mask::{Noise, Outline};
 use super::scene::Scene;
 use super::tier::Tier;
-use crate::draws::{between, normal};
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
+use sim3align_geometry::image::bounds_of;
 
 /// Cells on the longer side of the logit image.
 const CELLS: f64 = 256.0;
@@ -68,12 +68,8 @@ struct Grid {
 
 impl Grid {
     fn around(scene: &Scene, cell: f64) -> Self {
-        let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
-        for (i, _) in scene.visible.iter().enumerate().filter(|(_, visible)| **visible) {
-            for (axis, x) in [i % scene.width, i / scene.width].into_iter().enumerate() {
-                (low[axis], high[axis]) = (low[axis].min(x), high[axis].max(x));
-            }
-        }
+        let bounds = bounds_of(&scene.visible, scene.width, |visible| *visible);
+        let [low, high] = [0, 1].map(|end| bounds.map(|range| range[end]));
         let first = low.map(|x| (x as f64 / cell - MARGIN).max(0.0) as usize);
         let sides = [scene.width, scene.height];
         let count = [0, 1].map(|axis| {

@@ -1,24 +1,14 @@
 //! Photos: a scene under unknown light, through a camera with its own white balance, focus, noise and number of pixels,
 //! saved as PNG or JPEG.
 
-use core::f64::consts::TAU;
-
-use glam::DVec3;
-
+use super::distortion::face;
 use super::print::{Print, color, encoded};
 use super::scene::Scene;
 use super::tier::{Class, Tier};
 use crate::case_folder::write::{JpegSettings, rgb_jpeg, rgb_png};
-use crate::draws::{between, chance, normal};
 use crate::files::NamedFile;
-use sim3align::evidence::photo::Photo;
+use crate::prelude::*;
 use sim3align_formats::photo::read_photo;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::pinhole::Pinhole;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::rasteriser::{NO_TRIANGLE, Rasteriser};
-use sim3align_geometry::similarity::{vec3, vector3};
 
 /// Sizes of photos relative to the depth map; the field of view is the same.
 const SIZES: [f64; 3] = [0.5, 1.5, 2.0];
@@ -135,8 +125,7 @@ pub fn take(
             let point = vec3(&point).as_dvec3();
             let at = DVec3::new(2.0 * u as f64 / width as f64 - 1.0, 2.0 * v as f64 / height as f64 - 1.0, 0.0);
             linear.push(if is_object {
-                let [a, b, c] = placed.corners(placed.triangles()[triangle as usize]).map(|p| p.as_dvec3());
-                let normal = (b - a).cross(c - a).normalize_or_zero();
+                let normal = face(placed, triangle as usize).normalize_or_zero();
                 let normal = if normal.dot(eye - point) < 0.0 { -normal } else { normal };
                 lit(print.at(point, normal), point, normal, at)
             } else {

@@ -4,10 +4,7 @@ use super::mask::{Noise, Segmented, signed_distances};
 use super::readings::disc;
 use super::scene::Scene;
 use super::tier::Tier;
-use crate::draws::{between, chance};
-use sim3align_geometry::error::Result;
-use sim3align_geometry::image::Image;
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
 
 /// Halvings of the interval of amplitudes.
 const HALVINGS: usize = 10;

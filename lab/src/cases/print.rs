@@ -1,18 +1,11 @@
 //! Prints: the colour of an object's surface, as a function of the position on it.
 
-use core::f64::consts::TAU;
-
-use glam::{DMat3, DVec3};
-
+use super::distortion::{box_of, face};
 use super::draft::Axis;
 use super::scene::Scene;
 use super::tier::Class;
-use crate::draws::{between, chance, mixed, normal};
+use crate::prelude::*;
 use sim3align::geometry::surface::SurfaceMoments;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::rasteriser::NO_TRIANGLE;
-use sim3align_geometry::similarity::vec3;
 use sim3align_geometry::surface_colors::Rgb;
 
 /// Sides of a label: those of a box, or one that goes round.
@@ -106,8 +99,7 @@ impl Print {
     /// Draws the print of an object with these symmetries.
     pub fn draw(mesh: &Mesh, symmetry: &[Axis], kind: PrintKind, random: &mut Random) -> Self {
         let (axes, is_round) = axes_of(mesh, symmetry);
-        let local = || mesh.positions().iter().map(|p| axes * p.as_dvec3());
-        let (low, high) = (local().fold(DVec3::INFINITY, DVec3::min), local().fold(DVec3::NEG_INFINITY, DVec3::max));
+        let (low, high) = box_of(mesh.positions().iter().map(|p| axes * p.as_dvec3()));
         let half = (0.5 * (high - low)).max(DVec3::splat(1e-9));
         let base = color(random);
         let pattern = match kind {
@@ -167,9 +159,7 @@ impl Print {
             .step_by(7)
             .map(|i| {
                 let point = scene.world_point(&world_from_camera, i, scene.object_depth[i]);
-                let corners = placed.corners(placed.triangles()[scene.object_triangles[i] as usize]);
-                let [a, b, c] = corners.map(|p| p.as_dvec3());
-                (vec3(&point).as_dvec3(), (b - a).cross(c - a).normalize_or_zero())
+                (vec3(&point).as_dvec3(), face(placed, scene.object_triangles[i] as usize).normalize_or_zero())
             })
             .collect();
         let differs = |turn: DMat3| {

@@ -1,15 +1,10 @@
 //! Depth maps with the errors of monocular models or sensors.
 
-use core::f64::consts::TAU;
-
 use super::edges::{DepthSource, Edges, edges};
 use super::mask::Noise;
 use super::scene::Scene;
 use super::tier::{Class, Tier};
-use crate::draws::{between, chance, normal};
-use sim3align_geometry::error::Result;
-use sim3align_geometry::image::DepthMap;
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
 
 /// A depth map with simulated errors.
 #[derive(Debug)]

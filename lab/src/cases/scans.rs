@@ -1,19 +1,12 @@
 //! Objects from mesh files.
 
-use std::fs;
-use std::path::Path;
-
-use glam::{DVec3, Vec3};
-
 use super::cluster::cluster;
+use super::distortion::mapped;
 use super::draft::{Axis, Object};
-use crate::draws::between;
+use crate::files::{listed, read};
+use crate::prelude::*;
 use sim3align::metrics::mesh_symmetry::symmetry_axes;
 use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, read_mesh};
-use sim3align_geometry::cloud::Bounds;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
 
 /// A mesh of more triangles is thinned out.
 const MAX_TRIANGLES: usize = 60_000;
@@ -32,23 +25,12 @@ pub struct Scan {
 impl Scan {
     /// The GLB files of a folder, by name.
     pub fn all(folder: &Path) -> Result<Vec<Self>> {
-        let unreadable = |path: &Path, error: std::io::Error| {
-            Error::new(
-                ErrorCode::InvalidArgument,
-                path.display().to_string(),
-                format!("a file system that says: {error}"),
-                "a folder of .glb files",
-                "Name a folder that can be read.",
-            )
-        };
-        let entries = fs::read_dir(folder).map_err(|error| unreadable(folder, error))?;
-        let mut paths: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+        let mut paths = listed(folder)?;
         paths.retain(|path| path.extension().is_some_and(|extension| extension == "glb") && path.is_file());
-        paths.sort();
         paths
             .iter()
             .map(|path| {
-                let bytes = fs::read(path).map_err(|error| unreadable(path, error))?;
+                let bytes = read(path)?;
                 let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
                 Self::read(name, &bytes).map_err(|error| error.about(path.display().to_string()))
             })
@@ -65,15 +47,14 @@ impl Scan {
         let symmetry = symmetry.iter().map(|a| (DVec3::from_array(a.axis.into()), a.fold)).collect();
         let bounds = Bounds::of(mesh.positions()).unwrap_or(Bounds { min: Vec3::ZERO, max: Vec3::ONE });
         let unit = |p: &Vec3| (*p - bounds.center()) / bounds.diagonal();
-        let mesh = Mesh::new(mesh.positions().iter().map(unit).collect(), mesh.triangles().to_vec())?;
+        let mesh = mapped(&mesh, unit)?;
         Ok(Self { name, mesh, symmetry })
     }
 
     /// The object at a size that things on tables have.
     pub fn object(&self, random: &mut Random) -> Result<Object> {
         let diagonal = libm::exp(between(random, libm::log(0.1), libm::log(0.7))) as f32;
-        let mesh =
-            Mesh::new(self.mesh.positions().iter().map(|p| *p * diagonal).collect(), self.mesh.triangles().to_vec())?;
+        let mesh = mapped(&self.mesh, |p| *p * diagonal)?;
         Ok(Object {
             family: self.name.clone(),
             parts: vec![0; mesh.triangles().len()],

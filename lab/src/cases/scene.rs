@@ -1,26 +1,27 @@
 //! Camera and scene: an object on a table in front of a wall, with occluders and background objects.
 
-use core::f64::consts::TAU;
-
-use glam::{DAffine3, DVec3};
-use nalgebra::{Matrix3, Rotation3, Vector3};
-
 use super::draft::{Axis, Object};
 use super::solid::Solid;
 use super::split;
 use super::tier::{Class, Tier};
 use crate::cases::distortion::random_rotation;
-use crate::draws::{between, chance, sign};
-use sim3align_geometry::cloud::Bounds;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::pinhole::Pinhole;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::rasteriser::{NO_TRIANGLE, Rasteriser};
-use sim3align_geometry::similarity::{Similarity, vector3};
+use crate::prelude::*;
 
 /// Maximum number of occluders tried for the required occlusion.
 const OCCLUDERS: usize = 12;
+
+/// A camera and where it stands.
+#[derive(Debug, Clone, Copy)]
+pub struct View {
+    /// Width, in pixels.
+    pub width: usize,
+    /// Height, in pixels.
+    pub height: usize,
+    /// Intrinsics.
+    pub camera: Pinhole,
+    /// World (metres, z up, the table at z = 0) to camera.
+    pub camera_from_world: Similarity,
+}
 
 /// The scene as seen by an ideal camera.
 #[derive(Debug, Clone)]
@@ -79,7 +80,7 @@ pub fn put_down_turned(object: &Object, rotation: &Matrix3<f64>) -> Result<(Mesh
         0.5 * (least + most)
     });
     let down = Vector3::new(middle[0], middle[1], low);
-    let positions = turned.iter().map(|p| sim3align_geometry::similarity::vec3(&(p - down))).collect();
+    let positions = turned.iter().map(|p| vec3(&(p - down))).collect();
     let symmetry = object.symmetry.iter().map(|&(axis, fold)| (turned_axis(rotation, axis), fold)).collect();
     Ok((Mesh::new(positions, object.mesh.triangles().to_vec())?, symmetry))
 }
@@ -132,30 +133,25 @@ impl Scene {
         let roll = between(random, -1.0, 1.0) * tier.pick(3.0f64, 8.0, 20.0).to_radians();
         let aim = aim(random, class, span, width as f64, height as f64);
         let plan = Plan { width, height, camera, centre, diagonal, azimuth, towards, roll, aim };
-        let mut rasteriser = Rasteriser::new();
         if class == Class::Tiny {
             // As many pixels as wanted, from how many there are at another distance.
             let wanted = between(random, 430.0, 1400.0);
-            rasteriser.render_depth(object, &plan.pose(span)?, &camera, width, height);
-            span *= (wanted / count(rasteriser.depth()).max(1) as f64).sqrt();
+            span *= (wanted / count(&plan.view(span)?.depth_of(object)).max(1) as f64).sqrt();
         }
-        let pose = plan.pose(span)?;
-        rasteriser.render(object, &pose, &camera, width, height);
-        let (object_depth, object_triangles) = (rasteriser.depth().to_vec(), rasteriser.triangles().to_vec());
+        let view = plan.view(span)?;
+        let pose = view.camera_from_world;
+        let (object_depth, object_triangles) = view.render(object);
         let inside = count(&object_depth);
         let silhouette_px = if class == Class::BorderCut {
-            let margin = (1.2 * span) as usize;
-            let shifted = Pinhole { cx: camera.cx + margin as f64, cy: camera.cy + margin as f64, ..camera };
-            rasteriser.render_depth(object, &pose, &shifted, width + 2 * margin, height + 2 * margin);
-            count(rasteriser.depth())
+            count(&view.enlarged((1.2 * span) as usize).depth_of(object))
         } else {
             inside
         };
 
         let reach = object.positions().iter().fold(0.0f32, |far, p| far.max(p.truncate().length()));
-        let mut solid = plan.neighbours(f64::from(reach), tier, random);
+        let solid = plan.neighbours(f64::from(reach), tier, random);
         let wall = (Vector3::new(cosine, sine, 0.0), f64::from(reach) + diagonal * between(random, 0.1, 4.0));
-        let mut others = rendered(&solid, &pose, &plan)?;
+        let mut others = rendered(&solid, &view)?;
         let wanted = match (tier, class) {
             (Tier::Medium, Class::Occluded) => Some([0.06, 0.22]),
             (Tier::Hard, Class::Occluded) => Some([0.1, 0.4]),
@@ -164,49 +160,30 @@ impl Scene {
             (Tier::Hard, _) if chance(random, 0.25) => Some([0.0, 0.15]),
             _ => None,
         };
-        if let Some([least, most]) = wanted {
+        if wanted.is_some() || class == Class::SplitMask {
             for _ in 0..OCCLUDERS {
                 let mut candidate = solid.clone();
-                plan.occluder(&object_depth, &pose, span, random, &mut candidate);
-                let with = rendered(&candidate, &pose, &plan)?;
-                let hidden = hidden(&object_depth, &with) as f64 / inside.max(1) as f64;
-                if (least..=most).contains(&hidden) {
-                    (solid, others) = (candidate, with);
+                match wanted {
+                    Some(_) => plan.occluder(&object_depth, &pose, span, random, &mut candidate),
+                    None => split::bar(&object_depth, width, (&camera, &pose), random, &mut candidate),
+                }
+                let with = rendered(&candidate, &view)?;
+                let fits = match wanted {
+                    Some([least, most]) => {
+                        (least..=most).contains(&(hidden(&object_depth, &with) as f64 / inside.max(1) as f64))
+                    }
+                    None => split::in_two(&shown(&object_depth, &with), width),
+                };
+                if fits {
+                    others = with;
                     break;
                 }
             }
         }
-        if class == Class::SplitMask {
-            for _ in 0..OCCLUDERS {
-                let mut candidate = solid.clone();
-                split::bar(&object_depth, width, (&camera, &pose), random, &mut candidate);
-                let with = rendered(&candidate, &pose, &plan)?;
-                if split::in_two(&shown(&object_depth, &with), width) {
-                    (solid, others) = (candidate, with);
-                    break;
-                }
-            }
-        }
-        let hidden_px = hidden(&object_depth, &others);
-        let visible = shown(&object_depth, &others);
-        drop(solid);
-        let mut depth = background(&pose, &camera, wall, width, height);
+        let mut depth = view.background(wall);
         put_before(&mut depth, &object_depth);
         put_before(&mut depth, &others);
-        let share = |px: usize| px as f64 / silhouette_px.max(1) as f64;
-        Ok(Self {
-            width,
-            height,
-            camera,
-            camera_from_world: pose,
-            object_depth,
-            object_triangles,
-            depth,
-            visible,
-            silhouette_px,
-            cut: 1.0 - share(inside),
-            hidden: share(hidden_px),
-        })
+        Ok(view.scene((object_depth, object_triangles), &others, depth, silhouette_px))
     }
 
     /// The point that pixel `i` shows at z-depth `z`, in the world frame.
@@ -228,9 +205,81 @@ impl Scene {
     }
 }
 
+impl View {
+    /// z-depth of a mesh alone, 0 beside it, and the index of its triangle per pixel.
+    pub fn render(&self, mesh: &Mesh) -> (Vec<f32>, Vec<u32>) {
+        let mut rasteriser = Rasteriser::new();
+        rasteriser.render(mesh, &self.camera_from_world, &self.camera, self.width, self.height);
+        (rasteriser.depth().to_vec(), rasteriser.triangles().to_vec())
+    }
+
+    /// z-depth of a mesh alone, 0 beside it.
+    pub fn depth_of(&self, mesh: &Mesh) -> Vec<f32> {
+        let mut rasteriser = Rasteriser::new();
+        rasteriser.render_depth(mesh, &self.camera_from_world, &self.camera, self.width, self.height);
+        rasteriser.depth().to_vec()
+    }
+
+    /// The same view with a number of pixels more on each side.
+    pub fn enlarged(&self, margin: usize) -> Self {
+        let [cx, cy] = [self.camera.cx, self.camera.cy].map(|c| c + margin as f64);
+        let [width, height] = [self.width, self.height].map(|side| side + 2 * margin);
+        Self { width, height, camera: Pinhole { cx, cy, ..self.camera }, ..*self }
+    }
+
+    /// z-depth of the table and of the wall behind it: what it faces, and how far it is behind the origin.
+    pub fn background(&self, wall: (Vector3<f64>, f64)) -> Vec<f32> {
+        let Pinhole { fx, fy, cx, cy } = self.camera;
+        self.background_along(wall, |u, v| [(u - cx) / fx, (v - cy) / fy])
+    }
+
+    /// [`View::background`] along the rays (x, y, 1) of the pixels.
+    pub fn background_along(&self, wall: (Vector3<f64>, f64), ray: impl Fn(f64, f64) -> [f64; 2]) -> Vec<f32> {
+        let pose = &self.camera_from_world;
+        // n·p = d in the world's frame, as 1/z = (n·ray)/d in the camera's.
+        let inverse_depth = |normal: Vector3<f64>, distance: f64| {
+            let normal = pose.rotation * normal;
+            normal / (distance + normal.dot(&pose.translation))
+        };
+        let planes = [inverse_depth(Vector3::z(), 0.0), inverse_depth(wall.0, -wall.1)];
+        let pixels = (0..self.height).flat_map(|v| (0..self.width).map(move |u| (u as f64, v as f64)));
+        let depth = pixels.map(|(u, v)| {
+            let [x, y] = ray(u, v);
+            let nearest = planes.iter().fold(0.0f64, |w, plane| w.max(plane.x * x + plane.y * y + plane.z));
+            if nearest > 0.0 { (1.0 / nearest) as f32 } else { 0.0 }
+        });
+        depth.collect()
+    }
+
+    /// The scene of a rendered object, before and behind others. `depth` is that of everything, and `silhouette_px` the
+    /// number of pixels of the object without the image border.
+    pub fn scene(
+        &self,
+        (object_depth, object_triangles): (Vec<f32>, Vec<u32>),
+        others: &[f32],
+        depth: Vec<f32>,
+        silhouette_px: usize,
+    ) -> Scene {
+        let share = |px: usize| px as f64 / silhouette_px.max(1) as f64;
+        Scene {
+            width: self.width,
+            height: self.height,
+            camera: self.camera,
+            camera_from_world: self.camera_from_world,
+            depth,
+            visible: shown(&object_depth, others),
+            silhouette_px,
+            cut: 1.0 - share(count(&object_depth)),
+            hidden: share(hidden(&object_depth, others)),
+            object_depth,
+            object_triangles,
+        }
+    }
+}
+
 impl Plan {
-    /// The pose at the distance from which the object's box diagonal spans `span` pixels.
-    fn pose(&self, span: f64) -> Result<Similarity> {
+    /// The view from the distance at which the object's box diagonal spans `span` pixels.
+    fn view(&self, span: f64) -> Result<View> {
         let distance = self.camera.fx * self.diagonal / span;
         let eye = self.centre + self.towards * distance;
         let forward = -self.towards;
@@ -239,7 +288,8 @@ impl Plan {
         let aside = Rotation3::rotation_between(&Vector3::z(), &ray).unwrap_or_else(Rotation3::identity);
         let roll = Rotation3::from_axis_angle(&Vector3::z_axis(), self.roll);
         let rotation = aside.matrix() * roll.matrix() * look;
-        Similarity::from_parts(1.0, rotation, -(rotation * eye))
+        let camera_from_world = Similarity::from_parts(1.0, rotation, -(rotation * eye))?;
+        Ok(View { width: self.width, height: self.height, camera: self.camera, camera_from_world })
     }
 
     /// Boxes, cylinders and balls next to and behind the object.
@@ -323,14 +373,11 @@ pub fn camera_at(eye: &Vector3<f64>, forward: &Vector3<f64>, roll: f64) -> Resul
     Similarity::from_parts(1.0, rotation, -(rotation * eye))
 }
 
-fn rendered(solid: &Solid, pose: &Similarity, plan: &Plan) -> Result<Vec<f32>> {
+fn rendered(solid: &Solid, view: &View) -> Result<Vec<f32>> {
     if solid.is_empty() {
-        return Ok(vec![0.0; plan.width * plan.height]);
+        return Ok(vec![0.0; view.width * view.height]);
     }
-    let (mesh, _) = solid.clone().finish()?;
-    let mut rasteriser = Rasteriser::new();
-    rasteriser.render_depth(&mesh, pose, &plan.camera, plan.width, plan.height);
-    Ok(rasteriser.depth().to_vec())
+    Ok(view.depth_of(&solid.clone().finish()?.0))
 }
 
 /// Pixelwise minimum of two z-depth images, where 0 is empty.
@@ -360,30 +407,4 @@ pub fn shown(object: &[f32], others: &[f32]) -> Vec<bool> {
 /// Number of occluded pixels of the object.
 pub fn hidden(object: &[f32], others: &[f32]) -> usize {
     object.iter().zip(others).filter(|(z, other)| **z > 0.0 && !in_front(**z, **other)).count()
-}
-
-/// z-depth of the table and of the wall behind it: what it faces, and how far it is behind the origin.
-pub fn background(
-    pose: &Similarity,
-    camera: &Pinhole,
-    wall: (Vector3<f64>, f64),
-    width: usize,
-    height: usize,
-) -> Vec<f32> {
-    // n·p = d in the world's frame, as 1/z = (n·ray)/d in the camera's.
-    let inverse_depth = |normal: Vector3<f64>, distance: f64| {
-        let normal = pose.rotation * normal;
-        normal / (distance + normal.dot(&pose.translation))
-    };
-    let planes = [inverse_depth(Vector3::z(), 0.0), inverse_depth(wall.0, -wall.1)];
-    let mut depth = Vec::with_capacity(width * height);
-    for v in 0..height {
-        let y = (v as f64 - camera.cy) / camera.fy;
-        for u in 0..width {
-            let x = (u as f64 - camera.cx) / camera.fx;
-            let nearest = planes.iter().fold(0.0f64, |w, plane| w.max(plane.x * x + plane.y * y + plane.z));
-            depth.push(if nearest > 0.0 { (1.0 / nearest) as f32 } else { 0.0 });
-        }
-    }
-    depth
 }

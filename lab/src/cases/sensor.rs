@@ -1,6 +1,7 @@
 //! Effects of the classes of the set [`super::tier::CaseSet::Sensors`] on depth and mask.
 
-use super::holes::{self, Shown};
+use super::draft::Object;
+use super::holes;
 use super::mask::Segmented;
 use super::predicted_mask::predict;
 use super::readings::{Readings, missing};
@@ -8,10 +9,8 @@ use super::scene::Scene;
 use super::shadow;
 use super::split::{in_two, parts};
 use super::tier::{Class, Tier};
-use crate::draws::{between, chance};
-use sim3align_geometry::error::Result;
+use crate::prelude::*;
 use sim3align_geometry::order::median;
-use sim3align_geometry::random::Random;
 
 /// Largest step of quantised depth at the object, as a share of its diagonal.
 const LARGEST_STEP: f64 = 0.06;
@@ -28,8 +27,7 @@ pub type Parameters = Vec<(&'static str, f64)>;
 /// Applies the effects of a class; `None` if this scene cannot show them. Other classes have none.
 pub fn apply(
     scene: &Scene,
-    shown: &Shown,
-    diagonal: f64,
+    (object, placed): (&Object, &Mesh),
     (tier, class): (Tier, Class),
     (readings, segmented): (&mut Readings, &mut Segmented),
     random: &mut Random,
@@ -37,12 +35,12 @@ pub fn apply(
     let mut parameters = Vec::new();
     match class {
         Class::WideShadow => {
-            let Some(shadow) = shadow::cast(scene, shown.mesh, diagonal, random)? else { return Ok(None) };
+            let Some(shadow) = shadow::cast(scene, placed, object.diagonal(), random)? else { return Ok(None) };
             lose(readings, (0..shadow.dark.len()).filter(|&i| shadow.dark[i]));
             parameters.extend([("shadow", shadow.share), ("baselineM", shadow.baseline_m)]);
         }
         Class::Holes | Class::MaskOfReadings => {
-            let holes = holes::on_object(scene, shown, tier, random);
+            let holes = holes::on_object(scene, (object, placed), tier, random);
             lose(readings, holes.pixels.iter().copied());
             segmented.tags.extend(holes.tags);
             if chance(random, HOLES_AROUND) {
@@ -52,7 +50,7 @@ pub fn apply(
             if class == Class::MaskOfReadings {
                 let depth = readings.depth.data();
                 segmented.mask.data_mut().iter_mut().zip(depth).filter(|(_, z)| **z == 0.0).for_each(|(m, _)| *m = 0);
-                if !shows_key(scene, shown, segmented) {
+                if !shows_key(scene, object, segmented) {
                     return Ok(None);
                 }
             }
@@ -78,7 +76,7 @@ pub fn apply(
                 return Ok(None);
             };
             let step = between(random, tier.pick(0.001, 0.002, 0.004), tier.pick(0.003, 0.006, 0.01));
-            let step = step.min(LARGEST_STEP * diagonal);
+            let step = step.min(LARGEST_STEP * object.diagonal());
             // z = k / disparity, whose step is k/disparity² = z²/k.
             let k = f64::from(distance).powi(2) / step;
             for z in readings.depth.data_mut().iter_mut().filter(|z| **z > 0.0) {
@@ -100,11 +98,11 @@ pub fn apply(
 }
 
 /// Whether the mask contains enough of a part that determines the orientation of the object.
-fn shows_key(scene: &Scene, shown: &Shown, segmented: &Segmented) -> bool {
+fn shows_key(scene: &Scene, object: &Object, segmented: &Segmented) -> bool {
     let masked = segmented.mask.data().iter().zip(&scene.object_triangles).filter(|(m, _)| **m != 0);
-    let is_key = |triangle: u32| shown.parts.get(triangle as usize).is_some_and(|part| shown.keys.contains(part));
+    let is_key = |triangle: u32| object.parts.get(triangle as usize).is_some_and(|part| object.keys.contains(part));
     let key_px = masked.filter(|(_, triangle)| is_key(**triangle)).count();
-    shown.keys.is_empty() || key_px >= LEAST_KEY_PX
+    object.keys.is_empty() || key_px >= LEAST_KEY_PX
 }
 
 fn lose(readings: &mut Readings, pixels: impl Iterator<Item = usize>) {

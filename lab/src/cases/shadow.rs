@@ -2,14 +2,8 @@
 //! the camera sees.
 
 use super::scene::Scene;
-use crate::draws::{between, sign};
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
+use crate::prelude::*;
 use sim3align_geometry::order::median;
-use sim3align_geometry::pinhole::Pinhole;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::rasteriser::Rasteriser;
-use sim3align_geometry::similarity::Similarity;
 
 /// Area of the shadow on the background as a share of the object's, which is its width as a share of the object's, in
 /// the mean over rows.
@@ -60,7 +54,7 @@ fn shadow(
     let (width, height, camera) = (scene.width, scene.height, scene.camera);
     // The projector looks the same way, with the object at the same place in its image.
     let pose = &scene.camera_from_world;
-    let beside = pose.translation - nalgebra::Vector3::new(baseline, 0.0, 0.0);
+    let beside = pose.translation - Vector3::new(baseline, 0.0, 0.0);
     let from_world = Similarity::from_parts(pose.scale, *pose.rotation.matrix(), beside)?;
     let shift = camera.fx * baseline / distance;
     let projector = Pinhole { cx: camera.cx + shift, ..camera };

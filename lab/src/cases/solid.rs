@@ -1,12 +1,8 @@
 //! Objects composed of overlapping closed parts, like those of mesh generators.
 
-use core::f64::consts::{PI, TAU};
 use std::collections::BTreeMap;
 
-use glam::{DAffine3, DVec3};
-
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
+use crate::prelude::*;
 
 /// Vertices and triangles by part; the triangles of every part face outward.
 #[derive(Debug, Clone, Default)]
@@ -30,6 +26,11 @@ impl Solid {
     pub fn at(&mut self, frame: DAffine3) -> &mut Self {
         self.frame = frame;
         self
+    }
+
+    /// Number of vertices.
+    pub fn len(&self) -> usize {
+        self.positions.len()
     }
 
     /// Whether there is nothing yet.
@@ -144,7 +145,7 @@ impl Solid {
 
     /// Joins rings of equally many points to each other, and either the outermost to a point each or the last to the
     /// first.
-    fn skin(&mut self, rings: &[Vec<DVec3>], ends: Option<[DVec3; 2]>) {
+    pub(crate) fn skin(&mut self, rings: &[Vec<DVec3>], ends: Option<[DVec3; 2]>) {
         let start = self.triangles.len();
         let starts: Vec<u32> = rings
             .iter()
@@ -213,7 +214,8 @@ fn rounded(p: DVec3, half: DVec3, rounding: f64) -> DVec3 {
     core + (p - core).normalize_or_zero() * rounding
 }
 
-fn circle(segments: u32) -> impl Iterator<Item = [f64; 2]> {
+/// Points of the unit circle.
+pub(crate) fn circle(segments: u32) -> impl Iterator<Item = [f64; 2]> {
     (0..segments).map(move |k| {
         let (sine, cosine) = libm::sincos(TAU * f64::from(k) / f64::from(segments));
         [cosine, sine]

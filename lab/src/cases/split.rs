@@ -1,15 +1,8 @@
 //! A bar in front of the object, and the parts into which it cuts the visible region.
 
-use core::f64::consts::FRAC_PI_2;
-
-use glam::{DAffine3, DQuat, DVec3};
-
 use super::solid::Solid;
-use crate::draws::between;
+use crate::prelude::*;
 use sim3align_geometry::components::{Component, components};
-use sim3align_geometry::pinhole::Pinhole;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::similarity::{Similarity, vector3};
 
 /// Minimum share of the visible pixels that counts as a part.
 const LEAST_PART: f64 = 0.12;

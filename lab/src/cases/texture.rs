@@ -1,21 +1,15 @@
 //! The texture that a generative model gives its mesh: the colours of the photo where it saw the object, invented
 //! elsewhere.
 
-use glam::{DMat3, DVec3};
-
 use super::atlas::Atlas;
 use super::print::{Print, PrintKind, color, srgb};
 use super::tier::{Class, Tier};
 use crate::case_folder::write::{JpegSettings, rgb_jpeg, rgb_png, textured_obj};
-use crate::draws::{between, chance, normal};
 use crate::files::NamedFile;
+use crate::prelude::*;
 use sim3align::geometry::surface::sample_surface;
 use sim3align_formats::colored_mesh::ColoredMesh;
 use sim3align_formats::mesh::{MeshFormat, MeshReadOptions, read_colored_mesh};
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::similarity::{Similarity, vec3, vector3};
 use sim3align_geometry::surface_colors::Rgb;
 
 /// Number of points over which a texel is blurred.

@@ -1,13 +1,8 @@
 //! Families of objects: tools, devices, boxes.
 
-use core::f64::consts::{FRAC_PI_2, PI, TAU};
-
-use glam::{DAffine3, DVec3};
-
 use super::draft::Draft;
 use super::solid::{arc, smooth};
-use crate::draws::between;
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
 
 /// A frame that was moved.
 pub fn to(x: f64, y: f64, z: f64) -> DAffine3 {
@@ -24,8 +19,7 @@ pub fn along_y() -> DAffine3 {
     DAffine3::from_rotation_x(-FRAC_PI_2)
 }
 
-pub fn hammer(r: &mut Random) -> Draft {
-    let mut draft = Draft::default();
+pub fn hammer(draft: &mut Draft, r: &mut Random) {
     let (length, grip) = (between(r, 0.24, 0.34), between(r, 0.012, 0.016));
     let path = [DVec3::ZERO, DVec3::new(length, 0.0, 0.0)];
     draft.solid.at(to(0.0, 0.0, 0.016));
@@ -45,11 +39,9 @@ pub fn hammer(r: &mut Random) -> Draft {
         ]);
         draft.solid.tube(&path, DVec3::Z, |t| [0.007 - 0.002 * t, radius * (0.75 - 0.55 * t)], 14);
     }
-    draft
 }
 
-pub fn drill(r: &mut Random) -> Draft {
-    let mut draft = Draft::default();
+pub fn drill(draft: &mut Draft, r: &mut Random) {
     let (body, radius) = (between(r, 0.12, 0.16), between(r, 0.027, 0.034));
     let height = between(r, 0.15, 0.19);
     draft.solid.at(to(-0.4 * body, 0.0, height) * along_x());
@@ -66,11 +58,9 @@ pub fn drill(r: &mut Random) -> Draft {
     let half = DVec3::new(between(r, 0.045, 0.06), between(r, 0.03, 0.038), between(r, 0.018, 0.026));
     draft.solid.at(to(-0.15 * body - lean + 0.012, 0.0, half.z)).cuboid(half, 0.006);
     draft.losable = vec![(chuck, Vec::new()), (battery, Vec::new())];
-    draft
 }
 
-pub fn scissors(r: &mut Random) -> Draft {
-    let mut draft = Draft::default();
+pub fn scissors(draft: &mut Draft, r: &mut Random) {
     let (blade, shank) = (between(r, 0.075, 0.11), between(r, 0.045, 0.06));
     let open = between(r, 6.0, 22.0).to_radians();
     let loops = [between(r, 0.014, 0.017), between(r, 0.021, 0.026)];
@@ -84,11 +74,9 @@ pub fn scissors(r: &mut Random) -> Draft {
         path.pop();
         draft.solid.ring(&path, DVec3::Z, [0.0045, 0.0035], 12);
     }
-    draft
 }
 
-pub fn wrench(r: &mut Random) -> Draft {
-    let mut draft = Draft::default();
+pub fn wrench(draft: &mut Draft, r: &mut Random) {
     let (length, half_width) = (between(r, 0.13, 0.24), between(r, 0.006, 0.009));
     let thick = between(r, 0.0026, 0.004);
     draft.solid.at(to(0.0, 0.0, 0.006));
@@ -104,41 +92,33 @@ pub fn wrench(r: &mut Random) -> Draft {
     let path = arc(centre, DVec3::X * jaw, DVec3::Y * jaw, -0.72 * PI, 0.72 * PI, 36);
     draft.solid.tube(&path, DVec3::Z, |_| [0.0045, 0.0065], 12);
     draft.symmetry = vec![(DVec3::X, Some(2))];
-    draft
 }
 
 /// A box, no two of whose sides are alike.
-pub fn carton(r: &mut Random) -> Draft {
-    let mut draft = Draft::default();
+pub fn carton(draft: &mut Draft, r: &mut Random) {
     let thin = between(r, 0.02, 0.045);
     let (wide, tall) = (thin * between(r, 1.5, 2.3), thin * between(r, 2.8, 4.2));
     draft.solid.at(to(0.0, 0.0, tall)).cuboid(DVec3::new(wide, thin, tall), between(r, 0.001, 0.005));
     draft.symmetry = vec![(DVec3::X, Some(2)), (DVec3::Y, Some(2)), (DVec3::Z, Some(2))];
-    draft
 }
 
 /// A box with a square base.
-pub fn block(r: &mut Random) -> Draft {
-    let mut draft = Draft::default();
+pub fn block(draft: &mut Draft, r: &mut Random) {
     let wide = between(r, 0.02, 0.05);
     let tall = wide * between(r, 1.3, 3.0);
     draft.solid.at(to(0.0, 0.0, tall)).cuboid(DVec3::new(wide, wide, tall), between(r, 0.001, 0.005));
     draft.symmetry = vec![(DVec3::Z, Some(4)), (DVec3::X, Some(2))];
-    draft
 }
 
 /// A flat box.
-pub fn book(r: &mut Random) -> Draft {
-    let mut draft = Draft::default();
+pub fn book(draft: &mut Draft, r: &mut Random) {
     let long = between(r, 0.06, 0.14);
     let half = DVec3::new(long, long * between(r, 0.6, 0.8), long * between(r, 0.1, 0.3));
     draft.solid.at(to(0.0, 0.0, half.z)).cuboid(half, between(r, 0.001, 0.004));
     draft.symmetry = vec![(DVec3::X, Some(2)), (DVec3::Y, Some(2)), (DVec3::Z, Some(2))];
-    draft
 }
 
-pub fn phone(r: &mut Random) -> Draft {
-    let mut draft = Draft::default();
+pub fn phone(draft: &mut Draft, r: &mut Random) {
     let half = DVec3::new(between(r, 0.065, 0.082), between(r, 0.033, 0.039), between(r, 0.0038, 0.0055));
     draft.solid.at(to(0.0, 0.0, half.z)).cuboid(half, 0.0035);
     draft.solid.part();
@@ -149,11 +129,9 @@ pub fn phone(r: &mut Random) -> Draft {
         let lens = corner + DVec3::new(0.45 * bump.x * i, 0.45 * bump.y * j, bump.z - 0.001);
         draft.solid.at(DAffine3::from_translation(lens)).cylinder([0.0048, 0.0045], 0.0025);
     }
-    draft
 }
 
-pub fn camera(r: &mut Random) -> Draft {
-    let mut draft = Draft::default();
+pub fn camera(draft: &mut Draft, r: &mut Random) {
     let half = DVec3::new(between(r, 0.055, 0.07), between(r, 0.018, 0.025), between(r, 0.035, 0.045));
     draft.solid.at(to(0.0, 0.0, half.z)).cuboid(half, 0.006);
     let lens = draft.solid.part();
@@ -168,12 +146,10 @@ pub fn camera(r: &mut Random) -> Draft {
         .at(to(-half.x + 0.006, 0.3 * half.y, half.z))
         .cuboid(DVec3::new(0.014, 1.15 * half.y, 0.9 * half.z), 0.008);
     draft.losable = vec![(hump, Vec::new()), (lens, Vec::new())];
-    draft
 }
 
 /// A desk lamp: a base, two arms, a shade.
-pub fn lamp(r: &mut Random) -> Draft {
-    let mut draft = Draft::default();
+pub fn lamp(draft: &mut Draft, r: &mut Random) {
     let base = between(r, 0.07, 0.095);
     draft.solid.cylinder([base, base * 0.9], 0.018);
     draft.solid.part();
@@ -192,5 +168,4 @@ pub fn lamp(r: &mut Random) -> Draft {
         .extend((0..=12).rev().map(|i| f64::from(i) / 12.0).map(|t| [0.017 + (mouth - 0.02) * t, 0.003 + depth * t]));
     profile.push([0.0, 0.004]);
     draft.solid.lathe(&profile, 36);
-    draft
 }

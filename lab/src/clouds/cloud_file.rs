@@ -1,13 +1,9 @@
 //! Cloud files: PLY, and `.bin` of KITTI.
 
-use std::path::Path;
-
-use glam::Vec3;
-
 use crate::files::{corrupt, read};
+use crate::prelude::*;
 use sim3align_formats::guard::MAX_VERTICES;
 use sim3align_formats::ply::read_ply_points;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
 
 /// Bytes of a reading in a `.bin` file: x, y, z and reflectance as float32.
 const READING: usize = 16;

@@ -1,15 +1,6 @@
 //! What a depth camera makes of a room while it is moved a little: frames fused to one fragment.
 
-use glam::{DQuat, DVec3, Vec3};
-
-use crate::draws::{between, normal};
-use sim3align_geometry::cloud::Cloud;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::pinhole::Pinhole;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::rasteriser::Rasteriser;
-use sim3align_geometry::similarity::{Similarity, vec3, vector3};
+use crate::prelude::*;
 use sim3align_geometry::voxel_grid::voxel_downsample;
 
 /// Random stream of the path of the camera and its errors.
@@ -47,7 +38,7 @@ impl Stand {
     pub fn room_from_camera(&self) -> Result<Similarity> {
         let forward_left_up = DQuat::from_rotation_z(self.yaw) * DQuat::from_rotation_y(-self.pitch);
         let [x, y, z] = [-DVec3::Y, -DVec3::Z, DVec3::X].map(|axis| forward_left_up * axis);
-        let rotation = nalgebra::Matrix3::new(x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z);
+        let rotation = Matrix3::new(x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z);
         Similarity::from_parts(1.0, rotation, self.eye.to_array().into())
     }
 }
@@ -77,8 +68,8 @@ pub fn fragment(room: &Mesh, stand: Stand, seed: u64) -> Result<(Vec<Vec3>, Simi
         let seen = readings(rasteriser.depth(), &camera, random);
         // Odometry drifts within a fragment.
         let drift = Similarity {
-            translation: nalgebra::Vector3::from_fn(|_, _| 0.006 * normal(random)),
-            rotation: nalgebra::Rotation3::new(nalgebra::Vector3::from_fn(|_, _| 0.004 * normal(random))),
+            translation: Vector3::from_fn(|_, _| 0.006 * normal(random)),
+            rotation: Rotation3::new(Vector3::from_fn(|_, _| 0.004 * normal(random))),
             scale: 1.0,
         };
         let believed = room_from_fragment.inverse().compose(&pose).compose(&drift);
@@ -89,7 +80,7 @@ pub fn fragment(room: &Mesh, stand: Stand, seed: u64) -> Result<(Vec<Vec3>, Simi
 
 /// Readings with the noise and the distortion of structured light, without those at jumps.
 fn readings(depth: &[f32], camera: &Pinhole, random: &mut Random) -> Vec<Vec3> {
-    let [a, b, c] = [(); 3].map(|()| between(random, 0.0, core::f64::consts::TAU));
+    let [a, b, c] = [(); 3].map(|()| between(random, 0.0, TAU));
     let bend = between(random, 0.0, 0.01);
     let mut points = Vec::new();
     for (u, v) in (1..HEIGHT - 1).flat_map(|v| (1..WIDTH - 1).map(move |u| (u, v))) {

@@ -2,15 +2,11 @@
 //! al. (FCGF, ICCV 2019).
 
 use std::fmt::Write;
-use std::path::{Path, PathBuf};
-
-use nalgebra::Matrix3;
 
 use super::pair::{Criterion, Listed, Pair, read_list};
 use crate::files::{corrupt, entries, read};
+use crate::prelude::*;
 use sim3align_formats::text::{lines, number, quoted, words};
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::similarity::Similarity;
 
 /// Voxel size of the baselines.
 pub const VOXEL_SIZE_M: f64 = 0.3;

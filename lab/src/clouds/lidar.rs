@@ -1,12 +1,7 @@
 //! A spinning lidar of 64 beams.
 
-use core::f64::consts::TAU;
-
-use glam::{DQuat, DVec3, Vec3};
-
 use super::street::Body;
-use crate::draws::normal;
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
 
 /// Random stream of the errors of the lidar.
 pub(super) const LIDAR_STREAM: u64 = 0x6c69_6461;

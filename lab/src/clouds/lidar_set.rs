@@ -1,21 +1,14 @@
 //! Drives along streets in KITTI's layout.
 
-use std::path::Path;
-
-use glam::{DQuat, DVec3, EulerRot, Vec3};
-use nalgebra::{Matrix3, Vector3};
+use glam::EulerRot;
 
 use super::kitti::line;
 use super::lidar::{HEIGHT_M, LIDAR_STREAM, sweep};
 use super::overlap::overlap;
-use super::pair::Listed;
+use super::pair::{Listed, write_set};
 use super::street::Street;
-use crate::draws::normal;
 use crate::files::write;
-use sim3align_geometry::cloud::Cloud;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::similarity::Similarity;
+use crate::prelude::*;
 use sim3align_geometry::voxel_grid::voxel_downsample;
 
 /// Way from frame to frame.
@@ -111,10 +104,8 @@ impl Drive {
 /// # Errors
 /// [`InvalidArgument`](sim3align_geometry::error::ErrorCode::InvalidArgument) if a file cannot be written.
 pub fn write_lidar(root: &Path, seed: u64, scenes: u32) -> Result<()> {
-    let mut listed = Vec::new();
-    for i in 0..scenes {
+    write_set(root, scenes, |i| {
         let drive = Drive::new(seed.wrapping_mul(0x1_0001).wrapping_add(u64::from(i)), FRAMES)?;
-        listed.extend(drive.write(root, &format!("{:02}", i + 8))?);
-    }
-    write(&root.join("pairs.json"), serde_json::json!(listed).to_string().as_bytes())
+        drive.write(root, &format!("{:02}", i + 8))
+    })
 }

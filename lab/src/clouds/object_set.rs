@@ -2,23 +2,16 @@
 //! it, which contain one side of the object, its support and its neighbours. The unit is a decimetre, so that the
 //! tolerance of rooms, 0.2 units, is 2 cm.
 
-use std::path::Path;
-
-use glam::Vec3;
 use nalgebra::Matrix4;
 
 use super::overlap::{covered, information};
-use super::pair::Listed;
+use super::pair::{Listed, write_set};
 use super::trajectory::{Block, text};
 use crate::case_folder::write::ply_points;
 use crate::files::write;
+use crate::prelude::*;
 use crate::scenes::{ClutteredScene, SceneSet};
-use sim3align::evidence::observation::Observation;
 use sim3align::geometry::surface::sample_surface;
-use sim3align_geometry::cloud::Bounds;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::kd_tree::KdTree;
-use sim3align_geometry::similarity::{Similarity, vec3, vector3};
 
 /// Units per metre.
 const PER_METRE: f32 = 10.0;
@@ -42,11 +35,7 @@ const NUMBERS_PER_PAIR: u32 = 3;
 /// [`InvalidArgument`](sim3align_geometry::error::ErrorCode::InvalidArgument) if a file cannot be written.
 pub fn write_objects(root: &Path, seed: u64, scenes: u32) -> Result<()> {
     let set = SceneSet::new(seed, scenes as usize);
-    let mut listed = Vec::new();
-    for i in 0..scenes {
-        listed.extend(write_scene(&set.scene(i as usize)?, root, &format!("scene-{i:02}"))?);
-    }
-    write(&root.join("pairs.json"), serde_json::json!(listed).to_string().as_bytes())
+    write_set(root, scenes, |i| write_scene(&set.scene(i as usize)?, root, &format!("scene-{i:02}")))
 }
 
 fn write_scene(scene: &ClutteredScene, root: &Path, name: &str) -> Result<Vec<Listed>> {

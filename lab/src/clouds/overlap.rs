@@ -5,11 +5,9 @@
 //! p moves by t + 2 q × p = G ξ with G = [1, −2 [p]×]. With Λ = Σ GᵀG over the corresponding points, ξᵀΛξ is the sum of
 //! their squared displacements, and Λ₀₀ their number.
 
-use glam::Vec3;
-use nalgebra::{Matrix3, Matrix6, SMatrix, Vector6};
+use nalgebra::{Matrix6, SMatrix, Vector6};
 
-use sim3align_geometry::kd_tree::KdTree;
-use sim3align_geometry::similarity::{Similarity, vector3};
+use crate::prelude::*;
 
 /// Indices of the source points within `distance` of a target point.
 pub fn covered(source: &[Vec3], target: &KdTree, target_from_source: &Similarity, distance: f32) -> Vec<usize> {

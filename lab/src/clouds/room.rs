@@ -1,14 +1,7 @@
 //! A furnished room: metres, z up, the floor's middle at the origin.
 
-use core::f64::consts::{FRAC_PI_2, TAU};
-
-use glam::{DAffine3, DQuat, DVec3};
-
 use crate::cases::solid::Solid;
-use crate::draws::{between, chance};
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
 
 /// Random stream of walls and furniture.
 const ROOM_STREAM: u64 = 0x726f_6f6d;

@@ -1,23 +1,15 @@
 //! Rooms in 3DMatch's layout.
 
-use core::f64::consts::TAU;
-use std::path::Path;
-
-use glam::{DVec3, Vec3};
 use nalgebra::{Matrix4, Matrix6};
 
 use super::depth_camera::{CAMERA_STREAM, Stand, fragment};
 use super::overlap::{covered, information, overlap};
-use super::pair::Listed;
+use super::pair::{Listed, write_set};
 use super::room::Room;
 use super::trajectory::{Block, text};
 use crate::case_folder::write::ply_points;
-use crate::draws::between;
 use crate::files::write;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::kd_tree::KdTree;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::similarity::Similarity;
+use crate::prelude::*;
 
 /// Points of two fragments that are this near to each other show the same surface.
 pub const SAME_SURFACE_M: f32 = 0.0375;
@@ -127,10 +119,8 @@ fn all_pairs(random: &mut Random) -> Vec<(u32, u32)> {
 /// # Errors
 /// [`InvalidArgument`](sim3align_geometry::error::ErrorCode::InvalidArgument) if a file cannot be written.
 pub fn write_rooms(root: &Path, seed: u64, scenes: u32) -> Result<()> {
-    let mut listed = Vec::new();
-    for i in 0..scenes {
+    write_set(root, scenes, |i| {
         let scene = RoomScene::new(seed.wrapping_mul(0x1_0001).wrapping_add(u64::from(i)))?;
-        listed.extend(scene.write(root, &format!("room-{i:02}"))?);
-    }
-    write(&root.join("pairs.json"), serde_json::json!(listed).to_string().as_bytes())
+        scene.write(root, &format!("room-{i:02}"))
+    })
 }

@@ -1,11 +1,6 @@
 //! A street of simple bodies that rays are cast against: metres, z up, the ground at z = 0.
 
-use core::f64::consts::{FRAC_PI_2, TAU};
-
-use glam::{DVec2, DVec3};
-
-use crate::draws::{between, chance, sign};
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
 
 /// Random stream of houses, cars and trees.
 const STREET_STREAM: u64 = 0x7374_7265;

@@ -2,15 +2,13 @@
 //! Huang et al., CVPR 2021).
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
 
 use nalgebra::Matrix6;
 
 use super::pair::{Criterion, Pair, read_list};
 use super::trajectory::{Block, read_blocks};
 use crate::files::{corrupt, entries};
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::similarity::Similarity;
+use crate::prelude::*;
 
 /// Voxel size of the baselines.
 pub const VOXEL_SIZE_M: f64 = 0.05;
@@ -73,11 +71,6 @@ pub fn pairs(root: &Path, benchmark: Option<&str>) -> Result<Vec<Pair>> {
         }
     }
     Ok(pairs)
-}
-
-/// Whether a folder looks like one of scenes.
-pub fn is_layout(root: &Path) -> bool {
-    !scenes(root, None).is_empty()
 }
 
 fn scenes(root: &Path, benchmark: Option<&str>) -> Vec<Scene> {

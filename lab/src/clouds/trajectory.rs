@@ -1,13 +1,12 @@
 //! The blocks of `gt.log` and `gt.info` (Redwood's format): a line `i j n`, then an N×N matrix row by row.
 
 use std::fmt::Write;
-use std::path::Path;
 
 use nalgebra::SMatrix;
 
 use crate::files::{corrupt, read};
+use crate::prelude::*;
 use sim3align_formats::text::{number, quoted, words};
-use sim3align_geometry::error::Result;
 
 /// A matrix about two fragments.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,39 +1,78 @@
 //! The subcommands of `sim3align-lab`.
 
-pub mod bench;
-pub mod cases;
-pub mod fuzz;
-pub mod outlines;
-pub mod profile;
-pub mod registration;
-pub mod scenes;
+mod arguments;
+mod bench;
+mod cases;
+mod fuzz;
+mod outlines;
+mod profile;
+mod registration;
+mod scenes;
 mod sequence_rows;
-pub mod together;
-pub mod track;
-pub mod views;
+mod together;
+mod track;
+mod views;
+
+use std::fmt::Display;
+
+pub use arguments::Arguments;
+use sim3align_lab::prelude::*;
+
+/// A subcommand.
+pub struct Command {
+    /// Its name.
+    pub name: &'static str,
+    /// What it does, in a line.
+    pub about: &'static str,
+    /// Its usage.
+    pub usage: &'static str,
+    /// Runs it.
+    pub run: fn(&mut Arguments) -> Result<(), Failure>,
+}
+
+/// All subcommands.
+pub const COMMANDS: [Command; 10] = [
+    cases::COMMAND,
+    scenes::COMMAND,
+    bench::COMMAND,
+    together::COMMAND,
+    registration::COMMAND,
+    views::COMMAND,
+    track::COMMAND,
+    outlines::COMMAND,
+    profile::COMMAND,
+    fuzz::COMMAND,
+];
 
 /// Reason for which a command ended early.
 pub enum Failure {
     /// Help was requested.
-    Help(&'static str),
-    /// Invalid arguments, with the usage text.
-    Usage(lexopt::Error, &'static str),
+    Help,
+    /// Invalid arguments.
+    Usage(String),
     /// Failure of the command.
     Failed(String),
 }
 
-/// The parsed arguments of a command, or the reason to end it: `parse` returns `None` where help is requested.
-///
-/// # Errors
-/// [`Failure::Help`], [`Failure::Usage`].
-fn parsed<T>(
-    parser: lexopt::Parser,
-    parse: impl FnOnce(lexopt::Parser) -> Result<Option<T>, lexopt::Error>,
-    usage: &'static str,
-) -> Result<T, Failure> {
-    match parse(parser) {
-        Ok(Some(arguments)) => Ok(arguments),
-        Ok(None) => Err(Failure::Help(usage)),
-        Err(error) => Err(Failure::Usage(error, usage)),
+impl<E: Display> From<E> for Failure {
+    fn from(error: E) -> Self {
+        Self::Failed(error.to_string())
+    }
+}
+
+/// The failure of arguments that are wrong.
+fn usage(error: impl Display) -> Failure {
+    Failure::Usage(error.to_string())
+}
+
+/// Writes a file of results.
+fn write_file(path: &Path, content: impl AsRef<[u8]>) -> Result<(), Failure> {
+    std::fs::write(path, content).map_err(|error| Failure::Failed(format!("{}: {error}", path.display())))
+}
+
+/// Prints how many of `all` items are done, now and then, on standard error.
+fn print_progress(done: usize, all: usize) {
+    if done.is_multiple_of(10) || done == all {
+        eprint!("\r{done} of {all} {}", if done == all { "\n" } else { "" });
     }
 }

@@ -1,17 +1,17 @@
 //! `outlines`: measures where mask, depth and photo show the outlines of objects.
 
-use std::path::PathBuf;
-
-use lexopt::prelude::*;
-use sim3align_geometry::error::{Error, Result as GeometryResult};
 use sim3align_lab::cases::case::EvaluationSet;
 use sim3align_lab::cases::tier::CaseSet;
 use sim3align_lab::outlines::{GroupBy, ObjectOutlines, OutlineView, table};
 use sim3align_lab::parallel::parallel_map;
+use sim3align_lab::prelude::*;
 
-use super::{Failure, parsed};
+use super::{Arguments, Command, Failure, print_progress, usage};
 
-const USAGE: &str = "\
+pub const COMMAND: Command = Command {
+    name: "outlines",
+    about: "compares the outlines of mask, depth and photo with the true ones, and prints tables",
+    usage: "\
 Usage: sim3align-lab outlines [--cases DIR...] [--generated N] [options]
 
 Compares the outlines in mask, depth and photo with the outline at the true pose, and prints Markdown tables of their
@@ -26,66 +26,41 @@ before the first dash.
   --by PROPERTY         groups generated cases by class (default), tier, depth or mask
   --objects             prints every object
   --threads N           default: all
-  --help                this text";
+  --help                this text",
+    run,
+};
 
-struct Arguments {
+struct Settings {
     cases: Vec<PathBuf>,
     groups: Vec<(String, Vec<String>)>,
     generated: usize,
     set: CaseSet,
     set_seed: u64,
     by: GroupBy,
-    objects: bool,
     threads: usize,
 }
 
-/// `None` if help is requested.
-fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Error> {
-    let mut arguments = Arguments {
-        cases: Vec::new(),
-        groups: Vec::new(),
-        generated: 0,
-        set: CaseSet::General,
-        set_seed: 0,
-        by: GroupBy::Class,
-        objects: false,
-        threads: std::thread::available_parallelism().map_or(1, usize::from),
+fn run(arguments: &mut Arguments) -> Result<(), Failure> {
+    let group = |text: String| {
+        let (name, members) = text.split_once('=').ok_or_else(|| usage("--group without = after its name"))?;
+        Ok((name.into(), members.split(',').map(str::to_owned).collect()))
     };
-    while let Some(argument) = parser.next()? {
-        match argument {
-            Long("help") | Short('h') => return Ok(None),
-            Long("cases") => arguments.cases.extend(parser.values()?.map(PathBuf::from)),
-            Long("group") => {
-                let text = parser.value()?.string()?;
-                let (name, members) = text.split_once('=').ok_or("--group without = after its name")?;
-                arguments.groups.push((name.into(), members.split(',').map(str::to_owned).collect()));
-            }
-            Long("generated") => arguments.generated = parser.value()?.parse()?,
-            Long("set") => {
-                let name = parser.value()?.string()?;
-                arguments.set = CaseSet::from_name(&name).map_err(|error: Error| error.to_string())?;
-            }
-            Long("set-seed") => arguments.set_seed = parser.value()?.parse()?,
-            Long("by") => {
-                let name = parser.value()?.string()?;
-                arguments.by = GroupBy::from_name(&name).ok_or("--by: class, tier, depth or mask is expected")?;
-            }
-            Long("objects") => arguments.objects = true,
-            Long("threads") => arguments.threads = parser.value()?.parse()?,
-            _ => return Err(argument.unexpected()),
-        }
+    let settings = Settings {
+        cases: arguments.paths("cases")?,
+        groups: arguments.all("group")?.into_iter().map(group).collect::<Result<_, Failure>>()?,
+        generated: arguments.value("generated", 0)?,
+        set: arguments.value("set", CaseSet::General)?,
+        set_seed: arguments.value("set-seed", 0)?,
+        by: arguments.value("by", GroupBy::Class)?,
+        threads: arguments.threads("threads")?,
+    };
+    let prints_objects = arguments.flag("objects");
+    arguments.end()?;
+    if settings.cases.is_empty() && settings.generated == 0 {
+        return Err(usage("--cases or --generated is expected"));
     }
-    if arguments.cases.is_empty() && arguments.generated == 0 {
-        return Err("--cases or --generated is expected".into());
-    }
-    Ok(Some(arguments))
-}
-
-/// Runs the command.
-pub fn main(parser: lexopt::Parser) -> Result<(), Failure> {
-    let arguments = parsed(parser, parse, USAGE)?;
-    let objects = measured(&arguments).map_err(|error| Failure::Failed(error.to_string()))?;
-    if arguments.objects {
+    let objects = measured(&settings)?;
+    if prints_objects {
         println!("{}", table::by_object(&objects));
     }
     print!("{}", table::report(&objects));
@@ -93,27 +68,23 @@ pub fn main(parser: lexopt::Parser) -> Result<(), Failure> {
 }
 
 /// The measured objects, in the order of the arguments, real ones first.
-fn measured(arguments: &Arguments) -> GeometryResult<Vec<ObjectOutlines>> {
+fn measured(settings: &Settings) -> Result<Vec<ObjectOutlines>> {
     let mut real = Vec::new();
-    for folder in &arguments.cases {
+    for folder in &settings.cases {
         real.extend(OutlineView::read(folder)?);
     }
     for view in &mut real {
-        if let Some((name, _)) = arguments.groups.iter().find(|(_, members)| members.contains(&view.group)) {
+        if let Some((name, _)) = settings.groups.iter().find(|(_, members)| members.contains(&view.group)) {
             view.group.clone_from(name);
         }
     }
-    let mut objects = parallel_map(arguments.threads, &real, |view| Ok(ObjectOutlines::of(view)), |_| {})?;
-    let set = EvaluationSet::new(arguments.set_seed).of(arguments.set);
-    let indices: Vec<usize> = (0..arguments.generated).collect();
-    let of = |index: &usize| -> GeometryResult<Option<ObjectOutlines>> {
-        Ok(ObjectOutlines::of(&OutlineView::generated(set.case(*index)?, arguments.by)))
+    let mut objects = parallel_map(settings.threads, &real, |view| Ok(ObjectOutlines::of(view)), |_| {})?;
+    let set = EvaluationSet::new(settings.set_seed).of(settings.set);
+    let indices: Vec<usize> = (0..settings.generated).collect();
+    let of = |index: &usize| -> Result<Option<ObjectOutlines>> {
+        Ok(ObjectOutlines::of(&OutlineView::generated(set.case(*index)?, settings.by)))
     };
-    objects.extend(parallel_map(arguments.threads, &indices, of, |done| {
-        if done.is_multiple_of(10) || done == indices.len() {
-            eprint!("\r{done} of {} ", indices.len());
-        }
-    })?);
+    objects.extend(parallel_map(settings.threads, &indices, of, |done| print_progress(done, indices.len()))?);
     let left_out = objects.iter().filter(|object| object.is_none()).count();
     if left_out > 0 {
         eprintln!("{left_out} objects whose outlines show too little");

@@ -1,14 +1,14 @@
 //! `scenes`: writes cluttered scenes as case folders.
 
-use std::path::PathBuf;
-
-use lexopt::prelude::*;
-use sim3align_geometry::error::Error;
+use sim3align_lab::prelude::*;
 use sim3align_lab::scenes::{Prior, SCENES, SceneSet, write_bop};
 
-use super::{Failure, parsed};
+use super::{Arguments, Command, Failure, print_progress, usage};
 
-const USAGE: &str = "\
+pub const COMMAND: Command = Command {
+    name: "scenes",
+    about: "writes cluttered scenes as case folders",
+    usage: "\
 Usage: sim3align-lab scenes OUT_DIR [--scenes N] [--set-seed S] [--prior P] [--bop] [--threads N]
 
 Writes cluttered scenes as case folders OUT_DIR/PRIOR/SCENE-OBJECT-FAMILY: depth.png, mask.png, camera.json, mesh.glb,
@@ -20,52 +20,19 @@ gt.json and meta.json. Folders that exist are left alone: a run that was stopped
   --bop         write one dataset in the layout of BOP instead, OUT_DIR/models and OUT_DIR/test: a scene is an image, and
                 each object its own model, without the errors of a prior
   --threads N   default: all
-  --help        this text";
+  --help        this text",
+    run,
+};
 
-struct Arguments {
-    folder: PathBuf,
-    set: SceneSet,
-    priors: Vec<Prior>,
-    is_bop: bool,
-    threads: usize,
-}
-
-/// `None` if help is requested.
-fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Error> {
-    let (mut folder, mut scenes, mut set_seed, mut priors) = (None, SCENES, 0, Prior::ALL.to_vec());
-    let mut is_bop = false;
-    let mut threads = std::thread::available_parallelism().map_or(1, usize::from);
-    while let Some(argument) = parser.next()? {
-        match argument {
-            Long("help") | Short('h') => return Ok(None),
-            Value(path) if folder.is_none() => folder = Some(PathBuf::from(path)),
-            Value(path) => return Err(format!("a second folder, {}", path.to_string_lossy()).into()),
-            Long("scenes") => scenes = parser.value()?.parse()?,
-            Long("set-seed") => set_seed = parser.value()?.parse()?,
-            Long("prior") => {
-                priors = Prior::several(&parser.value()?.string()?).map_err(|error: Error| error.to_string())?;
-            }
-            Long("bop") => is_bop = true,
-            Long("threads") => threads = parser.value()?.parse()?,
-            _ => return Err(argument.unexpected()),
-        }
-    }
-    let folder = folder.ok_or("no folder to write to")?;
-    Ok(Some(Arguments { folder, set: SceneSet::new(set_seed, scenes), priors, is_bop, threads }))
-}
-
-/// Runs the command.
-pub fn main(arguments: lexopt::Parser) -> Result<(), Failure> {
-    let Arguments { folder, set, priors, is_bop, threads } = parsed(arguments, parse, USAGE)?;
-    let all = set.scenes();
-    let progress = |done| {
-        let end = if done == all { "\n" } else { "" };
-        eprint!("\r{done} of {all} scenes {end}");
-    };
-    let written = if is_bop {
+fn run(arguments: &mut Arguments) -> Result<(), Failure> {
+    let (scenes, set_seed) = (arguments.value("scenes", SCENES)?, arguments.value("set-seed", 0)?);
+    let priors = Prior::several(&arguments.value("prior", "both".to_owned())?).map_err(usage)?;
+    let (is_bop, threads) = (arguments.flag("bop"), arguments.threads("threads")?);
+    let (folder, set) = (arguments.folder()?, SceneSet::new(set_seed, scenes));
+    let progress = |done| print_progress(done, scenes);
+    Ok(if is_bop {
         write_bop(&set, &folder, threads, progress)
     } else {
         set.write(&folder, &priors, threads, progress)
-    };
-    written.map_err(|error| Failure::Failed(error.to_string()))
+    }?)
 }

@@ -2,12 +2,12 @@
 
 use core::ops::Range;
 
-use sim3align_geometry::error::Result;
 use sim3align_lab::parallel::parallel_map;
+use sim3align_lab::prelude::*;
 use sim3align_lab::sequences::Sequence;
 use sim3align_lab::sequences::folder::read_sequence;
 
-use super::Failure;
+use super::{Arguments, Failure};
 
 /// The source of a sequence.
 enum Source {
@@ -15,24 +15,39 @@ enum Source {
     Index(usize),
 }
 
-/// The outcomes of `run` for the sequences of the folders, then for the `generated` sequences, by index, that `generate` makes.
-pub fn outcomes<T: Send>(
+/// The sequences of folders, and the generated ones of some indices.
+pub struct Sources {
     folders: Vec<String>,
     generated: Range<usize>,
     threads: usize,
-    generate: impl Fn(usize) -> Result<Sequence> + Sync,
-    run: impl Fn(&Sequence) -> Result<Vec<T>> + Sync,
-) -> core::result::Result<Vec<T>, Failure> {
-    let sources: Vec<Source> = folders.into_iter().map(Source::Folder).chain(generated.map(Source::Index)).collect();
-    let work = |source: &Source| {
-        run(&match source {
-            Source::Folder(folder) => read_sequence(folder.as_ref())?,
-            Source::Index(index) => generate(*index)?,
-        })
-    };
-    let outcomes = parallel_map(threads, &sources, work, |_| {})
-        .map_err(|error| Failure::Failed(format!("{} {error}", error.code.as_str())))?;
-    Ok(outcomes.into_iter().flatten().collect())
+}
+
+impl Sources {
+    /// `--generated N`, `--from I`, `--threads T` and, as the last of the arguments that are asked for, the folders.
+    pub fn parse(arguments: &mut Arguments) -> Result<Self, Failure> {
+        let (count, from): (usize, usize) = (arguments.value("generated", 0)?, arguments.value("from", 0)?);
+        let threads = arguments.value("threads", 1)?;
+        Ok(Self { folders: arguments.rest()?, generated: from..from + count, threads })
+    }
+
+    /// The outcomes of `run` for the sequences of the folders, then for those that `generate` makes.
+    pub fn outcomes<T: Send>(
+        self,
+        generate: impl Fn(usize) -> Result<Sequence> + Sync,
+        run: impl Fn(&Sequence) -> Result<Vec<T>> + Sync,
+    ) -> Result<Vec<T>, Failure> {
+        let folders = self.folders.into_iter().map(Source::Folder);
+        let sources: Vec<Source> = folders.chain(self.generated.map(Source::Index)).collect();
+        let work = |source: &Source| {
+            run(&match source {
+                Source::Folder(folder) => read_sequence(folder.as_ref())?,
+                Source::Index(index) => generate(*index)?,
+            })
+        };
+        let outcomes = parallel_map(self.threads, &sources, work, |_| {})
+            .map_err(|error| Failure::Failed(format!("{} {error}", error.code.as_str())))?;
+        Ok(outcomes.into_iter().flatten().collect())
+    }
 }
 
 /// Calls `print` with the name of each row, a kind of sequences, and the outcomes of both: kind by kind, then `"all"`.

@@ -1,18 +1,17 @@
 //! `together`: aligns the objects of scenes alone and together.
 
-use std::path::{Path, PathBuf};
-
-use lexopt::prelude::*;
-use sim3align::precise::options::AlignOptions;
-use sim3align_geometry::error::Error;
 use sim3align_lab::bench::option_text;
-use sim3align_lab::bench::scene_bench::{BenchScene, SceneRecord, table};
+use sim3align_lab::bench::scene_bench::{BenchScene, Outcome, SceneRecord, table};
 use sim3align_lab::parallel::parallel_map;
+use sim3align_lab::prelude::*;
 use sim3align_lab::scenes::{Prior, SceneSet};
 
-use super::{Failure, parsed};
+use super::{Arguments, Command, Failure, print_progress, usage, write_file};
 
-const USAGE: &str = "\
+pub const COMMAND: Command = Command {
+    name: "together",
+    about: "aligns the objects of scenes alone and together, and prints tables",
+    usage: "\
 Usage: sim3align-lab together [--scenes N] [--cases DIR...] [options]
 
 Aligns every object of each scene alone and all of them together, and prints both next to the truth.
@@ -30,7 +29,9 @@ Aligns every object of each scene alone and all of them together, and prints bot
   --json FILE      keeps all records
   --write DIR      writes the generated scenes as scene folders instead of aligning them
   --threads N      default: all
-  --help           this text";
+  --help           this text",
+    run,
+};
 
 /// The source of a scene.
 enum Source<'a> {
@@ -38,99 +39,41 @@ enum Source<'a> {
     Folder(PathBuf),
 }
 
-struct Arguments {
-    scenes: usize,
-    arranged: usize,
-    from: usize,
-    prior: Prior,
-    set_seed: u64,
-    cases: Vec<PathBuf>,
-    options: AlignOptions,
-    snap: bool,
-    objects: bool,
-    json: Option<PathBuf>,
-    write: Option<PathBuf>,
-    threads: usize,
-}
-
-/// `None` if help is requested.
-fn parse(mut parser: lexopt::Parser) -> Result<Option<Arguments>, lexopt::Error> {
-    let mut arguments = Arguments {
-        scenes: 0,
-        arranged: 0,
-        from: 0,
-        prior: Prior::Detailed,
-        set_seed: 0,
-        cases: Vec::new(),
-        options: AlignOptions::default(),
-        snap: false,
-        objects: false,
-        json: None,
-        write: None,
-        threads: std::thread::available_parallelism().map_or(1, usize::from),
-    };
-    while let Some(argument) = parser.next()? {
-        match argument {
-            Long("help") | Short('h') => return Ok(None),
-            Long("scenes") => arguments.scenes = parser.value()?.parse()?,
-            Long("arranged") => arguments.arranged = parser.value()?.parse()?,
-            Long("from") => arguments.from = parser.value()?.parse()?,
-            Long("prior") => {
-                let name = parser.value()?.string()?;
-                arguments.prior = Prior::from_name(&name).map_err(|error: Error| error.to_string())?;
-            }
-            Long("set-seed") => arguments.set_seed = parser.value()?.parse()?,
-            Long("cases") => arguments.cases.extend(parser.values()?.map(PathBuf::from)),
-            Long("quality") => {
-                option_text::assign(&mut arguments.options, "quality", &parser.value()?.string()?).transpose()?;
-            }
-            Long("snap") => arguments.snap = true,
-            Long("objects") => arguments.objects = true,
-            Long("json") => arguments.json = Some(parser.value()?.into()),
-            Long("write") => arguments.write = Some(parser.value()?.into()),
-            Long("threads") => arguments.threads = parser.value()?.parse()?,
-            _ => return Err(argument.unexpected()),
-        }
+fn run(arguments: &mut Arguments) -> Result<(), Failure> {
+    let (scenes, arranged): (usize, usize) = (arguments.value("scenes", 0)?, arguments.value("arranged", 0)?);
+    let (from, set_seed) = (arguments.value("from", 0)?, arguments.value("set-seed", 0)?);
+    let prior = arguments.value("prior", Prior::Detailed)?;
+    let options = option_text::with_quality(arguments.optional("quality")?).map_err(usage)?;
+    let (snap, prints_objects) = (arguments.flag("snap"), arguments.flag("objects"));
+    let (cases, threads) = (arguments.paths("cases")?, arguments.threads("threads")?);
+    let (json, folder): (Option<PathBuf>, Option<PathBuf>) =
+        (arguments.optional("json")?, arguments.optional("write")?);
+    arguments.end()?;
+    if scenes + arranged == 0 && cases.is_empty() {
+        return Err(usage("--scenes, --arranged or --cases is expected"));
     }
-    if arguments.scenes + arguments.arranged == 0 && arguments.cases.is_empty() {
-        return Err("--scenes, --arranged or --cases is expected".into());
+    let sets = [SceneSet::new(set_seed, scenes), SceneSet::arranged(set_seed, arranged)];
+    let generated = sets.iter().flat_map(|set| (from..set.scenes()).map(move |index| Source::Generated(set, index)));
+    let sources: Vec<Source> = cases.into_iter().map(Source::Folder).chain(generated).collect();
+    if let Some(folder) = &folder {
+        return write(&sources, prior, folder, threads);
     }
-    Ok(Some(arguments))
-}
-
-/// Runs the command.
-pub fn main(parser: lexopt::Parser) -> Result<(), Failure> {
-    let arguments = parsed(parser, parse, USAGE)?;
-    let set = SceneSet::new(arguments.set_seed, arguments.scenes);
-    let arranged = SceneSet::arranged(arguments.set_seed, arguments.arranged);
-    let generated = [(&set, arguments.scenes), (&arranged, arguments.arranged)]
-        .into_iter()
-        .flat_map(|(set, count)| (arguments.from..count).map(move |index| Source::Generated(set, index)));
-    let sources: Vec<Source> = arguments.cases.iter().cloned().map(Source::Folder).chain(generated).collect();
-    if let Some(folder) = &arguments.write {
-        return write(&sources, arguments.prior, folder, arguments.threads);
-    }
-    let run = |source: &Source| {
+    let align = |source: &Source| {
         let scene = match source {
             Source::Folder(path) => BenchScene::read(path)?,
-            Source::Generated(set, index) => BenchScene::of_cluttered(&set.scene(*index)?, arguments.prior)?,
+            Source::Generated(set, index) => BenchScene::of_cluttered(&set.scene(*index)?, prior)?,
         };
-        scene.run(&arguments.options, arguments.snap)
+        scene.run(&options, snap)
     };
-    let count = sources.len();
-    let records = parallel_map(arguments.threads, &sources, run, |done| {
-        eprint!("\r{done} of {count} scenes {}", if done == count { "\n" } else { "" });
-    });
-    let records = records.map_err(|error: Error| Failure::Failed(error.to_string()))?;
-    if arguments.objects {
+    let records = parallel_map(threads, &sources, align, |done| print_progress(done, sources.len()))?;
+    if prints_objects {
         records.iter().for_each(print_objects);
     }
     println!("{}", table(&records));
-    if let Some(path) = &arguments.json {
-        let text = serde_json::to_string(&records).map_err(|error| Failure::Failed(error.to_string()))?;
-        std::fs::write(path, text).map_err(|error| Failure::Failed(error.to_string()))?;
+    match &json {
+        Some(path) => write_file(path, serde_json::to_string(&records)?),
+        None => Ok(()),
     }
-    Ok(())
 }
 
 /// Writes the generated scenes as `folder`/SCENE, from 000; the arranged ones after the others.
@@ -140,14 +83,13 @@ fn write(sources: &[Source], prior: Prior, folder: &Path, threads: usize) -> Res
         Source::Folder(_) => Ok(()),
         Source::Generated(set, index) => set.scene(*index)?.write(prior, &folder.join(format!("{number:03}"))),
     };
-    let written = parallel_map(threads, &numbered, write, |_| {});
-    written.map(drop).map_err(|error: Error| Failure::Failed(error.to_string()))
+    Ok(parallel_map(threads, &numbered, write, |_| {}).map(drop)?)
 }
 
 fn print_objects(scene: &SceneRecord) {
     println!("{}: support {:?}, errors {:?}", scene.name, scene.support, scene.plane_errors);
     for object in &scene.objects {
-        let text = |outcome: &sim3align_lab::bench::scene_bench::Outcome| match (&outcome.errors, &outcome.error) {
+        let text = |outcome: &Outcome| match (&outcome.errors, &outcome.error) {
             (Some(errors), _) => format!(
                 "size {:+5.1} % turn {:5.1}° place {:4.1} % tilt {:5.1}° gap {:+5.1} mm sure {:.2}",
                 100.0 * outcome.scale.unwrap_or_default(),

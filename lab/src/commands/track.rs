@@ -1,63 +1,32 @@
 //! `track`: tracks one object through videos, generated or from case folders, and prints a table.
 
-use core::ops::Range;
-use lexopt::prelude::*;
 use sim3align::metrics::pose_error::pose_errors;
-use sim3align::progress::Silent;
 use sim3align::track::options::TrackOptions;
 use sim3align::track::report::TrackState;
 use sim3align::track::tracker::Tracker;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::similarity::Similarity;
 use sim3align_lab::bench::benchmark::STRICT;
 use sim3align_lab::bench::statistics::{cell, median};
 use sim3align_lab::cpu_time::CpuTimer;
+use sim3align_lab::prelude::*;
 use sim3align_lab::sequences::Sequence;
 use sim3align_lab::sequences::video::VideoSet;
 
-use super::sequence_rows::{each_row, outcomes};
-use super::{Failure, parsed};
+use super::sequence_rows::{Sources, each_row};
+use super::{Arguments, Command, Failure};
 
-const USAGE: &str = "\
+pub const COMMAND: Command = Command {
+    name: "track",
+    about: "tracks one object through videos, and prints tables",
+    usage: "\
 Usage: sim3align-lab track [--generated N] [--from I] [--frames F] [--seed S] [--threads T] [--printed]
        [--no-color] [--verbose] [FOLDER...]
 
 Tracks each video with the masks of all frames, and with that of the first frame alone, and prints errors, flips,
 losses, and the time of a frame. FOLDER holds a mesh and folders frame_*.
 --from: index of the first generated video. --printed: objects whose print alone tells how they are turned;
---no-color: without their photos.";
-
-struct Arguments {
-    generated: Range<usize>,
-    set: VideoSet,
-    threads: usize,
-    verbose: bool,
-    with_color: bool,
-    folders: Vec<String>,
-}
-
-fn parse(mut parser: lexopt::Parser) -> core::result::Result<Option<Arguments>, lexopt::Error> {
-    let set = VideoSet { seed: 1, frames: 150, is_printed: false };
-    let mut parsed =
-        Arguments { generated: 0..0, set, threads: 1, verbose: false, with_color: true, folders: Vec::new() };
-    while let Some(argument) = parser.next()? {
-        match argument {
-            Long("help") | Short('h') => return Ok(None),
-            Long("generated") => parsed.generated.end = parser.value()?.parse()?,
-            Long("from") => parsed.generated.start = parser.value()?.parse()?,
-            Long("frames") => parsed.set.frames = parser.value()?.parse()?,
-            Long("seed") => parsed.set.seed = parser.value()?.parse()?,
-            Long("threads") => parsed.threads = parser.value()?.parse()?,
-            Long("printed") => parsed.set.is_printed = true,
-            Long("no-color") => parsed.with_color = false,
-            Long("verbose") => parsed.verbose = true,
-            Value(folder) => parsed.folders.push(folder.string()?),
-            _ => return Err(argument.unexpected()),
-        }
-    }
-    parsed.generated.end += parsed.generated.start;
-    Ok(Some(parsed))
-}
+--no-color: without their photos.",
+    run,
+};
 
 /// Rotation error from which on a pose is a flip, degrees.
 const FLIP_DEG: f64 = 45.0;
@@ -85,7 +54,7 @@ struct Outcome {
 
 const ROWS: [&str; 2] = ["all masks", "first mask"];
 
-fn run(sequence: &Sequence, with_color: bool, verbose: bool) -> Result<Vec<Outcome>> {
+fn run_video(sequence: &Sequence, with_color: bool, verbose: bool) -> Result<Vec<Outcome>> {
     let mut outcomes = Vec::new();
     for (row, name) in ROWS.into_iter().enumerate() {
         let mesh = sequence.prepared();
@@ -148,12 +117,15 @@ fn run(sequence: &Sequence, with_color: bool, verbose: bool) -> Result<Vec<Outco
     Ok(outcomes)
 }
 
-/// Runs the command.
-pub fn main(arguments: lexopt::Parser) -> core::result::Result<(), Failure> {
-    let arguments = parsed(arguments, parse, USAGE)?;
-    let Arguments { generated, set, threads, verbose, with_color, folders } = arguments;
-    let outcomes =
-        outcomes(folders, generated, threads, |index| set.video(index), |sequence| run(sequence, with_color, verbose))?;
+fn run(arguments: &mut Arguments) -> Result<(), Failure> {
+    let set = VideoSet {
+        seed: arguments.value("seed", 1)?,
+        frames: arguments.value("frames", 150)?,
+        is_printed: arguments.flag("printed"),
+    };
+    let (with_color, verbose) = (!arguments.flag("no-color"), arguments.flag("verbose"));
+    let sources = Sources::parse(arguments)?;
+    let outcomes = sources.outcomes(|index| set.video(index), |sequence| run_video(sequence, with_color, verbose))?;
     println!(
         "| row | videos | frames | strict % | rotation median, worst ° | size median, last worst % | flips | uncertain, lost | wrong and tracking | longest until right, frames | ms |"
     );

@@ -2,26 +2,25 @@
 
 use std::time::Instant;
 
-use core::ops::Range;
-use lexopt::prelude::*;
 use sim3align::metrics::pose_error::{PoseErrors, pose_errors};
-use sim3align::progress::Silent;
 use sim3align::report::Sim3;
 use sim3align::views::options::ViewsOptions;
 use sim3align::views::report::{ViewRole, ViewsAlignment};
 use sim3align::views::{View, align_views};
-use sim3align_geometry::error::Result;
-use sim3align_geometry::similarity::Similarity;
 use sim3align_lab::bench::benchmark::STRICT;
 use sim3align_lab::bench::statistics::{cell, median};
+use sim3align_lab::prelude::*;
 use sim3align_lab::sequences::Sequence;
 use sim3align_lab::sequences::faulty_mask::{grown, holed};
 use sim3align_lab::sequences::rig::RigSet;
 
-use super::sequence_rows::{each_row, outcomes};
-use super::{Failure, parsed};
+use super::sequence_rows::{Sources, each_row};
+use super::{Arguments, Command, Failure};
 
-const USAGE: &str = "\
+pub const COMMAND: Command = Command {
+    name: "views",
+    about: "aligns one object in several views, and prints tables",
+    usage: "\
 Usage: sim3align-lab views [--generated N] [--from I] [--seed S] [--views V] [--threads T] [--printed] [--small]
        [--no-color] [--mask-px N] [--holes] [--verbose] [FOLDER...]
 
@@ -29,7 +28,9 @@ Aligns each case with one view, with all views and known camera poses, and with 
 fraction of strictly correct poses and the errors of the size. FOLDER holds a mesh and folders frame_*.
 --from: index of the first generated case. --printed: objects whose print alone tells how they are turned;
 --no-color: without their photos. --small: objects of 5 cm, 60 cm from the cameras.
---mask-px: makes all masks wider by N pixels, narrower if negative. --holes: with holes in the mask of the second view.";
+--mask-px: makes all masks wider by N pixels, narrower if negative. --holes: with holes in the mask of the second view.",
+    run,
+};
 
 /// What is taken from the frames, or done to them.
 #[derive(Clone, Copy)]
@@ -52,41 +53,6 @@ impl Fault {
         }
         view
     }
-}
-
-struct Arguments {
-    generated: Range<usize>,
-    set: RigSet,
-    threads: usize,
-    verbose: bool,
-    fault: Fault,
-    folders: Vec<String>,
-}
-
-fn parse(mut parser: lexopt::Parser) -> core::result::Result<Option<Arguments>, lexopt::Error> {
-    let set = RigSet { seed: 1, views: None, is_printed: false, is_small: false };
-    let fault = Fault { with_color: true, mask_px: 0, holes: false };
-    let mut parsed = Arguments { generated: 0..0, set, threads: 1, verbose: false, fault, folders: Vec::new() };
-    while let Some(argument) = parser.next()? {
-        match argument {
-            Long("help") | Short('h') => return Ok(None),
-            Long("generated") => parsed.generated.end = parser.value()?.parse()?,
-            Long("from") => parsed.generated.start = parser.value()?.parse()?,
-            Long("seed") => parsed.set.seed = parser.value()?.parse()?,
-            Long("views") => parsed.set.views = Some(parser.value()?.parse()?),
-            Long("threads") => parsed.threads = parser.value()?.parse()?,
-            Long("printed") => parsed.set.is_printed = true,
-            Long("small") => parsed.set.is_small = true,
-            Long("no-color") => parsed.fault.with_color = false,
-            Long("mask-px") => parsed.fault.mask_px = parser.value()?.parse()?,
-            Long("holes") => parsed.fault.holes = true,
-            Long("verbose") => parsed.verbose = true,
-            Value(folder) => parsed.folders.push(folder.string()?),
-            _ => return Err(argument.unexpected()),
-        }
-    }
-    parsed.generated.end += parsed.generated.start;
-    Ok(Some(parsed))
 }
 
 /// The result of one row for one case.
@@ -114,7 +80,7 @@ fn errors_of(sequence: &Sequence, k: usize, pose: &Sim3) -> Result<Option<PoseEr
     pose_errors(&sequence.mesh, &similarity(pose)?, truth, &sequence.symmetry).map(Some)
 }
 
-fn run(sequence: &Sequence, fault: Fault, verbose: bool) -> Result<Vec<Outcome>> {
+fn run_case(sequence: &Sequence, fault: Fault, verbose: bool) -> Result<Vec<Outcome>> {
     let mut outcomes = Vec::new();
     for (row, name) in ROWS.into_iter().enumerate() {
         let views: Vec<View> = sequence
@@ -197,12 +163,21 @@ fn run(sequence: &Sequence, fault: Fault, verbose: bool) -> Result<Vec<Outcome>>
     Ok(outcomes)
 }
 
-/// Runs the command.
-pub fn main(arguments: lexopt::Parser) -> core::result::Result<(), Failure> {
-    let arguments = parsed(arguments, parse, USAGE)?;
-    let Arguments { generated, set, threads, verbose, fault, folders } = arguments;
-    let outcomes =
-        outcomes(folders, generated, threads, |index| set.case(index), |sequence| run(sequence, fault, verbose))?;
+fn run(arguments: &mut Arguments) -> Result<(), Failure> {
+    let set = RigSet {
+        seed: arguments.value("seed", 1)?,
+        views: arguments.optional("views")?,
+        is_printed: arguments.flag("printed"),
+        is_small: arguments.flag("small"),
+    };
+    let fault = Fault {
+        with_color: !arguments.flag("no-color"),
+        mask_px: arguments.value("mask-px", 0)?,
+        holes: arguments.flag("holes"),
+    };
+    let verbose = arguments.flag("verbose");
+    let sources = Sources::parse(arguments)?;
+    let outcomes = sources.outcomes(|index| set.case(index), |sequence| run_case(sequence, fault, verbose))?;
     println!(
         "| row | cases | n | strict % | size error median % | bias % | ≤ .5 % | ≤ 2 % | confidence ≥ .9 and wrong | wrong views found | right views left out | ms |"
     );

@@ -1,6 +1,6 @@
 //! Calls of the fuzzer, and the criteria for faults in their answers.
 
-use sim3align_geometry::error::{Error, ErrorCode};
+use crate::prelude::*;
 
 /// A call prepared by a generator.
 pub struct Call {
@@ -10,6 +10,26 @@ pub struct Call {
     pub description: String,
     /// Whether the ceilings apply: not to options that ask for more work than the defaults.
     pub is_bounded: bool,
+}
+
+/// What was wrong with a result.
+pub(super) type Checked = Result<(), String>;
+
+impl Call {
+    /// A call whose result is checked, and whose error must be typed.
+    pub(super) fn new<T: 'static>(
+        description: String,
+        is_bounded: bool,
+        takes_transform: bool,
+        call: impl FnOnce() -> Result<T> + 'static,
+        check: fn(&T) -> Checked,
+    ) -> Self {
+        let run = move || match call() {
+            Ok(found) => check(&found).map(|()| Answer::Result),
+            Err(error) => typed(&error, takes_transform),
+        };
+        Self { run: Box::new(run), description, is_bounded }
+    }
 }
 
 /// The kind of answer to a call without fault.
@@ -33,7 +53,7 @@ pub(super) fn typed(error: &Error, takes_transform: bool) -> Result<Answer, Stri
 }
 
 /// A fault for a number that no result may contain.
-pub(super) fn finite(name: &str, numbers: &[f64]) -> Result<(), String> {
+pub(super) fn finite(name: &str, numbers: &[f64]) -> Checked {
     if numbers.iter().all(|x| x.is_finite()) {
         return Ok(());
     }

@@ -1,6 +1,6 @@
 //! The list of integers from which an input is generated.
 
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
 
 /// Random stream of the choices.
 const STREAM: u64 = 31;

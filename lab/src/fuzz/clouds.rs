@@ -2,7 +2,7 @@
 
 use super::choices::Choices;
 use super::options::{any_number, transform};
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
 
 /// Two clouds of at most `most` points, and a description of them.
 pub fn pair(c: &mut Choices, most: usize) -> (String, [Vec<f64>; 2]) {
@@ -12,7 +12,7 @@ pub fn pair(c: &mut Choices, most: usize) -> (String, [Vec<f64>; 2]) {
         0 | 1 => {
             let pose = transform(c);
             let moved = source.chunks_exact(3).flat_map(|p| {
-                let q = pose.apply(nalgebra::Vector3::new(p[0], p[1], p[2]));
+                let q = pose.apply(Vector3::new(p[0], p[1], p[2]));
                 [q.x, q.y, q.z]
             });
             ("the same, moved".into(), moved.collect())

@@ -1,11 +1,7 @@
 //! Meshes of one to a million triangles: ordinary, degenerate, huge and tiny.
 
-use glam::{DVec3, Vec3};
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
-
 use super::choices::Choices;
+use crate::prelude::*;
 
 type Shape = fn(&mut Choices, usize) -> (Vec<DVec3>, Vec<[u32; 3]>);
 
@@ -88,9 +84,9 @@ fn grid_sphere([longitudes, latitudes]: [usize; 2], deform: impl Fn(DVec3) -> DV
     let [n, m] = [longitudes.max(3), latitudes.max(2)];
     let mut positions = Vec::with_capacity(n * (m + 1));
     for row in 0..=m {
-        let polar = core::f64::consts::PI * row as f64 / m as f64;
+        let polar = PI * row as f64 / m as f64;
         for column in 0..n {
-            let turn = core::f64::consts::TAU * column as f64 / n as f64;
+            let turn = TAU * column as f64 / n as f64;
             let ring = libm::sin(polar);
             let p = DVec3::new(ring * libm::cos(turn), libm::cos(polar), ring * libm::sin(turn));
             positions.push(deform(p));

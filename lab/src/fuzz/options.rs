@@ -1,13 +1,10 @@
 //! Options of every type.
 
-use nalgebra::{Matrix3, Vector3};
-use sim3align::metrics::symmetry::{Symmetry, SymmetryAxis};
-use sim3align::options::scale::ScaleOption;
 use sim3align::options::{Field, Options};
 use sim3align_geometry::rotations::super_fibonacci;
-use sim3align_geometry::similarity::Similarity;
 
 use super::choices::Choices;
+use crate::prelude::*;
 
 /// Numbers that may replace any number.
 const NUMBERS: [f64; 16] = [

@@ -60,11 +60,6 @@ pub const TARGETS: [Target; 8] = [
 ];
 
 impl Target {
-    /// The target of this name.
-    pub fn of_name(name: &str) -> Option<Self> {
-        TARGETS.into_iter().find(|target| target.name == name)
-    }
-
     /// Makes the call with the arguments that the choices produce.
     pub fn execute(&self, choices: &mut Choices, ceilings: &Ceilings) -> Execution {
         let Call { run, description, is_bounded } = (self.generate)(choices);
@@ -87,5 +82,13 @@ impl Target {
     /// A short description of the arguments that the choices produce.
     pub fn describe(&self, choices: &mut Choices) -> String {
         (self.generate)(choices).description
+    }
+}
+
+impl core::str::FromStr for Target {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        TARGETS.into_iter().find(|target| target.name == name).ok_or_else(|| format!("no target {name}"))
     }
 }

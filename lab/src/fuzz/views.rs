@@ -2,15 +2,9 @@
 
 use std::sync::Arc;
 
-use sim3align::evidence::frame::Frame;
-use sim3align::evidence::observation::Observation;
-use sim3align::evidence::photo::Photo;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::image::{DepthMap, Mask};
-use sim3align_geometry::pinhole::Pinhole;
-
 use super::choices::Choices;
 use super::options::any_number;
+use crate::prelude::*;
 
 /// Sizes of the images.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -3,8 +3,7 @@
 use super::ray::{Depths, Ray, Rays};
 use super::silhouette::Silhouette;
 use super::view::OutlineView;
-use nalgebra::{Matrix3, Vector3};
-use sim3align_geometry::cloud::Bounds;
+use crate::prelude::*;
 use sim3align_geometry::order::{median, quantile};
 
 /// Pixels around the object that are looked at, of an image 640 wide.
@@ -142,7 +141,7 @@ fn quality(view: &OutlineView, silhouette: &Silhouette) -> Option<(DepthQuality,
     let residual = |u: usize, v: usize| {
         let z = f64::from(view.depth.get(u, v)?);
         let is_masked = view.mask.get(u, v).is_some_and(|m| m != 0);
-        let truth = silhouette.depth(glam::DVec2::new(u as f64, v as f64))?;
+        let truth = silhouette.depth(DVec2::new(u as f64, v as f64))?;
         (z > 0.0 && is_masked).then_some([z - truth, truth])
     };
     let all: Vec<[f64; 2]> = silhouette.interior(inside).filter_map(|[u, v]| residual(u, v)).collect();

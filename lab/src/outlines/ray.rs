@@ -1,9 +1,8 @@
 //! Where mask, depth and photo change along a ray across the true outline.
 
-use glam::DVec2;
-
 use super::silhouette::{OutlinePoint, Silhouette};
 use super::view::OutlineView;
+use crate::prelude::*;
 use sim3align_geometry::order::median;
 
 /// Step along a ray, pixels.

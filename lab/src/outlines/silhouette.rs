@@ -1,14 +1,9 @@
 //! The true silhouette of an object at a fraction of a pixel.
 
-use glam::DVec2;
-
 use crate::cases::photo::resized;
+use crate::prelude::*;
 use sim3align_geometry::distance_transform::squared_distances;
 use sim3align_geometry::image::bounds_of;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::pinhole::Pinhole;
-use sim3align_geometry::rasteriser::Rasteriser;
-use sim3align_geometry::similarity::Similarity;
 
 /// Samples of the silhouette per pixel and axis.
 const SAMPLES: usize = 4;

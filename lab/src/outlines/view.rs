@@ -1,19 +1,12 @@
 //! Objects in views, with the true pose.
 
-use std::fs;
-use std::path::{Path, PathBuf};
-
 use crate::bench::scene_bench::{BenchObject, BenchScene};
 use crate::case_folder::case::{last_name, photo_of, read_case};
 use crate::cases::case::EvaluationCase;
+use crate::files::listed;
+use crate::prelude::*;
 use crate::sequences::folder::read_sequence;
 use crate::sequences::{Sequence, SequenceFrame};
-use sim3align::evidence::photo::Photo;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::image::{DepthMap, Mask};
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::pinhole::Pinhole;
-use sim3align_geometry::similarity::Similarity;
 
 /// An object in a view, with the true pose.
 pub struct OutlineView {
@@ -35,26 +28,21 @@ pub struct OutlineView {
     pub camera_from_mesh: Similarity,
 }
 
-/// The property of generated cases by which they are grouped.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum GroupBy {
-    /// The class.
-    Class,
-    /// The tier.
-    Tier,
-    /// What made the depth.
-    Depth,
-    /// What made the mask.
-    Mask,
+named! {
+    /// The property of generated cases by which they are grouped.
+    pub enum GroupBy: "--by" {
+        /// The class.
+        Class = "class",
+        /// The tier.
+        Tier = "tier",
+        /// What made the depth.
+        Depth = "depth",
+        /// What made the mask.
+        Mask = "mask",
+    }
 }
 
 impl GroupBy {
-    /// The property of a name: class, tier, depth or mask.
-    pub fn from_name(name: &str) -> Option<Self> {
-        let all = [("class", Self::Class), ("tier", Self::Tier), ("depth", Self::Depth), ("mask", Self::Mask)];
-        all.into_iter().find(|(known, _)| *known == name).map(|(_, value)| value)
-    }
-
     fn of(self, case: &EvaluationCase) -> String {
         match self {
             Self::Class => case.class.as_str().to_owned(),
@@ -85,7 +73,8 @@ impl OutlineView {
     /// # Errors
     /// Those of [`read_case`].
     pub fn read(folder: &Path) -> Result<Vec<Self>> {
-        let below = folders(folder)?;
+        let mut below = listed(folder)?;
+        below.retain(|path| path.is_dir());
         if folder.join("objects").is_dir() {
             return Self::of_scene(folder);
         }
@@ -149,22 +138,4 @@ impl OutlineView {
 
 fn group(name: &str) -> String {
     name.split('-').next().unwrap_or(name).to_owned()
-}
-
-/// The folders in a folder, by name.
-fn folders(folder: &Path) -> Result<Vec<PathBuf>> {
-    let entries = fs::read_dir(folder).map_err(|error| {
-        let expected = "a folder with cases, scenes or frames";
-        Error::new(
-            ErrorCode::InvalidArgument,
-            folder.display().to_string(),
-            error.to_string(),
-            expected,
-            "Pass a folder that can be read.",
-        )
-    })?;
-    let mut folders: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
-    folders.retain(|path| path.is_dir());
-    folders.sort();
-    Ok(folders)
 }

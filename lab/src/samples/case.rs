@@ -1,18 +1,13 @@
 //! A generated case: the observation of an object, its generated mesh, and how the one follows from the other.
 
-use std::path::Path;
-
 use serde_json::json;
 
-use super::depth::View;
+use super::depth::RoomView;
 use super::shape::Kind;
 use crate::case_folder::contents::{case_files, glb_file};
 use crate::cases::distortion::{canonicalise, hallucinate};
 use crate::files::{NamedFile, write_files};
-use sim3align::evidence::observation::Observation;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::similarity::Similarity;
+use crate::prelude::*;
 
 /// A generated case.
 #[derive(Debug, Clone)]
@@ -40,7 +35,7 @@ impl SampleCase {
     /// Only in case of a bug in the generator.
     pub fn new(kind: Kind, seed: u64) -> Result<Self> {
         let object = kind.mesh(seed)?;
-        let view = View::new(&object, seed)?;
+        let view = RoomView::new(&object, seed)?;
         let occluder = kind.occluder(seed)?.map(|thing| view.before(&object, &thing)).transpose()?;
         let seen = view.see(&object, occluder.as_ref(), seed)?;
         // In the object's frame, before the mesh gets its own: so the truth is exact.
@@ -49,11 +44,11 @@ impl SampleCase {
         Ok(Self {
             kind,
             seed,
-            observation: Observation::new(seen.depth, seen.mask, view.camera)?,
+            observation: Observation::new(seen.depth, seen.mask, view.view.camera)?,
             mesh,
-            camera_from_mesh: view.camera_from_object.compose(&object_from_mesh),
+            camera_from_mesh: view.view.camera_from_world.compose(&object_from_mesh),
             object,
-            camera_from_object: view.camera_from_object,
+            camera_from_object: view.view.camera_from_world,
         })
     }
 
@@ -65,7 +60,7 @@ impl SampleCase {
     pub fn files(&self, depth_scale: Option<f64>) -> Result<Vec<NamedFile>> {
         let note =
             format!("generated: {}, seed {}; the side that was not seen is invented", self.kind.as_str(), self.seed);
-        let truth = json!({ "symmetry": self.kind.symmetry(), "note": note });
+        let truth = json!({ "symmetry": "none", "note": note });
         case_files(&self.observation, vec![glb_file(&self.mesh)], &self.camera_from_mesh, truth, depth_scale)
     }
 

@@ -1,19 +1,9 @@
 //! Renders an object on a table as depth map, with the errors of monocular depth models.
 
-use core::f64::consts::TAU;
-
-use glam::Vec3;
-use nalgebra::Vector3;
-
-use crate::cases::scene::{camera_at, count, hidden, put_before, shown};
-use crate::draws::between;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::image::{DepthMap, Image, Mask};
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::pinhole::Pinhole;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::rasteriser::Rasteriser;
-use sim3align_geometry::similarity::{Similarity, vec3, vector3};
+use crate::cases::distortion::{corners_of, mapped};
+use crate::cases::readings::disc;
+use crate::cases::scene::{View, camera_at, count, hidden, put_before, shown};
+use crate::prelude::*;
 
 /// Random stream of the viewpoint.
 const VIEW_STREAM: u64 = 0x7669_6577;
@@ -42,11 +32,9 @@ const FLYING: [[f64; 2]; 2] = [[0.5, 0.4], [0.25, 0.2]];
 
 /// Where the camera stands, what it is, and the room about the object.
 #[derive(Debug, Clone, Copy)]
-pub struct View {
-    /// Intrinsics for images of 640 × 480 pixels.
-    pub camera: Pinhole,
-    /// Object frame (metres, z up, the table at z = 0) to camera.
-    pub camera_from_object: Similarity,
+pub struct RoomView {
+    /// The world is the frame of the object.
+    pub view: View,
     /// The wall's unit normal, towards the camera, and its distance behind the object's axis, object frame, metres.
     wall: (Vector3<f64>, f64),
 }
@@ -62,7 +50,7 @@ pub struct Seen {
     pub vertices: Vec<bool>,
 }
 
-impl View {
+impl RoomView {
     /// A view from one side and somewhat above, with what is towards +x (a handle) at the side.
     ///
     /// # Errors
@@ -84,11 +72,9 @@ impl View {
         let forward = (middle + aim - eye).normalize();
         let focal = between(random, 590.0, 610.0);
         let (cx, cy) = (between(random, 316.0, 323.0), between(random, 236.0, 243.0));
-        Ok(Self {
-            camera: Pinhole::new(focal, focal, cx, cy)?,
-            camera_from_object: camera_at(&eye, &forward, 0.0)?,
-            wall: (towards, between(random, 0.25, 0.45)),
-        })
+        let (camera, camera_from_world) = (Pinhole::new(focal, focal, cx, cy)?, camera_at(&eye, &forward, 0.0)?);
+        let view = View { width: WIDTH, height: HEIGHT, camera, camera_from_world };
+        Ok(Self { view, wall: (towards, between(random, 0.25, 0.45)) })
     }
 
     /// The thing moved to where it hides a good part of the object, if it is of a fitting size: on the table, right
@@ -97,23 +83,18 @@ impl View {
     /// # Errors
     /// Those of [`Mesh::new`], which only a bug in the generator could cause.
     pub fn before(&self, object: &Mesh, thing: &Mesh) -> Result<Mesh> {
-        let rendered = |mesh: &Mesh| {
-            let mut rasteriser = Rasteriser::new();
-            rasteriser.render_depth(mesh, &self.camera_from_object, &self.camera, WIDTH, HEIGHT);
-            rasteriser.depth().to_vec()
-        };
-        let alone = rendered(object);
+        let alone = self.view.depth_of(object);
         let towards = vec3(&self.wall.0);
         let reach = |mesh: &Mesh, way: Vec3| mesh.positions().iter().fold(0.0f32, |far, p| far.max(p.dot(way)));
         let before = towards * (GAP_M + reach(object, towards) + reach(thing, -towards));
         let aside = Vec3::Z.cross(towards);
         let at = |step: u8| {
             let place = before + aside * (0.005 * f32::from(step));
-            Mesh::new(thing.positions().iter().map(|p| *p + place).collect(), thing.triangles().to_vec())
+            mapped(thing, |p| *p + place)
         };
         for step in 0..STEPS_ASIDE {
             let placed = at(step)?;
-            if hidden(&alone, &rendered(&placed)) as f64 <= MOST_HIDDEN * count(&alone) as f64 {
+            if hidden(&alone, &self.view.depth_of(&placed)) as f64 <= MOST_HIDDEN * count(&alone) as f64 {
                 return Ok(placed);
             }
         }
@@ -126,19 +107,14 @@ impl View {
     /// # Errors
     /// Those of [`Image::new`], which only a bug in the generator could cause.
     pub fn see(&self, mesh: &Mesh, occluder: Option<&Mesh>, seed: u64) -> Result<Seen> {
-        let mut rasteriser = Rasteriser::new();
-        let mut others = vec![0.0; WIDTH * HEIGHT];
-        if let Some(occluder) = occluder {
-            rasteriser.render_depth(occluder, &self.camera_from_object, &self.camera, WIDTH, HEIGHT);
-            others.copy_from_slice(rasteriser.depth());
-        }
-        rasteriser.render(mesh, &self.camera_from_object, &self.camera, WIDTH, HEIGHT);
-        let visible = shown(rasteriser.depth(), &others);
+        let mut others = occluder.map_or_else(|| vec![0.0; WIDTH * HEIGHT], |occluder| self.view.depth_of(occluder));
+        let (object, triangles) = self.view.render(mesh);
+        let visible = shown(&object, &others);
         let mask = Image::new("mask", WIDTH, HEIGHT, visible.iter().map(|&visible| u8::from(visible)).collect())?;
-        let seen = rasteriser.triangles().iter().zip(visible).filter(|(_, visible)| *visible);
-        let vertices = corners_of(mesh, seen.map(|(&triangle, _)| triangle));
+        let seen = triangles.into_iter().zip(visible).filter(|(_, visible)| *visible);
+        let vertices = corners_of(mesh, seen.map(|(triangle, _)| triangle));
         let mut random = Random::new(seed, DEPTH_STREAM);
-        put_before(&mut others, rasteriser.depth());
+        put_before(&mut others, &object);
         let mut depth = self.with_flying_pixels(&others, &mut random);
         let warp = warp(&mask, &mut random);
         for (z, warp) in depth.iter_mut().zip(warp) {
@@ -151,7 +127,10 @@ impl View {
 
     /// What stands on the table and the background, mixed along the silhouette: inside up to two pixels, outside one.
     fn with_flying_pixels(&self, object: &[f32], random: &mut Random) -> Vec<f32> {
-        let mut depth: Vec<f32> = self.background();
+        let mut depth = self.view.background_along(self.wall, |u, v| {
+            let ray = vector3(self.view.camera.back_project(u, v, 1.0));
+            [ray.x, ray.y]
+        });
         let inside = |u: usize, v: usize| object[v * WIDTH + u] > 0.0;
         for v in 0..HEIGHT {
             for u in 0..WIDTH {
@@ -172,34 +151,6 @@ impl View {
         }
         depth
     }
-
-    /// Depth of the table, and of the wall behind it, metres.
-    fn background(&self) -> Vec<f32> {
-        let Similarity { rotation, translation, .. } = self.camera_from_object;
-        // n·p = d in the object frame, as 1/z = (n·ray)/d in the camera's.
-        let inverse_depth = |normal: Vector3<f64>, distance: f64| {
-            let normal = rotation * normal;
-            normal / (distance + normal.dot(&translation))
-        };
-        let planes = [inverse_depth(Vector3::z(), 0.0), inverse_depth(self.wall.0, -self.wall.1)];
-        let pixels = (0..HEIGHT).flat_map(|v| (0..WIDTH).map(move |u| (u as f64, v as f64)));
-        pixels
-            .map(|(u, v)| {
-                let ray = vector3(self.camera.back_project(u, v, 1.0));
-                let nearest = planes.iter().fold(0.0f64, |w, plane| w.max(plane.dot(&ray)));
-                if nearest > 0.0 { (1.0 / nearest) as f32 } else { 0.0 }
-            })
-            .collect()
-    }
-}
-
-/// For each vertex of a mesh, whether it is a corner of one of these triangles.
-pub fn corners_of(mesh: &Mesh, triangles: impl Iterator<Item = u32>) -> Vec<bool> {
-    let mut corners = vec![false; mesh.positions().len()];
-    for triangle in triangles {
-        mesh.triangles()[triangle as usize].iter().for_each(|&vertex| corners[vertex as usize] = true);
-    }
-    corners
 }
 
 /// Which row of pixels along the silhouette a pixel is in, and, outside, the object's depth beside it.
@@ -246,12 +197,6 @@ fn punch_holes(depth: &mut [f32], mask: &Mask, random: &mut Random) {
         let (object, anywhere) = (random.below(on_object.len()), random.below(depth.len()));
         let radius = between(random, 1.0, 4.0);
         let centre = if hole < 4 { on_object.get(object).copied().unwrap_or(anywhere) } else { anywhere };
-        let (u, v) = ((centre % WIDTH) as f64, (centre / WIDTH) as f64);
-        for (i, z) in depth.iter_mut().enumerate() {
-            let (du, dv) = ((i % WIDTH) as f64 - u, (i / WIDTH) as f64 - v);
-            if du * du + dv * dv <= radius * radius {
-                *z = 0.0;
-            }
-        }
+        disc(WIDTH, HEIGHT, centre, radius, |i| depth[i] = 0.0);
     }
 }

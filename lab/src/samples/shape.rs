@@ -1,71 +1,28 @@
 //! Procedural objects: metres, z up, standing on the plane z = 0 about the origin.
 
-use core::f64::consts::{PI, TAU};
-
-use glam::DVec3;
-use nalgebra::{Rotation3, Vector3};
-
 use crate::cases::families;
 use crate::cases::scene::put_down_turned;
-use crate::draws::between;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
+use crate::cases::solid::{Solid, circle};
+use crate::prelude::*;
 
 /// Random stream of the dimensions.
 const SHAPE_STREAM: u64 = 0x7368_6170;
 
-/// Kinds of generated objects.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// A mug: a hollow cup, some 10 cm tall, with a handle towards +x.
-    Mug,
-    /// A hammer that lies on the table.
-    Hammer,
-    /// A spoon that lies on the table: a few millimetres thin.
-    Spoon,
-    /// A teapot, of which a mug that stands before it hides a good part.
-    Occluded,
+named! {
+    /// Kinds of generated objects.
+    pub enum Kind: "kind" {
+        /// A mug: a hollow cup, some 10 cm tall, with a handle towards +x.
+        Mug = "mug",
+        /// A hammer that lies on the table.
+        Hammer = "hammer",
+        /// A spoon that lies on the table: a few millimetres thin.
+        Spoon = "spoon",
+        /// A teapot, of which a mug that stands before it hides a good part.
+        Occluded = "occluded",
+    }
 }
 
 impl Kind {
-    /// All kinds.
-    pub const ALL: &[Self] = &[Self::Mug, Self::Hammer, Self::Spoon, Self::Occluded];
-
-    /// The name on the command line.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Mug => "mug",
-            Self::Hammer => "hammer",
-            Self::Spoon => "spoon",
-            Self::Occluded => "occluded",
-        }
-    }
-
-    /// The kind with a name.
-    ///
-    /// # Errors
-    /// [`ErrorCode::InvalidOption`] for any other.
-    pub fn from_name(name: &str) -> Result<Self> {
-        Self::ALL.iter().copied().find(|kind| kind.as_str() == name).ok_or_else(|| {
-            let names: Vec<&str> = Self::ALL.iter().map(|kind| kind.as_str()).collect();
-            Error::new(
-                ErrorCode::InvalidOption,
-                "kind",
-                format!("{name:?}"),
-                names.join(" or "),
-                "Pass one of the kinds that can be generated.",
-            )
-        })
-    }
-
-    /// The kind's symmetry, in the words of a case's `gt.json`.
-    pub fn symmetry(self) -> &'static str {
-        match self {
-            Self::Mug | Self::Hammer | Self::Spoon | Self::Occluded => "none",
-        }
-    }
-
     /// How far the side that nobody sees bulges at most, as a share of the box diagonal: what is thin has little room
     /// for inventions.
     pub fn bulge(self) -> f64 {
@@ -116,7 +73,7 @@ fn mug(random: &mut Random) -> Result<Mesh> {
     let height = between(random, 0.094, 0.104);
     let wall = between(random, 0.0035, 0.005);
     let taper = between(random, 0.94, 1.0);
-    let mut builder = Builder::default();
+    let mut solid = Solid::default();
 
     // Outside: the bottom from its middle, a rounded edge, the wall upwards.
     let edge = 0.004;
@@ -134,7 +91,8 @@ fn mug(random: &mut Random) -> Result<Mesh> {
     let floor = inner(floor_z) - edge;
     profile.extend(arc([floor, floor_z], edge, 0.0, -0.5 * PI, 3));
     profile.extend((0..6).rev().map(|i| [floor * f64::from(i) / 6.0, wall]));
-    builder.revolve(&profile, 64);
+    solid.lathe(&profile, 64);
+    let cup = solid.len();
 
     // Half an ellipse, beginning and ending in the middle of the wall and at right angles to it.
     let (middle, reach) = (height * between(random, 0.5, 0.56), between(random, 0.026, 0.032));
@@ -144,11 +102,20 @@ fn mug(random: &mut Random) -> Result<Mesh> {
             let (sine, cosine) = libm::sincos(PI * f64::from(i) / 32.0);
             let x = inner(middle + half_height * cosine) + 0.5 * wall;
             let point = DVec3::new(x + reach * sine, 0.0, middle + half_height * cosine);
-            (point, DVec3::new(reach * cosine, 0.0, -half_height * sine).normalize()).into()
+            [point, DVec3::new(reach * cosine, 0.0, -half_height * sine).normalize()]
         })
         .collect();
-    builder.sweep(&path, DVec3::Y, between(random, 0.0055, 0.007), between(random, 0.0035, 0.0045), 14);
-    builder.mesh()
+    let (half_width, half_thickness) = (between(random, 0.0055, 0.007), between(random, 0.0035, 0.0045));
+    let ring = |&[point, tangent]: &[DVec3; 2]| {
+        // Backwards about the tangent, so that the skin faces outward.
+        let upwards = tangent.cross(DVec3::Y);
+        let at = |[x, y]: [f64; 2]| point + upwards * (x * half_thickness) - DVec3::Y * (y * half_width);
+        circle(14).map(at).collect()
+    };
+    let rings: Vec<Vec<DVec3>> = path.iter().map(ring).collect();
+    solid.skin(&rings, Some([path[0][0], path[32][0]]));
+    let handle = solid.len();
+    begun(solid, [cup, handle])
 }
 
 /// Points on an arc about `centre`, both ends included.
@@ -159,78 +126,18 @@ fn arc(centre: [f64; 2], radius: f64, from: f64, to: f64, steps: u32) -> impl It
     })
 }
 
-/// Vertices and triangles, put together part by part; all triangles face outward.
-#[derive(Debug, Default)]
-struct Builder {
-    positions: Vec<DVec3>,
-    triangles: Vec<[u32; 3]>,
-}
-
-impl Builder {
-    fn vertex(&mut self, position: DVec3) -> u32 {
-        self.positions.push(position);
-        self.positions.len() as u32 - 1
-    }
-
-    /// Turns a profile of (radius, z) about the z axis. It begins and ends on the axis and runs with the solid to
-    /// its left.
-    fn revolve(&mut self, profile: &[[f64; 2]], segments: u32) {
-        let [[_, first_z], middle @ .., [_, last_z]] = profile else { return };
-        let first = self.vertex(DVec3::new(0.0, 0.0, *first_z));
-        let rings: Vec<u32> = middle
-            .iter()
-            .map(|&[radius, z]| {
-                let start = self.positions.len() as u32;
-                for k in 0..segments {
-                    let (sine, cosine) = libm::sincos(TAU * f64::from(k) / f64::from(segments));
-                    self.positions.push(DVec3::new(radius * cosine, radius * sine, z));
-                }
-                start
-            })
-            .collect();
-        let last = self.vertex(DVec3::new(0.0, 0.0, *last_z));
-        self.close(&rings, segments, first, last);
-    }
-
-    /// Moves an ellipse along a path of (point, unit tangent) in the plane that `across` is normal to; `half_width`
-    /// is along `across`, `half_thickness` at right angles to it. Both ends are closed.
-    fn sweep(&mut self, path: &[[DVec3; 2]], across: DVec3, half_width: f64, half_thickness: f64, segments: u32) {
-        let (Some(&[begin, _]), Some(&[end, _])) = (path.first(), path.last()) else { return };
-        let first = self.vertex(begin);
-        let rings: Vec<u32> = path
-            .iter()
-            .map(|&[point, tangent]| {
-                let start = self.positions.len() as u32;
-                let upwards = tangent.cross(across);
-                for k in 0..segments {
-                    // Backwards about the tangent, as `close` has it.
-                    let (sine, cosine) = libm::sincos(TAU * f64::from(k) / f64::from(segments));
-                    self.positions.push(point + upwards * (cosine * half_thickness) - across * (sine * half_width));
-                }
-                start
-            })
-            .collect();
-        let last = self.vertex(end);
-        self.close(&rings, segments, first, last);
-    }
-
-    /// Joins rings of `segments` vertices to each other, and the outermost ones to a vertex each. From ring to ring
-    /// by the right hand, the vertices of a ring run so that (along the ring) × (to the next ring) faces outward.
-    fn close(&mut self, rings: &[u32], segments: u32, first: u32, last: u32) {
-        for k in 0..segments {
-            let next = (k + 1) % segments;
-            if let (Some(low), Some(high)) = (rings.first(), rings.last()) {
-                self.triangles.push([first, low + next, low + k]);
-                self.triangles.push([last, high + k, high + next]);
-            }
-            for ring in rings.windows(2) {
-                let [a, b, c, d] = [ring[0] + k, ring[0] + next, ring[1] + k, ring[1] + next];
-                self.triangles.extend([[a, b, c], [b, d, c]]);
-            }
+/// The mesh of skins, the vertices of each of which end at an index. The point at which a skin begins comes before its
+/// rings and not behind them: so the committed samples have it.
+fn begun(solid: Solid, ends: [usize; 2]) -> Result<Mesh> {
+    let mesh = solid.finish()?.0;
+    let (mut positions, mut triangles) = (mesh.positions().to_vec(), mesh.triangles().to_vec());
+    for (begin, end) in [(0, ends[0]), (ends[0], ends[1])] {
+        let last_ring = end - 2;
+        positions[begin..=last_ring].rotate_right(1);
+        for vertex in triangles.as_flattened_mut().iter_mut().filter(|i| (begin..=last_ring).contains(&(**i as usize)))
+        {
+            *vertex = if *vertex as usize == last_ring { begin as u32 } else { *vertex + 1 };
         }
     }
-
-    fn mesh(self) -> Result<Mesh> {
-        Mesh::new(self.positions.iter().map(|p| p.as_vec3()).collect(), self.triangles)
-    }
+    Mesh::new(positions, triangles)
 }

@@ -1,22 +1,15 @@
 //! Arranged scenes: objects that stand on each other and on boards, lean, hang and lie in piles.
 
-use core::f64::consts::{PI, TAU};
-
-use glam::{DAffine3, DVec2, DVec3, Vec3};
-use nalgebra::Rotation3;
-
 use super::clutter;
 use super::heap::{Below, Heap};
 use super::layout::{
     Floor, Footprint, Layout, Placed, Stance, deepest, held, joined, moved, put_down, reach_of, shifted, unit,
 };
+use crate::cases::distortion::box_of;
 use crate::cases::draft::Axis;
 use crate::cases::scene::turned_axis;
 use crate::cases::solid::Solid;
-use crate::draws::{between, chance};
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
 
 /// Scenes with a board over the table, and scenes whose depth map shows nothing but the objects.
 const BOARDS: f64 = 0.3;
@@ -130,7 +123,7 @@ impl World {
                 let (tilted, symmetry) = held(Stance::Leans, &thing.mesh, &thing.symmetry, stances)?;
                 let mesh = moved(&tilted, middle + off)?;
                 let (mesh, turn, below) = self.heap.settle(&mesh, stances)?;
-                let turn = Rotation3::from(nalgebra::UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(
+                let turn = Rotation3::from(UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(
                     turn.w, turn.x, turn.y, turn.z,
                 )));
                 let symmetry = symmetry.iter().map(|&(axis, fold)| (turned_axis(turn.matrix(), axis), fold)).collect();
@@ -187,8 +180,7 @@ fn up(height: f64) -> Vec3 {
 
 /// The middle of the box of a mesh on the plane, and half of its diagonal there.
 fn middle_of(mesh: &Mesh) -> (DVec2, f64) {
-    let points = || mesh.positions().iter().map(|p| p.as_dvec3().truncate());
-    let low = points().fold(DVec2::INFINITY, DVec2::min);
-    let high = points().fold(DVec2::NEG_INFINITY, DVec2::max);
+    let (low, high) = box_of(mesh.positions().iter().map(|p| p.as_dvec3()));
+    let (low, high) = (low.truncate(), high.truncate());
     ((low + high) * 0.5, (high - low).length() * 0.5)
 }

@@ -1,24 +1,17 @@
 //! Cluttered scenes as a dataset in the layout of BOP: each scene has one image, and each object is its own model.
 
-use std::path::Path;
-
-use nalgebra::{Rotation3, UnitVector3, Vector3};
+use nalgebra::UnitVector3;
 use serde_json::{Map, Value, json};
 
-use super::case::DEPTH_SCALE;
+use super::scene::DEPTH_SCALE;
 use super::scene::ScenePair;
 use super::set::SceneSet;
 use crate::case_folder::write::{depth_png, mask_png, ply_mesh};
+use crate::cases::distortion::mapped;
 use crate::files::write;
 use crate::parallel::parallel_map;
+use crate::prelude::*;
 use sim3align::metrics::bop::VISIBILITY_TOLERANCE_M;
-use sim3align::metrics::symmetry::SymmetryAxis;
-use sim3align_geometry::cloud::Bounds;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::image::Mask;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::rasteriser::Rasteriser;
-use sim3align_geometry::similarity::{Similarity, vec3, vector3};
 use sim3align_geometry::surface::SurfaceMoments;
 
 /// BOP's unit, in metres.
@@ -97,10 +90,9 @@ impl Model {
         let bounds = Bounds::of(pair.object.positions());
         let middle = bounds.map_or(Vector3::zeros(), |b| vector3(b.center()));
         let unit = pose.scale / MILLIMETRE;
-        let moved = pair.object.positions().iter().map(|p| vec3(&((vector3(*p) - middle) * unit))).collect();
-        let triangles = pair.object.triangles().to_vec();
+        let moved = mapped(&pair.object, |p| vec3(&((vector3(*p) - middle) * unit)));
         Self {
-            mesh: Mesh::new(moved, triangles).unwrap_or_else(|_| pair.object.clone()),
+            mesh: moved.unwrap_or_else(|_| pair.object.clone()),
             camera_from_model: Similarity { scale: MILLIMETRE, translation: pose.apply(middle), ..*pose },
             symmetry: pair.symmetry(),
         }
@@ -118,7 +110,7 @@ impl Model {
             match fold {
                 None => continuous.push(json!({ "axis": axis.as_slice(), "offset": centroid.as_slice() })),
                 Some(fold) => discrete.extend((1..*fold).map(|k| {
-                    let angle = core::f64::consts::TAU * f64::from(k) / f64::from(*fold);
+                    let angle = TAU * f64::from(k) / f64::from(*fold);
                     let turn = Rotation3::from_axis_angle(&axis, angle);
                     let shift = centroid - turn * centroid;
                     let rows = (0..3).flat_map(|i| [turn[(i, 0)], turn[(i, 1)], turn[(i, 2)], shift[i]]);

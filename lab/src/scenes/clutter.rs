@@ -1,14 +1,7 @@
 //! Clutter on desks.
 
-use core::f64::consts::TAU;
-
-use glam::{DAffine3, DVec3};
-
 use crate::cases::solid::Solid;
-use crate::draws::between;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
 
 /// A thing about the origin, on z = 0: books, a box, a can, a ball, a cup of pens.
 pub fn thing(random: &mut Random) -> Result<Mesh> {

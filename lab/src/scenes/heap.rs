@@ -1,11 +1,7 @@
 //! A heap: the tops of everything that stands somewhere, as heights over a plane, onto which objects are dropped.
 
-use glam::{DQuat, DVec2, DVec3};
-
-use crate::draws::between;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
+use crate::cases::distortion::with_vertices;
+use crate::prelude::*;
 use sim3align_geometry::rotations::exp;
 
 /// Side of a cell and of the whole, metres.
@@ -95,8 +91,7 @@ impl Heap {
                 turned = (turn * turned).normalize();
             }
         }
-        let settled = Mesh::new(best.iter().map(|p| p.as_vec3()).collect(), mesh.triangles().to_vec())?;
-        Ok((settled, turned, below))
+        Ok((with_vertices(mesh, best.iter().map(|p| p.as_vec3()))?, turned, below))
     }
 }
 

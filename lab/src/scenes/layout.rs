@@ -1,23 +1,13 @@
 //! Layout: objects placed close to each other without intersection.
 
-use core::f64::consts::{PI, TAU};
-
-use glam::{DVec2, DVec3, Vec3};
-use nalgebra::{Matrix3, Rotation3, Vector3};
-
 use super::clutter;
 use super::heap::Below;
-use crate::cases::distortion::random_rotation;
+use crate::cases::distortion::{mapped, random_rotation};
 use crate::cases::draft::{Axis, Object};
 use crate::cases::families;
 use crate::cases::scene::{put_down_turned, turned_axis};
-use crate::draws::between;
-use crate::draws::chance;
+use crate::prelude::*;
 use sim3align::geometry::surface::SurfaceMoments;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::similarity::vector3;
 
 /// Directions in which footprints are measured.
 const DIRECTIONS: usize = 64;
@@ -37,39 +27,25 @@ const STEPS: usize = 400;
 const FIRST_STEP: f64 = 0.03;
 const SHORTER: f64 = 0.98;
 
-/// How an object is held.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stance {
-    /// It stands on the desk.
-    Stands,
-    /// It touches the desk, tilted, and leans on something that is not seen.
-    Leans,
-    /// It hangs over the desk.
-    Hangs,
-    /// It stands on another object.
-    OnTop,
-    /// It stands on a board over the desk.
-    OnBoard,
-    /// It lies as it fell, on or against other objects.
-    InPile,
+named! {
+    /// How an object is held.
+    pub enum Stance: "stance" {
+        /// It stands on the desk.
+        Stands = "stands",
+        /// It touches the desk, tilted, and leans on something that is not seen.
+        Leans = "leans",
+        /// It hangs over the desk.
+        Hangs = "hangs",
+        /// It stands on another object.
+        OnTop = "on top",
+        /// It stands on a board over the desk.
+        OnBoard = "on board",
+        /// It lies as it fell, on or against other objects.
+        InPile = "in pile",
+    }
 }
 
 impl Stance {
-    /// All stances.
-    pub const ALL: &[Self] = &[Self::Stands, Self::Leans, Self::Hangs, Self::OnTop, Self::OnBoard, Self::InPile];
-
-    /// Its name.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Stands => "stands",
-            Self::Leans => "leans",
-            Self::Hangs => "hangs",
-            Self::OnTop => "on top",
-            Self::OnBoard => "on board",
-            Self::InPile => "in pile",
-        }
-    }
-
     /// Half of them stand on the desk or, if there is one, on a board.
     pub(super) fn draw(random: &mut Random, has_board: bool) -> Self {
         match random.uniform() {
@@ -270,7 +246,7 @@ pub(super) fn moved(mesh: &Mesh, place: DVec2) -> Result<Mesh> {
 }
 
 pub(super) fn shifted(mesh: &Mesh, offset: Vec3) -> Result<Mesh> {
-    Mesh::new(mesh.positions().iter().map(|p| *p + offset).collect(), mesh.triangles().to_vec())
+    mapped(mesh, |p| *p + offset)
 }
 
 pub(super) fn joined(meshes: &[Mesh]) -> Result<Mesh> {

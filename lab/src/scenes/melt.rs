@@ -1,9 +1,7 @@
 //! A mesh sampled to a coarse, blurred volume and back: details melt, thin parts thicken, parts become one.
 
-use glam::DVec3;
-
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
+use crate::cases::distortion::box_of;
+use crate::prelude::*;
 
 /// Empty cells around the object.
 const PAD: usize = 4;
@@ -29,8 +27,7 @@ struct Volume {
 /// # Errors
 /// None that a mesh with a volume could cause.
 pub fn melted(mesh: &Mesh, share: f64) -> Result<Mesh> {
-    let points = || mesh.positions().iter().map(|p| p.as_dvec3());
-    let (low, high) = (points().fold(DVec3::INFINITY, DVec3::min), points().fold(DVec3::NEG_INFINITY, DVec3::max));
+    let (low, high) = box_of(mesh.positions().iter().map(|p| p.as_dvec3()));
     let cell = share * (high - low).max_element();
     let size = ((high - low) / cell).to_array().map(|n| n as usize + 1 + 2 * PAD);
     let origin = low - DVec3::splat(PAD as f64 * cell);

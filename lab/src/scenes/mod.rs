@@ -8,7 +8,6 @@
 
 mod arranged;
 mod bop_folder;
-mod case;
 mod clutter;
 mod difficulty;
 mod folder;
@@ -22,10 +21,9 @@ mod underside;
 mod view;
 
 pub use bop_folder::write_bop;
-pub use case::{DEPTH_SCALE, SceneCase};
 pub use difficulty::{Sight, difficulty, tier};
 pub use heap::Below;
 pub use layout::Stance;
 pub use prior::Prior;
-pub use scene::{ClutteredScene, LEAST_VISIBLE, MIN_MASK_PX, ScenePair};
+pub use scene::{ClutteredScene, DEPTH_SCALE, LEAST_VISIBLE, MIN_MASK_PX, ScenePair};
 pub use set::{SCENES, SceneSet};

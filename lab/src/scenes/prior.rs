@@ -1,71 +1,45 @@
 //! What generative models make of an object: two styles of being wrong.
 
-use nalgebra::{Matrix3, Vector3};
-
 use super::layout::Placed;
 use super::melt::melted;
 use super::underside::invented_underside;
+use crate::cases::distortion::mapped;
 use crate::cases::generator::{Generated, generate};
 use crate::cases::scene::Scene;
 use crate::cases::streams::{GENERATOR_STREAM, QUALITY_STREAM};
 use crate::cases::tier::{Class, Tier};
-use crate::draws::{between, chance, mixed};
+use crate::prelude::*;
 use sim3align::register::umeyama::{Pair, ScaleMode, umeyama};
 use sim3align_geometry::decimate::decimate;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::similarity::{Similarity, vec3, vector3};
 
 /// Pixels that the smooth prior's best fit is taken over, at most.
 const FITTED_PIXELS: usize = 4000;
 /// Triangles of a smooth prior, about.
 const SMOOTH_TRIANGLES: usize = 8000;
 
-/// The style of the generated mesh.
-///
-/// The truth of both is the similarity of the object's own frame: what a prior's faults do to the size and the pose of
-/// the whole is taken out before the mesh is given a frame of its own.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Prior {
-    /// As SAM 3D Objects: detailed and right where seen up to a slight warp, the rest invented, some small part lost or
-    /// added. Fitted back to the object by area.
-    Detailed,
-    /// As TripoSR: resampled from a blurred volume, so that details melt, thin parts thicken and parts flow together,
-    /// and flattened along the line of sight to 0.6 to 0.85 of its depth.
+named! {
+    /// The style of the generated mesh.
     ///
-    /// No similarity undoes a flattening. The truth is the one that brings the flattened side that was *seen* back to
-    /// where it was: turn and place by the least squared distance over its pixels, size by that across the line of
-    /// sight, so that the picture agrees as far as it can. Of the rest it says nothing. So the true pose's own row is
-    /// further from ideal than that of [`Prior::Detailed`]: on the first 20 scenes of seed 0, silhouette and mask
-    /// overlap by 0.759 on average (detailed: 0.786; where little is hidden 0.906 and 0.943), and the depth is off by
-    /// 5.4 mm (3.0 mm). Among poses that explain the picture as well, some are 2 % smaller or larger and turned by 5°.
-    Smooth,
+    /// The truth of both is the similarity of the object's own frame: what a prior's faults do to the size and the pose of
+    /// the whole is taken out before the mesh is given a frame of its own.
+    pub enum Prior: "prior" {
+        /// As SAM 3D Objects: detailed and right where seen up to a slight warp, the rest invented, some small part lost or
+        /// added. Fitted back to the object by area.
+        Detailed = "detailed",
+        /// As TripoSR: resampled from a blurred volume, so that details melt, thin parts thicken and parts flow together,
+        /// and flattened along the line of sight to 0.6 to 0.85 of its depth.
+        ///
+        /// No similarity undoes a flattening. The truth is the one that brings the flattened side that was *seen* back to
+        /// where it was: turn and place by the least squared distance over its pixels, size by that across the line of
+        /// sight, so that the picture agrees as far as it can. Of the rest it says nothing. So the true pose's own row is
+        /// further from ideal than that of [`Prior::Detailed`]: on the first 20 scenes of seed 0, silhouette and mask
+        /// overlap by 0.759 on average (detailed: 0.786; where little is hidden 0.906 and 0.943), and the depth is off by
+        /// 5.4 mm (3.0 mm). Among poses that explain the picture as well, some are 2 % smaller or larger and turned by 5°.
+        Smooth = "smooth",
+    }
 }
 
 impl Prior {
-    /// All priors.
-    pub const ALL: &[Self] = &[Self::Detailed, Self::Smooth];
-
-    /// The prior's name.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Detailed => "detailed",
-            Self::Smooth => "smooth",
-        }
-    }
-
-    /// The prior of a name.
-    ///
-    /// # Errors
-    /// [`ErrorCode::InvalidOption`] for any other.
-    pub fn from_name(name: &str) -> Result<Self> {
-        Self::ALL.iter().copied().find(|prior| prior.as_str() == name).ok_or_else(|| {
-            let remedy = "Pass the name of a prior.";
-            Error::new(ErrorCode::InvalidOption, "prior", format!("{name:?}"), "detailed or smooth", remedy)
-        })
-    }
-
     /// The prior of a name, or all of them for `"both"`.
     ///
     /// # Errors
@@ -121,9 +95,8 @@ fn smooth(placed: &Placed, scene: &Scene, seed: u64) -> Result<Generated> {
     let flatten = Matrix3::identity() - away * away.transpose() * (1.0 - flattened);
     let flat = |p: Vector3<f64>| middle + flatten * (p - middle);
     let back = best_fit(&seen, flat, middle, away)?;
-    let positions = mesh.positions().iter().map(|p| vec3(&back.apply(flat(vector3(*p))))).collect();
     Ok(Generated {
-        mesh: Mesh::new(positions, mesh.triangles().to_vec())?,
+        mesh: mapped(&mesh, |p| vec3(&back.apply(flat(vector3(*p)))))?,
         symmetry: placed.symmetry.clone(),
         tags: vec!["melted", "flattened"],
         parameters: vec![("blur", blur), ("flattened", flattened)],

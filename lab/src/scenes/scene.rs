@@ -1,11 +1,14 @@
 //! A cluttered scene and its pairs.
 
-use super::case::{DEPTH_SCALE, SceneCase};
+use serde_json::json;
+
 use super::difficulty::{Sight, difficulty, tier};
 use super::heap::Below;
 use super::layout::{Layout, Placed, Stance};
 use super::prior::Prior;
-use super::view::{Seen, View};
+use super::view::{DeskView, Seen};
+use crate::bench::benchmark::BenchCase;
+use crate::case_folder::contents::{glb_file, parameters_json};
 use crate::cases::case::{declared, is_telling};
 use crate::cases::distortion::canonicalise;
 use crate::cases::mask::Segmented;
@@ -15,15 +18,16 @@ use crate::cases::streams::{
     LAYOUT_STREAM, MASK_STREAM, OBJECT_STREAM, QUALITY_STREAM, READINGS_STREAM, SCENE_STREAM, STANCE_STREAM,
 };
 use crate::cases::tier::{Class, OutlineErrors, Tier};
-use crate::draws::{chance, mixed};
-use sim3align::evidence::observation::Observation;
-use sim3align::metrics::symmetry::{Symmetry, SymmetryAxis};
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::image::DepthMap;
-use sim3align_geometry::mesh::Mesh;
+use crate::files::NamedFile;
+use crate::prelude::*;
+use sim3align::align::evaluate::Truth;
 use sim3align_geometry::order::median;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::similarity::Similarity;
+
+/// Metres per unit of the depth maps: finer than the noise, and compact as 16-bit images.
+pub const DEPTH_SCALE: f64 = 0.0001;
+
+/// What all cases are called.
+const CLASS: &str = "scene";
 
 /// Minimum number of pixels in a mask.
 pub const MIN_MASK_PX: usize = 350;
@@ -80,7 +84,7 @@ pub struct ScenePair {
 impl ClutteredScene {
     /// The scene at a place in a set, with this many objects.
     pub(super) fn draw(set_seed: u64, index: usize, objects: usize, is_arranged: bool) -> Result<Self> {
-        for attempt in 0..LAYOUTS {
+        first_fit(&format!("scene {index}"), LAYOUTS, |attempt| {
             let seed = mixed([set_seed, index as u64, attempt]);
             let things = &mut Random::new(seed, OBJECT_STREAM);
             let stances = &mut Random::new(seed, STANCE_STREAM);
@@ -95,18 +99,17 @@ impl ClutteredScene {
             let too_near = chance(view_random, if is_arranged { 0.25 } else { 0.1 });
             let cut = if too_near { MOST_CUT } else { 0.0 };
             for view in 0..VIEWS {
-                let seen = View::draw(&layout, too_near, view_random)?.see(&layout);
+                let seen = DeskView::draw(&layout, too_near, view_random)?.see(&layout);
                 let shown = seen.shown_enough(&layout, cut, is_arranged, view_random);
                 let count = shown.iter().filter(|shown| **shown).count();
                 // What an arranged scene hardly shows is one of the things without a mask.
                 let is_enough = if is_arranged { count >= 2 && 3 * count >= 2 * objects } else { count == objects };
                 if is_enough && let Some(scene) = Self::read(&layout, &seen, &shown, index, mixed([seed, view]))? {
-                    return Ok(scene);
+                    return Ok(Some(scene));
                 }
             }
-        }
-        let found = format!("no fitting draw of scene {index}");
-        Err(Error::new(ErrorCode::Internal, "scene", found, "one in a few", "Please report the set's seed."))
+            Ok(None)
+        })
     }
 
     /// Depth and masks of what a camera sees; `None` where they leave too little of an object.
@@ -195,26 +198,37 @@ impl ScenePair {
     ///
     /// # Errors
     /// Only in case of a bug in the generator.
-    pub fn case(&self, prior: Prior) -> Result<SceneCase> {
+    pub fn case(&self, prior: Prior) -> Result<BenchCase> {
         let seed = mixed([self.seed, prior as u64]);
         let generated = prior.generate(&self.placed, &self.view, seed)?;
         let (mesh, object_from_mesh) = canonicalise(&generated.mesh, seed)?;
-        let mut tags = self.tags.clone();
-        tags.extend(generated.tags);
-        let mut parameters = self.parameters.clone();
-        parameters.extend(generated.parameters);
-        Ok(SceneCase {
+        let tags = self.tags.iter().chain(&generated.tags);
+        let mut parameters = parameters_json(self.parameters.iter().chain(&generated.parameters));
+        parameters["prior"] = json!(prior.as_str());
+        let camera_from_mesh = self.camera_from_object.compose(&object_from_mesh);
+        Ok(BenchCase {
             name: self.name(),
-            prior,
-            tier: tier(self.difficulty),
+            tier: tier(self.difficulty).as_str().into(),
+            class: CLASS.into(),
             family: self.family.clone(),
-            tags,
+            tags: tags.map(|tag| (*tag).to_owned()).collect(),
             parameters,
             observation: self.observation.clone(),
             mesh,
-            camera_from_mesh: self.camera_from_object.compose(&object_from_mesh),
-            symmetry: declared(&generated.symmetry, &object_from_mesh),
+            colors: None,
+            truth: Some(Truth { camera_from_mesh, symmetry: declared(&generated.symmetry, &object_from_mesh) }),
         })
+    }
+
+    /// The files of the case folder with what a prior makes of the object: name and content. `meta.json` has the prior
+    /// among the parameters.
+    ///
+    /// # Errors
+    /// Those of [`ScenePair::case`] and [`BenchCase::files`].
+    pub fn files(&self, prior: Prior) -> Result<Vec<NamedFile>> {
+        let case = self.case(prior)?;
+        let note = format!("{}, {}", case.name, prior.as_str());
+        case.files(&note, vec![glb_file(&case.mesh)], None, Some(DEPTH_SCALE))
     }
 
     /// The pair's name, and that of its folder.

@@ -1,18 +1,15 @@
 //! The set: how many objects each of its scenes has.
 
 use std::fs;
-use std::path::Path;
 
 use serde_json::json;
 
 use super::prior::Prior;
 use super::scene::ClutteredScene;
 use crate::cases::streams::COUNT_STREAM;
-use crate::draws::mixed;
-use crate::files::unwritable;
+use crate::files::{unwritable, write_files};
 use crate::parallel::parallel_map;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::random::Random;
+use crate::prelude::*;
 
 /// Default number of scenes of a set.
 pub const SCENES: usize = 100;
@@ -125,7 +122,7 @@ impl SceneSet {
                 let (parent, path) = (folder.join(prior.as_str()), folder.join(prior.as_str()).join(&name));
                 if !path.exists() {
                     let unfinished = parent.join(format!(".{name}"));
-                    pair.case(*prior)?.write(&unfinished)?;
+                    write_files(&unfinished, &pair.files(*prior)?)?;
                     fs::rename(&unfinished, &path).map_err(|error| unwritable(&path, error))?;
                 }
             }

@@ -1,14 +1,7 @@
 //! Undersides that a generative model invents: nobody has seen them.
 
-use core::f64::consts::TAU;
-
-use glam::DVec3;
-
-use crate::cases::distortion::normals;
-use crate::draws::between;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
+use crate::cases::distortion::{box_of, normals, with_vertices};
+use crate::prelude::*;
 
 /// Height of what counts as the underside, relative to the height of the object.
 const BAND: f64 = 0.3;
@@ -20,7 +13,7 @@ const LIFT: f64 = 0.012;
 /// A mesh in the world's frame with another underside: tilted, bulged, higher or lower. Returns its tilt, radians.
 pub fn invented_underside(mesh: &Mesh, random: &mut Random) -> Result<(Mesh, f64)> {
     let points: Vec<DVec3> = mesh.positions().iter().map(|p| p.as_dvec3()).collect();
-    let (low, high) = points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)));
+    let (low, high) = box_of(points.iter().copied());
     let (middle, diagonal) = ((low + high) * 0.5, (high - low).length());
     let tilt = between(random, 0.0, TILT);
     let (sine, cosine) = libm::sincos(TAU * random.uniform());
@@ -39,5 +32,5 @@ pub fn invented_underside(mesh: &Mesh, random: &mut Random) -> Result<(Mesh, f64
         let change = across.dot(slope) + lift - bulge * round;
         (*p + DVec3::Z * (is_low * is_below * change)).as_vec3()
     });
-    Ok((Mesh::new(positions.collect(), mesh.triangles().to_vec())?, tilt))
+    Ok((with_vertices(mesh, positions)?, tilt))
 }

@@ -1,16 +1,8 @@
 //! The camera, and what it sees of every object.
 
-use nalgebra::Vector3;
-
 use super::layout::Layout;
-use crate::cases::scene::{Scene, background, camera_at, count, hidden, in_front, put_before, shown};
-use crate::draws::between;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::pinhole::Pinhole;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::rasteriser::Rasteriser;
-use sim3align_geometry::similarity::{Similarity, vector3};
+use crate::cases::scene::{Scene, View, camera_at, count, in_front, put_before};
+use crate::prelude::*;
 
 /// Pixels in a row, and rows.
 pub const WIDTH: usize = 640;
@@ -21,11 +13,10 @@ const DISTANCE_M: [f64; 2] = [0.5, 1.6];
 /// How much larger the image is made, on each side, to measure what its border cuts off.
 const MARGIN_PX: usize = 320;
 
-/// A camera and where it stands.
+/// A camera at a desk.
 #[derive(Debug)]
-pub struct View {
-    camera: Pinhole,
-    camera_from_world: Similarity,
+pub struct DeskView {
+    view: View,
     /// Where the wall is: what it faces, and how far behind the origin it is.
     wall: (Vector3<f64>, f64),
 }
@@ -39,7 +30,7 @@ pub struct Seen {
     pub together: Scene,
 }
 
-impl View {
+impl DeskView {
     /// A camera at a desk, that has the objects about in the middle of its picture, or so near that the border may cut
     /// them.
     pub fn draw(layout: &Layout, too_near: bool, random: &mut Random) -> Result<Self> {
@@ -62,28 +53,20 @@ impl View {
         let (sine, cosine) = libm::sincos(layout.front);
         let faces = Vector3::new(cosine, sine, 0.0);
         let wall = (faces, layout.wall - faces.dot(&vector3(layout.centre)));
-        Ok(Self { camera, camera_from_world, wall })
+        Ok(Self { view: View { width: WIDTH, height: HEIGHT, camera, camera_from_world }, wall })
     }
 
     /// What it sees.
     pub fn see(&self, layout: &Layout) -> Seen {
-        let Self { camera, camera_from_world: pose, wall } = self;
-        let mut rasteriser = Rasteriser::new();
-        rasteriser.render_depth(&layout.clutter, pose, camera, WIDTH, HEIGHT);
-        let clutter = rasteriser.depth().to_vec();
-        let alone: Vec<_> = layout
-            .objects
-            .iter()
-            .map(|placed| {
-                rasteriser.render(&placed.mesh, pose, camera, WIDTH, HEIGHT);
-                (rasteriser.depth().to_vec(), rasteriser.triangles().to_vec())
-            })
-            .collect();
+        let Self { view, wall } = self;
+        let clutter = view.depth_of(&layout.clutter);
+        let alone: Vec<_> = layout.objects.iter().map(|placed| view.render(&placed.mesh)).collect();
         let mut depth = layout.table.map_or_else(
             || vec![0.0; WIDTH * HEIGHT],
             |height| {
                 let raised = Similarity { translation: Vector3::new(0.0, 0.0, height), ..Similarity::identity() };
-                background(&pose.compose(&raised), camera, *wall, WIDTH, HEIGHT)
+                let camera_from_world = view.camera_from_world.compose(&raised);
+                View { camera_from_world, ..*view }.background(*wall)
             },
         );
         put_before(&mut depth, &clutter);
@@ -100,32 +83,16 @@ impl View {
                 }
             }
         }
-        let scene = |object_depth: &[f32], object_triangles: &[u32], others: &[f32], silhouette_px: usize| {
-            let share = |px: usize| px as f64 / silhouette_px.max(1) as f64;
-            Scene {
-                width: WIDTH,
-                height: HEIGHT,
-                camera: *camera,
-                camera_from_world: *pose,
-                object_depth: object_depth.to_vec(),
-                object_triangles: object_triangles.to_vec(),
-                depth: depth.clone(),
-                visible: shown(object_depth, others),
-                silhouette_px,
-                cut: 1.0 - share(count(object_depth)),
-                hidden: share(hidden(object_depth, others)),
-            }
-        };
         let objects = (0..alone.len())
             .map(|i| {
                 let mut others = clutter.clone();
                 alone.iter().enumerate().filter(|(k, _)| *k != i).for_each(|(_, (z, _))| put_before(&mut others, z));
-                let (object, triangles) = &alone[i];
-                scene(object, triangles, &others, self.silhouette_px(&layout.objects[i].mesh, object))
+                let silhouette_px = self.silhouette_px(&layout.objects[i].mesh, &alone[i].0);
+                view.scene(alone[i].clone(), &others, depth.clone(), silhouette_px)
             })
             .collect();
         let silhouettes = count(&together);
-        Seen { objects, together: scene(&together, &[], &clutter, silhouettes) }
+        Seen { objects, together: view.scene((together, Vec::new()), &clutter, depth, silhouettes) }
     }
 
     /// Pixels of an object, were the image larger.
@@ -137,11 +104,6 @@ impl View {
         if !depth.iter().enumerate().any(|(i, z)| *z > 0.0 && is_rim(i)) {
             return count(depth);
         }
-        let margin = MARGIN_PX as f64;
-        let camera = Pinhole { cx: self.camera.cx + margin, cy: self.camera.cy + margin, ..self.camera };
-        let mut rasteriser = Rasteriser::new();
-        let (width, height) = (WIDTH + 2 * MARGIN_PX, HEIGHT + 2 * MARGIN_PX);
-        rasteriser.render_depth(mesh, &self.camera_from_world, &camera, width, height);
-        count(rasteriser.depth())
+        count(&self.view.enlarged(MARGIN_PX).depth_of(mesh))
     }
 }

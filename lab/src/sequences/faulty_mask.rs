@@ -1,8 +1,6 @@
 //! Faults of masks: too wide, too narrow, with holes.
 
-use core::f64::consts::PI;
-
-use sim3align_geometry::image::Mask;
+use crate::prelude::*;
 
 /// Share of a mask that its holes take, and holes along a side.
 const HOLES: f64 = 0.3;

@@ -2,34 +2,32 @@
 //! the true pose.
 
 use std::fs;
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use nalgebra::{Matrix3, Vector3};
 use serde_json::Value;
 
 use super::{Sequence, SequenceFrame};
 use crate::case_folder::case::{depth_and_camera, has_mask, last_name, mask_in, mesh_in, photo_of, truth_of};
 use crate::case_folder::json;
-use sim3align::evidence::frame::Frame;
-use sim3align::metrics::symmetry::Symmetry;
+use crate::files::listed;
+use crate::prelude::*;
 use sim3align::views::View;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::similarity::Similarity;
 
 /// Reads a case folder with `frame_*` folders.
 ///
 /// # Errors
 /// As [`read_case`](crate::case_folder::case::read_case).
 pub fn read_sequence(folder: &Path) -> Result<Sequence> {
-    let mut folders: Vec<PathBuf> = fs::read_dir(folder)
-        .map_err(|error| missing(folder, error.to_string()))?
-        .filter_map(|entry| Some(entry.ok()?.path()))
-        .filter(|path| path.is_dir() && last_name(path).starts_with("frame_"))
-        .collect();
-    folders.sort();
+    let mut folders = listed(folder)?;
+    folders.retain(|path| path.is_dir() && last_name(path).starts_with("frame_"));
     if folders.is_empty() {
-        return Err(missing(folder, "no folder frame_*".into()));
+        return Err(Error::new(
+            ErrorCode::InvalidArgument,
+            folder.display().to_string(),
+            "no folder frame_*",
+            "a mesh and folders frame_*",
+            "Pass a folder with frames.",
+        ));
     }
     let frames = folders.iter().map(|folder| read_frame(folder)).collect::<Result<Vec<_>>>()?;
     let read = mesh_in(folder)?;
@@ -68,9 +66,4 @@ fn camera_to_world(bytes: &[u8]) -> Result<Similarity> {
     let rows = rows.ok_or_else(|| json::corrupt("pose", json::found(given.or(Some(&Value::Null))), "4 × 4 numbers"))?;
     let rotation = Matrix3::new(rows[0], rows[1], rows[2], rows[4], rows[5], rows[6], rows[8], rows[9], rows[10]);
     Similarity::from_parts(1.0, rotation, Vector3::new(rows[3], rows[7], rows[11]))
-}
-
-fn missing(folder: &Path, found: String) -> Error {
-    let expected = "a mesh and folders frame_*";
-    Error::new(ErrorCode::InvalidArgument, folder.display().to_string(), found, expected, "Pass a folder with frames.")
 }

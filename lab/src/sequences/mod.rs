@@ -6,16 +6,8 @@ pub mod rig;
 mod stage;
 pub mod video;
 
-use nalgebra::{UnitQuaternion, Vector3};
-use sim3align::metrics::symmetry::Symmetry;
-use sim3align::precise::drawn::prepared_mesh::PreparedMesh;
+use crate::prelude::*;
 use sim3align::views::View;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::similarity::Similarity;
-use sim3align_geometry::surface_colors::SurfaceColors;
-
-use crate::draws::normal;
 
 /// Frames of one object with the true poses.
 #[derive(Debug, Clone)]

@@ -1,15 +1,10 @@
 //! Generated views: two to eight cameras around an object.
 
-use nalgebra::Vector3;
-
 use super::stage::Stage;
 use super::{Sequence, SequenceFrame, jittered};
 use crate::cases::tier::Tier;
-use crate::draws::{between, mixed, sign};
-use sim3align::evidence::frame::Frame;
+use crate::prelude::*;
 use sim3align::views::View;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::random::Random;
 
 /// Random stream of a rig.
 const STREAM: u64 = 31;
@@ -45,12 +40,7 @@ impl RigSet {
     /// # Errors
     /// [`ErrorCode::Internal`] in case of a bug in the generator.
     pub fn case(&self, index: usize) -> Result<Sequence> {
-        for draw in 0..DRAWS {
-            if let Some(case) = self.draw(index, mixed([self.seed, index as u64, draw]))? {
-                return Ok(case);
-            }
-        }
-        Err(Error::new(ErrorCode::Internal, "case", "no fitting draw", "one in a few", "Please report the seed."))
+        first_fit("a rig", DRAWS, |draw| self.draw(index, mixed([self.seed, index as u64, draw])))
     }
 
     fn draw(&self, index: usize, seed: u64) -> Result<Option<Sequence>> {

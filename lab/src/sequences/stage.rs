@@ -1,13 +1,9 @@
 //! An object on a table that cameras look at from all sides.
 
-use core::f64::consts::TAU;
 use std::sync::Arc;
 
-use glam::{DAffine3, DVec3};
-use nalgebra::Vector3;
-
 use crate::cases::case::declared;
-use crate::cases::distortion::canonicalise;
+use crate::cases::distortion::{canonicalise, mapped};
 use crate::cases::draft::{Axis, Object};
 use crate::cases::families;
 use crate::cases::generator::generate;
@@ -15,22 +11,11 @@ use crate::cases::mask::Segmented;
 use crate::cases::photo::take;
 use crate::cases::print::{Print, PrintKind};
 use crate::cases::readings::Readings;
-use crate::cases::scene::{Scene, background, camera_at, count, hidden, put_before, put_down, shown};
+use crate::cases::scene::{Scene, View, camera_at, count, put_before, put_down};
 use crate::cases::solid::Solid;
 use crate::cases::texture::paint;
 use crate::cases::tier::{Class, OutlineErrors, Tier};
-use crate::draws::between;
-use sim3align::evidence::photo::Photo;
-use sim3align::metrics::symmetry::Symmetry;
-use sim3align_geometry::cloud::Bounds;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::image::{DepthMap, Mask};
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::pinhole::Pinhole;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::rasteriser::Rasteriser;
-use sim3align_geometry::similarity::{Similarity, vector3};
-use sim3align_geometry::surface_colors::SurfaceColors;
+use crate::prelude::*;
 
 /// Image size of all frames.
 pub const SIZE: [usize; 2] = [640, 480];
@@ -73,8 +58,7 @@ impl Stage {
         let mut object = if is_printed { families::draw_symmetric(random)? } else { families::draw_for_desk(random)? };
         if let Some(diagonal) = diagonal_m {
             let factor = (diagonal / object.diagonal()) as f32;
-            let positions = object.mesh.positions().iter().map(|p| *p * factor).collect();
-            object.mesh = Mesh::new(positions, object.mesh.triangles().to_vec())?;
+            object.mesh = mapped(&object.mesh, |p| *p * factor)?;
         }
         let (placed, symmetry) = put_down(&object, tier, random)?;
         let print = is_printed.then(|| Print::draw(&placed, &symmetry, PrintKind::Label, random));
@@ -110,33 +94,17 @@ impl Stage {
     /// The scene as a camera sees it, with something in front.
     pub fn shot(&self, camera_from_world: &Similarity, occluder: Option<&Mesh>) -> Scene {
         let [width, height] = SIZE;
-        let mut rasteriser = Rasteriser::new();
-        rasteriser.render(&self.placed, camera_from_world, &self.camera, width, height);
-        let (object_depth, object_triangles) = (rasteriser.depth().to_vec(), rasteriser.triangles().to_vec());
+        let view = View { width, height, camera: self.camera, camera_from_world: *camera_from_world };
+        let object = view.render(&self.placed);
         let mut others = vec![0.0; width * height];
         for mesh in self.neighbours.iter().chain(occluder) {
-            rasteriser.render_depth(mesh, camera_from_world, &self.camera, width, height);
-            put_before(&mut others, rasteriser.depth());
+            put_before(&mut others, &view.depth_of(mesh));
         }
-        let mut depth = background(camera_from_world, &self.camera, (Vector3::x(), WALL_M), width, height);
-        put_before(&mut depth, &object_depth);
+        let mut depth = view.background((Vector3::x(), WALL_M));
+        put_before(&mut depth, &object.0);
         put_before(&mut depth, &others);
-        let silhouette_px = count(&object_depth);
-        let hidden = hidden(&object_depth, &others) as f64 / silhouette_px.max(1) as f64;
-        let visible = shown(&object_depth, &others);
-        Scene {
-            width,
-            height,
-            camera: self.camera,
-            camera_from_world: *camera_from_world,
-            object_depth,
-            object_triangles,
-            depth,
-            visible,
-            silhouette_px,
-            cut: 0.0,
-            hidden,
-        }
+        let silhouette_px = count(&object.0);
+        view.scene(object, &others, depth, silhouette_px)
     }
 
     /// The mesh that a generator makes of the object as one camera sees it.

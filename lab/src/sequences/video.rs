@@ -1,22 +1,12 @@
 //! Generated videos: a camera that moves around an object on a table.
 
-use core::f64::consts::TAU;
-
-use glam::{DAffine3, DVec3};
-use nalgebra::Vector3;
-
 use super::stage::{SIZE, Stage};
 use super::{Sequence, SequenceFrame};
 use crate::cases::readings::disc;
 use crate::cases::solid::Solid;
 use crate::cases::tier::Tier;
-use crate::draws::{between, chance, mixed, sign};
-use sim3align::evidence::frame::Frame;
+use crate::prelude::*;
 use sim3align::views::View;
-use sim3align_geometry::error::{Error, ErrorCode, Result};
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::similarity::Similarity;
 
 /// Random stream of a video.
 const STREAM: u64 = 32;
@@ -24,38 +14,21 @@ const STREAM: u64 = 32;
 const DRAWS: u64 = 64;
 const MIN_PX: usize = 2500;
 
-/// Kinds of video.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Motion {
-    /// A camera in a hand, which moves to and fro.
-    HandHeld,
-    /// An object on a turntable.
-    Turntable,
-    /// Hand-held, with things that pass between camera and object.
-    Occluders,
-    /// Hand-held, with the object leaving the image and coming back.
-    Leaving,
-    /// Hand-held and fast: frames in which most of the depth is missing.
-    Blur,
-    /// Hand-held, with frames dropped.
-    Dropped,
-}
-
-impl Motion {
-    /// All kinds.
-    pub const ALL: [Self; 6] =
-        [Self::HandHeld, Self::Turntable, Self::Occluders, Self::Leaving, Self::Blur, Self::Dropped];
-
-    /// The name in tables.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::HandHeld => "hand-held",
-            Self::Turntable => "turntable",
-            Self::Occluders => "occluders",
-            Self::Leaving => "leaving",
-            Self::Blur => "motion blur",
-            Self::Dropped => "dropped frames",
-        }
+named! {
+    /// Kinds of video.
+    pub enum Motion: "motion" {
+        /// A camera in a hand, which moves to and fro.
+        HandHeld = "hand-held",
+        /// An object on a turntable.
+        Turntable = "turntable",
+        /// Hand-held, with things that pass between camera and object.
+        Occluders = "occluders",
+        /// Hand-held, with the object leaving the image and coming back.
+        Leaving = "leaving",
+        /// Hand-held and fast: frames in which most of the depth is missing.
+        Blur = "motion blur",
+        /// Hand-held, with frames dropped.
+        Dropped = "dropped frames",
     }
 }
 
@@ -89,12 +62,7 @@ impl VideoSet {
     /// # Errors
     /// [`ErrorCode::Internal`] in case of a bug in the generator.
     pub fn video(&self, index: usize) -> Result<Sequence> {
-        for draw in 0..DRAWS {
-            if let Some(video) = self.draw(index, mixed([self.seed, index as u64, draw]))? {
-                return Ok(video);
-            }
-        }
-        Err(Error::new(ErrorCode::Internal, "video", "no fitting draw", "one in a few", "Please report the seed."))
+        first_fit("a video", DRAWS, |draw| self.draw(index, mixed([self.seed, index as u64, draw])))
     }
 
     fn draw(&self, index: usize, seed: u64) -> Result<Option<Sequence>> {

@@ -4,22 +4,18 @@
 //! `tests/fixtures/make_baselines.py` wrote them, with `--problems 20` it writes more and has them read by way of
 //! `SIM3ALIGN_AGREEMENT`.
 
-use glam::Vec3;
-use nalgebra::Vector3;
 use serde_json::Value;
 use sim3align::register::at_once::ransac;
 use sim3align::register::icp::IcpMetric;
 use sim3align::register::matching::Match;
 use sim3align::register::ransac::RansacSettings;
 use sim3align::register::umeyama::ScaleMode;
-use sim3align_geometry::cloud::Cloud;
-use sim3align_geometry::kd_tree::KdTree;
-use sim3align_geometry::similarity::{Similarity, vector3};
 use sim3align_lab::baselines::fgr::{self, FgrSettings};
-use sim3align_lab::baselines::gicp::{self, GicpSettings};
+use sim3align_lab::baselines::gicp;
+use sim3align_lab::baselines::gnc::Turns;
 use sim3align_lab::baselines::icp::{self, classical};
-use sim3align_lab::baselines::quatro::{self, QuatroSettings};
 use sim3align_lab::baselines::teaser::{self, InlierSelection, TeaserSettings};
+use sim3align_lab::prelude::*;
 
 macro_rules! fixture {
     ($name:literal) => {
@@ -109,10 +105,7 @@ fn local(problem: &Problem, name: &str) -> Ours {
     let refined = match name.split(' ').nth(1).unwrap() {
         "icp-point-to-plane" => by(IcpMetric::PointToPlane),
         "icp-point-to-point" => by(IcpMetric::PointToPoint),
-        "gicp" => {
-            let settings = GicpSettings::new(reach, ITERATIONS);
-            gicp::solve(&source.points, &target.points, &tree, &start, &settings).unwrap()
-        }
+        "gicp" => gicp::solve(&source.points, &target.points, &tree, &start, reach, ITERATIONS).unwrap(),
         other => panic!("{other}"),
     };
     if name.ends_with("point-to-point") {
@@ -154,7 +147,7 @@ fn matched(problem: &Problem, name: &str) -> Ours {
             // Open3D's μ begins at the radius in the clouds' own unit; see there.
             let settings = FgrSettings {
                 tuple_scale: has_test.then_some(0.95),
-                initial_mu: Some(radius(&source64).max(radius(&target64))),
+                initial_mu: radius(&source64).max(radius(&target64)),
                 ..FgrSettings::default()
             };
             let found = fgr::solve(&source, &target, &matches, &settings).unwrap();
@@ -177,12 +170,12 @@ fn matched(problem: &Problem, name: &str) -> Ours {
             (found, 0.6, 0.05, noise_bound)
         }
         "kiss_matcher teaser" => {
-            let found = teaser::solve(&source64, &target64, &teaser).unwrap().target_from_source;
+            let found = teaser::solve(&source64, &target64, &teaser, Turns::All).unwrap().target_from_source;
             (found, 0.05, 5e-3, noise_bound)
         }
         "kiss_matcher quatro" => {
-            let settings = QuatroSettings { teaser, source_up: Vector3::z(), target_up: Vector3::z() };
-            let found = quatro::solve(&source64, &target64, &settings).unwrap().target_from_source;
+            let turns = Turns::About(Vector3::z());
+            let found = teaser::solve(&source64, &target64, &teaser, turns).unwrap().target_from_source;
             (found, 0.05, 5e-3, noise_bound)
         }
         other => panic!("{other}"),

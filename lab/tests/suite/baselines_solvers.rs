@@ -1,20 +1,16 @@
 //! The parts of the baselines against slow oracles: cliques, votes, graduated non-convexity, and the solvers on matches.
 
-use glam::Vec3;
-use nalgebra::{Rotation3, Vector3};
 use sim3align::register::matching::Match;
 use sim3align::register::umeyama::ScaleMode;
-use sim3align_geometry::error::ErrorCode;
-use sim3align_geometry::similarity::{Similarity, vec3, vector3};
 use sim3align_lab::baselines::clique::{Clique, Graph};
 use sim3align_lab::baselines::fgr::{self, FgrSettings};
 use sim3align_lab::baselines::gnc::{Turns, gnc_tls};
 use sim3align_lab::baselines::measurements::links;
-use sim3align_lab::baselines::quatro::{self, QuatroSettings};
 use sim3align_lab::baselines::teaser::{self, InlierSelection, TeaserSettings};
 use sim3align_lab::baselines::voting::vote;
 
 use crate::support::{Draw, rotation_defect};
+use sim3align_lab::prelude::*;
 
 fn random_graph(draw: &mut Draw, count: usize, density: f64) -> Graph {
     let mut graph = Graph::new(count);
@@ -221,7 +217,7 @@ fn teaser_finds_poses_among_nine_wrong_matches_in_ten() {
         for scale in [ScaleMode::Free, ScaleMode::Fixed(truth.scale)] {
             for selection in [InlierSelection::LargestClique, InlierSelection::InnermostCore] {
                 let settings = TeaserSettings { selection, ..TeaserSettings::new(0.01 * truth.scale, scale) };
-                let found = teaser::solve(&source, &target, &settings).unwrap();
+                let found = teaser::solve(&source, &target, &settings, Turns::All).unwrap();
                 let pose = found.target_from_source;
                 let what = format!("seed {seed}, {scale:?}, {selection:?}: {pose:?} for {truth:?}");
                 assert!((pose.scale / truth.scale - 1.0).abs() < 0.01, "{what}");
@@ -242,58 +238,19 @@ fn teaser_finds_poses_among_nine_wrong_matches_in_ten() {
 fn quatro_keeps_up_up() {
     for seed in 0..6 {
         let draw = &mut Draw::new(seed);
-        let (source_up, turn) = (draw.direction(), draw.rotation());
-        let target_up = turn * source_up;
-        let truth = Similarity { scale: 1.0, rotation: turn, translation: draw.cube(4.0) };
+        let (up, angle) = (draw.direction(), draw.between(-3.0, 3.0));
+        let truth = Similarity { scale: 1.0, rotation: Rotation3::new(up * angle), translation: draw.cube(4.0) };
         let [source, target] = matched(draw, &truth, 300, 8);
-        let teaser = TeaserSettings::new(0.01, ScaleMode::Fixed(1.0));
-        // Of any length.
-        let settings = QuatroSettings { teaser, source_up: source_up * 3.0, target_up: target_up * 0.2 };
-        let pose = quatro::solve(&source, &target, &settings).unwrap().target_from_source;
+        let settings = TeaserSettings::new(0.01, ScaleMode::Fixed(1.0));
+        let pose = teaser::solve(&source, &target, &settings, Turns::About(up)).unwrap().target_from_source;
         assert!(pose.rotation_angle_to(&truth) < 0.02, "seed {seed}: {pose:?} for {truth:?}");
         assert!((pose.translation - truth.translation).norm() < 0.02, "seed {seed}: {pose:?} for {truth:?}");
-        assert!((pose.rotation * source_up - target_up).norm() < 1e-9, "seed {seed}");
-        let upside_down = QuatroSettings { target_up: -source_up, source_up, teaser };
-        let found = quatro::solve(&source, &target, &upside_down);
-        assert_eq!(found.unwrap_err().code, ErrorCode::NoConsensus, "seed {seed}: the matches are not upside down");
+        assert!((pose.rotation * up - up).norm() < 1e-9, "seed {seed}");
     }
 }
 
 fn one_to_one(count: usize) -> Vec<Match> {
     (0..count as u32).map(|i| Match { source: i, target: i }).collect()
-}
-
-#[test]
-fn fgr_ends_where_its_objective_is_least() {
-    for seed in 0..6 {
-        let draw = &mut Draw::new(seed);
-        let truth = draw.similarity([1.0, 1.0], 3.0);
-        let [source, target] = matched(draw, &truth, 300, 4);
-        let [source, target] = [source, target].map(|points| points.iter().map(vec3).collect::<Vec<Vec3>>());
-        for tuple_scale in [None, Some(0.95)] {
-            let settings = FgrSettings { tuple_scale, iterations: 200, seed, ..FgrSettings::default() };
-            let found = fgr::solve(&source, &target, &one_to_one(300), &settings).unwrap();
-            let pose = found.target_from_source;
-            assert!(pose.rotation_angle_to(&truth) < 0.02, "seed {seed}, {tuple_scale:?}: {pose:?} for {truth:?}");
-            let objective = |pose: &Similarity| -> f64 {
-                let squared = |&i: &usize| (pose.apply(vector3(source[i])) - vector3(target[i])).norm_squared();
-                found.used.iter().map(squared).map(|r| found.mu * r / (found.mu + r)).sum()
-            };
-            let least = objective(&pose);
-            assert!(least < objective(&Similarity::identity()) && least <= objective(&truth) * 1.01, "seed {seed}");
-            let middle = truth.translation;
-            for axis in 0..6 {
-                let at = |step: f64| {
-                    let turn = Rotation3::new(Vector3::from_fn(|i, _| if i == axis { step } else { 0.0 }));
-                    let shift = Vector3::from_fn(|i, _| if i + 3 == axis { step } else { 0.0 });
-                    let translation = middle + turn * (pose.translation - middle) + shift;
-                    objective(&Similarity { rotation: turn * pose.rotation, translation, ..pose })
-                };
-                let (slope, curvature) = ((at(1e-4) - at(-1e-4)) / 2e-4, (at(1e-3) + at(-1e-3) - 2.0 * least) / 1e-6);
-                assert!(curvature > 0.0 && slope.abs() < 1e-5 * curvature, "seed {seed}, {axis}: {slope} {curvature}");
-            }
-        }
-    }
 }
 
 #[test]
@@ -303,7 +260,7 @@ fn matches_without_an_answer_are_errors() {
     let points: Vec<_> = (0..40).map(|_| draw.cube(1.0)).collect();
     let line: Vec<_> = (0..40).map(|i| Vector3::x() * f64::from(i)).collect();
     let solve = |source: &[Vector3<f64>], target: &[Vector3<f64>], settings: &TeaserSettings| {
-        teaser::solve(source, target, settings).unwrap_err().code
+        teaser::solve(source, target, settings, Turns::All).unwrap_err().code
     };
     assert_eq!(solve(&[], &[], &settings), ErrorCode::NoConsensus);
     assert_eq!(solve(&points, &points[1..], &settings), ErrorCode::WrongLength);
@@ -320,8 +277,6 @@ fn matches_without_an_answer_are_errors() {
     let mut broken = points.clone();
     broken[3].y = f64::NAN;
     assert_eq!(solve(&points, &broken, &settings), ErrorCode::NonFinite);
-    let flat = QuatroSettings { teaser: settings, source_up: Vector3::zeros(), target_up: Vector3::z() };
-    assert_eq!(quatro::solve(&points, &points, &flat).unwrap_err().code, ErrorCode::InvalidOption);
 
     let fgr = |source: &[Vec3], target: &[Vec3], count: usize| {
         fgr::solve(source, target, &one_to_one(count), &FgrSettings::default()).unwrap_err().code
@@ -344,7 +299,7 @@ fn many_matches_are_bounded() {
     let [source, target] = matched(draw, &truth, 12_000, 5);
     for noise_bound in [0.01, 0.3] {
         let settings = TeaserSettings { max_matches: 1500, ..TeaserSettings::new(noise_bound, ScaleMode::Fixed(1.0)) };
-        let found = teaser::solve(&source, &target, &settings).unwrap();
+        let found = teaser::solve(&source, &target, &settings, Turns::All).unwrap();
         assert!(found.selected.len() <= 1500 && found.selected.iter().all(|i| *i < 12_000), "{noise_bound}");
         assert!(found.target_from_source.rotation_angle_to(&truth) < 0.1, "{noise_bound}");
     }

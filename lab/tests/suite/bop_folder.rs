@@ -4,14 +4,14 @@ use std::fs;
 
 use serde_json::Value;
 use sim3align_formats::mesh::{MeshReadOptions, read_mesh};
-use sim3align_geometry::pinhole::Pinhole;
-use sim3align_geometry::rasteriser::Rasteriser;
-use sim3align_geometry::similarity::Similarity;
+use sim3align_lab::prelude::*;
+
+use crate::common::fresh;
 use sim3align_lab::scenes::{SceneSet, write_bop};
 
 #[test]
 fn scenes_are_a_dataset_of_bop() {
-    let folder = std::env::temp_dir().join(format!("sim3align-{}-bop", std::process::id()));
+    let folder = fresh("bop");
     let set = SceneSet::new(5, 2);
     write_bop(&set, &folder, 2, |_| {}).unwrap();
     let json = |path: &str| -> Value { serde_json::from_slice(&fs::read(folder.join(path)).unwrap()).unwrap() };
@@ -28,8 +28,8 @@ fn scenes_are_a_dataset_of_bop() {
         let [rotation, translation] = ["cam_R_m2c", "cam_t_m2c"].map(|name| numbers(&pose[name]));
         let camera_from_model = Similarity::from_parts(
             0.001,
-            nalgebra::Matrix3::from_row_slice(&rotation),
-            nalgebra::Vector3::from_row_slice(&translation) / 1000.0,
+            Matrix3::from_row_slice(&rotation),
+            Vector3::from_row_slice(&translation) / 1000.0,
         )
         .unwrap();
         let bytes = fs::read(folder.join(format!("models/obj_{id:06}.ply"))).unwrap();

@@ -6,15 +6,13 @@ use sim3align::align::align_prepared;
 use sim3align::align::evaluate::{EvaluateOptions, evaluate_prepared};
 use sim3align::align::search::Request;
 use sim3align::metrics::pose_error::pose_errors;
-use sim3align::metrics::symmetry::Symmetry;
-use sim3align::precise::drawn::prepared_mesh::PreparedMesh;
-use sim3align::precise::options::AlignOptions;
-use sim3align::progress::Silent;
-use sim3align_geometry::similarity::Similarity;
 use sim3align_geometry::surface_colors::COLOR_SAMPLES;
 use sim3align_lab::bench::benchmark::BenchCase;
 use sim3align_lab::cases::case::{EvaluationCase, EvaluationSet};
 use sim3align_lab::cases::tier::{CaseSet, Class, Tier};
+use sim3align_lab::prelude::*;
+
+use crate::common::{assert_read_back, fresh, parameter};
 
 /// Every class of every tier.
 const LOOKED_AT: usize = 24;
@@ -79,14 +77,6 @@ fn what_the_print_tells_has_no_symmetry_and_what_it_does_not_has_that_of_its_sha
 }
 
 #[test]
-fn the_set_depends_on_its_seed_alone() {
-    let [one, same, other] = [3, 3, 4].map(|seed| EvaluationSet::new(seed).of(CaseSet::Colors).case(1).unwrap());
-    assert_eq!(one.observation, same.observation);
-    assert_eq!(one.colors, same.colors);
-    assert_ne!(one.colors, other.colors);
-}
-
-#[test]
 fn colour_finds_the_right_turn() {
     for case in of_class(Class::Printed).filter(|case| case.tier != Tier::Hard) {
         let mesh = PreparedMesh::borrowed(&case.mesh).with_colors(case.colors.clone());
@@ -101,7 +91,7 @@ fn colour_finds_the_right_turn() {
 #[test]
 fn photos_have_several_sizes_and_formats_and_are_read_from_files() {
     let cases: Vec<&EvaluationCase> = (0..LOOKED_AT).map(case).collect();
-    let parameter = |case: &EvaluationCase, name| case.parameters.iter().find(|p| p.0 == name).unwrap().1;
+    let parameter = |case: &EvaluationCase, name| parameter(&case.parameters, name);
     for case in &cases {
         let (photo, depth) = (case.observation.photo().unwrap(), case.observation.depth());
         let size = parameter(case, "photoSize");
@@ -121,15 +111,12 @@ fn photos_have_several_sizes_and_formats_and_are_read_from_files() {
 
 #[test]
 fn a_written_case_has_the_same_photo_mesh_and_colours() {
-    let folder = std::env::temp_dir().join(format!("sim3align-colors-{}", std::process::id()));
+    let folder = fresh("colors");
     for index in 0..6 {
         let case = case(index);
         case.write(&folder).unwrap();
         let read = BenchCase::read(&folder);
         std::fs::remove_dir_all(&folder).unwrap();
-        let (read, made) = (read.unwrap(), BenchCase::from(case.clone()));
-        assert_eq!(read.observation.photo(), made.observation.photo());
-        assert_eq!(read.observation.depth(), made.observation.depth());
-        assert_eq!((read.mesh, read.colors), (made.mesh, made.colors));
+        assert_read_back(&read.unwrap(), &case.clone().into());
     }
 }

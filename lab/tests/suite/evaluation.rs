@@ -2,25 +2,21 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::PathBuf;
 
-use nalgebra::{Rotation3, Unit, Vector3};
+use nalgebra::Unit;
 use sim3align::align::method::Method;
 use sim3align::evidence::clouds::Sampling;
-use sim3align::geometry::surface::{SurfaceMoments, check_shape};
+use sim3align::geometry::surface::SurfaceMoments;
 use sim3align::metrics::evaluate;
 use sim3align::metrics::pose_error::{PoseErrors, pose_errors};
 use sim3align::metrics::silhouette::iou;
-use sim3align::metrics::symmetry::Symmetry;
-use sim3align::paper::options::PaperOptions;
-use sim3align_geometry::error::ErrorCode;
-use sim3align_geometry::image::Mask;
-use sim3align_geometry::rasteriser::Rasteriser;
-use sim3align_geometry::similarity::{Similarity, vector3};
 use sim3align_lab::bench::benchmark::{BenchCase, LOOSE, STRICT, run_case};
 use sim3align_lab::case_folder::write;
 use sim3align_lab::cases::case::{EvaluationCase, EvaluationSet, MIN_MASK_PX};
 use sim3align_lab::cases::tier::{CaseSet, Class, Tier};
+use sim3align_lab::prelude::*;
+
+use crate::common::{assert_canonical, assert_closed, assert_read_back, fresh, mask_px, object_depth, parameter};
 
 /// Cases that the tests look at: every class of every tier at least once.
 const LOOKED_AT: usize = 36;
@@ -30,31 +26,25 @@ fn cases() -> impl Iterator<Item = EvaluationCase> {
     (0..LOOKED_AT).map(move |index| set.case(index).unwrap())
 }
 
-fn parameter(case: &EvaluationCase, name: &str) -> f64 {
-    case.parameters.iter().find(|(n, _)| *n == name).unwrap().1
-}
-
-fn folder(name: &str) -> PathBuf {
-    std::env::temp_dir().join(format!("sim3align-{}-{name}", std::process::id()))
-}
-
-/// The object without its faults, as the camera would see it alone.
-fn silhouette(case: &EvaluationCase) -> Mask {
-    let depth = case.observation.depth();
-    let mut rasteriser = Rasteriser::new();
-    let camera = case.observation.camera();
-    rasteriser.render_depth(&case.object, &case.camera_from_object, &camera, depth.width(), depth.height());
-    let mut silhouette = Mask::filled(depth.width(), depth.height(), 0);
-    silhouette.data_mut().iter_mut().zip(rasteriser.depth()).for_each(|(m, z)| *m = u8::from(*z > 0.0));
-    silhouette
+/// The magnitude of a simulated error of a case.
+fn of(case: &EvaluationCase, name: &str) -> f64 {
+    parameter(&case.parameters, name)
 }
 
 #[test]
-fn a_case_follows_from_the_sets_seed_and_its_index_alone() {
-    for index in [0, 4, 5, 14] {
-        let files = |seed| EvaluationSet::new(seed).case(index).unwrap().files().unwrap();
-        assert_eq!(files(1), files(1), "case {index}");
-        assert_ne!(files(1), files(2), "case {index}");
+fn a_case_follows_from_set_seed_and_index_alone() {
+    for (set, indices) in
+        [(CaseSet::General, [0, 4, 5, 14]), (CaseSet::Sensors, [0, 4, 11, 15]), (CaseSet::Colors, [1, 4, 5, 6])]
+    {
+        for index in indices {
+            let case = |seed, set| EvaluationSet::new(seed).of(set).case(index).unwrap();
+            let files = |seed| case(seed, set).files().unwrap();
+            assert_eq!(files(1), files(1), "{set:?} {index}");
+            assert_ne!(files(1), files(2), "{set:?} {index}");
+            if set != CaseSet::General {
+                assert_ne!(case(1, set).object, case(1, CaseSet::General).object, "{set:?} {index}");
+            }
+        }
     }
     let set = EvaluationSet::new(1);
     assert_ne!(set.case(0).unwrap().object, set.case(3).unwrap().object);
@@ -81,8 +71,8 @@ fn every_case_keeps_to_its_tier_and_shows_what_its_class_says() {
     let mut families = BTreeSet::new();
     for case in cases() {
         let name = case.name();
-        let of = |name| parameter(&case, name);
-        let mask_px = case.observation.mask().data().iter().filter(|m| **m != 0).count();
+        let of = |name| of(&case, name);
+        let mask_px = mask_px(&case.observation);
         assert!(mask_px >= MIN_MASK_PX, "{name}: {mask_px} pixels");
         assert!(of("visible") >= case.tier.least_visible(case.class), "{name}: {} visible", of("visible"));
         let [stretch, offset, missing] = match case.tier {
@@ -104,9 +94,7 @@ fn every_case_keeps_to_its_tier_and_shows_what_its_class_says() {
             Class::SparseSensor => assert!(case.tags.contains(&"sensor") && of("missingDepth") > 0.05, "{name}"),
             _ => {}
         }
-        check_shape(&case.mesh).unwrap();
-        let farthest = case.mesh.positions().iter().fold(0.0f32, |far, p| far.max(p.length()));
-        assert!((0.5..=0.87).contains(&farthest), "{name}: {farthest}");
+        assert_canonical(&case.mesh, &name);
         families.insert(case.family);
     }
     assert!(families.len() >= 12, "{families:?}");
@@ -115,12 +103,7 @@ fn every_case_keeps_to_its_tier_and_shows_what_its_class_says() {
 #[test]
 fn objects_are_closed_parts_that_face_outward() {
     for case in cases() {
-        let edges = case.object.triangles().iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
-        let mut walked: Vec<(u32, u32)> = edges.collect();
-        walked.sort_unstable();
-        assert!(walked.windows(2).all(|pair| pair[0] != pair[1]), "{}", case.name());
-        assert!(walked.iter().all(|&(a, b)| walked.binary_search(&(b, a)).is_ok()), "{}", case.name());
-        assert!(case.object.signed_volume6() > 0.0, "{}", case.name());
+        assert_closed(&case.object, &case.name());
     }
 }
 
@@ -128,14 +111,16 @@ fn objects_are_closed_parts_that_face_outward() {
 fn the_object_is_where_the_mask_and_the_depth_say() {
     for case in cases().filter(|case| case.tier == Tier::Easy) {
         // An outline is off by a pixel at most; half of it, on average.
-        let overlap = iou(case.observation.mask(), &silhouette(&case));
+        let mask = case.observation.mask();
+        let silhouette = object_depth(&case).iter().map(|z| u8::from(*z > 0.0)).collect();
+        let overlap = iou(mask, &Mask::new("silhouette", mask.width(), mask.height(), silhouette).unwrap());
         println!("{}: IoU {overlap:.3}", case.name());
         assert!(overlap >= 0.87, "{}: {overlap}", case.name());
         let metrics =
             evaluate(&case.observation, &case.object, &case.camera_from_object, &Sampling::default()).unwrap();
         assert!(metrics.fitness.unwrap() >= 0.9, "{}: {metrics:?}", case.name());
         // In the depth map's own metric there is no bias.
-        let diagonal_mm = 1000.0 * parameter(&case, "diagonalM") * parameter(&case, "depthBias");
+        let diagonal_mm = 1000.0 * of(&case, "diagonalM") * of(&case, "depthBias");
         assert!(metrics.depth_mae_mm.unwrap() < 0.04 * diagonal_mm, "{}: {metrics:?}", case.name());
     }
 }
@@ -144,7 +129,7 @@ fn the_object_is_where_the_mask_and_the_depth_say() {
 fn the_truth_fits_the_generated_mesh_as_well_as_its_tier_lets_it() {
     for case in cases() {
         let metrics = evaluate(&case.observation, &case.mesh, &case.camera_from_mesh, &Sampling::default()).unwrap();
-        let visible = parameter(&case, "visible");
+        let visible = of(&case, "visible");
         println!("{}: {metrics:?}", case.name());
         let [overlap, fitness, normals] = match case.tier {
             Tier::Easy => [0.85, 0.9, 0.85],
@@ -171,10 +156,7 @@ fn a_turn_that_the_declared_symmetry_allows_is_no_error() {
         let object_from_mesh = case.camera_from_object.inverse().compose(&case.camera_from_mesh);
         for axis in axes {
             let direction = Unit::new_normalize(object_from_mesh.rotation * axis.axis);
-            let turn = Rotation3::from_axis_angle(
-                &direction,
-                axis.fold.map_or(2.0, |n| 2.0 * std::f64::consts::PI / f64::from(n)),
-            );
+            let turn = Rotation3::from_axis_angle(&direction, axis.fold.map_or(2.0, |n| 2.0 * PI / f64::from(n)));
             let turned = Similarity { scale: 1.0, rotation: turn, translation: centroid - turn * centroid };
             let estimate = case.camera_from_object.compose(&turned).compose(&object_from_mesh);
             let errors = pose_errors(&case.mesh, &estimate, &case.camera_from_mesh, &case.symmetry).unwrap();
@@ -183,7 +165,7 @@ fn a_turn_that_the_declared_symmetry_allows_is_no_error() {
             assert!(errors.translation_error_relative < 0.03, "{}: {errors:?}", case.name());
             // The object itself is unchanged by it.
             let surface = pose_errors(&case.object, &turned, &Similarity::identity(), &Symmetry::None).unwrap();
-            assert!(surface.add_s_mm < 3.0 * parameter(&case, "diagonalM"), "{}: {surface:?}", case.name());
+            assert!(surface.add_s_mm < 3.0 * of(&case, "diagonalM"), "{}: {surface:?}", case.name());
         }
     }
     assert!(tried >= 3, "{tried} symmetric cases");
@@ -191,7 +173,7 @@ fn a_turn_that_the_declared_symmetry_allows_is_no_error() {
 
 #[test]
 fn a_written_case_reads_back() {
-    let folder = folder("evaluation");
+    let folder = fresh("evaluation");
     // One without symmetry, and one with.
     let set = EvaluationSet::new(7);
     let symmetric = cases().find(|case| matches!(case.symmetry, Symmetry::Declared(_))).unwrap();
@@ -199,37 +181,13 @@ fn a_written_case_reads_back() {
         case.write(&folder).unwrap();
         let read = BenchCase::read(&folder);
         fs::remove_dir_all(&folder).unwrap();
-        let (read, made) = (read.unwrap(), BenchCase::from(case));
-        assert_eq!(read.observation.depth(), made.observation.depth());
-        let masks = read.observation.mask().data().iter().zip(made.observation.mask().data());
-        assert!(masks.into_iter().all(|(a, b)| (*a != 0) == (*b != 0)));
-        assert_eq!(read.mesh, made.mesh);
-        assert_eq!((&read.tier, &read.class, &read.family), (&made.tier, &made.class, &made.family));
-        assert_eq!(read.tags, made.tags);
-        for (name, value) in made.parameters.as_object().unwrap() {
-            // Decimals are read to all but the last bit.
-            let off = read.parameters[name].as_f64().unwrap() - value.as_f64().unwrap();
-            assert!(off.abs() <= 1e-12 * value.as_f64().unwrap().abs(), "{name}");
-        }
-        let (read, made) = (read.truth.unwrap(), made.truth.unwrap());
-        assert!((read.camera_from_mesh.scale / made.camera_from_mesh.scale - 1.0).abs() < 1e-12);
-        assert!((read.camera_from_mesh.translation - made.camera_from_mesh.translation).norm() < 1e-12);
-        assert!(read.camera_from_mesh.rotation_angle_to(&made.camera_from_mesh) < 1e-12);
-        match (read.symmetry, made.symmetry) {
-            (Symmetry::Declared(read), Symmetry::Declared(made)) => {
-                assert_eq!(read.len(), made.len());
-                for (read, made) in read.iter().zip(&made) {
-                    assert!((read.axis - made.axis).norm() < 1e-12 && read.fold == made.fold, "{read:?}, {made:?}");
-                }
-            }
-            (read, made) => assert_eq!(read, made),
-        }
+        assert_read_back(&read.unwrap(), &case.into());
     }
 }
 
 #[test]
 fn meshes_of_a_folder_are_shown_at_the_size_of_things() {
-    let folder = folder("evaluation-meshes");
+    let folder = fresh("evaluation-meshes");
     fs::create_dir_all(&folder).unwrap();
     let mesh = EvaluationSet::new(7).case(6).unwrap().mesh;
     fs::write(folder.join("thing.glb"), write::glb(&mesh)).unwrap();

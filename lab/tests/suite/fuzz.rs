@@ -1,12 +1,11 @@
 //! A fixed part of the fuzzing, and every input that it has found so far.
 
-use std::path::Path;
-
 use sim3align_lab::fuzz::call::Answer;
 use sim3align_lab::fuzz::choices::Choices;
 use sim3align_lab::fuzz::memory::{CountingAllocator, peak_bytes, reset_peak};
 use sim3align_lab::fuzz::minimise::minimise;
 use sim3align_lab::fuzz::target::{Ceilings, Execution, TARGETS, Target};
+use sim3align_lab::prelude::*;
 
 /// For the memory of the calls.
 #[global_allocator]
@@ -33,50 +32,31 @@ fn execute(target: Target, choices: &mut Choices, name: String) -> Answer {
 }
 
 fn no_fault(name: &str, executions: u64, least_results: usize) {
-    let target = Target::of_name(name).unwrap();
+    let target: Target = name.parse().unwrap();
     let answers = (0..executions).map(|seed| execute(target, &mut Choices::random(seed), format!("{name} {seed}")));
     let results = answers.filter(|answer| *answer == Answer::Result).count();
     assert!(results >= least_results, "{results} of {executions} calls of {name} had a result");
 }
 
-#[test]
-fn readers_have_no_fault() {
-    no_fault("readers", 30_000, 1000);
+/// A test of a number of calls of a target, of which some have a result.
+macro_rules! no_fault {
+    ($($test:ident: $target:literal, $executions:literal, $least_results:literal;)+) => {
+        $(#[test]
+        fn $test() {
+            no_fault($target, $executions, $least_results);
+        })+
+    };
 }
 
-#[test]
-fn align_has_no_fault() {
-    no_fault("align", 400, 60);
-}
-
-#[test]
-fn align_of_large_inputs_has_no_fault() {
-    no_fault("align-large", 6, 1);
-}
-
-#[test]
-fn views_have_no_fault() {
-    no_fault("views", 300, 15);
-}
-
-#[test]
-fn trackers_have_no_fault() {
-    no_fault("track", 100, 10);
-}
-
-#[test]
-fn evaluate_has_no_fault() {
-    no_fault("evaluate", 200, 50);
-}
-
-#[test]
-fn register_has_no_fault() {
-    no_fault("register", 60, 5);
-}
-
-#[test]
-fn estimate_sim3_has_no_fault() {
-    no_fault("estimate-sim3", 1000, 100);
+no_fault! {
+    readers_have_no_fault: "readers", 30_000, 1000;
+    align_has_no_fault: "align", 400, 60;
+    align_of_large_inputs_has_no_fault: "align-large", 6, 1;
+    views_have_no_fault: "views", 300, 15;
+    trackers_have_no_fault: "track", 100, 10;
+    evaluate_has_no_fault: "evaluate", 200, 50;
+    register_has_no_fault: "register", 60, 5;
+    estimate_sim3_has_no_fault: "estimate-sim3", 1000, 100;
 }
 
 #[test]
@@ -110,7 +90,7 @@ fn the_same_choices_describe_the_same_input() {
 #[test]
 fn the_plainest_input_has_a_result() {
     for name in ["align", "align-large", "views", "track", "evaluate"] {
-        let target = Target::of_name(name).unwrap();
+        let target: Target = name.parse().unwrap();
         assert_eq!(execute(target, &mut Choices::of(Vec::new()), name.into()), Answer::Result, "{name}");
     }
 }

@@ -1,19 +1,16 @@
 //! Answers of other programs: read strictly, scored as our own.
 
 use std::fs;
-use std::path::PathBuf;
 
-use nalgebra::{Rotation3, Vector3};
 use serde_json::{Value, json};
 use sim3align::align::evaluate::{EvaluateOptions, evaluate};
 use sim3align::metrics::Metrics;
-use sim3align::paper::options::PaperOptions;
-use sim3align_geometry::error::ErrorCode;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::similarity::{Similarity, vector3};
 use sim3align_lab::bench::benchmark::{BenchCase, Record, STRICT};
 use sim3align_lab::bench::imported::{CASE, Outcome, imported, read_answer};
 use sim3align_lab::cases::case::EvaluationSet;
+use sim3align_lab::prelude::*;
+
+use crate::common::{assert_near, fresh};
 
 const DOCUMENTATION: &str = include_str!("../../../docs/importing-results.md");
 
@@ -27,17 +24,12 @@ fn truth(case: &BenchCase) -> Similarity {
 
 /// What comes of a case with this answer.
 fn import(test: &str, case: &BenchCase, answer: &str) -> Record {
-    let folder = folder(test);
+    let folder = fresh(&format!("imported-{test}"));
+    fs::create_dir_all(&folder).unwrap();
     fs::write(folder.join(format!("{}.json", case.name)), answer).unwrap();
     let record = imported(case, &folder);
     fs::remove_dir_all(folder).unwrap();
     record
-}
-
-fn folder(test: &str) -> PathBuf {
-    let folder = std::env::temp_dir().join(format!("sim3align-{}-imported-{test}", std::process::id()));
-    fs::create_dir_all(&folder).unwrap();
-    folder
 }
 
 fn pose_json(pose: &Similarity) -> Value {
@@ -49,11 +41,6 @@ fn pose_json(pose: &Similarity) -> Value {
 fn pose_of(record: &Record) -> Similarity {
     let alignment = record.alignment.as_ref().unwrap_or_else(|| panic!("{:?}", record.error));
     Similarity::from_column_major(&alignment.camera_from_mesh().matrix).unwrap()
-}
-
-fn assert_near(a: &Similarity, b: &Similarity, tolerance: f64) {
-    let off = [a.scale / b.scale - 1.0, a.rotation_angle_to(b), (a.translation - b.translation).norm()];
-    assert!(off.iter().all(|x| x.abs() <= tolerance), "{off:?}");
 }
 
 /// Vertices of the mesh and where `pose` takes them; every other one is taken somewhere else in the box of the rest.
@@ -77,7 +64,7 @@ fn the_documented_examples_are_imported_as_the_page_says() {
         DOCUMENTATION.split("```json\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
     assert_eq!(examples.len(), 4, "a pose, its matrix, correspondences, an error");
     let case = case();
-    let quarter_turn = Rotation3::from_axis_angle(&Vector3::z_axis(), core::f64::consts::FRAC_PI_2);
+    let quarter_turn = Rotation3::from_axis_angle(&Vector3::z_axis(), FRAC_PI_2);
     let pose = Similarity { scale: 0.25, rotation: quarter_turn, translation: Vector3::new(0.1, 0.0, 0.8) };
     for (i, seconds) in [0.83, 0.83, 0.31].into_iter().enumerate() {
         let record = import("documented", &case, examples[i]);

@@ -6,6 +6,7 @@ mod baselines_agreement;
 mod baselines_solvers;
 mod bop_folder;
 mod colors;
+mod common;
 mod evaluation;
 mod fuzz;
 mod imported;

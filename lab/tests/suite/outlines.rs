@@ -1,12 +1,8 @@
 //! The measurement of outlines: known offsets are found.
 
 use sim3align_geometry::distance_transform::within;
-use sim3align_geometry::image::{DepthMap, Mask};
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::pinhole::Pinhole;
-use sim3align_geometry::rasteriser::Rasteriser;
-use sim3align_geometry::similarity::Similarity;
 use sim3align_lab::outlines::{ObjectOutlines, OutlineView, table};
+use sim3align_lab::prelude::*;
 
 const WIDTH: usize = 640;
 const HEIGHT: usize = 480;
@@ -29,7 +25,7 @@ const EXACT: Shown = Shown { mask_grown: 0, depth_grown: 0, depth_shift: [0, 0],
 fn cuboid() -> Mesh {
     let corner = |i: u32| {
         let side = |bit: u32, half: f32| if i >> bit & 1 == 1 { half } else { -half };
-        glam::Vec3::new(side(0, 0.13), side(1, 0.1), side(2, 0.01))
+        Vec3::new(side(0, 0.13), side(1, 0.1), side(2, 0.01))
     };
     let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let triangles = quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
@@ -42,7 +38,7 @@ fn measured(shown: &Shown) -> ObjectOutlines {
     let mut camera_from_mesh = Similarity::identity();
     camera_from_mesh.translation.z = f64::from(OBJECT_M);
     // Turned in the image, so that its edges cross the rows of pixels.
-    let turn = nalgebra::Rotation3::from_axis_angle(&nalgebra::Vector3::z_axis(), 0.3);
+    let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), 0.3);
     camera_from_mesh.rotation = turn;
     let mut rasteriser = Rasteriser::new();
     rasteriser.render_depth(&mesh, &camera_from_mesh, &camera, WIDTH, HEIGHT);

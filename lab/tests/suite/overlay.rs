@@ -1,15 +1,9 @@
 //! Pictures of poses: outlines where they belong.
 
-use nalgebra::Vector3;
 use sim3align::align::evaluate::Truth;
-use sim3align::evidence::observation::Observation;
-use sim3align::metrics::symmetry::Symmetry;
-use sim3align_geometry::image::{DepthMap, Mask};
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::pinhole::Pinhole;
-use sim3align_geometry::similarity::Similarity;
 use sim3align_lab::bench::benchmark::BenchCase;
 use sim3align_lab::bench::overlay::{MASK_COLOUR, POSE_COLOUR, TRUTH_COLOUR, picture};
+use sim3align_lab::prelude::*;
 
 const FOCAL_PX: f64 = 100.0;
 

@@ -1,14 +1,9 @@
 //! Real RGB-D cases: `SIM3ALIGN_CASES=<folder of case folders> cargo test -p sim3align-lab -- --ignored real_cases`.
 
-use std::path::PathBuf;
-
 use sim3align::align::align_paper;
 use sim3align::align::evaluate::{EvaluateOptions, Truth, evaluate};
-use sim3align::metrics::symmetry::Symmetry;
-use sim3align::paper::options::PaperOptions;
-use sim3align::progress::Silent;
-use sim3align_geometry::similarity::{Similarity, vector3};
 use sim3align_lab::case_folder::case::{Case, read_case};
+use sim3align_lab::prelude::*;
 
 fn cases() -> Vec<Case> {
     let folder = std::env::var_os("SIM3ALIGN_CASES").expect("SIM3ALIGN_CASES names no folder of cases");

@@ -1,21 +1,14 @@
 //! Files of records: what a killed run leaves behind, another one goes on with.
 
 use std::fs;
-use std::path::PathBuf;
 
 use serde::de::IgnoredAny;
-use sim3align::precise::options::{AlignOptions, Quality};
-use sim3align_geometry::error::ErrorCode;
 use sim3align_lab::bench::benchmark::{BenchCase, Record, run_case};
 use sim3align_lab::bench::records::{RecordFile, RecordKey};
 use sim3align_lab::cases::case::EvaluationSet;
+use sim3align_lab::prelude::*;
 
-/// A path of its own for each test.
-fn fresh(name: &str) -> PathBuf {
-    let path = std::env::temp_dir().join(format!("sim3align-records-{name}-{}", std::process::id()));
-    let _ = fs::remove_file(&path);
-    path
-}
+use crate::common::fresh;
 
 fn key(row: &str, case: &str) -> RecordKey {
     RecordKey { row: row.into(), options: "quality=fast".into(), case: case.into() }
@@ -28,7 +21,7 @@ fn record() -> Record {
 
 #[test]
 fn what_is_there_is_not_asked_for_again() {
-    let path = fresh("resume");
+    let path = fresh("records-resume");
     let record = record();
     let file = RecordFile::<IgnoredAny>::open(&path).unwrap();
     assert!(!file.has(&key("a", "1")));
@@ -53,7 +46,7 @@ fn what_is_there_is_not_asked_for_again() {
 
 #[test]
 fn a_line_is_the_record_as_it_is() {
-    let path = fresh("line");
+    let path = fresh("records-line");
     let record = record();
     RecordFile::<IgnoredAny>::open(&path).unwrap().add(&key("a", "1"), &record).unwrap();
     let line: serde_json::Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
@@ -66,7 +59,7 @@ fn a_line_is_the_record_as_it_is() {
 
 #[test]
 fn what_is_no_file_of_records_is_left_alone() {
-    let path = fresh("other");
+    let path = fresh("records-other");
     for content in ["a text\n", "{\"row\":\"a\"}\n", "{\"row\":\"a\",\"options\":\"\",\"case\":\"1\"}\n", "\n"] {
         fs::write(&path, content).unwrap();
         assert_eq!(RecordFile::<IgnoredAny>::open(&path).unwrap_err().code, ErrorCode::CorruptFile, "{content:?}");

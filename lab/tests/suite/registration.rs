@@ -1,18 +1,11 @@
 //! The registration benchmark: its protocols, its readers, what it generates, and that `register` solves it.
 
 use std::fs;
-use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use glam::Vec3;
-use nalgebra::{Matrix4, Vector3};
-use sim3align::options::scale::ScaleOption;
-use sim3align::progress::Silent;
+use nalgebra::Matrix4;
 use sim3align::register::options::RegisterOptions;
 use sim3align::register::register;
-use sim3align_geometry::error::ErrorCode;
-use sim3align_geometry::kd_tree::KdTree;
-use sim3align_geometry::similarity::{Similarity, vector3};
 use sim3align_lab::case_folder::write::ply_points;
 use sim3align_lab::clouds::cloud_file::{bin, flat, read_cloud};
 use sim3align_lab::clouds::lidar_set::{Drive, write_lidar};
@@ -25,6 +18,7 @@ use sim3align_lab::clouds::trajectory::{Block, read_blocks, text};
 use sim3align_lab::clouds::{kitti, three_d_match};
 
 use crate::support::Draw;
+use sim3align_lab::prelude::*;
 
 /// A folder of its own below the target folder, empty.
 fn folder(name: &str) -> PathBuf {

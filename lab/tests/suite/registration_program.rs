@@ -1,17 +1,15 @@
 //! `sim3align-registration`: what it keeps of a run, and answers of other programs.
 
 use std::fs;
-use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use glam::Vec3;
 use serde_json::{Value, json};
-use sim3align_geometry::similarity::{Similarity, vec3, vector3};
 use sim3align_lab::case_folder::write::ply_points;
 use sim3align_lab::clouds::overlap::information;
 use sim3align_lab::clouds::trajectory::{Block, text};
 
 use crate::support::{Draw, mug};
+use sim3align_lab::prelude::*;
 
 /// A 3DMatch scene of three fragments, whose pair (0, 2) is the same mug twice.
 struct Scene {

@@ -2,20 +2,14 @@
 
 use std::fs;
 
-use nalgebra::{Rotation3, Vector3};
 use sim3align::align::{align, align_paper};
 use sim3align::evidence::clouds::Sampling;
-use sim3align::geometry::surface::check_shape;
 use sim3align::metrics::evaluate;
-use sim3align::paper::options::PaperOptions;
-use sim3align::precise::options::{AlignOptions, Quality};
-use sim3align::progress::Silent;
-use sim3align_geometry::error::ErrorCode;
-use sim3align_geometry::image::DepthMap;
-use sim3align_geometry::rasteriser::{NO_TRIANGLE, Rasteriser};
-use sim3align_geometry::similarity::{Similarity, vec3, vector3};
 use sim3align_geometry::triangle_tree::TriangleTree;
 use sim3align_lab::case_folder::case::read_case;
+use sim3align_lab::prelude::*;
+
+use crate::common::{assert_canonical, assert_closed, assert_near, depth_of, fresh};
 use sim3align_lab::samples::case::SampleCase;
 use sim3align_lab::samples::shape::Kind;
 
@@ -101,11 +95,9 @@ fn what_was_seen_is_right_and_what_was_not_is_invented() {
 fn the_depth_map_has_a_depth_models_faults_and_no_scale_of_its_own() {
     for case in cases() {
         let depth = case.observation.depth();
-        let mut rasteriser = Rasteriser::new();
-        let (object, pose) = (&case.object, &case.camera_from_object);
-        rasteriser.render_depth(object, pose, &case.observation.camera(), depth.width(), depth.height());
+        let alone = depth_of(&case.object, &case.camera_from_object, &case.observation);
         let ratios = || {
-            let pixels = depth.data().iter().zip(rasteriser.depth()).zip(case.observation.mask().data());
+            let pixels = depth.data().iter().zip(&alone).zip(case.observation.mask().data());
             let pixels = pixels.filter(|((z, rendered), m)| **m != 0 && **z > 0.0 && **rendered > 0.0);
             pixels.map(|((z, rendered), _)| f64::from(z / rendered))
         };
@@ -121,8 +113,8 @@ fn the_depth_map_has_a_depth_models_faults_and_no_scale_of_its_own() {
         let flies = if matches!(case.kind, Kind::Hammer | Kind::Spoon) { 1.005 } else { 1.03 };
         assert!(high > flies, "{:?} {}: no pixel flies, {high}", case.kind, case.seed);
         let mask = case.observation.mask().data();
-        let silhouette = rasteriser.depth().iter().filter(|z| **z > 0.0).count() as f64;
-        let visible = mask.iter().zip(rasteriser.depth()).filter(|(m, z)| **m != 0 && **z > 0.0).count();
+        let silhouette = alone.iter().filter(|z| **z > 0.0).count() as f64;
+        let visible = mask.iter().zip(&alone).filter(|(m, z)| **m != 0 && **z > 0.0).count();
         assert_eq!(visible, mask.iter().filter(|m| **m != 0).count(), "{:?} {}", case.kind, case.seed);
         let hidden = 1.0 - visible as f64 / silhouette;
         let expected = if case.kind == Kind::Occluded { 0.15..=0.35 } else { 0.0..=0.0 };
@@ -135,27 +127,19 @@ fn the_depth_map_has_a_depth_models_faults_and_no_scale_of_its_own() {
 #[test]
 fn the_meshes_are_whole_and_delivered_in_a_unit_box() {
     for case in cases() {
-        check_shape(&case.mesh).unwrap();
         let count = case.mesh.triangles().len();
         let least = if case.kind == Kind::Mug { 5_000 } else { 2_000 };
         assert!((least..=10_000).contains(&count), "{:?}: {count} triangles", case.kind);
         for mesh in [&case.object, &case.mesh] {
-            assert!(mesh.signed_volume6() > 0.0, "seed {}: inside out", case.seed);
-            // Closed and consistently oriented: every edge is walked once in each direction.
-            let edges = mesh.triangles().iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
-            let mut walked: Vec<(u32, u32)> = edges.collect();
-            walked.sort_unstable();
-            assert!(walked.windows(2).all(|pair| pair[0] != pair[1]), "seed {}", case.seed);
-            assert!(walked.iter().all(|&(a, b)| walked.binary_search(&(b, a)).is_ok()), "seed {}", case.seed);
+            assert_closed(mesh, &format!("{:?} {}", case.kind, case.seed));
         }
-        let farthest = case.mesh.positions().iter().fold(0.0f32, |far, p| far.max(p.length()));
-        assert!((0.5..=0.87).contains(&farthest), "seed {}: {farthest}", case.seed);
+        assert_canonical(&case.mesh, &format!("{:?} {}", case.kind, case.seed));
     }
 }
 
 #[test]
 fn a_written_case_reads_back_and_the_paper_preset_aligns_it() {
-    let folder = std::env::temp_dir().join(format!("sim3align-{}-samples", std::process::id()));
+    let folder = fresh("samples");
     let sample = SampleCase::new(Kind::Mug, 1).unwrap();
     sample.write(&folder, None).unwrap();
     let case = read_case(&folder);
@@ -170,9 +154,7 @@ fn a_written_case_reads_back_and_the_paper_preset_aligns_it() {
     assert!((camera.fx - written.fx).abs() < 1e-9 && (camera.cy - written.cy).abs() < 1e-9, "{camera:?}");
     assert_eq!(case.mesh, sample.mesh);
     let (camera_from_mesh, symmetry) = case.truth.unwrap();
-    assert!((camera_from_mesh.translation - sample.camera_from_mesh.translation).norm() < 1e-12);
-    assert!(camera_from_mesh.rotation_angle_to(&sample.camera_from_mesh) < 1e-12);
-    assert!((camera_from_mesh.scale - sample.camera_from_mesh.scale).abs() < 1e-12);
+    assert_near(&camera_from_mesh, &sample.camera_from_mesh, 1e-12);
     assert_eq!(symmetry, "none");
 
     let result = align_paper(&case.observation, &case.mesh, &PaperOptions::default(), &mut Silent).unwrap();

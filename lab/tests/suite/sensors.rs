@@ -2,10 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use sim3align_geometry::rasteriser::Rasteriser;
 use sim3align_lab::cases::case::{EvaluationCase, EvaluationSet, MIN_MASK_PX};
 use sim3align_lab::cases::tier::{CaseSet, Class, Tier};
 use sim3align_lab::outlines::{GroupBy, ObjectOutlines, OutlineView};
+use sim3align_lab::prelude::*;
+
+use crate::common::{mask_px, object_depth, parameter};
 
 /// Two cases of every class of every tier.
 const LOOKED_AT: usize = 72;
@@ -21,17 +23,8 @@ fn of_class(class: Class) -> Vec<EvaluationCase> {
     cases
 }
 
-fn parameter(case: &EvaluationCase, name: &str) -> f64 {
-    case.parameters.iter().find(|(n, _)| *n == name).unwrap().1
-}
-
-/// z-depth of the object without its faults and alone; 0 beside it.
-fn object_depth(case: &EvaluationCase) -> Vec<f32> {
-    let depth = case.observation.depth();
-    let mut rasteriser = Rasteriser::new();
-    let camera = case.observation.camera();
-    rasteriser.render_depth(&case.object, &case.camera_from_object, &camera, depth.width(), depth.height());
-    rasteriser.depth().to_vec()
+fn of(case: &EvaluationCase, name: &str) -> f64 {
+    parameter(&case.parameters, name)
 }
 
 /// Sizes of the 4-connected parts of a mask, largest first.
@@ -50,17 +43,6 @@ fn parts(mask: &[u8], width: usize) -> Vec<usize> {
     }
     sizes.sort_unstable_by(|a, b| b.cmp(a));
     sizes
-}
-
-#[test]
-fn a_case_follows_from_seed_and_index_and_is_none_of_the_general_set() {
-    for index in [0, 4, 11, 15] {
-        let files = |set: EvaluationSet| set.case(index).unwrap().files().unwrap();
-        assert_eq!(files(set(1)), files(set(1)), "case {index}");
-        assert_ne!(files(set(1)), files(set(2)), "case {index}");
-        let objects = [set(1), EvaluationSet::new(1)].map(|set| set.case(index).unwrap().object);
-        assert_ne!(objects[0], objects[1], "case {index}");
-    }
 }
 
 #[test]
@@ -84,9 +66,9 @@ fn classes_are_mixed_evenly() {
 fn every_case_has_enough_of_a_mask() {
     for index in 0..LOOKED_AT {
         let case = set(7).case(index).unwrap();
-        let mask_px = case.observation.mask().data().iter().filter(|m| **m != 0).count();
+        let mask_px = mask_px(&case.observation);
         assert!(mask_px >= MIN_MASK_PX, "{}: {mask_px} pixels", case.name());
-        assert!(parameter(&case, "visible") >= case.tier.least_visible(case.class), "{}", case.name());
+        assert!(of(&case, "visible") >= case.tier.least_visible(case.class), "{}", case.name());
     }
 }
 
@@ -107,8 +89,8 @@ fn a_wide_shadow_lies_on_one_side_of_the_object() {
             right += count(last + 1..(last + 1 + reach).min(width));
         }
         let [most, least] = [left.max(right) / object_px, left.min(right) / object_px];
-        println!("{}: {most:.3} and {least:.3}, {:.3}", case.name(), parameter(&case, "shadow"));
-        assert!((0.1..=0.4).contains(&parameter(&case, "shadow")), "{}", case.name());
+        println!("{}: {most:.3} and {least:.3}, {:.3}", case.name(), of(&case, "shadow"));
+        assert!((0.1..=0.4).contains(&of(&case, "shadow")), "{}", case.name());
         assert!((0.05..=0.65).contains(&most), "{}: {most}", case.name());
         assert!(least < 0.7 * most, "{}: {least} of {most}", case.name());
     }
@@ -167,7 +149,7 @@ fn quantised_depth_has_steps_that_grow_with_its_square() {
         levels.dedup();
         let alone: Vec<f32> = object_depth(&case).into_iter().filter(|z| *z > 0.0).collect();
         let z = f64::from(alone.iter().sum::<f32>()) / alone.len() as f64;
-        let step_m = parameter(&case, "stepMm") / 1000.0;
+        let step_m = of(&case, "stepMm") / 1000.0;
         assert!((0.0005..=0.01).contains(&step_m), "{}: {step_m}", case.name());
         let disparity = |level: f32| z * z / step_m / f64::from(level);
         // In units of a disparity step, every two levels are a whole number apart; z is the object's mean here.
@@ -183,8 +165,8 @@ fn quantised_depth_has_steps_that_grow_with_its_square() {
 fn a_predicted_mask_is_wrong_by_a_few_percent_of_the_object() {
     let mut checked = 0;
     for case in of_class(Class::PredictedMask) {
-        assert!((0.008..=0.042).contains(&parameter(&case, "maskError")), "{}", case.name());
-        if parameter(&case, "hidden") > 0.0 {
+        assert!((0.008..=0.042).contains(&of(&case, "maskError")), "{}", case.name());
+        if of(&case, "hidden") > 0.0 {
             continue;
         }
         checked += 1;

@@ -1,10 +1,10 @@
 //! What warnings say about poses.
 
-use sim3align::precise::options::{AlignOptions, Quality};
 use sim3align::report::{AnyAlignment, Warning, WarningCode};
 use sim3align_lab::bench::benchmark::{BenchCase, Record, STRICT, run_case};
 use sim3align_lab::bench::warning_tally::{Tally, WarningTally};
 use sim3align_lab::cases::case::EvaluationSet;
+use sim3align_lab::prelude::*;
 
 /// The record with these warnings, and with an error of scale that makes it wrong or not.
 fn with(record: &Record, is_right: bool, codes: &[WarningCode]) -> Record {

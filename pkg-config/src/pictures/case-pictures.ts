@@ -1,4 +1,5 @@
 /** The pictures of a case: its observation, and its poses over it. */
+import { differenceLimit } from "./colours.js";
 import { ground, maskTint, outlines, over, residual, shaded } from "./layers.js";
 import { type Picture, pngOf } from "./png.js";
 import type { Shot } from "./shot.js";
@@ -32,7 +33,7 @@ export async function drawCase(shot: Shot, pose: Matrix, alternatives: readonly 
   const view = View.around(boxOf(mask, whole, width, height), PICTURE.width, PICTURE.height, MARGIN);
   const [seen, masked, mesh] = [ground(shot, view), view.sampled(mask, width, height), await shot.render(view, pose)];
   const measured = view.sampled(depth, width, height);
-  const limitM = differenceLimit(mesh, shot, view);
+  const limitM = differenceLimit(visibleSize(mesh, shot, view));
   const pictures: Record<string, Picture> = {
     ground: seen,
     mask: maskTint(masked, view),
@@ -74,13 +75,12 @@ export async function drawOverlay(shot: Shot, pose: Matrix): Promise<Uint8Array>
   return pngOf(over(ground(shot, view), drawn, outlines(view.sampled(mask, width, height), mesh, view)));
 }
 
-/** A fiftieth of the object's size, in round millimetres, as metres. */
-function differenceLimit(mesh: Float32Array, shot: Shot, view: View): number {
+/** The size of the mesh across the view, metres. */
+function visibleSize(mesh: Float32Array, shot: Shot, view: View): number {
   const { width, height } = view;
   const box = boxOf(mesh, mesh, width, height);
   const depths = mesh.filter((z) => z > 0).sort();
   const z = depths[depths.length >> 1] ?? 1;
   const { fx } = view.camera(shot.camera);
-  const mm = Math.max(1, Math.round((1000 * Math.hypot(box.width, box.height) * z) / fx / 50));
-  return (mm > 10 ? 5 * Math.round(mm / 5) : mm) / 1000;
+  return (Math.hypot(box.width, box.height) * z) / fx;
 }

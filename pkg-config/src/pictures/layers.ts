@@ -1,11 +1,9 @@
 /** Layers of pictures: what was seen, and what is drawn over it. */
 import { depthColour, differenceColour, MASK, MESH, type Rgb } from "./colours.js";
 import type { Picture } from "./png.js";
+import { lightAt, outlineOf } from "./shading.js";
 import type { Shot } from "./shot.js";
 import type { View } from "./view.js";
-
-/** Towards the viewer, from above and from the left. */
-const LIGHT = [-0.4, -0.6, -0.69] as const;
 
 /** What was seen: the photo or, without one, the depth in colours. */
 export function ground(shot: Shot, view: View): Picture {
@@ -51,19 +49,6 @@ function depthGround(shot: Shot, view: View): Picture {
   return { data, width, height };
 }
 
-/** The pixels of a shape that are at most `thickness` pixels from its outside. */
-function outline(shape: ArrayLike<number>, width: number, height: number, thickness: number): (i: number) => boolean {
-  const isOutside = (u: number, v: number) => u < 0 || v < 0 || u >= width || v >= height || !shape[v * width + u];
-  return (i) => {
-    if (!shape[i]) return false;
-    const [u, v] = [i % width, Math.floor(i / width)];
-    for (let d = 1; d <= thickness; d++) {
-      if (isOutside(u - d, v) || isOutside(u + d, v) || isOutside(u, v - d) || isOutside(u, v + d)) return true;
-    }
-    return false;
-  };
-}
-
 /** A layer: each pixel has a colour and an opacity of 0 to 255, or `null`. */
 function layer(view: View, colourOf: (i: number) => readonly [...Rgb, number] | null): Picture {
   const { width, height } = view;
@@ -79,8 +64,8 @@ function layer(view: View, colourOf: (i: number) => readonly [...Rgb, number] | 
 export function outlines(mask: Float32Array, mesh: Float32Array, view: View): Picture {
   const { width, height } = view;
   const thickness = Math.max(2, Math.round(width / 320));
-  const isMask = outline(mask, width, height, thickness);
-  const isMesh = outline(mesh, width, height, thickness);
+  const isMask = outlineOf({ data: mask, width, height }, thickness);
+  const isMesh = outlineOf({ data: mesh, width, height }, thickness);
   return layer(view, (i) => (isMesh(i) ? [...MESH, 255] : isMask(i) ? [...MASK, 255] : null));
 }
 
@@ -89,20 +74,14 @@ export const maskTint = (mask: Float32Array, view: View): Picture =>
   layer(view, (i) => (mask[i] ? [60, 158, 229, 110] : null));
 
 /** The mesh, shaded by the slope of its surface. */
-export function shaded(mesh: Float32Array, view: View, { fx, fy }: { fx: number; fy: number }): Picture {
+export function shaded(mesh: Float32Array, view: View, focal: { fx: number; fy: number }): Picture {
   const { width, height } = view;
   return layer(view, (i) => {
-    const z = mesh[i] as number;
-    if (z === 0) return null;
-    const [u, v] = [i % width, Math.floor(i / width)];
-    const slope = (before: number, after: number, focal: number) =>
-      (((mesh[after] || z) - (mesh[before] || z)) * focal) / (2 * z);
-    const dx = slope(u > 0 ? i - 1 : i, u + 1 < width ? i + 1 : i, fx);
-    const dy = slope(v > 0 ? i - width : i, v + 1 < height ? i + width : i, fy);
-    const lambert = (dx * LIGHT[0] + dy * LIGHT[1] - LIGHT[2]) / Math.hypot(dx, dy, 1);
-    const light = 0.35 + 0.75 * Math.max(0, lambert);
-    const lit = (part: number) => Math.min(255, 8 * Math.round(Math.min(255, part * light) / 8));
-    return [lit(MESH[0]), lit(MESH[1]), lit(MESH[2]), 235];
+    if (mesh[i] === 0) return null;
+    const light = lightAt({ data: mesh, width, height }, i, focal);
+    // A few levels, of which small files are made.
+    const tone = (part: number) => Math.min(255, 8 * Math.round(Math.min(255, part * light) / 8));
+    return [tone(MESH[0]), tone(MESH[1]), tone(MESH[2]), 235];
   });
 }
 

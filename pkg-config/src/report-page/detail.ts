@@ -30,6 +30,10 @@ function loaded(host: ReportHost, folder: string): Promise<ReportDetails> {
   });
 }
 
+/** A part of the panel under its title. */
+const section = (title: string, ...children: Node[]) =>
+  element("section", { "aria-label": title }, element("h3", {}, title), ...children);
+
 /** The panel of details. */
 export class Detail {
   readonly #host: ReportHost;
@@ -74,9 +78,11 @@ export class Detail {
   }
 
   #picture(folder: string): HTMLElement {
-    const size = { width: 440, height: 330, decoding: "async" };
     const image = (name: string, alt: string) =>
-      element("img", { src: `cases/${folder}/${name}.png`, alt, ...size, "data-layer": name });
+      element("img", {
+        ...{ src: `cases/${folder}/${name}.png`, alt, width: 440, height: 330 },
+        ...{ "data-layer": name, decoding: "async" },
+      });
     const stack = element("div", { class: "stack" }, image("ground", "What was seen, around the object"));
     const boxes = layers.map(([name, label]) => {
       const drawn = image(name, `${label} over the picture`);
@@ -90,8 +96,12 @@ export class Detail {
       });
       return element("label", {}, box, ` ${label}`);
     });
-    const group = element("div", { class: "layers", role: "group", "aria-label": "Layers" }, ...boxes);
-    return element("section", { "aria-label": "Picture" }, stack, group);
+    return element(
+      "section",
+      { "aria-label": "Picture" },
+      stack,
+      element("div", { class: "layers", role: "group", "aria-label": "Layers" }, ...boxes),
+    );
   }
 
   #fill(
@@ -121,12 +131,17 @@ export class Detail {
     this.#space = SpaceView.of(canvas, space);
     if (this.#space !== undefined) body.append(section("3D", canvas));
     if (alternatives.length > 0) {
-      const figures = alternatives.map(({ file, turnDeg, score }) => {
-        const alt = `The mesh turned by ${turnDeg.toFixed(0)} degrees`;
-        const src = `cases/${folder}/${file}`;
-        const caption = element("figcaption", {}, `turned ${turnDeg.toFixed(0)}°, score ${score.toFixed(3)}`);
-        return element("figure", {}, element("img", { src, alt, width: 160, height: 120, loading: "lazy" }), caption);
-      });
+      const figures = alternatives.map(({ file, turnDeg, score }) =>
+        element(
+          "figure",
+          {},
+          element("img", {
+            ...{ src: `cases/${folder}/${file}`, alt: `The mesh turned by ${turnDeg.toFixed(0)} degrees` },
+            ...{ width: 160, height: 120, loading: "lazy" },
+          }),
+          element("figcaption", {}, `turned ${turnDeg.toFixed(0)}°, score ${score.toFixed(3)}`),
+        ),
+      );
       body.append(section("Alternatives", element("div", { class: "alternatives" }, ...figures)));
     }
     const numbers: [string, string][] = [
@@ -141,11 +156,7 @@ export class Detail {
     const rows = [0, 1, 2, 3].map((i) =>
       [0, 1, 2, 3].map((j) => (matrix[4 * j + i] ?? 0).toFixed(6).padStart(11)).join(" "),
     );
-    const matrixRows = element("pre", { tabindex: 0, "aria-label": "Camera from mesh, rows" }, rows.join("\n"));
-    body.append(section("Numbers", element("dl", {}, ...entries), matrixRows));
+    const text = element("pre", { tabindex: 0, "aria-label": "Camera from mesh, rows" }, rows.join("\n"));
+    body.append(section("Numbers", element("dl", {}, ...entries), text));
   }
 }
-
-/** A part of the details under its heading. */
-const section = (title: string, ...children: HTMLElement[]) =>
-  element("section", { "aria-label": title }, element("h3", {}, title), ...children);

@@ -127,10 +127,10 @@ export class Table {
     const first = Math.max(0, Math.floor(this.#scroller.scrollTop / ROW) - SPARE);
     const count = Math.ceil(this.#scroller.clientHeight / ROW) + 2 * SPARE;
     const end = Math.min(this.#rows.length, first + count);
-    const colspan = this.#columns.length + 1;
+    const width = this.#columns.length + 1;
     const spacer = (rows: number) => {
-      const space = element("td", { colspan, class: "spacer", style: `height:${rows * ROW}px` });
-      return rows > 0 ? [element("tr", { "aria-hidden": "true" }, space)] : [];
+      const cell = element("td", { colspan: width, class: "spacer", style: `height:${rows * ROW}px` });
+      return rows > 0 ? [element("tr", { "aria-hidden": "true" }, cell)] : [];
     };
     const rows = this.#rows.slice(first, end).map((row, i) => this.#row(row, first + i));
     this.#body.replaceChildren(...spacer(first), ...rows, ...spacer(this.#rows.length - end));
@@ -148,10 +148,10 @@ export class Table {
       const bar = element("span", { class: "bar", style: `--share:${row.confidence ?? 0}` });
       return element("td", {}, bar, text);
     });
-    const src = `cases/${row.folder}/thumbnail.png`;
-    const lazy = { alt: "", loading: "lazy", decoding: "async", width: 56, height: 42 };
-    const picture = element("td", {}, row.folder === undefined ? null : element("img", { src, ...lazy }));
-    const made = element("tr", { "data-index": index, "aria-rowindex": index + 2 }, picture, ...cells);
+    const picture = { src: `cases/${row.folder}/thumbnail.png`, alt: "", loading: "lazy", decoding: "async" };
+    const shown = row.folder === undefined ? null : element("img", { ...picture, width: 56, height: 42 });
+    const place = { "data-index": index, "aria-rowindex": index + 2 };
+    const made = element("tr", place, element("td", {}, shown), ...cells);
     if (row === this.#selected) made.setAttribute("aria-selected", "true");
     return made;
   }

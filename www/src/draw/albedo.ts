@@ -1,7 +1,7 @@
 /** The colours of a mesh in a small picture, from the coloured points of its surface. */
 import type { MeshArrays } from "sim3align";
+import type { Rgb } from "sim3align/pictures/colours";
 import type { Scene } from "../state/scene.js";
-import type { Rgb } from "./colours.js";
 import { projected } from "./rasteriser.js";
 
 /** A point is seen if it is at most this much behind what is drawn, as a share of its distance. */

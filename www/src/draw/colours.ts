@@ -1,33 +1,9 @@
 /** Colour maps of depths and differences. */
+import { depthColour, depthStops, type Rgb } from "sim3align/pictures/colours";
 import { once } from "../load/once.js";
 
-export type Rgb = readonly [red: number, green: number, blue: number];
-
-/** From near to far: equal steps of depth are equal steps of lightness, and hues tell more of them apart. */
-const stops: readonly Rgb[] = [
-  [240, 232, 130],
-  [148, 212, 108],
-  [66, 182, 126],
-  [38, 146, 142],
-  [48, 108, 142],
-  [62, 66, 130],
-  [58, 20, 84],
-];
-
 /** The colours of depths as a gradient of CSS, from near to far. */
-export const depthGradient = `linear-gradient(to right, ${stops.map((stop) => `rgb(${stop.join(" ")})`).join(", ")})`;
-
-const between = (a: number, b: number, share: number) => a + (b - a) * share;
-
-const NO_READING: Rgb = [34, 34, 40];
-
-/** The colour of a depth, as a share of the way from near to far. */
-function depthColour(share: number): Rgb {
-  const place = Math.min(Math.max(share, 0), 1) * (stops.length - 1);
-  const i = Math.min(Math.floor(place), stops.length - 2);
-  const [a, b] = [stops[i] as Rgb, stops[i + 1] as Rgb];
-  return [0, 1, 2].map((k) => between(a[k] as number, b[k] as number, place - i)) as unknown as Rgb;
-}
+export const depthGradient = `linear-gradient(to right, ${depthStops.map((stop) => `rgb(${stop.join(" ")})`).join(", ")})`;
 
 /**
  * A visualisation of a depth map with 256 levels: red, green, blue, alpha. Pixels without a reading are dark grey.
@@ -38,7 +14,7 @@ export const depthImage = once((depthM: Float32Array): Uint8ClampedArray<ArrayBu
   const colours = Array.from({ length: 256 }, (_, i) => depthColour(i / 255));
   // One number per pixel, in the order of bytes that the machine has.
   const table = new Uint32Array(
-    Uint8ClampedArray.from([...colours, NO_READING].flatMap((rgb) => [...rgb, 255])).buffer,
+    Uint8ClampedArray.from([...colours, depthColour(null)].flatMap((rgb) => [...rgb, 255])).buffer,
   );
   const image = new Uint8ClampedArray(4 * depthM.length);
   const pixels = new Uint32Array(image.buffer);
@@ -68,13 +44,6 @@ export function depthRange(depthM: Float32Array): { nearM: number; medianM: numb
   if (readings.length === 0) return null;
   const at = (share: number) => readings[Math.floor(share * (readings.length - 1))] as number;
   return { nearM: at(0.01), medianM: at(0.5), farM: at(0.99) };
-}
-
-/** Blue if the mesh is nearer than the measured depth, orange if it is farther, white if both agree. */
-export function differenceColour(differenceM: number, limitM: number): Rgb {
-  const share = Math.min(Math.abs(differenceM) / limitM, 1);
-  const end: Rgb = differenceM < 0 ? [30, 100, 220] : [235, 95, 10];
-  return end.map((x) => between(248, x, share)) as unknown as Rgb;
 }
 
 /** Parses #rrggbb. */

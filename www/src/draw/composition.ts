@@ -1,8 +1,10 @@
 /** Composes the image of the image view. */
+import { differenceColour, differenceLimit, type Rgb } from "sim3align/pictures/colours";
+import { outlineOf } from "sim3align/pictures/shading";
 import type { ImageLayers } from "../state/display.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { type Box, boxAround, boxOf } from "./box.js";
-import { differenceColour, type Rgb, rgbOf } from "./colours.js";
+import { rgbOf } from "./colours.js";
 import { renderDepth } from "./rasteriser.js";
 import type { DrawnScene } from "./reduced.js";
 import type { Zoom } from "./zoom.js";
@@ -26,13 +28,7 @@ export function drawObject(scene: DrawnScene, object: ObjectModel, matrix: Array
   const mask = scene.maskOf(object);
   const depth = renderDepth(mesh, matrix, scene);
   const box = boxAround(scene.maskBoxOf(object), boxOf(depth, scene.width));
-  return { mask, colour, isSelected: false, depth, box, limitM: differenceLimit(object) };
-}
-
-/** A fiftieth of the object's size, in round millimetres: a difference that is visible to the eye. */
-export function differenceLimit({ visible }: ObjectModel): number {
-  const mm = Math.max(1, Math.round((1000 * visible.sizeM) / 50));
-  return (mm > 10 ? 5 * Math.round(mm / 5) : mm) / 1000;
+  return { mask, colour, isSelected: false, depth, box, limitM: differenceLimit(object.visible.sizeM) };
 }
 
 /** Draws `before` left of the wipe and `after` right of it. */
@@ -63,8 +59,8 @@ export function compose(
     for (const { mask, colour, depth, box, isSelected, limitM } of objects) {
       if (box === null) continue;
       const own = rgbOf(colour);
-      const isEdge = edges(depth, width, height, thickness);
-      const isBorder = edges(mask, width, height, thickness);
+      const isEdge = outlineOf({ data: depth, width, height }, thickness);
+      const isBorder = outlineOf({ data: mask, width, height }, thickness);
       // Over a photo, a little is enough, and the object's own colours stay.
       const fill = (isSelected ? 0.45 : 0.3) * (shown === "photo" ? 0.45 : 1);
       for (let v = box.top; v < box.bottom; v++) {
@@ -74,8 +70,8 @@ export function compose(
           if (mesh > 0 && difference && mask[pixel] !== 0 && measured > 0) {
             mix(image.data, pixel, differenceColour(mesh - measured, limitM), 0.92);
           } else if (mesh > 0 && silhouette) mix(image.data, pixel, own, fill);
-          if (mesh > 0 && (silhouette || difference) && isEdge(u, v)) mix(image.data, pixel, own, 1);
-          if (outline && mask[pixel] !== 0 && isBorder(u, v)) mix(image.data, pixel, [255, 255, 255], 0.95);
+          if ((silhouette || difference) && isEdge(pixel)) mix(image.data, pixel, own, 1);
+          if (outline && isBorder(pixel)) mix(image.data, pixel, [255, 255, 255], 0.95);
         }
       }
     }
@@ -93,15 +89,4 @@ function mix(data: Uint8ClampedArray, pixel: number, colour: Rgb, share: number)
     const place = 4 * pixel + k;
     data[place] = (data[place] as number) * (1 - share) + (colour[k] as number) * share;
   }
-}
-
-/** Tests whether a pixel of a shape is at most `thickness` pixels away from its outside. */
-function edges(shape: ArrayLike<number>, width: number, height: number, thickness: number) {
-  const isInside = (u: number, v: number) => u >= 0 && v >= 0 && u < width && v < height && shape[v * width + u] !== 0;
-  return (u: number, v: number): boolean => {
-    for (let d = 1; d <= thickness; d++) {
-      if (!isInside(u - d, v) || !isInside(u + d, v) || !isInside(u, v - d) || !isInside(u, v + d)) return true;
-    }
-    return false;
-  };
 }

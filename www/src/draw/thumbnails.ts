@@ -1,12 +1,12 @@
 /** Small pictures of meshes and masks. */
 import type { MeshArrays } from "sim3align";
+import type { Rgb } from "sim3align/pictures/colours";
+import { lightAt } from "sim3align/pictures/shading";
 import { boundsOf } from "../state/pose.js";
 import { boxOf } from "./box.js";
-import { type Rgb, rgbOf } from "./colours.js";
+import { rgbOf } from "./colours.js";
 import { renderDepth } from "./rasteriser.js";
 
-/** Towards the viewer, from above and from the left: where the light of thumbnails comes from. */
-const LIGHT = [-0.4, -0.6, -0.69] as const;
 /** How far a mesh is turned about its up axis and towards the viewer, radians. */
 const [TURN, TILT] = [0.6, 0.35];
 
@@ -38,30 +38,17 @@ export function meshThumbnail(mesh: MeshArrays, size: number, colour: string): I
 export function shaded(
   depth: Float32Array,
   width: number,
-  { fx, fy }: { fx: number; fy: number },
+  focal: { fx: number; fy: number },
   own: Rgb,
   albedo: (pixel: number) => Rgb | null = () => null,
 ): ImageData {
   const height = depth.length / width;
   const image = new ImageData(width, height);
-  for (let v = 0; v < height; v++) {
-    for (let u = 0; u < width; u++) {
-      const pixel = v * width + u;
-      const z = depth[pixel] as number;
-      if (z === 0) continue;
-      const slope = (before: number, after: number, focal: number) => {
-        const [a, b] = [depth[before] || z, depth[after] || z];
-        return ((b - a) * focal) / (2 * z);
-      };
-      const dx = slope(u > 0 ? pixel - 1 : pixel, u + 1 < width ? pixel + 1 : pixel, fx);
-      const dy = slope(v > 0 ? pixel - width : pixel, v + 1 < height ? pixel + width : pixel, fy);
-      // The normal of the surface, towards the viewer.
-      const length = Math.hypot(dx, dy, 1);
-      const lambert = (dx * LIGHT[0] + dy * LIGHT[1] - LIGHT[2]) / length;
-      const light = 0.35 + 0.75 * Math.max(0, lambert);
-      const [red, green, blue] = albedo(pixel) ?? own;
-      image.data.set([red * light, green * light, blue * light, 255], 4 * pixel);
-    }
+  for (let pixel = 0; pixel < depth.length; pixel++) {
+    if (depth[pixel] === 0) continue;
+    const light = lightAt({ data: depth, width, height }, pixel, focal);
+    const [red, green, blue] = albedo(pixel) ?? own;
+    image.data.set([red * light, green * light, blue * light, 255], 4 * pixel);
   }
   return image;
 }

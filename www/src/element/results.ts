@@ -1,14 +1,12 @@
 /** What an element says about its objects, as plain data. */
 import { type PackedState, stateOf } from "../session/pack.js";
 import type { ObjectModel } from "../state/object-model.js";
-import type { Options } from "../state/options.js";
+import { isResult } from "../state/pose.js";
 import type { Workspace } from "../state/workspace.js";
-import type { ObjectResult, PlainPose } from "./sim3-align.js";
+import type { ElementSession as HostSession, ObjectResult, PlainPose } from "./sim3-align.js";
 
-/** Hand work and results, without the files of the scene. Plain data. */
-export interface ElementSession {
-  version: 1;
-  options: Options;
+/** As hosts see it, with the state that is opaque to them. */
+export interface ElementSession extends HostSession {
   objects: { name: string; state: PackedState }[];
 }
 
@@ -19,13 +17,12 @@ export const plainPose = ({ pose }: ObjectModel): PlainPose => {
 
 export function resultOf(object: ObjectModel): ObjectResult {
   const { source } = object.pose.peek();
-  const isFound = source === "aligned" || source === "refined";
   return {
     name: object.name,
     pose: source === "start" ? null : plainPose(object),
     source,
     sizeM: [...object.box.peek().sizeM],
-    confidence: isFound ? (object.precise?.confidence ?? null) : null,
+    confidence: isResult(source) ? (object.precise?.confidence ?? null) : null,
     isAccepted: object.isAccepted.peek(),
     metrics: object.metrics.peek(),
   };

@@ -1,4 +1,5 @@
 /** Copies and saves results. */
+import { extension } from "../load/files.js";
 import type { ObjectModel } from "../state/object-model.js";
 import { page } from "../state/page.js";
 import { permalink } from "../state/permalink.js";
@@ -7,47 +8,38 @@ import { imageSnapshot } from "../views/image-view.js";
 
 const { announce, space } = page;
 
-export type Format =
-  | "columns"
-  | "rows"
-  | "json"
-  | "bop"
-  | "session"
-  | "video"
-  | "scene"
-  | "glb"
-  | "ply"
-  | "png"
-  | "link";
+/** A way to save or copy the object or the whole scene: the title of its button, and what it does. */
+export type Export = readonly [title: string, act: (scene: Scene, object: ObjectModel) => Promise<void>];
 
-/** Copies or saves the object, or the whole scene for JSON and BOP. The writers of files are loaded on demand. */
-export async function exportAs(format: Format, scene: Scene, object: ObjectModel): Promise<void> {
-  const name = fileName(object.name);
-  if (format === "link") return copy(permalink(), "the link");
-  if (format === "png") return saveImage(name);
-  if (format === "session") {
-    const file = await (await import("../session/index.js")).sessionFile();
-    return file === null ? undefined : download(`${fileName(scene.name)}.sim3align.zip`, file, "application/zip");
-  }
-  const { bopText, glbBytes, jsonText, matrixText, plyBytes, sceneBytes, videoText } = await import("./files.js");
-  switch (format) {
-    case "columns":
-      return copy(matrixText(object, "columns"), "the matrix (column-major)");
-    case "rows":
-      return copy(matrixText(object, "rows"), "the matrix (row-major)");
-    case "json":
-      return download(`${name}.json`, jsonText(scene), "application/json");
-    case "bop":
-      return download("scene_gt.json", bopText(scene), "application/json");
-    case "video":
-      return download(`${name}-frames.json`, videoText(object.name), "application/json");
-    case "scene":
-      return download("scene.glb", sceneBytes(scene), "model/gltf-binary");
-    case "glb":
-      return download(`${name}-placed.glb`, glbBytes(object), "model/gltf-binary");
-    case "ply":
-      return download(`${name}-placed.ply`, plyBytes(object));
-  }
+/** The writers of files are loaded on demand. */
+const writers = () => import("./files.js");
+
+export const allExports: readonly Export[] = [
+  ["GLB", async (_, object) => download(`${fileName(object.name)}-placed.glb`, (await writers()).glbBytes(object))],
+  ["GLB of the scene", async (scene) => download("scene.glb", (await writers()).sceneBytes(scene))],
+  ["JSON", async (scene, { name }) => download(`${fileName(name)}.json`, (await writers()).jsonText(scene))],
+  ["BOP JSON", async (scene) => download("scene_gt.json", (await writers()).bopText(scene))],
+  ["Copy matrix (column-major)", (_, object) => copyMatrix(object, "column")],
+  ["Copy matrix (row-major)", (_, object) => copyMatrix(object, "row")],
+  ["PLY", async (_, object) => download(`${fileName(object.name)}-placed.ply`, (await writers()).plyBytes(object))],
+  ["Session", saveSession],
+  ["PNG of the view", (_, object) => saveImage(fileName(object.name))],
+  ["Copy link", () => copy(permalink(), "the link")],
+];
+
+/** What can be saved of a video besides. */
+export const videoExport: Export = [
+  "JSON of all frames",
+  async (_, { name }) => download(`${fileName(name)}-frames.json`, (await writers()).videoText(name)),
+];
+
+async function copyMatrix(object: ObjectModel, order: "column" | "row"): Promise<void> {
+  await copy((await writers()).matrixText(object, order), `the matrix (${order}-major)`);
+}
+
+async function saveSession({ name }: Scene): Promise<void> {
+  const file = await (await import("../session/index.js")).sessionFile();
+  if (file !== null) download(`${fileName(name)}.sim3align.zip`, file);
 }
 
 /** Saves the 3D view or, without one, the image view. */
@@ -55,10 +47,19 @@ async function saveImage(name: string): Promise<void> {
   const state = space.peek();
   const image = state.kind === "ready" ? await state.view.snapshot() : await imageSnapshot(page);
   if (image === null) announce("There is no image yet.", "failed");
-  else download(`${name}-view.png`, image, "image/png");
+  else download(`${name}-view.png`, image);
 }
 
-function download(name: string, content: string | Uint8Array | Blob, type = "application/octet-stream"): void {
+/** Types of files by their extensions. */
+const types: Readonly<Record<string, string>> = {
+  glb: "model/gltf-binary",
+  json: "application/json",
+  png: "image/png",
+  zip: "application/zip",
+};
+
+function download(name: string, content: string | Uint8Array | Blob): void {
+  const type = types[extension(name)] ?? "application/octet-stream";
   const part = typeof content === "string" || content instanceof Blob ? content : Uint8Array.from(content);
   const address = URL.createObjectURL(new Blob([part], { type }));
   const link = document.createElement("a");

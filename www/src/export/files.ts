@@ -1,16 +1,16 @@
 /** Writers of results, in formats that other programs read. */
-import type { Metrics } from "sim3align";
 import { exportGlb, exportPly, exportSceneGlb, placeGlb, type Sim3, toBop, toRowMajor } from "sim3align/conventions";
 import type { ObjectModel } from "../state/object-model.js";
 import { page } from "../state/page.js";
+import { isResult } from "../state/pose.js";
 import type { Scene } from "../state/scene.js";
 
 const { framePoses, options, support, video } = page;
 
 /** The 16 numbers of a pose as a JSON array of four lines. */
-export function matrixText({ pose }: ObjectModel, order: "columns" | "rows"): string {
+export function matrixText({ pose }: ObjectModel, order: "column" | "row"): string {
   const { transform } = pose.value;
-  const numbers = order === "columns" ? transform.matrix : toRowMajor(transform);
+  const numbers = order === "column" ? transform.matrix : toRowMajor(transform);
   return `[${Array.from({ length: 4 }, (_, i) => numbers.slice(4 * i, 4 * i + 4).join(", ")).join(",\n ")}]`;
 }
 
@@ -28,22 +28,14 @@ export function keyOf(scene: Scene, object: ObjectModel): string {
   return namesakes.length === 1 ? object.name : `${object.name} ${Number(object.id) + 1}`;
 }
 
-interface JsonEntry extends ReturnType<typeof plain> {
-  source: string;
-  sizeM: number[];
-  confidence: number | null;
-  metrics: Metrics | null;
-  alternatives: ReturnType<typeof plain>[];
-}
-
-function jsonEntry({ pose, box, precise, metrics }: ObjectModel): JsonEntry {
+function jsonEntry({ pose, box, precise, metrics }: ObjectModel) {
   const { transform, source } = pose.value;
   return {
     ...plain(transform),
     source,
     sizeM: [...box.value.sizeM],
     // The confidence is that of the aligned pose, not of one that was changed by hand.
-    confidence: source === "aligned" || source === "refined" ? (precise?.confidence ?? null) : null,
+    confidence: isResult(source) ? (precise?.confidence ?? null) : null,
     metrics: metrics.value,
     alternatives: precise?.alternatives.map(plain) ?? [],
   };

@@ -2,10 +2,10 @@
 import type { ComponentChildren } from "preact";
 import { useMemo } from "preact/hooks";
 import { depthRange } from "../draw/colours.js";
-import { baseName, filesOf } from "../load/files.js";
+import { baseName } from "../load/files.js";
 import type { CameraSource, Field } from "../load/inputs.js";
 import { type Draft, draftInputs } from "../state/draft.js";
-import { Choices } from "../ui/controls.js";
+import { Choices, FileButton } from "../ui/controls.js";
 import { significant } from "../ui/format.js";
 import { Picture } from "../ui/picture.js";
 import { ASSUMED_FOV_DEG, fovYDegOf } from "./checks.js";
@@ -28,7 +28,7 @@ function Card({ field, title, chosen, accept, children }: CardProps) {
     <div class="card" data-field={field} data-wrong={isWrong}>
       <div class="card-head">
         <h3>{title}</h3>
-        <FileButton field={field} title={title} accept={accept} isWrong={isWrong} />
+        <FieldFiles field={field} title={title} accept={accept} isWrong={isWrong} />
       </div>
       <p class="path" title={chosen}>
         {chosen || "–"}
@@ -39,7 +39,7 @@ function Card({ field, title, chosen, accept, children }: CardProps) {
   );
 }
 
-interface FileButtonProps {
+interface FieldFilesProps {
   field: Exclude<Field, "files">;
   title: string;
   accept: string;
@@ -48,30 +48,23 @@ interface FileButtonProps {
 }
 
 /** A button that chooses files for a field. */
-export function FileButton({ field, title, accept, isWrong, multiple = false }: FileButtonProps) {
-  return (
-    <label class="button">
-      <span>
-        Choose<span class="visually-hidden"> {title.toLowerCase()}</span>
-      </span>
-      <input
-        id={`${field}-file`}
-        class="visually-hidden"
-        type="file"
-        accept={accept}
-        multiple={multiple}
-        aria-invalid={isWrong}
-        aria-describedby={describedBy(field)}
-        onChange={async ({ currentTarget }) => {
-          const files = filesOf(currentTarget);
-          // Otherwise choosing the same file again, for example after correcting it, would fire no event.
-          currentTarget.value = "";
-          await choose(field, files);
-        }}
-      />
-    </label>
-  );
-}
+export const FieldFiles = ({ field, title, isWrong, ...input }: FieldFilesProps) => (
+  <FileButton
+    {...input}
+    id={`${field}-file`}
+    aria-invalid={isWrong}
+    aria-describedby={describedBy(field)}
+    onFiles={(files) => choose(field, files)}
+  >
+    <span>
+      Choose<span class="visually-hidden"> {title.toLowerCase()}</span>
+    </span>
+  </FileButton>
+);
+
+/** Pixels as an image of the size of the depth map, as soon as both are there. */
+const useImage = (rgba: Uint8ClampedArray | null, depth: { width: number; height: number } | null) =>
+  useMemo(() => rgba && depth && new ImageData(Uint8ClampedArray.from(rgba), depth.width, depth.height), [rgba, depth]);
 
 /** Metres per unit of depth, as text. An empty text is the default of the reader. */
 const depthUnits = [
@@ -86,13 +79,7 @@ export function DepthCard({ open, ground }: { open: Draft; ground: Uint8ClampedA
   const { depth: file, depthScale } = draftInputs(open);
   const depth = open.reading?.depth ?? null;
   const range = useMemo(() => (depth === null ? null : depthRange(depth.data)), [depth]);
-  const image = useMemo(
-    () =>
-      depth === null || ground === null
-        ? null
-        : new ImageData(Uint8ClampedArray.from(ground), depth.width, depth.height),
-    [depth, ground],
-  );
+  const image = useImage(ground, depth);
   return (
     <Card field="depth" title="Depth map" chosen={file === null ? "" : baseName(file.path)} accept=".png,.npy">
       <Picture image={image} label="Depth map" class="shot" />
@@ -116,13 +103,7 @@ export function DepthCard({ open, ground }: { open: Draft; ground: Uint8ClampedA
 export function PhotoCard({ open }: { open: Draft }) {
   const { photo: file } = draftInputs(open);
   const { photo, depth } = open.reading ?? { photo: null, depth: null };
-  const image = useMemo(
-    () =>
-      photo === null || depth === null
-        ? null
-        : new ImageData(Uint8ClampedArray.from(photo.rgba), depth.width, depth.height),
-    [photo, depth],
-  );
+  const image = useImage(photo?.rgba ?? null, depth);
   return (
     <Card
       field="photo"

@@ -6,8 +6,9 @@ import type { Inputs, MeshSource, ObjectFiles } from "../load/inputs.js";
 import { withoutObject } from "../load/problems.js";
 import { colourOf, type ReadObject } from "../load/read-scene.js";
 import { type Draft, draftInputs } from "../state/draft.js";
+import { Check, Choices } from "../ui/controls.js";
 import { Picture } from "../ui/picture.js";
-import { FileButton } from "./cards.js";
+import { FieldFiles } from "./cards.js";
 import { change } from "./draft.js";
 import { Problems, problemsFor } from "./problem-list.js";
 import { meshExtensions, resourceExtensions } from "./roles.js";
@@ -26,11 +27,11 @@ export function ObjectRows({ open, ground }: { open: Draft; ground: Uint8Clamped
         <h3 id="pairs-title">Objects: mask and mesh</h3>
         <span class="field-inline">
           <span>Masks</span>
-          <FileButton field="mask" title="Masks" accept=".png,.npy,.json" isWrong={isWrong("mask")} multiple />
+          <FieldFiles field="mask" title="Masks" accept=".png,.npy,.json" isWrong={isWrong("mask")} multiple />
         </span>
         <span class="field-inline">
           <span>Meshes</span>
-          <FileButton
+          <FieldFiles
             field="mesh"
             title="Meshes"
             accept={[...meshExtensions, ...resourceExtensions].map((ending) => `.${ending}`).join()}
@@ -66,15 +67,12 @@ function Resize({ open }: { open: Draft }) {
   const isNeeded = resizeMasks || open.problems.some(({ field, code }) => field === "mask" && code === "SIZE_MISMATCH");
   if (!isNeeded) return null;
   return (
-    <label class="check">
-      <input
-        id="resize-masks"
-        type="checkbox"
-        checked={resizeMasks}
-        onChange={({ currentTarget }) => change((now) => ({ ...now, resizeMasks: currentTarget.checked }), true)}
-      />
-      <span>Resize masks to the depth map</span>
-    </label>
+    <Check
+      id="resize-masks"
+      title="Resize masks to the depth map"
+      checked={resizeMasks}
+      onCheck={(checked) => change((now) => ({ ...now, resizeMasks: checked }), true)}
+    />
   );
 }
 
@@ -165,18 +163,15 @@ function maskTitle({ mask }: ObjectFiles): string {
 function MeshSelect({ inputs: { meshes }, object, i }: { inputs: Inputs; object: ObjectFiles; i: number }) {
   const chosen = object.mesh === null ? -1 : meshes.indexOf(object.mesh);
   return (
-    <select
-      aria-label={`Mesh of ${object.name}`}
+    <Choices
+      label={`Mesh of ${object.name}`}
       value={`${chosen}`}
-      onChange={({ currentTarget }) => change(withMesh(i, meshes[Number(currentTarget.value)] ?? null))}
-    >
-      <option value="-1">no mesh</option>
-      {meshes.map(({ file }, k) => (
-        <option key={file.path} value={`${k}`}>
-          {baseName(file.path) === file.path ? file.path : file.path.split("/").slice(-2).join("/")}
-        </option>
-      ))}
-    </select>
+      choices={[
+        ["-1", "no mesh"],
+        ...meshes.map(({ file }, k) => [`${k}`, file.path.split("/").slice(-2).join("/")] as const),
+      ]}
+      onChoose={(value) => change(withMesh(i, meshes[Number(value)] ?? null))}
+    />
   );
 }
 

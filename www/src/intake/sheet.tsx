@@ -1,9 +1,10 @@
 /** The intake sheet: what each file of a draft is used for, what is missing, and what helps. */
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import { depthImage } from "../draw/colours.js";
-import { baseName, filesOf, type NamedFile } from "../load/files.js";
+import { baseName } from "../load/files.js";
 import type { Inputs, Role } from "../load/inputs.js";
 import { type Draft, draft, draftInputs, isReady } from "../state/draft.js";
+import { Check, Choices, FileButton } from "../ui/controls.js";
 import { CameraCard, DepthCard, PhotoCard } from "./cards.js";
 import { accept, assign, asVideo, change, dismiss, look, propose } from "./draft.js";
 import { ObjectRows } from "./object-rows.js";
@@ -55,16 +56,9 @@ export function Sheet() {
         <FileRoles inputs={inputs} />
       </div>
       <footer>
-        <label class="button">
+        <FileButton id="more-files" multiple onFiles={propose}>
           <span>Add files</span>
-          <input
-            id="more-files"
-            class="visually-hidden"
-            type="file"
-            multiple
-            onChange={({ currentTarget }) => propose(filesOf(currentTarget))}
-          />
-        </label>
+        </FileButton>
         <p class="quiet" role="status">
           {summary(open)}
         </p>
@@ -86,33 +80,24 @@ function summary({ reading, problems, progress: { done, total } }: Draft): strin
 function SceneChoice({ open: { scenes, index } }: { open: Draft }) {
   if (scenes.length < 2) return null;
   return (
-    <label class="field-inline">
+    <label class="field-inline" for="scene-choice">
       <span>Scene</span>
-      <select id="scene-choice" value={`${index}`} onChange={({ currentTarget }) => look(Number(currentTarget.value))}>
-        {scenes.map((one, i) => (
-          <option key={`${i} ${one.name}`} value={`${i}`}>
-            {i + 1} of {scenes.length}: {one.name}
-            {one.depth === null ? "" : ` (${baseName(one.depth.path)})`}
-          </option>
-        ))}
-      </select>
+      <Choices
+        id="scene-choice"
+        value={`${index}`}
+        choices={scenes.map(({ name, depth }, i) => {
+          const file = depth === null ? "" : ` (${baseName(depth.path)})`;
+          return [`${i}`, `${i + 1} of ${scenes.length}: ${name}${file}`];
+        })}
+        onChoose={(value) => look(Number(value))}
+      />
     </label>
   );
 }
 
 function VideoChoice({ open }: { open: Draft }) {
   if (!canBeVideo(open.scenes)) return null;
-  return (
-    <label class="check">
-      <input
-        id="as-video"
-        type="checkbox"
-        checked={open.isVideo}
-        onChange={({ currentTarget }) => asVideo(currentTarget.checked)}
-      />
-      <span>Frames of one video</span>
-    </label>
-  );
+  return <Check id="as-video" title="Frames of one video" checked={open.isVideo} onCheck={asVideo} />;
 }
 
 const roles: readonly (readonly [Role, string])[] = [
@@ -143,26 +128,15 @@ function FileRoles({ inputs: { files } }: { inputs: Inputs }) {
             <span class="path" title={file.path}>
               {file.path}
             </span>
-            <RoleSelect file={file} role={role} />
+            <Choices
+              label={`Use of ${baseName(file.path)}`}
+              value={role}
+              choices={roles}
+              onChoose={(chosen) => assign(file, chosen)}
+            />
           </li>
         ))}
       </ul>
     </details>
-  );
-}
-
-function RoleSelect({ file, role }: { file: NamedFile; role: Role }) {
-  return (
-    <select
-      aria-label={`Use of ${baseName(file.path)}`}
-      value={role}
-      onChange={({ currentTarget }) => assign(file, currentTarget.value as Role)}
-    >
-      {roles.map(([value, title]) => (
-        <option key={value} value={value}>
-          {title}
-        </option>
-      ))}
-    </select>
   );
 }

@@ -51,21 +51,11 @@ async function opened(file: NamedFile, allowance: Allowance): Promise<Archive> {
   for (const { path, isEncrypted, method } of entries) {
     const source = `${path} in ${name}`;
     if (extension(path) === "zip") {
-      throw refusal(
-        "UNSUPPORTED_FORMAT",
-        `the archive ${source}`,
-        "an archive of files",
-        "Unpack the outer one first.",
-      );
+      throw unsupported(`the archive ${source}`, "an archive of files", "Unpack the outer one first.");
     }
     if (isEncrypted || (method !== STORED && method !== DEFLATED)) {
       const found = `${source}, ${isEncrypted ? "encrypted" : `compressed by the method ${method}`}`;
-      throw refusal(
-        "UNSUPPORTED_FORMAT",
-        found,
-        "entries that are stored or deflated",
-        "Unpack it, and drop the folder.",
-      );
+      throw unsupported(found, "entries that are stored or deflated", "Unpack it, and drop the folder.");
     }
   }
   allowance.addArchive(
@@ -138,6 +128,9 @@ async function contentOf({ name, bytes }: Archive, { path, method, packed, infla
   if (left > 0) throw corrupt(`${source}, which holds ${content.length} of the ${inflated} bytes that it declares`);
   return content;
 }
+
+const unsupported = (found: string, expected: string, remedy: string) =>
+  refusal("UNSUPPORTED_FORMAT", found, expected, remedy);
 
 const corrupt = (found: string, cause?: unknown) =>
   refusal("CORRUPT_FILE", found, "a whole zip archive", "Download or pack it again.", cause);

@@ -1,27 +1,16 @@
 /** The result and its alternatives, as pictures. */
-import { computed } from "@preact/signals";
 import { useMemo } from "preact/hooks";
 import { poseThumbnail } from "../draw/pose-thumbnail.js";
-import { drawnScene } from "../draw/reduced.js";
-import { once } from "../load/once.js";
 import { applyAlternative, shownAlternative } from "../run/alternatives.js";
 import type { ObjectModel } from "../state/object-model.js";
-import type { Workspace } from "../state/workspace.js";
 import { Tip } from "../ui/controls.js";
 import { Picture } from "../ui/picture.js";
 import { useWorkspace } from "../ui/workspace.js";
-import { groundOf } from "../views/ground.js";
+import { imageOf } from "../views/image.js";
 
 /** Width and height of a picture in pixels. */
 const SIZE = 88;
 const MOST = 5;
-
-const sceneryOf = once((workspace: Workspace) =>
-  computed(() => {
-    const [whole, rgba] = [workspace.scene.value, groundOf(workspace).ground.value];
-    return whole === null || rgba === null ? null : { ...drawnScene(whole), rgba };
-  }),
-);
 
 export function Alternatives({ object }: { object: ObjectModel | null }) {
   const workspace = useWorkspace();
@@ -56,11 +45,12 @@ export function Alternatives({ object }: { object: ObjectModel | null }) {
 }
 
 function PosePicture({ object, matrix }: { object: ObjectModel; matrix: ArrayLike<number> }) {
-  const around = sceneryOf(useWorkspace()).value;
+  const { drawn, ground } = imageOf(useWorkspace());
+  const [around, rgba] = [drawn.value, ground.value];
   const image = useMemo(() => {
     const { mesh, colour } = object;
-    if (around === null) return null;
-    return poseThumbnail({ mesh, matrix, mask: around.maskOf(object), colour }, around, SIZE);
-  }, [object, matrix, around]);
+    if (around === null || rgba === null) return null;
+    return poseThumbnail({ mesh, matrix, mask: around.maskOf(object), colour }, { ...around, rgba }, SIZE);
+  }, [object, matrix, around, rgba]);
   return <Picture image={image} label="" class="thumb" />;
 }

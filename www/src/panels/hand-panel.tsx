@@ -1,8 +1,9 @@
 /** Adjusting the pose by hand: handles, nudges, known size, refine, undo and redo. */
 import type { Vector3 } from "sim3align/conventions";
 import { refine } from "../run/align.js";
+import type { ObjectModel } from "../state/object-model.js";
 import { type Nudge, rotationAbout } from "../state/pose.js";
-import type { Workspace } from "../state/workspace.js";
+import { Check } from "../ui/controls.js";
 import { useWorkspace } from "../ui/workspace.js";
 import { KnownSize } from "./known-size.js";
 import { Numbers } from "./numbers.js";
@@ -13,47 +14,71 @@ const modes = [
   ["scale", "Scale", "S"],
 ] as const;
 
-/** Directions in the camera frame (OpenCV: y down, z forward). */
-const moves: readonly [title: string, symbol: string, direction: Vector3][] = [
-  ["left", "←", [-1, 0, 0]],
-  ["right", "→", [1, 0, 0]],
-  ["up", "↑", [0, -1, 0]],
-  ["down", "↓", [0, 1, 0]],
-  ["nearer", "⊙", [0, 0, -1]],
-  ["farther", "⊗", [0, 0, 1]],
-];
-
 const settings = [
   ["snap", "snaps", "Snap"],
   ["local-axes", "isLocal", "Axes of the mesh"],
 ] as const;
 
-const rotations: readonly [title: string, symbol: string, axis: Vector3, degrees: number][] = [
-  ["left", "↶", [0, 1, 0], 5],
-  ["right", "↷", [0, 1, 0], -5],
-  ["backwards", "⤒", [1, 0, 0], 5],
-  ["forwards", "⤓", [1, 0, 0], -5],
-  ["anticlockwise", "⟲", [0, 0, 1], -5],
-  ["clockwise", "⟳", [0, 0, 1], 5],
+/** A fiftieth of the object's size in a direction of the camera frame: visible, but small compared with the mask. */
+const moveBy =
+  (...direction: Vector3) =>
+  ({ box }: ObjectModel): Nudge => {
+    const step = Math.hypot(...box.peek().sizeM) / 50;
+    return { moveM: direction.map((x) => x * step) as Vector3 };
+  };
+
+const turnBy =
+  (degrees: number, ...axis: Vector3) =>
+  (): Nudge => ({ rotation: rotationAbout(axis, degrees) });
+
+const scaleBy = (scale: number) => (): Nudge => ({ scale });
+
+interface Steps {
+  legend: string;
+  /** Before the titles of the buttons. */
+  verb: string;
+  buttons: readonly (readonly [title: string, symbol: string, change: (object: ObjectModel) => Nudge])[];
+}
+
+/** Buttons that change the pose (camera frame of OpenCV: y down, z forward). */
+const steps: readonly Steps[] = [
+  {
+    legend: "Move in the camera view",
+    verb: "Move ",
+    buttons: [
+      ["left", "←", moveBy(-1, 0, 0)],
+      ["right", "→", moveBy(1, 0, 0)],
+      ["up", "↑", moveBy(0, -1, 0)],
+      ["down", "↓", moveBy(0, 1, 0)],
+      ["nearer", "⊙", moveBy(0, 0, -1)],
+      ["farther", "⊗", moveBy(0, 0, 1)],
+    ],
+  },
+  {
+    legend: "Rotate by 5°",
+    verb: "Rotate ",
+    buttons: [
+      ["left", "↶", turnBy(5, 0, 1, 0)],
+      ["right", "↷", turnBy(-5, 0, 1, 0)],
+      ["backwards", "⤒", turnBy(5, 1, 0, 0)],
+      ["forwards", "⤓", turnBy(-5, 1, 0, 0)],
+      ["anticlockwise", "⟲", turnBy(-5, 0, 0, 1)],
+      ["clockwise", "⟳", turnBy(5, 0, 0, 1)],
+    ],
+  },
+  {
+    legend: "Scale by 2 %",
+    verb: "",
+    buttons: [
+      ["Smaller", "−", scaleBy(1 / 1.02)],
+      ["Larger", "+", scaleBy(1.02)],
+    ],
+  },
 ];
-
-/** Moves, rotates or scales the selected object. */
-function nudgeSelected({ nudge, selected }: Workspace, change: Nudge): void {
-  const object = selected.peek();
-  if (object !== null) nudge(object, change);
-}
-
-function move({ nudge, selected }: Workspace, direction: Vector3): void {
-  const object = selected.peek();
-  if (object === null) return;
-  // Visible, but small compared with the mask.
-  const step = Math.hypot(...object.box.peek().sizeM) / 50;
-  nudge(object, { moveM: direction.map((x) => x * step) as Vector3 });
-}
 
 export function HandPanel() {
   const workspace = useWorkspace();
-  const { canRedo, canUndo, gizmo, gizmoSettings, isRunning, redo, selected, space, undo } = workspace;
+  const { canRedo, canUndo, gizmo, gizmoSettings, isRunning, nudge, redo, selected, space, undo } = workspace;
   const object = selected.value;
   const lockScale = object !== null && object.knownScale.value !== null;
   const isReady = object !== null && !isRunning.value && !object.isLocked.value;
@@ -81,59 +106,36 @@ export function HandPanel() {
       </fieldset>
       <div class="row">
         {settings.map(([id, name, title]) => (
-          <label key={id} class="check">
-            <input
-              id={id}
-              type="checkbox"
-              checked={gizmoSettings.value[name]}
-              onChange={({ currentTarget }) => {
-                gizmoSettings.value = { ...gizmoSettings.peek(), [name]: currentTarget.checked };
-              }}
-            />
-            <span>{title}</span>
-          </label>
+          <Check
+            key={id}
+            id={id}
+            title={title}
+            checked={gizmoSettings.value[name]}
+            onCheck={(checked) => {
+              gizmoSettings.value = { ...gizmoSettings.peek(), [name]: checked };
+            }}
+          />
         ))}
       </div>
       <details class="more">
         <summary>Nudge</summary>
         <Numbers object={object} isReady={isReady} />
-        <fieldset class="steps" disabled={!isReady}>
-          <legend>Move in the camera view</legend>
-          {moves.map(([title, symbol, direction]) => (
-            <button
-              key={title}
-              type="button"
-              aria-label={`Move ${title}`}
-              title={title}
-              onClick={() => move(workspace, direction)}
-            >
-              {symbol}
-            </button>
-          ))}
-        </fieldset>
-        <fieldset class="steps" disabled={!isReady}>
-          <legend>Rotate by 5°</legend>
-          {rotations.map(([title, symbol, axis, degrees]) => (
-            <button
-              key={title}
-              type="button"
-              aria-label={`Rotate ${title}`}
-              title={title}
-              onClick={() => nudgeSelected(workspace, { rotation: rotationAbout(axis, degrees) })}
-            >
-              {symbol}
-            </button>
-          ))}
-        </fieldset>
-        <fieldset class="steps" disabled={!isReady || lockScale}>
-          <legend>Scale by 2 %</legend>
-          <button type="button" aria-label="Smaller" onClick={() => nudgeSelected(workspace, { scale: 1 / 1.02 })}>
-            −
-          </button>
-          <button type="button" aria-label="Larger" onClick={() => nudgeSelected(workspace, { scale: 1.02 })}>
-            +
-          </button>
-        </fieldset>
+        {steps.map(({ legend, verb, buttons }) => (
+          <fieldset key={legend} class="steps" disabled={!isReady || (verb === "" && lockScale)}>
+            <legend>{legend}</legend>
+            {buttons.map(([title, symbol, change]) => (
+              <button
+                key={title}
+                type="button"
+                aria-label={verb + title}
+                title={verb && title}
+                onClick={() => object !== null && nudge(object, change(object))}
+              >
+                {symbol}
+              </button>
+            ))}
+          </fieldset>
+        ))}
       </details>
       <KnownSize object={object} id="known-size" />
       <div class="row">
@@ -147,16 +149,13 @@ export function HandPanel() {
         >
           Refine pose
         </button>
-        <label class="check">
-          <input
-            id="lock-scale"
-            type="checkbox"
-            checked={lockScale}
-            disabled={object === null}
-            onChange={({ currentTarget }) => object?.lockScale(currentTarget.checked)}
-          />
-          <span>Lock scale</span>
-        </label>
+        <Check
+          id="lock-scale"
+          title="Lock scale"
+          checked={lockScale}
+          disabled={object === null}
+          onCheck={(checked) => object?.lockScale(checked)}
+        />
       </div>
       <div class="row">
         <button type="button" id="undo" aria-disabled={!canUndo.value} aria-keyshortcuts="Control+Z" onClick={undo}>

@@ -1,9 +1,9 @@
 /** Where to begin: the user's own files, or a sample. */
-import { filesOf } from "../load/files.js";
 import { openFiles, openSample } from "../load/open.js";
 import { sampleOf, samples, sampleUrl } from "../load/samples.js";
 import { alignAll } from "../run/align.js";
 import { page } from "../state/page.js";
+import { FileButton } from "../ui/controls.js";
 
 const { scene } = page;
 
@@ -19,32 +19,14 @@ export function StartPanel() {
   const shown = scene.value?.sample ?? "";
   return (
     <section class="panel start" aria-label="Open" data-own={scene.value !== null && shown === ""}>
-      <label class="button primary drop">
+      <FileButton id="files" look="primary drop" multiple onFiles={openFiles}>
         <span>Drop your files</span>
         <small>Depth map, masks, meshes and camera</small>
-        <input
-          id="files"
-          class="visually-hidden"
-          type="file"
-          multiple
-          onChange={({ currentTarget }) => {
-            const files = filesOf(currentTarget);
-            currentTarget.value = "";
-            openFiles(files);
-          }}
-        />
-      </label>
+      </FileButton>
       <div class="row spread">
-        <label class="button">
+        <FileButton id="folder" webkitdirectory onFiles={openFiles}>
           <span>Open a folder</span>
-          <input
-            id="folder"
-            class="visually-hidden"
-            type="file"
-            {...{ webkitdirectory: true }}
-            onChange={({ currentTarget }) => openFiles(filesOf(currentTarget))}
-          />
-        </label>
+        </FileButton>
         <span class="quiet">Nothing leaves this device.</span>
       </div>
       <ul class="samples">

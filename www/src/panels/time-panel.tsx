@@ -5,7 +5,7 @@ import { page } from "../state/page.js";
 import type { FramePose } from "../state/video.js";
 import { percent } from "../ui/format.js";
 
-const { frameIndex, framePoses, selected, trackedCount, video } = page;
+const { frameIndex, framePoses, selected, video } = page;
 
 /** Time between frames while they are played. */
 const FRAME_MS = 120;
@@ -23,6 +23,7 @@ export function TimePanel() {
   const count = opened.frames.length;
   const index = frameIndex.value;
   const poses = framePoses.value;
+  const trackedCount = poses.filter((pose) => pose !== null).length;
   const source = selected.value?.pose.value.source;
   const canCorrect = !isTracking.value && poses[index] != null && source !== "tracked" && source !== "start";
   return (
@@ -62,8 +63,8 @@ export function TimePanel() {
           Stop
         </button>
       ) : (
-        <button type="button" id="track" class={trackedCount.value < count ? "primary" : ""} onClick={trackAll}>
-          {trackedCount.value === 0 ? "Track" : "Track again"}
+        <button type="button" id="track" class={trackedCount < count ? "primary" : ""} onClick={trackAll}>
+          {trackedCount === 0 ? "Track" : "Track again"}
         </button>
       )}
       {opened.cameras !== null && (

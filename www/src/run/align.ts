@@ -10,10 +10,15 @@ import type { Workspace } from "../state/workspace.js";
 import { aligner, inputOf, viewOf } from "./aligner.js";
 
 /** Aligns the selected object from scratch. */
-export async function alignSelected(workspace: Workspace): Promise<void> {
+export const alignSelected = (workspace: Workspace) => searchSelected(workspace, "global");
+
+/** Searches around the current pose of the selected object only. */
+export const refine = (workspace: Workspace) => searchSelected(workspace, "local");
+
+async function searchSelected(workspace: Workspace, search: "global" | "local"): Promise<void> {
   const object = workspace.selected.peek();
   if (object === null || object.isLocked.peek()) return;
-  await run(workspace, [object], (whole, signal) => alone(workspace, whole, object, "global", signal));
+  await run(workspace, [object], (whole, signal) => alone(workspace, whole, object, search, signal));
 }
 
 /** Aligns every object of the scene, except those whose poses are locked. */
@@ -33,13 +38,6 @@ export async function alignEach(workspace: Workspace): Promise<void> {
   const objects = workspace.scene.peek()?.objects ?? [];
   if (objects.length < 2) return alignAll(workspace);
   await run(workspace, objects, (whole, signal) => eachAlone(workspace, whole, objects, signal));
-}
-
-/** Searches around the current pose of the selected object only. */
-export async function refine(workspace: Workspace): Promise<void> {
-  const object = workspace.selected.peek();
-  if (object === null || object.isLocked.peek()) return;
-  await run(workspace, [object], (whole, signal) => alone(workspace, whole, object, "local", signal));
 }
 
 type Work = (whole: Scene, signal: AbortSignal) => Promise<void>;

@@ -4,13 +4,13 @@ import type { Tracker, ViewInput } from "sim3align";
 import { toSim3 } from "sim3align/conventions";
 import type { Inputs } from "../load/inputs.js";
 import { readInputs, sceneOf } from "../load/read-scene.js";
+import type { ObjectModel } from "../state/object-model.js";
 import { page } from "../state/page.js";
 import type { Scene } from "../state/scene.js";
 import type { FramePose, Video } from "../state/video.js";
 import { aligner, viewOf } from "./aligner.js";
 
-const { announce, constraintsOf, frameIndex, framePoses, inputs, scene, sceneOptions, setFramePose, show, video } =
-  page;
+const { announce, constraintsOf, frameIndex, framePoses, inputs, scene, sceneOptions, show, video } = page;
 
 const controller = signal<AbortController | null>(null);
 export const isTracking = computed(() => controller.value !== null);
@@ -71,66 +71,73 @@ function put(index: number, frame: Inputs, opened: Scene): void {
   show(opened, frame);
 }
 
-/** Tracks the object through all frames, and shows them as they come. */
-export async function trackAll(): Promise<void> {
+/** Runs work on the frames, unless other work is running; it can be stopped. */
+async function run(work: (opened: Video, first: ObjectModel, signal: AbortSignal) => Promise<void>): Promise<void> {
   const [opened, first] = [video.peek(), scene.peek()?.objects[0]];
   if (opened === null || first === undefined || isTracking.peek()) return;
   const abort = new AbortController();
   controller.value = abort;
-  const started = performance.now();
   try {
-    tracker?.close();
-    const { scale } = constraintsOf(first);
-    // A pose that a person has set in the first frame is where tracking begins.
-    const initial = frameIndex.peek() === 0 && first.pose.peek().source === "hand" ? first.pose.peek().transform : null;
-    const limits = scale === undefined ? {} : { scale };
-    tracker = await (await aligner()).track(first.mesh, { ...sceneOptions(), initial, ...limits });
-    for (const [index, frame] of opened.frames.entries()) {
-      if (abort.signal.aborted || video.peek() !== opened) return announce("Stopped.");
-      announce(`Tracking frame ${index + 1} of ${opened.frames.length} …`, "working");
-      const read = await readFrame(frame);
-      const object = read?.objects[0];
-      if (read === null || object === undefined) return;
-      const { depthM, width, height, camera } = read;
-      const mask = frame.objects[0]?.mask == null ? {} : { mask: object.mask };
-      const found = await tracker.next({ depth: depthM, width, height, camera, ...mask });
-      if (video.peek() !== opened) return;
-      const { confidence, state } = found;
-      setFramePose(index, { transform: toSim3(found), confidence, state, isCorrected: false });
-      put(index, frame, read);
-    }
-    const lost = framePoses.peek().filter((pose) => pose?.state === "lost").length;
-    const seconds = ((performance.now() - started) / 1000).toFixed(1);
-    announce(`Tracked ${opened.frames.length} frames in ${seconds} s${lost > 0 ? `; lost in ${lost}` : ""}.`);
+    await work(opened, first, abort.signal);
   } catch (error) {
-    fail(error);
+    if (abort.signal.aborted) announce("Stopped.");
+    else fail(error);
   } finally {
     controller.value = null;
   }
 }
 
+/** What is known of the scale. */
+function scaleOf(object: ObjectModel) {
+  const { scale } = constraintsOf(object);
+  return scale === undefined ? {} : { scale };
+}
+
+/** The mask of a frame, if it has one. */
+const maskOf = (frame: Inputs, object: ObjectModel) => (frame.objects[0]?.mask == null ? {} : { mask: object.mask });
+
+/** Tracks the object through all frames, and shows them as they come. */
+export const trackAll = () =>
+  run(async (opened, first, signal) => {
+    const started = performance.now();
+    tracker?.close();
+    // A pose that a person has set in the first frame is where tracking begins.
+    const { source, transform } = first.pose.peek();
+    const initial = frameIndex.peek() === 0 && source === "hand" ? transform : null;
+    tracker = await (await aligner()).track(first.mesh, { ...sceneOptions(), initial, ...scaleOf(first) });
+    for (const [index, frame] of opened.frames.entries()) {
+      if (signal.aborted || video.peek() !== opened) return announce("Stopped.");
+      announce(`Tracking frame ${index + 1} of ${opened.frames.length} …`, "working");
+      const read = await readFrame(frame);
+      const object = read?.objects[0];
+      if (read === null || object === undefined) return;
+      const { depthM, width, height, camera } = read;
+      const found = await tracker.next({ depth: depthM, width, height, camera, ...maskOf(frame, object) });
+      if (video.peek() !== opened) return;
+      const { confidence, state } = found;
+      const pose: FramePose = { transform: toSim3(found), confidence, state, isCorrected: false };
+      framePoses.value = framePoses.peek().map((other, i) => (i === index ? pose : other));
+      put(index, frame, read);
+    }
+    const lost = framePoses.peek().filter((pose) => pose?.state === "lost").length;
+    const seconds = ((performance.now() - started) / 1000).toFixed(1);
+    announce(`Tracked ${opened.frames.length} frames in ${seconds} s${lost > 0 ? `; lost in ${lost}` : ""}.`);
+  });
+
 /** Aligns the object in all frames together, as views of cameras whose poses are known: it has not moved. */
-export async function alignFrames(): Promise<void> {
-  const [opened, first] = [video.peek(), scene.peek()?.objects[0]];
-  const cameras = opened?.cameras ?? null;
-  if (opened === null || cameras === null || first === undefined || isTracking.peek()) return;
-  const abort = new AbortController();
-  controller.value = abort;
-  try {
+export const alignFrames = () =>
+  run(async (opened, first, signal) => {
     const views: ViewInput[] = [];
     for (const [index, frame] of opened.frames.entries()) {
       announce(`Reading view ${index + 1} of ${opened.frames.length} …`, "working");
       const read = await readFrame(frame);
       const object = read?.objects[0];
-      const cameraToWorld = cameras[index];
+      const cameraToWorld = opened.cameras?.[index];
       if (read === null || object === undefined || cameraToWorld === undefined) return;
-      const mask = frame.objects[0]?.mask == null ? {} : { mask: object.mask };
-      views.push({ ...viewOf(read), ...mask, cameraToWorld });
+      views.push({ ...viewOf(read), ...maskOf(frame, object), cameraToWorld });
     }
     announce(`Aligning ${views.length} views together …`, "working");
-    const { scale } = constraintsOf(first);
-    const limits = scale === undefined ? {} : { scale };
-    const settings = { ...sceneOptions(), ...limits, signal: abort.signal };
+    const settings = { ...sceneOptions(), ...scaleOf(first), signal };
     const found = await (await aligner()).alignViews({ mesh: first.mesh, views }, settings);
     if (video.peek() !== opened) return;
     framePoses.value = found.views.map((view): FramePose => {
@@ -140,13 +147,7 @@ export async function alignFrames(): Promise<void> {
     const [shown, pose] = [scene.peek()?.objects[0], framePoses.peek()[frameIndex.peek()]];
     if (shown !== undefined && pose != null) shown.pose.value = { transform: pose.transform, source: "tracked" };
     announce(`Aligned ${views.length} views together, ${Math.round(100 * found.confidence)} %.`);
-  } catch (error) {
-    if (abort.signal.aborted) announce("Stopped.");
-    else fail(error);
-  } finally {
-    controller.value = null;
-  }
-}
+  });
 
 /** Takes the pose that is shown as the right one, and carries the difference to the frames before and after. */
 export async function correctFrame(): Promise<void> {

@@ -59,7 +59,7 @@ export function packed(inputs: Inputs, scene: Scene, options: Options): { sessio
     return known >= 0 ? known : files.push(file) - 1;
   };
   const optional = (file: NamedFile | null): Ref | null => (file === null ? null : ref(file));
-  const { camera } = inputs;
+  const { camera, depthScale, imageId, name, resizeMasks } = inputs;
   const objects = inputs.objects.map(({ name, mask, mesh, truth }, i): PackedObject => {
     for (const sibling of mesh?.siblings ?? []) if (isResource(sibling.path)) ref(sibling);
     return {
@@ -71,17 +71,10 @@ export function packed(inputs: Inputs, scene: Scene, options: Options): { sessio
     };
   });
   const session: Packed = {
-    version: VERSION,
-    name: inputs.name,
+    ...{ version: VERSION, name, depthScale, imageId, resizeMasks, objects, roles: [], options },
     depth: optional(inputs.depth),
-    depthScale: inputs.depthScale,
     photo: optional(inputs.photo),
     camera: camera?.kind === "file" ? { kind: "file", file: ref(camera.file) } : camera,
-    imageId: inputs.imageId,
-    resizeMasks: inputs.resizeMasks,
-    objects,
-    roles: [],
-    options,
   };
   session.roles = inputs.files.flatMap(({ file, role }) => (files.includes(file) ? [{ file: ref(file), role }] : []));
   return { session, files };
@@ -105,18 +98,14 @@ export function unpacked(session: Packed, files: readonly NamedFile[]): Inputs |
   if (session.version !== VERSION) return null;
   const at = (ref: Ref): NamedFile => files[ref] as NamedFile;
   const optional = (ref: Ref | null) => (ref === null ? null : at(ref));
-  const { camera } = session;
+  const { camera, depthScale, imageId, name, resizeMasks } = session;
   const meshes = new Map<Ref, MeshSource>();
   for (const { mesh } of session.objects) if (mesh !== null) meshes.set(mesh, { file: at(mesh), siblings: files });
   return {
-    name: session.name,
-    sample: null,
+    ...{ name, sample: null, depthScale, imageId, resizeMasks },
     depth: optional(session.depth),
-    depthScale: session.depthScale,
     photo: optional(session.photo),
     camera: camera?.kind === "file" ? { kind: "file", file: at(camera.file) } : camera,
-    imageId: session.imageId,
-    resizeMasks: session.resizeMasks,
     objects: session.objects.map(({ name, mask, mesh, truth }) => ({
       name,
       mask: mask && { ...mask, file: at(mask.file) },

@@ -1,5 +1,5 @@
 /** The video: frames with one object, and its tracked poses. */
-import { computed, signal } from "@preact/signals";
+import { signal } from "@preact/signals";
 import type { TrackState } from "sim3align";
 import type { Sim3 } from "sim3align/conventions";
 import type { Inputs } from "../load/inputs.js";
@@ -29,12 +29,5 @@ export function videoState() {
   /** The poses of the frames, as far as they were tracked. */
   const framePoses = signal<readonly (FramePose | null)[]>([]);
 
-  /** How many frames are tracked. */
-  const trackedCount = computed(() => framePoses.value.filter((pose) => pose !== null).length);
-
-  function setFramePose(index: number, pose: FramePose): void {
-    framePoses.value = framePoses.peek().map((other, i) => (i === index ? pose : other));
-  }
-
-  return { video, frameIndex, framePoses, trackedCount, setFramePose };
+  return { video, frameIndex, framePoses };
 }

@@ -1,6 +1,6 @@
 /** A workspace: a scene, and all that is done with it. The page has one, and every `<sim3-align>` its own. */
 import { type ReadonlySignal, signal } from "@preact/signals";
-import type { View } from "../view3d/types.js";
+import type { SceneView } from "../view3d/scene-view.js";
 import { displayState } from "./display.js";
 import { historyState } from "./history.js";
 import { openedState } from "./opened.js";
@@ -11,7 +11,7 @@ import { statusState } from "./status.js";
 import { videoState } from "./video.js";
 
 /** The state of the 3D view. */
-export type SpaceState = { kind: "loading" } | { kind: "ready"; view: View } | { kind: "none"; reason: string };
+export type SpaceState = { kind: "loading" } | { kind: "ready"; view: SceneView } | { kind: "none"; reason: string };
 
 /** What surrounds a workspace. */
 interface Surroundings {

@@ -1,6 +1,7 @@
 /** Controls that several panels use. */
 import type { ComponentChildren } from "preact";
 import { useId, useRef } from "preact/hooks";
+import { filesOf, type NamedFile } from "../load/files.js";
 
 interface ChoicesProps<V extends string> {
   id?: string;
@@ -28,6 +29,53 @@ export function Choices<V extends string>({ id, label, value, choices, onChoose 
     </select>
   );
 }
+
+interface CheckProps {
+  id?: string;
+  title: string;
+  checked: boolean;
+  disabled?: boolean;
+  onCheck(checked: boolean): void;
+}
+
+/** A box to tick. */
+export const Check = ({ title, onCheck, ...box }: CheckProps) => (
+  <label class="check">
+    <input type="checkbox" {...box} onChange={({ currentTarget }) => onCheck(currentTarget.checked)} />
+    <span>{title}</span>
+  </label>
+);
+
+interface FileButtonProps {
+  id: string;
+  accept?: string;
+  multiple?: boolean;
+  webkitdirectory?: boolean;
+  "aria-invalid"?: boolean;
+  "aria-describedby"?: string | undefined;
+  /** Classes beside `button`. */
+  look?: string;
+  children: ComponentChildren;
+  onFiles(files: NamedFile[]): void;
+}
+
+/** A button that chooses files. */
+export const FileButton = ({ look = "", children, onFiles, ...input }: FileButtonProps) => (
+  <label class={`button ${look}`}>
+    {children}
+    <input
+      {...input}
+      class="visually-hidden"
+      type="file"
+      onChange={({ currentTarget }) => {
+        const files = filesOf(currentTarget);
+        // Otherwise choosing the same file again, for example after correcting it, would fire no event.
+        currentTarget.value = "";
+        onFiles(files);
+      }}
+    />
+  </label>
+);
 
 /** Distance of an explanation from the edge of the window, in pixels. */
 const MARGIN = 8;

@@ -43,6 +43,11 @@ const toggle3d =
     display3d.value = { ...display3d.peek(), [name]: !display3d.peek()[name] };
   };
 
+const toggleLayer =
+  (name: "difference" | "zoom") =>
+  ({ layers, setLayer }: Workspace) =>
+    setLayer(name, !layers.peek()[name]);
+
 export const shortcuts: readonly Shortcut[] = [
   { key: "a", title: "A", about: "Align the selected object", act: alignSelected },
   { key: "A", title: "Shift A", about: "Align all objects", act: alignAll },
@@ -65,24 +70,14 @@ export const shortcuts: readonly Shortcut[] = [
   { key: "w", title: "W", about: "Wireframe", act: toggle3d("wireframe") },
   { key: "p", title: "P", about: "Show or hide the points", act: toggle3d("cloud") },
   { key: "m", title: "M", about: "Show or hide the mesh", act: toggle3d("mesh") },
-  {
-    key: "d",
-    title: "D",
-    about: "Depth difference",
-    act: ({ layers, setLayer }) => setLayer("difference", !layers.peek().difference),
-  },
+  { key: "d", title: "D", about: "Depth difference", act: toggleLayer("difference") },
   {
     key: "b",
     title: "B",
     about: "Before or after",
     act: ({ layers, setLayer }) => setLayer("wipe", layers.peek().wipe < 0.5 ? 1 : 0),
   },
-  {
-    key: "z",
-    title: "Z",
-    about: "Zoom to the objects",
-    act: ({ layers, setLayer }) => setLayer("zoom", !layers.peek().zoom),
-  },
+  { key: "z", title: "Z", about: "Zoom to the objects", act: toggleLayer("zoom") },
   { key: "v", title: "V", about: "Swap the views", act: swapViews },
   { key: "0", title: "0 to 9", about: "The result (0) and its alternatives", act: () => {} },
   { key: "?", title: "?", about: "This help", act: toggleHelp },

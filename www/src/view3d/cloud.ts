@@ -22,6 +22,7 @@ import {
   Vector2,
 } from "three/webgpu";
 import { type Points, pointsOf, type Rgb, tonesOf } from "./points.js";
+import { release } from "./release.js";
 import type { ObjectInput, SceneInput } from "./types.js";
 
 /** Share of the object's colour in the colour of its points; with a photo, its own colours stay. */
@@ -119,9 +120,7 @@ export class Cloud {
   }
 
   dispose(): void {
-    this.object.removeFromParent();
-    this.object.geometry.dispose();
-    this.object.material.dispose();
+    release(this.object);
   }
 }
 

@@ -46,8 +46,8 @@ export class Gizmo {
     return this.model !== null && (this.controls.dragging || this.controls.axis !== null);
   }
 
-  /** Sets the model and the function of the handles. `null` hides them. */
-  set(model: Model | null, mode: GizmoMode | null): void {
+  /** Sets the model, the function of the handles, and their axes and steps. `null` hides them. */
+  set(model: Model | null, mode: GizmoMode | null, { isLocal, snaps }: GizmoSettings): void {
     const next = mode !== null && model?.pivot.visible ? model : null;
     if (next !== this.model && this.controls.dragging) this.controls.pointerUp(null);
     this.model = next;
@@ -55,11 +55,6 @@ export class Gizmo {
     if (mode !== null) this.controls.setMode(mode);
     if (next) this.controls.attach(next.pivot);
     else this.controls.detach();
-    this.events.onChange();
-  }
-
-  /** Sets the axes and the steps. */
-  configure({ isLocal, snaps }: GizmoSettings): void {
     this.controls.setSpace(isLocal ? "local" : "world");
     this.controls.setRotationSnap(snaps ? (STEP_DEG * Math.PI) / 180 : null);
     const size = this.model === null ? 0 : 2 * this.model.radius * this.model.pivot.scale.x;

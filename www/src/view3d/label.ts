@@ -1,5 +1,12 @@
-/** Labels of lengths in the view. */
+/** Pictures that face the viewer, in one size at every distance and visible through meshes: labels of lengths, and a mark. */
 import { CanvasTexture, type PerspectiveCamera, Sprite, SpriteMaterial, Vector3 } from "three/webgpu";
+
+function spriteOf(canvas: HTMLCanvasElement, renderOrder: number): Sprite {
+  const map = new CanvasTexture(canvas);
+  const sprite = new Sprite(new SpriteMaterial({ map, sizeAttenuation: false, depthTest: false, depthWrite: false }));
+  sprite.renderOrder = renderOrder;
+  return sprite;
+}
 
 /** The height of a label in CSS pixels, with some space around its text. */
 const LABEL_PX = 28;
@@ -9,7 +16,7 @@ export function lengthText(m: number): string {
   return m >= 1 ? `${m.toFixed(2)} m` : `${(100 * m).toFixed(m < 0.1 ? 2 : 1)} cm`;
 }
 
-/** A text that faces the viewer, in the same size at every distance. */
+/** A text. */
 export function labelOf(text: string): Sprite {
   const canvas = document.createElement("canvas");
   [canvas.width, canvas.height] = [256, 64];
@@ -29,9 +36,7 @@ export function labelOf(text: string): Sprite {
     context.textBaseline = "middle";
     context.fillText(text, 128, 33);
   }
-  const map = new CanvasTexture(canvas);
-  const sprite = new Sprite(new SpriteMaterial({ map, sizeAttenuation: false, depthTest: false, depthWrite: false }));
-  sprite.renderOrder = 3;
+  const sprite = spriteOf(canvas, 3);
   sprite.userData.share = share;
   return sprite;
 }
@@ -71,8 +76,28 @@ export function spreadLabels(labels: readonly Sprite[], camera: PerspectiveCamer
   }
 }
 
-export function removeLabel(label: Sprite): void {
-  label.removeFromParent();
-  label.material.map?.dispose();
-  label.material.dispose();
+/** The height of the mark as a share of the view, for a field of view of 90°. */
+const MARK_SIZE = 0.045;
+
+/** A ring that marks a point: a white circle with dark edges, visible on every background. */
+export function markOf(): Sprite {
+  const size = 64;
+  const canvas = document.createElement("canvas");
+  [canvas.width, canvas.height] = [size, size];
+  const context = canvas.getContext("2d");
+  for (const [colour, width] of [
+    ["#10141a", 0.26],
+    ["#ffffff", 0.12],
+  ] as const) {
+    if (context === null) break;
+    context.strokeStyle = colour;
+    context.lineWidth = width * size;
+    context.beginPath();
+    context.arc(size / 2, size / 2, 0.35 * size, 0, 2 * Math.PI);
+    context.stroke();
+  }
+  const mark = spriteOf(canvas, 1);
+  mark.scale.setScalar(MARK_SIZE);
+  mark.visible = false;
+  return mark;
 }

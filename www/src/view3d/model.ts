@@ -108,8 +108,8 @@ export class Model {
       Boolean(standard?.map) ||
       (standard?.color && standard.color.getHex() !== 0xffffff);
     if (standard?.isMeshStandardMaterial && hasColours) {
-      // There is no environment map, so metals would be black.
-      standard.metalness = 0;
+      // There is no environment map, so metals would be black. Meshes are opaque, whatever their files say.
+      Object.assign(standard, { metalness: 0, transparent: false, depthWrite: true, opacity: 1 });
       standard.roughness = Math.max(0.5, standard.roughness);
       this.materials.push(standard);
       return standard;
@@ -124,7 +124,7 @@ export class Model {
     return material;
   }
 
-  /** The pose, OpenCV camera from mesh; `null` while it is hidden. */
+  /** The pose, OpenCV camera from mesh; `null` until it is set. The mesh is hidden until then. */
   get pose(): Float64Array | null {
     if (!this.isPlaced) return null;
     const { position, quaternion, scale } = this.pivot;
@@ -132,11 +132,9 @@ export class Model {
     return matrixOf(shifted(placed, this.centre.clone().negate()));
   }
 
-  /** Sets the pose. `null` hides the mesh. */
-  set pose(pose: Matrix | null) {
-    this.isPlaced = pose !== null;
-    this.pivot.visible = this.isPlaced;
-    if (pose === null) return;
+  set pose(pose: Matrix) {
+    this.isPlaced = true;
+    this.pivot.visible = true;
     // The pivot's parent is in the OpenCV camera frame.
     applyToObject3D(this.pivot, matrixOf(shifted(poseOf(pose), this.centre)), { frame: "opencv" });
   }
@@ -155,18 +153,11 @@ export class Model {
 
   /** Applies display settings and the highlight. */
   show(display: Display, isSelected: boolean, isHidden = false): void {
-    const opacity = Math.min(1, Math.max(0, display.meshOpacity ?? 1));
     this.pivot.visible = this.isPlaced && display.mesh && !isHidden;
-    this.outlines.visible = isSelected && !display.wireframe && opacity === 1;
+    this.outlines.visible = isSelected && !display.wireframe;
     for (const material of this.materials) {
-      if (!(material as MeshStandardMaterial).isMeshStandardMaterial) continue;
       const standard = material as MeshStandardMaterial;
-      standard.wireframe = display.wireframe;
-      const isTransparent = opacity < 1;
-      if (standard.transparent !== isTransparent) standard.needsUpdate = true;
-      standard.transparent = isTransparent;
-      standard.depthWrite = !isTransparent;
-      standard.opacity = opacity;
+      if (standard.isMeshStandardMaterial) standard.wireframe = display.wireframe;
     }
   }
 

@@ -1,5 +1,5 @@
 /** Finds the mesh or point under the pointer. */
-import { type Group, Matrix4, type PerspectiveCamera, Raycaster, Vector2, type Vector3 } from "three/webgpu";
+import { type Group, Matrix4, type PerspectiveCamera, Raycaster, Vector2 } from "three/webgpu";
 import type { Cloud } from "./cloud.js";
 import type { Model } from "./model.js";
 import type { SceneInput } from "./types.js";
@@ -17,62 +17,53 @@ export interface Picked {
   pixel: { x: number; y: number } | null;
 }
 
-export class Picker {
-  constructor(
-    private readonly camera: PerspectiveCamera,
-    private readonly root: Group,
-  ) {}
+/** A place in a view, and the size of the view; CSS pixels. */
+interface Aim {
+  place: { x: number; y: number };
+  size: { width: number; height: number };
+}
 
-  /** The nearest mesh or point. */
-  pick(
-    place: { x: number; y: number },
-    size: { width: number; height: number },
-    models: readonly Model[],
-    cloud: Cloud | null,
-    scene: SceneInput | null,
-  ): Picked | null {
-    if (!scene) return null;
-    const { camera, root } = this;
-    camera.updateMatrixWorld();
-    root.updateMatrixWorld();
-    const mesh = this.pickMesh(place, size, models);
-    const clip = new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
-    clip.multiply(root.matrixWorld);
-    const point = cloud && pickPoint(cloud.points.positions, clip.elements, place, size, reachPx);
-    if (mesh && !(point && point.distance < 0.99 * mesh.distance)) {
-      const { x, y, z } = root.worldToLocal(mesh.point.clone());
-      return { id: mesh.id, point: [x, y, z], pixel: pixelOf([x, y, z], scene) };
-    }
-    if (!point || !cloud) return null;
-    const { positions, pixels } = cloud.points;
-    const at = (axis: number) => positions[3 * point.index + axis] ?? 0;
-    const pixel = pixels[point.index] ?? 0;
-    return {
-      point: [at(0), at(1), at(2)],
-      pixel: { x: pixel % scene.width, y: Math.floor(pixel / scene.width) },
-    };
-  }
+/** What can be picked. The children of `root` are in the OpenCV camera frame. */
+interface Pickable {
+  camera: PerspectiveCamera;
+  root: Group;
+  models: readonly Model[];
+  cloud: Cloud | null;
+  scene: SceneInput | null;
+}
 
-  private pickMesh(
-    place: { x: number; y: number },
-    size: { width: number; height: number },
-    models: readonly Model[],
-  ): { id: string; point: Vector3; distance: number } | null {
-    const ray = new Raycaster();
-    const at = new Vector2((2 * place.x) / size.width - 1, 1 - (2 * place.y) / size.height);
-    ray.setFromCamera(at, this.camera);
-    const hits = models
-      .filter(({ pivot }) => pivot.visible)
-      .flatMap((model) => {
-        const hit = model.intersect(ray);
-        return hit ? [{ id: model.id, point: hit.point, along: hit.distance }] : [];
-      })
-      .sort((a, b) => a.along - b.along);
-    const [first] = hits;
-    if (!first) return null;
-    const inView = first.point.clone().applyMatrix4(this.camera.matrixWorldInverse);
-    return { ...first, distance: -inView.z };
+/** The nearest mesh or point. */
+export function pick({ place, size }: Aim, { camera, root, models, cloud, scene }: Pickable): Picked | null {
+  if (!scene) return null;
+  camera.updateMatrixWorld();
+  root.updateMatrixWorld();
+  const mesh = pickMesh({ place, size }, camera, models);
+  const clip = new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
+  clip.multiply(root.matrixWorld);
+  const point = cloud && pickPoint(cloud.points.positions, clip.elements, place, size, reachPx);
+  if (mesh && !(point && point.distance < 0.99 * mesh.distance)) {
+    const { x, y, z } = root.worldToLocal(mesh.point.clone());
+    return { id: mesh.id, point: [x, y, z], pixel: pixelOf([x, y, z], scene) };
   }
+  if (!point || !cloud) return null;
+  const { positions, pixels } = cloud.points;
+  const [x = 0, y = 0, z = 0] = positions.subarray(3 * point.index);
+  const pixel = pixels[point.index] ?? 0;
+  return { point: [x, y, z], pixel: { x: pixel % scene.width, y: Math.floor(pixel / scene.width) } };
+}
+
+function pickMesh({ place, size }: Aim, camera: PerspectiveCamera, models: readonly Model[]) {
+  const ray = new Raycaster();
+  ray.setFromCamera(new Vector2((2 * place.x) / size.width - 1, 1 - (2 * place.y) / size.height), camera);
+  const hits = models
+    .filter(({ pivot }) => pivot.visible)
+    .flatMap((model) => {
+      const hit = model.intersect(ray);
+      return hit ? [{ id: model.id, point: hit.point, along: hit.distance }] : [];
+    });
+  const [first] = hits.sort((a, b) => a.along - b.along);
+  if (!first) return null;
+  return { ...first, distance: -first.point.clone().applyMatrix4(camera.matrixWorldInverse).z };
 }
 
 /** Extra cost of a point at the border of the radius, as a share of its distance. */

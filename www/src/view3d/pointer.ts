@@ -28,49 +28,31 @@ export class Pointer {
       const { left, top } = canvas.getBoundingClientRect();
       return { x: event.clientX - left, y: event.clientY - top };
     };
+    const on = <K extends keyof HTMLElementEventMap>(type: K, act: (event: HTMLElementEventMap[K]) => void) =>
+      canvas.addEventListener(type, act, { signal });
     let pressed: (Place & { id: number }) | null = null;
-    canvas.addEventListener(
-      "pointerdown",
-      (event) => {
-        // A gesture with two fingers is not a click.
-        pressed = pressed === null && event.button === 0 ? { ...place(event), id: event.pointerId } : null;
-      },
-      { signal },
-    );
-    canvas.addEventListener(
-      "pointerup",
-      (event) => {
-        const [from, to] = [pressed, place(event)];
-        pressed = null;
-        if (from?.id === event.pointerId && Math.hypot(to.x - from.x, to.y - from.y) <= clickPx) events.onClick(to);
-      },
-      { signal },
-    );
-    canvas.addEventListener(
-      "pointercancel",
-      () => {
-        pressed = null;
-      },
-      { signal },
-    );
-    canvas.addEventListener("dblclick", (event) => events.onDoubleClick(place(event)), { signal });
-    canvas.addEventListener(
-      "pointermove",
-      (event) => {
-        if (event.buttons !== 0) return;
-        cancelAnimationFrame(this.frame);
-        this.frame = requestAnimationFrame(() => events.onHover(place(event)));
-      },
-      { signal },
-    );
-    canvas.addEventListener(
-      "pointerleave",
-      () => {
-        cancelAnimationFrame(this.frame);
-        events.onHover(null);
-      },
-      { signal },
-    );
+    on("pointerdown", (event) => {
+      // A gesture with two fingers is not a click.
+      pressed = pressed === null && event.button === 0 ? { ...place(event), id: event.pointerId } : null;
+    });
+    on("pointerup", (event) => {
+      const [from, to] = [pressed, place(event)];
+      pressed = null;
+      if (from?.id === event.pointerId && Math.hypot(to.x - from.x, to.y - from.y) <= clickPx) events.onClick(to);
+    });
+    on("pointercancel", () => {
+      pressed = null;
+    });
+    on("dblclick", (event) => events.onDoubleClick(place(event)));
+    on("pointermove", (event) => {
+      if (event.buttons !== 0) return;
+      cancelAnimationFrame(this.frame);
+      this.frame = requestAnimationFrame(() => events.onHover(place(event)));
+    });
+    on("pointerleave", () => {
+      cancelAnimationFrame(this.frame);
+      events.onHover(null);
+    });
   }
 
   dispose(): void {

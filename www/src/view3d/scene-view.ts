@@ -4,19 +4,18 @@ import { Animations } from "./animations.js";
 import { Cloud } from "./cloud.js";
 import { cropOf } from "./crop.js";
 import { description } from "./description.js";
-import { Floor } from "./floor.js";
-import { Frustum } from "./frustum.js";
 import { Gizmo } from "./gizmo.js";
-import { Ground } from "./ground.js";
-import { listenToOrbitKeys } from "./keys.js";
-import { Marker } from "./marker.js";
+import { groundOf } from "./ground.js";
+import { markOf } from "./label.js";
+import { floorOf, frustumOf, type Lines } from "./lines.js";
+import { Measures } from "./measures.js";
 import { Model } from "./model.js";
-import { Picker } from "./picker.js";
+import { pick } from "./picker.js";
 import { Pointer } from "./pointer.js";
 import { type Extent, extentOf, quantile, sortedDepths } from "./points.js";
-import { Ruler } from "./ruler.js";
+import { release } from "./release.js";
 import { Sizes } from "./sizes.js";
-import type { Stage } from "./stage.js";
+import { Stage } from "./stage.js";
 import { colours } from "./theme.js";
 import type {
   Animation,
@@ -28,7 +27,6 @@ import type {
   ObjectInput,
   PlaneInput,
   SceneInput,
-  View,
   ViewEvents,
 } from "./types.js";
 import { Viewpoint } from "./viewpoint.js";
@@ -36,27 +34,27 @@ import { Viewpoint } from "./viewpoint.js";
 /** Screens resolve no more points, and software renderers draw no more in acceptable time. */
 const maxPoints = { hardware: 400_000, software: 80_000 };
 
-/** The implementation of the view. */
-export class SceneView implements View {
+/** A view of a scene with meshes. */
+export class SceneView {
   /** Its children are in the OpenCV camera frame. In three.js, y is up and z points towards the camera. */
   private readonly root = new Group();
   private readonly viewpoint: Viewpoint;
   private readonly gizmo: Gizmo;
-  private readonly marker = new Marker();
-  private readonly ruler = new Ruler();
-  private floor: Floor | null = null;
+  private readonly mark = markOf();
+  private readonly ruler = new Measures(0xffd23f, 4);
+  private floor: Lines | null = null;
   private plane: PlaneInput | null = null;
   private gizmoSettings: GizmoSettings = { isLocal: false, snaps: false };
   private readonly animations = new Animations();
   private readonly models = new Map<string, Model>();
-  private readonly poses = new Map<string, Matrix | null>();
+  private readonly poses = new Map<string, Matrix>();
   private pointer: Pointer;
   private scene: SceneInput | null = null;
   private cloud: Cloud | null = null;
-  private frustum: Frustum | null = null;
-  private ground: Ground | null = null;
+  private frustum: Lines | null = null;
+  private ground: ReturnType<typeof groundOf> | null = null;
   /** The other cameras. */
-  private readonly others: Frustum[] = [];
+  private readonly others: Lines[] = [];
   /** About the depth of the nearest surfaces, metres. */
   private firstDepth = 1;
   private readonly sizes = new Sizes(this.root);
@@ -68,7 +66,15 @@ export class SceneView implements View {
   private loading = 0;
   private display: Display = { cloud: true, mesh: true, wireframe: false, pointSize: 1.2, theme: "light" };
 
-  constructor(
+  /**
+   * Creates a view that fills its host element.
+   * @throws {NoGraphics} if the browser supports neither WebGPU nor WebGL 2
+   */
+  static async create(host: HTMLElement, events: ViewEvents, forceWebGL = false): Promise<SceneView> {
+    return new SceneView(await Stage.create(host, forceWebGL), host, events);
+  }
+
+  private constructor(
     private readonly stage: Stage,
     private readonly host: HTMLElement,
     private readonly events: ViewEvents,
@@ -83,8 +89,7 @@ export class SceneView implements View {
       onPose: (model, phase) => this.moved(model, phase),
     });
     this.root.rotation.x = Math.PI;
-    this.root.add(this.marker.object, this.ruler.object);
-    this.orbitByKeys(stage.canvas);
+    this.root.add(this.mark, this.ruler.object);
     // The light moves with the camera.
     const lamp = new DirectionalLight(0xffffff, 2.1);
     lamp.position.set(-0.4, 1, 0.8);
@@ -97,7 +102,7 @@ export class SceneView implements View {
         const isMoving = this.animations.step();
         const isDamping = controls.update();
         this.cloud?.prepare(camera, height);
-        this.sizes.spread(camera, stage.canvas.clientHeight, this.ruler.shownLabels);
+        this.sizes.spread(camera, stage.canvas.clientHeight, this.ruler.labels);
         return isMoving || isDamping;
       },
       onCanvas: (canvas) => {
@@ -105,7 +110,6 @@ export class SceneView implements View {
         this.gizmo.connect(canvas);
         this.pointer.dispose();
         this.pointer = this.listen();
-        this.orbitByKeys(canvas);
       },
     });
     this.update();
@@ -115,19 +119,13 @@ export class SceneView implements View {
     return this.stage.backend;
   }
 
-  private orbitByKeys(canvas: HTMLCanvasElement): void {
-    listenToOrbitKeys(canvas, (...turn) => {
-      this.viewpoint.orbit(...turn);
-      this.update();
-    });
-  }
-
   private listen(): Pointer {
     const picked = (place: { x: number; y: number }) => {
       const { clientWidth: width, clientHeight: height } = this.stage.canvas;
-      const models = this.display.mesh ? [...this.models.values()] : [];
-      const cloud = this.display.cloud ? this.cloud : null;
-      return new Picker(this.viewpoint.camera, this.root).pick(place, { width, height }, models, cloud, this.scene);
+      const { display, root, scene, viewpoint } = this;
+      const models = display.mesh ? [...this.models.values()] : [];
+      const cloud = display.cloud ? this.cloud : null;
+      return pick({ place, size: { width, height } }, { camera: viewpoint.camera, root, models, cloud, scene });
     };
     return new Pointer(this.stage.canvas, {
       onClick: (place) => {
@@ -144,39 +142,41 @@ export class SceneView implements View {
         const hit = this.gizmo.isBusy ? null : picked(place);
         if (hit) this.focus(hit.point);
       },
-      onHover: (place) => {
-        if (this.events.onHover) this.events.onHover(place ? (picked(place)?.pixel ?? null) : null);
-      },
+      onHover: (place) => this.events.onHover?.(place ? (picked(place)?.pixel ?? null) : null),
     });
   }
 
+  /** Replaces the point cloud and resets the viewpoint. */
   setScene(scene: SceneInput): void {
     this.cloud?.dispose();
-    this.frustum?.dispose();
-    this.ground?.dispose();
+    release(this.frustum);
+    release(this.ground);
     const { near, far, frustum } = colours(this.display.theme, this.host);
     this.scene = scene;
     this.cloud = new Cloud(scene, near, far, this.stage.isSoftware ? maxPoints.software : maxPoints.hardware);
     const depths = sortedDepths(this.cloud.points);
     const [first, last] = [quantile(depths, 0.01) || 1, quantile(depths, 0.99) || 1];
     this.firstDepth = first;
-    this.frustum = new Frustum(scene, 0.22 * first, frustum);
-    this.ground = scene.ground ? new Ground(scene, scene.ground, last) : null;
-    this.root.add(this.cloud.object, this.frustum.object);
-    if (this.ground) this.root.add(this.ground.object);
+    this.frustum = frustumOf(scene, 0.22 * first, frustum);
+    this.ground = scene.ground ? groundOf(scene, scene.ground, last) : null;
+    this.root.add(this.cloud.object, this.frustum);
+    if (this.ground) this.root.add(this.ground);
     this.viewpoint.setScene(scene, first, last);
     this.lookFrom(this.look, this.fits);
     this.highlight();
   }
 
+  /**
+   * Replaces all objects. Objects with a known id keep their pose. Rejects if a GLB is not readable; the objects are
+   * then unchanged.
+   */
   async setObjects(objects: ObjectInput[]): Promise<void> {
     const attempt = ++this.loading;
     const before = new Map(this.objects.map((object) => [object.id, object]));
-    const isSame = (object: ObjectInput) => {
-      const old = before.get(object.id);
-      return old !== undefined && old.mesh === object.mesh && old.colour === object.colour;
+    const kept = ({ id, mesh, colour }: ObjectInput) => {
+      const old = before.get(id);
+      return old?.mesh === mesh && old.colour === colour ? this.models.get(id) : undefined;
     };
-    const kept = (object: ObjectInput) => (isSame(object) ? this.models.get(object.id) : undefined);
     const loaded = await Promise.allSettled(objects.map((object) => kept(object) ?? Model.load(object)));
     const models = loaded.flatMap((result) => (result.status === "fulfilled" ? [result.value] : []));
     const fresh = models.filter((model) => this.models.get(model.id) !== model);
@@ -186,12 +186,13 @@ export class SceneView implements View {
       if (failed !== undefined) throw failed.reason;
       return;
     }
-    this.gizmo.set(null, null);
+    this.gizmo.set(null, null, this.gizmoSettings);
     for (const model of this.models.values()) if (!models.includes(model)) model.dispose();
     this.models.clear();
     for (const model of models) {
       this.models.set(model.id, model);
-      model.pose = this.poses.get(model.id) ?? null;
+      const pose = this.poses.get(model.id);
+      if (pose !== undefined) model.pose = pose;
       this.root.add(model.pivot);
     }
     for (const id of [...this.poses.keys()]) if (!this.models.has(id)) this.poses.delete(id);
@@ -201,22 +202,20 @@ export class SceneView implements View {
     this.highlight();
   }
 
-  async setPose(id: string, pose: Matrix | null, animate?: Animation): Promise<void> {
+  /** Sets the pose of a mesh. Resolves at the end of the animation; there is none if the user prefers reduced motion. */
+  async setPose(id: string, pose: Matrix, animate?: Animation): Promise<void> {
     this.animations.stop(id);
     this.poses.set(id, pose);
     const model = this.models.get(id);
     if (!model) return;
     const isReduced = matchMedia("(prefers-reduced-motion: reduce)").matches;
-    if (pose !== null && animate && animate.durationMs > 0 && !isReduced) {
+    if (animate && animate.durationMs > 0 && !isReduced) {
       const end = this.animations.start(id, animate, pose, model.centre, (at) => {
         model.pose = at;
       });
       this.update();
       await end;
-      this.update();
-      return;
-    }
-    model.pose = pose;
+    } else model.pose = pose;
     this.update();
   }
 
@@ -237,26 +236,30 @@ export class SceneView implements View {
     this.highlight();
   }
 
+  /** Shows the gizmo at the selected mesh; `null` hides it. */
   setGizmo(mode: GizmoMode | null, settings = this.gizmoSettings): void {
     this.gizmoMode = mode;
     this.gizmoSettings = settings;
     this.update();
   }
 
+  /** Shows the ground as a grid; `null` hides it. */
   setGround(plane: PlaneInput | null): void {
     this.plane = plane;
-    this.floor?.dispose();
+    release(this.floor);
     this.floor = null;
     if (plane !== null) {
       const { centre, radius } = this.extent();
-      this.floor = new Floor(plane, centre, radius, colours(this.display.theme, this.host).frustum);
-      this.root.add(this.floor.object);
+      this.floor = floorOf(plane, centre, radius, colours(this.display.theme, this.host).frustum);
+      this.root.add(this.floor);
     }
     this.update();
   }
 
+  /** Shows the distance of two points (OpenCV camera frame, metres); fewer points hide it. */
   measure(points: readonly (readonly [number, number, number])[]): void {
-    this.ruler.show(points);
+    const [from, to] = points.map((point) => new Vector3(...point));
+    this.ruler.show(from && to ? [{ from, to, label: from.clone().lerp(to, 0.5) }] : []);
     this.stage.invalidate();
   }
 
@@ -266,12 +269,13 @@ export class SceneView implements View {
     if (isOther) {
       const { near, far, frustum } = colours(display.theme, this.host);
       this.cloud?.setTheme(near, far);
-      this.frustum?.object.material.color.copy(frustum);
+      this.frustum?.material.color.copy(frustum);
       this.highlight();
     }
     this.update();
   }
 
+  /** With `fits`, the view from the depth camera is zoomed to the objects. */
   lookFrom(which: Look, fits = false): void {
     this.look = which;
     this.fits = fits;
@@ -285,42 +289,43 @@ export class SceneView implements View {
     this.update();
   }
 
+  /** Shows where other cameras are: their poses in the frame of the depth camera, 16 numbers each, column-major. */
   setCameras(poses: readonly Matrix[]): void {
-    for (const frustum of this.others.splice(0)) frustum.dispose();
+    for (const frustum of this.others.splice(0)) release(frustum);
     if (!this.scene) return;
     const { frustum: colour } = colours(this.display.theme, this.host);
     for (const pose of poses) {
-      const frustum = new Frustum(this.scene, 0.1 * this.firstDepth, colour);
-      frustum.object.matrixAutoUpdate = false;
-      frustum.object.matrix.fromArray(Array.from(pose));
-      this.root.add(frustum.object);
+      const frustum = frustumOf(this.scene, 0.1 * this.firstDepth, colour);
+      frustum.matrixAutoUpdate = false;
+      frustum.matrix.fromArray(Array.from(pose));
+      this.root.add(frustum);
       this.others.push(frustum);
     }
     this.update();
   }
 
+  /** Frames all objects at their present poses, unless the user has moved the viewpoint. */
   frame(): void {
     // The grid surrounds the objects where they are now.
     if (this.plane !== null) this.setGround(this.plane);
     if (!this.viewpoint.isTouched) this.lookFrom(this.look, this.fits);
   }
 
-  focus(point: [number, number, number] = this.extent(this.selected).centre): void {
+  /** Orbits around a point of the OpenCV camera frame, metres. */
+  focus(point: [number, number, number]): void {
     this.viewpoint.focus(toThree(point));
     this.update();
   }
 
-  /** The extent of an object, or of all objects: of their meshes, or of their points if there are no meshes. */
-  private extent(id: string | null = null): Extent {
-    const wanted = this.objects.filter((object) => id === null || object.id === id);
-    const placed = wanted.flatMap((object) => this.models.get(object.id) ?? []).filter(({ pose }) => pose !== null);
-    const corners = placed.flatMap((model) => model.corners() ?? []);
+  /** The extent of all objects: of their meshes, or of their points if there are no meshes. */
+  private extent(): Extent {
+    const corners = [...this.models.values()].flatMap((model) => model.corners() ?? []);
     if (corners.length > 0) {
       const { center, radius } = new Sphere().setFromPoints(corners);
       return { centre: center.toArray(), radius };
     }
     if (!this.cloud) return { centre: [0, 0, 1], radius: 0.5 };
-    return extentOf(this.cloud.points, (pixel) => wanted.some(({ mask }) => mask[pixel]));
+    return extentOf(this.cloud.points, (pixel) => this.objects.some(({ mask }) => mask[pixel]));
   }
 
   private highlight(): void {
@@ -333,21 +338,17 @@ export class SceneView implements View {
     const { display, selected, stage, viewpoint } = this;
     stage.background = colours(display.theme, this.host).background;
     const showsGround = this.ground !== null && viewpoint.isCamera && display.cloud;
-    if (this.ground) this.ground.object.visible = showsGround;
+    if (this.ground) this.ground.visible = showsGround;
     if (this.cloud) {
       this.cloud.object.visible = display.cloud && !showsGround;
       this.cloud.setPointSize(display.pointSize);
     }
-    if (this.frustum) this.frustum.object.visible = !viewpoint.isCamera;
-    for (const { object } of this.others) object.visible = !viewpoint.isCamera;
+    for (const lines of [this.frustum, this.floor, ...this.others]) if (lines) lines.visible = !viewpoint.isCamera;
     for (const model of this.models.values()) {
       model.show(display, model.id === selected, display.hidden?.includes(model.id));
     }
     this.showSizes();
-    const model = selected === null ? undefined : this.models.get(selected);
-    if (this.floor) this.floor.object.visible = !viewpoint.isCamera;
-    this.gizmo?.set(model ?? null, this.gizmoMode);
-    this.gizmo?.configure(this.gizmoSettings);
+    this.gizmo?.set(this.models.get(selected ?? "") ?? null, this.gizmoMode, this.gizmoSettings);
     stage.canvas.setAttribute("aria-label", this.label());
     stage.invalidate();
   }
@@ -366,11 +367,14 @@ export class SceneView implements View {
     return description(from, this.cloud.points.pixels.length, placed);
   }
 
-  mark(point: [number, number, number] | null): void {
-    this.marker.point = point;
+  /** Marks a point (OpenCV camera frame, metres) with a ring; `null` removes it. */
+  markPoint(point: [number, number, number] | null): void {
+    this.mark.visible = point !== null;
+    if (point !== null) this.mark.position.set(...point);
     this.stage.invalidate();
   }
 
+  /** A PNG of the view. */
   snapshot(): Promise<Blob> {
     return this.stage.snapshot();
   }
@@ -380,17 +384,13 @@ export class SceneView implements View {
     this.animations.stopAll();
     this.pointer.dispose();
     this.gizmo.dispose();
-    this.marker.dispose();
     this.ruler.dispose();
-    this.floor?.dispose();
     this.sizes.dispose();
-    this.ground?.dispose();
     this.viewpoint.dispose();
     for (const model of this.models.values()) model.dispose();
     this.models.clear();
     this.cloud?.dispose();
-    this.frustum?.dispose();
-    for (const frustum of this.others) frustum.dispose();
+    for (const part of [this.mark, this.floor, this.ground, this.frustum, ...this.others]) release(part);
     this.stage.dispose();
   }
 }

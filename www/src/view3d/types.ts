@@ -38,8 +38,6 @@ export interface Display {
   /** The width of a point in pixels of the depth map. At 1, adjacent points touch. */
   pointSize: number;
   theme: "light" | "dark";
-  /** Opacity of the meshes, 0 to 1. Default 1. */
-  meshOpacity?: number | undefined;
   /** Whether the sizes of the objects are shown. */
   dimensions?: boolean | undefined;
   /** The ids of the objects that are not shown. */
@@ -82,48 +80,4 @@ export interface ViewEvents {
   onPick?(point: [number, number, number]): boolean;
   /** The pixel of the depth map under the pointer. */
   onHover?(pixel: { x: number; y: number } | null): void;
-}
-
-/** Options of a view. */
-export interface ViewOptions {
-  /** Uses WebGL 2 even if WebGPU is available. */
-  forceWebGL?: boolean | undefined;
-}
-
-/** A view of a scene with meshes. */
-export interface View {
-  readonly backend: "webgpu" | "webgl";
-  /** Replaces the point cloud and resets the viewpoint. */
-  setScene(scene: SceneInput): void;
-  /**
-   * Replaces all objects. Objects with a known id keep their pose. Rejects if a GLB is not readable; the objects are
-   * then unchanged.
-   */
-  setObjects(objects: ObjectInput[]): Promise<void>;
-  /**
-   * Sets the pose of a mesh; `null` hides it. Resolves at the end of the animation. There is no animation if the user
-   * prefers reduced motion.
-   */
-  setPose(id: string, pose: Matrix | null, animate?: Animation): Promise<void>;
-  select(id: string | null): void;
-  /** Shows the gizmo at the selected mesh; `null` hides it. */
-  setGizmo(mode: GizmoMode | null, settings?: GizmoSettings): void;
-  /** Shows the ground as a grid; `null` hides it. */
-  setGround(plane: PlaneInput | null): void;
-  /** Shows the distance of two points (OpenCV camera frame, metres); fewer points hide it. */
-  measure(points: readonly (readonly [number, number, number])[]): void;
-  setDisplay(display: Display): void;
-  /** With `fits`, the view from the depth camera is zoomed to the objects. */
-  lookFrom(which: Look, fits?: boolean): void;
-  /** Shows where other cameras are: their poses in the frame of the depth camera, 16 numbers each, column-major. */
-  setCameras(poses: readonly Matrix[]): void;
-  /** Frames all objects at their present poses, unless the user has moved the viewpoint. */
-  frame(): void;
-  /** Orbits around a point (OpenCV camera frame, metres), by default the centre of the selected object. */
-  focus(point?: [number, number, number]): void;
-  /** Marks a point (OpenCV camera frame, metres) with a ring; `null` removes it. */
-  mark(point: [number, number, number] | null): void;
-  /** A PNG of the view. */
-  snapshot(): Promise<Blob>;
-  dispose(): void;
 }

@@ -9,6 +9,19 @@ const directions: Record<Exclude<Look, "camera">, [number, number]> = { orbit: [
 /** Share of the smaller side of the view that the target fills. */
 const fill = 0.8;
 
+/** How far a key turns the view, degrees, and the factor by which it changes the distance. */
+const [KEY_DEG, KEY_ZOOM] = [6, 1.15];
+
+/** What keys of the canvas do: arrows orbit, plus and minus come nearer and go away. */
+const keys: Readonly<Record<string, readonly [rightDeg: number, upDeg: number, factor: number]>> = {
+  ArrowLeft: [-KEY_DEG, 0, 1],
+  ArrowRight: [KEY_DEG, 0, 1],
+  ArrowUp: [0, KEY_DEG, 1],
+  ArrowDown: [0, -KEY_DEG, 1],
+  "+": [0, 0, 1 / KEY_ZOOM],
+  "-": [0, 0, KEY_ZOOM],
+};
+
 /** A part of the image, in pixels. */
 export interface Rect {
   left: number;
@@ -40,8 +53,12 @@ export class Viewpoint {
   private size = { width: 1, height: 1 };
   private readonly lens = { near: 0.01, far: 100 };
 
-  constructor(canvas: HTMLCanvasElement, onChange: () => void) {
+  constructor(
+    canvas: HTMLCanvasElement,
+    private readonly onChange: () => void,
+  ) {
     this.controls = new OrbitControls(this.camera, canvas);
+    this.listenToKeys(canvas);
     this.controls.enableDamping = !matchMedia("(prefers-reduced-motion: reduce)").matches;
     this.controls.dampingFactor = 0.12;
     this.controls.addEventListener("start", () => {
@@ -52,6 +69,18 @@ export class Viewpoint {
       if (this.isHeld && this.isCamera) this.leaveCamera();
       this.isTouched ||= this.isHeld;
       onChange();
+    });
+  }
+
+  /** Listens to a canvas, for as long as it exists. */
+  private listenToKeys(canvas: HTMLCanvasElement): void {
+    canvas.tabIndex = 0;
+    canvas.addEventListener("keydown", (event) => {
+      const turn = keys[event.key];
+      if (event.ctrlKey || event.metaKey || event.altKey || turn === undefined) return;
+      event.preventDefault();
+      this.orbit(...turn);
+      this.onChange();
     });
   }
 
@@ -165,7 +194,7 @@ export class Viewpoint {
   }
 
   /** Orbits by angles in degrees, and changes the distance by a factor. */
-  orbit(rightDeg: number, upDeg: number, factor: number): void {
+  private orbit(rightDeg: number, upDeg: number, factor: number): void {
     if (this.isCamera) this.leaveCamera();
     this.isTouched = true;
     const { camera, controls } = this;
@@ -191,6 +220,7 @@ export class Viewpoint {
   connect(canvas: HTMLCanvasElement): void {
     this.controls.disconnect();
     this.controls.connect(canvas);
+    this.listenToKeys(canvas);
   }
 
   dispose(): void {

@@ -60,7 +60,7 @@ export function pointerOf(workspace: Workspace) {
   function hover(pixel: Pixel | null): void {
     hoveredPixel.value = pixel;
     const state = space.peek();
-    if (state.kind === "ready") state.view.mark(pixel === null ? null : pointAt(scene.peek(), pixel));
+    if (state.kind === "ready") state.view.markPoint(pixel === null ? null : pointAt(scene.peek(), pixel));
   }
 
   return {

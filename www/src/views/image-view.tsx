@@ -1,11 +1,11 @@
 /** The image view: photo or depth map, overlaid with masks, silhouettes and depth differences. */
 import { effect } from "@preact/signals";
 import { useEffect, useMemo, useRef } from "preact/hooks";
+import { differenceLimit } from "sim3align/pictures/colours";
 import { depthGradient } from "../draw/colours.js";
-import { differenceLimit } from "../draw/composition.js";
 import type { Workspace } from "../state/workspace.js";
+import { Check } from "../ui/controls.js";
 import { useWorkspace } from "../ui/workspace.js";
-import { groundOf } from "./ground.js";
 import { imageOf } from "./image.js";
 import { pointerOf } from "./image-pointer.js";
 
@@ -28,8 +28,7 @@ const switches: readonly [name: "outline" | "silhouette" | "difference" | "zoom"
 export function ImageView() {
   const workspace = useWorkspace();
   const { imageCanvas, layers, scene, selected, setLayer } = workspace;
-  const { ground } = groundOf(workspace);
-  const { after, draw, drawn, zoom } = imageOf(workspace);
+  const { after, draw, drawn, ground, zoom } = imageOf(workspace);
   const { hover, focusOn, startDrag, move, wheel } = useMemo(() => pointerOf(workspace), [workspace]);
   const canvas = useRef<HTMLCanvasElement>(null);
   useEffect(() => {
@@ -56,7 +55,7 @@ export function ImageView() {
   const { base: shownBase, wipe, difference } = layers.value;
   const ratio = whole === null ? 4 / 3 : whole.width / whole.height;
   const { factor, x, y } = zoom.value;
-  const limit = selected.value === null ? null : 1000 * differenceLimit(selected.value);
+  const limit = selected.value === null ? null : 1000 * differenceLimit(selected.value.visible.sizeM);
   return (
     <section class="view image" part="image" aria-labelledby="image-title">
       <div class="view-head">
@@ -74,15 +73,13 @@ export function ImageView() {
             <option value="depth">Depth</option>
           </select>
           {switches.map(([name, title]) => (
-            <label key={name} class="check">
-              <input
-                id={`layer-${name}`}
-                type="checkbox"
-                checked={layers.value[name]}
-                onChange={({ currentTarget }) => setLayer(name, currentTarget.checked)}
-              />
-              <span>{title}</span>
-            </label>
+            <Check
+              key={name}
+              id={`layer-${name}`}
+              title={title}
+              checked={layers.value[name]}
+              onCheck={(checked) => setLayer(name, checked)}
+            />
           ))}
         </fieldset>
       </div>

@@ -1,13 +1,12 @@
 /** What the image view draws: the scene with its objects, zoomed. */
 import { computed, effect, type ReadonlySignal, signal } from "@preact/signals";
-import { depthRange } from "../draw/colours.js";
+import { depthImage, depthRange } from "../draw/colours.js";
 import { compose, type DrawnObject, drawObject } from "../draw/composition.js";
 import { drawnScene } from "../draw/reduced.js";
 import { wholeImage, type Zoom, zoomToObjects } from "../draw/zoom.js";
 import { once } from "../load/once.js";
 import type { ObjectModel } from "../state/object-model.js";
 import type { Workspace } from "../state/workspace.js";
-import { groundOf } from "./ground.js";
 
 /** The image of a workspace. */
 export const imageOf = once((workspace: Workspace) => {
@@ -18,6 +17,22 @@ export const imageOf = once((workspace: Workspace) => {
 
   /** The scene at the size that is drawn. */
   const drawn = computed(() => (scene.value === null ? null : drawnScene(scene.value)));
+
+  /** Depends on the scene only, too. */
+  const depthColours = computed(() => drawn.value && depthImage(drawn.value.depthM));
+
+  const base = computed(() => layers.value.base);
+
+  /** What is behind the overlays, the photo or the depth map: red, green, blue, alpha, at the size that is drawn. */
+  const ground = computed(() => {
+    const rgba = drawn.value?.rgba ?? null;
+    return base.value === "photo" && rgba !== null ? rgba : depthColours.value;
+  });
+
+  const groundImage = computed(() => {
+    const [view, pixels] = [drawn.value, ground.value];
+    return view && pixels && new ImageData(Uint8ClampedArray.from(pixels), view.width, view.height);
+  });
 
   const depthRangeOfScene = computed(() => (scene.value === null ? null : depthRange(scene.value.depthM)));
 
@@ -56,7 +71,7 @@ export const imageOf = once((workspace: Workspace) => {
   });
 
   function draw(canvas: HTMLCanvasElement): void {
-    const [view, picture] = [drawn.value, groundOf(workspace).ground.value];
+    const [view, picture] = [drawn.value, ground.value];
     if (view === null || picture === null) return;
     if (canvas.width !== view.width || canvas.height !== view.height) {
       canvas.width = view.width;
@@ -75,5 +90,5 @@ export const imageOf = once((workspace: Workspace) => {
     return Math.min(...after.value.map(({ depth }) => (depth[place] || Number.POSITIVE_INFINITY) as number));
   }
 
-  return { after, depthRangeOfScene, draw, drawn, meshDepthAt, ownZoom, zoom };
+  return { after, depthRangeOfScene, draw, drawn, ground, groundImage, meshDepthAt, ownZoom, zoom };
 });

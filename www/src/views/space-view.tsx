@@ -2,10 +2,11 @@
 import { useEffect, useRef } from "preact/hooks";
 import { samples, sampleUrl } from "../load/samples.js";
 import type { Display3d } from "../state/display.js";
+import { Check } from "../ui/controls.js";
 import { centimetres } from "../ui/format.js";
 import { Picture } from "../ui/picture.js";
 import { useWorkspace } from "../ui/workspace.js";
-import { groundOf } from "./ground.js";
+import { imageOf } from "./image.js";
 import { mountSpace } from "./space.js";
 
 const switches: readonly [name: "cloud" | "mesh" | "wireframe" | "dimensions", title: string][] = [
@@ -44,14 +45,12 @@ export function SpaceView() {
         <fieldset disabled={state.kind !== "ready"}>
           <legend class="visually-hidden">Layers of the 3D view</legend>
           {switches.map(([name, title]) => (
-            <label key={name} class="check">
-              <input
-                type="checkbox"
-                checked={display3d.value[name]}
-                onChange={({ currentTarget }) => set({ [name]: currentTarget.checked })}
-              />
-              <span>{title}</span>
-            </label>
+            <Check
+              key={name}
+              title={title}
+              checked={display3d.value[name]}
+              onCheck={(checked) => set({ [name]: checked })}
+            />
           ))}
           <label class="check points">
             <span>Point size</span>
@@ -130,7 +129,7 @@ function firstPhoto(sampleId: string | null): string | null {
 /** The photo or the depth map, until the 3D view is there. */
 function Preview() {
   const workspace = useWorkspace();
-  const image = groundOf(workspace).groundImage.value;
+  const image = imageOf(workspace).groundImage.value;
   const photo = firstPhoto(workspace.inputs.value.sample);
   if (image === null && photo !== null) return <img class="preview" src={photo} alt="" />;
   return image === null ? (

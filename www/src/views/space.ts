@@ -6,7 +6,8 @@ import type { ObjectModel } from "../state/object-model.js";
 import type { Pose } from "../state/pose.js";
 import type { Scene } from "../state/scene.js";
 import type { Workspace } from "../state/workspace.js";
-import type { ObjectInput, View } from "../view3d/types.js";
+import type { SceneView } from "../view3d/scene-view.js";
+import type { ObjectInput } from "../view3d/types.js";
 
 /** Duration of the animation from one pose to the next. */
 const ANIMATION_MS = 900;
@@ -18,9 +19,8 @@ export async function mountSpace(workspace: Workspace, host: HTMLElement, signal
   let dragged: { object: ObjectModel; from: Pose } | undefined;
   try {
     // three.js is larger than the rest of the page, so it loads last.
-    const { createView } = await import("../view3d/index.js");
-    const options = { forceWebGL: new URLSearchParams(location.search).get("graphics") === "webgl" };
-    const view = await createView(
+    const { SceneView } = await import("../view3d/scene-view.js");
+    const view = await SceneView.create(
       host,
       {
         onPose(id, matrix, phase) {
@@ -39,7 +39,7 @@ export async function mountSpace(workspace: Workspace, host: HTMLElement, signal
           hoveredPixel.value = pixel;
         },
       },
-      options,
+      new URLSearchParams(location.search).get("graphics") === "webgl",
     );
     if (signal.aborted) return view.dispose();
     space.value = { kind: "ready", view };
@@ -83,7 +83,7 @@ const sceneInput = ({ layers }: Workspace, { depthM, width, height, camera, rgba
   ...(rgba === null ? {} : { rgba }),
 });
 
-function subscribe(workspace: Workspace, view: View, isDragging: () => boolean): () => void {
+function subscribe(workspace: Workspace, view: SceneView, isDragging: () => boolean): () => void {
   const { display3d, frameIndex, gizmo, gizmoSettings, measured, scene, selected, support, theme, video } = workspace;
   const stops: (() => void)[] = [];
   const follow = (apply: () => void) => stops.push(effect(apply));
@@ -127,7 +127,7 @@ function subscribe(workspace: Workspace, view: View, isDragging: () => boolean):
 
 function followPose(
   { showsBefore }: Workspace,
-  view: View,
+  view: SceneView,
   object: ObjectModel,
   isDragging: () => boolean,
 ): () => void {

@@ -1,13 +1,15 @@
 //! `bench`: runs methods over generated cases and case folders, and prints tables of the results.
 
-mod arguments;
 mod run;
+mod settings;
 mod table;
 
-use super::{Failure, parsed};
-use arguments::{Arguments, USAGE};
+use super::Command;
+use settings::{Settings, USAGE};
 
-/// Runs the command.
-pub fn main(arguments: lexopt::Parser) -> Result<(), Failure> {
-    run::run(&parsed(arguments, Arguments::parse, USAGE)?).map_err(Failure::Failed)
-}
+pub const COMMAND: Command = Command {
+    name: "bench",
+    about: "aligns cases with a known truth, and prints tables",
+    usage: USAGE,
+    run: |arguments| run::run(&Settings::parse(arguments)?),
+};

@@ -1,13 +1,9 @@
 //! Runs the cases on several threads; results are in the order of the cases.
 
-use std::fs;
-use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use serde::de::IgnoredAny;
 use serde_json::json;
-use sim3align_geometry::error::Result as GeometryResult;
-use sim3align_geometry::similarity::Similarity;
 use sim3align_lab::baselines::align::align_baseline;
 use sim3align_lab::bench::benchmark::{BenchCase, Record, run_case, run_method};
 use sim3align_lab::bench::imported::imported;
@@ -15,11 +11,14 @@ use sim3align_lab::bench::overlay::picture;
 use sim3align_lab::bench::records::{RecordFile, RecordKey};
 use sim3align_lab::cases::case::EvaluationSet;
 use sim3align_lab::cases::tier::{CaseSet, Tier};
+use sim3align_lab::files::listed;
 use sim3align_lab::parallel::parallel_map;
 use sim3align_lab::scenes::{ClutteredScene, Prior, SceneSet};
 
-use super::arguments::{Arguments, Method, Row};
+use super::super::{Failure, print_progress, write_file};
+use super::settings::{Method, Row, Settings};
 use super::table;
+use sim3align_lab::prelude::*;
 
 /// The source of a case.
 pub enum Source {
@@ -70,12 +69,12 @@ impl Scenes {
         sources
     }
 
-    fn case(&self, scene: usize, pair: usize, prior: Prior) -> GeometryResult<BenchCase> {
-        self.scene(scene)?.pairs[pair].case(prior).map(BenchCase::from)
+    fn case(&self, scene: usize, pair: usize, prior: Prior) -> Result<BenchCase> {
+        self.scene(scene)?.pairs[pair].case(prior)
     }
 
     /// Holds the lock while drawing: waiting threads usually need the same scene.
-    fn scene(&self, index: usize) -> GeometryResult<Arc<ClutteredScene>> {
+    fn scene(&self, index: usize) -> Result<Arc<ClutteredScene>> {
         let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
         match last.as_ref().filter(|scene| scene.index == index) {
             Some(scene) => Ok(scene.clone()),
@@ -84,22 +83,22 @@ impl Scenes {
     }
 }
 
-pub fn run(arguments: &Arguments) -> Result<(), String> {
-    let set = match &arguments.meshes {
-        Some(folder) => EvaluationSet::with_meshes(arguments.set_seed, folder).map_err(|error| error.to_string())?,
-        None => EvaluationSet::new(arguments.set_seed),
+pub fn run(settings: &Settings) -> Result<(), Failure> {
+    let set = match &settings.meshes {
+        Some(folder) => EvaluationSet::with_meshes(settings.set_seed, folder)?,
+        None => EvaluationSet::new(settings.set_seed),
     };
-    let set = set.of(arguments.set);
-    let scenes = Scenes::new(SceneSet::new(arguments.set_seed, arguments.scenes));
-    let sources = sources(arguments, &scenes)?;
+    let set = set.of(settings.set);
+    let scenes = Scenes::new(SceneSet::new(settings.set_seed, settings.scenes));
+    let sources = sources(settings, &scenes)?;
     if sources.is_empty() {
         return Err("no case left to run".into());
     }
-    if let Some(folder) = &arguments.write {
-        return map_with_progress(arguments.threads, &sources, |source| match source {
+    if let Some(folder) = &settings.write {
+        return map_with_progress(settings.threads, &sources, |source| match source {
             Source::Generated(_, index) => {
-                let case = set.case(*index).map_err(|error| error.to_string())?;
-                case.write(&folder.join(case.name())).map_err(|error| error.to_string())
+                let case = set.case(*index)?;
+                Ok(case.write(&folder.join(case.name()))?)
             }
             Source::Misfit(..) | Source::Scene { .. } | Source::Folder(_) => Ok(()),
         })
@@ -107,48 +106,48 @@ pub fn run(arguments: &Arguments) -> Result<(), String> {
     }
     let load = |source: &Source| {
         let case = load(source, &set, &scenes)?;
-        Ok(if arguments.color { case } else { case.without_color() })
+        Ok(if settings.color { case } else { case.without_color() })
     };
-    if let (Some(path), Some(source)) = (&arguments.picture, sources.first()) {
-        return draw(&load(source)?, arguments.matrix.as_deref(), path);
+    if let (Some(path), Some(source)) = (&settings.picture, sources.first()) {
+        return draw(&load(source)?, settings.matrix.as_deref(), path);
     }
-    if let Some(path) = &arguments.records {
-        return go_on(arguments, &sources, &load, path);
+    if let Some(path) = &settings.records {
+        return go_on(settings, &sources, &load, path);
     }
     let begun = std::time::Instant::now();
-    let records: Vec<Vec<Record>> = map_with_progress(arguments.threads, &sources, |source| {
+    let records: Vec<Vec<Record>> = map_with_progress(settings.threads, &sources, |source| {
         let case = load(source)?;
-        Ok(arguments.rows.iter().map(|row| run_row(&case, row)).collect())
+        Ok(settings.rows.iter().map(|row| run_row(&case, row)).collect())
     })?;
     eprintln!("{} cases in {:.1} s", records.len(), begun.elapsed().as_secs_f64());
-    let names = arguments.rows.iter().map(|row| row.name.clone());
+    let names = settings.rows.iter().map(|row| row.name.clone());
     let rows: Vec<(String, Vec<&Record>)> =
         names.enumerate().map(|(i, name)| (name, records.iter().map(|case| &case[i]).collect())).collect();
-    print!("{}", table::report(&rows, arguments.failures));
-    if let Some(path) = &arguments.json {
+    print!("{}", table::report(&rows, settings.failures));
+    if let Some(path) = &settings.json {
         let rows: Vec<_> = rows.iter().map(|(name, records)| json!({ "row": name, "records": records })).collect();
-        let all = json!({ "set": arguments.set.as_str(), "setSeed": arguments.set_seed, "rows": rows });
-        fs::write(path, format!("{all}\n")).map_err(|error| format!("{}: {error}", path.display()))?;
+        let all = json!({ "set": settings.set.as_str(), "setSeed": settings.set_seed, "rows": rows });
+        write_file(path, format!("{all}\n"))?;
     }
     Ok(())
 }
 
 /// Adds missing records to a file, and prints each as a line of JSON on standard output.
 fn go_on(
-    arguments: &Arguments,
+    settings: &Settings,
     sources: &[Source],
-    load: &(dyn Fn(&Source) -> Result<BenchCase, String> + Sync),
+    load: &(dyn Fn(&Source) -> Result<BenchCase> + Sync),
     path: &Path,
-) -> Result<(), String> {
-    let file = RecordFile::<IgnoredAny>::open(path).map_err(|error| error.to_string())?;
+) -> Result<(), Failure> {
+    let file = RecordFile::<IgnoredAny>::open(path)?;
     let missing = |source: &Source| -> Vec<(&Row, RecordKey)> {
-        let keyed = arguments.rows.iter().map(|row| (row, row.key(source.id())));
+        let keyed = settings.rows.iter().map(|row| (row, row.key(source.id())));
         keyed.filter(|(_, key)| !file.has(key)).collect()
     };
-    let total = sources.len() * arguments.rows.len();
+    let total = sources.len() * settings.rows.len();
     let left: usize = sources.iter().map(|source| missing(source).len()).sum();
     println!("{}", json!({ "total": total, "done": total - left }));
-    map_with_progress(arguments.threads, sources, |source| {
+    map_with_progress(settings.threads, sources, |source| {
         let missing = missing(source);
         if missing.is_empty() {
             return Ok(());
@@ -156,7 +155,7 @@ fn go_on(
         let case = load(source)?;
         for (row, key) in missing {
             let record = run_row(&case, row);
-            file.add(&key, &record).map_err(|error| error.to_string())?;
+            file.add(&key, &record)?;
             println!("{}", json!({ "row": key.row, "case": key.case, "seconds": record.seconds }));
         }
         Ok(())
@@ -164,17 +163,16 @@ fn go_on(
     .map(drop)
 }
 
-fn draw(case: &BenchCase, matrix: Option<&[f64]>, path: &Path) -> Result<(), String> {
+fn draw(case: &BenchCase, matrix: Option<&[f64]>, path: &Path) -> Result<(), Failure> {
     let pose = match matrix {
         Some(matrix) => {
             let numbers = <&[f64; 16]>::try_from(matrix).map_err(|_| "--matrix: expected 16 numbers")?;
-            Some(Similarity::from_column_major(numbers).map_err(|error| error.to_string())?)
+            Some(Similarity::from_column_major(numbers)?)
         }
         None => case.truth.as_ref().map(|truth| truth.camera_from_mesh),
     };
     let pose = pose.ok_or("the case has no true pose: pass --matrix")?;
-    let png = picture(case, &pose).map_err(|error| error.to_string())?;
-    fs::write(path, png).map_err(|error| format!("{}: {error}", path.display()))
+    write_file(path, picture(case, &pose)?)
 }
 
 fn run_row(case: &BenchCase, row: &Row) -> Record {
@@ -182,18 +180,15 @@ fn run_row(case: &BenchCase, row: &Row) -> Record {
     let case = shape.as_ref().unwrap_or(case);
     match &row.method {
         Method::Align => run_case(case, &row.preset_options(), &row.search),
-        Method::Baseline(baseline) => {
-            let options = row.baseline_options();
-            run_method(case, |observation, mesh, host| {
-                align_baseline(observation, mesh, *baseline, &options, host).map(Into::into)
-            })
-        }
+        Method::Baseline(baseline) => run_method(case, |observation, mesh, host| {
+            align_baseline(observation, mesh, *baseline, &row.paper, row.locks_scale(), host).map(Into::into)
+        }),
         Method::Import(folder) => imported(case, folder),
     }
 }
 
-fn load(source: &Source, set: &EvaluationSet, scenes: &Scenes) -> Result<BenchCase, String> {
-    let case = match source {
+fn load(source: &Source, set: &EvaluationSet, scenes: &Scenes) -> Result<BenchCase> {
+    match source {
         Source::Generated(_, index) => set.case(*index).map(BenchCase::from),
         Source::Misfit(_, index) => set.case(index + 1).and_then(|other| {
             let case = BenchCase::from(set.case(*index)?);
@@ -202,38 +197,36 @@ fn load(source: &Source, set: &EvaluationSet, scenes: &Scenes) -> Result<BenchCa
         }),
         Source::Scene { scene, pair, prior } => scenes.case(*scene, *pair, *prior),
         Source::Folder(folder) => BenchCase::read(folder),
-    };
-    case.map_err(|error| error.to_string())
+    }
 }
 
-fn sources(arguments: &Arguments, scenes: &Scenes) -> Result<Vec<Source>, String> {
+fn sources(settings: &Settings, scenes: &Scenes) -> Result<Vec<Source>, Failure> {
     let fits = |&index: &usize| {
-        arguments.tiers.contains(&Tier::of(index)) && arguments.classes.contains(&arguments.set.class(index))
+        settings.tiers.as_ref().is_none_or(|tiers| tiers.contains(&Tier::of(index)))
+            && settings.classes.as_ref().is_none_or(|classes| classes.contains(&settings.set.class(index)))
     };
-    let generated: Vec<usize> = match &arguments.only {
+    let generated: Vec<usize> = match &settings.only {
         Some(only) => only.clone(),
-        None => (0..arguments.generated).filter(fits).collect(),
+        None => (0..settings.generated).filter(fits).collect(),
     };
-    let of_set = |index| Source::Generated(arguments.set, index);
+    let of_set = |index| Source::Generated(settings.set, index);
     let mut sources: Vec<Source> = generated.into_iter().map(of_set).collect();
-    sources.extend((0..arguments.misfits).map(|index| Source::Misfit(arguments.set, index)));
-    sources.extend(scenes.sources(&arguments.priors));
-    for folder in &arguments.cases {
+    sources.extend((0..settings.misfits).map(|index| Source::Misfit(settings.set, index)));
+    sources.extend(scenes.sources(&settings.priors));
+    for folder in &settings.cases {
         sources.extend(case_folders(folder)?.into_iter().map(Source::Folder));
     }
     Ok(sources)
 }
 
 /// The folder itself if it contains a camera file, otherwise the case folders in it.
-fn case_folders(folder: &Path) -> Result<Vec<PathBuf>, String> {
+fn case_folders(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let is_case = |folder: &Path| folder.join("camera.json").is_file();
     if is_case(folder) {
         return Ok(vec![folder.into()]);
     }
-    let entries = fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    let mut folders: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    let mut folders = listed(folder)?;
     folders.retain(|folder| is_case(folder));
-    folders.sort();
     Ok(folders)
 }
 
@@ -241,13 +234,7 @@ fn case_folders(folder: &Path) -> Result<Vec<PathBuf>, String> {
 fn map_with_progress<T: Sync, R: Send>(
     threads: usize,
     items: &[T],
-    work: impl Fn(&T) -> Result<R, String> + Sync,
-) -> Result<Vec<R>, String> {
-    let result = parallel_map(threads, items, work, |done| {
-        if done.is_multiple_of(10) || done == items.len() {
-            eprint!("\r{done} of {} ", items.len());
-        }
-    });
-    eprintln!();
-    result
+    work: impl Fn(&T) -> Result<R, Failure> + Sync,
+) -> Result<Vec<R>, Failure> {
+    parallel_map(threads, items, work, |done| print_progress(done, items.len()))
 }

@@ -3,7 +3,6 @@
 use std::io::{Write, stdout};
 use std::ops::Range;
 use std::panic;
-use std::path::Path;
 use std::process::exit;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -11,10 +10,11 @@ use std::time::{Duration, Instant};
 use sim3align_lab::cpu_time::{CpuTimer, of_main_thread};
 use sim3align_lab::fuzz::call::Answer;
 use sim3align_lab::fuzz::choices::Choices;
-use sim3align_lab::fuzz::target::{Ceilings, Execution, Target};
+use sim3align_lab::fuzz::target::{Ceilings, Execution, TARGETS, Target};
 
 use super::super::Failure;
-use super::arguments::Arguments;
+use super::settings::Settings;
+use sim3align_lab::prelude::*;
 
 /// Exit status after a fault that was printed.
 const FAULT: i32 = 3;
@@ -28,19 +28,19 @@ static CURRENT: AtomicU64 = AtomicU64::new(0);
 
 /// Makes the calls of a range of seeds, and prints `at N` now and then, `fault N words` for a fault, and `done` with
 /// sums in the end.
-pub fn run(target: Target, range: Range<u64>, arguments: &Arguments) -> Result<(), Failure> {
+pub fn run(target: Target, range: Range<u64>, settings: &Settings) -> Result<(), Failure> {
     CURRENT.store(range.start, Ordering::Relaxed);
-    watch(arguments.ceilings);
+    watch(settings.ceilings);
     let (mut results, mut slowest, mut largest) = (0_u64, (0.0_f64, range.start), (0_usize, range.start));
     let timer = CpuTimer::start();
     let count = range.end.saturating_sub(range.start);
     for number in range {
         CURRENT.store(number, Ordering::Relaxed);
-        if arguments.trace {
+        if settings.trace {
             println!("at {number}");
         }
-        let mut choices = Choices::random(seed_of(arguments.seed, number));
-        let Execution { outcome, seconds, bytes, .. } = target.execute(&mut choices, &arguments.ceilings);
+        let mut choices = Choices::random(seed_of(settings.seed, number));
+        let Execution { outcome, seconds, bytes, .. } = target.execute(&mut choices, &settings.ceilings);
         match outcome {
             Ok(Answer::Result) => results += 1,
             Ok(Answer::Error(_)) => {}
@@ -70,8 +70,9 @@ pub fn seed_of(seed: u32, number: u64) -> u64 {
 }
 
 /// Replays a file of choices under the same watch; prints the arguments and the outcome.
-pub fn replay(target: Target, path: &Path, ceilings: &Ceilings) -> Result<(), Failure> {
+pub fn replay(path: &Path, ceilings: &Ceilings) -> Result<(), Failure> {
     let failed = |words: String| Failure::Failed(format!("{}: {words}", path.display()));
+    let target = target_of(path).ok_or_else(|| failed("neither file nor folder names a target".into()))?;
     let text = std::fs::read_to_string(path).map_err(|error| failed(error.to_string()))?;
     let choices = Choices::read(&text).map_err(|word| failed(format!("{word} is no number")))?;
     println!("{}", target.describe(&mut choices.clone()));
@@ -84,6 +85,14 @@ pub fn replay(target: Target, path: &Path, ceilings: &Ceilings) -> Result<(), Fa
         Err(words) => fault(&words),
     }
     Ok(())
+}
+
+/// The target that the file's folder or the start of its name says; the longest such name.
+fn target_of(path: &Path) -> Option<Target> {
+    let name = path.file_name()?.to_str()?;
+    let folder = path.parent().and_then(Path::file_name).and_then(|folder| folder.to_str());
+    let fits = |target: &Target| folder == Some(target.name) || name.starts_with(&format!("{}-", target.name));
+    TARGETS.into_iter().filter(fits).max_by_key(|target| target.name.len())
 }
 
 /// Reports panics and calls that do not end, and ends the process.

@@ -1,19 +1,22 @@
 //! `fuzz`: searches for inputs on which the package fails.
 
-mod arguments;
 mod child;
 mod parent;
-mod replay;
+mod settings;
 
-use super::{Failure, parsed};
-use arguments::{Arguments, Mode, USAGE, parse};
+use super::Command;
+use settings::{Mode, Settings, USAGE};
 
-/// Runs the command.
-pub fn main(arguments: lexopt::Parser) -> Result<(), Failure> {
-    let arguments: Arguments = parsed(arguments, parse, USAGE)?;
-    match &arguments.mode {
-        Mode::Search => parent::search(&arguments),
-        Mode::Range(target, range) => child::run(*target, range.clone(), &arguments),
-        Mode::Replay(path) => replay::run(path, &arguments),
-    }
-}
+pub const COMMAND: Command = Command {
+    name: "fuzz",
+    about: "searches for inputs on which the package fails",
+    usage: USAGE,
+    run: |arguments| {
+        let settings = Settings::parse(arguments)?;
+        match &settings.mode {
+            Mode::Search => parent::search(&settings),
+            Mode::Range(target, range) => child::run(*target, range.clone(), &settings),
+            Mode::Replay(path) => child::replay(path, &settings.ceilings),
+        }
+    },
+};

@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
 use std::ops::Range;
-use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -13,8 +12,9 @@ use sim3align_lab::fuzz::minimise::minimise;
 use sim3align_lab::fuzz::target::Target;
 
 use super::super::Failure;
-use super::arguments::Arguments;
 use super::child::seed_of;
+use super::settings::Settings;
+use sim3align_lab::prelude::*;
 
 /// Trials of the minimisation of one fault, and of one that takes long.
 const TRIALS: [usize; 2] = [300, 20];
@@ -44,15 +44,15 @@ enum End {
 }
 
 /// Searches until the time is over, and prints a table.
-pub fn search(arguments: &Arguments) -> Result<(), Failure> {
-    let end = Instant::now() + Duration::from_secs_f64(60.0 * arguments.minutes.clamp(0.0, 1e6));
+pub fn search(settings: &Settings) -> Result<(), Failure> {
+    let end = Instant::now() + Duration::from_secs_f64(60.0 * settings.minutes.clamp(0.0, 1e6));
     let sums: Mutex<BTreeMap<&str, Sums>> = Mutex::default();
     let failures: Mutex<Vec<Failure>> = Mutex::default();
     std::thread::scope(|scope| {
-        for _ in 0..arguments.jobs {
+        for _ in 0..settings.jobs {
             scope.spawn(|| {
-                while let Some((target, range)) = next_batch(arguments, &sums, end) {
-                    if let Err(failure) = run_batch(target, range, arguments, &sums) {
+                while let Some((target, range)) = next_batch(settings, &sums, end) {
+                    if let Err(failure) = run_batch(target, range, settings, &sums) {
                         failures.lock().unwrap_or_else(PoisonError::into_inner).push(failure);
                         break;
                     }
@@ -69,24 +69,24 @@ pub fn search(arguments: &Arguments) -> Result<(), Failure> {
     if faults == 0 {
         return Ok(());
     }
-    Err(Failure::Failed(format!("{faults} faults; their choices are in {}", arguments.out.display())))
+    Err(Failure::Failed(format!("{faults} faults; their choices are in {}", settings.out.display())))
 }
 
 /// The target with the smallest share of the time so far, and its next calls; `None` at the end.
 fn next_batch<'a>(
-    arguments: &'a Arguments,
+    settings: &'a Settings,
     sums: &Mutex<BTreeMap<&'a str, Sums>>,
     end: Instant,
 ) -> Option<(Target, Range<u64>)> {
     let mut sums = sums.lock().unwrap_or_else(PoisonError::into_inner);
-    let most = |target: &Target| match arguments.executions {
+    let most = |target: &Target| match settings.executions {
         Some(count) => count * if target.name == "readers" { READER_CALLS } else { 1 },
         None => u64::MAX,
     };
-    if arguments.executions.is_none() && Instant::now() >= end {
+    if settings.executions.is_none() && Instant::now() >= end {
         return None;
     }
-    let open = arguments.targets.iter().filter(|target| {
+    let open = settings.targets.iter().filter(|target| {
         let known = sums.get(target.name).cloned().unwrap_or_default();
         known.next < most(target) && known.faults < MAX_FAULTS
     });
@@ -105,11 +105,11 @@ fn next_batch<'a>(
 fn run_batch<'a>(
     target: Target,
     mut range: Range<u64>,
-    arguments: &'a Arguments,
+    settings: &'a Settings,
     sums: &Mutex<BTreeMap<&'a str, Sums>>,
 ) -> Result<(), Failure> {
     while !range.is_empty() {
-        let (at, end) = calls(target, range.clone(), arguments, &[])?;
+        let (at, end) = calls(target, range.clone(), settings, &[])?;
         let (number, words) = match end {
             Some(End::Done(new)) => {
                 let mut sums = sums.lock().unwrap_or_else(PoisonError::into_inner);
@@ -118,9 +118,9 @@ fn run_batch<'a>(
             }
             Some(End::Fault(number, words)) => (number, words),
             // It died without a report: the calls are repeated one at a time.
-            None => crash(target, at..range.end, arguments)?,
+            None => crash(target, at..range.end, settings)?,
         };
-        keep(target, number, &words, arguments)?;
+        keep(target, number, &words, settings)?;
         let mut sums = sums.lock().unwrap_or_else(PoisonError::into_inner);
         let known = sums.entry(target.name).or_default();
         known.faults += 1;
@@ -138,10 +138,10 @@ fn run_batch<'a>(
 fn calls(
     target: Target,
     range: Range<u64>,
-    arguments: &Arguments,
+    settings: &Settings,
     flags: &[&str],
 ) -> Result<(u64, Option<End>), Failure> {
-    let mut command = program(arguments)?;
+    let mut command = program(settings)?;
     command.args(["--target", target.name, "--range", &format!("{}..{}", range.start, range.end)]);
     command.args(flags);
     let mut at = range.start;
@@ -189,9 +189,9 @@ fn add(sums: &mut Sums, new: &Sums) {
 }
 
 /// Finds the call that ends its process without a report: makes the calls again, and each is announced.
-fn crash(target: Target, range: Range<u64>, arguments: &Arguments) -> Result<(u64, String), Failure> {
+fn crash(target: Target, range: Range<u64>, settings: &Settings) -> Result<(u64, String), Failure> {
     let start = range.start;
-    match calls(target, range, arguments, &["--trace"])? {
+    match calls(target, range, settings, &["--trace"])? {
         (_, Some(End::Fault(number, words))) => Ok((number, words)),
         (_, Some(End::Done(_))) => Ok((start, "the process died once, and not again".into())),
         (number, None) => Ok((number, "the process died: out of memory, or of stack".into())),
@@ -199,18 +199,18 @@ fn crash(target: Target, range: Range<u64>, arguments: &Arguments) -> Result<(u6
 }
 
 /// Minimises the choices of a fault, and writes them to a file.
-fn keep(target: Target, number: u64, words: &str, arguments: &Arguments) -> Result<(), Failure> {
-    let failed = |error: std::io::Error| Failure::Failed(format!("{}: {error}", arguments.out.display()));
+fn keep(target: Target, number: u64, words: &str, settings: &Settings) -> Result<(), Failure> {
+    let failed = |error: std::io::Error| Failure::Failed(format!("{}: {error}", settings.out.display()));
     println!("{} {number}: {words}", target.name);
-    std::fs::create_dir_all(&arguments.out).map_err(failed)?;
-    let mut choices = Choices::random(seed_of(arguments.seed, number));
+    std::fs::create_dir_all(&settings.out).map_err(failed)?;
+    let mut choices = Choices::random(seed_of(settings.seed, number));
     println!("  {}", target.describe(&mut choices));
-    let path = arguments.out.join(format!("{}-{}-{number}.txt", target.name, arguments.seed));
+    let path = settings.out.join(format!("{}-{}-{number}.txt", target.name, settings.seed));
     let trial = path.with_extension("trial.txt");
     let kind = kind_of(words);
     let mut failure = None;
     let smallest = minimise(choices.taken(), TRIALS[usize::from(kind == "slow")], |list| {
-        let same = write(&trial, list, words).map_err(failed).and_then(|()| replayed(&trial, arguments));
+        let same = write(&trial, list, words).map_err(failed).and_then(|()| replayed(&trial, settings));
         match same {
             Ok(found) => kind_of(&found) == kind,
             Err(error) => {
@@ -243,8 +243,8 @@ fn kind_of(words: &str) -> String {
 }
 
 /// The fault of a file of choices; empty without one.
-fn replayed(path: &Path, arguments: &Arguments) -> Result<String, Failure> {
-    let mut command = program(arguments)?;
+fn replayed(path: &Path, settings: &Settings) -> Result<String, Failure> {
+    let mut command = program(settings)?;
     command.arg("--replay").arg(path);
     let mut child = start(&mut command)?;
     let fault = lines(&mut child).find_map(|line| line.strip_prefix("fault 0 ").map(str::to_owned));
@@ -253,12 +253,12 @@ fn replayed(path: &Path, arguments: &Arguments) -> Result<String, Failure> {
     Ok(fault.unwrap_or_else(|| if died { "the process died".into() } else { String::new() }))
 }
 
-fn program(arguments: &Arguments) -> Result<Command, Failure> {
+fn program(settings: &Settings) -> Result<Command, Failure> {
     let path = std::env::current_exe().map_err(|error| Failure::Failed(error.to_string()))?;
     let mut command = Command::new(path);
-    command.args(["fuzz", "--seed", &arguments.seed.to_string()]);
-    command.args(["--seconds", &arguments.ceilings.seconds.to_string()]);
-    command.args(["--megabytes", &(arguments.ceilings.bytes >> 20).to_string()]);
+    command.args(["fuzz", "--seed", &settings.seed.to_string()]);
+    command.args(["--seconds", &settings.ceilings.seconds.to_string()]);
+    command.args(["--megabytes", &(settings.ceilings.bytes >> 20).to_string()]);
     Ok(command)
 }
 

@@ -1,23 +1,17 @@
 //! The registration methods of the benchmark.
 
-use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use glam::Vec3;
 use sim3align::options::Options;
-use sim3align::options::scale::ScaleOption;
-use sim3align::progress::Silent;
-use sim3align::register::icp::IcpMetric;
-use sim3align::register::options::RegisterOptions;
+use sim3align::register::options::{Icp, RegisterOptions};
 use sim3align::register::register;
-use sim3align_geometry::cloud::Cloud;
-use sim3align_geometry::similarity::Similarity;
-use sim3align_lab::baselines::{Baseline, PairSettings, register_pair};
+use sim3align_lab::baselines::{Baseline, register_pair};
 use sim3align_lab::bench::imported::{CLOUDS, Outcome, answer_in};
 use sim3align_lab::bench::option_text;
 use sim3align_lab::bench::records::RecordKey;
 use sim3align_lab::clouds::cloud_file::flat;
 use sim3align_lab::clouds::pair::Pair;
+use sim3align_lab::prelude::*;
 
 /// Default inlier distance for imported correspondences, in voxels of the pair.
 const INLIER_VOXELS: f64 = 1.5;
@@ -48,9 +42,9 @@ impl Method {
             return Ok(Self::Import { name, folder });
         }
         if text != "register" {
-            let names = || Baseline::ALL.map(Baseline::as_str).join(", ");
-            let unknown = || format!("--method {text}: expected register, {}, or NAME=import:DIR", names());
-            return Baseline::from_name(text).map(Self::Baseline).ok_or_else(unknown);
+            let names = Baseline::names().join(", ");
+            let unknown = |_| format!("--method {text}: expected register, {names}, or NAME=import:DIR");
+            return Baseline::from_name(text).map(Self::Baseline).map_err(unknown);
         }
         let mut options = RegisterOptions { scale: ScaleOption::Fixed(1.0), ..RegisterOptions::default() };
         for assignment in assignments {
@@ -101,9 +95,8 @@ impl Method {
                 let [source, target] = [source, target].map(|points| Cloud::from_points(points.to_vec()));
                 let begun = Instant::now();
                 // Refines the pose of RANSAC, as in common tutorials.
-                let settings =
-                    PairSettings { icp: Some(IcpMetric::PointToPlane), ..PairSettings::new(pair.voxel_size_m) };
-                let pose = register_pair(&source, &target, *baseline, &settings);
+                let settings = PaperOptions { icp: Icp::PointToPlane, ..PaperOptions::default() };
+                let pose = register_pair(&source, &target, *baseline, pair.voxel_size_m, &settings);
                 let seconds = begun.elapsed().as_secs_f64();
                 Answer { target_from_source: pose.map_err(|error| error.to_string()), seconds }
             }

@@ -1,14 +1,39 @@
 //! `registration`: writes pairs of clouds with a known transform, and runs registration methods over them.
 
-mod arguments;
 mod method;
 mod run;
+mod settings;
 mod table;
 
-use super::{Failure, parsed};
-use arguments::{Command, USAGE};
+use sim3align_lab::clouds::lidar_set::write_lidar;
+use sim3align_lab::clouds::object_set::write_objects;
+use sim3align_lab::clouds::room_set::write_rooms;
+use sim3align_lab::prelude::*;
 
-/// Runs the command.
-pub fn main(arguments: lexopt::Parser) -> Result<(), Failure> {
-    run::run(&parsed(arguments, Command::parse, USAGE)?).map_err(Failure::Failed)
+use super::{Arguments, Command, Failure, usage};
+use settings::{Settings, USAGE};
+
+pub const COMMAND: Command = Command {
+    name: "registration",
+    about: "writes pairs of clouds, and registers them",
+    usage: USAGE,
+    run: |arguments| match arguments.word().as_deref() {
+        Some("write") => write(arguments),
+        Some("run") => run::run(&Settings::parse(arguments)?),
+        Some(other) => Err(usage(format!("unexpected argument {other:?}"))),
+        None => Err(Failure::Help),
+    },
+};
+
+fn write(arguments: &mut Arguments) -> Result<(), Failure> {
+    let (seed, scenes) = (arguments.value("seed", 0)?, arguments.value("scenes", 4)?);
+    let words = arguments.rest()?;
+    let [kind, out] = words.as_slice() else { return Err(usage("write needs rooms, lidar or objects, and a folder")) };
+    let write: fn(&Path, u64, u32) -> Result<()> = match kind.as_str() {
+        "rooms" => write_rooms,
+        "lidar" => write_lidar,
+        "objects" => write_objects,
+        _ => return Err(usage("write knows rooms, lidar and objects")),
+    };
+    Ok(write(out.as_ref(), seed, scenes)?)
 }

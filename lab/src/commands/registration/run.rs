@@ -1,92 +1,76 @@
 //! Registers the pairs on several threads.
 
-use glam::Vec3;
+use std::path::absolute;
+
 use serde_json::json;
-use sim3align_geometry::cloud::Cloud;
-use sim3align_geometry::random::Random;
 use sim3align_geometry::rotations::super_fibonacci;
-use sim3align_geometry::similarity::{Similarity, vec3, vector3};
 use sim3align_geometry::voxel_grid::voxel_downsample;
 use sim3align_lab::bench::records::RecordFile;
 use sim3align_lab::clouds::cloud_file::read_cloud;
-use sim3align_lab::clouds::lidar_set::write_lidar;
-use sim3align_lab::clouds::object_set::write_objects;
 use sim3align_lab::clouds::overlap::overlap;
 use sim3align_lab::clouds::pair::Pair;
-use sim3align_lab::clouds::room_set::write_rooms;
 use sim3align_lab::clouds::{kitti, three_d_match};
 use sim3align_lab::parallel::parallel_map;
 
-use super::arguments::{Command, Kind, Protocol, Run};
+use super::super::{Failure, print_progress, write_file};
 use super::method::Method;
+use super::settings::Settings;
 use super::table::{self, Record};
+use sim3align_lab::prelude::*;
 
 /// Random stream of `--moved`.
 const MOVED_STREAM: u64 = 0x6d6f_7665;
 /// Random stream of `--scaled`.
 const SCALED_STREAM: u64 = 0x7363_616c;
 
-pub fn run(command: &Command) -> Result<(), String> {
-    match command {
-        Command::Write { kind: Kind::Rooms, out, seed, scenes } => write_rooms(out, *seed, *scenes),
-        Command::Write { kind: Kind::Lidar, out, seed, scenes } => write_lidar(out, *seed, *scenes),
-        Command::Write { kind: Kind::Objects, out, seed, scenes } => write_objects(out, *seed, *scenes),
-        Command::Run(run) => return run_pairs(run),
-    }
-    .map_err(|error| error.to_string())
-}
-
-fn run_pairs(run: &Run) -> Result<(), String> {
-    let mut pairs = pairs(run)?;
-    pairs.retain(|pair| run.only.as_ref().is_none_or(|text| pair.id.contains(text)));
-    let pairs: Vec<Pair> = pairs.into_iter().step_by(run.every).collect();
+pub fn run(settings: &Settings) -> Result<(), Failure> {
+    let mut pairs = pairs(settings)?;
+    pairs.retain(|pair| settings.only.as_ref().is_none_or(|text| pair.id.contains(text)));
+    let pairs: Vec<Pair> = pairs.into_iter().step_by(settings.every).collect();
     if pairs.is_empty() {
         return Err("no pair left to run".into());
     }
-    if let Some(path) = &run.pairs_json {
-        let absolute = |path: &std::path::Path| std::path::absolute(path).map_err(|error| error.to_string());
+    if let Some(path) = &settings.pairs_json {
         let list = pairs.iter().map(|pair| {
             let (source, target) = (absolute(&pair.source)?, absolute(&pair.target)?);
             Ok(json!({ "id": pair.id, "source": source, "target": target, "voxelSizeM": pair.voxel_size_m }))
         });
-        let list: Vec<_> = list.collect::<Result<_, String>>()?;
-        return std::fs::write(path, json!(list).to_string()).map_err(|error| format!("{}: {error}", path.display()));
+        let list: Vec<_> = list.collect::<Result<_, Failure>>()?;
+        return write_file(path, json!(list).to_string());
     }
-    let records = run.records.as_deref().map(RecordFile::open).transpose().map_err(|error| error.to_string())?;
-    let work = |pair: &Pair| run_pair(pair, run, records.as_ref());
-    let made = parallel_map(run.threads, &pairs, work, |done| eprint!("\r{done} of {} ", pairs.len()));
-    eprintln!();
-    let all: Vec<Record> = made?.into_iter().flatten().collect();
-    let methods: Vec<&str> = run.methods.iter().map(Method::name).collect();
+    let records = settings.records.as_deref().map(RecordFile::open).transpose()?;
+    let work = |pair: &Pair| run_pair(pair, settings, records.as_ref());
+    let made = parallel_map(settings.threads, &pairs, work, |done| print_progress(done, pairs.len()))?;
+    let all: Vec<Record> = made.into_iter().flatten().collect();
+    let methods: Vec<&str> = settings.methods.iter().map(Method::name).collect();
     print!("{}", table::report(&all, &methods));
-    if let Some(path) = &run.json {
-        std::fs::write(path, format!("{}\n", json!(all))).map_err(|error| format!("{}: {error}", path.display()))?;
+    if let Some(path) = &settings.json {
+        write_file(path, format!("{}\n", json!(all)))?;
     }
     Ok(())
 }
 
-fn pairs(run: &Run) -> Result<Vec<Pair>, String> {
-    let is_kitti = match run.protocol {
-        Protocol::Kitti => true,
-        Protocol::ThreeDMatch => false,
-        Protocol::Auto => kitti::is_layout(&run.data),
-    };
-    let pairs =
-        if is_kitti { kitti::pairs(&run.data) } else { three_d_match::pairs(&run.data, run.benchmark.as_deref()) };
-    pairs.map_err(|error| error.to_string())
+fn pairs(settings: &Settings) -> Result<Vec<Pair>> {
+    if settings.is_kitti.unwrap_or_else(|| kitti::is_layout(&settings.data)) {
+        kitti::pairs(&settings.data)
+    } else {
+        three_d_match::pairs(&settings.data, settings.benchmark.as_deref())
+    }
 }
 
-fn run_pair(pair: &Pair, run: &Run, records: Option<&RecordFile<Record>>) -> Result<Vec<Record>, String> {
+fn run_pair(pair: &Pair, settings: &Settings, records: Option<&RecordFile<Record>>) -> Result<Vec<Record>> {
     let known = |method: &Method| {
-        records?.get(&method.key(pair, run.moved, run.scaled)).filter(|_| method.needs_clouds()).cloned()
+        records?.get(&method.key(pair, settings.moved, settings.scaled)).filter(|_| method.needs_clouds()).cloned()
     };
-    let missing = run.methods.iter().any(|method| method.needs_clouds() && known(method).is_none());
+    let missing = settings.methods.iter().any(|method| method.needs_clouds() && known(method).is_none());
     let overlap_of = |method| known(method)?.overlap;
-    let measured = pair.overlap.or_else(|| run.methods.iter().find_map(overlap_of));
-    let measure = run.measure_overlap && measured.is_none();
-    let read = |path| read_cloud(path).map_err(|error| error.to_string());
-    let (source, target) =
-        if missing || measure { (read(&pair.source)?, read(&pair.target)?) } else { (Vec::new(), Vec::new()) };
+    let measured = pair.overlap.or_else(|| settings.methods.iter().find_map(overlap_of));
+    let measure = settings.measure_overlap && measured.is_none();
+    let (source, target) = if missing || measure {
+        (read_cloud(&pair.source)?, read_cloud(&pair.target)?)
+    } else {
+        (Vec::new(), Vec::new())
+    };
     let share = measured.or_else(|| {
         let voxels =
             |points: &[Vec3]| voxel_downsample(&Cloud::from_points(points.to_vec()), 0.5 * pair.voxel_size_m as f32);
@@ -94,12 +78,12 @@ fn run_pair(pair: &Pair, run: &Run, records: Option<&RecordFile<Record>>) -> Res
         measure.then(|| overlap(&a, &b, &pair.target_from_source, 0.75 * pair.voxel_size_m as f32))
     });
     // Transforms each cloud randomly, and converts the result back to the original frames.
-    let (source_move, target_move) = (moved(run.moved, &pair.id, 0), moved(run.moved, &pair.id, 1));
-    let source_move = scaled(run.scaled, &pair.id).compose(&source_move);
+    let (source_move, target_move) = (moved(settings.moved, &pair.id, 0), moved(settings.moved, &pair.id, 1));
+    let source_move = scaled(settings.scaled, &pair.id).compose(&source_move);
     let [source, target] = [(source, source_move), (target, target_move)]
         .map(|(points, pose)| points.iter().map(|&p| vec3(&pose.apply(vector3(p)))).collect::<Vec<Vec3>>());
     let mut made = Vec::new();
-    for method in &run.methods {
+    for method in &settings.methods {
         if let Some(record) = known(method) {
             made.push(Record { overlap: share.or(record.overlap), ..record });
             continue;
@@ -126,7 +110,7 @@ fn run_pair(pair: &Pair, run: &Run, records: Option<&RecordFile<Record>>) -> Res
             matrix: answer.target_from_source.as_ref().ok().map(Similarity::to_column_major),
         };
         if let (true, Some(file)) = (method.needs_clouds(), records) {
-            file.add(&method.key(pair, run.moved, run.scaled), &record).map_err(|error| error.to_string())?;
+            file.add(&method.key(pair, settings.moved, settings.scaled), &record)?;
         }
         made.push(record);
     }
@@ -153,6 +137,6 @@ fn moved(seed: u64, id: &str, side: u64) -> Similarity {
     const ROTATIONS: usize = 1 << 20;
     let [x, y, z, w] = super_fibonacci(random.below(ROTATIONS), ROTATIONS).to_array();
     let matrix = Similarity::rotation_from_xyzw(&[x, y, z, w]);
-    let shift = nalgebra::Vector3::from_fn(|_, _| 60.0 * random.uniform() - 30.0);
+    let shift = Vector3::from_fn(|_, _| 60.0 * random.uniform() - 30.0);
     matrix.and_then(|matrix| Similarity::from_parts(1.0, matrix, shift)).unwrap_or_else(|_| Similarity::identity())
 }

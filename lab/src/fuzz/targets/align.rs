@@ -2,20 +2,15 @@
 
 use sim3align::align::align_by_method;
 use sim3align::align::method::Method;
-use sim3align::evidence::observation::Observation;
 use sim3align::options::Choice;
-use sim3align::paper::options::PaperOptions;
-use sim3align::precise::options::{AlignOptions, Quality};
-use sim3align::progress::Silent;
-use sim3align::report::{Alignment, AnyAlignment, Sim3};
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
+use sim3align::report::{AnyAlignment, Sim3};
 
-use crate::fuzz::call::{Answer, Call, finite, typed};
+use crate::fuzz::call::{Call, Checked, finite};
 use crate::fuzz::choices::Choices;
 use crate::fuzz::meshes::mesh;
 use crate::fuzz::options::options;
 use crate::fuzz::views::{Size, view};
+use crate::prelude::*;
 
 /// Small images and meshes, mostly with little work.
 pub fn small(c: &mut Choices) -> Call {
@@ -38,15 +33,8 @@ fn call(c: &mut Choices, size: Size, most: usize) -> Call {
         Method::Precise(options) => format!("{options:?}"),
         Method::Paper(options) => format!("{options:?}"),
     };
-    Call {
-        description: format!("{view_words}; {mesh_words}; {words}"),
-        is_bounded,
-        run: Box::new(move || match aligned(observation, mesh, &method) {
-            Ok(AnyAlignment::Precise(alignment)) => check(&alignment),
-            Ok(AnyAlignment::Paper(alignment)) => check_pose(&alignment.camera_from_mesh),
-            Err(error) => typed(&error, takes_transform),
-        }),
-    }
+    let aligned = move || align_by_method(&observation?, &mesh?, &method, &mut Silent);
+    Call::new(format!("{view_words}; {mesh_words}; {words}"), is_bounded, takes_transform, aligned, check)
 }
 
 /// Options, and whether they ask for no more work than the defaults.
@@ -66,34 +54,35 @@ fn method(c: &mut Choices, size: Size) -> (Method, bool) {
     (options.into(), is_bounded)
 }
 
-fn aligned(observation: Result<Observation>, mesh: Result<Mesh>, method: &Method) -> Result<AnyAlignment> {
-    let (observation, mesh) = (observation?, mesh?);
-    align_by_method(&observation, &mesh, method, &mut Silent)
-}
-
-fn check(alignment: &Alignment) -> core::result::Result<Answer, String> {
-    check_pose(&alignment.camera_from_mesh)?;
-    finite("confidence, score", &[alignment.confidence, alignment.diagnostics.score])?;
-    if !(0.0..=1.0).contains(&alignment.confidence) {
-        return Err(format!("result: confidence {}", alignment.confidence));
-    }
-    alignment.alternatives.iter().try_for_each(|other| check_pose(&other.camera_from_mesh).map(drop))?;
+fn check(found: &AnyAlignment) -> Checked {
+    check_pose(found.camera_from_mesh())?;
+    let AnyAlignment::Precise(alignment) = found else { return Ok(()) };
+    finite("score", &[alignment.diagnostics.score])?;
+    check_probability(alignment.confidence)?;
+    alignment.alternatives.iter().try_for_each(|other| check_pose(&other.camera_from_mesh))?;
     if let Some(u) = &alignment.uncertainty {
         finite("uncertainty", &[u.scale, u.rotation_deg, u.lateral_m, u.distance_m])?;
         finite("rotationAxis", &u.rotation_axis)?;
     }
     let common = &alignment.diagnostics.common;
-    finite("diagnostics", &[common.initial_scale, common.scale_ratio, common.residual_m])?;
-    Ok(Answer::Result)
+    finite("diagnostics", &[common.initial_scale, common.scale_ratio, common.residual_m])
+}
+
+/// A confidence from 0 to 1.
+pub fn check_probability(confidence: f64) -> Checked {
+    if (0.0..=1.0).contains(&confidence) {
+        return Ok(());
+    }
+    Err(format!("result: confidence {confidence}"))
 }
 
 /// A similarity with a scale above 0.
-pub fn check_pose(pose: &Sim3) -> core::result::Result<Answer, String> {
+pub fn check_pose(pose: &Sim3) -> Checked {
     finite("matrix", &pose.matrix)?;
     finite("rotation", &pose.rotation)?;
     let length: f64 = pose.rotation.iter().map(|x| x * x).sum();
     if pose.scale > 0.0 && pose.scale.is_finite() && (length - 1.0).abs() < 1e-6 {
-        return Ok(Answer::Result);
+        return Ok(());
     }
     Err(format!("result: scale {}, quaternion of length² {length}", pose.scale))
 }

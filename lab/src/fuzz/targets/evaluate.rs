@@ -1,9 +1,8 @@
 //! `evaluate`.
 
 use sim3align::align::evaluate::{EvaluateOptions, Evaluation, evaluate};
-use sim3align_geometry::error::Result;
 
-use crate::fuzz::call::{Answer, Call, finite, typed};
+use crate::fuzz::call::{Call, Checked, finite};
 use crate::fuzz::choices::Choices;
 use crate::fuzz::meshes::mesh;
 use crate::fuzz::options::{options, transform};
@@ -18,15 +17,10 @@ pub fn call(c: &mut Choices) -> Call {
     let (view_words, observation) = view(c, size);
     let (mesh_words, mesh) = mesh(c, most);
     let description = format!("{view_words}; {mesh_words}; {pose:?}; {options:?}");
-    let evaluated = move || -> Result<Evaluation> { evaluate(&observation?, &mesh?, &pose, &options) };
-    let run = move || match evaluated() {
-        Ok(evaluation) => check(&evaluation),
-        Err(error) => typed(&error, true),
-    };
-    Call { run: Box::new(run), description, is_bounded: true }
+    Call::new(description, true, true, move || evaluate(&observation?, &mesh?, &pose, &options), check)
 }
 
-fn check(evaluation: &Evaluation) -> core::result::Result<Answer, String> {
+fn check(evaluation: &Evaluation) -> Checked {
     let m = &evaluation.metrics;
     let shares = [m.boundary_f, m.iou, m.fitness, m.normal_consistency];
     let lengths = [m.center_drift_px, m.chamfer_mm, m.uni_chamfer_mm, m.depth_mae_mm];
@@ -40,6 +34,5 @@ fn check(evaluation: &Evaluation) -> core::result::Result<Answer, String> {
         return Err(format!("result: a length of {length}"));
     }
     let d = &evaluation.diagnostics;
-    finite("diagnostics", &[d.initial_scale, d.scale_ratio])?;
-    Ok(Answer::Result)
+    finite("diagnostics", &[d.initial_scale, d.scale_ratio])
 }

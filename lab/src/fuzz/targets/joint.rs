@@ -1,32 +1,22 @@
 //! Several frames of an object: `alignViews`, and trackers.
 
-use sim3align::evidence::frame::Frame;
-use sim3align::precise::drawn::prepared_mesh::PreparedMesh;
-use sim3align::precise::options::Quality;
-use sim3align::progress::Silent;
 use sim3align::track::options::TrackOptions;
 use sim3align::track::report::TrackedFrame;
 use sim3align::track::tracker::Tracker;
 use sim3align::views::options::ViewsOptions;
 use sim3align::views::report::ViewsAlignment;
 use sim3align::views::{View, align_views};
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::similarity::Similarity;
-use sim3align_geometry::surface_colors::SurfaceColors;
 
-use super::align::check_pose;
-use crate::fuzz::call::{Answer, Call, finite, typed};
+use super::align::{check_pose, check_probability};
+use crate::fuzz::call::{Answer, Call, Checked, finite, typed};
 use crate::fuzz::choices::Choices;
 use crate::fuzz::meshes::mesh;
 use crate::fuzz::options::{options, transform};
 use crate::fuzz::views::{Size, frame};
+use crate::prelude::*;
 
 /// Most triangles of a mesh, so that a call takes little time.
 const MOST_TRIANGLES: usize = 300;
-
-/// A check's outcome: what was wrong.
-type Checked = core::result::Result<(), String>;
 
 /// Hostile numbers of views, camera poses, masks and photos.
 pub fn views(c: &mut Choices) -> Call {
@@ -53,21 +43,15 @@ pub fn views(c: &mut Choices) -> Call {
         };
         views.push(frame.clone().map(|frame| View { frame, world_from_camera: pose }));
     }
-    Call {
-        description: format!("{words}; {mesh_words}; {given:?}"),
-        // Each view takes as long as one `align`.
-        is_bounded: count <= if given.quality == Quality::Fast { 16 } else { 2 },
-        run: Box::new(move || {
-            let found = views.into_iter().collect::<Result<Vec<View>>>().and_then(|views| {
-                let (mesh, colors) = object?;
-                align_views(views, &PreparedMesh::new(mesh).with_colors(colors), &given, &mut Silent)
-            });
-            match found {
-                Ok(found) => check_views(&found).map(|()| Answer::Result),
-                Err(error) => typed(&error, false),
-            }
-        }),
-    }
+    let description = format!("{words}; {mesh_words}; {given:?}");
+    // Each view takes as long as one `align`.
+    let is_bounded = count <= if given.quality == Quality::Fast { 16 } else { 2 };
+    let aligned = move || {
+        let views = views.into_iter().collect::<Result<Vec<View>>>()?;
+        let (mesh, colors) = object?;
+        align_views(views, &PreparedMesh::new(mesh).with_colors(colors), &given, &mut Silent)
+    };
+    Call::new(description, is_bounded, false, aligned, check_views)
 }
 
 /// A mesh, and the colours of its vertices, if it has some.
@@ -88,8 +72,8 @@ fn coloured(c: &mut Choices) -> (String, Result<(Mesh, Option<SurfaceColors>)>) 
 
 fn check_views(found: &ViewsAlignment) -> Checked {
     check_pose(&found.world_from_mesh)?;
-    is_probability(found.confidence)?;
-    found.alternatives.iter().try_for_each(|other| check_pose(&other.camera_from_mesh).map(drop))?;
+    check_probability(found.confidence)?;
+    found.alternatives.iter().try_for_each(|other| check_pose(&other.camera_from_mesh))?;
     if let Some(u) = &found.uncertainty {
         finite("uncertainty", &[u.scale, u.rotation_deg, u.position_m])?;
         finite("rotationAxis", &u.rotation_axis)?;
@@ -98,7 +82,7 @@ fn check_views(found: &ViewsAlignment) -> Checked {
     for view in &found.views {
         check_pose(&view.camera_from_mesh)?;
         check_pose(&view.camera.world_from_camera)?;
-        is_probability(view.confidence)?;
+        check_probability(view.confidence)?;
         finite("score", &[view.score])?;
         let certainty = [view.camera.rotation_sd_deg, view.camera.position_sd_m];
         finite("camera", &certainty.map(Option::unwrap_or_default))?;
@@ -165,7 +149,7 @@ fn run(
     object: Result<(Mesh, Option<SurfaceColors>)>,
     given: &TrackOptions,
     steps: Vec<Step>,
-) -> core::result::Result<Answer, String> {
+) -> Result<Answer, String> {
     let takes_transform = given.initial.is_some();
     let tracker =
         object.and_then(|(mesh, colors)| Tracker::new(PreparedMesh::new(mesh).with_colors(colors), given.clone()));
@@ -203,22 +187,15 @@ fn run(
 
 fn correct(tracker: &mut Tracker<PreparedMesh<'_>>, pose: &Similarity, frame: Option<usize>) -> Result<Checked> {
     let changed = tracker.correct(pose, frame)?;
-    Ok(changed.iter().try_for_each(|frame| check_pose(&frame.camera_from_mesh).map(drop)))
+    Ok(changed.iter().try_for_each(|frame| check_pose(&frame.camera_from_mesh)))
 }
 
 fn check_frame(found: &TrackedFrame, number: usize) -> Checked {
     check_pose(&found.camera_from_mesh)?;
-    is_probability(found.confidence)?;
+    check_probability(found.confidence)?;
     finite("scaleSd, score", &[found.scale_sd, found.score])?;
     if found.frame != number {
         return Err(format!("result: frame {} instead of {number}", found.frame));
     }
     Ok(())
-}
-
-fn is_probability(confidence: f64) -> Checked {
-    if (0.0..=1.0).contains(&confidence) {
-        return Ok(());
-    }
-    Err(format!("result: confidence {confidence}"))
 }

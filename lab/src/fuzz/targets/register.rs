@@ -1,17 +1,16 @@
 //! `register` and `estimateSim3`.
 
-use sim3align::progress::Silent;
 use sim3align::register::estimate_sim3;
 use sim3align::register::options::{EstimateSim3Options, RegisterOptions};
 use sim3align::register::register;
 use sim3align::register::report::Registration;
-use sim3align_geometry::error::Result;
 
 use super::align::check_pose;
-use crate::fuzz::call::{Answer, Call, finite, typed};
+use crate::fuzz::call::{Call, Checked, finite};
 use crate::fuzz::choices::Choices;
 use crate::fuzz::clouds::pair;
 use crate::fuzz::options::options;
+use crate::prelude::*;
 
 /// `register`.
 pub fn call(c: &mut Choices) -> Call {
@@ -20,11 +19,9 @@ pub fn call(c: &mut Choices) -> Call {
     let options: RegisterOptions = options(c, changed, 50_000);
     let is_bounded = options == RegisterOptions::default();
     let (words, [source, target]) = pair(c, most);
-    Call {
-        description: format!("{words}; {options:?}"),
-        run: Box::new(move || checked(register(&source, &target, &options, &mut Silent))),
-        is_bounded,
-    }
+    let description = format!("{words}; {options:?}");
+    let registered = move || register(&source, &target, &options, &mut Silent);
+    Call::new(description, is_bounded, false, registered, check)
 }
 
 /// `estimateSim3`.
@@ -48,20 +45,13 @@ pub fn estimate(c: &mut Choices) -> Call {
         15 => correspondences.iter_mut().take(1).for_each(|i| *i = u32::MAX),
         _ => {}
     }
-    Call {
-        description: format!("{words}; {pairs} pairs, {matching} of them right; {options:?}"),
-        run: Box::new(move || checked(estimate_sim3(&source, &target, &correspondences, &options, &mut Silent))),
-        is_bounded,
-    }
+    let description = format!("{words}; {pairs} pairs, {matching} of them right; {options:?}");
+    let estimated = move || estimate_sim3(&source, &target, &correspondences, &options, &mut Silent);
+    Call::new(description, is_bounded, false, estimated, check)
 }
 
-fn checked(result: Result<Registration>) -> core::result::Result<Answer, String> {
-    match result {
-        Ok(found) => {
-            finite("fitness, residual", &[found.fitness, found.residual])?;
-            finite("diagnostics", &[found.diagnostics.initial_scale, found.diagnostics.scale_ratio])?;
-            check_pose(&found.target_from_source)
-        }
-        Err(error) => typed(&error, false),
-    }
+fn check(found: &Registration) -> Checked {
+    finite("fitness, residual", &[found.fitness, found.residual])?;
+    finite("diagnostics", &[found.diagnostics.initial_scale, found.diagnostics.scale_ratio])?;
+    check_pose(&found.target_from_source)
 }

@@ -1,15 +1,8 @@
 //! The light of the scene: a lamp with soft shadows, and the sky.
 
-use glam::DVec3;
-use nalgebra::Vector3;
-
 use crate::cases::print;
 use crate::cases::scene::{camera_at, put_before};
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::pinhole::Pinhole;
-use sim3align_geometry::rasteriser::Rasteriser;
-use sim3align_geometry::similarity::{Similarity, vec3};
+use crate::prelude::*;
 
 /// Where the lamp is, metres.
 const LAMP: [f64; 3] = [-0.9, -0.75, 1.5];

@@ -5,32 +5,20 @@ mod light;
 mod paint;
 mod surface;
 
-use std::path::Path;
-
-use glam::Vec3;
-use nalgebra::{Matrix3, Rotation3, Vector3};
 use serde_json::json;
 
 use self::light::Light;
 use self::paint::Paint;
 use self::surface::Surface;
-use super::depth::corners_of;
 use crate::case_folder::contents::{mask_file, truth_file, view_files};
 use crate::case_folder::write::{glb_colored, rgb_png};
-use crate::cases::distortion::hallucinate;
+use crate::cases::distortion::{corners_of, hallucinate, mapped};
 use crate::cases::families::draw_from;
 use crate::cases::photo::resized;
-use crate::cases::scene::{background, camera_at, put_before, put_down_turned};
-use crate::draws::mixed;
+use crate::cases::scene::{View, camera_at, put_before, put_down_turned};
 use crate::files::write;
+use crate::prelude::*;
 use crate::scenes::DEPTH_SCALE;
-use sim3align_geometry::error::Result;
-use sim3align_geometry::image::{DepthMap, Mask};
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::pinhole::Pinhole;
-use sim3align_geometry::random::Random;
-use sim3align_geometry::rasteriser::Rasteriser;
-use sim3align_geometry::similarity::{Similarity, vec3, vector3};
 
 const WIDTH: usize = 640;
 const HEIGHT: usize = 480;
@@ -66,8 +54,7 @@ struct Placed {
 /// The scene.
 pub struct TableScene {
     seed: u64,
-    camera: Pinhole,
-    camera_from_world: Similarity,
+    view: View,
     objects: Vec<Placed>,
 }
 
@@ -90,21 +77,22 @@ impl TableScene {
         let eye = Vector3::new(-0.05, -0.62, 0.36);
         let forward = (Vector3::new(0.02, 0.02, 0.06) - eye).normalize();
         let camera = Pinhole::new(700.0, 700.0, 0.5 * WIDTH as f64 - 0.5, 0.5 * HEIGHT as f64 - 0.5)?;
-        Ok(Self { seed, camera, camera_from_world: camera_at(&eye, &forward, 0.0)?, objects })
+        let view = View { width: WIDTH, height: HEIGHT, camera, camera_from_world: camera_at(&eye, &forward, 0.0)? };
+        Ok(Self { seed, view, objects })
     }
 
     /// The photo, 8-bit sRGB.
     fn photo(&self) -> Result<Vec<[u8; 3]>> {
         let (width, height) = (RAYS * WIDTH, RAYS * HEIGHT);
-        let camera = resized(&self.camera, RAYS as f64);
+        let camera = resized(&self.view.camera, RAYS as f64);
+        let view = View { width, height, camera, ..self.view };
         let light = Light::new(self.objects.iter().map(|object| object.surface.mesh()))?;
-        let world_from_camera = self.camera_from_world.inverse();
-        let mut rasteriser = Rasteriser::new();
-        let mut nearest = background(&self.camera_from_world, &camera, (-Vector3::y(), WALL_M), width, height);
+        let world_from_camera = view.camera_from_world.inverse();
+        let mut nearest = view.background((-Vector3::y(), WALL_M));
         let mut hit: Vec<Option<(usize, u32)>> = vec![None; width * height];
         for (index, object) in self.objects.iter().enumerate() {
-            rasteriser.render(object.surface.mesh(), &self.camera_from_world, &camera, width, height);
-            for (i, (&z, &triangle)) in rasteriser.depth().iter().zip(rasteriser.triangles()).enumerate() {
+            let (depth, triangles) = view.render(object.surface.mesh());
+            for (i, (z, triangle)) in depth.into_iter().zip(triangles).enumerate() {
                 if z > 0.0 && (nearest[i] == 0.0 || z < nearest[i]) {
                     (nearest[i], hit[i]) = (z, Some((index, triangle)));
                 }
@@ -141,31 +129,23 @@ impl TableScene {
     /// # Errors
     /// Only in case of a bug in the generator.
     pub fn files(&self) -> Result<Vec<(String, Vec<u8>)>> {
-        let mut rasteriser = Rasteriser::new();
-        let alone: Vec<(Vec<f32>, Vec<u32>)> = self
-            .objects
-            .iter()
-            .map(|object| {
-                rasteriser.render(object.surface.mesh(), &self.camera_from_world, &self.camera, WIDTH, HEIGHT);
-                (rasteriser.depth().to_vec(), rasteriser.triangles().to_vec())
-            })
-            .collect();
-        let mut depth = background(&self.camera_from_world, &self.camera, (-Vector3::y(), WALL_M), WIDTH, HEIGHT);
+        let alone: Vec<_> = self.objects.iter().map(|object| self.view.render(object.surface.mesh())).collect();
+        let mut depth = self.view.background((-Vector3::y(), WALL_M));
         alone.iter().for_each(|(object, _)| put_before(&mut depth, object));
         let is_seen = |k: usize, i: usize| alone[k].0[i] > 0.0 && alone[k].0[i] <= depth[i];
         let random = &mut Random::new(self.seed, NOISE_STREAM);
         let noisy = depth.iter().map(|z| z * (1.0 + NOISE * (random.uniform() + random.uniform() - 1.0)) as f32);
         let readings = DepthMap::from_metres(WIDTH, HEIGHT, noisy.collect())?;
         let mut files = vec![("rgb.png".to_owned(), rgb_png(&self.photo()?, WIDTH, HEIGHT)?)];
-        let view = view_files(&readings, self.camera, Some(DEPTH_SCALE))?;
-        files.extend(view.map(|(name, bytes)| (name.to_owned(), bytes)));
+        let files_of_view = view_files(&readings, self.view.camera, Some(DEPTH_SCALE))?;
+        files.extend(files_of_view.map(|(name, bytes)| (name.to_owned(), bytes)));
         for (k, object) in self.objects.iter().enumerate() {
             let mask = (0..WIDTH * HEIGHT).map(|i| u8::from(is_seen(k, i))).collect();
             let mask = Mask::new("mask", WIDTH, HEIGHT, mask)?;
             let (mesh, colors, world_from_mesh) = self.generated(k, &alone[k].1, |i| is_seen(k, i))?;
             let note = format!("generated: {} on a table, seed {}", object.family, self.seed);
             let truth = json!({ "symmetry": "none", "note": note });
-            let pose = self.camera_from_world.compose(&world_from_mesh);
+            let pose = self.view.camera_from_world.compose(&world_from_mesh);
             let own = [mask_file(&mask)?, ("mesh.glb", glb_colored(&mesh, &colors)), truth_file(&pose, truth)];
             files.extend(own.map(|(name, bytes)| (format!("objects/{}/{name}", object.family), bytes)));
         }
@@ -212,6 +192,5 @@ fn upright(mesh: &Mesh) -> Result<(Mesh, Similarity)> {
     let turn = Matrix3::new(1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0);
     let object_from_mesh = Similarity::from_parts(scale, turn, vector3(0.5 * (low + high)))?;
     let back = object_from_mesh.inverse();
-    let positions = mesh.positions().iter().map(|p| vec3(&back.apply(vector3(*p)))).collect();
-    Ok((Mesh::new(positions, mesh.triangles().to_vec())?, object_from_mesh))
+    Ok((mapped(mesh, |p| vec3(&back.apply(vector3(*p))))?, object_from_mesh))
 }

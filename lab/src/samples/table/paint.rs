@@ -1,8 +1,6 @@
 //! The colours of the objects, the table and the wall: linear albedos.
 
-use core::f64::consts::TAU;
-
-use nalgebra::Vector3;
+use crate::prelude::*;
 
 /// What an object is painted with.
 #[derive(Debug, Clone, Copy)]

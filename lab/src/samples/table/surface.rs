@@ -2,12 +2,8 @@
 
 use std::collections::HashMap;
 
-use glam::Vec3;
-use nalgebra::Vector3;
-
-use sim3align_geometry::error::Result;
-use sim3align_geometry::mesh::Mesh;
-use sim3align_geometry::similarity::{Similarity, vec3, vector3};
+use crate::cases::distortion::mapped;
+use crate::prelude::*;
 
 /// Surfaces that meet at a larger angle have an edge between them: its cosine.
 const CREASE: f64 = 0.75;
@@ -26,8 +22,7 @@ pub struct Surface {
 impl Surface {
     /// The surface of an object's mesh at its pose.
     pub fn new(object: &Mesh, world_from_object: &Similarity) -> Result<Self> {
-        let placed = |p: &Vec3| vec3(&world_from_object.apply(vector3(*p)));
-        let mesh = Mesh::new(object.positions().iter().map(placed).collect(), object.triangles().to_vec())?;
+        let mesh = mapped(object, |p| vec3(&world_from_object.apply(vector3(*p))))?;
         let mut normals = vec![Vector3::zeros(); mesh.positions().len()];
         for &triangle in mesh.triangles() {
             let normal = face(&mesh, triangle);
@@ -46,8 +41,7 @@ impl Surface {
 
     /// The surface in the object's frame.
     pub fn in_object(&self) -> Result<Mesh> {
-        let back = |p: &Vec3| vec3(&self.object_from_world.apply(vector3(*p)));
-        Mesh::new(self.mesh.positions().iter().map(back).collect(), self.mesh.triangles().to_vec())
+        mapped(&self.mesh, |p| vec3(&self.object_from_world.apply(vector3(*p))))
     }
 
     /// The corners of the bounding box in the object's frame.

@@ -1,23 +1,19 @@
 //! Command line of `bench`.
 
-use std::path::{Path, PathBuf};
-
-use lexopt::prelude::*;
 use sim3align::align::method;
 use sim3align::options::{Choice, Options};
-use sim3align::paper::options::PaperOptions;
-use sim3align::precise::options::AlignOptions;
 use sim3align::precise::searched::recipe::SearchSettings;
 use sim3align::report::{Effort, Preset};
-use sim3align_geometry::error::Error;
 use sim3align_lab::baselines::Baseline;
-use sim3align_lab::baselines::align::BaselineOptions;
 use sim3align_lab::bench::benchmark::override_setting;
 use sim3align_lab::bench::option_text;
 use sim3align_lab::bench::records::RecordKey;
 use sim3align_lab::cases::case::CASES;
 use sim3align_lab::cases::tier::{CaseSet, Class, Tier};
+use sim3align_lab::prelude::*;
 use sim3align_lab::scenes::Prior;
+
+use super::super::{Arguments, Failure, usage};
 
 pub const USAGE: &str = "\
 Usage: sim3align-lab bench [--generated N] [--scenes N] [--cases DIR...] [options]
@@ -107,11 +103,9 @@ impl Row {
         }
     }
 
-    /// The options of a baseline.
-    pub fn baseline_options(&self) -> BaselineOptions {
-        // The paper's method locks the scale by default, TEASER only where it is asked to.
-        let lock_scale = self.assignments.iter().any(|assignment| assignment == "lockScale=true");
-        BaselineOptions { paper: self.paper.clone(), lock_scale, up: None }
+    /// Whether a baseline keeps the initial scale: the paper's method does by default, TEASER only where it is asked to.
+    pub fn locks_scale(&self) -> bool {
+        self.assignments.iter().any(|assignment| assignment == "lockScale=true")
     }
 
     /// The key of a record of this row.
@@ -121,7 +115,7 @@ impl Row {
 }
 
 /// The parsed command line.
-pub struct Arguments {
+pub struct Settings {
     pub generated: usize,
     pub misfits: usize,
     pub scenes: usize,
@@ -131,8 +125,8 @@ pub struct Arguments {
     pub meshes: Option<PathBuf>,
     pub cases: Vec<PathBuf>,
     pub color: bool,
-    pub tiers: Vec<Tier>,
-    pub classes: Vec<Class>,
+    pub tiers: Option<Vec<Tier>>,
+    pub classes: Option<Vec<Class>>,
     pub only: Option<Vec<usize>>,
     pub rows: Vec<Row>,
     pub threads: usize,
@@ -144,99 +138,74 @@ pub struct Arguments {
     pub failures: usize,
 }
 
-impl Arguments {
-    /// `None` if help is requested.
-    pub fn parse(mut parser: lexopt::Parser) -> Result<Option<Self>, lexopt::Error> {
-        let mut generated = None;
-        let said = |error: Error| error.to_string();
-        let (mut options, mut rows, mut imports) = (Vec::new(), Vec::new(), Vec::new());
-        let mut arguments = Self {
+impl Settings {
+    pub fn parse(arguments: &mut Arguments) -> Result<Self, Failure> {
+        let generated = arguments.optional("generated")?;
+        let mut settings = Self {
             generated: 0,
-            misfits: 0,
-            scenes: 0,
-            priors: vec![Prior::Detailed],
-            set: CaseSet::General,
-            set_seed: 0,
-            meshes: None,
-            cases: Vec::new(),
-            color: true,
-            tiers: Tier::ALL.to_vec(),
-            classes: Class::ALL.to_vec(),
-            only: None,
-            rows: Vec::new(),
-            threads: std::thread::available_parallelism().map_or(1, usize::from),
-            json: None,
-            records: None,
-            write: None,
-            picture: None,
-            matrix: None,
-            failures: 40,
+            misfits: arguments.value("misfits", 0)?,
+            scenes: arguments.value("scenes", 0)?,
+            priors: Prior::several(&arguments.value("prior", Prior::Detailed.as_str().to_owned())?).map_err(usage)?,
+            set: arguments.value("set", CaseSet::General)?,
+            set_seed: arguments.value("set-seed", 0)?,
+            meshes: arguments.optional("meshes")?,
+            cases: arguments.paths("cases")?,
+            color: !arguments.flag("no-color"),
+            tiers: arguments.list("tier")?,
+            classes: arguments.list("class")?,
+            only: arguments.list("only")?,
+            rows: rows(arguments)?,
+            threads: arguments.threads("threads")?,
+            json: arguments.optional("json")?,
+            records: arguments.optional("records")?,
+            write: arguments.optional("write")?,
+            picture: arguments.optional("picture")?,
+            matrix: arguments.list("matrix")?,
+            failures: arguments.value("failures", 40)?,
         };
-        while let Some(argument) = parser.next()? {
-            match argument {
-                Long("generated") => generated = Some(parser.value()?.parse()?),
-                Long("misfits") => arguments.misfits = parser.value()?.parse()?,
-                Long("scenes") => arguments.scenes = parser.value()?.parse()?,
-                Long("prior") => arguments.priors = Prior::several(&parser.value()?.string()?).map_err(said)?,
-                Long("set") => arguments.set = CaseSet::from_name(&parser.value()?.string()?).map_err(said)?,
-                Long("set-seed") => arguments.set_seed = parser.value()?.parse()?,
-                Long("meshes") => arguments.meshes = Some(parser.value()?.into()),
-                Long("cases") => arguments.cases.extend(parser.values()?.map(PathBuf::from)),
-                Long("tier") => arguments.tiers = list(&parser.value()?.string()?, Tier::from_name)?,
-                Long("class") => arguments.classes = list(&parser.value()?.string()?, Class::from_name)?,
-                Long("no-color") => arguments.color = false,
-                Long("only") => arguments.only = Some(list(&parser.value()?.string()?, str::parse::<usize>)?),
-                Long("preset") => options.push(format!("preset={}", parser.value()?.string()?)),
-                Long("seed") => options.push(format!("seed={}", parser.value()?.string()?)),
-                Long("option") => options.push(parser.value()?.string()?),
-                Long("row") => rows.push(parser.value()?.string()?),
-                Long("import") => imports.push(parser.value()?.string()?),
-                Long("threads") => arguments.threads = parser.value()?.parse::<usize>()?.max(1),
-                Long("json") => arguments.json = Some(parser.value()?.into()),
-                Long("records") => arguments.records = Some(parser.value()?.into()),
-                Long("write") => arguments.write = Some(parser.value()?.into()),
-                Long("picture") => arguments.picture = Some(parser.value()?.into()),
-                Long("matrix") => arguments.matrix = Some(list(&parser.value()?.string()?, str::parse::<f64>)?),
-                Long("failures") => arguments.failures = parser.value()?.parse()?,
-                Long("help") | Short('h') => return Ok(None),
-                _ => return Err(argument.unexpected()),
-            }
-        }
-        let mut base = Row::default();
-        for assignment in &options {
-            assign(&mut base, assignment)?;
-        }
-        for text in rows {
-            let (name, assignments) = text.split_once(':').ok_or("--row without a colon after its name")?;
-            let mut row = Row { name: name.trim().into(), ..base.clone() };
-            for assignment in assignments.split_whitespace() {
-                assign(&mut row, assignment)?;
-            }
-            arguments.rows.push(row);
-        }
-        for text in imports {
-            let (name, folder) = text.split_once('=').ok_or("--import without NAME= before its folder")?;
-            if !Path::new(folder).is_dir() {
-                return Err(format!("--import {text}: found no folder {folder}").into());
-            }
-            arguments.rows.push(Row { name: name.into(), method: Method::Import(folder.into()), ..Row::default() });
-        }
-        if arguments.rows.is_empty() {
-            let name = match &base.method {
-                Method::Baseline(baseline) => baseline.as_str().into(),
-                _ => base.preset.as_str().into(),
-            };
-            arguments.rows.push(Row { name, ..base });
-        }
+        arguments.end()?;
         let anything_else =
-            !arguments.cases.is_empty() || arguments.only.is_some() || arguments.scenes + arguments.misfits > 0;
-        arguments.generated = generated.unwrap_or(if anything_else { 0 } else { CASES });
-        Ok(Some(arguments))
+            !settings.cases.is_empty() || settings.only.is_some() || settings.scenes + settings.misfits > 0;
+        settings.generated = generated.unwrap_or(if anything_else { 0 } else { CASES });
+        Ok(settings)
     }
 }
 
-fn list<T, E: std::fmt::Display>(text: &str, parse: impl Fn(&str) -> Result<T, E>) -> Result<Vec<T>, String> {
-    text.split(',').map(|part| parse(part.trim()).map_err(|error| format!("{part:?}: {error}"))).collect()
+/// The rows of the tables: those of `--row` and of `--import`; without any, one with the common options.
+fn rows(arguments: &mut Arguments) -> Result<Vec<Row>, Failure> {
+    let mut base = Row::default();
+    for name in ["preset", "seed"] {
+        for value in arguments.all(name)? {
+            assign(&mut base, &format!("{name}={value}")).map_err(usage)?;
+        }
+    }
+    for assignment in arguments.all("option")? {
+        assign(&mut base, &assignment).map_err(usage)?;
+    }
+    let mut rows = Vec::new();
+    for text in arguments.all("row")? {
+        let (name, assignments) = text.split_once(':').ok_or_else(|| usage("--row without a colon after its name"))?;
+        let mut row = Row { name: name.trim().into(), ..base.clone() };
+        for assignment in assignments.split_whitespace() {
+            assign(&mut row, assignment).map_err(usage)?;
+        }
+        rows.push(row);
+    }
+    for text in arguments.all("import")? {
+        let (name, folder) = text.split_once('=').ok_or_else(|| usage("--import without NAME= before its folder"))?;
+        if !Path::new(folder).is_dir() {
+            return Err(usage(format!("--import {text}: found no folder {folder}")));
+        }
+        rows.push(Row { name: name.into(), method: Method::Import(folder.into()), ..Row::default() });
+    }
+    if rows.is_empty() {
+        let name = match &base.method {
+            Method::Baseline(baseline) => baseline.as_str().into(),
+            _ => base.preset.as_str().into(),
+        };
+        rows.push(Row { name, ..base });
+    }
+    Ok(rows)
 }
 
 /// Sets an option from `name=value`, one of the search's settings from `search.name=number`, or the method.
@@ -245,9 +214,8 @@ fn assign(row: &mut Row, assignment: &str) -> Result<(), String> {
     assignments.push(assignment.to_owned());
     let (name, value) = assignment.split_once('=').ok_or_else(|| format!("{assignment:?} is no NAME=VALUE"))?;
     if name == "method" {
-        let names = || Baseline::ALL.map(Baseline::as_str).join(", ");
-        let baseline = Baseline::from_name(value).ok_or_else(|| format!("no method {value}; there are {}", names()))?;
-        *method = Method::Baseline(baseline);
+        let unknown = |_| format!("no method {value}; there are {}", Baseline::names().join(", "));
+        *method = Method::Baseline(Baseline::from_name(value).map_err(unknown)?);
         return Ok(());
     }
     if name == "color" {
